@@ -1,0 +1,1 @@
+//! Many epochs: batch loops on all cores, evaluation of bounds against truth.

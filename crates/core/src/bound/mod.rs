@@ -1,0 +1,21 @@
+//! How wrong the position may be. One file a method family; one list, [`METHODS`], that everything else reads.
+
+pub mod anp;
+mod method;
+pub mod tse;
+
+pub use method::{Bounded, Method, Promises, Provenance};
+
+/// Every method, family by family. Command-line choices, report legends, the documentation page, `navbound methods` and the contract
+/// tests read this list; a method is one entry in its family's file.
+pub const METHODS: &[&[Method]] = &[tse::METHODS, anp::METHODS];
+
+/// Every method in one sequence.
+pub fn methods() -> impl Iterator<Item = &'static Method> {
+    METHODS.iter().flat_map(|family| family.iter())
+}
+
+/// The method with this id.
+pub fn method(id: &str) -> Option<&'static Method> {
+    methods().find(|m| m.id == id)
+}

@@ -1,0 +1,111 @@
+//! Displacements and covariances with their frame in the type.
+
+use crate::quantity::{Metres, OutOfDomain, Radians};
+use crate::special::float::sin_cos;
+use core::marker::PhantomData;
+use nalgebra::{Matrix2, Matrix3, Vector3};
+
+/// A Cartesian frame.
+pub trait Frame: Copy + core::fmt::Debug {}
+
+/// Earth-centred, Earth-fixed (WGS-84 axes).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ecef;
+/// East, north, up at the estimated position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Enu;
+/// Along track, cross track (positive right), up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Track;
+impl Frame for Ecef {}
+impl Frame for Enu {}
+impl Frame for Track {}
+
+/// A difference of two positions \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Displacement<F: Frame> {
+    components: Vector3<f64>,
+    frame: PhantomData<F>,
+}
+
+/// A covariance of position \[m²\], symmetric by construction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Covariance<F: Frame> {
+    matrix: Matrix3<f64>,
+    frame: PhantomData<F>,
+}
+
+impl<F: Frame> Displacement<F> {
+    /// From components in the frame's order.
+    pub fn new(first: Metres, second: Metres, third: Metres) -> Self {
+        Self::from_vector(Vector3::new(first.m(), second.m(), third.m()))
+    }
+    /// From a vector in metres.
+    pub fn from_vector(components: Vector3<f64>) -> Self {
+        Self { components, frame: PhantomData }
+    }
+    /// The components \[m\].
+    pub fn vector(&self) -> &Vector3<f64> {
+        &self.components
+    }
+}
+
+impl Displacement<Enu> {
+    /// The same displacement along and across a course.
+    pub fn to_track(&self, course: Radians) -> Displacement<Track> {
+        Displacement::from_vector(track_from_enu(course) * self.components)
+    }
+}
+
+impl<F: Frame> Covariance<F> {
+    /// From the six numbers of the upper triangle, in the frame's order \[m²\].
+    pub fn from_upper([xx, xy, yy, xz, yz, zz]: [f64; 6]) -> Self {
+        Self::claim_symmetric(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
+    }
+    /// The caller claims that the matrix is symmetric; the upper triangle counts.
+    pub fn claim_symmetric(matrix: Matrix3<f64>) -> Self {
+        Self { matrix, frame: PhantomData }
+    }
+    /// From a matrix that must be a covariance.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] unless finite, symmetric to 1e-9 of its largest element, with no variance below zero.
+    pub fn new(matrix: Matrix3<f64>) -> Result<Self, OutOfDomain> {
+        let scale = matrix.amax();
+        let skew = (matrix - matrix.transpose()).amax();
+        if !(scale.is_finite() && skew <= 1e-9 * scale) {
+            return Err(OutOfDomain { argument: "covariance", value: skew, unit: "m²", domain: "symmetric and finite" });
+        }
+        let least = matrix.diagonal().min();
+        if !(least >= 0.0) {
+            return Err(OutOfDomain { argument: "covariance", value: least, unit: "m²", domain: "[0, inf) on the diagonal" });
+        }
+        Ok(Self::claim_symmetric(0.5 * (matrix + matrix.transpose())))
+    }
+    /// The matrix \[m²\].
+    pub fn matrix(&self) -> &Matrix3<f64> {
+        &self.matrix
+    }
+    /// The variance of the component along a vector `u` (u'Vu) \[m²\].
+    pub fn variance_along(&self, u: &Vector3<f64>) -> f64 {
+        u.dot(&(self.matrix * u))
+    }
+}
+
+impl Covariance<Enu> {
+    /// The east-north block \[m²\].
+    pub fn horizontal(&self) -> Matrix2<f64> {
+        self.matrix.fixed_view::<2, 2>(0, 0).into_owned()
+    }
+    /// The same covariance along and across a course.
+    pub fn to_track(&self, course: Radians) -> Covariance<Track> {
+        let r = track_from_enu(course);
+        Covariance::claim_symmetric(r * self.matrix * r.transpose())
+    }
+}
+
+/// Rows along (sin, cos, 0), cross to the right (cos, -sin, 0), up.
+fn track_from_enu(course: Radians) -> Matrix3<f64> {
+    let (s, c) = sin_cos(course.rad());
+    Matrix3::new(s, c, 0.0, c, -s, 0.0, 0.0, 0.0, 1.0)
+}

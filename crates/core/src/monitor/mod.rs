@@ -1,0 +1,1 @@
+//! Whether to tell the crew.

@@ -1,0 +1,9 @@
+//! Quantities: a number whose unit is its type, and the refusals that carry them.
+
+mod refusal;
+mod time;
+mod unit;
+
+pub use refusal::{OutOfDomain, Unavailable};
+pub use time::GpsTime;
+pub use unit::{Metres, Radians, Risk};

@@ -1,0 +1,71 @@
+//! Lengths, angles and risks.
+
+use super::OutOfDomain;
+
+/// Metres in one international nautical mile, exact by definition.
+const METRES_PER_NAUTICAL_MILE: f64 = 1852.0;
+
+/// A length \[m\].
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
+pub struct Metres(f64);
+
+impl Metres {
+    /// A length given in metres.
+    pub const fn new(m: f64) -> Self {
+        Self(m)
+    }
+    /// A length given in nautical miles (1 NM = 1852 m exactly).
+    pub const fn nautical_miles(nm: f64) -> Self {
+        Self(nm * METRES_PER_NAUTICAL_MILE)
+    }
+    /// The number of metres.
+    pub const fn m(self) -> f64 {
+        self.0
+    }
+}
+
+/// An angle \[rad\]. Courses are clockwise from true north; elevations and path angles are positive upwards.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
+pub struct Radians(f64);
+
+impl Radians {
+    /// An angle given in radians.
+    pub const fn new(rad: f64) -> Self {
+        Self(rad)
+    }
+    /// An angle given in degrees.
+    pub const fn degrees(deg: f64) -> Self {
+        Self(deg.to_radians())
+    }
+    /// The number of radians.
+    pub const fn rad(self) -> f64 {
+        self.0
+    }
+}
+
+/// An allowed risk q = 1 - P, strictly between 0 and 1. A probability near one has lost its digits before it is stored: 1 - 1e-9 as a
+/// double carries a relative error of 1e-7 in the risk.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub struct Risk(f64);
+
+impl Risk {
+    /// The 95 % accuracy level of every navigation specification.
+    pub const ACCURACY: Self = Self(0.05);
+    /// The 99.999 % containment level of RNP.
+    pub const INTEGRITY: Self = Self(1e-5);
+
+    /// A risk inside (0, 1).
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] unless `0 < q < 1`.
+    pub fn new(q: f64) -> Result<Self, OutOfDomain> {
+        if !(q > 0.0 && q < 1.0) {
+            return Err(OutOfDomain { argument: "risk", value: q, unit: "1", domain: "(0, 1)" });
+        }
+        Ok(Self(q))
+    }
+    /// The risk as a number.
+    pub const fn q(self) -> f64 {
+        self.0
+    }
+}

@@ -1,0 +1,5 @@
+//! Where we think we are: weighted least squares, and the record of one instant.
+
+mod epoch;
+
+pub use epoch::Epoch;

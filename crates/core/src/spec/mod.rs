@@ -1,0 +1,1 @@
+//! Navigation specifications and requirement tables, as data with their source word.

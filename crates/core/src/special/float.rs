@@ -1,0 +1,14 @@
+//! Elementary functions, the same bits with and without an operating system.
+//!
+//! Square root and rounding are exact operations, so the processor's and the software's agree to the bit and the fast one is used
+//! where it exists. Transcendental functions always come from `libm`: a platform's own would change the last digits.
+
+#[inline(always)]
+pub(crate) fn sqrt(x: f64) -> f64 {
+    #[cfg(any(feature = "std", test))]
+    return x.sqrt();
+    #[cfg(not(any(feature = "std", test)))]
+    return libm::sqrt(x);
+}
+
+pub(crate) use libm::{acos, asin, atan2, cos, erfc, exp, hypot, log as ln, log1p as ln_1p, sin, sincos as sin_cos, tan};

@@ -1,0 +1,1 @@
+//! Bytes to navigation records. Errors carry file, line, field and the text found.

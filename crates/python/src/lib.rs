@@ -1,0 +1,28 @@
+//! The module `navbound._core`: arrays in, arrays out. Conversion only, no mathematics.
+//!
+//! One file a subject, each with a `register`; every refusal of the Rust side becomes a Python error in `error.rs` and nowhere else.
+
+mod anp;
+mod error;
+mod evaluation;
+mod methods;
+mod path;
+mod read;
+mod rnp;
+mod simulate;
+mod tse;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    methods::register(m)?;
+    tse::register(m)?;
+    anp::register(m)?;
+    rnp::register(m)?;
+    evaluation::register(m)?;
+    path::register(m)?;
+    simulate::register(m)?;
+    read::register(m)
+}

@@ -1,0 +1,7 @@
+//! Navigation specifications, monitor, state classifier.
+
+use pyo3::prelude::*;
+
+pub fn register(_m: &Bound<'_, PyModule>) -> PyResult<()> {
+    Ok(())
+}

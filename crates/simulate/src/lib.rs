@@ -1,0 +1,1 @@
+//! Scenario and seed to truth and signal records.
