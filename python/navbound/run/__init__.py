@@ -1,0 +1,1 @@
+"""Stages joined: fly, analyze and study, and the run directory they leave."""

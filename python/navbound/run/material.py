@@ -1,0 +1,53 @@
+"""What a simulator or a reader hands to the judging stage: the epoch table up to path and error, and its context.
+
+The judging stage (judge.py) does not ask whether the epochs were flown or recorded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    import polars as pl
+
+    from navbound.run.records import CrossTrack, InputFile, Rejection, Waypoint
+
+
+@dataclass(frozen=True)
+class Material:
+    """Epochs and their context.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        Columns of docs/notation.md: at least ``track``, ``time_ns``, ``est_lat_rad``, ``est_lon_rad``, ``course_rad``, ``fte_m``,
+        ``rnp_m``, ``cov_ee_m2``, ``cov_en_m2``, ``cov_nn_m2``, ``status``; with truth also ``nse_e_m``, ``nse_n_m``, ``nse_u_m``.
+    kind : {"fly", "analyze"}
+        Which command made it.
+    title : str
+        Heading of the report.
+    requirement : str
+        The navigation specification, in words ("RNP 0.3", "RNP by phase of flight").
+    sample_period_s : float
+        Nominal time between epochs of one track.
+    assumptions : list of str
+        Sentences for the verdict: where the covariance came from, what was not modelled.
+    labels : dict
+        Track to a label a person recognises.
+    """
+
+    epochs: pl.DataFrame
+    kind: Literal["fly", "analyze"]
+    title: str
+    requirement: str
+    sample_period_s: float
+    assumptions: list[str]
+    labels: dict[str, str] = field(default_factory=dict)
+    waypoints: list[Waypoint] = field(default_factory=list)
+    inputs: list[InputFile] = field(default_factory=list)
+    rejected: list[Rejection] = field(default_factory=list)
+    cross_track: list[CrossTrack] = field(default_factory=list)
+    scenario: dict[str, object] | None = None
+    seed: int | None = None
+    settings: dict[str, object] = field(default_factory=dict)

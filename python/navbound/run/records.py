@@ -1,0 +1,231 @@
+"""The records a run leaves behind: what summary.json and run.json hold, and what the report shows.
+
+Presentation reads these and the epoch table; it computes nothing. Field names follow docs/notation.md.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict
+
+
+class Record(BaseModel):
+    """Immutable, with no field that is not declared."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Worst(Record):
+    """The epoch with the smallest margin between bound and limit."""
+
+    track: str
+    time_ns: int
+    margin_m: float
+    """Limit minus bound; negative means outside."""
+    bound_m: float
+    limit_m: float
+    phase: str | None
+    along_m: float | None
+    lat_rad: float
+    lon_rad: float
+
+
+class Verdict(Record):
+    """Inside or not, in one look."""
+
+    inside: bool | None
+    """None when no epoch could be judged."""
+    words: str
+    """The verdict as sentences: what, how much, worst where and when, what was assumed, whether truth was known."""
+    requirement: str
+    method: str
+    """Id of the method that judged, see `methods`."""
+    share_inside: float | None
+    """Share of judged epochs whose accuracy bound is within RNP."""
+    share_contained: float | None
+    """Share of judged epochs whose integrity bound is within 2 RNP."""
+    n_epochs: int
+    n_judged: int
+    worst_accuracy: Worst | None
+    worst_integrity: Worst | None
+    truth_known: bool
+    experimental: bool = False
+
+
+class PhaseSummary(Record):
+    """One phase or leg of the flight with one RNP value."""
+
+    phase: str
+    rnp_m: float
+    n_epochs: int
+    duration_s: float
+    share_inside: float | None
+    worst_ratio: float | None
+    """Largest accuracy bound over RNP."""
+    p_exceed_2rnp_max: float | None
+    p_exceed_2rnp_mean: float | None
+    """Time average of the risk to leave 2 RNP."""
+    coverage: float | None
+    """Share of epochs whose |tse| is within the accuracy bound, where truth is known."""
+    n_cautions: int
+    n_warnings: int
+
+
+class TrackSummary(Record):
+    """One flight, approach or aircraft."""
+
+    track: str
+    label: str
+    n_epochs: int
+    start_ns: int
+    duration_s: float
+    fte_mean_m: float | None
+    fte_std_m: float | None
+    fte_abs95_m: float | None
+    share_inside: float | None
+    worst_ratio: float | None
+    worst_margin_m: float | None
+    n_cautions: int
+    n_warnings: int
+    n_unavailable: int
+
+
+class MethodResult(Record):
+    """One method at one risk: what it is, and how it did."""
+
+    id: str
+    title: str
+    source: str
+    provenance: Literal["printed", "re-derived", "standard", "ours", "inferred"]
+    assumes: str
+    error_column: str
+    may_alert: bool
+    risk: float
+    n: int
+    """Epochs with a bound."""
+    mean_m: float | None
+    """Sharpness: the mean bound."""
+    max_m: float | None
+    coverage: float | None
+    """Share of epochs whose error is within the bound, where truth is known."""
+    coverage_low: float | None
+    coverage_high: float | None
+    """Exact binomial 95 % interval on the effective sample size."""
+    n_effective: float | None
+    winkler_m: float | None
+    pinball_m: float | None
+
+
+class Honesty(Record):
+    """May the covariance be believed? Only where truth is known."""
+
+    n: int
+    n_effective: float
+    dimension: int
+    nees_mean: float
+    """Mean of e' V^-1 e; `dimension` for an honest covariance."""
+    nees_low: float
+    nees_high: float
+    """Chi-square limits (95 %) for the effective sample size."""
+    pit_counts: list[int]
+    """Histogram of the probability integral transform in equal bins; flat for an honest covariance."""
+    pit_low: float
+    pit_high: float
+    """Band (95 %) of one bin."""
+    words: str
+
+
+class EventSummary(Record):
+    """One alert from onset to clear, or a point of the flight."""
+
+    track: str
+    kind: str
+    onset_ns: int
+    annunciation_ns: int | None
+    clear_ns: int | None
+    peak_m: float | None
+    limit_m: float | None
+    min_margin_m: float | None
+    words: str
+
+
+class Rejection(Record):
+    """Input that was not used, and why. Nothing is lost silently."""
+
+    file: str
+    reason: str
+    count: int
+    first_line: int | None
+    example: str
+
+
+class CrossTrack(Record):
+    """Cross-track statistics of recorded tracks against one path."""
+
+    path: str
+    n_tracks: int
+    n_points: int
+    mean_m: float
+    std_m: float
+    abs95_m: float
+    between_tracks_std_m: float | None
+
+
+class InputFile(Record):
+    """A file that went in."""
+
+    path: str
+    sha256: str
+    n_bytes: int
+    n_rows: int | None
+
+
+class Waypoint(Record):
+    """A point to draw and name on the map."""
+
+    name: str
+    lat_rad: float
+    lon_rad: float
+    kind: Literal["waypoint", "runway", "station"]
+
+
+class Summary(Record):
+    """summary.json."""
+
+    schema_id: Literal["navbound-summary-1"] = "navbound-summary-1"
+    kind: Literal["fly", "analyze"]
+    title: str
+    verdict: Verdict
+    coverage_kind: str
+    """Which of the two kinds of coverage every `coverage` here is (docs/methods/coverage.md)."""
+    assumptions: list[str]
+    phases: list[PhaseSummary]
+    tracks: list[TrackSummary]
+    accuracy: list[MethodResult]
+    integrity: list[MethodResult]
+    honesty: Honesty | None
+    states: list[str]
+    """Names of the states behind `p_state_1`, `p_state_2`, ..."""
+    events: list[EventSummary]
+    cross_track: list[CrossTrack]
+    rejected: list[Rejection]
+    n_status: dict[str, int]
+    """Epochs by status."""
+
+
+class RunRecord(Record):
+    """run.json: what it takes to do it again."""
+
+    navbound_version: str
+    command: str
+    created_utc: str
+    kind: Literal["fly", "analyze"]
+    scenario: dict[str, object] | None
+    seed: int | None
+    inputs: list[InputFile]
+    methods: list[str]
+    risk_accuracy: float
+    risk_integrity: float
+    settings: dict[str, object]
+    platform: str

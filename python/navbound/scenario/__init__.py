@@ -1,0 +1,1 @@
+"""Scenarios: models and the shipped TOML files."""
