@@ -46,9 +46,7 @@ def flatten(**arguments: tuple[ArrayLike, tuple[int, ...]]) -> tuple[tuple[int, 
         except ValueError as e:
             raise InputError(name, f"shape {array.shape}", domain=f"shapes that broadcast with {leading}") from e
         arrays.append((array, item))
-    flat = [
-        np.ascontiguousarray(np.broadcast_to(array, leading + item)).reshape(-1, *item) for array, item in arrays
-    ]
+    flat = [np.ascontiguousarray(np.broadcast_to(array, leading + item)).reshape(-1, *item) for array, item in arrays]
     return leading, flat
 
 

@@ -22,9 +22,7 @@ class InputError(NavboundError, ValueError):
         Position in a flattened array argument.
     """
 
-    def __init__(
-        self, argument: str, value: object, unit: str = "", domain: str = "", index: int | None = None
-    ) -> None:
+    def __init__(self, argument: str, value: object, unit: str = "", domain: str = "", index: int | None = None) -> None:
         self.argument = argument
         self.value = value
         self.unit = unit
