@@ -1,1 +1,5 @@
 //! Many epochs: batch loops on all cores, evaluation of bounds against truth.
+//!
+//! A loop over epochs contains a call, not mathematics: the mathematics is in `navbound-core`.
+
+pub mod bounds;

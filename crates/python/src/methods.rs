@@ -1,10 +1,15 @@
-//! The list of methods, as Python sees it.
+//! The list of methods, and any of them over an epoch table.
 
+use crate::error::input_error;
+use navbound_assess::bounds::{self, Columns};
 use navbound_core::bound;
+use navbound_core::quantity::Risk;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Every method: id, title, source, provenance, bounds (error column), assumes, promises.
+/// Every method: id, title, source, provenance, error column, assumptions, promises.
 #[pyfunction]
 fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     bound::methods()
@@ -26,6 +31,54 @@ fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         .collect()
 }
 
+/// Bound, reason code and list of (invalid, words).
+type Column<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, Vec<(bool, String)>);
+
+/// One method over columns of the epoch table, all of length `len`; an absent column is left out of the dictionary.
+#[pyfunction]
+fn bounds_of<'py>(py: Python<'py>, method: &str, risk: f64, len: usize, columns: &Bound<'py, PyDict>) -> PyResult<Column<'py>> {
+    let method = bound::method(method).ok_or_else(|| PyKeyError::new_err(method.to_owned()))?;
+    let risk = Risk::new(risk).map_err(|e| input_error(e, None))?;
+    let get = |name: &str| -> PyResult<Option<PyReadonlyArray1<'py, f64>>> {
+        let Some(value) = columns.get_item(name)? else { return Ok(None) };
+        let array: PyReadonlyArray1<'py, f64> = value.extract()?;
+        if array.as_array().len() != len {
+            return Err(PyValueError::new_err(format!("{name} has {} rows, the table {len}", array.as_array().len())));
+        }
+        Ok(Some(array))
+    };
+    let course = get("course_rad")?;
+    let path_angle = get("path_angle_rad")?;
+    let fte = get("fte_m")?;
+    let fte_v = get("fte_v_m")?;
+    let rnp = get("rnp_m")?;
+    let mut covariance = Vec::with_capacity(6);
+    for name in ["cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2"] {
+        covariance.push(get(name)?);
+    }
+    let mut covariance_m2 = [None; 6];
+    for (slot, column) in covariance_m2.iter_mut().zip(&covariance) {
+        *slot = slice(column)?;
+    }
+    let table = Columns {
+        len,
+        course_rad: slice(&course)?,
+        path_angle_rad: slice(&path_angle)?,
+        fte_m: slice(&fte)?,
+        fte_v_m: slice(&fte_v)?,
+        rnp_m: slice(&rnp)?,
+        covariance_m2,
+    };
+    let column = py.detach(|| bounds::bounds(&table, method, risk));
+    let reasons = column.reasons.into_iter().map(|r| (r.invalid, r.words)).collect();
+    Ok((column.bound_m.into_pyarray(py), column.reason.into_pyarray(py), reasons))
+}
+
+fn slice<'a>(array: &'a Option<PyReadonlyArray1<'_, f64>>) -> PyResult<Option<&'a [f64]>> {
+    array.as_ref().map(|a| a.as_slice().map_err(Into::into)).transpose()
+}
+
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
-    m.add_function(wrap_pyfunction!(methods, m)?)
+    m.add_function(wrap_pyfunction!(methods, m)?)?;
+    m.add_function(wrap_pyfunction!(bounds_of, m)?)
 }

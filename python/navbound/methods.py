@@ -1,0 +1,133 @@
+"""The list of methods: what each is, where it comes from, and what it promises. Read from the core; nothing is listed twice."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Literal, cast
+
+import numpy as np
+import polars as pl
+
+from navbound import _core
+from navbound.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Provenance = Literal["printed", "re-derived", "standard", "ours", "inferred"]
+
+_COLUMNS = (
+    "course_rad",
+    "path_angle_rad",
+    "fte_m",
+    "fte_v_m",
+    "rnp_m",
+    "cov_ee_m2",
+    "cov_en_m2",
+    "cov_nn_m2",
+    "cov_eu_m2",
+    "cov_nu_m2",
+    "cov_uu_m2",
+)
+
+
+@dataclass(frozen=True)
+class Method:
+    """One entry of the core's list.
+
+    Attributes
+    ----------
+    id : str
+        Command-line choice and page name; ``tse-exact`` has the columns ``tse_exact_m`` and ``tse_exact_integrity_m``.
+    error_column : str
+        The column of the epoch table whose magnitude this method bounds.
+    may_alert : bool
+        False for experimental bounds and for exhibits of a misprint.
+    """
+
+    id: str
+    title: str
+    source: str
+    provenance: Provenance
+    error_column: str
+    assumes: str
+    scales_with_length: bool
+    ignores_north: bool
+    monotone_in_risk: bool
+    conservative: bool
+    may_alert: bool
+
+    @property
+    def column(self) -> str:
+        """Column of the accuracy bound."""
+        return f"{self.id.replace('-', '_')}_m"
+
+    @property
+    def integrity_column(self) -> str:
+        """Column of the integrity bound."""
+        return f"{self.id.replace('-', '_')}_integrity_m"
+
+
+@dataclass(frozen=True)
+class BoundColumn:
+    """One method over a table: bounds [m], and per row the index of its reason, 0 where there is a bound."""
+
+    bound_m: NDArray[np.float64]
+    reason: NDArray[np.uint32]
+    reasons: list[tuple[bool, str]]
+    """(input is invalid, words), in order; reason ``k`` of a row is entry ``k - 1``."""
+
+
+@cache
+def methods() -> dict[str, Method]:
+    """Every method by its id, in the order of the core's list."""
+    return {m["id"]: Method(**m) for m in _core.methods()}
+
+
+def method(method_id: str) -> Method:
+    """The method with this id.
+
+    Raises
+    ------
+    InputError
+        No such method; the message lists those that exist.
+    """
+    try:
+        return methods()[method_id]
+    except KeyError:
+        raise InputError("method", method_id, domain=", ".join(methods())) from None
+
+
+def bounds(epochs: pl.DataFrame, method_id: str, risk: float) -> BoundColumn:
+    """Evaluate one method over an epoch table.
+
+    Parameters
+    ----------
+    epochs : DataFrame
+        Columns of docs/notation.md; those the method needs and the table lacks make every row unavailable.
+    method_id : str
+        An id of :func:`methods`.
+    risk : float
+        Allowed risk. [1]
+
+    Returns
+    -------
+    BoundColumn
+        Source equation and promises: see the method's entry.
+
+    Raises
+    ------
+    InputError
+        Unknown method, or a risk outside (0, 1).
+    """
+    wanted = method(method_id)
+    columns = {name: column_of(epochs, name) for name in _COLUMNS if name in epochs.columns}
+    bound_m, reason, reasons = _core.bounds_of(wanted.id, risk, epochs.height, columns)
+    return BoundColumn(bound_m, reason, reasons)
+
+
+def column_of(epochs: pl.DataFrame, name: str) -> NDArray[np.float64]:
+    """A numeric column as float64, null as NaN."""
+    values = epochs.get_column(name).cast(pl.Float64).fill_null(float("nan")).to_numpy()
+    return cast("NDArray[np.float64]", np.ascontiguousarray(values))
