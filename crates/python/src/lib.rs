@@ -3,6 +3,7 @@
 //! One file a subject, each with a `register`; every refusal of the Rust side becomes a Python error in `error.rs` and nowhere else.
 
 mod anp;
+mod batch;
 mod error;
 mod evaluation;
 mod methods;

@@ -2,7 +2,14 @@
 //!
 //! Everything takes the risk (the tail), never the probability, and keeps full relative accuracy where the tail is small.
 
+pub(crate) mod bivariate;
 pub(crate) mod float;
+pub mod folded;
 pub mod normal;
+pub mod prepared;
+pub(crate) mod root;
+pub(crate) mod student;
 
+pub use folded::FoldedQuantile;
 pub use normal::{one_sided_factor, tail, two_sided_factor};
+pub use prepared::PreparedQuantile;
