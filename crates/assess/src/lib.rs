@@ -1,1 +1,2 @@
 //! Many epochs: batch loops on all cores, evaluation of bounds against truth.
+pub mod anp;

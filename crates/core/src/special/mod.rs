@@ -2,7 +2,10 @@
 //!
 //! Everything takes the risk (the tail), never the probability, and keeps full relative accuracy where the tail is small.
 
+pub mod chi;
 pub(crate) mod float;
 pub mod normal;
+pub(crate) mod quadrature;
+pub mod radius;
 
 pub use normal::{one_sided_factor, tail, two_sided_factor};
