@@ -6,3 +6,4 @@ pub mod bounds;
 
 pub mod batch;
 pub mod tse;
+pub mod anp;

@@ -3,12 +3,15 @@
 //! Everything takes the risk (the tail), never the probability, and keeps full relative accuracy where the tail is small.
 
 pub(crate) mod bivariate;
+pub mod chi;
 pub(crate) mod float;
 pub mod folded;
 pub mod normal;
 pub mod prepared;
 pub(crate) mod root;
 pub(crate) mod student;
+pub(crate) mod quadrature;
+pub mod radius;
 
 pub use folded::FoldedQuantile;
 pub use normal::{one_sided_factor, tail, two_sided_factor};
