@@ -3,3 +3,5 @@
 //! A loop over epochs contains a call, not mathematics: the mathematics is in `navbound-core`.
 
 pub mod bounds;
+pub mod monitor;
+pub mod states;

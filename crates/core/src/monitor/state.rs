@@ -4,9 +4,10 @@
 //! density placed so that neighbouring densities cross at the boundary. Class numbers count from zero here and in Python; the
 //! epoch table's `p_state_<i>` counts from one, as the source does.
 
-use crate::quantity::{Metres, OutOfDomain};
+use crate::quantity::{Metres, OutOfDomain, Risk};
 use crate::special::float::{exp, ln, ln_1p, sqrt};
-use crate::special::normal::FRAC_1_SQRT_2PI;
+use crate::special::gamma::{chi_square_head, chi_square_tail};
+use crate::special::normal::{FRAC_1_SQRT_2PI, two_sided_factor};
 
 pub use super::state_order::is_ordered;
 
@@ -154,18 +155,19 @@ impl StateTable {
     }
 
     /// ln q_k(x) as published: the unguarded densities. An exhibit: a narrow last state loses far outside (docs/methods/rnp-state.md).
-    pub fn ln_posterior_as_printed(&self, nse: Metres, ln_prior: &PerState) -> PerState {
-        self.normalised(|k| ln_prior[k] + self.ln_likelihood(k, nse.m()))
+    pub fn ln_posterior_as_printed(&self, nse: Metres, prior: &PerState) -> PerState {
+        self.normalised(|k| ln(prior[k]) + self.ln_likelihood(k, nse.m().abs()))
     }
 
     /// ln q_k(x) with the last state's density held at its peak beyond its mean, so that "out of RNP" never becomes less likely outwards.
-    pub fn ln_posterior(&self, nse: Metres, ln_prior: &PerState) -> PerState {
-        self.normalised(|k| ln_prior[k] + self.ln_guarded(k, nse.m()))
+    pub fn ln_posterior(&self, nse: Metres, prior: &PerState) -> PerState {
+        self.normalised(|k| ln(prior[k]) + self.ln_guarded(k, nse.m().abs()))
     }
 
     /// ln q_k(lateral, longitudinal) as published (determinant corrected): both means at mu_k. Misclassifies off the diagonal; an exhibit.
-    pub fn ln_paper_bivariate(&self, lateral: Metres, longitudinal: Metres, ln_prior: &PerState) -> PerState {
-        self.normalised(|k| ln_prior[k] + self.ln_likelihood(k, lateral.m()) + self.ln_likelihood(k, longitudinal.m()))
+    pub fn ln_paper_bivariate(&self, lateral: Metres, longitudinal: Metres, prior: &PerState) -> PerState {
+        let (a, b) = (lateral.m().abs(), longitudinal.m().abs());
+        self.normalised(|k| ln(prior[k]) + self.ln_likelihood(k, a) + self.ln_likelihood(k, b))
     }
 
     /// Probabilities of the joint state of a lateral and a longitudinal error: the worse of the two, each judged by itself.
@@ -173,9 +175,9 @@ impl StateTable {
     /// ```text
     /// C(k) = C_lateral(k) C_longitudinal(k)      q(k) = C(k) - C(k-1) = q_lat(k) C_long(k) + C_lat(k-1) q_long(k)
     /// ```
-    pub fn joint(&self, lateral: Metres, longitudinal: Metres, ln_prior: &PerState) -> PerState {
-        let a = self.ln_posterior(lateral, ln_prior);
-        let b = self.ln_posterior(longitudinal, ln_prior);
+    pub fn joint(&self, lateral: Metres, longitudinal: Metres, prior: &PerState) -> PerState {
+        let a = self.ln_posterior(lateral, prior);
+        let b = self.ln_posterior(longitudinal, prior);
         let mut joint = [0.0; MAX_STATES];
         let (mut below_a, mut upto_b) = (0.0, 0.0);
         for k in 0..self.n_states() {
@@ -189,22 +191,86 @@ impl StateTable {
     }
 
     /// The state after an epoch, remembering the one before: predict with the stay probability, then update with the guarded density.
-    pub fn remember(&self, before: &PerState, stay: f64, nse: Metres) -> PerState {
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] unless `0 <= stay <= 1`.
+    pub fn remember(&self, before: &PerState, stay: f64, nse: Metres) -> Result<PerState, OutOfDomain> {
+        if !(0.0..=1.0).contains(&stay) {
+            return Err(OutOfDomain { argument: "stay", value: stay, unit: "1", domain: "[0, 1]" });
+        }
         let n = self.n_states();
         let leave = (1.0 - stay) / (n - 1) as f64;
         let total: f64 = before[..n].iter().sum();
-        let mut ln_predicted = [0.0; MAX_STATES];
+        let mut predicted = [0.0; MAX_STATES];
         for k in 0..n {
-            ln_predicted[k] = ln(stay * before[k] + leave * (total - before[k]));
+            predicted[k] = stay * before[k] + leave * (total - before[k]);
         }
-        let mut after = self.ln_posterior(nse, &ln_predicted);
+        let mut after = self.ln_posterior(nse, &predicted);
         after[..n].iter_mut().for_each(|x| *x = exp(*x));
-        after
+        Ok(after)
     }
 
     /// Equal priors.
-    pub fn ln_uniform(&self) -> PerState {
-        [-ln(self.n_states() as f64); MAX_STATES]
+    pub fn uniform(&self) -> PerState {
+        [1.0 / self.n_states() as f64; MAX_STATES]
+    }
+
+    /// Priors of the states, checked.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] unless there is one for each state, none is negative and their sum is 1 within 1e-9.
+    pub fn prior(&self, prior: &[f64]) -> Result<PerState, OutOfDomain> {
+        let n = self.n_states();
+        if prior.len() != n {
+            return Err(OutOfDomain { argument: "prior", value: prior.len() as f64, unit: "1", domain: "one number a state" });
+        }
+        let mut all = [0.0; MAX_STATES];
+        for (slot, p) in all.iter_mut().zip(prior) {
+            if !(*p >= 0.0) {
+                return Err(OutOfDomain { argument: "prior", value: *p, unit: "1", domain: "[0, 1]" });
+            }
+            *slot = *p;
+        }
+        let sum: f64 = prior.iter().sum();
+        if !((sum - 1.0).abs() <= 1e-9) {
+            return Err(OutOfDomain { argument: "prior", value: sum, unit: "1", domain: "numbers whose sum is 1" });
+        }
+        Ok(all)
+    }
+
+    /// Probabilities of the states from `n` residuals of known zero mean whose squares sum to `sum_of_squares`: where the 95 % navigation
+    /// error lies, given what was seen.
+    ///
+    /// ```text
+    /// P(95 % NSE <= B) = Q_chi2(n)(S K^2 / B^2)        Jeffreys prior of the variance; K = 1.96
+    /// ```
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] unless `n >= 1` and the sum is finite and not negative.
+    pub fn given_residuals(&self, sum_of_squares_m2: f64, n: f64) -> Result<PerState, OutOfDomain> {
+        if !(n >= 1.0 && n.is_finite()) {
+            return Err(OutOfDomain { argument: "n", value: n, unit: "1", domain: "[1, inf)" });
+        }
+        if !(sum_of_squares_m2 >= 0.0 && sum_of_squares_m2.is_finite()) {
+            return Err(OutOfDomain { argument: "sum_of_squares_m2", value: sum_of_squares_m2, unit: "m²", domain: "[0, inf)" });
+        }
+        let k = two_sided_factor(Risk::ACCURACY.q());
+        let scaled = sum_of_squares_m2 * k * k;
+        let ratio = |b: f64| scaled / (b * b);
+        Ok(self.slices(|b| chi_square_tail(n, ratio(b)), |b| chi_square_head(n, ratio(b))))
+    }
+
+    /// What lies between neighbouring boundaries: differences of the tail or of the head, whichever is small and has the digits.
+    fn slices(&self, inside: impl Fn(f64) -> f64, outside: impl Fn(f64) -> f64) -> PerState {
+        let mut share = [0.0; MAX_STATES];
+        let (mut inside_below, mut outside_below) = (0.0, 1.0);
+        for k in 0..self.n_levels {
+            let (i, o) = (inside(self.boundary[k]), outside(self.boundary[k]));
+            share[k] = if i < 0.5 { i - inside_below } else { outside_below - o };
+            (inside_below, outside_below) = (i, o);
+        }
+        share[self.n_levels] = outside_below;
+        share
     }
 
     fn ln_guarded(&self, k: usize, x: f64) -> f64 {

@@ -40,7 +40,8 @@ pub fn specification(name: &str, phase: Phase) -> Option<&'static Specification>
 }
 
 const FU: &str = "Fu, Zhang and Li 2014, Table 1";
-const OSTROUMOV: &str = "named by Ostroumov and Kuzmenko 2018; phases and values of ICAO Doc 9613, from general knowledge, clause to be cited";
+const OSTROUMOV: &str =
+    "named by Ostroumov and Kuzmenko 2018; phases and values of ICAO Doc 9613, from general knowledge, clause to be cited";
 const PBN_MANUAL: &str = "ICAO Doc 9613, from general knowledge, clause to be cited";
 
 const fn printed(name: &'static str, phase: Phase, least_nm: f64, most_nm: f64) -> Specification {
