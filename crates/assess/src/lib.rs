@@ -7,3 +7,5 @@ pub mod bounds;
 pub mod batch;
 pub mod tse;
 pub mod anp;
+pub mod monitor;
+pub mod states;

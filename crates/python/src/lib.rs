@@ -11,6 +11,7 @@ mod path;
 mod read;
 mod rnp;
 mod simulate;
+mod states;
 mod tse;
 
 use pyo3::prelude::*;
@@ -22,6 +23,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     tse::register(m)?;
     anp::register(m)?;
     rnp::register(m)?;
+    states::register(m)?;
     evaluation::register(m)?;
     path::register(m)?;
     simulate::register(m)?;

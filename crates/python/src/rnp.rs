@@ -1,7 +1,204 @@
 //! Navigation specifications, monitor, state classifier.
 
+use crate::error::input_error;
+use navbound_assess::monitor::{self as batch, Columns};
+use navbound_core::monitor::exposure::HourlyExposure;
+use navbound_core::monitor::rnp::{self, Acceptance, Chain, Counters, Event, Observation, Settings};
+use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
+use navbound_core::spec::{SPECIFICATIONS, Specification};
+use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-pub fn register(_m: &Bound<'_, PyModule>) -> PyResult<()> {
-    Ok(())
+fn refused(e: OutOfDomain) -> PyErr {
+    input_error(e, None)
+}
+
+/// Every cell of the table of navigation specifications.
+#[pyfunction]
+fn specifications(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    SPECIFICATIONS
+        .iter()
+        .map(|s| {
+            let tta = s.phase.time_to_alert();
+            let d = PyDict::new(py);
+            d.set_item("name", s.name)?;
+            d.set_item("phase", s.phase.word())?;
+            d.set_item("accuracy_least_m", s.accuracy_least.m())?;
+            d.set_item("accuracy_most_m", s.accuracy_most.m())?;
+            d.set_item("containment_least_m", s.containment(s.accuracy_least).map(Metres::m))?;
+            d.set_item("containment_most_m", s.containment(s.accuracy_most).map(Metres::m))?;
+            d.set_item("accuracy_risk", Specification::ACCURACY_RISK.q())?;
+            d.set_item("containment_risk", s.monitored.then(|| Specification::CONTAINMENT_RISK.q()))?;
+            d.set_item("source", s.source)?;
+            d.set_item("provenance", s.provenance.word())?;
+            d.set_item("time_to_alert_s", tta.seconds)?;
+            d.set_item("time_to_alert_source", tta.source)?;
+            d.set_item("time_to_alert_provenance", tta.provenance.word())?;
+            Ok(d)
+        })
+        .collect()
+}
+
+/// Risk per epoch whose hour carries a risk.
+#[pyfunction]
+fn per_epoch_risk(risk_per_hour: f64, tau_s: f64, sample_period_s: f64) -> PyResult<f64> {
+    let risk = Risk::new(risk_per_hour).map_err(|e| refused(OutOfDomain { argument: "risk_per_hour", ..e }))?;
+    let exposure = HourlyExposure::new(tau_s, sample_period_s).map_err(refused)?;
+    exposure.per_epoch(risk).map(Risk::q).map_err(refused)
+}
+
+/// Risk of an hour whose epochs carry a risk.
+#[pyfunction]
+fn per_hour_risk(risk_per_epoch: f64, tau_s: f64, sample_period_s: f64) -> PyResult<f64> {
+    let risk = Risk::new(risk_per_epoch).map_err(|e| refused(OutOfDomain { argument: "risk_per_epoch", ..e }))?;
+    Ok(HourlyExposure::new(tau_s, sample_period_s).map_err(refused)?.per_hour(risk))
+}
+
+/// Settings and state of one monitor.
+#[pyclass(module = "navbound._core")]
+struct RnpMonitor {
+    settings: Settings,
+    monitor: rnp::Monitor,
+}
+
+/// kind, onset_ns, annunciation_ns, clear_ns, peak_m, limit_m, min_margin_m.
+type EventRow = (&'static str, i64, i64, Option<i64>, f64, f64, f64);
+
+fn event_row(e: &Event) -> EventRow {
+    (
+        e.kind.word(),
+        e.onset.nanoseconds(),
+        e.annunciation.nanoseconds(),
+        e.clear.map(GpsTime::nanoseconds),
+        e.peak.m(),
+        e.limit.m(),
+        e.min_margin.m(),
+    )
+}
+
+fn counters_dict<'py>(py: Python<'py>, c: &Counters) -> PyResult<Bound<'py, PyDict>> {
+    let d = PyDict::new(py);
+    d.set_item("n_accepted", c.n_accepted)?;
+    d.set_item("n_duplicate", c.n_duplicate)?;
+    d.set_item("n_late", c.n_late)?;
+    d.set_item("n_clock_set_back", c.n_clock_set_back)?;
+    d.set_item("n_gaps", c.n_gaps)?;
+    d.set_item("n_unusable", c.n_unusable)?;
+    d.set_item("n_nan", c.n_nan)?;
+    d.set_item("n_withdrawn", c.n_withdrawn)?;
+    d.set_item("n_cautions", c.n_cautions)?;
+    d.set_item("n_warnings", c.n_warnings)?;
+    d.set_item("n_unavailable", c.n_unavailable)?;
+    d.set_item("watched_s", c.watched_s)?;
+    d.set_item("alerts_per_hour", c.alerts_per_hour())?;
+    Ok(d)
+}
+
+const fn acceptance_word(acceptance: Acceptance) -> &'static str {
+    match acceptance {
+        Acceptance::Accepted => "accepted",
+        Acceptance::Duplicate => "duplicate",
+        Acceptance::Late => "late",
+        Acceptance::ClockSetBack => "clock_set_back",
+    }
+}
+
+#[pymethods]
+impl RnpMonitor {
+    #[new]
+    #[pyo3(signature = (chain_s, raise_delay_s, clear_delay_s, clear_ratio, stale_after_s))]
+    fn new(chain_s: [f64; 6], raise_delay_s: f64, clear_delay_s: f64, clear_ratio: f64, stale_after_s: Option<f64>) -> PyResult<Self> {
+        let [sample_period_s, sensor_latency_s, filter_s, computing_s, display_s, time_to_alert_s] = chain_s;
+        let settings = Settings {
+            chain: Chain { sample_period_s, sensor_latency_s, filter_s, computing_s, display_s, time_to_alert_s },
+            raise_delay_s,
+            clear_delay_s,
+            clear_ratio,
+            stale_after_s: stale_after_s.unwrap_or_else(|| rnp::default_stale_after_s(sample_period_s)),
+        };
+        let monitor = rnp::Monitor::new(settings).map_err(refused)?;
+        Ok(Self { settings, monitor })
+    }
+
+    /// Time from an exceedance to the crew.
+    #[getter]
+    fn time_to_crew_s(&self) -> f64 {
+        self.settings.chain.total_s(self.settings.raise_delay_s)
+    }
+
+    #[getter]
+    fn stale_after_s(&self) -> f64 {
+        self.settings.stale_after_s
+    }
+
+    /// Judge one epoch: alert, acceptance, ended events.
+    fn step(
+        &mut self,
+        time_ns: i64,
+        accuracy_m: f64,
+        integrity_m: f64,
+        rnp_m: f64,
+        usable: bool,
+    ) -> (&'static str, &'static str, Vec<EventRow>) {
+        let step = self.monitor.step(&Observation {
+            time: GpsTime::from_nanoseconds(time_ns),
+            accuracy: Metres::new(accuracy_m),
+            integrity: Metres::new(integrity_m),
+            rnp: Metres::new(rnp_m),
+            usable,
+        });
+        let ended = step.ended.iter().flatten().map(event_row).collect();
+        (step.alert.word(), acceptance_word(step.acceptance), ended)
+    }
+
+    /// Time passes without an epoch.
+    fn tick(&mut self, time_ns: i64) -> &'static str {
+        self.monitor.tick(GpsTime::from_nanoseconds(time_ns)).word()
+    }
+
+    fn open_events(&self) -> Vec<EventRow> {
+        self.monitor.open_events().map(event_row).collect()
+    }
+
+    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        counters_dict(py, self.monitor.counters())
+    }
+
+    /// A fresh monitor of these settings for every track: alert words, (track, event) rows, counters of each track and of all.
+    #[allow(clippy::too_many_arguments, clippy::type_complexity)]
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        time_ns: PyReadonlyArray1<'py, i64>,
+        accuracy_m: PyReadonlyArray1<'py, f64>,
+        integrity_m: PyReadonlyArray1<'py, f64>,
+        rnp_m: PyReadonlyArray1<'py, f64>,
+        usable: PyReadonlyArray1<'py, bool>,
+        track: PyReadonlyArray1<'py, u32>,
+        n_tracks: usize,
+    ) -> PyResult<(Vec<&'static str>, Vec<(u32, EventRow)>, Vec<Bound<'py, PyDict>>, Bound<'py, PyDict>)> {
+        let columns = Columns {
+            time_ns: time_ns.as_slice()?,
+            accuracy_m: accuracy_m.as_slice()?,
+            integrity_m: integrity_m.as_slice()?,
+            rnp_m: rnp_m.as_slice()?,
+            usable: usable.as_slice()?,
+            track: track.as_slice()?,
+        };
+        let settings = self.settings;
+        let found = py.detach(|| batch::run(settings, &columns, n_tracks)).map_err(refused)?;
+        let alerts = found.alert.iter().map(|a| a.word()).collect();
+        let events = found.events.iter().map(|(track, event)| (*track, event_row(event))).collect();
+        let each = found.counters.iter().map(|c| counters_dict(py, c)).collect::<PyResult<_>>()?;
+        let all = found.counters.iter().fold(Counters::default(), |sum, c| sum.merged(c));
+        Ok((alerts, events, each, counters_dict(py, &all)?))
+    }
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(specifications, m)?)?;
+    m.add_function(wrap_pyfunction!(per_epoch_risk, m)?)?;
+    m.add_function(wrap_pyfunction!(per_hour_risk, m)?)?;
+    m.add_class::<RnpMonitor>()
 }

@@ -1,6 +1,6 @@
 //! What a method declares about itself.
 
-use crate::quantity::{Metres, Risk, Unavailable};
+use crate::quantity::{Metres, Provenance, Risk, Unavailable};
 use crate::solution::Epoch;
 
 /// A method: how to bound one error at one risk, where it comes from, and what it promises.
@@ -21,34 +21,6 @@ pub struct Method {
     pub promises: Promises,
     /// The bound of one epoch.
     pub bound: fn(&Epoch, Risk) -> Result<Metres, Unavailable>,
-}
-
-/// How we hold a formula.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Provenance {
-    /// We read it in the source and it is right as printed.
-    Printed,
-    /// Defective or lost in our copy; derived again, proof in `docs/methods/`.
-    ReDerived,
-    /// A standard's, clause cited.
-    Standard,
-    /// Our own.
-    Ours,
-    /// Concluded, not seen stated.
-    Inferred,
-}
-
-impl Provenance {
-    /// The word reports print.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Printed => "printed",
-            Self::ReDerived => "re-derived",
-            Self::Standard => "standard",
-            Self::Ours => "ours",
-            Self::Inferred => "inferred",
-        }
-    }
 }
 
 /// The error a bound bounds.

@@ -4,7 +4,8 @@ pub mod anp;
 mod method;
 pub mod tse;
 
-pub use method::{Bounded, Method, Promises, Provenance};
+pub use crate::quantity::Provenance;
+pub use method::{Bounded, Method, Promises};
 
 /// Every method, family by family. Command-line choices, report legends, the documentation page, `navbound methods` and the contract
 /// tests read this list; a method is one entry in its family's file.

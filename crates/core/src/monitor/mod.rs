@@ -1,1 +1,8 @@
-//! Whether to tell the crew.
+//! Whether to tell the crew: the RNP monitor, what its risk means over an hour, and the RNP-state classifier.
+
+pub mod exposure;
+mod latch;
+pub mod rnp;
+mod settings;
+pub mod state;
+mod state_order;

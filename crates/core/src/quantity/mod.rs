@@ -1,9 +1,11 @@
 //! Quantities: a number whose unit is its type, and the refusals that carry them.
 
+mod provenance;
 mod refusal;
 mod time;
 mod unit;
 
+pub use provenance::Provenance;
 pub use refusal::{OutOfDomain, Unavailable};
 pub use time::GpsTime;
 pub use unit::{Metres, Radians, Risk};

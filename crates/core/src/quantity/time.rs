@@ -13,8 +13,13 @@ impl GpsTime {
     pub const fn nanoseconds(self) -> i64 {
         self.0
     }
-    /// Seconds from `earlier` to here, negative when it is later.
+    /// The instant `seconds` later, to the nanosecond; beyond the representable times it stays at their end.
+    pub const fn plus_seconds(self, seconds: f64) -> Self {
+        Self(self.0.saturating_add((seconds * 1e9) as i64))
+    }
+    /// Seconds from `earlier` to here, negative when it is later. The division rounds once, so a difference of 7 900 000 000 ns is the
+    /// number 7.9 and may be compared with a configured 7.9.
     pub const fn seconds_since(self, earlier: Self) -> f64 {
-        (self.0 - earlier.0) as f64 * 1e-9
+        self.0.saturating_sub(earlier.0) as f64 / 1e9
     }
 }

@@ -1,1 +1,7 @@
-//! Navigation specifications and requirement tables, as data with their source word.
+//! Navigation specifications and the time a warning may take, as data. Later editions are more rows, not more code.
+
+mod navigation;
+mod phase;
+
+pub use navigation::{SPECIFICATIONS, Specification, specification};
+pub use phase::{PHASES, Phase, TimeToAlert};

@@ -11,4 +11,6 @@ pub(crate) fn sqrt(x: f64) -> f64 {
     return libm::sqrt(x);
 }
 
-pub(crate) use libm::{acos, asin, atan2, cos, erfc, exp, hypot, log as ln, log1p as ln_1p, sin, sincos as sin_cos, tan};
+pub(crate) use libm::{
+    acos, asin, atan2, cos, erfc, exp, expm1 as exp_m1, hypot, lgamma as ln_gamma, log as ln, log1p as ln_1p, sin, sincos as sin_cos, tan,
+};

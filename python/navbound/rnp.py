@@ -1,0 +1,487 @@
+"""Required navigation performance: specifications as data, the monitor, what its risk means over an hour, and the state classifier."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, cast
+
+import numpy as np
+import polars as pl
+
+from navbound import _core
+from navbound._states import StateClassifier, nse_boundary
+from navbound.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+__all__ = [
+    "PER_EPOCH",
+    "Counters",
+    "Event",
+    "ExposureBasis",
+    "Monitor",
+    "MonitorRun",
+    "PerEpoch",
+    "PerHour",
+    "Specification",
+    "StateClassifier",
+    "Step",
+    "nse_boundary",
+    "per_epoch_risk",
+    "per_hour_risk",
+    "specification",
+    "specifications",
+]
+
+Alert = Literal["normal", "caution", "warning", "unavailable"]
+Acceptance = Literal["accepted", "duplicate", "late", "clock_set_back"]
+
+USABLE = ("ok", "degraded")
+"""Words of `status` with which an epoch is judged."""
+UNUSABLE = ("not_available", "invalid_input")
+"""Words of `status` with which monitoring is lost."""
+
+
+@dataclass(frozen=True)
+class Specification:
+    """What a navigation specification asks for in one phase of flight.
+
+    Attributes
+    ----------
+    name, phase : str
+        Row and column of the table.
+    accuracy_m : float
+        Lateral accuracy (95 %), the RNP value. Where the specification gives a range and none was chosen, the tightest. [m]
+    accuracy_least_m, accuracy_most_m : float
+        The range that may be chosen from. [m]
+    containment_m : float or None
+        Twice the accuracy; None for RNAV specifications, which ask for no monitoring on board. [m]
+    accuracy_risk : float
+        Risk that goes with the accuracy.
+    containment_risk : float or None
+        Risk that goes with the containment.
+    source, provenance : str
+        Where the row comes from and how we hold it.
+    time_to_alert_s : float
+        Default time to alert of the phase. [s]
+    time_to_alert_source, time_to_alert_provenance : str
+        The same for the time to alert.
+    """
+
+    name: str
+    phase: str
+    accuracy_m: float
+    accuracy_least_m: float
+    accuracy_most_m: float
+    containment_m: float | None
+    accuracy_risk: float
+    containment_risk: float | None
+    source: str
+    provenance: str
+    time_to_alert_s: float
+    time_to_alert_source: str
+    time_to_alert_provenance: str
+
+
+def specifications() -> list[Specification]:
+    """Every cell of the table of navigation specifications; ranges stand at their tightest value."""
+    cells = []
+    for row in _core.specifications():
+        containment = row.pop("containment_least_m")
+        row.pop("containment_most_m")
+        cells.append(Specification(accuracy_m=row["accuracy_least_m"], containment_m=containment, **row))
+    return cells
+
+
+def specification(name: str, phase: str, accuracy_m: float | None = None) -> Specification:
+    """One cell of the table of navigation specifications.
+
+    Parameters
+    ----------
+    name : str
+        The specification, e.g. ``"RNP APCH"``.
+    phase : str
+        The phase of flight, e.g. ``"final"``.
+    accuracy_m : float, optional
+        The value chosen from a range (RNP AR APCH, A-RNP); the tightest if not given. [m]
+
+    Raises
+    ------
+    InputError
+        An unknown name or phase, an empty cell, or an accuracy outside the range; the message lists what exists.
+    """
+    cells = specifications()
+    if name not in (names := list(dict.fromkeys(c.name for c in cells))):
+        raise InputError("name", repr(name), domain=", ".join(names))
+    mine = {c.phase: c for c in cells if c.name == name}
+    if phase not in mine:
+        raise InputError("phase", repr(phase), domain=f"the phases of {name}: {', '.join(mine)}")
+    cell = mine[phase]
+    if accuracy_m is None:
+        return cell
+    if not cell.accuracy_least_m <= accuracy_m <= cell.accuracy_most_m:
+        domain = f"[{cell.accuracy_least_m:g}, {cell.accuracy_most_m:g}] for {name}, {phase}"
+        raise InputError("accuracy_m", accuracy_m, "m", domain)
+    doubled = None if cell.containment_m is None else 2.0 * accuracy_m
+    return Specification(**{**cell.__dict__, "accuracy_m": accuracy_m, "containment_m": doubled})
+
+
+def per_epoch_risk(risk_per_hour: float, tau_s: float, sample_period_s: float = 0.0) -> float:
+    """Risk per epoch whose hour carries a risk: what the bounds must be evaluated at.
+
+    The lateral error is taken as a Gauss-Markov process, centred, of one variance. Below 20 samples in a correlation time, where
+    the crossing rate falls short of the true risk, the independent epochs' risk is used, which no Gaussian dependence exceeds.
+
+    Parameters
+    ----------
+    risk_per_hour : float
+        Risk to be outside at least once in an hour.
+    tau_s : float
+        Correlation time of the error. [s]
+    sample_period_s : float
+        Time between epochs; 0 for continuous monitoring. [s]
+
+    Returns
+    -------
+    float
+        ``2 Q(u)`` of the level ``u`` that carries it.
+
+    Raises
+    ------
+    InputError
+        An argument outside its domain, or a risk no level above one sigma carries.
+    """
+    return _core.per_epoch_risk(risk_per_hour, tau_s, sample_period_s)
+
+
+def per_hour_risk(risk_per_epoch: float, tau_s: float, sample_period_s: float = 0.0) -> float:
+    """Risk to be outside at least once in an hour; the inverse of `per_epoch_risk`, with the same arguments."""
+    return _core.per_hour_risk(risk_per_epoch, tau_s, sample_period_s)
+
+
+class ExposureBasis(Protocol):
+    """What the integrity risk is counted over."""
+
+    def per_epoch(self, risk: float, sample_period_s: float) -> float:
+        """Give the risk at which each epoch's bound is evaluated."""
+        ...
+
+    def words(self, risk: float, sample_period_s: float) -> str:
+        """Say the basis and what the risk is in the other one, for reports."""
+        ...
+
+
+@dataclass(frozen=True)
+class PerEpoch:
+    """The risk is each epoch's own, as in the source; how often it is met in an hour is not said."""
+
+    tau_s: float = 60.0
+    """Correlation time for which the report prints the risk per hour. [s]"""
+
+    def per_epoch(self, risk: float, sample_period_s: float) -> float:  # noqa: ARG002 (the other basis needs it)
+        """Give the risk itself."""
+        return risk
+
+    def words(self, risk: float, sample_period_s: float) -> str:
+        """Say the risk per epoch, and what it is over an hour."""
+        hour = per_hour_risk(risk, self.tau_s, sample_period_s)
+        return f"{risk:.3g} per epoch, which is {hour:.2g} per hour for an error that forgets in {self.tau_s:g} s"
+
+
+@dataclass(frozen=True)
+class PerHour:
+    """The risk is that of being outside at least once in an hour of flight."""
+
+    tau_s: float
+    """Correlation time of the lateral error. [s]"""
+
+    def per_epoch(self, risk: float, sample_period_s: float) -> float:
+        """Give the equivalent risk of one epoch."""
+        return per_epoch_risk(risk, self.tau_s, sample_period_s)
+
+    def words(self, risk: float, sample_period_s: float) -> str:
+        """Say the risk per hour, and what it is per epoch."""
+        epoch = self.per_epoch(risk, sample_period_s)
+        return f"{risk:.3g} per hour, which is {epoch:.2g} per epoch for an error that forgets in {self.tau_s:g} s"
+
+
+PER_EPOCH = PerEpoch()
+"""The basis of the source."""
+
+
+class Event(NamedTuple):
+    """An alert from onset to clear; times are GPS nanoseconds.
+
+    ``clear_ns`` is None while it lasts. ``peak_m`` is the largest bound, ``min_margin_m`` the least limit minus bound and ``limit_m``
+    the limit there; NaN when no bound was a number.
+    """
+
+    kind: str
+    onset_ns: int
+    annunciation_ns: int
+    clear_ns: int | None
+    peak_m: float
+    limit_m: float
+    min_margin_m: float
+
+
+class Step(NamedTuple):
+    """What one epoch changed: the alert in force, whether the epoch was judged, and events that ended."""
+
+    alert: Alert
+    acceptance: Acceptance
+    ended: list[Event]
+
+
+@dataclass(frozen=True)
+class Counters:
+    """What the monitor saw and did; counts of epochs and alerts.
+
+    ``n_withdrawn`` are exceedances that ended before the crew was told. ``alerts_per_hour`` counts cautions and warnings over the time
+    under watch: under nominal conditions it is the rate of false alerts, reported beside integrity. NaN when nothing was watched.
+    """
+
+    n_accepted: int
+    n_duplicate: int
+    n_late: int
+    n_clock_set_back: int
+    n_gaps: int
+    n_unusable: int
+    n_nan: int
+    n_withdrawn: int
+    n_cautions: int
+    n_warnings: int
+    n_unavailable: int
+    watched_s: float
+    alerts_per_hour: float
+
+
+@dataclass(frozen=True)
+class MonitorRun:
+    """What the monitor found in a table.
+
+    Attributes
+    ----------
+    alert : Series of str
+        The alert in force after each row: normal, caution, warning, unavailable. A dropped row shows what was in force.
+    events : DataFrame
+        ``track``, ``kind``, ``onset_ns``, ``annunciation_ns``, ``clear_ns``, ``peak_m``, ``limit_m``, ``min_margin_m``.
+    counters : Counters
+        All tracks together.
+    track_counters : dict
+        Each track's own.
+    """
+
+    alert: pl.Series
+    events: pl.DataFrame
+    counters: Counters
+    track_counters: dict[str, Counters]
+
+
+class Monitor:
+    """The RNP monitor: caution, warning and loss of monitoring, epoch by epoch.
+
+    A caution is raised when NOT (accuracy bound <= RNP) has lasted ``raise_delay_s``, a warning at once when NOT (integrity bound <=
+    2 RNP); so NaN raises and equality does not. Both end after the bound has been within ``clear_ratio`` of the limit for
+    ``clear_delay_s``. An unusable status, or silence, is ``unavailable``.
+
+    Parameters
+    ----------
+    sample_period_s : float
+        Nominal time between epochs. [s]
+    time_to_alert_s : float
+        The most the whole chain may take; ``specification(...).time_to_alert_s``. ``math.inf`` where nobody is to be alerted, as with
+        a recorded flight. [s]
+    raise_delay_s, clear_delay_s : float
+        Waiting before a caution, and before an alert ends. [s]
+    clear_ratio : float
+        Share of the limit, in (0, 1].
+    stale_after_s : float, optional
+        Silence after which monitoring is lost; two sample periods, at least 2 s, if not given. [s]
+    sensor_latency_s, filter_s, computing_s, display_s : float
+        The other parts of the chain. [s]
+    integrity_risk : float
+        Risk of the integrity requirement, counted as `integrity_basis` says.
+    integrity_basis : PerEpoch or PerHour
+        What the integrity risk is counted over.
+
+    Raises
+    ------
+    InputError
+        A setting outside its domain, or a chain that takes longer than the time to alert.
+    """
+
+    def __init__(
+        self,
+        *,
+        sample_period_s: float = 1.0,
+        time_to_alert_s: float = 10.0,
+        raise_delay_s: float = 3.0,
+        clear_delay_s: float = 10.0,
+        clear_ratio: float = 0.95,
+        stale_after_s: float | None = None,
+        sensor_latency_s: float = 0.0,
+        filter_s: float = 0.0,
+        computing_s: float = 0.0,
+        display_s: float = 0.0,
+        integrity_risk: float = 1e-5,
+        integrity_basis: ExposureBasis = PER_EPOCH,
+    ) -> None:
+        chain = (sample_period_s, sensor_latency_s, filter_s, computing_s, display_s, time_to_alert_s)
+        self._core = _core.RnpMonitor(list(chain), raise_delay_s, clear_delay_s, clear_ratio, stale_after_s)
+        if not 0 < integrity_risk < 1:
+            raise InputError("integrity_risk", integrity_risk, "1", "(0, 1)")
+        self.sample_period_s = sample_period_s
+        self.integrity_risk = integrity_risk
+        self.integrity_basis = integrity_basis
+        self.integrity_risk_per_epoch = integrity_basis.per_epoch(integrity_risk, sample_period_s)
+        """The risk at which the integrity bounds given to this monitor must be evaluated."""
+
+    @property
+    def time_to_crew_s(self) -> float:
+        """Time from an exceedance to the crew: the sum of the chain, in seconds."""
+        return self._core.time_to_crew_s
+
+    @property
+    def stale_after_s(self) -> float:
+        """Silence after which monitoring is lost, in seconds."""
+        return self._core.stale_after_s
+
+    @property
+    def exposure(self) -> str:
+        """The integrity risk in words, on both bases."""
+        return self.integrity_basis.words(self.integrity_risk, self.sample_period_s)
+
+    def step(self, record: Mapping[str, Any], *, accuracy: str = "tse_exact_m", integrity: str = "tse_exact_integrity_m") -> Step:
+        """Judge one epoch.
+
+        Parameters
+        ----------
+        record : mapping
+            ``time_ns``, ``rnp_m``, both bounds and, where there is one, ``status``. A bound that is None is a NaN, and alerts.
+        accuracy, integrity : str
+            Keys of the two bounds.
+
+        Raises
+        ------
+        InputError
+            A missing key, or a status that is none.
+        """
+        try:
+            time_ns = int(record["time_ns"])
+            first, second, rnp_m = (math.nan if record[key] is None else float(record[key]) for key in (accuracy, integrity, "rnp_m"))
+        except KeyError as e:
+            raise InputError("record", "a mapping without it", domain=f"records with {e.args[0]}") from e
+        except (TypeError, ValueError) as e:
+            raise InputError("record", repr(dict(record))[:120], domain="records of numbers") from e
+        status = record.get("status", "ok")
+        if status not in USABLE + UNUSABLE:
+            raise InputError("status", repr(status), domain=", ".join(USABLE + UNUSABLE))
+        alert, acceptance, ended = self._core.step(time_ns, first, second, rnp_m, status in USABLE)
+        return Step(cast("Alert", alert), cast("Acceptance", acceptance), [Event(*e) for e in ended])
+
+    def tick(self, time_ns: int) -> Alert:
+        """Time passes without an epoch: the alert in force, ``unavailable`` after a silence."""
+        return cast("Alert", self._core.tick(time_ns))
+
+    @property
+    def open_events(self) -> list[Event]:
+        """Alerts in force."""
+        return [Event(*e) for e in self._core.open_events()]
+
+    @property
+    def counters(self) -> Counters:
+        """What `step` and `tick` saw so far."""
+        return Counters(**self._core.counters())
+
+    def run(
+        self,
+        table: pl.DataFrame | Mapping[str, Any],
+        *,
+        accuracy: str = "tse_exact_m",
+        integrity: str = "tse_exact_integrity_m",
+    ) -> MonitorRun:
+        """Judge a table, each track by a fresh monitor with these settings; `step`'s own state is left alone.
+
+        Parameters
+        ----------
+        table : DataFrame or mapping of columns
+            ``time_ns``, ``rnp_m``, both bounds and, where there are any, ``status`` and ``track``. A null bound of a row whose status is
+            ``ok`` is a NaN, and alerts.
+        accuracy, integrity : str
+            Columns of the two bounds.
+
+        Raises
+        ------
+        InputError
+            A missing column, a null time, or a status that is none.
+        """
+        frame = table if isinstance(table, pl.DataFrame) else pl.DataFrame(dict(table))
+        for name in ("time_ns", "rnp_m", accuracy, integrity):
+            if name not in frame.columns:
+                raise InputError("table", f"columns {', '.join(frame.columns)}", domain=f"tables with {name}")
+        if frame["time_ns"].null_count():
+            raise InputError("time_ns", "null", domain="times", index=frame["time_ns"].is_null().arg_max())
+        usable = _usable(frame)
+        names, index = _tracks(frame)
+        words, rows, each, total = self._core.run(
+            np.ascontiguousarray(frame["time_ns"].cast(pl.Int64).to_numpy()),
+            _numbers(frame, accuracy),
+            _numbers(frame, integrity),
+            _numbers(frame, "rnp_m"),
+            usable,
+            index,
+            len(names),
+        )
+        return MonitorRun(
+            alert=pl.Series("alert", words, dtype=pl.String),
+            events=_events(names, rows),
+            counters=Counters(**total),
+            track_counters={name: Counters(**c) for name, c in zip(names, each, strict=True)},
+        )
+
+
+def _numbers(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:
+    try:
+        column = frame[name].cast(pl.Float64)
+    except pl.exceptions.InvalidOperationError as e:
+        raise InputError(name, f"a column of {frame[name].dtype}", "m", "numbers") from e
+    return np.ascontiguousarray(column.fill_null(math.nan).to_numpy(), dtype=np.float64)
+
+
+def _usable(frame: pl.DataFrame) -> NDArray[np.bool_]:
+    if "status" not in frame.columns:
+        return np.ones(frame.height, dtype=np.bool_)
+    status = frame["status"].cast(pl.String)
+    known = status.is_in(USABLE + UNUSABLE).fill_null(value=False)
+    if not known.all():
+        row = int((~known).arg_max() or 0)
+        raise InputError("status", repr(status[row]), domain=", ".join(USABLE + UNUSABLE), index=row)
+    return np.ascontiguousarray(status.is_in(USABLE).to_numpy())
+
+
+def _tracks(frame: pl.DataFrame) -> tuple[list[str], NDArray[np.uint32]]:
+    if "track" not in frame.columns:
+        return [""], np.zeros(frame.height, dtype=np.uint32)
+    track = frame["track"].cast(pl.String).fill_null("")
+    names = track.unique(maintain_order=True)
+    index = track.replace_strict(names, pl.Series(range(len(names)), dtype=pl.UInt32), return_dtype=pl.UInt32)
+    return names.to_list(), np.ascontiguousarray(index.to_numpy())
+
+
+def _events(names: list[str], rows: list[tuple[int, tuple[str, int, int, int | None, float, float, float]]]) -> pl.DataFrame:
+    schema = {
+        "track": pl.String,
+        "kind": pl.String,
+        "onset_ns": pl.Int64,
+        "annunciation_ns": pl.Int64,
+        "clear_ns": pl.Int64,
+        "peak_m": pl.Float64,
+        "limit_m": pl.Float64,
+        "min_margin_m": pl.Float64,
+    }
+    return pl.DataFrame([(names[track], *event) for track, event in rows], schema=schema, orient="row").fill_nan(None)
