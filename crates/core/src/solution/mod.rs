@@ -1,5 +1,6 @@
 //! Where we think we are: weighted least squares, and the record of one instant.
 
 mod epoch;
+pub mod wls;
 
 pub use epoch::Epoch;
