@@ -3,3 +3,4 @@
 //! A loop over epochs contains a call, not mathematics: the mathematics is in `navbound-core`.
 
 pub mod bounds;
+pub mod sky;

@@ -16,7 +16,7 @@ pub struct Route {
     length: Metres,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Piece {
     /// Distance along the route where it begins.
     start: Metres,
@@ -25,10 +25,10 @@ struct Piece {
     shape: Shape,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 enum Shape {
     /// Part of a leg; the route enters it this far from the leg's first waypoint.
-    Straight(Line, Metres),
+    Straight(Box<Line>, Metres),
     Turn(Arc),
 }
 
@@ -211,7 +211,7 @@ fn join(lines: &[Line], turns: &[Option<Turn>]) -> Route {
             start: Metres::new(along),
             length: Metres::new(end - from),
             leg,
-            shape: Shape::Straight(*line, Metres::new(from)),
+            shape: Shape::Straight(Box::new(*line), Metres::new(from)),
         });
         along += end - from;
         let arc = turn.map_or(0.0, |t| t.arc.length().m());

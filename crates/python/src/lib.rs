@@ -5,6 +5,7 @@
 mod anp;
 mod error;
 mod evaluation;
+mod gnss;
 mod methods;
 mod path;
 mod read;
@@ -22,6 +23,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     anp::register(m)?;
     rnp::register(m)?;
     evaluation::register(m)?;
+    gnss::register(m)?;
     path::register(m)?;
     simulate::register(m)?;
     read::register(m)
