@@ -9,3 +9,4 @@ pub mod tse;
 pub mod anp;
 pub mod monitor;
 pub mod states;
+pub mod sky;

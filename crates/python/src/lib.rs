@@ -6,6 +6,7 @@ mod anp;
 mod batch;
 mod error;
 mod evaluation;
+mod gnss;
 mod methods;
 mod path;
 mod read;
@@ -25,6 +26,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     rnp::register(m)?;
     states::register(m)?;
     evaluation::register(m)?;
+    gnss::register(m)?;
     path::register(m)?;
     simulate::register(m)?;
     read::register(m)

@@ -1,1 +1,9 @@
 //! Where the signals came from: nominal orbits, lines of sight, dilution of precision.
+
+mod nominal;
+mod orbit;
+mod sight;
+
+pub use nominal::{BEIDOU, GPS, Slot};
+pub use orbit::{Elements, Orbit};
+pub use sight::{Direction, LineOfSight, direction};

@@ -2,5 +2,6 @@
 
 pub mod dme;
 mod epoch;
+pub mod wls;
 
 pub use epoch::Epoch;

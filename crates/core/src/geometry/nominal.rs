@@ -1,0 +1,123 @@
+//! Nominal constellations, as data.
+//!
+//! - GPS: the 24 nominal slots of the GPS Standard Positioning Service performance standard (standard, from memory; the same table is in
+//!   our specification "for repeatability"). The published epoch is 1993-07-01; here the right ascensions count from Greenwich at the
+//!   reference instant, so the sky of a date is typical of GPS and not that day's.
+//! - BeiDou-3: 24 satellites in medium orbits (Walker 24/3/1, 27906.1 km, 55 deg), three in inclined geosynchronous orbits and three
+//!   geostationary at 80, 110.5 and 140 deg E (standard: BDS open service documents; phases of the first two kinds ours).
+
+use super::Elements;
+use crate::quantity::{Metres, Radians};
+use crate::signal::{Constellation, SatelliteId};
+
+/// A place in a nominal constellation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slot {
+    /// Who holds it.
+    pub satellite: SatelliteId,
+    /// Its orbit.
+    pub elements: Elements,
+}
+
+/// GPS: 24 slots in six planes.
+pub const GPS: [Slot; 24] = gps();
+/// BeiDou-3: 24 medium, 3 inclined geosynchronous, 3 geostationary.
+pub const BEIDOU: [Slot; 30] = beidou();
+
+/// Right ascension of planes A to F \[deg\].
+const GPS_NODES: [f64; 6] = [272.847, 332.847, 32.847, 92.847, 152.847, 212.847];
+/// Arguments of latitude, four a plane \[deg\].
+const GPS_LATITUDES: [[f64; 4]; 6] = [
+    [268.126, 161.786, 11.676, 41.806],
+    [80.956, 173.336, 309.976, 204.376],
+    [111.876, 11.796, 339.666, 241.556],
+    [135.226, 265.446, 35.156, 167.356],
+    [197.046, 302.596, 66.066, 333.686],
+    [238.886, 345.226, 105.206, 135.346],
+];
+const GPS_AXIS: Metres = Metres::new(26_559_800.0);
+const MEDIUM_AXIS: Metres = Metres::new(27_906_100.0);
+/// Radius of an orbit of one sidereal day.
+const SYNCHRONOUS_AXIS: Metres = Metres::new(42_164_200.0);
+const INCLINATION: Radians = Radians::degrees(55.0);
+/// Longitude where the inclined satellites cross the equator northwards, standard: 118 deg E.
+const INCLINED_CROSSING: f64 = 118.0;
+const STATIONARY_LONGITUDES: [f64; 3] = [80.0, 110.5, 140.0];
+
+const fn slot(constellation: Constellation, index: usize, axis: Metres, tilt: Radians, node_deg: f64, latitude_deg: f64) -> Slot {
+    Slot {
+        satellite: SatelliteId { constellation, number: index as u8 + 1 },
+        elements: Elements::circular(axis, tilt, Radians::degrees(node_deg), Radians::degrees(latitude_deg)),
+    }
+}
+
+const fn gps() -> [Slot; 24] {
+    let mut slots = [slot(Constellation::Gps, 0, GPS_AXIS, INCLINATION, 0.0, 0.0); 24];
+    let mut i = 0;
+    while i < 24 {
+        slots[i] = slot(Constellation::Gps, i, GPS_AXIS, INCLINATION, GPS_NODES[i / 4], GPS_LATITUDES[i / 4][i % 4]);
+        i += 1;
+    }
+    slots
+}
+
+const fn beidou() -> [Slot; 30] {
+    let mut slots = [slot(Constellation::BeiDou, 0, MEDIUM_AXIS, INCLINATION, 0.0, 0.0); 30];
+    let mut i = 0;
+    while i < 24 {
+        // Walker 24/3/1: planes 120 deg apart, eight satellites 45 deg apart in each, neighbours' phases 360/24 deg apart.
+        let (plane, place) = ((i / 8) as f64, (i % 8) as f64);
+        slots[i] = slot(Constellation::BeiDou, i, MEDIUM_AXIS, INCLINATION, 120.0 * plane, 45.0 * place + 15.0 * plane);
+        i += 1;
+    }
+    while i < 27 {
+        // Node and phase 120 deg apart the opposite way: all three draw the same figure of eight over the crossing.
+        let third = 120.0 * (i - 24) as f64;
+        slots[i] = slot(Constellation::BeiDou, i, SYNCHRONOUS_AXIS, INCLINATION, INCLINED_CROSSING + third, 360.0 - third);
+        i += 1;
+    }
+    while i < 30 {
+        slots[i] = slot(Constellation::BeiDou, i, SYNCHRONOUS_AXIS, Radians::new(0.0), STATIONARY_LONGITUDES[i - 27], 0.0);
+        i += 1;
+    }
+    slots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::geodetic_from_ecef;
+    use crate::geometry::Orbit;
+
+    fn longitude_deg(slot: &Slot, seconds: f64) -> f64 {
+        let position = Orbit::new(slot.elements).unwrap().position(seconds);
+        geodetic_from_ecef(&position).unwrap().point.lon().rad().to_degrees()
+    }
+
+    #[test]
+    fn inclined_satellites_cross_the_equator_at_the_same_longitude() {
+        for slot in &BEIDOU[24..27] {
+            // From the phase at the reference instant to the ascending node, at a sidereal day a turn.
+            let to_node = (360.0 - slot.elements.mean_anomaly.rad().to_degrees()).rem_euclid(360.0) / 360.0 * 86_164.1;
+            assert!((longitude_deg(slot, to_node) - INCLINED_CROSSING).abs() < 0.1);
+        }
+    }
+
+    #[test]
+    fn stationary_satellites_stay_over_their_longitude() {
+        for (slot, longitude) in BEIDOU[27..].iter().zip(STATIONARY_LONGITUDES) {
+            for hour in 0..24 {
+                assert!((longitude_deg(slot, 3600.0 * f64::from(hour)) - longitude).abs() < 0.1);
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_are_unique_in_each_constellation() {
+        for slots in [&GPS[..], &BEIDOU[..]] {
+            for (i, slot) in slots.iter().enumerate() {
+                assert_eq!(usize::from(slot.satellite.number), i + 1);
+            }
+        }
+    }
+}

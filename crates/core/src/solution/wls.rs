@@ -1,0 +1,223 @@
+//! Covariance of a weighted least-squares position, from satellite geometry alone.
+//!
+//! Source: Fu, Zhang, Li 2014 (equal sigmas); with weights and one clock for each constellation it is the textbook normal equation.
+
+use crate::frame::{Covariance, Enu};
+use crate::geometry::LineOfSight;
+use crate::quantity::{Metres, Unavailable};
+use crate::signal::Constellation;
+use crate::special::float::sqrt;
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+/// The largest condition number of H'WH that still gives a covariance.
+pub const CONDITION_LIMIT: f64 = 1e12;
+
+const CLOCKS: usize = Constellation::ALL.len();
+const UNKNOWNS: usize = 3 + CLOCKS;
+
+/// Dilutions of precision: standard deviations of the position for ranges of 1 m, one clock for each constellation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dilution {
+    /// East.
+    pub east: f64,
+    /// North.
+    pub north: f64,
+    /// Horizontal, sqrt(east² + north²).
+    pub horizontal: f64,
+    /// Vertical.
+    pub vertical: f64,
+    /// Position, sqrt(horizontal² + vertical²).
+    pub position: f64,
+}
+
+/// What one constellation contributes: its weight, and its weighted mean direction, which its clock absorbs.
+#[derive(Debug, Clone, Copy, Default)]
+struct Group {
+    count: usize,
+    weight: f64,
+    mean: Vector3<f64>,
+}
+
+/// Covariance of the position.
+///
+/// ```text
+/// row i of H = [-cos E sin A, -cos E cos A, -sin E, one 1 in the column of its constellation's clock]
+/// V = ((H' W H)^-1) position block,    W = diag(1/sigma_i^2)
+///   = (sum over constellations c and their satellites i of w_i (u_i - m_c)(u_i - m_c)')^-1,    m_c the weighted mean direction of c
+/// ```
+///
+/// The second line is the first with the clocks eliminated: exactly the same matrix, from differences that lose no digits, of size
+/// three whatever the number of constellations; it is inverted by its Cholesky factor.
+///
+/// # Errors
+/// [`Unavailable::TooFewSatellites`] when unknowns (three and a clock for each constellation seen) outnumber satellites;
+/// [`Unavailable::Singular`] when the condition number of H'WH, clocks included, is above [`CONDITION_LIMIT`].
+pub fn covariance<'a>(sights: impl Iterator<Item = &'a LineOfSight> + Clone) -> Result<Covariance<Enu>, Unavailable> {
+    solve(sights, |s| 1.0 / (s.sigma.m() * s.sigma.m()))
+}
+
+/// Dilutions of precision; every range counts the same, whatever its sigma.
+///
+/// # Errors
+/// As [`covariance`].
+pub fn dilution<'a>(sights: impl Iterator<Item = &'a LineOfSight> + Clone) -> Result<Dilution, Unavailable> {
+    let q = solve(sights, |_| 1.0)?;
+    let [e, n, v] = [0, 1, 2].map(|i| q.matrix()[(i, i)]);
+    Ok(Dilution { east: sqrt(e), north: sqrt(n), horizontal: sqrt(e + n), vertical: sqrt(v), position: sqrt(e + n + v) })
+}
+
+/// Standard deviations along the axes of the horizontal ellipse, the larger first.
+///
+/// ```text
+/// lambda = (a + c)/2 +- hypot((a - c)/2, b)    of [[a, b], [b, c]]
+/// ```
+pub fn horizontal_axes(covariance: &Covariance<Enu>) -> (Metres, Metres) {
+    let v = covariance.horizontal();
+    let (a, b, c) = (v[(0, 0)], v[(0, 1)], v[(1, 1)]);
+    let larger = 0.5 * (a + c) + crate::special::float::hypot(0.5 * (a - c), b);
+    // The product of both is the determinant, which keeps the digits of a thin ellipse.
+    let smaller = if larger > 0.0 { (a * c - b * b) / larger } else { 0.0 };
+    (Metres::new(sqrt(larger)), Metres::new(sqrt(if smaller > 0.0 { smaller } else { 0.0 })))
+}
+
+fn solve<'a>(
+    sights: impl Iterator<Item = &'a LineOfSight> + Clone,
+    weight: impl Fn(&LineOfSight) -> f64,
+) -> Result<Covariance<Enu>, Unavailable> {
+    let groups = groups(sights.clone(), &weight);
+    let have = groups.iter().map(|g| g.count).sum();
+    let need = 3 + groups.iter().filter(|g| g.count > 0).count();
+    // Nothing in view still needs four.
+    let need = if need > 3 { need } else { 4 };
+    if have < need {
+        return Err(Unavailable::TooFewSatellites { need, have });
+    }
+    let mut information = Matrix3::zeros();
+    for s in sights {
+        let d = s.direction.unit() - groups[s.constellation.index()].mean;
+        information += weight(s) * d * d.transpose();
+    }
+    let condition = condition(&information, &groups);
+    let singular = Unavailable::Singular { condition, limit: CONDITION_LIMIT };
+    if !(condition <= CONDITION_LIMIT) {
+        return Err(singular);
+    }
+    let factor = information.cholesky().ok_or(singular)?;
+    Ok(Covariance::claim_symmetric(factor.inverse()))
+}
+
+fn groups<'a>(sights: impl Iterator<Item = &'a LineOfSight>, weight: impl Fn(&LineOfSight) -> f64) -> [Group; CLOCKS] {
+    let mut groups = [Group::default(); CLOCKS];
+    for s in sights {
+        let (g, w) = (&mut groups[s.constellation.index()], weight(s));
+        g.count += 1;
+        g.weight += w;
+        g.mean += w * s.direction.unit();
+    }
+    for g in groups.iter_mut().filter(|g| g.count > 0) {
+        g.mean /= g.weight;
+    }
+    groups
+}
+
+/// Condition number of the whole normal matrix, rebuilt from the eliminated form. Unused clocks hold a diagonal element that is there
+/// already, which lies between the extreme eigenvalues and so changes neither.
+fn condition(information: &Matrix3<f64>, groups: &[Group; CLOCKS]) -> f64 {
+    let mut normal = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
+    let mut position = *information;
+    for (i, g) in groups.iter().enumerate() {
+        position += g.weight * g.mean * g.mean.transpose();
+        let coupling = -g.weight * g.mean;
+        normal.fixed_view_mut::<3, 1>(0, 3 + i).copy_from(&coupling);
+        normal.fixed_view_mut::<1, 3>(3 + i, 0).copy_from(&coupling.transpose());
+        normal[(3 + i, 3 + i)] = g.weight;
+    }
+    normal.fixed_view_mut::<3, 3>(0, 0).copy_from(&position);
+    for (i, _) in groups.iter().enumerate().filter(|(_, g)| g.count == 0) {
+        normal[(3 + i, 3 + i)] = position[(0, 0)];
+    }
+    let eigenvalues = normal.symmetric_eigenvalues();
+    let (least, most) = (eigenvalues.min(), eigenvalues.max());
+    if least > 0.0 { most / least } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Direction;
+    use crate::quantity::Radians;
+    use proptest::prelude::*;
+
+    fn sight(az_deg: f64, el_deg: f64, sigma: f64, constellation: Constellation) -> LineOfSight {
+        let direction = Direction::new(Radians::degrees(az_deg), Radians::degrees(el_deg)).unwrap();
+        LineOfSight::new(direction, Metres::new(sigma), constellation).unwrap()
+    }
+
+    #[test]
+    fn three_satellites_of_one_system_and_four_of_two_are_too_few() {
+        use Constellation::{BeiDou, Gps};
+        let one = [sight(0.0, 40.0, 1.0, Gps), sight(90.0, 20.0, 1.0, Gps), sight(200.0, 60.0, 1.0, Gps)];
+        assert_eq!(covariance(one.iter()), Err(Unavailable::TooFewSatellites { need: 4, have: 3 }));
+        let mut two = one.to_vec();
+        two.push(sight(300.0, 10.0, 1.0, BeiDou));
+        assert_eq!(covariance(two.iter()), Err(Unavailable::TooFewSatellites { need: 5, have: 4 }));
+        assert_eq!(covariance([].iter()), Err(Unavailable::TooFewSatellites { need: 4, have: 0 }));
+    }
+
+    #[test]
+    fn satellites_on_one_cone_are_singular() {
+        // All at one elevation: height and clock cannot be told apart.
+        let cone: [LineOfSight; 6] = core::array::from_fn(|i| sight(60.0 * i as f64, 30.0, 1.0, Constellation::Gps));
+        assert!(matches!(covariance(cone.iter()), Err(Unavailable::Singular { .. })));
+    }
+
+    #[test]
+    fn a_lone_satellite_of_another_system_pays_for_its_own_clock_only() {
+        use Constellation::{Galileo, Gps};
+        let gps = [(0.0, 80.0), (70.0, 20.0), (150.0, 30.0), (220.0, 15.0), (300.0, 45.0)].map(|(a, e)| sight(a, e, 2.0, Gps));
+        let mut more = gps.to_vec();
+        more.push(sight(10.0, 10.0, 0.1, Galileo));
+        let (without, with) = (covariance(gps.iter()).unwrap(), covariance(more.iter()).unwrap());
+        assert!((without.matrix() - with.matrix()).amax() < 1e-12 * without.matrix().amax());
+    }
+
+    proptest! {
+        // Against the whole normal equation by singular values, one clock column a constellation. Both lose about condition * 1e-16;
+        // conditions are kept below 1e6.
+        #[test]
+        fn eliminating_the_clocks_changes_nothing(angles in proptest::array::uniform12((0.0..360.0f64, 5.0..90.0f64, 0.5..10.0f64))) {
+            let sights: [LineOfSight; 12] = core::array::from_fn(|i| {
+                let (a, e, s) = angles[i];
+                sight(a, e, s, Constellation::ALL[i % 3])
+            });
+            let h = SMatrix::<f64, 12, 6>::from_fn(|i, j| {
+                let entry = if j < 3 { -sights[i].direction.unit()[j] } else { f64::from(u8::from(i % 3 == j - 3)) };
+                entry / sights[i].sigma.m()
+            });
+            let svd = h.svd(false, true);
+            prop_assume!(svd.singular_values.max() < 1e3 * svd.singular_values.min());
+            let scaled = SMatrix::<f64, 6, 6>::from_diagonal(&svd.singular_values.map(|s| 1.0 / s)) * svd.v_t.unwrap();
+            let full = scaled.transpose() * scaled;
+            let found = covariance(sights.iter()).unwrap();
+            let difference = (found.matrix() - full.fixed_view::<3, 3>(0, 0)).amax();
+            prop_assert!(difference < 1e-9 * found.matrix().amax(), "{difference}");
+        }
+
+        // The rebuilt condition is that of H'WH, the square of the singular values' ratio.
+        #[test]
+        fn the_condition_is_that_of_the_whole_normal_matrix(angles in proptest::array::uniform6((0.0..360.0f64, 5.0..90.0f64))) {
+            let sights = angles.map(|(a, e)| sight(a, e, 1.0, Constellation::Galileo));
+            let h = SMatrix::<f64, 6, 4>::from_fn(|i, j| if j < 3 { -sights[i].direction.unit()[j] } else { 1.0 });
+            let s = h.singular_values();
+            let expected = (s.max() / s.min()).powi(2);
+            prop_assume!(expected < 1e8);
+            let g = groups(sights.iter(), |_| 1.0);
+            let mut information = Matrix3::zeros();
+            for x in &sights {
+                let d = x.direction.unit() - g[x.constellation.index()].mean;
+                information += d * d.transpose();
+            }
+            prop_assert!((condition(&information, &g) / expected - 1.0).abs() < 1e-6);
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Satellite geometry.
+
+use crate::error::input_error;
+use navbound_assess::sky::{self, Receivers, Sights, Solved};
+use navbound_core::geometry::{BEIDOU, Elements, GPS, Slot};
+use navbound_core::quantity::{Metres, Radians, Unavailable};
+use navbound_core::solution::wls;
+use navbound_path::AtIndex;
+use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+fn refused(e: AtIndex) -> PyErr {
+    input_error(e.error, Some(e.index))
+}
+
+/// The shipped constellations by name: satellites, constellation indices and elements.
+#[pyfunction]
+fn nominal_constellations(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let d = PyDict::new(py);
+    d.set_item("gps", slots(py, &GPS)?)?;
+    d.set_item("beidou", slots(py, &BEIDOU)?)?;
+    Ok(d)
+}
+
+fn slots<'py>(py: Python<'py>, slots: &[Slot]) -> PyResult<Bound<'py, PyDict>> {
+    let column = |f: fn(&Elements) -> f64| slots.iter().map(|s| f(&s.elements)).collect::<Vec<_>>().into_pyarray(py);
+    let d = PyDict::new(py);
+    d.set_item("satellite", slots.iter().map(|s| s.satellite.to_string()).collect::<Vec<_>>())?;
+    d.set_item("constellation", slots.iter().map(|s| s.satellite.constellation.index()).collect::<Vec<_>>())?;
+    d.set_item("semi_major_m", column(|e| e.semi_major.m()))?;
+    d.set_item("eccentricity", column(|e| e.eccentricity))?;
+    d.set_item("inclination_rad", column(|e| e.inclination.rad()))?;
+    d.set_item("node_rad", column(|e| e.node.rad()))?;
+    d.set_item("perigee_rad", column(|e| e.perigee.rad()))?;
+    d.set_item("mean_anomaly_rad", column(|e| e.mean_anomaly.rad()))?;
+    Ok(d)
+}
+
+/// Azimuths and elevations, one row an epoch and one column an orbit; orbits are rows of six elements.
+#[pyfunction]
+fn satellite_directions<'py>(
+    py: Python<'py>,
+    elements: PyReadonlyArray2<'_, f64>,
+    lat_rad: PyReadonlyArray1<'_, f64>,
+    lon_rad: PyReadonlyArray1<'_, f64>,
+    h_m: PyReadonlyArray1<'_, f64>,
+    time_s: PyReadonlyArray1<'_, f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let orbits: Vec<Elements> = elements.as_slice()?.as_chunks().0.iter().map(orbit).collect();
+    let at = Receivers { lat_rad: lat_rad.as_slice()?, lon_rad: lon_rad.as_slice()?, h_m: h_m.as_slice()?, time_s: time_s.as_slice()? };
+    let sky = py.detach(|| sky::directions(&orbits, &at)).map_err(refused)?;
+    let d = PyDict::new(py);
+    d.set_item("az_rad", sky.az_rad.into_pyarray(py))?;
+    d.set_item("el_rad", sky.el_rad.into_pyarray(py))?;
+    Ok(d)
+}
+
+fn orbit(&[a, e, i, node, perigee, anomaly]: &[f64; 6]) -> Elements {
+    let [inclination, node, perigee, mean_anomaly] = [i, node, perigee, anomaly].map(Radians::new);
+    Elements { semi_major: Metres::new(a), eccentricity: e, inclination, node, perigee, mean_anomaly }
+}
+
+/// Covariances of least-squares positions, nine numbers an epoch, NaN where there is none; `n_sv`; `reason`, empty where there is one.
+#[pyfunction]
+fn position_covariances<'py>(
+    py: Python<'py>,
+    az_rad: PyReadonlyArray1<'_, f64>,
+    el_rad: PyReadonlyArray1<'_, f64>,
+    sigma_m: PyReadonlyArray1<'_, f64>,
+    constellation: Vec<usize>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let sights =
+        Sights { az_rad: az_rad.as_slice()?, el_rad: el_rad.as_slice()?, sigma_m: sigma_m.as_slice()?, constellation: &constellation };
+    let solved = py.detach(|| sky::covariances(&sights)).map_err(refused)?;
+    let (d, values) = shared(py, solved, 9, |v, out| {
+        let (major, minor) = wls::horizontal_axes(v);
+        out.extend(v.matrix().iter());
+        (major.m(), minor.m())
+    })?;
+    let (matrices, axes): (Vec<f64>, Vec<(f64, f64)>) = values;
+    d.set_item("enu_m2", matrices.into_pyarray(py))?;
+    d.set_item("sigma_major_m", axes.iter().map(|a| a.0).collect::<Vec<_>>().into_pyarray(py))?;
+    d.set_item("sigma_minor_m", axes.iter().map(|a| a.1).collect::<Vec<_>>().into_pyarray(py))?;
+    Ok(d)
+}
+
+/// Dilutions of precision, NaN where there is none; `n_sv`; `reason`.
+#[pyfunction]
+fn dilutions<'py>(
+    py: Python<'py>,
+    az_rad: PyReadonlyArray1<'_, f64>,
+    el_rad: PyReadonlyArray1<'_, f64>,
+    constellation: Vec<usize>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (az, el) = (az_rad.as_slice()?, el_rad.as_slice()?);
+    // Dilution knows no sigma: every range counts one metre.
+    let ones = vec![1.0; az.len()];
+    let sights = Sights { az_rad: az, el_rad: el, sigma_m: &ones, constellation: &constellation };
+    let solved = py.detach(|| sky::dilutions(&sights)).map_err(refused)?;
+    let (d, (rows, _)) = shared(py, solved, 5, |q, out| {
+        out.extend([q.east, q.north, q.horizontal, q.vertical, q.position]);
+        (f64::NAN, f64::NAN)
+    })?;
+    for (i, name) in ["edop", "ndop", "hdop", "vdop", "pdop"].into_iter().enumerate() {
+        d.set_item(name, rows.iter().skip(i).step_by(5).copied().collect::<Vec<_>>().into_pyarray(py))?;
+    }
+    Ok(d)
+}
+
+type Columns = (Vec<f64>, Vec<(f64, f64)>);
+
+/// `n_sv` and `reason` of every epoch, and its numbers: `width` of them, and a pair; NaN where there is no result.
+fn shared<'py, T>(
+    py: Python<'py>,
+    solved: Solved<T>,
+    width: usize,
+    write: impl Fn(&T, &mut Vec<f64>) -> (f64, f64),
+) -> PyResult<(Bound<'py, PyDict>, Columns)> {
+    let (mut rows, mut pairs) = (Vec::new(), Vec::new());
+    let (mut n_sv, mut reasons) = (Vec::new(), Vec::new());
+    for (n, result) in &solved {
+        n_sv.push(*n as i64);
+        match result {
+            Ok(value) => pairs.push(write(value, &mut rows)),
+            Err(_) => {
+                rows.resize(rows.len() + width, f64::NAN);
+                pairs.push((f64::NAN, f64::NAN));
+            }
+        }
+        reasons.push(result.as_ref().err().map(Unavailable::to_string).unwrap_or_default());
+    }
+    let d = PyDict::new(py);
+    d.set_item("n_sv", n_sv.into_pyarray(py))?;
+    d.set_item("reason", reasons)?;
+    Ok((d, (rows, pairs)))
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(nominal_constellations, m)?)?;
+    m.add_function(wrap_pyfunction!(satellite_directions, m)?)?;
+    m.add_function(wrap_pyfunction!(position_covariances, m)?)?;
+    m.add_function(wrap_pyfunction!(dilutions, m)?)
+}

@@ -1,0 +1,382 @@
+"""Satellite geometry: nominal constellations, where their satellites stand, and what covariance of position follows.
+
+Orbits follow IS-GPS-200 without its correction terms (standard); the covariance is (H' W H)^-1 with one clock for each constellation
+(Fu, Zhang, Li 2014 for equal sigmas; printed).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from navbound import _core
+from navbound._arrays import flatten
+from navbound.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "CONSTELLATIONS",
+    "Dilution",
+    "Orbits",
+    "PositionCovariance",
+    "Sky",
+    "constellation",
+    "covariance",
+    "directions",
+    "dop",
+    "geometry",
+    "nominal",
+]
+
+CONSTELLATIONS = ("gps", "glonass", "galileo", "beidou")
+"""The systems in the order of their index; a solution has one clock for each that it uses."""
+
+_LETTERS = "GREC"
+
+
+@dataclass(frozen=True)
+class Orbits:
+    """Satellites and their Kepler elements at a reference instant; all arrays have shape (n,).
+
+    Attributes
+    ----------
+    satellite : tuple of str
+        Names, ``G01``.
+    constellation : ndarray of int
+        Index in :data:`CONSTELLATIONS`.
+    semi_major_m : ndarray
+        Semi-major axis. [m]
+    eccentricity : ndarray
+        0 for a circle. [1]
+    inclination_rad : ndarray
+        Inclination to the equator. [rad]
+    node_rad : ndarray
+        Longitude of the ascending node at the reference instant: right ascension counted from Greenwich. [rad]
+    perigee_rad : ndarray
+        Argument of perigee. [rad]
+    mean_anomaly_rad : ndarray
+        Mean anomaly at the reference instant; with ``perigee_rad`` 0 and a circle the argument of latitude. [rad]
+    """
+
+    satellite: tuple[str, ...]
+    constellation: NDArray[np.int64]
+    semi_major_m: NDArray[np.float64]
+    eccentricity: NDArray[np.float64]
+    inclination_rad: NDArray[np.float64]
+    node_rad: NDArray[np.float64]
+    perigee_rad: NDArray[np.float64]
+    mean_anomaly_rad: NDArray[np.float64]
+
+    def __add__(self, other: Orbits) -> Orbits:
+        """Both sets of satellites."""
+        names = [n for n in self.__dataclass_fields__ if n != "satellite"]
+        joined = {n: np.concatenate([getattr(self, n), getattr(other, n)]) for n in names}
+        return Orbits(satellite=self.satellite + other.satellite, **joined)
+
+    def elements(self) -> NDArray[np.float64]:
+        """Six elements a row: axis, eccentricity, inclination, node, perigee, mean anomaly; shape (n, 6)."""
+        columns = (self.semi_major_m, self.eccentricity, self.inclination_rad, self.node_rad, self.perigee_rad, self.mean_anomaly_rad)
+        return np.ascontiguousarray(np.stack(columns, axis=-1))
+
+
+@dataclass(frozen=True)
+class Sky:
+    """Satellites above a mask; arrays have the shape of the receivers with one more axis, the satellites.
+
+    Attributes
+    ----------
+    az_rad, el_rad : ndarray
+        Azimuth, clockwise from true north, and elevation; NaN below the mask. [rad]
+    visible : ndarray of bool
+        Which are above the mask.
+    n_sv : ndarray of int
+        How many are; without the satellite axis. [1]
+    """
+
+    az_rad: NDArray[np.float64]
+    el_rad: NDArray[np.float64]
+    visible: NDArray[np.bool_]
+    n_sv: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class PositionCovariance:
+    """Covariance of a position from satellite geometry; NaN exactly where ``status`` is not ``ok``.
+
+    Attributes
+    ----------
+    enu_m2 : ndarray, shape (..., 3, 3)
+        Covariance, east-north-up. [m²]
+    sigma_major_m, sigma_minor_m : ndarray
+        Standard deviations along the axes of the horizontal ellipse. [m]
+    n_sv : ndarray of int
+        Satellites used. [1]
+    status : ndarray of str
+        ``ok`` or ``not_available``.
+    reason : ndarray of str
+        Why it is not available.
+    """
+
+    enu_m2: NDArray[np.float64]
+    sigma_major_m: NDArray[np.float64]
+    sigma_minor_m: NDArray[np.float64]
+    n_sv: NDArray[np.int64]
+    status: NDArray[np.str_]
+    reason: NDArray[np.str_]
+
+    @property
+    def cov_ee_m2(self) -> NDArray[np.float64]:
+        """Variance east [m²]."""
+        return self.enu_m2[..., 0, 0]
+
+    @property
+    def cov_en_m2(self) -> NDArray[np.float64]:
+        """Covariance of east and north [m²]."""
+        return self.enu_m2[..., 0, 1]
+
+    @property
+    def cov_nn_m2(self) -> NDArray[np.float64]:
+        """Variance north [m²]."""
+        return self.enu_m2[..., 1, 1]
+
+    @property
+    def cov_uu_m2(self) -> NDArray[np.float64]:
+        """Variance up [m²]."""
+        return self.enu_m2[..., 2, 2]
+
+
+@dataclass(frozen=True)
+class Dilution:
+    """Dilutions of precision, ranges of equal weight; NaN exactly where ``status`` is not ``ok``.
+
+    Attributes
+    ----------
+    edop, ndop, hdop, vdop, pdop : ndarray
+        East, north, horizontal, vertical, position. [1]
+    n_sv : ndarray of int
+        Satellites used. [1]
+    status : ndarray of str
+        ``ok`` or ``not_available``.
+    reason : ndarray of str
+        Why it is not available.
+    """
+
+    edop: NDArray[np.float64]
+    ndop: NDArray[np.float64]
+    hdop: NDArray[np.float64]
+    vdop: NDArray[np.float64]
+    pdop: NDArray[np.float64]
+    n_sv: NDArray[np.int64]
+    status: NDArray[np.str_]
+    reason: NDArray[np.str_]
+
+
+def constellation(name: str) -> Orbits:
+    """Nominal constellation, as data that ships with navbound.
+
+    Parameters
+    ----------
+    name : {"gps", "beidou"}
+        GPS: 24 slots of the standard positioning service's performance standard. BeiDou-3: 24 in medium orbits (Walker 24/3/1), three
+        inclined geosynchronous, three geostationary. Join them with ``+``.
+
+    Raises
+    ------
+    InputError
+        A name that is not there.
+    """
+    shipped = _core.nominal_constellations()
+    if name not in shipped:
+        raise InputError("name", name, domain=f"one of {', '.join(shipped)}")
+    found = dict(shipped[name])
+    satellites = tuple(found.pop("satellite"))
+    indices = np.asarray(found.pop("constellation"), dtype=np.int64)
+    return Orbits(satellite=satellites, constellation=indices, **found)
+
+
+def nominal(
+    semi_major_m: ArrayLike,
+    inclination_rad: ArrayLike,
+    node_rad: ArrayLike,
+    latitude_argument_rad: ArrayLike,
+    *,
+    eccentricity: ArrayLike = 0.0,
+    perigee_rad: ArrayLike = 0.0,
+    system: str = "gps",
+) -> Orbits:
+    """Orbits from elements of your own.
+
+    Parameters
+    ----------
+    semi_major_m : array_like
+        Semi-major axis. [m]
+    inclination_rad, node_rad : array_like
+        Inclination, and longitude of the ascending node at the reference instant. [rad]
+    latitude_argument_rad : array_like
+        Argument of latitude at the reference instant; for an ellipse the mean anomaly plus ``perigee_rad``. [rad]
+    eccentricity : array_like, optional
+        0 for a circle. [1]
+    perigee_rad : array_like, optional
+        Argument of perigee. [rad]
+    system : str, optional
+        One of :data:`CONSTELLATIONS`.
+
+    Raises
+    ------
+    InputError
+        Shapes that do not broadcast, or a system that is not there. Elements are checked where they are used.
+    """
+    if system not in CONSTELLATIONS:
+        raise InputError("system", system, domain=f"one of {', '.join(CONSTELLATIONS)}")
+    _, (a, i, node, latitude, e, perigee) = flatten(
+        semi_major_m=(semi_major_m, ()),
+        inclination_rad=(inclination_rad, ()),
+        node_rad=(node_rad, ()),
+        latitude_argument_rad=(latitude_argument_rad, ()),
+        eccentricity=(eccentricity, ()),
+        perigee_rad=(perigee_rad, ()),
+    )
+    index = CONSTELLATIONS.index(system)
+    names = tuple(f"{_LETTERS[index]}{k + 1:02d}" for k in range(a.size))
+    return Orbits(names, np.full(a.size, index, dtype=np.int64), a, e, i, node, perigee, latitude - perigee)
+
+
+def directions(
+    orbits: Orbits, lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, time_s: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Where every satellite stands, above the horizon or below.
+
+    Parameters
+    ----------
+    orbits : Orbits
+        The satellites.
+    lat_rad, lon_rad, h_m : array_like
+        Receivers, WGS-84. [rad, rad, m]
+    time_s : array_like
+        Time since the reference instant of the orbits. [s]
+
+    Returns
+    -------
+    az_rad, el_rad : ndarray, shape (..., n)
+        Azimuth in [0, 2 pi), clockwise from true north, and elevation. [rad]
+
+    Raises
+    ------
+    InputError
+        Elements that are no orbit, a receiver that is not on the Earth, a time that is not finite.
+    """
+    shape, (lat, lon, h, time) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()), h_m=(h_m, ()), time_s=(time_s, ()))
+    found = _core.satellite_directions(orbits.elements(), lat, lon, h, time)
+    wide = (*shape, len(orbits.satellite))
+    return found["az_rad"].reshape(wide), found["el_rad"].reshape(wide)
+
+
+def geometry(orbits: Orbits, lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, time_s: ArrayLike, *, mask_rad: float = 0.0) -> Sky:
+    """Satellites above an elevation mask.
+
+    Parameters
+    ----------
+    orbits : Orbits
+        The satellites.
+    lat_rad, lon_rad, h_m : array_like
+        Receivers, WGS-84. [rad, rad, m]
+    time_s : array_like
+        Time since the reference instant of the orbits. [s]
+    mask_rad : float, optional
+        Lowest elevation that is used. [rad]
+
+    Raises
+    ------
+    InputError
+        As :func:`directions`, and for a mask outside [-pi/2, pi/2].
+    """
+    if not -np.pi / 2 <= mask_rad <= np.pi / 2:
+        raise InputError("mask_rad", mask_rad, "rad", "[-pi/2, pi/2]")
+    az, el = directions(orbits, lat_rad, lon_rad, h_m, time_s)
+    visible = el >= mask_rad
+    return Sky(np.where(visible, az, np.nan), np.where(visible, el, np.nan), visible, visible.sum(axis=-1))
+
+
+def covariance(
+    az_rad: ArrayLike, el_rad: ArrayLike, sigma_m: ArrayLike, constellation: Sequence[int] | NDArray[np.int64] | None = None
+) -> PositionCovariance:
+    """Covariance of a weighted least-squares position, V = (H' W H)^-1 with W = diag(1 / sigma²).
+
+    Parameters
+    ----------
+    az_rad, el_rad : array_like, shape (..., n)
+        Satellites, azimuth clockwise from true north; both NaN for one that is not used. [rad]
+    sigma_m : array_like, shape (..., n) or ()
+        Standard deviation of each range. [m]
+    constellation : sequence of int, shape (n,), optional
+        Index of each satellite's system in :data:`CONSTELLATIONS`; without it all share one clock.
+
+    Returns
+    -------
+    PositionCovariance
+        ``not_available`` where unknowns outnumber satellites or the condition number of H' W H is above 1e12.
+
+    Raises
+    ------
+    InputError
+        Angles outside their domain, a sigma that is not positive, shapes that do not fit.
+    """
+    shape, (az, el, sigma) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()), sigma_m=(sigma_m, ()))
+    found = _core.position_covariances(az, el, sigma, _systems(shape, constellation))
+    leading = shape[:-1]
+    status, reason = _status(found.pop("reason"), leading)
+    return PositionCovariance(
+        found["enu_m2"].reshape(*leading, 3, 3),
+        found["sigma_major_m"].reshape(leading),
+        found["sigma_minor_m"].reshape(leading),
+        found["n_sv"].reshape(leading),
+        status,
+        reason,
+    )
+
+
+def dop(az_rad: ArrayLike, el_rad: ArrayLike, constellation: Sequence[int] | NDArray[np.int64] | None = None) -> Dilution:
+    """Dilutions of precision, one clock for each constellation.
+
+    Parameters
+    ----------
+    az_rad, el_rad : array_like, shape (..., n)
+        Satellites, azimuth clockwise from true north; both NaN for one that is not used. [rad]
+    constellation : sequence of int, shape (n,), optional
+        Index of each satellite's system in :data:`CONSTELLATIONS`; without it all share one clock.
+
+    Returns
+    -------
+    Dilution
+        ``not_available`` as in :func:`covariance`.
+
+    Raises
+    ------
+    InputError
+        As :func:`covariance`.
+    """
+    shape, (az, el) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()))
+    found = _core.dilutions(az, el, _systems(shape, constellation))
+    leading = shape[:-1]
+    status, reason = _status(found.pop("reason"), leading)
+    return Dilution(status=status, reason=reason, **{name: values.reshape(leading) for name, values in found.items()})
+
+
+def _systems(shape: tuple[int, ...], constellation: Sequence[int] | NDArray[np.int64] | None) -> list[int]:
+    if not shape or shape[-1] == 0:
+        raise InputError("az_rad", f"shape {shape}", domain="shape (..., n), n at least 1")
+    systems = np.zeros(shape[-1], dtype=np.int64) if constellation is None else np.asarray(constellation)
+    if systems.shape != shape[-1:] or not np.issubdtype(systems.dtype, np.integer) or systems.min() < 0:
+        raise InputError("constellation", f"shape {systems.shape}", domain=f"{shape[-1]} indices of CONSTELLATIONS")
+    return [int(c) for c in systems]
+
+
+def _status(reasons: list[str], shape: tuple[int, ...]) -> tuple[NDArray[np.str_], NDArray[np.str_]]:
+    reason = np.array(reasons, dtype=np.str_).reshape(shape)
+    return np.where(reason == "", "ok", "not_available"), reason
