@@ -10,3 +10,6 @@ pub mod anp;
 pub mod monitor;
 pub mod states;
 pub mod sky;
+
+pub mod error;
+pub mod plausible;

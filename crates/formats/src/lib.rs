@@ -1,1 +1,7 @@
-//! Bytes to navigation records. Errors carry file, line, field and the text found.
+//! Bytes to navigation records. Errors carry line, field and the text found; the caller knows the file.
+
+pub mod refusal;
+pub mod rtklib;
+pub mod time;
+
+pub use refusal::{Refusal, Unreadable};

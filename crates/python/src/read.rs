@@ -1,7 +1,121 @@
-//! Readers.
+//! Readers, and what recorded positions are checked for.
 
+use crate::error::{format_error, input_error};
+use navbound_assess::error::navigation_errors;
+use navbound_assess::plausible::{Finding, Limits, Report, judge};
+use navbound_core::quantity::{GpsTime, OutOfDomain};
+use navbound_formats::{rtklib, time};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-pub fn register(_m: &Bound<'_, PyModule>) -> PyResult<()> {
-    Ok(())
+/// Columns of an RTKLIB solution file, and the rows not used as (line, field, reason, text).
+#[pyfunction]
+fn read_rtklib<'py>(py: Python<'py>, text: &str, path: &str) -> PyResult<Bound<'py, PyDict>> {
+    let s = py.detach(|| rtklib::read(text)).map_err(|e| format_error(path, &e))?;
+    let d = PyDict::new(py);
+    let time_ns: Vec<i64> = s.time.iter().map(|t| t.nanoseconds()).collect();
+    let line: Vec<i64> = s.line.iter().map(|l| i64::try_from(*l).unwrap_or(i64::MAX)).collect();
+    d.set_item("line", line.into_pyarray(py))?;
+    d.set_item("time_ns", time_ns.into_pyarray(py))?;
+    d.set_item("est_lat_rad", s.lat_rad.into_pyarray(py))?;
+    d.set_item("est_lon_rad", s.lon_rad.into_pyarray(py))?;
+    d.set_item("est_h_m", s.h_m.into_pyarray(py))?;
+    d.set_item("cov_m2", rows(py, &s.cov_m2)?)?;
+    d.set_item("quality", s.quality.into_pyarray(py))?;
+    d.set_item("n_sv", s.n_sv.into_pyarray(py))?;
+    d.set_item("ground_speed_mps", s.ground_speed_mps.into_pyarray(py))?;
+    d.set_item("n_rows", s.n_rows)?;
+    let refused: Vec<_> = s.refused.into_iter().map(|r| (r.line, r.field, r.reason, r.text)).collect();
+    d.set_item("refused", refused)?;
+    Ok(d)
+}
+
+/// GPS time [ns] of Unix times [ns].
+#[pyfunction]
+fn gps_from_unix_ns<'py>(py: Python<'py>, unix_ns: PyReadonlyArray1<'py, i64>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    let times: Vec<i64> = unix_ns.as_slice()?.iter().map(|t| time::from_unix(*t).nanoseconds()).collect();
+    Ok(times.into_pyarray(py))
+}
+
+/// Navigation error (n, 3) [m], true minus estimated, east, north, up, of positions (n, 3): latitude, longitude [rad], height [m].
+#[pyfunction]
+fn navigation_error<'py>(
+    py: Python<'py>,
+    estimate: PyReadonlyArray2<'py, f64>,
+    truth: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (estimate, truth) = (triples(&estimate)?, triples(&truth)?);
+    let errors = py.detach(|| navigation_errors(estimate, truth)).map_err(|(index, e)| input_error(e, Some(index)))?;
+    rows(py, &errors)
+}
+
+/// Judge the reports of one track: finding (0 plausible, 1 held, 2 stale, 3 jump, 4 unsettled), age [s], step [m].
+#[pyfunction]
+fn plausible<'py>(
+    py: Python<'py>,
+    time_ns: PyReadonlyArray1<'py, i64>,
+    lat_rad: PyReadonlyArray1<'py, f64>,
+    lon_rad: PyReadonlyArray1<'py, f64>,
+    ground_speed_mps: PyReadonlyArray1<'py, f64>,
+    limits: &Bound<'py, PyDict>,
+) -> PyResult<(Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    let limit = |name: &'static str| -> PyResult<f64> {
+        let value: f64 = limits.as_any().get_item(name)?.extract()?;
+        if !(value >= 0.0) {
+            return Err(input_error(OutOfDomain { argument: name, value, unit: "SI", domain: "[0, inf]" }, None));
+        }
+        Ok(value)
+    };
+    let limits = Limits {
+        max_speed_mps: limit("max_speed_mps")?,
+        speed_factor: limit("speed_factor")?,
+        speed_margin_mps: limit("speed_margin_mps")?,
+        latency_s: limit("latency_s")?,
+        noise_m: limit("noise_m")?,
+        moving_mps: limit("moving_mps")?,
+        stale_after_s: limit("stale_after_s")?,
+        settle_s: limit("settle_s")?,
+    };
+    let (t, lat, lon, speed) = (time_ns.as_slice()?, lat_rad.as_slice()?, lon_rad.as_slice()?, ground_speed_mps.as_slice()?);
+    let reports: Vec<Report> = t
+        .iter()
+        .zip(lat)
+        .zip(lon)
+        .zip(speed)
+        .map(|(((t, lat), lon), speed)| Report { time: GpsTime::from_nanoseconds(*t), lat_rad: *lat, lon_rad: *lon, speed_mps: *speed })
+        .collect();
+    let judged = judge(&reports, &limits).map_err(|(index, e)| input_error(e, Some(index)))?;
+    let code = |finding| match finding {
+        Finding::Plausible => 0_u8,
+        Finding::Held => 1,
+        Finding::Stale => 2,
+        Finding::Jump => 3,
+        Finding::Unsettled => 4,
+    };
+    let codes: Vec<u8> = judged.iter().map(|j| code(j.finding)).collect();
+    let ages: Vec<f64> = judged.iter().map(|j| j.age_s).collect();
+    let steps: Vec<f64> = judged.iter().map(|j| j.step_m).collect();
+    Ok((codes.into_pyarray(py), ages.into_pyarray(py), steps.into_pyarray(py)))
+}
+
+fn triples<'a>(array: &'a PyReadonlyArray2<'_, f64>) -> PyResult<&'a [[f64; 3]]> {
+    let (found, rest) = array.as_slice()?.as_chunks::<3>();
+    if !rest.is_empty() || array.as_array().ncols() != 3 {
+        let value = array.as_array().ncols() as f64;
+        return Err(input_error(OutOfDomain { argument: "positions", value, unit: "columns", domain: "3 columns" }, None));
+    }
+    Ok(found)
+}
+
+fn rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    use numpy::PyArrayMethods;
+    rows.as_flattened().to_vec().into_pyarray(py).reshape([rows.len(), N])
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(read_rtklib, m)?)?;
+    m.add_function(wrap_pyfunction!(gps_from_unix_ns, m)?)?;
+    m.add_function(wrap_pyfunction!(navigation_error, m)?)?;
+    m.add_function(wrap_pyfunction!(plausible, m)?)
 }

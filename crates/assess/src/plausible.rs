@@ -1,0 +1,132 @@
+//! Can the recorded positions have been flown? Held and jumping positions, before any bound is believed.
+//!
+//! A position report says nothing about its own honesty: a decoder repeats the last position when none arrives, and a falsified
+//! receiver jumps. Both leave a track that no bound of the navigation error covers, so they are found here, first.
+
+use navbound_core::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic};
+use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians};
+
+/// What an aircraft can do. Provenance: ours; every figure is a setting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Fastest speed over the ground where none is reported \[m/s\].
+    pub max_speed_mps: f64,
+    /// Factor on the reported speed.
+    pub speed_factor: f64,
+    /// Added to it \[m/s\]: rounding, acceleration since the report.
+    pub speed_margin_mps: f64,
+    /// How much older than its time stamp a position may be \[s\].
+    pub latency_s: f64,
+    /// Distance that is never called a jump \[m\]: the noise of a position.
+    pub noise_m: f64,
+    /// Reported speed from which an unchanged position counts as held \[m/s\].
+    pub moving_mps: f64,
+    /// Age from which a held position is no longer a position \[s\].
+    pub stale_after_s: f64,
+    /// How long after a jump positions are not believed \[s\].
+    pub settle_s: f64,
+}
+
+/// One recorded position: `speed` is the reported speed over the ground, NaN where none is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Report {
+    /// When.
+    pub time: GpsTime,
+    /// Latitude \[rad\].
+    pub lat_rad: f64,
+    /// Longitude \[rad\].
+    pub lon_rad: f64,
+    /// Reported speed over the ground \[m/s\].
+    pub speed_mps: f64,
+}
+
+/// What was found about one position.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Finding {
+    /// Nothing against it.
+    Plausible,
+    /// The position of an earlier report, repeated, not yet stale.
+    Held,
+    /// The same, too old.
+    Stale,
+    /// Not reachable from the position before.
+    Jump,
+    /// Within the settling time after a jump.
+    Unsettled,
+}
+
+/// Finding, age of the position \[s\] and distance from the position before it \[m\] (straight line at sea level).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judged {
+    /// What was found.
+    pub finding: Finding,
+    /// Since when the position stands \[s\].
+    pub age_s: f64,
+    /// Distance from the last different position \[m\].
+    pub step_m: f64,
+}
+
+/// Judge the reports of one track, in the order of time.
+///
+/// A position is a jump when it lies further from the last different position than
+/// `(factor * reported speed + margin) * (time between them + latency) + noise`, with the larger of the two reported speeds, or the stated
+/// fastest speed where neither is reported. The time runs from the last *different* position: after 87 s without news an aircraft may
+/// be 20 km further on, and is not jumping.
+///
+/// # Errors
+/// [`OutOfDomain`] with the index of the first position that is no place on the Earth.
+pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize, OutOfDomain)> {
+    let mut judged = Vec::with_capacity(reports.len());
+    let mut last: Option<(Report, EcefPosition)> = None;
+    let mut jumped: Option<GpsTime> = None;
+    for (index, report) in reports.iter().enumerate() {
+        let here = sea_level(report).map_err(|refusal| (index, refusal))?;
+        let Some((fix, from)) = last else {
+            last = Some((*report, here));
+            judged.push(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0 });
+            continue;
+        };
+        let elapsed = report.time.seconds_since(fix.time);
+        let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
+        let step_m = here.minus(&from).vector().norm();
+        let (mut finding, age_s) = if unchanged { (held(report, elapsed, limits), elapsed) } else { (Finding::Plausible, 0.0) };
+        if !unchanged {
+            if !(step_m <= reach(&fix, report, elapsed, limits)) {
+                finding = Finding::Jump;
+                jumped = Some(report.time);
+            }
+            last = Some((*report, here));
+        }
+        let settling = jumped.is_some_and(|t| report.time.seconds_since(t) <= limits.settle_s);
+        if settling && matches!(finding, Finding::Plausible | Finding::Held) {
+            finding = Finding::Unsettled;
+        }
+        judged.push(Judged { finding, age_s, step_m });
+    }
+    Ok(judged)
+}
+
+/// An unchanged position is held only where the aircraft says it moves; a parked one repeats itself rightly.
+fn held(report: &Report, age_s: f64, limits: &Limits) -> Finding {
+    if !(report.speed_mps > limits.moving_mps) {
+        return Finding::Plausible;
+    }
+    if age_s > limits.stale_after_s { Finding::Stale } else { Finding::Held }
+}
+
+/// How far an aircraft may be from its last position \[m\].
+fn reach(from: &Report, to: &Report, elapsed_s: f64, limits: &Limits) -> f64 {
+    // f64::max prefers a number to a NaN.
+    let reported = from.speed_mps.max(to.speed_mps);
+    let speed = if reported.is_nan() {
+        limits.max_speed_mps
+    } else {
+        (limits.speed_factor * reported + limits.speed_margin_mps).min(limits.max_speed_mps)
+    };
+    speed * (elapsed_s + limits.latency_s) + limits.noise_m
+}
+
+fn sea_level(report: &Report) -> Result<EcefPosition, OutOfDomain> {
+    let point = LatLon::new(Radians::new(report.lat_rad), Radians::new(report.lon_rad))?;
+    Ok(ecef_from_geodetic(&Geodetic { point, height: Metres::new(0.0) }))
+}

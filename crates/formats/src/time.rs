@@ -1,0 +1,131 @@
+//! Other time scales to GPS time: the one place that knows leap seconds.
+
+use hifitime::{Duration, Epoch, TimeScale};
+use navbound_core::quantity::GpsTime;
+
+/// Nanoseconds of one GPS week.
+const WEEK_NS: i64 = 604_800_000_000_000;
+/// Japan standard time, which RTKLIB writes on request, is UTC plus nine hours.
+const JST_OFFSET_NS: i64 = 9 * 3_600 * 1_000_000_000;
+
+/// The scale a calendar date is written in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// GPS time.
+    Gps,
+    /// Coordinated universal time.
+    Utc,
+    /// Japan standard time.
+    Jst,
+}
+
+/// A calendar date and time of day.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Calendar {
+    /// Year, e.g. 2023.
+    pub year: i32,
+    /// Month, 1 to 12.
+    pub month: u8,
+    /// Day of the month, from 1.
+    pub day: u8,
+    /// Hour, 0 to 23.
+    pub hour: u8,
+    /// Minute, 0 to 59.
+    pub minute: u8,
+    /// Nanoseconds within the minute (a leap second has 60e9 and more).
+    pub nanoseconds: i64,
+}
+
+/// GPS time of a Unix time \[ns\] (UTC since 1970-01-01, leap seconds not counted).
+pub fn from_unix(ns: i64) -> GpsTime {
+    gps(Epoch::from_unix_duration(Duration::from_truncated_nanoseconds(ns)))
+}
+
+/// Unix time \[ns\] of a GPS time.
+pub fn to_unix(time: GpsTime) -> i64 {
+    let epoch = Epoch::from_gpst_duration(Duration::from_truncated_nanoseconds(time.nanoseconds()));
+    truncated(epoch.to_unix_duration())
+}
+
+/// GPS time of a GPS week number (since 1980, not modulo 1024) and time of week \[ns\].
+pub fn from_week(week: i64, time_of_week_ns: i64) -> Option<GpsTime> {
+    week.checked_mul(WEEK_NS)?.checked_add(time_of_week_ns).map(GpsTime::from_nanoseconds)
+}
+
+/// GPS time of a calendar date in `scale`; `None` where there is no such date.
+pub fn from_calendar(c: Calendar, scale: Scale) -> Option<GpsTime> {
+    // Only UTC has leap seconds.
+    let minute_ns = if scale == Scale::Gps { 60_000_000_000 } else { 61_000_000_000 };
+    let clock = c.hour < 24 && c.minute < 60 && (0..minute_ns).contains(&c.nanoseconds);
+    if !((1980..=2100).contains(&c.year) && clock) {
+        return None;
+    }
+    let hifitime_scale = if scale == Scale::Gps { TimeScale::GPST } else { TimeScale::UTC };
+    let minute = Epoch::maybe_from_gregorian(c.year, c.month, c.day, c.hour, c.minute, 0, 0, hifitime_scale).ok()?;
+    let offset = if scale == Scale::Jst { JST_OFFSET_NS } else { 0 };
+    Some(GpsTime::from_nanoseconds(gps(minute).nanoseconds() + c.nanoseconds - offset))
+}
+
+fn gps(epoch: Epoch) -> GpsTime {
+    GpsTime::from_nanoseconds(truncated(epoch.to_gpst_duration()))
+}
+
+/// Nanoseconds, saturating at the ends of the representable range (292 years either side).
+fn truncated(duration: Duration) -> i64 {
+    duration.truncated_nanoseconds()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// GPS minus UTC as the IERS bulletins C give it: the day a leap second took effect and the difference from then on.
+    #[test]
+    fn gps_time_leads_utc_by_the_leap_seconds_of_the_day() {
+        for (unix_s, leap_s) in [
+            (315_964_800_i64, 0_i64), // 1980-01-06
+            (1_136_073_599, 13),      // 2005-12-31T23:59:59
+            (1_136_073_600, 14),      // 2006-01-01
+            (1_483_228_799, 17),      // 2016-12-31T23:59:59
+            (1_483_228_800, 18),      // 2017-01-01
+            (1_633_608_773, 18),      // 2021-10-07
+        ] {
+            let expected = (unix_s - 315_964_800 + leap_s) * 1_000_000_000;
+            assert_eq!(from_unix(unix_s * 1_000_000_000).nanoseconds(), expected, "Unix time {unix_s} s");
+        }
+    }
+
+    #[test]
+    fn unix_time_comes_back() {
+        for ns in [315_964_800_000_000_001_i64, 1_633_608_773_123_456_789] {
+            assert_eq!(to_unix(from_unix(ns)), ns);
+        }
+    }
+
+    /// Week and time of week of the shipped RTKLIB file: 2023-07-11 06:04:30 GPST is week 2270, 194670 s.
+    #[test]
+    fn calendar_week_and_utc_agree() {
+        let c = Calendar { year: 2023, month: 7, day: 11, hour: 6, minute: 4, nanoseconds: 30_000_000_000 };
+        let gps = from_calendar(c, Scale::Gps);
+        assert_eq!(gps, from_week(2270, 194_670_000_000_000));
+        let utc = Calendar { nanoseconds: 12_000_000_000, ..c };
+        assert_eq!(from_calendar(utc, Scale::Utc), gps);
+        assert_eq!(from_calendar(Calendar { hour: 15, ..utc }, Scale::Jst), gps);
+    }
+
+    #[test]
+    fn dates_that_do_not_exist_are_refused() {
+        let good = Calendar { year: 2023, month: 2, day: 28, hour: 0, minute: 0, nanoseconds: 0 };
+        assert!(from_calendar(good, Scale::Gps).is_some());
+        for bad in [
+            Calendar { day: 29, ..good },
+            Calendar { month: 13, ..good },
+            Calendar { hour: 24, ..good },
+            Calendar { minute: 60, ..good },
+            Calendar { year: 1970, ..good },
+            Calendar { nanoseconds: 61_000_000_000, ..good },
+        ] {
+            assert_eq!(from_calendar(bad, Scale::Gps), None, "{bad:?}");
+        }
+    }
+}

@@ -1,0 +1,282 @@
+"""Landings in recorded tracks: which runway, which epochs, how far from the centreline."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import polars as pl
+
+from navbound.read.runways import Runway, near
+from navbound.run.records import CrossTrack
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+_NM = 1852.0
+_FT = 0.3048
+
+
+@dataclass(frozen=True)
+class Gates:
+    """When a point belongs to an approach, and when a series of points is one. Provenance: ours.
+
+    Attributes
+    ----------
+    before_min_m, before_max_m : float
+        Distance before the landing threshold, along the centreline.
+    cross_max_m : float
+        Distance from the centreline.
+    track_max_rad : float
+        Between the direction of travel and the centreline.
+    altitude_max_m : float
+        Reported altitude; `above_runway_m` above a runway that lies so high that this is more.
+    above_runway_m : float
+        See above.
+    descending : bool
+        The vertical rate must be below zero.
+    n_min : int
+        Points in an approach.
+    span_min_m : float
+        Between its first and its last point, along the centreline.
+    lands_within_m : float
+        How near before the threshold the last point must lie.
+    gap_max_s : float
+        A longer pause between points begins another approach.
+    """
+
+    before_min_m: float = 0.5 * _NM
+    before_max_m: float = 6.0 * _NM
+    cross_max_m: float = 150.0
+    track_max_rad: float = math.radians(6.0)
+    altitude_max_m: float = 3500 * _FT
+    above_runway_m: float = 2500 * _FT
+    descending: bool = True
+    n_min: int = 60
+    span_min_m: float = 2.5 * _NM
+    lands_within_m: float = 1.5 * _NM
+    gap_max_s: float = 120.0
+
+
+@dataclass(frozen=True)
+class Approaches:
+    """Landings found.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        Every epoch between the first and the last point of an approach, ``track`` naming the approach, with the flight technical error.
+    cross_track : list of CrossTrack
+        Statistics of the points inside the gates, runway by runway; then once more without held positions where there were any.
+    runways : list of Runway
+        The runways landed on.
+    tracks : dict
+        Name of the approach to the track it is part of.
+    notes : list of str
+        Rules that could not be applied.
+    """
+
+    epochs: pl.DataFrame
+    cross_track: list[CrossTrack]
+    runways: list[Runway]
+    tracks: dict[str, str]
+    notes: list[str]
+
+
+def find(epochs: pl.DataFrame, runways: Sequence[Runway] | None = None, gates: Gates | None = None) -> Approaches:
+    """Find the landings on some runways, or on any.
+
+    Parameters
+    ----------
+    epochs : DataFrame
+        Epoch table, sorted by track and time, with ``status``.
+    runways : sequence of Runway, optional
+        Where to look; every runway near the low parts of the tracks when not given.
+    gates : Gates, optional
+        When a point belongs to an approach.
+    """
+    gates = gates or Gates()
+    notes = _missing_rules(epochs, gates)
+    points = _Points.of(epochs)
+    if runways is None:
+        low = points.altitude_m < gates.altitude_max_m if np.isfinite(points.altitude_m).any() else np.ones(len(points.lat_rad), dtype=bool)
+        runways = near(points.lat_rad[low], points.lon_rad[low])
+    gated = [_gate(points, runway, index, gates) for index, runway in enumerate(runways)]
+    found = _segments(pl.concat(gated), epochs, gates) if gated else pl.DataFrame()
+    if found.is_empty():
+        return Approaches(epochs.clear(), [], [], {}, notes)
+    names = [r.name for r in runways]
+    found = found.with_columns(pl.col("runway").replace_strict(dict(enumerate(names)), return_dtype=pl.String).alias("runway_name"))
+    approaches = _named(found)
+    judged = _between(epochs, approaches, {name: runways[i] for i, name in enumerate(names)})
+    statistics = _statistics(found)
+    used = [r for r in runways if r.name in set(approaches["runway_name"])]
+    tracks = dict(approaches.select("approach", "track").iter_rows())
+    return Approaches(judged, statistics, used, tracks, notes)
+
+
+@dataclass(frozen=True)
+class _Points:
+    """Columns of the epoch table as arrays; NaN where a column is absent."""
+
+    lat_rad: NDArray[np.float64]
+    lon_rad: NDArray[np.float64]
+    altitude_m: NDArray[np.float64]
+    ground_track_rad: NDArray[np.float64]
+    vertical_rate_mps: NDArray[np.float64]
+
+    @staticmethod
+    def of(epochs: pl.DataFrame) -> _Points:
+        def array(*names: str) -> NDArray[np.float64]:
+            present = [pl.col(n) for n in names if n in epochs.columns]
+            return epochs.select(pl.coalesce(*present, pl.lit(math.nan)).alias("v")).to_series().to_numpy()
+
+        return _Points(
+            array("est_lat_rad"),
+            array("est_lon_rad"),
+            array("altitude_m", "est_h_m"),
+            array("ground_track_rad"),
+            array("vertical_rate_mps"),
+        )
+
+
+def _missing_rules(epochs: pl.DataFrame, gates: Gates) -> list[str]:
+    rules = {"ground_track_rad": "the direction of travel", "altitude_m": "the altitude"}
+    if gates.descending:
+        rules["vertical_rate_mps"] = "the descent"
+    absent = [
+        words for name, words in rules.items() if name not in epochs.columns and not (name == "altitude_m" and "est_h_m" in epochs.columns)
+    ]
+    return [f"Approaches were found without a rule for {words}: the file does not hold it." for words in absent]
+
+
+def _gate(points: _Points, runway: Runway, index: int, gates: Gates) -> pl.DataFrame:
+    """Points inside the gates of one runway: row of the epoch table, distance before the threshold, cross-track distance."""
+    chosen = _roughly(points, runway, gates)
+    feet = runway.centreline.project(points.lat_rad[chosen], points.lon_rad[chosen])
+    before = -feet.along_m
+    turn = np.abs((points.ground_track_rad[chosen] - feet.course_rad + np.pi) % (2 * np.pi) - np.pi)
+    ceiling = max(gates.altitude_max_m, runway.elevation_m + gates.above_runway_m)
+    inside = (before > gates.before_min_m) & (before < gates.before_max_m) & (np.abs(feet.cross_m) < gates.cross_max_m)
+    inside &= _holds(turn < gates.track_max_rad, points.ground_track_rad)
+    inside &= _holds(points.altitude_m[chosen] < ceiling, points.altitude_m)
+    if gates.descending:
+        inside &= _holds(points.vertical_rate_mps[chosen] < 0, points.vertical_rate_mps)
+    return pl.DataFrame(
+        {
+            "row": pl.Series(chosen[inside], dtype=pl.UInt32),
+            "runway": pl.Series([index] * int(inside.sum()), dtype=pl.Int64),
+            "before_m": before[inside],
+            "cross_m": feet.cross_m[inside],
+        }
+    )
+
+
+def _holds(rule: NDArray[np.bool_], column: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Apply the rule, unless the file holds nothing to apply it to; a single missing value fails it."""
+    return rule if np.isfinite(column).any() else np.ones_like(rule)
+
+
+def _roughly(points: _Points, runway: Runway, gates: Gates) -> NDArray[np.int64]:
+    """Rows that may lie inside the gates: a flat map, off by some 10 m at six miles, with 300 m and 300 m per 10 km to spare."""
+    course, r = runway.course_rad, 6.371e6
+    north = (points.lat_rad - runway.lat_rad) * r
+    east = ((points.lon_rad - runway.lon_rad + np.pi) % (2 * np.pi) - np.pi) * r * math.cos(runway.lat_rad)
+    before = -(north * math.cos(course) + east * math.sin(course))
+    cross = east * math.cos(course) - north * math.sin(course)
+    spare = 300.0 + 0.03 * gates.before_max_m
+    close = (before > gates.before_min_m - spare) & (before < gates.before_max_m + spare) & (np.abs(cross) < gates.cross_max_m + spare)
+    return np.flatnonzero(close)
+
+
+def _segments(gated: pl.DataFrame, epochs: pl.DataFrame, gates: Gates) -> pl.DataFrame:
+    """Gated points of accepted approaches, with ``segment``; of two runways at one time the one flown closer to."""
+    rows = epochs.select("track", "time_ns", "status").with_row_index("row")
+    points = gated.join(rows, on="row").sort("runway", "track", "time_ns")
+    new = (
+        (pl.col("time_ns").diff() > int(gates.gap_max_s * 1e9))
+        | (pl.col("track") != pl.col("track").shift())
+        | (pl.col("runway") != pl.col("runway").shift())
+    )
+    points = points.with_columns(new.fill_null(value=True).cum_sum().alias("segment"))
+    span = pl.col("before_m").max() - pl.col("before_m").min()
+    accepted = points.group_by("segment").agg(
+        n=pl.len(), span=span, nearest=pl.col("before_m").min(), off=pl.col("cross_m").abs().mean(), start=pl.col("time_ns").min(),
+        end=pl.col("time_ns").max(), track=pl.col("track").first(),
+    ).filter(pl.col("n") >= gates.n_min, pl.col("span") >= gates.span_min_m, pl.col("nearest") <= gates.lands_within_m)  # fmt: skip
+    rival = accepted.join(accepted, on="track", suffix="_b").filter(
+        pl.col("segment") != pl.col("segment_b"),
+        pl.col("start") <= pl.col("end_b"),
+        pl.col("start_b") <= pl.col("end"),
+        pl.col("off") > pl.col("off_b"),
+    )
+    accepted = accepted.join(rival, on="segment", how="anti")
+    return points.join(accepted.select("segment"), on="segment", how="semi")
+
+
+def _named(found: pl.DataFrame) -> pl.DataFrame:
+    """One row an approach: ``3944ed LFPG/08R``, with a count when a track lands there again."""
+    approaches = found.group_by("segment").agg(
+        pl.col("track").first(), pl.col("runway_name").first(), start=pl.col("time_ns").min(), end=pl.col("time_ns").max()
+    )
+    approaches = approaches.sort("track", "start").with_columns(again=pl.int_range(1, pl.len() + 1).over("track", "runway_name"))
+    name = pl.concat_str("track", pl.lit(" "), "runway_name")
+    return approaches.with_columns(
+        approach=pl.when(pl.col("again") > 1).then(pl.concat_str(name, pl.lit(" "), pl.col("again").cast(pl.String))).otherwise(name)
+    )
+
+
+def _between(epochs: pl.DataFrame, approaches: pl.DataFrame, runways: dict[str, Runway]) -> pl.DataFrame:
+    """Every epoch from the first to the last point of an approach, inside the gates or not: a gate must not hide a deviation."""
+    judged = epochs.join(approaches.select("track", "approach", "runway_name", "start", "end"), on="track")
+    judged = judged.filter(pl.col("time_ns").is_between(pl.col("start"), pl.col("end"))).sort("approach", "time_ns")
+    parts = list[pl.DataFrame]()
+    for (name,), group in judged.group_by("runway_name", maintain_order=True):
+        feet = runways[str(name)].centreline.project(group["est_lat_rad"].to_numpy(), group["est_lon_rad"].to_numpy())
+        parts.append(
+            group.with_columns(
+                pl.Series("path_lat_rad", feet.lat_rad),
+                pl.Series("path_lon_rad", feet.lon_rad),
+                pl.Series("course_rad", feet.course_rad),
+                pl.Series("along_m", feet.along_m),
+                pl.Series("fte_m", feet.cross_m),
+                leg=pl.col("runway_name"),
+                phase=pl.lit("final approach"),
+                track=pl.col("approach"),
+            )
+        )
+    return pl.concat(parts).drop("approach", "runway_name", "start", "end").sort("track", "time_ns")
+
+
+def _statistics(found: pl.DataFrame) -> list[CrossTrack]:
+    every = [statistics(str(name), group) for (name,), group in found.sort("runway_name").group_by("runway_name", maintain_order=True)]
+    fresh = found.filter(pl.col("status") == "ok")
+    if fresh.height == found.height:
+        return every
+    rest = fresh.sort("runway_name").group_by("runway_name", maintain_order=True)
+    return every + [statistics(f"{name}, held and implausible positions left out", group) for (name,), group in rest]
+
+
+def statistics(name: str, points: pl.DataFrame) -> CrossTrack:
+    """Cross-track statistics of points with ``cross_m`` and ``segment``.
+
+    Mean; standard deviation of the population; 95 % point of the absolute value by nearest rank; standard deviation of the means of the
+    tracks (n - 1), which says how much tracks differ from each other.
+    """
+    cross = points["cross_m"].to_numpy()
+    means = points.group_by("segment").agg(pl.col("cross_m").mean())["cross_m"]
+    between = means.std(ddof=1) if len(means) > 1 else None
+    rank = math.ceil(0.95 * len(cross))
+    return CrossTrack(
+        path=name,
+        n_tracks=len(means),
+        n_points=len(cross),
+        mean_m=float(cross.mean()),
+        std_m=float(cross.std()),
+        abs95_m=float(np.sort(np.abs(cross))[rank - 1]),
+        between_tracks_std_m=float(between) if isinstance(between, float) else None,
+    )

@@ -1,0 +1,269 @@
+"""Which column of a table is what, and in which unit: known names, and what a caller declares."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from navbound.errors import FormatError, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
+
+_DEG = math.pi / 180.0
+_FT = 0.3048
+_NM = 1852.0
+
+UNITS: dict[str, dict[str, float]] = {
+    "rad": {"rad": 1.0, "deg": _DEG, "°": _DEG},
+    "m": {"m": 1.0, "ft": _FT, "km": 1000.0, "nm": _NM},
+    "m2": {"m2": 1.0, "m^2": 1.0, "m²": 1.0},
+    "mps": {
+        "mps": 1.0,
+        "m/s": 1.0,
+        "kt": _NM / 3600,
+        "kts": _NM / 3600,
+        "kn": _NM / 3600,
+        "km/h": 1 / 3.6,
+        "ft/min": _FT / 60,
+        "fpm": _FT / 60,
+    },
+    "1": {"1": 1.0, "": 1.0},
+    "time": {},
+    "text": {},
+}
+"""Units a column may be written in, by SI unit: factor to SI."""
+
+TIME_UNITS = ("gps_ns", "gps_s", "gps_week", "gps_tow_s", "utc", "utc_s", "utc_ms", "utc_us", "utc_ns", "utc_text")
+"""Ways to write a time; `utc` tells Unix seconds, milli-, micro- and nanoseconds apart by their size, and ISO 8601 text by its looks."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A column of the epoch table that a file may hold.
+
+    Attributes
+    ----------
+    name : str
+        Its name in docs/notation.md.
+    si : str
+        Its SI unit, a key of `UNITS`.
+    low, high : float
+        What is possible, in SI.
+    aliases : dict
+        Known names, in lower case, to the unit they are in.
+    """
+
+    name: str
+    si: str
+    low: float
+    high: float
+    aliases: dict[str, str]
+
+
+def _q(name: str, si: str, low: float, high: float, **aliases: str) -> Quantity:
+    return Quantity(
+        name, si, low, high, {name: si} | {k: v for unit, names in aliases.items() for k, v in ((n, unit) for n in names.split())}
+    )
+
+
+_INF = math.inf
+
+QUANTITIES: tuple[Quantity, ...] = (
+    _q("est_lat_rad", "rad", -math.pi / 2, math.pi / 2, deg="latitude lat lat_deg latitude_deg est_lat_deg", rad="lat_rad latitude_rad"),
+    _q(
+        "est_lon_rad",
+        "rad",
+        -math.pi,
+        2 * math.pi,
+        deg="longitude lon lng long lon_deg longitude_deg est_lon_deg",
+        rad="lon_rad longitude_rad",
+    ),
+    _q("est_h_m", "m", -2e4, 1e8, m="h_m height height_m ellipsoid_height ellipsoidal_height", ft="geoaltitude alt_geom height_ft"),
+    _q("altitude_m", "m", -2e3, 1e5, m="alt_m", ft="altitude altitude_ft baroaltitude alt_baro pressure_altitude"),
+    _q("ground_track_rad", "rad", -2 * math.pi, 2 * math.pi, deg="track track_deg ground_track true_track heading_of_travel cog"),
+    _q("ground_speed_mps", "mps", 0.0, 2e4, kt="groundspeed ground_speed gs ground_speed_kt velocity_kt sog", mps="speed_mps"),
+    _q(
+        "vertical_rate_mps",
+        "mps",
+        -2e3,
+        2e3,
+        **{"ft/min": "vertical_rate vertrate baro_rate geom_rate vertical_rate_fpm"},
+        mps="climb_rate_mps",
+    ),
+    _q("truth_lat_rad", "rad", -math.pi / 2, math.pi / 2, deg="truth_lat_deg"),
+    _q("truth_lon_rad", "rad", -math.pi, 2 * math.pi, deg="truth_lon_deg"),
+    _q("truth_h_m", "m", -2e4, 1e8),
+    _q("cov_ee_m2", "m2", 0.0, _INF),
+    _q("cov_en_m2", "m2", -_INF, _INF),
+    _q("cov_nn_m2", "m2", 0.0, _INF),
+    _q("cov_eu_m2", "m2", -_INF, _INF),
+    _q("cov_nu_m2", "m2", -_INF, _INF),
+    _q("cov_uu_m2", "m2", 0.0, _INF),
+    _q("sigma_e_m", "m", 0.0, _INF, m="sde sde_m std_e std_e_m sigma_east_m"),
+    _q("sigma_n_m", "m", 0.0, _INF, m="sdn sdn_m std_n std_n_m sigma_north_m"),
+    _q("sigma_u_m", "m", 0.0, _INF, m="sdu sdu_m std_u std_u_m sigma_up_m"),
+    _q("epu_m", "m", 0.0, _INF, m="epu anp_m", nm="epu_nm anp_nm"),
+    _q("rc_m", "m", 0.0, _INF, m="rc", nm="rc_nm"),
+    _q("nac_p", "1", 0.0, 15.0, **{"1": "nacp nac_p"}),
+    _q("nic", "1", 0.0, 15.0, **{"1": "nic"}),
+    _q("n_sv", "1", 0.0, 255.0, **{"1": "ns n_sats satellites"}),
+    _q("track", "text", 0.0, 0.0, text="icao24 icao track_id flight_id aircraft_id"),
+    _q("callsign", "text", 0.0, 0.0, text="callsign flight"),
+)
+
+TIME_NAMES: dict[str, str] = {
+    "time_ns": "gps_ns", "gps_time_ns": "gps_ns", "gps_time_s": "gps_s", "gps_s": "gps_s",
+    "gps_week": "gps_week", "week": "gps_week", "gps_tow": "gps_tow_s", "gps_tow_s": "gps_tow_s", "tow_s": "gps_tow_s", "tow": "gps_tow_s",
+    "timestamp": "utc", "time": "utc", "utc": "utc", "datetime": "utc", "time_utc": "utc", "utc_time": "utc",
+    "unix_time": "utc_s", "unix_time_s": "utc_s", "time_s": "utc_s", "timestamp_ms": "utc_ms", "time_ms": "utc_ms",
+}  # fmt: skip
+"""Known names of time columns to the way they are written."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the file, what it holds, and how it is written."""
+
+    quantity: str
+    name: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """What each column of a file is.
+
+    Attributes
+    ----------
+    columns : dict
+        Quantity to column; times under ``gps_ns``, ``gps_week`` and so on stand in `times`.
+    times : list of Column
+        One column, or week and time of week.
+    unused : list of str
+        Columns that nothing is known about.
+    """
+
+    columns: dict[str, Column]
+    times: list[Column]
+    unused: list[str]
+
+
+def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path) -> Assignment:
+    """Find what each column is.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Columns of the file.
+    declared : mapping, optional
+        Quantity, or ``time``, to ``column`` or ``column:unit``; goes before the known names.
+    path : Path
+        The file, for messages.
+
+    Raises
+    ------
+    InputError
+        A declaration that names an unknown quantity or unit.
+    FormatError
+        A declared column that the file lacks, or no time, latitude or longitude: what is needed and the nearest names found.
+    """
+    names = list(names)
+    own = {"time_ns", "est_lat_rad"} <= set(names)
+    columns: dict[str, Column] = {}
+    times: list[Column] = []
+    for key, value in (declared or {}).items():
+        column = _declared(key, value, names, path)
+        if column.quantity == "time":
+            times.append(column)
+        else:
+            columns[key] = column
+    taken = {c.name for c in [*columns.values(), *times]}
+    for quantity in QUANTITIES:
+        if quantity.name not in columns:
+            found = _known(quantity, [n for n in names if n not in taken], own=own)
+            if found is not None:
+                columns[quantity.name] = found
+                taken.add(found.name)
+    if not times:
+        times = _times([n for n in names if n not in taken])
+        taken |= {c.name for c in times}
+    _require(columns, times, names, path)
+    return Assignment(columns, times, [n for n in names if n not in taken])
+
+
+def _plain(name: str) -> tuple[str, str | None]:
+    """``Latitude (deg)`` to ``latitude`` and ``deg``."""
+    match = re.fullmatch(r"\s*(.*?)\s*[(\[]\s*([^)\]]*?)\s*[)\]]\s*", name)
+    stem, unit = (match[1], match[2].lower()) if match else (name, None)
+    return re.sub(r"[\s\-.]+", "_", stem.strip().lower()), unit
+
+
+def _known(quantity: Quantity, names: list[str], *, own: bool) -> Column | None:
+    """Find the first known name, in the order of the aliases; in our own epoch table `track` is who flies, not whither."""
+    plain = {_plain(name)[0]: name for name in reversed(names)}
+    if own and quantity.name in {"track", "ground_track_rad"}:
+        plain = {k: v for k, v in plain.items() if (k == "track") == (quantity.name == "track")}
+    elif quantity.name == "track":
+        plain.pop("track", None)
+    for alias, unit in quantity.aliases.items():
+        if alias in plain:
+            name = plain[alias]
+            written = _plain(name)[1]
+            return Column(quantity.name, name, written if written in UNITS[quantity.si] else unit)
+    return None
+
+
+def _times(names: list[str]) -> list[Column]:
+    plain = {_plain(name)[0]: name for name in reversed(names)}
+    found = [Column("time", plain[alias], unit) for alias, unit in TIME_NAMES.items() if alias in plain]
+    week = [c for c in found if c.unit == "gps_week"][:1]
+    tow = [c for c in found if c.unit == "gps_tow_s"][:1]
+    single = [c for c in found if c.unit not in {"gps_week", "gps_tow_s"}][:1]
+    return single or (week + tow if week and tow else [])
+
+
+def _declared(key: str, value: str, names: list[str], path: Path) -> Column:
+    quantities = {q.name: q for q in QUANTITIES}
+    name, separator, unit = value.rpartition(":")
+    if not separator or name not in names:
+        name, unit = (value, "") if value in names or not separator else (name, unit)
+    if name not in names:
+        near = ", ".join(difflib.get_close_matches(name, names, 3, 0.5)) or ", ".join(names[:12])
+        raise FormatError(path, f"there is no column “{name}”; found: {near}", 1, key)
+    if key in {"time", "time_ns"}:
+        unit = unit or TIME_NAMES.get(_plain(name)[0], "utc" if key == "time" else "gps_ns")
+        if unit not in TIME_UNITS:
+            raise InputError("columns", value, domain=f"units of time: {', '.join(TIME_UNITS)}")
+        return Column("time", name, unit)
+    if key not in quantities:
+        raise InputError("columns", key, domain=f"known quantities: time, {', '.join(quantities)}")
+    q = quantities[key]
+    plain, written = _plain(name)
+    unit = unit or (written if written in UNITS[q.si] else "") or q.aliases.get(plain, q.si)
+    if q.si != "text" and unit.lower() not in UNITS[q.si]:
+        raise InputError("columns", value, domain=f"units of {key}: {', '.join(u for u in UNITS[q.si] if u)}")
+    return Column(key, name, unit.lower())
+
+
+def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path) -> None:
+    """Refuse a table without a time, a latitude or a longitude, and say what comes nearest."""
+    aliases = {q.name: list(q.aliases) for q in QUANTITIES}
+    needs = {"time": ([*times], list(TIME_NAMES))}
+    needs |= {name: ([columns[name]] if name in columns else [], aliases[name]) for name in ("est_lat_rad", "est_lon_rad")}
+    for need, (found, known) in needs.items():
+        if found:
+            continue
+        near = {n: max(difflib.SequenceMatcher(None, _plain(n)[0], a).ratio() for a in known) for n in names}
+        best = sorted(names, key=lambda n: -near[n])[:5]
+        raise FormatError(
+            path,
+            f"no column holds it (known names: {', '.join(known[:6])}, ...); the nearest of the {len(names)} found are "
+            f"{', '.join(best)}; declare it, for instance {need}={best[0]}:{'utc_s' if need == 'time' else 'deg'}",
+            1,
+            need,
+        )

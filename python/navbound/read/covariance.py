@@ -1,0 +1,137 @@
+"""Where the covariance of a recorded position comes from: stated by the caller, by the file, or by an ADS-B quality indicator."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import polars as pl
+
+from navbound.errors import InputError
+
+COLUMNS = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
+
+_NM = 1852.0
+
+NACP_EPU_M = {
+    11: 3.0,
+    10: 10.0,
+    9: 30.0,
+    8: 0.05 * _NM,
+    7: 0.1 * _NM,
+    6: 0.3 * _NM,
+    5: 0.5 * _NM,
+    4: _NM,
+    3: 2 * _NM,
+    2: 4 * _NM,
+    1: 10 * _NM,
+}
+"""Navigation accuracy category for position to the upper limit of the 95 % horizontal radius [m]; 0 is "unknown".
+
+Provenance: standard (RTCA DO-260B / EUROCAE ED-102A, coding of NACp), stated from general knowledge: the document was not at hand.
+"""
+
+NIC_RC_M = {11: 7.5, 10: 25.0, 9: 75.0, 8: 0.1 * _NM, 7: 0.2 * _NM, 6: 0.6 * _NM, 5: _NM, 4: 2 * _NM, 3: 4 * _NM, 2: 8 * _NM, 1: 20 * _NM}
+"""Navigation integrity category to the containment radius [m]; 0 is "unknown". For 6 the largest of its three radii.
+
+Provenance: standard (RTCA DO-260B / EUROCAE ED-102A, coding of NIC), stated from general knowledge: the document was not at hand.
+"""
+
+RC_RISK = 1e-7
+"""Risk taken for a containment radius: source integrity level 3. Provenance: standard, stated from general knowledge."""
+
+HOLD_S = 300.0
+"""How long a quality indicator counts after it was received. Provenance: ours."""
+
+
+def circular_sigma(risk: float) -> float:
+    """Give sigma of one axis as a share of the radius that a circular normal error exceeds with `risk`: 1 / sqrt(-2 ln risk)."""
+    return 1.0 / math.sqrt(-2.0 * math.log(risk))
+
+
+@dataclass(frozen=True)
+class Claimed:
+    """Epochs with the six columns of the covariance, and in words where it came from."""
+
+    epochs: pl.DataFrame
+    words: str
+
+
+def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
+    """Give every epoch the best covariance at hand, null where there is none.
+
+    In this order: the caller's standard deviation; covariance columns; standard deviations of the axes; a 95 % radius (EPU); NACp; a
+    containment radius or NIC. A radius R at a risk q becomes a circular covariance with sigma = R / sqrt(-2 ln q).
+
+    Parameters
+    ----------
+    epochs : DataFrame
+        Epoch table.
+    sigma_m : float, optional
+        Standard deviation of each horizontal axis, the caller's claim; it overrules the file. [m]
+
+    Raises
+    ------
+    InputError
+        `sigma_m` that is not positive and finite.
+    """
+    have = set(epochs.columns)
+    if sigma_m is not None:
+        if not (math.isfinite(sigma_m) and sigma_m > 0):
+            raise InputError("sigma_m", sigma_m, "m", "(0, inf)")
+        return _circle(
+            epochs, pl.lit(float(sigma_m)), f"Covariance: circular with sigma = {sigma_m:g} m in each axis, as stated by the user."
+        )
+    if {"cov_ee_m2", "cov_en_m2", "cov_nn_m2"} <= have:
+        return Claimed(_complete(epochs), "Covariance: as the file gives it.")
+    if {"sigma_e_m", "sigma_n_m"} <= have:
+        squares = {f"cov_{a}{a}_m2": pl.col(f"sigma_{a}_m") ** 2 for a in "enu" if f"sigma_{a}_m" in have}
+        filled = epochs.with_columns(pl.lit(0.0).alias("cov_en_m2"), **squares)
+        return Claimed(
+            _complete(filled), "Covariance: from the file's standard deviations; axes taken as uncorrelated, which the file does not say."
+        )
+    return _coded(epochs, have)
+
+
+def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
+    """From a radius or a quality indicator."""
+    k95, k_rc = circular_sigma(0.05), circular_sigma(RC_RISK)
+    coding = "(DO-260B coding from general knowledge, document not at hand)"
+    if "epu_m" in have:
+        return _circle(epochs, pl.col("epu_m") * k95, f"Covariance: circular, sigma = EPU / {1 / k95:.4f} (EPU is the 95 % radius).")
+    if "nac_p" in have:
+        sigma = _held("nac_p").replace_strict(NACP_EPU_M, default=None, return_dtype=pl.Float64) * k95
+        words = (
+            f"Covariance: circular, sigma = EPU / {1 / k95:.4f}, EPU being the upper limit that NACp stands for {coding}; an indicator "
+            f"counts for {HOLD_S:g} s after it was received."
+        )
+        return _circle(epochs, sigma, words)
+    if have & {"rc_m", "nic"}:
+        coded = _held("nic").replace_strict(NIC_RC_M, default=None, return_dtype=pl.Float64) if "nic" in have else pl.lit(None, pl.Float64)
+        radius = pl.coalesce(_held("rc_m"), coded) if "rc_m" in have else coded
+        words = (
+            f"Covariance: circular, sigma = Rc / {1 / k_rc:.4f}, taking the containment radius Rc at a risk of {RC_RISK:g}, source "
+            f"integrity level 3 {coding}. Rc is an integrity limit, so this sigma is a stand-in."
+        )
+        return _circle(epochs, radius * k_rc, words)
+    words = "Covariance: none. The file states no accuracy and none was given (sigma_m), so nothing bounds the navigation error."
+    return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COLUMNS), words)
+
+
+def _held(name: str) -> pl.Expr:
+    """Take the last value received within `HOLD_S`, track by track."""
+    since = pl.when(pl.col(name).is_not_null()).then("time_ns").forward_fill().over("track")
+    fresh = (pl.col("time_ns") - since) <= int(HOLD_S * 1e9)
+    return pl.when(fresh).then(pl.col(name).forward_fill().over("track"))
+
+
+def _circle(epochs: pl.DataFrame, sigma: pl.Expr, words: str) -> Claimed:
+    epochs = epochs.with_columns((sigma**2).alias("cov_ee_m2"))
+    known = pl.col("cov_ee_m2").is_not_null()
+    epochs = epochs.with_columns(pl.when(known).then(0.0).alias("cov_en_m2"), pl.col("cov_ee_m2").alias("cov_nn_m2"))
+    return Claimed(_complete(epochs.drop("cov_eu_m2", "cov_nu_m2", "cov_uu_m2", strict=False)), words)
+
+
+def _complete(epochs: pl.DataFrame) -> pl.DataFrame:
+    """All six columns; the vertical ones null where nothing is known of them."""
+    return epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COLUMNS if c not in epochs.columns)

@@ -1,0 +1,214 @@
+"""A table to the epoch table: strict numbers in SI, GPS time, and a count of what did not fit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from navbound import _core
+from navbound.errors import FormatError
+from navbound.read.columns import QUANTITIES, UNITS, Assignment, Column, assign
+from navbound.read.rejections import Rejections
+from navbound.read.source import Source, load
+from navbound.read.table import LINE, Table, table
+from navbound.read.times import gps_time
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from navbound.run.records import InputFile, Rejection
+
+_QUANTITY = {q.name: q for q in QUANTITIES}
+_REQUIRED = ("est_lat_rad", "est_lon_rad")
+_BAD = "__bad"
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One file read.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        Columns of docs/notation.md that the file holds: at least ``track``, ``time_ns``, ``est_lat_rad``, ``est_lon_rad``.
+    source : InputFile
+        Digest and size.
+    rejected : list of Rejection
+        What was left out.
+    unused : list of str
+        Columns of the file that were not understood.
+    notes : list of str
+        What had to be assumed.
+    """
+
+    epochs: pl.DataFrame
+    source: InputFile
+    rejected: list[Rejection]
+    unused: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+def read(path: str | Path, *, columns: Mapping[str, str] | None = None) -> Reading:
+    """Read a recorded track: CSV, JSON, Parquet (each also gzipped) or an RTKLIB solution file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    columns : mapping of str to str, optional
+        What a column is, where its name does not say: ``{"est_lat_rad": "breite:deg", "time": "zeit:utc_ms"}``.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be interpreted, or of whose rows more than a tenth is malformed.
+    InputError
+        A declared column that names no known quantity or unit.
+    """
+    source = load(path)
+    if source.kind == "rtklib":
+        return _rtklib(source)
+    found = table(source)
+    mapping = assign(found.columns, columns, source.path)
+    return _epochs(source, found, mapping)
+
+
+def _epochs(source: Source, found: Table, mapping: Assignment) -> Reading:
+    frame, rejections, notes = found.frame, found.rejections, list[str]()
+    out = pl.DataFrame({LINE: frame[LINE]})
+    reasons = list[pl.Series]()
+    for name, column in mapping.columns.items():
+        if _QUANTITY[name].si == "text":
+            out = out.with_columns(frame[column.name].cast(pl.String).str.strip_chars().alias(name))
+            continue
+        values, reason = _numbers(frame[column.name], column)
+        out = out.with_columns(values.alias(name))
+        if name in _REQUIRED:
+            reasons.append(reason)
+        else:
+            _count(rejections, frame, column.name, reason)
+    _look_like_radians(out, mapping, source, notes)
+    time, reason, note = gps_time(frame, mapping.times, source)
+    notes += note
+    out = out.with_columns(time.alias("time_ns"))
+    reasons.append(reason)
+    used = [mapping.columns[n].name for n in _REQUIRED] + [mapping.times[0].name]
+    out = _drop(out, frame, reasons, used, rejections)
+    track = pl.col("track").fill_null(source.stem) if "track" in out.columns else pl.lit(source.stem)
+    out = _in_order(out.with_columns(track.alias("track")), rejections, notes)
+    rejections.refuse_if_too_many(found.n_rows)
+    _not_empty(source, out)
+    return Reading(out.drop(LINE), source.record(found.n_rows), rejections.records, mapping.unused, notes)
+
+
+def _rtklib(source: Source) -> Reading:
+    d = _core.read_rtklib(source.text(), str(source.path))
+    rejections, notes = Rejections(source.path), list[str]()
+    refused = pl.DataFrame(d["refused"], schema=["line", "field", "reason", "text"], orient="row")
+    for (name, reason), group in refused.group_by("field", "reason", maintain_order=True):
+        rejections.add(f"{name}: {reason}", group.height, group["line"][0], group["text"][0])
+    cov = d["cov_m2"]
+    names = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
+    plain = {k: d[k] for k in ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m", "ground_speed_mps", "n_sv")}
+    out = pl.DataFrame({LINE: d["line"]} | plain | {name: cov[:, i] for i, name in enumerate(names)})
+    out = out.with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
+    out = _in_order(out, rejections, notes)
+    rejections.refuse_if_too_many(d["n_rows"])
+    _not_empty(source, out)
+    empty = [c for c in out.columns if out[c].is_null().all()]
+    return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes)
+
+
+def _not_empty(source: Source, out: pl.DataFrame) -> None:
+    if out.is_empty():
+        raise FormatError(source.path, "no row holds a time, a latitude and a longitude")
+
+
+def _numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
+    """Values in SI, null where there is none; and why, null where nothing is wrong."""
+    q = _QUANTITY[what.quantity]
+    factor = UNITS[q.si][what.unit]
+    if column.dtype == pl.String:
+        text = column.str.strip_chars()
+        text = text.set(text == "", None)
+        raw = text.cast(pl.Float64, strict=False)
+        empty = text.is_null()
+    elif column.dtype.is_numeric() or column.dtype == pl.Null:
+        raw = column.cast(pl.Float64)
+        # A data frame writes a missing number as NaN.
+        empty = raw.is_null() | raw.is_nan()
+    else:
+        raw, empty = pl.Series([None] * len(column), dtype=pl.Float64), column.is_null()
+    frame = pl.DataFrame({"raw": raw, "empty": empty, "si": raw * factor})
+    allowed = f"outside [{q.low / factor:.6g}, {q.high / factor:.6g}] {'' if q.si == '1' else what.unit}".rstrip()
+    frame = frame.select(
+        pl.when(pl.col("si").is_between(q.low, q.high) & pl.col("raw").is_finite()).then("si").alias("value"),
+        pl.when("empty").then(pl.lit("empty"))
+        .when(pl.col("raw").is_null()).then(pl.lit("not a number"))
+        .when(~pl.col("raw").is_finite()).then(pl.lit("not finite"))
+        .when(~pl.col("si").is_between(q.low, q.high)).then(pl.lit(allowed))
+        .alias("reason"),
+    )  # fmt: skip
+    return frame["value"], frame["reason"]
+
+
+def _count(rejections: Rejections, frame: pl.DataFrame, name: str, reason: pl.Series) -> None:
+    """Count the values of an optional column that could not be used; the rows stay, an empty field is no fault."""
+    for text in reason.drop_nulls().unique(maintain_order=True):
+        if text == "empty":
+            continue
+        at = (reason == text).fill_null(value=False)
+        first = int(at.arg_max() or 0)
+        rejections.add(f"{name}: {text}; row used without it", int(at.sum()), frame[LINE][first], str(frame[name][first]))
+
+
+def _drop(out: pl.DataFrame, frame: pl.DataFrame, reasons: list[pl.Series], names: list[str], rejections: Rejections) -> pl.DataFrame:
+    """Leave out rows without time, latitude or longitude, counted by the first reason."""
+    labelled = [
+        pl.when(reason.is_not_null()).then(pl.concat_str(pl.lit(f"{name}: "), reason)) for name, reason in zip(names, reasons, strict=True)
+    ]
+    out = out.with_columns(pl.coalesce(labelled).alias(_BAD))
+    bad = out.filter(pl.col(_BAD).is_not_null())
+    for (reason,), group in bad.group_by(_BAD, maintain_order=True):
+        name, _, kind = str(reason).rpartition(": ")
+        line = group[LINE][0]
+        example = str(frame.filter(pl.col(LINE) == line)[name][0])
+        rejections.add(str(reason), group.height, line, example, malformed=kind != "empty")
+    return out.filter(pl.col(_BAD).is_null()).drop(_BAD)
+
+
+def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> pl.DataFrame:
+    """One row an instant, in the order of time; a repeated instant of a track is left out and counted."""
+    late = out.filter(pl.col("time_ns") < pl.col("time_ns").cum_max().over("track"))
+    if not late.is_empty():
+        notes.append(
+            f"{rejections.path.name}: {late.height} rows stood after a later one of their track and were put in order of time "
+            f"(first: {rejections.unit} {late[LINE][0]})"
+        )
+    out = out.sort("track", "time_ns", maintain_order=True)
+    again = (pl.col("time_ns") == pl.col("time_ns").shift(1).over("track")).fill_null(value=False)
+    repeated = out.filter(again)
+    if not repeated.is_empty():
+        track, time_ns, line = repeated.sort(LINE).select("track", "time_ns", LINE).row(0)
+        rejections.add("time repeated within a track", repeated.height, line, f"track {track}, time_ns {time_ns}", malformed=False)
+    return out.filter(~again)
+
+
+def _look_like_radians(out: pl.DataFrame, mapping: Assignment, source: Source, notes: list[str]) -> None:
+    """Note degrees that could be radians: a flight near 0 N 0 E and a wrong unit look alike, so a person must judge."""
+    lat, lon = mapping.columns["est_lat_rad"], mapping.columns["est_lon_rad"]
+    largest = max(2 * _largest(out["est_lat_rad"]), _largest(out["est_lon_rad"]))
+    if lat.unit == "deg" and lon.unit == "deg" and 0 < largest <= math.pi * UNITS["rad"]["deg"]:
+        notes.append(
+            f"{source.path.name}: “{lat.name}” and “{lon.name}” were read as degrees, but all values are small enough to be radians; "
+            f"if they are, declare est_lat_rad={lat.name}:rad and est_lon_rad={lon.name}:rad"
+        )
+
+
+def _largest(values: pl.Series) -> float:
+    found = values.abs().max()
+    return float(found) if isinstance(found, (int, float)) else 0.0

@@ -1,0 +1,121 @@
+"""Can the recorded positions have been flown? Every recorded track is asked before any bound is formed."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+import polars as pl
+
+from navbound import _core
+from navbound.read.covariance import COLUMNS
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What an aircraft can do; docs/methods/recorded-tracks.md has the rule. Provenance: ours.
+
+    Attributes
+    ----------
+    max_speed_mps : float
+        Fastest speed over the ground, and the one assumed where none is reported.
+    speed_factor, speed_margin_mps : float
+        Allowed over a reported speed: rounding, acceleration.
+    latency_s : float
+        How much older than its time stamp a position may be.
+    noise_m : float
+        A distance that is never called a jump.
+    moving_mps : float
+        Reported speed from which an unchanged position counts as held.
+    stale_after_s : float
+        Age from which a held position is no position.
+    settle_s : float
+        How long after a jump no position is believed.
+    """
+
+    max_speed_mps: float = 400.0
+    speed_factor: float = 1.25
+    speed_margin_mps: float = 25.0
+    latency_s: float = 2.0
+    noise_m: float = 100.0
+    moving_mps: float = 15.0
+    stale_after_s: float = 2.0
+    settle_s: float = 30.0
+
+
+_STATUS = ["ok", "degraded", "not_available", "invalid_input", "invalid_input"]
+_REASON = [
+    None,
+    "position held",
+    "position held too long",
+    "position jump that cannot be flown",
+    "not settled after a position jump",
+]
+
+
+@dataclass(frozen=True)
+class Plausibility:
+    """Counts of what was found.
+
+    Attributes
+    ----------
+    n_held, n_stale, n_jump, n_unsettled : int
+        Epochs by finding.
+    n_steps_5km : int
+        Steps between successive epochs of more than 5 km.
+    largest_step_m : float
+        The largest of all steps.
+    words : str
+        The same as a sentence.
+    """
+
+    n_held: int
+    n_stale: int
+    n_jump: int
+    n_unsettled: int
+    n_steps_5km: int
+    largest_step_m: float
+    words: str
+
+
+def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFrame, Plausibility]:
+    """Give every epoch a status and a reason, and take the covariance from those whose position is not to be believed.
+
+    Parameters
+    ----------
+    epochs : DataFrame
+        Epoch table, sorted by track and time.
+    limits : Limits, optional
+        What an aircraft can do.
+
+    Returns
+    -------
+    epochs : DataFrame
+        With ``status`` and ``reason``.
+    plausibility : Plausibility
+        What was found.
+    """
+    limits = limits or Limits()
+    speed = pl.col("ground_speed_mps") if "ground_speed_mps" in epochs.columns else pl.lit(None, pl.Float64)
+    columns = epochs.select("track", "time_ns", "est_lat_rad", "est_lon_rad", speed.fill_null(np.nan).alias("speed"))
+    findings, steps = list[np.ndarray[tuple[int], np.dtype[np.uint8]]](), list[np.ndarray[tuple[int], np.dtype[np.float64]]]()
+    for group in columns.partition_by("track", maintain_order=True):
+        time, lat, lon, reported = (np.ascontiguousarray(group[c].to_numpy()) for c in columns.columns[1:])
+        finding, _, step_m = _core.plausible(time, lat, lon, reported, asdict(limits))
+        findings.append(finding)
+        steps.append(step_m)
+    code, step = np.concatenate(findings), np.concatenate(steps)
+    marked = epochs.with_columns(
+        pl.Series("status", [_STATUS[c] for c in range(len(_STATUS))], dtype=pl.String).gather(code),
+        pl.Series("reason", _REASON, dtype=pl.String).gather(code),
+    )
+    believed = pl.col("status").is_in(["ok", "degraded"])
+    marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COLUMNS if c in epochs.columns)
+    n = np.bincount(code, minlength=len(_STATUS))
+    n_steps, largest = int((step > 5000).sum()), float(step.max(initial=0.0))
+    words = (
+        f"Plausibility: {n[3]} position jumps that cannot be flown ({n[4]} more epochs not settled after them), {n[2]} epochs with a "
+        f"position held for more than {limits.stale_after_s:g} s, {n[1]} with one held shorter; {n_steps} steps of more than 5 km, the largest "
+        f"{largest / 1e3:.1f} km."
+    )
+    return marked, Plausibility(int(n[1]), int(n[2]), int(n[3]), int(n[4]), n_steps, largest, words)

@@ -1,0 +1,100 @@
+"""Any written time to GPS time: weeks, Unix times and ISO text. Leap seconds are the core's business."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import polars as pl
+
+from navbound import _core
+from navbound.errors import FormatError
+
+if TYPE_CHECKING:
+    from navbound.read.columns import Column
+    from navbound.read.source import Source
+
+_FIRST_NS = 0
+_LAST_NS = 3_786_912_018_000_000_000
+"""2100-01-01 in GPS time with today's leap seconds: the last time that is believed."""
+
+
+def gps_time(frame: pl.DataFrame, columns: list[Column], source: Source) -> tuple[pl.Series, pl.Series, list[str]]:
+    """GPS time [ns]; why a row has none; what was assumed."""
+    notes = list[str]()
+    first = frame[columns[0].name]
+    unit = columns[0].unit
+    if first.dtype in (pl.Datetime, pl.Date):
+        aware = isinstance(first.dtype, pl.Datetime) and first.dtype.time_zone is not None
+        unix = first.cast(pl.Datetime("ns")).cast(pl.Int64)
+        if not aware:
+            notes.append(f"{source.path.name}: “{first.name}” has no time zone and was read as UTC")
+        ns = _from_unix(unix)
+    elif unit in {"gps_week", "gps_tow_s"}:
+        by = {c.unit: c for c in columns}
+        week, tow = _plain_numbers(frame[by["gps_week"].name]), _plain_numbers(frame[by["gps_tow_s"].name])
+        fits = week.is_between(0, 10_000) & tow.is_between(0, 604_800)
+        ns = _ns(pl.select(pl.when(fits).then(week * 604_800e9)).to_series()) + _ns(tow * 1e9)
+        notes.append(f"{source.path.name}: weeks are counted from 1980 (not modulo 1024)")
+    elif unit.startswith("gps"):
+        # Nineteen digits of nanoseconds do not pass through a double.
+        exact = unit == "gps_ns" and first.dtype != pl.Float64
+        ns = first.cast(pl.Int64, strict=False) if exact else _ns(_plain_numbers(first) * (1.0 if unit == "gps_ns" else 1e9))
+    else:
+        ns = _from_unix(_unix_ns(first, unit, source, notes))
+    empty = first.is_null() | (first.cast(pl.String).str.strip_chars() == "").fill_null(value=True)
+    inside = ns.is_between(_FIRST_NS, _LAST_NS)
+    reason = pl.select(
+        pl.when(empty).then(pl.lit("empty")).when(ns.is_null()).then(pl.lit("not a time"))
+        .when(~inside).then(pl.lit("time outside 1980 to 2100"))
+    ).to_series()  # fmt: skip
+    return ns, reason, notes
+
+
+def _unix_ns(column: pl.Series, unit: str, source: Source, notes: list[str]) -> pl.Series:
+    """Unix time [ns] from numbers or from text."""
+    numbers = _plain_numbers(column) if unit != "utc_text" else pl.Series([None] * len(column), dtype=pl.Float64)
+    if unit == "utc_text" or (unit == "utc" and numbers.is_null().mean() > 0.5 and column.dtype == pl.String):  # type: ignore[operator]
+        return _iso(column)
+    scales = {"utc_s": 1e9, "utc_ms": 1e6, "utc_us": 1e3, "utc_ns": 1.0}
+    if unit == "utc":
+        size = numbers.abs().median()
+        size = float(size) if isinstance(size, (int, float)) else 0.0
+        unit = next((u for u, low in (("utc_ns", 1e17), ("utc_us", 1e14), ("utc_ms", 1e11), ("utc_s", 1e8)) if size >= low), "")
+        if not unit:
+            raise FormatError(
+                source.path,
+                f"the values (median {size:g}) are not Unix times; declare the unit, e.g. time={column.name}:gps_s",
+                field=column.name,
+            )
+        notes.append(f"{source.path.name}: “{column.name}” was read as Unix time in {unit.removeprefix('utc_')} (UTC)")
+    if unit == "utc_ns" and column.dtype != pl.Float64:
+        return column.cast(pl.Int64, strict=False)
+    # Nanoseconds of 2026 have 19 digits, a double 16: whole units stay whole in integers, fractions to 0.2 us.
+    whole = numbers.floor()
+    return _ns(whole).cast(pl.Int64) * int(scales[unit]) + _ns((numbers - whole) * scales[unit])
+
+
+def _iso(column: pl.Series) -> pl.Series:
+    """ISO 8601 with a date and a time of day; without a zone it is UTC."""
+    text = column.cast(pl.String).str.strip_chars().str.replace("T", " ", literal=True).str.replace("Z$", "+00:00")
+    zoned = pl.select(
+        pl.when(text.str.contains(r"[+-]\d\d:?\d\d$")).then(text).otherwise(pl.concat_str(text, pl.lit("+00:00")))
+    ).to_series()
+    return zoned.str.to_datetime("%Y-%m-%d %H:%M:%S%.f%:z", time_unit="ns", strict=False).cast(pl.Int64)
+
+
+def _plain_numbers(column: pl.Series) -> pl.Series:
+    numbers = column.cast(pl.String).str.strip_chars().cast(pl.Float64, strict=False)
+    return numbers.set(~numbers.is_finite().fill_null(value=True), None)
+
+
+def _ns(values: pl.Series) -> pl.Series:
+    """Whole numbers; null beyond the range of 64 bits."""
+    return values.round().cast(pl.Int64, strict=False)
+
+
+def _from_unix(unix_ns: pl.Series) -> pl.Series:
+    known = unix_ns.fill_null(0).to_numpy().astype(np.int64)
+    gps = pl.Series(_core.gps_from_unix_ns(np.ascontiguousarray(known)))
+    return pl.select(pl.when(unix_ns.is_not_null()).then(gps)).to_series()

@@ -1,0 +1,231 @@
+"""Recorded tracks to material: read, check, join the truth, find the path."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from navbound.errors import InputError
+from navbound.read.approaches import Approaches, Gates, find, statistics
+from navbound.read.covariance import COLUMNS, claim
+from navbound.read.epochs import Reading, read
+from navbound.read.plausible import Limits, check
+from navbound.read.routes import Route, follow, load_route
+from navbound.read.runways import runway
+from navbound.read.truth import TOLERANCE_S, join, with_error
+from navbound.run.material import Material
+from navbound.run.records import Rejection, Waypoint
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from navbound.run.records import CrossTrack, InputFile
+
+_AUXILIARY = ("callsign", "nac_p", "nic", "rc_m", "epu_m", "sigma_e_m", "sigma_n_m", "sigma_u_m")
+
+
+def material(
+    files: str | Path | Sequence[str | Path],
+    *,
+    requirement: str,
+    rnp_m: float,
+    path: str | Path | None = None,
+    truth: str | Path | None = None,
+    truth_tolerance_s: float = TOLERANCE_S,
+    sigma_m: float | None = None,
+    columns: Mapping[str, str] | None = None,
+    gates: Gates | None = None,
+    limits: Limits | None = None,
+) -> Material:
+    """Make recorded tracks ready to be judged.
+
+    Parameters
+    ----------
+    files : path or sequence of paths
+        Tables (CSV, JSON, Parquet, also gzipped) or RTKLIB solution files.
+    requirement : str
+        The navigation specification in words.
+    rnp_m : float
+        Its lateral accuracy. [m]
+    path : str or path, optional
+        ``LFPG/08R``, or several separated by commas: approaches to these runways. ``auto``: every landing, on the runway it lands
+        on. A TOML or CSV file: a route. Without it there is no flight technical error, and only the navigation system is judged.
+    truth : path, optional
+        Recording of the true positions, in a form as `files`.
+    truth_tolerance_s : float
+        How far apart in time an estimate and its truth may lie. [s]
+    sigma_m : float, optional
+        Standard deviation of each horizontal axis of the navigation error, as a claim of the caller's. [m]
+    columns : mapping, optional
+        What a column is, where its name does not say; see :func:`navbound.read.read`.
+    gates, limits : optional
+        What counts as an approach; what an aircraft can do.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be read.
+    InputError
+        A value outside its domain, an unknown runway, no approach found, or no truth at the time of the recording.
+    """
+    if not 0 < rnp_m < float("inf"):
+        raise InputError("rnp_m", rnp_m, "m", "(0, inf)")
+    gates, limits = gates or Gates(), limits or Limits()
+    names = [files] if isinstance(files, str) or not hasattr(files, "__iter__") else list(files)
+    if not names:
+        raise InputError("files", "nothing", domain="one file or more")
+    readings = [read(f, columns=columns) for f in names]
+    inputs, rejected = [r.source for r in readings], [x for r in readings for x in r.rejected]
+    notes = [note for r in readings for note in (*r.notes, *_unused(r))]
+    epochs = _together(readings, rejected)
+    labels = _labels(epochs)
+    claimed = claim(epochs, sigma_m)
+    epochs, plausibility = check(claimed.epochs, limits)
+    assumptions = [claimed.words, plausibility.words]
+    if truth is not None:
+        other = read(truth)
+        inputs.append(other.source)
+        rejected += other.rejected
+        epochs, words = join(epochs, other, truth_tolerance_s)
+        assumptions.append(words)
+    elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
+        epochs = with_error(epochs)
+        assumptions.append("Truth: from the file itself.")
+    route = _follow(path, epochs, gates, rejected)
+    epochs = _covariance_status(route.epochs).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
+    return Material(
+        epochs=epochs.drop(_AUXILIARY, strict=False),
+        kind="analyze",
+        title=route.heading if path is not None else f"{route.heading}: {', '.join(Path(str(n)).name for n in names)}",
+        requirement=requirement,
+        sample_period_s=_period(epochs),
+        assumptions=[*assumptions, *route.words, *notes],
+        labels={track: f"{labels[of]} {track.partition(' ')[2]}".strip() for track, of in route.tracks.items()} if route.tracks else labels,
+        waypoints=route.waypoints,
+        inputs=inputs + route.inputs,
+        rejected=rejected,
+        cross_track=route.cross_track,
+        settings={
+            "path": None if path is None else str(path),
+            "rnp_m": rnp_m,
+            "truth": None if truth is None else str(truth),
+            "truth_tolerance_s": truth_tolerance_s,
+            "sigma_m": sigma_m,
+            "columns": dict(columns or {}),
+            "gates": asdict(gates),
+            "limits": asdict(limits),
+        },
+    )
+
+
+@dataclass(frozen=True)
+class _Path:
+    """Epochs with the path they should have followed, and what the report says about it."""
+
+    epochs: pl.DataFrame
+    words: list[str]
+    heading: str
+    waypoints: list[Waypoint] = field(default_factory=list)
+    inputs: list[InputFile] = field(default_factory=list)
+    cross_track: list[CrossTrack] = field(default_factory=list)
+    tracks: dict[str, str] = field(default_factory=dict)
+
+
+def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejected: list[Rejection]) -> _Path:
+    if path is None:
+        words = "Path: none given, so there is no flight technical error; only the navigation system is judged."
+        return _Path(_without_path(epochs), [words], "Recorded tracks")
+    if Path(path).suffix.lower() in {".toml", ".csv"}:
+        return _on_route(load_route(path), epochs, rejected)
+    names = None if str(path) == "auto" else [name.strip() for name in str(path).split(",")]
+    found = find(epochs, None if names is None else [runway(name) for name in names], gates)
+    if found.epochs.is_empty():
+        where = "any runway of the table" if names is None else ", ".join(names)
+        raise InputError("path", str(path), domain=f"paths that a track follows: no approach to {where} was found with {gates}")
+    return _on_approach(found, gates)
+
+
+def _without_path(epochs: pl.DataFrame) -> pl.DataFrame:
+    absent = (pl.lit(None, pl.Float64).alias(c) for c in ("course_rad", "fte_m"))
+    return epochs.with_columns(*absent, pl.lit("recorded track").alias("phase"))
+
+
+def _on_route(route: Route, epochs: pl.DataFrame, rejected: list[Rejection]) -> _Path:
+    followed, n_beyond = follow(epochs, route)
+    if followed.is_empty():
+        raise InputError(
+            "path", route.source.path, domain="routes that a track follows: every epoch lies before its start or beyond its end"
+        )
+    if n_beyond:
+        reason = "before the start or beyond the end of the route"
+        rejected.append(Rejection(file=route.source.path, reason=reason, count=n_beyond, first_line=None, example=f"{n_beyond} epochs"))
+    points = followed.select(cross_m="fte_m", segment="track")
+    words = f"Path: route {route.source.path}, {len(route.waypoints)} waypoints, {route.path.length_m / 1852:.2f} NM."
+    return _Path(followed, [words], f"Route {route.name}", route.waypoints, [route.source], [statistics(route.name, points)])
+
+
+def _on_approach(found: Approaches, gates: Gates) -> _Path:
+    n, runways = len(found.tracks), ", ".join(r.name for r in found.runways)
+    words = [
+        f"Path: the centreline through the runway ends of the shipped table (OurAirports), {gates.before_max_m / 1852:g} to "
+        f"{gates.before_min_m / 1852:g} NM before the landing threshold; {n} approaches.",
+        "Judged are all epochs from the first to the last point of an approach; what came before its first point is not. The path is the "
+        "extended centreline, not a coded procedure: its own error counts as flight technical error.",
+    ]
+    waypoints = [Waypoint(name=r.name, lat_rad=r.lat_rad, lon_rad=r.lon_rad, kind="runway") for r in found.runways]
+    heading = f"{n} recorded approaches to {runways if len(found.runways) <= 4 else f'{len(found.runways)} runways'}"
+    return _Path(found.epochs, words + found.notes, heading, waypoints, cross_track=found.cross_track, tracks=found.tracks)
+
+
+def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> pl.DataFrame:
+    """All files as one table; an epoch that two files hold counts once."""
+    epochs = pl.concat([r.epochs for r in readings], how="diagonal_relaxed").sort("track", "time_ns", maintain_order=True)
+    once = epochs.unique(["track", "time_ns"], keep="first", maintain_order=True)
+    if once.height < epochs.height:
+        count = epochs.height - once.height
+        reason = "time repeated within a track of several files"
+        rejected.append(Rejection(file=readings[-1].source.path, reason=reason, count=count, first_line=None, example=f"{count} epochs"))
+    return once
+
+
+def _labels(epochs: pl.DataFrame) -> dict[str, str]:
+    """Track to the callsign it mostly has, or to its own name."""
+    if "callsign" not in epochs.columns:
+        return {track: track for track in epochs["track"].unique(maintain_order=True)}
+    usual = epochs.group_by("track", maintain_order=True).agg(pl.col("callsign").drop_nulls().mode().sort().first())
+    return {track: str(callsign or track) for track, callsign in usual.iter_rows()}
+
+
+def _unused(reading: Reading) -> list[str]:
+    return [f"{reading.source.path}: columns not used: {', '.join(reading.unused)}."] if reading.unused else []
+
+
+def _covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
+    """Status of epochs whose position may be believed, but not the covariance. Written so that a NaN is on the bad side."""
+    ee, nn, en = pl.col("cov_ee_m2"), pl.col("cov_nn_m2"), pl.col("cov_en_m2")
+    # 1e-9 of the squared largest variance: the sixteen digits of a double less those the determinant loses.
+    determinant = ee * nn - en**2 >= -1e-9 * pl.max_horizontal(ee, nn) ** 2
+    positive = pl.all_horizontal(ee.is_finite(), nn.is_finite(), en.is_finite(), ee >= 0, nn >= 0, determinant).fill_null(value=False)
+    believed = pl.col("status").is_in(["ok", "degraded"])
+    fault = (
+        pl.when(~believed).then(pl.lit(None, pl.String))
+        .when(pl.any_horizontal(c.is_null() for c in (ee, nn, en))).then(pl.lit("not_available"))
+        .when(~positive).then(pl.lit("invalid_input"))
+        .when(ee + nn == 0).then(pl.lit("degraded"))
+    )  # fmt: skip
+    words = {"not_available": "no covariance", "invalid_input": "not a covariance", "degraded": "covariance is zero"}
+    epochs = epochs.with_columns(fault.alias("fault"))
+    epochs = epochs.with_columns(
+        pl.coalesce("fault", "status").alias("status"),
+        pl.coalesce(pl.col("fault").replace_strict(words, return_dtype=pl.String), "reason").alias("reason"),
+    ).drop("fault")
+    return epochs.with_columns(pl.when(pl.col("status").is_in(["ok", "degraded"])).then(pl.col(c)).alias(c) for c in COLUMNS)
+
+
+def _period(epochs: pl.DataFrame) -> float:
+    """Usual time between epochs of a track; 1 s where no track has two. [s]."""
+    step = epochs.select(pl.col("time_ns").diff().over("track").median() * 1e-9).item()
+    return float(step) if step is not None and step > 0 else 1.0
