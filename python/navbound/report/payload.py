@@ -1,0 +1,218 @@
+"""What the page is given: the records, the columns of as many tracks as fit, and the coastline around them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import polars as pl
+
+from navbound.report import packing
+
+if TYPE_CHECKING:
+    from navbound.run.records import RunRecord, Summary, TrackSummary, Waypoint
+
+BUDGET_BYTES = 1_700_000
+"""Base64 text of the embedded tracks; with the page's own parts the file stays below 2 MB."""
+
+_NUMBERS = (
+    *("est_lat_rad", "est_lon_rad", "est_h_m", "cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_uu_m2"),
+    *("path_lat_rad", "path_lon_rad", "path_h_m", "course_rad", "along_m", "ground_speed_mps", "rnp_m"),
+    *("fte_m", "fte_v_m", "tse_m", "tse_v_m", "sigma_cross_m"),
+    *("nse_e_m", "nse_n_m", "nse_u_m", "nse_along_m", "nse_cross_m", "nse_h_m", "nse_3d_m"),
+    *("p_exceed_rnp", "p_exceed_2rnp", "n_sv", "hdop", "vdop"),
+)
+_WORDS = ("leg", "phase", "status", "reason", "alert", "state")
+
+# Unix time of the GPS epoch, 1980-01-06 00:00:00 UTC.
+_GPS_EPOCH_UNIX_S = 315_964_800
+
+
+@dataclass(frozen=True)
+class Page:
+    """JSON for the page, and one text block for each embedded track."""
+
+    data: dict[str, Any]
+    tracks: list[str]
+
+
+def build(
+    summary: Summary,
+    record: RunRecord,
+    epochs: pl.DataFrame,
+    events: pl.DataFrame,
+    waypoints: list[Waypoint],
+    budget_bytes: int = BUDGET_BYTES,
+) -> Page:
+    """Select and pack what the page shows.
+
+    Parameters
+    ----------
+    summary, record : Summary, RunRecord
+        Records of the run.
+    epochs : DataFrame
+        The epoch table; columns that are absent are not shown.
+    events : DataFrame
+        Columns of docs/notation.md; when it has no rows, the events of ``summary``.
+    waypoints : list of Waypoint
+        Points named on the map.
+    budget_bytes : int
+        Detail columns are embedded for the worst tracks first until this is used up; the worst track always.
+
+    Returns
+    -------
+    Page
+        Records as JSON, columns as text blocks.
+    """
+    blocks: list[str] = []
+    heads: list[dict[str, object]] = []
+    used = 0
+    frames = {str(key[0]): frame for key, frame in epochs.group_by("track", maintain_order=True)} if epochs.height else {}
+    columns = _columns(summary, epochs)
+    for track in _worst_first(summary.tracks):
+        frame = frames.get(track.track)
+        if frame is None or (blocks and used >= budget_bytes):
+            continue
+        head, block = _pack_track(track.track, frame, columns)
+        if blocks and used + len(block) > budget_bytes:
+            continue
+        used += len(block)
+        heads.append(head | {"block": len(blocks)})
+        blocks.append(block)
+    records = summary.model_dump(mode="json")
+    if events.height:
+        records["events"] = events.to_dicts()
+    return Page(
+        data=_finite(
+            {
+                "schema_id": "navbound-report-1",
+                "summary": records,
+                "record": record.model_dump(mode="json"),
+                "waypoints": [w.model_dump(mode="json") for w in waypoints],
+                "utc_offset_s": utc_offset_s(_first_time_ns(summary, epochs)),
+                "gps_epoch_unix_s": _GPS_EPOCH_UNIX_S,
+                "coastline": clip_coastline(*_region(epochs, waypoints)),
+                "tracks": heads,
+            }
+        ),
+        tracks=blocks,
+    )
+
+
+def _finite(value: Any) -> Any:
+    """The same data with null where a number does not exist: JSON has no NaN."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _worst_first(tracks: list[TrackSummary]) -> list[TrackSummary]:
+    """Warnings before cautions before the largest bound over limit; unknown last."""
+    return sorted(tracks, key=lambda t: (-t.n_warnings, -t.n_cautions, -(t.worst_ratio if t.worst_ratio is not None else -math.inf)))
+
+
+def _columns(summary: Summary, epochs: pl.DataFrame) -> list[str]:
+    """Numeric columns worth embedding: the fixed ones, each method's bound, each state's probability."""
+    methods = [m.id.replace("-", "_") + "_m" for m in summary.accuracy] + [
+        m.id.replace("-", "_") + "_integrity_m" for m in summary.integrity
+    ]
+    states = [f"p_state_{i + 1}" for i in range(len(summary.states))]
+    return [name for name in dict.fromkeys([*_NUMBERS, *methods, *states]) if name in epochs.columns]
+
+
+def _pack_track(track: str, frame: pl.DataFrame, columns: list[str]) -> tuple[dict[str, object], str]:
+    start_ns = int(frame["time_ns"][0])
+    elapsed_s = (frame["time_ns"] - start_ns).cast(pl.Float64).to_numpy() * 1e-9
+    packed = [packing.pack("elapsed_s", elapsed_s)]
+    for name in columns:
+        values = frame[name].cast(pl.Float64).fill_null(math.nan).to_numpy()
+        if np.isfinite(values).any():
+            packed.append(packing.pack(name, values))
+    words = {name: packing.run_lengths(frame[name].cast(pl.String).to_list()) for name in _WORDS if name in frame.columns}
+    head: dict[str, object] = {
+        "track": track,
+        "n": frame.height,
+        # As text: nanoseconds since 1980 do not fit a number of the page exactly.
+        "start_ns": str(start_ns),
+        "columns": [p.head() for p in packed],
+        "words": words,
+    }
+    return head, packing.deflate(packed)
+
+
+def _first_time_ns(summary: Summary, epochs: pl.DataFrame) -> int:
+    if epochs.height:
+        return int(epochs["time_ns"][0])
+    return summary.tracks[0].start_ns if summary.tracks else 0
+
+
+# GPS time minus UTC grew by one second at each of these Unix times. Source: IERS Bulletin C, leap seconds since 1980-01-06.
+_LEAP_UNIX_S = (
+    *(362793600, 394329600, 425865600, 489024000, 567993600, 631152000, 662688000, 709948800, 741484800),
+    *(773020800, 820454400, 867715200, 915148800, 1136073600, 1230768000, 1341100800, 1435708800, 1483228800),
+)
+
+
+def utc_offset_s(time_ns: int) -> int:
+    """GPS time minus UTC. [s].
+
+    Parameters
+    ----------
+    time_ns : int
+        GPS time. [ns]
+
+    Returns
+    -------
+    int
+        18 since 2017-01-01.
+    """
+    gps_as_unix_s = time_ns // 1_000_000_000 + _GPS_EPOCH_UNIX_S
+    return sum(gps_as_unix_s >= leap + before + 1 for before, leap in enumerate(_LEAP_UNIX_S))
+
+
+def _region(epochs: pl.DataFrame, waypoints: list[Waypoint]) -> tuple[float, float, float, float]:
+    """South, west, north, east of everything drawn with room around it, in degrees; longitudes around the first point."""
+    lat = [w.lat_rad for w in waypoints]
+    lon = [w.lon_rad for w in waypoints]
+    if {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns) and epochs.height:
+        lat += epochs["est_lat_rad"].drop_nulls().drop_nans().to_list()
+        lon += epochs["est_lon_rad"].drop_nulls().drop_nans().to_list()
+    if not lat or not lon:
+        return (-90.0, -180.0, 90.0, 180.0)
+    lat_deg = np.degrees(lat)
+    centre = math.degrees(lon[0])
+    lon_deg = centre + (np.degrees(lon) - centre + 180.0) % 360.0 - 180.0
+    room = max(2.0, 0.6 * float(max(np.ptp(lat_deg), np.ptp(lon_deg))))
+    wide = room / max(0.2, math.cos(math.radians(float(lat_deg.mean()))))
+    return (float(lat_deg.min()) - room, float(lon_deg.min()) - wide, float(lat_deg.max()) + room, float(lon_deg.max()) + wide)
+
+
+@cache
+def _coastline() -> list[np.ndarray[Any, np.dtype[np.float64]]]:
+    """Polylines (longitude, latitude) in degrees, from the prepared file: one a line, thousandths of a degree, differences."""
+    text = files("navbound").joinpath("_web/coastline.txt").read_text(encoding="ascii")
+    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
+    return [np.cumsum(np.array(line.split(), dtype=np.int64).reshape(-1, 2), axis=0) / 1000.0 for line in lines]
+
+
+def clip_coastline(south: float, west: float, north: float, east: float) -> list[list[int]]:
+    """Coastline inside a region given in degrees: polylines of longitude, latitude in thousandths of a degree, differenced."""
+    middle = (west + east) / 2
+    kept: list[list[int]] = []
+    for line in _coastline():
+        lon = middle + (line[:, 0] - middle + 180.0) % 360.0 - 180.0
+        lat = line[:, 1]
+        inside = (lat >= south) & (lat <= north) & (lon >= west) & (lon <= east)
+        # A segment stays when either end is inside; it breaks where the longitude wraps.
+        segment = (inside[:-1] | inside[1:]) & (np.abs(np.diff(lon)) < 180.0)
+        edges = np.flatnonzero(np.diff(np.concatenate(([0], segment.astype(np.int8), [0]))))
+        for first, last in zip(edges[::2], edges[1::2], strict=True):
+            points = np.rint(np.column_stack((lon, lat))[first : last + 1] * 1000.0).astype(np.int64)
+            kept.append(np.diff(points, axis=0, prepend=np.zeros((1, 2), dtype=np.int64)).ravel().tolist())
+    return kept

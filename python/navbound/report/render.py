@@ -1,0 +1,88 @@
+"""The page itself: template, bundle and payload in one file."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup
+
+from navbound.errors import InputError
+from navbound.report import payload
+
+if TYPE_CHECKING:
+    import polars as pl
+
+    from navbound.run.records import RunRecord, Summary, Waypoint
+
+_NEEDED = ("track", "time_ns")
+
+
+def render(summary: Summary, record: RunRecord, epochs: pl.DataFrame, events: pl.DataFrame, waypoints: list[Waypoint], out: Path) -> Path:
+    """Write the report of one run as a single HTML file that needs no network.
+
+    Parameters
+    ----------
+    summary : Summary
+        What the run found (summary.json).
+    record : RunRecord
+        What it takes to do it again (run.json).
+    epochs : DataFrame
+        The epoch table of docs/notation.md; each chart appears when its columns do.
+    events : DataFrame
+        Alerts and points of the flight.
+    waypoints : list of Waypoint
+        Points to draw and name on the map.
+    out : Path
+        File to write, or an existing directory, which receives ``report.html``.
+
+    Returns
+    -------
+    Path
+        The file written. Values in it are kept to the resolution that it states, 1 mm for lengths.
+
+    Raises
+    ------
+    InputError
+        ``epochs`` lacks ``track`` or ``time_ns``.
+    """
+    for name in _NEEDED:
+        if name not in epochs.columns:
+            raise InputError("epochs", f"columns {epochs.columns}", domain=f"tables with a column {name}")
+    page = payload.build(summary, record, epochs, events, waypoints)
+    target = out / "report.html" if out.is_dir() else out
+    target.parent.mkdir(parents=True, exist_ok=True)
+    # The page is written whole or not at all: a report cut short could pass for a report.
+    partial = target.with_name(target.name + ".partial")
+    partial.write_text(_html(summary, page), encoding="utf-8")
+    partial.replace(target)
+    return target
+
+
+def _html(summary: Summary, page: payload.Page) -> str:
+    web = files("navbound").joinpath("_web")
+    template = files("navbound").joinpath("report/template.html.j2").read_text(encoding="utf-8")
+    environment = Environment(autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True, trim_blocks=True, lstrip_blocks=True)
+    return environment.from_string(template).render(
+        title=summary.title,
+        words=summary.verdict.words,
+        css=Markup(web.joinpath("report.css").read_text(encoding="utf-8")),
+        script=Markup(web.joinpath("report.js").read_text(encoding="utf-8")),
+        data=Markup(script_safe(page.data)),
+        tracks=page.tracks,
+    )
+
+
+def script_safe(data: object) -> str:
+    """JSON that no text inside it can turn into markup: every ``<``, ``>`` and ``&`` is escaped."""
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return (
+        text.replace("<", "\\u003c")
+        .replace(">", "\\u003e")
+        .replace("&", "\\u0026")
+        .replace("\u2028", "\\u2028")
+        .replace("\u2029", "\\u2029")
+    )

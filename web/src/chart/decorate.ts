@@ -1,0 +1,104 @@
+// What stands in a chart beside its lines: hatched spans, event marks, names at the lines' ends.
+
+import type uPlot from "uplot";
+import type { Scene } from "../data/scene.ts";
+import { eventIndex } from "../data/events.ts";
+import { colour } from "../show/theme.ts";
+import type { Line } from "./strip.ts";
+import { spread } from "./ticks.ts";
+
+const LABEL_PX = 13;
+
+/** A pattern of diagonal lines; spans without a value are hatched, never bridged. */
+export function hatch(context: CanvasRenderingContext2D): CanvasPattern | string {
+    const size = 6 * devicePixelRatio;
+    const tile = document.createElement("canvas");
+    tile.width = tile.height = size;
+    const pen = tile.getContext("2d");
+    if (pen === null) return colour("rule");
+    pen.strokeStyle = colour("muted");
+    pen.globalAlpha = 0.45;
+    pen.lineWidth = devicePixelRatio;
+    pen.beginPath();
+    for (const shift of [-size, 0, size]) {
+        pen.moveTo(shift, size);
+        pen.lineTo(shift + size, 0);
+    }
+    pen.stroke();
+    return context.createPattern(tile, "repeat") ?? colour("rule");
+}
+
+export function drawHatch(u: uPlot, scene: Scene): void {
+    const { ctx, bbox } = u;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.fillStyle = hatch(ctx);
+    for (const run of scene.table.unavailable) {
+        const left = u.valToPos(u.data[0]![run.from]!, "x", true);
+        const right = u.valToPos(u.data[0]![run.to]!, "x", true);
+        ctx.fillRect(left, bbox.top, Math.max(right - left, devicePixelRatio), bbox.height);
+    }
+    ctx.restore();
+}
+
+/** A square for a warning, a triangle for a caution, at the top edge. */
+export function drawEvents(u: uPlot, scene: Scene): void {
+    const { ctx, bbox } = u;
+    const size = 4.5 * devicePixelRatio;
+    for (const event of scene.payload.summary.events) {
+        if (event.track !== scene.table.track || (event.kind !== "warning" && event.kind !== "caution")) continue;
+        const x = u.valToPos(u.data[0]![eventIndex(event, scene)]!, "x", true);
+        if (x < bbox.left || x > bbox.left + bbox.width) continue;
+        const y = bbox.top - size - devicePixelRatio;
+        ctx.save();
+        ctx.fillStyle = colour(event.kind);
+        ctx.beginPath();
+        if (event.kind === "warning") ctx.rect(x - size, y - size, 2 * size, 2 * size);
+        else {
+            ctx.moveTo(x, y - size);
+            ctx.lineTo(x + size, y + size);
+            ctx.lineTo(x - size, y + size);
+        }
+        ctx.fill();
+        ctx.restore();
+    }
+}
+
+/** Pixels the names need at the right edge. */
+export function labelRoom(lines: Line[], visible: Set<string>): number {
+    const longest = Math.max(0, ...lines.filter((l) => visible.has(l.key)).map((l) => l.label.length));
+    return Math.min(190, 18 + 6.1 * longest);
+}
+
+export function drawLabels(u: uPlot, lines: Line[], visible: Set<string>, font: string): void {
+    const { ctx, bbox } = u;
+    const ratio = devicePixelRatio;
+    const [, last] = u.series[0]!.idxs ?? [0, u.data[0]!.length - 1];
+    const shown = lines.filter((line) => visible.has(line.key)).flatMap((line) => {
+        let i = last ?? line.values.length - 1;
+        while (i >= 0 && !Number.isFinite(line.values[i]!)) i--;
+        const value = line.values[i];
+        if (value === undefined) return [];
+        const y = u.valToPos(value, "y", true);
+        const off = y < bbox.top ? " ↑" : y > bbox.top + bbox.height ? " ↓" : "";
+        return [{ line, y: Math.min(bbox.top + bbox.height, Math.max(bbox.top, y)), text: (line.mirror ? `±${line.label}` : line.label) + off }];
+    });
+    const placed = spread(shown.map((s) => s.y), LABEL_PX * ratio, bbox.top + 4 * ratio, bbox.top + bbox.height - 4 * ratio);
+    ctx.save();
+    ctx.font = font.replace("11px", `${11 * ratio}px`);
+    ctx.textBaseline = "middle";
+    ctx.textAlign = "left";
+    shown.forEach((label, i) => {
+        const x = bbox.left + bbox.width;
+        ctx.strokeStyle = ctx.fillStyle = colour(label.line.colour);
+        ctx.lineWidth = ratio * 0.75;
+        ctx.beginPath();
+        ctx.moveTo(x + 2 * ratio, label.y);
+        ctx.lineTo(x + 9 * ratio, placed[i]!);
+        ctx.stroke();
+        ctx.fillText(label.text, x + 12 * ratio, placed[i]!);
+    });
+    ctx.restore();
+}

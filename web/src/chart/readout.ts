@@ -1,0 +1,75 @@
+// The values of a chart's lines at the cursor, and all its numbers as a table for those who do not see the picture.
+
+import { el, setValue, svg, valueOf } from "../show/dom.ts";
+import type { Line } from "./strip.ts";
+
+export function swatch(line: { colour: string; dash?: number[]; width?: number }): SVGElement {
+    return svg("svg", { class: "swatch", width: 24, height: 8, viewBox: "0 0 24 8", "aria-hidden": "true" },
+        svg("line", { x1: 0, y1: 4, x2: 24, y2: 4, stroke: `var(--${line.colour})`, "stroke-width": Math.max(1.5, line.width ?? 1.5), "stroke-dasharray": line.dash?.join(" ") }));
+}
+
+/** One button a line: its name, its value at the cursor; pressing it hides or shows the line. */
+export function readout(lines: Line[], visible: Set<string>, show: (value: number) => string, changed: () => void): { element: HTMLElement; update: (i: number) => void } {
+    const cells = new Map<string, HTMLElement>();
+    const element = el("div", { class: "readout" });
+    for (const line of lines) {
+        const cell = valueOf(line.key, null, "");
+        cells.set(line.key, cell);
+        const chip = el("button", { type: "button", class: "chip", "aria-pressed": String(visible.has(line.key)), title: line.about ?? "" },
+            swatch(line), el("span", { class: "chip-name" }, line.mirror ? `±${line.label}` : line.label), cell);
+        chip.addEventListener("click", () => {
+            if (visible.has(line.key)) visible.delete(line.key);
+            else visible.add(line.key);
+            chip.setAttribute("aria-pressed", String(visible.has(line.key)));
+            changed();
+        });
+        element.append(chip);
+    }
+    const update = (i: number): void => {
+        for (const line of lines) {
+            const v = line.values[i] ?? NaN;
+            setValue(cells.get(line.key)!, v, show(v));
+        }
+    };
+    return { element, update };
+}
+
+interface Stated {
+    n: number;
+    low: number;
+    mean: number;
+    high: number;
+}
+
+function state(values: Float64Array): Stated {
+    let [n, low, sum, high] = [0, Infinity, 0, -Infinity];
+    for (const v of values) {
+        if (!Number.isFinite(v)) continue;
+        n += 1;
+        sum += v;
+        if (v < low) low = v;
+        if (v > high) high = v;
+    }
+    return n === 0 ? { n, low: NaN, mean: NaN, high: NaN } : { n, low, mean: sum / n, high };
+}
+
+export function numbers(lines: Line[], show: (value: number) => string, title: string): { element: HTMLElement; update: (i: number) => void } {
+    const at = new Map<string, HTMLElement>();
+    const rows = lines.map((line) => {
+        const { n, low, mean, high } = state(line.values);
+        const here = el("td");
+        at.set(line.key, here);
+        return el("tr", {}, el("th", { scope: "row" }, line.label), here, el("td", {}, show(low)), el("td", {}, show(mean)), el("td", {}, show(high)), el("td", {}, String(n)));
+    });
+    const element = el("details", { class: "numbers" }, el("summary", {}, "Numbers", el("span", { class: "sr" }, ` of ${title}`)),
+        el("div", { class: "scroll" }, el("table", {}, el("caption", { class: "sr" }, `${title}, as numbers`),
+            el("thead", {}, el("tr", {}, ...["Line", "At the cursor", "Smallest", "Mean", "Largest", "Epochs"].map((h) => el("th", { scope: "col" }, h)))),
+            el("tbody", {}, ...rows))));
+    let index = 0;
+    const fill = (): void => {
+        if (!element.open) return;
+        for (const line of lines) at.get(line.key)!.textContent = show(line.values[index] ?? NaN);
+    };
+    element.addEventListener("toggle", fill);
+    return { element, update: (i) => { index = i; fill(); } };
+}

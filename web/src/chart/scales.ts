@@ -1,0 +1,102 @@
+// Navigation performance scales: the ends are the limit, bars grow inward by the actual navigation performance,
+// what is left between them is the room for flight technical error, the pointer is the deviation.
+
+import type { Scene } from "../data/scene.ts";
+import { el, setValue, svg, valueOf } from "../show/dom.ts";
+import { level, metres, nauticalMiles, rnpName, signedMetres } from "../show/format.ts";
+import { columnOf } from "./methods.ts";
+
+interface Gauge {
+    title: string;
+    vertical: boolean;
+    deviation: string;
+    limit: (i: number) => number;
+    limitWords: (limit_m: number) => string;
+    /** Column of the 95 % navigation error bound along this direction. */
+    anp: string | null;
+    rows: [key: string, label: string, show: (v: number) => string][];
+}
+
+const LENGTH = 280;
+const HALF = 120;
+
+export function performance(host: HTMLElement, scene: Scene): () => void {
+    const section = el("section", { class: "scales", "aria-label": "Navigation performance scales at the cursor" }, el("h3", {}, "Navigation performance at the cursor"));
+    const gauges = [lateralGauge(scene), verticalGauge(scene)].filter((g): g is Gauge => g !== null);
+    const updates = gauges.map((gauge) => {
+        const built = draw(gauge, scene);
+        section.append(built.element);
+        return built.update;
+    });
+    if (gauges.length === 0) section.append(el("p", { class: "note" }, "No path was given: there is no deviation to show."));
+    host.append(section);
+    const end = scene.cursor.watch((i) => updates.forEach((update) => update(i)));
+    return () => {
+        end();
+        section.remove();
+    };
+}
+
+function lateralGauge(scene: Scene): Gauge | null {
+    const { table, payload } = scene;
+    if (!table.has("fte_m") || !table.has("rnp_m")) return null;
+    const anp = ["anp_cross_m", "anp_circle_m"].find((c) => table.has(c)) ?? null;
+    const bound = payload.summary.accuracy.find((m) => m.id === payload.summary.verdict.method);
+    const rows: Gauge["rows"] = [["rnp_m", "RNP", (v) => `${nauticalMiles(v)} · ${metres(v)}`]];
+    if (anp !== null) rows.push([anp, `ANP 95 %, ${anp === "anp_cross_m" ? "across track" : "circle"}`, metres]);
+    rows.push(["fte_m", "FTE", signedMetres]);
+    if (bound !== undefined && table.has(columnOf(bound, false))) rows.push([columnOf(bound, false), `TSE bound ${level(bound.risk)}, ${bound.id}`, metres]);
+    return { title: "Lateral", vertical: false, deviation: "fte_m", limit: (i) => table.value("rnp_m", i), limitWords: rnpName, anp, rows };
+}
+
+function verticalGauge(scene: Scene): Gauge | null {
+    const { table, payload } = scene;
+    if (!table.has("fte_v_m")) return null;
+    const anp = table.has("anp_vertical_m") ? "anp_vertical_m" : null;
+    const bound = payload.summary.accuracy.find((m) => m.error_column === "tse_v_m" && table.has(columnOf(m, false)));
+    const rows: Gauge["rows"] = [];
+    if (anp !== null) rows.push([anp, "ANP 95 %, vertical", metres]);
+    rows.push(["fte_v_m", "FTE vertical", signedMetres]);
+    if (bound !== undefined) rows.push([columnOf(bound, false), `TSE bound ${level(bound.risk)}, ${bound.id}`, metres]);
+    // RNP sets no vertical limit: the ends are round lengths that hold the whole flight, and say so.
+    const largest = Math.max(1, ...Array.from(table.column("fte_v_m")!, (v) => (Number.isFinite(v) ? Math.abs(v) : 0)));
+    const step = 10 ** Math.floor(Math.log10(largest));
+    const end = [1, 2, 5, 10].map((f) => f * step).find((v) => v >= largest) ?? 10 * step;
+    return { title: "Vertical", vertical: true, deviation: "fte_v_m", limit: () => end, limitWords: (v) => `${metres(v)}, scale only: no vertical limit`, anp, rows };
+}
+
+function draw(gauge: Gauge, scene: Scene): { element: HTMLElement; update: (i: number) => void } {
+    const middle = LENGTH / 2;
+    const bars = [svg("rect", { class: "anp-bar", y: 9, height: 18 }), svg("rect", { class: "anp-bar", y: 9, height: 18 })];
+    const pointer = svg("path", { class: "pointer", d: "M0 6 L7 18 L0 30 L-7 18 Z" });
+    const ticks = [-1, -0.5, 0.5, 1].map((t) => svg("line", { class: Math.abs(t) === 1 ? "gauge-end" : "gauge-tick", x1: middle + t * HALF, x2: middle + t * HALF, y1: Math.abs(t) === 1 ? 4 : 13, y2: Math.abs(t) === 1 ? 32 : 23 }));
+    const picture = svg("svg", { viewBox: `0 0 ${LENGTH} 36`, class: "gauge", role: "img" },
+        svg("line", { class: "gauge-line", x1: middle - HALF, x2: middle + HALF, y1: 18, y2: 18 }), ...bars, ...ticks,
+        svg("line", { class: "gauge-centre", x1: middle, x2: middle, y1: 6, y2: 30 }), pointer);
+    const ends = el("p", { class: "gauge-ends" });
+    const cells = gauge.rows.map(([key, label, show]) => ({ key, show, cell: valueOf(key, null, ""), label }));
+    const list = el("dl", { class: "digits" }, ...cells.flatMap(({ label, cell }) => [el("dt", {}, label), el("dd", {}, cell)]));
+    const sides = gauge.vertical ? ["below", "above"] : ["left", "right"];
+    const element = el("div", { class: "gauge-box" }, el("div", { class: "gauge-head" }, el("h4", {}, gauge.title), ends), picture,
+        el("div", { class: "gauge-sides", "aria-hidden": "true" }, el("span", {}, sides[0]!), el("span", {}, sides[1]!)), list);
+    const update = (i: number): void => {
+        const limit = gauge.limit(i);
+        const deviation = scene.table.value(gauge.deviation, i);
+        const anp = gauge.anp === null ? NaN : scene.table.value(gauge.anp, i);
+        const share = Math.min(1, anp / limit);
+        const width = Number.isFinite(share) ? Math.max(share * HALF, 1) : 0;
+        bars[0]!.setAttribute("x", String(middle - HALF));
+        bars[1]!.setAttribute("x", String(middle + HALF - width));
+        bars.forEach((bar) => bar.setAttribute("width", String(width)));
+        const off = Math.max(-1.12, Math.min(1.12, deviation / limit));
+        pointer.setAttribute("transform", `translate(${Number.isFinite(off) ? middle + off * HALF : -20} 0)`);
+        ends.textContent = `ends ±${gauge.limitWords(limit)}`;
+        for (const { key, show, cell } of cells) {
+            const v = scene.table.value(key, i);
+            setValue(cell, v, show(v));
+        }
+        const words = `${gauge.title} deviation ${signedMetres(deviation)} of a limit of ${metres(limit)}; actual navigation performance ${metres(anp)}`;
+        picture.setAttribute("aria-label", words);
+    };
+    return { element, update };
+}

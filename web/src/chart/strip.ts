@@ -1,0 +1,203 @@
+// A series chart over time or along-track distance, linked with the others through the scene.
+// uPlot draws long series as the smallest and largest value of each pixel column, so a spike of one epoch stays visible.
+
+import uPlot from "uplot";
+import { axisValues, METRES_PER_NM, type Scene } from "../data/scene.ts";
+import { choice, el, freshId } from "../show/dom.ts";
+import { clock, plain } from "../show/format.ts";
+import { colour, type Colour } from "../show/theme.ts";
+import { drawEvents, drawHatch, drawLabels, labelRoom } from "./decorate.ts";
+import { numbers, readout } from "./readout.ts";
+import { asinhTicks, clockTicks, extent, type Extent } from "./ticks.ts";
+
+export interface Line {
+    /** Column name; also the key of the value shown at the cursor. */
+    key: string;
+    label: string;
+    values: Float64Array;
+    colour: Colour;
+    dash?: number[];
+    width?: number;
+    /** Drawn on both sides of zero: a bound or a limit of a signed error. */
+    mirror?: boolean;
+    /** A requirement: may lie far from the data. */
+    limit?: boolean;
+    /** Source, provenance and assumptions, one hover away. */
+    about?: string;
+    hidden?: boolean;
+}
+
+export type Scale = "data" | "limits" | "compressed" | "log";
+
+export interface StripOptions {
+    id: string;
+    title: string;
+    /** Which methods at which risk, and anything a reader must know. */
+    note: string;
+    unit: string;
+    lines: Line[];
+    /** Offered scales, the first is taken. */
+    scales: Scale[];
+    /** Text of one value. */
+    show: (value: number) => string;
+    height?: number;
+    /** Lowest value drawn on a logarithmic scale. */
+    floor?: number;
+    draw?: (u: uPlot, scene: Scene) => void;
+    /** Fixed vertical range. */
+    range?: Extent;
+    yTick?: (value: number) => string;
+    /** The lines are drawn by `draw`, not as lines. */
+    noPaths?: boolean;
+}
+
+const SCALE_NAMES: Record<Scale, string> = { data: "Data", limits: "To limits", compressed: "Both, compressed", log: "Log" };
+const FONT = '11px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
+
+export function strip(host: HTMLElement, scene: Scene, options: StripOptions): () => void {
+    const state = { scale: options.scales[0]!, visible: new Set(options.lines.filter((l) => l.hidden !== true).map((l) => l.key)) };
+    const title = freshId("title");
+    const plot = el("div", { class: "plot", "aria-hidden": "true" });
+    const values = readout(options.lines, state.visible, options.show, () => rebuild());
+    const scales = options.scales.length > 1 ? choice(`Scale of ${options.title}`, options.scales.map((s) => [s, SCALE_NAMES[s]]), state.scale, (s) => { state.scale = s; rebuild(); }) : null;
+    const table = numbers(options.lines, options.show, options.title);
+    const figure = el("figure", { class: "chart", id: options.id, role: "group", "aria-labelledby": title },
+        el("div", { class: "chart-head" }, el("h3", { id: title }, options.title), scales), el("figcaption", {}, options.note), values.element, plot, table.element);
+    host.append(figure);
+
+    let u: uPlot | null = null;
+    let quiet = false;
+    const follow = (): void => {
+        const i = scene.cursor.get();
+        values.update(i);
+        table.update(i);
+        if (u === null) return;
+        quiet = true;
+        const x = u.data[0]![i];
+        const left = x === undefined ? -10 : u.valToPos(x, "x");
+        u.setCursor({ left: left >= 0 && left <= u.over.clientWidth ? left : -10, top: 0 }, false);
+        quiet = false;
+    };
+    const showWindow = (): void => {
+        if (u === null) return;
+        const x = u.data[0]!;
+        const w = scene.window.get();
+        u.setScale("x", { min: x[w?.from ?? 0]!, max: x[w?.to ?? x.length - 1]! });
+        follow();
+    };
+    function rebuild(): void {
+        u?.destroy();
+        const width = Math.max(240, plot.clientWidth);
+        u = new uPlot(build(scene, options, state, width, () => quiet, follow), dataOf(scene, options), plot);
+        u.over.addEventListener("dblclick", () => scene.window.set(null));
+        showWindow();
+    }
+    rebuild();
+    const resize = new ResizeObserver(() => {
+        if (u !== null && Math.abs(u.width - plot.clientWidth) > 1 && plot.clientWidth > 0) rebuild();
+    });
+    resize.observe(plot);
+    let first = true;
+    const again = (): void => { if (!first) rebuild(); };
+    const ends = [scene.cursor.watch(follow), scene.window.watch(showWindow), scene.theme.watch(again), scene.axis.watch(again)];
+    first = false;
+    return () => {
+        ends.forEach((end) => end());
+        resize.disconnect();
+        u?.destroy();
+        figure.remove();
+    };
+}
+
+function dataOf(scene: Scene, options: StripOptions): uPlot.AlignedData {
+    const nullable = (values: Float64Array, sign: number): (number | null)[] => Array.from(values, (v) => {
+        if (!Number.isFinite(v)) return null;
+        return options.floor === undefined ? sign * v : Math.max(v, options.floor);
+    });
+    const columns = options.lines.flatMap((line) => (line.mirror ? [nullable(line.values, 1), nullable(line.values, -1)] : [nullable(line.values, 1)]));
+    return [Array.from(axisValues(scene)), ...columns] as uPlot.AlignedData;
+}
+
+function seriesOf(options: StripOptions, visible: Set<string>): uPlot.Series[] {
+    return options.lines.flatMap((line) => {
+        const one: uPlot.Series = {
+            label: line.key, show: visible.has(line.key), stroke: colour(line.colour), width: line.width ?? 1.25, dash: line.dash,
+            points: { show: false }, spanGaps: false, scale: "y", ...(options.noPaths ? { paths: () => null } : {}),
+        };
+        return line.mirror ? [one, { ...one }] : [one];
+    });
+}
+
+/** Smallest and largest visible value in the window, with a little room. */
+function rangeOf(u: uPlot, scene: Scene, options: StripOptions, state: { scale: Scale; visible: Set<string> }): Extent {
+    const w = scene.window.get();
+    const [from, to] = [w?.from ?? 0, w?.to ?? u.data[0]!.length - 1];
+    const shown = options.lines.filter((line) => state.visible.has(line.key) && (state.scale !== "data" || line.limit !== true));
+    const [low, high] = extent(shown, from, to, state.scale === "log" ? options.floor ?? 1e-12 : null);
+    if (state.scale === "log") return [10 ** Math.floor(Math.log10(low)), 10 ** Math.ceil(Math.log10(high) + 0.01)];
+    const room = 0.06 * (high - low || Math.abs(high) || 1);
+    return [low < 0 ? low - room : low, high + room];
+}
+
+function build(scene: Scene, options: StripOptions, state: { scale: Scale; visible: Set<string> }, width: number, isQuiet: () => boolean, follow: () => void): uPlot.Options {
+    const along = scene.axis.get() === "along";
+    const wide = width >= 700;
+    const axis = { font: FONT, stroke: colour("muted"), grid: { stroke: colour("rule"), width: 1 }, ticks: { show: false } };
+    const compressed = state.scale === "compressed";
+    const threshold = compressed ? compressionThreshold(options) : 1;
+    return {
+        width,
+        height: options.height ?? (wide ? 230 : 200),
+        padding: [14, wide && !options.noPaths ? labelRoom(options.lines, state.visible) : 10, 0, 0],
+        legend: { show: false },
+        cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { size: 5, width: 1 } },
+        scales: {
+            x: { time: false },
+            y: {
+                distr: state.scale === "log" ? 3 : compressed ? 4 : 1,
+                asinh: threshold,
+                range: (u) => options.range ?? rangeOf(u, scene, options, state),
+            },
+        },
+        axes: [
+            { ...axis, size: 30, space: 70, ...(along ? { values: (_u, splits) => splits.map((s) => `${plain(s, Number.isInteger(s) ? 0 : 2)}`) } : { splits: (_u: uPlot, _i: number, min: number, max: number, _incr: number, space: number) => clockTicks(min, max, space, width), values: (_u: uPlot, splits: number[]) => splits.map((s) => clock(s)) }) },
+            {
+                ...axis, size: 58, space: 28,
+                ...(compressed ? { splits: (_u: uPlot, _i: number, min: number, max: number) => asinhTicks(min, max, threshold) } : {}),
+                values: (_u, splits) => splits.map((s) => (s == null ? "" : options.yTick ? options.yTick(s) : plain(s, s !== 0 && Math.abs(s) < 1 ? 2 : Math.abs(s) < 10 && s % 1 !== 0 ? 1 : 0))),
+            },
+        ],
+        series: [{}, ...seriesOf(options, state.visible)],
+        hooks: {
+            drawClear: [(u) => drawHatch(u, scene)],
+            draw: [(u) => options.draw?.(u, scene), (u) => drawEvents(u, scene), (u) => { if (wide && !options.noPaths) drawLabels(u, options.lines, state.visible, FONT); }],
+            setCursor: [
+                (u) => {
+                    if (isQuiet()) return;
+                    // Leaving the chart keeps the last epoch under the cursor.
+                    if (u.cursor.idx != null && (u.cursor.left ?? -1) >= 0) scene.cursor.set(u.cursor.idx);
+                    else follow();
+                },
+            ],
+            setSelect: [
+                (u) => {
+                    if (u.select.width < 4) return;
+                    const [from, to] = [u.posToIdx(u.select.left), u.posToIdx(u.select.left + u.select.width)];
+                    u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+                    if (to > from) scene.window.set({ from, to });
+                },
+            ],
+        },
+    };
+}
+
+/** Linear up to about the size of the data, logarithmic beyond, so that data and limits are seen at once. */
+function compressionThreshold(options: StripOptions): number {
+    const [low, high] = extent(options.lines.filter((l) => l.limit !== true), 0, Infinity, null);
+    return 10 ** Math.floor(Math.log10(Math.max(1, Math.max(-low, high) / 3)));
+}
+
+/** Words of the horizontal axis, for captions. */
+export function axisWords(scene: Scene): string {
+    return scene.axis.get() === "along" ? `distance along the path, NM of ${METRES_PER_NM} m` : "time, UTC";
+}

@@ -1,0 +1,167 @@
+// The records of a run as the page receives them; names and meanings are those of python/navbound/run/records.py.
+
+import type { PackedColumn } from "./packing.ts";
+
+export interface Worst {
+    track: string;
+    time_ns: number;
+    margin_m: number;
+    bound_m: number;
+    limit_m: number;
+    phase: string | null;
+    along_m: number | null;
+    lat_rad: number;
+    lon_rad: number;
+}
+
+export interface Verdict {
+    inside: boolean | null;
+    words: string;
+    requirement: string;
+    method: string;
+    share_inside: number | null;
+    share_contained: number | null;
+    n_epochs: number;
+    n_judged: number;
+    worst_accuracy: Worst | null;
+    worst_integrity: Worst | null;
+    truth_known: boolean;
+    experimental: boolean;
+}
+
+export interface PhaseSummary {
+    phase: string;
+    rnp_m: number;
+    n_epochs: number;
+    duration_s: number;
+    share_inside: number | null;
+    worst_ratio: number | null;
+    p_exceed_2rnp_max: number | null;
+    p_exceed_2rnp_mean: number | null;
+    coverage: number | null;
+    n_cautions: number;
+    n_warnings: number;
+}
+
+export interface TrackSummary {
+    track: string;
+    label: string;
+    n_epochs: number;
+    start_ns: number;
+    duration_s: number;
+    fte_mean_m: number | null;
+    fte_std_m: number | null;
+    fte_abs95_m: number | null;
+    share_inside: number | null;
+    worst_ratio: number | null;
+    worst_margin_m: number | null;
+    n_cautions: number;
+    n_warnings: number;
+    n_unavailable: number;
+}
+
+export interface MethodResult {
+    id: string;
+    title: string;
+    source: string;
+    provenance: string;
+    assumes: string;
+    error_column: string;
+    may_alert: boolean;
+    risk: number;
+    n: number;
+    mean_m: number | null;
+    max_m: number | null;
+    coverage: number | null;
+    coverage_low: number | null;
+    coverage_high: number | null;
+    n_effective: number | null;
+    winkler_m: number | null;
+    pinball_m: number | null;
+}
+
+export interface Honesty {
+    n: number;
+    n_effective: number;
+    dimension: number;
+    nees_mean: number;
+    nees_low: number;
+    nees_high: number;
+    pit_counts: number[];
+    pit_low: number;
+    pit_high: number;
+    words: string;
+}
+
+export interface EventSummary {
+    track: string;
+    kind: string;
+    onset_ns: number;
+    annunciation_ns: number | null;
+    clear_ns: number | null;
+    peak_m: number | null;
+    limit_m: number | null;
+    min_margin_m: number | null;
+    words: string;
+}
+
+export interface Summary {
+    kind: string;
+    title: string;
+    verdict: Verdict;
+    coverage_kind: string;
+    assumptions: string[];
+    phases: PhaseSummary[];
+    tracks: TrackSummary[];
+    accuracy: MethodResult[];
+    integrity: MethodResult[];
+    honesty: Honesty | null;
+    states: string[];
+    events: EventSummary[];
+    cross_track: { path: string; n_tracks: number; n_points: number; mean_m: number; std_m: number; abs95_m: number; between_tracks_std_m: number | null }[];
+    rejected: { file: string; reason: string; count: number; first_line: number | null; example: string }[];
+    n_status: Record<string, number>;
+}
+
+export interface RunRecord {
+    navbound_version: string;
+    command: string;
+    created_utc: string;
+    kind: string;
+    scenario: Record<string, unknown> | null;
+    seed: number | null;
+    inputs: { path: string; sha256: string; n_bytes: number; n_rows: number | null }[];
+    methods: string[];
+    risk_accuracy: number;
+    risk_integrity: number;
+    settings: Record<string, unknown>;
+    platform: string;
+}
+
+export interface Waypoint {
+    name: string;
+    lat_rad: number;
+    lon_rad: number;
+    kind: "waypoint" | "runway" | "station";
+}
+
+export interface PackedTrack {
+    track: string;
+    n: number;
+    start_ns: string;
+    columns: PackedColumn[];
+    words: Record<string, { words: string[]; runs: [number, number][] }>;
+    block: number;
+}
+
+export interface Payload {
+    schema_id: "navbound-report-1";
+    summary: Summary;
+    record: RunRecord;
+    waypoints: Waypoint[];
+    utc_offset_s: number;
+    gps_epoch_unix_s: number;
+    /** Polylines of longitude, latitude in thousandths of a degree, differenced. */
+    coastline: number[][];
+    tracks: PackedTrack[];
+}

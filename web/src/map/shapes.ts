@@ -1,0 +1,89 @@
+// Everything the map draws, put on its plane once.
+
+import type { Scene } from "../data/scene.ts";
+import type { Waypoint } from "../data/records.ts";
+import { offset, plane, type Plane, type Point } from "./geometry.ts";
+
+/** Coordinates x0, y0, x1, y1, ...; NaN where there is none. */
+export type Line = Float64Array;
+
+export interface Shapes {
+    plane: Plane;
+    coast: Line[];
+    track: Line;
+    path: Line | null;
+    /** Edges of the tunnel: left and right at RNP, left and right at twice RNP. */
+    tunnel: { one: [Line, Line]; two: [Line, Line] } | null;
+    waypoints: { point: Point; waypoint: Waypoint }[];
+    bounds: { x0: number; y0: number; x1: number; y1: number };
+}
+
+const MILLI_DEG = Math.PI / 180_000;
+
+export function shapes(scene: Scene): Shapes | null {
+    const { table, payload } = scene;
+    const lat = table.column("est_lat_rad");
+    const lon = table.column("est_lon_rad");
+    if (lat === undefined || lon === undefined) return null;
+    const middle = centre(lat, lon);
+    if (middle === null) return null;
+    const on = plane(middle.lat, middle.lon);
+    const place = (la: number, lo: number): Point => (Number.isFinite(la) && Number.isFinite(lo) ? on.put(la, lo) : [NaN, NaN]);
+    const line = (n: number, at: (i: number) => Point): Line => {
+        const out = new Float64Array(2 * n);
+        for (let i = 0; i < n; i++) [out[2 * i], out[2 * i + 1]] = at(i);
+        return out;
+    };
+    const track = line(table.n, (i) => place(lat[i]!, lon[i]!));
+    const pathLat = table.column("path_lat_rad");
+    const pathLon = table.column("path_lon_rad");
+    const path = pathLat && pathLon ? line(table.n, (i) => place(pathLat[i]!, pathLon[i]!)) : null;
+    const course = table.column("course_rad");
+    const rnp = table.column("rnp_m");
+    const edge = (side: number): Line => line(table.n, (i) => {
+        const across = side * rnp![i]!;
+        const p = offset(pathLat![i]!, pathLon![i]!, across * Math.cos(course![i]!), -across * Math.sin(course![i]!));
+        return place(p.lat_rad, p.lon_rad);
+    });
+    const tunnel: Shapes["tunnel"] = path !== null && course && rnp ? { one: [edge(-1), edge(1)], two: [edge(-2), edge(2)] } : null;
+    const waypoints = payload.waypoints.map((waypoint) => ({ point: place(waypoint.lat_rad, waypoint.lon_rad), waypoint }));
+    const coast = payload.coastline.map((differences) => decode(differences, place));
+    return { plane: on, coast, track, path, tunnel, waypoints, bounds: boundsOf([track, ...(path ? [path] : [])]) };
+}
+
+function centre(lat: Float64Array, lon: Float64Array): { lat: number; lon: number } | null {
+    let [low, high, left, right, first] = [Infinity, -Infinity, Infinity, -Infinity, NaN];
+    for (let i = 0; i < lat.length; i++) {
+        if (!Number.isFinite(lat[i]!) || !Number.isFinite(lon[i]!)) continue;
+        if (Number.isNaN(first)) first = lon[i]!;
+        // Longitudes are taken around the first one, so that a track over the antimeridian has its centre on itself.
+        const turned = lon[i]! - 2 * Math.PI * Math.round((lon[i]! - first) / (2 * Math.PI));
+        [low, high, left, right] = [Math.min(low, lat[i]!), Math.max(high, lat[i]!), Math.min(left, turned), Math.max(right, turned)];
+    }
+    return low > high ? null : { lat: (low + high) / 2, lon: (left + right) / 2 };
+}
+
+function decode(differences: number[], place: (lat: number, lon: number) => Point): Line {
+    const out = new Float64Array(differences.length);
+    let [lon, lat] = [0, 0];
+    for (let i = 0; i < differences.length; i += 2) {
+        lon += differences[i]!;
+        lat += differences[i + 1]!;
+        [out[i], out[i + 1]] = place(lat * MILLI_DEG, lon * MILLI_DEG);
+    }
+    return out;
+}
+
+function boundsOf(lines: Line[]): Shapes["bounds"] {
+    const b = { x0: Infinity, y0: Infinity, x1: -Infinity, y1: -Infinity };
+    for (const line of lines) {
+        for (let i = 0; i < line.length; i += 2) {
+            if (!Number.isFinite(line[i]!)) continue;
+            b.x0 = Math.min(b.x0, line[i]!);
+            b.x1 = Math.max(b.x1, line[i]!);
+            b.y0 = Math.min(b.y0, line[i + 1]!);
+            b.y1 = Math.max(b.y1, line[i + 1]!);
+        }
+    }
+    return b;
+}

@@ -1,0 +1,56 @@
+// The verdict: state and words first, then the few numbers behind it.
+
+import type { Payload, Worst } from "../data/records.ts";
+import { utcOf } from "../data/events.ts";
+import { about } from "../chart/methods.ts";
+import { el, svg, valueOf } from "../show/dom.ts";
+import { clock, count, date, level, nauticalMiles, place, share, signedMetres } from "../show/format.ts";
+
+const STATES = {
+    inside: { word: "Inside", mark: "M5 13 L10 18 L19 7" },
+    outside: { word: "Outside", mark: "M6 6 L18 18 M18 6 L6 18" },
+    unknown: { word: "Unknown", mark: "M8.5 9 A3.6 3.6 0 1 1 12 13 L12 15 M12 18.4 L12 18.6" },
+} as const;
+
+export function verdict(host: HTMLElement, payload: Payload): void {
+    const { summary } = payload;
+    const v = summary.verdict;
+    const state = v.inside === null ? "unknown" : v.inside ? "inside" : "outside";
+    // Red is for integrity alone: an accuracy limit passed is a caution.
+    const lost = (v.worst_integrity?.margin_m ?? 0) < 0 || (v.share_contained ?? 1) < 1;
+    const tone = state === "outside" ? (lost ? "warning" : "caution") : state;
+    const method = summary.accuracy.find((m) => m.id === v.method);
+    const mark = svg("svg", { viewBox: "0 0 24 24", width: 26, height: 26, "aria-hidden": "true" }, svg("path", { d: STATES[state].mark }));
+    const section = el("section", { class: "verdict", id: "verdict", "data-tone": tone, "aria-label": "Verdict" },
+        el("p", { class: "state" }, mark, valueOf("inside", String(v.inside), STATES[state].word), el("span", { class: "requirement" }, v.requirement), v.experimental ? el("span", { class: "tag" }, "experimental") : null),
+        el("p", { class: "words" }, v.words),
+        facts(payload, method?.risk),
+        el("div", { class: "basis" },
+            el("p", {}, el("strong", {}, "Judged by "), method === undefined ? v.method : `${method.id}: ${about(method)}.`),
+            summary.assumptions.length > 0 ? el("div", {}, el("strong", {}, "Assumed"), el("ul", {}, ...summary.assumptions.map((a) => el("li", {}, a)))) : null,
+            el("p", {}, el("strong", {}, "Truth "), v.truth_known ? "known: errors are seen, bounds could be checked." : "unknown: bounds could not be checked against errors.")));
+    host.append(section);
+}
+
+function facts(payload: Payload, risk: number | undefined): HTMLElement {
+    const v = payload.summary.verdict;
+    const integrity = payload.record.risk_integrity;
+    const fact = (label: string, value: Node | string, more: string | null): HTMLElement => el("div", { class: "fact" }, el("dt", {}, label), el("dd", {}, value), more === null ? null : el("dd", { class: "more" }, more));
+    const rows = [
+        fact(`Bound within RNP${risk === undefined ? "" : `, ${level(risk)}`}`, valueOf("share_inside", v.share_inside, share(v.share_inside)), `of ${count(v.n_judged)} judged epochs`),
+        fact(`Bound within 2 RNP, ${level(integrity)}`, valueOf("share_contained", v.share_contained, share(v.share_contained)), `${count(v.n_epochs - v.n_judged)} of ${count(v.n_epochs)} epochs not judged`),
+    ];
+    if (v.worst_accuracy !== null) rows.push(worst("Worst margin to RNP", "worst_accuracy", v.worst_accuracy, payload));
+    if (v.worst_integrity !== null) rows.push(worst("Worst margin to 2 RNP", "worst_integrity", v.worst_integrity, payload));
+    return el("dl", { class: "facts" }, ...rows);
+}
+
+function worst(label: string, key: string, w: Worst, payload: Payload): HTMLElement {
+    const when = utcOf(w.time_ns, payload);
+    const along = w.along_m === null ? null : `${nauticalMiles(w.along_m, 1)} along the path`;
+    const many = payload.summary.tracks.length > 1 ? payload.summary.tracks.find((t) => t.track === w.track)?.label ?? w.track : null;
+    const where = [`${clock(when, true)} UTC ${date(when)}`, many, w.phase, along, place(w.lat_rad, w.lon_rad)].filter((x) => x !== null).join(" · ");
+    return el("div", { class: "fact" }, el("dt", {}, label),
+        el("dd", {}, valueOf(`${key}.margin_m`, w.margin_m, signedMetres(w.margin_m)), el("span", { class: "also" }, nauticalMiles(w.margin_m))),
+        el("dd", { class: "more" }, `bound ${signedMetres(w.bound_m).replace("+", "")} of ${nauticalMiles(w.limit_m)} · ${where}`));
+}

@@ -1,0 +1,98 @@
+// The page: verdict, pictures, tables, small print.
+
+import "uplot/dist/uPlot.min.css";
+import "./show/page.css";
+import { anp } from "./chart/anp.ts";
+import { lateral, vertical } from "./chart/deviation.ts";
+import { honesty } from "./chart/honesty.ts";
+import { exceedance } from "./chart/risk.ts";
+import { performance } from "./chart/scales.ts";
+import { states } from "./chart/states.ts";
+import type { Payload } from "./data/records.ts";
+import { indexAt } from "./data/events.ts";
+import { scene, type AxisName, type Component, type Scene } from "./data/scene.ts";
+import { Store } from "./data/store.ts";
+import { Table } from "./data/table.ts";
+import { map } from "./map/map.ts";
+import { cursorBar } from "./panel/cursorbar.ts";
+import { smallPrint } from "./panel/smallprint.ts";
+import { crossTrack, events, methods, phases, rejections, tracks } from "./panel/tables.ts";
+import { verdict } from "./panel/verdict.ts";
+import { choice, el } from "./show/dom.ts";
+import { choose, themeStore, type Choice } from "./show/theme.ts";
+
+class Page {
+    private readonly theme = themeStore();
+    private readonly axis = new Store<AxisName>("time");
+    private readonly upper = el("div", { class: "upper" });
+    private readonly charts = el("div", { class: "charts" });
+    private readonly bar = el("div");
+    private readonly selector = el("select", { id: "track", "aria-label": "Track shown" });
+    private readonly trackTable = el("div");
+    private current: Scene | null = null;
+    private ends: (() => void)[] = [];
+
+    constructor(private readonly payload: Payload) {}
+
+    async show(root: HTMLElement): Promise<void> {
+        const { payload } = this;
+        const { summary } = payload;
+        root.replaceChildren(this.header(), this.upper, this.charts);
+        verdict(root.querySelector("#verdict-place")!, payload);
+        honesty(root, summary);
+        const tables = el("section", { id: "tables" }, el("h2", {}, "The flight in numbers"), this.trackTable);
+        if (summary.phases.length > 0) tables.append(phases(payload));
+        for (const part of [crossTrack(payload), events(payload, () => this.current, (t) => this.select(t)), rejections(payload)]) if (part !== null) tables.append(part);
+        if (summary.tracks.length === 1) tables.querySelector("h2")!.textContent = "The flight in numbers";
+        else tables.querySelector("h2")!.textContent = "The tracks in numbers";
+        root.append(tables, methods(payload), smallPrint(payload), this.bar);
+        this.listTracks();
+        const first = payload.tracks[0];
+        if (first === undefined) this.charts.append(el("p", { class: "note" }, "No epochs to draw."));
+        else await this.select(summary.verdict.worst_accuracy?.track ?? first.track);
+        root.dataset.ready = "true";
+    }
+
+    /** Draws the charts of another track; the worst one when that is not embedded. */
+    async select(track: string): Promise<void> {
+        const { payload } = this;
+        const head = payload.tracks.find((t) => t.track === track) ?? payload.tracks[0]!;
+        const table = await Table.open(payload, head, document.getElementById(`navbound-track-${head.block}`)!.textContent);
+        this.ends.forEach((end) => end());
+        const now = scene(payload, table, this.theme, this.axis);
+        this.current = now;
+        this.selector.value = head.track;
+        const place = (component: Component, host: HTMLElement): (() => void) => component(host, now);
+        this.ends = [
+            place(map, this.upper), place(performance, this.upper), place(lateral, this.charts), place(vertical, this.charts), place(anp, this.charts),
+            place(exceedance, this.charts), place(states, this.charts), place(cursorBar, this.bar),
+        ];
+        const worst = payload.summary.verdict.worst_accuracy;
+        now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));
+        this.trackTable.replaceChildren(tracks(payload, () => head.track, (t) => void this.select(t)));
+    }
+
+    private header(): HTMLElement {
+        const { summary } = this.payload;
+        const theme = choice<Choice>("Theme", [["auto", "Auto"], ["light", "Light"], ["dark", "Dark"]], "auto", choose);
+        return el("header", {}, el("div", { class: "title" }, el("p", { class: "brand" }, "navbound"), el("h1", {}, summary.title)), el("div", { class: "head-tools" }, this.selectorBox(), theme), el("div", { id: "verdict-place" }));
+    }
+
+    private selectorBox(): HTMLElement | null {
+        if (this.payload.tracks.length < 2) return null;
+        this.selector.addEventListener("change", () => void this.select(this.selector.value));
+        return el("label", { class: "selector" }, "Track ", this.selector);
+    }
+
+    private listTracks(): void {
+        const labels = new Map(this.payload.summary.tracks.map((t) => [t.track, t.label]));
+        this.selector.append(...this.payload.tracks.map((t) => el("option", { value: t.track }, labels.get(t.track) ?? t.track)));
+    }
+}
+
+const root = document.getElementById("report")!;
+const payload = JSON.parse(document.getElementById("navbound-data")!.textContent) as Payload;
+new Page(payload).show(root).catch((error: unknown) => {
+    root.prepend(el("p", { role: "alert", class: "failed" }, `This page could not be drawn: ${error instanceof Error ? error.message : String(error)}. The records are in summary.json and epochs.parquet beside it.`));
+    throw error;
+});

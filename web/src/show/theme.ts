@@ -1,0 +1,26 @@
+// Light, dark and print from the same CSS variables; canvases ask for a colour by its name.
+
+import { Store } from "../data/store.ts";
+
+export type Colour = "ink" | "muted" | "rule" | "ground" | "panel" | "normal" | "caution" | "warning" | "path" | "limit" | "m1" | "m2" | "m3" | "m4" | "m5" | "s1" | "s2" | "s3" | "s4" | "s5" | "coast";
+
+export function colour(name: Colour): string {
+    return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+export type Choice = "auto" | "light" | "dark";
+
+export function choose(theme: Choice): void {
+    if (theme === "auto") delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = theme;
+}
+
+/** Counts theme changes, printing included. */
+export function themeStore(): Store<number> {
+    const store = new Store(0);
+    const changed = (): void => store.set(store.get() + 1);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
+    matchMedia("print").addEventListener("change", changed);
+    new MutationObserver(changed).observe(document.documentElement, { attributeFilter: ["data-theme"] });
+    return store;
+}
