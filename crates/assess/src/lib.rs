@@ -2,14 +2,12 @@
 //!
 //! A loop over epochs contains a call, not mathematics: the mathematics is in `navbound-core`.
 
-pub mod bounds;
-
-pub mod batch;
-pub mod tse;
 pub mod anp;
-pub mod monitor;
-pub mod states;
-pub mod sky;
-
+pub mod batch;
+pub mod bounds;
 pub mod error;
+pub mod monitor;
 pub mod plausible;
+pub mod sky;
+pub mod states;
+pub mod tse;

@@ -2,19 +2,18 @@
 //!
 //! Everything takes the risk (the tail), never the probability, and keeps full relative accuracy where the tail is small.
 
+pub mod beta;
 pub(crate) mod bivariate;
 pub mod chi;
 pub(crate) mod float;
 pub mod folded;
-pub mod beta;
-pub(crate) mod float;
 pub mod gamma;
 pub mod normal;
 pub mod prepared;
-pub(crate) mod root;
-pub(crate) mod student;
 pub(crate) mod quadrature;
 pub mod radius;
+pub(crate) mod root;
+pub(crate) mod student;
 
 pub use folded::FoldedQuantile;
 pub use normal::{one_sided_factor, tail, two_sided_factor};
