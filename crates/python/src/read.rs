@@ -38,6 +38,13 @@ fn gps_from_unix_ns<'py>(py: Python<'py>, unix_ns: PyReadonlyArray1<'py, i64>) -
     Ok(times.into_pyarray(py))
 }
 
+/// Unix time [ns] of GPS times [ns].
+#[pyfunction]
+fn unix_from_gps_ns<'py>(py: Python<'py>, time_ns: PyReadonlyArray1<'py, i64>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    let times: Vec<i64> = time_ns.as_slice()?.iter().map(|t| time::to_unix(GpsTime::from_nanoseconds(*t))).collect();
+    Ok(times.into_pyarray(py))
+}
+
 /// Navigation error (n, 3) [m], true minus estimated, east, north, up, of positions (n, 3): latitude, longitude [rad], height [m].
 #[pyfunction]
 fn navigation_error<'py>(
@@ -116,6 +123,7 @@ fn rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bou
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(read_rtklib, m)?)?;
     m.add_function(wrap_pyfunction!(gps_from_unix_ns, m)?)?;
+    m.add_function(wrap_pyfunction!(unix_from_gps_ns, m)?)?;
     m.add_function(wrap_pyfunction!(navigation_error, m)?)?;
     m.add_function(wrap_pyfunction!(plausible, m)?)
 }

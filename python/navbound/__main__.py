@@ -1,0 +1,5 @@
+"""`python -m navbound` is `navbound`."""
+
+from navbound.cli import main
+
+main()

@@ -1,0 +1,242 @@
+"""The command line. Exit status: 0 done, 2 wrong use, 3 unreadable data, 70 a bug of ours."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+import navbound
+from navbound import verify as vectors
+from navbound.errors import FormatError, InputError, NavboundError
+from navbound.methods import methods as all_methods
+from navbound.run.judge import DEFAULT_METHODS, Settings
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from navbound.run.directory import Run
+
+USAGE, UNREADABLE, OUR_BUG = 2, 3, 70
+
+app = typer.Typer(
+    help="How wrong an aircraft's position may be, and when that is not good enough.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+out_console = Console()
+err_console = Console(stderr=True)
+
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")]
+Out = Annotated[Path | None, typer.Option("--out", help="Run directory to write. [default: out/<name>]")]
+Methods = Annotated[str, typer.Option("--methods", help="Comma-separated method ids; see `navbound methods`.")]
+
+
+def _settings(methods: str) -> Settings:
+    ids = tuple(m.strip() for m in methods.split(",") if m.strip())
+    return Settings(methods=ids)
+
+
+def _command() -> str:
+    return shlex.join(["navbound", *sys.argv[1:]])
+
+
+@app.command()
+def fly(
+    scenario: Annotated[str, typer.Argument(help="A shipped scenario (beijing-shanghai) or a TOML file.")],
+    flights: Annotated[int, typer.Option(help="How many flights, on all cores.")] = 1,
+    seed: Annotated[int | None, typer.Option(help="Overrides the scenario's seed.")] = None,
+    methods: Methods = ",".join(DEFAULT_METHODS),
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Fly a scenario, judge every epoch, write the report."""
+    out = out or Path("out") / Path(scenario).stem
+    with _Progress(flights) as progress:
+        run = navbound.fly(scenario, flights=flights, seed=seed, settings=_settings(methods), out=out, progress=progress, command=_command())
+    _show(run, json=json)
+
+
+@app.command()
+def analyze(
+    files: Annotated[list[Path], typer.Argument(help="Tables (CSV, Parquet, JSON; plain or gzip) or RTKLIB .pos files.")],
+    path: Annotated[
+        str | None, typer.Option(help="Where the aircraft should be: a runway (LFPG/08R), auto (the runway each aircraft lands on), or a route file.")
+    ] = None,
+    spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3', 'RNP AR 0.1' or 'RNP APCH'.")] = "RNP 0.3",
+    truth: Annotated[Path | None, typer.Option(help="A file with true positions, joined by time.")] = None,
+    truth_tolerance_s: Annotated[float, typer.Option(help="How far apart in time a truth epoch may be.")] = 0.1,
+    sigma_m: Annotated[float | None, typer.Option(help="Stated standard deviation of the position per axis, where the file has no covariance.")] = None,
+    column: Annotated[list[str] | None, typer.Option("--map", help="Column mapping: canonical=column[:unit]; may be repeated.")] = None,
+    methods: Methods = ",".join(DEFAULT_METHODS),
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Judge recorded tracks against a path and a specification."""
+    out = out or Path("out") / files[0].name.split(".")[0]
+    run = navbound.analyze(
+        files,
+        path=path,
+        spec=spec,
+        truth=truth,
+        truth_tolerance_s=truth_tolerance_s,
+        sigma_m=sigma_m,
+        columns=column or [],
+        settings=_settings(methods),
+        out=out,
+        command=_command(),
+    )
+    _show(run, json=json)
+
+
+@app.command()
+def study(
+    name: Annotated[str, typer.Argument(help="tse-coverage")],
+    json: Json = False,
+) -> None:
+    """Repeat a published evaluation and say which of its numbers come out."""
+    result = navbound.study(name)
+    if json:
+        sys.stdout.write(result.model_dump_json(indent=1) + "\n")
+    else:
+        out_console.print(result.table())
+
+
+@app.command()
+def methods(json: Json = False) -> None:
+    """List every method with its source, provenance and promises."""
+    found = list(all_methods().values())
+    if json:
+        import json as encoder  # noqa: PLC0415
+
+        sys.stdout.write(encoder.dumps([m.__dict__ for m in found], indent=1) + "\n")
+        return
+    table = Table(title="Methods", show_lines=True)
+    for heading in ("id", "what", "bounds |…|", "source", "provenance", "assumes", "may alert"):
+        table.add_column(heading, overflow="fold")
+    for m in found:
+        table.add_row(m.id, m.title, m.error_column, m.source, m.provenance, m.assumes, "yes" if m.may_alert else "no")
+    out_console.print(table)
+
+
+@app.command()
+def verify(json: Json = False) -> None:
+    """Run the reference vectors on this machine; exit status 70 if one fails."""
+    outcomes = [vectors.run(file) for file in vectors.files()]
+    failures = [f"{o.file.id}: {text}" for o in outcomes for text in o.failures]
+    if json:
+        import json as encoder  # noqa: PLC0415
+
+        rows = [
+            {
+                "id": o.file.id,
+                "function": f"navbound.{o.file.call}",
+                "source": o.file.source,
+                "provenance": o.file.provenance,
+                "n_cases": o.checked,
+                "worst_relative": o.worst_relative,
+                "worst_share_of_tolerance": o.worst_share,
+                "failures": o.failures,
+            }
+            for o in outcomes
+        ]
+        sys.stdout.write(encoder.dumps(rows, indent=1) + "\n")
+    else:
+        table = Table(title=f"navbound {navbound.__version__}: reference vectors on this machine")
+        for heading, justify in (("vectors", "left"), ("function", "left"), ("checked against", "left"), ("cases", "right"), ("worst relative", "right"), ("of tolerance", "right"), ("", "left")):
+            table.add_column(heading, justify=justify, overflow="fold")  # type: ignore[arg-type]
+        for o in outcomes:
+            verdict = "ok" if not o.failures else f"{len(o.failures)} FAILED"
+            table.add_row(o.file.id, o.file.call, f"{o.file.source} ({o.file.provenance})", str(o.checked), f"{o.worst_relative:.1e}", f"{100 * o.worst_share:.2g} %", verdict)
+        out_console.print(table)
+        out_console.print(f"{sum(o.checked for o in outcomes)} cases of {len(outcomes)} files, {len(failures)} failures.")
+        for text in failures[:20]:
+            err_console.print(text, markup=False)
+    if failures or not outcomes:
+        raise typer.Exit(OUR_BUG)
+
+
+@app.command()
+def show(
+    run_directory: Annotated[Path, typer.Argument(help="A run directory.")],
+    json: Json = False,
+) -> None:
+    """Print the verdict of a finished run."""
+    from navbound.run import directory  # noqa: PLC0415
+
+    _show(directory.load(run_directory), json=json)
+
+
+class _Progress:
+    """A bar on a terminal, nothing elsewhere."""
+
+    def __init__(self, total: int) -> None:
+        self._bar = Progress(
+            TextColumn("flights"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), console=err_console, disable=total < 2 or not err_console.is_terminal
+        )
+        self._task = self._bar.add_task("flights", total=total)
+
+    def __enter__(self) -> Callable[[int, int], None]:
+        self._bar.start()
+        return lambda done, _total: self._bar.update(self._task, completed=done)
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.stop()
+
+
+def _show(run: Run, *, json: bool) -> None:
+    if json:
+        sys.stdout.write(run.summary.model_dump_json(indent=1) + "\n")
+        return
+    summary = run.summary
+    out_console.print(summary.title, style="bold", markup=False)
+    out_console.print(summary.verdict.words, markup=False, highlight=False)
+    rejected = sum(r.count for r in summary.rejected)
+    if rejected:
+        out_console.print(f"{rejected} rows were not used:", markup=False)
+        for r in summary.rejected:
+            where = "" if r.first_line is None else f" (first: line {r.first_line}: {r.example})"
+            out_console.print(f"  {r.count} x {r.reason}{where}", markup=False, highlight=False)
+    if summary.tracks:
+        cautions, warnings = (sum(getattr(t, n) for t in summary.tracks) for n in ("n_cautions", "n_warnings"))
+        unavailable = sum(t.n_unavailable for t in summary.tracks)
+        out_console.print(f"Alerts: {cautions} cautions, {warnings} warnings, {unavailable} losses of monitoring, over {len(summary.tracks)} tracks.")
+    if run.path is not None:
+        out_console.print(f"Report: {run.report.resolve()}", markup=False, highlight=False, soft_wrap=True)
+
+
+def main() -> None:
+    """Entry point: every refusal is a sentence, every surprise is ours."""
+    try:
+        status = app(standalone_mode=False)
+        sys.exit(status if isinstance(status, int) else 0)
+    except typer.Abort:
+        sys.exit(130)
+    except KeyboardInterrupt:
+        sys.exit(130)
+    except FormatError as e:
+        _die(str(e), UNREADABLE)
+    except (InputError, NavboundError) as e:
+        _die(str(e), USAGE)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except Exception as e:
+        if hasattr(e, "format_message"):  # a usage error of the command-line parser
+            _die(e.format_message(), USAGE)
+        if os.environ.get("NAVBOUND_TRACEBACK"):
+            raise
+        _die(f"this is a bug in navbound, please report it: {type(e).__name__}: {e} (set NAVBOUND_TRACEBACK=1 for the traceback)", OUR_BUG)
+
+
+def _die(message: str, status: int) -> None:
+    err_console.print(f"navbound: {message}", markup=False, highlight=False, soft_wrap=True)
+    sys.exit(status)

@@ -1,0 +1,118 @@
+"""The three jobs as functions: fly, analyze, study. The command line is a thin skin over these."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from navbound import scenario as scenarios
+from navbound.errors import InputError
+from navbound.run import analyze as recorded
+from navbound.run import directory
+from navbound.run import fly as simulated
+from navbound.run.judge import Settings, judge
+from navbound.run.requirement import requirement
+from navbound.run.studies import STUDIES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from navbound.run.directory import Run
+    from navbound.run.studies import Study
+
+MAX_FLIGHTS = 1000
+"""One process holds all epochs of a run; a thousand two-hour flights are 7 million rows (about 3 GB)."""
+
+
+def fly(
+    scenario: str | Path = "beijing-shanghai",
+    *,
+    flights: int = 1,
+    seed: int | None = None,
+    settings: Settings | None = None,
+    out: str | Path | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    command: str = "",
+) -> Run:
+    """Fly a scenario and judge every epoch.
+
+    Parameters
+    ----------
+    scenario : str or Path
+        Name of a shipped scenario, or a TOML file.
+    flights : int
+        How many flights, each with random streams of its own; results do not depend on the number of threads. [1]
+    seed : int, optional
+        Overrides the scenario's seed. [1]
+    settings : Settings, optional
+        Methods and risks.
+    out : str or Path, optional
+        Run directory to write; without it nothing is written.
+    progress : callable, optional
+        Called with (done, all) flights.
+    command : str
+        For the run record.
+
+    Raises
+    ------
+    InputError
+        No such scenario, or a number outside its domain.
+    FormatError
+        A scenario file that cannot be read, or a run directory that cannot be written.
+    """
+    if not 1 <= flights <= MAX_FLIGHTS:
+        raise InputError("flights", flights, "1", f"[1, {MAX_FLIGHTS}]")
+    material = simulated.material(scenarios.load(scenario), flights=flights, seed=seed, progress=progress)
+    return _finish(judge(material, settings, command), out)
+
+
+def analyze(
+    files: str | Path | Sequence[str | Path],
+    *,
+    spec: str = "RNP 0.3",
+    phase: str | None = None,
+    settings: Settings | None = None,
+    out: str | Path | None = None,
+    command: str = "",
+    **reading: object,
+) -> Run:
+    """Read recorded tracks and judge every epoch.
+
+    Parameters
+    ----------
+    files : sequence of paths
+        CSV, Parquet, JSON tables or RTKLIB ``.pos``, plain or gzip.
+    spec, phase : str
+        Navigation specification, as :func:`navbound.run.requirement.requirement` reads it.
+    settings, out, command
+        As in :func:`fly`.
+    **reading
+        See :func:`navbound.run.analyze.material`: ``path``, ``truth``, ``sigma_m``, ``columns``, ...
+
+    Raises
+    ------
+    InputError
+        An argument outside its domain.
+    FormatError
+        A file that cannot be read; the message names file, line, field and the text found.
+    """
+    wanted = requirement(spec, phase)
+    material = recorded.material(files, requirement=wanted.words, rnp_m=wanted.rnp_m, **reading)  # type: ignore[arg-type]
+    return _finish(judge(material, settings, command), out)
+
+
+def study(name: str) -> Study:
+    """Run a study by its name.
+
+    Raises
+    ------
+    InputError
+        No such study; the message lists those that exist.
+    """
+    if name not in STUDIES:
+        raise InputError("study", name, domain=", ".join(STUDIES))
+    return STUDIES[name]()
+
+
+def _finish(run: Run, out: str | Path | None) -> Run:
+    return run if out is None else directory.write(run, Path(out))

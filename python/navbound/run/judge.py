@@ -1,0 +1,225 @@
+"""From epochs to a judged run: bounds, monitor, states, evaluation. It does not ask whether the epochs were flown or recorded."""
+
+from __future__ import annotations
+
+import math
+import platform
+import sys
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+import numpy as np
+import polars as pl
+
+from navbound import __version__, rnp, tse
+from navbound.errors import InputError
+from navbound.methods import BoundColumn, bounds, column_of, method
+from navbound.run.directory import Run
+from navbound.run.records import RunRecord
+from navbound.run.summarise import summarise
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from navbound.run.material import Material
+
+DEFAULT_METHODS = (
+    "tse-exact",
+    "tse-ltem",
+    "tse-ctem-foot",
+    "tse-sqsm",
+    "tse-vertical",
+    "anp-circle",
+    "anp-sphere",
+    "anp-along",
+    "anp-cross",
+    "anp-vertical",
+)
+"""Shown unless others are asked for: the exact bounds, and the published approximations beside them."""
+
+STATE_LEVELS_NM = (0.3, 1.0, 2.0, 5.0)
+"""The levels of the state classifier's authors (Ostroumov and Kuzmenko 2018)."""
+
+WITHOUT_PATH = "anp-circle"
+"""What judges when there is no path to deviate from: the 95 % horizontal radius against RNP, as ANP against RNP on a flight deck."""
+
+WITH_PATH = "tse-exact"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to judge."""
+
+    methods: tuple[str, ...] = DEFAULT_METHODS
+    risk_accuracy: float = 0.05
+    risk_integrity: float = 1e-5
+
+
+def judge(material: Material, settings: Settings | None = None, command: str = "") -> Run:
+    """Bound every epoch, run the monitor over every track, evaluate against truth where there is one.
+
+    Parameters
+    ----------
+    material : Material
+        Epochs of any origin.
+    settings : Settings, optional
+        Methods and risks.
+    command : str
+        What the user typed, for the run record.
+
+    Raises
+    ------
+    InputError
+        An unknown method, no epochs, or a method that may not feed an alert chosen to judge.
+    """
+    settings = settings or Settings()
+    if material.epochs.height == 0:
+        raise InputError("epochs", 0, "1", "at least one epoch")
+    epochs = _with_errors(material.epochs)
+    judging = WITH_PATH if _has_values(epochs, "fte_m") else WITHOUT_PATH
+    ids = list(dict.fromkeys((judging, *settings.methods)))
+    if not method(judging).may_alert:
+        raise InputError("method", judging, domain="methods that may feed an alert")
+    epochs = _with_bounds(epochs, ids, judging, settings)
+    epochs = _with_risks(epochs)
+    epochs, events, counters = _with_alerts(epochs, judging, material.sample_period_s)
+    epochs, states = _with_states(epochs, settings.risk_accuracy)
+    shown = [i for i in ids if i == judging or _has_values(epochs, method(i).column)]
+    summary = summarise(material, epochs, events, shown, judging, states, settings.risk_accuracy, settings.risk_integrity)
+    record = RunRecord(
+        navbound_version=__version__,
+        command=command,
+        created_utc=datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        kind=material.kind,
+        scenario=material.scenario,
+        seed=material.seed,
+        inputs=material.inputs,
+        methods=shown,
+        risk_accuracy=settings.risk_accuracy,
+        risk_integrity=settings.risk_integrity,
+        settings=material.settings | {"monitor": counters},
+        platform=f"Python {platform.python_version()}, {sys.platform} {platform.machine()}",
+    )
+    return Run(summary, record, epochs, events, material.waypoints)
+
+
+def _has_values(epochs: pl.DataFrame, name: str) -> bool:
+    return name in epochs.columns and bool(np.isfinite(column_of(epochs, name)).any())
+
+
+def _with_errors(epochs: pl.DataFrame) -> pl.DataFrame:
+    """The navigation error along its other axes, and the total system error, where truth is known."""
+    course = pl.col("course_rad")
+    if "nse_e_m" in epochs.columns:
+        east, north = pl.col("nse_e_m"), pl.col("nse_n_m")
+        epochs = epochs.with_columns((east.pow(2) + north.pow(2)).sqrt().alias("nse_h_m"))
+        if "nse_u_m" in epochs.columns:
+            epochs = epochs.with_columns((pl.col("nse_h_m").pow(2) + pl.col("nse_u_m").pow(2)).sqrt().alias("nse_3d_m"))
+        if "course_rad" in epochs.columns:
+            epochs = epochs.with_columns(
+                (east * course.sin() + north * course.cos()).alias("nse_along_m"),
+                (east * course.cos() - north * course.sin()).alias("nse_cross_m"),
+            )
+            if "fte_m" in epochs.columns:
+                epochs = epochs.with_columns((pl.col("fte_m") + pl.col("nse_cross_m")).alias("tse_m"))
+            if {"fte_v_m", "nse_u_m", "path_angle_rad"} <= set(epochs.columns):
+                # Above a sloping path an error along the course is an error of height (TSE specification, section 4.5).
+                slope = pl.col("path_angle_rad").tan()
+                epochs = epochs.with_columns((pl.col("fte_v_m") + pl.col("nse_u_m") - slope * pl.col("nse_along_m")).alias("tse_v_m"))
+    if {"cov_ee_m2", "cov_en_m2", "cov_nn_m2", "course_rad"} <= set(epochs.columns):
+        across = (
+            pl.col("cov_ee_m2") * course.cos().pow(2)
+            - 2 * pl.col("cov_en_m2") * course.sin() * course.cos()
+            + pl.col("cov_nn_m2") * course.sin().pow(2)
+        )
+        epochs = epochs.with_columns(across.sqrt().alias("sigma_cross_m"))
+    return epochs
+
+
+def _with_bounds(epochs: pl.DataFrame, ids: list[str], judging: str, settings: Settings) -> pl.DataFrame:
+    usable = _usable(epochs)
+    columns: dict[str, NDArray[np.float64]] = {}
+    for method_id in ids:
+        wanted = method(method_id)
+        accuracy = bounds(epochs, method_id, settings.risk_accuracy)
+        integrity = bounds(epochs, method_id, settings.risk_integrity)
+        columns[wanted.column] = np.where(usable, accuracy.bound_m, np.nan)
+        columns[wanted.integrity_column] = np.where(usable, integrity.bound_m, np.nan)
+        if method_id == judging:
+            epochs = _with_reasons(epochs, accuracy, usable)
+    return epochs.with_columns(pl.Series(name, values, nan_to_null=True) for name, values in columns.items())
+
+
+def _with_reasons(epochs: pl.DataFrame, judged: BoundColumn, usable: NDArray[np.bool_]) -> pl.DataFrame:
+    """An epoch that cannot be judged says why, unless its reader said so already."""
+    words = pl.Series([None, *(words for _, words in judged.reasons)], dtype=pl.String)
+    status = pl.Series(["ok", *("invalid_input" if invalid else "not_available" for invalid, _ in judged.reasons)])
+    refused = pl.Series(usable & (judged.reason > 0))
+    code = judged.reason.astype(np.int64)
+    return epochs.with_columns(
+        pl.when(refused).then(status.gather(code)).otherwise(pl.col("status")).alias("status"),
+        pl.when(refused).then(words.gather(code)).otherwise(pl.col("reason")).alias("reason"),
+    )
+
+
+def _with_risks(epochs: pl.DataFrame) -> pl.DataFrame:
+    if not _has_values(epochs, "fte_m") or "sigma_cross_m" not in epochs.columns:
+        return epochs
+    fte, sigma, limit = (column_of(epochs, name) for name in ("fte_m", "sigma_cross_m", "rnp_m"))
+    known = np.isfinite(fte) & np.isfinite(sigma) & np.isfinite(limit) & _usable(epochs)
+    added = {}
+    for name, factor in (("p_exceed_rnp", 1.0), ("p_exceed_2rnp", 2.0)):
+        risk = np.full(epochs.height, np.nan)
+        risk[known] = tse.exceedance_risk(np.abs(fte[known]), sigma[known], factor * limit[known])
+        added[name] = risk
+    return epochs.with_columns(pl.Series(name, values, nan_to_null=True) for name, values in added.items())
+
+
+def _with_alerts(epochs: pl.DataFrame, judging: str, sample_period_s: float) -> tuple[pl.DataFrame, pl.DataFrame, dict[str, object]]:
+    judged = method(judging)
+    # A finished flight alerts nobody: the chain to the crew is a matter of the live monitor.
+    monitor = rnp.Monitor(sample_period_s=sample_period_s, time_to_alert_s=math.inf)
+    result = monitor.run(epochs, accuracy=judged.column, integrity=judged.integrity_column)
+    described = {
+        "exposure": monitor.exposure,
+        "stale_after_s": monitor.stale_after_s,
+        "time_to_crew_s": monitor.time_to_crew_s,
+        **asdict(result.counters),
+    }
+    return epochs.with_columns(result.alert.alias("alert")), _in_words(result.events), described
+
+
+def _in_words(events: pl.DataFrame) -> pl.DataFrame:
+    sentence = {
+        "caution": "accuracy bound above RNP",
+        "warning": "integrity bound above twice RNP",
+        "unavailable": "no usable epoch: loss of monitoring",
+    }
+    return events.with_columns(pl.col("kind").replace_strict(sentence).alias("words"))
+
+
+def _with_states(epochs: pl.DataFrame, risk_accuracy: float) -> tuple[pl.DataFrame, list[str]]:
+    """How likely the total system error is in each level's band, and the tightest level that its accuracy bound supports.
+
+    The probabilities come from the law of the error itself (docs/methods/rnp-state.md), with the boundaries at the RNP values, since the
+    flight technical error of every epoch is known.
+    """
+    if not _has_values(epochs, "fte_m") or "sigma_cross_m" not in epochs.columns:
+        return epochs, []
+    classifier = rnp.StateClassifier(STATE_LEVELS_NM)
+    fte, sigma = column_of(epochs, "fte_m"), column_of(epochs, "sigma_cross_m")
+    known = _usable(epochs) & np.isfinite(fte) & (sigma > 0)
+    probability = np.full((epochs.height, len(classifier.names)), np.nan)
+    probability[known] = classifier.probabilities(fte[known], sigma[known])
+    beyond = 1.0 - np.cumsum(probability, axis=1)
+    decided = np.argmax(beyond <= risk_accuracy, axis=1)
+    names = [classifier.names[k] if ok else None for k, ok in zip(decided.tolist(), known.tolist(), strict=True)]
+    return epochs.with_columns(
+        pl.Series("state", names, dtype=pl.String),
+        *(pl.Series(f"p_state_{k + 1}", probability[:, k], nan_to_null=True) for k in range(len(classifier.names))),
+    ), classifier.names
+
+
+def _usable(epochs: pl.DataFrame) -> NDArray[np.bool_]:
+    return epochs.get_column("status").is_in(rnp.USABLE).to_numpy()

@@ -1,0 +1,273 @@
+"""Judged epochs to the records that a person reads first."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import polars as pl
+
+from navbound import evaluation
+from navbound.methods import column_of, method
+from navbound.run.records import (
+    EventSummary,
+    Honesty,
+    MethodResult,
+    PhaseSummary,
+    Summary,
+    TrackSummary,
+    Verdict,
+    Worst,
+)
+from navbound.run.words import honesty_words, verdict_words
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from navbound.run.material import Material
+
+LISTED_EVENTS = 500
+"""Events in summary.json; all of them are in events.parquet, and the report says how many are not listed."""
+
+COVARIANCE_COLUMNS = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
+
+
+def summarise(
+    material: Material,
+    epochs: pl.DataFrame,
+    events: pl.DataFrame,
+    ids: list[str],
+    judging: str,
+    states: list[str],
+    risk_accuracy: float,
+    risk_integrity: float,
+) -> Summary:
+    """Every record of summary.json.
+
+    Parameters
+    ----------
+    material : Material
+        Where the epochs came from.
+    epochs, events : DataFrame
+        After judging.
+    ids : list of str
+        Methods evaluated, the judging one first.
+    judging : str
+        The method whose bound is compared with RNP.
+    states : list of str
+        Names behind ``p_state_1``, ...
+    risk_accuracy, risk_integrity : float
+        The two risks. [1]
+    """
+    judged = method(judging)
+    margins = epochs.with_columns(
+        (pl.col(judged.column) / pl.col("rnp_m")).alias("_ratio"),
+        (pl.col("rnp_m") - pl.col(judged.column)).alias("_margin"),
+        (2 * pl.col("rnp_m") - pl.col(judged.integrity_column)).alias("_margin_integrity"),
+    )
+    coverage_kind = evaluation.CONDITIONAL if material.kind == "fly" else evaluation.REPEATED
+    accuracy = [_method_result(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
+    verdict = _verdict(material, margins, judging, accuracy, risk_accuracy, risk_integrity)
+    return Summary(
+        kind=material.kind,
+        title=material.title,
+        verdict=verdict,
+        coverage_kind=coverage_kind,
+        assumptions=material.assumptions,
+        phases=_phases(margins, judged.column, material.sample_period_s, events),
+        tracks=_tracks(margins, material.labels, events),
+        accuracy=accuracy,
+        integrity=[_method_result(epochs, i, risk_integrity, coverage_kind, integrity=True) for i in ids],
+        honesty=_honesty(epochs),
+        states=states,
+        events=[EventSummary(**row) for row in events.head(LISTED_EVENTS).iter_rows(named=True)],
+        cross_track=material.cross_track,
+        rejected=material.rejected,
+        n_status=dict(epochs.get_column("status").value_counts().sort("status").iter_rows()),
+    )
+
+
+def _verdict(
+    material: Material,
+    margins: pl.DataFrame,
+    judging: str,
+    accuracy: list[MethodResult],
+    risk_accuracy: float,
+    risk_integrity: float,
+) -> Verdict:
+    judged = margins.filter(pl.col("_margin").is_not_null())
+    share = _mean(judged.get_column("_margin") >= 0)
+    contained = _mean(margins.get_column("_margin_integrity").drop_nulls() >= 0)
+    inside = None if share is None or contained is None else share == 1.0 and contained == 1.0
+    worst = _worst(margins, "_margin", method(judging).column, 1.0)
+    worst_integrity = _worst(margins, "_margin_integrity", method(judging).integrity_column, 2.0)
+    truth_known = accuracy[0].coverage is not None
+    verdict = Verdict(
+        inside=inside,
+        words="",
+        requirement=material.requirement,
+        method=judging,
+        share_inside=share,
+        share_contained=contained,
+        n_epochs=margins.height,
+        n_judged=judged.height,
+        worst_accuracy=worst,
+        worst_integrity=worst_integrity,
+        truth_known=truth_known,
+    )
+    return verdict.model_copy(update={"words": verdict_words(verdict, accuracy[0], material.assumptions, risk_accuracy, risk_integrity)})
+
+
+def _mean(flags: pl.Series) -> float | None:
+    return None if flags.len() == 0 else float(flags.cast(pl.Float64).mean())  # type: ignore[arg-type]
+
+
+def _worst(margins: pl.DataFrame, margin: str, bound: str, factor: float) -> Worst | None:
+    known = margins.filter(pl.col(margin).is_not_null())
+    if known.height == 0:
+        return None
+    row = known.row(int(known.get_column(margin).arg_min() or 0), named=True)
+    return Worst(
+        track=row["track"],
+        time_ns=row["time_ns"],
+        margin_m=row[margin],
+        bound_m=row[bound],
+        limit_m=factor * row["rnp_m"],
+        phase=row.get("phase"),
+        along_m=row.get("along_m"),
+        lat_rad=row["est_lat_rad"],
+        lon_rad=row["est_lon_rad"],
+    )
+
+
+def _phases(margins: pl.DataFrame, bound: str, sample_period_s: float, events: pl.DataFrame) -> list[PhaseSummary]:
+    if "phase" not in margins.columns:
+        return []
+    covered = pl.lit(None, dtype=pl.Float64)
+    if "tse_m" in margins.columns and bound.startswith("tse"):
+        covered = (pl.col("tse_m").abs() <= pl.col(bound)).cast(pl.Float64).mean()
+    risk = pl.col("p_exceed_2rnp") if "p_exceed_2rnp" in margins.columns else pl.lit(None, dtype=pl.Float64)
+    grouped = margins.group_by("phase", "rnp_m", maintain_order=True).agg(
+        pl.len().alias("n_epochs"),
+        (pl.col("_margin") >= 0).cast(pl.Float64).mean().alias("share_inside"),
+        pl.col("_ratio").max().alias("worst_ratio"),
+        risk.max().alias("p_exceed_2rnp_max"),
+        risk.mean().alias("p_exceed_2rnp_mean"),
+        covered.alias("coverage"),
+    )
+    phase_of = margins.select("track", pl.col("time_ns").alias("onset_ns"), "phase", "rnp_m")
+    alerts = events.filter(pl.col("kind").is_in(["caution", "warning"])).join(phase_of, on=["track", "onset_ns"])
+    counts = {
+        (phase, limit, kind): n for phase, limit, kind, n in alerts.group_by("phase", "rnp_m", "kind").len().iter_rows()
+    }
+    return [
+        PhaseSummary(
+            **row,
+            duration_s=row["n_epochs"] * sample_period_s,
+            n_cautions=counts.get((row["phase"], row["rnp_m"], "caution"), 0),
+            n_warnings=counts.get((row["phase"], row["rnp_m"], "warning"), 0),
+        )
+        for row in grouped.iter_rows(named=True)
+    ]
+
+
+def _tracks(margins: pl.DataFrame, labels: dict[str, str], events: pl.DataFrame) -> list[TrackSummary]:
+    fte = pl.col("fte_m") if "fte_m" in margins.columns else pl.lit(None, dtype=pl.Float64)
+    grouped = margins.group_by("track", maintain_order=True).agg(
+        pl.len().alias("n_epochs"),
+        pl.col("time_ns").min().alias("start_ns"),
+        ((pl.col("time_ns").max() - pl.col("time_ns").min()).cast(pl.Float64) * 1e-9).alias("duration_s"),
+        fte.mean().alias("fte_mean_m"),
+        fte.std(ddof=0).alias("fte_std_m"),
+        fte.abs().quantile(0.95, interpolation="nearest").alias("fte_abs95_m"),
+        (pl.col("_margin") >= 0).cast(pl.Float64).mean().alias("share_inside"),
+        pl.col("_ratio").max().alias("worst_ratio"),
+        pl.col("_margin").min().alias("worst_margin_m"),
+    )
+    counts = {(track, kind): n for track, kind, n in events.group_by("track", "kind").len().iter_rows()}
+    return [
+        TrackSummary(
+            **row,
+            label=labels.get(row["track"], row["track"]),
+            n_cautions=counts.get((row["track"], "caution"), 0),
+            n_warnings=counts.get((row["track"], "warning"), 0),
+            n_unavailable=counts.get((row["track"], "unavailable"), 0),
+        )
+        for row in grouped.iter_rows(named=True)
+    ]
+
+
+def _codes(epochs: pl.DataFrame) -> NDArray[np.int64]:
+    """Tracks as integers in order of appearance."""
+    return epochs.get_column("track").rle_id().cast(pl.Int64).to_numpy()
+
+
+def _method_result(epochs: pl.DataFrame, method_id: str, risk: float, coverage_kind: str, *, integrity: bool) -> MethodResult:
+    m = method(method_id)
+    bound = column_of(epochs, m.integrity_column if integrity else m.column)
+    known = np.isfinite(bound)
+    described = {
+        "id": m.id,
+        "title": m.title,
+        "source": m.source,
+        "provenance": m.provenance,
+        "assumes": m.assumes,
+        "error_column": m.error_column,
+        "may_alert": m.may_alert,
+        "risk": risk,
+        "n": int(known.sum()),
+        "mean_m": float(bound[known].mean()) if known.any() else None,
+        "max_m": float(bound[known].max()) if known.any() else None,
+    }
+    scored: dict[str, float | None] = dict.fromkeys(
+        ("coverage", "coverage_low", "coverage_high", "n_effective", "winkler_m", "pinball_m")
+    )
+    if m.error_column in epochs.columns:
+        error = np.abs(column_of(epochs, m.error_column))
+        both = known & np.isfinite(error)
+        if both.any():
+            score = evaluation.bound(error[both], bound[both], risk, track=_codes(epochs)[both], coverage_kind=coverage_kind)
+            scored = {
+                "coverage": score.coverage,
+                "coverage_low": score.coverage_low,
+                "coverage_high": score.coverage_high,
+                "n_effective": score.n_effective,
+                "winkler_m": score.winkler_m,
+                "pinball_m": score.pinball_m,
+            }
+    return MethodResult.model_validate(described | scored)
+
+
+def _honesty(epochs: pl.DataFrame) -> Honesty | None:
+    """NEES and PIT in three dimensions where the vertical is known, otherwise in two."""
+    vertical = {"nse_u_m", "cov_uu_m2"} <= set(epochs.columns)
+    errors = ("nse_e_m", "nse_n_m", "nse_u_m") if vertical else ("nse_e_m", "nse_n_m")
+    if not set(errors) <= set(epochs.columns) or "cov_ee_m2" not in epochs.columns:
+        return None
+    error = np.column_stack([column_of(epochs, name) for name in errors])
+    upper = np.column_stack([column_of(epochs, name) for name in COVARIANCE_COLUMNS[: 6 if vertical else 3]])
+    usable = epochs.get_column("status").is_in(["ok", "degraded"]).to_numpy()
+    known = usable & np.isfinite(error).all(axis=1) & np.isfinite(upper).all(axis=1)
+    if not known.any():
+        return None
+    ee, en, nn, *rest = upper[known].T
+    rows = [[ee, en], [en, nn]]
+    if vertical:
+        eu, nu, uu = rest
+        rows = [[ee, en, eu], [en, nn, nu], [eu, nu, uu]]
+    covariance = np.moveaxis(np.array(rows), 2, 0)
+    track = _codes(epochs)[known]
+    nees = evaluation.nees(error[known], covariance, track=track)
+    pit = evaluation.pit(error[known], covariance, track=track)
+    return Honesty(
+        n=nees.n,
+        n_effective=nees.n_effective,
+        dimension=nees.dimension,
+        nees_mean=nees.nees_mean,
+        nees_low=nees.nees_low,
+        nees_high=nees.nees_high,
+        pit_counts=pit.counts,
+        pit_low=pit.low,
+        pit_high=pit.high,
+        words=honesty_words(nees),
+    )

@@ -1,0 +1,84 @@
+"""Numbers as a navigator says them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from navbound.time import utc_text
+
+if TYPE_CHECKING:
+    from navbound.evaluation import Nees
+    from navbound.run.records import MethodResult, Verdict, Worst
+
+METRES_PER_NM = 1852.0
+
+
+def length(metres: float) -> str:
+    """A length with three significant digits; nautical miles from half a mile up."""
+    if abs(metres) >= 0.5 * METRES_PER_NM:
+        return f"{metres / METRES_PER_NM:.3g} NM"
+    return f"{metres:.3g} m" if abs(metres) < 100 else f"{metres:.0f} m"
+
+
+def share(fraction: float) -> str:
+    """A share that never rounds up to all or down to none."""
+    percent = 100 * fraction
+    if fraction in (0.0, 1.0):
+        return f"{percent:.0f} %"
+    digits = 1
+    while digits < 6 and (round(percent, digits) in (0.0, 100.0)):
+        digits += 1
+    return f"{percent:.{digits}f} %"
+
+
+def level(risk: float) -> str:
+    """A probability level: 0.05 is 95 %, 1e-5 is 99.999 %."""
+    return f"{100 * (1 - risk):.10g} %"
+
+
+def verdict_words(
+    verdict: Verdict, judged: MethodResult, assumptions: list[str], risk_accuracy: float, risk_integrity: float
+) -> str:
+    """What a navigator wants to know first, in sentences."""
+    parts = [_inside(verdict, risk_accuracy, risk_integrity)]
+    if verdict.worst_accuracy is not None:
+        parts.append(_worst(verdict.worst_accuracy))
+    if verdict.n_judged < verdict.n_epochs:
+        parts.append(f"{verdict.n_epochs - verdict.n_judged} of {verdict.n_epochs} epochs could not be judged and count as loss of monitoring.")
+    parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
+    if verdict.truth_known and judged.coverage is not None:
+        parts.append(f"Truth is known: the {level(risk_accuracy)} bound held the error at {share(judged.coverage)} of {judged.n} epochs.")
+    elif not verdict.truth_known:
+        parts.append("No truth: the honesty of the covariance could not be checked.")
+    parts.extend(assumptions)
+    return " ".join(parts)
+
+
+def _inside(verdict: Verdict, risk_accuracy: float, risk_integrity: float) -> str:
+    if verdict.share_inside is None or verdict.share_contained is None:
+        return f"Not judged against {verdict.requirement}: no epoch has a bound."
+    words = "Inside" if verdict.inside else "Not always inside"
+    return (
+        f"{words} {verdict.requirement}: the {level(risk_accuracy)} bound is within RNP at {share(verdict.share_inside)} of {verdict.n_judged} judged epochs, "
+        f"the {level(risk_integrity)} bound within twice RNP at {share(verdict.share_contained)}."
+    )
+
+
+def _worst(worst: Worst) -> str:
+    where = f" in {worst.phase}" if worst.phase else ""
+    sign = "margin" if worst.margin_m >= 0 else "excess"
+    return (
+        f"Worst {sign} {length(abs(worst.margin_m))} (bound {length(worst.bound_m)}, limit {length(worst.limit_m)}) "
+        f"at {utc_text(worst.time_ns)} UTC{where}, track {worst.track}."
+    )
+
+
+def honesty_words(nees: Nees) -> str:
+    """Whether the covariance may be believed, with the factor by which it is off."""
+    limits = f"NEES {nees.nees_mean:.3g}, {nees.dimension} for an honest covariance, limits {nees.nees_low:.3g} to {nees.nees_high:.3g} for {nees.n_effective:.0f} effective epochs"
+    factor = (nees.nees_mean / nees.dimension) ** 0.5
+    if nees.nees_mean > nees.nees_high:
+        return f"{limits}: the covariance claims too little; the errors are {factor:.2g} times larger than it says."
+    if nees.nees_mean < nees.nees_low:
+        return f"{limits}: the covariance claims too much; the errors are {factor:.2g} times what it says."
+    return f"{limits}: the covariance may be believed."

@@ -1,0 +1,36 @@
+"""GPS time on the screen: as UTC."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+
+import numpy as np
+
+from navbound import _core
+
+GPS_EPOCH_UNIX_NS = 315_964_800_000_000_000
+"""Unix time of 1980-01-06 00:00:00 UTC."""
+
+
+def utc_text(time_ns: int) -> str:
+    """Date and time of day in UTC, to the second.
+
+    Parameters
+    ----------
+    time_ns : int
+        GPS time since 1980-01-06 00:00:00. [ns]
+    """
+    unix_ns = int(_core.unix_from_gps_ns(np.array([time_ns], dtype=np.int64))[0])
+    return datetime.fromtimestamp(unix_ns // 1_000_000_000, tz=UTC).strftime("%Y-%m-%d %H:%M:%S")
+
+
+def utc_offset_s(time_ns: int) -> int:
+    """GPS time minus UTC at an instant of GPS time: the leap seconds so far. [s].
+
+    Parameters
+    ----------
+    time_ns : int
+        GPS time since 1980-01-06 00:00:00. [ns]
+    """
+    unix_ns = int(_core.unix_from_gps_ns(np.array([time_ns], dtype=np.int64))[0])
+    return round((time_ns + GPS_EPOCH_UNIX_NS - unix_ns) * 1e-9)

@@ -1,0 +1,53 @@
+"""Documents run: the README's Python lines give what it says, the method page is what METHODS says, the tree is the tree."""
+
+from __future__ import annotations
+
+import re
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+def test_the_method_page_is_up_to_date() -> None:
+    build = runpy.run_path(str(ROOT / "docs" / "build.py"), run_name="docs")
+    assert (ROOT / "docs" / "methods" / "index.md").read_text(encoding="utf-8") == build["page"](), "run ./dev docs"
+
+
+def test_the_readme_says_what_its_lines_give() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    code = re.search(r"```python\n(.*?)```", readme, re.S)
+    assert code
+    names: dict[str, object] = {}
+    checked = 0
+    for line in code.group(1).splitlines():
+        expression, _, comment = line.partition("#")
+        if line.startswith(("from", "import")):
+            exec(line, names)
+            continue
+        if not expression.strip():
+            continue
+        value = float(np.asarray(eval(expression, names)))
+        stated = re.match(r"\s*([0-9.]+) m", comment)
+        if stated:
+            assert abs(value - float(stated.group(1))) <= 0.005, f"{expression.strip()} gives {value}"
+            checked += 1
+    assert checked > 0
+
+
+def test_every_link_of_the_readme_leads_somewhere() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    links = re.findall(r"\]\(([^)#]+)\)", readme)
+    assert links
+    for link in links:
+        assert (ROOT / link).exists(), link
+
+
+@pytest.mark.parametrize("document", ["design.md", "notation.md"])
+def test_design_documents_name_folders_that_exist(document: str) -> None:
+    text = (ROOT / "docs" / document).read_text(encoding="utf-8")
+    crates = set(re.findall(r"navbound-(core|path|formats|simulate|assess)\b", text))
+    assert all((ROOT / "crates" / c).is_dir() for c in crates)

@@ -1,0 +1,43 @@
+"""docs/notation.md is law: what the code names must stand there, and bare numbers end in a unit."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from navbound.methods import methods
+
+ROOT = Path(__file__).parents[1]
+GLOSSARY = (ROOT / "docs" / "notation.md").read_text(encoding="utf-8")
+WORDS = {"track", "leg", "phase", "status", "reason", "alert", "state", "kind", "words"}
+SUFFIXES = ("_m", "_m2", "_s", "_ns", "_rad", "_mps")
+UNITLESS = ("p_", "n_")
+DIMENSIONLESS = {"hdop", "vdop"}
+
+
+def declared() -> set[str]:
+    table = GLOSSARY[GLOSSARY.index("## The epoch table") :]
+    return {name for line in table.splitlines() if line.startswith("| `") for name in re.findall(r"`([^`]+)`", line.split("|")[1])}
+
+
+def test_the_glossary_declares_columns() -> None:
+    assert len(declared()) > 40
+
+
+@pytest.mark.parametrize("name", sorted(declared()))
+def test_every_declared_column_ends_in_a_unit(name: str) -> None:
+    assert name in WORDS | DIMENSIONLESS or name.endswith(SUFFIXES) or name.startswith(UNITLESS), name
+
+
+def test_every_column_of_a_run_is_declared(flown) -> None:  # type: ignore[no-untyped-def]
+    of_methods = {c for m in methods().values() for c in (m.column, m.integrity_column)}
+    states = {f"p_state_{k}" for k in range(1, 20)}
+    unknown = set(flown.epochs.columns) - declared() - of_methods - states
+    assert not unknown, f"columns without a line in docs/notation.md: {sorted(unknown)}"
+
+
+def test_every_event_column_is_declared(flown) -> None:  # type: ignore[no-untyped-def]
+    events = GLOSSARY[GLOSSARY.index("## Events") :]
+    assert set(flown.events.columns) <= set(re.findall(r"`([a-z_]+)`", events))
