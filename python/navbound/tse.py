@@ -672,9 +672,7 @@ def student_t(fte_m: ArrayLike, scale_m: ArrayLike, degrees_of_freedom: ArrayLik
     InputError
         Not finite, a negative scale, or a nu or risk outside its domain.
     """
-    shape, [f, s, nu, q] = flatten(
-        fte_m=(fte_m, ()), scale_m=(scale_m, ()), degrees_of_freedom=(degrees_of_freedom, ()), risk=(risk, ())
-    )
+    shape, [f, s, nu, q] = flatten(fte_m=(fte_m, ()), scale_m=(scale_m, ()), degrees_of_freedom=(degrees_of_freedom, ()), risk=(risk, ()))
     return unflatten(_core.tse_student_t(f, s, nu, q), shape)
 
 
@@ -891,9 +889,7 @@ def box(
     return Box(*_columns(_core.tse_box(np.column_stack(flat[:5]), flat[5], flat[6]), shape))
 
 
-def rotated_frame(
-    k: ArrayLike, x0_m: ArrayLike, y0_m: ArrayLike, sigma_a_m: ArrayLike, sigma_b_m: ArrayLike, risk: ArrayLike
-) -> Rotated:
+def rotated_frame(k: ArrayLike, x0_m: ArrayLike, y0_m: ArrayLike, sigma_a_m: ArrayLike, sigma_b_m: ArrayLike, risk: ArrayLike) -> Rotated:
     """All lateral bounds in the frame of the paper: axes along the ellipse, the path the line y = k x, the estimate at (x0, y0).
 
     For comparison with published numbers; :func:`project` needs neither slope nor eigenvectors.

@@ -138,5 +138,8 @@ fn the_python_package_imports_one_way() {
 
 #[test]
 fn the_search_sees_a_use_in_braces_and_ignores_comments() {
-    assert_eq!(stages_used("use crate::{frame::Enu, bound};\n// crate::monitor\nlet x = crate::special::tail(1.0);"), ["frame", "bound", "special"]);
+    assert_eq!(
+        stages_used("use crate::{frame::Enu, bound};\n// crate::monitor\nlet x = crate::special::tail(1.0);"),
+        ["frame", "bound", "special"]
+    );
 }

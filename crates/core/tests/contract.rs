@@ -1,10 +1,10 @@
 //! Every method of the list keeps its promises, whatever its family.
 
+use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::{Bounded, Method, methods};
 use navbound_core::frame::{Covariance, Displacement, Enu};
 use navbound_core::quantity::{GpsTime, Metres, Radians, Risk, Unavailable};
 use navbound_core::solution::Epoch;
-use nalgebra::{Matrix3, Vector3};
 
 /// The ladder of risks. The two of the specifications are among them, since an exhibit may know no other.
 const RISKS: [f64; 7] = [0.4, 0.05, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11];
@@ -113,7 +113,11 @@ fn identifiers_are_unique_and_make_column_names() {
     for m in methods() {
         assert!(!m.title.is_empty() && !m.source.is_empty() && !m.assumes.is_empty(), "{}", m.id);
         assert!(!(m.id.ends_with("as-printed") && m.promises.may_alert), "{}: an exhibit may not alert", m.id);
-        assert!(!(m.promises.may_alert && !m.promises.conservative && !m.promises.monotone_in_risk), "{}: promises nothing, yet alerts", m.id);
+        assert!(
+            !(m.promises.may_alert && !m.promises.conservative && !m.promises.monotone_in_risk),
+            "{}: promises nothing, yet alerts",
+            m.id
+        );
     }
 }
 

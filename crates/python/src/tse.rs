@@ -207,7 +207,8 @@ fn random_fte(parts: &[f64], i: usize) -> RandomFte {
 fn tse_random_fte<'py>(py: Python<'py>, parts: Vectors<'py>, risk: Numbers<'py>) -> Table<'py> {
     let (p, q) = (parts.as_slice()?, risk.as_slice()?);
     table(py, q.len(), |i| {
-        let total = random_fte(p, i).total().map_err(|e| if e.argument == "fte_m" { OutOfDomain { argument: "mean_fte_m", ..e } } else { e })?;
+        let total =
+            random_fte(p, i).total().map_err(|e| if e.argument == "fte_m" { OutOfDomain { argument: "mean_fte_m", ..e } } else { e })?;
         Ok([total.sigma().m(), tse::exact(total, Risk::new(q[i])?).m()])
     })
 }
