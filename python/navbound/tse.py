@@ -419,8 +419,10 @@ def ctem_foot(fte_m: ArrayLike, course_rad: ArrayLike, covariance_en_m2: ArrayLi
     return unflatten(_core.tse_ctem_foot(f, chi, c, q), shape)
 
 
-def rssm(sigma_fte_m: ArrayLike, sigma_nse_m: ArrayLike, sigma_pde_m: ArrayLike, risk: ArrayLike) -> Floats:
-    """Root sum square: K times the deviation of three independent errors of mean zero. A figure of many flights, not of this one.
+def rssm(
+    sigma_fte_m: ArrayLike, sigma_nse_m: ArrayLike, sigma_pde_m: ArrayLike, risk: ArrayLike, *, correlation: ArrayLike = 0.0
+) -> Floats:
+    """Root sum square: K times the deviation of three errors of mean zero. A figure of many flights, not of this one.
 
     Parameters
     ----------
@@ -428,6 +430,8 @@ def rssm(sigma_fte_m: ArrayLike, sigma_nse_m: ArrayLike, sigma_pde_m: ArrayLike,
         Standard deviations of flight technical, navigation system and path definition error. [m]
     risk : array_like, shape (...)
         Allowed risk in (0, 1). [1]
+    correlation : array_like, shape (...)
+        Correlation of flight technical and navigation system error, in [-1, 1]. [1]
 
     Returns
     -------
@@ -437,12 +441,16 @@ def rssm(sigma_fte_m: ArrayLike, sigma_nse_m: ArrayLike, sigma_pde_m: ArrayLike,
     Raises
     ------
     InputError
-        Not finite, a negative deviation, or a risk outside (0, 1).
+        Not finite, a negative deviation, or a correlation or risk outside its domain.
     """
-    shape, [f, n, p, q] = flatten(
-        sigma_fte_m=(sigma_fte_m, ()), sigma_nse_m=(sigma_nse_m, ()), sigma_pde_m=(sigma_pde_m, ()), risk=(risk, ())
+    shape, [f, n, p, rho, q] = flatten(
+        sigma_fte_m=(sigma_fte_m, ()),
+        sigma_nse_m=(sigma_nse_m, ()),
+        sigma_pde_m=(sigma_pde_m, ()),
+        correlation=(correlation, ()),
+        risk=(risk, ()),
     )
-    return unflatten(_core.tse_rssm(np.column_stack([f, n, p]), q), shape)
+    return unflatten(_core.tse_rssm(np.column_stack([np.zeros_like(f), f, n, p, rho]), q), shape)
 
 
 def exceedance_risk(fte_m: ArrayLike, sigma_m: ArrayLike, limit_m: ArrayLike) -> Floats:
@@ -664,9 +672,7 @@ def student_t(fte_m: ArrayLike, scale_m: ArrayLike, degrees_of_freedom: ArrayLik
     InputError
         Not finite, a negative scale, or a nu or risk outside its domain.
     """
-    shape, [f, s, nu, q] = flatten(
-        fte_m=(fte_m, ()), scale_m=(scale_m, ()), degrees_of_freedom=(degrees_of_freedom, ()), risk=(risk, ())
-    )
+    shape, [f, s, nu, q] = flatten(fte_m=(fte_m, ()), scale_m=(scale_m, ()), degrees_of_freedom=(degrees_of_freedom, ()), risk=(risk, ()))
     return unflatten(_core.tse_student_t(f, s, nu, q), shape)
 
 
@@ -883,9 +889,7 @@ def box(
     return Box(*_columns(_core.tse_box(np.column_stack(flat[:5]), flat[5], flat[6]), shape))
 
 
-def rotated_frame(
-    k: ArrayLike, x0_m: ArrayLike, y0_m: ArrayLike, sigma_a_m: ArrayLike, sigma_b_m: ArrayLike, risk: ArrayLike
-) -> Rotated:
+def rotated_frame(k: ArrayLike, x0_m: ArrayLike, y0_m: ArrayLike, sigma_a_m: ArrayLike, sigma_b_m: ArrayLike, risk: ArrayLike) -> Rotated:
     """All lateral bounds in the frame of the paper: axes along the ellipse, the path the line y = k x, the estimate at (x0, y0).
 
     For comparison with published numbers; :func:`project` needs neither slope nor eigenvectors.

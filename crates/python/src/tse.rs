@@ -197,22 +197,27 @@ fn tse_sigma_budget<'py>(py: Python<'py>, limit: Numbers<'py>, fte: Numbers<'py>
     numbers(py, q.len(), |i| Ok(tse::sigma_budget(m(l[i]), m(f[i]), Risk::new(q[i])?)?.map_or(f64::NAN, Metres::m)))
 }
 
+fn random_fte(parts: &[f64], i: usize) -> RandomFte {
+    let p = &parts[5 * i..5 * (i + 1)];
+    RandomFte { mean_fte: m(p[0]), sigma_fte: m(p[1]), sigma_nse: m(p[2]), sigma_pde: m(p[3]), correlation: p[4] }
+}
+
 /// Total sigma and exact bound; a row of `parts` is mean and sigma of the fte, sigma of nse and pde, correlation.
 #[pyfunction]
 fn tse_random_fte<'py>(py: Python<'py>, parts: Vectors<'py>, risk: Numbers<'py>) -> Table<'py> {
     let (p, q) = (parts.as_slice()?, risk.as_slice()?);
     table(py, q.len(), |i| {
-        let p = &p[5 * i..5 * (i + 1)];
-        let parts = RandomFte { mean_fte: m(p[0]), sigma_fte: m(p[1]), sigma_nse: m(p[2]), sigma_pde: m(p[3]), correlation: p[4] };
-        let total = parts.total().map_err(|e| if e.argument == "fte_m" { OutOfDomain { argument: "mean_fte_m", ..e } } else { e })?;
+        let total =
+            random_fte(p, i).total().map_err(|e| if e.argument == "fte_m" { OutOfDomain { argument: "mean_fte_m", ..e } } else { e })?;
         Ok([total.sigma().m(), tse::exact(total, Risk::new(q[i])?).m()])
     })
 }
 
+/// A row of `parts` as in [`tse_random_fte`].
 #[pyfunction]
-fn tse_rssm<'py>(py: Python<'py>, sigmas: Vectors<'py>, risk: Numbers<'py>) -> Column<'py> {
-    let (s, q) = (sigmas.as_slice()?, risk.as_slice()?);
-    numbers(py, q.len(), |i| Ok(tse::rssm(m(s[3 * i]), m(s[3 * i + 1]), m(s[3 * i + 2]), Risk::new(q[i])?)?.m()))
+fn tse_rssm<'py>(py: Python<'py>, parts: Vectors<'py>, risk: Numbers<'py>) -> Column<'py> {
+    let (p, q) = (parts.as_slice()?, risk.as_slice()?);
+    numbers(py, q.len(), |i| Ok(tse::rssm(&random_fte(p, i), Risk::new(q[i])?)?.m()))
 }
 
 #[pyfunction]

@@ -55,13 +55,11 @@ impl RandomFte {
     }
 }
 
-/// Root sum square: K(q) times the total deviation, with every part independent and of mean zero \[m\]. A figure of a population of
-/// flights, not of the flight at hand.
+/// Root sum square: K(q) times the total deviation, whatever the mean \[m\]. A figure of a population of flights, not of the flight at hand.
 ///
 /// # Errors
 /// As [`RandomFte::total`].
-pub fn rssm(sigma_fte: Metres, sigma_nse: Metres, sigma_pde: Metres, risk: Risk) -> Result<Metres, OutOfDomain> {
-    let parts = RandomFte { mean_fte: Metres::new(0.0), sigma_fte, sigma_nse, sigma_pde, correlation: 0.0 };
+pub fn rssm(parts: &RandomFte, risk: Risk) -> Result<Metres, OutOfDomain> {
     Ok(Metres::new(two_sided_factor(risk.q()) * parts.total()?.sigma().m()))
 }
 

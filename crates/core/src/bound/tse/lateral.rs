@@ -65,16 +65,21 @@ pub struct Lateral {
 pub fn project(offset: &Displacement<Enu>, covariance: &Covariance<Enu>, course: Radians) -> Result<Lateral, OutOfDomain> {
     Horizontal::new(covariance)?;
     let (t, n) = axes(course)?;
-    // Rounding may leave a variance of zero slightly negative.
-    let sigma = sqrt(covariance.variance_along(&n).max(0.0));
     let p = offset.vector();
     let horizontal = Vector3::new(p.x, p.y, 0.0);
     if !(p.x.is_finite() && p.y.is_finite()) {
         let value = if p.x.is_finite() { p.y } else { p.x };
         return Err(OutOfDomain { argument: "offset_en_m", value, unit: "m", domain: "(-inf, inf)" });
     }
-    let deviation = Deviation::new(Metres::new(n.dot(&horizontal)), Metres::new(sigma))?;
+    // The horizontal block alone: what is not known of the vertical error does not matter here.
+    let variance = n.xy().dot(&(covariance.horizontal() * n.xy()));
+    let deviation = Deviation::new(Metres::new(n.dot(&horizontal)), root_of_variance(variance))?;
     Ok(Lateral { deviation, along: Metres::new(t.dot(&horizontal)) })
+}
+
+/// The deviation of a variance that rounding may have left slightly negative. NaN stays NaN, to be refused.
+pub(super) fn root_of_variance(variance: f64) -> Metres {
+    Metres::new(if variance < 0.0 { 0.0 } else { sqrt(variance) })
 }
 
 /// Unit vectors along the course and across it to the right.

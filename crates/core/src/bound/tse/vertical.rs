@@ -1,11 +1,11 @@
 //! Above the path, and across and above it at once.
 
 use super::Horizontal;
-use super::lateral::{Deviation, axes, exact};
+use super::lateral::{Deviation, axes, exact, root_of_variance};
 use crate::frame::{Covariance, Displacement, Enu};
 use crate::quantity::{Metres, OutOfDomain, Radians, Risk};
 use crate::special::bivariate::either_exceeds;
-use crate::special::float::{sqrt, tan};
+use crate::special::float::tan;
 use crate::special::folded::two_tails;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::Vector3;
@@ -50,12 +50,12 @@ pub fn deviations(
     if let Some(value) = d.iter().find(|v| !v.is_finite()) {
         return Err(OutOfDomain { argument: "offset_enu_m", value: *value, unit: "m", domain: "(-inf, inf)" });
     }
-    let (sigma_l, sigma_v) = (sqrt(covariance.variance_along(&n).max(0.0)), sqrt(covariance.variance_along(&c).max(0.0)));
-    let product = sigma_l * sigma_v;
+    let (sigma_l, sigma_v) = (root_of_variance(covariance.variance_along(&n)), root_of_variance(covariance.variance_along(&c)));
+    let product = sigma_l.m() * sigma_v.m();
     let correlation = if product > 0.0 { (c.dot(&(covariance.matrix() * n)) / product).clamp(-1.0, 1.0) } else { 0.0 };
     Ok(PathDeviations {
-        lateral: Deviation::new(Metres::new(n.x * d.x + n.y * d.y), Metres::new(sigma_l))?,
-        vertical: Deviation::new(Metres::new(c.dot(d)), Metres::new(sigma_v))?,
+        lateral: Deviation::new(Metres::new(n.x * d.x + n.y * d.y), sigma_l)?,
+        vertical: Deviation::new(Metres::new(c.dot(d)), sigma_v)?,
         correlation,
     })
 }
@@ -67,8 +67,9 @@ fn positive_semidefinite(covariance: &Covariance<Enu>) -> Result<(), OutOfDomain
     let scale = m.amax();
     let refuse =
         |value: f64| Err(OutOfDomain { argument: "covariance", value, unit: "m²", domain: "finite, smallest variance in [0, inf)" });
-    if !scale.is_finite() {
-        return refuse(scale);
+    // Element by element: the largest of them need not notice a NaN.
+    if let Some(value) = m.iter().find(|v| !v.is_finite()) {
+        return refuse(*value);
     }
     if scale == 0.0 {
         return Ok(());

@@ -1,0 +1,145 @@
+//! Who may use whom: inside core in the order of the flow, between the crates, and in the Python package.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The stages in the order of the flow; each may use those before it.
+const FLOW: [&str; 9] = ["quantity", "special", "frame", "signal", "geometry", "solution", "spec", "bound", "monitor"];
+/// Each crate and those of ours it may depend on.
+const CRATES: [(&str, &[&str]); 6] = [
+    ("core", &[]),
+    ("path", &["core"]),
+    ("formats", &["core", "path"]),
+    ("simulate", &["core", "path", "formats"]),
+    ("assess", &["core", "path", "formats", "simulate"]),
+    ("python", &["core", "path", "formats", "simulate", "assess"]),
+];
+/// Parts of the Python package from what computes to what shows; a part may import from those before it and from itself.
+const LAYERS: [&[&str]; 5] = [
+    &["_core", "errors", "_arrays"],
+    &["tse", "anp", "rnp", "gnss", "sbas", "araim", "rraim", "gbas", "ins", "dme", "kpi", "verify", "read", "scenario", "simulate"],
+    &["run"],
+    &["report", "live"],
+    &["cli"],
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path, extension));
+        } else if path.extension().is_some_and(|e| e == extension) {
+            found.push(path);
+        }
+    }
+    found
+}
+
+/// The stages of core that a source text names after `crate::`, one by one or in braces.
+fn stages_used(text: &str) -> Vec<String> {
+    let mut used = Vec::new();
+    for line in text.lines().map(|l| l.split("//").next().unwrap_or("")) {
+        for after in line.split("crate::").skip(1) {
+            let names: String = match after.strip_prefix('{') {
+                Some(list) => list.split('}').next().unwrap_or("").to_owned(),
+                None => after.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect(),
+            };
+            used.extend(names.split(',').map(|n| n.trim().split("::").next().unwrap_or("").to_owned()));
+        }
+    }
+    used
+}
+
+#[test]
+fn stages_use_only_earlier_stages() {
+    let mut uses = 0;
+    for (place, stage) in FLOW.iter().enumerate() {
+        let folder = root().join("crates/core/src").join(stage);
+        for file in files(&folder, "rs") {
+            for used in stages_used(&fs::read_to_string(&file).unwrap()) {
+                let Some(target) = FLOW.iter().position(|s| *s == used) else { continue };
+                uses += 1;
+                assert!(target <= place, "{stage} uses {used}, a later stage: {}", file.display());
+            }
+        }
+    }
+    assert!(uses > 20, "only {uses} uses found: the search is broken");
+}
+
+#[test]
+fn every_stage_is_declared_and_every_module_is_a_stage() {
+    let text = fs::read_to_string(root().join("crates/core/src/lib.rs")).unwrap();
+    let mut declared: Vec<_> = text.lines().filter_map(|l| l.strip_prefix("pub mod ")?.strip_suffix(';')).collect();
+    let mut flow = FLOW.to_vec();
+    declared.sort_unstable();
+    flow.sort_unstable();
+    assert_eq!(declared, flow);
+}
+
+#[test]
+fn crates_depend_one_way() {
+    let mut edges = 0;
+    for (name, allowed) in CRATES {
+        let manifest = fs::read_to_string(root().join("crates").join(name).join("Cargo.toml")).unwrap();
+        let dependencies = manifest.lines().filter_map(|l| l.trim().strip_prefix("navbound-"));
+        for used in dependencies.map(|d| d.split(['.', ' ', '=']).next().unwrap()) {
+            edges += 1;
+            assert!(allowed.contains(&used), "{name} depends on {used}");
+        }
+    }
+    assert!(edges >= 5, "only {edges} dependencies found: the search is broken");
+    let mut members: Vec<_> = fs::read_dir(root().join("crates")).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    let mut known: Vec<_> = CRATES.iter().map(|c| c.0.to_owned()).collect();
+    members.sort();
+    known.sort();
+    assert_eq!(members, known, "a crate without a place in the order");
+}
+
+/// The part of the package a module path names: `navbound.run.judge` -> `run`.
+fn part(module: &str) -> Option<&str> {
+    module.strip_prefix("navbound.").map(|rest| rest.split('.').next().unwrap_or(rest))
+}
+
+fn layer(part: &str) -> Option<usize> {
+    LAYERS.iter().position(|l| l.contains(&part))
+}
+
+#[test]
+fn the_python_package_imports_one_way() {
+    let package = root().join("python/navbound");
+    let mut imports = 0;
+    for file in files(&package, "py") {
+        let inside = file.strip_prefix(&package).unwrap();
+        let own = inside.iter().next().unwrap().to_str().unwrap().trim_end_matches(".py").to_owned();
+        let Some(own_layer) = layer(&own) else { continue };
+        for line in fs::read_to_string(&file).unwrap().lines().filter(|l| !l.starts_with([' ', '\t'])) {
+            let mut words = line.split_whitespace();
+            let (Some("from" | "import"), Some(module)) = (words.next(), words.next()) else { continue };
+            // `from navbound import a, b` names parts behind the import.
+            let behind: Vec<_> = if module == "navbound" {
+                words.skip(1).map(|w| w.trim_matches([',', '(', ')']).to_owned()).collect()
+            } else {
+                part(module).map(str::to_owned).into_iter().collect()
+            };
+            for used in behind {
+                let Some(used_layer) = layer(&used) else { continue };
+                imports += 1;
+                assert!(used_layer <= own_layer, "{} imports {used}, a later layer", inside.display());
+            }
+        }
+    }
+    assert!(imports > 3, "only {imports} imports found: the search is broken");
+}
+
+#[test]
+fn the_search_sees_a_use_in_braces_and_ignores_comments() {
+    assert_eq!(
+        stages_used("use crate::{frame::Enu, bound};\n// crate::monitor\nlet x = crate::special::tail(1.0);"),
+        ["frame", "bound", "special"]
+    );
+}
