@@ -52,7 +52,7 @@ def gauss_legendre(n: int) -> list[tuple[Any, Any]]:
 
 def contours() -> dict[str, list[Node]]:
     """Return every contour the kernel uses, by the name of its table."""
-    return {"TALBOT_8": talbot(8), "TALBOT_12": talbot(12), "PARABOLA_20": parabola(20), "PARABOLA_24": parabola(24)}
+    return {"TALBOT_8": talbot(8), "TALBOT_14": talbot(14), "PARABOLA_20": parabola(20), "PARABOLA_24": parabola(24)}
 
 
 def _literal(x: Any) -> str:

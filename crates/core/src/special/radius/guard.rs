@@ -1,17 +1,17 @@
 //! Which rule evaluates a radius law. The limits are measured: beyond them a contour fails without warning.
 
-use super::nodes::{Node, PARABOLA_20, PARABOLA_24, TALBOT_12};
+use super::nodes::{Node, PARABOLA_20, PARABOLA_24, TALBOT_14};
 
 /// How a radius law is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
-    /// Zero mean: Talbot's contour, 12 half nodes.
-    Talbot12,
+    /// Zero mean: Talbot's contour, 14 half nodes.
+    Talbot14,
     /// Largest squared mean over variance up to 50: parabola, 20 half nodes.
     Parabola20,
     /// Up to 100: parabola, 24 half nodes.
     Parabola24,
-    /// Beyond, or where one side is below 1e-6: slices, positive terms only.
+    /// Beyond, and where one side is small: slices, positive terms only.
     Strip,
 }
 
@@ -19,7 +19,7 @@ impl Rule {
     /// The rule for the largest squared mean over variance of the live axes.
     pub(super) fn of(largest_delta_squared: f64) -> Self {
         if largest_delta_squared == 0.0 {
-            Self::Talbot12
+            Self::Talbot14
         } else if largest_delta_squared <= 50.0 {
             Self::Parabola20
         } else if largest_delta_squared <= 100.0 {
@@ -32,7 +32,7 @@ impl Rule {
     /// The contour's nodes; the strip has none.
     pub(super) fn nodes(self) -> Option<&'static [Node]> {
         match self {
-            Self::Talbot12 => Some(&TALBOT_12),
+            Self::Talbot14 => Some(&TALBOT_14),
             Self::Parabola20 => Some(&PARABOLA_20),
             Self::Parabola24 => Some(&PARABOLA_24),
             Self::Strip => None,
@@ -42,7 +42,7 @@ impl Rule {
     /// The word results carry.
     pub const fn word(self) -> &'static str {
         match self {
-            Self::Talbot12 => "talbot12",
+            Self::Talbot14 => "talbot14",
             Self::Parabola20 => "parabola20",
             Self::Parabola24 => "parabola24",
             Self::Strip => "strip",

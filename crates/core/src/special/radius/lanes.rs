@@ -4,7 +4,7 @@
 //! the same bits because every operation is elementwise.
 
 use super::contour::{Invariants, centred_sums};
-use super::nodes::{Node, TALBOT_8, TALBOT_12};
+use super::nodes::{Node, TALBOT_8, TALBOT_14};
 use super::wilson_hilferty_root;
 #[cfg(test)]
 use crate::special::float::ln;
@@ -48,7 +48,7 @@ impl CentredRadius {
         }
         self.step(&TALBOT_8, &mut x, &v);
         for _ in 0..self.steps {
-            self.step(&TALBOT_12, &mut x, &v);
+            self.step(&TALBOT_14, &mut x, &v);
         }
         let mut radius = [0.0; L];
         for l in 0..L {

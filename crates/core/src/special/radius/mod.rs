@@ -24,6 +24,9 @@ use search::Point;
 /// A variance below this share of the largest is a dead axis: it moves the radius by less than rounding does.
 const DEAD: f64 = 1e-24;
 
+/// The contours know a probability to 1.4e-14; a side below this would have fewer than ten digits of its own.
+const STRIP_BELOW: f64 = 2e-5;
+
 /// The law of |e| at one radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AtRadius {
@@ -53,7 +56,7 @@ impl RadiusLaw {
         debug_assert!(variances[0] >= variances[1] && variances[1] >= variances[2] && variances[2] >= 0.0);
         let live = variances.iter().filter(|v| **v > 0.0 && **v >= DEAD * variances[0]).count();
         let dead = means[live..].iter().fold(0.0, |length, m| hypot(length, *m));
-        let mut law = Self { variances: [0.0; 3], means: [0.0; 3], sigmas: [0.0; 3], live, dead, rule: Rule::Talbot12 };
+        let mut law = Self { variances: [0.0; 3], means: [0.0; 3], sigmas: [0.0; 3], live, dead, rule: Rule::Talbot14 };
         let mut largest_delta_squared: f64 = 0.0;
         for j in 0..live {
             law.variances[j] = variances[j];
@@ -66,7 +69,7 @@ impl RadiusLaw {
         law
     }
 
-    /// How moderate probabilities of this law are evaluated; tails below 1e-6 always take the strip.
+    /// How moderate probabilities of this law are evaluated; small sides always take the strip.
     pub fn rule(&self) -> Rule {
         self.rule
     }
@@ -92,7 +95,7 @@ impl RadiusLaw {
             && let Some(nodes) = self.rule.nodes()
         {
             let Point { at, .. } = self.by_contour(nodes, reach);
-            if at.inside >= lanes::SMALLEST && at.outside >= lanes::SMALLEST {
+            if at.inside >= STRIP_BELOW && at.outside >= STRIP_BELOW {
                 return at;
             }
         }
@@ -148,7 +151,7 @@ impl RadiusLaw {
         let trace = self.variances[0] + self.variances[1] + self.variances[2];
         let x = reach * reach / trace;
         let variances = self.variances.map(|v| v / trace);
-        let [inside, density, slope] = if self.rule == Rule::Talbot12 {
+        let [inside, density, slope] = if self.rule == Rule::Talbot14 {
             let [v1, v2, v3] = variances;
             let v = contour::Invariants { minors: [v1 * v2 + v1 * v3 + v2 * v3], determinant: [v1 * v2 * v3] };
             contour::centred_sums(nodes, &[x], &v).map(|[sum]| sum)

@@ -1,0 +1,86 @@
+"""Speed of navbound.anp: radii in batch on one core, beside a SciPy route to the same number."""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("RAYON_NUM_THREADS", "1")
+
+import math
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy import integrate, optimize
+
+from navbound import anp
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+SEED = 2022
+N = 200_000
+
+
+def covariances(n: int, dimension: int) -> NDArray[np.float64]:
+    """Random covariances with sigma ratios uniform in (0, 1], as the specification's measurement has them."""
+    rng = np.random.default_rng(SEED)
+    root = np.linalg.qr(rng.normal(size=(n, dimension, dimension)))[0] * rng.uniform(0.0, 1.0, size=(n, 1, dimension))
+    return np.asarray(root @ root.swapaxes(-1, -2), dtype=np.float64)
+
+
+def imhof_radius(covariance: NDArray[np.float64], risk: float) -> float:
+    """Radius by SciPy alone: Imhof's integral for the law of e'e, and Brent's search."""
+    variances = np.linalg.eigvalsh(covariance)
+
+    def outside(x: float) -> float:
+        def integrand(u: float) -> float:
+            phase = 0.5 * np.arctan(variances * u).sum() - 0.5 * x * u
+            return math.sin(phase) / (u * float(np.prod((1.0 + (variances * u) ** 2) ** 0.25)))
+
+        return 0.5 + integrate.quad(integrand, 0.0, np.inf, limit=500)[0] / math.pi
+
+    top = variances.max()
+    return math.sqrt(optimize.brentq(lambda x: outside(x) - risk, 1e-3 * top, 40.0 * top, xtol=1e-9 * top))
+
+
+def seconds(call: Callable[[], object], repeats: int = 5) -> float:
+    """Best time of a call."""
+    best = math.inf
+    for _ in range(repeats):
+        start = time.perf_counter()
+        call()
+        best = min(best, time.perf_counter() - start)
+    return best
+
+
+def measure() -> list[dict[str, object]]:
+    """One row a measurement: name, seconds_per_item, n, note."""
+    spatial, flat = covariances(N, 3), covariances(N, 2)
+    rng = np.random.default_rng(SEED + 1)
+    some = 5_000
+    mean = np.einsum("nij,nj->ni", np.linalg.cholesky(spatial[:some] + 1e-9 * np.eye(3)), rng.normal(size=(some, 3)))
+    threads = os.environ["RAYON_NUM_THREADS"]
+    rows: list[dict[str, object]] = []
+
+    def row(name: str, n: int, note: str, call: Callable[[], object], repeats: int = 5) -> None:
+        rows.append({"name": name, "seconds_per_item": seconds(call, repeats) / n, "n": n, "note": note})
+
+    where = f"batch from Python, {threads} thread(s)"
+    row("anp.sphere, zero mean, risk 0.05", N, where, lambda: anp.sphere(spatial, 0.05))
+    row("anp.sphere, zero mean, risk 1e-5", N, where, lambda: anp.sphere(spatial, 1e-5))
+    row("anp.circle, zero mean, risk 0.05", N, where, lambda: anp.circle(flat, 0.05))
+    row("anp.sphere, with mean, risk 0.05", some, where, lambda: anp.sphere(spatial[:some], 0.05, mean))
+    row("anp.circle, with mean, risk 0.05", some, where, lambda: anp.circle(flat[:some], 0.05, mean[:, :2]))
+    row("anp.circle, risk 1e-7 (strip)", 200, where, lambda: anp.circle(flat[:200], 1e-7))
+    row("anp.sphere, risk 1e-7 (nested strip)", 20, where, lambda: anp.sphere(spatial[:20], 1e-7), 2)
+    few = 5
+    row("SciPy: Imhof integral + brentq, risk 0.05", few, "3-D, default accuracy", lambda: [imhof_radius(v, 0.05) for v in spatial[:few]], 1)
+    return rows
+
+
+if __name__ == "__main__":
+    for entry in measure():
+        print(f"{entry['name']:45s} {float(str(entry['seconds_per_item'])) * 1e6:12.3f} us   n = {entry['n']}, {entry['note']}")
