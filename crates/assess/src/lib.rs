@@ -7,6 +7,7 @@ pub mod bounds;
 pub mod batch;
 pub mod tse;
 pub mod anp;
+pub mod evaluation;
 pub mod monitor;
 pub mod states;
 pub mod sky;
