@@ -5,6 +5,11 @@
 pub mod anp;
 pub mod batch;
 pub mod bounds;
+pub mod evaluation;
+pub mod monitor;
+pub mod states;
+pub mod sky;
+
 pub mod error;
 pub mod monitor;
 pub mod plausible;

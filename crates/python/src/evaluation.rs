@@ -1,7 +1,114 @@
-//! Evaluation of bounds against truth.
+//! Evaluation of bounds and covariances against truth.
 
+use crate::error::input_error;
+use navbound_assess::evaluation::{self, Errors};
+use navbound_core::quantity::{OutOfDomain, Risk};
+use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
-pub fn register(_m: &Bound<'_, PyModule>) -> PyResult<()> {
-    Ok(())
+fn refused((index, e): (Option<usize>, OutOfDomain)) -> PyErr {
+    input_error(e, index)
+}
+
+/// How a bound at a risk did.
+#[pyfunction]
+fn evaluate_bound<'py>(
+    py: Python<'py>,
+    error_m: PyReadonlyArray1<'py, f64>,
+    bound_m: PyReadonlyArray1<'py, f64>,
+    risk: f64,
+    track: PyReadonlyArray1<'py, u32>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let risk = Risk::new(risk).map_err(|e| input_error(e, None))?;
+    let (error_m, bound_m, track) = (error_m.as_slice()?, bound_m.as_slice()?, track.as_slice()?);
+    let score = py.detach(|| evaluation::bound(error_m, bound_m, risk, track)).map_err(refused)?;
+    let d = PyDict::new(py);
+    d.set_item("n", score.n)?;
+    d.set_item("n_without_bound", score.n_without_bound)?;
+    d.set_item("n_outside", score.n_outside)?;
+    d.set_item("n_effective", score.n_effective)?;
+    d.set_item("coverage", score.coverage)?;
+    d.set_item("coverage_low", score.coverage_low)?;
+    d.set_item("coverage_high", score.coverage_high)?;
+    d.set_item("mean_m", score.mean_m)?;
+    d.set_item("median_m", score.median_m)?;
+    d.set_item("max_m", score.max_m)?;
+    d.set_item("winkler_m", score.winkler_m)?;
+    d.set_item("pinball_m", score.pinball_m)?;
+    Ok(d)
+}
+
+/// Mean normalised square against its limits.
+#[pyfunction]
+fn evaluate_nees<'py>(
+    py: Python<'py>,
+    dimension: usize,
+    error_m: PyReadonlyArray1<'py, f64>,
+    covariance_m2: PyReadonlyArray1<'py, f64>,
+    track: PyReadonlyArray1<'py, u32>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (error_m, covariance_m2, track) = (error_m.as_slice()?, covariance_m2.as_slice()?, track.as_slice()?);
+    let errors = Errors { dimension, error_m, covariance_m2, track };
+    let honesty = py.detach(|| evaluation::nees(&errors)).map_err(refused)?;
+    let d = PyDict::new(py);
+    d.set_item("n", honesty.n)?;
+    d.set_item("n_unusable", honesty.n_unusable)?;
+    d.set_item("n_effective", honesty.n_effective)?;
+    d.set_item("dimension", honesty.dimension)?;
+    d.set_item("nees_mean", honesty.nees_mean)?;
+    d.set_item("nees_low", honesty.nees_low)?;
+    d.set_item("nees_high", honesty.nees_high)?;
+    Ok(d)
+}
+
+/// Histogram of the probability integral transform.
+#[pyfunction]
+fn evaluate_pit<'py>(
+    py: Python<'py>,
+    dimension: usize,
+    error_m: PyReadonlyArray1<'py, f64>,
+    covariance_m2: PyReadonlyArray1<'py, f64>,
+    track: PyReadonlyArray1<'py, u32>,
+    n_bins: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (error_m, covariance_m2, track) = (error_m.as_slice()?, covariance_m2.as_slice()?, track.as_slice()?);
+    let errors = Errors { dimension, error_m, covariance_m2, track };
+    let pit = py.detach(|| evaluation::pit(&errors, n_bins)).map_err(refused)?;
+    let d = PyDict::new(py);
+    d.set_item("n", pit.n)?;
+    d.set_item("n_effective", pit.n_effective)?;
+    d.set_item("counts", pit.counts)?;
+    d.set_item("low", pit.low)?;
+    d.set_item("high", pit.high)?;
+    Ok(d)
+}
+
+/// Cluster bootstrap interval of the coverage.
+#[pyfunction]
+fn bootstrap_coverage<'py>(
+    py: Python<'py>,
+    error_m: PyReadonlyArray1<'py, f64>,
+    bound_m: PyReadonlyArray1<'py, f64>,
+    track: PyReadonlyArray1<'py, u32>,
+    n_replicates: usize,
+    seed: u64,
+) -> PyResult<(f64, f64)> {
+    let (error_m, bound_m, track) = (error_m.as_slice()?, bound_m.as_slice()?, track.as_slice()?);
+    py.detach(|| evaluation::coverage_interval(error_m, bound_m, track, n_replicates, seed)).map_err(refused)
+}
+
+/// Epochs a correlated series is worth.
+#[pyfunction]
+fn effective_size<'py>(py: Python<'py>, values: PyReadonlyArray1<'py, f64>, track: PyReadonlyArray1<'py, u32>) -> PyResult<f64> {
+    let (values, track) = (values.as_slice()?, track.as_slice()?);
+    py.detach(|| evaluation::effective_size_of(values, track)).map_err(refused)
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(evaluate_bound, m)?)?;
+    m.add_function(wrap_pyfunction!(evaluate_nees, m)?)?;
+    m.add_function(wrap_pyfunction!(evaluate_pit, m)?)?;
+    m.add_function(wrap_pyfunction!(bootstrap_coverage, m)?)?;
+    m.add_function(wrap_pyfunction!(effective_size, m)?)
 }

@@ -4,6 +4,7 @@
 
 mod anp;
 mod batch;
+mod dme;
 mod error;
 mod evaluation;
 mod gnss;
@@ -27,6 +28,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     states::register(m)?;
     evaluation::register(m)?;
     gnss::register(m)?;
+    dme::register(m)?;
     path::register(m)?;
     simulate::register(m)?;
     read::register(m)

@@ -66,6 +66,13 @@ impl<F: Frame> Covariance<F> {
     pub fn claim_symmetric(matrix: Matrix3<f64>) -> Self {
         Self { matrix, frame: PhantomData }
     }
+    /// From nine numbers, row after row, that must be a covariance \[m²\].
+    ///
+    /// # Errors
+    /// As [`Covariance::new`].
+    pub fn from_rows(rows: [f64; 9]) -> Result<Self, OutOfDomain> {
+        Self::new(Matrix3::from_row_slice(&rows))
+    }
     /// From a matrix that must be a covariance.
     ///
     /// # Errors

@@ -24,8 +24,14 @@ impl RangeModel {
     pub const STANDARD: Self = Self { air_least: Metres::nautical_miles(0.085), air_share: 0.00125, signal: Metres::nautical_miles(0.05) };
 
     /// sqrt(max(air_least, air_share * slant)^2 + signal^2) \[m\].
-    pub fn sigma(&self, slant: Metres) -> Metres {
-        Metres::new(hypot(self.air_least.m().max(self.air_share * slant.m()), self.signal.m()))
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] unless the slant range is in \[0, inf).
+    pub fn sigma(&self, slant: Metres) -> Result<Metres, OutOfDomain> {
+        if !(slant.m() >= 0.0 && slant.m().is_finite()) {
+            return Err(OutOfDomain { argument: "slant_m", value: slant.m(), unit: "m", domain: "[0, inf)" });
+        }
+        Ok(Metres::new(hypot(self.air_least.m().max(self.air_share * slant.m()), self.signal.m())))
     }
 }
 
@@ -99,7 +105,7 @@ impl Pair {
         }
         let [a, b] = [line(aircraft, stations[0])?, line(aircraft, stations[1])?];
         let inclusion = atan2((a.east * b.north - a.north * b.east).abs(), a.east * b.east + a.north * b.north);
-        let sigma = [range.sigma(Metres::new(a.slant)), range.sigma(Metres::new(b.slant))];
+        let sigma = [range.sigma(Metres::new(a.slant))?, range.sigma(Metres::new(b.slant))?];
         let least = admission.inclusion_least.rad();
         let covariance = (sin(inclusion) >= SINE_LEAST).then(|| covariance(&a, &b, sigma, sigma_h)).flatten();
         let admissible = covariance.is_some()
@@ -124,13 +130,26 @@ impl Pair {
     /// 2 sqrt(sigma_1^2 + sigma_2^2) / sin(inclusion): printed as a 95 % figure, but it is two drms of level ranges, which cover
     /// between 95.4 % and 98.2 %.
     pub fn icao_two_sigma(&self) -> Option<Metres> {
-        self.covariance.map(|_| icao_two_sigma(self.sigma, self.inclusion))
+        self.covariance.and_then(|_| icao_two_sigma(self.sigma, self.inclusion).ok())
+    }
+
+    /// Standard deviation across a course: what the total system error needs.
+    pub fn lateral_sigma(&self, course: Radians) -> Option<Metres> {
+        let across = Vector2::new(cos(course.rad()), -sin(course.rad()));
+        self.covariance.map(|c| Metres::new(sqrt(across.dot(&(c * across)))))
     }
 }
 
 /// 2 sqrt(sigma_1^2 + sigma_2^2) / sin(inclusion) \[m\].
-pub fn icao_two_sigma(sigma: [Metres; 2], inclusion: Radians) -> Metres {
-    Metres::new(2.0 * hypot(sigma[0].m(), sigma[1].m()) / sin(inclusion.rad()))
+///
+/// # Errors
+/// [`OutOfDomain`] unless the sine of the inclusion angle is at least 0.001: the stations and the aircraft lie in one line otherwise.
+pub fn icao_two_sigma(sigma: [Metres; 2], inclusion: Radians) -> Result<Metres, OutOfDomain> {
+    if !(sin(inclusion.rad()) >= SINE_LEAST) {
+        let domain = "angles whose sine is at least 0.001";
+        return Err(OutOfDomain { argument: "inclusion_rad", value: inclusion.rad(), unit: "rad", domain });
+    }
+    Ok(Metres::new(2.0 * hypot(sigma[0].m(), sigma[1].m()) / sin(inclusion.rad())))
 }
 
 #[derive(Clone, Copy)]
@@ -203,10 +222,4 @@ pub fn vor_dme(ground: Metres, slant: Metres, sigma_vor: Radians, sigma_dme: Met
     }
     let (radial, cross) = (sigma_dme.m() * s / g, g * sigma_vor.rad());
     Ok(Some(VorDme { radial: Metres::new(radial), cross: Metres::new(cross), drms: Metres::new(hypot(radial, cross)) }))
-}
-
-/// Standard deviation across a course of an east-north covariance \[m\].
-pub fn lateral_sigma(covariance: &Matrix2<f64>, course: Radians) -> Metres {
-    let across = Vector2::new(cos(course.rad()), -sin(course.rad()));
-    Metres::new(sqrt(across.dot(&(covariance * across))))
 }
