@@ -8,6 +8,7 @@ pub mod bounds;
 pub mod error;
 pub mod monitor;
 pub mod plausible;
+pub mod flights;
 pub mod sky;
 pub mod states;
 pub mod tse;
