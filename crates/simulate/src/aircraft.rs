@@ -86,7 +86,8 @@ impl<'a> Aircraft<'a> {
     pub(crate) fn step(&mut self, time_s: f64, error: Deviation) {
         let demand = self.plan.profile.at(time_s);
         if time_s < self.plan.profile.airborne_s {
-            // On the runway the nose wheel holds the centreline.
+            // On the runway the nose wheel holds the centreline; the rotation into the climb is not modelled.
+            self.climb_mps = self.plan.profile.at(self.plan.profile.airborne_s).climb_mps;
             return;
         }
         let seen = Deviation { right_m: self.deviation.right_m - error.right_m, up_m: self.deviation.up_m - error.up_m };

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
@@ -46,7 +46,7 @@ def load(name_or_path: str | Path) -> Scenario:
     Parameters
     ----------
     name_or_path : str or Path
-        Name of a shipped scenario, or path of a TOML file.
+        Name of a shipped scenario, or path of a TOML file. A file may name a shipped scenario as its ``base`` and give only what differs.
 
     Returns
     -------
@@ -64,7 +64,7 @@ def load(name_or_path: str | Path) -> Scenario:
     path = find(name_or_path)
     written: dict[Place, Written] = {}
     try:
-        table = to_si(tomllib.loads(path.read_text(encoding="utf-8")), written)
+        table = to_si(_table(path), written)
         scenario = Scenario.model_validate(table)
         _core.Outlook.check(scenario.core_json())
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as e:
@@ -76,6 +76,26 @@ def load(name_or_path: str | Path) -> Scenario:
     except InputError as e:
         raise _refused(path, e, written) from e
     return scenario
+
+
+def _table(path: Path) -> dict[str, Any]:
+    """Table of a file, laid over the shipped scenario that it names as its ``base``."""
+    table = tomllib.loads(path.read_text(encoding="utf-8"))
+    base = table.pop("base", None)
+    if base is None:
+        return table
+    if base not in shipped():
+        raise FormatError(path, f"{base!r} is not one of the shipped scenarios ({', '.join(shipped())})", field="base")
+    return _laid_over(_table(_FOLDER / f"{base}.toml"), table)
+
+
+def _laid_over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+    """Merge tables key by key; anything else, lists too, is replaced as a whole."""
+    merged = dict(below)
+    for key, value in above.items():
+        both = isinstance(value, dict) and isinstance(below.get(key), dict)
+        merged[key] = _laid_over(below[key], value) if both else value
+    return merged
 
 
 def _explained(path: Path, error: ErrorDetails, written: dict[Place, Written]) -> FormatError:
