@@ -13,6 +13,7 @@ pub mod sky;
 pub mod error;
 pub mod monitor;
 pub mod plausible;
+pub mod flights;
 pub mod sky;
 pub mod states;
 pub mod tse;

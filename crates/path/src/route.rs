@@ -82,6 +82,14 @@ impl Route {
         Ok(Place { leg: piece.leg + place.leg, ..place })
     }
 
+    /// Curvature of the path at a distance along it, positive in a right turn \[1/m\]: what guidance needs many times a second.
+    pub fn curvature_per_m(&self, along: Metres) -> f64 {
+        match &self.pieces[self.piece_at(along)].shape {
+            Shape::Straight(..) => 0.0,
+            Shape::Turn(arc) => arc.curvature_per_m(),
+        }
+    }
+
     /// The foot of a position.
     ///
     /// `near` is where along the route the position was last; the foot is sought from there, leg by leg. Without it every piece is

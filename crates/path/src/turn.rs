@@ -89,6 +89,10 @@ impl Arc {
         Metres::new(self.reduced_radius_m() * self.angle.rad())
     }
 
+    pub(crate) fn curvature_per_m(&self) -> f64 {
+        self.sense / self.radius.m()
+    }
+
     pub(crate) fn at(&self, along: Metres) -> Result<Place, OutOfDomain> {
         let turned = along.m() / self.reduced_radius_m();
         self.place(self.start.rad() + self.sense * turned, turned)
@@ -111,7 +115,6 @@ impl Arc {
     fn place(&self, azimuth_rad: f64, turned_rad: f64) -> Result<Place, OutOfDomain> {
         let (point, outward) = direct(&self.centre, Radians::new(azimuth_rad), self.radius)?;
         let course = full_turn(outward.rad() + self.sense * FRAC_PI_2);
-        let curvature_per_m = self.sense / self.radius.m();
-        Ok(Place { point, course, curvature_per_m, leg: usize::from(turned_rad >= 0.5 * self.angle.rad()) })
+        Ok(Place { point, course, curvature_per_m: self.curvature_per_m(), leg: usize::from(turned_rad >= 0.5 * self.angle.rad()) })
     }
 }

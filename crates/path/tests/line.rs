@@ -1,5 +1,7 @@
 //! A line's foot is where geodesy says it is.
 
+#![allow(clippy::unwrap_used)] // A test may stop at the first surprise, its helpers too.
+
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 use navbound_core::frame::LatLon;
 use navbound_core::quantity::{Metres, Radians};

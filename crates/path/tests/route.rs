@@ -1,5 +1,7 @@
 //! A route is smooth where it turns, and knows where on it a position belongs.
 
+#![allow(clippy::unwrap_used)] // A test may stop at the first surprise, its helpers too.
+
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 use navbound_core::frame::LatLon;
 use navbound_core::quantity::{Metres, Radians};

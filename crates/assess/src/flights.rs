@@ -1,0 +1,87 @@
+//! Many flights of one scenario on all cores, as columns of the epoch table.
+
+use navbound_core::quantity::OutOfDomain;
+use navbound_simulate::{FlownEpoch, Outlook, fly};
+use rayon::prelude::*;
+
+/// Epochs of flights, one after the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flights {
+    epochs: Vec<Vec<FlownEpoch>>,
+    first: u64,
+}
+
+/// A column of numbers: its name in the epoch table and where it comes from.
+pub type Column = (&'static str, fn(&FlownEpoch) -> f64);
+
+/// Every column of numbers.
+pub const COLUMNS: [Column; 31] = [
+    ("est_lat_rad", |e| e.estimate[0]),
+    ("est_lon_rad", |e| e.estimate[1]),
+    ("est_h_m", |e| e.estimate[2]),
+    ("truth_lat_rad", |e| e.truth[0]),
+    ("truth_lon_rad", |e| e.truth[1]),
+    ("truth_h_m", |e| e.truth[2]),
+    ("cov_ee_m2", |e| e.covariance_m2[0]),
+    ("cov_en_m2", |e| e.covariance_m2[1]),
+    ("cov_nn_m2", |e| e.covariance_m2[2]),
+    ("cov_eu_m2", |e| e.covariance_m2[3]),
+    ("cov_nu_m2", |e| e.covariance_m2[4]),
+    ("cov_uu_m2", |e| e.covariance_m2[5]),
+    ("path_lat_rad", |e| e.path[0]),
+    ("path_lon_rad", |e| e.path[1]),
+    ("path_h_m", |e| e.path[2]),
+    ("course_rad", |e| e.course_rad),
+    ("path_angle_rad", |e| e.path_angle_rad),
+    ("along_m", |e| e.along_m),
+    ("ground_speed_mps", |e| e.ground_speed_mps),
+    ("rnp_m", |e| e.rnp_m),
+    ("fte_m", |e| e.fte_m[0]),
+    ("fte_v_m", |e| e.fte_m[1]),
+    ("nse_e_m", |e| e.nse_enu_m[0]),
+    ("nse_n_m", |e| e.nse_enu_m[1]),
+    ("nse_u_m", |e| e.nse_enu_m[2]),
+    ("hdop", |e| e.dop[0]),
+    ("vdop", |e| e.dop[1]),
+    // Whole numbers and codes; a double holds them exactly.
+    ("n_sv", |e| f64::from(e.n_sv)),
+    ("leg", |e| f64::from(e.leg)),
+    ("phase", |e| f64::from(e.phase)),
+    ("available", |e| f64::from(u8::from(e.reason.is_none()))),
+];
+
+impl Flights {
+    /// Flights `first .. first + count`, each a function of scenario, seed and its number, whatever the threads.
+    ///
+    /// # Errors
+    /// As [`fly`].
+    pub fn fly(outlook: &Outlook, seed: u64, first: u64, count: u64) -> Result<Self, OutOfDomain> {
+        let epochs =
+            (first..first.saturating_add(count)).into_par_iter().map(|number| fly(outlook, seed, number)).collect::<Result<_, _>>()?;
+        Ok(Self { epochs, first })
+    }
+
+    /// One column, all flights.
+    pub fn column(&self, column: &Column) -> Vec<f64> {
+        self.all().map(column.1).collect()
+    }
+
+    /// GPS time of every epoch \[ns\].
+    pub fn time_ns(&self) -> Vec<i64> {
+        self.all().map(|e| e.time_ns).collect()
+    }
+
+    /// Number of the flight that every epoch belongs to.
+    pub fn number(&self) -> Vec<u32> {
+        self.epochs.iter().zip(self.first..).flat_map(|(epochs, number)| core::iter::repeat_n(number as u32, epochs.len())).collect()
+    }
+
+    /// Why an estimate does not exist, for each epoch where it does not, in order.
+    pub fn reasons(&self) -> Vec<String> {
+        self.all().filter_map(|e| e.reason).map(|r| r.to_string()).collect()
+    }
+
+    fn all(&self) -> impl Iterator<Item = &FlownEpoch> {
+        self.epochs.iter().flatten()
+    }
+}

@@ -1,0 +1,149 @@
+//! One flight: navigation error drawn from its covariance, the aircraft steered by the estimate, both set down as epochs.
+
+use crate::aircraft::{Aircraft, Deviation, STEPS};
+use crate::outlook::{Instant, Outlook, lateral_fault_m, right_of};
+use crate::philox::{Sensor, Stream};
+use nalgebra::Vector3;
+use navbound_core::frame::{Displacement, Enu, Geodetic};
+use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
+use navbound_path::Line;
+
+/// One epoch of a flight. Numbers of an estimate that does not exist are NaN.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlownEpoch {
+    /// GPS time \[ns\].
+    pub time_ns: i64,
+    /// True position: latitude, longitude \[rad\], height \[m\].
+    pub truth: [f64; 3],
+    /// Estimated position, likewise.
+    pub estimate: [f64; 3],
+    /// Claimed covariance: ee, en, nn, eu, nu, uu \[m²\].
+    pub covariance_m2: [f64; 6],
+    /// The point of the path that the estimate belongs to (the planned one where there is no estimate), likewise.
+    pub path: [f64; 3],
+    /// Course there \[rad\].
+    pub course_rad: f64,
+    /// Path angle there \[rad\].
+    pub path_angle_rad: f64,
+    /// Distance along the path there \[m\].
+    pub along_m: f64,
+    /// Index of the leg there.
+    pub leg: u32,
+    /// Index of the phase.
+    pub phase: u32,
+    /// RNP value in force \[m\].
+    pub rnp_m: f64,
+    /// Speed over the ground \[m/s\].
+    pub ground_speed_mps: f64,
+    /// Flight technical error across and above the path \[m\].
+    pub fte_m: [f64; 2],
+    /// Navigation system error east, north, up \[m\].
+    pub nse_enu_m: [f64; 3],
+    /// Satellites in the solution.
+    pub n_sv: u32,
+    /// Dilutions of precision, horizontal and vertical.
+    pub dop: [f64; 2],
+    /// Why there is no estimate.
+    pub reason: Option<Unavailable>,
+}
+
+/// A flight of a scenario; the number chooses its random streams.
+///
+/// # Errors
+/// [`OutOfDomain`] for a route that leaves the Earth's latitudes: beside a pole.
+pub fn fly(outlook: &Outlook, seed: u64, number: u64) -> Result<Vec<FlownEpoch>, OutOfDomain> {
+    let errors = navigation_errors(outlook, seed, number);
+    let scenario = &outlook.scenario;
+    let mut aircraft = Aircraft::new(&outlook.plan, scenario.guidance, scenario.gusts, seed, number);
+    let mut epochs = Vec::with_capacity(errors.len());
+    for (i, instant) in outlook.instants.iter().enumerate() {
+        epochs.push(epoch(outlook, instant, aircraft.deviation(), &errors[i])?);
+        let (from, to) = (seen_error(outlook, i, &errors), seen_error(outlook, (i + 1).min(errors.len() - 1), &errors));
+        for step in 0..STEPS {
+            let share = step as f64 / STEPS as f64;
+            let error =
+                Deviation { right_m: from.right_m + share * (to.right_m - from.right_m), up_m: from.up_m + share * (to.up_m - from.up_m) };
+            aircraft.step(instant.time_s + share, error);
+        }
+    }
+    Ok(epochs)
+}
+
+/// Errors (true minus estimated, east-north-up) with exactly the covariance of each epoch and a first-order Gauss-Markov course in time.
+///
+/// ```text
+/// e = chol(V) w      w' = r w + sqrt(1 - r^2) n      r = exp(-1 s / tau)
+/// ```
+fn navigation_errors(outlook: &Outlook, seed: u64, number: u64) -> Vec<Vector3<f64>> {
+    let mut stream = Stream::new(seed, number, Sensor::Navigation);
+    let mut draw = || Vector3::new(stream.normal(), stream.normal(), stream.normal());
+    let keep = (-1.0 / outlook.scenario.navigation.correlation_time_s).exp();
+    let fresh = (1.0 - keep * keep).sqrt();
+    let mut white = draw();
+    let mut errors = Vec::with_capacity(outlook.instants.len());
+    for instant in &outlook.instants {
+        let fault = lateral_fault_m(&outlook.scenario.faults, instant.time_s);
+        errors.push(instant.sky.factor * white + fault * right_of(instant.place.course));
+        white = keep * white + fresh * draw();
+    }
+    errors
+}
+
+fn seen_error(outlook: &Outlook, i: usize, errors: &[Vector3<f64>]) -> Deviation {
+    let right = right_of(outlook.instants[i].place.course);
+    Deviation { right_m: right.dot(&errors[i]), up_m: errors[i].z }
+}
+
+fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, error: &Vector3<f64>) -> Result<FlownEpoch, OutOfDomain> {
+    let demand = &instant.demand;
+    let beside = Radians::new(instant.place.course.rad() + core::f64::consts::FRAC_PI_2);
+    let point = Line::from_azimuth(instant.place.point, beside)?.at(Metres::new(deviation.right_m))?.point;
+    let truth = Geodetic { point, height: Metres::new(demand.height_m + deviation.up_m) };
+    let phase = outlook.plan.phase_at(demand.along_m);
+    let mut epoch = FlownEpoch {
+        time_ns: outlook.scenario.start_ns + (instant.time_s * 1e9) as i64,
+        truth: numbers(&truth),
+        estimate: [f64::NAN; 3],
+        covariance_m2: [f64::NAN; 6],
+        path: [instant.place.point.lat().rad(), instant.place.point.lon().rad(), demand.height_m],
+        course_rad: instant.place.course.rad(),
+        path_angle_rad: demand.slope.atan(),
+        along_m: demand.along_m,
+        leg: instant.place.leg as u32,
+        phase: phase as u32,
+        rnp_m: outlook.plan.phases()[phase].rnp.m(),
+        ground_speed_mps: demand.speed_mps,
+        fte_m: [f64::NAN; 2],
+        nse_enu_m: [f64::NAN; 3],
+        n_sv: instant.sky.n_sv as u32,
+        dop: instant.sky.dilution.map_or([f64::NAN; 2], |d| [d.horizontal, d.vertical]),
+        reason: instant.sky.covariance.as_ref().err().copied(),
+    };
+    epoch.estimate(outlook, instant, &truth, error)?;
+    Ok(epoch)
+}
+
+impl FlownEpoch {
+    /// Adds what rests on the estimate, where there is one.
+    fn estimate(&mut self, outlook: &Outlook, instant: &Instant, truth: &Geodetic, error: &Vector3<f64>) -> Result<(), OutOfDomain> {
+        let Ok(covariance) = &instant.sky.covariance else { return Ok(()) };
+        let estimate = truth.moved(&Displacement::<Enu>::from_vector(-error))?;
+        let foot = outlook.plan.route.project(&estimate.point, Some(Metres::new(instant.demand.along_m)))?;
+        let path_height = instant.demand.height_m + instant.demand.slope * (foot.along.m() - instant.demand.along_m);
+        let claim = outlook.scenario.navigation.claimed_sigma_scale;
+        let v = covariance.matrix() * (claim * claim);
+        self.estimate = numbers(&estimate);
+        self.covariance_m2 = [v[(0, 0)], v[(0, 1)], v[(1, 1)], v[(0, 2)], v[(1, 2)], v[(2, 2)]];
+        self.path = [foot.point.lat().rad(), foot.point.lon().rad(), path_height];
+        self.course_rad = foot.course.rad();
+        self.along_m = foot.along.m();
+        self.leg = foot.leg as u32;
+        self.fte_m = [foot.cross.m(), estimate.height.m() - path_height];
+        self.nse_enu_m = [error.x, error.y, error.z];
+        Ok(())
+    }
+}
+
+fn numbers(position: &Geodetic) -> [f64; 3] {
+    [position.point.lat().rad(), position.point.lon().rad(), position.height.m()]
+}

@@ -1,0 +1,28 @@
+//! How good a range is: standard deviation by elevation.
+//!
+//! ```text
+//! sigma^2 = ranging^2 + (F ionosphere)^2 + (m troposphere)^2 + noise^2 + (share * multipath)^2
+//! F = 1 / sqrt(1 - (Re cos el / (Re + 350 km))^2)       obliquity of the ionosphere
+//! m = 1.001 / sqrt(0.002001 + sin^2 el)                 mapping of the troposphere
+//! multipath = 0.13 + 0.53 exp(-el / 10 deg) \[m\]         airborne model
+//! ```
+//!
+//! F, m and the multipath model are those of the DO-229 family (standard, from memory: check before operational use). The zenith values
+//! come from the scenario.
+
+use crate::scenario::Navigation;
+use navbound_core::quantity::{Metres, Radians};
+
+const EARTH_RADIUS_M: f64 = 6_378_136.3;
+const SHELL_HEIGHT_M: f64 = 350_000.0;
+
+/// Standard deviation of a range at an elevation.
+pub(crate) fn sigma(n: &Navigation, elevation: Radians) -> Metres {
+    let (sin, cos) = elevation.rad().sin_cos();
+    let shell = EARTH_RADIUS_M * cos / (EARTH_RADIUS_M + SHELL_HEIGHT_M);
+    let ionosphere = n.ionosphere_sigma_m / (1.0 - shell * shell).sqrt();
+    let troposphere = n.troposphere_sigma_m * 1.001 / (0.002_001 + sin * sin).sqrt();
+    let multipath = n.multipath_share * (0.13 + 0.53 * (-elevation.rad() / 10.0_f64.to_radians()).exp());
+    let parts = [n.ranging_sigma_m, ionosphere, troposphere, n.noise_sigma_m, multipath];
+    Metres::new(parts.iter().map(|s| s * s).sum::<f64>().sqrt())
+}

@@ -1,0 +1,80 @@
+"""Units of configuration keys: a key ends in its unit, and everything is turned into SI units on the way in."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from navbound.errors import InputError
+
+TO_SI: dict[str, tuple[str, float]] = {
+    "_deg": ("_rad", math.pi / 180),
+    "_degps": ("_radps", math.pi / 180),
+    "_nm": ("_m", 1852.0),
+    "_km": ("_m", 1000.0),
+    "_ft": ("_m", 0.3048),
+    "_kt": ("_mps", 1852 / 3600),
+    "_fpm": ("_mps", 0.3048 / 60),
+    "_min": ("_s", 60.0),
+}
+"""Suffix to the SI suffix and the factor; all exact by definition but for the rounding of pi."""
+
+
+@dataclass(frozen=True)
+class Written:
+    """A value as it was written."""
+
+    key: str
+    value: object
+
+
+Place = tuple[str | int, ...]
+
+
+def to_si(table: dict[str, Any], written: dict[Place, Written]) -> dict[str, Any]:
+    """Turn every key of a table into SI units, and note in `written` how it was written.
+
+    Raises
+    ------
+    InputError
+        One quantity written twice in different units.
+    """
+    result: dict[str, Any] = {}
+    _table(table, (), "", written, result)
+    return result
+
+
+def _table(table: dict[str, Any], place: Place, path: str, written: dict[Place, Written], result: dict[str, Any]) -> None:
+    for key, value in table.items():
+        name, factor = _si_name(key)
+        here = f"{path}.{key}" if path else key
+        if name in result:
+            raise InputError(here, value, domain=f"one unit: it is also given as {written[(*place, name)].key}")
+        written[(*place, name)] = Written(here, value)
+        result[name] = _value(value, factor, (*place, name), here, written)
+
+
+def _value(value: Any, factor: float | None, place: Place, path: str, written: dict[Place, Written]) -> Any:
+    if isinstance(value, dict):
+        inner: dict[str, Any] = {}
+        _table(value, place, path, written, inner)
+        return inner
+    if isinstance(value, list):
+        items = []
+        for i, item in enumerate(value):
+            written[(*place, i)] = Written(f"{path}[{i}]", item)
+            items.append(_value(item, factor, (*place, i), f"{path}[{i}]", written))
+        return items
+    # A truth value is a number to Python, not to us.
+    if factor is not None and isinstance(value, (int, float)) and not isinstance(value, bool):
+        return value * factor
+    return value
+
+
+def _si_name(key: str) -> tuple[str, float | None]:
+    stem, _, last = key.rpartition("_")
+    if stem and f"_{last}" in TO_SI:
+        suffix, factor = TO_SI[f"_{last}"]
+        return stem + suffix, factor
+    return key, None
