@@ -89,7 +89,7 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
         let elapsed = report.time.seconds_since(fix.time);
         let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
         let step_m = here.minus(&from).vector().norm();
-        let (mut finding, age_s) = if unchanged { (held(report, elapsed, limits), elapsed) } else { (Finding::Plausible, 0.0) };
+        let (mut finding, age_s) = if unchanged { (held(report, &fix, limits), elapsed) } else { (Finding::Plausible, 0.0) };
         if !unchanged {
             if !(step_m <= reach(&fix, report, elapsed, limits)) {
                 finding = Finding::Jump;
@@ -97,7 +97,7 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
             }
             last = Some((*report, here));
         }
-        let settling = jumped.is_some_and(|t| report.time.seconds_since(t) <= limits.settle_s);
+        let settling = jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
         if settling && matches!(finding, Finding::Plausible | Finding::Held) {
             finding = Finding::Unsettled;
         }
@@ -107,11 +107,17 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
 }
 
 /// An unchanged position is held only where the aircraft says it moves; a parked one repeats itself rightly.
-fn held(report: &Report, age_s: f64, limits: &Limits) -> Finding {
+fn held(report: &Report, since: &Report, limits: &Limits) -> Finding {
     if !(report.speed_mps > limits.moving_mps) {
         return Finding::Plausible;
     }
-    if age_s > limits.stale_after_s { Finding::Stale } else { Finding::Held }
+    if within(report.time, since.time, limits.stale_after_s) { Finding::Held } else { Finding::Stale }
+}
+
+/// Whether no more than `limit_s` has passed; in whole nanoseconds, since 30 s as 3e10 * 1e-9 is more than 30.
+fn within(now: GpsTime, earlier: GpsTime, limit_s: f64) -> bool {
+    // The cast saturates, so an endless limit is one.
+    now.nanoseconds() - earlier.nanoseconds() <= (limit_s * 1e9) as i64
 }
 
 /// How far an aircraft may be from its last position \[m\].

@@ -66,7 +66,7 @@ fn plausible<'py>(
     lon_rad: PyReadonlyArray1<'py, f64>,
     ground_speed_mps: PyReadonlyArray1<'py, f64>,
     limits: &Bound<'py, PyDict>,
-) -> PyResult<(Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+) -> PyResult<Bound<'py, PyDict>> {
     let limit = |name: &'static str| -> PyResult<f64> {
         let value: f64 = limits.as_any().get_item(name)?.extract()?;
         if !(value >= 0.0) {
@@ -103,7 +103,11 @@ fn plausible<'py>(
     let codes: Vec<u8> = judged.iter().map(|j| code(j.finding)).collect();
     let ages: Vec<f64> = judged.iter().map(|j| j.age_s).collect();
     let steps: Vec<f64> = judged.iter().map(|j| j.step_m).collect();
-    Ok((codes.into_pyarray(py), ages.into_pyarray(py), steps.into_pyarray(py)))
+    let d = PyDict::new(py);
+    d.set_item("finding", codes.into_pyarray(py))?;
+    d.set_item("age_s", ages.into_pyarray(py))?;
+    d.set_item("step_m", steps.into_pyarray(py))?;
+    Ok(d)
 }
 
 fn triples<'a>(array: &'a PyReadonlyArray2<'_, f64>) -> PyResult<&'a [[f64; 3]]> {

@@ -83,9 +83,16 @@ QUANTITIES: tuple[Quantity, ...] = (
         deg="longitude lon lng long lon_deg longitude_deg est_lon_deg",
         rad="lon_rad longitude_rad",
     ),
-    _q("est_h_m", "m", -2e4, 1e8, m="h_m height height_m ellipsoid_height ellipsoidal_height", ft="geoaltitude alt_geom height_ft"),
-    _q("altitude_m", "m", -2e3, 1e5, m="alt_m", ft="altitude altitude_ft baroaltitude alt_baro pressure_altitude"),
-    _q("ground_track_rad", "rad", -2 * math.pi, 2 * math.pi, deg="track track_deg ground_track true_track heading_of_travel cog"),
+    _q(
+        "est_h_m",
+        "m",
+        -2e4,
+        1e8,
+        m="h_m height height_m ellipsoid_height ellipsoidal_height",
+        ft="geoaltitude geoaltitude_ft alt_geom height_ft",
+    ),
+    _q("altitude_m", "m", -2e3, 1e5, m="alt_m", ft="altitude altitude_ft alt_baro pressure_altitude"),
+    _q("ground_track_rad", "rad", -2 * math.pi, 2 * math.pi, deg="track track_deg ground_track true_track cog"),
     _q("ground_speed_mps", "mps", 0.0, 2e4, kt="groundspeed ground_speed gs ground_speed_kt velocity_kt sog", mps="speed_mps"),
     _q(
         "vertical_rate_mps",
@@ -123,6 +130,17 @@ TIME_NAMES: dict[str, str] = {
     "unix_time": "utc_s", "unix_time_s": "utc_s", "time_s": "utc_s", "timestamp_ms": "utc_ms", "time_ms": "utc_ms",
 }  # fmt: skip
 """Known names of time columns to the way they are written."""
+
+
+OPENSKY_STATES: dict[str, tuple[str, str]] = {
+    "est_h_m": ("geoaltitude", "m"),
+    "altitude_m": ("baroaltitude", "m"),
+    "ground_track_rad": ("heading", "deg"),
+    "ground_speed_mps": ("velocity", "mps"),
+    "vertical_rate_mps": ("vertrate", "mps"),
+}
+"""State vectors as the OpenSky Network stores them, in SI; its ``heading`` is the track. A table is one when it has all these names,
+some of which mean something else elsewhere."""
 
 
 @dataclass(frozen=True)
@@ -183,6 +201,10 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path)
         else:
             columns[key] = column
     taken = {c.name for c in [*columns.values(), *times]}
+    if {name for name, _ in OPENSKY_STATES.values()} <= set(names):
+        states = {key: Column(key, name, unit) for key, (name, unit) in OPENSKY_STATES.items() if name not in taken}
+        columns = states | columns
+        taken |= {c.name for c in states.values()}
     for quantity in QUANTITIES:
         if quantity.name not in columns:
             found = _known(quantity, [n for n in names if n not in taken], own=own)

@@ -81,6 +81,10 @@ def _epochs(source: Source, found: Table, mapping: Assignment) -> Reading:
     frame, rejections, notes = found.frame, found.rejections, list[str]()
     out = pl.DataFrame({LINE: frame[LINE]})
     reasons = list[pl.Series]()
+    for column in (*mapping.columns.values(), *mapping.times):
+        dtype = frame.schema[column.name]
+        if dtype.is_nested() or dtype in (pl.Binary, pl.Object):
+            raise FormatError(source.path, f"holds {dtype}, where a number or a text is needed", field=column.name)
     for name, column in mapping.columns.items():
         if _QUANTITY[name].si == "text":
             out = out.with_columns(frame[column.name].cast(pl.String).str.strip_chars().alias(name))

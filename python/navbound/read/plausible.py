@@ -101,9 +101,9 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
     findings, steps = list[np.ndarray[tuple[int], np.dtype[np.uint8]]](), list[np.ndarray[tuple[int], np.dtype[np.float64]]]()
     for group in columns.partition_by("track", maintain_order=True):
         time, lat, lon, reported = (np.ascontiguousarray(group[c].to_numpy()) for c in columns.columns[1:])
-        finding, _, step_m = _core.plausible(time, lat, lon, reported, asdict(limits))
-        findings.append(finding)
-        steps.append(step_m)
+        judged = _core.plausible(time, lat, lon, reported, asdict(limits))
+        findings.append(judged["finding"])
+        steps.append(judged["step_m"])
     code, step = np.concatenate(findings), np.concatenate(steps)
     marked = epochs.with_columns(
         pl.Series("status", [_STATUS[c] for c in range(len(_STATUS))], dtype=pl.String).gather(code),
@@ -115,7 +115,7 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
     n_steps, largest = int((step > 5000).sum()), float(step.max(initial=0.0))
     words = (
         f"Plausibility: {n[3]} position jumps that cannot be flown ({n[4]} more epochs not settled after them), {n[2]} epochs with a "
-        f"position held for more than {limits.stale_after_s:g} s, {n[1]} with one held shorter; {n_steps} steps of more than 5 km, the largest "
-        f"{largest / 1e3:.1f} km."
+        f"position held for more than {limits.stale_after_s:g} s, {n[1]} with one held shorter; {n_steps} steps of more than 5 km "
+        f"between successive epochs, the largest {largest / 1e3:.1f} km."
     )
     return marked, Plausibility(int(n[1]), int(n[2]), int(n[3]), int(n[4]), n_steps, largest, words)

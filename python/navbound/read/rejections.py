@@ -58,9 +58,11 @@ class Rejections:
             return
         first, reason, example = self._first_bad
         where = f"; first in record {first}" if self.unit != "line" else ""
+        field, separator, kind = reason.partition(": ")
         raise FormatError(
             self.path,
-            f"{reason}: found “{example[:80]}”; {self.malformed} of {n_rows} rows are malformed, "
+            f"{kind if separator else reason}: found “{example[:80]}”; {self.malformed} of {n_rows} rows are malformed, "
             f"more than the {MAX_BAD_SHARE:.0%} that may be left out{where}",
             first if self.unit == "line" else None,
+            field if separator else None,
         )

@@ -33,6 +33,8 @@ class Runway:
         Of this end; 0 where the table has none. [m]
     displaced_m : float
         How far the threshold lies inside the end. [m]
+    length_m : float
+        As the table states it; 0 where it does not. [m]
     centreline : Path
         The geodesic from the threshold through the other end; distances before the threshold are negative.
     """
@@ -44,7 +46,16 @@ class Runway:
     far_lon_rad: float
     elevation_m: float
     displaced_m: float
+    length_m: float
     centreline: path.Path
+
+    @property
+    def doubt(self) -> str | None:
+        """What speaks against the coordinates: ends that lie further from each other, or nearer, than the runway is long."""
+        apart = self.centreline.length_m + self.displaced_m
+        if self.length_m == 0 or abs(apart - self.length_m) <= max(200.0, 0.1 * self.length_m):
+            return None
+        return f"Runway {self.name}: its ends lie {apart:.0f} m apart, but it is {self.length_m:.0f} m long; its centreline is doubtful."
 
     @property
     def course_rad(self) -> float:
@@ -69,6 +80,7 @@ def table() -> pl.DataFrame:
             far_lon_rad=pl.col(f"{far}_lon_deg") * rad,
             elevation_m=pl.col(f"{this}_elevation_ft").fill_null(0) * _FT,
             displaced_m=pl.col(f"{this}_displaced_ft").fill_null(0) * _FT,
+            length_m=pl.col("length_ft").fill_null(0) * _FT,
         )
 
     return pl.concat([end("low", "high"), end("high", "low")])
@@ -110,6 +122,7 @@ def _runway(row: dict[str, object]) -> Runway:
         far_lon_rad=far_lon,
         elevation_m=numbers["elevation_m"],
         displaced_m=displaced,
+        length_m=numbers["length_m"],
         centreline=path.line(lat, lon, far_lat, far_lon),
     )
 
@@ -119,7 +132,7 @@ _CELL_M = 15_000.0
 
 def near(lat_rad: np.ndarray[tuple[int], np.dtype[np.float64]], lon_rad: np.ndarray[tuple[int], np.dtype[np.float64]]) -> list[Runway]:
     """Runways with their end within about 15 km of one of many positions (some further ones come along)."""
-    ends = table().filter(pl.col("displaced_m") < 5000)
+    ends = table()
     cells = _cells(lat_rad, lon_rad).unique()
     steps = pl.DataFrame({"step": [-1, 0, 1]})
     for axis in "xyz":

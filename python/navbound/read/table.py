@@ -70,7 +70,8 @@ def _csv(source: Source) -> Table:
     # Separators within quotation marks do not count; a quotation mark that is left over opens a field that does not end.
     bare = pl.col("text").str.replace_all(r'"[^"]*"', "")
     counted = lines[1:].with_columns(n=bare.str.count_matches(separator, literal=True) + 1, open=bare.str.contains('"', literal=True))
-    n_fields = len(_names(source, header, separator))
+    names = _names(source, header, separator)
+    n_fields = len(names)
     good = counted.filter(pl.col("n") == n_fields, ~pl.col("open"))
     rejections = Rejections(source.path)
     bad = counted.filter((pl.col("n") != n_fields) | pl.col("open"))
@@ -79,17 +80,21 @@ def _csv(source: Source) -> Table:
         rejections.add(f"a row with another number of fields than the header's {n_fields} (first: {n})", bad.height, line, text)
     body = "\n".join([header, *good["text"].to_list()]).encode()
     try:
-        frame = pl.read_csv(io.BytesIO(body), separator=separator, infer_schema=False)
+        frame = pl.read_csv(
+            io.BytesIO(body), separator=separator, has_header=False, skip_rows=1, schema=dict.fromkeys(map(str, range(n_fields)), pl.String)
+        )
     except pl.exceptions.PolarsError as e:
         raise FormatError(source.path, f"not a table: {e}") from e
     if frame.height != good.height:
         raise FormatError(source.path, f"not a table: {good.height} lines make {frame.height} rows")
-    return Table(frame.rename(str.strip).with_columns(good[LINE]), rejections, counted.height)
+    named = {str(i): name for i, name in enumerate(names) if name}
+    return Table(frame.select(named.keys()).rename(named).with_columns(good[LINE]), rejections, counted.height)
 
 
 def _names(source: Source, header: str, separator: str) -> list[str]:
     names = [n.strip().strip('"') for n in header.split(separator)]
-    repeated = [name for name, n in Counter(names).items() if n > 1]
+    # Unnamed columns (a data frame's index, a separator at the end of the line) may be many: nothing can ask for them.
+    repeated = [name for name, n in Counter(names).items() if n > 1 and name]
     if repeated:
         raise FormatError(source.path, f"the column “{repeated[0]}” is named twice", 1)
     return names

@@ -94,6 +94,7 @@ def material(
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
         epochs = with_error(epochs)
         assumptions.append("Truth: from the file itself.")
+    n_recorded = epochs.height
     route = _follow(path, epochs, gates, rejected)
     epochs = _covariance_status(route.epochs).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
     return Material(
@@ -102,7 +103,7 @@ def material(
         title=route.heading if path is not None else f"{route.heading}: {', '.join(Path(str(n)).name for n in names)}",
         requirement=requirement,
         sample_period_s=_period(epochs),
-        assumptions=[*assumptions, *route.words, *notes],
+        assumptions=[*assumptions, *route.words, f"Judged are {epochs.height} of {n_recorded} recorded epochs.", *notes],
         labels={track: f"{labels[of]} {track.partition(' ')[2]}".strip() for track, of in route.tracks.items()} if route.tracks else labels,
         waypoints=route.waypoints,
         inputs=inputs + route.inputs,
@@ -177,6 +178,7 @@ def _on_approach(found: Approaches, gates: Gates) -> _Path:
     ]
     waypoints = [Waypoint(name=r.name, lat_rad=r.lat_rad, lon_rad=r.lon_rad, kind="runway") for r in found.runways]
     heading = f"{n} recorded approaches to {runways if len(found.runways) <= 4 else f'{len(found.runways)} runways'}"
+    words += [r.doubt for r in found.runways if r.doubt is not None]
     return _Path(found.epochs, words + found.notes, heading, waypoints, cross_track=found.cross_track, tracks=found.tracks)
 
 

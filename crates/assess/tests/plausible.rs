@@ -1,0 +1,99 @@
+//! Held and jumping positions.
+
+use navbound_assess::plausible::{Finding, Limits, Report, judge};
+use navbound_core::quantity::GpsTime;
+
+const LIMITS: Limits = Limits {
+    max_speed_mps: 400.0,
+    speed_factor: 1.25,
+    speed_margin_mps: 25.0,
+    latency_s: 2.0,
+    noise_m: 100.0,
+    moving_mps: 15.0,
+    stale_after_s: 2.0,
+    settle_s: 30.0,
+};
+
+/// Radians of latitude in a metre at the equator, where the meridian's radius is 6335439 m.
+const RAD_PER_M: f64 = 1.0 / 6_335_439.0;
+
+/// Northwards along a meridian from the equator: positions \[m\] at whole seconds.
+fn track(positions_m: &[f64], speed_mps: f64) -> Vec<Report> {
+    let report = |(i, m): (usize, &f64)| Report {
+        time: GpsTime::from_nanoseconds(1_000_000_000 * i as i64),
+        lat_rad: m * RAD_PER_M,
+        lon_rad: 0.3,
+        speed_mps,
+    };
+    positions_m.iter().enumerate().map(report).collect()
+}
+
+fn findings(reports: &[Report]) -> Vec<Finding> {
+    judge(reports, &LIMITS).unwrap().iter().map(|j| j.finding).collect()
+}
+
+#[test]
+fn steady_flight_is_plausible() {
+    let positions: Vec<f64> = (0..100).map(|i| 100.0 * f64::from(i)).collect();
+    assert!(findings(&track(&positions, 100.0)).iter().all(|f| *f == Finding::Plausible));
+}
+
+#[test]
+fn a_repeated_position_is_held_and_then_stale_and_ends_with_the_next() {
+    use Finding::{Held, Plausible, Stale};
+    let found = judge(&track(&[0.0, 100.0, 100.0, 100.0, 100.0, 100.0, 600.0], 100.0), &LIMITS).unwrap();
+    let findings: Vec<Finding> = found.iter().map(|j| j.finding).collect();
+    assert_eq!(findings, [Plausible, Plausible, Held, Held, Stale, Stale, Plausible]);
+    assert_eq!(found[5].age_s, 4.0);
+    // 500 m along the meridian; the chord is shorter by 1e-7 of it.
+    assert!((found[6].step_m - 500.0).abs() < 1e-3, "{}", found[6].step_m);
+}
+
+#[test]
+fn a_parked_aircraft_and_one_that_reports_no_speed_may_repeat_their_position() {
+    for speed in [0.0, 14.0, f64::NAN] {
+        assert!(findings(&track(&[5.0; 20], speed)).iter().all(|f| *f == Finding::Plausible), "{speed} m/s");
+    }
+}
+
+/// (1.25 * 100 + 25) m/s * (1 + 2) s + 100 m = 550 m.
+#[test]
+fn a_jump_is_what_lies_beyond_the_reach() {
+    assert_eq!(findings(&track(&[0.0, 549.0], 100.0))[1], Finding::Plausible);
+    assert_eq!(findings(&track(&[0.0, 551.0], 100.0))[1], Finding::Jump);
+}
+
+/// 400 m/s * (1 + 2) s + 100 m = 1300 m, whatever a falsified speed says.
+#[test]
+fn without_a_speed_or_with_an_absurd_one_the_fastest_aircraft_is_the_measure() {
+    for speed in [f64::NAN, 5000.0] {
+        assert_eq!(findings(&track(&[0.0, 1299.0], speed))[1], Finding::Plausible);
+        assert_eq!(findings(&track(&[0.0, 1301.0], speed))[1], Finding::Jump);
+    }
+}
+
+#[test]
+fn after_a_jump_nothing_is_believed_until_it_has_settled() {
+    let mut positions = vec![0.0];
+    positions.extend((0..40).map(|i| 50_000.0 + 100.0 * f64::from(i)));
+    let found = findings(&track(&positions, 100.0));
+    assert_eq!(found[1], Finding::Jump);
+    assert!(found[2..=31].iter().all(|f| *f == Finding::Unsettled), "{found:?}");
+    assert!(found[32..].iter().all(|f| *f == Finding::Plausible), "{found:?}");
+}
+
+#[test]
+fn a_position_that_comes_back_after_a_long_hold_is_no_jump() {
+    let mut positions = vec![0.0; 88];
+    positions.push(8_800.0);
+    assert_eq!(findings(&track(&positions, 100.0))[88], Finding::Plausible);
+    positions[88] = 20_000.0;
+    assert_eq!(findings(&track(&positions, 100.0))[88], Finding::Jump);
+}
+
+#[test]
+fn no_place_on_the_earth_is_refused_with_its_index() {
+    let mut reports = track(&[0.0, 1.0, 2.0], 100.0);
+    reports[2].lat_rad = f64::NAN;
+    assert_eq!(judge(&reports, &LIMITS).unwrap_err().0, 2);
+}
