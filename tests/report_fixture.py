@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 import polars as pl
@@ -26,6 +28,8 @@ from navbound.run.records import (
     Waypoint,
     Worst,
 )
+
+Provenance = Literal["printed", "re-derived", "standard", "ours", "inferred"]
 
 N = 7081
 START_NS = 1_316_000_000_000_000_000
@@ -133,7 +137,7 @@ def epochs(track: str = "flight-000", n: int = N, seed: int = 7, truth: bool = T
             "path_h_m": 10000 * np.minimum(1, np.minimum(t, n - 1 - t) / 1100),
             "course_rad": course,
             "along_m": t * step_m,
-            "leg": np.array([f"{a[0]}-{b[0]}" for a, b in zip(_POINTS, _POINTS[1:], strict=False)])[np.minimum(t * 5 // n, 4)],
+            "leg": np.array([f"{a[0]}-{b[0]}" for a, b in pairwise(_POINTS)])[np.minimum(t * 5 // n, 4)],
             "phase": phase,
             "ground_speed_mps": np.full(n, step_m) + rng.normal(size=n),
             "rnp_m": rnp,
@@ -174,8 +178,10 @@ def epochs(track: str = "flight-000", n: int = N, seed: int = 7, truth: bool = T
     return frame if truth else frame.drop([c for c in frame.columns if c.startswith(("nse_", "tse_m", "tse_v_m"))])
 
 
-def _method(name: str, title: str, error: str, risk: float, frame: pl.DataFrame, provenance: str = "ours") -> MethodResult:
+def _method(name: str, title: str, error: str, frame: pl.DataFrame, *, risk: float = 0.05, provenance: Provenance = "ours") -> MethodResult:
     column = frame[name.replace("-", "_") + ("_m" if risk > 1e-3 else "_integrity_m")]
+    numbers = column.cast(pl.Float64).to_numpy()
+    mean = float(np.nanmean(numbers))
     known = error in frame.columns
     within = frame.select((pl.col(error).abs() <= column).mean()).item() if known else None
     return MethodResult(
@@ -188,14 +194,14 @@ def _method(name: str, title: str, error: str, risk: float, frame: pl.DataFrame,
         may_alert=name.startswith("tse"),
         risk=risk,
         n=column.drop_nulls().len(),
-        mean_m=column.mean(),
-        max_m=column.max(),
+        mean_m=mean,
+        max_m=float(np.nanmax(numbers)),
         coverage=within,
         coverage_low=within - 0.01 if within is not None else None,
         coverage_high=min(1.0, within + 0.01) if within is not None else None,
         n_effective=240.5 if known else None,
-        winkler_m=float(column.mean()) * 2.2 if known else None,
-        pinball_m=float(column.mean()) / 15 if known else None,
+        winkler_m=mean * 2.2 if known else None,
+        pinball_m=mean / 15 if known else None,
     )
 
 
@@ -208,33 +214,61 @@ def flight(n_tracks: int = 1, truth: bool = True, n: int = N) -> Fixture:
     at = int(margin.arg_min() or 0)
     row = first.row(at, named=True)
     worst = Worst(
-        track=names[0], time_ns=row["time_ns"], margin_m=margin[at], bound_m=row["tse_exact_m"], limit_m=row["rnp_m"], phase=row["phase"],
-        along_m=row["along_m"], lat_rad=row["est_lat_rad"], lon_rad=row["est_lon_rad"],
-    )  # fmt: skip
+        track=names[0],
+        time_ns=row["time_ns"],
+        margin_m=margin[at],
+        bound_m=row["tse_exact_m"],
+        limit_m=row["rnp_m"],
+        phase=row["phase"],
+        along_m=row["along_m"],
+        lat_rad=row["est_lat_rad"],
+        lon_rad=row["est_lon_rad"],
+    )
     accuracy = [
-        _method("tse-exact", "TSE, exact folded normal", "tse_m", 0.05, frame, "re-derived"),
-        _method("tse-ltem", "TSE, linear estimation", "tse_m", 0.05, frame, "printed"),
-        _method("tse-vertical", "TSE, vertical", "tse_v_m", 0.05, frame),
-        _method("anp-circle", "ANP, circle", "nse_h_m", 0.05, frame),
-        _method("anp-sphere", "ANP, sphere", "nse_3d_m", 0.05, frame),
-        _method("anp-along", "ANP, along track", "nse_along_m", 0.05, frame),
-        _method("anp-cross", "ANP, across track", "nse_cross_m", 0.05, frame),
-        _method("anp-vertical", "ANP, vertical", "nse_u_m", 0.05, frame),
+        _method("tse-exact", "TSE, exact folded normal", "tse_m", frame, provenance="re-derived"),
+        _method("tse-ltem", "TSE, linear estimation", "tse_m", frame, provenance="printed"),
+        _method("tse-vertical", "TSE, vertical", "tse_v_m", frame),
+        _method("anp-circle", "ANP, circle", "nse_h_m", frame),
+        _method("anp-sphere", "ANP, sphere", "nse_3d_m", frame),
+        _method("anp-along", "ANP, along track", "nse_along_m", frame),
+        _method("anp-cross", "ANP, across track", "nse_cross_m", frame),
+        _method("anp-vertical", "ANP, vertical", "nse_u_m", frame),
     ]
     events = [
         EventSummary(
-            track=names[0], kind="warning", onset_ns=START_NS + 6348 * 10**9, annunciation_ns=START_NS + 6348 * 10**9, clear_ns=START_NS + 6372 * 10**9,
-            peak_m=300.0, limit_m=2 * NM, min_margin_m=-12.5, words="Fixture: integrity bound beyond 2 RNP </script><b>not markup</b>",
+            track=names[0],
+            kind="warning",
+            onset_ns=START_NS + 6348 * 10**9,
+            annunciation_ns=START_NS + 6348 * 10**9,
+            clear_ns=START_NS + 6372 * 10**9,
+            peak_m=300.0,
+            limit_m=2 * NM,
+            min_margin_m=-12.5,
+            words="Fixture: integrity bound beyond 2 RNP </script><b>not markup</b>",
         ),
         EventSummary(
-            track=names[0], kind="unavailable", onset_ns=START_NS + GAP[0] * 10**9, annunciation_ns=None, clear_ns=START_NS + GAP[1] * 10**9,
-            peak_m=None, limit_m=None, min_margin_m=None, words="Fixture: three satellites, four needed",
+            track=names[0],
+            kind="unavailable",
+            onset_ns=START_NS + GAP[0] * 10**9,
+            annunciation_ns=None,
+            clear_ns=START_NS + GAP[1] * 10**9,
+            peak_m=None,
+            limit_m=None,
+            min_margin_m=None,
+            words="Fixture: three satellites, four needed",
         ),
         EventSummary(
-            track=names[0], kind="waypoint", onset_ns=START_NS + 1416 * 10**9, annunciation_ns=None, clear_ns=None, peak_m=None, limit_m=None,
-            min_margin_m=None, words="Fixture: passing WPT-A",
+            track=names[0],
+            kind="waypoint",
+            onset_ns=START_NS + 1416 * 10**9,
+            annunciation_ns=None,
+            clear_ns=None,
+            peak_m=None,
+            limit_m=None,
+            min_margin_m=None,
+            words="Fixture: passing WPT-A",
         ),
-    ]  # fmt: skip
+    ]
     summary = Summary(
         kind="fly",
         title="Fixture flight, not a result",
@@ -258,33 +292,63 @@ def flight(n_tracks: int = 1, truth: bool = True, n: int = N) -> Fixture:
         assumptions=["Fixture: made-up Gaussian error.", "Fixture: covariance from nowhere."],
         phases=[
             PhaseSummary(
-                phase=p, rnp_m=r * NM, n_epochs=1000, duration_s=1000, share_inside=0.99, worst_ratio=0.4, p_exceed_2rnp_max=2e-6,
-                p_exceed_2rnp_mean=3e-9, coverage=0.95 if truth else None, n_cautions=0, n_warnings=0,
+                phase=p,
+                rnp_m=r * NM,
+                n_epochs=1000,
+                duration_s=1000,
+                share_inside=0.99,
+                worst_ratio=0.4,
+                p_exceed_2rnp_max=2e-6,
+                p_exceed_2rnp_mean=3e-9,
+                coverage=0.95 if truth else None,
+                n_cautions=0,
+                n_warnings=0,
             )
             for p, r in (("departure", 1), ("en route", 2), ("arrival", 1), ("approach", 0.3))
         ],
         tracks=[
             TrackSummary(
-                track=name, label=f"Fixture {i}", n_epochs=n, start_ns=START_NS, duration_s=float(n - 1), fte_mean_m=0.5 * i, fte_std_m=20 + (i * 7) % 5,
-                fte_abs95_m=41.0 + (i * 5) % 7, share_inside=1 - 0.001 * i, worst_ratio=0.4 + 0.01 * ((i * 3) % n_tracks), worst_margin_m=300.0 - i,
-                n_cautions=0, n_warnings=1 if i == 0 else 0, n_unavailable=GAP[1] - GAP[0] if n == N else 0,
+                track=name,
+                label=f"Fixture {i}",
+                n_epochs=n,
+                start_ns=START_NS,
+                duration_s=float(n - 1),
+                fte_mean_m=0.5 * i,
+                fte_std_m=20 + (i * 7) % 5,
+                fte_abs95_m=41.0 + (i * 5) % 7,
+                share_inside=1 - 0.001 * i,
+                worst_ratio=0.4 + 0.01 * ((i * 3) % n_tracks),
+                worst_margin_m=300.0 - i,
+                n_cautions=0,
+                n_warnings=1 if i == 0 else 0,
+                n_unavailable=GAP[1] - GAP[0] if n == N else 0,
             )
             for i, name in enumerate(names)
         ],
         accuracy=accuracy,
-        integrity=[_method("tse-exact", "TSE, exact folded normal", "tse_m", 1e-5, frame, "re-derived")],
+        integrity=[_method("tse-exact", "TSE, exact folded normal", "tse_m", frame, risk=1e-5, provenance="re-derived")],
         honesty=Honesty(
-            n=frame.height, n_effective=240.5, dimension=2, nees_mean=2.11, nees_low=1.76, nees_high=2.26, pit_low=480, pit_high=936,
-            pit_counts=[700, 690, 742, 655, 718, 731, 699, 706, 610, 830], words="Fixture: the claimed covariance agrees with the errors.",
+            n=frame.height,
+            n_effective=240.5,
+            dimension=2,
+            nees_mean=2.11,
+            nees_low=1.76,
+            nees_high=2.26,
+            pit_low=480,
+            pit_high=936,
+            pit_counts=[700, 690, 742, 655, 718, 731, 699, 706, 610, 830],
+            words="Fixture: the claimed covariance agrees with the errors.",
         )
         if truth
         else None,
         states=STATES,
         events=events,
-        cross_track=[CrossTrack(path="LFPG 08R (fixture)", n_tracks=9, n_points=990, mean_m=1.2, std_m=14.3, abs95_m=29.8, between_tracks_std_m=8.8)],
+        cross_track=[
+            CrossTrack(path="LFPG 08R (fixture)", n_tracks=9, n_points=990, mean_m=1.2, std_m=14.3, abs95_m=29.8, between_tracks_std_m=8.8)
+        ],
         rejected=[Rejection(file="fixture.csv", reason="latitude missing", count=3, first_line=17, example="2020-01-01,,12.0")],
         n_status={"ok": frame.height - 120, "not_available": 120},
-    )  # fmt: skip
+    )
     record = RunRecord(
         navbound_version="0.0.0-fixture",
         command="navbound fly fixture",

@@ -28,11 +28,16 @@ class Page {
     private readonly charts = el("div", { class: "charts" });
     private readonly bar = el("div");
     private readonly selector = el("select", { id: "track", "aria-label": "Track shown" });
-    private readonly trackTable = el("div");
+    private readonly trackTable: ReturnType<typeof tracks>;
     private current: Scene | null = null;
     private ends: (() => void)[] = [];
 
-    constructor(private readonly payload: Payload) {}
+    private readonly payload: Payload;
+
+    constructor(payload: Payload) {
+        this.payload = payload;
+        this.trackTable = tracks(payload, () => this.current?.table.track ?? "", (t) => void this.select(t));
+    }
 
     async show(root: HTMLElement): Promise<void> {
         const { payload } = this;
@@ -40,11 +45,9 @@ class Page {
         root.replaceChildren(this.header(), this.upper, this.charts);
         verdict(root.querySelector("#verdict-place")!, payload);
         honesty(root, summary);
-        const tables = el("section", { id: "tables" }, el("h2", {}, "The flight in numbers"), this.trackTable);
+        const tables = el("section", { id: "tables" }, el("h2", {}, summary.tracks.length === 1 ? "The flight in numbers" : "The tracks in numbers"), this.trackTable.element);
         if (summary.phases.length > 0) tables.append(phases(payload));
         for (const part of [crossTrack(payload), events(payload, () => this.current, (t) => this.select(t)), rejections(payload)]) if (part !== null) tables.append(part);
-        if (summary.tracks.length === 1) tables.querySelector("h2")!.textContent = "The flight in numbers";
-        else tables.querySelector("h2")!.textContent = "The tracks in numbers";
         root.append(tables, methods(payload), smallPrint(payload), this.bar);
         this.listTracks();
         const first = payload.tracks[0];
@@ -69,7 +72,7 @@ class Page {
         ];
         const worst = payload.summary.verdict.worst_accuracy;
         now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));
-        this.trackTable.replaceChildren(tracks(payload, () => head.track, (t) => void this.select(t)));
+        this.trackTable.refresh();
     }
 
     private header(): HTMLElement {

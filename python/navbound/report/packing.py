@@ -39,7 +39,7 @@ class Packed:
     planes: bytes
 
     def head(self) -> dict[str, object]:
-        """What the page needs to reverse the packing."""
+        """Return what the page needs to reverse the packing."""
         return {"name": self.name, "kind": self.kind, "resolution": self.resolution, "offset": self.offset, "order": self.order}
 
 

@@ -40,7 +40,7 @@ class Page:
     tracks: list[str]
 
 
-def build(
+def build(  # noqa: PLR0917 - as render
     summary: Summary,
     record: RunRecord,
     epochs: pl.DataFrame,
@@ -104,7 +104,7 @@ def build(
 
 
 def _finite(value: Any) -> Any:
-    """The same data with null where a number does not exist: JSON has no NaN."""
+    """Replace by null where a number does not exist: JSON has no NaN."""
     if isinstance(value, dict):
         return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, list):

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _NEEDED = ("track", "time_ns")
 
 
-def render(summary: Summary, record: RunRecord, epochs: pl.DataFrame, events: pl.DataFrame, waypoints: list[Waypoint], out: Path) -> Path:
+def render(summary: Summary, record: RunRecord, epochs: pl.DataFrame, events: pl.DataFrame, waypoints: list[Waypoint], out: Path) -> Path:  # noqa: PLR0917 - the parts of a run, in the order of its files
     """Write the report of one run as a single HTML file that needs no network.
 
     Parameters

@@ -16,9 +16,9 @@ export function anp(host: HTMLElement, scene: Scene): () => void {
     const nse = scene.table.column("nse_h_m");
     const rnp = scene.table.column("rnp_m");
     const lines: Line[] = [];
-    if (nse !== undefined) lines.push({ key: "nse_h_m", label: "NSE horizontal (truth)", values: nse, colour: "ink", width: 1, about: "Length of the horizontal navigation system error" });
+    if (nse !== undefined) lines.push({ key: "nse_h_m", label: "NSE horizontal (truth)", values: nse, colour: "ink", width: 1, front: 1, about: "Length of the horizontal navigation system error" });
     lines.push(...bounds);
     if (rnp !== undefined) lines.push({ key: "rnp_m", label: "RNP", values: rnp, colour: "limit", width: 1.5, limit: true, about: "Required navigation performance by phase" });
     const note = `Bounds of the navigation system error. ${nse === undefined ? "No truth: the error itself is unknown." : "The error is seen because truth is known."}`;
-    return strip(host, scene, { id: "anp", title: "Actual navigation performance", note, unit: "m", lines, scales: rnp === undefined ? ["data"] : ["data", "compressed", "limits"], show: metres, height: 250 });
+    return strip(host, scene, { id: "anp", title: "Actual navigation performance", note, unit: "m", lines, scales: rnp === undefined ? ["data"] : ["data", "compressed", "limits"], show: (v) => metres(v), height: 250 });
 }

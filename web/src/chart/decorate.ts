@@ -66,10 +66,24 @@ export function drawEvents(u: uPlot, scene: Scene): void {
     }
 }
 
-/** Pixels the names need at the right edge. */
-export function labelRoom(lines: Line[], visible: Set<string>): number {
-    const longest = Math.max(0, ...lines.filter((l) => visible.has(l.key)).map((l) => l.label.length));
-    return Math.min(190, 18 + 6.1 * longest);
+/** Units at the ends of the axes. */
+export function drawUnits(u: uPlot, vertical: string, horizontal: string, font: string): void {
+    const { ctx, bbox } = u;
+    const ratio = devicePixelRatio;
+    ctx.save();
+    ctx.font = scaled(font);
+    ctx.fillStyle = colour("muted");
+    ctx.textAlign = "right";
+    ctx.textBaseline = "alphabetic";
+    ctx.fillText(vertical, bbox.left - 5 * ratio, bbox.top - 8 * ratio);
+    ctx.textAlign = "left";
+    ctx.textBaseline = "top";
+    ctx.fillText(horizontal, 0, bbox.top + bbox.height + 5 * ratio);
+    ctx.restore();
+}
+
+function scaled(font: string): string {
+    return font.replace("11px", `${11 * devicePixelRatio}px`);
 }
 
 export function drawLabels(u: uPlot, lines: Line[], visible: Set<string>, font: string): void {
@@ -87,7 +101,7 @@ export function drawLabels(u: uPlot, lines: Line[], visible: Set<string>, font: 
     });
     const placed = spread(shown.map((s) => s.y), LABEL_PX * ratio, bbox.top + 4 * ratio, bbox.top + bbox.height - 4 * ratio);
     ctx.save();
-    ctx.font = font.replace("11px", `${11 * ratio}px`);
+    ctx.font = scaled(font);
     ctx.textBaseline = "middle";
     ctx.textAlign = "left";
     shown.forEach((label, i) => {

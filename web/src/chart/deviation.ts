@@ -1,7 +1,7 @@
 // Lateral and vertical deviation with the bounds that belong to them.
 
 import type { Scene } from "../data/scene.ts";
-import { nauticalMiles, signedMetres } from "../show/format.ts";
+import { metres, nauticalMiles, signedMetres } from "../show/format.ts";
 import { methodLines } from "./methods.ts";
 import { strip, type Line, type Scale } from "./strip.ts";
 import { extent } from "./ticks.ts";
@@ -13,9 +13,9 @@ export function lateral(host: HTMLElement, scene: Scene): () => void {
     const bounds = methodLines(scene, ["tse_m"], true);
     if (fte === undefined && bounds.length === 0) return missing(host, "Lateral deviation", "No path was given, so the flight technical error is unknown.");
     const lines: Line[] = [];
-    if (fte !== undefined) lines.push({ key: "fte_m", label: "FTE", values: fte, colour: "ink", width: 1.4, about: "Flight technical error: estimated position minus defined path, positive right" });
+    if (fte !== undefined) lines.push({ key: "fte_m", label: "FTE", values: fte, colour: "ink", width: 1.2, front: 2, about: "Flight technical error: estimated position minus defined path, positive right" });
     const tse = table.column("tse_m");
-    if (tse !== undefined) lines.push({ key: "tse_m", label: "TSE (truth)", values: tse, colour: "m5", dash: [3, 2], about: "Total system error: true position minus desired path, positive right" });
+    if (tse !== undefined) lines.push({ key: "tse_m", label: "TSE (truth)", values: tse, colour: "m5", width: 1, front: 1, about: "Total system error: true position minus desired path, positive right" });
     lines.push(...bounds);
     const rnp = table.column("rnp_m");
     if (rnp !== undefined) {
@@ -31,9 +31,9 @@ export function vertical(host: HTMLElement, scene: Scene): () => void {
     const fte = table.column("fte_v_m");
     const bounds = methodLines(scene, ["tse_v_m"], true);
     if (fte === undefined) return missing(host, "Vertical deviation", "No vertical path was given, so the vertical deviation is unknown.");
-    const lines: Line[] = [{ key: "fte_v_m", label: "FTE vertical", values: fte, colour: "ink", width: 1.4, about: "Flight technical error above the path" }];
+    const lines: Line[] = [{ key: "fte_v_m", label: "FTE vertical", values: fte, colour: "ink", width: 1.2, front: 2, about: "Flight technical error above the path" }];
     const tse = table.column("tse_v_m");
-    if (tse !== undefined) lines.push({ key: "tse_v_m", label: "TSE (truth)", values: tse, colour: "m5", dash: [3, 2] });
+    if (tse !== undefined) lines.push({ key: "tse_v_m", label: "TSE (truth)", values: tse, colour: "m5", width: 1, front: 1, about: "Total system error above the path" });
     lines.push(...bounds);
     const note = `Positive above the path. ${bounds.length === 0 ? "No bound of the vertical error was computed." : "No vertical limit is required by RNP."}`;
     return strip(host, scene, { id: "vertical", title: "Vertical deviation", note, unit: "m", lines, scales: ["data"], show: lengthText });
@@ -48,6 +48,7 @@ function scalesFor(lines: Line[]): Scale[] {
     return far > 6 * Math.max(-low, high) ? ["compressed", "data", "limits"] : ["limits", "data", "compressed"];
 }
 
-function lengthText(v: number): string {
-    return Math.abs(v) >= 1000 ? `${signedMetres(v)} (${nauticalMiles(v)})` : signedMetres(v);
+function lengthText(v: number, line: Line): string {
+    const text = line.mirror ? metres(v) : signedMetres(v);
+    return line.limit ? `${text} (${nauticalMiles(v)})` : text;
 }

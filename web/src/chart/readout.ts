@@ -9,7 +9,7 @@ export function swatch(line: { colour: string; dash?: number[]; width?: number }
 }
 
 /** One button a line: its name, its value at the cursor; pressing it hides or shows the line. */
-export function readout(lines: Line[], visible: Set<string>, show: (value: number) => string, changed: () => void): { element: HTMLElement; update: (i: number) => void } {
+export function readout(lines: Line[], visible: Set<string>, show: (value: number, line: Line) => string, changed: () => void): { element: HTMLElement; update: (i: number) => void } {
     const cells = new Map<string, HTMLElement>();
     const element = el("div", { class: "readout" });
     for (const line of lines) {
@@ -28,7 +28,7 @@ export function readout(lines: Line[], visible: Set<string>, show: (value: numbe
     const update = (i: number): void => {
         for (const line of lines) {
             const v = line.values[i] ?? NaN;
-            setValue(cells.get(line.key)!, v, show(v));
+            setValue(cells.get(line.key)!, v, show(v, line));
         }
     };
     return { element, update };
@@ -53,13 +53,13 @@ function state(values: Float64Array): Stated {
     return n === 0 ? { n, low: NaN, mean: NaN, high: NaN } : { n, low, mean: sum / n, high };
 }
 
-export function numbers(lines: Line[], show: (value: number) => string, title: string): { element: HTMLElement; update: (i: number) => void } {
+export function numbers(lines: Line[], show: (value: number, line: Line) => string, title: string): { element: HTMLElement; update: (i: number) => void } {
     const at = new Map<string, HTMLElement>();
     const rows = lines.map((line) => {
         const { n, low, mean, high } = state(line.values);
         const here = el("td");
         at.set(line.key, here);
-        return el("tr", {}, el("th", { scope: "row" }, line.label), here, el("td", {}, show(low)), el("td", {}, show(mean)), el("td", {}, show(high)), el("td", {}, String(n)));
+        return el("tr", {}, el("th", { scope: "row" }, line.label), here, el("td", {}, show(low, line)), el("td", {}, show(mean, line)), el("td", {}, show(high, line)), el("td", {}, String(n)));
     });
     const element = el("details", { class: "numbers" }, el("summary", {}, "Numbers", el("span", { class: "sr" }, ` of ${title}`)),
         el("div", { class: "scroll" }, el("table", {}, el("caption", { class: "sr" }, `${title}, as numbers`),
@@ -68,7 +68,7 @@ export function numbers(lines: Line[], show: (value: number) => string, title: s
     let index = 0;
     const fill = (): void => {
         if (!element.open) return;
-        for (const line of lines) at.get(line.key)!.textContent = show(line.values[index] ?? NaN);
+        for (const line of lines) at.get(line.key)!.textContent = show(line.values[index] ?? NaN, line);
     };
     element.addEventListener("toggle", fill);
     return { element, update: (i) => { index = i; fill(); } };

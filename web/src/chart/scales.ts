@@ -9,6 +9,8 @@ import { columnOf } from "./methods.ts";
 interface Gauge {
     title: string;
     vertical: boolean;
+    /** The ends are a required limit, not only the ends of the scale. */
+    required: boolean;
     deviation: string;
     limit: (i: number) => number;
     limitWords: (limit_m: number) => string;
@@ -46,7 +48,7 @@ function lateralGauge(scene: Scene): Gauge | null {
     if (anp !== null) rows.push([anp, `ANP 95 %, ${anp === "anp_cross_m" ? "across track" : "circle"}`, metres]);
     rows.push(["fte_m", "FTE", signedMetres]);
     if (bound !== undefined && table.has(columnOf(bound, false))) rows.push([columnOf(bound, false), `TSE bound ${level(bound.risk)}, ${bound.id}`, metres]);
-    return { title: "Lateral", vertical: false, deviation: "fte_m", limit: (i) => table.value("rnp_m", i), limitWords: rnpName, anp, rows };
+    return { title: "Lateral", vertical: false, required: true, deviation: "fte_m", limit: (i) => table.value("rnp_m", i), limitWords: rnpName, anp, rows };
 }
 
 function verticalGauge(scene: Scene): Gauge | null {
@@ -62,7 +64,7 @@ function verticalGauge(scene: Scene): Gauge | null {
     const largest = Math.max(1, ...Array.from(table.column("fte_v_m")!, (v) => (Number.isFinite(v) ? Math.abs(v) : 0)));
     const step = 10 ** Math.floor(Math.log10(largest));
     const end = [1, 2, 5, 10].map((f) => f * step).find((v) => v >= largest) ?? 10 * step;
-    return { title: "Vertical", vertical: true, deviation: "fte_v_m", limit: () => end, limitWords: (v) => `${metres(v)}, scale only: no vertical limit`, anp, rows };
+    return { title: "Vertical", vertical: true, required: false, deviation: "fte_v_m", limit: () => end, limitWords: (v) => `${metres(v)}, scale only: no vertical limit`, anp, rows };
 }
 
 function draw(gauge: Gauge, scene: Scene): { element: HTMLElement; update: (i: number) => void } {
@@ -70,7 +72,7 @@ function draw(gauge: Gauge, scene: Scene): { element: HTMLElement; update: (i: n
     const bars = [svg("rect", { class: "anp-bar", y: 9, height: 18 }), svg("rect", { class: "anp-bar", y: 9, height: 18 })];
     const pointer = svg("path", { class: "pointer", d: "M0 6 L7 18 L0 30 L-7 18 Z" });
     const ticks = [-1, -0.5, 0.5, 1].map((t) => svg("line", { class: Math.abs(t) === 1 ? "gauge-end" : "gauge-tick", x1: middle + t * HALF, x2: middle + t * HALF, y1: Math.abs(t) === 1 ? 4 : 13, y2: Math.abs(t) === 1 ? 32 : 23 }));
-    const picture = svg("svg", { viewBox: `0 0 ${LENGTH} 36`, class: "gauge", role: "img" },
+    const picture = svg("svg", { viewBox: `0 0 ${LENGTH} 36`, class: gauge.required ? "gauge" : "gauge no-limit", role: "img" },
         svg("line", { class: "gauge-line", x1: middle - HALF, x2: middle + HALF, y1: 18, y2: 18 }), ...bars, ...ticks,
         svg("line", { class: "gauge-centre", x1: middle, x2: middle, y1: 6, y2: 30 }), pointer);
     const ends = el("p", { class: "gauge-ends" });
@@ -84,7 +86,7 @@ function draw(gauge: Gauge, scene: Scene): { element: HTMLElement; update: (i: n
         const deviation = scene.table.value(gauge.deviation, i);
         const anp = gauge.anp === null ? NaN : scene.table.value(gauge.anp, i);
         const share = Math.min(1, anp / limit);
-        const width = Number.isFinite(share) ? Math.max(share * HALF, 1) : 0;
+        const width = Number.isFinite(share) ? Math.max(share * HALF, 3) : 0;
         bars[0]!.setAttribute("x", String(middle - HALF));
         bars[1]!.setAttribute("x", String(middle + HALF - width));
         bars.forEach((bar) => bar.setAttribute("width", String(width)));

@@ -29,7 +29,7 @@ export function states(host: HTMLElement, scene: Scene): () => void {
     return strip(host, scene, {
         id: "states", title: "Navigation state", unit: "", scales: ["data"], range: [-BAND - 0.05, 1], height: 190, draw,
         note: "Posterior probability of each navigation specification, stacked; beneath, the decided state. Where epochs are denser than pixels, their mean.",
-        lines, show: (v) => (Number.isFinite(v) ? plain(v, 3) : "n/a"), yTick: (v) => (v < 0 ? "" : plain(v, 1)), noPaths: true,
+        lines, show: (v) => (Number.isFinite(v) ? plain(v, 3) : "n/a"), ySplits: () => [0, 0.5, 1], yTick: (v) => plain(v, 1), noPaths: true,
     });
 }
 

@@ -2,11 +2,11 @@
 // uPlot draws long series as the smallest and largest value of each pixel column, so a spike of one epoch stays visible.
 
 import uPlot from "uplot";
-import { axisValues, METRES_PER_NM, type Scene } from "../data/scene.ts";
+import { axisValues, type Scene } from "../data/scene.ts";
 import { choice, el, freshId } from "../show/dom.ts";
 import { clock, plain } from "../show/format.ts";
 import { colour, type Colour } from "../show/theme.ts";
-import { drawEvents, drawHatch, drawLabels, labelRoom } from "./decorate.ts";
+import { drawEvents, drawHatch, drawLabels, drawUnits } from "./decorate.ts";
 import { numbers, readout } from "./readout.ts";
 import { asinhTicks, clockTicks, extent, type Extent } from "./ticks.ts";
 
@@ -25,6 +25,8 @@ export interface Line {
     /** Source, provenance and assumptions, one hover away. */
     about?: string;
     hidden?: boolean;
+    /** Drawn above lines with less: the errors stand before their bounds. */
+    front?: number;
 }
 
 export type Scale = "data" | "limits" | "compressed" | "log";
@@ -39,7 +41,7 @@ export interface StripOptions {
     /** Offered scales, the first is taken. */
     scales: Scale[];
     /** Text of one value. */
-    show: (value: number) => string;
+    show: (value: number, line: Line) => string;
     height?: number;
     /** Lowest value drawn on a logarithmic scale. */
     floor?: number;
@@ -49,9 +51,13 @@ export interface StripOptions {
     yTick?: (value: number) => string;
     /** The lines are drawn by `draw`, not as lines. */
     noPaths?: boolean;
+    /** Heights of the horizontal grid lines; uPlot's choice without it. */
+    ySplits?: (min: number, max: number) => number[];
 }
 
 const SCALE_NAMES: Record<Scale, string> = { data: "Data", limits: "To limits", compressed: "Both, compressed", log: "Log" };
+/** The same in every chart, so that their axes stand under one another. */
+const LABEL_ROOM_PX = 168;
 const FONT = '11px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
 
 export function strip(host: HTMLElement, scene: Scene, options: StripOptions): () => void {
@@ -114,18 +120,35 @@ function dataOf(scene: Scene, options: StripOptions): uPlot.AlignedData {
         if (!Number.isFinite(v)) return null;
         return options.floor === undefined ? sign * v : Math.max(v, options.floor);
     });
-    const columns = options.lines.flatMap((line) => (line.mirror ? [nullable(line.values, 1), nullable(line.values, -1)] : [nullable(line.values, 1)]));
+    const columns = drawn(options).flatMap((line) => (line.mirror ? [nullable(line.values, 1), nullable(line.values, -1)] : [nullable(line.values, 1)]));
     return [Array.from(axisValues(scene)), ...columns] as uPlot.AlignedData;
 }
 
+/** Lines in the order they are drawn, from the back. */
+function drawn(options: StripOptions): Line[] {
+    return [...options.lines].sort((a, b) => (a.front ?? 0) - (b.front ?? 0));
+}
+
 function seriesOf(options: StripOptions, visible: Set<string>): uPlot.Series[] {
-    return options.lines.flatMap((line) => {
+    return drawn(options).flatMap((line) => {
         const one: uPlot.Series = {
-            label: line.key, show: visible.has(line.key), stroke: colour(line.colour), width: line.width ?? 1.25, dash: line.dash,
+            label: line.key, show: visible.has(line.key), stroke: colour(line.colour), width: line.width ?? (line.mirror && !line.limit ? 0.9 : 1.25), dash: line.dash,
             points: { show: false }, spanGaps: false, scale: "y", ...(options.noPaths ? { paths: () => null } : {}),
         };
         return line.mirror ? [one, { ...one }] : [one];
     });
+}
+
+/** What lies within a bound on both sides is tinted. */
+function bandsOf(options: StripOptions): uPlot.Band[] {
+    const bands: uPlot.Band[] = [];
+    let series = 1;
+    for (const line of drawn(options)) {
+        // Two hexadecimal digits of opacity after the colour.
+        if (line.mirror && !line.limit) bands.push({ series: [series, series + 1], fill: `${colour(line.colour)}1f` });
+        series += line.mirror ? 2 : 1;
+    }
+    return bands;
 }
 
 /** Smallest and largest visible value in the window, with a little room. */
@@ -134,7 +157,8 @@ function rangeOf(u: uPlot, scene: Scene, options: StripOptions, state: { scale: 
     const [from, to] = [w?.from ?? 0, w?.to ?? u.data[0]!.length - 1];
     const shown = options.lines.filter((line) => state.visible.has(line.key) && (state.scale !== "data" || line.limit !== true));
     const [low, high] = extent(shown, from, to, state.scale === "log" ? options.floor ?? 1e-12 : null);
-    if (state.scale === "log") return [10 ** Math.floor(Math.log10(low)), 10 ** Math.ceil(Math.log10(high) + 0.01)];
+    // Whole decades, with a free one above and below what is drawn.
+    if (state.scale === "log") return [10 ** (Math.floor(Math.log10(low)) - 1), 10 ** (Math.ceil(Math.log10(high)) + 1)];
     const room = 0.06 * (high - low || Math.abs(high) || 1);
     return [low < 0 ? low - room : low, high + room];
 }
@@ -148,9 +172,9 @@ function build(scene: Scene, options: StripOptions, state: { scale: Scale; visib
     return {
         width,
         height: options.height ?? (wide ? 230 : 200),
-        padding: [14, wide && !options.noPaths ? labelRoom(options.lines, state.visible) : 10, 0, 0],
+        padding: [20, wide ? LABEL_ROOM_PX : 20, 0, 0],
         legend: { show: false },
-        cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { size: 5, width: 1 } },
+        cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { show: options.noPaths !== true, size: 5, width: 1 } },
         scales: {
             x: { time: false },
             y: {
@@ -160,17 +184,24 @@ function build(scene: Scene, options: StripOptions, state: { scale: Scale; visib
             },
         },
         axes: [
-            { ...axis, size: 30, space: 70, ...(along ? { values: (_u, splits) => splits.map((s) => `${plain(s, Number.isInteger(s) ? 0 : 2)}`) } : { splits: (_u: uPlot, _i: number, min: number, max: number, _incr: number, space: number) => clockTicks(min, max, space, width), values: (_u: uPlot, splits: number[]) => splits.map((s) => clock(s)) }) },
+            { ...axis, size: 30, space: 70, ...(along ? milesAxis() : clockAxis(width)) },
             {
-                ...axis, size: 58, space: 28,
+                ...axis, size: 58, space: 28, filter: (_u, splits) => splits,
                 ...(compressed ? { splits: (_u: uPlot, _i: number, min: number, max: number) => asinhTicks(min, max, threshold) } : {}),
+                ...(options.ySplits ? { splits: (_u: uPlot, _i: number, min: number, max: number) => options.ySplits!(min, max) } : {}),
                 values: (_u, splits) => splits.map((s) => (s == null ? "" : options.yTick ? options.yTick(s) : plain(s, s !== 0 && Math.abs(s) < 1 ? 2 : Math.abs(s) < 10 && s % 1 !== 0 ? 1 : 0))),
             },
         ],
         series: [{}, ...seriesOf(options, state.visible)],
+        bands: bandsOf(options),
         hooks: {
             drawClear: [(u) => drawHatch(u, scene)],
-            draw: [(u) => options.draw?.(u, scene), (u) => drawEvents(u, scene), (u) => { if (wide && !options.noPaths) drawLabels(u, options.lines, state.visible, FONT); }],
+            draw: [
+                (u) => options.draw?.(u, scene),
+                (u) => drawEvents(u, scene),
+                (u) => drawUnits(u, options.unit, along ? "NM" : "UTC", FONT),
+                (u) => { if (wide && !options.noPaths) drawLabels(u, options.lines, state.visible, FONT); },
+            ],
             setCursor: [
                 (u) => {
                     if (isQuiet()) return;
@@ -193,11 +224,18 @@ function build(scene: Scene, options: StripOptions, state: { scale: Scale; visib
 
 /** Linear up to about the size of the data, logarithmic beyond, so that data and limits are seen at once. */
 function compressionThreshold(options: StripOptions): number {
-    const [low, high] = extent(options.lines.filter((l) => l.limit !== true), 0, Infinity, null);
-    return 10 ** Math.floor(Math.log10(Math.max(1, Math.max(-low, high) / 3)));
+    const magnitudes = options.lines.filter((l) => l.limit !== true).flatMap((l) => Array.from(l.values, Math.abs)).filter(Number.isFinite).sort((a, b) => a - b);
+    const usual = magnitudes[Math.floor(0.9 * magnitudes.length)] ?? 1;
+    return 10 ** Math.floor(Math.log10(Math.max(0.1, usual)));
 }
 
-/** Words of the horizontal axis, for captions. */
-export function axisWords(scene: Scene): string {
-    return scene.axis.get() === "along" ? `distance along the path, NM of ${METRES_PER_NM} m` : "time, UTC";
+function milesAxis(): Partial<uPlot.Axis> {
+    return { values: (_u, splits) => splits.map((s) => plain(s, Number.isInteger(s) ? 0 : 2)) };
+}
+
+function clockAxis(width: number): Partial<uPlot.Axis> {
+    return {
+        splits: (_u, _i, min, max, _incr, space) => clockTicks(min, max, space, width),
+        values: (_u, splits) => splits.map((s) => (splits.every((t) => t % 60 === 0) ? clock(s).slice(0, 5) : clock(s))),
+    };
 }

@@ -19,6 +19,8 @@ export interface View {
 
 const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
 const ROOM = 60;
+/** A smaller error ellipse is drawn enlarged, and the map says so. */
+const SMALLEST_PX = 14;
 
 export function toScreen(view: View, x: number, y: number): [number, number] {
     return [(x - view.x) * view.k + view.width / 2, (y - view.y) * view.k + view.height / 2];
@@ -62,6 +64,7 @@ function stroke(pen: CanvasRenderingContext2D, style: { colour: string; width: n
 
 export function paintStill(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, scene: Scene): void {
     pen.clearRect(0, 0, view.width, view.height);
+    stroke(pen, { colour: colour("rule"), width: 1 }, () => shapes.graticule.forEach((line) => trace(pen, view, line)));
     stroke(pen, { colour: colour("coast"), width: 1 }, () => shapes.coast.forEach((line) => trace(pen, view, line)));
     if (shapes.tunnel !== null) {
         const { one, two } = shapes.tunnel;
@@ -158,9 +161,9 @@ export function paintCursor(pen: CanvasRenderingContext2D, view: View, shapes: S
     const [px, py] = [shapes.track[2 * i]!, shapes.track[2 * i + 1]!];
     if (!Number.isFinite(px)) return NaN;
     const at = toScreen(view, px, py);
-    const scale = paintError(pen, view, shapes, scene, at, i);
-    paintAircraft(pen, at, heading(shapes.track, i) ?? table.value("course_rad", i));
-    return scale;
+    paintAircraft(pen, at, heading(shapes.path ?? shapes.track, i) ?? table.value("course_rad", i));
+    // The true position may lie under the aircraft: it is drawn after it.
+    return paintError(pen, view, shapes, scene, at, i);
 }
 
 function paintError(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, scene: Scene, at: [number, number], i: number): number {
@@ -169,8 +172,7 @@ function paintError(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, s
     const e = ellipse(table.value("cov_ee_m2", i), table.value("cov_en_m2", i), table.value("cov_nn_m2", i), risk);
     if (!Number.isFinite(e.major_m)) return NaN;
     const perMetre = pixelsPerMetre(view, shapes, i, scene);
-    let scale = 1;
-    while (e.major_m * perMetre * scale < 12 && scale < 1e6) scale *= 10;
+    const scale = enlarge(e.major_m * perMetre);
     const px = perMetre * scale;
     stroke(pen, { colour: colour("m1"), width: 1.5 }, () => pen.ellipse(at[0], at[1], e.major_m * px, e.minor_m * px, -e.angle_rad, 0, 2 * Math.PI));
     const circle = table.value("anp_circle_m", i);
@@ -188,6 +190,15 @@ function paintError(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, s
     return scale;
 }
 
+/** 1, 2 or 5 times a power of ten that makes a length in pixels visible. */
+function enlarge(px: number): number {
+    for (let decade = 1; decade < 1e9; decade *= 10) {
+        const factor = [1, 2, 5].find((f) => px * f * decade >= SMALLEST_PX);
+        if (factor !== undefined) return factor * decade;
+    }
+    return 1;
+}
+
 export function pixelsPerMetre(view: View, shapes: Shapes, i: number, scene: Scene): number {
     const [lat, lon] = [scene.table.value("est_lat_rad", i), scene.table.value("est_lon_rad", i)];
     const far = offset(lat, lon, 0, 1000);
@@ -197,7 +208,7 @@ export function pixelsPerMetre(view: View, shapes: Shapes, i: number, scene: Sce
 
 /** Clockwise from up, from the neighbouring positions. */
 function heading(track: Line, i: number): number | null {
-    const [a, b] = [Math.max(0, i - 2), Math.min(track.length / 2 - 1, i + 2)];
+    const [a, b] = [Math.max(0, i - 5), Math.min(track.length / 2 - 1, i + 5)];
     const [dx, dy] = [track[2 * b]! - track[2 * a]!, track[2 * b + 1]! - track[2 * a + 1]!];
     return Number.isFinite(dx + dy) && dx * dx + dy * dy > 0 ? Math.atan2(dx, -dy) : null;
 }

@@ -10,6 +10,8 @@ export type Line = Float64Array;
 export interface Shapes {
     plane: Plane;
     coast: Line[];
+    /** Meridians and parallels. */
+    graticule: Line[];
     track: Line;
     path: Line | null;
     /** Edges of the tunnel: left and right at RNP, left and right at twice RNP. */
@@ -48,7 +50,7 @@ export function shapes(scene: Scene): Shapes | null {
     const tunnel: Shapes["tunnel"] = path !== null && course && rnp ? { one: [edge(-1), edge(1)], two: [edge(-2), edge(2)] } : null;
     const waypoints = payload.waypoints.map((waypoint) => ({ point: place(waypoint.lat_rad, waypoint.lon_rad), waypoint }));
     const coast = payload.coastline.map((differences) => decode(differences, place));
-    return { plane: on, coast, track, path, tunnel, waypoints, bounds: boundsOf([track, ...(path ? [path] : [])]) };
+    return { plane: on, coast, graticule: graticule(lat, lon, place), track, path, tunnel, waypoints, bounds: boundsOf([track, ...(path ? [path] : [])]) };
 }
 
 function centre(lat: Float64Array, lon: Float64Array): { lat: number; lon: number } | null {
@@ -72,6 +74,37 @@ function decode(differences: number[], place: (lat: number, lon: number) => Poin
         [out[i], out[i + 1]] = place(lat * MILLI_DEG, lon * MILLI_DEG);
     }
     return out;
+}
+
+const DEG = Math.PI / 180;
+
+/** Meridians and parallels around the track, about six across it. */
+function graticule(lat: Float64Array, lon: Float64Array, place: (lat: number, lon: number) => Point): Line[] {
+    const [south, north] = extentOf(lat);
+    const [west, east] = extentOf(lon);
+    const span = Math.max(north - south, (east - west) * Math.cos((north + south) / 2)) / DEG;
+    // A track over the antimeridian has no span of longitudes to go by.
+    if (!(span > 0) || east - west > Math.PI) return [];
+    const step = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10, 15, 30].find((s) => span / s <= 6) ?? 30;
+    const room = Math.max(span, 6 * step);
+    const edges = (low: number, high: number, most: number, more: number): number[] => {
+        const [from, to] = [Math.ceil(Math.max(-most, low / DEG - more) / step), Math.floor(Math.min(most, high / DEG + more) / step)];
+        return Array.from({ length: Math.max(0, to - from + 1) }, (_, i) => (from + i) * step);
+    };
+    const lats = edges(south, north, 89, room);
+    const lons = edges(west, east, 360, room / Math.max(0.2, Math.cos((north + south) / 2)));
+    const trace = (points: [number, number][]): Line => Float64Array.from(points.flatMap(([la, lo]) => place(la * DEG, lo * DEG)));
+    const between = (values: number[]): number[] => values.slice(0, -1).flatMap((v) => [0, 0.25, 0.5, 0.75].map((f) => v + f * step)).concat(values.slice(-1));
+    return [...lats.map((la) => trace(between(lons).map((lo) => [la, lo]))), ...lons.map((lo) => trace(between(lats).map((la) => [la, lo])))];
+}
+
+function extentOf(values: Float64Array): [number, number] {
+    let [low, high] = [Infinity, -Infinity];
+    for (const v of values) {
+        if (v < low) low = v;
+        if (v > high) high = v;
+    }
+    return [low, high];
 }
 
 function boundsOf(lines: Line[]): Shapes["bounds"] {

@@ -25,7 +25,13 @@ export interface TableOptions<T> {
 
 const PAGE = 60;
 
+/** A table without changing rows. */
 export function sortable<T>(options: TableOptions<T>): HTMLElement {
+    return liveTable(options).element;
+}
+
+/** A table that can be told to read `current` again. */
+export function liveTable<T>(options: TableOptions<T>): { element: HTMLElement; refresh: () => void } {
     let rows = [...options.rows];
     let sorted: { column: number; down: boolean } | null = null;
     let most = PAGE;
@@ -49,24 +55,27 @@ export function sortable<T>(options: TableOptions<T>): HTMLElement {
     const more = el("button", { type: "button", class: "more-rows" });
     more.addEventListener("click", () => { most = rows.length; fill(); });
     const fill = (): void => {
-        body.replaceChildren(...rows.slice(0, most).map((row) => rowOf(options, row, fill)));
+        body.replaceChildren(...rows.slice(0, most).map((row) => rowOf(options, row)));
         more.hidden = rows.length <= most;
         more.textContent = `Show all ${rows.length} rows`;
     };
     fill();
-    return el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": options.caption }, el("table", { id: options.id }, el("caption", {}, options.caption), el("thead", {}, el("tr", {}, ...heads)), body), more);
+    const element = el("div", { class: "table-box" }, el("p", { class: "table-title", "aria-hidden": "true" }, options.caption),
+        el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": options.caption }, el("table", { id: options.id }, el("caption", { class: "sr" }, options.caption), el("thead", {}, el("tr", {}, ...heads)), body)), more);
+    return { element, refresh: fill };
 }
 
-function rowOf<T>(options: TableOptions<T>, row: T, refill: () => void): HTMLElement {
+function rowOf<T>(options: TableOptions<T>, row: T): HTMLElement {
     const current = options.current?.(row) ?? false;
     return el("tr", { "aria-current": current ? "true" : undefined }, ...options.columns.map((column, i) => {
         const cell = valueOf(column.key, column.of(row), column.show(row), "td");
         if (column.words) cell.classList.add("words");
+        if (column.words && column.show(row).length > 40) cell.classList.add("long");
         const title = column.title?.(row);
         if (title) cell.title = title;
         if (i === 0 && options.press && (options.pressable?.(row) ?? true)) {
             const press = el("button", { type: "button", class: "row" }, column.show(row));
-            press.addEventListener("click", () => { options.press!(row); refill(); });
+            press.addEventListener("click", () => options.press!(row));
             cell.replaceChildren(press);
         }
         return cell;

@@ -5,13 +5,13 @@ import { indexAt, utcOf } from "../data/events.ts";
 import type { Scene } from "../data/scene.ts";
 import { el } from "../show/dom.ts";
 import { clock, count, date, duration, level, metres, nauticalMiles, NONE, plain, risk, rnpName, share, signedMetres } from "../show/format.ts";
-import { sortable, type Column } from "./sortable.ts";
+import { liveTable, sortable, type Column } from "./sortable.ts";
 
 const number = <T>(head: string, key: keyof T & string, show: (v: number | null) => string): Column<T> => ({ head, key, of: (row) => row[key] as number | null, show: (row) => show(row[key] as number | null) });
 const text = <T>(head: string, key: keyof T & string): Column<T> => ({ head, key, words: true, of: (row) => row[key] as string | null, show: (row) => (row[key] as string | null) ?? NONE });
 const mean = (v: number | null): string => (v === null ? NONE : plain(v, 1));
 
-export function tracks(payload: Payload, current: () => string, choose: (track: string) => void): HTMLElement {
+export function tracks(payload: Payload, current: () => string, choose: (track: string) => void): { element: HTMLElement; refresh: () => void } {
     const { summary } = payload;
     const embedded = new Set(payload.tracks.map((t) => t.track));
     const columns: Column<TrackSummary>[] = [
@@ -24,7 +24,7 @@ export function tracks(payload: Payload, current: () => string, choose: (track: 
     ];
     if (embedded.size < summary.tracks.length) columns.push({ head: "Charts", key: "embedded", words: true, of: (t) => (embedded.has(t.track) ? "yes" : "no"), show: (t) => (embedded.has(t.track) ? "yes" : "not embedded") });
     const caption = summary.tracks.length === embedded.size ? "Tracks" : `Tracks; charts are embedded for ${embedded.size} of ${summary.tracks.length}, worst first`;
-    return sortable({ id: "tracks", caption, columns, rows: summary.tracks, sortable: true, press: (t) => choose(t.track), pressable: (t) => embedded.has(t.track), current: (t) => t.track === current() });
+    return liveTable({ id: "tracks", caption, columns, rows: summary.tracks, sortable: true, press: (t) => choose(t.track), pressable: (t) => embedded.has(t.track), current: (t) => t.track === current() });
 }
 
 function results(payload: Payload): HTMLElement[] {

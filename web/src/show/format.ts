@@ -52,7 +52,7 @@ export function powerOfTen(exponent: number): string {
 export function risk(value: number | null | undefined): string {
     if (value == null || !Number.isFinite(value)) return NONE;
     if (value === 0) return "0";
-    if (value >= 1e-3) return plain(value, value >= 0.1 ? 3 : 4);
+    if (value >= 1e-3) return String(Number(value.toPrecision(3)));
     let exponent = Math.floor(Math.log10(value));
     let mantissa = (value / 10 ** exponent).toFixed(1);
     if (mantissa === "10.0") {

@@ -5,7 +5,9 @@ import { Store } from "../data/store.ts";
 export type Colour = "ink" | "muted" | "rule" | "ground" | "panel" | "normal" | "caution" | "warning" | "path" | "limit" | "m1" | "m2" | "m3" | "m4" | "m5" | "s1" | "s2" | "s3" | "s4" | "s5" | "coast";
 
 export function colour(name: Colour): string {
-    return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+    const value = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+    // The style sheet may hold "#fff" for "#ffffff"; opacity is appended to the long form.
+    return value.length === 4 ? `#${[...value.slice(1)].map((c) => c + c).join("")}` : value;
 }
 
 export type Choice = "auto" | "light" | "dark";
