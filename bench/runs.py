@@ -22,7 +22,12 @@ def measure() -> list[dict[str, object]]:
     paris = SHARED / "aircraft" / "paris_tma_20211007" / "tracks.csv.gz"
     if paris.exists():
         rows.append(
-            _job("analyze, 107 aircraft over Paris", ["analyze", str(paris), "--path", "auto", "--spec", "RNP 0.3"], 147_644, "per row read; whole command")
+            _job(
+                "analyze, 107 aircraft over Paris",
+                ["analyze", str(paris), "--path", "auto", "--spec", "RNP 0.3"],
+                147_644,
+                "per row read; whole command",
+            )
         )
     return rows
 

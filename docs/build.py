@@ -22,7 +22,14 @@ def page() -> str:
     ]
     for m in methods().values():
         lines += _entry(m)
-    lines += ["## Reference vectors", "", "| file | cases |", "|---|---|", *(f"| `vectors/{name}.toml` | {n} |" for name, n in checked.items()), ""]
+    lines += [
+        "## Reference vectors",
+        "",
+        "| file | cases |",
+        "|---|---|",
+        *(f"| `vectors/{name}.toml` | {n} |" for name, n in checked.items()),
+        "",
+    ]
     return "\n".join(lines)
 
 

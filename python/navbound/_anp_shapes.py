@@ -22,9 +22,7 @@ class Sides(NamedTuple):
     outside: Floats
 
 
-def rectangle(
-    covariance_cu_m2: ArrayLike, half_cross_m: ArrayLike, half_up_m: ArrayLike, mean_cu_m: ArrayLike | None = None
-) -> Sides:
+def rectangle(covariance_cu_m2: ArrayLike, half_cross_m: ArrayLike, half_up_m: ArrayLike, mean_cu_m: ArrayLike | None = None) -> Sides:
     """Probability of a rectangle (the cross-section of a tunnel), and of what is outside it.
 
     ``|cross| <= half_cross_m`` and ``|up| <= half_up_m``; docs/methods/anp.md section 5.
@@ -85,9 +83,7 @@ def rectangle_scale(
     return unflatten(_core.anp_rectangle_scale(v, m, c, u, q), shape)
 
 
-def cylinder(
-    covariance_enu_m2: ArrayLike, radius_m: ArrayLike, half_height_m: ArrayLike, mean_enu_m: ArrayLike | None = None
-) -> Sides:
+def cylinder(covariance_enu_m2: ArrayLike, radius_m: ArrayLike, half_height_m: ArrayLike, mean_enu_m: ArrayLike | None = None) -> Sides:
     """Probability of a cylinder around the estimate, and of what is outside it.
 
     Horizontal error within ``radius_m`` and ``|up| <= half_height_m``; docs/methods/anp.md section 5.

@@ -175,9 +175,7 @@ def circle(covariance_en_m2: ArrayLike, risk: ArrayLike, mean_en_m: ArrayLike | 
     if mean_en_m is None:
         shape, (covariance, q) = flatten(covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ()))
         return unflatten(_core.anp_circle(covariance, None, q), shape)
-    shape, (covariance, q, mean) = flatten(
-        covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ()), mean_en_m=(mean_en_m, (2,))
-    )
+    shape, (covariance, q, mean) = flatten(covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ()), mean_en_m=(mean_en_m, (2,)))
     return unflatten(_core.anp_circle(covariance, mean, q), shape)
 
 
@@ -208,9 +206,7 @@ def sphere(covariance_enu_m2: ArrayLike, risk: ArrayLike, mean_enu_m: ArrayLike 
     if mean_enu_m is None:
         shape, (covariance, q) = flatten(covariance_enu_m2=(covariance_enu_m2, (3, 3)), risk=(risk, ()))
         return unflatten(_core.anp_sphere(covariance, None, q), shape)
-    shape, (covariance, q, mean) = flatten(
-        covariance_enu_m2=(covariance_enu_m2, (3, 3)), risk=(risk, ()), mean_enu_m=(mean_enu_m, (3,))
-    )
+    shape, (covariance, q, mean) = flatten(covariance_enu_m2=(covariance_enu_m2, (3, 3)), risk=(risk, ()), mean_enu_m=(mean_enu_m, (3,)))
     return unflatten(_core.anp_sphere(covariance, mean, q), shape)
 
 
@@ -292,9 +288,7 @@ def sphere_risk(covariance_enu_m2: ArrayLike, radius_m: ArrayLike, mean_enu_m: A
     return sphere_law(covariance_enu_m2, radius_m, mean_enu_m).outside
 
 
-def directional(
-    covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike, mean_enu_m: ArrayLike | None = None
-) -> Directional:
+def directional(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike, mean_enu_m: ArrayLike | None = None) -> Directional:
     """Error along a direction: its mean, its deviation, and the half-width it leaves with this risk, exact.
 
     ``b = u'mean``, ``s = sqrt(u'Vu)``, ``P(|u'e| > R) = risk``; docs/methods/anp.md section 3.
@@ -442,9 +436,7 @@ def intercept(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLik
 
 
 def _extents(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike) -> tuple[Floats, Floats]:
-    shape, (covariance, u, q) = flatten(
-        covariance_enu_m2=(covariance_enu_m2, (3, 3)), direction=(direction, (3,)), risk=(risk, ())
-    )
+    shape, (covariance, u, q) = flatten(covariance_enu_m2=(covariance_enu_m2, (3, 3)), direction=(direction, (3,)), risk=(risk, ()))
     table = _core.anp_extents(covariance, _unit(u), q)
     return table[:, 0].reshape(shape), table[:, 1].reshape(shape)
 

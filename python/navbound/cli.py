@@ -62,7 +62,9 @@ def fly(
     """Fly a scenario, judge every epoch, write the report."""
     out = out or Path("out") / Path(scenario).stem
     with _Progress(flights) as progress:
-        run = navbound.fly(scenario, flights=flights, seed=seed, settings=_settings(methods), out=out, progress=progress, command=_command())
+        run = navbound.fly(
+            scenario, flights=flights, seed=seed, settings=_settings(methods), out=out, progress=progress, command=_command()
+        )
     _show(run, json=json)
 
 
@@ -70,12 +72,15 @@ def fly(
 def analyze(
     files: Annotated[list[Path], typer.Argument(help="Tables (CSV, Parquet, JSON; plain or gzip) or RTKLIB .pos files.")],
     path: Annotated[
-        str | None, typer.Option(help="Where the aircraft should be: a runway (LFPG/08R), auto (the runway each aircraft lands on), or a route file.")
+        str | None,
+        typer.Option(help="Where the aircraft should be: a runway (LFPG/08R), auto (the runway each aircraft lands on), or a route file."),
     ] = None,
     spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3', 'RNP AR 0.1' or 'RNP APCH'.")] = "RNP 0.3",
     truth: Annotated[Path | None, typer.Option(help="A file with true positions, joined by time.")] = None,
     truth_tolerance_s: Annotated[float, typer.Option(help="How far apart in time a truth epoch may be.")] = 0.1,
-    sigma_m: Annotated[float | None, typer.Option(help="Stated standard deviation of the position per axis, where the file has no covariance.")] = None,
+    sigma_m: Annotated[
+        float | None, typer.Option(help="Stated standard deviation of the position per axis, where the file has no covariance.")
+    ] = None,
     column: Annotated[list[str] | None, typer.Option("--map", help="Column mapping: canonical=column[:unit]; may be repeated.")] = None,
     methods: Methods = ",".join(DEFAULT_METHODS),
     out: Out = None,
@@ -152,11 +157,27 @@ def verify(json: Json = False) -> None:
         sys.stdout.write(encoder.dumps(rows, indent=1) + "\n")
     else:
         table = Table(title=f"navbound {navbound.__version__}: reference vectors on this machine")
-        for heading, justify in (("vectors", "left"), ("function", "left"), ("checked against", "left"), ("cases", "right"), ("worst relative", "right"), ("of tolerance", "right"), ("", "left")):
+        for heading, justify in (
+            ("vectors", "left"),
+            ("function", "left"),
+            ("checked against", "left"),
+            ("cases", "right"),
+            ("worst relative", "right"),
+            ("of tolerance", "right"),
+            ("", "left"),
+        ):
             table.add_column(heading, justify=justify, overflow="fold")  # type: ignore[arg-type]
         for o in outcomes:
             verdict = "ok" if not o.failures else f"{len(o.failures)} FAILED"
-            table.add_row(o.file.id, o.file.call, f"{o.file.source} ({o.file.provenance})", str(o.checked), f"{o.worst_relative:.1e}", f"{100 * o.worst_share:.2g} %", verdict)
+            table.add_row(
+                o.file.id,
+                o.file.call,
+                f"{o.file.source} ({o.file.provenance})",
+                str(o.checked),
+                f"{o.worst_relative:.1e}",
+                f"{100 * o.worst_share:.2g} %",
+                verdict,
+            )
         out_console.print(table)
         out_console.print(f"{sum(o.checked for o in outcomes)} cases of {len(outcomes)} files, {len(failures)} failures.")
         for text in failures[:20]:
@@ -181,7 +202,12 @@ class _Progress:
 
     def __init__(self, total: int) -> None:
         self._bar = Progress(
-            TextColumn("flights"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), console=err_console, disable=total < 2 or not err_console.is_terminal
+            TextColumn("flights"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeRemainingColumn(),
+            console=err_console,
+            disable=total < 2 or not err_console.is_terminal,
         )
         self._task = self._bar.add_task("flights", total=total)
 
@@ -200,6 +226,8 @@ def _show(run: Run, *, json: bool) -> None:
     summary = run.summary
     out_console.print(summary.title, style="bold", markup=False)
     out_console.print(summary.verdict.words, markup=False, highlight=False)
+    for assumption in summary.assumptions:
+        out_console.print(f"Assumed: {assumption}", markup=False, highlight=False)
     rejected = sum(r.count for r in summary.rejected)
     if rejected:
         out_console.print(f"{rejected} rows were not used:", markup=False)
@@ -209,7 +237,9 @@ def _show(run: Run, *, json: bool) -> None:
     if summary.tracks:
         cautions, warnings = (sum(getattr(t, n) for t in summary.tracks) for n in ("n_cautions", "n_warnings"))
         unavailable = sum(t.n_unavailable for t in summary.tracks)
-        out_console.print(f"Alerts: {cautions} cautions, {warnings} warnings, {unavailable} losses of monitoring, over {len(summary.tracks)} tracks.")
+        out_console.print(
+            f"Alerts: {cautions} cautions, {warnings} warnings, {unavailable} losses of monitoring, over {len(summary.tracks)} tracks."
+        )
     if run.path is not None:
         out_console.print(f"Report: {run.report.resolve()}", markup=False, highlight=False, soft_wrap=True)
 

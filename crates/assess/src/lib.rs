@@ -5,15 +5,11 @@
 pub mod anp;
 pub mod batch;
 pub mod bounds;
-pub mod evaluation;
-pub mod monitor;
-pub mod states;
-pub mod sky;
-
 pub mod error;
+pub mod evaluation;
+pub mod flights;
 pub mod monitor;
 pub mod plausible;
-pub mod flights;
 pub mod sky;
 pub mod states;
 pub mod tse;

@@ -115,7 +115,7 @@ def _verdict(
         worst_integrity=worst_integrity,
         truth_known=truth_known,
     )
-    return verdict.model_copy(update={"words": verdict_words(verdict, accuracy[0], material.assumptions, risk_accuracy, risk_integrity)})
+    return verdict.model_copy(update={"words": verdict_words(verdict, accuracy[0], risk_accuracy, risk_integrity)})
 
 
 def _mean(flags: pl.Series) -> float | None:
@@ -157,9 +157,7 @@ def _phases(margins: pl.DataFrame, bound: str, sample_period_s: float, events: p
     )
     phase_of = margins.select("track", pl.col("time_ns").alias("onset_ns"), "phase", "rnp_m")
     alerts = events.filter(pl.col("kind").is_in(["caution", "warning"])).join(phase_of, on=["track", "onset_ns"])
-    counts = {
-        (phase, limit, kind): n for phase, limit, kind, n in alerts.group_by("phase", "rnp_m", "kind").len().iter_rows()
-    }
+    counts = {(phase, limit, kind): n for phase, limit, kind, n in alerts.group_by("phase", "rnp_m", "kind").len().iter_rows()}
     return [
         PhaseSummary(
             **row,
@@ -219,9 +217,7 @@ def _method_result(epochs: pl.DataFrame, method_id: str, risk: float, coverage_k
         "mean_m": float(bound[known].mean()) if known.any() else None,
         "max_m": float(bound[known].max()) if known.any() else None,
     }
-    scored: dict[str, float | None] = dict.fromkeys(
-        ("coverage", "coverage_low", "coverage_high", "n_effective", "winkler_m", "pinball_m")
-    )
+    scored: dict[str, float | None] = dict.fromkeys(("coverage", "coverage_low", "coverage_high", "n_effective", "winkler_m", "pinball_m"))
     if m.error_column in epochs.columns:
         error = np.abs(column_of(epochs, m.error_column))
         both = known & np.isfinite(error)

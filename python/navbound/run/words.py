@@ -36,21 +36,20 @@ def level(risk: float) -> str:
     return f"{100 * (1 - risk):.10g} %"
 
 
-def verdict_words(
-    verdict: Verdict, judged: MethodResult, assumptions: list[str], risk_accuracy: float, risk_integrity: float
-) -> str:
+def verdict_words(verdict: Verdict, judged: MethodResult, risk_accuracy: float, risk_integrity: float) -> str:
     """What a navigator wants to know first, in sentences."""
     parts = [_inside(verdict, risk_accuracy, risk_integrity)]
     if verdict.worst_accuracy is not None:
         parts.append(_worst(verdict.worst_accuracy))
     if verdict.n_judged < verdict.n_epochs:
-        parts.append(f"{verdict.n_epochs - verdict.n_judged} of {verdict.n_epochs} epochs could not be judged and count as loss of monitoring.")
+        parts.append(
+            f"{verdict.n_epochs - verdict.n_judged} of {verdict.n_epochs} epochs could not be judged and count as loss of monitoring."
+        )
     parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
     if verdict.truth_known and judged.coverage is not None:
         parts.append(f"Truth is known: the {level(risk_accuracy)} bound held the error at {share(judged.coverage)} of {judged.n} epochs.")
     elif not verdict.truth_known:
         parts.append("No truth: the honesty of the covariance could not be checked.")
-    parts.extend(assumptions)
     return " ".join(parts)
 
 
@@ -58,8 +57,9 @@ def _inside(verdict: Verdict, risk_accuracy: float, risk_integrity: float) -> st
     if verdict.share_inside is None or verdict.share_contained is None:
         return f"Not judged against {verdict.requirement}: no epoch has a bound."
     words = "Inside" if verdict.inside else "Not always inside"
+    where = "" if verdict.n_judged == verdict.n_epochs else " where it could be judged"
     return (
-        f"{words} {verdict.requirement}: the {level(risk_accuracy)} bound is within RNP at {share(verdict.share_inside)} of {verdict.n_judged} judged epochs, "
+        f"{words} {verdict.requirement}{where}: the {level(risk_accuracy)} bound is within RNP at {share(verdict.share_inside)} of {verdict.n_judged} judged epochs, "
         f"the {level(risk_integrity)} bound within twice RNP at {share(verdict.share_contained)}."
     )
 
