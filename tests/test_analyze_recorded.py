@@ -1,0 +1,235 @@
+"""Recorded tracks with falsified positions, with truth, with quality indicators, along routes."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+from navbound import FormatError, InputError, path
+from navbound.read.covariance import NACP_EPU_M, NIC_RC_M, circular_sigma, claim
+from navbound.run.analyze import material
+from navbound.run.material import Material
+
+SHARED = Path(__file__).parents[2] / "shared" / "data"
+SPOOFED = SHARED / "aircraft" / "other" / "noisy_spoofing.json.gz"
+TRACE = SHARED / "aircraft" / "other" / "trace_full_ac671b.json.gz"
+DRIVE = SHARED / "gnss_imu" / "taroz_kinematic"
+ESBC = SHARED / "gnss" / "ESBC_2020_177" / "baseline"
+
+needs_data = pytest.mark.skipif(not SHARED.exists(), reason="the recorded data are not at hand")
+
+
+def nees(m: Material) -> float:
+    """Mean of e' V^-1 e over the epochs with truth and covariance."""
+    names = [f"cov_{a}_m2" for a in ("ee", "en", "eu", "en", "nn", "nu", "eu", "nu", "uu")]
+    known = m.epochs.drop_nulls(["nse_e_m", "nse_n_m", "nse_u_m", *set(names)])
+    v = np.stack([known[n].to_numpy() for n in names], axis=1).reshape(-1, 3, 3)
+    e = known.select("nse_e_m", "nse_n_m", "nse_u_m").to_numpy()
+    return float(np.mean(np.einsum("ni,nij,nj->n", e, np.linalg.inv(v), e)))
+
+
+@needs_data
+def test_every_large_step_of_a_falsified_track_is_covered_by_a_status() -> None:
+    """README of the data: 15 steps above 5 km. Its 554 km is a flat figure; the chord of the largest is 563.9 km."""
+    m = material(SPOOFED, requirement="RNP 2", rnp_m=3704, sigma_m=50)
+    words = next(a for a in m.assumptions if a.startswith("Plausibility"))
+    assert "15 steps of more than 5 km" in words
+    assert "563.9 km" in words
+    r = 6.371e6
+    lat, lon = m.epochs["est_lat_rad"].to_numpy(), m.epochs["est_lon_rad"].to_numpy()
+    north, east = np.diff(lat) * r, np.diff(lon) * r * np.cos(lat[1:])
+    far = np.flatnonzero(np.hypot(north, east) > 5000)
+    assert len(far) == 15
+    assert abs(np.hypot(north, east).max() - 554e3) < 1e3
+    refused = m.epochs["status"].is_in(["not_available", "invalid_input"]).to_numpy()
+    # Either the position before the step had been held too long, or the step itself cannot be flown.
+    assert all(refused[i] or refused[i + 1] for i in far)
+    assert m.epochs.filter(pl.Series(refused))["cov_ee_m2"].null_count() == refused.sum()
+    assert any(r.count == 11 and r.reason == "latitude: empty" for r in m.rejected)
+
+
+@needs_data
+@pytest.mark.parametrize(("solution", "epochs", "expected", "tolerance"), [("spp", 550, 4.21, 0.005), ("rtk", 531, 6955.0, 0.5)])
+def test_the_drive_has_the_error_statistics_of_the_catalogue(solution: str, epochs: int, expected: float, tolerance: float) -> None:
+    """README of the data: mean NEES 4.21 and 6955, to the digits printed; an honest covariance has 3."""
+    m = material(DRIVE / f"rover_1Hz_{solution}.pos", truth=DRIVE / "reference_1Hz.pos", requirement="RNP 0.3", rnp_m=555.6)
+    assert m.epochs.height == epochs
+    assert abs(nees(m) - expected) <= tolerance
+    assert any(f"{epochs} of {epochs} epochs have one" in a for a in m.assumptions)
+
+
+@needs_data
+def test_the_same_truth_in_another_file_gives_the_same_error() -> None:
+    """The reference as CSV, weeks and time of week at 5 Hz, and as RTKLIB file at 1 Hz."""
+    both = [
+        material(DRIVE / "rover_1Hz_spp.pos", truth=DRIVE / name, requirement="RNP 0.3", rnp_m=555.6).epochs.select(
+            "nse_e_m", "nse_n_m", "nse_u_m"
+        )
+        for name in ("reference_1Hz.pos", "reference.csv")
+    ]
+    # Both files print 1e-8 deg or more (1 mm) and 1 mm of height.
+    assert np.abs(both[0].to_numpy() - both[1].to_numpy()).max() < 2e-3
+
+
+@needs_data
+@pytest.mark.parametrize(("systems", "expected"), [("G", 0.34), ("GE", 0.43), ("GEC", 0.47)])
+def test_cartesian_solutions_have_the_error_statistics_of_the_catalogue(tmp_path: Path, systems: str, expected: float) -> None:
+    """README of the data: a static day against its precise position; the covariance is given in Earth-centred axes."""
+    header = "%  GPST x-ecef(m) y-ecef(m) z-ecef(m) Q ns\n"
+    times = [2111 * 604_800 + 345_600 + 30 * i for i in range(2880)]
+    rows = [f"{t // 604_800} {t % 604_800}.000 3582104.9212 532590.1856 5232755.3599 6 9\n" for t in times]
+    (tmp_path / "truth.pos").write_text(header + "".join(rows), encoding="utf-8")
+    m = material(ESBC / f"esbc_spp_{systems}.pos.gz", truth=tmp_path / "truth.pos", requirement="RNP 0.3", rnp_m=555.6)
+    assert m.epochs.height == 2880
+    assert abs(nees(m) - expected) <= 0.005
+
+
+@needs_data
+def test_a_truth_eighteen_seconds_off_is_no_truth(tmp_path: Path) -> None:
+    """A file in GPS time whose header says UTC: no epoch fits at 0.01 s where the times are not whole seconds, else the error shows it."""
+    text = (DRIVE / "reference_1Hz.pos").read_text(encoding="utf-8").replace("%  GPST", "%  UTC ")
+    (tmp_path / "utc.pos").write_text(text, encoding="utf-8")
+    right = material(DRIVE / "rover_1Hz_spp.pos", truth=DRIVE / "reference_1Hz.pos", requirement="RNP 0.3", rnp_m=555.6)
+    wrong = material(DRIVE / "rover_1Hz_spp.pos", truth=tmp_path / "utc.pos", requirement="RNP 0.3", rnp_m=555.6)
+    assert nees(wrong) > 10 * nees(right)
+    early = text.replace("2023/07/11", "2023/07/10")
+    (tmp_path / "early.pos").write_text(early, encoding="utf-8")
+    with pytest.raises(InputError, match=r"no epoch within 0\.01 s"):
+        material(DRIVE / "rover_1Hz_spp.pos", truth=tmp_path / "early.pos", requirement="RNP 0.3", rnp_m=555.6)
+
+
+@needs_data
+def test_a_quality_indicator_becomes_a_covariance_and_expires() -> None:
+    m = material(TRACE, requirement="RNP 2", rnp_m=3704)
+    words = m.assumptions[0]
+    assert "NACp" in words
+    assert "general knowledge" in words
+    # NACp 10: EPU below 10 m; of a circular error 95 % lie within 2.4477 sigma (spec of the total system error, 1.5).
+    usual = m.epochs["cov_ee_m2"].drop_nulls().mode()[0]
+    assert abs(math.sqrt(usual) - 10 / 2.4477468306808165) < 1e-12
+    before = m.epochs.filter(pl.col("cov_ee_m2").is_null())
+    assert set(before["reason"]) == {"no covariance"}
+
+
+def test_the_radius_factors_are_those_of_the_specification() -> None:
+    """Two-dimensional radius factors, spec of the total system error, section 1.5."""
+    assert abs(1 / circular_sigma(0.05) - 2.4477468306808165) < 1e-15
+    assert abs(1 / circular_sigma(1e-5) - 4.7985259121880812) < 2e-15
+
+
+def test_a_better_category_never_has_a_larger_radius() -> None:
+    for table in (NACP_EPU_M, NIC_RC_M):
+        assert [table[k] for k in sorted(table, reverse=True)] == sorted(table.values())
+        assert min(table) == 1
+
+
+def epoch_table(**columns: list[float | None]) -> pl.DataFrame:
+    n = len(next(iter(columns.values())))
+    return pl.DataFrame({"track": ["a"] * n, "time_ns": [10**9 * 60 * i for i in range(n)]} | columns)
+
+
+def test_the_callers_sigma_goes_before_the_file_and_the_covariance_before_the_category() -> None:
+    full = epoch_table(cov_ee_m2=[4.0], cov_en_m2=[1.0], cov_nn_m2=[9.0], nac_p=[10.0])
+    assert claim(full).epochs.select("cov_ee_m2", "cov_en_m2", "cov_nn_m2").row(0) == (4.0, 1.0, 9.0)
+    assert claim(full, 3.0).epochs.select("cov_ee_m2", "cov_en_m2", "cov_nn_m2").row(0) == (9.0, 0.0, 9.0)
+    axes = claim(epoch_table(sigma_e_m=[2.0], sigma_n_m=[3.0], sigma_u_m=[5.0])).epochs
+    assert axes.select("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_uu_m2").row(0) == (4.0, 0.0, 9.0, 25.0)
+    for wrong in (0.0, -1.0, math.nan, math.inf):
+        with pytest.raises(InputError, match="sigma_m"):
+            claim(full, wrong)
+
+
+def test_a_category_counts_for_five_minutes_and_zero_means_unknown() -> None:
+    held = claim(epoch_table(nac_p=[9.0, None, None, None, None, None, None, 0.0, None])).epochs["cov_ee_m2"]
+    assert held.is_not_null().to_list() == [True] * 6 + [False] * 3
+
+
+def make_track(folder: Path, line: path.Path, offsets_m: list[float], step_m: float, start_m: float) -> Path:
+    """A track at stated distances right of a path, 1 s apart: each position on the geodesic that leaves the path at a right angle."""
+    rows = ["gps_time_s,lat_rad,lon_rad,sde,sdn"]
+    for i, offset in enumerate(offsets_m):
+        foot = line.at(start_m + step_m * i)
+        side = path.from_azimuth(foot.lat_rad.item(), foot.lon_rad.item(), foot.course_rad.item() + math.pi / 2).at(offset)
+        rows.append(f"{1.3e9 + i},{side.lat_rad.item()!r},{side.lon_rad.item()!r},3,4")
+    file = folder / "track.csv"
+    file.write_text("\n".join(rows) + "\n", encoding="utf-8")
+    return file
+
+
+ROUTE = """
+[[waypoint]]
+name = "ALPHA"
+lat_deg = 40.0
+lon_deg = 116.0
+
+[[waypoint]]
+name = "BRAVO"
+lat_deg = 39.0
+lon_deg = 116.5
+
+[[waypoint]]
+name = "CHARLIE"
+lat_deg = 39.0
+lon_deg = 118.0
+"""
+
+
+def test_a_track_on_a_route_has_the_offset_it_was_made_with(tmp_path: Path) -> None:
+    (tmp_path / "route.toml").write_text(ROUTE, encoding="utf-8")
+    first = path.line(*np.radians([40.0, 116.0, 39.0, 116.5]).tolist())
+    offsets = [100.0 * math.sin(i / 7) for i in range(60)]
+    track = make_track(tmp_path, first, offsets, 100.0, -950.0)
+    m = material(track, path=tmp_path / "route.toml", requirement="RNP 1", rnp_m=1852)
+    # Ten epochs lie before the first waypoint; they are counted, not judged.
+    assert m.epochs.height == 50
+    assert any("before the start" in r.reason and r.count == 10 for r in m.rejected)
+    # The projection is good to a micrometre; the coordinates have 16 digits, 1e-9 m on the ground.
+    assert np.abs(m.epochs["fte_m"].to_numpy() - np.array(offsets[10:])).max() < 1e-5
+    assert np.abs(m.epochs["along_m"].to_numpy() - (50.0 + 100.0 * np.arange(50))).max() < 1e-5
+    assert set(m.epochs["leg"]) == {"ALPHA-BRAVO"}
+    assert [w.name for w in m.waypoints] == ["ALPHA", "BRAVO", "CHARLIE"]
+    assert set(m.epochs["status"]) == {"ok"}
+
+
+def test_a_route_without_sense_is_refused_by_name(tmp_path: Path) -> None:
+    track = make_track(tmp_path, path.line(0.7, 2.0, 0.71, 2.0), [0.0] * 3, 100.0, 0.0)
+    file = tmp_path / "route.toml"
+    for content, says in [
+        (ROUTE.replace("40.0", "95.0"), r"lat_deg: waypoint 1: found “95.0”, allowed \[-90, 90\]"),
+        (ROUTE.replace("lon_deg = 118.0", ""), "lon_deg: waypoint 3: found “None”"),
+        ("[[waypoint]\n", "not TOML"),
+        ("a = 1\n", "needs .*waypoint"),
+        (ROUTE.partition('[[waypoint]]\nname = "BRAVO"')[0], "no route"),
+    ]:
+        file.write_text(content, encoding="utf-8")
+        with pytest.raises(FormatError, match=says):
+            material(track, path=file, requirement="RNP 1", rnp_m=1852)
+
+
+def test_without_a_path_only_the_navigation_system_is_judged(tmp_path: Path) -> None:
+    track = make_track(tmp_path, path.line(0.7, 2.0, 0.71, 2.0), [0.0] * 5, 100.0, 0.0)
+    m = material(track, requirement="RNP 1", rnp_m=1852)
+    assert m.epochs["fte_m"].null_count() == 5
+    assert m.epochs["cov_ee_m2"].to_list() == [9.0] * 5
+    assert any("only the navigation system is judged" in a for a in m.assumptions)
+    assert any("uncorrelated" in a for a in m.assumptions)
+
+
+def test_a_covariance_that_is_none_is_not_believed(tmp_path: Path) -> None:
+    rows = ["gps_time_s,lat_deg,lon_deg,cov_ee_m2,cov_en_m2,cov_nn_m2"]
+    rows += [f"{1.3e9 + i},48,2,{cov}" for i, cov in enumerate(["4,1,9", "4,7,9", "0,0,0", ",,"])]
+    (tmp_path / "cov.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    epochs = material(tmp_path / "cov.csv", requirement="RNP 1", rnp_m=1852).epochs
+    assert epochs["status"].to_list() == ["ok", "invalid_input", "degraded", "not_available"]
+    assert epochs["reason"].to_list() == [None, "not a covariance", "covariance is zero", "no covariance"]
+    assert epochs["cov_ee_m2"].to_list() == [4.0, None, 0.0, None]
+
+
+@pytest.mark.parametrize("rnp_m", [0.0, -1.0, math.nan, math.inf])
+def test_an_rnp_value_outside_its_domain_is_refused(tmp_path: Path, rnp_m: float) -> None:
+    with pytest.raises(InputError, match="rnp_m"):
+        material(tmp_path / "absent.csv", requirement="RNP 0", rnp_m=rnp_m)

@@ -1,0 +1,263 @@
+"""Tables of every kind and in every state: read, counted, or refused with file, line, field and text."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import math
+from pathlib import Path
+
+import polars as pl
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from navbound import FormatError, InputError, NavboundError
+from navbound.read import Reading, read
+
+GPS_MINUS_UNIX_S = 315_964_800 - 18
+"""Unix time of the GPS epoch, less the leap seconds of 2021 (IERS bulletin C)."""
+
+HEADER = "icao24,timestamp,latitude,longitude,altitude,groundspeed,track,vertical_rate"
+ROWS = [f"4ca63a,{1633608773000 + 1000 * i},48.9{i:02d},2.5{i:02d},3500,140,85.0,-700" for i in range(30)]
+
+
+def write(folder: Path, content: str | bytes, name: str = "track.csv") -> Path:
+    file = folder / name
+    file.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return file
+
+
+def table(*rows: str, header: str = HEADER) -> str:
+    return "\n".join([header, *rows]) + "\n"
+
+
+def with_row(index: int, row: str) -> str:
+    return table(*ROWS[:index], row, *ROWS[index + 1 :])
+
+
+def same(a: Reading, b: Reading, names: tuple[str, ...] = ("time_ns", "est_lat_rad", "est_lon_rad", "altitude_m")) -> bool:
+    return a.epochs.select(names).equals(b.epochs.select(names))
+
+
+def test_aviation_units_and_utc_become_si_and_gps_time(tmp_path: Path) -> None:
+    reading = read(write(tmp_path, table(*ROWS)))
+    first = reading.epochs.row(0, named=True)
+    assert first["track"] == "4ca63a"
+    assert first["time_ns"] == (1633608773 - GPS_MINUS_UNIX_S) * 10**9
+    assert first["est_lat_rad"] == pytest.approx(math.radians(48.9), rel=1e-15)
+    assert first["altitude_m"] == pytest.approx(3500 * 0.3048, rel=1e-15)
+    assert first["ground_speed_mps"] == pytest.approx(140 * 1852 / 3600, rel=1e-15)
+    assert first["ground_track_rad"] == pytest.approx(math.radians(85), rel=1e-15)
+    assert first["vertical_rate_mps"] == pytest.approx(-700 * 0.3048 / 60, rel=1e-15)
+    assert reading.rejected == []
+    assert reading.source.n_rows == 30
+
+
+def test_one_table_in_eight_forms_is_one_table(tmp_path: Path) -> None:
+    text = table(*ROWS)
+    expected = read(write(tmp_path, text))
+    frame = pl.read_csv(text.encode())
+    columns = {c: {str(i): v for i, v in enumerate(frame[c])} for c in frame.columns}
+    frame.write_parquet(tmp_path / "track.parquet")
+    quoted = "\n".join(",".join(f'"{v}"' for v in line.split(",")) for line in text.splitlines())
+    for name, content in {
+        "track.csv.gz": gzip.compress(text.encode()),
+        "windows.csv": ("\ufeff" + text.replace("\n", "\r\n")).encode(),
+        "semicolons.txt": text.replace(",", ";").encode(),
+        "quoted.csv": quoted.encode(),
+        "columns.json": json.dumps(columns).encode(),
+        "records.json": json.dumps(frame.to_dicts()).encode(),
+        "remarks.csv": ("# made by hand\n\n" + text).encode(),
+    }.items():
+        assert same(read(write(tmp_path, content, name)), expected), name
+    assert same(read(tmp_path / "track.parquet"), expected)
+
+
+@pytest.mark.parametrize(
+    ("name", "write_time"),
+    [
+        ("timestamp", lambda s: f"{s}"),
+        ("timestamp", lambda s: f"{s * 1000}"),
+        ("timestamp", lambda s: f"{s * 10**6}"),
+        ("timestamp", lambda s: f"{s * 10**9}"),
+        ("time", lambda s: f"2021-10-07T12:12:{s % 60:02d}Z"),
+        ("time", lambda s: f"2021-10-07 12:12:{s % 60:02d}.000"),
+        ("time", lambda s: f"2021-10-07T14:12:{s % 60:02d}+02:00"),
+        ("gps_time_s", lambda s: f"{s - GPS_MINUS_UNIX_S}"),
+        ("time_ns", lambda s: f"{(s - GPS_MINUS_UNIX_S) * 10**9}"),
+    ],
+)
+def test_a_time_is_the_same_instant_however_it_is_written(tmp_path: Path, name: str, write_time: object) -> None:
+    assert callable(write_time)
+    # 2021-10-07 12:12:53 UTC.
+    rows = [f"{write_time(1633608773 + i)},48.9,2.5" for i in range(5)]
+    times = read(write(tmp_path, table(*rows, header=f"{name},lat,lon"))).epochs["time_ns"]
+    assert times.to_list() == [(1633608773 + i - GPS_MINUS_UNIX_S) * 10**9 for i in range(5)]
+
+
+def test_week_and_time_of_week_are_gps_time(tmp_path: Path) -> None:
+    text = "GPS TOW (s),GPS Week,Latitude (deg),Longitude (deg),Ellipsoid Height (m)\n194670.2, 2270, 35.16536109, 136.88140866, 41.391\n"
+    first = read(write(tmp_path, text)).epochs.row(0, named=True)
+    assert first["time_ns"] == 2270 * 604_800 * 10**9 + 194_670_200_000_000
+    assert first["est_h_m"] == 41.391
+
+
+def test_a_declared_column_goes_before_a_known_name(tmp_path: Path) -> None:
+    text = "zeit,breite,laenge,latitude\n" + "".join(f"{1633608773 + i},{0.85 + i * 1e-6},0.04,95\n" for i in range(5))
+    declared = {"time": "zeit:utc_s", "est_lat_rad": "breite", "est_lon_rad": "laenge:rad"}
+    reading = read(write(tmp_path, text), columns=declared)
+    assert reading.epochs["est_lat_rad"][0] == 0.85
+    assert reading.unused == ["latitude"]
+    with pytest.raises(InputError, match="known quantities"):
+        read(write(tmp_path, text), columns={"breitengrad": "breite"})
+    with pytest.raises(InputError, match="units of est_lat_rad"):
+        read(write(tmp_path, text), columns=declared | {"est_lat_rad": "breite:furlong"})
+    with pytest.raises(FormatError, match="there is no column “breit”; found: breite"):
+        read(write(tmp_path, text), columns=declared | {"est_lat_rad": "breit:rad"})
+
+
+def test_a_missing_column_is_named_with_the_nearest_found(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match=r"est_lat_rad: no column holds it .* lattitude, ") as refusal:
+        read(write(tmp_path, "time_utc,lattitude,longitude\n2021-10-07T12:00:00Z,48,2\n"))
+    assert refusal.value.field == "est_lat_rad"
+
+
+def test_our_own_epoch_table_comes_back(tmp_path: Path) -> None:
+    own = read(write(tmp_path, table(*ROWS))).epochs
+    own.write_parquet(tmp_path / "epochs.parquet")
+    back = read(tmp_path / "epochs.parquet").epochs
+    assert back.select(sorted(own.columns)).equals(own.select(sorted(own.columns)))
+
+
+@pytest.mark.parametrize(
+    ("row", "reason", "text"),
+    [
+        ("4ca63a,1633608783000,95.0,2.5,3500,140,85,-700", "latitude: outside [-90, 90] deg", "95.0"),
+        ("4ca63a,1633608783000,48.9,-200,3500,140,85,-700", "longitude: outside [-180, 360] deg", "-200"),
+        ("4ca63a,1633608783000,nan,2.5,3500,140,85,-700", "latitude: not finite", "nan"),
+        ("4ca63a,1633608783000,inf,2.5,3500,140,85,-700", "latitude: not finite", "inf"),
+        ("4ca63a,1633608783000,48°9,2.5,3500,140,85,-700", "latitude: not a number", "48°9"),
+        ("4ca63a,1633608783000,,2.5,3500,140,85,-700", "latitude: empty", "None"),
+        ("4ca63a,,48.9,2.5,3500,140,85,-700", "timestamp: empty", "None"),
+        ("4ca63a,yesterday,48.9,2.5,3500,140,85,-700", "timestamp: not a time", "yesterday"),
+        ("4ca63a,-5,48.9,2.5,3500,140,85,-700", "timestamp: time outside 1980 to 2100", "-5"),
+        ("4ca63a,1633608782000,48.9,2.5,3500,140,85,-700", "time repeated within a track", "track 4ca63a"),
+        ("4ca63a,1633608783000,48.9,2.5", "a row with another number of fields", "4ca63a,1633608783000,48.9,2.5"),
+        ("4ca63a,1633608783000,48.9,2.5,3500,140,85,-700,9", "a row with another number of fields", "-700,9"),
+        ('4ca63a,1633608783000,"48.9,2.5,3500,140,85,-700', "a row with another number of fields", '"48.9'),
+    ],
+)
+def test_a_bad_row_is_left_out_and_counted_with_its_line_and_text(tmp_path: Path, row: str, reason: str, text: str) -> None:
+    reading = read(write(tmp_path, with_row(10, row)))
+    assert reading.epochs.height == 29
+    (rejection,) = reading.rejected
+    assert rejection.reason.startswith(reason)
+    assert (rejection.count, rejection.first_line) == (1, 12)
+    assert text in rejection.example
+
+
+def test_a_bad_value_of_an_optional_column_costs_the_value_not_the_row(tmp_path: Path) -> None:
+    reading = read(write(tmp_path, with_row(10, "4ca63a,1633608783000,48.9,2.5,3500,fast,85,-700")))
+    assert reading.epochs.height == 30
+    assert reading.epochs["ground_speed_mps"].null_count() == 1
+    assert [(r.reason, r.first_line, r.example) for r in reading.rejected] == [
+        ("groundspeed: not a number; row used without it", 12, "fast")
+    ]
+
+
+def test_rows_out_of_order_are_put_in_order_and_said(tmp_path: Path) -> None:
+    reading = read(write(tmp_path, table(ROWS[1], ROWS[0], *ROWS[2:])))
+    assert same(reading, read(write(tmp_path, table(*ROWS), "sorted.csv")))
+    assert any("1 rows stood after a later one" in note and "line 3" in note for note in reading.notes)
+
+
+def test_more_than_a_tenth_of_bad_rows_refuses_the_file(tmp_path: Path) -> None:
+    rows = [row.replace("48.9", "98.9") if i < 4 else row for i, row in enumerate(ROWS)]
+    assert len(read(write(tmp_path, table(*ROWS[:3], *rows[3:]))).rejected) == 1
+    with pytest.raises(FormatError, match=r"track\.csv:2: latitude: outside \[-90, 90\] deg: found “98\.900”; 4 of 30 rows") as refusal:
+        read(write(tmp_path, table(*rows)))
+    assert (refusal.value.line, refusal.value.field) == (2, "latitude")
+
+
+def test_degrees_that_may_be_radians_are_said(tmp_path: Path) -> None:
+    rows = [f"{1633608773 + i},0.8541,0.0447" for i in range(5)]
+    reading = read(write(tmp_path, table(*rows, header="timestamp,latitude,longitude")))
+    assert any("small enough to be radians" in note for note in reading.notes)
+    assert not any("radians" in note for note in read(write(tmp_path, table(*ROWS))).notes)
+
+
+def test_state_vectors_in_si_are_not_taken_for_feet(tmp_path: Path) -> None:
+    header = "time,icao24,lat,lon,velocity,heading,vertrate,callsign,onground,baroaltitude,geoaltitude"
+    first = read(write(tmp_path, f"{header}\n1633608773,4ca63a,48.9,2.5,72.0,85.0,-3.5,AFR1,False,1000,1050\n")).epochs.row(0, named=True)
+    assert (first["altitude_m"], first["est_h_m"], first["ground_speed_mps"], first["vertical_rate_mps"]) == (1000, 1050, 72, -3.5)
+    assert first["ground_track_rad"] == pytest.approx(math.radians(85), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"", "the file is empty"),
+        (b"  \n \n", "the file is empty"),
+        (HEADER.encode(), "no rows below the header"),
+        (b"# only\n# remarks\n", "nothing but comments"),
+        (gzip.compress(table(*ROWS).encode())[:-20], "damaged gzip file"),
+        (gzip.compress(table(*ROWS).encode())[:30] + b"\0" * 40, "damaged gzip file"),
+        (b"latitude,longitude\n\xff\xfe1,2\n", "not UTF-8 text: bytes ff fe 31"),
+        (b"a,b\0c\n1,2\n", "zero bytes"),
+        (b"PAR1 but not really", "damaged Parquet file"),
+        (b'{"latitude": {"0": 1}', "not JSON"),
+        (b"[1, 2, 3]", "a list of records"),
+        (b"{}", "no columns"),
+        (b'{"latitude": 3}', "neither a column"),
+        (b'{"latitude": {"0": 1}, "longitude": {"1": 1}}', "name different rows"),
+        (b'{"latitude": [1], "longitude": [1, 2]}', "columns of 1 and 2 items"),
+        (b'{"time": [1], "latitude": [[1]], "longitude": [1]}', "holds List(Int64)"),
+        (b"[" * 200_000, "nested too deeply"),
+        (b"time,time,lat,lon\n1,2,3,4\n", "named twice"),
+        (b'{"timestamp": 1, "trace": [[1, 2]]}', "not a readsb trace"),
+        (b"%  GPST latitude(deg)\n", "no row holds"),
+        (b"% nothing\n1 2 3\n", "names the columns"),
+        (b"timestamp,lat,lon\n5,1,2\n", "are not Unix times"),
+    ],
+)
+def test_a_file_that_cannot_be_interpreted_is_refused_in_words(tmp_path: Path, content: bytes, says: str) -> None:
+    with pytest.raises(FormatError, match=r"/file(:\d+)?: ") as refusal:
+        read(write(tmp_path, content, "file"))
+    assert says in str(refusal.value)
+    assert refusal.value.path == tmp_path / "file"
+
+
+def test_no_file_and_a_folder_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="no such file"):
+        read(tmp_path / "absent.csv")
+    with pytest.raises(FormatError, match="cannot be read"):
+        read(tmp_path)
+
+
+@given(
+    content=st.one_of(
+        st.binary(max_size=200),
+        st.text(max_size=200).map(str.encode),
+        st.lists(
+            st.lists(st.sampled_from(["1633608773", "48.9", "", "x", '"', "nan", "-1e400", "2021-10-07T12:00:00Z"]), max_size=4), max_size=6
+        ).map(lambda rows: ("timestamp,latitude,longitude\n" + "\n".join(",".join(r) for r in rows)).encode()),
+        st.recursive(
+            st.none() | st.booleans() | st.floats() | st.text(max_size=5),
+            lambda v: st.lists(v) | st.dictionaries(st.text(max_size=4), v),
+            max_leaves=12,
+        ).map(lambda v: json.dumps({"timestamp": [v, 1], "latitude": [1, v], "longitude": [v, v]}).encode()),
+    )
+)
+@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_any_bytes_are_read_or_refused(tmp_path: Path, content: bytes) -> None:
+    file = write(tmp_path, content, "any")
+    try:
+        reading = read(file)
+    except NavboundError:
+        return
+    assert reading.epochs.height > 0
+    assert reading.epochs.select(pl.col("time_ns", "est_lat_rad", "est_lon_rad").is_not_null().all()).row(0) == (True, True, True)
+    assert reading.source.n_rows is not None
+    used_without = sum(r.count for r in reading.rejected if "used without" not in r.reason)
+    assert reading.epochs.height + used_without == reading.source.n_rows
