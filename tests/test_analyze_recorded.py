@@ -53,6 +53,15 @@ def test_every_large_step_of_a_falsified_track_is_covered_by_a_status() -> None:
 
 
 @needs_data
+@pytest.mark.parametrize("flight", ["ajaccio", "brussels_ils", "kiruna", "munich", "nice", "vienna"])
+def test_an_honest_flight_has_no_jumps(flight: str) -> None:
+    """Navaid inspection flights: arcs, holds and steep turns at 5 s or 10 s, with the delays of a network of receivers."""
+    m = material(SHARED / "aircraft" / "calibration" / f"{flight}.json.gz", requirement="RNP 1", rnp_m=1852, sigma_m=10)
+    assert any(a.startswith("Plausibility: 0 position jumps") for a in m.assumptions)
+    assert "invalid_input" not in set(m.epochs["status"])
+
+
+@needs_data
 @pytest.mark.parametrize(("solution", "epochs", "expected", "tolerance"), [("spp", 550, 4.21, 0.005), ("rtk", 531, 6955.0, 0.5)])
 def test_the_drive_has_the_error_statistics_of_the_catalogue(solution: str, epochs: int, expected: float, tolerance: float) -> None:
     """README of the data: mean NEES 4.21 and 6955, to the digits printed; an honest covariance has 3."""

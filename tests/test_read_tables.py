@@ -130,6 +130,23 @@ def test_our_own_epoch_table_comes_back(tmp_path: Path) -> None:
     assert back.select(sorted(own.columns)).equals(own.select(sorted(own.columns)))
 
 
+def test_a_time_beyond_every_calendar_is_no_time(tmp_path: Path) -> None:
+    """1e18 ms would wrap around sixty-four bits and come out as a date."""
+    reading = read(write(tmp_path, with_row(10, "4ca63a,1000000000000000000,48.9,2.5,3500,140,85.0,-700")))
+    assert [(r.reason, r.count) for r in reading.rejected] == [("timestamp: not a time", 1)]
+
+
+def test_what_was_understood_is_recorded(tmp_path: Path) -> None:
+    text = table(*[f"{row},1200" for row in ROWS], header=f"{HEADER},squawk")
+    reading = read(write(tmp_path, text))
+    assert reading.unused == ["squawk"]
+    assert reading.columns["time"] == "timestamp:utc_ms"
+    assert reading.columns["altitude_m"] == "altitude:ft"
+    naive = read(write(tmp_path, "time,lat,lon\n2021-10-07 12:00:00,48,2\n"))
+    assert any("no time zone" in note for note in naive.notes)
+    assert not any("no time zone" in note for note in read(write(tmp_path, "time,lat,lon\n2021-10-07 12:00:00Z,48,2\n")).notes)
+
+
 @pytest.mark.parametrize(
     ("row", "reason", "text"),
     [

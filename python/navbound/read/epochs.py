@@ -42,7 +42,9 @@ class Reading:
     unused : list of str
         Columns of the file that were not understood.
     notes : list of str
-        What had to be assumed.
+        Doubts that a person should settle: a missing time zone, rows out of order, degrees that may be radians.
+    columns : dict
+        Quantity to the column it was read from and its unit.
     """
 
     epochs: pl.DataFrame
@@ -50,6 +52,7 @@ class Reading:
     rejected: list[Rejection]
     unused: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    columns: dict[str, str] = field(default_factory=dict)
 
 
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None) -> Reading:
@@ -96,8 +99,7 @@ def _epochs(source: Source, found: Table, mapping: Assignment) -> Reading:
         else:
             _count(rejections, frame, column.name, reason)
     _look_like_radians(out, mapping, source, notes)
-    time, reason, note = gps_time(frame, mapping.times, source)
-    notes += note
+    time, reason, units = gps_time(frame, mapping.times, source, notes)
     out = out.with_columns(time.alias("time_ns"))
     reasons.append(reason)
     used = [mapping.columns[n].name for n in _REQUIRED] + [mapping.times[0].name]
@@ -106,7 +108,8 @@ def _epochs(source: Source, found: Table, mapping: Assignment) -> Reading:
     out = _in_order(out.with_columns(track.alias("track")), rejections, notes)
     rejections.refuse_if_too_many(found.n_rows)
     _not_empty(source, out)
-    return Reading(out.drop(LINE), source.record(found.n_rows), rejections.records, mapping.unused, notes)
+    described = {c.quantity: f"{c.name}:{c.unit}" for c in mapping.columns.values()} | {"time": ", ".join(units)}
+    return Reading(out.drop(LINE), source.record(found.n_rows), rejections.records, mapping.unused, notes, described)
 
 
 def _rtklib(source: Source) -> Reading:

@@ -36,7 +36,7 @@ class Limits:
     max_speed_mps: float = 400.0
     speed_factor: float = 1.25
     speed_margin_mps: float = 25.0
-    latency_s: float = 2.0
+    latency_s: float = 10.0
     noise_m: float = 100.0
     moving_mps: float = 15.0
     stale_after_s: float = 2.0

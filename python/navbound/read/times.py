@@ -19,9 +19,23 @@ _LAST_NS = 3_786_912_018_000_000_000
 """2100-01-01 in GPS time with today's leap seconds: the last time that is believed."""
 
 
-def gps_time(frame: pl.DataFrame, columns: list[Column], source: Source) -> tuple[pl.Series, pl.Series, list[str]]:
-    """GPS time [ns]; why a row has none; what was assumed."""
-    notes = list[str]()
+_MAX_NS = 4e18
+"""Unix times beyond 2096 do not fit 64 bits as nanoseconds for much longer; what is larger is no time."""
+
+
+def gps_time(frame: pl.DataFrame, columns: list[Column], source: Source, notes: list[str]) -> tuple[pl.Series, pl.Series, list[str]]:
+    """Read the time of every row.
+
+    Returns
+    -------
+    ns : Series
+        GPS time, null where there is none. [ns]
+    reason : Series
+        Why a row has none.
+    units : list of str
+        ``column:unit`` of the columns used, as they were understood. Doubts are added to `notes`.
+    """
+    units = [f"{c.name}:{c.unit}" for c in columns]
     first = frame[columns[0].name]
     unit = columns[0].unit
     if first.dtype in (pl.Datetime, pl.Date):
@@ -35,27 +49,34 @@ def gps_time(frame: pl.DataFrame, columns: list[Column], source: Source) -> tupl
         week, tow = _plain_numbers(frame[by["gps_week"].name]), _plain_numbers(frame[by["gps_tow_s"].name])
         fits = week.is_between(0, 10_000) & tow.is_between(0, 604_800)
         ns = _ns(pl.select(pl.when(fits).then(week * 604_800e9)).to_series()) + _ns(tow * 1e9)
-        notes.append(f"{source.path.name}: weeks are counted from 1980 (not modulo 1024)")
+        if (week < 1024).all():
+            notes.append(
+                f"{source.path.name}: every GPS week is below 1024; weeks are counted from 1980, so these are dates before August 1999"
+            )
     elif unit.startswith("gps"):
         # Nineteen digits of nanoseconds do not pass through a double.
         exact = unit == "gps_ns" and first.dtype != pl.Float64
         ns = first.cast(pl.Int64, strict=False) if exact else _ns(_plain_numbers(first) * (1.0 if unit == "gps_ns" else 1e9))
     else:
-        ns = _from_unix(_unix_ns(first, unit, source, notes))
+        unix, understood = _unix_ns(first, unit, source, notes)
+        units = [f"{first.name}:{understood}"]
+        ns = _from_unix(unix)
     empty = first.is_null() | (first.cast(pl.String).str.strip_chars() == "").fill_null(value=True)
     inside = ns.is_between(_FIRST_NS, _LAST_NS)
     reason = pl.select(
         pl.when(empty).then(pl.lit("empty")).when(ns.is_null()).then(pl.lit("not a time"))
         .when(~inside).then(pl.lit("time outside 1980 to 2100"))
     ).to_series()  # fmt: skip
-    return ns, reason, notes
+    return ns, reason, units
 
 
-def _unix_ns(column: pl.Series, unit: str, source: Source, notes: list[str]) -> pl.Series:
-    """Unix time [ns] from numbers or from text."""
+def _unix_ns(column: pl.Series, unit: str, source: Source, notes: list[str]) -> tuple[pl.Series, str]:
+    """Unix time [ns] from numbers or from text, and the unit as understood."""
     numbers = _plain_numbers(column) if unit != "utc_text" else pl.Series([None] * len(column), dtype=pl.Float64)
     if unit == "utc_text" or (unit == "utc" and numbers.is_null().mean() > 0.5 and column.dtype == pl.String):  # type: ignore[operator]
-        return _iso(column)
+        if not column.cast(pl.String).str.contains(r"(Z|[+-]\d\d:?\d\d)\s*$").any():
+            notes.append(f"{source.path.name}: “{column.name}” has no time zone and was read as UTC")
+        return _iso(column), "utc_text"
     scales = {"utc_s": 1e9, "utc_ms": 1e6, "utc_us": 1e3, "utc_ns": 1.0}
     if unit == "utc":
         size = numbers.abs().median()
@@ -67,12 +88,12 @@ def _unix_ns(column: pl.Series, unit: str, source: Source, notes: list[str]) -> 
                 f"the values (median {size:g}) are not Unix times; declare the unit, e.g. time={column.name}:gps_s",
                 field=column.name,
             )
-        notes.append(f"{source.path.name}: “{column.name}” was read as Unix time in {unit.removeprefix('utc_')} (UTC)")
     if unit == "utc_ns" and column.dtype != pl.Float64:
-        return column.cast(pl.Int64, strict=False)
+        return column.cast(pl.Int64, strict=False), unit
     # Nanoseconds of 2026 have 19 digits, a double 16: whole units stay whole in integers, fractions to 0.2 us.
+    numbers = numbers.set((numbers.abs() * scales[unit] > _MAX_NS).fill_null(value=False), None)
     whole = numbers.floor()
-    return _ns(whole).cast(pl.Int64) * int(scales[unit]) + _ns((numbers - whole) * scales[unit])
+    return _ns(whole) * int(scales[unit]) + _ns((numbers - whole) * scales[unit]), unit
 
 
 def _iso(column: pl.Series) -> pl.Series:

@@ -79,7 +79,7 @@ def material(
         raise InputError("files", "nothing", domain="one file or more")
     readings = [read(f, columns=columns) for f in names]
     inputs, rejected = [r.source for r in readings], [x for r in readings for x in r.rejected]
-    notes = [note for r in readings for note in (*r.notes, *_unused(r))]
+    notes = [note for r in readings for note in r.notes]
     epochs = _together(readings, rejected)
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
@@ -94,7 +94,6 @@ def material(
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
         epochs = with_error(epochs)
         assumptions.append("Truth: from the file itself.")
-    n_recorded = epochs.height
     route = _follow(path, epochs, gates, rejected)
     epochs = _covariance_status(route.epochs).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
     return Material(
@@ -103,7 +102,7 @@ def material(
         title=route.heading if path is not None else f"{route.heading}: {', '.join(Path(str(n)).name for n in names)}",
         requirement=requirement,
         sample_period_s=_period(epochs),
-        assumptions=[*assumptions, *route.words, f"Judged are {epochs.height} of {n_recorded} recorded epochs.", *notes],
+        assumptions=[*assumptions, *route.words, *notes],
         labels={track: f"{labels[of]} {track.partition(' ')[2]}".strip() for track, of in route.tracks.items()} if route.tracks else labels,
         waypoints=route.waypoints,
         inputs=inputs + route.inputs,
@@ -115,7 +114,8 @@ def material(
             "truth": None if truth is None else str(truth),
             "truth_tolerance_s": truth_tolerance_s,
             "sigma_m": sigma_m,
-            "columns": dict(columns or {}),
+            "columns": {r.source.path: r.columns for r in readings},
+            "columns_not_used": {r.source.path: r.unused for r in readings},
             "gates": asdict(gates),
             "limits": asdict(limits),
         },
@@ -146,7 +146,7 @@ def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejecte
     if found.epochs.is_empty():
         where = "any runway of the table" if names is None else ", ".join(names)
         raise InputError("path", str(path), domain=f"paths that a track follows: no approach to {where} was found with {gates}")
-    return _on_approach(found, gates)
+    return _on_approach(found, gates, epochs.height)
 
 
 def _without_path(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -168,13 +168,14 @@ def _on_route(route: Route, epochs: pl.DataFrame, rejected: list[Rejection]) -> 
     return _Path(followed, [words], f"Route {route.name}", route.waypoints, [route.source], [statistics(route.name, points)])
 
 
-def _on_approach(found: Approaches, gates: Gates) -> _Path:
+def _on_approach(found: Approaches, gates: Gates, n_recorded: int) -> _Path:
     n, runways = len(found.tracks), ", ".join(r.name for r in found.runways)
     words = [
         f"Path: the centreline through the runway ends of the shipped table (OurAirports), {gates.before_max_m / 1852:g} to "
         f"{gates.before_min_m / 1852:g} NM before the landing threshold; {n} approaches.",
-        "Judged are all epochs from the first to the last point of an approach; what came before its first point is not. The path is the "
-        "extended centreline, not a coded procedure: its own error counts as flight technical error.",
+        f"Judged are all epochs from the first to the last point of an approach, {found.epochs.height} of {n_recorded} recorded; what came "
+        "before the first point is not. The path is the extended centreline, not a coded procedure: its own error counts as flight "
+        "technical error.",
     ]
     waypoints = [Waypoint(name=r.name, lat_rad=r.lat_rad, lon_rad=r.lon_rad, kind="runway") for r in found.runways]
     heading = f"{n} recorded approaches to {runways if len(found.runways) <= 4 else f'{len(found.runways)} runways'}"
@@ -199,10 +200,6 @@ def _labels(epochs: pl.DataFrame) -> dict[str, str]:
         return {track: track for track in epochs["track"].unique(maintain_order=True)}
     usual = epochs.group_by("track", maintain_order=True).agg(pl.col("callsign").drop_nulls().mode().sort().first())
     return {track: str(callsign or track) for track, callsign in usual.iter_rows()}
-
-
-def _unused(reading: Reading) -> list[str]:
-    return [f"{reading.source.path}: columns not used: {', '.join(reading.unused)}."] if reading.unused else []
 
 
 def _covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
