@@ -12,6 +12,7 @@ import pytest
 from navbound import FormatError, InputError, path
 from navbound.read.covariance import NACP_EPU_M, NIC_RC_M, circular_sigma, claim
 from navbound.run.analyze import material
+from navbound.run.judge import judge
 from navbound.run.material import Material
 
 SHARED = Path(__file__).parents[2] / "shared" / "data"
@@ -50,6 +51,18 @@ def test_every_large_step_of_a_falsified_track_is_covered_by_a_status() -> None:
     assert all(refused[i] or refused[i + 1] for i in far)
     assert m.epochs.filter(pl.Series(refused))["cov_ee_m2"].null_count() == refused.sum()
     assert any(r.count == 11 and r.reason == "latitude: empty" for r in m.rejected)
+
+
+@needs_data
+def test_the_monitor_raises_at_every_large_step() -> None:
+    run = judge(material(SPOOFED, requirement="RNP 2", rnp_m=3704, sigma_m=50))
+    lat, lon = run.epochs["est_lat_rad"].to_numpy(), run.epochs["est_lon_rad"].to_numpy()
+    far = np.flatnonzero(np.hypot(np.diff(lat), np.diff(lon) * np.cos(lat[1:])) * 6.371e6 > 5000)
+    alert = run.epochs["alert"].to_list()
+    assert len(far) == 15
+    assert {(alert[i], alert[i + 1])[alert[i] == "normal"] for i in far} == {"unavailable"}
+    # An alarm that never ends would pass as well: more than half of the track is judged and normal.
+    assert alert.count("normal") > len(alert) / 2
 
 
 @needs_data

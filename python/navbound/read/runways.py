@@ -96,7 +96,7 @@ def runway(name: str) -> Runway:
     """
     airport, separator, designator = name.upper().partition("/")
     if not separator or not airport or not designator:
-        raise InputError("path", name, domain="airport/runway, such as LFPG/08R")
+        raise InputError("path", name, domain="airport/runway such as LFPG/08R, auto, or a route in a .toml or .csv file")
     ends = table().filter(pl.col("airport") == airport)
     if ends.is_empty():
         near = difflib.get_close_matches(airport, table()["airport"].unique().to_list(), 3, 0.6)
