@@ -1,5 +1,7 @@
 //! Held and jumping positions.
 
+#![allow(clippy::unwrap_used)] // A test may stop at the first surprise, its helpers too.
+
 use navbound_assess::plausible::{Finding, Limits, Report, judge};
 use navbound_core::quantity::GpsTime;
 

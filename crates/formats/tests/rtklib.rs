@@ -1,5 +1,7 @@
 //! RTKLIB solution files: one place written four ways, what is refused, and any bytes at all.
 
+#![allow(clippy::unwrap_used)] // A test may stop at the first surprise, its helpers too.
+
 use navbound_formats::rtklib::{Solutions, read};
 use proptest::prelude::*;
 
