@@ -255,3 +255,41 @@ def test_a_covariance_that_is_none_is_not_believed(tmp_path: Path) -> None:
 def test_an_rnp_value_outside_its_domain_is_refused(tmp_path: Path, rnp_m: float) -> None:
     with pytest.raises(InputError, match="rnp_m"):
         material(tmp_path / "absent.csv", requirement="RNP 0", rnp_m=rnp_m)
+
+
+def test_a_route_in_csv_is_the_route_in_toml(tmp_path: Path) -> None:
+    (tmp_path / "route.toml").write_text(ROUTE, encoding="utf-8")
+    rows = ["name,lat_deg,lon_deg,radius_m", "ALPHA,40,116,", "BRAVO,39,116.5,0", "CHARLIE,39,118,0"]
+    (tmp_path / "route.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    line = path.line(*np.radians([40.0, 116.0, 39.0, 116.5]).tolist())
+    track = make_track(tmp_path, line, [30.0] * 20, 100.0, 50.0)
+    both = [material(track, path=tmp_path / name, requirement="RNP 1", rnp_m=1852) for name in ("route.toml", "route.csv")]
+    assert both[0].epochs.equals(both[1].epochs)
+    assert both[0].waypoints == both[1].waypoints
+    assert (both[1].cross_track[0].n_points, both[1].cross_track[0].n_tracks) == (20, 1)
+
+
+def test_each_track_has_its_own_truth(tmp_path: Path) -> None:
+    """Two aircraft one degree of latitude apart, at the same times; a truth of one alone is the truth of all."""
+    head = "icao24,gps_time_s,lat_deg,lon_deg"
+    both = [f"{who},{1.3e9 + i},{lat},2" for who, lat in (("a", 48.0), ("b", 49.0)) for i in range(3)]
+    (tmp_path / "estimate.csv").write_text("\n".join([head, *both]) + "\n", encoding="utf-8")
+    (tmp_path / "truth.csv").write_text("\n".join([head, *reversed(both)]) + "\n", encoding="utf-8")
+    (tmp_path / "one.csv").write_text("\n".join([head, *both[:3]]) + "\n", encoding="utf-8")
+    own = material(tmp_path / "estimate.csv", truth=tmp_path / "truth.csv", requirement="RNP 1", rnp_m=1852).epochs
+    assert own["nse_n_m"].to_list() == [0.0] * 6
+    shared = material(tmp_path / "estimate.csv", truth=tmp_path / "one.csv", requirement="RNP 1", rnp_m=1852).epochs
+    assert shared.filter(pl.col("track") == "a")["nse_n_m"].to_list() == [0.0] * 3
+    # Southwards one degree: 111.2 km of meridian at 49 degrees; the radius at one end stands for the whole, 0.02 % off.
+    assert np.abs(shared.filter(pl.col("track") == "b")["nse_n_m"].to_numpy() + 111_208).max() < 30
+
+
+def test_an_epoch_in_two_files_counts_once(tmp_path: Path) -> None:
+    head = "icao24,gps_time_s,lat_deg,lon_deg"
+    rows = [f"a,{1.3e9 + i},48,2" for i in range(6)]
+    for name, part in (("first.csv", rows[:4]), ("second.csv", rows[2:])):
+        (tmp_path / name).write_text("\n".join([head, *part]) + "\n", encoding="utf-8")
+    m = material([tmp_path / "first.csv", tmp_path / "second.csv"], requirement="RNP 1", rnp_m=1852)
+    assert m.epochs.height == 6
+    assert [(r.reason, r.count) for r in m.rejected] == [("time repeated within a track of several files", 2)]
+    assert [i.n_rows for i in m.inputs] == [4, 4]
