@@ -45,6 +45,22 @@ fn unix_from_gps_ns<'py>(py: Python<'py>, time_ns: PyReadonlyArray1<'py, i64>) -
     Ok(times.into_pyarray(py))
 }
 
+/// GPS time [ns] of GPS weeks (since 1980) and times of week [ns].
+#[pyfunction]
+fn gps_from_week_ns<'py>(
+    py: Python<'py>,
+    week: PyReadonlyArray1<'py, i64>,
+    time_of_week_ns: PyReadonlyArray1<'py, i64>,
+) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    let pairs = week.as_slice()?.iter().zip(time_of_week_ns.as_slice()?);
+    let beyond = |week: i64| OutOfDomain { argument: "week", value: week as f64, unit: "week", domain: "64 bits of nanoseconds" };
+    let times: Result<Vec<i64>, PyErr> = pairs
+        .enumerate()
+        .map(|(i, (w, tow))| time::from_week(*w, *tow).map(|t| t.nanoseconds()).ok_or_else(|| input_error(beyond(*w), Some(i))))
+        .collect();
+    Ok(times?.into_pyarray(py))
+}
+
 /// Navigation error (n, 3) [m], true minus estimated, east, north, up, of positions (n, 3): latitude, longitude [rad], height [m].
 #[pyfunction]
 fn navigation_error<'py>(
@@ -127,6 +143,7 @@ fn rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bou
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(read_rtklib, m)?)?;
     m.add_function(wrap_pyfunction!(gps_from_unix_ns, m)?)?;
+    m.add_function(wrap_pyfunction!(gps_from_week_ns, m)?)?;
     m.add_function(wrap_pyfunction!(unix_from_gps_ns, m)?)?;
     m.add_function(wrap_pyfunction!(navigation_error, m)?)?;
     m.add_function(wrap_pyfunction!(plausible, m)?)

@@ -47,8 +47,7 @@ def gps_time(frame: pl.DataFrame, columns: list[Column], source: Source, notes: 
     elif unit in {"gps_week", "gps_tow_s"}:
         by = {c.unit: c for c in columns}
         week, tow = _plain_numbers(frame[by["gps_week"].name]), _plain_numbers(frame[by["gps_tow_s"].name])
-        fits = week.is_between(0, 10_000) & tow.is_between(0, 604_800)
-        ns = _ns(pl.select(pl.when(fits).then(week * 604_800e9)).to_series()) + _ns(tow * 1e9)
+        ns = _from_week(week, tow)
         if (week < 1024).all():
             notes.append(
                 f"{source.path.name}: every GPS week is below 1024; weeks are counted from 1980, so these are dates before August 1999"
@@ -113,6 +112,14 @@ def _plain_numbers(column: pl.Series) -> pl.Series:
 def _ns(values: pl.Series) -> pl.Series:
     """Whole numbers; null beyond the range of 64 bits."""
     return values.round().cast(pl.Int64, strict=False)
+
+
+def _from_week(week: pl.Series, tow_s: pl.Series) -> pl.Series:
+    """GPS time of weeks since 1980 and times of week [ns], null where they are none."""
+    fits = (week.is_between(0, 10_000) & tow_s.is_between(0, 604_800)).fill_null(value=False)
+    whole = [_ns(s.set(~fits, 0)).fill_null(0).to_numpy().astype(np.int64) for s in (week, tow_s * 1e9)]
+    gps = pl.Series(_core.gps_from_week_ns(*(np.ascontiguousarray(w) for w in whole)))
+    return gps.set(~fits, None)
 
 
 def _from_unix(unix_ns: pl.Series) -> pl.Series:
