@@ -290,6 +290,7 @@ def test_paper_is_white_whatever_the_theme_and_has_no_controls(browser: Browser,
     page = _open(browser, report, scheme="dark")
     page.locator('[data-choice="dark"]').click()
     page.emulate_media(media="print")
+    page.wait_for_function("() => document.documentElement.classList.contains('printing')")
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     assert page.evaluate("getComputedStyle(document.body).color") == "rgb(0, 0, 0)"
     assert not page.locator("#epoch").is_visible()

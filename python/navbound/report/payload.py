@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polars as pl
 
+from navbound import _core
 from navbound.report import packing
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ _WORDS = ("leg", "phase", "status", "reason", "alert", "state")
 
 # Unix time of the GPS epoch, 1980-01-06 00:00:00 UTC.
 _GPS_EPOCH_UNIX_S = 315_964_800
+_NS = 1_000_000_000
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,8 @@ def _columns(summary: Summary, epochs: pl.DataFrame) -> list[str]:
 
 
 def _pack_track(track: str, frame: pl.DataFrame, columns: list[str]) -> tuple[dict[str, object], str]:
+    # Charts need their axis in order, whatever the order of the table.
+    frame = frame.sort("time_ns", maintain_order=True)
     start_ns = int(frame["time_ns"][0])
     elapsed_s = (frame["time_ns"] - start_ns).cast(pl.Float64).to_numpy() * 1e-9
     packed = [packing.pack("elapsed_s", elapsed_s)]
@@ -152,13 +156,6 @@ def _first_time_ns(summary: Summary, epochs: pl.DataFrame) -> int:
     return summary.tracks[0].start_ns if summary.tracks else 0
 
 
-# GPS time minus UTC grew by one second at each of these Unix times. Source: IERS Bulletin C, leap seconds since 1980-01-06.
-_LEAP_UNIX_S = (
-    *(362793600, 394329600, 425865600, 489024000, 567993600, 631152000, 662688000, 709948800, 741484800),
-    *(773020800, 820454400, 867715200, 915148800, 1136073600, 1230768000, 1341100800, 1435708800, 1483228800),
-)
-
-
 def utc_offset_s(time_ns: int) -> int:
     """GPS time minus UTC. [s].
 
@@ -172,8 +169,13 @@ def utc_offset_s(time_ns: int) -> int:
     int
         18 since 2017-01-01.
     """
-    gps_as_unix_s = time_ns // 1_000_000_000 + _GPS_EPOCH_UNIX_S
-    return sum(gps_as_unix_s >= leap + before + 1 for before, leap in enumerate(_LEAP_UNIX_S))
+    # The core turns UTC into GPS time; the offset it adds is that of the UTC instant, found in two steps.
+    as_unix_ns = time_ns + _GPS_EPOCH_UNIX_S * _NS
+    offset_ns = 0
+    for _ in range(2):
+        unix_ns = as_unix_ns - offset_ns
+        offset_ns = int(_core.gps_from_unix_ns(np.array([unix_ns], dtype=np.int64))[0]) + _GPS_EPOCH_UNIX_S * _NS - unix_ns
+    return offset_ns // _NS
 
 
 def _region(epochs: pl.DataFrame, waypoints: list[Waypoint]) -> tuple[float, float, float, float]:

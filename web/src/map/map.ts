@@ -89,7 +89,7 @@ export function map(host: HTMLElement, scene: Scene): () => void {
     const observer = new ResizeObserver(resize);
     observer.observe(surface);
     resize();
-    const ends = [gestures(surface, { zoom, pan, pick, whole, toCursor: () => toCursor(5 * (scene.table.value("rnp_m", scene.cursor.get()) || 2000)) }), scene.cursor.watch(move), scene.theme.watch(paint)];
+    const ends = [gestures(surface, { zoom, pan, pick, whole, toCursor: () => toCursor(5 * (scene.table.value("rnp_m", scene.cursor.get()) || 2000)) }), scene.cursor.watch(move), scene.theme.watch(() => { resize(); paint(); })];
     return () => {
         ends.forEach((end) => end());
         observer.disconnect();

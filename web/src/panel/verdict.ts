@@ -23,13 +23,18 @@ export function verdict(host: HTMLElement, payload: Payload): void {
     const mark = svg("svg", { viewBox: "0 0 24 24", width: 26, height: 26, "aria-hidden": "true" }, svg("path", { d: STATES[state].mark }));
     const section = el("section", { class: "verdict", id: "verdict", "data-tone": tone, "aria-label": "Verdict" },
         el("p", { class: "state" }, mark, valueOf("inside", String(v.inside), STATES[state].word), el("span", { class: "requirement" }, v.requirement), v.experimental ? el("span", { class: "tag" }, "experimental") : null),
-        el("p", { class: "words" }, v.words),
+        el("p", { class: "words" }, lead(v.words, summary.assumptions)),
         facts(payload, method?.risk),
         el("div", { class: "basis" },
             el("p", {}, el("strong", {}, "Judged by "), method === undefined ? v.method : `${method.id}: ${about(method)}.`),
             summary.assumptions.length > 0 ? el("div", {}, el("strong", {}, "Assumed"), el("ul", {}, ...summary.assumptions.map((a) => el("li", {}, a)))) : null,
             el("p", {}, el("strong", {}, "Truth "), v.truth_known ? "known: errors are seen, bounds could be checked." : "unknown: bounds could not be checked against errors.")));
     host.append(section);
+}
+
+/** The sentences of the verdict without the assumptions it repeats: those stand in their own list below. */
+function lead(words: string, assumptions: string[]): string {
+    return assumptions.reduce((rest, assumption) => rest.replace(assumption, ""), words).replace(/\s+/g, " ").trim();
 }
 
 function facts(payload: Payload, risk: number | undefined): HTMLElement {
