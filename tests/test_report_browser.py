@@ -207,6 +207,16 @@ def test_a_spike_of_one_epoch_is_drawn_though_six_epochs_share_a_pixel(page: Pag
     assert around[0] > 2 * max(around[1:])
 
 
+def test_a_lone_epoch_between_two_gaps_is_drawn(page: Page) -> None:
+    canvas, over = page.locator("#anp canvas").bounding_box(), page.locator("#anp .u-over").bounding_box()
+    assert canvas is not None
+    assert over is not None
+    column = round(over["x"] - canvas["x"] + over["width"] * report_fixture.ALONE / 7080)
+    # The gap is hatched in grey; only a line's colour is this blue.
+    assert _probe(page, f"blue('#anp', {column - 3}, {column + 3})") > 0
+    assert _probe(page, f"blue('#anp', {column - 8}, {column - 4})") == 0
+
+
 def test_the_axis_changes_to_distance(page: Page, one: report_fixture.Fixture) -> None:
     page.locator('.cursor-bar [data-choice="along"]').click()
     over = page.locator("#lateral .u-over")
