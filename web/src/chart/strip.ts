@@ -142,7 +142,7 @@ function seriesOf(options: StripOptions, visible: Set<string>): uPlot.Series[] {
 /** An epoch between two gaps has no line to be on: it is drawn as a point. */
 function lonely(values: Float64Array, fill: string): uPlot.Series.Points {
     const alone = isolated(values);
-    return { show: alone.length > 0, filter: () => alone, size: 3, width: 0, fill };
+    return { show: alone.length > 0, filter: () => alone, size: 5, width: 0, fill };
 }
 
 /** What lies within a bound on both sides is tinted. */
