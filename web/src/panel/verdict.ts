@@ -24,18 +24,13 @@ export function verdict(host: HTMLElement, payload: Payload): void {
     const section = el("section", { class: "verdict", id: "verdict", "data-tone": tone, "aria-label": "Verdict" },
         el("p", { class: "state" }, mark, valueOf("inside", String(v.inside), STATES[state].word), el("span", { class: "requirement" }, v.requirement), v.experimental ? el("span", { class: "tag" }, "experimental") : null,
             v.n_judged < v.n_epochs ? el("span", { class: "tag" }, `${share((v.n_epochs - v.n_judged) / v.n_epochs)} of the epochs not judged`) : null),
-        el("p", { class: "words" }, lead(v.words, summary.assumptions)),
+        el("p", { class: "words" }, v.words),
         facts(payload, method?.risk),
         el("div", { class: "basis" },
             el("div", {}, el("p", {}, el("strong", {}, "Judged by "), method === undefined ? v.method : `${method.id}: ${about(method)}.`),
                 el("p", {}, el("strong", {}, "Truth "), v.truth_known ? "known: errors are seen, bounds could be checked." : "unknown: bounds could not be checked against errors.")),
             summary.assumptions.length > 0 ? el("div", { class: "assumed" }, el("strong", {}, "Assumed"), el("ul", {}, ...summary.assumptions.map((a) => el("li", {}, a)))) : null));
     host.append(section);
-}
-
-/** The sentences of the verdict without the assumptions it repeats: those stand in their own list below. */
-function lead(words: string, assumptions: string[]): string {
-    return assumptions.reduce((rest, assumption) => rest.replace(assumption, ""), words).replace(/\s+/g, " ").trim();
 }
 
 function facts(payload: Payload, risk: number | undefined): HTMLElement {
