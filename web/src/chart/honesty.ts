@@ -23,7 +23,7 @@ export function honesty(host: HTMLElement, summary: Summary): void {
 function words(h: Honesty): HTMLElement {
     const row = (name: string, value: Node | string): HTMLElement[] => [el("dt", {}, name), el("dd", {}, value)];
     return el("div", {}, el("p", {}, h.words), el("dl", { class: "digits left" },
-        ...row("Mean NEES", valueOf("nees_mean", h.nees_mean, plain(h.nees_mean, 3))), ...row("Honest", String(h.dimension)),
+        ...row("Mean NEES", valueOf("nees_mean", h.nees_mean, plain(h.nees_mean, 3))), ...row("An honest one", String(h.dimension)),
         ...row("95 % limits", `${plain(h.nees_low, 3)} to ${plain(h.nees_high, 3)}`), ...row("Independent epochs", valueOf("n_effective", h.n_effective, `${count(h.n_effective)} of ${count(h.n)}`))));
 }
 
