@@ -39,6 +39,8 @@ SPIKE = 5200
 """Epoch whose flight technical error alone jumps: a spike that no drawing may lose."""
 GAP = (3000, 3120)
 """Epochs without a bound."""
+ALONE = 3060
+"""The one epoch within the gap that has one."""
 
 _POINTS = [
     ("ZBAA", 40.07, 116.60),
@@ -111,6 +113,7 @@ def epochs(track: str = "flight-000", n: int = N, seed: int = 7, truth: bool = T
     bound_gap = np.zeros(n, dtype=bool)
     if n == N:
         bound_gap[GAP[0] : GAP[1]] = True
+        bound_gap[ALONE] = False
         status[bound_gap], alert[bound_gap] = "not_available", "unavailable"
         reason = ["fixture: three satellites, four needed" if g else None for g in bound_gap]
     logits = np.stack([-np.abs(tse_exact[:, None] - c).ravel() / 40 for c in (25, 70, 200, 500)], axis=1)

@@ -11,6 +11,15 @@
         });
     },
 
+    /** How many pixels of a chart between two columns are the blue of the first method. */
+    blue(chart, from, to) {
+        const canvas = document.querySelector(`${chart} canvas`);
+        const p = canvas.getContext("2d").getImageData(from, 0, to - from, canvas.height).data;
+        let n = 0;
+        for (let i = 0; i < p.length; i += 4) if (p[i + 3] > 150 && p[i + 2] > p[i] + 100) n += 1;
+        return n;
+    },
+
     /** How many pixels of a chart are black. */
     black(chart) {
         const canvas = document.querySelector(`${chart} canvas`);

@@ -101,21 +101,14 @@ def test_nan_in_a_record_becomes_null() -> None:
     script_safe(page.data)
 
 
-@pytest.mark.parametrize(
-    ("utc", "offset_s"),
-    [
-        ("1980-01-06T00:00:00", 0),
-        ("1981-06-30T23:59:59", 0),
-        ("1981-07-01T00:00:00", 1),
-        ("2016-12-31T23:59:59", 17),
-        ("2017-01-01T00:00:00", 18),
-        ("2026-06-01T00:00:00", 18),
-    ],
-)
-def test_utc_is_found_on_both_sides_of_a_leap_second(utc: str, offset_s: int) -> None:
-    unix_s = int(np.datetime64(utc, "s").astype(np.int64))
-    gps_ns = (unix_s - 315_964_800 + offset_s) * 1_000_000_000
-    assert payload.utc_offset_s(gps_ns) == offset_s
+@pytest.mark.parametrize(("utc", "offset_s"), [("2016-12-31T12:00:00", 17), ("2017-01-01T12:00:00", 18)])
+def test_the_page_is_given_the_leap_seconds_of_the_flight(utc: str, offset_s: int) -> None:
+    fixture = report_fixture.flight(n=20)
+    gps_ns = (int(np.datetime64(utc, "s").astype(np.int64)) - 315_964_800 + offset_s) * 1_000_000_000
+    moved = fixture.epochs.with_columns(pl.lit(gps_ns, dtype=pl.Int64).alias("time_ns") + pl.int_range(20) * 1_000_000_000)
+    page = payload.build(fixture.summary, fixture.record, moved, fixture.events, [])
+    assert page.data["utc_offset_s"] == offset_s
+    assert page.data["tracks"][0]["start_ns"] == str(gps_ns)
 
 
 def _points(line: list[int]) -> np.ndarray:
@@ -145,8 +138,10 @@ def test_the_worst_tracks_are_embedded_first_until_the_budget_is_spent() -> None
     assert len(whole.tracks) == 5
     ratios = {t.track: (-t.n_warnings, -(t.worst_ratio or 0)) for t in fixture.summary.tracks}
     assert [t["track"] for t in whole.data["tracks"]] == sorted(ratios, key=lambda t: ratios[t])
-    some = payload.build(fixture.summary, fixture.record, fixture.epochs, fixture.events, [], budget_bytes=sum(map(len, whole.tracks[:2])))
-    assert [t["track"] for t in some.data["tracks"]] == [t["track"] for t in whole.data["tracks"][:2]]
+    size = len(json.dumps(whole.data)) + sum(map(len, whole.tracks))
+    some = payload.build(fixture.summary, fixture.record, fixture.epochs, fixture.events, [], budget_bytes=size - len(whole.tracks[-1]))
+    assert 1 <= len(some.tracks) < 5
+    assert [t["track"] for t in some.data["tracks"]] == [t["track"] for t in whole.data["tracks"][: len(some.tracks)]]
     one = payload.build(fixture.summary, fixture.record, fixture.epochs, fixture.events, [], budget_bytes=0)
     assert len(one.tracks) == 1
 
@@ -170,6 +165,12 @@ def test_a_two_hour_flight_stays_below_two_megabytes(tmp_path: Path) -> None:
     assert fixture.epochs.height == 7081
     out = render(fixture.summary, fixture.record, fixture.epochs, fixture.events, fixture.waypoints, tmp_path / "report.html")
     assert 300_000 < out.stat().st_size < 2_000_000
+
+
+def test_many_tracks_stay_below_two_megabytes_too(tmp_path: Path) -> None:
+    fixture = report_fixture.flight(60, n=1500)
+    out = render(fixture.summary, fixture.record, fixture.epochs, fixture.events, fixture.waypoints, tmp_path / "report.html")
+    assert 1_500_000 < out.stat().st_size < 2_000_000
 
 
 def test_the_page_names_nothing_outside_itself(tmp_path: Path) -> None:

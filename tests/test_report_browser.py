@@ -207,6 +207,27 @@ def test_a_spike_of_one_epoch_is_drawn_though_six_epochs_share_a_pixel(page: Pag
     assert around[0] > 2 * max(around[1:])
 
 
+def test_a_lone_epoch_between_two_gaps_is_drawn(page: Page) -> None:
+    chart = page.locator("#anp .u-over")
+    chart.scroll_into_view_if_needed()
+    over = chart.bounding_box()
+    assert over is not None
+    left, right = (over["x"] + over["width"] * (report_fixture.ALONE + d) / 7080 for d in (-35, 35))
+    page.mouse.move(left, over["y"] + 50)
+    page.mouse.down()
+    page.mouse.move(right, over["y"] + 50, steps=3)
+    page.mouse.up()
+    _go(page, report_fixture.ALONE)
+    cursor, canvas = page.locator("#anp .u-cursor-x").bounding_box(), page.locator("#anp canvas").bounding_box()
+    assert cursor is not None
+    assert canvas is not None
+    column = round(cursor["x"] - canvas["x"])
+    # Around it the gap is hatched in grey; only the line has this blue. A line cut to one epoch would leave four pixels.
+    assert _probe(page, f"blue('#anp', {column - 3}, {column + 4})") >= 9
+    assert _probe(page, f"blue('#anp', {column - 60}, {column - 4})") == 0
+    assert _probe(page, f"blue('#anp', {column + 5}, {column + 60})") == 0
+
+
 def test_the_axis_changes_to_distance(page: Page, one: report_fixture.Fixture) -> None:
     page.locator('.cursor-bar [data-choice="along"]').click()
     over = page.locator("#lateral .u-over")
@@ -290,6 +311,7 @@ def test_paper_is_white_whatever_the_theme_and_has_no_controls(browser: Browser,
     page = _open(browser, report, scheme="dark")
     page.locator('[data-choice="dark"]').click()
     page.emulate_media(media="print")
+    page.wait_for_function("() => document.documentElement.classList.contains('printing')")
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     assert page.evaluate("getComputedStyle(document.body).color") == "rgb(0, 0, 0)"
     assert not page.locator("#epoch").is_visible()

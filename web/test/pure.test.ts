@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { deflateSync } from "node:zlib";
 import { test } from "node:test";
-import { asinhTicks, clockTicks, extent, spread } from "../src/chart/ticks.ts";
+import { asinhTicks, clockTicks, extent, isolated, spread } from "../src/chart/ticks.ts";
 import { inflate, unpack, type PackedColumn } from "../src/data/packing.ts";
 import { expand, runsOf } from "../src/data/runs.ts";
 import { Store } from "../src/data/store.ts";
@@ -61,7 +61,7 @@ test("lengths, risks and times read as people write them", () => {
     assert.equal(risk(9.99e-6), "10⁻⁵");
     assert.equal(risk(2.34e-8), "2.3 × 10⁻⁸");
     assert.equal(risk(0.05), "0.05");
-    assert.equal(risk(0), "0");
+    assert.equal(risk(0), "< 10⁻³⁰⁷");
     assert.equal(level(0.05), "95 %");
     assert.equal(level(1e-5), "risk 10⁻⁵");
     assert.equal(clock(86399.9996, true), "00:00:00");
@@ -75,6 +75,11 @@ test("an extent takes in zero, both sides of a bound, and no gap", () => {
     assert.deepEqual(extent([{ values, mirror: true }], 0, 1, null), [-3, 3]);
     assert.deepEqual(extent([{ values: Float64Array.from([NaN]) }], 0, 0, null), [0, 1]);
     assert.deepEqual(extent([{ values: Float64Array.from([1e-30, 1e-6]) }], 0, 1, 1e-12), [1e-12, 1e-6]);
+});
+
+test("an epoch between gaps is found, so that it is drawn", () => {
+    assert.deepEqual(isolated(Float64Array.from([1, NaN, 2, 3, NaN, 4, NaN, NaN, 5])), [0, 5, 8]);
+    assert.deepEqual(isolated(Float64Array.from([1, 2])), []);
 });
 
 test("clock ticks are round and apart", () => {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass
 from functools import cache
@@ -12,12 +13,13 @@ import numpy as np
 import polars as pl
 
 from navbound.report import packing
+from navbound.time import GPS_EPOCH_UNIX_NS, utc_offset_s
 
 if TYPE_CHECKING:
     from navbound.run.records import RunRecord, Summary, TrackSummary, Waypoint
 
-BUDGET_BYTES = 1_700_000
-"""Base64 text of the embedded tracks; with the page's own parts the file stays below 2 MB."""
+BUDGET_BYTES = 1_800_000
+"""Records and embedded tracks as text; with the page's own parts (about 0.15 MB) the file stays below 2 MB."""
 
 _NUMBERS = (
     *("est_lat_rad", "est_lon_rad", "est_h_m", "cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_uu_m2"),
@@ -27,9 +29,6 @@ _NUMBERS = (
     *("p_exceed_rnp", "p_exceed_2rnp", "n_sv", "hdop", "vdop"),
 )
 _WORDS = ("leg", "phase", "status", "reason", "alert", "state")
-
-# Unix time of the GPS epoch, 1980-01-06 00:00:00 UTC.
-_GPS_EPOCH_UNIX_S = 315_964_800
 
 
 @dataclass(frozen=True)
@@ -61,46 +60,52 @@ def build(  # noqa: PLR0917 - as render
     waypoints : list of Waypoint
         Points named on the map.
     budget_bytes : int
-        Detail columns are embedded for the worst tracks first until this is used up; the worst track always.
+        The worst tracks first get their detail columns embedded until this is used up; the worst track always. [B]
 
     Returns
     -------
     Page
         Records as JSON, columns as text blocks.
     """
-    blocks: list[str] = []
+    data = _finite(_records(summary, record, epochs, events, waypoints))
+    room = budget_bytes - len(json.dumps(data, separators=(",", ":")))
+    heads, blocks = _worst_tracks(summary, epochs, room)
+    return Page(data=data | {"tracks": heads}, tracks=blocks)
+
+
+def _records(summary: Summary, record: RunRecord, epochs: pl.DataFrame, events: pl.DataFrame, waypoints: list[Waypoint]) -> dict[str, Any]:
+    """Everything but the columns of the tracks."""
+    records = summary.model_dump(mode="json")
+    if events.height:
+        records["events"] = events.to_dicts()
+    return {
+        "schema_id": "navbound-report-1",
+        "summary": records,
+        "record": record.model_dump(mode="json"),
+        "waypoints": [w.model_dump(mode="json") for w in waypoints],
+        "utc_offset_s": utc_offset_s(_first_time_ns(summary, epochs)),
+        "gps_epoch_unix_s": GPS_EPOCH_UNIX_NS // 1_000_000_000,
+        "coastline": clip_coastline(*_region(epochs, waypoints)),
+    }
+
+
+def _worst_tracks(summary: Summary, epochs: pl.DataFrame, room_bytes: int) -> tuple[list[dict[str, object]], list[str]]:
+    """Heads and blocks of the worst track and of those after it that fit."""
     heads: list[dict[str, object]] = []
-    used = 0
+    blocks: list[str] = []
     frames = {str(key[0]): frame for key, frame in epochs.group_by("track", maintain_order=True)} if epochs.height else {}
     columns = _columns(summary, epochs)
     for track in _worst_first(summary.tracks):
         frame = frames.get(track.track)
-        if frame is None or (blocks and used >= budget_bytes):
+        if frame is None:
             continue
         head, block = _pack_track(track.track, frame, columns)
-        if blocks and used + len(block) > budget_bytes:
-            continue
-        used += len(block)
+        room_bytes -= len(block) + len(json.dumps(head, separators=(",", ":")))
+        if blocks and room_bytes < 0:
+            break
         heads.append(head | {"block": len(blocks)})
         blocks.append(block)
-    records = summary.model_dump(mode="json")
-    if events.height:
-        records["events"] = events.to_dicts()
-    return Page(
-        data=_finite(
-            {
-                "schema_id": "navbound-report-1",
-                "summary": records,
-                "record": record.model_dump(mode="json"),
-                "waypoints": [w.model_dump(mode="json") for w in waypoints],
-                "utc_offset_s": utc_offset_s(_first_time_ns(summary, epochs)),
-                "gps_epoch_unix_s": _GPS_EPOCH_UNIX_S,
-                "coastline": clip_coastline(*_region(epochs, waypoints)),
-                "tracks": heads,
-            }
-        ),
-        tracks=blocks,
-    )
+    return heads, blocks
 
 
 def _finite(value: Any) -> Any:
@@ -127,6 +132,8 @@ def _columns(summary: Summary, epochs: pl.DataFrame) -> list[str]:
 
 
 def _pack_track(track: str, frame: pl.DataFrame, columns: list[str]) -> tuple[dict[str, object], str]:
+    # Charts need their axis in order, whatever the order of the table.
+    frame = frame.sort("time_ns", maintain_order=True)
     start_ns = int(frame["time_ns"][0])
     elapsed_s = (frame["time_ns"] - start_ns).cast(pl.Float64).to_numpy() * 1e-9
     packed = [packing.pack("elapsed_s", elapsed_s)]
@@ -150,30 +157,6 @@ def _first_time_ns(summary: Summary, epochs: pl.DataFrame) -> int:
     if epochs.height:
         return int(epochs["time_ns"][0])
     return summary.tracks[0].start_ns if summary.tracks else 0
-
-
-# GPS time minus UTC grew by one second at each of these Unix times. Source: IERS Bulletin C, leap seconds since 1980-01-06.
-_LEAP_UNIX_S = (
-    *(362793600, 394329600, 425865600, 489024000, 567993600, 631152000, 662688000, 709948800, 741484800),
-    *(773020800, 820454400, 867715200, 915148800, 1136073600, 1230768000, 1341100800, 1435708800, 1483228800),
-)
-
-
-def utc_offset_s(time_ns: int) -> int:
-    """GPS time minus UTC. [s].
-
-    Parameters
-    ----------
-    time_ns : int
-        GPS time. [ns]
-
-    Returns
-    -------
-    int
-        18 since 2017-01-01.
-    """
-    gps_as_unix_s = time_ns // 1_000_000_000 + _GPS_EPOCH_UNIX_S
-    return sum(gps_as_unix_s >= leap + before + 1 for before, leap in enumerate(_LEAP_UNIX_S))
 
 
 def _region(epochs: pl.DataFrame, waypoints: list[Waypoint]) -> tuple[float, float, float, float]:

@@ -86,7 +86,7 @@ function scaled(font: string): string {
     return font.replace("11px", `${11 * devicePixelRatio}px`);
 }
 
-export function drawLabels(u: uPlot, lines: Line[], visible: Set<string>, font: string): void {
+export function drawLabels(u: uPlot, lines: Line[], visible: Set<string>, font: string, floor = -Infinity): void {
     const { ctx, bbox } = u;
     const ratio = devicePixelRatio;
     const [, last] = u.series[0]!.idxs ?? [0, u.data[0]!.length - 1];
@@ -95,7 +95,7 @@ export function drawLabels(u: uPlot, lines: Line[], visible: Set<string>, font: 
         while (i >= 0 && !Number.isFinite(line.values[i]!)) i--;
         const value = line.values[i];
         if (value === undefined) return [];
-        const y = u.valToPos(value, "y", true);
+        const y = u.valToPos(Math.max(value, floor), "y", true);
         const off = y < bbox.top ? " ↑" : y > bbox.top + bbox.height ? " ↓" : "";
         return [{ line, y: Math.min(bbox.top + bbox.height, Math.max(bbox.top, y)), text: (line.mirror ? `±${line.label}` : line.label) + off }];
     });

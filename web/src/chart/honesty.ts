@@ -21,10 +21,10 @@ export function honesty(host: HTMLElement, summary: Summary): void {
 }
 
 function words(h: Honesty): HTMLElement {
-    const inside = h.nees_mean >= h.nees_low && h.nees_mean <= h.nees_high;
-    return el("div", {}, el("p", {}, h.words),
-        el("p", {}, "Mean NEES ", valueOf("nees_mean", h.nees_mean, plain(h.nees_mean, 3)), ` where ${h.dimension} is honest; 95 % limits ${plain(h.nees_low, 3)} to ${plain(h.nees_high, 3)} for `,
-            valueOf("n_effective", h.n_effective, count(h.n_effective)), ` independent epochs of ${count(h.n)}: ${inside ? "within" : h.nees_mean > h.nees_high ? "above, so the covariance claims too much accuracy" : "below, so the covariance claims too little accuracy"}.`));
+    const row = (name: string, value: Node | string): HTMLElement[] => [el("dt", {}, name), el("dd", {}, value)];
+    return el("div", {}, el("p", {}, h.words), el("dl", { class: "digits left" },
+        ...row("Mean NEES", valueOf("nees_mean", h.nees_mean, plain(h.nees_mean, 3))), ...row("An honest one", String(h.dimension)),
+        ...row("95 % limits", `${plain(h.nees_low, 3)} to ${plain(h.nees_high, 3)}`), ...row("Independent epochs", valueOf("n_effective", h.n_effective, `${count(h.n_effective)} of ${count(h.n)}`))));
 }
 
 function histogram(h: Honesty): HTMLElement {

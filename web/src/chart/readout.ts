@@ -8,10 +8,11 @@ export function swatch(line: { colour: string; dash?: number[]; width?: number }
         svg("line", { x1: 0, y1: 4, x2: 24, y2: 4, stroke: `var(--${line.colour})`, "stroke-width": Math.max(1.5, line.width ?? 1.5), "stroke-dasharray": line.dash?.join(" ") }));
 }
 
-/** One button a line: its name, its value at the cursor; pressing it hides or shows the line. */
+/** One button a line: its name, its value at the cursor; pressing it hides or shows the line. Lines hidden at first are folded away. */
 export function readout(lines: Line[], visible: Set<string>, show: (value: number, line: Line) => string, changed: () => void): { element: HTMLElement; update: (i: number) => void } {
     const cells = new Map<string, HTMLElement>();
-    const element = el("div", { class: "readout" });
+    const first = el("div", { class: "readout" });
+    const rest = el("div", { class: "readout" });
     for (const line of lines) {
         const cell = valueOf(line.key, null, "");
         cells.set(line.key, cell);
@@ -23,8 +24,11 @@ export function readout(lines: Line[], visible: Set<string>, show: (value: numbe
             chip.setAttribute("aria-pressed", String(visible.has(line.key)));
             changed();
         });
-        element.append(chip);
+        (visible.has(line.key) ? first : rest).append(chip);
     }
+    const n = rest.childElementCount;
+    const more = n === 0 ? null : el("details", { class: "more-lines" }, el("summary", {}, `${n} more ${n === 1 ? "line" : "lines"}`), rest);
+    const element = el("div", {}, first, more);
     const update = (i: number): void => {
         for (const line of lines) {
             const v = line.values[i] ?? NaN;

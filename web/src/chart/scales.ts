@@ -30,7 +30,7 @@ export function performance(host: HTMLElement, scene: Scene): () => void {
         section.append(built.element);
         return built.update;
     });
-    if (gauges.length === 0) section.append(el("p", { class: "note" }, "No path was given: there is no deviation to show."));
+    if (gauges.length === 0) section.append(el("p", { class: "note" }, "Neither a path nor a limit was given: there is no scale to show."));
     host.append(section);
     const end = scene.cursor.watch((i) => updates.forEach((update) => update(i)));
     return () => {
@@ -41,13 +41,13 @@ export function performance(host: HTMLElement, scene: Scene): () => void {
 
 function lateralGauge(scene: Scene): Gauge | null {
     const { table, payload } = scene;
-    if (!table.has("fte_m") || !table.has("rnp_m")) return null;
+    if (!table.has("rnp_m")) return null;
     const anp = ["anp_cross_m", "anp_circle_m"].find((c) => table.has(c)) ?? null;
     const bound = payload.summary.accuracy.find((m) => m.id === payload.summary.verdict.method);
     const rows: Gauge["rows"] = [["rnp_m", "RNP", (v) => `${nauticalMiles(v)} · ${metres(v)}`]];
     if (anp !== null) rows.push([anp, `ANP 95 %, ${anp === "anp_cross_m" ? "across track" : "circle"}`, metres]);
-    rows.push(["fte_m", "FTE", signedMetres]);
-    if (bound !== undefined && table.has(columnOf(bound, false))) rows.push([columnOf(bound, false), `TSE bound ${level(bound.risk)}, ${bound.id}`, metres]);
+    if (table.has("fte_m")) rows.push(["fte_m", "FTE", signedMetres]);
+    if (bound !== undefined && bound.error_column === "tse_m" && table.has(columnOf(bound, false))) rows.push([columnOf(bound, false), `TSE bound ${level(bound.risk)}, ${bound.id}`, metres]);
     return { title: "Lateral", vertical: false, required: true, deviation: "fte_m", limit: (i) => table.value("rnp_m", i), limitWords: rnpName, anp, rows };
 }
 
@@ -79,8 +79,9 @@ function draw(gauge: Gauge, scene: Scene): { element: HTMLElement; update: (i: n
     const cells = gauge.rows.map(([key, label, show]) => ({ key, show, cell: valueOf(key, null, ""), label }));
     const list = el("dl", { class: "digits" }, ...cells.flatMap(({ label, cell }) => [el("dt", {}, label), el("dd", {}, cell)]));
     const sides = gauge.vertical ? ["below", "above"] : ["left", "right"];
+    const none = scene.table.has(gauge.deviation) ? null : el("p", { class: "note" }, "No path was given: there is no deviation to point at.");
     const element = el("div", { class: "gauge-box" }, el("div", { class: "gauge-head" }, el("h4", {}, gauge.title), ends), picture,
-        el("div", { class: "gauge-sides", "aria-hidden": "true" }, el("span", {}, sides[0]!), el("span", {}, sides[1]!)), list);
+        el("div", { class: "gauge-sides", "aria-hidden": "true" }, el("span", {}, sides[0]!), el("span", {}, sides[1]!)), none, list);
     const update = (i: number): void => {
         const limit = gauge.limit(i);
         const deviation = scene.table.value(gauge.deviation, i);
@@ -91,13 +92,14 @@ function draw(gauge: Gauge, scene: Scene): { element: HTMLElement; update: (i: n
         bars[1]!.setAttribute("x", String(middle + HALF - width));
         bars.forEach((bar) => bar.setAttribute("width", String(width)));
         const off = Math.max(-1.12, Math.min(1.12, deviation / limit));
-        pointer.setAttribute("transform", `translate(${Number.isFinite(off) ? middle + off * HALF : -20} 0)`);
+        pointer.setAttribute("transform", `translate(${Number.isFinite(off) ? middle + off * HALF : middle} 0)`);
+        pointer.setAttribute("visibility", Number.isFinite(off) ? "visible" : "hidden");
         ends.textContent = `ends ±${gauge.limitWords(limit)}`;
         for (const { key, show, cell } of cells) {
             const v = scene.table.value(key, i);
             setValue(cell, v, show(v));
         }
-        const words = `${gauge.title} deviation ${signedMetres(deviation)} of a limit of ${metres(limit)}; actual navigation performance ${metres(anp)}`;
+        const words = `${gauge.title} deviation ${Number.isFinite(deviation) ? signedMetres(deviation) : "unknown"} of a limit of ${metres(limit)}; actual navigation performance ${metres(anp)}`;
         picture.setAttribute("aria-label", words);
     };
     return { element, update };

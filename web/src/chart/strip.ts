@@ -8,7 +8,7 @@ import { clock, plain } from "../show/format.ts";
 import { colour, type Colour } from "../show/theme.ts";
 import { drawEvents, drawHatch, drawLabels, drawUnits } from "./decorate.ts";
 import { numbers, readout } from "./readout.ts";
-import { asinhTicks, clockTicks, extent, type Extent } from "./ticks.ts";
+import { asinhTicks, clockTicks, extent, isolated, type Extent } from "./ticks.ts";
 
 export interface Line {
     /** Column name; also the key of the value shown at the cursor. */
@@ -133,10 +133,16 @@ function seriesOf(options: StripOptions, visible: Set<string>): uPlot.Series[] {
     return drawn(options).flatMap((line) => {
         const one: uPlot.Series = {
             label: line.key, show: visible.has(line.key), stroke: colour(line.colour), width: line.width ?? (line.mirror && !line.limit ? 0.9 : 1.25), dash: line.dash,
-            points: { show: false }, spanGaps: false, scale: "y", ...(options.noPaths ? { paths: () => null } : {}),
+            points: lonely(line.values, colour(line.colour)), spanGaps: false, scale: "y", ...(options.noPaths ? { paths: () => null } : {}),
         };
         return line.mirror ? [one, { ...one }] : [one];
     });
+}
+
+/** An epoch between two gaps has no line to be on: it is drawn as a point. */
+function lonely(values: Float64Array, fill: string): uPlot.Series.Points {
+    const alone = isolated(values);
+    return { show: alone.length > 0, filter: () => alone, size: 5, width: 0, fill };
 }
 
 /** What lies within a bound on both sides is tinted. */
@@ -200,7 +206,7 @@ function build(scene: Scene, options: StripOptions, state: { scale: Scale; visib
                 (u) => options.draw?.(u, scene),
                 (u) => drawEvents(u, scene),
                 (u) => drawUnits(u, options.unit, along ? "NM" : "UTC", FONT),
-                (u) => { if (wide && !options.noPaths) drawLabels(u, options.lines, state.visible, FONT); },
+                (u) => { if (wide && !options.noPaths) drawLabels(u, options.lines, state.visible, FONT, options.floor); },
             ],
             setCursor: [
                 (u) => {

@@ -57,3 +57,12 @@ export function spread(wanted: number[], least: number, top: number, bottom: num
     }
     return placed;
 }
+
+/** Indices of values with no value on either side. */
+export function isolated(values: Float64Array): number[] {
+    const found: number[] = [];
+    for (let i = 0; i < values.length; i++) {
+        if (Number.isFinite(values[i]!) && !Number.isFinite(values[i - 1] ?? NaN) && !Number.isFinite(values[i + 1] ?? NaN)) found.push(i);
+    }
+    return found;
+}

@@ -66,13 +66,15 @@ export function map(host: HTMLElement, scene: Scene): () => void {
         view.k *= view.height / (span_m * pixelsPerMetre(view, shapes, i, scene));
         paint();
     };
+    // Twice RNP on both sides, with a little room.
+    const toTunnel = (): void => toCursor(5 * (scene.table.value("rnp_m", scene.cursor.get()) || 2000));
     const pick = (px: number, py: number): void => {
         const i = nearest(shapes, view, px, py);
         if (i !== null) scene.cursor.set(i);
     };
     const controls = el("div", { class: "map-controls", role: "group", "aria-label": "Map view" },
         button("+", { "aria-label": "Zoom in" }, () => zoom(2)), button("−", { "aria-label": "Zoom out" }, () => zoom(0.5)),
-        button("Whole route", {}, whole), button("Tunnel at cursor", {}, () => toCursor(5 * (scene.table.value("rnp_m", scene.cursor.get()) || 2000))), button("Error at cursor", {}, () => toCursor(5 * errorSize(scene))));
+        button("Whole route", {}, whole), shapes.tunnel === null ? null : button("Tunnel at cursor", {}, toTunnel), button("Error at cursor", {}, () => toCursor(5 * errorSize(scene))));
     const figure = el("figure", { class: "chart map", id: "map" }, el("div", { class: "chart-head" }, el("h3", { id: title }, "Map"), controls), surface, words, legend(scene, shapes),
         el("p", { class: "sr", id: `${title}-help` }, "Arrow keys move the map, plus and minus zoom, 0 shows the whole route, c goes to the cursor. The position at the cursor is given as text below the map."));
     host.append(figure);
@@ -89,7 +91,7 @@ export function map(host: HTMLElement, scene: Scene): () => void {
     const observer = new ResizeObserver(resize);
     observer.observe(surface);
     resize();
-    const ends = [gestures(surface, { zoom, pan, pick, whole, toCursor: () => toCursor(5 * (scene.table.value("rnp_m", scene.cursor.get()) || 2000)) }), scene.cursor.watch(move), scene.theme.watch(paint)];
+    const ends = [gestures(surface, { zoom, pan, pick, whole, toCursor: toTunnel }), scene.cursor.watch(move), scene.theme.watch(() => { resize(); paint(); })];
     return () => {
         ends.forEach((end) => end());
         observer.disconnect();

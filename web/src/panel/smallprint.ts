@@ -23,5 +23,5 @@ export function smallPrint(payload: Payload): HTMLElement {
 function resolution(payload: Payload): string {
     const lengths = payload.tracks.flatMap((t) => t.columns.filter((c) => c.kind === "linear" && c.name.endsWith("_m")).map((c) => c.resolution));
     if (lengths.length === 0) return "no epochs are embedded";
-    return `lengths of single epochs are kept to ${1000 * Math.max(...lengths)} mm, risks to 0.02 %; epochs.parquet holds them in full`;
+    return `lengths of single epochs are kept to ${1000 * Math.max(...lengths)} mm, risks to 0.012 %; epochs.parquet holds them in full`;
 }

@@ -22,13 +22,14 @@ export function verdict(host: HTMLElement, payload: Payload): void {
     const method = summary.accuracy.find((m) => m.id === v.method);
     const mark = svg("svg", { viewBox: "0 0 24 24", width: 26, height: 26, "aria-hidden": "true" }, svg("path", { d: STATES[state].mark }));
     const section = el("section", { class: "verdict", id: "verdict", "data-tone": tone, "aria-label": "Verdict" },
-        el("p", { class: "state" }, mark, valueOf("inside", String(v.inside), STATES[state].word), el("span", { class: "requirement" }, v.requirement), v.experimental ? el("span", { class: "tag" }, "experimental") : null),
+        el("p", { class: "state" }, mark, valueOf("inside", String(v.inside), STATES[state].word), el("span", { class: "requirement" }, v.requirement), v.experimental ? el("span", { class: "tag" }, "experimental") : null,
+            v.n_judged < v.n_epochs ? el("span", { class: "tag" }, `${share((v.n_epochs - v.n_judged) / v.n_epochs)} of the epochs not judged`) : null),
         el("p", { class: "words" }, v.words),
         facts(payload, method?.risk),
         el("div", { class: "basis" },
-            el("p", {}, el("strong", {}, "Judged by "), method === undefined ? v.method : `${method.id}: ${about(method)}.`),
-            summary.assumptions.length > 0 ? el("div", {}, el("strong", {}, "Assumed"), el("ul", {}, ...summary.assumptions.map((a) => el("li", {}, a)))) : null,
-            el("p", {}, el("strong", {}, "Truth "), v.truth_known ? "known: errors are seen, bounds could be checked." : "unknown: bounds could not be checked against errors.")));
+            el("div", {}, el("p", {}, el("strong", {}, "Judged by "), method === undefined ? v.method : `${method.id}: ${about(method)}.`),
+                el("p", {}, el("strong", {}, "Truth "), v.truth_known ? "known: errors are seen, bounds could be checked." : "unknown: bounds could not be checked against errors.")),
+            summary.assumptions.length > 0 ? el("div", { class: "assumed" }, el("strong", {}, "Assumed"), el("ul", {}, ...summary.assumptions.map((a) => el("li", {}, a)))) : null));
     host.append(section);
 }
 

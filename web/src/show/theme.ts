@@ -22,7 +22,15 @@ export function themeStore(): Store<number> {
     const store = new Store(0);
     const changed = (): void => store.set(store.get() + 1);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
-    matchMedia("print").addEventListener("change", changed);
+    // Before paper is laid out the page takes its width and colours, so that canvases are drawn again for it.
+    const printing = (now: boolean): void => {
+        if (document.documentElement.classList.contains("printing") === now) return;
+        document.documentElement.classList.toggle("printing", now);
+        changed();
+    };
+    matchMedia("print").addEventListener("change", (e) => printing(e.matches));
+    addEventListener("beforeprint", () => printing(true));
+    addEventListener("afterprint", () => printing(false));
     new MutationObserver(changed).observe(document.documentElement, { attributeFilter: ["data-theme"] });
     return store;
 }
