@@ -47,13 +47,13 @@ const EXACT_PER_HOUR: [(f64, f64, f64); 21] = [
     (360.0, 5.5, 9.1299e-06),
 ];
 
-/// The crossing rate is an asymptote: 0.98 is what it misses at its worst in the table, 1.8 what independence costs just below 20 samples
+/// The crossing rate is an asymptote: 0.98 is what it misses at its worst in the table, 2.3 what independence costs just below 20 samples
 /// a correlation time.
 #[test]
 fn the_risk_of_an_hour_is_never_short_of_the_exact_one() {
     for (tau, u, exact) in EXACT_PER_HOUR {
         let found = HourlyExposure::new(tau, 1.0).unwrap().per_hour(Risk::new(2.0 * tail(u)).unwrap());
-        assert!(found >= 0.98 * exact && found <= 1.8 * exact, "tau {tau}, level {u}: {found} for {exact}");
+        assert!(found >= 0.98 * exact && found <= 2.3 * exact, "tau {tau}, level {u}: {found} for {exact}");
     }
 }
 
@@ -64,7 +64,7 @@ fn exposures_outside_their_domain_are_refused() {
     {
         assert_eq!(HourlyExposure::new(tau, dt).unwrap_err().argument, argument);
     }
-    assert_eq!(HourlyExposure::new(60.0, 0.0).unwrap().per_epoch(Risk::new(1.0 - 1e-12).unwrap()).unwrap_err().argument, "risk_per_hour");
+    assert_eq!(HourlyExposure::new(1e6, 0.0).unwrap().per_epoch(Risk::new(0.9).unwrap()).unwrap_err().argument, "risk_per_hour");
 }
 
 #[test]
