@@ -42,15 +42,13 @@ def log_posterior(boundaries: list[float], x: float, *, guarded: bool) -> list[f
 
 def probabilities(boundaries: list[float], offset: float, sigma: float) -> list[float]:
     """Mass of the law of the error between neighbouring boundaries, both signs, by its distribution function."""
-    edges = [mpf(0), *map(mpf, boundaries), mp.inf]
-    inside = [
-        ncdf(high, mpf(offset), mpf(sigma))
-        - ncdf(low, mpf(offset), mpf(sigma))
-        + ncdf(-low, mpf(offset), mpf(sigma))
-        - ncdf(-high, mpf(offset), mpf(sigma))
-        for low, high in pairwise(edges)
-    ]
-    return [float(p) for p in inside]
+    with mp.workdps(200):
+        edges = [mpf(0), *map(mpf, boundaries), mp.inf]
+
+        def below(x: Any) -> Any:
+            return ncdf(x, mpf(offset), mpf(sigma))
+
+        return [float(below(high) - below(low) + below(-low) - below(-high)) for low, high in pairwise(edges)]
 
 
 def probability_within(boundary: float, sum_of_squares: float, n: int) -> float:

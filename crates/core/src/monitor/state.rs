@@ -8,7 +8,7 @@ use crate::quantity::{Metres, OutOfDomain, Risk};
 use crate::special::float::{exp, ln, ln_1p, sqrt};
 use crate::special::folded::two_tails;
 use crate::special::gamma::{chi_square_head, chi_square_tail};
-use crate::special::normal::{FRAC_1_SQRT_2PI, two_sided_factor};
+use crate::special::normal::{FRAC_1_SQRT_2PI, tail, two_sided_factor};
 
 pub use super::state_order::is_ordered;
 
@@ -255,8 +255,10 @@ impl StateTable {
         if !(s > 0.0 && s.is_finite()) {
             return Err(OutOfDomain { argument: "sigma_m", value: s, unit: "m", domain: "(0, inf)" });
         }
-        let outside = |b: f64| two_tails(b / s, eta / s);
-        Ok(self.slices(|b| 1.0 - outside(b), outside))
+        let away = eta.abs();
+        // Both as tails, so that neither loses its digits where it is small.
+        let inside = |b: f64| tail((away - b) / s) - tail((away + b) / s);
+        Ok(self.slices(inside, |b| two_tails(b / s, away / s)))
     }
 
     /// Probabilities of the states from `n` residuals of known zero mean whose squares sum to `sum_of_squares`: where the 95 % navigation
