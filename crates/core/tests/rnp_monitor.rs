@@ -1,4 +1,5 @@
 //! The RNP monitor as a state machine: tables of what it must do, and properties for any sequence.
+#![allow(clippy::unwrap_used, reason = "a helper of tests may stop at the first surprise, too")]
 
 use navbound_core::monitor::rnp::{Acceptance, Alert, Chain, Event, Kind, Monitor, Observation, Settings, Step};
 use navbound_core::quantity::{GpsTime, Metres};
