@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -195,6 +196,30 @@ class StateClassifier:
             raise InputError("nse_m", f"shape {shape}", domain="shape (m,): one track in order")
         return self._core.remembered(x, stay, _prior(prior))
 
+    def probabilities(self, offset_m: ArrayLike, sigma_m: ArrayLike) -> NDArray[np.float64]:
+        """Probability of each state from the law of the error itself: the default to report.
+
+        Parameters
+        ----------
+        offset_m : array_like, shape (...)
+            Known mean of the error, e.g. the lateral deviation where the boundaries are of the total system error; 0 for a centred
+            navigation error. NaN together with `sigma_m` is refused, not guessed. [m]
+        sigma_m : array_like, shape (...)
+            Its standard deviation, in (0, inf). [m]
+
+        Returns
+        -------
+        ndarray, shape (..., n + 1)
+            ``r(B_{k-1}) - r(B_k)`` of the exceedance risk r; each row sums to 1.
+
+        Raises
+        ------
+        InputError
+            An offset or deviation outside its domain.
+        """
+        shape, (offset, sigma) = flatten(offset_m=(offset_m, ()), sigma_m=(sigma_m, ()))
+        return unflatten(self._core.of_error(offset, sigma), shape)
+
     def probabilities_from_residuals(self, sum_of_squares_m2: ArrayLike, n: ArrayLike) -> NDArray[np.float64]:
         """Probability of each state of the 95 % navigation error, given residuals of known zero mean (Jeffreys prior).
 
@@ -219,6 +244,121 @@ class StateClassifier:
         """
         shape, (x, y) = flatten(lateral_m=(lateral_m, ()), longitudinal_m=(longitudinal_m, ()))
         return unflatten(self._core.ln_paper_bivariate(x, y, _prior(prior)), shape)
+
+
+@dataclass(frozen=True)
+class StateOfError:
+    """What one navigation error says about the state.
+
+    Attributes
+    ----------
+    names : list of str
+        The states.
+    state, threshold_state : ndarray of int, shape (...)
+        The decided state and the threshold rule's; index into `names`.
+    log_posterior, posterior : ndarray, shape (..., n + 1)
+        In the safe form.
+    log_posterior_as_printed : ndarray, shape (..., n + 1)
+        As published; an exhibit.
+    """
+
+    names: list[str]
+    state: NDArray[np.int64]
+    threshold_state: NDArray[np.int64]
+    log_posterior: NDArray[np.float64]
+    posterior: NDArray[np.float64]
+    log_posterior_as_printed: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StateOfErrors:
+    """What a lateral and a longitudinal error say about the state.
+
+    Attributes
+    ----------
+    names : list of str
+        The states.
+    posterior : ndarray, shape (..., n + 1)
+        Of the worse of the two.
+    state, threshold_state : ndarray of int, shape (...)
+        The most likely one, and the threshold rule's of the larger error; index into `names`.
+    paper_log_posterior : ndarray, shape (..., n + 1)
+        The bivariate form as published; an exhibit.
+    paper_state : ndarray of int, shape (...)
+        Its most likely one; an exhibit, too good off the diagonal.
+    """
+
+    names: list[str]
+    posterior: NDArray[np.float64]
+    state: NDArray[np.int64]
+    threshold_state: NDArray[np.int64]
+    paper_log_posterior: NDArray[np.float64]
+    paper_state: NDArray[np.int64]
+
+
+def state_of_error(
+    levels_nm: Sequence[float],
+    nse_m: ArrayLike,
+    *,
+    fte_nm: float | Sequence[float] = 0.0,
+    prior: ArrayLike | None = None,
+    require_order: bool = True,
+) -> StateOfError:
+    """Classify navigation errors in one call.
+
+    Parameters
+    ----------
+    levels_nm, fte_nm, require_order
+        As in `StateClassifier`. [NM]
+    nse_m : array_like, shape (...)
+        Navigation error. [m]
+    prior : array_like, shape (n + 1,), optional
+        Equal if not given.
+    """
+    states = StateClassifier(levels_nm, fte_nm, require_order=require_order)
+    log_posterior = states.log_posterior(nse_m, prior)
+    return StateOfError(
+        names=states.names,
+        state=states.classify(nse_m, prior),
+        threshold_state=states.threshold_class(nse_m),
+        log_posterior=log_posterior,
+        posterior=np.exp(log_posterior),
+        log_posterior_as_printed=states.log_posterior_as_printed(nse_m, prior),
+    )
+
+
+def state_of_errors(
+    levels_nm: Sequence[float],
+    lateral_m: ArrayLike,
+    longitudinal_m: ArrayLike,
+    *,
+    fte_nm: float | Sequence[float] = 0.0,
+    prior: ArrayLike | None = None,
+) -> StateOfErrors:
+    """Classify pairs of lateral and longitudinal errors in one call; parameters as `state_of_error`. [m]."""
+    states = StateClassifier(levels_nm, fte_nm)
+    posterior = states.joint(lateral_m, longitudinal_m, prior)
+    paper = states.paper_bivariate(lateral_m, longitudinal_m, prior)
+    return StateOfErrors(
+        names=states.names,
+        posterior=posterior,
+        state=np.argmax(posterior, axis=-1),
+        threshold_state=states.threshold_class(np.maximum(np.abs(lateral_m), np.abs(longitudinal_m))),
+        paper_log_posterior=paper,
+        paper_state=np.argmax(paper, axis=-1),
+    )
+
+
+def states_of_track(
+    levels_nm: Sequence[float],
+    nse_m: ArrayLike,
+    *,
+    stay: float,
+    fte_nm: float | Sequence[float] = 0.0,
+    prior: ArrayLike | None = None,
+) -> NDArray[np.float64]:
+    """Posteriors of one track's errors, each remembering the one before; see `StateClassifier.remember`. Shape (m, n + 1)."""
+    return StateClassifier(levels_nm, fte_nm).remember(nse_m, stay, prior)
 
 
 def _prior(prior: ArrayLike | None) -> list[float] | None:

@@ -142,6 +142,19 @@ def pairs(
     return found
 
 
+def pair(
+    aircraft_enu_m: ArrayLike,
+    first_enu_m: ArrayLike,
+    second_enu_m: ArrayLike,
+    *,
+    sigma_altitude_m: float = 0.0,
+    course_rad: float | None = None,
+) -> Pair:
+    """Two stations seen from the aircraft; arguments and refusals are those of `pairs`, and the stations are called 1 and 2."""
+    both = {"1": first_enu_m, "2": second_enu_m}
+    return pairs(aircraft_enu_m, both, sigma_altitude_m=sigma_altitude_m, course_rad=course_rad)[0]
+
+
 def best_pair(
     aircraft_enu_m: ArrayLike,
     stations_enu_m: Mapping[str, ArrayLike],

@@ -10,7 +10,15 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
-from navbound._states import StateClassifier, nse_boundary
+from navbound._states import (
+    StateClassifier,
+    StateOfError,
+    StateOfErrors,
+    nse_boundary,
+    state_of_error,
+    state_of_errors,
+    states_of_track,
+)
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -29,12 +37,17 @@ __all__ = [
     "PerHour",
     "Specification",
     "StateClassifier",
+    "StateOfError",
+    "StateOfErrors",
     "Step",
     "nse_boundary",
     "per_epoch_risk",
     "per_hour_risk",
     "specification",
     "specifications",
+    "state_of_error",
+    "state_of_errors",
+    "states_of_track",
 ]
 
 Alert = Literal["normal", "caution", "warning", "unavailable"]

@@ -124,6 +124,13 @@ impl RnpStates {
         self.shaped(py, flat)
     }
 
+    fn of_error<'py>(&self, py: Python<'py>, offset_m: PyReadonlyArray1<'py, f64>, sigma_m: PyReadonlyArray1<'py, f64>) -> Rows<'py> {
+        let (eta, s) = (offset_m.as_slice()?, sigma_m.as_slice()?);
+        let n = eta.len().min(s.len());
+        let flat = states::try_rows(n, &self.table, |i| self.table.of_error(Metres::new(eta[i]), Metres::new(s[i])));
+        self.shaped(py, flat.map_err(|(i, e)| input_error(e, Some(i)))?)
+    }
+
     fn given_residuals<'py>(
         &self,
         py: Python<'py>,

@@ -6,8 +6,9 @@
 
 use crate::quantity::{Metres, OutOfDomain, Risk};
 use crate::special::float::{exp, ln, ln_1p, sqrt};
+use crate::special::folded::two_tails;
 use crate::special::gamma::{chi_square_head, chi_square_tail};
-use crate::special::normal::{FRAC_1_SQRT_2PI, two_sided_factor};
+use crate::special::normal::{FRAC_1_SQRT_2PI, tail, two_sided_factor};
 
 pub use super::state_order::is_ordered;
 
@@ -238,6 +239,28 @@ impl StateTable {
         Ok(all)
     }
 
+    /// Probabilities of the states from the law of the error itself, normal with mean `offset` and deviation `sigma`.
+    ///
+    /// ```text
+    /// P(A_k) = r(B_{k-1}) - r(B_k)      r(B) = Q((B - eta)/s) + Q((B + eta)/s), r(B_0) = 1
+    /// ```
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] unless the offset is finite and `0 < sigma < inf`.
+    pub fn of_error(&self, offset: Metres, sigma: Metres) -> Result<PerState, OutOfDomain> {
+        let (eta, s) = (offset.m(), sigma.m());
+        if !eta.is_finite() {
+            return Err(OutOfDomain { argument: "offset_m", value: eta, unit: "m", domain: "(-inf, inf)" });
+        }
+        if !(s > 0.0 && s.is_finite()) {
+            return Err(OutOfDomain { argument: "sigma_m", value: s, unit: "m", domain: "(0, inf)" });
+        }
+        let away = eta.abs();
+        // Both as tails, so that neither loses its digits where it is small.
+        let inside = |b: f64| tail((away - b) / s) - tail((away + b) / s);
+        Ok(self.slices(inside, |b| two_tails(b / s, away / s)))
+    }
+
     /// Probabilities of the states from `n` residuals of known zero mean whose squares sum to `sum_of_squares`: where the 95 % navigation
     /// error lies, given what was seen.
     ///
@@ -292,9 +315,7 @@ impl StateTable {
         // ln(1 + rest) keeps the digits of a posterior within 1e-16 of certainty.
         let peak = out[top];
         let rest: f64 = (0..n).filter(|k| *k != top).map(|k| exp(out[k] - peak)).sum();
-        let total = peak + ln_1p(rest);
-        // Subtract the peak first: both are large and close where the error is far out.
-        let correction = total - peak;
+        let correction = ln_1p(rest);
         out[..n].iter_mut().for_each(|x| *x = (*x - peak) - correction);
         out
     }

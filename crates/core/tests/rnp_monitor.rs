@@ -1,0 +1,258 @@
+//! The RNP monitor as a state machine: tables of what it must do, and properties for any sequence.
+#![allow(clippy::unwrap_used, reason = "a helper of tests may stop at the first surprise, too")]
+
+use navbound_core::monitor::rnp::{Acceptance, Alert, Chain, Event, Kind, Monitor, Observation, Settings, Step};
+use navbound_core::quantity::{GpsTime, Metres};
+use proptest::prelude::*;
+
+const RNP_M: f64 = 500.0;
+const INSIDE: f64 = 400.0;
+/// Between 0.95 and 1 of the limit: within, but not yet calm.
+const NEAR: f64 = 490.0;
+const OUTSIDE: f64 = 600.0;
+
+fn settings() -> Settings {
+    Settings {
+        chain: Chain {
+            sample_period_s: 1.0,
+            sensor_latency_s: 0.0,
+            filter_s: 0.0,
+            computing_s: 0.0,
+            display_s: 0.0,
+            time_to_alert_s: 10.0,
+        },
+        raise_delay_s: 3.0,
+        clear_delay_s: 10.0,
+        clear_ratio: 0.95,
+        stale_after_s: 2.0,
+    }
+}
+
+fn at(second: i64, accuracy_m: f64, integrity_m: f64) -> Observation {
+    Observation {
+        time: GpsTime::from_nanoseconds(second * 1_000_000_000),
+        accuracy: Metres::new(accuracy_m),
+        integrity: Metres::new(integrity_m),
+        rnp: Metres::new(RNP_M),
+        usable: true,
+    }
+}
+
+/// Alerts of a sequence of accuracy bounds, one a second, the integrity bound well inside.
+fn alerts(bounds: &[f64]) -> Vec<Alert> {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    (0..).zip(bounds).map(|(second, b)| monitor.step(&at(second, *b, 0.0)).alert).collect()
+}
+
+fn seconds(time: GpsTime) -> i64 {
+    time.nanoseconds() / 1_000_000_000
+}
+
+fn ended(step: &Step) -> Vec<Event> {
+    step.ended.iter().flatten().copied().collect()
+}
+
+#[test]
+fn a_caution_waits_three_seconds_and_a_shorter_exceedance_is_withdrawn() {
+    use Alert::{Caution, Normal};
+    assert_eq!(alerts(&[OUTSIDE; 5]), [Normal, Normal, Normal, Caution, Caution]);
+    let mut monitor = Monitor::new(settings()).unwrap();
+    for (second, bound) in (0..).zip([OUTSIDE, OUTSIDE, OUTSIDE, INSIDE, OUTSIDE, OUTSIDE, OUTSIDE]) {
+        assert_eq!(monitor.step(&at(second, bound, 0.0)).alert, Normal, "second {second}");
+    }
+    assert_eq!(monitor.counters().n_withdrawn, 1);
+    assert_eq!(monitor.step(&at(7, OUTSIDE, 0.0)).alert, Caution);
+}
+
+#[test]
+fn a_bound_equal_to_its_limit_is_no_alert_and_the_next_number_is() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    assert_eq!(monitor.step(&at(0, RNP_M, 2.0 * RNP_M)).alert, Alert::Normal);
+    assert_eq!(monitor.step(&at(1, RNP_M, (2.0 * RNP_M).next_up())).alert, Alert::Warning);
+}
+
+#[test]
+fn a_warning_is_raised_at_once_and_ends_after_ten_calm_seconds() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    let mut outcome = Vec::new();
+    let mut events = Vec::new();
+    for second in 0..14 {
+        let integrity = if second == 0 { 1300.0 } else { 900.0 };
+        let step = monitor.step(&at(second, INSIDE, integrity));
+        outcome.push(step.alert);
+        events.extend(ended(&step));
+    }
+    assert!(outcome[..11].iter().all(|a| *a == Alert::Warning) && outcome[11..].iter().all(|a| *a == Alert::Normal), "{outcome:?}");
+    assert_eq!(events.len(), 1);
+    let event = events[0];
+    assert_eq!((seconds(event.onset), seconds(event.annunciation), event.clear.map(seconds)), (0, 0, Some(11)));
+    assert_eq!((event.kind, event.peak.m(), event.limit.m(), event.min_margin.m()), (Kind::Warning, 1300.0, 1000.0, -300.0));
+}
+
+#[test]
+fn within_the_limit_but_not_calm_restarts_the_wait() {
+    let mut bounds = vec![OUTSIDE; 4];
+    bounds.extend([INSIDE; 9]);
+    bounds.push(NEAR);
+    bounds.extend([INSIDE; 10]);
+    let found = alerts(&bounds);
+    // Calm again from second 14; ten seconds of it end at 24, beyond the sequence.
+    assert!(found[3..].iter().all(|a| *a == Alert::Caution), "{found:?}");
+    bounds.push(INSIDE);
+    assert_eq!(alerts(&bounds)[24], Alert::Normal);
+}
+
+#[test]
+fn what_is_no_length_within_the_limit_alerts_wherever_it_stands() {
+    let nan = f64::NAN;
+    let mut monitor = Monitor::new(settings()).unwrap();
+    assert_eq!(monitor.step(&at(0, INSIDE, nan)).alert, Alert::Warning);
+    let mut monitor = Monitor::new(settings()).unwrap();
+    assert_eq!(monitor.step(&Observation { rnp: Metres::new(nan), ..at(0, INSIDE, INSIDE) }).alert, Alert::Warning);
+    assert_eq!(monitor.counters().n_nan, 1);
+    for bound in [nan, -1.0, f64::INFINITY] {
+        assert_eq!(alerts(&[bound; 4])[3], Alert::Caution, "{bound}");
+    }
+}
+
+#[test]
+fn an_event_keeps_its_peak_beside_a_nan_and_stays_open_until_it_ends() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    for (second, integrity) in (0..).zip([1200.0, f64::NAN, 1500.0, 1100.0]) {
+        assert!(ended(&monitor.step(&at(second, 0.0, integrity))).is_empty());
+    }
+    let open: Vec<_> = monitor.open_events().collect();
+    assert_eq!(open.len(), 1);
+    assert_eq!((open[0].peak.m(), open[0].min_margin.m(), open[0].clear), (1500.0, -500.0, None));
+}
+
+#[test]
+fn a_smaller_rnp_judges_the_same_bound_anew() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    assert_eq!(monitor.step(&at(0, INSIDE, 900.0)).alert, Alert::Normal);
+    let step = monitor.step(&Observation { rnp: Metres::new(300.0), ..at(1, INSIDE, 900.0) });
+    assert_eq!(step.alert, Alert::Warning);
+    let event = *monitor.open_events().next().unwrap();
+    assert_eq!((event.limit.m(), event.min_margin.m()), (600.0, -300.0));
+}
+
+#[test]
+fn unusable_epochs_and_silence_lose_monitoring_until_the_next_usable_epoch() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(0, INSIDE, INSIDE));
+    let lost = Observation { usable: false, ..at(1, f64::NAN, f64::NAN) };
+    assert_eq!(monitor.step(&lost).alert, Alert::Unavailable);
+    assert_eq!(monitor.counters().n_nan, 0, "an unusable epoch has no bound to be NaN");
+    let step = monitor.step(&at(2, INSIDE, INSIDE));
+    assert_eq!((step.alert, ended(&step)[0].kind), (Alert::Normal, Kind::Unavailable));
+
+    assert_eq!(monitor.tick(GpsTime::from_nanoseconds(4_000_000_000)), Alert::Normal, "two seconds are allowed");
+    assert_eq!(monitor.tick(GpsTime::from_nanoseconds(4_000_000_001)), Alert::Unavailable);
+    let event = ended(&monitor.step(&at(9, INSIDE, INSIDE)))[0];
+    assert_eq!((seconds(event.onset), seconds(event.annunciation), event.clear.map(seconds)), (2, 4, Some(9)));
+    assert_eq!((monitor.counters().n_gaps, monitor.counters().n_unavailable), (1, 2));
+    assert_eq!(monitor.counters().watched_s, 2.0, "the gap is not under watch");
+}
+
+#[test]
+fn a_gap_never_helps_an_alert_to_end_and_never_delays_one() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(0, INSIDE, 1300.0));
+    monitor.step(&at(1, INSIDE, 900.0));
+    for second in 60..70 {
+        assert_eq!(monitor.step(&at(second, INSIDE, 900.0)).alert, Alert::Warning, "second {second}");
+    }
+    assert_eq!(monitor.step(&at(70, INSIDE, 900.0)).alert, Alert::Normal);
+
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(0, OUTSIDE, 0.0));
+    assert_eq!(monitor.step(&at(60, OUTSIDE, 0.0)).alert, Alert::Caution);
+}
+
+#[test]
+fn duplicate_and_late_epochs_are_dropped_and_counted() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(10, INSIDE, INSIDE));
+    let step = monitor.step(&at(10, INSIDE, 5000.0));
+    assert_eq!((step.acceptance, step.alert), (Acceptance::Duplicate, Alert::Normal));
+    let step = monitor.step(&at(9, INSIDE, 5000.0));
+    assert_eq!((step.acceptance, step.alert), (Acceptance::Late, Alert::Normal));
+    let counters = monitor.counters();
+    assert_eq!((counters.n_accepted, counters.n_duplicate, counters.n_late), (1, 1, 1));
+}
+
+/// One wild time stamp far ahead would otherwise make every later epoch late, and the monitor silent for ever.
+#[test]
+fn late_epochs_longer_than_the_permitted_silence_are_a_clock_set_back() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(1_000_000, INSIDE, INSIDE));
+    let found: Vec<_> = (0..5).map(|second| monitor.step(&at(second, INSIDE, INSIDE))).map(|s| (s.acceptance, s.alert)).collect();
+    use Acceptance::{Accepted, ClockSetBack, Late};
+    use Alert::{Normal, Unavailable};
+    assert_eq!(found, [(Late, Normal), (Late, Normal), (Late, Normal), (ClockSetBack, Unavailable), (Accepted, Normal)]);
+    assert_eq!(monitor.counters().n_clock_set_back, 1);
+}
+
+#[test]
+fn a_chain_slower_than_the_time_to_alert_is_refused() {
+    let outcome = |change: fn(&mut Settings)| {
+        let mut s = settings();
+        change(&mut s);
+        s.checked().map_or_else(|e| e.argument, |_| "accepted")
+    };
+    assert_eq!(outcome(|s| s.chain.sensor_latency_s = 6.0), "accepted");
+    assert_eq!(outcome(|s| s.chain.sensor_latency_s = 6.1), "time to the crew of an exceedance");
+    assert_eq!(outcome(|s| s.stale_after_s = 11.0), "time to the crew of a silence");
+    assert_eq!(outcome(|s| s.chain.display_s = f64::NAN), "display_s");
+    assert_eq!(outcome(|s| s.chain.time_to_alert_s = f64::NAN), "time_to_alert_s");
+    assert_eq!(outcome(|s| s.clear_ratio = 1.1), "clear_ratio");
+    assert_eq!(outcome(|s| s.raise_delay_s = -1.0), "raise_delay_s");
+    assert_eq!(outcome(|s| s.stale_after_s = 0.5), "stale_after_s");
+    let unhurried = |s: &mut Settings| {
+        s.chain.sample_period_s = 60.0;
+        s.stale_after_s = 120.0;
+        s.chain.time_to_alert_s = f64::INFINITY;
+    };
+    assert_eq!(outcome(unhurried), "accepted", "nobody is to be alerted");
+}
+
+fn sequences() -> impl Strategy<Value = Vec<(f64, f64, bool)>> {
+    let level = prop_oneof![3 => 0.0..475.0_f64, 1 => 475.0..500.0_f64, 2 => 500.1..900.0_f64, 1 => Just(f64::NAN)];
+    prop::collection::vec((level.clone(), level.prop_map(|b| 2.0 * b), prop::bool::weighted(0.95)), 1..200)
+}
+
+proptest! {
+    /// Whatever came before: an integrity bound outside is a warning in the same epoch, an accuracy bound outside for four epochs is a
+    /// caution or worse, and an unusable epoch is never silent.
+    #[test]
+    fn raising_is_never_later_than_the_delay(sequence in sequences()) {
+        let mut monitor = Monitor::new(settings()).unwrap();
+        let mut outside_for = 0;
+        for (second, (accuracy, integrity, usable)) in (0..).zip(sequence) {
+            let alert = monitor.step(&Observation { usable, ..at(second, accuracy, integrity) }).alert;
+            prop_assert!(usable || alert == Alert::Unavailable);
+            if !usable {
+                outside_for = 0;
+                continue;
+            }
+            outside_for = if accuracy <= RNP_M { 0 } else { outside_for + 1 };
+            prop_assert!(integrity <= 2.0 * RNP_M || alert >= Alert::Warning);
+            prop_assert!(outside_for < 4 || alert >= Alert::Caution);
+        }
+    }
+
+    /// An alert ends only after eleven calm usable epochs (ten seconds) in a row.
+    #[test]
+    fn clearing_is_never_sooner_than_the_delay(calm in prop::collection::vec(prop::bool::weighted(0.93), 50..300)) {
+        let mut monitor = Monitor::new(settings()).unwrap();
+        let mut calm_for = 0;
+        for (second, calm) in (0..).zip(calm) {
+            let step = monitor.step(&at(second, if calm { INSIDE } else { OUTSIDE }, if calm { 2.0 * INSIDE } else { f64::NAN }));
+            calm_for = if calm { calm_for + 1 } else { 0 };
+            for event in ended(&step) {
+                prop_assert!(calm_for >= 11);
+                prop_assert!(event.onset <= event.annunciation && event.clear.is_some_and(|c| c > event.annunciation));
+            }
+        }
+    }
+}
