@@ -55,7 +55,7 @@ def test_cruise_is_as_long_and_as_fast_as_the_sums_say(flown: Material) -> None:
     at = e["time_ns"] - e["time_ns"][0]
     cruise = e.filter((at > 1_110 * 10**9) & (at < 5_600 * 10**9))
     assert (cruise["path_h_m"] == 8900.0).all()
-    assert abs(e["along_m"][-1] - flown.settings["length_m"]) < 100  # type: ignore[operator]
+    assert abs(e["along_m"][-1] - flown.settings["length_m"]) < 100
 
 
 def test_technical_error_is_the_distance_from_the_corners_route(flown: Material) -> None:
