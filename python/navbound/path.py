@@ -92,7 +92,7 @@ class Path:
         """Feet of positions on the path.
 
         On a route the positions are taken in the order flown: each foot is sought from the one before it, so that a route which comes
-        near itself is followed and not jumped across.
+        near itself is followed and not jumped across. A foot more than 10 km away is doubted and the whole route searched.
 
         Parameters
         ----------

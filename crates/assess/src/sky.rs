@@ -1,7 +1,7 @@
 //! Satellite geometry at many epochs: where the satellites stand, and what covariance follows.
 
 use navbound_core::frame::{Geodetic, LatLon};
-use navbound_core::geometry::{Direction, Elements, LineOfSight, Orbit, direction};
+use navbound_core::geometry::{Direction, Elements, LineOfSight, Observer, Orbit};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::Constellation;
 use navbound_core::solution::wls;
@@ -76,7 +76,8 @@ fn row(orbits: &[Orbit], at: &Receivers<'_>, i: usize) -> Result<Vec<Direction>,
     if !receiver.height.m().is_finite() {
         return Err(OutOfDomain { argument: "h_m", value: at.h_m[i], unit: "m", domain: "finite heights" });
     }
-    orbits.iter().map(|orbit| direction(&receiver, &orbit.position(time))).collect()
+    let observer = Observer::new(&receiver);
+    orbits.iter().map(|orbit| observer.direction(&orbit.position(time))).collect()
 }
 
 /// Number of satellites and one result for each epoch.

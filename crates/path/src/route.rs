@@ -7,6 +7,9 @@ use crate::{Foot, Place};
 use navbound_core::frame::LatLon;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians};
 
+/// A foot this far away is doubted, and the whole route searched: no aircraft follows a leg from there \[m\].
+const STRAY_M: f64 = 10_000.0;
+
 /// Geodesic legs between waypoints, with a fly-by turn at each waypoint between.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Route {
@@ -92,8 +95,9 @@ impl Route {
 
     /// The foot of a position.
     ///
-    /// `near` is where along the route the position was last; the foot is sought from there, leg by leg. Without it every piece is
-    /// tried and the nearest taken, which is ambiguous where the route crosses itself.
+    /// `near` is where along the route the position was last; the foot is sought from there, leg by leg. Without it, or when the foot
+    /// found so is more than 10 km away (after a long gap), every piece is tried and the nearest taken, which is ambiguous where the
+    /// route comes near itself.
     ///
     /// # Errors
     /// [`OutOfDomain`] for a `near` that is not finite, or a position further than 5000 km from the route.
@@ -102,7 +106,10 @@ impl Route {
             Some(near) if !near.m().is_finite() => {
                 Err(OutOfDomain { argument: "near_along_m", value: near.m(), unit: "m", domain: "finite distances" })
             }
-            Some(near) => self.walk(position, near),
+            Some(near) => {
+                let foot = self.walk(position, near)?;
+                if foot.cross.m().abs() <= STRAY_M { Ok(foot) } else { self.nearest(position) }
+            }
             None => self.nearest(position),
         }
     }

@@ -8,7 +8,7 @@ use crate::ranging;
 use crate::scenario::{Fault, Navigation, Scenario, System};
 use nalgebra::Matrix3;
 use navbound_core::frame::{Covariance, Enu, Geodetic};
-use navbound_core::geometry::{BEIDOU, GPS, LineOfSight, Orbit, direction};
+use navbound_core::geometry::{BEIDOU, GPS, LineOfSight, Observer, Orbit};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::Constellation;
 use navbound_core::solution::wls;
@@ -91,9 +91,10 @@ impl Satellites {
     }
 
     fn sky(&self, at: &Geodetic, orbit_time_s: f64, navigation: &Navigation) -> Result<Sky, OutOfDomain> {
+        let observer = Observer::new(at);
         let mut sights = Vec::with_capacity(self.0.len());
         for (constellation, orbit) in &self.0 {
-            let seen = direction(at, &orbit.position(orbit_time_s))?;
+            let seen = observer.direction(&orbit.position(orbit_time_s))?;
             if seen.elevation().rad() >= navigation.mask_rad {
                 sights.push(LineOfSight::new(seen, ranging::sigma(navigation, seen.elevation()), *constellation)?);
             }

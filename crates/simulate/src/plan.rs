@@ -54,15 +54,15 @@ impl Plan {
         // A speed whose turns do not fit is too fast; what cannot be flown at the slowest cannot be flown.
         let too_slow = |speed: f64| flown(scenario, speed).is_ok_and(late);
         if !late(flown(scenario, slow)?) || too_slow(fast) {
-            let domain = "durations that a cruise speed from 60 to 400 m/s meets";
-            return Err(OutOfDomain { argument: "duration_s", value: scenario.duration_s, unit: "s", domain }.into());
+            return Err(cannot_last(scenario).into());
         }
         // From 340 m/s down to the last bit.
         for _ in 0..60 {
             let middle = 0.5 * (slow + fast);
             if too_slow(middle) { slow = middle } else { fast = middle }
         }
-        let (route, profile) = flown(scenario, fast)?;
+        // The search ends at the speed where turns cease to fit, if the flight should be faster still.
+        let (route, profile) = flown(scenario, fast).map_err(|_| cannot_last(scenario))?;
         let phases = phase_ranges(scenario, &route)?;
         Ok(Self { route, profile, phases })
     }
@@ -91,6 +91,11 @@ impl Plan {
         let index = self.phases.partition_point(|p| p.end.m() <= along_m);
         index.min(self.phases.len().saturating_sub(1))
     }
+}
+
+fn cannot_last(scenario: &Scenario) -> OutOfDomain {
+    let domain = "durations met by a cruise speed from 60 to 400 m/s that leaves room for the turns";
+    OutOfDomain { argument: "duration_s", value: scenario.duration_s, unit: "s", domain }
 }
 
 /// Route and profile at a cruise speed. Turns are as wide as the speed where their waypoint is passed asks for.

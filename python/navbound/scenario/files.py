@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from navbound import _core
 from navbound.errors import FormatError, InputError
 from navbound.scenario.models import Scenario
-from navbound.scenario.units import Place, Written, to_si
+from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -73,6 +73,8 @@ def load(name_or_path: str | Path) -> Scenario:
         raise FormatError(path, f"cannot be read: {e.strerror}") from e
     except ValidationError as e:
         raise _explained(path, e.errors()[0], written) from e
+    except GivenTwiceError as e:
+        raise FormatError(path, f"{e.value!r} is outside {e.domain}", field=e.argument) from e
     except InputError as e:
         raise _refused(path, e, written) from e
     return scenario
@@ -112,8 +114,10 @@ def _explained(path: Path, error: ErrorDetails, written: dict[Place, Written]) -
 
 def _refused(path: Path, error: InputError, written: dict[Place, Written]) -> FormatError:
     """Say it in the file's own key and unit."""
-    matching = [w for place, w in written.items() if _is_at(place, error)]
-    if len(matching) != 1:
+    named = [w for place, w in written.items() if _is_at(place, error)]
+    # One name in many phases or faults: the one with this value.
+    matching = named if len(named) == 1 else [w for w in named if w.si == error.value]
+    if not matching:
         return FormatError(path, str(error))
     inside = f"outside {error.domain}" + (f" [{error.unit}]" if error.unit else "")
     return FormatError(path, f"{_shown(matching[0])} is {inside}", field=matching[0].key)

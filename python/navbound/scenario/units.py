@@ -23,10 +23,15 @@ TO_SI: dict[str, tuple[str, float]] = {
 
 @dataclass(frozen=True)
 class Written:
-    """A value as it was written."""
+    """A value as it was written, and in SI units."""
 
     key: str
     value: object
+    si: object
+
+
+class GivenTwiceError(InputError):
+    """One quantity in two units."""
 
 
 Place = tuple[str | int, ...]
@@ -37,7 +42,7 @@ def to_si(table: dict[str, Any], written: dict[Place, Written]) -> dict[str, Any
 
     Raises
     ------
-    InputError
+    GivenTwiceError
         One quantity written twice in different units.
     """
     result: dict[str, Any] = {}
@@ -50,9 +55,9 @@ def _table(table: dict[str, Any], place: Place, path: str, written: dict[Place, 
         name, factor = _si_name(key)
         here = f"{path}.{key}" if path else key
         if name in result:
-            raise InputError(here, value, domain=f"one unit: it is also given as {written[(*place, name)].key}")
-        written[(*place, name)] = Written(here, value)
+            raise GivenTwiceError(here, value, domain=f"one unit: it is also given as {written[(*place, name)].key}")
         result[name] = _value(value, factor, (*place, name), here, written)
+        written[(*place, name)] = Written(here, value, result[name])
 
 
 def _value(value: Any, factor: float | None, place: Place, path: str, written: dict[Place, Written]) -> Any:
@@ -63,8 +68,8 @@ def _value(value: Any, factor: float | None, place: Place, path: str, written: d
     if isinstance(value, list):
         items = []
         for i, item in enumerate(value):
-            written[(*place, i)] = Written(f"{path}[{i}]", item)
             items.append(_value(item, factor, (*place, i), f"{path}[{i}]", written))
+            written[(*place, i)] = Written(f"{path}[{i}]", item, items[-1])
         return items
     # A truth value is a number to Python, not to us.
     if factor is not None and isinstance(value, (int, float)) and not isinstance(value, bool):

@@ -6,4 +6,4 @@ mod sight;
 
 pub use nominal::{BEIDOU, GPS, Slot};
 pub use orbit::{Elements, Orbit};
-pub use sight::{Direction, LineOfSight, direction};
+pub use sight::{Direction, LineOfSight, Observer};

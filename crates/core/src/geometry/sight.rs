@@ -1,11 +1,11 @@
 //! Lines of sight.
 
-use crate::frame::{EcefPosition, Geodetic, ecef_from_geodetic};
+use crate::frame::{EcefPosition, Geodetic, ecef_from_geodetic, enu_from_ecef};
 use crate::quantity::{Metres, OutOfDomain, Radians};
 use crate::signal::Constellation;
 use crate::special::float::{atan2, hypot, sin_cos};
 use core::f64::consts::{FRAC_PI_2, TAU};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// Where a satellite stands in the local sky.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,16 +68,30 @@ impl LineOfSight {
     }
 }
 
-/// Where a satellite stands as seen from a receiver. Both positions are of one instant: the 0.07 s of the signal's way move a satellite
-/// by 270 m, a change of 1e-5 rad that no bound notices.
-///
-/// # Errors
-/// [`OutOfDomain`] for positions that are not finite.
-pub fn direction(receiver: &Geodetic, satellite: &EcefPosition) -> Result<Direction, OutOfDomain> {
-    let enu = *satellite.minus(&ecef_from_geodetic(receiver)).to_enu(&receiver.point).vector();
-    let azimuth = atan2(enu.x, enu.y);
-    let azimuth = if azimuth < 0.0 { azimuth + TAU } else { azimuth };
-    Direction::new(Radians::new(azimuth), Radians::new(atan2(enu.z, hypot(enu.x, enu.y))))
+/// A receiver's place and local axes, worked out once for all satellites.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observer {
+    origin: EcefPosition,
+    enu_from_ecef: Matrix3<f64>,
+}
+
+impl Observer {
+    /// At a position.
+    pub fn new(position: &Geodetic) -> Self {
+        Self { origin: ecef_from_geodetic(position), enu_from_ecef: enu_from_ecef(&position.point) }
+    }
+
+    /// Where a satellite stands. Both positions are of one instant: the 0.07 s of the signal's way move a satellite by 270 m, a change of
+    /// 1e-5 rad that no bound notices.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for positions that are not finite.
+    pub fn direction(&self, satellite: &EcefPosition) -> Result<Direction, OutOfDomain> {
+        let enu = self.enu_from_ecef * satellite.minus(&self.origin).vector();
+        let azimuth = atan2(enu.x, enu.y);
+        let azimuth = if azimuth < 0.0 { azimuth + TAU } else { azimuth };
+        Direction::new(Radians::new(azimuth), Radians::new(atan2(enu.z, hypot(enu.x, enu.y))))
+    }
 }
 
 #[cfg(test)]
@@ -97,9 +111,9 @@ mod tests {
             (Vector3::new(0.0, -2e7, 2e7), 180.0, 45.0),
             (Vector3::new(0.0, 0.0, 2e7), 0.0, 90.0),
         ] {
-            let c = crate::frame::enu_from_ecef(&r.point).transpose();
+            let c = enu_from_ecef(&r.point).transpose();
             let satellite = EcefPosition::from_vector(ecef_from_geodetic(&r).vector() + c * along);
-            let d = direction(&r, &satellite).unwrap();
+            let d = Observer::new(&r).direction(&satellite).unwrap();
             assert!((d.elevation().rad().to_degrees() - elevation).abs() < 1e-9);
             assert!(elevation == 90.0 || (d.azimuth().rad().to_degrees() - azimuth).abs() < 1e-9);
             assert!((d.unit() - along.normalize()).norm() < 1e-9);
