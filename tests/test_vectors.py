@@ -18,7 +18,11 @@ FILES = list(verify.files())
 PROVENANCE = {"printed", "re-derived", "standard", "ours", "inferred"}
 
 # Methods whose vectors stand in a file of another name.
-ELSEWHERE = {"tse-ltem-as-printed": "tse-as-printed"}
+ELSEWHERE = {
+    "tse-ltem-as-printed": "tse-as-printed",
+    **{f"anp-{direction}": "anp-directional" for direction in ("along", "cross", "vertical")},
+    **{f"anp-ellipsoid-{direction}": "anp-ellipsoid" for direction in ("east", "north", "up", "along", "cross")},
+}
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda f: f.id)
