@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -71,7 +72,7 @@ def _moved(value: object, beyond: float) -> object:
         number = float(value) if isinstance(value, (str, float)) else None
     except ValueError:
         return f"not {value}"
-    if number is None or number != number or abs(number) == float("inf"):
+    if number is None or not math.isfinite(number):
         return None
     return repr(number * 1.001 + beyond + (1e-9 if number == 0 else 0.0))
 
