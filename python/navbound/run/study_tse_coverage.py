@@ -8,6 +8,7 @@ does not state, is assumed in several ways; one constant ratio to the navigation
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -165,9 +166,7 @@ def run(*, step_s: float = 60.0, monte_carlo: int = 0, seed: int = 2014) -> Stud
     if monte_carlo:
         rows.append(_monte_carlo(day, monte_carlo, seed))
     rows.append(_row("fte = 0", day, lambda sigma: [(np.zeros_like(sigma), 1.0)]))
-    rows += [
-        _row(f"fte normal, {spread:g} m", day, lambda sigma, spread=spread: _half_normal(sigma, spread)) for spread in (2.0, 10.0, 50.0)
-    ]
+    rows += [_row(f"fte normal, {spread:g} m", day, partial(_half_normal, spread_m=spread)) for spread in (2.0, 10.0, 50.0)]
     return Study(
         n_epochs=len(day.n_sv),
         n_sv_min=int(day.n_sv.min()),
