@@ -91,7 +91,7 @@ def test_wrong_settings_are_refused() -> None:
 
 def test_it_renders_and_survives_json() -> None:
     console = Console(width=200, record=True, file=io.StringIO())
-    console.print(study.render(result()))
+    console.print(result().table())
     text = console.export_text()
     assert "97.747" in text
     assert "not reproducible" in text

@@ -5,15 +5,6 @@
 pub mod anp;
 pub mod batch;
 pub mod bounds;
-pub mod bounds;
-
-pub mod anp;
-pub mod batch;
-pub mod monitor;
-pub mod sky;
-pub mod states;
-pub mod tse;
-
 pub mod error;
 pub mod evaluation;
 pub mod flights;

@@ -104,6 +104,10 @@ class Study(Record):
     repeated: list[Repeated]
     words: list[str]
 
+    def table(self) -> RenderableType:
+        """Lay the study out as tables for a terminal."""
+        return _render(self)
+
 
 PUBLISHED = Row(
     assumption="published, Table 3",
@@ -291,8 +295,7 @@ def _entry(method: str, level: Level, fitted: Row) -> Entry:
     )
 
 
-def render(study: Study) -> RenderableType:
-    """Lay the study out as tables for a terminal."""
+def _render(study: Study) -> RenderableType:
     from rich.console import Group  # noqa: PLC0415
     from rich.table import Table  # noqa: PLC0415
 
