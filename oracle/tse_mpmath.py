@@ -64,9 +64,10 @@ def strip_risk(offset: Any, covariance: Any, course: Any, bound: Any) -> Any:
         density = mp.exp(-((north - mp.mpf(offset[1])) ** 2) / (2 * snn)) / mp.sqrt(2 * mp.pi * snn)
         return (1 - inside) * density
 
-    reach = 14 * mp.sqrt(snn)
-    points = [mp.mpf(offset[1]) + reach * k / 7 for k in range(-7, 8)]
-    return mp.quad(outside, points)
+    reach = 12 * mp.sqrt(snn)
+    points = [mp.mpf(offset[1]) + reach * k / 6 for k in range(-6, 7)]
+    with mp.workdps(25):
+        return mp.quad(outside, points)
 
 
 def student_risk(bound: Any, mean: Any, scale: Any, nu: Any) -> Any:
@@ -82,7 +83,7 @@ def student_risk(bound: Any, mean: Any, scale: Any, nu: Any) -> Any:
     return upper((bound - mean) / scale) + upper((bound + mean) / scale)
 
 
-def box_risk(mean_l: Any, sigma_l: Any, mean_v: Any, sigma_v: Any, rho: Any, limit_l: Any, limit_v: Any) -> Any:
+def box_risk(mean_l: Any, sigma_l: Any, mean_v: Any, sigma_v: Any, *, rho: Any, limit_l: Any, limit_v: Any) -> Any:
     """Risk outside a box: the side walls, and between them floor and ceiling by the conditional law, by quadrature."""
     rho = mp.mpf(rho)
     conditional = mp.sqrt(1 - rho * rho)
@@ -94,9 +95,10 @@ def box_risk(mean_l: Any, sigma_l: Any, mean_v: Any, sigma_v: Any, rho: Any, lim
         return mp.npdf(x) * over
 
     low, high = max(-left, mp.mpf(-16)), min(right, mp.mpf(16))
-    steps = 24
+    steps = 12
     points = [low + (high - low) * k / steps for k in range(steps + 1)]
-    return tail(right) + tail(left) + mp.quad(integrand, points)
+    with mp.workdps(22):
+        return tail(right) + tail(left) + mp.quad(integrand, points)
 
 
 def farthest(x: float, y: float, a: float, b: float) -> Any:
@@ -109,5 +111,5 @@ def farthest(x: float, y: float, a: float, b: float) -> Any:
         coefficients.pop(0)
     angles = [mp.mpf(0), mp.pi]
     if len(coefficients) > 1:
-        angles += [2 * mp.atan(r.real) for r in map(mp.mpmathify, mp.polyroots(coefficients, maxsteps=500, extraprec=400))]
+        angles += [2 * mp.atan(mp.re(root)) for root in mp.polyroots(coefficients[::-1], maxsteps=500, extraprec=400, asc=True)]
     return max(mp.hypot(x + a * mp.cos(t), y + b * mp.sin(t)) for t in angles)

@@ -698,7 +698,9 @@ def mixture(weight: ArrayLike, fte_m: ArrayLike, sigma_m: ArrayLike, risk: Array
     InputError
         Not finite, a negative weight or deviation, weights that do not sum to one, or a risk outside (0, 1).
     """
-    k = np.shape(weight)[-1:] or (1,)
+    k = np.shape(weight)[-1:]
+    if k in {(), (0,)}:
+        raise InputError("weight", f"shape {np.shape(weight)}", domain="one component or more along the last axis")
     shape, [w, f, s, q] = flatten(weight=(weight, k), fte_m=(fte_m, k), sigma_m=(sigma_m, k), risk=(risk, ()))
     return unflatten(_core.tse_mixture(w, f, s, q), shape)
 
@@ -801,6 +803,7 @@ def box_risk(
     sigma_m: ArrayLike,
     fte_v_m: ArrayLike,
     sigma_v_m: ArrayLike,
+    *,
     limit_m: ArrayLike,
     limit_v_m: ArrayLike,
     correlation: ArrayLike = 0.0,
@@ -847,6 +850,7 @@ def box(
     fte_v_m: ArrayLike,
     sigma_v_m: ArrayLike,
     risk: ArrayLike,
+    *,
     correlation: ArrayLike = 0.0,
     share: ArrayLike = 0.5,
 ) -> Box:
@@ -889,7 +893,9 @@ def box(
     return Box(*_columns(_core.tse_box(np.column_stack(flat[:5]), flat[5], flat[6]), shape))
 
 
-def rotated_frame(k: ArrayLike, x0_m: ArrayLike, y0_m: ArrayLike, sigma_a_m: ArrayLike, sigma_b_m: ArrayLike, risk: ArrayLike) -> Rotated:
+def rotated_frame(
+    k: ArrayLike, x0_m: ArrayLike, y0_m: ArrayLike, sigma_a_m: ArrayLike, sigma_b_m: ArrayLike, *, risk: ArrayLike
+) -> Rotated:
     """All lateral bounds in the frame of the paper: axes along the ellipse, the path the line y = k x, the estimate at (x0, y0).
 
     For comparison with published numbers; :func:`project` needs neither slope nor eigenvectors.
@@ -985,7 +991,7 @@ def ltem_as_printed(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, risk: A
 
 
 def _columns(table: Floats, shape: tuple[int, ...]) -> list[Floats]:
-    """The columns of a flat table, each in the leading shape."""
+    """Split a flat table into columns, each in the leading shape."""
     return [unflatten(np.ascontiguousarray(table[:, k]), shape) for k in range(table.shape[1])]
 
 

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::tse::{self, Component, Deviation, Horizontal, PathDeviations, RandomFte, RotatedFrame};
 use navbound_core::frame::{Covariance, Displacement, Enu};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
+use navbound_core::special::chi::chi_factor;
 use navbound_core::special::{self, PreparedQuantile};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
@@ -44,13 +45,8 @@ fn named(e: OutOfDomain, argument: &'static str) -> OutOfDomain {
 fn tse_factors<'py>(py: Python<'py>, risk: Numbers<'py>) -> Table<'py> {
     let q = risk.as_slice()?;
     table(py, q.len(), |i| {
-        let risk = Risk::new(q[i])?.q();
-        Ok([
-            special::two_sided_factor(risk),
-            special::one_sided_factor(risk),
-            special::normal::circle_factor(risk),
-            special::normal::sphere_factor(risk),
-        ])
+        let chi = |dimension| chi_factor(dimension, q[i]);
+        Ok([chi(1)?, special::one_sided_factor(q[i]), chi(2)?, chi(3)?])
     })
 }
 

@@ -54,8 +54,8 @@ pub fn share_limits(hits: f64, trials: f64, risk: f64) -> (f64, f64) {
     (low, high)
 }
 
-/// Continued fraction of the incomplete beta function, Lentz's method.
-fn fraction(a: f64, b: f64, x: f64) -> f64 {
+/// Continued fraction of the incomplete beta function, Lentz's method: what stands behind x^a (1-x)^b / (a B(a, b)) in I_x(a, b).
+pub(crate) fn fraction(a: f64, b: f64, x: f64) -> f64 {
     let not_zero = |v: f64| if v.abs() < TINY { TINY } else { v };
     let mut c = 1.0;
     let mut d = 1.0 / not_zero(1.0 - (a + b) * x / (a + 1.0));

@@ -3,24 +3,11 @@
 use super::float::{acos, cos, exp, sin};
 use super::folded::two_tails;
 use super::normal::tail;
+use super::quadrature::integrate;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Halvings towards full correlation; what is left beyond is narrower than rounding.
 const MOST_PANELS: usize = 56;
-
-/// Abscissae and weights of the 20-point Gauss-Legendre rule, positive half.
-const GAUSS: [(f64, f64); 10] = [
-    (0.076_526_521_133_497_33, 0.152_753_387_130_725_85),
-    (0.227_785_851_141_645_08, 0.149_172_986_472_603_75),
-    (0.373_706_088_715_419_56, 0.142_096_109_318_382_05),
-    (0.510_867_001_950_827_1, 0.131_688_638_449_176_63),
-    (0.636_053_680_726_515_0, 0.118_194_531_961_518_42),
-    (0.746_331_906_460_150_8, 0.101_930_119_817_240_44),
-    (0.839_116_971_822_218_8, 0.083_276_741_576_704_75),
-    (0.912_234_428_251_326, 0.062_672_048_334_109_06),
-    (0.963_971_927_277_913_8, 0.040_601_429_800_386_94),
-    (0.993_128_599_185_094_9, 0.017_614_007_139_152_118),
-];
 
 /// Risk that X > h and Y > k for unit normals of correlation `rho`, to rounding of the larger of the two tails.
 ///
@@ -41,18 +28,13 @@ pub(crate) fn both_exceed(h: f64, k: f64, rho: f64) -> f64 {
     let (mut upper, mut sum) = (FRAC_PI_2, 0.0);
     for _ in 0..MOST_PANELS {
         let lower = (0.5 * upper).max(end);
-        sum += gauss(lower, upper, integrand);
+        sum += integrate(lower, upper, 1, |t| [integrand(t)])[0];
         upper = lower;
         if upper <= end {
             break;
         }
     }
     (independent + sign * sum / (2.0 * PI)).max(0.0)
-}
-
-fn gauss(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    half * GAUSS.iter().map(|(x, w)| w * (f(middle - half * x) + f(middle + half * x))).sum::<f64>()
 }
 
 /// Risk that |X| > `limit_x` or |Y| > `limit_y`, X and Y normal with unit deviation, these means and this correlation.

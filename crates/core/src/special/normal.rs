@@ -1,7 +1,6 @@
 //! The standard normal law: density, tail, logarithm of the tail, quantiles.
 
 use super::float::{erfc, exp, ln, sqrt};
-use super::root::falling_root;
 use core::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
 
 /// 1 / sqrt(2 pi).
@@ -55,25 +54,6 @@ pub fn one_sided_factor(q: f64) -> f64 {
 /// Two-sided factor K(q) = Q^-1(q/2): |standard normal| exceeds it with risk q. 1.959963984540054 at 0.05.
 pub fn two_sided_factor(q: f64) -> f64 {
     one_sided_factor(0.5 * q)
-}
-
-/// Radius of the circle that two independent standard normals leave with risk q: sqrt(-2 ln q). 2.4477 at 0.05.
-pub fn circle_factor(q: f64) -> f64 {
-    sqrt(-2.0 * ln(q))
-}
-
-/// Radius of the sphere that three independent standard normals leave with risk q: the root of 2 Q(r) + 2 r phi(r) = q. 2.7955 at 0.05.
-/// NaN unless 0 < q < 1.
-pub fn sphere_factor(q: f64) -> f64 {
-    if !(q > 0.0 && q < 1.0) {
-        return f64::NAN;
-    }
-    // The sphere's radius is above the circle's and by less than one.
-    let low = circle_factor(q);
-    falling_root(low, low + 1.0, low + 0.4, |r| {
-        let risk = 2.0 * tail(r) + 2.0 * r * density(r);
-        (ln(risk / q), -2.0 * r * r * density(r) / risk)
-    })
 }
 
 fn lower_risk_factor(q: f64) -> f64 {

@@ -1,11 +1,10 @@
 //! Student's t law, a symmetric law with heavier tails than the normal.
 
+use super::beta::fraction as beta_fraction;
 use super::float::{exp, ln, ln_1p, sqrt};
 use super::root::falling_root;
 use core::f64::consts::PI;
 
-/// Terms of the continued fraction; it needs about the root of the degrees of freedom.
-const MOST_TERMS: usize = 10_000;
 /// Degrees of freedom from which the expansion of the gamma ratio has all digits.
 const EXPANSION_FROM: f64 = 20.0;
 
@@ -54,9 +53,9 @@ impl StudentT {
         // x^a y^b / B(a, b), from the density: it keeps its digits for any nu.
         let front = self.density(t) * t;
         if x < (a + 1.0) / (a + b + 2.0) {
-            0.5 * front / a * continued_fraction(a, b, x)
+            0.5 * front / a * beta_fraction(a, b, x)
         } else {
-            0.5 - 0.5 * front / b * continued_fraction(b, a, y)
+            0.5 - 0.5 * front / b * beta_fraction(b, a, y)
         }
     }
 
@@ -82,29 +81,6 @@ impl StudentT {
         let slope = (self.density(coarse - ratio) + self.density(coarse + ratio)) / now;
         coarse + ln(now / q) / slope - ratio
     }
-}
-
-/// The continued fraction of I_x(a, b) by Lentz's method (the factor behind x^a (1-x)^b / (a B)).
-fn continued_fraction(a: f64, b: f64, x: f64) -> f64 {
-    let mut c = 1.0;
-    let mut d = 1.0 / (1.0 - (a + b) * x / (a + 1.0));
-    let mut fraction = d;
-    for k in 1..MOST_TERMS {
-        let m = k as f64;
-        let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
-        d = 1.0 / (1.0 + even * d);
-        c = 1.0 + even / c;
-        fraction *= d * c;
-        let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
-        d = 1.0 / (1.0 + odd * d);
-        c = 1.0 + odd / c;
-        let change = d * c;
-        fraction *= change;
-        if (change - 1.0).abs() <= f64::EPSILON {
-            break;
-        }
-    }
-    fraction
 }
 
 #[cfg(test)]

@@ -1,0 +1,86 @@
+"""Speed of navbound.tse on one core: prepared and iterative exact bound, the quicker bounds, SciPy and a quadrature."""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("RAYON_NUM_THREADS", "1")
+
+import math
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy import integrate, optimize, special, stats
+
+from navbound import tse
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+SEED = 2014
+N = 1_000_000
+RISK = 0.05
+
+
+def best(action: Callable[[], object], n: int, repeats: int = 7) -> float:
+    """Seconds an item, the best of several runs."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        action()
+        times.append(time.perf_counter() - start)
+    return min(times) / n
+
+
+def by_quadrature(offset: tuple[float, float], sigma: tuple[float, float], slope: float) -> float:
+    """One epoch as published: the two-dimensional density over the strip, and a search for the limit."""
+
+    def beyond(limit: float) -> float:
+        def inside(x: float) -> float:
+            middle, half = slope * x, limit * math.sqrt(1 + slope * slope)
+            strip = special.ndtr((middle + half - offset[1]) / sigma[1]) - special.ndtr((middle - half - offset[1]) / sigma[1])
+            return float(strip) * math.exp(-0.5 * ((x - offset[0]) / sigma[0]) ** 2) / (sigma[0] * math.sqrt(2 * math.pi))
+
+        return 1 - integrate.quad(inside, offset[0] - 8 * sigma[0], offset[0] + 8 * sigma[0], epsabs=1e-10)[0] - RISK
+
+    return float(optimize.brentq(beyond, 0.1, 200.0, xtol=1e-9))
+
+
+def measure() -> list[dict[str, object]]:
+    """Seconds an epoch of each method, one thread."""
+    rng = np.random.default_rng(SEED)
+    fte, sigma = rng.normal(0, 20, N), rng.uniform(5, 15, N)
+    risks = np.full(N // 10, RISK)
+    few = slice(0, N // 10)
+    covariance = np.array([[60.0, 12.0], [12.0, 110.0]]) * rng.uniform(0.5, 2, (N // 10, 1, 1))
+    offset = rng.normal(0, 20, (N // 10, 2))
+    prepared = tse.Exact(RISK)
+    jobs: list[tuple[str, Callable[[], object], int, str]] = [
+        ("tse exact, prepared", lambda: prepared(fte, sigma), N, "a table for one risk"),
+        ("tse ltem", lambda: tse.ltem(fte, sigma, RISK), N, "same loop and checks as the prepared exact bound"),
+        ("tse preparation", lambda: tse.Exact(RISK), 1, "the table itself, once a risk"),
+        ("tse exact, iterative", lambda: tse.exact(fte[few], sigma[few], risks), N // 10, "three Halley steps"),
+        ("tse exceedance risk", lambda: tse.exceedance_risk(fte[few], sigma[few], 30.0), N // 10, "risk and its logarithm"),
+        ("tse ctem", lambda: tse.ctem(offset, covariance, RISK), N // 10, "eigenvectors and secular equation"),
+        ("tse sqsm", lambda: tse.sqsm(fte[few], covariance, RISK), N // 10, "eigenvalues"),
+        (
+            "scipy foldnorm.ppf",
+            lambda: stats.foldnorm.ppf(1 - RISK, np.abs(fte[:300] / sigma[:300])) * sigma[:300],
+            300,
+            "the same number, vectorised",
+        ),
+    ]
+    found: list[dict[str, object]] = [
+        {"name": name, "seconds_per_item": best(action, n), "n": n, "note": note} for name, action, n, note in jobs
+    ]
+    quadrature = best(lambda: by_quadrature((3.0, 6.0), (10.0, 6.0), 2.0), 1, repeats=2)
+    found.append(
+        {"name": "quadrature and search", "seconds_per_item": quadrature, "n": 1, "note": "SciPy quad inside brentq, as published"}
+    )
+    return found
+
+
+if __name__ == "__main__":
+    for item in measure():
+        print(f"{item['name']:24} {float(str(item['seconds_per_item'])) * 1e9:14.2f} ns   {item['note']}")
