@@ -26,10 +26,7 @@ const LANES: usize = 8;
 ///
 /// # Errors
 /// [`Refused`], with the smallest index of all that are refused.
-pub fn each<T: Copy + Default + Send>(
-    n: usize,
-    item: impl Fn(usize) -> Result<T, OutOfDomain> + Sync,
-) -> Result<Vec<T>, Refused> {
+pub fn each<T: Copy + Default + Send>(n: usize, item: impl Fn(usize) -> Result<T, OutOfDomain> + Sync) -> Result<Vec<T>, Refused> {
     chunks(n, |first, out| {
         for (offset, place) in out.iter_mut().enumerate() {
             let index = first + offset;
@@ -39,10 +36,7 @@ pub fn each<T: Copy + Default + Send>(
     })
 }
 
-fn chunks<T: Copy + Default + Send>(
-    n: usize,
-    fill: impl Fn(usize, &mut [T]) -> Result<(), Refused> + Sync,
-) -> Result<Vec<T>, Refused> {
+fn chunks<T: Copy + Default + Send>(n: usize, fill: impl Fn(usize, &mut [T]) -> Result<(), Refused> + Sync) -> Result<Vec<T>, Refused> {
     let mut out = vec![T::default(); n];
     let refused = out
         .par_chunks_mut(CHUNK)
@@ -109,12 +103,7 @@ pub fn radii_m<const D: usize>(covariance_m2: &[f64], mean_m: Option<&[f64]>, ri
 }
 
 /// Zero mean, one risk: eight covariances abreast. The last group is filled up with points, whose radius is zero.
-fn centred_chunk<const D: usize>(
-    prepared: &CentredRadius,
-    covariance_m2: &[f64],
-    first: usize,
-    out: &mut [f64],
-) -> Result<(), Refused> {
+fn centred_chunk<const D: usize>(prepared: &CentredRadius, covariance_m2: &[f64], first: usize, out: &mut [f64]) -> Result<(), Refused> {
     for (group, places) in out.chunks_mut(LANES).enumerate() {
         let mut lanes = [[0.0; LANES]; 6];
         for l in 0..places.len() {

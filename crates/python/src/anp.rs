@@ -237,11 +237,8 @@ fn anp_sphere_grubbs<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, m, q) = (flat(&covariance_enu_m2)?, optional(mean_enu_m.as_ref())?, flat(&risk)?);
-    let found = py.detach(|| {
-        each(q.len(), |i| {
-            anp::sphere_grubbs(&covariance(v, i)?, displacement(m, i).as_ref(), Risk::new(q[i])?).map(Metres::m)
-        })
-    });
+    let found = py
+        .detach(|| each(q.len(), |i| anp::sphere_grubbs(&covariance(v, i)?, displacement(m, i).as_ref(), Risk::new(q[i])?).map(Metres::m)));
     Ok(found.map_err(|r| refused(r, false))?.into_pyarray(py))
 }
 
@@ -253,9 +250,7 @@ fn anp_sphere_grubbs_as_printed<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, q) = (flat(&covariance_enu_m2)?, flat(&risk)?);
-    let found = py.detach(|| {
-        each(q.len(), |i| anp::sphere_grubbs_as_printed(&covariance(v, i)?, Risk::new(q[i])?).map(Metres::m))
-    });
+    let found = py.detach(|| each(q.len(), |i| anp::sphere_grubbs_as_printed(&covariance(v, i)?, Risk::new(q[i])?).map(Metres::m)));
     Ok(found.map_err(|r| refused(r, false))?.into_pyarray(py))
 }
 
@@ -278,9 +273,7 @@ fn anp_rectangle<'py>(
     half_up_m: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Rows<'py>> {
     let (v, m, a, b) = (flat(&covariance_cu_m2)?, flat(&mean_cu_m)?, flat(&half_cross_m)?, flat(&half_up_m)?);
-    let found = py.detach(|| {
-        each(a.len(), |i| anp::rectangle(triple(v, i)?, pair(m, i), [a[i], b[i]]).map(|s| [s.inside, s.outside]))
-    });
+    let found = py.detach(|| each(a.len(), |i| anp::rectangle(triple(v, i)?, pair(m, i), [a[i], b[i]]).map(|s| [s.inside, s.outside])));
     Ok(rows(py, found.map_err(|r| refused(r, true))?))
 }
 
@@ -295,8 +288,7 @@ fn anp_rectangle_scale<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, m, a, b, q) = (flat(&covariance_cu_m2)?, flat(&mean_cu_m)?, flat(&half_cross_m)?, flat(&half_up_m)?, flat(&risk)?);
-    let found =
-        py.detach(|| each(q.len(), |i| anp::rectangle_scale(triple(v, i)?, pair(m, i), [a[i], b[i]], Risk::new(q[i])?)));
+    let found = py.detach(|| each(q.len(), |i| anp::rectangle_scale(triple(v, i)?, pair(m, i), [a[i], b[i]], Risk::new(q[i])?)));
     Ok(found.map_err(|r| refused(r, true))?.into_pyarray(py))
 }
 
@@ -310,11 +302,8 @@ fn anp_cylinder<'py>(
     half_height_m: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Rows<'py>> {
     let (v, m, a, b) = (flat(&covariance_enu_m2)?, flat(&mean_enu_m)?, flat(&radius_m)?, flat(&half_height_m)?);
-    let found = py.detach(|| {
-        each(a.len(), |i| {
-            anp::cylinder(triangle::<3>(v, i)?, vector(m, i), a[i], b[i]).map(|s| [s.inside, s.outside])
-        })
-    });
+    let found =
+        py.detach(|| each(a.len(), |i| anp::cylinder(triangle::<3>(v, i)?, vector(m, i), a[i], b[i]).map(|s| [s.inside, s.outside])));
     Ok(rows(py, found.map_err(|r| refused(r, false))?))
 }
 
@@ -329,11 +318,7 @@ fn anp_cylinder_scale<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, m, a, b, q) = (flat(&covariance_enu_m2)?, flat(&mean_enu_m)?, flat(&radius_m)?, flat(&half_height_m)?, flat(&risk)?);
-    let found = py.detach(|| {
-        each(q.len(), |i| {
-            anp::cylinder_scale(triangle::<3>(v, i)?, vector(m, i), a[i], b[i], Risk::new(q[i])?)
-        })
-    });
+    let found = py.detach(|| each(q.len(), |i| anp::cylinder_scale(triangle::<3>(v, i)?, vector(m, i), a[i], b[i], Risk::new(q[i])?)));
     Ok(found.map_err(|r| refused(r, false))?.into_pyarray(py))
 }
 

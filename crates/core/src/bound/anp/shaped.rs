@@ -157,7 +157,8 @@ impl Disc {
 pub fn rectangle_scale(covariance: [f64; 3], mean: [f64; 2], half_sizes: [f64; 2], risk: Risk) -> Result<f64, OutOfDomain> {
     rectangle(covariance, mean, half_sizes)?;
     let [cc, cv, vv] = covariance;
-    let side = |variance: f64, mean: f64, size: f64, q: f64| RadiusLaw::new([variance.max(0.0), 0.0, 0.0], [mean, 0.0, 0.0]).radius(q) / size;
+    let side =
+        |variance: f64, mean: f64, size: f64, q: f64| RadiusLaw::new([variance.max(0.0), 0.0, 0.0], [mean, 0.0, 0.0]).radius(q) / size;
     let at = |q: f64| side(cc, mean[0], half_sizes[0], q).max(side(vv, mean[1], half_sizes[1], q));
     // One side alone is left with at most the whole risk; two sides with half of it each are enough.
     let bracket = (at(risk.q()), at(0.5 * risk.q()));
@@ -193,9 +194,13 @@ pub fn box_factor(upper: [f64; 6], risk: Risk) -> Result<f64, OutOfDomain> {
     let rho = [correlation(en, ee, nn), correlation(eu, ee, uu), correlation(nu, nn, uu)];
     let axes = if uu > 0.0 { 3.0 } else { 2.0 };
     let bracket = (two_sided_factor(risk.q()), two_sided_factor(risk.q() / axes));
-    Ok(scale(risk, bracket, |k| {
-        if uu > 0.0 { cube_outside(rho, k) } else { rectangle_sides([1.0, rho[0], 1.0], [0.0; 2], [k; 2]).outside }
-    }))
+    Ok(scale(
+        risk,
+        bracket,
+        |k| {
+            if uu > 0.0 { cube_outside(rho, k) } else { rectangle_sides([1.0, rho[0], 1.0], [0.0; 2], [k; 2]).outside }
+        },
+    ))
 }
 
 /// Outside of the cube |z_i| <= k for standard normals with correlations \[12, 13, 23\]: the rectangle given z_3, over z_3.
@@ -209,9 +214,7 @@ fn cube_outside([r12, r13, r23]: [f64; 3], k: f64) -> f64 {
             }
         }
     }
-    let [outside] = integrate_broken(-k, k, breaks, PANEL, |z| {
-        [density(z) * rectangle_sides(rest, [r13 * z, r23 * z], [k; 2]).outside]
-    });
+    let [outside] = integrate_broken(-k, k, breaks, PANEL, |z| [density(z) * rectangle_sides(rest, [r13 * z, r23 * z], [k; 2]).outside]);
     outside + line(1.0, 0.0, k).outside
 }
 

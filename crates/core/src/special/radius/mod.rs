@@ -74,8 +74,28 @@ impl RadiusLaw {
         self.rule
     }
 
-    /// Probability of a shorter and of a longer error, and density, at a radius that is not negative.
+    /// Probability of a shorter and of a longer error, and density, at a radius that is not negative, by the guarded rule.
     pub fn at(&self, radius: f64) -> AtRadius {
+        self.beyond_dead(radius, |reach| {
+            if self.live > 1
+                && let Some(nodes) = self.rule.nodes()
+            {
+                let Point { at, .. } = self.by_contour(nodes, reach);
+                if at.inside >= STRIP_BELOW && at.outside >= STRIP_BELOW {
+                    return at;
+                }
+            }
+            self.by_strip(reach)
+        })
+    }
+
+    /// The same by the slow positive sums alone, which judge the contour.
+    pub fn at_by_strip(&self, radius: f64) -> AtRadius {
+        self.beyond_dead(radius, |reach| self.by_strip(reach))
+    }
+
+    /// The law at a radius from the law of the live axes alone.
+    fn beyond_dead(&self, radius: f64, live: impl Fn(f64) -> AtRadius) -> AtRadius {
         if self.live == 0 {
             let inside = if radius >= self.dead { 1.0 } else { 0.0 };
             return AtRadius { inside, outside: 1.0 - inside, density: 0.0 };
@@ -85,21 +105,8 @@ impl RadiusLaw {
             return AtRadius { inside: 0.0, outside: 1.0, density: 0.0 };
         }
         let reach = sqrt(square);
-        let at = self.at_reach(reach);
+        let at = live(reach);
         AtRadius { density: at.density * (radius / reach), ..at }
-    }
-
-    /// The same at a length within the live axes, by the guarded rule.
-    fn at_reach(&self, reach: f64) -> AtRadius {
-        if self.live > 1
-            && let Some(nodes) = self.rule.nodes()
-        {
-            let Point { at, .. } = self.by_contour(nodes, reach);
-            if at.inside >= STRIP_BELOW && at.outside >= STRIP_BELOW {
-                return at;
-            }
-        }
-        self.by_strip(reach)
     }
 
     /// The radius that the error exceeds with risk q, `0 < q < 1`.

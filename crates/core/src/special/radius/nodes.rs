@@ -33,7 +33,6 @@ const fn node(c: Complex, a: Complex) -> Node {
     Node { c, c2, c3: times(c2, c), a, ac, acc: times(ac, c) }
 }
 
-
 #[rustfmt::skip]
 pub(super) const TALBOT_8: [Node; 8] = [
     node([2.667433506650672, 0.8309512568745003], [2.135008512006796, 1.7515257291502768]),
