@@ -80,7 +80,9 @@ def measure() -> list[dict[str, object]]:
     row("anp.circle, risk 1e-7 (strip)", 200, where, lambda: anp.circle(flat[:200], 1e-7))
     row("anp.sphere, risk 1e-7 (nested strip)", 20, where, lambda: anp.sphere(spatial[:20], 1e-7), 2)
     few = 2
-    row("SciPy: Imhof integral + brentq, risk 0.05", few, "3-D, default accuracy", lambda: [imhof_radius(v, 0.05) for v in spatial[:few]], 1)
+    row(
+        "SciPy: Imhof integral + brentq, risk 0.05", few, "3-D, default accuracy", lambda: [imhof_radius(v, 0.05) for v in spatial[:few]], 1
+    )
     return rows
 
 

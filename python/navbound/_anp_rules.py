@@ -151,7 +151,7 @@ def sphere_grubbs_as_printed(covariance_enu_m2: ArrayLike, risk: ArrayLike = 0.0
 
 
 def _horizontal_sigmas(covariance_en_m2: ArrayLike) -> tuple[Floats, Floats]:
-    """Larger and smaller standard deviation of horizontal errors."""
+    """Return the larger and the smaller standard deviation of horizontal errors."""
     shape, (v,) = flatten(covariance_en_m2=(covariance_en_m2, (2, 2)))
     spatial = np.zeros((len(v), 3, 3))
     spatial[:, :2, :2] = v
@@ -163,7 +163,7 @@ def _horizontal_sigmas(covariance_en_m2: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def _sigmas(covariance_enu_m2: ArrayLike) -> Floats:
-    """Standard deviations along the principal axes, longest first, shape (..., 3)."""
+    """Return standard deviations along the principal axes, longest first, shape (..., 3)."""
     shape, (v,) = flatten(covariance_enu_m2=(covariance_enu_m2, (3, 3)))
     return _core.anp_principal_sigmas(v).reshape(*shape, 3)
 
@@ -236,7 +236,7 @@ def circle_major(covariance_en_m2: ArrayLike) -> Floats:
     InputError
         Not a covariance.
     """
-    major, minor = _horizontal_sigmas(covariance_en_m2)
+    major, _ = _horizontal_sigmas(covariance_en_m2)
     return np.asarray(_core.chi_factor(2, np.array([0.05]))[0] * major, dtype=np.float64)
 
 

@@ -40,7 +40,7 @@ fn radius(v: &Matrix3<f64>, mean: &Vector3<f64>, q: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 100, ..ProptestConfig::default() })]
 
     #[test]
     fn turning_the_axes_changes_no_sphere(s in sigmas(), a in vectors(3.0), b in vectors(3.0), d in vectors(3.0), q in risks()) {
@@ -117,7 +117,7 @@ proptest! {
     }
 }
 
-/// Slower, so fewer: the fast rule against the positive sums, in three dimensions, with and without a mean.
+/// The fast rule against the positive sums, with and without a mean; nested sums are slow, so most cases are in the plane.
 #[test]
 fn contour_and_strip_agree() {
     let mut state: u64 = 20_220_703;
@@ -125,8 +125,8 @@ fn contour_and_strip_agree() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
-    for case in 0..1000 {
-        let mut sigma = [1.0, uniform(), uniform().powi(3)];
+    for case in 0..3000 {
+        let mut sigma = [1.0, uniform(), if case % 50 == 0 { uniform().powi(3) } else { 0.0 }];
         sigma.sort_unstable_by(|a, b| b.total_cmp(a));
         let reach = [0.0, 3.0, 5.0][case % 3];
         let mean = sigma.map(|s| s * reach * (2.0 * uniform() - 1.0));
@@ -144,7 +144,7 @@ fn contour_and_strip_agree() {
 fn the_radius_is_continuous_across_every_guard() {
     let sigma = [3.0, 1.0, 0.4];
     let limits =
-        [(0.0_f64, Rule::Talbot14, Rule::Parabola20), (50.0, Rule::Parabola20, Rule::Parabola24), (100.0, Rule::Parabola24, Rule::Strip)];
+        [(0.0_f64, Rule::Talbot14, Rule::Parabola20), (20.0, Rule::Parabola20, Rule::Parabola24), (50.0, Rule::Parabola24, Rule::Strip)];
     for (squared, below, above) in limits {
         for (q, axis) in [0.9, 0.5, 0.05, 1e-3, 1e-5].into_iter().flat_map(|q| [0, 1, 2].map(|axis| (q, axis))) {
             let law = |delta: f64| {

@@ -57,15 +57,15 @@ impl RadiusLaw {
         let live = variances.iter().filter(|v| **v > 0.0 && **v >= DEAD * variances[0]).count();
         let dead = means[live..].iter().fold(0.0, |length, m| hypot(length, *m));
         let mut law = Self { variances: [0.0; 3], means: [0.0; 3], sigmas: [0.0; 3], live, dead, rule: Rule::Talbot14 };
-        let mut largest_delta_squared: f64 = 0.0;
+        let mut delta_squared = 0.0;
         for j in 0..live {
             law.variances[j] = variances[j];
             law.means[j] = means[j];
             law.sigmas[j] = sqrt(variances[j]);
             let delta = means[j] / law.sigmas[j];
-            largest_delta_squared = largest_delta_squared.max(delta * delta);
+            delta_squared += delta * delta;
         }
-        law.rule = Rule::of(largest_delta_squared);
+        law.rule = Rule::of(delta_squared);
         law
     }
 
