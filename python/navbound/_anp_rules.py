@@ -171,7 +171,7 @@ def _sigmas(covariance_enu_m2: ArrayLike) -> Floats:
 def cep(covariance_en_m2: ArrayLike) -> Floats:
     """Circular error probable (50 %) by the rule ``0.589 (sigma_1 + sigma_2)``.
 
-    From 11.8 % short to 2.2 % long of ``circle(..., 0.5)``; meant for axis ratios above 0.3.
+    From 12.7 % short to 2.2 % long of ``circle(..., 0.5)``; meant for axis ratios above 0.3.
 
     Parameters
     ----------
