@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import mpmath as mp
+import mpmath as mp  # type: ignore[import-untyped]
 
 DIGITS = 50
 
@@ -65,7 +65,7 @@ def _print() -> None:
         for c, a in nodes:
             print(f"    node([{_literal(c.real)}, {_literal(c.imag)}], [{_literal(a.real)}, {_literal(a.imag)}]),")
         print("];")
-    print(f"const GAUSS_32: [(f64, f64); 16] = [")
+    print("const GAUSS_32: [(f64, f64); 16] = [")
     for x, w in gauss_legendre(32):
         print(f"    ({_literal(x)}, {_literal(w)}),")
     print("];")

@@ -151,7 +151,7 @@ def sphere_grubbs_as_printed(covariance_enu_m2: ArrayLike, risk: ArrayLike = 0.0
 
 
 def _horizontal_sigmas(covariance_en_m2: ArrayLike) -> tuple[Floats, Floats]:
-    """Larger and smaller standard deviation of horizontal errors."""
+    """Return the larger and the smaller standard deviation of horizontal errors."""
     shape, (v,) = flatten(covariance_en_m2=(covariance_en_m2, (2, 2)))
     spatial = np.zeros((len(v), 3, 3))
     spatial[:, :2, :2] = v
@@ -163,7 +163,7 @@ def _horizontal_sigmas(covariance_en_m2: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def _sigmas(covariance_enu_m2: ArrayLike) -> Floats:
-    """Standard deviations along the principal axes, longest first, shape (..., 3)."""
+    """Return standard deviations along the principal axes, longest first, shape (..., 3)."""
     shape, (v,) = flatten(covariance_enu_m2=(covariance_enu_m2, (3, 3)))
     return _core.anp_principal_sigmas(v).reshape(*shape, 3)
 
@@ -171,7 +171,7 @@ def _sigmas(covariance_enu_m2: ArrayLike) -> Floats:
 def cep(covariance_en_m2: ArrayLike) -> Floats:
     """Circular error probable (50 %) by the rule ``0.589 (sigma_1 + sigma_2)``.
 
-    From 11.8 % short to 2.2 % long of ``circle(..., 0.5)``; meant for axis ratios above 0.3.
+    From 12.7 % short to 2.2 % long of ``circle(..., 0.5)``; meant for axis ratios above 0.3.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def circle_major(covariance_en_m2: ArrayLike) -> Floats:
     InputError
         Not a covariance.
     """
-    major, minor = _horizontal_sigmas(covariance_en_m2)
+    major, _ = _horizontal_sigmas(covariance_en_m2)
     return np.asarray(_core.chi_factor(2, np.array([0.05]))[0] * major, dtype=np.float64)
 
 

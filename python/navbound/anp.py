@@ -482,4 +482,4 @@ def _unit(direction: Floats) -> Floats:
     bad = np.flatnonzero(~((length > 0) & np.isfinite(length)))
     if bad.size:
         raise InputError("direction", float(length[bad[0]]), "1", "(0, inf) for its length", int(bad[0]))
-    return direction / length[:, np.newaxis]
+    return np.asarray(direction / length[:, np.newaxis], dtype=np.float64)

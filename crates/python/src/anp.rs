@@ -13,14 +13,17 @@ use pyo3::prelude::*;
 type Numbers<'py> = Bound<'py, PyArray1<f64>>;
 type Rows<'py> = Bound<'py, PyArray2<f64>>;
 
-/// Python's words for what the core calls covariance, mean and sizes.
-fn refused(r: Refused, horizontal: bool) -> PyErr {
-    let argument = match (r.refusal.argument, horizontal) {
-        ("covariance", true) => "covariance_en_m2",
-        ("covariance", false) => "covariance_enu_m2",
-        ("mean", true) => "mean_en_m",
-        ("mean", false) => "mean_enu_m",
-        (other, _) => other,
+/// Names of covariance and mean, as the Python function calls them.
+const HORIZONTAL: [&str; 2] = ["covariance_en_m2", "mean_en_m"];
+const SPATIAL: [&str; 2] = ["covariance_enu_m2", "mean_enu_m"];
+const TUNNEL: [&str; 2] = ["covariance_cu_m2", "mean_cu_m"];
+
+/// A refusal under the name that the caller used.
+fn refused(r: Refused, [covariance, mean]: [&'static str; 2]) -> PyErr {
+    let argument = match r.refusal.argument {
+        name if name.starts_with("covariance") => covariance,
+        name if name.starts_with("mean") => mean,
+        other => other,
     };
     input_error(OutOfDomain { argument, ..r.refusal }, Some(r.index))
 }
@@ -65,7 +68,7 @@ fn anp_circle<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, m, q) = (flat(&covariance_en_m2)?, optional(mean_en_m.as_ref())?, flat(&risk)?);
-    let radii = py.detach(|| radii_m::<2>(v, m, q)).map_err(|r| refused(r, true))?;
+    let radii = py.detach(|| radii_m::<2>(v, m, q)).map_err(|r| refused(r, HORIZONTAL))?;
     Ok(radii.into_pyarray(py))
 }
 
@@ -78,7 +81,7 @@ fn anp_sphere<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, m, q) = (flat(&covariance_enu_m2)?, optional(mean_enu_m.as_ref())?, flat(&risk)?);
-    let radii = py.detach(|| radii_m::<3>(v, m, q)).map_err(|r| refused(r, false))?;
+    let radii = py.detach(|| radii_m::<3>(v, m, q)).map_err(|r| refused(r, SPATIAL))?;
     Ok(radii.into_pyarray(py))
 }
 
@@ -91,7 +94,7 @@ fn anp_circle_law<'py>(
     radius_m: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Rows<'py>> {
     let (v, m, r) = (flat(&covariance_en_m2)?, optional(mean_en_m.as_ref())?, flat(&radius_m)?);
-    Ok(rows(py, py.detach(|| laws::<2>(v, m, r)).map_err(|r| refused(r, true))?))
+    Ok(rows(py, py.detach(|| laws::<2>(v, m, r)).map_err(|r| refused(r, HORIZONTAL))?))
 }
 
 /// Columns inside, outside, density of the error's length.
@@ -103,7 +106,7 @@ fn anp_sphere_law<'py>(
     radius_m: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Rows<'py>> {
     let (v, m, r) = (flat(&covariance_enu_m2)?, optional(mean_enu_m.as_ref())?, flat(&radius_m)?);
-    Ok(rows(py, py.detach(|| laws::<3>(v, m, r)).map_err(|r| refused(r, false))?))
+    Ok(rows(py, py.detach(|| laws::<3>(v, m, r)).map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Columns bias, sigma, half width along directions.
@@ -123,7 +126,7 @@ fn anp_directional<'py>(
             Ok([d.bias.m(), d.sigma.m(), d.half_width.m()])
         })
     });
-    Ok(rows(py, found.map_err(|r| refused(r, false))?))
+    Ok(rows(py, found.map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Columns support, intercept (NaN where singular) along directions.
@@ -141,7 +144,7 @@ fn anp_extents<'py>(
             Ok([anp::support(&v, &u, q)?.m(), anp::intercept(&v, &u, q)?.map_or(f64::NAN, Metres::m)])
         })
     });
-    Ok(rows(py, found.map_err(|r| refused(r, false))?))
+    Ok(rows(py, found.map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Columns factor, 3 semi-axes, 9 axes row by row, 3 supports, 3 intercepts (NaN where singular), volume.
@@ -165,7 +168,7 @@ fn anp_ellipsoid<'py>(
             Ok(row)
         })
     });
-    Ok(rows(py, found.map_err(|r| refused(r, false))?))
+    Ok(rows(py, found.map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Standard deviations along the principal axes, largest first.
@@ -173,14 +176,14 @@ fn anp_ellipsoid<'py>(
 fn anp_principal_sigmas<'py>(py: Python<'py>, covariance_enu_m2: PyReadonlyArray3<'py, f64>) -> PyResult<Rows<'py>> {
     let v = flat(&covariance_enu_m2)?;
     let found = py.detach(|| each(v.len() / 9, |i| anp::principal_sigmas(&covariance(v, i)?).map(|s| s.map(Metres::m))));
-    Ok(rows(py, found.map_err(|r| refused(r, false))?))
+    Ok(rows(py, found.map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Factors of the length of a standard normal vector.
 #[pyfunction]
 fn chi_factor<'py>(py: Python<'py>, dimension: usize, risk: PyReadonlyArray1<'py, f64>) -> PyResult<Numbers<'py>> {
     let q = flat(&risk)?;
-    let found = each(q.len(), |i| chi::chi_factor(dimension, q[i])).map_err(|r| refused(r, false))?;
+    let found = each(q.len(), |i| chi::chi_factor(dimension, q[i])).map_err(|r| refused(r, SPATIAL))?;
     Ok(found.into_pyarray(py))
 }
 
@@ -195,7 +198,7 @@ fn horizontal_fit<'py>(
 ) -> PyResult<Numbers<'py>> {
     let (v, q) = (flat(covariance_en_m2)?, flat(risk)?);
     let found = py.detach(|| each(q.len(), |i| fit(&horizontal(v, i)?, Risk::new(q[i])?).map(Metres::m)));
-    Ok(found.map_err(|r| refused(r, true))?.into_pyarray(py))
+    Ok(found.map_err(|r| refused(r, HORIZONTAL))?.into_pyarray(py))
 }
 
 /// The published cubic, corrected.
@@ -239,7 +242,7 @@ fn anp_sphere_grubbs<'py>(
     let (v, m, q) = (flat(&covariance_enu_m2)?, optional(mean_enu_m.as_ref())?, flat(&risk)?);
     let found = py
         .detach(|| each(q.len(), |i| anp::sphere_grubbs(&covariance(v, i)?, displacement(m, i).as_ref(), Risk::new(q[i])?).map(Metres::m)));
-    Ok(found.map_err(|r| refused(r, false))?.into_pyarray(py))
+    Ok(found.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
 }
 
 /// Grubbs' sphere as printed.
@@ -251,7 +254,7 @@ fn anp_sphere_grubbs_as_printed<'py>(
 ) -> PyResult<Numbers<'py>> {
     let (v, q) = (flat(&covariance_enu_m2)?, flat(&risk)?);
     let found = py.detach(|| each(q.len(), |i| anp::sphere_grubbs_as_printed(&covariance(v, i)?, Risk::new(q[i])?).map(Metres::m)));
-    Ok(found.map_err(|r| refused(r, false))?.into_pyarray(py))
+    Ok(found.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
 }
 
 fn pair(flat: &[f64], i: usize) -> [f64; 2] {
@@ -274,7 +277,7 @@ fn anp_rectangle<'py>(
 ) -> PyResult<Rows<'py>> {
     let (v, m, a, b) = (flat(&covariance_cu_m2)?, flat(&mean_cu_m)?, flat(&half_cross_m)?, flat(&half_up_m)?);
     let found = py.detach(|| each(a.len(), |i| anp::rectangle(triple(v, i)?, pair(m, i), [a[i], b[i]]).map(|s| [s.inside, s.outside])));
-    Ok(rows(py, found.map_err(|r| refused(r, true))?))
+    Ok(rows(py, found.map_err(|r| refused(r, TUNNEL))?))
 }
 
 /// Stretch of rectangles that meets a risk.
@@ -289,7 +292,7 @@ fn anp_rectangle_scale<'py>(
 ) -> PyResult<Numbers<'py>> {
     let (v, m, a, b, q) = (flat(&covariance_cu_m2)?, flat(&mean_cu_m)?, flat(&half_cross_m)?, flat(&half_up_m)?, flat(&risk)?);
     let found = py.detach(|| each(q.len(), |i| anp::rectangle_scale(triple(v, i)?, pair(m, i), [a[i], b[i]], Risk::new(q[i])?)));
-    Ok(found.map_err(|r| refused(r, true))?.into_pyarray(py))
+    Ok(found.map_err(|r| refused(r, TUNNEL))?.into_pyarray(py))
 }
 
 /// Columns inside, outside of cylinders.
@@ -304,7 +307,7 @@ fn anp_cylinder<'py>(
     let (v, m, a, b) = (flat(&covariance_enu_m2)?, flat(&mean_enu_m)?, flat(&radius_m)?, flat(&half_height_m)?);
     let found =
         py.detach(|| each(a.len(), |i| anp::cylinder(triangle::<3>(v, i)?, vector(m, i), a[i], b[i]).map(|s| [s.inside, s.outside])));
-    Ok(rows(py, found.map_err(|r| refused(r, false))?))
+    Ok(rows(py, found.map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Stretch of cylinders that meets a risk.
@@ -319,7 +322,7 @@ fn anp_cylinder_scale<'py>(
 ) -> PyResult<Numbers<'py>> {
     let (v, m, a, b, q) = (flat(&covariance_enu_m2)?, flat(&mean_enu_m)?, flat(&radius_m)?, flat(&half_height_m)?, flat(&risk)?);
     let found = py.detach(|| each(q.len(), |i| anp::cylinder_scale(triangle::<3>(v, i)?, vector(m, i), a[i], b[i], Risk::new(q[i])?)));
-    Ok(found.map_err(|r| refused(r, false))?.into_pyarray(py))
+    Ok(found.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
 }
 
 /// Factors of simultaneous boxes.
@@ -331,7 +334,7 @@ fn anp_box_factor<'py>(
 ) -> PyResult<Numbers<'py>> {
     let (v, q) = (flat(&covariance_enu_m2)?, flat(&risk)?);
     let found = py.detach(|| each(q.len(), |i| anp::box_factor(triangle::<3>(v, i)?, Risk::new(q[i])?)));
-    Ok(found.map_err(|r| refused(r, false))?.into_pyarray(py))
+    Ok(found.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

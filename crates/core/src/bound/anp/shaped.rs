@@ -41,7 +41,7 @@ const NAMES: [&str; 2] = ["covariance", "mean"];
 /// # Errors
 /// [`OutOfDomain`]: a covariance that is none, a mean that is not finite, a half size that is not positive.
 pub fn rectangle(covariance: [f64; 3], mean: [f64; 2], half_sizes: [f64; 2]) -> Result<Sides, OutOfDomain> {
-    check_sizes(&half_sizes, &mean)?;
+    check([("half_cross_m", half_sizes[0]), ("half_up_m", half_sizes[1])], &mean)?;
     let [cc, cv, vv] = covariance;
     let accepted = accept([cc, cv, vv, 0.0, 0.0, 0.0], NAMES[0])?;
     Ok(rectangle_sides([accepted[0], accepted[1], accepted[2]], mean, half_sizes))
@@ -90,7 +90,7 @@ fn both(first: Sides, second: Sides) -> Sides {
 /// # Errors
 /// As [`rectangle`].
 pub fn cylinder(upper: [f64; 6], mean: [f64; 3], radius: f64, half_height: f64) -> Result<Sides, OutOfDomain> {
-    check_sizes(&[radius, half_height], &mean)?;
+    check([("radius_m", radius), ("half_height_m", half_height)], &mean)?;
     let [ee, en, nn, eu, nu, uu] = accept(upper, NAMES[0]).map(|_| upper)?;
     if !(uu > 0.0) {
         let disc = disc_given([ee, en, nn])?.at([mean[0], mean[1]], radius);
@@ -260,9 +260,11 @@ fn scale(risk: Risk, (mut lo, mut hi): (f64, f64), outside: impl Fn(f64) -> f64)
     0.5 * (lo + hi)
 }
 
-fn check_sizes(sizes: &[f64], mean: &[f64]) -> Result<(), OutOfDomain> {
-    if let Some(bad) = sizes.iter().find(|s| !(**s > 0.0 && **s < 1e140)) {
-        return Err(OutOfDomain { argument: "half_size", value: *bad, unit: "m", domain: "(0, 1e140)" });
+fn check(sizes: [(&'static str, f64); 2], mean: &[f64]) -> Result<(), OutOfDomain> {
+    for (argument, value) in sizes {
+        if !(value > 0.0 && value < 1e140) {
+            return Err(OutOfDomain { argument, value, unit: "m", domain: "(0, 1e140)" });
+        }
     }
     if let Some(bad) = mean.iter().find(|m| !(m.abs() < 1e140)) {
         return Err(OutOfDomain { argument: NAMES[1], value: *bad, unit: "m", domain: "(-1e140, 1e140)" });

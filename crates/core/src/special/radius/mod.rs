@@ -57,15 +57,15 @@ impl RadiusLaw {
         let live = variances.iter().filter(|v| **v > 0.0 && **v >= DEAD * variances[0]).count();
         let dead = means[live..].iter().fold(0.0, |length, m| hypot(length, *m));
         let mut law = Self { variances: [0.0; 3], means: [0.0; 3], sigmas: [0.0; 3], live, dead, rule: Rule::Talbot14 };
-        let mut largest_delta_squared: f64 = 0.0;
+        let mut delta_squared = 0.0;
         for j in 0..live {
             law.variances[j] = variances[j];
             law.means[j] = means[j];
             law.sigmas[j] = sqrt(variances[j]);
             let delta = means[j] / law.sigmas[j];
-            largest_delta_squared = largest_delta_squared.max(delta * delta);
+            delta_squared += delta * delta;
         }
-        law.rule = Rule::of(largest_delta_squared);
+        law.rule = Rule::of(delta_squared);
         law
     }
 
@@ -74,8 +74,28 @@ impl RadiusLaw {
         self.rule
     }
 
-    /// Probability of a shorter and of a longer error, and density, at a radius that is not negative.
+    /// Probability of a shorter and of a longer error, and density, at a radius that is not negative, by the guarded rule.
     pub fn at(&self, radius: f64) -> AtRadius {
+        self.beyond_dead(radius, |reach| {
+            if self.live > 1
+                && let Some(nodes) = self.rule.nodes()
+            {
+                let Point { at, .. } = self.by_contour(nodes, reach);
+                if at.inside >= STRIP_BELOW && at.outside >= STRIP_BELOW {
+                    return at;
+                }
+            }
+            self.by_strip(reach)
+        })
+    }
+
+    /// The same by the slow positive sums alone, which judge the contour.
+    pub fn at_by_strip(&self, radius: f64) -> AtRadius {
+        self.beyond_dead(radius, |reach| self.by_strip(reach))
+    }
+
+    /// The law at a radius from the law of the live axes alone.
+    fn beyond_dead(&self, radius: f64, live: impl Fn(f64) -> AtRadius) -> AtRadius {
         if self.live == 0 {
             let inside = if radius >= self.dead { 1.0 } else { 0.0 };
             return AtRadius { inside, outside: 1.0 - inside, density: 0.0 };
@@ -85,21 +105,8 @@ impl RadiusLaw {
             return AtRadius { inside: 0.0, outside: 1.0, density: 0.0 };
         }
         let reach = sqrt(square);
-        let at = self.at_reach(reach);
+        let at = live(reach);
         AtRadius { density: at.density * (radius / reach), ..at }
-    }
-
-    /// The same at a length within the live axes, by the guarded rule.
-    fn at_reach(&self, reach: f64) -> AtRadius {
-        if self.live > 1
-            && let Some(nodes) = self.rule.nodes()
-        {
-            let Point { at, .. } = self.by_contour(nodes, reach);
-            if at.inside >= STRIP_BELOW && at.outside >= STRIP_BELOW {
-                return at;
-            }
-        }
-        self.by_strip(reach)
     }
 
     /// The radius that the error exceeds with risk q, `0 < q < 1`.
