@@ -34,7 +34,7 @@ fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
 /// Bound, reason code and list of (invalid, words).
 type Column<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, Vec<(bool, String)>);
 
-/// One method over columns of the epoch table, all of length `len`; an absent column is left out of the dictionary.
+/// One method over columns of the epoch table, all of length `n_epochs`; an absent column is left out of the dictionary.
 #[pyfunction]
 fn bounds_of<'py>(py: Python<'py>, method: &str, risk: f64, len: usize, columns: &Bound<'py, PyDict>) -> PyResult<Column<'py>> {
     let method = bound::method(method).ok_or_else(|| PyKeyError::new_err(method.to_owned()))?;
@@ -42,8 +42,8 @@ fn bounds_of<'py>(py: Python<'py>, method: &str, risk: f64, len: usize, columns:
     let get = |name: &str| -> PyResult<Option<PyReadonlyArray1<'py, f64>>> {
         let Some(value) = columns.get_item(name)? else { return Ok(None) };
         let array: PyReadonlyArray1<'py, f64> = value.extract()?;
-        if array.as_array().len() != len {
-            return Err(PyValueError::new_err(format!("{name} has {} rows, the table {len}", array.as_array().len())));
+        if array.as_array().len() != n_epochs {
+            return Err(PyValueError::new_err(format!("{name} has {} rows, the table {n_epochs}", array.as_array().len())));
         }
         Ok(Some(array))
     };
@@ -61,7 +61,7 @@ fn bounds_of<'py>(py: Python<'py>, method: &str, risk: f64, len: usize, columns:
         *slot = slice(column)?;
     }
     let table = Columns {
-        len,
+        len: n_epochs,
         course_rad: slice(&course)?,
         path_angle_rad: slice(&path_angle)?,
         fte_m: slice(&fte)?,

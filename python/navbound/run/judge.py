@@ -86,7 +86,8 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
     epochs, events, counters = _with_alerts(epochs, judging, material.sample_period_s)
     epochs, states = _with_states(epochs, settings.risk_accuracy)
     shown = [i for i in ids if i == judging or _has_values(epochs, method(i).column)]
-    summary = summarise(material, epochs, events, shown, judging, states, settings.risk_accuracy, settings.risk_integrity)
+    risks = (settings.risk_accuracy, settings.risk_integrity)
+    summary = summarise(material, epochs, events, ids=shown, judging=judging, states=states, risks=risks)
     record = RunRecord(
         navbound_version=__version__,
         command=command,

@@ -36,11 +36,11 @@ def summarise(
     material: Material,
     epochs: pl.DataFrame,
     events: pl.DataFrame,
+    *,
     ids: list[str],
     judging: str,
     states: list[str],
-    risk_accuracy: float,
-    risk_integrity: float,
+    risks: tuple[float, float],
 ) -> Summary:
     """Every record of summary.json.
 
@@ -56,9 +56,10 @@ def summarise(
         The method whose bound is compared with RNP.
     states : list of str
         Names behind ``p_state_1``, ...
-    risk_accuracy, risk_integrity : float
-        The two risks. [1]
+    risks : (float, float)
+        Of accuracy and of integrity. [1]
     """
+    risk_accuracy, risk_integrity = risks
     judged = method(judging)
     margins = epochs.with_columns(
         (pl.col(judged.column) / pl.col("rnp_m")).alias("_ratio"),
@@ -67,7 +68,7 @@ def summarise(
     )
     coverage_kind = evaluation.CONDITIONAL if material.kind == "fly" else evaluation.REPEATED
     accuracy = [_method_result(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
-    verdict = _verdict(material, margins, judging, accuracy, risk_accuracy, risk_integrity)
+    verdict = _verdict(material, margins, accuracy[0], risks)
     return Summary(
         kind=material.kind,
         title=material.title,
@@ -87,21 +88,15 @@ def summarise(
     )
 
 
-def _verdict(
-    material: Material,
-    margins: pl.DataFrame,
-    judging: str,
-    accuracy: list[MethodResult],
-    risk_accuracy: float,
-    risk_integrity: float,
-) -> Verdict:
+def _verdict(material: Material, margins: pl.DataFrame, judge: MethodResult, risks: tuple[float, float]) -> Verdict:
+    judging = judge.id
     judged = margins.filter(pl.col("_margin").is_not_null())
     share = _mean(judged.get_column("_margin") >= 0)
     contained = _mean(margins.get_column("_margin_integrity").drop_nulls() >= 0)
     inside = None if share is None or contained is None else share == 1.0 and contained == 1.0
     worst = _worst(margins, "_margin", method(judging).column, 1.0)
     worst_integrity = _worst(margins, "_margin_integrity", method(judging).integrity_column, 2.0)
-    truth_known = accuracy[0].coverage is not None
+    truth_known = judge.coverage is not None
     verdict = Verdict(
         inside=inside,
         words="",
@@ -115,7 +110,7 @@ def _verdict(
         worst_integrity=worst_integrity,
         truth_known=truth_known,
     )
-    return verdict.model_copy(update={"words": verdict_words(verdict, accuracy[0], risk_accuracy, risk_integrity)})
+    return verdict.model_copy(update={"words": verdict_words(verdict, judge, risks)})
 
 
 def _mean(flags: pl.Series) -> float | None:

@@ -36,9 +36,9 @@ def level(risk: float) -> str:
     return f"{100 * (1 - risk):.10g} %"
 
 
-def verdict_words(verdict: Verdict, judged: MethodResult, risk_accuracy: float, risk_integrity: float) -> str:
+def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, float]) -> str:
     """What a navigator wants to know first, in sentences."""
-    parts = [_inside(verdict, risk_accuracy, risk_integrity)]
+    parts = [_inside(verdict, risks)]
     if verdict.worst_accuracy is not None:
         parts.append(_worst(verdict.worst_accuracy))
     if verdict.n_judged < verdict.n_epochs:
@@ -47,20 +47,21 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risk_accuracy: float, 
         )
     parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
     if verdict.truth_known and judged.coverage is not None:
-        parts.append(f"Truth is known: the {level(risk_accuracy)} bound held the error at {share(judged.coverage)} of {judged.n} epochs.")
+        parts.append(f"Truth is known: the {level(risks[0])} bound held the error at {share(judged.coverage)} of {judged.n} epochs.")
     elif not verdict.truth_known:
         parts.append("No truth: the honesty of the covariance could not be checked.")
     return " ".join(parts)
 
 
-def _inside(verdict: Verdict, risk_accuracy: float, risk_integrity: float) -> str:
+def _inside(verdict: Verdict, risks: tuple[float, float]) -> str:
+    accuracy, integrity = (level(risk) for risk in risks)
     if verdict.share_inside is None or verdict.share_contained is None:
         return f"Not judged against {verdict.requirement}: no epoch has a bound."
     words = "Inside" if verdict.inside else "Not always inside"
     where = "" if verdict.n_judged == verdict.n_epochs else " where it could be judged"
     return (
-        f"{words} {verdict.requirement}{where}: the {level(risk_accuracy)} bound is within RNP at {share(verdict.share_inside)} of {verdict.n_judged} judged epochs, "
-        f"the {level(risk_integrity)} bound within twice RNP at {share(verdict.share_contained)}."
+        f"{words} {verdict.requirement}{where}: the {accuracy} bound is within RNP "
+        f"at {share(verdict.share_inside)} of {verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}."
     )
 
 
@@ -74,11 +75,14 @@ def _worst(worst: Worst) -> str:
 
 
 def honesty_words(nees: Nees) -> str:
-    """Whether the covariance may be believed, with the factor by which it is off."""
-    limits = f"NEES {nees.nees_mean:.3g}, {nees.dimension} for an honest covariance, limits {nees.nees_low:.3g} to {nees.nees_high:.3g} for {nees.n_effective:.0f} effective epochs"
+    """Whether the covariance may be believed, with the factor by which it is off, and on how much evidence."""
+    found = (
+        f"NEES {nees.nees_mean:.3g}, {nees.dimension} for an honest covariance, "
+        f"limits {nees.nees_low:.3g} to {nees.nees_high:.3g} for {nees.n_effective:.0f} effective epochs"
+    )
     factor = (nees.nees_mean / nees.dimension) ** 0.5
     if nees.nees_mean > nees.nees_high:
-        return f"{limits}: the covariance claims too little; the errors are {factor:.2g} times larger than it says."
+        return f"{found}: the covariance claims too little; the errors are {factor:.2g} times larger than it says."
     if nees.nees_mean < nees.nees_low:
-        return f"{limits}: the covariance claims too much; the errors are {factor:.2g} times what it says."
-    return f"{limits}: the covariance may be believed."
+        return f"{found}: the covariance claims too much; the errors are {factor:.2g} times what it says."
+    return f"{found}: these data give no reason to doubt the covariance."
