@@ -36,7 +36,7 @@ type Column<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, Vec<(b
 
 /// One method over columns of the epoch table, all of length `n_epochs`; an absent column is left out of the dictionary.
 #[pyfunction]
-fn bounds_of<'py>(py: Python<'py>, method: &str, risk: f64, len: usize, columns: &Bound<'py, PyDict>) -> PyResult<Column<'py>> {
+fn bounds_of<'py>(py: Python<'py>, method: &str, risk: f64, n_epochs: usize, columns: &Bound<'py, PyDict>) -> PyResult<Column<'py>> {
     let method = bound::method(method).ok_or_else(|| PyKeyError::new_err(method.to_owned()))?;
     let risk = Risk::new(risk).map_err(|e| input_error(e, None))?;
     let get = |name: &str| -> PyResult<Option<PyReadonlyArray1<'py, f64>>> {

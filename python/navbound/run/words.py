@@ -61,7 +61,8 @@ def _inside(verdict: Verdict, risks: tuple[float, float]) -> str:
     where = "" if verdict.n_judged == verdict.n_epochs else " where it could be judged"
     return (
         f"{words} {verdict.requirement}{where}: the {accuracy} bound is within RNP "
-        f"at {share(verdict.share_inside)} of {verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}."
+        f"at {share(verdict.share_inside)} of {verdict.n_judged} judged epochs, "
+        f"the {integrity} bound within twice RNP at {share(verdict.share_contained)}."
     )
 
 
