@@ -29,7 +29,8 @@ def test_scores_are_their_definitions() -> None:
     score = evaluation.bound(error, bound, risk)
     assert (score.n, score.n_without_bound, score.n_outside) == (3, 1, 1)
     assert score.coverage == pytest.approx(2 / 3, rel=1e-15)
-    assert (score.mean_m, score.median_m, score.max_m) == (pytest.approx(4 / 3), 1.0, 2.0)
+    assert score.mean_m == pytest.approx(4 / 3, rel=1e-15)
+    assert (score.median_m, score.max_m) == (1.0, 2.0)
     assert score.winkler_m == pytest.approx((2 + (4 + 2 / risk * 1.0) + 2) / 3, rel=1e-15)
     assert score.pinball_m == pytest.approx((risk * 0.5 + (1 - risk) * 1.0) / 3, rel=1e-14)
 
@@ -126,8 +127,9 @@ def test_the_transform_is_flat_for_an_honest_covariance_only() -> None:
     assert sum(flat.counts) == n
     # Of ten bins each outside with 5 %, four or more are outside once in a thousand.
     assert sum(not flat.low <= c <= flat.high for c in flat.counts) <= 3
-    expected = stats.binom.ppf([0.025, 0.975], n, 0.1)
-    assert (flat.low, flat.high) == (pytest.approx(expected[0], rel=0.005), pytest.approx(expected[1], rel=0.005))
+    expected = [float(stats.binom.ppf(p, n, 0.1)) for p in (0.025, 0.975)]
+    assert flat.low == pytest.approx(expected[0], rel=0.005)
+    assert flat.high == pytest.approx(expected[1], rel=0.005)
     leaning = evaluation.pit(error, 0.5 * covariance, n_bins=10)
     assert leaning.counts[-1] > leaning.high
     assert leaning.counts[0] < leaning.low
@@ -149,10 +151,9 @@ def test_the_bootstrap_resamples_tracks() -> None:
     track = np.repeat(np.arange(50), 1000)
     error = np.where(track < 45, 0.0, 2.0)
     low, high = evaluation.bootstrap_coverage(error, np.ones(50000), track, n_replicates=20000, seed=7)
-    assert (low, high) == (
-        pytest.approx(stats.binom.ppf(0.025, 50, 0.9) / 50, abs=0.021),
-        pytest.approx(stats.binom.ppf(0.975, 50, 0.9) / 50, abs=0.021),
-    )
+    # One track is 0.02; percentiles of a discrete law may fall one beside.
+    assert low == pytest.approx(float(stats.binom.ppf(0.025, 50, 0.9)) / 50, abs=0.021)
+    assert high == pytest.approx(float(stats.binom.ppf(0.975, 50, 0.9)) / 50, abs=0.021)
     assert (low, high) == evaluation.bootstrap_coverage(error, np.ones(50000), track, n_replicates=20000, seed=7)
     with pytest.raises(InputError, match="track"):
         evaluation.bootstrap_coverage(error, np.ones(50000), np.zeros(50000))
