@@ -1,4 +1,5 @@
 //! Who may use whom: inside core in the order of the flow, between the crates, and in the Python package.
+#![allow(clippy::unwrap_used, clippy::panic)] // A test may stop at the first surprise, in its helpers too.
 
 use std::fs;
 use std::path::{Path, PathBuf};

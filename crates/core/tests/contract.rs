@@ -1,4 +1,5 @@
 //! Every method of the list keeps its promises, whatever its family.
+#![allow(clippy::unwrap_used, clippy::panic)] // A test may stop at the first surprise, in its helpers too.
 
 use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::{Bounded, Method, methods};

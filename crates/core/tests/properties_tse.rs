@@ -1,4 +1,5 @@
 //! What the total system error must satisfy whatever the numbers.
+#![allow(clippy::unwrap_used, clippy::panic)] // A test may stop at the first surprise, in its helpers too.
 
 use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::tse::{self, Component, Deviation, Horizontal, PathDeviations, RandomFte, RotatedFrame};
