@@ -148,7 +148,6 @@ const SPHERE_GRUBBS: Method = Method {
         let (covariance, mean) = error_of(epoch, "anp-sphere-grubbs")?;
         Ok(sphere_grubbs(covariance, mean, risk)?)
     },
-    ..CIRCLE
 };
 
 const CIRCLE_FIT_AS_PRINTED: Method = Method {

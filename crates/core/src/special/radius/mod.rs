@@ -7,6 +7,7 @@
 mod contour;
 mod guard;
 mod lanes;
+#[expect(clippy::approx_constant, reason = "a node of a table that happens to be pi/4")]
 mod nodes;
 mod principal;
 mod search;
@@ -127,7 +128,7 @@ impl RadiusLaw {
         let Some(nodes) = contour else {
             return search::radius(q, start, longest, |h| self.strip_point(h));
         };
-        if q >= lanes::SMALLEST && q <= 1.0 - lanes::SMALLEST {
+        if (lanes::SMALLEST..=1.0 - lanes::SMALLEST).contains(&q) {
             return search::radius(q, start, longest, |h| self.by_contour(nodes, h));
         }
         // The contour still knows a tail of 1e-9 to a few digits: a start that saves the strip most of its steps.
