@@ -42,7 +42,7 @@ def by_quadrature(offset: tuple[float, float], sigma: tuple[float, float], slope
             strip = special.ndtr((middle + half - offset[1]) / sigma[1]) - special.ndtr((middle - half - offset[1]) / sigma[1])
             return float(strip) * math.exp(-0.5 * ((x - offset[0]) / sigma[0]) ** 2) / (sigma[0] * math.sqrt(2 * math.pi))
 
-        return 1 - integrate.quad(inside, offset[0] - 8 * sigma[0], offset[0] + 8 * sigma[0], epsabs=1e-10)[0] - RISK
+        return 1 - float(integrate.quad(inside, offset[0] - 8 * sigma[0], offset[0] + 8 * sigma[0], epsabs=1e-10)[0]) - RISK
 
     return float(optimize.brentq(beyond, 0.1, 200.0, xtol=1e-9))
 

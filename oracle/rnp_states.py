@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Any
 
-from mpmath import exp, log, mp, mpf, ncdf, npdf, pi, quad, sqrt  # type: ignore[import-untyped]
+from mpmath import exp, log, mp, mpf, ncdf, npdf, pi, quad, sqrt
 
 mp.dps = 40
 

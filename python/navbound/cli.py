@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json as encoder
 import os
 import shlex
 import sys
@@ -33,7 +34,10 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-out_console = Console()
+PAPER_WIDTH = 140
+"""Columns of a table that goes to a file or a pipe, where the width of a terminal means nothing."""
+
+out_console = Console(width=None if sys.stdout.isatty() else PAPER_WIDTH)
 err_console = Console(stderr=True)
 
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")]
@@ -121,8 +125,6 @@ def methods(json: Json = False) -> None:
     """List every method with its source, provenance and promises."""
     found = list(all_methods().values())
     if json:
-        import json as encoder  # noqa: PLC0415
-
         sys.stdout.write(encoder.dumps([m.__dict__ for m in found], indent=1) + "\n")
         return
     table = Table(title="Methods", show_lines=True)
@@ -139,8 +141,6 @@ def verify(json: Json = False) -> None:
     outcomes = [vectors.run(file) for file in vectors.files()]
     failures = [f"{o.file.id}: {text}" for o in outcomes for text in o.failures]
     if json:
-        import json as encoder  # noqa: PLC0415
-
         rows = [
             {
                 "id": o.file.id,
@@ -156,34 +156,28 @@ def verify(json: Json = False) -> None:
         ]
         sys.stdout.write(encoder.dumps(rows, indent=1) + "\n")
     else:
-        table = Table(title=f"navbound {navbound.__version__}: reference vectors on this machine")
-        for heading, justify in (
-            ("vectors", "left"),
-            ("function", "left"),
-            ("checked against", "left"),
-            ("cases", "right"),
-            ("worst relative", "right"),
-            ("of tolerance", "right"),
-            ("", "left"),
-        ):
-            table.add_column(heading, justify=justify, overflow="fold")  # type: ignore[arg-type]
-        for o in outcomes:
-            verdict = "ok" if not o.failures else f"{len(o.failures)} FAILED"
-            table.add_row(
-                o.file.id,
-                o.file.call,
-                f"{o.file.source} ({o.file.provenance})",
-                str(o.checked),
-                f"{o.worst_relative:.1e}",
-                f"{100 * o.worst_share:.2g} %",
-                verdict,
-            )
-        out_console.print(table)
+        out_console.print(_verified(outcomes))
         out_console.print(f"{sum(o.checked for o in outcomes)} cases of {len(outcomes)} files, {len(failures)} failures.")
         for text in failures[:20]:
             err_console.print(text, markup=False)
     if failures or not outcomes:
         raise typer.Exit(OUR_BUG)
+
+
+def _verified(outcomes: list[vectors.Outcome]) -> Table:
+    table = Table(title=f"navbound {navbound.__version__}: reference vectors on this machine")
+    table.add_column("vectors", no_wrap=True)
+    table.add_column("function", no_wrap=True)
+    table.add_column("checked against", overflow="fold", ratio=1)
+    for heading in ("cases", "worst relative", "of tolerance"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    for o in outcomes:
+        verdict = "ok" if not o.failures else f"{len(o.failures)} FAILED"
+        against = f"{o.file.source} ({o.file.provenance})"
+        share = f"{100 * o.worst_share:.2g} %"
+        table.add_row(o.file.id, o.file.call, against, str(o.checked), f"{o.worst_relative:.1e}", share, verdict)
+    return table
 
 
 @app.command()
