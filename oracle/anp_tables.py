@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import mpmath as mp  # type: ignore[import-untyped]
+import mpmath as mp
 
 DIGITS = 50
 

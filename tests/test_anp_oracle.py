@@ -6,6 +6,7 @@ import re
 import sys
 from pathlib import Path
 
+import mpmath as mp
 import numpy as np
 import pytest
 
@@ -81,7 +82,7 @@ def test_the_tables_hold_fifty_digit_nodes() -> None:
         block = block[block.index("= [") + 3 : block.index("\n];")]
         return [float(x) for x in re.findall(r"-?\d+\.\d+(?:e-?\d+)?", block)]
 
-    with anp_tables.mp.workdps(anp_tables.DIGITS):
+    with mp.workdps(anp_tables.DIGITS):
         for name, nodes in anp_tables.contours().items():
             exact = [float(x) for c, a in nodes for x in (c.real, c.imag, a.real, a.imag)]
             assert numbers("radius/nodes.rs", name) == exact
