@@ -75,5 +75,7 @@ def folded_half_width(bias: float, sigma: float, risk: float) -> float:
 
 def box_inside(covariance: Floats, half: Floats) -> float:
     """Probability of a box around zero, by SciPy's multivariate normal."""
-    law = stats.multivariate_normal(mean=np.zeros(len(half)), cov=covariance, seed=1)
-    return float(law.cdf(half, lower_limit=-half))
+    inside = stats.multivariate_normal.cdf(
+        half, mean=np.zeros(len(half)), cov=covariance, lower_limit=-half, maxpts=2_000_000, abseps=1e-9, releps=1e-9
+    )
+    return float(inside)
