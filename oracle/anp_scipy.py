@@ -35,7 +35,7 @@ def ball(covariance: Floats, mean: Floats, radius: float) -> float:
         h = math.sqrt(max(radius**2 - y * y, 0.0))
         return [-h, h]
 
-    return float(integrate.nquad(interval, [limits, [-radius, radius]], opts={"epsabs": 1e-8, "epsrel": 1e-8})[0])  # type: ignore[list-item]
+    return float(integrate.nquad(interval, [limits, [-radius, radius]], opts={"epsabs": 1e-8, "epsrel": 1e-8})[0])
 
 
 def imhof_outside(variances: Floats, noncentral: Floats, x: float) -> float:
