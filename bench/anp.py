@@ -43,7 +43,7 @@ def imhof_radius(covariance: NDArray[np.float64], risk: float) -> float:
         return 0.5 + float(integrate.quad(integrand, 0.0, np.inf, limit=500)[0]) / math.pi
 
     top = variances.max()
-    return math.sqrt(optimize.brentq(lambda x: outside(x) - risk, 1e-3 * top, 40.0 * top, xtol=1e-9 * top))
+    return math.sqrt(float(optimize.brentq(lambda x: outside(x) - risk, 1e-3 * top, 40.0 * top, xtol=1e-9 * top)))
 
 
 def seconds(call: Callable[[], object], repeats: int = 5) -> float:

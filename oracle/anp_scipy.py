@@ -28,15 +28,14 @@ def ball(covariance: Floats, mean: Floats, radius: float) -> float:
         density = math.prod(float(n.pdf(v)) for n, v in zip(normals, y, strict=False))
         return density * float(widest.cdf(h) - widest.cdf(-h))
 
-    options = {"epsabs": 1e-12, "epsrel": 1e-10, "limit": 200}
     if d == 2:
-        return float(integrate.quad(interval, -radius, radius, **options)[0])
+        return float(integrate.quad(interval, -radius, radius, epsabs=1e-12, epsrel=1e-10, limit=200)[0])
 
-    def limits(y: float) -> tuple[float, float]:
+    def limits(y: float, /) -> list[float]:
         h = math.sqrt(max(radius**2 - y * y, 0.0))
-        return -h, h
+        return [-h, h]
 
-    return float(integrate.nquad(interval, [limits, (-radius, radius)], opts={"epsabs": 1e-8, "epsrel": 1e-8})[0])
+    return float(integrate.nquad(interval, [limits, [-radius, radius]], opts={"epsabs": 1e-8, "epsrel": 1e-8})[0])
 
 
 def imhof_outside(variances: Floats, noncentral: Floats, x: float) -> float:
@@ -76,5 +75,7 @@ def folded_half_width(bias: float, sigma: float, risk: float) -> float:
 
 def box_inside(covariance: Floats, half: Floats) -> float:
     """Probability of a box around zero, by SciPy's multivariate normal."""
-    law = stats.multivariate_normal(mean=np.zeros(len(half)), cov=covariance, maxpts=2_000_000, abseps=1e-10, releps=1e-10, seed=1)
-    return float(law.cdf(half, lower_limit=-half))
+    inside = stats.multivariate_normal.cdf(
+        half, mean=np.zeros(len(half)), cov=covariance, lower_limit=-half, maxpts=2_000_000, abseps=1e-9, releps=1e-9
+    )
+    return float(inside)
