@@ -8,7 +8,7 @@ from pathlib import Path
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from navbound import InputError, tse
@@ -151,6 +151,7 @@ def test_a_curved_leg_adds_its_second_order() -> None:
 
 @settings(max_examples=200, deadline=None)
 @given(st.floats(-1e4, 1e4), st.floats(0, 1e3), st.floats(1e-9, 0.5), st.floats(0, 2e4))
+@example(2.0, 5e-324, 0.5, 1.0)  # a deviation so small that the ratios overflow
 def test_the_alert_needs_no_root(fte: float, sigma: float, risk: float, limit: float) -> None:
     """The bound is beyond the limit exactly where the risk beyond the limit is more than allowed, apart from rounding."""
     bound = float(tse.exact(fte, sigma, risk))

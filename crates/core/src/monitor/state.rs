@@ -6,7 +6,6 @@
 
 use crate::quantity::{Metres, OutOfDomain, Risk};
 use crate::special::float::{exp, ln, ln_1p, sqrt};
-use crate::special::folded::two_tails;
 use crate::special::gamma::{chi_square_head, chi_square_tail};
 use crate::special::normal::{FRAC_1_SQRT_2PI, tail, two_sided_factor};
 
@@ -258,7 +257,7 @@ impl StateTable {
         let away = eta.abs();
         // Both as tails, so that neither loses its digits where it is small.
         let inside = |b: f64| tail((away - b) / s) - tail((away + b) / s);
-        Ok(self.slices(inside, |b| two_tails(b / s, away / s)))
+        Ok(self.slices(inside, |b| tail((b - away) / s) + tail((b + away) / s)))
     }
 
     /// Probabilities of the states from `n` residuals of known zero mean whose squares sum to `sum_of_squares`: where the 95 % navigation

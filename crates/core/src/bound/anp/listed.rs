@@ -129,7 +129,7 @@ const CIRCLE_FIT: Method = Method {
 const CIRCLE_GEODESY: Method = Method {
     id: "anp-circle-geodesy",
     title: "ANP circle, geodesy's cubic",
-    source: "cubic of geodetic practice, as GeodePy computes its 95 % circular uncertainty",
+    source: "cubic of geodetic practice for the 95 % circular uncertainty, as GeodePy states it; the original was not read",
     provenance: Provenance::Printed,
     assumes: "as the exact circle, zero mean, 95 % only; from 0.42 % of sigma short to 0.34 % long",
     bound: |epoch, risk| Ok(circle_geodesy(centred(epoch, "anp-circle-geodesy")?, risk)?),

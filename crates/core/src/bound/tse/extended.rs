@@ -131,11 +131,10 @@ fn mixture_risk(components: &[Component], bound: f64, q: f64) -> (f64, f64) {
     let (mut risk, mut slope) = (0.0, 0.0);
     for c in components {
         let (fte, sigma) = (c.deviation.fte().m(), c.deviation.sigma().m());
-        if sigma == 0.0 {
+        let Some((t, m)) = c.deviation.in_deviations(bound) else {
             risk += if fte.abs() <= bound { 0.0 } else { c.weight };
             continue;
-        }
-        let (t, m) = (bound / sigma, fte / sigma);
+        };
         risk += c.weight * two_tails(t, m);
         slope -= c.weight * (density(t - m) + density(t + m)) / sigma;
     }

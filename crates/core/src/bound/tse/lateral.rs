@@ -40,6 +40,12 @@ impl Deviation {
     pub const fn sigma(&self) -> Metres {
         Metres::new(self.sigma)
     }
+    /// A limit and the mean in units of the deviation; `None` where there is no deviation, or one so small that a ratio overflows: the
+    /// error then is its mean.
+    pub(super) fn in_deviations(&self, limit: f64) -> Option<(f64, f64)> {
+        let (limit, mean) = (limit / self.sigma, self.fte / self.sigma);
+        (self.sigma > 0.0 && limit.is_finite() && mean.is_finite()).then_some((limit, mean))
+    }
 }
 
 /// The lateral situation: across the path, and how far the estimate is along it from the expected point.
@@ -118,12 +124,12 @@ pub fn ltem(deviation: Deviation, risk: Risk) -> Metres {
 /// # Errors
 /// [`OutOfDomain`] unless `limit >= 0` and finite.
 pub fn exceedance_risk(deviation: Deviation, limit: Metres) -> Result<f64, OutOfDomain> {
-    let Deviation { fte, sigma } = deviation;
     let limit = checked_limit(limit)?;
-    if sigma == 0.0 {
-        return Ok(if fte.abs() <= limit { 0.0 } else { 1.0 });
-    }
-    Ok(two_tails(limit / sigma, fte / sigma))
+    Ok(match deviation.in_deviations(limit) {
+        Some((limit, mean)) => two_tails(limit, mean),
+        None if deviation.fte.abs() <= limit => 0.0,
+        None => 1.0,
+    })
 }
 
 /// Natural logarithm of [`exceedance_risk`], finite where the risk underflows; minus infinity only where sigma is zero.
@@ -131,11 +137,10 @@ pub fn exceedance_risk(deviation: Deviation, limit: Metres) -> Result<f64, OutOf
 /// # Errors
 /// As [`exceedance_risk`].
 pub fn ln_exceedance_risk(deviation: Deviation, limit: Metres) -> Result<f64, OutOfDomain> {
-    let Deviation { fte, sigma } = deviation;
-    if sigma == 0.0 {
-        return exceedance_risk(deviation, limit).map(|r| if r > 0.0 { 0.0 } else { f64::NEG_INFINITY });
+    match deviation.in_deviations(checked_limit(limit)?) {
+        Some((limit, mean)) => Ok(ln_two_tails(limit, mean)),
+        None => exceedance_risk(deviation, limit).map(|r| if r > 0.0 { 0.0 } else { f64::NEG_INFINITY }),
     }
-    Ok(ln_two_tails(checked_limit(limit)? / sigma, fte / sigma))
 }
 
 fn checked_limit(limit: Metres) -> Result<f64, OutOfDomain> {

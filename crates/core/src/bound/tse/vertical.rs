@@ -126,12 +126,11 @@ struct Scaled {
 
 impl Scaled {
     fn new(error: &Deviation, limit: Metres) -> Self {
-        let (fte, sigma) = (error.fte().m(), error.sigma().m());
-        if sigma > 0.0 {
-            return Self { limit: limit.m() / sigma, mean: fte / sigma };
+        if let Some((limit, mean)) = error.in_deviations(limit.m()) {
+            return Self { limit, mean };
         }
         // 50 deviations: a tail of zero, or of one, in every double.
-        if fte.abs() <= limit.m() { Self { limit: 50.0, mean: 0.0 } } else { Self { limit: 0.0, mean: 50.0 } }
+        if error.fte().m().abs() <= limit.m() { Self { limit: 50.0, mean: 0.0 } } else { Self { limit: 0.0, mean: 50.0 } }
     }
 }
 
