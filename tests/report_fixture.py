@@ -287,6 +287,7 @@ def flight(n_tracks: int = 1, truth: bool = True, n: int = N) -> Fixture:
             share_contained=1.0,
             n_epochs=frame.height,
             n_judged=frame["tse_exact_m"].drop_nulls().len(),
+            n_implausible=0,
             worst_accuracy=worst,
             worst_integrity=worst.model_copy(update={"margin_m": worst.margin_m * 2, "limit_m": worst.limit_m * 2}),
             truth_known=truth,

@@ -50,6 +50,15 @@ def _settings(methods: str) -> Settings:
     return Settings(methods=ids)
 
 
+def _mapping(pairs: list[str]) -> dict[str, str]:
+    """`--map canonical=column[:unit]`, as often as it was given."""
+    split = [pair.partition("=") for pair in pairs]
+    for pair, (name, sign, column) in zip(pairs, split, strict=True):
+        if not (name and sign and column):
+            raise InputError("map", pair, domain="canonical=column or canonical=column:unit")
+    return {name: column for name, _, column in split}
+
+
 def _command() -> str:
     return shlex.join(["navbound", *sys.argv[1:]])
 
@@ -99,7 +108,7 @@ def analyze(
         truth=truth,
         truth_tolerance_s=truth_tolerance_s,
         sigma_m=sigma_m,
-        columns=column or [],
+        columns=_mapping(column or []),
         settings=_settings(methods),
         out=out,
         command=_command(),
@@ -220,8 +229,9 @@ def _show(run: Run, *, json: bool) -> None:
     summary = run.summary
     out_console.print(summary.title, style="bold", markup=False)
     out_console.print(summary.verdict.words, markup=False, highlight=False)
+    out_console.print("Assumed and found:", markup=False)
     for assumption in summary.assumptions:
-        out_console.print(f"Assumed: {assumption}", markup=False, highlight=False)
+        out_console.print(f"  - {assumption}", markup=False, highlight=False)
     rejected = sum(r.count for r in summary.rejected)
     if rejected:
         out_console.print(f"{rejected} rows were not used:", markup=False)

@@ -30,7 +30,8 @@ class InputError(NavboundError, ValueError):
         self.index = index
         where = argument if index is None else f"{argument}[{index}]"
         shown = f"{value} [{unit}]" if unit else f"{value}"
-        super().__init__(f"{where} = {shown} is outside {domain}")
+        refusal = f"is outside {domain}" if domain[:1] in "([{" else f"is not accepted; expected {domain}"
+        super().__init__(f"{where} = {shown} {refusal}")
 
 
 class FormatError(NavboundError, ValueError):

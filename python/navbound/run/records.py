@@ -35,7 +35,7 @@ class Verdict(Record):
     """Inside or not, in one look."""
 
     inside: bool | None
-    """None when no epoch could be judged."""
+    """None when no epoch could be judged, or when epochs that cannot be true make the others doubtful."""
     words: str
     """The verdict as sentences: what, how much, worst where and when, what was assumed, whether truth was known."""
     requirement: str
@@ -47,6 +47,8 @@ class Verdict(Record):
     """Share of judged epochs whose integrity bound is within 2 RNP."""
     n_epochs: int
     n_judged: int
+    n_implausible: int
+    """Epochs whose input cannot be true (a jump that cannot be flown, a negative variance)."""
     worst_accuracy: Worst | None
     worst_integrity: Worst | None
     truth_known: bool

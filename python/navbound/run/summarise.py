@@ -93,7 +93,10 @@ def _verdict(material: Material, margins: pl.DataFrame, judge: MethodResult, ris
     judged = margins.filter(pl.col("_margin").is_not_null())
     share = _mean(judged.get_column("_margin") >= 0)
     contained = _mean(margins.get_column("_margin_integrity").drop_nulls() >= 0)
+    n_implausible = margins.get_column("status").eq("invalid_input").sum()
     inside = None if share is None or contained is None else share == 1.0 and contained == 1.0
+    if inside and n_implausible:
+        inside = None
     worst = _worst(margins, "_margin", method(judging).column, 1.0)
     worst_integrity = _worst(margins, "_margin_integrity", method(judging).integrity_column, 2.0)
     truth_known = judge.coverage is not None
@@ -106,6 +109,7 @@ def _verdict(material: Material, margins: pl.DataFrame, judge: MethodResult, ris
         share_contained=contained,
         n_epochs=margins.height,
         n_judged=judged.height,
+        n_implausible=n_implausible,
         worst_accuracy=worst,
         worst_integrity=worst_integrity,
         truth_known=truth_known,

@@ -45,6 +45,10 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
         parts.append(
             f"{verdict.n_epochs - verdict.n_judged} of {verdict.n_epochs} epochs could not be judged and count as loss of monitoring."
         )
+    if verdict.n_implausible:
+        parts.append(
+            f"{verdict.n_implausible} epochs cannot be true (see their reasons); what looks right beside them may be wrong as well."
+        )
     parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
     if verdict.truth_known and judged.coverage is not None:
         parts.append(f"Truth is known: the {level(risks[0])} bound held the error at {share(judged.coverage)} of {judged.n} epochs.")
@@ -57,7 +61,7 @@ def _inside(verdict: Verdict, risks: tuple[float, float]) -> str:
     accuracy, integrity = (level(risk) for risk in risks)
     if verdict.share_inside is None or verdict.share_contained is None:
         return f"Not judged against {verdict.requirement}: no epoch has a bound."
-    words = "Inside" if verdict.inside else "Not always inside"
+    words = {True: "Inside", False: "Not always inside", None: "Not shown to be inside"}[verdict.inside]
     where = "" if verdict.n_judged == verdict.n_epochs else " where it could be judged"
     return (
         f"{words} {verdict.requirement}{where}: the {accuracy} bound is within RNP "

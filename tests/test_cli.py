@@ -1,0 +1,128 @@
+"""The command line as a stranger uses it: every refusal is a sentence with the right exit status, never a traceback."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+USAGE, UNREADABLE = 2, 3
+
+TRACK = """time_ns,est_lat_rad,est_lon_rad,est_h_m,sigma_e_m,sigma_n_m
+1400000000000000000,0.85,0.04,1000,4,4
+1400000001000000000,0.85001,0.04,1000,4,4
+1400000002000000000,0.85002,0.04,1000,4,4
+1400000003000000000,0.85003,0.04,1000,4,4
+"""
+
+
+def navbound(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, "-m", "navbound", *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+@pytest.fixture
+def track(tmp_path: Path) -> Path:
+    path = tmp_path / "track.csv"
+    path.write_text(TRACK, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "named"),
+    [
+        (["fly", "nowhere"], USAGE, "beijing-shanghai"),
+        (["fly", "beijing-shanghai", "--flights", "0"], USAGE, "[1, 1000]"),
+        (["fly", "beijing-shanghai", "--flights", "many"], USAGE, "many"),
+        (["fly", "beijing-shanghai", "--methods", "tse-exakt"], USAGE, "tse-exact"),
+        (["fly", "--wrong"], USAGE, "--wrong"),
+        (["analyze"], USAGE, "Missing argument"),
+        (["analyze", "missing.csv"], UNREADABLE, "missing.csv"),
+        (["study", "nothing"], USAGE, "tse-coverage"),
+        (["show", "missing"], UNREADABLE, "missing"),
+        (["nothing"], USAGE, "nothing"),
+    ],
+)
+def test_a_wrong_call_is_a_sentence(arguments: list[str], status: int, named: str, tmp_path: Path) -> None:
+    done = navbound(*arguments, *(["--out", str(tmp_path / "run")] if arguments[0] == "fly" else []))
+    assert done.returncode == status, done.stderr
+    assert named in done.stderr
+    assert "Traceback" not in done.stderr
+    assert "bug" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("option", "named"),
+    [
+        (["--spec", "RNPX"], "RNP AR"),
+        (["--spec", "RNP 0"], "(0, 20]"),
+        (["--spec", "RNP AR 0.7"], "[185.2, 555.6]"),
+        (["--path", "LFPG/99X"], "08R"),
+        (["--sigma-m", "-3"], "sigma_m"),
+        (["--map", "latitude"], "canonical=column"),
+    ],
+)
+def test_a_wrong_option_names_what_is_allowed(option: list[str], named: str, track: Path, tmp_path: Path) -> None:
+    done = navbound("analyze", track, *option, "--out", tmp_path / "run")
+    assert done.returncode == USAGE, done.stderr
+    assert named in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("content", "named"),
+    [
+        (b"", "empty"),
+        (b"\x1f\x8b\x08\x00broken", "gzip"),
+        (b"a,b\n1,2\n", "time"),
+        (b"latitude,longitude,timestamp\n91.5,2,2021-10-07T12:00:00\n", "91.5"),
+    ],
+)
+def test_unreadable_data_say_where(content: bytes, named: str, tmp_path: Path) -> None:
+    path = tmp_path / "bad.csv"
+    path.write_bytes(content)
+    done = navbound("analyze", path, "--out", tmp_path / "run")
+    assert done.returncode == UNREADABLE, done.stderr
+    assert named in done.stderr
+    assert "bad.csv" in done.stderr
+
+
+def test_a_column_can_be_named(track: Path, tmp_path: Path) -> None:
+    renamed = track.with_name("renamed.csv")
+    renamed.write_text(TRACK.replace("est_lat_rad", "phi"), encoding="utf-8")
+    done = navbound("analyze", renamed, "--map", "est_lat_rad=phi:rad", "--out", tmp_path / "run", "--json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["verdict"]["n_judged"] == 4
+
+
+def test_a_run_can_be_shown_again(track: Path, tmp_path: Path) -> None:
+    first = navbound("analyze", track, "--out", tmp_path / "run", "--json")
+    again = navbound("show", tmp_path / "run", "--json")
+    assert first.returncode == again.returncode == 0, first.stderr
+    assert json.loads(first.stdout) == json.loads(again.stdout)
+
+
+def test_a_directory_with_other_files_is_left_alone(track: Path, tmp_path: Path) -> None:
+    (tmp_path / "letter.txt").write_text("dear")
+    done = navbound("analyze", track, "--out", tmp_path)
+    assert done.returncode == UNREADABLE
+    assert "letter.txt" in done.stderr
+
+
+def test_verify_prints_every_vector_file(flown) -> None:  # type: ignore[no-untyped-def]
+    done = navbound("verify", "--json")
+    assert done.returncode == 0, done.stderr
+    rows = json.loads(done.stdout)
+    assert sum(row["n_cases"] for row in rows) > 1000
+    assert all(not row["failures"] for row in rows)
+
+
+def test_the_run_record_says_how_to_do_it_again(flown) -> None:  # type: ignore[no-untyped-def]
+    assert flown.path is not None
+    record = json.loads((flown.path / "run.json").read_text())
+    assert record["scenario"] is not None
+    assert record["seed"] is not None
+    epochs = pl.read_parquet(flown.path / "epochs.parquet")
+    assert epochs.height == 7081
