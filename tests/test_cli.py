@@ -36,7 +36,7 @@ def track(tmp_path: Path) -> Path:
     [
         (["fly", "nowhere"], USAGE, "beijing-shanghai"),
         (["fly", "beijing-shanghai", "--flights", "0"], USAGE, "[1, 1000]"),
-        (["fly", "beijing-shanghai", "--flights", "many"], USAGE, "many"),
+        (["fly", "beijing-shanghai", "--flights", "many"], USAGE, "--flights"),
         (["fly", "beijing-shanghai", "--methods", "tse-exakt"], USAGE, "tse-exact"),
         (["fly", "--wrong"], USAGE, "--wrong"),
         (["analyze"], USAGE, "Missing argument"),
