@@ -34,10 +34,10 @@ __all__ = [
     "nominal",
 ]
 
-CONSTELLATIONS = ("gps", "glonass", "galileo", "beidou")
+CONSTELLATIONS = ("gps", "glonass", "galileo", "beidou", "sbas")
 """The systems in the order of their index; a solution has one clock for each that it uses."""
 
-_LETTERS = "GREC"
+_LETTERS = "GRECS"
 
 
 @dataclass(frozen=True)
