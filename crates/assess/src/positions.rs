@@ -1,7 +1,7 @@
 //! Observations and navigation messages to positions, epoch by epoch on all cores.
 
-use navbound_core::geometry::broadcast::{self, clock_polynomial};
 use navbound_core::geometry::atmosphere::ionosphere_factor;
+use navbound_core::geometry::broadcast::{self, clock_polynomial};
 use navbound_core::quantity::{GpsTime, Metres, Unavailable};
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};
 use navbound_core::solution::point::{self, Fix, Range, Settings};
@@ -71,7 +71,7 @@ impl<'a> Records<'a> {
         let mut ranges = vec![0..0; SYSTEMS * 100 * 5];
         for (k, e) in navigation.ephemerides.iter().enumerate() {
             if let Some(range) = ranges.get_mut(Self::slot(e.satellite, e.message)) {
-                *range = if range.is_empty() { k..k + 1 } else { range.start..k + 1 };
+                *range = if range.end == 0 { k..k + 1 } else { range.start..k + 1 };
             }
         }
         Self { navigation, ranges }

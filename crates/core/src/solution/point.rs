@@ -94,6 +94,8 @@ pub struct Fix {
 struct Seen {
     row: Row,
     delay: f64,
+    /// The ionospheric part of the delay.
+    ionosphere: f64,
     /// Weight by the error model; 0 below the mask.
     weight: f64,
     excluded: bool,
@@ -193,7 +195,7 @@ impl Solver<'_> {
             let (way, unit) = way(range, &self.at);
             let unit = turn * unit;
             if delays {
-                (seen.delay, seen.weight) = self.settings.delay_and_weight(range, &unit, here, zenith, self.time);
+                (seen.ionosphere, seen.delay, seen.weight) = self.settings.delay_and_weight(range, &unit, here, zenith, self.time);
             }
             let clock = range.satellite.constellation.index();
             let residual = range.corrected.m() - way - seen.delay;
@@ -234,7 +236,9 @@ impl Solver<'_> {
             }
             self.settle(true)?;
             let magnitude = |s: &Seen| self.normalised(s).abs();
-            let worst = (0..self.seen.len()).filter(|k| self.seen[*k].counts()).max_by(|a, b| magnitude(&self.seen[*a]).total_cmp(&magnitude(&self.seen[*b])));
+            let worst = (0..self.seen.len())
+                .filter(|k| self.seen[*k].counts())
+                .max_by(|a, b| magnitude(&self.seen[*a]).total_cmp(&magnitude(&self.seen[*b])));
             if let Some(worst) = worst {
                 self.seen[worst].excluded = true;
             }
@@ -262,7 +266,7 @@ impl Solver<'_> {
         }
         Ok(Fix {
             position,
-            covariance: Covariance::claim_symmetric(covariance.matrix() * inflation),
+            covariance: Covariance::claim_symmetric(covariance.matrix() * inflation + self.shared()?),
             dilution: Dilution::of(&unit_weights.covariance()?),
             clock_m,
             velocity: self.velocity(&position),
@@ -272,6 +276,25 @@ impl Solver<'_> {
             redundancy,
             consistent,
         })
+    }
+
+    /// Covariance of what the ionosphere's error has in common: a factor of all modelled delays, and a tilt from horizon to horizon in
+    /// two directions; each is what such range errors do to the position.
+    fn shared(&self) -> Result<Matrix3<f64>, Unavailable> {
+        let errors = &self.settings.errors;
+        let shapes: [(f64, fn(&Vector3<f64>) -> f64); 3] = [
+            (errors.ionosphere_common_share, |_| 1.0),
+            (errors.ionosphere_gradient_share, |u| u.x),
+            (errors.ionosphere_gradient_share, |u| u.y),
+        ];
+        let mut covariance = Matrix3::zeros();
+        for (share, shape) in shapes {
+            let used = self.seen.iter().filter(|s| s.counts());
+            let normal = Normal::new(used.map(|s| Row { residual: share * s.ionosphere * shape(&s.row.unit), ..s.row }))?;
+            let moved = normal.step().unwrap_or_else(Vector3::zeros);
+            covariance += moved * moved.transpose();
+        }
+        Ok(covariance)
     }
 
     /// Velocity from Doppler: the same directions, one clock rate for all, weights of the ranges; robust.
@@ -310,13 +333,13 @@ impl Solver<'_> {
 }
 
 impl Settings {
-    /// Atmospheric delay of a range and its weight; weight 0 below the mask.
-    fn delay_and_weight(&self, range: &Range, unit: &Vector3<f64>, here: &Geodetic, zenith: f64, time: GpsTime) -> (f64, f64) {
+    /// Ionospheric delay of a range, its whole atmospheric delay, and its weight; weight 0 below the mask.
+    fn delay_and_weight(&self, range: &Range, unit: &Vector3<f64>, here: &Geodetic, zenith: f64, time: GpsTime) -> (f64, f64, f64) {
         let elevation = atan2(unit.z, hypot(unit.x, unit.y));
         if !(elevation >= self.mask.rad()) {
-            return (0.0, 0.0);
+            return (0.0, 0.0, 0.0);
         }
-        let Ok(direction) = Direction::new(Radians::new(atan2(unit.x, unit.y)), Radians::new(elevation)) else { return (0.0, 0.0) };
+        let Ok(direction) = Direction::new(Radians::new(atan2(unit.x, unit.y)), Radians::new(elevation)) else { return (0.0, 0.0, 0.0) };
         let ionosphere = self.ionosphere.map_or(0.0, |k| klobuchar(&k, here, &direction, time).m()) * range.ionosphere_factor;
         let mapping = troposphere_mapping(&direction);
         let conditions = RangeConditions {
@@ -329,7 +352,7 @@ impl Settings {
             noise_factor: range.noise_factor,
             ure_factor: range.ure_factor,
         };
-        (ionosphere + zenith * mapping, 1.0 / self.errors.variance(&conditions))
+        (ionosphere, ionosphere + zenith * mapping, 1.0 / self.errors.variance(&conditions))
     }
 }
 

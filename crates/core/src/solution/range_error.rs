@@ -10,6 +10,9 @@ use crate::special::float::exp;
 /// c       = 10^((reference - C/N0) / 10) where the signal is weaker than the reference, 1 elsewhere
 /// ```
 ///
+/// Errors of the ionosphere that ranges share do not enter here but the position's covariance, as `b b'`: `b` is what range errors
+/// `common share * iono`, `gradient share * iono * (east, north part of the line of sight)` do to the position.
+///
 /// `f` is the noise of the combination against that of one pseudorange (1, or that of the ionosphere-free pair). The form is ours, of
 /// the terms that DO-229 appendix J and the usual engines add; how the numbers were found stands in `docs/methods/gnss-positions.md`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,8 +23,13 @@ pub struct RangeError {
     pub ure_m: [f64; Constellation::ALL.len()],
     /// Receiver noise and multipath overhead, by constellation \[m\].
     pub noise_m: [f64; Constellation::ALL.len()],
-    /// Share of the ionospheric delay that the model leaves.
+    /// Share of the ionospheric delay that the model leaves, from satellite to satellite.
     pub ionosphere_share: f64,
+    /// Share that it leaves of all delays together: one factor wrong for the whole sky, which more satellites do not average out.
+    pub ionosphere_common_share: f64,
+    /// Share by which the delays are wrong from one horizon to the other: a gradient of the ionosphere that the model lacks, east-west
+    /// and north-south. It moves the position whatever the number of satellites.
+    pub ionosphere_gradient_share: f64,
     /// Least error of the ionospheric model overhead \[m\].
     pub ionosphere_floor_m: f64,
     /// Error of the zenith tropospheric delay \[m\].
@@ -50,11 +58,13 @@ impl RangeError {
     /// The default: calibrated, see `docs/methods/gnss-positions.md`.
     pub const CALIBRATED: Self = Self {
         name: "calibrated-2020",
-        ure_m: [0.7, 3.0, 0.5, 1.0, 5.0],
-        noise_m: [0.4, 0.8, 0.4, 0.4, 0.8],
-        ionosphere_share: 0.3,
-        ionosphere_floor_m: 0.4,
-        zenith_troposphere_m: 0.08,
+        ure_m: [0.7, 3.0, 0.2, 0.6, 5.0],
+        noise_m: [0.13, 0.8, 0.13, 0.13, 0.8],
+        ionosphere_share: 0.06,
+        ionosphere_common_share: 0.3,
+        ionosphere_gradient_share: 0.1,
+        ionosphere_floor_m: 0.05,
+        zenith_troposphere_m: 0.04,
         reference_cn0_dbhz: 40.0,
     };
 
