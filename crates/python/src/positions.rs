@@ -2,6 +2,7 @@
 
 use crate::error::{format_error, input_error};
 use navbound_assess::positions::{Job, Positions, Signals, positions};
+use navbound_core::frame::{self, EcefPosition};
 use navbound_core::quantity::{OutOfDomain, Radians};
 use navbound_core::signal::{Constellation, Klobuchar};
 use navbound_core::solution::RangeError;
@@ -9,7 +10,7 @@ use navbound_core::solution::point::{Fix, Settings};
 use navbound_formats::Refusal;
 use navbound_formats::packed::unpack;
 use navbound_formats::rinex::{self, Code};
-use numpy::{IntoPyArray, PyArray1};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
@@ -263,8 +264,24 @@ fn velocity(fix: &Fix, axis: usize) -> f64 {
     fix.velocity.map_or(f64::NAN, |(v, _)| v[axis])
 }
 
+/// Geodetic positions (n, 3) of Earth-fixed ones: latitude, longitude [rad], height [m]; NaN stays NaN.
+#[pyfunction]
+fn geodetic_from_ecef<'py>(py: Python<'py>, ecef_m: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let convert = |(index, row): (usize, &[f64; 3])| {
+        if row.iter().any(|v| v.is_nan()) {
+            return Ok([f64::NAN; 3]);
+        }
+        let found = frame::geodetic_from_ecef(&EcefPosition::from_vector((*row).into())).map_err(|e| input_error(e, Some(index)))?;
+        Ok([found.point.lat().rad(), found.point.lon().rad(), found.height.m()])
+    };
+    let rows: PyResult<Vec<[f64; 3]>> = ecef_m.as_slice()?.as_chunks::<3>().0.iter().enumerate().map(convert).collect();
+    let rows = rows?;
+    rows.as_flattened().to_vec().into_pyarray(py).reshape([rows.len(), 3])
+}
+
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Observations>()?;
     m.add_class::<Navigation>()?;
+    m.add_function(wrap_pyfunction!(geodetic_from_ecef, m)?)?;
     m.add_function(wrap_pyfunction!(solve_positions, m)?)
 }
