@@ -137,7 +137,7 @@ class Navigation:
         self.n_geostationary = core.n_geostationary
         self.leap_seconds = core.leap_seconds
         self.skipped = core.skipped
-        self.refused = [Refused(Path(path), *rest) for path, *rest in core.refused]
+        self.refused = [Refused(Path(r[0]), *r[1:]) for r in core.refused]
 
     @property
     def has_ionosphere(self) -> bool:
@@ -158,7 +158,7 @@ class Positions:
     epochs : DataFrame
         The epoch table (docs/notation.md): ``track``, ``time_ns``, ``est_lat_rad``, ``est_lon_rad``, ``est_h_m``, covariance,
         ``ground_speed_mps``, ``n_sv``, ``hdop``, ``vdop``, ``status``, ``reason``, with truth also ``truth_*`` and ``nse_*``; beyond it
-        ``vel_e_mps``, ``vel_n_mps``, ``vel_u_mps``, ``n_excluded``, ``residual_statistic``, ``redundancy``. Null where there is none.
+        ``vel_e_mps``, ``vel_n_mps``, ``vel_u_mps``, ``n_excluded``, ``n_redundant``, ``p_residual``. Null where there is none.
     unused : dict of str to int
         Satellite-epochs of the wanted systems that were not used, by reason; those below the mask are not among them.
     codes : dict of str to list of str
@@ -300,10 +300,7 @@ def solve(
     unused, codes, weights = found.pop("unused"), found.pop("codes"), found.pop("weights")
     name = track or observations.marker or observations.path.name
     columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **found}
-    epochs = pl.DataFrame(columns).with_columns(
-        pl.col("redundancy").fill_nan(None).cast(pl.Int64),
-        pl.when(pl.col("reason") == "").then(None).otherwise(pl.col("reason")).alias("reason"),
-    )
+    epochs = pl.DataFrame(columns).with_columns(pl.when(pl.col("reason") != "").then(pl.col("reason")).alias("reason"))
     floats = [c for c, kind in epochs.schema.items() if kind == pl.Float64]
     epochs = epochs.with_columns(pl.col(floats).fill_nan(None))
     if truth_ecef_m is not None:

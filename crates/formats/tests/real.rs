@@ -80,3 +80,42 @@ fn plain_files_of_versions_2_and_3() {
         assert_eq!(n.refused.len(), 0, "{name}: {:?}", n.refused.first());
     }
 }
+
+/// Real files, changed at random places or cut: an answer every time, never a panic. The seed is fixed and printed by the failing file.
+#[test]
+fn damaged_real_files_bring_no_reader_down() {
+    let mut state = 0x2020_0177_u64;
+    let mut random = move |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below.max(1)
+    };
+    for name in [
+        "gnss/ESBC_2020_177/ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz",
+        "gnss/ESBC_2020_177/ESBC00DNK_R_20201770000_01D_MN.rnx.gz",
+        "gnss/rinex4_2023_071/BRD400DLR_S_20230710000_01D_MN.rnx.gz",
+        "gnss/ARLM_2015_200/arlm200x.15o",
+        "gnss/ARLM_2015_200/arlm2000.15n",
+        "gnss/HK_TST_2019_118/COM3_190428_124409.obs",
+        "gnss/HK_TST_2019_118/hksc1180.19b",
+        "gnss/taroz_static/rover.obs.gz",
+    ] {
+        let Some(packed) = file(name) else { return };
+        let plain = unpack(&packed).unwrap();
+        for round in 0..40 {
+            // The header and the first epochs: what decides how the rest is read, and quick.
+            let mut bytes = plain[..plain.len().min(60_000)].to_vec();
+            for _ in 0..=round % 8 {
+                let at = random(bytes.len());
+                bytes[at] = *b" -.0123456789>&GECRSJ\n\r\xff\0".get(random(24)).unwrap_or(&b'x');
+            }
+            bytes.truncate(if round % 3 == 0 { random(bytes.len()) } else { bytes.len() });
+            let _ = read_observations(&bytes);
+            let _ = read_navigation(&bytes);
+            let mut cut = packed[..random(packed.len().min(100_000))].to_vec();
+            if let Some(byte) = cut.last_mut() {
+                *byte ^= 0x55;
+            }
+            let _ = unpack(&cut);
+        }
+    }
+}

@@ -213,9 +213,12 @@ fn within(argument: &'static str, value: f64, unit: &'static str, domain: &'stat
     if good { Ok(()) } else { Err(input_error(OutOfDomain { argument, value, unit, domain }, None)) }
 }
 
+/// One number of a position.
+type Number = fn(&Fix) -> f64;
+
 fn table<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
-    let columns: [(&str, fn(&Fix) -> f64); 17] = [
+    let columns: [(&str, Number); 16] = [
         ("est_lat_rad", |f| f.position.point.lat().rad()),
         ("est_lon_rad", |f| f.position.point.lon().rad()),
         ("est_h_m", |f| f.position.height.m()),
@@ -231,8 +234,7 @@ fn table<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, PyDict>
         ("vel_n_mps", |f| velocity(f, 1)),
         ("vel_u_mps", |f| velocity(f, 2)),
         ("ground_speed_mps", |f| velocity(f, 0).hypot(velocity(f, 1))),
-        ("residual_statistic", |f| f.statistic),
-        ("redundancy", |f| f.redundancy as f64),
+        ("p_residual", |f| f.residual_risk),
     ];
     for (name, value) in columns {
         let values: Vec<f64> = found.fixes.iter().map(|f| f.as_ref().map_or(f64::NAN, value)).collect();
@@ -241,6 +243,7 @@ fn table<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, PyDict>
     let count = |value: fn(&Fix) -> usize| found.fixes.iter().map(|f| f.as_ref().map_or(0, |f| value(f) as i64)).collect::<Vec<_>>();
     d.set_item("n_sv", count(|f| f.n_used).into_pyarray(py))?;
     d.set_item("n_excluded", count(|f| f.n_excluded).into_pyarray(py))?;
+    d.set_item("n_redundant", count(|f| f.redundancy).into_pyarray(py))?;
     let status = |f: &Result<Fix, _>| match f {
         Ok(fix) if fix.consistent => "ok",
         Ok(_) => "degraded",

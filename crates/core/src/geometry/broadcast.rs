@@ -97,10 +97,10 @@ pub fn in_axes_of_reception(position: &Vector3<f64>, way_s: f64) -> Vector3<f64>
 
 fn check(e: &Ephemeris) -> Result<(), Unavailable> {
     let a = e.sqrt_a * e.sqrt_a;
-    if !(a >= 6.0e6 && a <= 1.0e9) {
+    if !(6.0e6..=1.0e9).contains(&a) {
         return Err(Unavailable::Invalid { field: "sqrt_a", value: e.sqrt_a, unit: "sqrt(m)", domain: "[2450, 31622]" });
     }
-    if !(e.eccentricity >= 0.0 && e.eccentricity <= 0.9) {
+    if !(0.0..=0.9).contains(&e.eccentricity) {
         return Err(Unavailable::Invalid { field: "eccentricity", value: e.eccentricity, unit: "1", domain: "[0, 0.9]" });
     }
     Ok(())

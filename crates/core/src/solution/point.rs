@@ -21,7 +21,7 @@ pub const MOST_RANGES: usize = 96;
 const ROUNDS: usize = 12;
 /// Below this step the position has settled \[m\].
 const SETTLED: f64 = 1e-4;
-/// From this step on delays are computed anew \[m\]: they change by less than 1e-6 of it.
+/// This far from where delays were computed they are computed anew \[m\]; nearer they are wrong by less than 3e-4 of it, 15 mm.
 const DELAYS_MOVE: f64 = 50.0;
 /// Residuals beyond this many standard deviations count less in the robust rounds; Huber's choice costs 5 % of efficiency.
 const HUBER: f64 = 1.345;
@@ -81,11 +81,11 @@ pub struct Fix {
     pub n_used: usize,
     /// Satellites above the mask that were excluded.
     pub n_excluded: usize,
-    /// Sum of squared weighted residuals.
-    pub statistic: f64,
-    /// Degrees of freedom of the statistic.
+    /// Risk that residuals as large as these, or larger, come from errors as the weights say; NaN without redundancy.
+    pub residual_risk: f64,
+    /// Ranges beyond the unknowns.
     pub redundancy: usize,
-    /// The residuals contradict the weights even after exclusion, or cannot tell: no redundancy.
+    /// The residuals agree with the weights, after exclusion where there was any; without redundancy nothing can be said.
     pub consistent: bool,
 }
 
@@ -118,7 +118,9 @@ pub fn solve(ranges: &[Range], time: GpsTime, settings: &Settings) -> Result<Fix
         return Err(Unavailable::Invalid { field: "ranges", value, unit, domain });
     }
     let mut seen = [Seen::default(); MOST_RANGES];
-    let mut epoch = Solver { ranges, seen: &mut seen[..ranges.len()], time, settings, at: start(ranges)?, clocks: [0.0; CLOCKS] };
+    let seen = &mut seen[..ranges.len()];
+    let (at, modelled_at) = (start(ranges)?, Vector3::zeros());
+    let mut epoch = Solver { ranges, seen, time, settings, at, modelled_at, clocks: [0.0; CLOCKS] };
     epoch.settle(true)?;
     epoch.settle(false)?;
     epoch.exclude()?;
@@ -133,6 +135,8 @@ struct Solver<'a> {
     time: GpsTime,
     settings: &'a Settings,
     at: Vector3<f64>,
+    /// Where delays and weights were computed; the Earth's centre before they are.
+    modelled_at: Vector3<f64>,
     clocks: [f64; CLOCKS],
 }
 
@@ -166,18 +170,17 @@ fn way(range: &Range, at: &Vector3<f64>) -> (f64, Vector3<f64>) {
 impl Solver<'_> {
     /// Rounds of least squares until the position stands still; robust rounds weigh large residuals down.
     fn settle(&mut self, robust: bool) -> Result<(), Unavailable> {
-        let mut moved = f64::INFINITY;
         for round in 0..ROUNDS {
             let here = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
             let turn = enu_from_ecef(&here.point);
             // The first robust round has no residuals to judge by yet.
-            self.look(&here, &turn, robust && moved > DELAYS_MOVE, robust && round > 0);
+            self.look(&here, &turn, robust && round > 0);
             let normal = Normal::new(self.rows())?;
             let step = normal.step().ok_or(Unavailable::Singular { condition: f64::INFINITY, limit: super::wls::CONDITION_LIMIT })?;
             self.at += turn.transpose() * step;
             self.clocks = core::array::from_fn(|c| normal.clock(c, &step));
-            moved = step.norm();
-            if moved < SETTLED || robust && round > 1 && moved < 0.1 {
+            let moved = step.norm();
+            if moved < SETTLED || (robust && round > 1 && moved < 0.1) {
                 return Ok(());
             }
         }
@@ -188,9 +191,11 @@ impl Solver<'_> {
         self.seen.iter().filter(|s| s.counts()).map(|s| s.row)
     }
 
-    /// Ranges against the present position; delays and weights anew where asked.
-    fn look(&mut self, here: &Geodetic, turn: &Matrix3<f64>, delays: bool, robust: bool) {
+    /// Ranges against the present position; delays and weights anew where it has moved.
+    fn look(&mut self, here: &Geodetic, turn: &Matrix3<f64>, robust: bool) {
+        let delays = (self.at - self.modelled_at).norm() > DELAYS_MOVE;
         let zenith = if delays { zenith_delay(here) } else { 0.0 };
+        self.modelled_at = if delays { self.at } else { self.modelled_at };
         for (range, seen) in self.ranges.iter().zip(self.seen.iter_mut()) {
             let (way, unit) = way(range, &self.at);
             let unit = turn * unit;
@@ -215,7 +220,7 @@ impl Solver<'_> {
 
     fn statistic(&mut self) -> Result<(f64, usize), Unavailable> {
         let here = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
-        self.look(&here, &enu_from_ecef(&here.point), false, false);
+        self.look(&here, &enu_from_ecef(&here.point), false);
         let normal = Normal::new(self.rows())?;
         let used = self.seen.iter().filter(|s| s.counts());
         let statistic = used.clone().map(|s| self.normalised(s) * self.normalised(s)).sum();
@@ -226,7 +231,7 @@ impl Solver<'_> {
         redundancy > 0 && chi_square_tail(redundancy as f64, statistic) >= self.settings.false_alarm
     }
 
-    /// Exclude the worst range, judged from a robust position, until the residuals agree with the weights or no more may go.
+    /// Exclude the worst range until the residuals agree with the weights or no more may go.
     fn exclude(&mut self) -> Result<(), Unavailable> {
         for _ in 0..self.settings.most_excluded {
             let (statistic, redundancy) = self.statistic()?;
@@ -234,17 +239,24 @@ impl Solver<'_> {
             if self.passes(statistic, redundancy) || redundancy < 2 {
                 return Ok(());
             }
-            self.settle(true)?;
-            let magnitude = |s: &Seen| self.normalised(s).abs();
-            let worst = (0..self.seen.len())
-                .filter(|k| self.seen[*k].counts())
-                .max_by(|a, b| magnitude(&self.seen[*a]).total_cmp(&magnitude(&self.seen[*b])));
-            if let Some(worst) = worst {
-                self.seen[worst].excluded = true;
-            }
+            let Some(worst) = self.worst()? else { return Ok(()) };
+            self.seen[worst].excluded = true;
             self.settle(false)?;
         }
         Ok(())
+    }
+
+    /// The range without which the statistic falls most: by w v^2 / (1 - leverage), exactly.
+    fn worst(&self) -> Result<Option<usize>, Unavailable> {
+        let normal = Normal::new(self.rows())?;
+        let Some(inverse) = normal.inverse() else { return Ok(None) };
+        let fall = |k: usize| {
+            let seen = &self.seen[k];
+            let rest = 1.0 - normal.leverage(&inverse, &seen.row);
+            // A range that nothing else checks leaves no residual to judge it by.
+            if rest > 1e-6 { self.normalised(seen) * self.normalised(seen) / rest } else { 0.0 }
+        };
+        Ok((0..self.seen.len()).filter(|k| self.seen[*k].counts()).max_by(|a, b| fall(*a).total_cmp(&fall(*b))))
     }
 
     fn fix(&mut self) -> Result<Fix, Unavailable> {
@@ -272,7 +284,7 @@ impl Solver<'_> {
             velocity: self.velocity(&position),
             n_used: self.seen.iter().filter(|s| s.counts()).count(),
             n_excluded: self.seen.iter().filter(|s| s.excluded).count(),
-            statistic,
+            residual_risk: if redundancy > 0 { chi_square_tail(redundancy as f64, statistic) } else { f64::NAN },
             redundancy,
             consistent,
         })
@@ -282,15 +294,16 @@ impl Solver<'_> {
     /// two directions; each is what such range errors do to the position.
     fn shared(&self) -> Result<Matrix3<f64>, Unavailable> {
         let errors = &self.settings.errors;
-        let shapes: [(f64, fn(&Vector3<f64>) -> f64); 3] = [
-            (errors.ionosphere_common_share, |_| 1.0),
-            (errors.ionosphere_gradient_share, |u| u.x),
-            (errors.ionosphere_gradient_share, |u| u.y),
+        // Shape of the error over the sky: the same everywhere, or growing eastwards, or northwards.
+        let shapes = [
+            (errors.ionosphere_common_share, 1.0, Vector3::zeros()),
+            (errors.ionosphere_gradient_share, 0.0, Vector3::x()),
+            (errors.ionosphere_gradient_share, 0.0, Vector3::y()),
         ];
         let mut covariance = Matrix3::zeros();
-        for (share, shape) in shapes {
+        for (share, level, tilt) in shapes {
             let used = self.seen.iter().filter(|s| s.counts());
-            let normal = Normal::new(used.map(|s| Row { residual: share * s.ionosphere * shape(&s.row.unit), ..s.row }))?;
+            let normal = Normal::new(used.map(|s| Row { residual: share * s.ionosphere * (level + tilt.dot(&s.row.unit)), ..s.row }))?;
             let moved = normal.step().unwrap_or_else(Vector3::zeros);
             covariance += moved * moved.transpose();
         }
@@ -361,3 +374,7 @@ fn thin_shell(sin_elevation: f64) -> f64 {
     const RATIO: f64 = 6378.1363 / (6378.1363 + 350.0);
     1.0 / sqrt(1.0 - RATIO * RATIO * (1.0 - sin_elevation * sin_elevation))
 }
+
+#[cfg(test)]
+#[path = "point_tests.rs"]
+mod tests;

@@ -135,6 +135,18 @@ impl Normal {
         self.groups[clock].residual + self.groups[clock].mean.dot(step)
     }
 
+    /// Inverse of the information, for [`Self::leverage`].
+    pub(super) fn inverse(&self) -> Option<Matrix3<f64>> {
+        Some(self.information.cholesky()?.inverse())
+    }
+
+    /// How much of its own residual a row takes away by moving the solution, 0 to 1: w (1/W_c + d' N^-1 d).
+    pub(super) fn leverage(&self, inverse: &Matrix3<f64>, row: &Row) -> f64 {
+        let group = &self.groups[row.clock];
+        let d = row.unit - group.mean;
+        row.weight * (1.0 / group.weight + d.dot(&(inverse * d)))
+    }
+
     /// Number of clocks solved for.
     pub(super) fn clocks(&self) -> usize {
         self.groups.iter().filter(|g| g.count > 0).count()

@@ -119,7 +119,8 @@ pub(super) fn read(mut lines: Lines<'_>, kind: Kind, heading: &Heading, o: &mut 
             if head.observes() {
                 epoch(&mut lines, kind, &mut head, &mut state, heading, o)
             } else {
-                Ok(event(&mut lines, &head, head.count, o))
+                event(&mut lines, &head, head.count, o);
+                Ok(())
             }
         });
         if let Err(reason) = outcome {
