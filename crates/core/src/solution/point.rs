@@ -271,7 +271,9 @@ impl Solver<'_> {
         let covariance = normal.covariance()?;
         // Residuals larger than the weights say: the weights are wrong by that much at least.
         let inflation = if consistent || redundancy == 0 { 1.0 } else { (statistic / redundancy as f64).max(1.0) };
-        let unit_weights = Normal::new(self.rows().map(|r| Row { weight: 1.0, ..r }))?;
+        // The condition was judged with the weights; it is not judged twice.
+        let unit_weights = Normal::new(self.rows().map(|r| Row { weight: 1.0, ..r }))?.inverse();
+        let unit_weights = unit_weights.ok_or(Unavailable::Singular { condition: f64::INFINITY, limit: super::wls::CONDITION_LIMIT })?;
         let mut clock_m = [f64::NAN; CLOCKS];
         for s in self.seen.iter().filter(|s| s.counts()) {
             clock_m[s.row.clock] = self.clocks[s.row.clock];
@@ -279,7 +281,7 @@ impl Solver<'_> {
         Ok(Fix {
             position,
             covariance: Covariance::claim_symmetric(covariance.matrix() * inflation + self.shared()?),
-            dilution: Dilution::of(&unit_weights.covariance()?),
+            dilution: Dilution::of(&Covariance::claim_symmetric(unit_weights)),
             clock_m,
             velocity: self.velocity(&position),
             n_used: self.seen.iter().filter(|s| s.counts()).count(),
