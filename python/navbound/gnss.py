@@ -1,4 +1,4 @@
-"""Satellite geometry: nominal constellations, where their satellites stand, and what covariance of position follows.
+"""Satellite navigation: receivers' files and positions; nominal constellations, where their satellites stand, and what covariance follows.
 
 Orbits follow IS-GPS-200 without its correction terms (standard); the covariance is (H' W H)^-1 with one clock for each constellation
 (Fu, Zhang, Li 2014 for equal sigmas; printed).
@@ -13,6 +13,17 @@ import numpy as np
 
 from navbound import _core
 from navbound._arrays import flatten
+from navbound._receivers import (
+    SYSTEMS,
+    Navigation,
+    Observations,
+    Positions,
+    Refused,
+    geodetic,
+    read_navigation,
+    read_observations,
+    solve,
+)
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,22 +33,31 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CONSTELLATIONS",
+    "SYSTEMS",
     "Dilution",
+    "Navigation",
+    "Observations",
     "Orbits",
     "PositionCovariance",
+    "Positions",
+    "Refused",
     "Sky",
     "constellation",
     "covariance",
     "directions",
     "dop",
+    "geodetic",
     "geometry",
     "nominal",
+    "read_navigation",
+    "read_observations",
+    "solve",
 ]
 
-CONSTELLATIONS = ("gps", "glonass", "galileo", "beidou")
+CONSTELLATIONS = ("gps", "glonass", "galileo", "beidou", "sbas")
 """The systems in the order of their index; a solution has one clock for each that it uses."""
 
-_LETTERS = "GREC"
+_LETTERS = "GRECS"
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ pub mod evaluation;
 pub mod flights;
 pub mod monitor;
 pub mod plausible;
+pub mod positions;
 pub mod sky;
 pub mod states;
 pub mod tse;

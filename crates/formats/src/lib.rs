@@ -1,6 +1,8 @@
 //! Bytes to navigation records. Errors carry line, field and the text found; the caller knows the file.
 
+pub mod packed;
 pub mod refusal;
+pub mod rinex;
 pub mod rtklib;
 pub mod time;
 

@@ -8,6 +8,9 @@ const WEEK_NS: i64 = 604_800_000_000_000;
 /// Japan standard time, which RTKLIB writes on request, is UTC plus nine hours.
 const JST_OFFSET_NS: i64 = 9 * 3_600 * 1_000_000_000;
 
+/// BeiDou time began at 2006-01-01 00:00:00 UTC, when GPS time led UTC by 14 s, and has no leap seconds either.
+const BEIDOU_BEHIND_NS: i64 = 14 * 1_000_000_000;
+
 /// The scale a calendar date is written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
@@ -17,6 +20,8 @@ pub enum Scale {
     Utc,
     /// Japan standard time.
     Jst,
+    /// BeiDou time, 14 s behind GPS time.
+    BeiDou,
 }
 
 /// A calendar date and time of day.
@@ -55,14 +60,17 @@ pub fn from_week(week: i64, time_of_week_ns: i64) -> Option<GpsTime> {
 /// GPS time of a calendar date in `scale`; `None` where there is no such date.
 pub fn from_calendar(c: Calendar, scale: Scale) -> Option<GpsTime> {
     // Only UTC has leap seconds.
-    let minute_ns = if scale == Scale::Gps { 60_000_000_000 } else { 61_000_000_000 };
+    let (hifitime_scale, minute_ns, offset) = match scale {
+        Scale::Gps => (TimeScale::GPST, 60_000_000_000, 0),
+        Scale::BeiDou => (TimeScale::GPST, 60_000_000_000, -BEIDOU_BEHIND_NS),
+        Scale::Utc => (TimeScale::UTC, 61_000_000_000, 0),
+        Scale::Jst => (TimeScale::UTC, 61_000_000_000, JST_OFFSET_NS),
+    };
     let clock = c.hour < 24 && c.minute < 60 && (0..minute_ns).contains(&c.nanoseconds);
     if !((1980..=2100).contains(&c.year) && clock) {
         return None;
     }
-    let hifitime_scale = if scale == Scale::Gps { TimeScale::GPST } else { TimeScale::UTC };
     let minute = Epoch::maybe_from_gregorian(c.year, c.month, c.day, c.hour, c.minute, 0, 0, hifitime_scale).ok()?;
-    let offset = if scale == Scale::Jst { JST_OFFSET_NS } else { 0 };
     Some(GpsTime::from_nanoseconds(gps(minute).nanoseconds() + c.nanoseconds - offset))
 }
 
@@ -111,6 +119,13 @@ mod tests {
         let utc = Calendar { nanoseconds: 12_000_000_000, ..c };
         assert_eq!(from_calendar(utc, Scale::Utc), gps);
         assert_eq!(from_calendar(Calendar { hour: 15, ..utc }, Scale::Jst), gps);
+    }
+
+    /// BDS-SIS-ICD: BDT week 0 begins at 2006-01-01 00:00:00 UTC.
+    #[test]
+    fn beidou_time_begins_with_2006_in_utc() {
+        let c = Calendar { year: 2006, month: 1, day: 1, hour: 0, minute: 0, nanoseconds: 0 };
+        assert_eq!(from_calendar(c, Scale::BeiDou), from_calendar(c, Scale::Utc));
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod evaluation;
 mod gnss;
 mod methods;
 mod path;
+mod positions;
 mod read;
 mod rnp;
 mod simulate;
@@ -30,6 +31,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     gnss::register(m)?;
     dme::register(m)?;
     path::register(m)?;
+    positions::register(m)?;
     simulate::register(m)?;
     read::register(m)
 }

@@ -1,5 +1,7 @@
 //! Where the signals came from: nominal orbits, lines of sight, dilution of precision.
 
+pub mod atmosphere;
+pub mod broadcast;
 mod nominal;
 mod orbit;
 mod sight;

@@ -4,7 +4,7 @@
 
 use crate::frame::EcefPosition;
 use crate::quantity::{Metres, OutOfDomain, Radians};
-use crate::special::float::{atan2, cos, sin, sin_cos, sqrt};
+use crate::special::float::{atan2, sin, sin_cos, sqrt};
 use nalgebra::Vector3;
 
 /// Earth's gravitational constant, IS-GPS-200 table 20-IV \[m³/s²\].
@@ -101,13 +101,19 @@ impl Orbit {
 }
 
 /// Newton on Kepler's equation; quadratic, so eight steps end at the last digits for e up to 0.9.
-fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
+pub(super) fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
     let (s, c) = sin_cos(mean);
     // The angle inside one turn, where the guess M + e sin M / (1 - sin(M + e) + sin M) is safe.
     let m = atan2(s, c);
     let mut x = m + e * sin(m) / (1.0 - sin(m + e) + sin(m));
     for _ in 0..8 {
-        x -= (x - e * sin(x) - m) / (1.0 - e * cos(x));
+        let (s, c) = sin_cos(x);
+        let step = (x - e * s - m) / (1.0 - e * c);
+        x -= step;
+        // The next step would be its square.
+        if step.abs() < 1e-9 {
+            break;
+        }
     }
     x
 }

@@ -13,11 +13,13 @@ pub enum Constellation {
     Galileo,
     /// BeiDou.
     BeiDou,
+    /// Satellite-based augmentation: the geostationary satellites that carry it. Number n stands for PRN 100 + n, as in RINEX.
+    Sbas,
 }
 
 impl Constellation {
     /// Every constellation, in the order of [`Constellation::index`].
-    pub const ALL: [Self; 4] = [Self::Gps, Self::Glonass, Self::Galileo, Self::BeiDou];
+    pub const ALL: [Self; 5] = [Self::Gps, Self::Glonass, Self::Galileo, Self::BeiDou, Self::Sbas];
 
     /// Position in [`Constellation::ALL`].
     pub const fn index(self) -> usize {
@@ -26,6 +28,7 @@ impl Constellation {
             Self::Glonass => 1,
             Self::Galileo => 2,
             Self::BeiDou => 3,
+            Self::Sbas => 4,
         }
     }
     /// The constellation at a position of [`Constellation::ALL`].
@@ -35,6 +38,18 @@ impl Constellation {
             1 => Some(Self::Glonass),
             2 => Some(Self::Galileo),
             3 => Some(Self::BeiDou),
+            4 => Some(Self::Sbas),
+            _ => None,
+        }
+    }
+    /// The constellation of a letter of RINEX 3.
+    pub const fn from_letter(letter: u8) -> Option<Self> {
+        match letter {
+            b'G' => Some(Self::Gps),
+            b'R' => Some(Self::Glonass),
+            b'E' => Some(Self::Galileo),
+            b'C' => Some(Self::BeiDou),
+            b'S' => Some(Self::Sbas),
             _ => None,
         }
     }
@@ -45,6 +60,7 @@ impl Constellation {
             Self::Glonass => 'R',
             Self::Galileo => 'E',
             Self::BeiDou => 'C',
+            Self::Sbas => 'S',
         }
     }
 }
@@ -72,8 +88,9 @@ mod tests {
     fn every_constellation_is_where_its_index_says() {
         for (i, c) in Constellation::ALL.into_iter().enumerate() {
             assert_eq!((c.index(), Constellation::from_index(i)), (i, Some(c)));
+            assert_eq!(Constellation::from_letter(c.letter() as u8), Some(c));
         }
-        assert_eq!(Constellation::from_index(4), None);
+        assert_eq!(Constellation::from_index(5), None);
     }
 
     #[test]

@@ -2,6 +2,9 @@
 
 pub mod dme;
 mod epoch;
+pub mod point;
+mod range_error;
 pub mod wls;
 
 pub use epoch::Epoch;
+pub use range_error::RangeError;

@@ -36,6 +36,7 @@ struct Group {
     count: usize,
     weight: f64,
     mean: Vector3<f64>,
+    residual: f64,
 }
 
 /// Covariance of the position.
@@ -53,7 +54,7 @@ struct Group {
 /// [`Unavailable::TooFewSatellites`] when unknowns (three and a clock for each constellation seen) outnumber satellites;
 /// [`Unavailable::Singular`] when the condition number of H'WH, clocks included, is above [`CONDITION_LIMIT`].
 pub fn covariance<'a>(sights: impl Iterator<Item = &'a LineOfSight> + Clone) -> Result<Covariance<Enu>, Unavailable> {
-    solve(sights, |s| 1.0 / (s.sigma.m() * s.sigma.m()))
+    Normal::new(sights.map(|s| row(s, 1.0 / (s.sigma.m() * s.sigma.m()))))?.covariance()
 }
 
 /// Dilutions of precision; every range counts the same, whatever its sigma.
@@ -61,9 +62,7 @@ pub fn covariance<'a>(sights: impl Iterator<Item = &'a LineOfSight> + Clone) -> 
 /// # Errors
 /// As [`covariance`].
 pub fn dilution<'a>(sights: impl Iterator<Item = &'a LineOfSight> + Clone) -> Result<Dilution, Unavailable> {
-    let q = solve(sights, |_| 1.0)?;
-    let [e, n, v] = [0, 1, 2].map(|i| q.matrix()[(i, i)]);
-    Ok(Dilution { east: sqrt(e), north: sqrt(n), horizontal: sqrt(e + n), vertical: sqrt(v), position: sqrt(e + n + v) })
+    Ok(Dilution::of(&Normal::new(sights.map(|s| row(s, 1.0)))?.covariance()?))
 }
 
 /// Standard deviations along the axes of the horizontal ellipse, the larger first.
@@ -80,42 +79,118 @@ pub fn horizontal_axes(covariance: &Covariance<Enu>) -> (Metres, Metres) {
     (Metres::new(sqrt(larger)), Metres::new(sqrt(if smaller > 0.0 { smaller } else { 0.0 })))
 }
 
-fn solve<'a>(
-    sights: impl Iterator<Item = &'a LineOfSight> + Clone,
-    weight: impl Fn(&LineOfSight) -> f64,
-) -> Result<Covariance<Enu>, Unavailable> {
-    let groups = groups(sights.clone(), &weight);
-    let have = groups.iter().map(|g| g.count).sum();
-    let need = 3 + groups.iter().filter(|g| g.count > 0).count();
-    // Nothing in view still needs four.
-    let need = if need > 3 { need } else { 4 };
-    if have < need {
-        return Err(Unavailable::TooFewSatellites { need, have });
-    }
-    let mut information = Matrix3::zeros();
-    for s in sights {
-        let d = s.direction.unit() - groups[s.constellation.index()].mean;
-        information += weight(s) * d * d.transpose();
-    }
-    let condition = condition(&information, &groups);
-    let singular = Unavailable::Singular { condition, limit: CONDITION_LIMIT };
-    if !(condition <= CONDITION_LIMIT) {
-        return Err(singular);
-    }
-    let factor = information.cholesky().ok_or(singular)?;
-    Ok(Covariance::claim_symmetric(factor.inverse()))
+/// One range of the normal equation.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Row {
+    /// From the receiver to the satellite, east-north-up.
+    pub(super) unit: Vector3<f64>,
+    /// 1 / variance.
+    pub(super) weight: f64,
+    /// Which clock.
+    pub(super) clock: usize,
+    /// Measured less computed range \[m\]; what the clock makes of it is common to its rows.
+    pub(super) residual: f64,
 }
 
-fn groups<'a>(sights: impl Iterator<Item = &'a LineOfSight>, weight: impl Fn(&LineOfSight) -> f64) -> [Group; CLOCKS] {
+/// The normal equation with its clocks eliminated.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Normal {
+    groups: [Group; CLOCKS],
+    information: Matrix3<f64>,
+    /// Right side: -sum w (u - m_c)(r - r_c).
+    side: Vector3<f64>,
+}
+
+impl Normal {
+    /// From rows.
+    ///
+    /// # Errors
+    /// [`Unavailable::TooFewSatellites`].
+    pub(super) fn new(rows: impl Iterator<Item = Row> + Clone) -> Result<Self, Unavailable> {
+        let groups = groups(rows.clone());
+        let have = groups.iter().map(|g| g.count).sum();
+        let need = 3 + groups.iter().filter(|g| g.count > 0).count();
+        // Nothing in view still needs four.
+        let need = if need > 3 { need } else { 4 };
+        if have < need {
+            return Err(Unavailable::TooFewSatellites { need, have });
+        }
+        let (mut information, mut side) = (Matrix3::zeros(), Vector3::zeros());
+        for row in rows {
+            let group = &groups[row.clock];
+            let d = row.unit - group.mean;
+            information += row.weight * d * d.transpose();
+            side -= (row.weight * (row.residual - group.residual)) * d;
+        }
+        Ok(Self { groups, information, side })
+    }
+
+    /// The least-squares step of the position; `None` where the geometry does not determine it at all.
+    pub(super) fn step(&self) -> Option<Vector3<f64>> {
+        Some(self.information.cholesky()?.solve(&self.side))
+    }
+
+    /// What a row's clock reads after a step: the weighted mean of residual and step along the line of sight.
+    pub(super) fn clock(&self, clock: usize, step: &Vector3<f64>) -> f64 {
+        self.groups[clock].residual + self.groups[clock].mean.dot(step)
+    }
+
+    /// Inverse of the information, for [`Self::leverage`].
+    pub(super) fn inverse(&self) -> Option<Matrix3<f64>> {
+        Some(self.information.cholesky()?.inverse())
+    }
+
+    /// How much of its own residual a row takes away by moving the solution, 0 to 1: w (1/W_c + d' N^-1 d).
+    pub(super) fn leverage(&self, inverse: &Matrix3<f64>, row: &Row) -> f64 {
+        let group = &self.groups[row.clock];
+        let d = row.unit - group.mean;
+        row.weight * (1.0 / group.weight + d.dot(&(inverse * d)))
+    }
+
+    /// Number of clocks solved for.
+    pub(super) fn clocks(&self) -> usize {
+        self.groups.iter().filter(|g| g.count > 0).count()
+    }
+
+    /// Covariance of the position.
+    ///
+    /// # Errors
+    /// [`Unavailable::Singular`].
+    pub(super) fn covariance(&self) -> Result<Covariance<Enu>, Unavailable> {
+        let condition = condition(&self.information, &self.groups);
+        let singular = Unavailable::Singular { condition, limit: CONDITION_LIMIT };
+        if !(condition <= CONDITION_LIMIT) {
+            return Err(singular);
+        }
+        let factor = self.information.cholesky().ok_or(singular)?;
+        Ok(Covariance::claim_symmetric(factor.inverse()))
+    }
+}
+
+impl Dilution {
+    /// From the covariance of ranges of 1 m.
+    pub(super) fn of(q: &Covariance<Enu>) -> Self {
+        let [e, n, v] = [0, 1, 2].map(|i| q.matrix()[(i, i)]);
+        Self { east: sqrt(e), north: sqrt(n), horizontal: sqrt(e + n), vertical: sqrt(v), position: sqrt(e + n + v) }
+    }
+}
+
+fn row(s: &LineOfSight, weight: f64) -> Row {
+    Row { unit: s.direction.unit(), weight, clock: s.constellation.index(), residual: 0.0 }
+}
+
+fn groups(rows: impl Iterator<Item = Row>) -> [Group; CLOCKS] {
     let mut groups = [Group::default(); CLOCKS];
-    for s in sights {
-        let (g, w) = (&mut groups[s.constellation.index()], weight(s));
+    for row in rows {
+        let g = &mut groups[row.clock];
         g.count += 1;
-        g.weight += w;
-        g.mean += w * s.direction.unit();
+        g.weight += row.weight;
+        g.mean += row.weight * row.unit;
+        g.residual += row.weight * row.residual;
     }
     for g in groups.iter_mut().filter(|g| g.count > 0) {
         g.mean /= g.weight;
+        g.residual /= g.weight;
     }
     groups
 }
@@ -211,7 +286,7 @@ mod tests {
             let s = h.singular_values();
             let expected = (s.max() / s.min()).powi(2);
             prop_assume!(expected < 1e8);
-            let g = groups(sights.iter(), |_| 1.0);
+            let g = groups(sights.iter().map(|s| row(s, 1.0)));
             let mut information = Matrix3::zeros();
             for x in &sights {
                 let d = x.direction.unit() - g[x.constellation.index()].mean;

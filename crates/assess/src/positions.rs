@@ -1,0 +1,246 @@
+//! Observations and navigation messages to positions, epoch by epoch on all cores.
+
+use navbound_core::geometry::atmosphere::ionosphere_factor;
+use navbound_core::geometry::broadcast::{self, clock_polynomial};
+use navbound_core::quantity::{GpsTime, Metres, Unavailable};
+use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};
+use navbound_core::solution::point::{self, Fix, Range, Settings};
+use navbound_formats::rinex::{Navigation, Observations};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Epochs in one task of the pool: about 0.5 ms of work.
+const EPOCHS_PER_TASK: usize = 32;
+const SYSTEMS: usize = Constellation::ALL.len();
+
+/// Which pseudoranges make a range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signals {
+    /// One: L1, E1, B1I.
+    Single,
+    /// The ionosphere-free pair: L1 and L2, E1 and E5a, B1I and B3I.
+    Dual,
+}
+
+/// What to solve.
+#[derive(Debug, Clone)]
+pub struct Job {
+    /// Constellations to use; GPS, Galileo and BeiDou can be.
+    pub systems: Vec<Constellation>,
+    /// Which pseudoranges.
+    pub signals: Signals,
+    /// How.
+    pub settings: Settings,
+}
+
+/// What came of a day, or an hour.
+#[derive(Debug, Clone, Default)]
+pub struct Positions {
+    /// One outcome an epoch.
+    pub fixes: Vec<Result<Fix, Unavailable>>,
+    /// Satellite-epochs of the wanted constellations that were not used, by reason.
+    pub unused: BTreeMap<&'static str, usize>,
+    /// Pseudoranges that were used, by constellation: codes in order of preference that the file has.
+    pub codes: BTreeMap<char, Vec<String>>,
+}
+
+/// One frequency of a constellation: columns of the observation table.
+#[derive(Debug, Clone, Default)]
+struct Band {
+    carrier: Option<Carrier>,
+    /// Pseudorange, Doppler, strength; pseudoranges by preference.
+    columns: Vec<(usize, Option<usize>, Option<usize>)>,
+}
+
+/// What a constellation contributes.
+#[derive(Debug, Clone, Default)]
+struct Plan {
+    bands: Vec<Band>,
+    /// Messages by preference.
+    messages: &'static [Message],
+}
+
+/// Broadcast records of every satellite and message, found without a search.
+struct Records<'a> {
+    navigation: &'a Navigation,
+    ranges: Vec<std::ops::Range<usize>>,
+}
+
+impl<'a> Records<'a> {
+    fn new(navigation: &'a Navigation) -> Self {
+        let mut ranges = vec![0..0; SYSTEMS * 100 * 5];
+        for (k, e) in navigation.ephemerides.iter().enumerate() {
+            if let Some(range) = ranges.get_mut(Self::slot(e.satellite, e.message)) {
+                *range = if range.end == 0 { k..k + 1 } else { range.start..k + 1 };
+            }
+        }
+        Self { navigation, ranges }
+    }
+    fn slot(satellite: SatelliteId, message: Message) -> usize {
+        (satellite.constellation.index() * 100 + usize::from(satellite.number)) * 5 + message as usize
+    }
+    fn nearest(&self, satellite: SatelliteId, messages: &[Message], time: GpsTime) -> Option<&'a Ephemeris> {
+        messages.iter().find_map(|m| {
+            let range = self.ranges.get(Self::slot(satellite, *m))?.clone();
+            nearest(&self.navigation.ephemerides[range], time)
+        })
+    }
+}
+
+/// Positions of every epoch.
+pub fn positions(observations: &Observations, navigation: &Navigation, job: &Job) -> Positions {
+    let plans: [Option<Plan>; SYSTEMS] = std::array::from_fn(|i| {
+        let constellation = Constellation::from_index(i).filter(|c| job.systems.contains(c))?;
+        Some(Plan::new(constellation, job.signals, observations)).filter(|p| p.bands.iter().all(|b| !b.columns.is_empty()))
+    });
+    let records = Records::new(navigation);
+    let outcomes: Vec<_> = (0..observations.n_epochs())
+        .into_par_iter()
+        .with_min_len(EPOCHS_PER_TASK)
+        .map_init(Vec::new, |ranges, epoch| {
+            let mut unused = [0_usize; REASONS.len()];
+            collect(observations, &records, &plans, epoch, ranges, &mut unused);
+            (point::solve(ranges, observations.time[epoch], &job.settings), unused)
+        })
+        .collect();
+    let mut found = Positions { codes: codes(&plans, observations), ..Positions::default() };
+    for (fix, unused) in outcomes {
+        found.fixes.push(fix);
+        for (reason, n) in REASONS.iter().zip(unused).filter(|(_, n)| *n > 0) {
+            *found.unused.entry(reason).or_default() += n;
+        }
+    }
+    found
+}
+
+/// Why a satellite in the file is not in the solution, before geometry is looked at.
+const REASONS: [&str; 5] =
+    ["no pseudorange", "no broadcast record fresh enough", "unhealthy", "accuracy not predicted", "record describes no orbit"];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Unused {
+    NoRange,
+    NoRecord,
+    Unhealthy,
+    Unpredicted,
+    NoOrbit,
+}
+
+impl Plan {
+    fn new(constellation: Constellation, signals: Signals, observations: &Observations) -> Self {
+        // Attributes by preference: what most receivers track, then combined and encrypted forms.
+        let (bands, messages): (&[(u8, &[u8])], &'static [Message]) = match (constellation, signals) {
+            (Constellation::Gps, Signals::Single) => (&[(b'1', b"CWPXLSY")], &[Message::Lnav]),
+            (Constellation::Gps, Signals::Dual) => (&[(b'1', b"CWPXLSY"), (b'2', b"WPLXSCY")], &[Message::Lnav]),
+            (Constellation::Galileo, Signals::Single) => (&[(b'1', b"CXBZA")], &[Message::Inav, Message::Fnav]),
+            (Constellation::Galileo, Signals::Dual) => (&[(b'1', b"CXBZA"), (b'5', b"QXI")], &[Message::Fnav]),
+            (Constellation::BeiDou, Signals::Single) => (&[(b'2', b"IXQ")], &[Message::D1, Message::D2]),
+            (Constellation::BeiDou, Signals::Dual) => (&[(b'2', b"IXQ"), (b'6', b"IXQ")], &[Message::D1, Message::D2]),
+            _ => (&[], &[]),
+        };
+        let band = |(band, attributes): &(u8, &[u8])| {
+            let column = |kind, attribute| observations.column(constellation, &[kind, *band, attribute]);
+            let columns = attributes.iter().filter_map(|a| Some((column(b'C', *a)?, column(b'D', *a), column(b'S', *a)))).collect();
+            Band { carrier: Carrier::from_band(constellation, *band), columns }
+        };
+        Self { bands: bands.iter().map(band).collect(), messages }
+    }
+
+    /// A satellite's range.
+    fn range(&self, satellite: SatelliteId, values: &[f64], records: &Records<'_>, time: GpsTime) -> Result<Range, Unused> {
+        let mut measured = [(Carrier::L1, f64::NAN, f64::NAN, f64::NAN); 2];
+        for (slot, band) in measured.iter_mut().zip(&self.bands) {
+            *slot = band.measured(values).ok_or(Unused::NoRange)?;
+        }
+        let measured = &measured[..self.bands.len().min(2)];
+        let (first, pseudorange, doppler, cn0) = *measured.first().ok_or(Unused::NoRange)?;
+        let e = records.nearest(satellite, self.messages, time).ok_or(Unused::NoRecord)?;
+        if !measured.iter().all(|m| e.healthy(m.0)) {
+            return Err(Unused::Unhealthy);
+        }
+        if !(e.accuracy_m >= 0.0) {
+            return Err(Unused::Unpredicted);
+        }
+        let sent = earlier(time, pseudorange / SPEED_OF_LIGHT_MPS);
+        let sent = earlier(sent, clock_polynomial(e, sent));
+        let state = broadcast::state(e, sent).map_err(|_| Unused::NoOrbit)?;
+        let (factors, ionosphere) = combination(measured);
+        let mut corrected = SPEED_OF_LIGHT_MPS * state.clock_s;
+        for (factor, m) in factors.iter().zip(measured) {
+            corrected += factor * (m.1 - SPEED_OF_LIGHT_MPS * e.group_delay(m.0).ok_or(Unused::NoRecord)?);
+        }
+        Ok(Range {
+            satellite,
+            corrected: Metres::new(corrected),
+            position: state.position,
+            velocity_mps: state.velocity_mps,
+            rate_mps: SPEED_OF_LIGHT_MPS * state.clock_drift - doppler * first.wavelength_m(),
+            cn0_dbhz: cn0,
+            ionosphere_factor: ionosphere,
+            noise_factor: factors.iter().map(|f| f * f).sum::<f64>().sqrt(),
+            ure_factor: (e.accuracy_m / nominal_accuracy(satellite.constellation)).max(1.0),
+        })
+    }
+}
+
+impl Band {
+    /// Carrier, pseudorange, Doppler, strength of the first pseudorange that is there.
+    fn measured(&self, values: &[f64]) -> Option<(Carrier, f64, f64, f64)> {
+        let at = |column: Option<usize>| column.and_then(|c| values.get(c)).copied().unwrap_or(f64::NAN);
+        let carrier = self.carrier?;
+        self.columns.iter().map(|(c, d, s)| (carrier, at(Some(*c)), at(*d), at(*s))).find(|m| m.1 > 0.0)
+    }
+}
+
+/// Factors of the pseudoranges in a range, and its ionospheric delay against that on L1.
+///
+/// ```text
+/// one: 1;    two: f1^2 / (f1^2 - f2^2) and -f2^2 / (f1^2 - f2^2), free of the ionosphere to first order
+/// ```
+fn combination(measured: &[(Carrier, f64, f64, f64)]) -> ([f64; 2], f64) {
+    match measured {
+        [(first, ..), (second, ..)] => {
+            let [f1, f2] = [first, second].map(|c| c.frequency_hz() * c.frequency_hz());
+            ([f1 / (f1 - f2), -f2 / (f1 - f2)], 0.0)
+        }
+        [(only, ..)] => ([1.0, 0.0], ionosphere_factor(*only)),
+        _ => ([0.0; 2], 0.0),
+    }
+}
+
+/// The accuracy a healthy satellite of the constellation usually states \[m\]: URA index 0 is up to 2.4 m, Galileo's SISA 3.12 m.
+const fn nominal_accuracy(constellation: Constellation) -> f64 {
+    match constellation {
+        Constellation::Galileo => 3.12,
+        _ => 2.4,
+    }
+}
+
+fn earlier(time: GpsTime, seconds: f64) -> GpsTime {
+    GpsTime::from_nanoseconds(time.nanoseconds().saturating_sub((seconds * 1e9) as i64))
+}
+
+fn collect(
+    observations: &Observations,
+    records: &Records<'_>,
+    plans: &[Option<Plan>; SYSTEMS],
+    epoch: usize,
+    ranges: &mut Vec<Range>,
+    unused: &mut [usize; REASONS.len()],
+) {
+    ranges.clear();
+    for k in observations.satellites(epoch) {
+        let satellite = observations.satellite[k];
+        let Some(plan) = &plans[satellite.constellation.index()] else { continue };
+        match plan.range(satellite, observations.values(k), records, observations.time[epoch]) {
+            Ok(range) => ranges.push(range),
+            Err(reason) => unused[reason as usize] += 1,
+        }
+    }
+}
+
+fn codes(plans: &[Option<Plan>; SYSTEMS], observations: &Observations) -> BTreeMap<char, Vec<String>> {
+    let name = |c: Constellation, k: usize| String::from_utf8_lossy(&observations.codes[c.index()][k]).into_owned();
+    let all = Constellation::ALL.into_iter().filter_map(|c| Some((c, plans[c.index()].as_ref()?)));
+    all.map(|(c, plan)| (c.letter(), plan.bands.iter().flat_map(|b| b.columns.iter().map(move |(k, ..)| name(c, *k))).collect())).collect()
+}

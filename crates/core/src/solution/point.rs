@@ -1,0 +1,382 @@
+//! Single-point position: robust weighted least squares on pseudoranges of one epoch, residual test and exclusion.
+//!
+//! Source: IS-GPS-200 20.3.3.4 and the textbook normal equation (with its clocks eliminated, see [`super::wls`]); robust start by Huber's
+//! weights (Huber 1964); test of the residuals by chi-square and exclusion of the largest (Parkinson and Axelrad 1988); provenance: ours,
+//! of standard parts.
+
+use super::range_error::{RangeConditions, RangeError};
+use super::wls::{Dilution, Normal, Row};
+use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, enu_from_ecef, geodetic_from_ecef};
+use crate::geometry::Direction;
+use crate::geometry::atmosphere::{klobuchar, troposphere_mapping, zenith_delay};
+use crate::geometry::broadcast::in_axes_of_reception;
+use crate::quantity::{GpsTime, Metres, Radians, Unavailable};
+use crate::signal::{Constellation, Klobuchar, SPEED_OF_LIGHT_MPS, SatelliteId};
+use crate::special::float::{atan2, hypot, sqrt};
+use crate::special::gamma::chi_square_tail;
+use nalgebra::{Matrix3, Vector3};
+
+/// Most ranges of one epoch; receivers list fewer than 60 satellites.
+pub const MOST_RANGES: usize = 96;
+const ROUNDS: usize = 12;
+/// Below this step the position has settled \[m\].
+const SETTLED: f64 = 1e-4;
+/// This far from where delays were computed they are computed anew \[m\]; nearer they are wrong by less than 3e-4 of it, 15 mm.
+const DELAYS_MOVE: f64 = 50.0;
+/// Residuals beyond this many standard deviations count less in the robust rounds; Huber's choice costs 5 % of efficiency.
+const HUBER: f64 = 1.345;
+
+/// A pseudorange of one satellite, ready but for what depends on the receiver's position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Which satellite.
+    pub satellite: SatelliteId,
+    /// Pseudorange plus satellite clock (group delay taken out) times c.
+    pub corrected: Metres,
+    /// Satellite at transmission, axes of transmission.
+    pub position: EcefPosition,
+    /// Its velocity \[m/s\].
+    pub velocity_mps: Vector3<f64>,
+    /// Range rate from Doppler plus satellite clock drift times c \[m/s\]; NaN where there is none.
+    pub rate_mps: f64,
+    /// Carrier-to-noise density \[dB-Hz\]; NaN where there is none.
+    pub cn0_dbhz: f64,
+    /// Ionospheric delay against that on L1; 0 for an ionosphere-free combination.
+    pub ionosphere_factor: f64,
+    /// Noise against that of one pseudorange.
+    pub noise_factor: f64,
+    /// Stated accuracy against the nominal one of its system, at least 1.
+    pub ure_factor: f64,
+}
+
+/// How a position is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Lowest elevation.
+    pub mask: Radians,
+    /// Broadcast ionosphere; `None` leaves the delay in the ranges.
+    pub ionosphere: Option<Klobuchar>,
+    /// Weights.
+    pub errors: RangeError,
+    /// Risk of a false alarm of the residual test.
+    pub false_alarm: f64,
+    /// Most satellites that may be excluded.
+    pub most_excluded: usize,
+}
+
+/// A position and what it rests on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fix {
+    /// Where.
+    pub position: Geodetic,
+    /// Covariance of the position, by the weights; inflated by the residuals where the test fails.
+    pub covariance: Covariance<Enu>,
+    /// Dilution of precision of the satellites used.
+    pub dilution: Dilution,
+    /// Receiver clock against each constellation's time \[m\], NaN where none of its satellites is used.
+    pub clock_m: [f64; Constellation::ALL.len()],
+    /// Velocity, east, north, up \[m/s\], and its covariance \[m²/s²\], where Doppler allows.
+    pub velocity: Option<(Vector3<f64>, Matrix3<f64>)>,
+    /// Satellites used.
+    pub n_used: usize,
+    /// Satellites above the mask that were excluded.
+    pub n_excluded: usize,
+    /// Risk that residuals as large as these, or larger, come from errors as the weights say; NaN without redundancy.
+    pub residual_risk: f64,
+    /// Ranges beyond the unknowns.
+    pub redundancy: usize,
+    /// The residuals agree with the weights, after exclusion where there was any; without redundancy nothing can be said.
+    pub consistent: bool,
+}
+
+/// Where a range stands, seen from the last position.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    row: Row,
+    delay: f64,
+    /// The ionospheric part of the delay.
+    ionosphere: f64,
+    /// Weight by the error model; 0 below the mask.
+    weight: f64,
+    excluded: bool,
+}
+
+impl Seen {
+    const fn counts(&self) -> bool {
+        self.weight > 0.0 && !self.excluded
+    }
+}
+
+/// The position of one epoch.
+///
+/// # Errors
+/// [`Unavailable`]: too few satellites above the mask, a singular geometry, a position off the Earth's neighbourhood (ranges that are
+/// no ranges), or more ranges than [`MOST_RANGES`].
+pub fn solve(ranges: &[Range], time: GpsTime, settings: &Settings) -> Result<Fix, Unavailable> {
+    if ranges.len() > MOST_RANGES {
+        let (value, unit, domain) = (ranges.len() as f64, "1", "[0, 96]");
+        return Err(Unavailable::Invalid { field: "ranges", value, unit, domain });
+    }
+    let mut seen = [Seen::default(); MOST_RANGES];
+    let seen = &mut seen[..ranges.len()];
+    let (at, modelled_at) = (start(ranges)?, Vector3::zeros());
+    let mut epoch = Solver { ranges, seen, time, settings, at, modelled_at, clocks: [0.0; CLOCKS] };
+    epoch.settle(true)?;
+    epoch.settle(false)?;
+    epoch.exclude()?;
+    epoch.fix()
+}
+
+const CLOCKS: usize = Constellation::ALL.len();
+
+struct Solver<'a> {
+    ranges: &'a [Range],
+    seen: &'a mut [Seen],
+    time: GpsTime,
+    settings: &'a Settings,
+    at: Vector3<f64>,
+    /// Where delays and weights were computed; the Earth's centre before they are.
+    modelled_at: Vector3<f64>,
+    clocks: [f64; CLOCKS],
+}
+
+/// A first position from nothing: equal weights, no atmosphere, from the Earth's centre. A few rounds bring it within kilometres,
+/// gross errors in the ranges apart.
+fn start(ranges: &[Range]) -> Result<Vector3<f64>, Unavailable> {
+    let mut at = Vector3::zeros();
+    for _ in 0..ROUNDS {
+        let rows = ranges.iter().map(|r| {
+            let (way, unit) = way(r, &at);
+            Row { unit, weight: 1.0, clock: r.satellite.constellation.index(), residual: r.corrected.m() - way }
+        });
+        let normal = Normal::new(rows)?;
+        let step = normal.step().ok_or(Unavailable::Singular { condition: f64::INFINITY, limit: super::wls::CONDITION_LIMIT })?;
+        at += step;
+        if step.norm() < 1e3 {
+            break;
+        }
+    }
+    Ok(at)
+}
+
+/// Length of the signal's way and direction from receiver to satellite, Earth-fixed axes of reception.
+fn way(range: &Range, at: &Vector3<f64>) -> (f64, Vector3<f64>) {
+    let straight = (range.position.vector() - at).norm();
+    let line = in_axes_of_reception(range.position.vector(), straight / SPEED_OF_LIGHT_MPS) - at;
+    let length = line.norm();
+    (length, line / length)
+}
+
+impl Solver<'_> {
+    /// Rounds of least squares until the position stands still; robust rounds weigh large residuals down.
+    fn settle(&mut self, robust: bool) -> Result<(), Unavailable> {
+        for round in 0..ROUNDS {
+            let here = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
+            let turn = enu_from_ecef(&here.point);
+            // The first robust round has no residuals to judge by yet.
+            self.look(&here, &turn, robust && round > 0);
+            let normal = Normal::new(self.rows())?;
+            let step = normal.step().ok_or(Unavailable::Singular { condition: f64::INFINITY, limit: super::wls::CONDITION_LIMIT })?;
+            self.at += turn.transpose() * step;
+            self.clocks = core::array::from_fn(|c| normal.clock(c, &step));
+            let moved = step.norm();
+            if moved < SETTLED || (robust && round > 1 && moved < 0.1) {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
+    fn rows(&self) -> impl Iterator<Item = Row> + Clone + '_ {
+        self.seen.iter().filter(|s| s.counts()).map(|s| s.row)
+    }
+
+    /// Ranges against the present position; delays and weights anew where it has moved.
+    fn look(&mut self, here: &Geodetic, turn: &Matrix3<f64>, robust: bool) {
+        let delays = (self.at - self.modelled_at).norm() > DELAYS_MOVE;
+        let zenith = if delays { zenith_delay(here) } else { 0.0 };
+        self.modelled_at = if delays { self.at } else { self.modelled_at };
+        for (range, seen) in self.ranges.iter().zip(self.seen.iter_mut()) {
+            let (way, unit) = way(range, &self.at);
+            let unit = turn * unit;
+            if delays {
+                (seen.ionosphere, seen.delay, seen.weight) = self.settings.delay_and_weight(range, &unit, here, zenith, self.time);
+            }
+            let clock = range.satellite.constellation.index();
+            let residual = range.corrected.m() - way - seen.delay;
+            let mut weight = seen.weight;
+            if robust {
+                let normalised = (residual - self.clocks[clock]).abs() * sqrt(weight);
+                weight *= if normalised > HUBER { HUBER / normalised } else { 1.0 };
+            }
+            seen.row = Row { unit, weight, clock, residual };
+        }
+    }
+
+    /// Weighted residual of a row after its clock.
+    fn normalised(&self, seen: &Seen) -> f64 {
+        (seen.row.residual - self.clocks[seen.row.clock]) * sqrt(seen.weight)
+    }
+
+    fn statistic(&mut self) -> Result<(f64, usize), Unavailable> {
+        let here = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
+        self.look(&here, &enu_from_ecef(&here.point), false);
+        let normal = Normal::new(self.rows())?;
+        let used = self.seen.iter().filter(|s| s.counts());
+        let statistic = used.clone().map(|s| self.normalised(s) * self.normalised(s)).sum();
+        Ok((statistic, used.count() - 3 - normal.clocks()))
+    }
+
+    fn passes(&self, statistic: f64, redundancy: usize) -> bool {
+        redundancy > 0 && chi_square_tail(redundancy as f64, statistic) >= self.settings.false_alarm
+    }
+
+    /// Exclude the worst range until the residuals agree with the weights or no more may go.
+    fn exclude(&mut self) -> Result<(), Unavailable> {
+        for _ in 0..self.settings.most_excluded {
+            let (statistic, redundancy) = self.statistic()?;
+            // With one redundant range a fault is seen but not found.
+            if self.passes(statistic, redundancy) || redundancy < 2 {
+                return Ok(());
+            }
+            let Some(worst) = self.worst()? else { return Ok(()) };
+            self.seen[worst].excluded = true;
+            self.settle(false)?;
+        }
+        Ok(())
+    }
+
+    /// The range without which the statistic falls most: by w v^2 / (1 - leverage), exactly.
+    fn worst(&self) -> Result<Option<usize>, Unavailable> {
+        let normal = Normal::new(self.rows())?;
+        let Some(inverse) = normal.inverse() else { return Ok(None) };
+        let fall = |k: usize| {
+            let seen = &self.seen[k];
+            let rest = 1.0 - normal.leverage(&inverse, &seen.row);
+            // A range that nothing else checks leaves no residual to judge it by.
+            if rest > 1e-6 { self.normalised(seen) * self.normalised(seen) / rest } else { 0.0 }
+        };
+        Ok((0..self.seen.len()).filter(|k| self.seen[*k].counts()).max_by(|a, b| fall(*a).total_cmp(&fall(*b))))
+    }
+
+    fn fix(&mut self) -> Result<Fix, Unavailable> {
+        let (statistic, redundancy) = self.statistic()?;
+        let consistent = self.passes(statistic, redundancy);
+        let position = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
+        if !(position.height.m() > -50_000.0 && position.height.m() < 1e8) {
+            let (value, unit, domain) = (position.height.m(), "m", "(-5e4, 1e8)");
+            return Err(Unavailable::Invalid { field: "est_h_m", value, unit, domain });
+        }
+        let normal = Normal::new(self.rows())?;
+        let covariance = normal.covariance()?;
+        // Residuals larger than the weights say: the weights are wrong by that much at least.
+        let inflation = if consistent || redundancy == 0 { 1.0 } else { (statistic / redundancy as f64).max(1.0) };
+        // The condition was judged with the weights; it is not judged twice.
+        let unit_weights = Normal::new(self.rows().map(|r| Row { weight: 1.0, ..r }))?.inverse();
+        let unit_weights = unit_weights.ok_or(Unavailable::Singular { condition: f64::INFINITY, limit: super::wls::CONDITION_LIMIT })?;
+        let mut clock_m = [f64::NAN; CLOCKS];
+        for s in self.seen.iter().filter(|s| s.counts()) {
+            clock_m[s.row.clock] = self.clocks[s.row.clock];
+        }
+        Ok(Fix {
+            position,
+            covariance: Covariance::claim_symmetric(covariance.matrix() * inflation + self.shared()?),
+            dilution: Dilution::of(&Covariance::claim_symmetric(unit_weights)),
+            clock_m,
+            velocity: self.velocity(&position),
+            n_used: self.seen.iter().filter(|s| s.counts()).count(),
+            n_excluded: self.seen.iter().filter(|s| s.excluded).count(),
+            residual_risk: if redundancy > 0 { chi_square_tail(redundancy as f64, statistic) } else { f64::NAN },
+            redundancy,
+            consistent,
+        })
+    }
+
+    /// Covariance of what the ionosphere's error has in common: a factor of all modelled delays, and a tilt from horizon to horizon in
+    /// two directions; each is what such range errors do to the position.
+    fn shared(&self) -> Result<Matrix3<f64>, Unavailable> {
+        let errors = &self.settings.errors;
+        // Shape of the error over the sky: the same everywhere, or growing eastwards, or northwards.
+        let shapes = [
+            (errors.ionosphere_common_share, 1.0, Vector3::zeros()),
+            (errors.ionosphere_gradient_share, 0.0, Vector3::x()),
+            (errors.ionosphere_gradient_share, 0.0, Vector3::y()),
+        ];
+        let mut covariance = Matrix3::zeros();
+        for (share, level, tilt) in shapes {
+            let used = self.seen.iter().filter(|s| s.counts());
+            let normal = Normal::new(used.map(|s| Row { residual: share * s.ionosphere * (level + tilt.dot(&s.row.unit)), ..s.row }))?;
+            let moved = normal.step().unwrap_or_else(Vector3::zeros);
+            covariance += moved * moved.transpose();
+        }
+        Ok(covariance)
+    }
+
+    /// Velocity from Doppler: the same directions, one clock rate for all, weights of the ranges; robust.
+    ///
+    /// ```text
+    /// rate = u . (v_satellite - v) + c (receiver clock rate)
+    /// ```
+    ///
+    /// The covariance takes its scale from the residuals: no error model of Doppler is assumed.
+    fn velocity(&self, here: &Geodetic) -> Option<(Vector3<f64>, Matrix3<f64>)> {
+        let turn = enu_from_ecef(&here.point);
+        let used = || self.ranges.iter().zip(self.seen.iter()).filter(|(r, s)| s.counts() && r.rate_mps.is_finite());
+        let row = |r: &Range, s: &Seen, v: &Vector3<f64>, clock: f64, huber: f64| {
+            let moving = in_axes_of_reception(&r.velocity_mps, r.corrected.m() / SPEED_OF_LIGHT_MPS);
+            let residual = r.rate_mps - s.row.unit.dot(&(turn * moving - v));
+            let size = (residual - clock).abs();
+            let weight = if size > huber { s.weight * huber / size } else { s.weight };
+            Row { unit: s.row.unit, weight, clock: 0, residual }
+        };
+        let (mut v, mut clock, mut huber) = (Vector3::zeros(), 0.0, f64::INFINITY);
+        for _ in 0..4 {
+            let normal = Normal::new(used().map(|(r, s)| row(r, s, &v, clock, huber))).ok()?;
+            let step = normal.step()?;
+            clock = normal.clock(0, &step);
+            v += step;
+            let left = used().map(|(r, s)| (row(r, s, &v, clock, f64::INFINITY).residual - clock).abs());
+            let n = used().count() as f64;
+            huber = 1.5 * left.sum::<f64>() / n;
+        }
+        let rows = used().map(|(r, s)| row(r, s, &v, clock, huber));
+        let n = used().count();
+        let squares: f64 = rows.clone().map(|r| r.weight * (r.residual - clock) * (r.residual - clock)).sum();
+        let covariance = Normal::new(rows).ok()?.covariance().ok()?;
+        (n > 4).then(|| (v, covariance.matrix() * (squares / (n - 4) as f64)))
+    }
+}
+
+impl Settings {
+    /// Ionospheric delay of a range, its whole atmospheric delay, and its weight; weight 0 below the mask.
+    fn delay_and_weight(&self, range: &Range, unit: &Vector3<f64>, here: &Geodetic, zenith: f64, time: GpsTime) -> (f64, f64, f64) {
+        let elevation = atan2(unit.z, hypot(unit.x, unit.y));
+        if !(elevation >= self.mask.rad()) {
+            return (0.0, 0.0, 0.0);
+        }
+        let Ok(direction) = Direction::new(Radians::new(atan2(unit.x, unit.y)), Radians::new(elevation)) else { return (0.0, 0.0, 0.0) };
+        let ionosphere = self.ionosphere.map_or(0.0, |k| klobuchar(&k, here, &direction, time).m()) * range.ionosphere_factor;
+        let mapping = troposphere_mapping(&direction);
+        let conditions = RangeConditions {
+            constellation: range.satellite.constellation.index(),
+            sin_elevation: unit.z,
+            ionosphere_m: ionosphere,
+            ionosphere_mapping: range.ionosphere_factor * thin_shell(unit.z),
+            troposphere_mapping: mapping,
+            cn0_dbhz: range.cn0_dbhz,
+            noise_factor: range.noise_factor,
+            ure_factor: range.ure_factor,
+        };
+        (ionosphere, ionosphere + zenith * mapping, 1.0 / self.errors.variance(&conditions))
+    }
+}
+
+/// Obliquity of the ionosphere as a shell 350 km up: 1 / sqrt(1 - (R cos E / (R + h))²), DO-229 A.4.4.10.4.
+fn thin_shell(sin_elevation: f64) -> f64 {
+    const RATIO: f64 = 6378.1363 / (6378.1363 + 350.0);
+    1.0 / sqrt(1.0 - RATIO * RATIO * (1.0 - sin_elevation * sin_elevation))
+}
+
+#[cfg(test)]
+#[path = "point_tests.rs"]
+mod tests;

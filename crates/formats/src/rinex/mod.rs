@@ -1,0 +1,15 @@
+//! RINEX: observations (versions 2.10 to 4.0x, plain and compact) and navigation messages.
+//!
+//! Source: RINEX 2.10, 2.11, 3.05 and 4.00 (IGS/RTCM), compact RINEX 1.0 and 3.0 (Hatanaka 2008); provenance: standard.
+
+mod compact;
+mod header;
+mod heading;
+pub mod navigation;
+mod number;
+pub mod observation;
+mod plain;
+mod value;
+
+pub use navigation::{Navigation, read_navigation};
+pub use observation::{Code, Observations, read_observations};

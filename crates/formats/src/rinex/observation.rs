@@ -1,0 +1,186 @@
+//! Observation files, plain and compact, to one table.
+
+use super::header::{Lines, label};
+use super::number::text;
+use super::{compact, heading, plain};
+use crate::refusal::{Refusal, Unreadable};
+use navbound_core::quantity::GpsTime;
+use navbound_core::signal::{Constellation, SatelliteId};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Refusals kept in full; the others are counted.
+const REFUSALS_KEPT: usize = 1000;
+const SYSTEMS: usize = Constellation::ALL.len();
+
+/// A code of RINEX 3: kind (C, L, D, S), band, attribute.
+pub type Code = [u8; 3];
+
+/// What a receiver recorded: epochs, in each the satellites seen, for each satellite one value a code of its constellation.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Observations {
+    /// Version of the format.
+    pub version: f64,
+    /// Name of the station or vehicle.
+    pub marker: String,
+    /// Receiver and antenna as the header names them.
+    pub receiver: String,
+    /// Antenna type.
+    pub antenna: String,
+    /// Approximate position of the marker, Earth-fixed \[m\]; absent where the header has none or zeros.
+    pub approximate_m: Option<[f64; 3]>,
+    /// Antenna reference point from the marker: up, east, north \[m\].
+    pub antenna_delta_m: [f64; 3],
+    /// Nominal time between epochs \[s\], where the header says.
+    pub interval_s: Option<f64>,
+    /// Codes of each constellation, in the order of [`Constellation::ALL`]; version 2 names translated.
+    pub codes: [Vec<Code>; SYSTEMS],
+    /// Time of each epoch.
+    pub time: Vec<GpsTime>,
+    /// Power failure since the epoch before (flag 1).
+    pub interrupted: Vec<bool>,
+    /// Receiver clock offset already applied by the receiver \[s\], NaN where not given.
+    pub clock_offset_s: Vec<f64>,
+    /// Satellites, epoch after epoch.
+    pub satellite: Vec<SatelliteId>,
+    /// Values, satellite after satellite: pseudoranges \[m\], phases \[cycles\], Doppler \[Hz\], strengths as the file has them; NaN where absent.
+    pub value: Vec<f64>,
+    /// Loss-of-lock indicator (upper) and strength (lower four bits) of each value.
+    pub indicator: Vec<u8>,
+    /// Satellites of systems that are not read, and event records, counted by kind.
+    pub skipped: BTreeMap<String, usize>,
+    /// The first 1000 things that could not be read.
+    pub refused: Vec<Refusal>,
+    /// How many there were.
+    pub n_refused: usize,
+    /// One past the last satellite of each epoch.
+    last_satellite: Vec<usize>,
+    /// First value of each satellite.
+    first_value: Vec<usize>,
+}
+
+/// Read an observation file, plain text or compact (see [`crate::packed::unpack`] for packed ones).
+///
+/// # Errors
+/// [`Unreadable`] unless the header is that of an observation file of version 2, 3 or 4, plain or compact 1.0 or 3.x, and names the codes.
+/// Epochs and values that cannot be read are put into `refused`, and the others stand.
+pub fn read_observations(bytes: &[u8]) -> Result<Observations, Unreadable> {
+    let mut lines = Lines::new(bytes);
+    let first = lines.next().ok_or_else(|| Unreadable::whole("the file is empty"))?;
+    let mut o = Observations::default();
+    if label(first) == b"CRINEX VERS   / TYPE" {
+        // The second line of a compact file names its writer.
+        _ = lines.next();
+        let head = lines.next().ok_or_else(|| Unreadable::at(2, "the file ends in its header"))?;
+        let scale = heading::read(&mut lines, head, &mut o)?;
+        let kind = match super::number::text(first, 0, 3).as_str() {
+            "1.0" if o.version < 3.0 => compact::Kind::First,
+            "3.0" | "3.1" if o.version >= 3.0 => compact::Kind::Third,
+            other => return Err(Unreadable::at(1, format!("compact version '{other}' does not go with RINEX version {}", o.version))),
+        };
+        o.reserve(bytes.len() / 6);
+        compact::read(lines, kind, &scale, &mut o);
+        o.finish(&scale);
+    } else {
+        let scale = heading::read(&mut lines, first, &mut o)?;
+        o.reserve(bytes.len() / 16);
+        if o.version < 3.0 {
+            plain::second(lines, &scale, &mut o)?
+        } else {
+            plain::third(lines, &scale, &mut o)
+        }
+        o.finish(&scale);
+    }
+    Ok(o)
+}
+
+impl Observations {
+    /// Number of epochs.
+    pub fn n_epochs(&self) -> usize {
+        self.time.len()
+    }
+    /// Satellites of an epoch: positions in [`Observations::satellite`].
+    pub fn satellites(&self, epoch: usize) -> Range<usize> {
+        let first = if epoch == 0 { 0 } else { self.last_satellite[epoch - 1] };
+        first..self.last_satellite[epoch]
+    }
+    /// Values of a satellite, in the order of its constellation's codes.
+    pub fn values(&self, satellite: usize) -> &[f64] {
+        &self.value[self.value_range(satellite)]
+    }
+    /// Positions of a satellite's values in [`Observations::value`].
+    pub fn value_range(&self, satellite: usize) -> Range<usize> {
+        let first = self.first_value[satellite];
+        first..self.first_value.get(satellite + 1).copied().unwrap_or(self.value.len())
+    }
+    /// Position of a code among those of a constellation.
+    pub fn column(&self, constellation: Constellation, code: &Code) -> Option<usize> {
+        self.codes[constellation.index()].iter().position(|c| c == code)
+    }
+
+    pub(super) fn n_codes(&self, constellation: Constellation) -> usize {
+        self.codes[constellation.index()].len()
+    }
+    pub(super) fn begin_satellite(&mut self, satellite: SatelliteId) {
+        self.satellite.push(satellite);
+        self.first_value.push(self.value.len());
+    }
+    pub(super) fn push(&mut self, value: f64, indicator: u8) {
+        self.value.push(value);
+        self.indicator.push(indicator);
+    }
+    pub(super) fn end_epoch(&mut self, time: GpsTime, interrupted: bool, clock_offset_s: f64) {
+        self.time.push(time);
+        self.interrupted.push(interrupted);
+        self.clock_offset_s.push(clock_offset_s);
+        self.last_satellite.push(self.satellite.len());
+    }
+    /// Forget the satellites of an epoch that did not end.
+    pub(super) fn abandon_epoch(&mut self) {
+        let keep = self.last_satellite.last().copied().unwrap_or(0);
+        let values = self.first_value.get(keep).copied().unwrap_or(self.value.len());
+        self.satellite.truncate(keep);
+        self.first_value.truncate(keep);
+        self.value.truncate(values);
+        self.indicator.truncate(values);
+    }
+    pub(super) fn skip(&mut self, kind: &str, n: usize) {
+        *self.skipped.entry(kind.to_owned()).or_default() += n;
+    }
+    pub(super) fn refuse(&mut self, line: usize, field: &str, reason: &str, found: &[u8]) {
+        self.n_refused += 1;
+        if self.refused.len() < REFUSALS_KEPT {
+            let text = text(found, 0, 80);
+            self.refused.push(Refusal { line, field: field.to_owned(), reason: reason.to_owned(), text });
+        }
+    }
+    fn reserve(&mut self, values: usize) {
+        self.value.reserve(values);
+        self.indicator.reserve(values);
+    }
+
+    /// Zero stands for "absent" among ranges, phases and strengths; scale factors of the header are taken out.
+    fn finish(&mut self, heading: &heading::Heading) {
+        let zero_is_absent: [Vec<bool>; SYSTEMS] = std::array::from_fn(|i| self.codes[i].iter().map(|c| c[0] != b'D').collect());
+        let scaled = heading.scale.iter().any(|s| !s.is_empty());
+        for (k, satellite) in self.satellite.iter().enumerate() {
+            let to = self.first_value.get(k + 1).copied().unwrap_or(self.value.len());
+            let values = &mut self.value[self.first_value[k]..to];
+            let system = satellite.constellation.index();
+            for (value, zero_is_absent) in values.iter_mut().zip(&zero_is_absent[system]) {
+                if *value == 0.0 && *zero_is_absent {
+                    *value = f64::NAN;
+                }
+            }
+            if scaled {
+                for (code, factor) in &heading.scale[system] {
+                    values[*code] /= factor;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "observation_tests.rs"]
+mod tests;

@@ -1,0 +1,290 @@
+//! Receivers' files and the positions solved from them.
+
+use crate::error::{format_error, input_error};
+use navbound_assess::positions::{Job, Positions, Signals, positions};
+use navbound_core::frame::{self, EcefPosition};
+use navbound_core::quantity::{OutOfDomain, Radians};
+use navbound_core::signal::{Constellation, Klobuchar};
+use navbound_core::solution::RangeError;
+use navbound_core::solution::point::{Fix, Settings};
+use navbound_formats::Refusal;
+use navbound_formats::packed::unpack;
+use navbound_formats::rinex::{self, Code};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::collections::BTreeMap;
+
+/// One observation file, read.
+#[pyclass(frozen, module = "navbound._core")]
+struct Observations(rinex::Observations);
+
+/// Navigation files, read and merged.
+#[pyclass(frozen, module = "navbound._core")]
+struct Navigation {
+    records: rinex::Navigation,
+    /// Refused records with their file.
+    refused: Vec<(String, Refusal)>,
+}
+
+type Refused = Vec<(usize, String, String, String)>;
+
+fn code_name(code: &Code) -> String {
+    String::from_utf8_lossy(code).into_owned()
+}
+
+#[pymethods]
+impl Observations {
+    /// Read from the bytes of a file, plain or gzip; `path` for messages.
+    #[new]
+    fn new(py: Python<'_>, content: &[u8], path: &str) -> PyResult<Self> {
+        let read = || rinex::read_observations(&unpack(content)?);
+        Ok(Self(py.detach(read).map_err(|e| format_error(path, &e))?))
+    }
+    #[getter]
+    fn version(&self) -> f64 {
+        self.0.version
+    }
+    #[getter]
+    fn marker(&self) -> &str {
+        &self.0.marker
+    }
+    #[getter]
+    fn receiver(&self) -> &str {
+        &self.0.receiver
+    }
+    #[getter]
+    fn antenna(&self) -> &str {
+        &self.0.antenna
+    }
+    #[getter]
+    fn approximate_m(&self) -> Option<[f64; 3]> {
+        self.0.approximate_m
+    }
+    #[getter]
+    fn antenna_delta_m(&self) -> [f64; 3] {
+        self.0.antenna_delta_m
+    }
+    #[getter]
+    fn interval_s(&self) -> Option<f64> {
+        self.0.interval_s
+    }
+    #[getter]
+    fn n_epochs(&self) -> usize {
+        self.0.n_epochs()
+    }
+    #[getter]
+    fn n_refused(&self) -> usize {
+        self.0.n_refused
+    }
+    #[getter]
+    fn skipped(&self) -> BTreeMap<String, usize> {
+        self.0.skipped.clone()
+    }
+    #[getter]
+    fn refused(&self) -> Refused {
+        self.0.refused.iter().map(|r| (r.line, r.field.clone(), r.reason.clone(), r.text.clone())).collect()
+    }
+    #[getter]
+    fn codes(&self) -> BTreeMap<char, Vec<String>> {
+        let named = |c: Constellation| (c.letter(), self.0.codes[c.index()].iter().map(code_name).collect());
+        Constellation::ALL.into_iter().filter(|c| !self.0.codes[c.index()].is_empty()).map(named).collect()
+    }
+    #[getter]
+    fn time_ns<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.0.time.iter().map(|t| t.nanoseconds()).collect::<Vec<_>>().into_pyarray(py)
+    }
+    /// Every value of one code: epoch, satellite, value, loss of lock, strength; None where the file lacks the code.
+    fn column<'py>(&self, py: Python<'py>, system: char, code: &str) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let found = u8::try_from(system).ok().and_then(Constellation::from_letter).zip(Code::try_from(code.as_bytes()).ok());
+        let Some((constellation, column)) = found.and_then(|(c, code)| Some((c, self.0.column(c, &code)?))) else { return Ok(None) };
+        let (mut time, mut satellite, mut value, mut lock, mut strength) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for epoch in 0..self.0.n_epochs() {
+            for k in self.0.satellites(epoch).filter(|k| self.0.satellite[*k].constellation == constellation) {
+                let at = self.0.value_range(k).start + column;
+                if !self.0.value[at].is_nan() {
+                    time.push(self.0.time[epoch].nanoseconds());
+                    satellite.push(self.0.satellite[k].to_string());
+                    value.push(self.0.value[at]);
+                    lock.push(self.0.indicator[at] >> 4);
+                    strength.push(self.0.indicator[at] & 0xf);
+                }
+            }
+        }
+        let d = PyDict::new(py);
+        d.set_item("time_ns", time.into_pyarray(py))?;
+        d.set_item("satellite", satellite)?;
+        d.set_item("value", value.into_pyarray(py))?;
+        d.set_item("loss_of_lock", lock.into_pyarray(py))?;
+        d.set_item("strength", strength.into_pyarray(py))?;
+        Ok(Some(d))
+    }
+}
+
+#[pymethods]
+impl Navigation {
+    /// Read from the bytes of files, plain or gzip, each with its path for messages.
+    #[new]
+    fn new(py: Python<'_>, files: Vec<(Vec<u8>, String)>) -> PyResult<Self> {
+        let (mut records, mut refused) = (rinex::Navigation::default(), Vec::new());
+        for (content, path) in files {
+            let read = || rinex::read_navigation(&unpack(&content)?);
+            let mut file = py.detach(read).map_err(|e| format_error(&path, &e))?;
+            refused.extend(file.refused.drain(..).map(|r| (path.clone(), r)));
+            records.merge(file);
+        }
+        Ok(Self { records, refused })
+    }
+    #[getter]
+    fn n_ephemerides(&self) -> usize {
+        self.records.ephemerides.len()
+    }
+    #[getter]
+    fn n_geostationary(&self) -> usize {
+        self.records.geostationary.len()
+    }
+    #[getter]
+    fn leap_seconds(&self) -> Option<i64> {
+        self.records.leap_seconds
+    }
+    #[getter]
+    fn skipped(&self) -> BTreeMap<String, usize> {
+        self.records.skipped.clone()
+    }
+    #[getter]
+    fn refused(&self) -> Vec<(String, usize, String, String, String)> {
+        let row = |(path, r): &(String, Refusal)| (path.clone(), r.line, r.field.clone(), r.reason.clone(), r.text.clone());
+        self.refused.iter().map(row).collect()
+    }
+    /// Broadcast ionosphere of "G" or "C": alpha, beta.
+    fn klobuchar(&self, system: char) -> Option<([f64; 4], [f64; 4])> {
+        let found = if system == 'C' { self.records.klobuchar_beidou } else { self.records.klobuchar_gps };
+        found.map(|k: Klobuchar| (k.alpha, k.beta))
+    }
+    /// Keplerian records: satellite, message, reference times, health, accuracy, issue.
+    fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let e = &self.records.ephemerides;
+        let d = PyDict::new(py);
+        d.set_item("satellite", e.iter().map(|e| e.satellite.to_string()).collect::<Vec<_>>())?;
+        d.set_item("message", e.iter().map(|e| e.message.name()).collect::<Vec<_>>())?;
+        d.set_item("orbit_time_ns", e.iter().map(|e| e.orbit_time.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
+        d.set_item("clock_time_ns", e.iter().map(|e| e.clock_time.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
+        d.set_item("issue", e.iter().map(|e| i64::from(e.issue_orbit)).collect::<Vec<_>>().into_pyarray(py))?;
+        d.set_item("health", e.iter().map(|e| i64::from(e.health.word)).collect::<Vec<_>>().into_pyarray(py))?;
+        d.set_item("accuracy_m", e.iter().map(|e| e.accuracy_m).collect::<Vec<_>>().into_pyarray(py))?;
+        Ok(d)
+    }
+}
+
+/// Positions of every epoch as columns of the epoch table, with counts of what was not used.
+#[pyfunction]
+#[pyo3(signature = (observations, navigation, systems, *, dual, broadcast_ionosphere, mask_rad, false_alarm, most_excluded))]
+#[expect(clippy::too_many_arguments, reason = "one setting each, named by the caller")]
+fn solve_positions<'py>(
+    py: Python<'py>,
+    observations: &Observations,
+    navigation: &Navigation,
+    systems: &str,
+    dual: bool,
+    broadcast_ionosphere: bool,
+    mask_rad: f64,
+    false_alarm: f64,
+    most_excluded: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    within("mask_rad", mask_rad, "rad", "[0, pi/2)", (0.0..core::f64::consts::FRAC_PI_2).contains(&mask_rad))?;
+    within("false_alarm", false_alarm, "1", "(0, 1)", false_alarm > 0.0 && false_alarm < 1.0)?;
+    let settings = Settings {
+        mask: Radians::new(mask_rad),
+        ionosphere: navigation.records.klobuchar_gps.filter(|_| broadcast_ionosphere),
+        errors: RangeError::CALIBRATED,
+        false_alarm,
+        most_excluded,
+    };
+    let job = Job {
+        systems: systems.bytes().filter_map(Constellation::from_letter).collect(),
+        signals: if dual { Signals::Dual } else { Signals::Single },
+        settings,
+    };
+    let found = py.detach(|| positions(&observations.0, &navigation.records, &job));
+    table(py, &found)
+}
+
+fn within(argument: &'static str, value: f64, unit: &'static str, domain: &'static str, good: bool) -> PyResult<()> {
+    if good { Ok(()) } else { Err(input_error(OutOfDomain { argument, value, unit, domain }, None)) }
+}
+
+/// One number of a position.
+type Number = fn(&Fix) -> f64;
+
+fn table<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, PyDict>> {
+    let d = PyDict::new(py);
+    let columns: [(&str, Number); 16] = [
+        ("est_lat_rad", |f| f.position.point.lat().rad()),
+        ("est_lon_rad", |f| f.position.point.lon().rad()),
+        ("est_h_m", |f| f.position.height.m()),
+        ("cov_ee_m2", |f| f.covariance.matrix()[(0, 0)]),
+        ("cov_en_m2", |f| f.covariance.matrix()[(0, 1)]),
+        ("cov_nn_m2", |f| f.covariance.matrix()[(1, 1)]),
+        ("cov_eu_m2", |f| f.covariance.matrix()[(0, 2)]),
+        ("cov_nu_m2", |f| f.covariance.matrix()[(1, 2)]),
+        ("cov_uu_m2", |f| f.covariance.matrix()[(2, 2)]),
+        ("hdop", |f| f.dilution.horizontal),
+        ("vdop", |f| f.dilution.vertical),
+        ("vel_e_mps", |f| velocity(f, 0)),
+        ("vel_n_mps", |f| velocity(f, 1)),
+        ("vel_u_mps", |f| velocity(f, 2)),
+        ("ground_speed_mps", |f| velocity(f, 0).hypot(velocity(f, 1))),
+        ("p_residual", |f| f.residual_risk),
+    ];
+    for (name, value) in columns {
+        let values: Vec<f64> = found.fixes.iter().map(|f| f.as_ref().map_or(f64::NAN, value)).collect();
+        d.set_item(name, values.into_pyarray(py))?;
+    }
+    let count = |value: fn(&Fix) -> usize| found.fixes.iter().map(|f| f.as_ref().map_or(0, |f| value(f) as i64)).collect::<Vec<_>>();
+    d.set_item("n_sv", count(|f| f.n_used).into_pyarray(py))?;
+    d.set_item("n_excluded", count(|f| f.n_excluded).into_pyarray(py))?;
+    d.set_item("n_redundant", count(|f| f.redundancy).into_pyarray(py))?;
+    let status = |f: &Result<Fix, _>| match f {
+        Ok(fix) if fix.consistent => "ok",
+        Ok(_) => "degraded",
+        Err(_) => "not_available",
+    };
+    d.set_item("status", found.fixes.iter().map(status).collect::<Vec<_>>())?;
+    let reason = |f: &Result<Fix, navbound_core::quantity::Unavailable>| match f {
+        Ok(fix) if fix.consistent => String::new(),
+        Ok(fix) if fix.redundancy == 0 => "no satellite to spare: the residuals cannot be tested".to_owned(),
+        Ok(_) => "the residuals contradict the weights".to_owned(),
+        Err(why) => why.to_string(),
+    };
+    d.set_item("reason", found.fixes.iter().map(reason).collect::<Vec<_>>())?;
+    d.set_item("unused", found.unused.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect::<BTreeMap<_, _>>())?;
+    d.set_item("codes", found.codes.clone())?;
+    d.set_item("weights", RangeError::CALIBRATED.name)?;
+    Ok(d)
+}
+
+fn velocity(fix: &Fix, axis: usize) -> f64 {
+    fix.velocity.map_or(f64::NAN, |(v, _)| v[axis])
+}
+
+/// Geodetic positions (n, 3) of Earth-fixed ones: latitude, longitude [rad], height [m]; NaN stays NaN.
+#[pyfunction]
+fn geodetic_from_ecef<'py>(py: Python<'py>, ecef_m: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let convert = |(index, row): (usize, &[f64; 3])| {
+        if row.iter().any(|v| v.is_nan()) {
+            return Ok([f64::NAN; 3]);
+        }
+        let found = frame::geodetic_from_ecef(&EcefPosition::from_vector((*row).into())).map_err(|e| input_error(e, Some(index)))?;
+        Ok([found.point.lat().rad(), found.point.lon().rad(), found.height.m()])
+    };
+    let rows: PyResult<Vec<[f64; 3]>> = ecef_m.as_slice()?.as_chunks::<3>().0.iter().enumerate().map(convert).collect();
+    let rows = rows?;
+    rows.as_flattened().to_vec().into_pyarray(py).reshape([rows.len(), 3])
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_class::<Observations>()?;
+    m.add_class::<Navigation>()?;
+    m.add_function(wrap_pyfunction!(geodetic_from_ecef, m)?)?;
+    m.add_function(wrap_pyfunction!(solve_positions, m)?)
+}

@@ -1,0 +1,349 @@
+"""Receivers' files, and the positions solved from them.
+
+Broadcast orbits, clocks and group delays by the interface documents of the systems (standard); weights and residual test:
+docs/methods/gnss-positions.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import polars as pl
+
+from navbound import _core
+from navbound._arrays import flatten
+from navbound.errors import FormatError, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+SYSTEMS = {"G": "GPS", "E": "Galileo", "C": "BeiDou"}
+"""Constellations a position can be solved from, by their letter."""
+
+
+@dataclass(frozen=True)
+class Refused:
+    """What a reader could not use: file, line from 1, field, why, and the text found."""
+
+    path: Path
+    line: int
+    field: str
+    reason: str
+    text: str
+
+
+class Observations:
+    """What a receiver recorded, read by :func:`read_observations`.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    version : float
+        Version of the format.
+    marker, receiver, antenna : str
+        Names of the header.
+    approximate_ecef_m : ndarray, shape (3,), or None
+        Position of the header, Earth-fixed; of unknown datum and age: not truth. [m]
+    antenna_delta_m : ndarray, shape (3,)
+        Antenna reference point from the marker: up, east, north. [m]
+    interval_s : float or None
+        Nominal time between epochs, where the header says. [s]
+    codes : dict of str to list of str
+        Codes of each constellation, by letter; version 2 names translated.
+    n_epochs : int
+        Number of epochs. [1]
+    time_ns : ndarray of int, shape (n_epochs,)
+        GPS time of each epoch. [ns]
+    skipped : dict of str to int
+        Satellites of systems that are not read, and event records, counted.
+    n_refused : int
+        Things that could not be read. [1]
+    refused : list of Refused
+        The first 1000 of them.
+    """
+
+    def __init__(self, core: _core.Observations, path: Path) -> None:
+        self._core = core
+        self.path = path
+        self.version = core.version
+        self.marker = core.marker
+        self.receiver = core.receiver
+        self.antenna = core.antenna
+        self.approximate_ecef_m = None if core.approximate_m is None else np.array(core.approximate_m)
+        self.antenna_delta_m = np.array(core.antenna_delta_m)
+        self.interval_s = core.interval_s
+        self.codes = core.codes
+        self.n_epochs = core.n_epochs
+        self.time_ns: NDArray[np.int64] = core.time_ns
+        self.skipped = core.skipped
+        self.n_refused = core.n_refused
+        self.refused = [Refused(path, *r) for r in core.refused]
+
+    def column(self, system: str, code: str) -> pl.DataFrame:
+        """Every value of one code.
+
+        Parameters
+        ----------
+        system : str
+            Letter of the constellation.
+        code : str
+            One of ``codes[system]``, for instance ``C1C``.
+
+        Returns
+        -------
+        DataFrame
+            ``time_ns``, ``satellite``, ``value`` (pseudorange [m], phase [cycles], Doppler [Hz], or strength as the file has it),
+            ``loss_of_lock``, ``strength`` (the two indicators).
+
+        Raises
+        ------
+        InputError
+            A system or code that the file lacks.
+        """
+        if code not in self.codes.get(system, []):
+            raise InputError("code", f"{system} {code}", domain=f"codes of {self.path.name}: {self.codes}")
+        return pl.DataFrame(self._core.column(system, code))
+
+
+class Navigation:
+    """Broadcast messages, read by :func:`read_navigation`.
+
+    Attributes
+    ----------
+    paths : list of Path
+        The files.
+    n_ephemerides : int
+        Keplerian records of GPS, Galileo and BeiDou, repetitions once. [1]
+    n_geostationary : int
+        Records of augmentation satellites. [1]
+    leap_seconds : int or None
+        GPS time minus UTC, where a file says. [s]
+    skipped : dict of str to int
+        Records of kinds that are not used, counted.
+    refused : list of Refused
+        Records that could not be read.
+    """
+
+    def __init__(self, core: _core.Navigation, paths: list[Path]) -> None:
+        self._core = core
+        self.paths = paths
+        self.n_ephemerides = core.n_ephemerides
+        self.n_geostationary = core.n_geostationary
+        self.leap_seconds = core.leap_seconds
+        self.skipped = core.skipped
+        self.refused = [Refused(Path(r[0]), *r[1:]) for r in core.refused]
+
+    @property
+    def has_ionosphere(self) -> bool:
+        """Whether the broadcast ionosphere of GPS is there."""
+        return self._core.klobuchar("G") is not None
+
+    def records(self) -> pl.DataFrame:
+        """Keplerian records: ``satellite``, ``message``, ``orbit_time_ns``, ``clock_time_ns``, ``issue``, ``health``, ``accuracy_m``."""
+        return pl.DataFrame(self._core.records())
+
+
+@dataclass(frozen=True)
+class Positions:
+    """Solved positions and what they rest on.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        The epoch table (docs/notation.md): ``track``, ``time_ns``, ``est_lat_rad``, ``est_lon_rad``, ``est_h_m``, covariance,
+        ``ground_speed_mps``, ``n_sv``, ``hdop``, ``vdop``, ``status``, ``reason``, with truth also ``truth_*`` and ``nse_*``; beyond it
+        ``vel_e_mps``, ``vel_n_mps``, ``vel_u_mps``, ``n_excluded``, ``n_redundant``, ``p_residual``. Null where there is none.
+    unused : dict of str to int
+        Satellite-epochs of the wanted systems that were not used, by reason; those below the mask are not among them.
+    codes : dict of str to list of str
+        Pseudoranges used, by system, in order of preference.
+    models : dict of str to str
+        Every model by name, for the record of a run.
+    """
+
+    epochs: pl.DataFrame
+    unused: dict[str, int]
+    codes: dict[str, list[str]]
+    models: dict[str, str]
+
+
+def _content(path: str | Path) -> tuple[Path, bytes]:
+    place = Path(path)
+    try:
+        return place, place.read_bytes()
+    except OSError as e:
+        raise FormatError(place, e.strerror or str(e)) from e
+
+
+def read_observations(path: str | Path) -> Observations:
+    """Read a RINEX observation file.
+
+    Parameters
+    ----------
+    path : str or Path
+        RINEX 2.10 to 4.0x, plain or compact (Hatanaka), packed by gzip or not.
+
+    Returns
+    -------
+    Observations
+        Epochs in GPS time whatever scale the file counts in.
+
+    Raises
+    ------
+    FormatError
+        Not such a file, with line and field. Damage that leaves the rest readable is listed in ``refused``.
+    """
+    place, content = _content(path)
+    return Observations(_core.Observations(content, str(place)), place)
+
+
+def read_navigation(paths: str | Path | Sequence[str | Path]) -> Navigation:
+    """Read RINEX navigation files.
+
+    Parameters
+    ----------
+    paths : str, Path, or sequence of them
+        RINEX 2.10 to 4.0x, packed by gzip or not; several files are merged.
+
+    Returns
+    -------
+    Navigation
+        GPS (LNAV), Galileo (I/NAV, F/NAV), BeiDou (D1, D2) and augmentation satellites; other records are counted.
+
+    Raises
+    ------
+    FormatError
+        Not such a file, with line and field. Records that cannot be read are listed in ``refused``.
+    """
+    several = [paths] if isinstance(paths, str | Path) else list(paths)
+    if not several:
+        raise InputError("paths", "nothing", domain="at least one file")
+    files = [_content(p) for p in several]
+    return Navigation(_core.Navigation([(content, str(place)) for place, content in files]), [place for place, _ in files])
+
+
+def solve(
+    observations: Observations,
+    navigation: Navigation,
+    *,
+    systems: str = "GEC",
+    signals: Literal["single", "dual"] = "single",
+    ionosphere: Literal["broadcast", "none"] = "broadcast",
+    mask_rad: float = float(np.radians(10.0)),
+    false_alarm: float = 1e-4,
+    most_excluded: int = 6,
+    truth_ecef_m: ArrayLike | None = None,
+    track: str | None = None,
+) -> Positions:
+    """Positions of every epoch by robust weighted least squares on pseudoranges, with their covariance.
+
+    Parameters
+    ----------
+    observations : Observations
+        From :func:`read_observations`.
+    navigation : Navigation
+        From :func:`read_navigation`.
+    systems : str, optional
+        Letters of :data:`SYSTEMS`.
+    signals : {"single", "dual"}, optional
+        L1, E1, B1I; or the ionosphere-free pairs L1-L2, E1-E5a, B1I-B3I.
+    ionosphere : {"broadcast", "none"}, optional
+        Model of single pseudoranges; pairs need none.
+    mask_rad : float, optional
+        Lowest elevation. [rad]
+    false_alarm : float, optional
+        Risk of a false alarm of the residual test, an epoch. [1]
+    most_excluded : int, optional
+        Satellites that may be excluded in one epoch. [1]
+    truth_ecef_m : array_like, shape (3,) or (n_epochs, 3), optional
+        True position, Earth-fixed; NaN where it is not known. [m]
+    track : str, optional
+        Name of the track; by default the marker's or the file's.
+
+    Returns
+    -------
+    Positions
+        ``status`` is ``degraded`` where the residuals contradict the weights or none can be spared, ``not_available`` where there is no
+        position.
+
+    Raises
+    ------
+    InputError
+        Systems that are not there, a broadcast ionosphere that no file gives, numbers outside their domain.
+    """
+    if not systems or any(s not in SYSTEMS for s in systems):
+        raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
+    if signals not in {"single", "dual"}:
+        raise InputError("signals", signals, domain="single, dual")
+    if ionosphere not in {"broadcast", "none"}:
+        raise InputError("ionosphere", ionosphere, domain="broadcast, none")
+    if signals == "single" and ionosphere == "broadcast" and not navigation.has_ionosphere:
+        raise InputError("ionosphere", "broadcast", domain="none, dual signals, or a navigation file with the ionosphere of GPS")
+    if most_excluded < 0:
+        raise InputError("most_excluded", most_excluded, "1", "[0, inf)")
+    found = _core.solve_positions(
+        observations._core,
+        navigation._core,
+        systems,
+        dual=signals == "dual",
+        broadcast_ionosphere=ionosphere == "broadcast",
+        mask_rad=mask_rad,
+        false_alarm=false_alarm,
+        most_excluded=most_excluded,
+    )
+    unused, codes, weights = found.pop("unused"), found.pop("codes"), found.pop("weights")
+    name = track or observations.marker or observations.path.name
+    columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **found}
+    epochs = pl.DataFrame(columns).with_columns(pl.when(pl.col("reason") != "").then(pl.col("reason")).alias("reason"))
+    floats = [c for c, kind in epochs.schema.items() if kind == pl.Float64]
+    epochs = epochs.with_columns(pl.col(floats).fill_nan(None))
+    if truth_ecef_m is not None:
+        epochs = epochs.hstack(_errors(epochs, truth_ecef_m))
+    models = {
+        "orbits and clocks": "broadcast, nearest record inside its fit interval",
+        "ionosphere": "ionosphere-free pairs" if signals == "dual" else {"broadcast": "Klobuchar, GPS message", "none": "none"}[ionosphere],
+        "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",
+        "weights": weights,
+        "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
+    }
+    return Positions(epochs, unused, codes, models)
+
+
+def _errors(epochs: pl.DataFrame, truth_ecef_m: ArrayLike) -> pl.DataFrame:
+    truth = np.asarray(truth_ecef_m, dtype=np.float64)
+    if truth.shape not in {(3,), (epochs.height, 3)}:
+        raise InputError("truth_ecef_m", f"shape {truth.shape}", domain=f"shape (3,) or ({epochs.height}, 3)")
+    place = geodetic(np.broadcast_to(truth, (epochs.height, 3)))
+    estimate = np.column_stack([epochs[c].fill_null(np.nan).to_numpy() for c in ("est_lat_rad", "est_lon_rad", "est_h_m")])
+    error = _core.navigation_error(np.ascontiguousarray(estimate), place)
+    names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m", "nse_e_m", "nse_n_m", "nse_u_m")
+    values = np.hstack([place, error])
+    return pl.DataFrame({name: values[:, k] for k, name in enumerate(names)}).with_columns(pl.all().fill_nan(None))
+
+
+def geodetic(ecef_m: ArrayLike) -> NDArray[np.float64]:
+    """Latitude, longitude and height of Earth-fixed positions, WGS-84.
+
+    Parameters
+    ----------
+    ecef_m : array_like, shape (..., 3)
+        Positions. [m]
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Latitude and longitude [rad], height above the ellipsoid [m]; NaN where a position holds a NaN.
+
+    Raises
+    ------
+    InputError
+        A position within 50 km of the Earth's centre, or an infinite one.
+    """
+    shape, (flat,) = flatten(ecef_m=(ecef_m, (3,)))
+    return _core.geodetic_from_ecef(flat).reshape(*shape, 3)

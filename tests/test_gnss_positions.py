@@ -1,0 +1,126 @@
+"""Positions from real receivers' files, against surveyed truth; skipped, aloud, where the files are not at hand."""
+
+from __future__ import annotations
+
+import gzip
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+import pytest
+
+from navbound import FormatError, InputError, evaluation, gnss
+from navbound.methods import bounds
+
+Day = tuple[gnss.Observations, gnss.Navigation, dict[str, Any]]
+
+
+@pytest.fixture(scope="module")
+def day(shared_data: Path) -> Day:
+    baselines = json.loads((shared_data / "baselines.json").read_text(encoding="utf-8"))
+    folder = shared_data / "gnss" / "ESBC_2020_177"
+    observations = gnss.read_observations(folder / "ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz")
+    return observations, gnss.read_navigation(folder / "ESBC00DNK_R_20201770000_01D_MN.rnx.gz"), baselines["ESBC_2020_177"]
+
+
+def errors(epochs: pl.DataFrame) -> np.ndarray[Any, np.dtype[np.float64]]:
+    return epochs.select("nse_e_m", "nse_n_m", "nse_u_m").to_numpy()
+
+
+def covariances(epochs: pl.DataFrame) -> np.ndarray[Any, np.dtype[np.float64]]:
+    c = {k: epochs[f"cov_{k}_m2"].to_numpy() for k in ("ee", "en", "nn", "eu", "nu", "uu")}
+    rows = [[c["ee"], c["en"], c["eu"]], [c["en"], c["nn"], c["nu"]], [c["eu"], c["nu"], c["uu"]]]
+    return np.moveaxis(np.array(rows), -1, 0)
+
+
+# The stored peer's 95 % horizontal error, and an honest covariance: mean normalised squared error near 3.
+@pytest.mark.parametrize("systems", ["G", "GE", "GEC"])
+def test_a_station_day_is_as_accurate_as_the_peer_and_says_how_wrong_it_is(day: Day, systems: str) -> None:
+    observations, navigation, baseline = day
+    found = gnss.solve(observations, navigation, systems=systems, truth_ecef_m=baseline["reference_ecef_m"])
+    epochs = found.epochs
+    assert epochs["status"].to_list() == ["ok"] * 2880
+    error = errors(epochs)
+    h95 = float(np.quantile(np.hypot(error[:, 0], error[:, 1]), 0.95))
+    assert h95 <= baseline[systems]["h95_m"]
+    assert float(np.quantile(np.abs(error[:, 2]), 0.95)) <= baseline[systems]["v95_m"]
+    nees = evaluation.nees(error, covariances(epochs))
+    assert 2.0 < nees.nees_mean < 4.5
+    # Satellites above the mask as the peer counts them; it drops a few for reasons of its own.
+    assert abs(float(epochs["n_sv"].to_numpy().mean()) - baseline[systems]["mean_sats"]) < 0.15
+
+
+def test_methods_take_the_table_unchanged(day: Day) -> None:
+    observations, navigation, _ = day
+    epochs = gnss.solve(observations, navigation).epochs
+    radius = bounds(epochs, "anp-circle", 0.05).bound_m
+    assert np.isfinite(radius).all()
+    # A 95 % circle lies between those of a line and of a round ellipse with the same larger axis.
+    larger = np.sqrt(np.linalg.eigvalsh(covariances(epochs)[:, :2, :2])[:, 1])
+    assert ((radius >= 1.959 * larger) & (radius <= 2.4478 * larger)).all()
+
+
+def test_a_receiver_at_rest_stands_still_by_doppler(day: Day) -> None:
+    observations, navigation, _ = day
+    speed = gnss.solve(observations, navigation).epochs["ground_speed_mps"].to_numpy()
+    # Doppler of a geodetic receiver: some millimetres a second a satellite, and the broadcast clock rates.
+    assert float(np.quantile(speed, 0.95)) < 0.05
+
+
+def test_the_ionosphere_free_pair_needs_no_ionosphere(day: Day) -> None:
+    observations, navigation, baseline = day
+    error = errors(gnss.solve(observations, navigation, systems="GE", signals="dual", truth_ecef_m=baseline["reference_ecef_m"]).epochs)
+    # The mean north error that the broadcast ionosphere leaves (0.3 to 0.5 m here, in the peer too) is gone.
+    assert abs(error[:, 1].mean()) < 0.1
+
+
+def test_wrong_arguments_are_refused_by_name(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="nowhere"):
+        gnss.read_observations(tmp_path / "nowhere.rnx")
+    (tmp_path / "empty").write_bytes(b"")
+    with pytest.raises(FormatError, match="empty"):
+        gnss.read_navigation(tmp_path / "empty")
+    with pytest.raises(InputError, match="paths"):
+        gnss.read_navigation([])
+    packed = tmp_path / "cut.gz"
+    packed.write_bytes(gzip.compress(b"x" * 1000)[:-10])
+    with pytest.raises(FormatError, match="gzip"):
+        gnss.read_observations(packed)
+
+
+def test_settings_outside_their_domain_are_refused(day: Day) -> None:
+    observations, navigation, _ = day
+    for wrong in (
+        {"systems": "GX"},
+        {"systems": ""},
+        {"mask_rad": float("nan")},
+        {"mask_rad": 2.0},
+        {"false_alarm": 0.0},
+        {"signals": "triple"},
+    ):
+        with pytest.raises(InputError, match=next(iter(wrong))):
+            gnss.solve(observations, navigation, **wrong)
+    with pytest.raises(InputError, match="code"):
+        observations.column("G", "C9Z")
+
+
+def test_another_station_is_solved_without_having_been_calibrated_on(shared_data: Path) -> None:
+    folder = shared_data / "gnss" / "ARLM_2015_200"
+    observations = gnss.read_observations(folder / "arlm200x.15o")
+    # Truth is the header here (catalogue: surveyed monitor station).
+    found = gnss.solve(
+        observations, gnss.read_navigation(folder / "arlm2000.15n"), systems="G", truth_ecef_m=observations.approximate_ecef_m
+    )
+    assert found.epochs["status"].is_in(["ok", "degraded"]).all()
+    nees = evaluation.nees(errors(found.epochs), covariances(found.epochs))
+    # Not calibrated on: between half and twice the honest 3.
+    assert 1.5 < nees.nees_mean < 6.0
+
+
+def test_every_column_is_in_the_glossary(day: Day) -> None:
+    observations, navigation, baseline = day
+    glossary = (Path(__file__).parents[1] / "docs" / "notation.md").read_text(encoding="utf-8")
+    columns = gnss.solve(observations, navigation, truth_ecef_m=baseline["reference_ecef_m"]).epochs.columns
+    assert [c for c in columns if f"`{c}`" not in glossary] == []
