@@ -9,7 +9,7 @@ os.environ.setdefault("RAYON_NUM_THREADS", "1")
 import math
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -39,7 +39,7 @@ def measure() -> list[dict[str, object]]:
     log = sbas.read(FOLDER / "msas137_2025046_17h.ems")
     navigation = FOLDER / "gps_2025046_17h_rinex3.nav"
     instants = (WEEK_S + np.arange(580_000, 583_200, dtype=np.int64)) * 1_000_000_000
-    place = {"lat_rad": 0.6167, "lon_rad": 2.4351, "h_m": 50.0}
+    place: dict[str, Any] = {"lat_rad": 0.6167, "lon_rad": 2.4351, "h_m": 50.0}
     alone = seconds(lambda: sbas.protection_levels(log, navigation, instants, **place, mode="pa"))
     lat, lon = (a.ravel() for a in np.meshgrid(np.radians(np.linspace(26, 44, 40)), np.radians(np.linspace(128, 146, 50))))
     few = instants[::64]

@@ -6,7 +6,7 @@ import csv
 import gzip
 import json
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ WEEK_S = 2353 * 604_800
 FIRST, LAST = 579_600, 583_200
 
 
-def geodetic(x: float, y: float, z: float) -> dict[str, float]:
+def geodetic(x: float, y: float, z: float) -> dict[str, Any]:
     """WGS-84 latitude, longitude, height by fixed-point iteration: independent of the package."""
     e2 = 1 / 298.257223563 * (2 - 1 / 298.257223563)
     p = np.hypot(x, y)
@@ -297,7 +297,7 @@ def test_every_case_of_the_reference_stands_in_the_vectors(shared_data: Path) ->
 
 
 def test_terms_outside_their_domain_are_named() -> None:
-    sky = {"az_rad": [0.0, 1.5, 3.0, 4.5, 5.5], "el_rad": [1.4, 0.5, 0.4, 0.6, 0.3], "x_pp": 0.5, "y_pp": 0.5}
+    sky: dict[str, Any] = {"az_rad": [0.0, 1.5, 3.0, 4.5, 5.5], "el_rad": [1.4, 0.5, 0.4, 0.6, 0.3], "x_pp": 0.5, "y_pp": 0.5}
     four = np.full((5, 4), 5)
     assert sbas.levels_from_terms(**sky, udrei=5, givei=four).vpl_m > 0
     for name, value in [
