@@ -11,6 +11,7 @@ pub mod flights;
 pub mod monitor;
 pub mod plausible;
 pub mod positions;
+pub mod sbas;
 pub mod sky;
 pub mod states;
 pub mod tse;

@@ -4,6 +4,7 @@ pub mod packed;
 pub mod refusal;
 pub mod rinex;
 pub mod rtklib;
+pub mod sbas;
 pub mod time;
 
 pub use refusal::{Refusal, Unreadable};

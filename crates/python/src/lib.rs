@@ -13,6 +13,8 @@ mod path;
 mod positions;
 mod read;
 mod rnp;
+mod sbas;
+mod sbas_fields;
 mod simulate;
 mod states;
 mod tse;
@@ -26,6 +28,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     tse::register(m)?;
     anp::register(m)?;
     rnp::register(m)?;
+    sbas::register(m)?;
     states::register(m)?;
     evaluation::register(m)?;
     gnss::register(m)?;

@@ -2,6 +2,7 @@
 
 pub mod anp;
 mod method;
+pub mod sbas;
 pub mod tse;
 
 pub use crate::quantity::Provenance;

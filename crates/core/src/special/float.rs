@@ -12,5 +12,5 @@ pub(crate) fn sqrt(x: f64) -> f64 {
 }
 
 pub(crate) use libm::{
-    acos, atan2, cos, erfc, exp, expm1 as exp_m1, hypot, lgamma as ln_gamma, log as ln, log1p as ln_1p, sin, sincos as sin_cos, tan,
+    acos, asin, atan2, cos, erfc, exp, expm1 as exp_m1, hypot, lgamma as ln_gamma, log as ln, log1p as ln_1p, sin, sincos as sin_cos, tan,
 };

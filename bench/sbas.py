@@ -1,0 +1,76 @@
+"""Speed of navbound.sbas: levels of many users and epochs from the recorded MSAS hour, on one core."""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("RAYON_NUM_THREADS", "1")
+
+import math
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from navbound import sbas
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+FOLDER = Path(__file__).parents[1].parent / "shared" / "data" / "sbas"
+WEEK_S = 2353 * 604_800
+
+
+def seconds(call: Callable[[], object], repeats: int = 5) -> float:
+    """Best CPU time of a call."""
+    best = math.inf
+    for _ in range(repeats):
+        start = time.process_time()
+        call()
+        best = min(best, time.process_time() - start)
+    return best
+
+
+def measure() -> list[dict[str, object]]:
+    """One row a measurement: name, seconds_per_item, n, note. Nothing where the recorded hour is absent."""
+    if not FOLDER.is_dir():
+        return []
+    log = sbas.read(FOLDER / "msas137_2025046_17h.ems")
+    navigation = FOLDER / "gps_2025046_17h_rinex3.nav"
+    instants = (WEEK_S + np.arange(580_000, 583_200, dtype=np.int64)) * 1_000_000_000
+    place: dict[str, Any] = {"lat_rad": 0.6167, "lon_rad": 2.4351, "h_m": 50.0}
+    alone = seconds(lambda: sbas.protection_levels(log, navigation, instants, **place, mode="pa"))
+    lat, lon = (a.ravel() for a in np.meshgrid(np.radians(np.linspace(26, 44, 40)), np.radians(np.linspace(128, 146, 50))))
+    few = instants[::64]
+    users = seconds(lambda: sbas.protection_levels(log, navigation, few[:, None], lat_rad=lat, lon_rad=lon, h_m=0.0, mode="pa"), repeats=3)
+    setup = seconds(lambda: sbas.protection_levels(log, navigation, few[:1], **place, mode="pa"))
+    n = few.size * lat.size
+    found = sbas.protection_levels(log, navigation, few[:, None], lat_rad=lat, lon_rad=lon, h_m=0.0, mode="pa")
+    satellites = float(found.n_sv.mean())
+    return [
+        {
+            "name": "sbas read, EMS hour",
+            "seconds_per_item": seconds(lambda: sbas.read(FOLDER / "msas137_2025046_17h.ems")) / 3600,
+            "n": 3600,
+            "note": "a message",
+        },
+        {"name": "sbas decode and hear, navigation read", "seconds_per_item": setup / 3600, "n": 3600, "note": "a message"},
+        {
+            "name": "sbas one user",
+            "seconds_per_item": (alone - setup) / instants.size,
+            "n": instants.size,
+            "note": "an epoch: corrections, orbits, grid and level",
+        },
+        {
+            "name": "sbas many users",
+            "seconds_per_item": (users - setup) / n,
+            "n": n,
+            "note": f"a user and epoch: geometry, grid and level; {satellites:.1f} satellites",
+        },
+    ]
+
+
+if __name__ == "__main__":
+    for row in measure():
+        print(f"{row['name']:40s} {1e6 * float(str(row['seconds_per_item'])):9.3f} us  {row['note']}")

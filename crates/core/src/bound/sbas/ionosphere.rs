@@ -1,0 +1,349 @@
+//! The ionospheric grid at the point where a signal pierces the shell.
+
+use super::model::{EARTH_M, SHELL_M, aged_grid_m2, give_variance_m2};
+use crate::quantity::GpsTime;
+use crate::signal::sbas::grid::{GridPoint, WORLD_CELLS};
+use crate::signal::sbas::{GridDelay, Store, timeout::Use};
+use crate::special::float::{asin, atan2, sqrt};
+use nalgebra::Vector3;
+
+/// A grid point as a user finds it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+enum Point {
+    /// Not in the mask.
+    #[default]
+    Absent,
+    /// In the mask, not monitored or too old.
+    NotMonitored,
+    /// In the mask, forbidden.
+    DoNotUse,
+    /// Delay \[m\] and variance \[m²\], degradation included.
+    Value(f64, f64),
+}
+
+/// Vertical delay and its variance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vertical {
+    /// On L1 \[m\].
+    pub delay_m: f64,
+    /// \[m²\].
+    pub variance_m2: f64,
+}
+
+/// The grid in force at one instant, on a world of 5-degree cells.
+#[derive(Debug, Clone)]
+pub struct Grid([Point; WORLD_CELLS]);
+
+/// Where a signal pierces the shell \[deg\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pierce {
+    /// Latitude.
+    pub lat_deg: f64,
+    /// Longitude, \[-180, 180\].
+    pub lon_deg: f64,
+}
+
+/// Corners of a cell: north-east, north-west, south-west, south-east.
+type Corners = [Point; 4];
+
+impl Pierce {
+    /// From unit vectors in Earth-centred axes: up at the user, and from the user to the satellite.
+    ///
+    /// ```text
+    /// k = Re cos E / (Re + h_I),   psi = pi/2 - E - asin k
+    /// direction = cos psi up + sin psi horizontal,   sin psi = cos(E + asin k)
+    /// ```
+    ///
+    /// The standard's spherical triangle, with vectors instead of angles: no case is special, at the poles either.
+    pub fn new(up: &Vector3<f64>, unit: &Vector3<f64>, sin_el: f64) -> Self {
+        let cos_el = sqrt(1.0 - sin_el * sin_el);
+        let k = EARTH_M / (EARTH_M + SHELL_M) * cos_el;
+        let root = sqrt(1.0 - k * k);
+        let cos_psi = sin_el * root + cos_el * k;
+        // sin psi / cos E, so that a satellite overhead divides by nothing.
+        let sin_psi_over = root - sin_el * EARTH_M / (EARTH_M + SHELL_M);
+        let direction = cos_psi * up + sin_psi_over * (unit - sin_el * up);
+        Self { lat_deg: asin(direction.z.clamp(-1.0, 1.0)).to_degrees(), lon_deg: atan2(direction.y, direction.x).to_degrees() }
+    }
+}
+
+impl Default for Grid {
+    fn default() -> Self {
+        Self([Point::Absent; WORLD_CELLS])
+    }
+}
+
+impl Grid {
+    /// Take what is in force now.
+    pub fn refresh(&mut self, store: &Store, used_for: Use, now: GpsTime) {
+        self.0.fill(Point::Absent);
+        let degradation = store.degradation(used_for, now);
+        for held in store.grid(used_for, now) {
+            let Some(cell) = held.point.cell().and_then(|i| self.0.get_mut(i)) else { continue };
+            *cell = match held.held {
+                None if *cell == Point::Absent => Point::NotMonitored,
+                None => continue,
+                Some((GridDelay { delay_m: None, .. }, _)) => Point::DoNotUse,
+                Some((GridDelay { delay_m: Some(delay_m), givei }, applies)) => match give_variance_m2(givei) {
+                    None => Point::NotMonitored,
+                    Some(give_m2) => Point::Value(delay_m, aged_grid_m2(give_m2, now.seconds_since(applies), degradation)),
+                },
+            };
+        }
+    }
+
+    /// Delay and variance at a pierce point; none where the grid does not serve it.
+    ///
+    /// Cells are tried in the standard's order (A.4.4.10.2): four points of the small cell, three of it around the pierce point, four of
+    /// the large cell, three of it. A chosen cell with a forbidden point gives nothing; with one point that is not monitored it serves the
+    /// triangle of the others.
+    pub fn vertical(&self, at: Pierce) -> Option<Vertical> {
+        if !(at.lat_deg.abs() <= 90.0 && at.lon_deg.abs() <= 180.0) {
+            return None;
+        }
+        let latitude = at.lat_deg.abs();
+        if latitude > 85.0 {
+            return self.cap(at);
+        }
+        if latitude > 75.0 {
+            return self.high(at);
+        }
+        let small_width = if latitude > 60.0 { 10 } else { 5 };
+        if let Some(answer) = self.cells(at, 5, small_width, &[0], &[0]) {
+            return answer;
+        }
+        let west = if latitude > 60.0 { &[0][..] } else { &[0, 5][..] };
+        self.cells(at, 10, 10, &[0, 5], west).flatten()
+    }
+
+    /// The first cell that the mask has, among those whose corner stands at these offsets from multiples of its size. Outer none: no
+    /// such cell; inner none: a cell, but nothing for this point.
+    fn cells(&self, at: Pierce, height: i16, width: i16, south: &[i16], west: &[i16]) -> Option<Option<Vertical>> {
+        let anchors =
+            || south.iter().flat_map(move |s| west.iter().map(move |w| (below(at.lat_deg, height, *s), below(at.lon_deg, width, *w))));
+        let place = |(s, w): (i16, i16)| {
+            let (x, y) = ((at.lon_deg - f64::from(w)) / f64::from(width), (at.lat_deg - f64::from(s)) / f64::from(height));
+            (self.corners(s, w, height, width), x, y)
+        };
+        for anchor in anchors() {
+            let (corners, x, y) = place(anchor);
+            if corners.iter().all(|c| *c != Point::Absent) {
+                return Some(interpolate(&corners, x, y));
+            }
+        }
+        for anchor in anchors() {
+            let (corners, x, y) = place(anchor);
+            let mut absent = (0..4).filter(|i| corners[*i] == Point::Absent);
+            if let (Some(missing), None) = (absent.next(), absent.next())
+                && let Some(weights) = triangle(missing, x, y)
+            {
+                return Some(weighted(&corners, &weights));
+            }
+        }
+        None
+    }
+
+    fn corners(&self, south: i16, west: i16, height: i16, width: i16) -> Corners {
+        [(height, width), (height, 0), (0, 0), (0, width)].map(|(north, east)| self.point(south + north, west + east))
+    }
+
+    fn point(&self, lat_deg: i16, lon_deg: i16) -> Point {
+        GridPoint { lat_deg, lon_deg }.cell().and_then(|i| self.0.get(i)).copied().unwrap_or_default()
+    }
+
+    /// Between 75 and 85 degrees: the points at 85 stand 30 degrees apart (or 90) and are interpolated to the longitudes of those at 75.
+    fn high(&self, at: Pierce) -> Option<Vertical> {
+        let sign = if at.lat_deg < 0.0 { -1 } else { 1 };
+        let west = below(at.lon_deg, 10, 0);
+        let upper = [west + 10, west].map(|lon| self.at_85(sign, lon));
+        let [ne, nw] = upper;
+        let (near_w, near_e) = (self.point(sign * 75, west), self.point(sign * 75, west + 10));
+        let (x, y) = ((at.lon_deg - f64::from(west)) / 10.0, (at.lat_deg.abs() - 75.0) / 10.0);
+        weighted(&[ne, nw, near_w, near_e], &four(x, y))
+    }
+
+    /// The grid at 85 degrees and any longitude.
+    fn at_85(&self, sign: i16, lon_deg: i16) -> Point {
+        let first = if sign > 0 { -180 } else { -170 };
+        let cap = if sign > 0 { -180 } else { -140 };
+        for (origin, step) in [(first, 30), (cap, 90)] {
+            let west = lon_deg - (lon_deg - origin).rem_euclid(step);
+            let ends = [self.point(sign * 85, west), self.point(sign * 85, west + step)];
+            if ends.iter().all(|p| *p != Point::Absent) {
+                let x = f64::from(lon_deg - west) / f64::from(step);
+                let [w, e] = ends;
+                return weighted(&[e, w, w, w], &[x, 1.0 - x, 0.0, 0.0])
+                    .map_or(Point::NotMonitored, |v| Point::Value(v.delay_m, v.variance_m2));
+            }
+        }
+        Point::Absent
+    }
+
+    /// Beyond 85 degrees: the four points at 85 that stand 90 degrees apart.
+    fn cap(&self, at: Pierce) -> Option<Vertical> {
+        let (sign, origin) = if at.lat_deg < 0.0 { (-1, -140) } else { (1, -180) };
+        let west = origin + 90 * below((at.lon_deg - f64::from(origin)) / 90.0, 1, 0);
+        let y = (at.lat_deg.abs() - 85.0) / 10.0;
+        let x = (at.lon_deg - f64::from(west)) / 90.0 * (1.0 - 2.0 * y) + y;
+        // Around the pole: nearest two to the west and east of the pierce point, then the two opposite.
+        let [sw, se, ne, nw] = [0, 90, 180, 270].map(|east| self.point(sign * 85, west + east));
+        weighted(&[ne, nw, sw, se], &four(x, y))
+    }
+}
+
+/// The largest of `offset` + k `size` that is not above a number.
+fn below(value: f64, size: i16, offset: i16) -> i16 {
+    let scaled = (value - f64::from(offset)) / f64::from(size);
+    let whole = scaled as i16;
+    let floor = if f64::from(whole) > scaled { whole - 1 } else { whole };
+    floor * size + offset
+}
+
+/// Weights of four corners.
+pub(super) fn four(x: f64, y: f64) -> [f64; 4] {
+    [x * y, (1.0 - x) * y, (1.0 - x) * (1.0 - y), x * (1.0 - y)]
+}
+
+/// Weights of three corners, one missing; none outside their triangle.
+fn triangle(missing: usize, x: f64, y: f64) -> Option<[f64; 4]> {
+    let (u, v) = (1.0 - x, 1.0 - y);
+    let weights = match missing {
+        0 => [0.0, y, 1.0 - x - y, x],
+        1 => [y, 0.0, u, 1.0 - u - y],
+        2 => [1.0 - u - v, u, 0.0, v],
+        _ => [x, 1.0 - x - v, v, 0.0],
+    };
+    weights.iter().all(|w| *w >= 0.0).then_some(weights)
+}
+
+fn interpolate(corners: &Corners, x: f64, y: f64) -> Option<Vertical> {
+    let mut silent = (0..4).filter(|i| corners[*i] == Point::NotMonitored);
+    match (silent.next(), silent.next()) {
+        (None, _) => weighted(corners, &four(x, y)),
+        (Some(missing), None) if !corners.contains(&Point::DoNotUse) => weighted(corners, &triangle(missing, x, y)?),
+        _ => None,
+    }
+}
+
+/// Weighted sum; none when a corner that counts has no value, or any is forbidden.
+fn weighted(corners: &Corners, weights: &[f64; 4]) -> Option<Vertical> {
+    let mut sum = Vertical { delay_m: 0.0, variance_m2: 0.0 };
+    for (corner, w) in corners.iter().zip(weights) {
+        match corner {
+            Point::Value(delay_m, variance_m2) => {
+                sum.delay_m += w * delay_m;
+                sum.variance_m2 += w * variance_m2;
+            }
+            Point::DoNotUse => return None,
+            Point::NotMonitored | Point::Absent if *w != 0.0 => return None,
+            Point::NotMonitored | Point::Absent => {}
+        }
+    }
+    Some(sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Every grid point of the world, the value a plane in latitude and longitude; polar rows as bands 9 and 10 have them.
+    fn world(value: impl Fn(f64, f64) -> f64) -> Grid {
+        let mut grid = Grid::default();
+        for band in 0..11 {
+            for number in 1..=201 {
+                if let Some(p) = crate::signal::sbas::grid::place(band, number) {
+                    let v = value(f64::from(p.lat_deg), f64::from(p.lon_deg));
+                    grid.0[p.cell().unwrap()] = Point::Value(v, 2.0 * v);
+                }
+            }
+        }
+        grid
+    }
+
+    fn at(lat_deg: f64, lon_deg: f64) -> Pierce {
+        Pierce { lat_deg, lon_deg }
+    }
+
+    fn set(grid: &mut Grid, lat_deg: i16, lon_deg: i16, point: Point) {
+        grid.0[GridPoint { lat_deg, lon_deg }.cell().unwrap()] = point;
+    }
+
+    #[test]
+    fn a_constant_grid_is_that_constant_everywhere() {
+        let grid = world(|_, _| 3.0);
+        for lat in -90..=90 {
+            for lon in -180..=180 {
+                let v = grid.vertical(at(f64::from(lat) * 0.999, f64::from(lon) * 0.999));
+                assert!((v.unwrap().delay_m - 3.0).abs() < 1e-12, "{lat} {lon} {v:?}");
+                assert!((v.unwrap().variance_m2 - 6.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn one_silent_corner_leaves_a_triangle_and_two_leave_nothing() {
+        let plane = |lat: f64, lon: f64| 10.0 + 0.1 * lat + 0.01 * lon;
+        let mut grid = world(plane);
+        set(&mut grid, 40, 140, Point::NotMonitored);
+        // The plane is met on the other side of the diagonal; on the corner's side there is nothing.
+        let far = at(36.0, 138.0);
+        assert!((grid.vertical(far).unwrap().delay_m - plane(far.lat_deg, far.lon_deg)).abs() < 1e-12);
+        assert_eq!(grid.vertical(at(39.5, 139.5)), None);
+        set(&mut grid, 35, 135, Point::NotMonitored);
+        assert_eq!(grid.vertical(at(36.0, 138.0)), None);
+    }
+
+    #[test]
+    fn a_forbidden_corner_forbids_the_cell() {
+        let mut grid = world(|_, _| 1.0);
+        set(&mut grid, 40, 140, Point::DoNotUse);
+        assert_eq!(grid.vertical(at(36.0, 136.0)), None);
+        assert!(grid.vertical(at(34.0, 136.0)).is_some());
+    }
+
+    #[test]
+    fn a_corner_that_is_not_in_the_mask_leaves_a_triangle_then_the_large_cell() {
+        let plane = |lat: f64, lon: f64| 10.0 + 0.1 * lat + 0.01 * lon;
+        let mut grid = world(plane);
+        set(&mut grid, 40, 140, Point::Absent);
+        for (lat, lon) in [(36.0, 136.0), (39.5, 139.5)] {
+            let v = grid.vertical(at(lat, lon)).unwrap();
+            assert!((v.delay_m - plane(lat, lon)).abs() < 1e-12, "{lat} {lon}");
+        }
+    }
+
+    #[test]
+    fn an_empty_grid_and_a_place_off_the_earth_give_nothing() {
+        assert_eq!(Grid::default().vertical(at(35.0, 135.0)), None);
+        assert_eq!(world(|_, _| 1.0).vertical(at(f64::NAN, 0.0)), None);
+    }
+
+    proptest! {
+        // Bilinear interpolation is exact on a plane; the sum of a few products loses some 1e-14 of 30. Up to the last cell before the date line,
+        // where a plane in longitude jumps.
+        #[test]
+        fn a_plane_is_met_below_75_degrees(lat in -74.9..74.9f64, lon in -179.9..169.9f64) {
+            let plane = |lat: f64, lon: f64| 30.0 + 0.2 * lat + 0.02 * lon;
+            let v = world(plane).vertical(at(lat, lon)).unwrap();
+            prop_assert!((v.delay_m - plane(lat, lon)).abs() < 1e-11, "{v:?}");
+        }
+
+        // Against the standard's spherical triangle with angles, below 70 degrees where it has no special case.
+        #[test]
+        fn the_pierce_point_is_that_of_the_spherical_triangle(lat in -70.0..70.0f64, lon in -179.0..179.0f64, az in 0.0..360.0f64, el in 1.0..89.9f64) {
+            let (phi, lambda, a, e) = (lat.to_radians(), lon.to_radians(), az.to_radians(), el.to_radians());
+            let psi = core::f64::consts::FRAC_PI_2 - e - (EARTH_M / (EARTH_M + SHELL_M) * e.cos()).asin();
+            let want_lat = (phi.sin() * psi.cos() + phi.cos() * psi.sin() * a.cos()).asin();
+            let want_lon = lambda + (psi.sin() * a.sin() / want_lat.cos()).asin();
+            let up = Vector3::new(phi.cos() * lambda.cos(), phi.cos() * lambda.sin(), phi.sin());
+            let east = Vector3::new(-lambda.sin(), lambda.cos(), 0.0);
+            let north = up.cross(&east);
+            let unit = e.cos() * (a.sin() * east + a.cos() * north) + e.sin() * up;
+            let found = Pierce::new(&up, &unit, e.sin());
+            prop_assert!((found.lat_deg - want_lat.to_degrees()).abs() < 1e-9);
+            let off = (found.lon_deg - want_lon.to_degrees()).rem_euclid(360.0);
+            prop_assert!(off.min(360.0 - off) < 1e-8, "{off}");
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! SBAS protection levels: from what a service broadcasts to HPL and VPL at a place.
+//!
+//! In the order of the flow: [`service`] (what is offered now, the same for everyone), [`ionosphere`] (the grid where a signal pierces the
+//! shell), [`model`] (the terms of one range's error), and here the levels at a user's place.
+
+pub mod ionosphere;
+pub mod model;
+pub mod service;
+pub mod terms;
+
+use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, ecef_from_geodetic, enu_from_ecef};
+use crate::geometry::broadcast::in_axes_of_reception;
+use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Unavailable};
+use crate::signal::sbas::MASK_MOST;
+use crate::signal::sbas::timeout::Use;
+use crate::signal::{Constellation, SPEED_OF_LIGHT_MPS};
+use crate::solution::wls::{self, WeightedSight};
+use crate::special::float::asin;
+use ionosphere::{Pierce, Vertical};
+use model::{Airborne, RangeError};
+use nalgebra::{Matrix3, Vector3};
+use service::{Ranging, Service};
+
+/// Document of every formula here; provenance *standard*.
+pub const SOURCE: &str =
+    "RTCA DO-229D, appendices A.4.4, A.4.5, J.2 (standard; protection levels checked against gLAB 6.0.0 on recorded MSAS messages)";
+
+/// Multiplier of the horizontal level in precision approach: 2Q(6.0) = 2.0e-9 (standard).
+pub const K_H_PA: f64 = 6.0;
+/// Multiplier en route to non-precision approach: exp(-6.18²/2) = 5.1e-9 (standard).
+pub const K_H_NPA: f64 = 6.18;
+/// Multiplier of the vertical level: 2Q(5.33) = 9.8e-8 (standard).
+pub const K_V: f64 = 5.33;
+
+/// Protection levels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Levels {
+    /// Horizontal.
+    pub hpl: Metres,
+    /// Vertical, in precision approach only.
+    pub vpl: Option<Metres>,
+}
+
+/// Protection levels of a covariance of the SBAS error model.
+///
+/// ```text
+/// d_major = sqrt((dE² + dN²)/2 + sqrt(((dE² - dN²)/2)² + dEN²))
+/// HPL = 6.0 d_major, VPL = 5.33 d_U    precision approach
+/// HPL = 6.18 d_major                   en route to non-precision approach
+/// ```
+pub fn levels(covariance: &Covariance<Enu>, used_for: Use) -> Levels {
+    let (d_major, _) = wls::horizontal_axes(covariance);
+    match used_for {
+        Use::PrecisionApproach => {
+            let d_u = crate::special::float::sqrt(covariance.matrix()[(2, 2)]);
+            Levels { hpl: Metres::new(K_H_PA * d_major.m()), vpl: Some(Metres::new(K_V * d_u)) }
+        }
+        Use::EnRoute => Levels { hpl: Metres::new(K_H_NPA * d_major.m()), vpl: None },
+    }
+}
+
+/// Where a user is, with what is computed once for it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct User {
+    place: Geodetic,
+    position_m: Vector3<f64>,
+    enu: Matrix3<f64>,
+    lat_deg: f64,
+    lon_deg: f64,
+    sin_mask: f64,
+    airborne: Airborne,
+}
+
+impl User {
+    /// A user at a place, who takes satellites from a mask angle on.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a mask outside \[0, pi/2\] or a height that is not finite.
+    pub fn new(place: &Geodetic, mask: Radians, airborne: Airborne) -> Result<Self, OutOfDomain> {
+        if !(mask.rad() >= 0.0 && mask.rad() <= core::f64::consts::FRAC_PI_2) {
+            return Err(OutOfDomain { argument: "mask_rad", value: mask.rad(), unit: "rad", domain: "[0, pi/2]" });
+        }
+        if !place.height.m().is_finite() {
+            return Err(OutOfDomain { argument: "h_m", value: place.height.m(), unit: "m", domain: "finite heights" });
+        }
+        let position: EcefPosition = ecef_from_geodetic(place);
+        Ok(Self {
+            place: *place,
+            position_m: *position.vector(),
+            enu: enu_from_ecef(&place.point),
+            lat_deg: place.point.lat().rad().to_degrees(),
+            lon_deg: place.point.lon().rad().to_degrees(),
+            sin_mask: crate::special::float::sin(mask.rad()),
+            airborne,
+        })
+    }
+
+    /// Where.
+    pub const fn place(&self) -> &Geodetic {
+        &self.place
+    }
+
+    fn up(&self) -> Vector3<f64> {
+        self.enu.row(2).transpose()
+    }
+}
+
+/// One satellite as the user sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// PRN code number.
+    pub prn: u8,
+    /// Issue of the navigation data.
+    pub iode: u8,
+    /// Unit vector from the user, east-north-up.
+    pub unit_enu: Vector3<f64>,
+    /// Elevation.
+    pub elevation: Radians,
+    /// Factor of the UDRE here (messages 27, 28).
+    pub delta_udre: f64,
+    /// Fast correction \[m\], long-term correction of the clock \[s\].
+    pub fast_m: f64,
+    /// To add to the broadcast clock offset \[s\].
+    pub clock_s: f64,
+    /// Vertical ionosphere at the pierce point.
+    pub vertical: Vertical,
+    /// Variances.
+    pub error: RangeError,
+}
+
+impl Seen {
+    /// Azimuth, clockwise from true north, \[-pi, pi\].
+    pub fn azimuth(&self) -> Radians {
+        Radians::new(crate::special::float::atan2(self.unit_enu.x, self.unit_enu.y))
+    }
+}
+
+/// The satellites of one solution. No heap; made once and looked at again for every user, since it is large.
+#[derive(Debug, Clone)]
+pub struct Sky {
+    count: usize,
+    seen: [Option<Seen>; MASK_MOST],
+}
+
+impl Default for Sky {
+    fn default() -> Self {
+        Self { count: 0, seen: [None; MASK_MOST] }
+    }
+}
+
+impl Sky {
+    /// Corrected satellites above the user's mask, each with its error model complete.
+    pub fn look(&mut self, service: &Service, user: &User) {
+        let factor = service.region_factor(user.lat_deg, user.lon_deg);
+        let mut seen = service.satellites().filter_map(|s| see(s, service, user, factor));
+        self.count = 0;
+        for (slot, s) in self.seen.iter_mut().zip(&mut seen) {
+            *slot = Some(s);
+            self.count += 1;
+        }
+    }
+    /// How many.
+    pub const fn len(&self) -> usize {
+        self.count
+    }
+    /// None.
+    pub const fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+    /// Each.
+    pub fn satellites(&self) -> impl Iterator<Item = &Seen> + Clone {
+        self.seen.iter().take(self.count).flatten()
+    }
+    /// Covariance of the position.
+    ///
+    /// # Errors
+    /// As [`wls::covariance`].
+    pub fn covariance(&self) -> Result<Covariance<Enu>, Unavailable> {
+        wls::covariance_of_weighted(self.satellites().map(|s| WeightedSight {
+            unit: s.unit_enu,
+            weight: 1.0 / s.error.variance_m2(),
+            constellation: Constellation::Gps,
+        }))
+    }
+}
+
+/// Time is the service's; the signal left earlier by its way.
+fn see(s: &Ranging, service: &Service, user: &User, region_factor: f64) -> Option<Seen> {
+    let way_s = (s.orbit.position_ecef_m - user.position_m).norm() / SPEED_OF_LIGHT_MPS;
+    let sent = s.orbit.position_ecef_m - s.orbit.velocity_ecef_mps * way_s;
+    let unit = (in_axes_of_reception(&sent, way_s) - user.position_m).normalize();
+    let unit_enu = user.enu * unit;
+    let sin_el = unit_enu.z;
+    if !(sin_el >= user.sin_mask) {
+        return None;
+    }
+    let elevation = Radians::new(asin(sin_el.min(1.0)));
+    let vertical = service.grid.vertical(Pierce::new(&user.up(), &unit, sin_el))?;
+    let delta_udre = s.covariance.map_or(region_factor, |(c, e_c)| c.along(&unit) + e_c);
+    let error = RangeError::new(s.corrected.variance_m2(delta_udre), vertical.variance_m2, sin_el, elevation.rad(), &user.airborne);
+    Some(Seen { prn: s.prn, iode: s.iode, unit_enu, elevation, delta_udre, fast_m: s.fast_m, clock_s: s.clock_s, vertical, error })
+}
+
+/// Why there is no level: data, counted.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum NoLevel {
+    /// Message 0 is in force.
+    #[error("the service says \"do not use\" (message 0)")]
+    DoNotUse,
+    /// No PRN mask is in force.
+    #[error("no PRN mask is in force")]
+    NoMask,
+    /// The geometry does not serve.
+    #[error(transparent)]
+    Geometry(#[from] Unavailable),
+}
+
+/// Levels at a place; `sky` holds the satellites used afterwards.
+///
+/// # Errors
+/// [`NoLevel`].
+pub fn at(service: &Service, user: &User, sky: &mut Sky) -> Result<Levels, NoLevel> {
+    if service.stopped {
+        return Err(NoLevel::DoNotUse);
+    }
+    if !service.masked {
+        return Err(NoLevel::NoMask);
+    }
+    sky.look(service, user);
+    Ok(levels(&sky.covariance()?, service.used_for))
+}
+
+/// The orbit of a Keplerian record at an instant, for [`Service::refresh`].
+///
+/// # Errors
+/// As [`crate::geometry::broadcast::state`].
+pub fn orbit(ephemeris: &crate::signal::Ephemeris, now: GpsTime) -> Result<service::Orbit, Unavailable> {
+    let state = crate::geometry::broadcast::state(ephemeris, now)?;
+    Ok(service::Orbit { position_ecef_m: *state.position.vector(), velocity_ecef_mps: state.velocity_mps })
+}
