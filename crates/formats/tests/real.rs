@@ -1,4 +1,5 @@
 //! The readers on files of real receivers and data centres. Skipped, aloud, where the files are not at hand.
+#![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
 use navbound_core::signal::{Constellation, Message};
 use navbound_formats::packed::unpack;

@@ -18,16 +18,16 @@ use pyo3::types::PyDict;
 
 /// A log: time_ns of the end of each message, prn, data (n, 32), format, tag, refused lines as (line, field, reason, text).
 #[pyfunction]
-fn sbas_read<'py>(py: Python<'py>, bytes: &[u8], path: &str, tag: Option<&str>) -> PyResult<Bound<'py, PyDict>> {
+fn sbas_read<'py>(py: Python<'py>, content: &[u8], path: &str, tag: Option<&str>) -> PyResult<Bound<'py, PyDict>> {
     let tag = match tag {
         None => None,
         Some("end") => Some(Tag::End),
         Some("start") => Some(Tag::Start),
         Some(other) => return Err(PyValueError::new_err(other.to_owned())),
     };
-    let log = py.detach(|| read(bytes, tag)).map_err(|e| format_error(path, &e))?;
+    let log = py.detach(|| read(content, tag)).map_err(|e| format_error(path, &e))?;
     let n = log.messages.len();
-    let data: Vec<u8> = log.messages.iter().flat_map(|m| *m.block.bytes()).collect();
+    let data: Vec<u8> = log.messages.iter().flat_map(|m| *m.block.content()).collect();
     let d = PyDict::new(py);
     d.set_item("time_ns", log.messages.iter().map(|m| m.end.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("prn", log.messages.iter().map(|m| m.prn).collect::<Vec<_>>().into_pyarray(py))?;
