@@ -27,7 +27,7 @@ fn sbas_read<'py>(py: Python<'py>, content: &[u8], path: &str, tag: Option<&str>
     };
     let log = py.detach(|| read(content, tag)).map_err(|e| format_error(path, &e))?;
     let n = log.messages.len();
-    let data: Vec<u8> = log.messages.iter().flat_map(|m| *m.block.content()).collect();
+    let data: Vec<u8> = log.messages.iter().flat_map(|m| *m.block.bytes()).collect();
     let d = PyDict::new(py);
     d.set_item("time_ns", log.messages.iter().map(|m| m.end.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("prn", log.messages.iter().map(|m| m.prn).collect::<Vec<_>>().into_pyarray(py))?;
