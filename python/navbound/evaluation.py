@@ -20,6 +20,13 @@ CONDITIONAL = (
 )
 """The kind of coverage of a simulation whose navigation error does not depend on where the aircraft was steered."""
 
+CLOSED_LOOP = (
+    "Closed-loop coverage, between the two kinds: the aircraft steers by its estimate, so slow navigation errors reach the true track "
+    "(conditional coverage, 1 - risk) and fast ones only the estimate (repeated-sampling coverage, more than 1 - risk); an exact bound of the "
+    "total system error covers at least 1 - risk of the epochs."
+)
+"""The kind of coverage of a flight whose guidance follows the estimate (docs/methods/coverage.md)."""
+
 REPEATED = (
     "Repeated-sampling coverage: the true deviation is given and the estimate scatters about it; an exact bound of the total system "
     "error then covers more than 1 - risk where the deviation is small (all of it up to about two standard deviations)."
@@ -139,7 +146,7 @@ def bound(
         The risk the bound was asked for.
     track : array_like, shape (n,), optional
         Which epochs follow each other, in order; any labels. All do if not given.
-    coverage_kind : {CONDITIONAL, REPEATED}
+    coverage_kind : {CONDITIONAL, CLOSED_LOOP, REPEATED}
         What scatters in these data. Not known from the data; the weaker statement if not given.
 
     Returns
@@ -156,8 +163,9 @@ def bound(
     The correlation is the error's own, not that of its exceedances: for a Gaussian error no function of an epoch is more correlated
     than the epoch, so the effective size is never too large, and it exists without a single exceedance.
     """
-    if coverage_kind not in (CONDITIONAL, REPEATED):
-        raise InputError("coverage_kind", repr(coverage_kind)[:60], domain="evaluation.CONDITIONAL, evaluation.REPEATED")
+    if coverage_kind not in (CONDITIONAL, CLOSED_LOOP, REPEATED):
+        domain = "evaluation.CONDITIONAL, evaluation.CLOSED_LOOP, evaluation.REPEATED"
+        raise InputError("coverage_kind", repr(coverage_kind)[:60], domain=domain)
     error, limit = _columns(error_m=error_m, bound_m=bound_m)
     return BoundScore(**_core.evaluate_bound(error, limit, risk, _labels(track)), risk=risk, coverage_kind=coverage_kind)
 

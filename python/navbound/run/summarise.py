@@ -66,7 +66,7 @@ def summarise(
         (pl.col("rnp_m") - pl.col(judged.column)).alias("_margin"),
         (2 * pl.col("rnp_m") - pl.col(judged.integrity_column)).alias("_margin_integrity"),
     )
-    coverage_kind = evaluation.CONDITIONAL if material.kind == "fly" else evaluation.REPEATED
+    coverage_kind = evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED
     accuracy = [_method_result(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
     verdict = _verdict(material, margins, accuracy[0], risks)
     return Summary(
