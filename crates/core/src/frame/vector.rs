@@ -116,3 +116,26 @@ fn track_from_enu(course: Radians) -> Matrix3<f64> {
     let (s, c) = sin_cos(course.rad());
     Matrix3::new(s, c, 0.0, c, -s, 0.0, 0.0, 0.0, 1.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Fu 2014's convention: along (sin, cos), across (cos, -sin), positive right of track.
+    #[test]
+    fn east_is_right_of_a_northbound_track_and_behind_a_westbound_one() {
+        let east = Displacement::<Enu>::new(Metres::new(1.0), Metres::new(0.0), Metres::new(0.0));
+        let north_bound = east.to_track(Radians::new(0.0));
+        assert!((north_bound.vector() - Vector3::new(0.0, 1.0, 0.0)).amax() <= 1e-15);
+        let west_bound = east.to_track(Radians::degrees(270.0));
+        assert!((west_bound.vector() - Vector3::new(-1.0, 0.0, 0.0)).amax() <= 1e-15);
+    }
+
+    #[test]
+    fn a_covariance_turns_into_the_track_frame() {
+        // sigma 3 m east, 1 m north, correlated: on a course of 90 degrees along is east and right is south.
+        let c = Covariance::<Enu>::from_upper([9.0, 2.0, 1.0, 0.5, -0.25, 4.0]).to_track(Radians::degrees(90.0));
+        let expected = Matrix3::new(9.0, -2.0, 0.5, -2.0, 1.0, 0.25, 0.5, 0.25, 4.0);
+        assert!((c.matrix() - expected).amax() <= 1e-14);
+    }
+}
