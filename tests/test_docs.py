@@ -7,7 +7,6 @@ import runpy
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 ROOT = Path(__file__).parents[1]
 
@@ -46,8 +45,12 @@ def test_every_link_of_the_readme_leads_somewhere() -> None:
         assert (ROOT / link).exists(), link
 
 
-@pytest.mark.parametrize("document", ["design.md", "notation.md"])
-def test_design_documents_name_folders_that_exist(document: str) -> None:
-    text = (ROOT / "docs" / document).read_text(encoding="utf-8")
-    crates = set(re.findall(r"navbound-(core|path|formats|simulate|assess)\b", text))
-    assert all((ROOT / "crates" / c).is_dir() for c in crates)
+def test_the_tree_of_the_design_is_the_tree() -> None:
+    tree = (ROOT / "docs" / "design.md").read_text(encoding="utf-8").split("## 2. The tree")[1].split("## 3.")[0]
+    crates = set(re.findall(r"\bnavbound-([a-z]+)\b", tree))
+    assert crates == {c.name for c in (ROOT / "crates").iterdir()} - {"python"}
+    stages = set(re.findall(r"\bsrc/([a-z]+)/", tree))
+    assert stages == {s.name for s in (ROOT / "crates" / "core" / "src").iterdir() if s.is_dir()}
+    subjects = next(line for line in tree.splitlines() if "one module a subject" in line).split("one module")[0].split()
+    assert len(subjects) > 5
+    assert all((ROOT / "python" / "navbound" / f"{name}.py").exists() for name in subjects)

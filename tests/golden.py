@@ -1,0 +1,52 @@
+"""Small outputs of the shipped scenarios, kept in the repository: a change of any number shows up in the review as a diff.
+
+They say what moved, not what is right. `./dev golden` rewrites them; the test compares.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import navbound
+from navbound import scenario
+from navbound.run.directory import Run
+
+FOLDER = Path(__file__).parent / "golden"
+DIGITS = 10
+"""Significant digits kept; the same bits are expected everywhere, one rounding is allowed for."""
+
+
+def outcome(run: Run) -> dict[str, Any]:
+    """The numbers of a run that a user would notice."""
+    summary = run.summary
+    epochs = run.epochs
+    every = [*range(0, epochs.height, 1180)]
+    columns = ("est_lat_rad", "est_lon_rad", "fte_m", "nse_cross_m", "tse_exact_m", "tse_exact_integrity_m", "anp_circle_m", "anp_sphere_m")
+    return {
+        "share_inside": _short(summary.verdict.share_inside),
+        "phases": [{k: _short(v) for k, v in p.model_dump().items()} for p in summary.phases],
+        "accuracy": {m.id: {"mean_m": _short(m.mean_m), "coverage": _short(m.coverage)} for m in summary.accuracy},
+        "alerts": [[e.kind, e.onset_ns, e.clear_ns, _short(e.peak_m)] for e in summary.events],
+        "epochs": {name: [_short(v) for v in epochs[name].gather(every).to_list()] for name in columns},
+    }
+
+
+def _short(value: Any) -> Any:
+    return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
+
+
+def main() -> None:
+    """Write every golden file."""
+    FOLDER.mkdir(exist_ok=True)
+    for name in scenario.shipped():
+        text = json.dumps(outcome(navbound.fly(name)), indent=1)
+        (FOLDER / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    if "--write" not in sys.argv:
+        sys.exit("golden: --write rewrites the files under review")
+    main()

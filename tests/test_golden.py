@@ -1,0 +1,38 @@
+"""What moved? The shipped scenarios against the outputs kept in tests/golden (`./dev golden` rewrites them)."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import navbound
+from navbound import scenario
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import golden
+
+RELATIVE = 1e-9
+"""Ten digits are kept, so nine must agree."""
+
+
+def same(kept: Any, found: Any) -> bool:
+    if isinstance(kept, dict):
+        return isinstance(found, dict) and kept.keys() == found.keys() and all(same(kept[k], found[k]) for k in kept)
+    if isinstance(kept, list):
+        return isinstance(found, list) and len(kept) == len(found) and all(same(k, f) for k, f in zip(kept, found, strict=True))
+    if isinstance(kept, float):
+        return isinstance(found, float) and abs(found - kept) <= RELATIVE * abs(kept)
+    return bool(kept == found)
+
+
+@pytest.mark.parametrize("name", sorted(scenario.shipped()))
+def test_the_numbers_of_a_shipped_scenario_are_those_under_review(name: str) -> None:
+    kept = json.loads((golden.FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+    found = json.loads(json.dumps(golden.outcome(navbound.fly(name))))
+    moved = [key for key in kept if not same(kept[key], found.get(key))]
+    assert not moved, f"{moved} moved: if it was meant, run ./dev golden and say so in CHANGELOG.md under Numbers changed"
