@@ -53,3 +53,8 @@ def flatten(**arguments: tuple[ArrayLike, tuple[int, ...]]) -> tuple[tuple[int, 
 def unflatten(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float64]:
     """Give a flat result its leading shape; zero-dimensional results stay arrays of shape ``()``."""
     return values.reshape(shape + values.shape[1:])
+
+
+def split_columns(table: NDArray[np.float64], shape: tuple[int, ...]) -> list[NDArray[np.float64]]:
+    """Split a flat table into columns, each in the leading shape."""
+    return [unflatten(np.ascontiguousarray(table[:, k]), shape) for k in range(table.shape[1])]

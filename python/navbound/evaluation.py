@@ -22,8 +22,8 @@ CONDITIONAL = (
 
 CLOSED_LOOP = (
     "Closed-loop coverage, between the two kinds: the aircraft steers by its estimate, so slow navigation errors reach the true track "
-    "(conditional coverage, 1 - risk) and fast ones only the estimate (repeated-sampling coverage, more than 1 - risk); an exact bound of the "
-    "total system error covers at least 1 - risk of the epochs."
+    "(conditional coverage, 1 - risk) and fast ones only the estimate (repeated-sampling coverage, more than 1 - risk); an exact bound of "
+    "the total system error covers at least 1 - risk of the epochs."
 )
 """The kind of coverage of a flight whose guidance follows the estimate (docs/methods/coverage.md)."""
 
