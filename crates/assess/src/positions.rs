@@ -1,7 +1,8 @@
 //! Observations and navigation messages to positions, epoch by epoch on all cores.
 
+use navbound_core::frame::ecef_from_geodetic;
 use navbound_core::geometry::atmosphere::ionosphere_factor;
-use navbound_core::geometry::broadcast::{self, clock_polynomial};
+use navbound_core::geometry::broadcast::{Broadcast, clock_polynomial};
 use navbound_core::quantity::{GpsTime, Metres, Unavailable};
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};
 use navbound_core::solution::point::{self, Fix, Range, Settings};
@@ -9,7 +10,8 @@ use navbound_formats::rinex::{Navigation, Observations};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Epochs in one task of the pool: about 0.5 ms of work.
+/// Epochs in one task of the pool: about 0.5 ms of work. The first of them begins from nothing, each other from the position before it,
+/// so results depend on this number (by less than 2 mm) and not on the number of threads.
 const EPOCHS_PER_TASK: usize = 32;
 const SYSTEMS: usize = Constellation::ALL.len();
 
@@ -60,9 +62,11 @@ struct Plan {
     messages: &'static [Message],
 }
 
-/// Broadcast records of every satellite and message, found without a search.
+/// Broadcast records of every satellite and message, found without a search, with their orbits.
 struct Records<'a> {
     navigation: &'a Navigation,
+    /// Of each record; `None` where it describes no orbit.
+    orbits: Vec<Option<Broadcast>>,
     ranges: Vec<std::ops::Range<usize>>,
 }
 
@@ -74,15 +78,18 @@ impl<'a> Records<'a> {
                 *range = if range.end == 0 { k..k + 1 } else { range.start..k + 1 };
             }
         }
-        Self { navigation, ranges }
+        let orbits = navigation.ephemerides.iter().map(|e| Broadcast::new(e).ok()).collect();
+        Self { navigation, orbits, ranges }
     }
     fn slot(satellite: SatelliteId, message: Message) -> usize {
         (satellite.constellation.index() * 100 + usize::from(satellite.number)) * 5 + message as usize
     }
-    fn nearest(&self, satellite: SatelliteId, messages: &[Message], time: GpsTime) -> Option<&'a Ephemeris> {
+    /// The record and its orbit.
+    fn nearest(&self, satellite: SatelliteId, messages: &[Message], time: GpsTime) -> Option<(&'a Ephemeris, Option<&Broadcast>)> {
         messages.iter().find_map(|m| {
             let range = self.ranges.get(Self::slot(satellite, *m))?.clone();
-            nearest(&self.navigation.ephemerides[range], time)
+            let k = range.start + nearest(&self.navigation.ephemerides[range], time)?;
+            Some((&self.navigation.ephemerides[k], self.orbits[k].as_ref()))
         })
     }
 }
@@ -94,18 +101,22 @@ pub fn positions(observations: &Observations, navigation: &Navigation, job: &Job
         Some(Plan::new(constellation, job.signals, observations)).filter(|p| p.bands.iter().all(|b| !b.columns.is_empty()))
     });
     let records = Records::new(navigation);
-    let outcomes: Vec<_> = (0..observations.n_epochs())
-        .into_par_iter()
-        .with_min_len(EPOCHS_PER_TASK)
-        .map_init(Vec::new, |ranges, epoch| {
-            let mut unused = [0_usize; REASONS.len()];
-            collect(observations, &records, &plans, epoch, ranges, &mut unused);
-            (point::solve(ranges, observations.time[epoch], &job.settings), unused)
-        })
-        .collect();
+    let epochs: Vec<usize> = (0..observations.n_epochs()).collect();
+    let task = |epochs: &[usize]| {
+        let (mut ranges, mut last, mut unused) = (Vec::new(), None, [0_usize; REASONS.len()]);
+        let mut fixes = Vec::with_capacity(epochs.len());
+        for epoch in epochs {
+            collect(observations, &records, &plans, *epoch, &mut ranges, &mut unused);
+            let fix = point::solve_near(&ranges, observations.time[*epoch], &job.settings, last.as_ref());
+            last = fix.as_ref().ok().map(|f: &Fix| ecef_from_geodetic(&f.position)).or(last);
+            fixes.push(fix);
+        }
+        (fixes, unused)
+    };
+    let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
     let mut found = Positions { codes: codes(&plans, observations), ..Positions::default() };
-    for (fix, unused) in outcomes {
-        found.fixes.push(fix);
+    for (fixes, unused) in outcomes {
+        found.fixes.extend(fixes);
         for (reason, n) in REASONS.iter().zip(unused).filter(|(_, n)| *n > 0) {
             *found.unused.entry(reason).or_default() += n;
         }
@@ -154,7 +165,7 @@ impl Plan {
         }
         let measured = &measured[..self.bands.len().min(2)];
         let (first, pseudorange, doppler, cn0) = *measured.first().ok_or(Unused::NoRange)?;
-        let e = records.nearest(satellite, self.messages, time).ok_or(Unused::NoRecord)?;
+        let (e, orbit) = records.nearest(satellite, self.messages, time).ok_or(Unused::NoRecord)?;
         if !measured.iter().all(|m| e.healthy(m.0)) {
             return Err(Unused::Unhealthy);
         }
@@ -163,7 +174,7 @@ impl Plan {
         }
         let sent = earlier(time, pseudorange / SPEED_OF_LIGHT_MPS);
         let sent = earlier(sent, clock_polynomial(e, sent));
-        let state = broadcast::state(e, sent).map_err(|_| Unused::NoOrbit)?;
+        let state = orbit.ok_or(Unused::NoOrbit)?.state(sent);
         let (factors, ionosphere) = combination(measured);
         let mut corrected = SPEED_OF_LIGHT_MPS * state.clock_s;
         for (factor, m) in factors.iter().zip(measured) {

@@ -124,13 +124,18 @@ pub fn geodetic_from_ecef(position: &EcefPosition) -> Result<Geodetic, OutOfDoma
     let second = ECCENTRICITY_SQUARED / (1.0 - ECCENTRICITY_SQUARED);
     let mut reduced = atan2(v.z * A, p * b);
     let mut lat = 0.0;
+    let (mut s, mut c) = (0.0, 0.0);
     for _ in 0..6 {
-        let (s, c) = sin_cos(reduced);
-        lat = atan2(v.z + second * b * s * s * s, p - ECCENTRICITY_SQUARED * A * c * c * c);
-        let (slat, clat) = sin_cos(lat);
-        reduced = atan2((1.0 - F) * slat, clat);
+        let (sr, cr) = sin_cos(reduced);
+        let before = lat;
+        lat = atan2(v.z + second * b * sr * sr * sr, p - ECCENTRICITY_SQUARED * A * cr * cr * cr);
+        (s, c) = sin_cos(lat);
+        // Each round gains three digits or more: the next would not move the last one.
+        if (lat - before).abs() < 1e-13 {
+            break;
+        }
+        reduced = atan2((1.0 - F) * s, c);
     }
-    let (s, c) = sin_cos(lat);
     let w = sqrt(1.0 - ECCENTRICITY_SQUARED * s * s);
     // p cos + z sin - a w: the height without the division by a cosine that fails at the poles.
     let height = p * c + v.z * s - A * w;

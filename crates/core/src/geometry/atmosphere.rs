@@ -4,7 +4,7 @@ use super::Direction;
 use crate::frame::Geodetic;
 use crate::quantity::{GpsTime, Metres};
 use crate::signal::{Carrier, Klobuchar, SPEED_OF_LIGHT_MPS};
-use crate::special::float::{cos, exp, ln, sin, sqrt};
+use crate::special::float::{cos, exp, ln, sin, sin_cos, sqrt};
 use core::f64::consts::PI;
 
 const NANOSECONDS_PER_DAY: i64 = 86_400_000_000_000;
@@ -17,11 +17,21 @@ const NANOSECONDS_PER_DAY: i64 = 86_400_000_000_000;
 /// # Valid
 /// The model removes about half of the delay's root mean square.
 pub fn klobuchar(model: &Klobuchar, receiver: &Geodetic, direction: &Direction, time: GpsTime) -> Metres {
-    let elevation = direction.elevation().rad() / PI;
-    let azimuth = direction.azimuth().rad();
+    klobuchar_towards(model, receiver, direction.elevation().rad(), sin_cos(direction.azimuth().rad()), time)
+}
+
+/// The same from the elevation \[rad\] and the azimuth's sine and cosine, which a line of sight has without the angle.
+pub(crate) fn klobuchar_towards(
+    model: &Klobuchar,
+    receiver: &Geodetic,
+    elevation_rad: f64,
+    (sin_az, cos_az): (f64, f64),
+    time: GpsTime,
+) -> Metres {
+    let elevation = elevation_rad / PI;
     let angle = 0.0137 / (elevation + 0.11) - 0.022;
-    let lat = (receiver.point.lat().rad() / PI + angle * cos(azimuth)).clamp(-0.416, 0.416);
-    let lon = receiver.point.lon().rad() / PI + angle * sin(azimuth) / cos(lat * PI);
+    let lat = (receiver.point.lat().rad() / PI + angle * cos_az).clamp(-0.416, 0.416);
+    let lon = receiver.point.lon().rad() / PI + angle * sin_az / cos(lat * PI);
     let magnetic = lat + 0.064 * cos((lon - 1.617) * PI);
     // Whole nanoseconds wrap around without rounding.
     let local = ((43_200e9 * lon) as i64).wrapping_add(time.nanoseconds()).rem_euclid(NANOSECONDS_PER_DAY) as f64 * 1e-9;
@@ -60,8 +70,12 @@ pub fn saastamoinen(receiver: &Geodetic, direction: &Direction) -> Metres {
 
 /// Mapping of the zenith delay to an elevation.
 pub fn troposphere_mapping(direction: &Direction) -> f64 {
-    let s = sin(direction.elevation().rad());
-    1.001 / sqrt(0.002001 + s * s)
+    mapping_of(sin(direction.elevation().rad()))
+}
+
+/// The same from the elevation's sine.
+pub(crate) fn mapping_of(sin_elevation: f64) -> f64 {
+    1.001 / sqrt(0.002001 + sin_elevation * sin_elevation)
 }
 
 /// Tropospheric delay overhead \[m\]; a receiver evaluates it once for all satellites.

@@ -7,7 +7,7 @@ use super::orbit::eccentric_anomaly;
 use crate::frame::EcefPosition;
 use crate::quantity::{GpsTime, Unavailable};
 use crate::signal::{Constellation, Ephemeris, GeoEphemeris, Message, SPEED_OF_LIGHT_MPS};
-use crate::special::float::{atan2, sin_cos, sqrt};
+use crate::special::float::{sin_cos, sqrt};
 use nalgebra::{Matrix3, Vector3};
 
 /// Gravitational constant of GPS \[m³/s²\].
@@ -37,32 +37,146 @@ pub struct SatelliteState {
     pub clock_drift: f64,
 }
 
-/// State at a GPS time from a Keplerian record.
-///
-/// # Valid
-/// Any time; the caller decides with [`Ephemeris::covers`] whether the record is fresh enough.
+/// A Keplerian record that describes an orbit, with what does not change in time worked out once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Broadcast {
+    record: Ephemeris,
+    semi_major: f64,
+    /// Mean motion, corrected \[rad/s\].
+    mean_motion: f64,
+    /// sqrt(1 - e²).
+    root: f64,
+    /// Sine and cosine of perigee and of the inclination at the reference time.
+    perigee: (f64, f64),
+    inclination: (f64, f64),
+    /// Node in Earth-fixed axes at the reference time (sine, cosine), and its rate there \[rad/s\].
+    node: (f64, f64),
+    node_rate: f64,
+    earth_rate: f64,
+    /// Factor of e sin E in the clock: -2 sqrt(mu a) e / c² \[s\].
+    relativity: f64,
+}
+
+/// State at a GPS time from a Keplerian record; for many times make the [`Broadcast`] once.
 ///
 /// # Errors
-/// [`Unavailable::Invalid`] for elements that describe no orbit.
+/// As [`Broadcast::new`].
 pub fn state(e: &Ephemeris, time: GpsTime) -> Result<SatelliteState, Unavailable> {
-    check(e)?;
-    let beidou = e.satellite.constellation == Constellation::BeiDou;
-    let mu = if e.satellite.constellation == Constellation::Gps { MU_GPS } else { MU_OTHERS };
-    let earth_rate = if beidou { EARTH_RATE_BEIDOU } else { EARTH_RATE };
-    let t = time.seconds_since(e.orbit_time);
-    let a = e.sqrt_a * e.sqrt_a;
-    let n = sqrt(mu / (a * a * a)) + e.delta_n;
-    let plane = in_plane(e, e.mean_anomaly + n * t, n, a, t);
-    // Node in Earth-fixed axes at the reference time (right ascension counts from the start of the week).
-    let week_start = if beidou { BEIDOU_BEHIND_NS } else { 0 };
-    let time_of_week = ((e.orbit_time.nanoseconds() - week_start).rem_euclid(WEEK_NS)) as f64 * 1e-9;
-    let geostationary = e.message == Message::D2;
-    let node_rate = if geostationary { e.node[1] } else { e.node[1] - earth_rate };
-    let node = e.node[0] + node_rate * t - earth_rate * time_of_week;
-    let (position, velocity) = plane.to_earth(node, node_rate);
-    let (position, velocity) = if geostationary { from_tilted(&position, &velocity, earth_rate, t) } else { (position, velocity) };
-    let (clock_s, clock_drift) = clock(e, time, &plane, mu, a);
-    Ok(SatelliteState { position: EcefPosition::from_vector(position), velocity_mps: velocity, clock_s, clock_drift })
+    Ok(Broadcast::new(e)?.state(time))
+}
+
+impl Broadcast {
+    /// From a record.
+    ///
+    /// # Errors
+    /// [`Unavailable::Invalid`] for elements that describe no orbit.
+    pub fn new(e: &Ephemeris) -> Result<Self, Unavailable> {
+        check(e)?;
+        let beidou = e.satellite.constellation == Constellation::BeiDou;
+        let mu = if e.satellite.constellation == Constellation::Gps { MU_GPS } else { MU_OTHERS };
+        let earth_rate = if beidou { EARTH_RATE_BEIDOU } else { EARTH_RATE };
+        let a = e.sqrt_a * e.sqrt_a;
+        // Right ascension counts from the start of the week.
+        let week_start = if beidou { BEIDOU_BEHIND_NS } else { 0 };
+        let time_of_week = ((e.orbit_time.nanoseconds() - week_start).rem_euclid(WEEK_NS)) as f64 * 1e-9;
+        Ok(Self {
+            record: *e,
+            semi_major: a,
+            mean_motion: sqrt(mu / (a * a * a)) + e.delta_n,
+            root: sqrt(1.0 - e.eccentricity * e.eccentricity),
+            perigee: sin_cos(e.perigee),
+            inclination: sin_cos(e.inclination[0]),
+            node: sin_cos(e.node[0] - earth_rate * time_of_week),
+            node_rate: if e.message == Message::D2 { e.node[1] } else { e.node[1] - earth_rate },
+            earth_rate,
+            relativity: -2.0 * sqrt(mu * a) * e.eccentricity / (SPEED_OF_LIGHT_MPS * SPEED_OF_LIGHT_MPS),
+        })
+    }
+
+    /// The record.
+    pub const fn record(&self) -> &Ephemeris {
+        &self.record
+    }
+
+    /// State at a GPS time.
+    ///
+    /// # Valid
+    /// Any time; the caller decides with [`Ephemeris::covers`] whether the record is fresh enough.
+    pub fn state(&self, time: GpsTime) -> SatelliteState {
+        let t = time.seconds_since(self.record.orbit_time);
+        let plane = self.in_plane(t);
+        let (position, velocity) = plane.to_earth(turned(self.node, self.node_rate * t), self.node_rate);
+        let geostationary = self.record.message == Message::D2;
+        let (position, velocity) = if geostationary { from_tilted(&position, &velocity, self.earth_rate, t) } else { (position, velocity) };
+        let t = time.seconds_since(self.record.clock_time);
+        SatelliteState {
+            position: EcefPosition::from_vector(position),
+            velocity_mps: velocity,
+            clock_s: clock_polynomial(&self.record, time) + self.relativity * plane.anomaly.0,
+            clock_drift: self.record.clock[1] + 2.0 * self.record.clock[2] * t + self.relativity * plane.anomaly.1 * plane.anomaly_rate,
+        }
+    }
+
+    /// In the plane, `t` seconds after the reference time of the orbit.
+    fn in_plane(&self, t: f64) -> InPlane {
+        let (e, ecc) = (&self.record, self.record.eccentricity);
+        let (s, c) = eccentric_direction(e.mean_anomaly + self.mean_motion * t, ecc);
+        let scale = 1.0 - ecc * c;
+        let anomaly_rate = self.mean_motion / scale;
+        // True anomaly and perigee by the addition theorem: no angle is needed.
+        let (sv, cv) = (self.root * s / scale, (c - ecc) / scale);
+        let (sw, cw) = self.perigee;
+        let (sp, cp) = (sw * cv + cw * sv, cw * cv - sw * sv);
+        let phi_rate = self.root * anomaly_rate / scale;
+        let (s2, c2) = (2.0 * sp * cp, cp * cp - sp * sp);
+        // A harmonic pair [cosine, sine]: its value and its rate.
+        let harmonic = |[hc, hs]: [f64; 2]| [hc * c2 + hs * s2, 2.0 * phi_rate * (hs * c2 - hc * s2)];
+        let [du, dr, di] = [e.latitude_harmonics, e.radius_harmonics, e.inclination_harmonics].map(harmonic);
+        InPlane {
+            radius: [self.semi_major * scale + dr[0], self.semi_major * ecc * s * anomaly_rate + dr[1]],
+            latitude: turned((sp, cp), du[0]),
+            latitude_rate: phi_rate + du[1],
+            inclination: turned(self.inclination, e.inclination[1] * t + di[0]),
+            inclination_rate: e.inclination[1] + di[1],
+            anomaly: (s, c),
+            anomaly_rate,
+        }
+    }
+}
+
+/// Sine and cosine of an angle increased by `d`. Small `d` need a few products only.
+fn turned((s, c): (f64, f64), d: f64) -> (f64, f64) {
+    // Up to here the next terms of both series are below 1e-18.
+    let (sd, cd) = if d.abs() <= 0.05 { small_sin_cos(d) } else { sin_cos(d) };
+    (s * cd + c * sd, c * cd - s * sd)
+}
+
+fn small_sin_cos(d: f64) -> (f64, f64) {
+    let q = d * d;
+    let s = d * (1.0 - q * (1.0 / 6.0 - q * (1.0 / 120.0 - q * (1.0 / 5040.0 - q / 362_880.0))));
+    let c = 1.0 - q * (0.5 - q * (1.0 / 24.0 - q * (1.0 / 720.0 - q / 40_320.0)));
+    (s, c)
+}
+
+/// Sine and cosine of the eccentric anomaly: Newton on its difference d from the mean anomaly, d = e sin(M + d).
+fn eccentric_direction(mean: f64, e: f64) -> (f64, f64) {
+    // |d| <= e / (1 - e): of nearly circular orbits small enough for the short series.
+    if e > 0.047 {
+        return sin_cos(eccentric_anomaly(mean, e));
+    }
+    let at_mean = sin_cos(mean);
+    let (mut d, mut direction) = (0.0, at_mean);
+    for _ in 0..4 {
+        let (s, c) = direction;
+        let step = (e * s - d) / (1.0 - e * c);
+        d += step;
+        direction = turned(at_mean, d);
+        // The next step is below e step² / 2.
+        if step.abs() < 1e-8 {
+            break;
+        }
+    }
+    direction
 }
 
 /// State at a GPS time of a geostationary augmentation satellite: a Taylor series about its reference time.
@@ -106,53 +220,32 @@ fn check(e: &Ephemeris) -> Result<(), Unavailable> {
     Ok(())
 }
 
-/// Radius and argument of latitude, inclination, with rates.
+/// Radius and argument of latitude, inclination, with rates; angles as sine and cosine.
 struct InPlane {
     radius: [f64; 2],
-    latitude: [f64; 2],
-    inclination: [f64; 2],
-    sin_anomaly: f64,
-    cos_anomaly: f64,
+    latitude: (f64, f64),
+    latitude_rate: f64,
+    inclination: (f64, f64),
+    inclination_rate: f64,
+    /// Eccentric anomaly.
+    anomaly: (f64, f64),
     anomaly_rate: f64,
 }
 
-fn in_plane(e: &Ephemeris, mean_anomaly: f64, n: f64, a: f64, t: f64) -> InPlane {
-    let ecc = e.eccentricity;
-    let (s, c) = sin_cos(eccentric_anomaly(mean_anomaly, ecc));
-    let scale = 1.0 - ecc * c;
-    let anomaly_rate = n / scale;
-    let root = sqrt(1.0 - ecc * ecc);
-    let phi = e.perigee + atan2(root * s, c - ecc);
-    let phi_rate = root * anomaly_rate / scale;
-    let (s2, c2) = sin_cos(2.0 * phi);
-    // A harmonic pair [cosine, sine]: its value and its rate.
-    let harmonic = |[hc, hs]: [f64; 2]| [hc * c2 + hs * s2, 2.0 * phi_rate * (hs * c2 - hc * s2)];
-    let [du, dr, di] = [e.latitude_harmonics, e.radius_harmonics, e.inclination_harmonics].map(harmonic);
-    InPlane {
-        radius: [a * scale + dr[0], a * ecc * s * anomaly_rate + dr[1]],
-        latitude: [phi + du[0], phi_rate + du[1]],
-        inclination: [e.inclination[0] + e.inclination[1] * t + di[0], e.inclination[1] + di[1]],
-        sin_anomaly: s,
-        cos_anomaly: c,
-        anomaly_rate,
-    }
-}
-
 impl InPlane {
-    /// Position and velocity in axes in which the node stands at `node` and moves at `node_rate`.
-    fn to_earth(&self, node: f64, node_rate: f64) -> (Vector3<f64>, Vector3<f64>) {
+    /// Position and velocity in axes in which the node stands at `node` (sine, cosine) and moves at `node_rate`.
+    fn to_earth(&self, (sn, cn): (f64, f64), node_rate: f64) -> (Vector3<f64>, Vector3<f64>) {
         let [r, r_rate] = self.radius;
-        let (su, cu) = sin_cos(self.latitude[0]);
+        let (su, cu) = self.latitude;
         let (x, y) = (r * cu, r * su);
-        let (x_rate, y_rate) = (r_rate * cu - y * self.latitude[1], r_rate * su + x * self.latitude[1]);
-        let (si, ci) = sin_cos(self.inclination[0]);
-        let (sn, cn) = sin_cos(node);
+        let (x_rate, y_rate) = (r_rate * cu - y * self.latitude_rate, r_rate * su + x * self.latitude_rate);
+        let (si, ci) = self.inclination;
         let position = Vector3::new(x * cn - y * ci * sn, x * sn + y * ci * cn, y * si);
-        let across = y_rate * ci - y * si * self.inclination[1];
+        let across = y_rate * ci - y * si * self.inclination_rate;
         let velocity = Vector3::new(
             x_rate * cn - across * sn - position.y * node_rate,
             x_rate * sn + across * cn + position.x * node_rate,
-            y_rate * si + y * ci * self.inclination[1],
+            y_rate * si + y * ci * self.inclination_rate,
         );
         (position, velocity)
     }
@@ -169,10 +262,6 @@ fn from_tilted(position: &Vector3<f64>, velocity: &Vector3<f64>, earth_rate: f64
     (p, v)
 }
 
-/// Clock with the relativity of the eccentric orbit: -2 sqrt(mu a) e sin E / c².
-fn clock(e: &Ephemeris, time: GpsTime, plane: &InPlane, mu: f64, a: f64) -> (f64, f64) {
-    let f = -2.0 * sqrt(mu * a) * e.eccentricity / (SPEED_OF_LIGHT_MPS * SPEED_OF_LIGHT_MPS);
-    let t = time.seconds_since(e.clock_time);
-    let drift = e.clock[1] + 2.0 * e.clock[2] * t;
-    (clock_polynomial(e, time) + f * plane.sin_anomaly, drift + f * plane.cos_anomaly * plane.anomaly_rate)
-}
+#[cfg(test)]
+#[path = "broadcast_tests.rs"]
+mod tests;

@@ -140,14 +140,13 @@ impl Ephemeris {
     }
 }
 
-/// The record whose reference time is nearest, among those that cover the time; `None` when none does. Records sorted by reference time.
-/// Of two equally near, the earlier.
-pub fn nearest(records: &[Ephemeris], time: GpsTime) -> Option<&Ephemeris> {
+/// Where the record stands whose reference time is nearest, among those that cover the time; `None` when none does. Records sorted by
+/// reference time. Of two equally near, the earlier.
+pub fn nearest(records: &[Ephemeris], time: GpsTime) -> Option<usize> {
     let after = records.partition_point(|r| r.orbit_time <= time);
-    let before = records[..after].last();
-    let later = records.get(after);
-    let gap = |r: &&Ephemeris| (r.orbit_time.nanoseconds() - time.nanoseconds()).unsigned_abs();
-    [before, later].into_iter().flatten().filter(|r| r.covers(time)).min_by_key(gap)
+    let gap = |k: &usize| (records[*k].orbit_time.nanoseconds() - time.nanoseconds()).unsigned_abs();
+    let found = [after.checked_sub(1), Some(after).filter(|k| *k < records.len())];
+    found.into_iter().flatten().filter(|k| records[*k].covers(time)).min_by_key(gap)
 }
 
 /// Broadcast state of a geostationary augmentation satellite, in Earth-fixed axes.

@@ -7,22 +7,24 @@
 use super::range_error::{RangeConditions, RangeError};
 use super::wls::{Dilution, Normal, Row};
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, enu_from_ecef, geodetic_from_ecef};
-use crate::geometry::Direction;
-use crate::geometry::atmosphere::{klobuchar, troposphere_mapping, zenith_delay};
+use crate::geometry::atmosphere::{klobuchar_towards, mapping_of, zenith_delay};
 use crate::geometry::broadcast::in_axes_of_reception;
 use crate::quantity::{GpsTime, Metres, Radians, Unavailable};
 use crate::signal::{Constellation, Klobuchar, SPEED_OF_LIGHT_MPS, SatelliteId};
-use crate::special::float::{atan2, hypot, sqrt};
+use crate::special::float::{asin, sin, sqrt};
 use crate::special::gamma::chi_square_tail;
 use nalgebra::{Matrix3, Vector3};
 
 /// Most ranges of one epoch; receivers list fewer than 60 satellites.
 pub const MOST_RANGES: usize = 96;
 const ROUNDS: usize = 12;
-/// Below this step the position has settled \[m\].
-const SETTLED: f64 = 1e-4;
-/// This far from where delays were computed they are computed anew \[m\]; nearer they are wrong by less than 3e-4 of it, 15 mm.
-const DELAYS_MOVE: f64 = 50.0;
+/// A step below this is the last \[m\]: ranges are straight over it, to 1 m² / 2 / 2e7 m = 3e-8 m, and the Earth's turn during the way, which
+/// a step changes too, to 6e-6 of it.
+const STRAIGHT: f64 = 1.0;
+/// This far from where delays were computed they are computed anew \[m\]; nearer they are wrong by less than 3e-4 of it, and the height,
+/// which the troposphere moves by five times as much, by 1.5 mm.
+const DELAYS_MOVE: f64 = 1.0;
+const SINGULAR: Unavailable = Unavailable::Singular { condition: f64::INFINITY, limit: super::wls::CONDITION_LIMIT };
 /// Residuals beyond this many standard deviations count less in the robust rounds; Huber's choice costs 5 % of efficiency.
 const HUBER: f64 = 1.345;
 
@@ -107,20 +109,36 @@ impl Seen {
     }
 }
 
-/// The position of one epoch.
+/// The position of one epoch, from nothing but its ranges.
 ///
 /// # Errors
 /// [`Unavailable`]: too few satellites above the mask, a singular geometry, a position off the Earth's neighbourhood (ranges that are
 /// no ranges), or more ranges than [`MOST_RANGES`].
 pub fn solve(ranges: &[Range], time: GpsTime, settings: &Settings) -> Result<Fix, Unavailable> {
+    solve_near(ranges, time, settings, None)
+}
+
+/// The same, looked for first at a position that may be near, such as the last one. The result is that of [`solve`], but for the 1.5 mm
+/// that delays computed up to a metre away may move it: where residuals do not agree with the weights from there, the
+/// epoch begins from nothing.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_near(ranges: &[Range], time: GpsTime, settings: &Settings, near: Option<&EcefPosition>) -> Result<Fix, Unavailable> {
     if ranges.len() > MOST_RANGES {
         let (value, unit, domain) = (ranges.len() as f64, "1", "[0, 96]");
         return Err(Unavailable::Invalid { field: "ranges", value, unit, domain });
     }
     let mut seen = [Seen::default(); MOST_RANGES];
     let seen = &mut seen[..ranges.len()];
-    let (at, modelled_at) = (start(ranges)?, Vector3::zeros());
-    let mut epoch = Solver { ranges, seen, time, settings, at, modelled_at, clocks: [0.0; CLOCKS] };
+    if let Some(near) = near {
+        let mut epoch = Solver::new(ranges, seen, time, settings, *near.vector());
+        if epoch.settle(false) == Ok(true) && epoch.judge().consistent {
+            return epoch.fix();
+        }
+        seen.fill(Seen::default());
+    }
+    let mut epoch = Solver::new(ranges, seen, time, settings, start(ranges)?);
     epoch.settle(true)?;
     epoch.settle(false)?;
     epoch.exclude()?;
@@ -138,6 +156,25 @@ struct Solver<'a> {
     /// Where delays and weights were computed; the Earth's centre before they are.
     modelled_at: Vector3<f64>,
     clocks: [f64; CLOCKS],
+    /// The equation of the last step.
+    normal: Normal,
+}
+
+/// Whether residuals agree with the weights.
+struct Judgement {
+    statistic: f64,
+    redundancy: usize,
+    /// Risk of a larger statistic; NaN without redundancy.
+    risk: f64,
+    consistent: bool,
+}
+
+/// Where the receiver is thought to be, with what all ranges share there.
+struct Place {
+    here: Geodetic,
+    zenith: f64,
+    sin_mask: f64,
+    time: GpsTime,
 }
 
 /// A first position from nothing: equal weights, no atmosphere, from the Earth's centre. A few rounds bring it within kilometres,
@@ -150,7 +187,7 @@ fn start(ranges: &[Range]) -> Result<Vector3<f64>, Unavailable> {
             Row { unit, weight: 1.0, clock: r.satellite.constellation.index(), residual: r.corrected.m() - way }
         });
         let normal = Normal::new(rows)?;
-        let step = normal.step().ok_or(Unavailable::Singular { condition: f64::INFINITY, limit: super::wls::CONDITION_LIMIT })?;
+        let step = normal.step().ok_or(SINGULAR)?;
         at += step;
         if step.norm() < 1e3 {
             break;
@@ -167,40 +204,53 @@ fn way(range: &Range, at: &Vector3<f64>) -> (f64, Vector3<f64>) {
     (length, line / length)
 }
 
-impl Solver<'_> {
-    /// Rounds of least squares until the position stands still; robust rounds weigh large residuals down.
-    fn settle(&mut self, robust: bool) -> Result<(), Unavailable> {
+impl<'a> Solver<'a> {
+    fn new(ranges: &'a [Range], seen: &'a mut [Seen], time: GpsTime, settings: &'a Settings, at: Vector3<f64>) -> Self {
+        let normal = Normal::default();
+        Self { ranges, seen, time, settings, at, modelled_at: Vector3::zeros(), clocks: [0.0; CLOCKS], normal }
+    }
+
+    /// Rounds of least squares until the position stands still, which is told; robust rounds weigh large residuals down.
+    fn settle(&mut self, robust: bool) -> Result<bool, Unavailable> {
         for round in 0..ROUNDS {
-            let here = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
-            let turn = enu_from_ecef(&here.point);
             // The first robust round has no residuals to judge by yet.
-            self.look(&here, &turn, robust && round > 0);
-            let normal = Normal::new(self.rows())?;
-            let step = normal.step().ok_or(Unavailable::Singular { condition: f64::INFINITY, limit: super::wls::CONDITION_LIMIT })?;
+            let turn = self.look(robust && round > 0)?;
+            self.normal = Normal::new(self.rows())?;
+            let step = self.normal.step().ok_or(SINGULAR)?;
             self.at += turn.transpose() * step;
-            self.clocks = core::array::from_fn(|c| normal.clock(c, &step));
-            let moved = step.norm();
-            if moved < SETTLED || (robust && round > 1 && moved < 0.1) {
-                return Ok(());
+            self.clocks = core::array::from_fn(|c| self.normal.clock(c, &step));
+            for seen in self.seen.iter_mut() {
+                // The way shortens by the step towards the satellite.
+                seen.row.residual += seen.row.unit.dot(&step);
+            }
+            let enough = if robust { round > 1 && step.norm() < 0.1 } else { step.norm() < STRAIGHT };
+            if enough {
+                return Ok(true);
             }
         }
-        Ok(())
+        Ok(false)
     }
 
     fn rows(&self) -> impl Iterator<Item = Row> + Clone + '_ {
         self.seen.iter().filter(|s| s.counts()).map(|s| s.row)
     }
 
-    /// Ranges against the present position; delays and weights anew where it has moved.
-    fn look(&mut self, here: &Geodetic, turn: &Matrix3<f64>, robust: bool) {
-        let delays = (self.at - self.modelled_at).norm() > DELAYS_MOVE;
-        let zenith = if delays { zenith_delay(here) } else { 0.0 };
-        self.modelled_at = if delays { self.at } else { self.modelled_at };
+    /// Ranges against the present position; delays and weights anew where it has moved. Gives the local axes.
+    fn look(&mut self, robust: bool) -> Result<Matrix3<f64>, Unavailable> {
+        let here = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
+        let turn = enu_from_ecef(&here.point);
+        let place = ((self.at - self.modelled_at).norm() > DELAYS_MOVE).then(|| {
+            let (zenith, sin_mask) = (zenith_delay(&here), sin(self.settings.mask.rad()));
+            Place { here, zenith, sin_mask, time: self.time }
+        });
+        if place.is_some() {
+            self.modelled_at = self.at;
+        }
         for (range, seen) in self.ranges.iter().zip(self.seen.iter_mut()) {
             let (way, unit) = way(range, &self.at);
             let unit = turn * unit;
-            if delays {
-                (seen.ionosphere, seen.delay, seen.weight) = self.settings.delay_and_weight(range, &unit, here, zenith, self.time);
+            if let Some(place) = &place {
+                (seen.ionosphere, seen.delay, seen.weight) = self.settings.delay_and_weight(range, &unit, place);
             }
             let clock = range.satellite.constellation.index();
             let residual = range.corrected.m() - way - seen.delay;
@@ -211,35 +261,33 @@ impl Solver<'_> {
             }
             seen.row = Row { unit, weight, clock, residual };
         }
+        Ok(turn)
     }
 
-    /// Weighted residual of a row after its clock.
-    fn normalised(&self, seen: &Seen) -> f64 {
-        (seen.row.residual - self.clocks[seen.row.clock]) * sqrt(seen.weight)
+    /// Weighted square of a residual after its clock.
+    fn square(&self, seen: &Seen) -> f64 {
+        let residual = seen.row.residual - self.clocks[seen.row.clock];
+        residual * residual * seen.weight
     }
 
-    fn statistic(&mut self) -> Result<(f64, usize), Unavailable> {
-        let here = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
-        self.look(&here, &enu_from_ecef(&here.point), false);
-        let normal = Normal::new(self.rows())?;
+    fn judge(&self) -> Judgement {
         let used = self.seen.iter().filter(|s| s.counts());
-        let statistic = used.clone().map(|s| self.normalised(s) * self.normalised(s)).sum();
-        Ok((statistic, used.count() - 3 - normal.clocks()))
-    }
-
-    fn passes(&self, statistic: f64, redundancy: usize) -> bool {
-        redundancy > 0 && chi_square_tail(redundancy as f64, statistic) >= self.settings.false_alarm
+        let statistic = used.clone().map(|s| self.square(s)).sum();
+        // The normal equation was refused unless there are as many ranges as unknowns.
+        let redundancy = used.count().saturating_sub(3 + self.normal.clocks());
+        let risk = if redundancy > 0 { chi_square_tail(redundancy as f64, statistic) } else { f64::NAN };
+        Judgement { statistic, redundancy, risk, consistent: risk >= self.settings.false_alarm }
     }
 
     /// Exclude the worst range until the residuals agree with the weights or no more may go.
     fn exclude(&mut self) -> Result<(), Unavailable> {
         for _ in 0..self.settings.most_excluded {
-            let (statistic, redundancy) = self.statistic()?;
+            let judged = self.judge();
             // With one redundant range a fault is seen but not found.
-            if self.passes(statistic, redundancy) || redundancy < 2 {
+            if judged.consistent || judged.redundancy < 2 {
                 return Ok(());
             }
-            let Some(worst) = self.worst()? else { return Ok(()) };
+            let Some(worst) = self.worst() else { return Ok(()) };
             self.seen[worst].excluded = true;
             self.settle(false)?;
         }
@@ -247,69 +295,58 @@ impl Solver<'_> {
     }
 
     /// The range without which the statistic falls most: by w v^2 / (1 - leverage), exactly.
-    fn worst(&self) -> Result<Option<usize>, Unavailable> {
-        let normal = Normal::new(self.rows())?;
-        let Some(inverse) = normal.inverse() else { return Ok(None) };
+    fn worst(&self) -> Option<usize> {
+        let inverse = self.normal.inverse()?;
         let fall = |k: usize| {
             let seen = &self.seen[k];
-            let rest = 1.0 - normal.leverage(&inverse, &seen.row);
+            let rest = 1.0 - self.normal.leverage(&inverse, &seen.row);
             // A range that nothing else checks leaves no residual to judge it by.
-            if rest > 1e-6 { self.normalised(seen) * self.normalised(seen) / rest } else { 0.0 }
+            if rest > 1e-6 { self.square(seen) / rest } else { 0.0 }
         };
-        Ok((0..self.seen.len()).filter(|k| self.seen[*k].counts()).max_by(|a, b| fall(*a).total_cmp(&fall(*b))))
+        (0..self.seen.len()).filter(|k| self.seen[*k].counts()).max_by(|a, b| fall(*a).total_cmp(&fall(*b)))
     }
 
-    fn fix(&mut self) -> Result<Fix, Unavailable> {
-        let (statistic, redundancy) = self.statistic()?;
-        let consistent = self.passes(statistic, redundancy);
+    fn fix(&self) -> Result<Fix, Unavailable> {
+        let judged = self.judge();
         let position = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
         if !(position.height.m() > -50_000.0 && position.height.m() < 1e8) {
             let (value, unit, domain) = (position.height.m(), "m", "(-5e4, 1e8)");
             return Err(Unavailable::Invalid { field: "est_h_m", value, unit, domain });
         }
-        let normal = Normal::new(self.rows())?;
-        let covariance = normal.covariance()?;
+        let covariance = self.normal.covariance()?;
         // Residuals larger than the weights say: the weights are wrong by that much at least.
-        let inflation = if consistent || redundancy == 0 { 1.0 } else { (statistic / redundancy as f64).max(1.0) };
+        let contradicted = !judged.consistent && judged.redundancy > 0;
+        let inflation = if contradicted { (judged.statistic / judged.redundancy as f64).max(1.0) } else { 1.0 };
         // The condition was judged with the weights; it is not judged twice.
-        let unit_weights = Normal::new(self.rows().map(|r| Row { weight: 1.0, ..r }))?.inverse();
-        let unit_weights = unit_weights.ok_or(Unavailable::Singular { condition: f64::INFINITY, limit: super::wls::CONDITION_LIMIT })?;
+        let unit_weights = Normal::new(self.rows().map(|r| Row { weight: 1.0, ..r }))?.inverse().ok_or(SINGULAR)?;
         let mut clock_m = [f64::NAN; CLOCKS];
         for s in self.seen.iter().filter(|s| s.counts()) {
             clock_m[s.row.clock] = self.clocks[s.row.clock];
         }
         Ok(Fix {
             position,
-            covariance: Covariance::claim_symmetric(covariance.matrix() * inflation + self.shared()?),
+            covariance: Covariance::claim_symmetric(covariance.matrix() * inflation + self.shared(covariance.matrix())),
             dilution: Dilution::of(&Covariance::claim_symmetric(unit_weights)),
             clock_m,
             velocity: self.velocity(&position),
             n_used: self.seen.iter().filter(|s| s.counts()).count(),
             n_excluded: self.seen.iter().filter(|s| s.excluded).count(),
-            residual_risk: if redundancy > 0 { chi_square_tail(redundancy as f64, statistic) } else { f64::NAN },
-            redundancy,
-            consistent,
+            residual_risk: judged.risk,
+            redundancy: judged.redundancy,
+            consistent: judged.consistent,
         })
     }
 
     /// Covariance of what the ionosphere's error has in common: a factor of all modelled delays, and a tilt from horizon to horizon in
-    /// two directions; each is what such range errors do to the position.
-    fn shared(&self) -> Result<Matrix3<f64>, Unavailable> {
+    /// two directions; each is what such range errors do to the position. `inverse` is that of the normal equation.
+    fn shared(&self, inverse: &Matrix3<f64>) -> Matrix3<f64> {
         let errors = &self.settings.errors;
+        let (common, tilt) = (errors.ionosphere_common_share, errors.ionosphere_gradient_share);
         // Shape of the error over the sky: the same everywhere, or growing eastwards, or northwards.
-        let shapes = [
-            (errors.ionosphere_common_share, 1.0, Vector3::zeros()),
-            (errors.ionosphere_gradient_share, 0.0, Vector3::x()),
-            (errors.ionosphere_gradient_share, 0.0, Vector3::y()),
-        ];
-        let mut covariance = Matrix3::zeros();
-        for (share, level, tilt) in shapes {
-            let used = self.seen.iter().filter(|s| s.counts());
-            let normal = Normal::new(used.map(|s| Row { residual: share * s.ionosphere * (level + tilt.dot(&s.row.unit)), ..s.row }))?;
-            let moved = normal.step().unwrap_or_else(Vector3::zeros);
-            covariance += moved * moved.transpose();
-        }
-        Ok(covariance)
+        let shapes = |s: &Seen| s.ionosphere * Vector3::new(common, tilt * s.row.unit.x, tilt * s.row.unit.y);
+        let used = self.seen.iter().filter(|s| s.counts());
+        let moved = inverse * self.normal.sides(used.map(|s| (s.row, shapes(s))));
+        moved * moved.transpose()
     }
 
     /// Velocity from Doppler: the same directions, one clock rate for all, weights of the ranges; robust.
@@ -321,53 +358,70 @@ impl Solver<'_> {
     /// The covariance takes its scale from the residuals: no error model of Doppler is assumed.
     fn velocity(&self, here: &Geodetic) -> Option<(Vector3<f64>, Matrix3<f64>)> {
         let turn = enu_from_ecef(&here.point);
-        let used = || self.ranges.iter().zip(self.seen.iter()).filter(|(r, s)| s.counts() && r.rate_mps.is_finite());
-        let row = |r: &Range, s: &Seen, v: &Vector3<f64>, clock: f64, huber: f64| {
+        let mut rows = [(Row::default(), 0.0); MOST_RANGES];
+        let mut n = 0;
+        for (r, s) in self.ranges.iter().zip(self.seen.iter()).filter(|(r, s)| s.counts() && r.rate_mps.is_finite()) {
             let moving = in_axes_of_reception(&r.velocity_mps, r.corrected.m() / SPEED_OF_LIGHT_MPS);
-            let residual = r.rate_mps - s.row.unit.dot(&(turn * moving - v));
-            let size = (residual - clock).abs();
-            let weight = if size > huber { s.weight * huber / size } else { s.weight };
-            Row { unit: s.row.unit, weight, clock: 0, residual }
-        };
+            // Of a receiver at rest.
+            let residual = r.rate_mps - s.row.unit.dot(&(turn * moving));
+            rows[n] = (Row { unit: s.row.unit, weight: s.weight, clock: 0, residual }, s.weight);
+            n += 1;
+        }
+        let rows = &mut rows[..n];
         let (mut v, mut clock, mut huber) = (Vector3::zeros(), 0.0, f64::INFINITY);
         for _ in 0..4 {
-            let normal = Normal::new(used().map(|(r, s)| row(r, s, &v, clock, huber))).ok()?;
-            let step = normal.step()?;
-            clock = normal.clock(0, &step);
-            v += step;
-            let left = used().map(|(r, s)| (row(r, s, &v, clock, f64::INFINITY).residual - clock).abs());
-            let n = used().count() as f64;
-            huber = 1.5 * left.sum::<f64>() / n;
+            weigh_down(rows, &v, clock, huber);
+            let normal = Normal::new(rows.iter().map(|r| r.0)).ok()?;
+            v = normal.step()?;
+            clock = normal.clock(0, &v);
+            let left = rows.iter().map(|(r, _)| left_over(r, &v, clock).abs());
+            huber = 1.5 * left.sum::<f64>() / n as f64;
         }
-        let rows = used().map(|(r, s)| row(r, s, &v, clock, huber));
-        let n = used().count();
-        let squares: f64 = rows.clone().map(|r| r.weight * (r.residual - clock) * (r.residual - clock)).sum();
-        let covariance = Normal::new(rows).ok()?.covariance().ok()?;
+        weigh_down(rows, &v, clock, huber);
+        let squares: f64 = rows.iter().map(|(r, _)| r.weight * left_over(r, &v, clock) * left_over(r, &v, clock)).sum();
+        let covariance = Normal::new(rows.iter().map(|r| r.0)).ok()?.covariance().ok()?;
         (n > 4).then(|| (v, covariance.matrix() * (squares / (n - 4) as f64)))
+    }
+}
+
+/// What a velocity and a clock rate leave of a rate.
+fn left_over(row: &Row, v: &Vector3<f64>, clock: f64) -> f64 {
+    row.residual + row.unit.dot(v) - clock
+}
+
+/// Huber's weights of rates with their full weights beside them.
+fn weigh_down(rows: &mut [(Row, f64)], v: &Vector3<f64>, clock: f64, huber: f64) {
+    for (row, full) in rows {
+        let size = left_over(row, v, clock).abs();
+        row.weight = if size > huber { *full * huber / size } else { *full };
     }
 }
 
 impl Settings {
     /// Ionospheric delay of a range, its whole atmospheric delay, and its weight; weight 0 below the mask.
-    fn delay_and_weight(&self, range: &Range, unit: &Vector3<f64>, here: &Geodetic, zenith: f64, time: GpsTime) -> (f64, f64, f64) {
-        let elevation = atan2(unit.z, hypot(unit.x, unit.y));
-        if !(elevation >= self.mask.rad()) {
+    fn delay_and_weight(&self, range: &Range, unit: &Vector3<f64>, at: &Place) -> (f64, f64, f64) {
+        let sin_elevation = unit.z;
+        if !(sin_elevation >= at.sin_mask) {
             return (0.0, 0.0, 0.0);
         }
-        let Ok(direction) = Direction::new(Radians::new(atan2(unit.x, unit.y)), Radians::new(elevation)) else { return (0.0, 0.0, 0.0) };
-        let ionosphere = self.ionosphere.map_or(0.0, |k| klobuchar(&k, here, &direction, time).m()) * range.ionosphere_factor;
-        let mapping = troposphere_mapping(&direction);
+        let ionosphere = self.ionosphere.map_or(0.0, |model| {
+            let level = sqrt(unit.x * unit.x + unit.y * unit.y);
+            // Overhead every azimuth is as good.
+            let azimuth = if level > 0.0 { (unit.x / level, unit.y / level) } else { (0.0, 1.0) };
+            klobuchar_towards(&model, &at.here, asin(sin_elevation.min(1.0)), azimuth, at.time).m() * range.ionosphere_factor
+        });
+        let mapping = mapping_of(sin_elevation);
         let conditions = RangeConditions {
             constellation: range.satellite.constellation.index(),
-            sin_elevation: unit.z,
+            sin_elevation,
             ionosphere_m: ionosphere,
-            ionosphere_mapping: range.ionosphere_factor * thin_shell(unit.z),
+            ionosphere_mapping: range.ionosphere_factor * thin_shell(sin_elevation),
             troposphere_mapping: mapping,
             cn0_dbhz: range.cn0_dbhz,
             noise_factor: range.noise_factor,
             ure_factor: range.ure_factor,
         };
-        (ionosphere, ionosphere + zenith * mapping, 1.0 / self.errors.variance(&conditions))
+        (ionosphere, ionosphere + at.zenith * mapping, 1.0 / self.errors.variance(&conditions))
     }
 }
 

@@ -133,7 +133,8 @@ fn the_covariance_is_that_of_the_errors_it_assumes() {
         .iter()
         .map(|r| {
             let unit = enu_from_ecef(&here.point) * way(r, ecef_from_geodetic(&here).vector()).1;
-            1.0 / settings().delay_and_weight(r, &unit, &here, 0.0, GpsTime::default()).2.sqrt()
+            let place = Place { here, zenith: 0.0, sin_mask: settings().mask.rad().sin(), time: GpsTime::default() };
+            1.0 / settings().delay_and_weight(r, &unit, &place).2.sqrt()
         })
         .collect();
     let mut sum = 0.0;

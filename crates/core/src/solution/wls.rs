@@ -113,7 +113,7 @@ pub(super) struct Row {
 }
 
 /// The normal equation with its clocks eliminated.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Normal {
     groups: [Group; CLOCKS],
     information: Matrix3<f64>,
@@ -135,14 +135,30 @@ impl Normal {
         if have < need {
             return Err(Unavailable::TooFewSatellites { need, have });
         }
-        let (mut information, mut side) = (Matrix3::zeros(), Vector3::zeros());
+        // Upper triangle, and the right side.
+        let ([mut xx, mut xy, mut xz, mut yy, mut yz, mut zz], mut side) = ([0.0; 6], Vector3::zeros());
         for row in rows {
             let group = &groups[row.clock];
             let d = row.unit - group.mean;
-            information += row.weight * d * d.transpose();
-            side -= (row.weight * (row.residual - group.residual)) * d;
+            let weighted = row.weight * d;
+            xx += weighted.x * d.x;
+            xy += weighted.x * d.y;
+            xz += weighted.x * d.z;
+            yy += weighted.y * d.y;
+            yz += weighted.y * d.z;
+            zz += weighted.z * d.z;
+            side -= (row.residual - group.residual) * weighted;
         }
-        Ok(Self { groups, information, side })
+        Ok(Self { groups, information: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz), side })
+    }
+
+    /// Right sides of the rows for three other residuals each, as columns: -sum w (u - m_c) r. What is common to a clock's rows drops out.
+    pub(super) fn sides(&self, rows: impl Iterator<Item = (Row, Vector3<f64>)>) -> Matrix3<f64> {
+        let mut sides = Matrix3::zeros();
+        for (row, residuals) in rows {
+            sides -= (row.weight * (row.unit - self.groups[row.clock].mean)) * residuals.transpose();
+        }
+        sides
     }
 
     /// The least-squares step of the position; `None` where the geometry does not determine it at all.

@@ -133,8 +133,9 @@ fn the_nearest_fresh_record_is_chosen() {
     let n = read(&format!("{HEADER}{G01}{later}"));
     let records = n.of(SatelliteId { constellation: Constellation::Gps, number: 1 });
     let noon = records[0].orbit_time.nanoseconds();
-    let at =
-        |minutes: i64| nearest(records, GpsTime::from_nanoseconds(noon + minutes * 60_000_000_000)).map(|e| e.orbit_time.nanoseconds());
+    let at = |minutes: i64| {
+        nearest(records, GpsTime::from_nanoseconds(noon + minutes * 60_000_000_000)).map(|k| records[k].orbit_time.nanoseconds())
+    };
     assert_eq!(at(59), Some(noon));
     assert_eq!(at(60), Some(noon));
     assert_eq!(at(61), Some(noon + 7_200_000_000_000));

@@ -34,7 +34,12 @@ pub(crate) fn text(line: &[u8], from: usize, to: usize) -> String {
 
 /// An unsigned or signed whole number; blanks around it are allowed, blank alone is `None`.
 pub(crate) fn whole(field: &[u8]) -> Option<i64> {
-    std::str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
+    let field = field.trim_ascii();
+    // Two or three digits, as nearly always: no way through text.
+    if (1..=4).contains(&field.len()) && field.iter().all(u8::is_ascii_digit) {
+        return Some(field.iter().fold(0, |n, b| 10 * n + i64::from(b - b'0')));
+    }
+    std::str::from_utf8(field).ok()?.parse().ok()
 }
 
 /// Powers of ten that are exact in double precision.

@@ -4,7 +4,7 @@ use super::header::Lines;
 use super::heading::{Heading, satellite};
 use super::number::{Field, columns, decimal, seconds_ns, whole};
 use super::observation::Observations;
-use super::value::{indicators, observation, slow};
+use super::value::{indicators, observation};
 use crate::refusal::Unreadable;
 use crate::time::{Calendar, Scale, from_calendar};
 use navbound_core::quantity::GpsTime;
@@ -146,33 +146,30 @@ pub(super) fn unread(letter: u8, line: &[u8], number: usize, o: &mut Observation
 fn fields(mut rest: &[u8], n: usize, number: usize, o: &mut Observations) {
     for k in 0..n {
         let Some((field, tail)) = rest.split_first_chunk::<16>() else {
-            short(rest, number, o);
+            // The last of a line whose indicators, or all of it, were cut off: what is missing is blank.
+            let mut whole = [b' '; 16];
+            whole[..rest.len()].copy_from_slice(rest);
+            self::field(&whole, k, number, o);
             rest = &[];
             continue;
         };
         rest = tail;
-        if let Some((text, [lock, strength])) = field.split_first_chunk::<14>()
-            && let (Some(value), Some(indicator)) = (observation(text), indicators(*lock, *strength))
-        {
-            o.push(value, indicator);
-        } else {
-            o.refuse(number, &format!("observation {}", k + 1), "not a number with its indicators", field);
-            o.push(f64::NAN, 0);
-        }
+        self::field(field, k, number, o);
     }
     if !rest.trim_ascii().is_empty() {
         o.refuse(number, "observation", "more values than the header names codes", rest);
     }
 }
 
-/// The last observation of a line whose indicators, or all of it, were cut off.
-fn short(field: &[u8], number: usize, o: &mut Observations) {
-    let value = slow(columns(field, 0, 14));
-    let indicator = indicators(field.get(14).copied().unwrap_or(b' '), field.get(15).copied().unwrap_or(b' '));
-    if let Some((value, indicator)) = value.zip(indicator) {
+/// One observation with its indicators.
+#[inline(always)]
+fn field(field: &[u8; 16], k: usize, number: usize, o: &mut Observations) {
+    if let Some((text, [lock, strength])) = field.split_first_chunk::<14>()
+        && let (Some(value), Some(indicator)) = (observation(text), indicators(*lock, *strength))
+    {
         o.push(value, indicator);
     } else {
-        o.refuse(number, "observation", "not a number with its indicators", field);
+        o.refuse(number, &format!("observation {}", k + 1), "not a number with its indicators", field);
         o.push(f64::NAN, 0);
     }
 }

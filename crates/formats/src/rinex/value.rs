@@ -64,7 +64,7 @@ fn eight(digits: u64) -> Option<u64> {
 }
 
 #[cold]
-pub(super) fn slow(field: &[u8]) -> Option<f64> {
+fn slow(field: &[u8]) -> Option<f64> {
     match decimal(field) {
         Field::Blank => Some(f64::NAN),
         Field::Number(value) => Some(value),
