@@ -8,6 +8,7 @@ pub mod bounds;
 pub mod error;
 pub mod evaluation;
 pub mod flights;
+pub mod kpi;
 pub mod monitor;
 pub mod plausible;
 pub mod positions;

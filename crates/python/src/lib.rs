@@ -8,6 +8,7 @@ mod dme;
 mod error;
 mod evaluation;
 mod gnss;
+mod kpi;
 mod methods;
 mod path;
 mod positions;
@@ -32,6 +33,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     states::register(m)?;
     evaluation::register(m)?;
     gnss::register(m)?;
+    kpi::register(m)?;
     dme::register(m)?;
     path::register(m)?;
     positions::register(m)?;

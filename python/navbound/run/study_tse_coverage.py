@@ -15,7 +15,7 @@ import numpy as np
 
 from navbound import gnss, tse
 from navbound.errors import InputError
-from navbound.run.records import Record
+from navbound.run.record import Record
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

@@ -53,6 +53,14 @@ impl Risk {
     pub const ACCURACY: Self = Self(0.05);
     /// The 99.999 % containment level of RNP.
     pub const INTEGRITY: Self = Self(1e-5);
+    /// The integrity risk of an approach with vertical guidance.
+    pub const APPROACH_INTEGRITY: Self = Self(2e-7);
+    /// The integrity risk of an hour from en route to non-precision approach.
+    pub const HOUR_INTEGRITY: Self = Self(1e-7);
+    /// The continuity risk of 15 s of an approach with vertical guidance.
+    pub const APPROACH_CONTINUITY: Self = Self(8e-6);
+    /// The largest continuity risk of an hour from en route to non-precision approach.
+    pub const HOUR_CONTINUITY: Self = Self(1e-4);
 
     /// A risk inside (0, 1).
     ///

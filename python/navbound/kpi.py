@@ -1,0 +1,454 @@
+"""The ICAO performance indicators of a series of errors and protection levels, whatever made them: SBAS, GBAS, ARAIM, a receiver.
+
+Definitions follow docs/methods/kpi.md; the levels' numbers carry their own source and provenance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import polars as pl
+
+from navbound import _core, _kpi_records
+from navbound._arrays import flatten
+from navbound.errors import InputError
+from navbound.run.kpi_records import Level, Performance, StanfordBins, StanfordCounts
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Campaign", "Continuity", "Level", "Performance", "Stanford", "continuity", "evaluate", "level", "levels", "rnp", "stanford"]
+
+WINDOW_S = 15.0
+"""Continuity window."""
+MOST_EVENTS = 500
+"""Events that a performance record lists; a campaign hands out all of them."""
+
+_NO_SOLUTION = ("not_available", "invalid_input")
+_FLOATS = ("nse_e_m", "nse_n_m", "nse_u_m", "hpl_m", "vpl_m")
+
+Table = pl.DataFrame | Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Stanford:
+    """One axis of a Stanford diagram: exact counts in its regions, and the histogram that is drawn."""
+
+    counts: StanfordCounts
+    bins: StanfordBins
+
+
+@dataclass(frozen=True)
+class Continuity:
+    """Continuity of a pattern.
+
+    Attributes
+    ----------
+    n_available : int
+        Available epochs.
+    n_at_risk : int
+        Those with an epoch that is not available within the window after them.
+    n_events : int
+        Times the service was available and then was not.
+    risk : float
+        ``n_at_risk / n_available``; NaN where nothing was available.
+    """
+
+    n_available: int
+    n_at_risk: int
+    n_events: int
+    risk: float
+
+
+def levels() -> dict[str, Level]:
+    """Every service level by its name, with limits, demands, source and provenance."""
+    return {found.id: found for found in _kpi_records.table_of_levels()}
+
+
+def level(wanted: str | Level) -> Level:
+    """A level by its name.
+
+    Raises
+    ------
+    InputError
+        No such level; the message lists those that exist.
+    """
+    if isinstance(wanted, Level):
+        return wanted
+    known = levels()
+    if wanted not in known:
+        raise InputError("levels", wanted, domain=", ".join(known))
+    return known[wanted]
+
+
+def rnp(rnp_nm: float, *, tta_s: float, containment: int = 1) -> Level:
+    """A level whose horizontal limit is an RNP value. That the limit is the RNP value is inferred, and marked so.
+
+    Parameters
+    ----------
+    rnp_nm : float
+        RNP value. [NM]
+    tta_s : float
+        Time to alert of the operation. [s]
+    containment : {1, 2}
+        The limit as a multiple of the RNP value.
+
+    Raises
+    ------
+    InputError
+        A value that is not positive, or another multiple.
+    """
+    for name, value, unit in (("rnp_nm", rnp_nm, "NM"), ("tta_s", tta_s, "s")):
+        if not 0 < value < float("inf"):
+            raise InputError(name, value, unit, "(0, inf)")
+    if containment not in {1, 2}:
+        raise InputError("containment", containment, "1", "{1, 2}")
+    name = f"RNP {rnp_nm:g}"
+    return Level(
+        id=name if containment == 1 else f"{name} x 2",
+        title=f"{name}, alert limit {containment} x RNP",
+        hal_m=containment * rnp_nm * 1852.0,
+        val_m=None,
+        accuracy_h_m=None,
+        accuracy_v_m=None,
+        tta_s=tta_s,
+        integrity_risk=None,
+        integrity_per=None,
+        continuity_risk=None,
+        continuity_per=None,
+        source="alert limit inferred from the RNP value; time to alert given by the caller",
+        provenance={"hal_m": "inferred", "tta_s": "ours"},
+    )
+
+
+def continuity(available: ArrayLike, n_window_epochs: int) -> Continuity:
+    """Continuity of a pattern of available epochs by the sliding window; the look-ahead is cut at the end of the data.
+
+    Parameters
+    ----------
+    available : array_like of bool, shape (n,)
+        Whether the service was available at each epoch of an even grid.
+    n_window_epochs : int
+        Epochs of the window.
+
+    Raises
+    ------
+    InputError
+        Another shape or kind, or an empty window.
+    """
+    pattern = np.asarray(available)
+    if pattern.ndim != 1 or pattern.dtype != np.bool_:
+        raise InputError("available", f"{pattern.dtype}, shape {pattern.shape}", domain="bool, shape (n,)")
+    if n_window_epochs < 1:
+        raise InputError("n_window_epochs", n_window_epochs, "1", "[1, inf)")
+    n_events, n_at_risk = _core.kpi_continuity(np.ascontiguousarray(pattern), n_window_epochs)
+    n_available = int(pattern.sum())
+    return Continuity(n_available, n_at_risk, n_events, n_at_risk / n_available if n_available else float("nan"))
+
+
+def stanford(
+    error_m: ArrayLike, level_m: ArrayLike, alert_limit_m: float, *, axis: str = "v", bin_m: float = 0.1, limit_m: float = 50.0
+) -> Stanford:
+    """Stanford diagram of one axis.
+
+    Parameters
+    ----------
+    error_m : array_like, shape (n,)
+        Error; its magnitude counts. NaN where it is not known. [m]
+    level_m : array_like, shape (n,)
+        Protection level; NaN where there is none. [m]
+    alert_limit_m : float
+        Alert limit. [m]
+    axis : {"h", "v"}
+        Which axis these are.
+    bin_m, limit_m : float
+        Width of a bin, and where both axes of the diagram end. [m]
+
+    Raises
+    ------
+    InputError
+        Shapes that do not fit, or lengths that are not positive.
+    """
+    if axis not in _kpi_records.AXES:
+        raise InputError("axis", axis, domain="h, v")
+    if not 0 < alert_limit_m < float("inf"):
+        raise InputError("alert_limit_m", alert_limit_m, "m", "(0, inf)")
+    shape, (error, bound) = flatten(error_m=(error_m, ()), level_m=(level_m, ()))
+    if len(shape) != 1:
+        raise InputError("error_m", f"shape {shape}", domain="shape (n,)")
+    found = _core.kpi_stanford(np.abs(error), bound, alert_limit_m, bin_m, _bins(bin_m, limit_m))
+    which = _kpi_records.AXES[_kpi_records.AXES.index(axis)]
+    counts = StanfordCounts(axis=which, alert_limit_m=alert_limit_m, **found["regions"])
+    bins = StanfordBins(axis=which, variant="stanford", bin_m=bin_m, limit_m=limit_m, n=counts.n, **found["bins"])
+    return Stanford(counts, bins)
+
+
+def _bins(bin_m: float, limit_m: float) -> int:
+    if not 0 < bin_m < float("inf"):
+        raise InputError("bin_m", bin_m, "m", "(0, inf)")
+    if not bin_m <= limit_m <= 10_000 * bin_m:
+        raise InputError("limit_m", limit_m, "m", f"[{bin_m:g}, {10_000 * bin_m:g}]")
+    return round(limit_m / bin_m)
+
+
+def evaluate(
+    table: Table | Sequence[Table],
+    levels: str | Level | Sequence[str | Level],
+    *,
+    period_s: float | None = None,
+    exclude_missing: bool = False,
+    bin_m: float = 0.1,
+    limit_m: float = 50.0,
+    title: str = "",
+) -> Performance:
+    """Evaluate the indicators of one receiver's series.
+
+    Parameters
+    ----------
+    table : DataFrame or mapping of columns, or a sequence of such tables that follow each other in time
+        ``time_ns`` and ``hpl_m``; as far as known ``vpl_m``, errors ``nse_e_m nse_n_m nse_u_m`` (or ``hpe_m vpe_m``), ``status``,
+        ``reason``, ``mode``, ``n_sv``. A row without ``hpl_m``, or with ``status`` ``not_available`` or ``invalid_input``, is an epoch
+        without a solution.
+    levels : names or Level
+        From :func:`levels`, or of your own; names may be joined by commas.
+    period_s : float, optional
+        Nominal sampling period; by default the median step of the first table. [s]
+    exclude_missing : bool
+        Absent epochs are not expected.
+    bin_m, limit_m : float
+        Stanford diagrams: width of a bin, and where their axes end. [m]
+    title : str
+        For the record.
+
+    Returns
+    -------
+    Performance
+
+    Raises
+    ------
+    InputError
+        A missing column, times that fall, an unknown level, a number outside its domain.
+    """
+    tables = [table] if isinstance(table, (pl.DataFrame, Mapping)) else list(table)
+    frames = [_frame(t) for t in tables]
+    if not frames:
+        raise InputError("table", "nothing", domain="one table or more")
+    campaign = Campaign(
+        levels, first=frames[0], period_s=period_s, exclude_missing=exclude_missing, bin_m=bin_m, limit_m=limit_m, title=title
+    )
+    for frame in frames:
+        campaign.add(frame)
+    return campaign.finish(lambda: frames)
+
+
+class Campaign:
+    """Tables one after the other, any number of them, in memory that depends on the levels alone.
+
+    Parameters
+    ----------
+    levels : names or Level
+        As in :func:`evaluate`.
+    first : DataFrame or mapping
+        The first table: its first epoch anchors the grid, its median step is the period if ``period_s`` is not given.
+    period_s, exclude_missing, bin_m, limit_m, title
+        As in :func:`evaluate`.
+    """
+
+    def __init__(
+        self,
+        levels: str | Level | Sequence[str | Level],
+        *,
+        first: Table,
+        period_s: float | None = None,
+        exclude_missing: bool = False,
+        bin_m: float = 0.1,
+        limit_m: float = 50.0,
+        title: str = "",
+    ) -> None:
+        self.levels = _levels(levels)
+        times = _frame(first)["time_ns"]
+        self.period_s = _period(times) if period_s is None else float(period_s)
+        if not 1e-9 <= self.period_s < float("inf"):
+            raise InputError("period_s", self.period_s, "s", "[1e-9, inf)")
+        self.window_s = WINDOW_S
+        self.n_window_epochs = max(1, round(WINDOW_S / self.period_s))
+        self._bins = (bin_m, limit_m)
+        self._title, self._exclude_missing = title, exclude_missing
+        self._modes: dict[str, int] = {}
+        self._reasons: dict[str, int] = {}
+        self._gravest = pl.DataFrame(schema=_kpi_records.EVENT_SCHEMA)
+        self._n_bad_levels = 0
+        self._core = _core.KpiCampaign(
+            {
+                "origin_ns": int(times[0]),
+                "period_ns": round(1e9 * self.period_s),
+                "demands": [(found.hal_m, found.val_m, found.tta_s) for found in self.levels],
+                "window": self.n_window_epochs,
+                "bin_m": bin_m,
+                "n_bins": _bins(bin_m, limit_m),
+                "exclude_missing": exclude_missing,
+            }
+        )
+
+    def add(self, table: Table) -> pl.DataFrame:
+        """Add the next table, later than those before.
+
+        Returns
+        -------
+        DataFrame
+            The events that are over with it, columns as :class:`navbound.run.kpi_records.KpiEvent`.
+
+        Raises
+        ------
+        InputError
+            A missing column, times that fall, a number outside its domain.
+        """
+        columns, n_bad = self._columns(_frame(table))
+        self._n_bad_levels += n_bad
+        return self._keep(self._core.add(columns))
+
+    def finish(self, tables: Callable[[], Iterable[Table]], events: Callable[[pl.DataFrame], None] | None = None) -> Performance:
+        """Select the percentiles and make the record.
+
+        Parameters
+        ----------
+        tables : callable
+            Gives the tables that were added, again and in the same order, once for each pass of the selection.
+        events : callable, optional
+            Is given the events that :meth:`add` had not yet returned.
+
+        Raises
+        ------
+        InputError
+            Nothing was added, or other tables than were added.
+        """
+        found = self._core.outcome()
+        if found["span_ns"] is None:
+            raise InputError("table", "no rows", domain="tables with at least one epoch")
+        left = self._keep(found["events"])
+        if events is not None:
+            events(left)
+        percentiles = self._percentiles(tables)
+        both = _kpi_records.axes(found["axes"], percentiles[:6])
+        results = [
+            _kpi_records.level_result(wanted, each, whole=found, all_axes=both, percentiles=percentiles[6 * k + 6 : 6 * k + 12], grid=self)
+            for k, (wanted, each) in enumerate(zip(self.levels, found["levels"], strict=True))
+        ]
+        totals = [sum(each["runs"][kind][0] for each in found["levels"]) for kind in range(3)]
+        return Performance(
+            title=self._title,
+            truth_known=both[0].error_m is not None,
+            period_s=self.period_s,
+            first_ns=found["span_ns"][0],
+            last_ns=found["span_ns"][1],
+            exclude_missing=self._exclude_missing,
+            **{name: found[name] for name in ("n_expected", "n_missing", "n_no_solution", "n_solution", "n_repeated", "n_mi_epochs")},
+            axes=both,
+            levels=results,
+            stanford=_kpi_records.stanford_bins(found["stanford"], *self._bins),
+            series=_kpi_records.series(found["series"], self.levels),
+            n_events=dict(zip(("loss", "hazard", "mi"), totals, strict=True)),
+            events=_kpi_records.event_records(self._gravest),
+            days=_kpi_records.days(found["days"], self.levels),
+            experimental="",
+            notes=self._notes(),
+        )
+
+    def _percentiles(self, tables: Callable[[], Iterable[Table]]) -> list[list[float]]:
+        selector = self._core.selector()
+        for _ in range(_core.KpiSelector.passes()):
+            for table in tables():
+                selector.scan(self._columns(_frame(table))[0])
+            selector.narrow()
+        values = selector.values()
+        return [values[k : k + 4] for k in range(0, len(values), 4)]
+
+    def _keep(self, found: dict[str, Any]) -> pl.DataFrame:
+        table = _kpi_records.events(found, self.levels, self._modes, self._reasons)
+        self._gravest = _kpi_records.gravest(pl.concat([self._gravest, table]), MOST_EVENTS)
+        return table
+
+    def _notes(self) -> list[str]:
+        notes = []
+        if self._n_bad_levels:
+            notes.append(f"{self._n_bad_levels} rows hold a protection level that is not positive and finite; it counts as none.")
+        if self.period_s > self.window_s:
+            notes.append(f"Sampled every {self.period_s:g} s: the {self.window_s:g} s continuity window is one epoch and not meaningful.")
+        return notes
+
+    def _columns(self, frame: pl.DataFrame) -> tuple[dict[str, NDArray[Any]], int]:
+        numbers = frame.select(pl.col(name).fill_null(np.nan) for name in _FLOATS)
+        bad = {name: ~numbers[name].is_nan() & ~((numbers[name] > 0) & numbers[name].is_finite()) for name in ("hpl_m", "vpl_m")}
+        columns: dict[str, NDArray[Any]] = {name: np.ascontiguousarray(numbers[name].to_numpy()) for name in _FLOATS}
+        solved = ~frame["status"].is_in(_NO_SOLUTION).fill_null(value=False).to_numpy()
+        for name in ("hpl_m", "vpl_m"):
+            columns[name] = np.where(solved & ~bad[name].to_numpy(), columns[name], np.nan)
+        columns["time_ns"] = np.ascontiguousarray(frame["time_ns"].to_numpy())
+        columns["n_sv"] = np.ascontiguousarray(frame["n_sv"].fill_null(-1).to_numpy())
+        columns["mode"] = _codes(frame["mode"], self._modes)
+        columns["reason"] = _codes(frame["reason"], self._reasons)
+        return columns, int((bad["hpl_m"] | bad["vpl_m"]).sum())
+
+
+def _levels(wanted: str | Level | Sequence[str | Level]) -> list[Level]:
+    given = [wanted] if isinstance(wanted, (str, Level)) else list(wanted)
+    names = [part for item in given for part in ([p.strip() for p in item.split(",")] if isinstance(item, str) else [item])]
+    found = [level(name) for name in names if name != ""]
+    if not found:
+        raise InputError("levels", "nothing", domain="one level or more")
+    for index, each in enumerate(found):
+        if any(each.id == other.id for other in found[:index]):
+            raise InputError("levels", each.id, domain="levels named once")
+    return found
+
+
+def _period(times: pl.Series) -> float:
+    step = times.diff().drop_nulls().filter(times.diff().drop_nulls() > 0).median()
+    if not isinstance(step, (int, float)) or not step > 0:
+        raise InputError("period_s", "none", "s", "a period: the first table has no two instants to take it from")
+    return float(step) * 1e-9
+
+
+def _codes(texts: pl.Series, known: dict[str, int]) -> NDArray[np.uint32]:
+    for text in texts.drop_nulls().unique(maintain_order=True):
+        if text:
+            known.setdefault(text, len(known) + 1)
+    codes = texts.replace_strict(known, default=0, return_dtype=pl.UInt32) if known else pl.zeros(len(texts), pl.UInt32, eager=True)
+    return np.ascontiguousarray(codes.fill_null(0).to_numpy())
+
+
+def _frame(table: Table) -> pl.DataFrame:
+    """Columns that the indicators need, absent ones null."""
+    frame = table if isinstance(table, pl.DataFrame) else _from_mapping(table)
+    for name in ("time_ns", "hpl_m"):
+        if name not in frame.columns:
+            raise InputError("table", f"columns {', '.join(frame.columns[:12])}", domain=f"a table with a column {name}")
+    if "nse_e_m" not in frame.columns and "hpe_m" in frame.columns:
+        vertical = pl.col("vpe_m") if "vpe_m" in frame.columns else pl.lit(None, pl.Float64)
+        frame = frame.with_columns(nse_e_m=pl.col("hpe_m"), nse_n_m=pl.lit(0.0), nse_u_m=vertical)
+    if not frame["time_ns"].dtype.is_integer():
+        raise InputError("time_ns", f"{frame['time_ns'].dtype}", domain="whole nanoseconds")
+    if frame["time_ns"].null_count():
+        raise InputError("time_ns", "null", "ns", "an instant in every row")
+    wanted = {
+        "time_ns": pl.Int64,
+        **dict.fromkeys(_FLOATS, pl.Float64),
+        "n_sv": pl.Int32,
+        **dict.fromkeys(("status", "mode", "reason"), pl.String),
+    }
+    try:
+        return frame.select(
+            (pl.col(name) if name in frame.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in wanted.items()
+        )
+    except pl.exceptions.PolarsError as e:
+        raise InputError("table", str(e).splitlines()[0][:120], domain="numbers in the columns that hold numbers") from e
+
+
+def _from_mapping(table: Mapping[str, Any]) -> pl.DataFrame:
+    try:
+        return pl.DataFrame({name: np.asarray(values) if not isinstance(values, pl.Series) else values for name, values in table.items()})
+    except (pl.exceptions.PolarsError, TypeError, ValueError) as e:
+        raise InputError("table", str(e).splitlines()[0][:120], domain="columns of equal length") from e
