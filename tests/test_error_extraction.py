@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import sys
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
 import pytest
 
-from navbound import InputError, sbas
+from navbound import InputError, rnp, sbas
+from navbound.methods import methods
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "oracle"))
 import ee_series
@@ -118,7 +123,7 @@ def test_gaps_are_carried_over_or_begin_anew_as_in_the_reference(case: dict[str,
     if as_nan:
         series = made(params["seed"])
         holes = ee_series.Made(np.where(present[:, None], series.position_m, np.nan), series.velocity_mps, series.truth_m)
-        monkeypatch.setattr(sys.modules[__name__], "made", lambda seed: holes)
+        monkeypatch.setattr(sys.modules[__name__], "made", lambda _seed: holes)
         found, place = run(params, gap_most_s=params["gap_max"]), np.arange(params["n"])
         assert np.array_equal(found.status == "not_available", ~present)
     else:
@@ -228,7 +233,7 @@ def test_wrong_series_are_refused_by_name() -> None:
         assert refused.value.argument == argument
     with pytest.raises(InputError, match="period_s"):
         sbas.error_extraction([5], zeros[:1], zeros[:1])
-    for call, argument in [
+    refusals: list[tuple[Callable[[], object], str]] = [
         (lambda: sbas.extraction_bias_dop(1.0, 1.0, 3), "n_sv"),
         (lambda: sbas.extraction_bias_dop(1.0, 1.0, 4.5), "n_sv"),
         (lambda: sbas.extraction_bias(0.0, 0.0, 1.0), "az_rad"),
@@ -239,7 +244,8 @@ def test_wrong_series_are_refused_by_name() -> None:
         (lambda: sbas.extraction_beta_from_autocorrelation([1.0, 0.99]), "autocorrelation_m2"),
         (lambda: sbas.extraction_beta_from_spectrum(0.1, 1.0), "frequency_hz"),
         (lambda: sbas.extraction_factor(2.0), "risk"),
-    ]:
+    ]
+    for call, argument in refusals:
         with pytest.raises(InputError) as refused:
             call()
         assert refused.value.argument == argument
@@ -260,3 +266,26 @@ def test_every_column_carries_the_mark() -> None:
     assert table["ee_bound_h_m"].null_count() == 49
     with pytest.raises(InputError, match="one series"):
         sbas.error_extraction([0, 1], np.zeros((2, 2, 3)), np.zeros(3)).table()
+
+
+@pytest.mark.parametrize("keys", [("ee_bound_h_m", "tse_exact_m"), ("tse_exact_m", "ee_bound_h_m"), ("ee_noise_v_m", "ee_noise_v_m")])
+def test_no_bound_of_it_reaches_an_alert(keys: tuple[str, str]) -> None:
+    """The monitor is offered the bound as accuracy and as integrity, epoch by epoch and as a table, and refuses each time."""
+    found = still(bias_h_m=1.0, bias_v_m=1.0)
+    assert found.may_alert is False
+    table = found.table().with_columns(
+        pl.Series("time_ns", np.arange(400) * SECOND_NS), pl.lit(1.0).alias("tse_exact_m"), pl.lit(0.5).alias("rnp_m")
+    )
+    accuracy, integrity = keys
+    monitor = rnp.Monitor()
+    with pytest.raises(InputError, match="experimental, not integrity"):
+        monitor.run(table, accuracy=accuracy, integrity=integrity)
+    with pytest.raises(InputError, match="experimental, not integrity"):
+        monitor.step(table.row(60, named=True), accuracy=accuracy, integrity=integrity)
+    assert monitor.counters.n_accepted == 0
+
+
+def test_it_is_no_method_that_could_judge() -> None:
+    assert not [m for m in methods() if m.startswith("ee")]
+    with pytest.raises(ValueError, match="may_alert"):
+        dataclasses.replace(still(), may_alert=True)

@@ -14,7 +14,7 @@ import polars as pl
 
 from navbound import _core
 from navbound._arrays import flatten, unflatten
-from navbound._extraction_gains import extraction_gains, whole
+from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK, extraction_gains, whole
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 _DECLARED = _core.ee_declaration()
 
-EXTRACTION_LABEL = str(_DECLARED["label"])
-"""What stands beside every number of Error Extraction."""
 
 _RESETS = np.array(["", "start", "gap", "satellites"])
 
@@ -106,7 +104,7 @@ class ErrorExtraction:
         if self.n_ee_age.ndim != 1:
             raise InputError("series", f"shape {self.n_ee_age.shape}", domain="one series, shape (n,)")
         axes = {f"ee_error_{axis}_m": self.ee_error_enu_m[:, k] for k, axis in enumerate("enu")}
-        lengths = {f.name: getattr(self, f.name) for f in fields(self) if f.name.startswith("ee_") and "_enu_" not in f.name}
+        lengths = {f.name: getattr(self, f.name) for f in fields(self) if f.name.startswith(EXTRACTION_MARK) and "_enu_" not in f.name}
         return pl.DataFrame(axes | lengths).with_columns(pl.all().fill_nan(None)).with_columns(pl.Series("n_ee_age", self.n_ee_age))
 
 

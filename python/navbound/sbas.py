@@ -13,8 +13,9 @@ import numpy as np
 
 from navbound import _core
 from navbound._arrays import flatten, unflatten
-from navbound._error_extraction import EXTRACTION_LABEL, ErrorExtraction, error_extraction
+from navbound._error_extraction import ErrorExtraction, error_extraction
 from navbound._extraction_gains import (
+    EXTRACTION_LABEL,
     ExtractionBeta,
     ExtractionBias,
     ExtractionFactor,
