@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
+from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound._states import (
     StateClassifier,
     StateOfError,
@@ -384,6 +385,7 @@ class Monitor:
         InputError
             A missing key, or a status that is none.
         """
+        _refuse_experimental(accuracy, integrity)
         try:
             time_ns = int(record["time_ns"])
             first, second, rnp_m = (math.nan if record[key] is None else float(record[key]) for key in (accuracy, integrity, "rnp_m"))
@@ -433,6 +435,7 @@ class Monitor:
         InputError
             A missing column, a null time, or a status that is none.
         """
+        _refuse_experimental(accuracy, integrity)
         frame = table if isinstance(table, pl.DataFrame) else pl.DataFrame(dict(table))
         for name in ("time_ns", "rnp_m", accuracy, integrity):
             if name not in frame.columns:
@@ -456,6 +459,13 @@ class Monitor:
             counters=Counters(**total),
             track_counters={name: Counters(**c) for name, c in zip(names, each, strict=True)},
         )
+
+
+def _refuse_experimental(*names: str) -> None:
+    """Columns of Error Extraction bound nothing with a known risk: nobody is alerted by them, and nobody is kept from an alert."""
+    for name in names:
+        if name.startswith(EXTRACTION_MARK):
+            raise InputError("bound", name, domain=f"bounds that may feed an alert; this one is {EXTRACTION_LABEL}")
 
 
 def _numbers(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:

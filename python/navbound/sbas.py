@@ -13,6 +13,21 @@ import numpy as np
 
 from navbound import _core
 from navbound._arrays import flatten, unflatten
+from navbound._error_extraction import ErrorExtraction, error_extraction
+from navbound._extraction_gains import (
+    EXTRACTION_LABEL,
+    ExtractionBeta,
+    ExtractionBias,
+    ExtractionFactor,
+    ExtractionGains,
+    extraction_beta,
+    extraction_beta_from_autocorrelation,
+    extraction_beta_from_spectrum,
+    extraction_bias,
+    extraction_bias_dop,
+    extraction_factor,
+    extraction_gains,
+)
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,13 +36,27 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "EXTRACTION_LABEL",
     "Decoded",
+    "ErrorExtraction",
+    "ExtractionBeta",
+    "ExtractionBias",
+    "ExtractionFactor",
+    "ExtractionGains",
     "FromTerms",
     "Levels",
     "Messages",
     "Refused",
     "Satellites",
     "decode",
+    "error_extraction",
+    "extraction_beta",
+    "extraction_beta_from_autocorrelation",
+    "extraction_beta_from_spectrum",
+    "extraction_bias",
+    "extraction_bias_dop",
+    "extraction_factor",
+    "extraction_gains",
     "levels_from_terms",
     "protection_levels",
     "read",

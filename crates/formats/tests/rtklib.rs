@@ -54,6 +54,19 @@ fn a_row_of_degrees_is_read_as_it_stands() {
 }
 
 #[test]
+fn protection_levels_are_read_where_the_file_has_them() {
+    let text = "\
+%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)  sdne(m)  sdeu(m)  sdun(m) hpl (m) vpl (m)
+2006/12/27 00:04:30.000   35.311789409 -120.661114248   130.5055   3   4  11.2136  19.9097  33.6717  14.3341  25.7826  18.5806 135.11  179.5
+";
+    let s = one(text);
+    assert_eq!((s.hpl_m[0], s.vpl_m[0], s.n_sv[0]), (135.11, 179.5, 4));
+    assert!(one(DEGREES).hpl_m[0].is_nan());
+    let refused = read(&text.replace("179.5", "-1.0")).unwrap().refused;
+    assert_eq!((refused[0].field.as_str(), refused[0].text.as_str()), ("vpl (m)", "-1.0"));
+}
+
+#[test]
 fn one_place_written_four_ways_is_one_place() {
     let expected = one(DEGREES);
     for text in OTHERS {

@@ -5,6 +5,7 @@
 mod anp;
 mod batch;
 mod dme;
+mod ee;
 mod error;
 mod evaluation;
 mod gnss;
@@ -30,6 +31,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     anp::register(m)?;
     rnp::register(m)?;
     sbas::register(m)?;
+    ee::register(m)?;
     states::register(m)?;
     evaluation::register(m)?;
     gnss::register(m)?;

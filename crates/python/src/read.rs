@@ -25,6 +25,8 @@ fn read_rtklib<'py>(py: Python<'py>, text: &str, path: &str) -> PyResult<Bound<'
     d.set_item("quality", s.quality.into_pyarray(py))?;
     d.set_item("n_sv", s.n_sv.into_pyarray(py))?;
     d.set_item("ground_speed_mps", s.ground_speed_mps.into_pyarray(py))?;
+    d.set_item("hpl_m", s.hpl_m.into_pyarray(py))?;
+    d.set_item("vpl_m", s.vpl_m.into_pyarray(py))?;
     d.set_item("n_rows", s.n_rows)?;
     let refused: Vec<_> = s.refused.into_iter().map(|r| (r.line, r.field, r.reason, r.text)).collect();
     d.set_item("refused", refused)?;

@@ -120,7 +120,7 @@ def _rtklib(source: Source) -> Reading:
         rejections.add(f"{name}: {reason}", group.height, group["line"][0], group["text"][0])
     cov = d["cov_m2"]
     names = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
-    plain = {k: d[k] for k in ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m", "ground_speed_mps", "n_sv")}
+    plain = {k: d[k] for k in ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m", "ground_speed_mps", "n_sv", "hpl_m", "vpl_m")}
     out = pl.DataFrame({LINE: d["line"]} | plain | {name: cov[:, i] for i, name in enumerate(names)})
     out = out.with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
     out = _in_order(out, rejections, notes)

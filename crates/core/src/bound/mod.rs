@@ -1,6 +1,7 @@
 //! How wrong the position may be. One file a method family; one list, [`METHODS`], that everything else reads.
 
 pub mod anp;
+pub mod ee;
 mod method;
 pub mod sbas;
 pub mod tse;

@@ -2,6 +2,7 @@
 
 pub mod dme;
 mod epoch;
+pub mod extraction;
 pub mod point;
 mod range_error;
 pub mod wls;

@@ -99,6 +99,19 @@ pub fn covariance_of_weighted(sights: impl Iterator<Item = WeightedSight> + Clon
     Normal::new(sights.map(row))?.covariance()
 }
 
+/// How far the position moves for one metre in each range: the rows s_i = (H'WH)^-1 H' w_i of the solution.
+///
+/// # Errors
+/// As [`covariance`].
+pub fn responses<'a>(
+    sights: impl Iterator<Item = &'a LineOfSight> + Clone,
+) -> Result<impl Iterator<Item = Vector3<f64>> + Clone, Unavailable> {
+    let rows = sights.map(|s| row(s, 1.0 / (s.sigma.m() * s.sigma.m())));
+    let normal = Normal::new(rows.clone())?;
+    let v = *normal.covariance()?.matrix();
+    Ok(rows.map(move |row| v * (row.unit - normal.groups[row.clock].mean) * -row.weight))
+}
+
 /// One range of the normal equation.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Row {

@@ -36,6 +36,8 @@ pub struct Layout {
     pub n_sv: Option<usize>,
     /// North and east velocity.
     pub velocity: Option<[usize; 2]>,
+    /// Horizontal and vertical protection level, which a kin of the program writes.
+    pub levels: Option<[usize; 2]>,
 }
 
 /// Fields are separated by blanks, tabs, commas or semicolons, whatever the writer was told; none of them occurs inside a field.
@@ -47,7 +49,8 @@ pub(super) fn fields(line: &str) -> impl Iterator<Item = &str> {
 pub(super) fn layout(text: &str) -> Result<Layout, Unreadable> {
     let comments = || text.lines().enumerate().filter(|(_, l)| l.trim_start().starts_with('%'));
     let named = comments().find_map(|(i, l)| {
-        let names: Vec<&str> = fields(l.trim_start().trim_start_matches('%')).collect();
+        // A unit alone belongs to the name before it: 'hpl (m)' is one column.
+        let names: Vec<&str> = fields(l.trim_start().trim_start_matches('%')).filter(|name| !name.starts_with('(')).collect();
         Some((i + 1, scale(names.first()?)?, names))
     });
     let (line, scale, names) = named.ok_or_else(|| {
@@ -111,5 +114,6 @@ fn columns(names: &[&str], scale: Scale, base: Option<[f64; 3]>) -> Result<Layou
         quality: find("Q"),
         n_sv: find("ns"),
         velocity: find("vn(m/s)").zip(find("ve(m/s)")).map(|(n, e)| [n, e]),
+        levels: find("hpl").zip(find("vpl")).map(|(h, v)| [h, v]),
     })
 }

@@ -33,6 +33,10 @@ pub struct Solutions {
     pub n_sv: Vec<u32>,
     /// Speed over the ground \[m/s\]; NaN where the file gives none.
     pub ground_speed_mps: Vec<f64>,
+    /// Horizontal protection level \[m\]; NaN where the file gives none.
+    pub hpl_m: Vec<f64>,
+    /// Vertical protection level \[m\]; NaN where the file gives none.
+    pub vpl_m: Vec<f64>,
     /// Rows not used.
     pub refused: Vec<Refusal>,
     /// Rows in the file, used or not.
@@ -75,5 +79,7 @@ impl Solutions {
         self.quality.push(row.quality);
         self.n_sv.push(row.n_sv);
         self.ground_speed_mps.push(row.ground_speed);
+        self.hpl_m.push(row.levels[0]);
+        self.vpl_m.push(row.levels[1]);
     }
 }

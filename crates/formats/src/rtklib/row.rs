@@ -16,6 +16,7 @@ pub(super) struct Row {
     pub(super) quality: u8,
     pub(super) n_sv: u32,
     pub(super) ground_speed: f64,
+    pub(super) levels: [f64; 2],
 }
 
 /// What is wrong with a row.
@@ -41,6 +42,10 @@ pub(super) fn parse<'a>(content: &'a str, layout: &Layout) -> Result<Row, Fault<
         Some([n, e]) => number(f[n], "vn(m/s)")?.hypot(number(f[e], "ve(m/s)")?),
         None => f64::NAN,
     };
+    let levels = match layout.levels {
+        Some([h, v]) => [level(f[h], "hpl (m)")?, level(f[v], "vpl (m)")?],
+        None => [f64::NAN; 2],
+    };
     Ok(Row {
         time,
         lat: position.point.lat().rad(),
@@ -50,6 +55,7 @@ pub(super) fn parse<'a>(content: &'a str, layout: &Layout) -> Result<Row, Fault<
         quality: layout.quality.map_or(Ok(0), |i| count(f[i], "Q"))?.try_into().unwrap_or(u8::MAX),
         n_sv: layout.n_sv.map_or(Ok(0), |i| count(f[i], "ns"))?,
         ground_speed: velocity,
+        levels,
     })
 }
 
@@ -89,6 +95,11 @@ fn number<'a>(text: &'a str, field: &'static str) -> Result<f64, Fault<'a>> {
         Ok(_) => Err(Fault { field, reason: "not a finite number", text }),
         Err(_) => Err(Fault { field, reason: "not a number", text }),
     }
+}
+
+fn level<'a>(text: &'a str, field: &'static str) -> Result<f64, Fault<'a>> {
+    let value = number(text, field)?;
+    if value > 0.0 { Ok(value) } else { Err(Fault { field, reason: "not above zero", text }) }
 }
 
 fn count<'a>(text: &'a str, field: &'static str) -> Result<u32, Fault<'a>> {
