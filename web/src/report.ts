@@ -8,6 +8,7 @@ import { honesty } from "./chart/honesty.ts";
 import { exceedance } from "./chart/risk.ts";
 import { performance } from "./chart/scales.ts";
 import { states } from "./chart/states.ts";
+import { blockOf, groundTracks, type Ground } from "./data/others.ts";
 import type { Payload } from "./data/records.ts";
 import { indexAt } from "./data/events.ts";
 import { scene, type AxisName, type Component, type Scene } from "./data/scene.ts";
@@ -33,9 +34,11 @@ class Page {
     private ends: (() => void)[] = [];
 
     private readonly payload: Payload;
+    private readonly grounds: Store<Ground[]>;
 
     constructor(payload: Payload) {
         this.payload = payload;
+        this.grounds = groundTracks(payload);
         this.trackTable = tracks(payload, () => this.current?.table.track ?? "", (t) => void this.select(t));
     }
 
@@ -60,9 +63,9 @@ class Page {
     async select(track: string): Promise<void> {
         const { payload } = this;
         const head = payload.tracks.find((t) => t.track === track) ?? payload.tracks[0]!;
-        const table = await Table.open(payload, head, document.getElementById(`navbound-track-${head.block}`)!.textContent);
+        const table = await Table.open(payload, head, blockOf(head));
         this.ends.forEach((end) => end());
-        const now = scene(payload, table, this.theme, this.axis);
+        const now = scene(payload, table, this.theme, this.axis, this.grounds);
         this.current = now;
         this.selector.value = head.track;
         const place = (component: Component, host: HTMLElement): (() => void) => component(host, now);

@@ -1,6 +1,7 @@
 // The values of a chart's lines at the cursor, and all its numbers as a table for those who do not see the picture.
 
 import { el, setValue, svg, valueOf } from "../show/dom.ts";
+import { NONE } from "../show/format.ts";
 import type { Line } from "./strip.ts";
 
 export function swatch(line: { colour: string; dash?: number[]; width?: number }): SVGElement {
@@ -8,8 +9,15 @@ export function swatch(line: { colour: string; dash?: number[]; width?: number }
         svg("line", { x1: 0, y1: 4, x2: 24, y2: 4, stroke: `var(--${line.colour})`, "stroke-width": Math.max(1.5, line.width ?? 1.5), "stroke-dasharray": line.dash?.join(" ") }));
 }
 
+/** A word that goes with the values at the cursor. */
+export interface Word {
+    key: string;
+    label: string;
+    of: (i: number) => string | null;
+}
+
 /** One button a line: its name, its value at the cursor; pressing it hides or shows the line. Lines hidden at first are folded away. */
-export function readout(lines: Line[], visible: Set<string>, show: (value: number, line: Line) => string, changed: () => void): { element: HTMLElement; update: (i: number) => void } {
+export function readout(lines: Line[], visible: Set<string>, show: (value: number, line: Line) => string, changed: () => void, word: Word | null = null): { element: HTMLElement; update: (i: number) => void } {
     const cells = new Map<string, HTMLElement>();
     const first = el("div", { class: "readout" });
     const rest = el("div", { class: "readout" });
@@ -26,10 +34,13 @@ export function readout(lines: Line[], visible: Set<string>, show: (value: numbe
         });
         (visible.has(line.key) ? first : rest).append(chip);
     }
+    const said = word === null ? null : valueOf(word.key, null, "");
+    if (word !== null) first.append(el("span", { class: "chip" }, el("span", { class: "chip-name" }, word.label), said));
     const n = rest.childElementCount;
     const more = n === 0 ? null : el("details", { class: "more-lines" }, el("summary", {}, `${n} more ${n === 1 ? "line" : "lines"}`), rest);
     const element = el("div", {}, first, more);
     const update = (i: number): void => {
+        if (word !== null) setValue(said!, word.of(i), word.of(i) ?? NONE);
         for (const line of lines) {
             const v = line.values[i] ?? NaN;
             setValue(cells.get(line.key)!, v, show(v, line));

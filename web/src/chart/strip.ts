@@ -7,7 +7,7 @@ import { choice, el, freshId } from "../show/dom.ts";
 import { clock, plain } from "../show/format.ts";
 import { colour, type Colour } from "../show/theme.ts";
 import { drawEvents, drawHatch, drawLabels, drawUnits } from "./decorate.ts";
-import { numbers, readout } from "./readout.ts";
+import { numbers, readout, type Word } from "./readout.ts";
 import { asinhTicks, clockTicks, extent, isolated, type Extent } from "./ticks.ts";
 
 export interface Line {
@@ -51,6 +51,8 @@ export interface StripOptions {
     yTick?: (value: number) => string;
     /** The lines are drawn by `draw`, not as lines. */
     noPaths?: boolean;
+    /** A column of words shown with the values at the cursor. */
+    word?: { key: string; label: string };
     /** Heights of the horizontal grid lines; uPlot's choice without it. */
     ySplits?: (min: number, max: number) => number[];
 }
@@ -64,7 +66,7 @@ export function strip(host: HTMLElement, scene: Scene, options: StripOptions): (
     const state = { scale: options.scales[0]!, visible: new Set(options.lines.filter((l) => l.hidden !== true).map((l) => l.key)) };
     const title = freshId("title");
     const plot = el("div", { class: "plot", "aria-hidden": "true" });
-    const values = readout(options.lines, state.visible, options.show, () => rebuild());
+    const values = readout(options.lines, state.visible, options.show, () => rebuild(), wordAt(scene, options.word));
     const scales = options.scales.length > 1 ? choice(`Scale of ${options.title}`, options.scales.map((s) => [s, SCALE_NAMES[s]]), state.scale, (s) => { state.scale = s; rebuild(); }) : null;
     const table = numbers(options.lines, options.show, options.title);
     const figure = el("figure", { class: "chart", id: options.id, role: "group", "aria-labelledby": title },
@@ -113,6 +115,10 @@ export function strip(host: HTMLElement, scene: Scene, options: StripOptions): (
         u?.destroy();
         figure.remove();
     };
+}
+
+function wordAt(scene: Scene, word: StripOptions["word"]): Word | null {
+    return word === undefined ? null : { ...word, of: (i) => scene.table.word(word.key, i) };
 }
 
 function dataOf(scene: Scene, options: StripOptions): uPlot.AlignedData {

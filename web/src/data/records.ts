@@ -23,6 +23,7 @@ export interface Verdict {
     share_contained: number | null;
     n_epochs: number;
     n_judged: number;
+    n_implausible: number;
     worst_accuracy: Worst | null;
     worst_integrity: Worst | null;
     truth_known: boolean;
