@@ -7,13 +7,8 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict
-
-
-class Record(BaseModel):
-    """Immutable, with no field that is not declared."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
+from navbound.run.kpi_records import Performance
+from navbound.run.record import Record
 
 
 class Worst(Record):
@@ -214,6 +209,8 @@ class Summary(Record):
     rejected: list[Rejection]
     n_status: dict[str, int]
     """Epochs by status."""
+    performance: Performance | None = None
+    """The ICAO indicators, where errors and protection levels are known."""
 
 
 class RunRecord(Record):
