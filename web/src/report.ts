@@ -16,6 +16,7 @@ import { Store } from "./data/store.ts";
 import { Table } from "./data/table.ts";
 import { map } from "./map/map.ts";
 import { cursorBar } from "./panel/cursorbar.ts";
+import { performance as performanceReport } from "./panel/performance.ts";
 import { smallPrint } from "./panel/smallprint.ts";
 import { crossTrack, events, methods, phases, rejections, tracks } from "./panel/tables.ts";
 import { verdict } from "./panel/verdict.ts";
@@ -25,6 +26,7 @@ import { choose, themeStore, type Choice } from "./show/theme.ts";
 class Page {
     private readonly theme = themeStore();
     private readonly axis = new Store<AxisName>("time");
+    private readonly measured = el("div");
     private readonly upper = el("div", { class: "upper" });
     private readonly charts = el("div", { class: "charts" });
     private readonly bar = el("div");
@@ -45,8 +47,9 @@ class Page {
     async show(root: HTMLElement): Promise<void> {
         const { payload } = this;
         const { summary } = payload;
-        root.replaceChildren(this.header(), this.upper, this.charts);
+        root.replaceChildren(this.header(), this.measured, this.upper, this.charts);
         verdict(root.querySelector("#verdict-place")!, payload);
+        performanceReport(this.measured, payload, this.theme);
         honesty(root, summary);
         const tables = el("section", { id: "tables" }, el("h2", {}, summary.tracks.length === 1 ? "The flight in numbers" : "The tracks in numbers"), this.trackTable.element);
         if (summary.phases.length > 0) tables.append(phases(payload));

@@ -1,7 +1,6 @@
 // The values of a chart's lines at the cursor, and all its numbers as a table for those who do not see the picture.
 
 import { el, setValue, svg, valueOf } from "../show/dom.ts";
-import { NONE } from "../show/format.ts";
 import type { Line } from "./strip.ts";
 
 export function swatch(line: { colour: string; dash?: number[]; width?: number }): SVGElement {
@@ -14,10 +13,11 @@ export interface Word {
     key: string;
     label: string;
     of: (i: number) => string | null;
+    text: (word: string | null) => string;
 }
 
 /** One button a line: its name, its value at the cursor; pressing it hides or shows the line. Lines hidden at first are folded away. */
-export function readout(lines: Line[], visible: Set<string>, show: (value: number, line: Line) => string, changed: () => void, word: Word | null = null): { element: HTMLElement; update: (i: number) => void } {
+export function readout(lines: Line[], visible: Set<string>, show: (value: number, line: Line) => string, changed: () => void, words: Word[] = []): { element: HTMLElement; update: (i: number) => void } {
     const cells = new Map<string, HTMLElement>();
     const first = el("div", { class: "readout" });
     const rest = el("div", { class: "readout" });
@@ -34,13 +34,13 @@ export function readout(lines: Line[], visible: Set<string>, show: (value: numbe
         });
         (visible.has(line.key) ? first : rest).append(chip);
     }
-    const said = word === null ? null : valueOf(word.key, null, "");
-    if (word !== null) first.append(el("span", { class: "chip" }, el("span", { class: "chip-name" }, word.label), said));
+    const said = words.map((word) => ({ word, cell: valueOf(word.key, null, "") }));
+    first.append(...said.map(({ word, cell }) => el("span", { class: "chip" }, el("span", { class: "chip-name" }, word.label), cell)));
     const n = rest.childElementCount;
     const more = n === 0 ? null : el("details", { class: "more-lines" }, el("summary", {}, `${n} more ${n === 1 ? "line" : "lines"}`), rest);
     const element = el("div", {}, first, more);
     const update = (i: number): void => {
-        if (word !== null) setValue(said!, word.of(i), word.of(i) ?? NONE);
+        for (const { word, cell } of said) setValue(cell, word.of(i), word.text(word.of(i)));
         for (const line of lines) {
             const v = line.values[i] ?? NaN;
             setValue(cells.get(line.key)!, v, show(v, line));

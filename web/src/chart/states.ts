@@ -32,7 +32,7 @@ export function states(host: HTMLElement, scene: Scene): () => void {
     return strip(host, scene, {
         id: "states", title: "Navigation state", unit: "", scales: ["data"], range: [-BAND - 0.05, 1], height: 190, draw,
         note: `Probability that the lateral total system error is of each specification, stacked; where epochs are denser than pixels, their mean. Beneath, the state: the strictest specification held at ${level(scene.payload.record.risk_accuracy)}, which need not be the most probable one.`,
-        lines, show: (v) => (Number.isFinite(v) && (v >= 1e-3 || v === 0) ? plain(v, v === 0 ? 0 : 3) : risk(v)), word: { key: "state", label: "State" }, ySplits: () => [0, 0.5, 1], yTick: (v) => plain(v, 1), noPaths: true,
+        lines, show: (v) => (Number.isFinite(v) && (v >= 1e-3 || v === 0) ? plain(v, v === 0 ? 0 : 3) : risk(v)), words: [{ key: "state", label: "State" }], ySplits: () => [0, 0.5, 1], yTick: (v) => plain(v, 1), noPaths: true,
     });
 }
 

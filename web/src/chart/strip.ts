@@ -4,7 +4,7 @@
 import uPlot from "uplot";
 import { axisValues, type Scene } from "../data/scene.ts";
 import { choice, el, freshId } from "../show/dom.ts";
-import { clock, plain } from "../show/format.ts";
+import { clock, NONE, plain } from "../show/format.ts";
 import { colour, type Colour } from "../show/theme.ts";
 import { drawEvents, drawHatch, drawLabels, drawUnits } from "./decorate.ts";
 import { numbers, readout, type Word } from "./readout.ts";
@@ -27,6 +27,8 @@ export interface Line {
     hidden?: boolean;
     /** Drawn above lines with less: the errors stand before their bounds. */
     front?: number;
+    /** Key of another line: what lies between the two is tinted. */
+    downTo?: string;
 }
 
 export type Scale = "data" | "limits" | "compressed" | "log";
@@ -51,8 +53,8 @@ export interface StripOptions {
     yTick?: (value: number) => string;
     /** The lines are drawn by `draw`, not as lines. */
     noPaths?: boolean;
-    /** A column of words shown with the values at the cursor. */
-    word?: { key: string; label: string };
+    /** Columns of words shown with the values at the cursor. */
+    words?: { key: string; label: string; text?: (word: string | null) => string }[];
     /** Heights of the horizontal grid lines; uPlot's choice without it. */
     ySplits?: (min: number, max: number) => number[];
 }
@@ -66,7 +68,7 @@ export function strip(host: HTMLElement, scene: Scene, options: StripOptions): (
     const state = { scale: options.scales[0]!, visible: new Set(options.lines.filter((l) => l.hidden !== true).map((l) => l.key)) };
     const title = freshId("title");
     const plot = el("div", { class: "plot", "aria-hidden": "true" });
-    const values = readout(options.lines, state.visible, options.show, () => rebuild(), wordAt(scene, options.word));
+    const values = readout(options.lines, state.visible, options.show, () => rebuild(), wordsAt(scene, options.words));
     const scales = options.scales.length > 1 ? choice(`Scale of ${options.title}`, options.scales.map((s) => [s, SCALE_NAMES[s]]), state.scale, (s) => { state.scale = s; rebuild(); }) : null;
     const table = numbers(options.lines, options.show, options.title);
     const figure = el("figure", { class: "chart", id: options.id, role: "group", "aria-labelledby": title },
@@ -117,8 +119,8 @@ export function strip(host: HTMLElement, scene: Scene, options: StripOptions): (
     };
 }
 
-function wordAt(scene: Scene, word: StripOptions["word"]): Word | null {
-    return word === undefined ? null : { ...word, of: (i) => scene.table.word(word.key, i) };
+function wordsAt(scene: Scene, words: StripOptions["words"]): Word[] {
+    return (words ?? []).map((word) => ({ text: (w) => w ?? NONE, ...word, of: (i) => scene.table.word(word.key, i) }));
 }
 
 function dataOf(scene: Scene, options: StripOptions): uPlot.AlignedData {
@@ -151,14 +153,20 @@ function lonely(values: Float64Array, fill: string): uPlot.Series.Points {
     return { show: alone.length > 0, filter: () => alone, size: 5, width: 0, fill };
 }
 
-/** What lies within a bound on both sides is tinted. */
+/** What lies within a bound on both sides is tinted, and what lies between two lines that belong together. */
 function bandsOf(options: StripOptions): uPlot.Band[] {
     const bands: uPlot.Band[] = [];
+    const at = new Map<string, number>();
     let series = 1;
     for (const line of drawn(options)) {
         // Two hexadecimal digits of opacity after the colour.
         if (line.mirror && !line.limit) bands.push({ series: [series, series + 1], fill: `${colour(line.colour)}1f` });
+        at.set(line.key, series);
         series += line.mirror ? 2 : 1;
+    }
+    for (const line of options.lines) {
+        const lower = line.downTo === undefined ? undefined : at.get(line.downTo);
+        if (lower !== undefined) bands.push({ series: [at.get(line.key)!, lower], fill: `${colour(line.colour)}1f` });
     }
     return bands;
 }
