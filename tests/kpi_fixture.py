@@ -32,7 +32,12 @@ BIN_M = 0.1
 LIMIT_M = 50.0
 WIDTH_S = 60
 
-_LIMITS: dict[str, tuple[float, float | None]] = {"NPA": (556.0, None), "APV-I": (40.0, 50.0), "LPV-200": (40.0, 35.0), "APV-II": (40.0, 20.0)}
+_LIMITS: dict[str, tuple[float, float | None]] = {
+    "NPA": (556.0, None),
+    "APV-I": (40.0, 50.0),
+    "LPV-200": (40.0, 35.0),
+    "APV-II": (40.0, 20.0),
+}
 
 
 def _epochs(hazard: bool) -> dict[str, Floats]:
@@ -301,7 +306,12 @@ def performance(*, hazard: bool = True, truth: bool = True, experimental: str = 
         n_events={kind: sum(event.kind == kind for event in events) + (900 if kind == "loss" else 0) for kind in ("loss", "hazard")},
         events=events,
         days=[
-            DayResult(start_ns=START_NS + k * 86_400 * 10**9, n_expected=N, n_solution=N - 600, n_available={r.level.id: r.n_available for r in levels})
+            DayResult(
+                start_ns=START_NS + k * 86_400 * 10**9,
+                n_expected=N,
+                n_solution=N - 600,
+                n_available={r.level.id: r.n_available for r in levels},
+            )
             for k in range(2)
         ],
         experimental=experimental,

@@ -8,6 +8,7 @@ import { honesty } from "./chart/honesty.ts";
 import { exceedance } from "./chart/risk.ts";
 import { performance } from "./chart/scales.ts";
 import { states } from "./chart/states.ts";
+import { linkByTime, type Cursor } from "./data/link.ts";
 import { blockOf, groundTracks, type Ground } from "./data/others.ts";
 import type { Payload } from "./data/records.ts";
 import { indexAt } from "./data/events.ts";
@@ -32,6 +33,7 @@ class Page {
     private readonly bar = el("div");
     private readonly selector = el("select", { id: "track", "aria-label": "Track shown" });
     private readonly trackTable: ReturnType<typeof tracks>;
+    private series: Cursor | null = null;
     private current: Scene | null = null;
     private ends: (() => void)[] = [];
 
@@ -49,7 +51,7 @@ class Page {
         const { summary } = payload;
         root.replaceChildren(this.header(), this.measured, this.upper, this.charts);
         verdict(root.querySelector("#verdict-place")!, payload);
-        performanceReport(this.measured, payload, this.theme);
+        this.series = performanceReport(this.measured, payload, this.theme);
         honesty(root, summary);
         const tables = el("section", { id: "tables" }, el("h2", {}, summary.tracks.length === 1 ? "The flight in numbers" : "The tracks in numbers"), this.trackTable.element);
         if (summary.phases.length > 0) tables.append(phases(payload));
@@ -78,6 +80,7 @@ class Page {
         ];
         const worst = payload.summary.verdict.worst_accuracy;
         now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));
+        if (this.series !== null) this.ends.push(linkByTime({ table, cursor: now.cursor, width_s: 0 }, this.series));
         this.trackTable.refresh();
     }
 

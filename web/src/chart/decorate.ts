@@ -100,7 +100,7 @@ export function drawLabels(u: uPlot, lines: Line[], visible: Set<string>, font: 
         if (value === undefined) return [];
         const y = u.valToPos(Math.max(value, floor), "y", true);
         const off = y < bbox.top ? " ↑" : y > bbox.top + bbox.height ? " ↓" : "";
-        return [{ line, y: Math.min(bbox.top + bbox.height, Math.max(bbox.top, y)), text: (line.mirror ? `±${line.label}` : line.label) + off }];
+        return [{ line, y: Math.min(bbox.top + bbox.height, Math.max(bbox.top, y)), text: (line.mirror ? `±${line.label}` : line.endLabel ?? line.label) + off }];
     });
     const placed = spread(shown.map((s) => s.y), LABEL_PX * ratio, bbox.top + 4 * ratio, bbox.top + bbox.height - 4 * ratio);
     ctx.save();

@@ -53,30 +53,53 @@ export function regionOf(error_bin: number, level_bin: number, bin_m: number, fr
     return misleading ? "mi" : "nominal";
 }
 
-/** Corners of a region in shares of the shown square, error to the right, level upwards. */
+/** The band at the edge as a share of the shown square. */
+export const EDGE = 0.03;
+
+/** Corners of a region in shares of the shown square, error to the right, level upwards; the band at the edge belongs to it. */
 export function outline(id: RegionId, frame: Frame): [number, number][] {
     const a = frame.limitShown ? frame.limit_m / frame.shown_m : 1;
+    const e = 1 + EDGE;
     const corners: Record<RegionId, [number, number][]> = {
         nominal: [[0, 0], [a, a], [0, a]],
         mi: [[0, 0], [a, 0], [a, a]],
-        hmi: [[a, 0], [1, 0], [1, a], [a, a]],
-        unavailable: [[0, a], [a, a], [1, 1], [0, 1]],
-        unavailable_mi: [[a, a], [1, a], [1, 1]],
+        hmi: [[a, 0], [e, 0], [e, a], [a, a]],
+        unavailable: [[0, a], [a, a], [e, e], [0, e]],
+        unavailable_mi: [[a, a], [e, a], [e, e]],
     };
     return corners[id];
 }
 
-/** Where a region's name stands, in the same shares; null where the region is not shown. */
-export function nameAt(id: RegionId, frame: Frame): { x: number; y: number; anchor: "start" | "middle" | "end" } | null {
+export interface Place {
+    x: number;
+    y: number;
+    anchor: "start" | "middle" | "end";
+}
+
+/** Room that a name with its two numbers takes, to each side and above and below, in shares of the square. */
+const HALF_NAME = { x: 0.1, y: 0.06 };
+
+/** Where a region's name stands: of the places that it may take, the one that covers the fewest bins. Null where the region is not shown. */
+export function nameAt(id: RegionId, frame: Frame, bins: StanfordBins): Place | null {
     if (!frame.limitShown && id !== "nominal" && id !== "mi") return null;
     const a = frame.limitShown ? frame.limit_m / frame.shown_m : 1;
-    switch (id) {
-        case "nominal": return { x: 0.42 * a, y: 0.84 * a, anchor: "middle" };
-        case "mi": return { x: 0.68 * a, y: 0.3 * a, anchor: "middle" };
-        case "hmi": return { x: (1 + a) / 2, y: 0.55 * a, anchor: "middle" };
-        case "unavailable": return { x: 0.42 * a, y: (1 + a) / 2, anchor: "middle" };
-        case "unavailable_mi": return { x: 0.985, y: a + 0.1 * (1 - a), anchor: "end" };
-    }
+    const middle = (x: number, y: number): Place => ({ x, y, anchor: "middle" });
+    const places: Record<RegionId, Place[]> = {
+        nominal: [middle(0.42 * a, 0.8 * a), middle(0.6 * a, 0.86 * a), middle(0.3 * a, 0.6 * a)],
+        mi: [middle(0.68 * a, 0.26 * a), middle(0.86 * a, 0.12 * a), middle(0.8 * a, 0.5 * a), middle(0.45 * a, 0.12 * a)],
+        hmi: [0.55, 0.15, 0.88, 0.35, 0.72].map((f) => middle((1 + a) / 2, f * a)),
+        unavailable: [0.42, 0.65, 0.2].map((f) => middle(f * a, (1 + a) / 2)),
+        unavailable_mi: [{ x: 0.985, y: a + 0.17 * (1 - a), anchor: "end" }],
+    };
+    const covered = (p: Place): number => {
+        let n = 0;
+        for (let i = 0; i < bins.count.length; i++) {
+            const [x, y] = [(bins.error_bin[i]! * bins.bin_m) / frame.shown_m, (bins.level_bin[i]! * bins.bin_m) / frame.shown_m];
+            if (Math.abs(x - p.x) < HALF_NAME.x && Math.abs(y - p.y) < HALF_NAME.y) n += 1;
+        }
+        return n;
+    };
+    return places[id].map((place) => ({ place, n: covered(place) })).sort((p, q) => p.n - q.n)[0]!.place;
 }
 
 export interface Pixel {

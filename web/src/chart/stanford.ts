@@ -3,9 +3,9 @@
 import type { AxisId, Level, StanfordBins, StanfordCounts } from "../data/performance.ts";
 import type { Store } from "../data/store.ts";
 import { el, freshId, svg, valueOf } from "../show/dom.ts";
-import { count, metres, NONE, plain, share } from "../show/format.ts";
+import { count, NONE, plain, share, wholeMetres } from "../show/format.ts";
 import { colour, type Colour } from "../show/theme.ts";
-import { depth, frameOf, join, nameAt, outline, regionOf, REGIONS, type Frame, type Pixel, type Region } from "./regions.ts";
+import { depth, EDGE as SHARE_OF_EDGE, frameOf, join, nameAt, outline, regionOf, REGIONS, type Frame, type Pixel, type Place, type Region } from "./regions.ts";
 
 const WIDTH = 480;
 const LEFT = 46;
@@ -13,8 +13,9 @@ const TOP = 12;
 /** Side of the square that shows 0 to the end of the axes. */
 const SIDE = 412;
 /** Everything beyond the end is collected in this band. */
-const EDGE = 12;
+const EDGE = SHARE_OF_EDGE * SIDE;
 const HEIGHT = TOP + EDGE + SIDE + 42;
+const LINE = 15.5;
 /** A pixel smaller than this is not seen. */
 const SMALLEST_PX = 1.5;
 const MI_PX = 2.5;
@@ -46,7 +47,7 @@ export function stanford(host: HTMLElement, options: StanfordOptions): () => voi
     const note = el("figcaption", {}, esa ? `${count(bins.n)} satellite subsets. One point for every subset, not for every epoch: a good geometry hides nothing.` : `${count(bins.n)} epochs with a solution and a true error.`);
     const figure = el("figure", { class: "chart stanford", id: `stanford-${bins.axis}${esa ? "-esa" : ""}`, role: "group", "aria-labelledby": title },
         el("h4", { id: title }, `${axis.name}, ${level.id}${esa ? ", every satellite subset (Stanford-ESA)" : ""}`, options.experimental === "" ? null : el("span", { class: "tag" }, options.experimental)), note,
-        el("div", { class: "stanford-box" }, canvas, overlay(options, frame)), ramp(bins, frame), edgeWords(frame, axis), counts === null ? null : regionTable(counts, axis.name));
+        el("div", { class: "stanford-box" }, canvas, overlay(options, frame)), ramp(bins, frame), edgeWords(frame, axis.limit, counts), counts === null ? null : regionTable(counts, axis.name));
     host.append(figure);
     const draw = (): void => paint(canvas, bins, frame);
     const resize = new ResizeObserver(draw);
@@ -75,11 +76,18 @@ function paint(canvas: HTMLCanvasElement, bins: StanfordBins, frame: Frame): voi
     const across = (k: number): number => (k >= end ? SIDE * unit : k * perBin);
     const square = (p: Pixel, least: number): void => {
         const size = (k: number): number => Math.max(k >= end ? EDGE * unit : p.size * perBin, least * unit);
-        const [w, h] = [size(p.x), size(p.y)];
-        // A pixel grown to be seen keeps its lower left corner, so that it never crosses the limit it lies beyond.
-        pen.fillRect(across(p.x), canvas.height - across(p.y) - h, w, h);
+        // On whole pixels, so that neighbours leave no seam; a pixel grown to be seen keeps its lower left corner and never crosses the limit it lies beyond.
+        const [left, bottom] = [Math.round(across(p.x)), canvas.height - Math.round(across(p.y))];
+        const [right, top] = [Math.round(across(p.x) + size(p.x)), canvas.height - Math.round(across(p.y) + size(p.y))];
+        pen.fillRect(left, top, Math.max(1, right - left), Math.max(1, bottom - top));
     };
     pen.clearRect(0, 0, canvas.width, canvas.height);
+    pen.fillStyle = colour("rule");
+    for (const t of ticksOf(frame)) {
+        const at = Math.round((t / frame.shown_m) * SIDE * unit);
+        pen.fillRect(at, 0, devicePixelRatio, canvas.height);
+        pen.fillRect(0, canvas.height - at, canvas.width, devicePixelRatio);
+    }
     const pixels = join(bins, joined(bins, frame));
     const largest = pixels.at(-1)?.count ?? 1;
     const paintAll = (list: Pixel[], hue: Colour, least: number, alpha: (p: Pixel) => number): void => {
@@ -106,17 +114,18 @@ function overlay(options: StanfordOptions, frame: Frame): SVGElement {
     const x = (s: number): number => LEFT + s * SIDE;
     const y = (s: number): number => TOP + EDGE + (1 - s) * SIDE;
     const line = (kind: string, x1: number, y1: number, x2: number, y2: number): SVGElement => svg("line", { class: kind, x1, y1, x2, y2 });
-    const shades = REGIONS.filter((r) => nameAt(r.id, frame) !== null).map((region) => svg("polygon", {
+    const named = REGIONS.map((region) => ({ region, place: nameAt(region.id, frame, bins) })).filter((n): n is { region: Region; place: Place } => n.place !== null);
+    const shades = named.map((n) => n.region).map((region) => svg("polygon", {
         class: `region region-${region.id}`, "data-some": counts !== null && region.count(counts) > 0, points: outline(region.id, frame).map(([px, py]) => `${x(px)},${y(py)}`).join(" "),
     }, svg("title", {}, region.words)));
     const ticks = ticksOf(frame).flatMap((t) => {
         const s = t / frame.shown_m;
-        return [line("stanford-grid", x(s), y(0), x(s), y(1)), line("stanford-grid", x(0), y(s), x(1), y(s)), text(x(s), y(0) + 16, plain(t, 0), "middle", "tick"), text(x(0) - 6, y(s) + 4, plain(t, 0), "end", "tick")];
+        return [text(x(s), y(0) + 16, plain(t, 0), "middle", "tick"), text(x(0) - 6, y(s) + 4, plain(t, 0), "end", "tick")];
     });
     const a = limit_m / frame.shown_m;
     const limits = !frame.limitShown ? [] : [
         line("stanford-limit", x(a), y(0), x(a), y(1) - EDGE), line("stanford-limit", x(0), y(a), x(1) + EDGE, y(a)),
-        text(x(0) + 5, y(a) - 5, `${axis.limit} ${metres(limit_m).replace(/\.0+ m$/, " m")}`, "start", "limit-name"),
+        text(x(0) + 5, y(a) - 5, `${axis.limit} ${wholeMetres(limit_m)}`, "start", "limit-name"),
     ];
     const mark = options.experimental === "" ? "" : ` · ${options.experimental}`;
     const middle = TOP + EDGE + SIDE / 2;
@@ -124,32 +133,23 @@ function overlay(options: StanfordOptions, frame: Frame): SVGElement {
     return svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": label },
         ...shades, ...ticks, svg("rect", { class: "stanford-frame", x: LEFT, y: TOP, width: SIDE + EDGE, height: SIDE + EDGE }),
         line("stanford-edge", x(1), TOP, x(1), y(0)), line("stanford-edge", x(0), y(1), x(1) + EDGE, y(1)),
-        line("stanford-diagonal", x(0), y(0), x(1), y(1)), ...limits, ...REGIONS.flatMap((r) => regionName(r, options, frame, x, y)),
+        line("stanford-diagonal", x(0), y(0), x(1), y(1)), ...limits, ...named.flatMap(({ region, place }) => regionName(region, place, counts, x(place.x), y(place.y))),
         text(x(1) + EDGE, y(0) + 34, `${axis.error} (true error), m${mark}`, "end", "axis-name"),
         svg("text", { class: "axis-name", transform: `translate(11 ${middle}) rotate(-90)`, "text-anchor": "middle" }, `${axis.level} (protection level), m${mark}`));
 }
 
-function regionName(region: Region, options: StanfordOptions, frame: Frame, x: (s: number) => number, y: (s: number) => number): SVGElement[] {
-    const at = nameAt(region.id, frame);
-    if (at === null) return [];
-    const { counts } = options;
+function regionName(region: Region, place: Place, counts: StanfordCounts | null, x: number, y: number): SVGElement[] {
     const n = counts === null ? null : region.count(counts);
     const kind = `region-name name-${region.id}${n !== null && n > 0 ? " some" : ""}`;
-    const head = region.id === "hmi" && n !== null && n > 0 ? `■ ${region.name}` : region.name;
-    const lines = [text(x(at.x), y(at.y), head, at.anchor, kind)];
-    if (n === null || counts === null) return lines;
-    const small = region.id === "unavailable_mi";
-    const number = text(x(at.x), y(at.y) + (small ? 0 : 16), small ? "" : count(n), at.anchor, `${kind} region-count`);
-    number.dataset.key = `n_${region.id}`;
-    number.dataset.value = String(n);
-    if (small) {
-        lines[0]!.textContent = head;
-        number.textContent = `${count(n)} · ${share(n / counts.n)}`;
-        number.setAttribute("y", String(y(at.y)));
-        lines[0]!.setAttribute("y", String(y(at.y) - 15));
-        return [lines[0]!, number];
-    }
-    return [...lines, number, text(x(at.x), y(at.y) + 31, share(n / counts.n), at.anchor, `${kind} region-share`)];
+    const name = region.id === "hmi" && n !== null && n > 0 ? `■ ${region.name}` : region.name;
+    if (n === null || counts === null) return [text(x, y, name, place.anchor, kind)];
+    // The small corner has room for two lines only.
+    const lines = region.id === "unavailable_mi" ? [name, `${count(n)} · ${share(n / counts.n)}`] : [name, count(n), share(n / counts.n)];
+    return lines.map((words, i) => {
+        const line = text(x, y + (i - (lines.length - 2) / 2) * LINE, words, place.anchor, kind);
+        if (i === 1) Object.assign(line.dataset, { key: `n_${region.id}`, value: String(n) });
+        return line;
+    });
 }
 
 function text(x: number, y: number, words: string, anchor: string, kind: string): SVGTextElement {
@@ -161,9 +161,18 @@ function ticksOf(frame: Frame): number[] {
     return Array.from({ length: Math.floor(frame.shown_m / step + 1e-9) + 1 }, (_, i) => i * step);
 }
 
-function edgeWords(frame: Frame, axis: { limit: string }): HTMLElement {
-    const beyond = frame.limitShown ? "" : ` ${axis.limit} ${metres(frame.limit_m)} lies beyond the axes: what is unavailable or hazardous is counted below, not drawn apart.`;
-    return el("p", { class: "note" }, `The band at the edge holds what lies beyond ${plain(frame.shown_m, 0)} m.${beyond}`);
+/** What the band at the edge holds; regions that lie there unseen are named here instead. */
+function edgeWords(frame: Frame, limit: string, counts: StanfordCounts | null): HTMLElement {
+    const words = el("p", { class: "note" }, `The band at the edge holds what lies beyond ${plain(frame.shown_m, 0)} m.`);
+    if (frame.limitShown) return words;
+    words.append(` ${limit} ${wholeMetres(frame.limit_m)} lies beyond the axes. `);
+    if (counts === null) return words;
+    for (const region of REGIONS.filter((r) => r.id !== "nominal" && r.id !== "mi")) {
+        const n = region.count(counts);
+        const hazard = region.id === "hmi" && n > 0;
+        words.append(el("span", { class: hazard ? "hazard" : "aside" }, `${hazard ? "■ " : ""}${region.name} `, valueOf(`n_${region.id}`, n, count(n)), ` (${share(n / counts.n)})`), " ");
+    }
+    return words;
 }
 
 /** What the depth of colour says. */

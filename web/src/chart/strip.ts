@@ -2,9 +2,9 @@
 // uPlot draws long series as the smallest and largest value of each pixel column, so a spike of one epoch stays visible.
 
 import uPlot from "uplot";
-import { axisValues, type Scene } from "../data/scene.ts";
+import { axisValues, mod, type Scene } from "../data/scene.ts";
 import { choice, el, freshId } from "../show/dom.ts";
-import { clock, NONE, plain } from "../show/format.ts";
+import { clock, date, NONE, plain } from "../show/format.ts";
 import { colour, type Colour } from "../show/theme.ts";
 import { drawEvents, drawHatch, drawLabels, drawUnits } from "./decorate.ts";
 import { numbers, readout, type Word } from "./readout.ts";
@@ -29,6 +29,10 @@ export interface Line {
     front?: number;
     /** Key of another line: what lies between the two is tinted. */
     downTo?: string;
+    /** Name at the line's end, where the whole one is too long. */
+    endLabel?: string;
+    /** Has no value beside the chart; its numbers are in the table. */
+    quiet?: boolean;
 }
 
 export type Scale = "data" | "limits" | "compressed" | "log";
@@ -68,7 +72,7 @@ export function strip(host: HTMLElement, scene: Scene, options: StripOptions): (
     const state = { scale: options.scales[0]!, visible: new Set(options.lines.filter((l) => l.hidden !== true).map((l) => l.key)) };
     const title = freshId("title");
     const plot = el("div", { class: "plot", "aria-hidden": "true" });
-    const values = readout(options.lines, state.visible, options.show, () => rebuild(), wordsAt(scene, options.words));
+    const values = readout(options.lines.filter((l) => l.quiet !== true), state.visible, options.show, () => rebuild(), wordsAt(scene, options.words));
     const scales = options.scales.length > 1 ? choice(`Scale of ${options.title}`, options.scales.map((s) => [s, SCALE_NAMES[s]]), state.scale, (s) => { state.scale = s; rebuild(); }) : null;
     const table = numbers(options.lines, options.show, options.title);
     const figure = el("figure", { class: "chart", id: options.id, role: "group", "aria-labelledby": title },
@@ -204,7 +208,7 @@ function build(scene: Scene, options: StripOptions, state: { scale: Scale; visib
             },
         },
         axes: [
-            { ...axis, size: 30, space: 70, ...(along ? milesAxis() : clockAxis(width)) },
+            { ...axis, size: 30, space: 70, ...(along ? milesAxis() : clockAxis(width, scene.table.start_utc_s - mod(scene.table.start_utc_s, 86400))) },
             {
                 ...axis, size: 58, space: 28, filter: (_u, splits) => splits,
                 ...(compressed ? { splits: (_u: uPlot, _i: number, min: number, max: number) => asinhTicks(min, max, threshold) } : {}),
@@ -253,9 +257,11 @@ function milesAxis(): Partial<uPlot.Axis> {
     return { values: (_u, splits) => splits.map((s) => plain(s, Number.isInteger(s) ? 0 : 2)) };
 }
 
-function clockAxis(width: number): Partial<uPlot.Axis> {
+/** Clock times; midnight has its date instead. */
+function clockAxis(width: number, day_utc_s: number): Partial<uPlot.Axis> {
+    const name = (s: number, whole: boolean): string => (s % 86400 === 0 && s > 0 ? date(day_utc_s + s).slice(5) : whole ? clock(s).slice(0, 5) : clock(s));
     return {
         splits: (_u, _i, min, max, _incr, space) => clockTicks(min, max, space, width),
-        values: (_u, splits) => splits.map((s) => (splits.every((t) => t % 60 === 0) ? clock(s).slice(0, 5) : clock(s))),
+        values: (_u, splits) => splits.map((s) => name(s, splits.every((t) => t % 60 === 0))),
     };
 }

@@ -27,11 +27,14 @@ export function bucketTable(performance: Performance, payload: Payload): Table {
     numbers.set("elapsed_s", Float64Array.from(rows, (i, k) => (i === null ? (series.start_ns[rows[k - 1]!]! - first + series.width_ns) / 1e9 : (series.start_ns[i]! - first) / 1e9)));
     for (const { level } of performance.levels) numbers.set(unavailableOf(level.id), column((i) => 1 - (series.n_available[level.id]?.[i] ?? 0) / series.n_expected[i]!));
     const head: PackedTrack = { track: BUCKETS, n: rows.length, start_ns: String(first), columns: [], words: {}, block: -1 };
-    const words = new Map<string, (string | null)[]>(performance.levels.map(({ level }) => [causeOf(level.id), rows.map((i) => (i === null ? null : series.cause[level.id]?.[i] || null))]));
+    const words = new Map<string, (string | null)[]>(performance.levels.map(({ level }) => [causeOf(level.id), rows.map((i) => (i === null ? null : series.cause[level.id]?.[i] || AVAILABLE))]));
     words.set("status", rows.map((i) => (i !== null && series.n_solution[i] === 0 ? "not_available" : "ok")));
     words.set("reason", rows.map((i) => (i !== null && series.n_solution[i] === 0 ? "no solution" : null)));
     return new Table(head, numbers, first / 1e9 + payload.gps_epoch_unix_s - payload.utc_offset_s, words);
 }
+
+/** Word of a bucket at all of whose epochs the level was available. */
+export const AVAILABLE = "available";
 
 /** Share of the bucket's expected epochs at which the level was not available. */
 export function unavailableOf(level: string): string {

@@ -33,10 +33,15 @@ export function scene(payload: Payload, table: Table, theme: Store<number>, axis
 
 export const METRES_PER_NM = 1852;
 
+/** Remainder that is never negative. */
+export function mod(value: number, by: number): number {
+    return ((value % by) + by) % by;
+}
+
 /** Values of the horizontal axis, strictly for drawing: UTC seconds of the first day, or nautical miles. */
 export function axisValues(of: Scene): Float64Array {
     const { table } = of;
     if (of.axis.get() === "along") return table.column("along_m")!.map((m) => m / METRES_PER_NM);
-    const day = ((table.start_utc_s % 86400) + 86400) % 86400;
+    const day = mod(table.start_utc_s, 86400);
     return table.elapsed_s.map((s) => day + s);
 }

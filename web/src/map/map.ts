@@ -4,7 +4,7 @@ import type { Scene } from "../data/scene.ts";
 import type { Ground } from "../data/others.ts";
 import { missing } from "../chart/missing.ts";
 import { button, el, freshId } from "../show/dom.ts";
-import { level, metres, nauticalMiles, place } from "../show/format.ts";
+import { level, nauticalMiles, place, wholeMetres } from "../show/format.ts";
 import { metresPerRadian, roundDown } from "./geometry.ts";
 import { paintCursor, paintStill, pixelsPerMetre, toScreen, type View } from "./paint.ts";
 import { shapes as shapesOf, type Line, type Shapes } from "./shapes.ts";
@@ -137,7 +137,7 @@ function scaleBar(bar: HTMLElement, view: View, shapes: Shapes): void {
     const unit = metresPerPixel * 120 > 1852 ? 1852 : 1;
     const length = roundDown((120 * metresPerPixel) / unit) * unit;
     bar.style.width = `${length / metresPerPixel}px`;
-    bar.textContent = unit === 1 ? metres(length).replace(/\.0+ m$/, " m") : nauticalMiles(length, length < 1852 ? 1 : 0);
+    bar.textContent = unit === 1 ? wholeMetres(length) : nauticalMiles(length, length < 1852 ? 1 : 0);
 }
 
 function sentence(scene: Scene, exaggeration: number): string {

@@ -4,7 +4,7 @@ import type { AxisResult, Level, LevelResult, Performance, Spread } from "../dat
 import { utcOf } from "../data/events.ts";
 import type { Payload } from "../data/records.ts";
 import { el, valueOf } from "../show/dom.ts";
-import { clock, count, date, duration, metres, NONE, plain, risk, share } from "../show/format.ts";
+import { clock, count, date, duration, metres, NONE, plain, risk, share, wholeMetres } from "../show/format.ts";
 import { sortable, type Column } from "./sortable.ts";
 
 interface Row {
@@ -21,10 +21,13 @@ function held(level: Level, field: string): string {
 }
 
 function asked(value: number | null, level: Level, field: string, show: (v: number) => string): string {
-    return value === null ? "nothing asked" : `asked: ${show(value)}${held(level, field)}`;
+    return value === null ? "nothing asked" : `asked: ≤ ${show(value)}${held(level, field)}`;
 }
 
-const round = (v: number): string => metres(v).replace(/\.0+ m$/, " m");
+function limitsHeld(level: Level): string {
+    const words = [level.provenance["hal_m"], ...(level.val_m === null ? [] : [level.provenance["val_m"]])];
+    return [...new Set(words.map((w) => w ?? "unmarked"))].join(" / ");
+}
 
 function accuracyRow(axis: "h" | "v", performance: Performance): Row {
     const found = performance.axes.find((a) => a.axis === axis)?.error_m?.p95 ?? null;
@@ -33,26 +36,27 @@ function accuracyRow(axis: "h" | "v", performance: Performance): Row {
         cell: ({ level }) => {
             const limit = axis === "h" ? level.accuracy_h_m : level.accuracy_v_m;
             const worse = found !== null && limit !== null && found > limit;
-            return { key: `accuracy_${axis}_m`, value: found, text: metres(found), more: asked(limit, level, `accuracy_${axis}_m`, (v) => `at most ${round(v)}`), ...(worse ? { tone: "caution" as const } : {}) };
+            return { key: `accuracy_${axis}_m`, value: found, text: metres(found), more: asked(limit, level, `accuracy_${axis}_m`, wholeMetres), ...(worse ? { tone: "caution" as const } : {}) };
         },
     };
 }
 
 function rows(performance: Performance): Row[] {
-    const limit = (value: number | null, level: Level, field: string): string => (value === null ? "none" : `${round(value)}${held(level, field)}`);
+    const limit = (value: number | null): string => (value === null ? "none" : wholeMetres(value));
+    const window = performance.levels[0]?.window_s ?? NaN;
     const list: Row[] = [
-        { head: "Alert limits, HAL / VAL", cell: ({ level }) => ({ key: "hal_m", value: level.hal_m, text: `${limit(level.hal_m, level, "hal_m")} / ${limit(level.val_m, level, "val_m")}` }) },
+        { head: "Alert limits, HAL / VAL", cell: ({ level }) => ({ key: "hal_m", value: level.hal_m, text: `${limit(level.hal_m)} / ${limit(level.val_m)}`, more: limitsHeld(level) }) },
         accuracyRow("h", performance), accuracyRow("v", performance),
         { head: "Of the expected epochs", group: "Availability", cell: (r) => ({ key: "availability_expected", value: r.availability_expected, text: share(r.availability_expected), more: `95 %: ${share(r.availability_low)} to ${share(r.availability_high)}, as from ${count(Math.round(r.n_effective))} independent epochs` }) },
         { head: "Of the epochs with a solution", cell: (r) => ({ key: "availability_solution", value: r.availability_solution, text: share(r.availability_solution), more: `${count(r.n_available)} of ${count(r.n_solution)}` }) },
         {
-            head: "Risk of a loss", group: "Continuity",
+            head: `Risk of a loss within ${duration(window)}`, group: "Continuity",
             cell: (r) => ({
                 key: "continuity_risk", value: r.continuity_risk, text: r.window_meaningful ? risk(r.continuity_risk) : "not meaningful",
-                more: r.window_meaningful ? `in ${duration(r.window_s)}; ${asked(r.level.continuity_risk, r.level, "continuity_risk", (v) => `at most ${risk(v)} per ${r.level.continuity_per ?? "window"}`)}` : `epochs are further apart than ${duration(r.window_s)}`,
+                more: r.window_meaningful ? asked(r.level.continuity_risk, r.level, "continuity_risk", (v) => `${risk(v)} per ${r.level.continuity_per ?? "window"}`) : `epochs are further apart than ${duration(r.window_s)}`,
             }),
         },
-        { head: "Losses", cell: (r) => ({ key: "n_continuity_events", value: r.n_continuity_events, text: count(r.n_continuity_events), more: r.events_per_1e5 === null ? "" : `${plain(r.events_per_1e5, 2)} in 100 000 epochs (95 %: ${plain(r.events_per_1e5_low ?? NaN, 2)} to ${plain(r.events_per_1e5_high ?? NaN, 2)})` }) },
+        { head: "Losses", cell: (r) => ({ key: "n_continuity_events", value: r.n_continuity_events, text: count(r.n_continuity_events), more: r.events_per_1e5 === null ? "" : `in 100 000 epochs: ${plain(r.events_per_1e5, 2)}, 95 %: ${plain(r.events_per_1e5_low ?? NaN, 2)} to ${plain(r.events_per_1e5_high ?? NaN, 2)}` }) },
         { head: "Maritime risk, 900 s", cell: (r) => ({ key: "continuity_risk_maritime", value: r.continuity_risk_maritime, text: risk(r.continuity_risk_maritime) }) },
     ];
     return performance.truth_known ? [...list, ...integrityRows()] : [...list, { head: "Hazardous or misleading epochs", group: "Integrity", cell: () => ({ key: "integrity", value: null, text: "unknown", more: "no truth" }) }];
@@ -101,19 +105,20 @@ interface SpreadRow {
 }
 
 /** How errors, levels and their ratio are spread over some epochs. */
-export function spreadTable(id: string, caption: string, axes: AxisResult[], payload: Payload): HTMLElement | null {
+export function spreadTable(id: string, caption: string, axes: AxisResult[], payload: Payload, experimental: string): HTMLElement | null {
+    const mark = experimental === "" ? "" : ", experimental";
     const ratio = (v: number): string => plain(v, 3);
     const rowsOf = (a: AxisResult): SpreadRow[] => {
         const one = a.axis.toUpperCase();
         const entry = (key: string, what: string, spread: Spread | null, show: (v: number) => string): SpreadRow[] => (spread === null ? [] : [{ key, what, spread, show }]);
-        return [...entry("error", `${one}PE`, a.error_m, metres), ...entry("level", `${one}PL`, a.level_m, metres), ...entry("safety_index", `${one}PE / ${one}PL`, a.safety_index, ratio)];
+        return [...entry("error", `${one}PE`, a.error_m, metres), ...entry("level", `${one}PL${mark}`, a.level_m, metres), ...entry("safety_index", `${one}PE / ${one}PL${mark}`, a.safety_index, ratio)];
     };
     const all = axes.flatMap(rowsOf);
     if (all.length === 0) return null;
     const number = (head: string, field: "mean" | "rms" | "p50" | "p95" | "p99" | "p999" | "max"): Column<SpreadRow> => ({ head, key: field, of: (r) => r.spread[field], show: (r) => r.show(r.spread[field]) });
     const when = (ns: number): string => `${date(utcOf(ns, payload))} ${clock(utcOf(ns, payload), true)}`;
     return sortable<SpreadRow>({
-        id, caption, rows: all,
+        id, caption: experimental === "" ? caption : `${caption}; ${experimental}`, rows: all,
         columns: [{ head: "Quantity", key: "quantity", words: true, of: (r) => r.what, show: (r) => r.what }, { head: "Epochs", key: "n", of: (r) => r.spread.n, show: (r) => count(r.spread.n) },
             number("Mean", "mean"), number("RMS", "rms"), number("50 %", "p50"), number("95 %", "p95"), number("99 %", "p99"), number("99.9 %", "p999"), number("Largest", "max"),
             { head: "Largest at, UTC", key: "max_time_ns", of: (r) => r.spread.max_time_ns, show: (r) => when(r.spread.max_time_ns) }],
