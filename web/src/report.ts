@@ -8,6 +8,8 @@ import { honesty } from "./chart/honesty.ts";
 import { exceedance } from "./chart/risk.ts";
 import { performance } from "./chart/scales.ts";
 import { states } from "./chart/states.ts";
+import { linkByTime, type Cursor } from "./data/link.ts";
+import { blockOf, groundTracks, type Ground } from "./data/others.ts";
 import type { Payload } from "./data/records.ts";
 import { indexAt } from "./data/events.ts";
 import { scene, type AxisName, type Component, type Scene } from "./data/scene.ts";
@@ -15,6 +17,7 @@ import { Store } from "./data/store.ts";
 import { Table } from "./data/table.ts";
 import { map } from "./map/map.ts";
 import { cursorBar } from "./panel/cursorbar.ts";
+import { performance as performanceReport } from "./panel/performance.ts";
 import { smallPrint } from "./panel/smallprint.ts";
 import { crossTrack, events, methods, phases, rejections, tracks } from "./panel/tables.ts";
 import { verdict } from "./panel/verdict.ts";
@@ -24,26 +27,31 @@ import { choose, themeStore, type Choice } from "./show/theme.ts";
 class Page {
     private readonly theme = themeStore();
     private readonly axis = new Store<AxisName>("time");
+    private readonly measured = el("div");
     private readonly upper = el("div", { class: "upper" });
     private readonly charts = el("div", { class: "charts" });
     private readonly bar = el("div");
     private readonly selector = el("select", { id: "track", "aria-label": "Track shown" });
     private readonly trackTable: ReturnType<typeof tracks>;
+    private series: Cursor | null = null;
     private current: Scene | null = null;
     private ends: (() => void)[] = [];
 
     private readonly payload: Payload;
+    private readonly grounds: Store<Ground[]>;
 
     constructor(payload: Payload) {
         this.payload = payload;
+        this.grounds = groundTracks(payload);
         this.trackTable = tracks(payload, () => this.current?.table.track ?? "", (t) => void this.select(t));
     }
 
     async show(root: HTMLElement): Promise<void> {
         const { payload } = this;
         const { summary } = payload;
-        root.replaceChildren(this.header(), this.upper, this.charts);
+        root.replaceChildren(this.header(), this.measured, this.upper, this.charts);
         verdict(root.querySelector("#verdict-place")!, payload);
+        this.series = performanceReport(this.measured, payload, this.theme);
         honesty(root, summary);
         const tables = el("section", { id: "tables" }, el("h2", {}, summary.tracks.length === 1 ? "The flight in numbers" : "The tracks in numbers"), this.trackTable.element);
         if (summary.phases.length > 0) tables.append(phases(payload));
@@ -60,9 +68,9 @@ class Page {
     async select(track: string): Promise<void> {
         const { payload } = this;
         const head = payload.tracks.find((t) => t.track === track) ?? payload.tracks[0]!;
-        const table = await Table.open(payload, head, document.getElementById(`navbound-track-${head.block}`)!.textContent);
+        const table = await Table.open(payload, head, blockOf(head));
         this.ends.forEach((end) => end());
-        const now = scene(payload, table, this.theme, this.axis);
+        const now = scene(payload, table, this.theme, this.axis, this.grounds);
         this.current = now;
         this.selector.value = head.track;
         const place = (component: Component, host: HTMLElement): (() => void) => component(host, now);
@@ -72,6 +80,7 @@ class Page {
         ];
         const worst = payload.summary.verdict.worst_accuracy;
         now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));
+        if (this.series !== null) this.ends.push(linkByTime({ table, cursor: now.cursor, width_s: 0 }, this.series));
         this.trackTable.refresh();
     }
 

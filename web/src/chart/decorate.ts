@@ -2,7 +2,7 @@
 
 import type uPlot from "uplot";
 import type { Scene } from "../data/scene.ts";
-import { eventIndex } from "../data/events.ts";
+import { alertsOf, eventIndex } from "../data/events.ts";
 import { colour } from "../show/theme.ts";
 import type { Line } from "./strip.ts";
 import { spread } from "./ticks.ts";
@@ -47,20 +47,23 @@ export function drawHatch(u: uPlot, scene: Scene): void {
 export function drawEvents(u: uPlot, scene: Scene): void {
     const { ctx, bbox } = u;
     const size = 4.5 * devicePixelRatio;
-    for (const event of scene.payload.summary.events) {
-        if (event.track !== scene.table.track || (event.kind !== "warning" && event.kind !== "caution")) continue;
+    for (const event of alertsOf(scene)) {
         const x = u.valToPos(u.data[0]![eventIndex(event, scene)]!, "x", true);
         if (x < bbox.left || x > bbox.left + bbox.width) continue;
         const y = bbox.top - size - devicePixelRatio;
         ctx.save();
         ctx.fillStyle = colour(event.kind);
+        ctx.strokeStyle = colour("ground");
+        ctx.lineWidth = devicePixelRatio;
         ctx.beginPath();
         if (event.kind === "warning") ctx.rect(x - size, y - size, 2 * size, 2 * size);
         else {
             ctx.moveTo(x, y - size);
             ctx.lineTo(x + size, y + size);
             ctx.lineTo(x - size, y + size);
+            ctx.closePath();
         }
+        ctx.stroke();
         ctx.fill();
         ctx.restore();
     }
@@ -97,7 +100,7 @@ export function drawLabels(u: uPlot, lines: Line[], visible: Set<string>, font: 
         if (value === undefined) return [];
         const y = u.valToPos(Math.max(value, floor), "y", true);
         const off = y < bbox.top ? " ↑" : y > bbox.top + bbox.height ? " ↓" : "";
-        return [{ line, y: Math.min(bbox.top + bbox.height, Math.max(bbox.top, y)), text: (line.mirror ? `±${line.label}` : line.label) + off }];
+        return [{ line, y: Math.min(bbox.top + bbox.height, Math.max(bbox.top, y)), text: (line.mirror ? `±${line.label}` : line.endLabel ?? line.label) + off }];
     });
     const placed = spread(shown.map((s) => s.y), LABEL_PX * ratio, bbox.top + 4 * ratio, bbox.top + bbox.height - 4 * ratio);
     ctx.save();

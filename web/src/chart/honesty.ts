@@ -21,10 +21,10 @@ export function honesty(host: HTMLElement, summary: Summary): void {
 }
 
 function words(h: Honesty): HTMLElement {
-    const row = (name: string, value: Node | string): HTMLElement[] => [el("dt", {}, name), el("dd", {}, value)];
-    return el("div", {}, el("p", {}, h.words), el("dl", { class: "digits left" },
-        ...row("Mean NEES", valueOf("nees_mean", h.nees_mean, plain(h.nees_mean, 3))), ...row("An honest one", String(h.dimension)),
-        ...row("95 % limits", `${plain(h.nees_low, 3)} to ${plain(h.nees_high, 3)}`), ...row("Independent epochs", valueOf("n_effective", h.n_effective, `${count(h.n_effective)} of ${count(h.n)}`))));
+    const figures = el("p", { class: "sentence" }, h.words);
+    figures.dataset.key = "nees_mean";
+    figures.dataset.value = String(h.nees_mean);
+    return el("div", {}, figures, el("p", { class: "note" }, "Checked with ", valueOf("n", h.n, count(h.n)), " epochs, as good as ", valueOf("n_effective", h.n_effective, count(Math.floor(h.n_effective))), " independent ones."));
 }
 
 function histogram(h: Honesty): HTMLElement {

@@ -8,8 +8,16 @@ export function swatch(line: { colour: string; dash?: number[]; width?: number }
         svg("line", { x1: 0, y1: 4, x2: 24, y2: 4, stroke: `var(--${line.colour})`, "stroke-width": Math.max(1.5, line.width ?? 1.5), "stroke-dasharray": line.dash?.join(" ") }));
 }
 
+/** A word that goes with the values at the cursor. */
+export interface Word {
+    key: string;
+    label: string;
+    of: (i: number) => string | null;
+    text: (word: string | null) => string;
+}
+
 /** One button a line: its name, its value at the cursor; pressing it hides or shows the line. Lines hidden at first are folded away. */
-export function readout(lines: Line[], visible: Set<string>, show: (value: number, line: Line) => string, changed: () => void): { element: HTMLElement; update: (i: number) => void } {
+export function readout(lines: Line[], visible: Set<string>, show: (value: number, line: Line) => string, changed: () => void, words: Word[] = []): { element: HTMLElement; update: (i: number) => void } {
     const cells = new Map<string, HTMLElement>();
     const first = el("div", { class: "readout" });
     const rest = el("div", { class: "readout" });
@@ -26,10 +34,13 @@ export function readout(lines: Line[], visible: Set<string>, show: (value: numbe
         });
         (visible.has(line.key) ? first : rest).append(chip);
     }
+    const said = words.map((word) => ({ word, cell: valueOf(word.key, null, "") }));
+    first.append(...said.map(({ word, cell }) => el("span", { class: "chip" }, el("span", { class: "chip-name" }, word.label), cell)));
     const n = rest.childElementCount;
     const more = n === 0 ? null : el("details", { class: "more-lines" }, el("summary", {}, `${n} more ${n === 1 ? "line" : "lines"}`), rest);
     const element = el("div", {}, first, more);
     const update = (i: number): void => {
+        for (const { word, cell } of said) setValue(cell, word.of(i), word.text(word.of(i)));
         for (const line of lines) {
             const v = line.values[i] ?? NaN;
             setValue(cells.get(line.key)!, v, show(v, line));

@@ -2,12 +2,12 @@
 // uPlot draws long series as the smallest and largest value of each pixel column, so a spike of one epoch stays visible.
 
 import uPlot from "uplot";
-import { axisValues, type Scene } from "../data/scene.ts";
+import { axisValues, mod, type Scene } from "../data/scene.ts";
 import { choice, el, freshId } from "../show/dom.ts";
-import { clock, plain } from "../show/format.ts";
+import { clock, date, NONE, plain } from "../show/format.ts";
 import { colour, type Colour } from "../show/theme.ts";
 import { drawEvents, drawHatch, drawLabels, drawUnits } from "./decorate.ts";
-import { numbers, readout } from "./readout.ts";
+import { numbers, readout, type Word } from "./readout.ts";
 import { asinhTicks, clockTicks, extent, isolated, type Extent } from "./ticks.ts";
 
 export interface Line {
@@ -27,6 +27,12 @@ export interface Line {
     hidden?: boolean;
     /** Drawn above lines with less: the errors stand before their bounds. */
     front?: number;
+    /** Key of another line: what lies between the two is tinted. */
+    downTo?: string;
+    /** Name at the line's end, where the whole one is too long. */
+    endLabel?: string;
+    /** Has no value beside the chart; its numbers are in the table. */
+    quiet?: boolean;
 }
 
 export type Scale = "data" | "limits" | "compressed" | "log";
@@ -51,6 +57,8 @@ export interface StripOptions {
     yTick?: (value: number) => string;
     /** The lines are drawn by `draw`, not as lines. */
     noPaths?: boolean;
+    /** Columns of words shown with the values at the cursor. */
+    words?: { key: string; label: string; text?: (word: string | null) => string }[];
     /** Heights of the horizontal grid lines; uPlot's choice without it. */
     ySplits?: (min: number, max: number) => number[];
 }
@@ -64,7 +72,7 @@ export function strip(host: HTMLElement, scene: Scene, options: StripOptions): (
     const state = { scale: options.scales[0]!, visible: new Set(options.lines.filter((l) => l.hidden !== true).map((l) => l.key)) };
     const title = freshId("title");
     const plot = el("div", { class: "plot", "aria-hidden": "true" });
-    const values = readout(options.lines, state.visible, options.show, () => rebuild());
+    const values = readout(options.lines.filter((l) => l.quiet !== true), state.visible, options.show, () => rebuild(), wordsAt(scene, options.words));
     const scales = options.scales.length > 1 ? choice(`Scale of ${options.title}`, options.scales.map((s) => [s, SCALE_NAMES[s]]), state.scale, (s) => { state.scale = s; rebuild(); }) : null;
     const table = numbers(options.lines, options.show, options.title);
     const figure = el("figure", { class: "chart", id: options.id, role: "group", "aria-labelledby": title },
@@ -115,6 +123,10 @@ export function strip(host: HTMLElement, scene: Scene, options: StripOptions): (
     };
 }
 
+function wordsAt(scene: Scene, words: StripOptions["words"]): Word[] {
+    return (words ?? []).map((word) => ({ text: (w) => w ?? NONE, ...word, of: (i) => scene.table.word(word.key, i) }));
+}
+
 function dataOf(scene: Scene, options: StripOptions): uPlot.AlignedData {
     const nullable = (values: Float64Array, sign: number): (number | null)[] => Array.from(values, (v) => {
         if (!Number.isFinite(v)) return null;
@@ -145,14 +157,20 @@ function lonely(values: Float64Array, fill: string): uPlot.Series.Points {
     return { show: alone.length > 0, filter: () => alone, size: 5, width: 0, fill };
 }
 
-/** What lies within a bound on both sides is tinted. */
+/** What lies within a bound on both sides is tinted, and what lies between two lines that belong together. */
 function bandsOf(options: StripOptions): uPlot.Band[] {
     const bands: uPlot.Band[] = [];
+    const at = new Map<string, number>();
     let series = 1;
     for (const line of drawn(options)) {
         // Two hexadecimal digits of opacity after the colour.
         if (line.mirror && !line.limit) bands.push({ series: [series, series + 1], fill: `${colour(line.colour)}1f` });
+        at.set(line.key, series);
         series += line.mirror ? 2 : 1;
+    }
+    for (const line of options.lines) {
+        const lower = line.downTo === undefined ? undefined : at.get(line.downTo);
+        if (lower !== undefined) bands.push({ series: [at.get(line.key)!, lower], fill: `${colour(line.colour)}1f` });
     }
     return bands;
 }
@@ -190,7 +208,7 @@ function build(scene: Scene, options: StripOptions, state: { scale: Scale; visib
             },
         },
         axes: [
-            { ...axis, size: 30, space: 70, ...(along ? milesAxis() : clockAxis(width)) },
+            { ...axis, size: 30, space: 70, ...(along ? milesAxis() : clockAxis(width, scene.table.start_utc_s - mod(scene.table.start_utc_s, 86400))) },
             {
                 ...axis, size: 58, space: 28, filter: (_u, splits) => splits,
                 ...(compressed ? { splits: (_u: uPlot, _i: number, min: number, max: number) => asinhTicks(min, max, threshold) } : {}),
@@ -239,9 +257,11 @@ function milesAxis(): Partial<uPlot.Axis> {
     return { values: (_u, splits) => splits.map((s) => plain(s, Number.isInteger(s) ? 0 : 2)) };
 }
 
-function clockAxis(width: number): Partial<uPlot.Axis> {
+/** Clock times; midnight has its date instead. */
+function clockAxis(width: number, day_utc_s: number): Partial<uPlot.Axis> {
+    const name = (s: number, whole: boolean): string => (s % 86400 === 0 && s > 0 ? date(day_utc_s + s).slice(5) : whole ? clock(s).slice(0, 5) : clock(s));
     return {
         splits: (_u, _i, min, max, _incr, space) => clockTicks(min, max, space, width),
-        values: (_u, splits) => splits.map((s) => (splits.every((t) => t % 60 === 0) ? clock(s).slice(0, 5) : clock(s))),
+        values: (_u, splits) => splits.map((s) => name(s, splits.every((t) => t % 60 === 0))),
     };
 }

@@ -14,3 +14,9 @@ export function indexAt(time_ns: number, scene: Scene): number {
 export function eventIndex(event: EventSummary, scene: Scene): number {
     return indexAt(event.onset_ns, scene);
 }
+
+/** Cautions and warnings of the track shown; warnings come last, so that no other mark is drawn over one. */
+export function alertsOf(scene: Scene): (EventSummary & { kind: "caution" | "warning" })[] {
+    const is = (event: EventSummary): event is EventSummary & { kind: "caution" | "warning" } => event.kind === "caution" || event.kind === "warning";
+    return scene.payload.summary.events.filter(is).filter((e) => e.track === scene.table.track).sort((a, b) => Number(a.kind === "warning") - Number(b.kind === "warning"));
+}

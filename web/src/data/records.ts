@@ -1,6 +1,7 @@
 // The records of a run as the page receives them; names and meanings are those of python/navbound/run/records.py.
 
 import type { PackedColumn } from "./packing.ts";
+import type { Performance } from "./performance.ts";
 
 export interface Worst {
     track: string;
@@ -23,6 +24,7 @@ export interface Verdict {
     share_contained: number | null;
     n_epochs: number;
     n_judged: number;
+    n_implausible: number;
     worst_accuracy: Worst | null;
     worst_integrity: Worst | null;
     truth_known: boolean;
@@ -121,6 +123,8 @@ export interface Summary {
     cross_track: { path: string; n_tracks: number; n_points: number; mean_m: number; std_m: number; abs95_m: number; between_tracks_std_m: number | null }[];
     rejected: { file: string; reason: string; count: number; first_line: number | null; example: string }[];
     n_status: Record<string, number>;
+    /** The ICAO indicators, where errors and protection levels are known. */
+    performance: Performance | null;
 }
 
 export interface RunRecord {

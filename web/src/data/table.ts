@@ -4,6 +4,10 @@ import { inflate, unpack } from "./packing.ts";
 import type { PackedTrack, Payload } from "./records.ts";
 import { expand, runsOf, type Run } from "./runs.ts";
 
+function expanded(head: PackedTrack): Map<string, (string | null)[]> {
+    return new Map(Object.entries(head.words).map(([name, packed]) => [name, expand(packed.words, packed.runs)]));
+}
+
 export class Table {
     readonly n: number;
     readonly track: string;
@@ -16,13 +20,13 @@ export class Table {
     private readonly numbers: Map<string, Float64Array>;
     private readonly words: Map<string, (string | null)[]>;
 
-    constructor(head: PackedTrack, numbers: Map<string, Float64Array>, start_utc_s: number) {
+    constructor(head: PackedTrack, numbers: Map<string, Float64Array>, start_utc_s: number, words = expanded(head)) {
         this.n = head.n;
         this.track = head.track;
         this.numbers = numbers;
         this.elapsed_s = numbers.get("elapsed_s") ?? new Float64Array(head.n);
         this.start_utc_s = start_utc_s;
-        this.words = new Map(Object.entries(head.words).map(([name, packed]) => [name, expand(packed.words, packed.runs)]));
+        this.words = words;
         this.unavailable = this.findUnavailable();
     }
 

@@ -1,12 +1,13 @@
 // The map: coast, route, tunnel to scale, the track by alert state, and the aircraft with its error at the cursor.
 
 import type { Scene } from "../data/scene.ts";
+import type { Ground } from "../data/others.ts";
 import { missing } from "../chart/missing.ts";
 import { button, el, freshId } from "../show/dom.ts";
-import { level, metres, nauticalMiles, place } from "../show/format.ts";
+import { level, nauticalMiles, place, wholeMetres } from "../show/format.ts";
 import { metresPerRadian, roundDown } from "./geometry.ts";
 import { paintCursor, paintStill, pixelsPerMetre, toScreen, type View } from "./paint.ts";
-import { shapes as shapesOf, type Shapes } from "./shapes.ts";
+import { shapes as shapesOf, type Line, type Shapes } from "./shapes.ts";
 import { gestures } from "./gestures.ts";
 
 const CLOSEST_PX_PER_M = 40;
@@ -18,17 +19,19 @@ export function map(host: HTMLElement, scene: Scene): () => void {
     const still = el("canvas");
     const moving = el("canvas");
     const surface = el("div", { class: "map-surface", tabindex: 0, role: "application", "aria-roledescription": "map", "aria-labelledby": title, "aria-describedby": `${title}-help` }, still, moving);
+    const otherKey = el("span", { class: "key" }, el("i", { class: "key-others" }), "other tracks");
     const bar = el("div", { class: "map-scale", "aria-hidden": "true" });
     const words = el("p", { class: "map-words" });
     surface.append(bar);
     const view: View = { x: 0, y: 0, k: 1, width: 0, height: 0 };
     let fitted = 1;
+    let others: Line[] = [];
 
     const paint = (): void => {
         const pen = still.getContext("2d");
         if (pen === null || view.width === 0) return;
         pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
-        paintStill(pen, view, shapes, scene);
+        paintStill(pen, view, shapes, others, scene);
         scaleBar(bar, view, shapes);
         move();
     };
@@ -75,7 +78,7 @@ export function map(host: HTMLElement, scene: Scene): () => void {
     const controls = el("div", { class: "map-controls", role: "group", "aria-label": "Map view" },
         button("+", { "aria-label": "Zoom in" }, () => zoom(2)), button("−", { "aria-label": "Zoom out" }, () => zoom(0.5)),
         button("Whole route", {}, whole), shapes.tunnel === null ? null : button("Tunnel at cursor", {}, toTunnel), button("Error at cursor", {}, () => toCursor(5 * errorSize(scene))));
-    const figure = el("figure", { class: "chart map", id: "map" }, el("div", { class: "chart-head" }, el("h3", { id: title }, "Map"), controls), surface, words, legend(scene, shapes),
+    const figure = el("figure", { class: "chart map", id: "map" }, el("div", { class: "chart-head" }, el("h3", { id: title }, "Map"), controls), surface, words, legend(scene, shapes, otherKey),
         el("p", { class: "sr", id: `${title}-help` }, "Arrow keys move the map, plus and minus zoom, 0 shows the whole route, c goes to the cursor. The position at the cursor is given as text below the map."));
     host.append(figure);
 
@@ -88,10 +91,16 @@ export function map(host: HTMLElement, scene: Scene): () => void {
         if (first) whole();
         else paint();
     };
+    const showOthers = (grounds: Ground[]): void => {
+        others = grounds.filter((g) => g.track !== scene.table.track).map((g) => shapes.put(g.lat_rad, g.lon_rad));
+        surface.dataset.others = String(others.length);
+        otherKey.hidden = others.length === 0;
+        if (others.length > 0) paint();
+    };
     const observer = new ResizeObserver(resize);
     observer.observe(surface);
     resize();
-    const ends = [gestures(surface, { zoom, pan, pick, whole, toCursor: toTunnel }), scene.cursor.watch(move), scene.theme.watch(() => { resize(); paint(); })];
+    const ends = [gestures(surface, { zoom, pan, pick, whole, toCursor: toTunnel }), scene.cursor.watch(move), scene.theme.watch(() => { resize(); paint(); }), scene.grounds.watch(showOthers)];
     return () => {
         ends.forEach((end) => end());
         observer.disconnect();
@@ -128,7 +137,7 @@ function scaleBar(bar: HTMLElement, view: View, shapes: Shapes): void {
     const unit = metresPerPixel * 120 > 1852 ? 1852 : 1;
     const length = roundDown((120 * metresPerPixel) / unit) * unit;
     bar.style.width = `${length / metresPerPixel}px`;
-    bar.textContent = unit === 1 ? metres(length).replace(/\.0+ m$/, " m") : nauticalMiles(length, length < 1852 ? 1 : 0);
+    bar.textContent = unit === 1 ? wholeMetres(length) : nauticalMiles(length, length < 1852 ? 1 : 0);
 }
 
 function sentence(scene: Scene, exaggeration: number): string {
@@ -139,7 +148,7 @@ function sentence(scene: Scene, exaggeration: number): string {
     return `${where}. ${level(scene.payload.record.risk_accuracy)} error ellipse ${size}.`;
 }
 
-function legend(scene: Scene, shapes: Shapes): HTMLElement {
+function legend(scene: Scene, shapes: Shapes, otherKey: HTMLElement): HTMLElement {
     const alerts = new Set(scene.table.wordColumn("alert") ?? []);
     const keys: [string, string][] = [["track", alerts.size > 0 ? "track, normal" : "track"]];
     if (alerts.has("caution")) keys.push(["caution", "caution ▲"]);
@@ -151,5 +160,5 @@ function legend(scene: Scene, shapes: Shapes): HTMLElement {
     if (scene.table.has("anp_circle_m")) keys.push(["circle", "ANP circle"]);
     if (scene.table.has("nse_e_m")) keys.push(["truth", "true position ×"]);
     const why = shapes.tunnel === null ? el("span", { class: "note" }, "No path: no tunnel.") : null;
-    return el("figcaption", { class: "map-legend" }, ...keys.map(([kind, name]) => el("span", { class: "key" }, el("i", { class: `key-${kind}` }), name)), why);
+    return el("figcaption", { class: "map-legend" }, ...keys.map(([kind, name]) => el("span", { class: "key" }, el("i", { class: `key-${kind}` }), name)), otherKey, why);
 }

@@ -1,7 +1,7 @@
 // Drawing the map: the still part, and what moves with the cursor.
 
 import type { Scene } from "../data/scene.ts";
-import { eventIndex } from "../data/events.ts";
+import { alertsOf, eventIndex } from "../data/events.ts";
 import { runsOf } from "../data/runs.ts";
 import { colour } from "../show/theme.ts";
 import { clipSegment, ellipse, offset } from "./geometry.ts";
@@ -62,7 +62,7 @@ function stroke(pen: CanvasRenderingContext2D, style: { colour: string; width: n
     pen.restore();
 }
 
-export function paintStill(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, scene: Scene): void {
+export function paintStill(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, others: Line[], scene: Scene): void {
     pen.clearRect(0, 0, view.width, view.height);
     stroke(pen, { colour: colour("rule"), width: 1 }, () => shapes.graticule.forEach((line) => trace(pen, view, line)));
     stroke(pen, { colour: colour("coast"), width: 1 }, () => shapes.coast.forEach((line) => trace(pen, view, line)));
@@ -72,6 +72,7 @@ export function paintStill(pen: CanvasRenderingContext2D, view: View, shapes: Sh
         stroke(pen, { colour: colour("limit"), width: 1.25 }, () => one.forEach((edge) => trace(pen, view, edge)));
     }
     if (shapes.path !== null) stroke(pen, { colour: colour("path"), width: 3, alpha: 0.55 }, () => trace(pen, view, shapes.path!));
+    stroke(pen, { colour: colour("muted"), width: 1, alpha: 0.45 }, () => others.forEach((line) => trace(pen, view, line)));
     paintTrack(pen, view, shapes, scene);
     paintEvents(pen, view, shapes, scene);
     paintNames(pen, view, shapes);
@@ -95,13 +96,12 @@ function paintTrack(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, s
 }
 
 function paintEvents(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, scene: Scene): void {
-    for (const event of scene.payload.summary.events) {
-        if (event.track !== scene.table.track || !["caution", "warning"].includes(event.kind)) continue;
+    for (const event of alertsOf(scene)) {
         const i = eventIndex(event, scene);
         const [x, y] = toScreen(view, shapes.track[2 * i]!, shapes.track[2 * i + 1]!);
         const size = 5.5;
         pen.save();
-        pen.fillStyle = colour(event.kind as "caution" | "warning");
+        pen.fillStyle = colour(event.kind);
         pen.strokeStyle = colour("ground");
         pen.lineWidth = 1.5;
         pen.beginPath();

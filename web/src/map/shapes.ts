@@ -13,6 +13,8 @@ export interface Shapes {
     /** Meridians and parallels. */
     graticule: Line[];
     track: Line;
+    /** Any other line of positions, on the same plane. */
+    put: (lat_rad: Float64Array, lon_rad: Float64Array) => Line;
     path: Line | null;
     /** Edges of the tunnel: left and right at RNP, left and right at twice RNP. */
     tunnel: { one: [Line, Line]; two: [Line, Line] } | null;
@@ -36,10 +38,11 @@ export function shapes(scene: Scene): Shapes | null {
         for (let i = 0; i < n; i++) [out[2 * i], out[2 * i + 1]] = at(i);
         return out;
     };
-    const track = line(table.n, (i) => place(lat[i]!, lon[i]!));
+    const put: Shapes["put"] = (la, lo) => line(la.length, (i) => place(la[i]!, lo[i]!));
+    const track = put(lat, lon);
     const pathLat = table.column("path_lat_rad");
     const pathLon = table.column("path_lon_rad");
-    const path = pathLat && pathLon ? line(table.n, (i) => place(pathLat[i]!, pathLon[i]!)) : null;
+    const path = pathLat && pathLon ? put(pathLat, pathLon) : null;
     const course = table.column("course_rad");
     const rnp = table.column("rnp_m");
     const edge = (side: number): Line => line(table.n, (i) => {
@@ -50,7 +53,7 @@ export function shapes(scene: Scene): Shapes | null {
     const tunnel: Shapes["tunnel"] = path !== null && course && rnp ? { one: [edge(-1), edge(1)], two: [edge(-2), edge(2)] } : null;
     const waypoints = payload.waypoints.map((waypoint) => ({ point: place(waypoint.lat_rad, waypoint.lon_rad), waypoint }));
     const coast = payload.coastline.map((differences) => decode(differences, place));
-    return { plane: on, coast, graticule: graticule(lat, lon, place), track, path, tunnel, waypoints, bounds: boundsOf([track, ...(path ? [path] : [])]) };
+    return { plane: on, coast, graticule: graticule(lat, lon, place), track, put, path, tunnel, waypoints, bounds: boundsOf([track, ...(path ? [path] : [])]) };
 }
 
 function centre(lat: Float64Array, lon: Float64Array): { lat: number; lon: number } | null {

@@ -21,6 +21,8 @@ export interface TableOptions<T> {
     press?: (row: T) => void;
     pressable?: (row: T) => boolean;
     current?: (row: T) => boolean;
+    /** Rows shown before all are asked for. */
+    page?: number;
 }
 
 const PAGE = 60;
@@ -34,7 +36,7 @@ export function sortable<T>(options: TableOptions<T>): HTMLElement {
 export function liveTable<T>(options: TableOptions<T>): { element: HTMLElement; refresh: () => void } {
     let rows = [...options.rows];
     let sorted: { column: number; down: boolean } | null = null;
-    let most = PAGE;
+    let most = options.page ?? PAGE;
     const body = el("tbody");
     const heads = options.columns.map((column, i) => {
         const head = el("th", { scope: "col", class: column.words ? "words" : undefined });

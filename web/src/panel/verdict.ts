@@ -1,6 +1,6 @@
 // The verdict: state and words first, then the few numbers behind it.
 
-import type { Payload, Worst } from "../data/records.ts";
+import type { Payload, Verdict, Worst } from "../data/records.ts";
 import { utcOf } from "../data/events.ts";
 import { about } from "../chart/methods.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
@@ -9,20 +9,22 @@ import { clock, count, date, level, nauticalMiles, place, share, signedMetres } 
 const STATES = {
     inside: { word: "Inside", mark: "M5 13 L10 18 L19 7" },
     outside: { word: "Outside", mark: "M6 6 L18 18 M18 6 L6 18" },
+    doubtful: { word: "Doubtful", mark: "M12 4 L21 20 L3 20 Z M12 10 L12 14 M12 16.8 L12 17" },
     unknown: { word: "Unknown", mark: "M8.5 9 A3.6 3.6 0 1 1 12 13 L12 15 M12 18.4 L12 18.6" },
 } as const;
 
 export function verdict(host: HTMLElement, payload: Payload): void {
     const { summary } = payload;
     const v = summary.verdict;
-    const state = v.inside === null ? "unknown" : v.inside ? "inside" : "outside";
+    const state = stateOf(v);
     // Red is for integrity alone: an accuracy limit passed is a caution.
     const lost = (v.worst_integrity?.margin_m ?? 0) < 0 || (v.share_contained ?? 1) < 1;
-    const tone = state === "outside" ? (lost ? "warning" : "caution") : state;
+    const tone = state === "outside" ? (lost ? "warning" : "caution") : state === "doubtful" ? "caution" : state;
     const method = summary.accuracy.find((m) => m.id === v.method);
     const mark = svg("svg", { viewBox: "0 0 24 24", width: 26, height: 26, "aria-hidden": "true" }, svg("path", { d: STATES[state].mark }));
     const section = el("section", { class: "verdict", id: "verdict", "data-tone": tone, "aria-label": "Verdict" },
         el("p", { class: "state" }, mark, valueOf("inside", String(v.inside), STATES[state].word), el("span", { class: "requirement" }, v.requirement), v.experimental ? el("span", { class: "tag" }, "experimental") : null,
+            v.n_implausible > 0 ? el("span", { class: "tag" }, valueOf("n_implausible", v.n_implausible, count(v.n_implausible)), ` of ${count(v.n_epochs)} epochs cannot be true`) : null,
             v.n_judged < v.n_epochs ? el("span", { class: "tag" }, `${share((v.n_epochs - v.n_judged) / v.n_epochs)} of the epochs not judged`) : null),
         el("p", { class: "words" }, v.words),
         facts(payload, method?.risk),
@@ -31,6 +33,12 @@ export function verdict(host: HTMLElement, payload: Payload): void {
                 el("p", {}, el("strong", {}, "Truth "), v.truth_known ? "known: errors are seen, bounds could be checked." : "unknown: bounds could not be checked against errors.")),
             summary.assumptions.length > 0 ? el("div", { class: "assumed" }, el("strong", {}, "Assumed"), el("ul", {}, ...summary.assumptions.map((a) => el("li", {}, a)))) : null));
     host.append(section);
+}
+
+/** Epochs that cannot be true make the others doubtful; without them no verdict means that nothing could be judged. */
+export function stateOf(v: Pick<Verdict, "inside" | "n_implausible">): keyof typeof STATES {
+    if (v.inside === null) return v.n_implausible > 0 ? "doubtful" : "unknown";
+    return v.inside ? "inside" : "outside";
 }
 
 function facts(payload: Payload, risk: number | undefined): HTMLElement {

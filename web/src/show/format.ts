@@ -27,6 +27,11 @@ export function metres(value: number | null | undefined): string {
     return `${plain(value, decimals(Math.abs(value)))} m`;
 }
 
+/** Limits are round: "40 m", not "40.00 m". */
+export function wholeMetres(value: number): string {
+    return metres(value).replace(/\.0+ m$/, " m");
+}
+
 export function signedMetres(value: number | null | undefined): string {
     if (value == null || !Number.isFinite(value)) return NONE;
     return value > 0 ? `+${metres(value)}` : metres(value);
