@@ -251,7 +251,7 @@ def _events(e: dict[str, Floats], truth: bool) -> list[KpiEvent]:
                 found.append(
                     KpiEvent(
                         level=name,
-                        kind=kind,  # type: ignore[arg-type]
+                        kind=kind,
                         onset_ns=START_NS + a * 10**9,
                         clear_ns=START_NS + b * 10**9,
                         n_epochs=b - a,
