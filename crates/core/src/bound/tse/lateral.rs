@@ -110,7 +110,7 @@ pub fn exact(deviation: Deviation, risk: Risk) -> Metres {
 #[inline(always)]
 pub fn exact_prepared(deviation: Deviation, prepared: &PreparedQuantile) -> Metres {
     let Deviation { fte, sigma } = deviation;
-    Metres::new(fte.abs() + prepared.excess(fte.abs() / sigma) * sigma)
+    Metres::new(prepared.bound(fte, sigma))
 }
 
 /// Line tangent to the ellipse: fte + K(q) sigma \[m\]. Never below the exact bound; equal to it where fte or sigma is zero.
