@@ -8,7 +8,7 @@ import numpy as np
 
 from navbound import sbas
 from navbound.errors import InputError
-from navbound.run.error_extraction_records import FaultEntry, Spread
+from navbound.run.error_extraction_records import FaultEntry, HeldRisk, Spread
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,6 +39,13 @@ FAULTS: dict[str, tuple[float, float, tuple[float | None, ...]]] = {
 """Each fault by its step [m] and slope [m/s], and what was computed for it before, from one run: the quantities in their order."""
 
 
+HELD_RISK = 1e-3
+HELD = ((30.0, 3.7e-4, 5e-6), (60.0, 5e-3, 5e-4), (100.0, 1.9e-2, 5e-4), (300.0, 0.11, 5e-3), (600.0, 0.21, 5e-3), (1800.0, 0.43, 5e-3))
+"""Correlation time [s], what was computed for it before, and half of its last digit."""
+HELD_RUNS, HELD_LENGTH = 400, 1200
+"""Independent runs, and samples in each; the first third, in which the filter settles, is not counted."""
+
+
 def inject(*, runs: int = 100, seed: int = 2012) -> list[FaultEntry]:
     """Put every fault into many runs of nominal error.
 
@@ -62,7 +69,7 @@ def inject(*, runs: int = 100, seed: int = 2012) -> list[FaultEntry]:
     if not runs >= 20:
         raise InputError("runs", runs, "1", "[20, inf)")
     generator = np.random.Generator(np.random.Philox(seed))
-    nominal = gauss_markov(generator, (runs, ONSET + LENGTH))
+    nominal = gauss_markov(generator, (runs, ONSET + LENGTH), SIGMA_M, TAU_S)
     velocity = np.zeros((*nominal.shape, 3))
     velocity[..., 2] = SIGMA_VELOCITY_MPS * generator.standard_normal(nominal.shape)
     since = np.arange(-ONSET, LENGTH).astype(np.float64)
@@ -82,10 +89,42 @@ def overshoot_m(step_m: float = 10.0) -> float:
     return float(np.abs(found.ee_position_enu_m[:, 2]).max())
 
 
-def gauss_markov(generator: np.random.Generator, shape: tuple[int, int]) -> Floats:
+def held_risks(*, seed: int = 2012) -> list[HeldRisk]:
+    """How often errors of several correlation times pass the noise bound whose stated risk is 1e-3.
+
+    Returns
+    -------
+    list of HeldRisk
+        ``reproducible`` where the share stated before is within four standard errors, from independent runs, and half its last digit.
+    """
+    generator = np.random.Generator(np.random.Philox(seed))
+    times = np.arange(HELD_LENGTH) * 1_000_000_000
+    found = []
+    for tau_s, stated, half_digit in HELD:
+        position = np.zeros((HELD_RUNS, HELD_LENGTH, 3))
+        position[..., 2] = gauss_markov(generator, (HELD_RUNS, HELD_LENGTH), 1.0, tau_s)
+        extracted = sbas.error_extraction(times, position, np.zeros(3), risk_v=HELD_RISK)
+        error, bound = np.abs(extracted.ee_position_enu_m[..., 2]), extracted.ee_noise_v_m
+        shares = np.mean((error > bound)[:, HELD_LENGTH // 3 :], axis=1)
+        mean, standard_error = float(shares.mean()), float(shares.std(ddof=1) / np.sqrt(HELD_RUNS))
+        again = abs(mean - stated) <= 4.0 * standard_error + half_digit
+        found.append(
+            HeldRisk(
+                tau_s=tau_s,
+                risk=HELD_RISK,
+                stated=stated,
+                found=mean,
+                standard_error=standard_error,
+                verdict="reproducible" if again else "not reproducible",
+            )
+        )
+    return found
+
+
+def gauss_markov(generator: np.random.Generator, shape: tuple[int, int], sigma_m: float, tau_s: float) -> Floats:
     """First-order errors at 1 Hz, a row a run."""
-    memory = np.exp(-1.0 / TAU_S)
-    error = np.asarray(SIGMA_M * generator.standard_normal(shape))
+    memory = np.exp(-1.0 / tau_s)
+    error = np.asarray(sigma_m * generator.standard_normal(shape))
     error[:, 1:] *= np.sqrt(1.0 - memory * memory)
     for i in range(1, shape[1]):
         error[:, i] += memory * error[:, i - 1]

@@ -93,6 +93,20 @@ class FaultEntry(Record):
     verdict: Verdict
 
 
+class HeldRisk(Record):
+    """Share of samples beyond the noise bound when the error is Gauss-Markov: what becomes of a stated risk."""
+
+    tau_s: float
+    risk: float
+    """Stated."""
+    stated: float
+    """As computed before, by a semi-analytic way."""
+    found: float
+    """Of corrected errors, drawn."""
+    standard_error: float
+    verdict: Verdict
+
+
 class Claim(Record):
     """One claim of the paper and what became of it."""
 
@@ -122,6 +136,7 @@ class Study(Record):
     claims: list[Claim]
     faults: list[FaultEntry]
     n_fault_runs: int
+    held: list[HeldRisk]
     words: list[str]
 
     def table(self) -> RenderableType:

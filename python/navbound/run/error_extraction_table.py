@@ -26,7 +26,7 @@ def render(study: Study) -> RenderableType:
             f"{b.from_dop_m_max:.1f} m; exact median {b.exact_m_median:.1f} m, at most {b.exact_m_max:.1f} m and "
             f"{b.worst_ratio:.3f} times mu sqrt(N) VDOP."
         )
-    return Group(*parts, _faults(study), *study.words)
+    return Group(*parts, _faults(study), _held(study), *study.words)
 
 
 def _titled(study: Study, title: str, *headings: str) -> Table:
@@ -85,6 +85,14 @@ def _faults(study: Study) -> Table:
     table = _titled(study, title, "fault", "quantity", "stated before", "found", "verdict")
     for f in study.faults:
         table.add_row(f.fault, escape(f.quantity), "never" if f.stated is None else f"{f.stated:g}", _spread(f.found), f.verdict)
+    return table
+
+
+def _held(study: Study) -> Table:
+    title = f"Share of Gauss-Markov errors beyond the noise bound (stated risk {study.held[0].risk:g})"
+    table = _titled(study, title, "tau [s]", "stated before", "found", "standard error", "verdict")
+    for h in study.held:
+        table.add_row(f"{h.tau_s:g}", f"{h.stated:.2g}", f"{h.found:.2g}", f"{h.standard_error:.1g}", h.verdict)
     return table
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from navbound import sbas
 from navbound.errors import InputError
 from navbound.run.error_extraction_day import WINDOW, Day, correlations, find, load, recorded_bias, stage
-from navbound.run.error_extraction_faults import SIGMA_VELOCITY_MPS, inject, overshoot_m
+from navbound.run.error_extraction_faults import SIGMA_VELOCITY_MPS, held_risks, inject, overshoot_m
 from navbound.run.error_extraction_records import Availability, Cause, Claim, Correlation, FaultEntry, Stage, Study
 
 if TYPE_CHECKING:
@@ -120,6 +120,7 @@ def run(files: Sequence[str | Path] = (), *, seed: int = 2012, velocity_runs: in
         claims=_claims(stages, computed.share_higher, remembered, faults),
         faults=faults,
         n_fault_runs=fault_runs,
+        held=held_risks(seed=seed),
         words=_words(computed, split, velocity_runs),
     )
 
@@ -129,8 +130,8 @@ def _words(computed: _Computed, split: list[Cause], velocity_runs: int) -> list[
     (vpe_low, vpe_high), (apv_low, apv_high), (cat_low, cat_high) = computed.vpe95_m, computed.apv_ii, computed.cat_i_12
     return [
         "The EE bound is experimental, not integrity; it may not alert.",
-        f"Dropping the variances that the service broadcasts adds {100 * dropped.apv_i:.1f} points of APV-I and {100 * dropped.apv_ii:.1f} of "
-        "APV-II; the filter adds nothing, because the service's levels do not see it.",
+        f"Dropping the variances that the service broadcasts adds {100 * dropped.apv_i:.1f} points of APV-I and {100 * dropped.apv_ii:.1f} "
+        "of APV-II; the filter adds nothing, because the service's levels do not see it.",
         f"With a velocity without noise the corrected errors (95 %) are {perfect.hpe95_m:.2f} m and {perfect.vpe95_m:.2f} m. Over "
         f"{velocity_runs} draws of its noise the vertical one is {vpe_low:.2f} to {vpe_high:.2f} m, and the EE bound (sum) gives APV-II "
         f"{apv_low:.1%} to {apv_high:.1%}, CAT-I {cat_low:.1%} to {cat_high:.1%}.",
