@@ -118,11 +118,12 @@ def analyze(
 
 @app.command()
 def study(
-    name: Annotated[str, typer.Argument(help="tse-coverage")],
+    name: Annotated[str, typer.Argument(help="error-extraction, tse-coverage")],
+    files: Annotated[list[Path] | None, typer.Argument(help="Recorded data, for a study that needs some.")] = None,
     json: Json = False,
 ) -> None:
     """Repeat a published evaluation and say which of its numbers come out."""
-    result = navbound.study(name)
+    result = navbound.study(name, files or [])
     if json:
         sys.stdout.write(result.model_dump_json(indent=1) + "\n")
     else:

@@ -15,7 +15,9 @@ from navbound import _core
 from navbound._arrays import flatten, unflatten
 from navbound._error_extraction import ErrorExtraction, error_extraction
 from navbound._extraction_gains import (
+    ALPHA,
     EXTRACTION_LABEL,
+    MU_MOST_M,
     ExtractionBeta,
     ExtractionBias,
     ExtractionFactor,
@@ -36,7 +38,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
+    "ALPHA",
     "EXTRACTION_LABEL",
+    "MU_MOST_M",
     "Decoded",
     "ErrorExtraction",
     "ExtractionBeta",

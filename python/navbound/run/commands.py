@@ -101,17 +101,26 @@ def analyze(
     return _finish(judge(material, settings, command), out)
 
 
-def study(name: str) -> Study:
+def study(name: str, files: Sequence[str | Path] = ()) -> Study:
     """Run a study by its name.
+
+    Parameters
+    ----------
+    name : str
+        Which.
+    files : sequence of str or Path
+        Recorded data, for a study that needs some.
 
     Raises
     ------
     InputError
-        No such study; the message lists those that exist.
+        No such study; the message lists those that exist. Files for a study that needs none.
+    FormatError
+        A file that is not there or cannot be read.
     """
     if name not in STUDIES:
         raise InputError("study", name, domain=", ".join(STUDIES))
-    return STUDIES[name]()
+    return STUDIES[name](files)
 
 
 def _finish(run: Run, out: str | Path | None) -> Run:

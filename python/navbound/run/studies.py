@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-from navbound.run import study_tse_coverage
+from navbound.errors import InputError
+from navbound.run import study_error_extraction, study_tse_coverage
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
 
     from rich.console import RenderableType
 
@@ -24,5 +26,14 @@ class Study(Protocol):
         ...
 
 
-STUDIES: dict[str, Callable[[], Study]] = {"tse-coverage": study_tse_coverage.run}
-"""Every study by its command-line name."""
+def _tse_coverage(files: Sequence[str | Path]) -> Study:
+    if files:
+        raise InputError("files", len(files), "1", "{0}: this study makes its own data")
+    return study_tse_coverage.run()
+
+
+STUDIES: dict[str, Callable[[Sequence[str | Path]], Study]] = {
+    "error-extraction": study_error_extraction.run,
+    "tse-coverage": _tse_coverage,
+}
+"""Every study by its command-line name; each is given the files of the command line."""
