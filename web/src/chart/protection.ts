@@ -36,7 +36,7 @@ export function protection(host: HTMLElement, scene: Scene, performance: Perform
     const mine = axis === "h" ? chosen.level.hal_m : chosen.level.val_m;
     for (const [value, ids] of limits) lines.push({ key: `${axis}al_${value}`, label: `${limit} of ${ids.join(", ")}`, endLabel: `${limit} ${wholeMetres(value)}`, values: new Float64Array(table.n).fill(value), colour: "limit", width: 1.5, limit: true, hidden: value !== mine, about: `${name} alert limit of ${ids.join(", ")}` });
     const width = duration(performance.series.width_ns / 1e9);
-    const note = `${one ? "Every epoch." : `The largest${performance.truth_known ? " error" : ""} and the span of the protection level in each ${width}: no epoch is lost.`}${performance.truth_known ? "" : " No truth: the error is unknown."}${mine === null ? ` ${chosen.level.id} asks nothing of the vertical.` : ""}`;
+    const note = `${one ? "Every epoch." : `${performance.truth_known ? "The largest error and the" : "The"} span of the protection level in each ${width}: no epoch is lost.`}${performance.truth_known ? "" : " No truth: the error is unknown."}${mine === null ? ` ${chosen.level.id} asks nothing of the vertical.` : ""}`;
     return strip(host, scene, { id: `protection-${axis}`, title: `${name} error and protection level${mark}`, note, unit: "m", lines, scales: scalesFor(high, mine), floor: FLOOR_M, show: (v) => metres(v), height: 250 });
 }
 
@@ -86,7 +86,10 @@ function ribbons(u: uPlot, scene: Scene, ids: string[]): void {
     const { table } = scene;
     const x = u.data[0]!;
     const hues = new Map(Object.entries(CAUSES).map(([cause, { hue }]) => [cause, colour(hue)]));
+    const names: (() => void)[] = [];
     ctx.save();
+    ctx.textBaseline = "middle";
+    ctx.textAlign = "left";
     ctx.font = `${11 * devicePixelRatio}px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
     ids.forEach((id, row) => {
         const bottom = u.valToPos(ids.length - 1 - row, "y", true) - 2 * devicePixelRatio;
@@ -94,10 +97,16 @@ function ribbons(u: uPlot, scene: Scene, ids: string[]): void {
         const lost = table.column(unavailableOf(id))!;
         ctx.fillStyle = colour("rule");
         ctx.fillRect(bbox.left, bottom, bbox.width, devicePixelRatio);
-        ctx.textBaseline = "middle";
-        ctx.textAlign = "left";
-        ctx.fillStyle = colour("muted");
-        ctx.fillText(id, bbox.left + bbox.width + 12 * devicePixelRatio, bottom - room / 2);
+        // Beside the row where there is room, else in it, over what is drawn there.
+        const wide = u.width - (bbox.left + bbox.width) / devicePixelRatio > 100;
+        names.push(() => {
+            ctx.lineWidth = 3 * devicePixelRatio;
+            ctx.strokeStyle = colour("ground");
+            ctx.fillStyle = colour(wide ? "muted" : "ink");
+            const [left, middle] = [wide ? bbox.left + bbox.width + 12 * devicePixelRatio : bbox.left + 4 * devicePixelRatio, bottom - room / 2];
+            ctx.strokeText(id, left, middle);
+            ctx.fillText(id, left, middle);
+        });
         for (let i = 0; i < table.n; i++) {
             if (!(lost[i]! > 0)) continue;
             const left = u.valToPos(x[i]!, "x", true);
@@ -114,5 +123,6 @@ function ribbons(u: uPlot, scene: Scene, ids: string[]): void {
             }
         }
     });
+    names.forEach((name) => name());
     ctx.restore();
 }

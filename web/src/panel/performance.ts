@@ -141,7 +141,7 @@ function headline(record: Performance): HTMLElement {
     const tone = !record.truth_known ? "unknown" : hazards.length > 0 ? "warning" : record.n_mi_epochs > 0 ? "caution" : "inside";
     const list = hazards.map((r) => `${r.level.id}: ${count(r.n_hazard_epochs)} epochs, ${count(r.n_hazard_over_tta)} of ${count(r.n_hazard_events)} runs longer than the time to alert`).join("; ");
     const words = !record.truth_known ? "Integrity unknown: no truth to compare with." : hazards.length > 0 ? `■ Hazardously misleading information. ${list}.`
-        : record.n_mi_epochs > 0 ? `▲ No hazard, but ${count(record.n_mi_epochs)} epochs of misleading information.` : "No misleading information.";
+        : record.n_mi_epochs > 0 ? `▲ No hazard, but ${count(record.n_mi_epochs)} epochs of misleading information.` : `No misleading information in ${count(record.n_solution)} epochs with a solution.`;
     const said = el("p", { class: "performance-words", "data-tone": tone }, words);
     said.dataset.key = "n_mi_epochs";
     said.dataset.value = String(record.n_mi_epochs);

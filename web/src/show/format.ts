@@ -80,7 +80,8 @@ export function share(value: number | null | undefined): string {
     if (percent === 0 || percent === 100) return `${percent} %`;
     for (let digits = 2; digits < 7; digits++) {
         const text = percent.toFixed(digits);
-        if (Number(text) !== 100 && Number(text) !== 0) return `${text} %`;
+        // What is missing to 0 or 100 % is what matters: it is shown to a twentieth of itself.
+        if (Math.abs(Number(text) - percent) <= Math.min(percent, 100 - percent) / 20) return `${text} %`;
     }
     return percent > 50 ? "> 99.999999 %" : "< 0.000001 %";
 }
