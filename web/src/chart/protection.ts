@@ -56,6 +56,11 @@ const CAUSES: Record<string, { hue: Colour; words: string }> = {
     "no solution": { hue: "m4", words: "no solution" },
     "no epoch": { hue: "muted", words: "no epoch" },
 };
+/** A cause as said; one that is not listed is said as it is written. */
+export function causeWords(cause: string): string {
+    return CAUSES[cause]?.words ?? cause;
+}
+
 const ROW_PX = 22;
 /** A bucket with one unavailable epoch of thousands is still seen. */
 const LEAST = 0.3;
@@ -69,7 +74,7 @@ export function causes(host: HTMLElement, scene: Scene, performance: Performance
     const note = `Coloured where a level was not available, by its most frequent cause${one ? "" : `; height by the share of the ${duration(performance.series.width_ns / 1e9)} that was lost`}.`;
     const end = strip(host, scene, {
         id: "causes", title: "Loss of availability and its cause", note, unit: "", scales: ["data"], range: [0, ids.length], height: 56 + ROW_PX * ids.length, draw, lines, noPaths: true,
-        show: (v) => (v === 0 ? "available" : Number.isFinite(v) ? `${share(v)} lost` : NONE), words: ids.map((id) => ({ key: causeOf(id), label: id, text: (cause) => (cause === null ? NONE : CAUSES[cause]?.words ?? cause) })), ySplits: () => [], yTick: () => "",
+        show: (v) => (v === 0 ? "available" : Number.isFinite(v) ? `${share(v)} lost` : NONE), words: ids.map((id) => ({ key: causeOf(id), label: id, text: (cause) => (cause === null ? NONE : causeWords(cause)) })), ySplits: () => [], yTick: () => "",
     });
     host.lastElementChild!.insertBefore(legend(performance), host.lastElementChild!.lastElementChild);
     return end;
@@ -77,7 +82,7 @@ export function causes(host: HTMLElement, scene: Scene, performance: Performance
 
 function legend(performance: Performance): HTMLElement {
     const present = new Set(Object.values(performance.series.cause).flat().filter((c) => c !== ""));
-    const entry = (cause: string): HTMLElement => el("span", { class: "key" }, svg("svg", { width: 14, height: 10, "aria-hidden": "true" }, svg("rect", { width: 14, height: 10, fill: `var(--${(CAUSES[cause] ?? CAUSES["no epoch"]!).hue})` })), CAUSES[cause]?.words ?? cause);
+    const entry = (cause: string): HTMLElement => el("span", { class: "key" }, svg("svg", { width: 14, height: 10, "aria-hidden": "true" }, svg("rect", { width: 14, height: 10, fill: `var(--${(CAUSES[cause] ?? CAUSES["no epoch"]!).hue})` })), causeWords(cause));
     return el("p", { class: "map-legend note", id: "cause-legend" }, ...(present.size === 0 ? ["Every level was available at every expected epoch."] : [...present].sort().map(entry)));
 }
 
@@ -111,7 +116,8 @@ function ribbons(u: uPlot, scene: Scene, ids: string[]): void {
             if (!(lost[i]! > 0)) continue;
             const left = u.valToPos(x[i]!, "x", true);
             const right = i + 1 < x.length ? u.valToPos(x[i + 1]!, "x", true) : left;
-            const [from, to] = [Math.max(left, bbox.left), Math.min(Math.max(right, left + 1.5 * devicePixelRatio), bbox.left + bbox.width)];
+            // On whole pixels, so that neighbours leave no seam.
+            const [from, to] = [Math.round(Math.max(left, bbox.left)), Math.round(Math.min(Math.max(right, left + 1.5 * devicePixelRatio), bbox.left + bbox.width))];
             if (to <= from) continue;
             const height = Math.max(LEAST, lost[i]!) * room;
             const cause = table.word(causeOf(id), i) ?? "";

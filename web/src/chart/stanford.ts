@@ -126,7 +126,7 @@ function overlay(options: StanfordOptions, frame: Frame): SVGElement {
     const a = limit_m / frame.shown_m;
     const limits = !frame.limitShown ? [] : [
         line("stanford-limit", x(a), y(0), x(a), y(1) - EDGE), line("stanford-limit", x(0), y(a), x(1) + EDGE, y(a)),
-        text(x(0) + 5, y(a) + (frame.roomBeyond ? -5 : 15), `${axis.limit} ${wholeMetres(limit_m)}`, "start", "limit-name"),
+        text(x(a) - 7, y(a) + (frame.roomBeyond ? -6 : 15), `${axis.limit} ${wholeMetres(limit_m)}`, "end", "limit-name"),
     ];
     const mark = options.experimental === "" ? "" : ` · ${options.experimental}`;
     const middle = TOP + EDGE + SIDE / 2;

@@ -98,8 +98,9 @@ export function date(utc_s: number): string {
 
 export function duration(seconds: number | null | undefined): string {
     if (seconds == null || !Number.isFinite(seconds)) return NONE;
-    if (seconds < 120) return `${plain(seconds, seconds % 1 === 0 ? 0 : 1)} s`;
     const whole = Math.round(seconds);
+    // Periods found by division miss the whole second by a rounding.
+    if (seconds < 120) return `${plain(seconds, Math.abs(seconds - whole) < 1e-6 ? 0 : 1)} s`;
     const h = Math.floor(whole / 3600);
     const m = Math.floor((whole % 3600) / 60);
     return h > 0 ? `${h} h ${String(m).padStart(2, "0")} min` : `${m} min ${String(whole % 60).padStart(2, "0")} s`;
