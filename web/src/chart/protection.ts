@@ -102,14 +102,15 @@ function ribbons(u: uPlot, scene: Scene, ids: string[]): void {
         const lost = table.column(unavailableOf(id))!;
         ctx.fillStyle = colour("rule");
         ctx.fillRect(bbox.left, bottom, bbox.width, devicePixelRatio);
-        // Beside the row where there is room, else in it, over what is drawn there.
+        // Beside the row where there is room, else in it, on a ground of its own.
         const wide = u.width - (bbox.left + bbox.width) / devicePixelRatio > 100;
         names.push(() => {
-            ctx.lineWidth = 3 * devicePixelRatio;
-            ctx.strokeStyle = colour("ground");
-            ctx.fillStyle = colour(wide ? "muted" : "ink");
-            const [left, middle] = [wide ? bbox.left + bbox.width + 12 * devicePixelRatio : bbox.left + 4 * devicePixelRatio, bottom - room / 2];
-            ctx.strokeText(id, left, middle);
+            const [left, middle] = [wide ? bbox.left + bbox.width + 12 * devicePixelRatio : bbox.left + 3 * devicePixelRatio, bottom - room / 2];
+            if (!wide) {
+                ctx.fillStyle = colour("ground");
+                ctx.fillRect(bbox.left, bottom - room, ctx.measureText(id).width + 6 * devicePixelRatio, room);
+            }
+            ctx.fillStyle = colour("muted");
             ctx.fillText(id, left, middle);
         });
         for (let i = 0; i < table.n; i++) {
