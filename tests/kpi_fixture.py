@@ -89,6 +89,10 @@ def _axis(axis: Literal["h", "v"], error: Floats, level: Floats) -> AxisResult:
     )
 
 
+def _without_truth(axis: AxisResult) -> AxisResult:
+    return axis.model_copy(update={"error_m": None, "safety_index": None, "n_mi": 0, "n_potential_mi": 0})
+
+
 def _counts(axis: Literal["h", "v"], error: Floats, level: Floats, limit: float) -> StanfordCounts:
     known = np.isfinite(level)
     e, p = error[known], level[known]
@@ -285,7 +289,8 @@ def performance(*, hazard: bool = True, truth: bool = True, experimental: str = 
         series = series.model_copy(update={"hpe_max_m": [None] * len(series.start_ns), "vpe_max_m": [None] * len(series.start_ns)})
     axes = [_axis("h", e["hpe"], e["hpl"]), _axis("v", e["vpe"], e["vpl"])]
     if not truth:
-        axes = [a.model_copy(update={"error_m": None, "safety_index": None, "n_mi": 0, "n_potential_mi": 0}) for a in axes]
+        axes = [_without_truth(a) for a in axes]
+        levels = [r.model_copy(update={"available": [_without_truth(a) for a in r.available]}) for r in levels]
     return Performance(
         title="fixture receiver, not a result",
         truth_known=truth,

@@ -24,6 +24,17 @@ import { verdict } from "./panel/verdict.ts";
 import { choice, el } from "./show/dom.ts";
 import { choose, themeStore, type Choice } from "./show/theme.ts";
 
+/** The parts of the page that show one track, in order, and the columns of which one is needed to say anything. */
+const PARTS: { component: Component; host: "upper" | "charts"; needs: string[] }[] = [
+    { component: map, host: "upper", needs: ["est_lat_rad"] },
+    { component: performance, host: "upper", needs: ["rnp_m", "fte_m", "fte_v_m"] },
+    { component: lateral, host: "charts", needs: ["fte_m"] },
+    { component: vertical, host: "charts", needs: ["fte_v_m"] },
+    { component: anp, host: "charts", needs: ["anp_circle_m", "anp_sphere_m"] },
+    { component: exceedance, host: "charts", needs: ["p_exceed_2rnp"] },
+    { component: states, host: "charts", needs: ["p_state_1"] },
+];
+
 class Page {
     private readonly theme = themeStore();
     private readonly axis = new Store<AxisName>("time");
@@ -59,7 +70,8 @@ class Page {
         root.append(tables, methods(payload), smallPrint(payload), this.bar);
         this.listTracks();
         const first = payload.tracks[0];
-        if (first === undefined) this.charts.append(el("p", { class: "note" }, "No epochs to draw."));
+        if (first === undefined && this.series !== null) this.charts.replaceChildren();
+        else if (first === undefined) this.charts.append(el("p", { class: "note" }, "No epochs to draw."));
         else await this.select(summary.verdict.worst_accuracy?.track ?? first.track);
         root.dataset.ready = "true";
     }
@@ -73,11 +85,9 @@ class Page {
         const now = scene(payload, table, this.theme, this.axis, this.grounds);
         this.current = now;
         this.selector.value = head.track;
-        const place = (component: Component, host: HTMLElement): (() => void) => component(host, now);
-        this.ends = [
-            place(map, this.upper), place(performance, this.upper), place(lateral, this.charts), place(vertical, this.charts), place(anp, this.charts),
-            place(exceedance, this.charts), place(states, this.charts), place(cursorBar, this.bar),
-        ];
+        // A performance report is not asked for a path; without one its page does not list what a path would give.
+        const wanted = PARTS.filter((part) => this.series === null || part.needs.some((name) => table.has(name)));
+        this.ends = [...wanted.map(({ component, host }) => component(this[host], now)), cursorBar(this.bar, now)];
         const worst = payload.summary.verdict.worst_accuracy;
         now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));
         if (this.series !== null) this.ends.push(linkByTime({ table, cursor: now.cursor, width_s: 0 }, this.series));

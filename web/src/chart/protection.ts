@@ -36,7 +36,7 @@ export function protection(host: HTMLElement, scene: Scene, performance: Perform
     const mine = axis === "h" ? chosen.level.hal_m : chosen.level.val_m;
     for (const [value, ids] of limits) lines.push({ key: `${axis}al_${value}`, label: `${limit} of ${ids.join(", ")}`, endLabel: `${limit} ${wholeMetres(value)}`, values: new Float64Array(table.n).fill(value), colour: "limit", width: 1.5, limit: true, hidden: value !== mine, about: `${name} alert limit of ${ids.join(", ")}` });
     const width = duration(performance.series.width_ns / 1e9);
-    const note = `${one ? "Every epoch." : `The largest${performance.truth_known ? " error" : ""} and the span of the protection level in each ${width}: no epoch is lost.`}${performance.truth_known ? "" : " No truth: the error is unknown."}${mine === null ? ` ${chosen.level.id} asks nothing of the vertical.` : ""}`;
+    const note = `${one ? "Every epoch." : `${performance.truth_known ? "The largest error and the" : "The"} span of the protection level in each ${width}: no epoch is lost.`}${performance.truth_known ? "" : " No truth: the error is unknown."}${mine === null ? ` ${chosen.level.id} asks nothing of the vertical.` : ""}`;
     return strip(host, scene, { id: `protection-${axis}`, title: `${name} error and protection level${mark}`, note, unit: "m", lines, scales: scalesFor(high, mine), floor: FLOOR_M, show: (v) => metres(v), height: 250 });
 }
 
@@ -56,6 +56,11 @@ const CAUSES: Record<string, { hue: Colour; words: string }> = {
     "no solution": { hue: "m4", words: "no solution" },
     "no epoch": { hue: "muted", words: "no epoch" },
 };
+/** A cause as said; one that is not listed is said as it is written. */
+export function causeWords(cause: string): string {
+    return CAUSES[cause]?.words ?? cause;
+}
+
 const ROW_PX = 22;
 /** A bucket with one unavailable epoch of thousands is still seen. */
 const LEAST = 0.3;
@@ -69,7 +74,7 @@ export function causes(host: HTMLElement, scene: Scene, performance: Performance
     const note = `Coloured where a level was not available, by its most frequent cause${one ? "" : `; height by the share of the ${duration(performance.series.width_ns / 1e9)} that was lost`}.`;
     const end = strip(host, scene, {
         id: "causes", title: "Loss of availability and its cause", note, unit: "", scales: ["data"], range: [0, ids.length], height: 56 + ROW_PX * ids.length, draw, lines, noPaths: true,
-        show: (v) => (v === 0 ? "available" : Number.isFinite(v) ? `${share(v)} lost` : NONE), words: ids.map((id) => ({ key: causeOf(id), label: id, text: (cause) => (cause === null ? NONE : CAUSES[cause]?.words ?? cause) })), ySplits: () => [], yTick: () => "",
+        show: (v) => (v === 0 ? "available" : Number.isFinite(v) ? `${share(v)} lost` : NONE), words: ids.map((id) => ({ key: causeOf(id), label: id, text: (cause) => (cause === null ? NONE : causeWords(cause)) })), ySplits: () => [], yTick: () => "",
     });
     host.lastElementChild!.insertBefore(legend(performance), host.lastElementChild!.lastElementChild);
     return end;
@@ -77,7 +82,7 @@ export function causes(host: HTMLElement, scene: Scene, performance: Performance
 
 function legend(performance: Performance): HTMLElement {
     const present = new Set(Object.values(performance.series.cause).flat().filter((c) => c !== ""));
-    const entry = (cause: string): HTMLElement => el("span", { class: "key" }, svg("svg", { width: 14, height: 10, "aria-hidden": "true" }, svg("rect", { width: 14, height: 10, fill: `var(--${(CAUSES[cause] ?? CAUSES["no epoch"]!).hue})` })), CAUSES[cause]?.words ?? cause);
+    const entry = (cause: string): HTMLElement => el("span", { class: "key" }, svg("svg", { width: 14, height: 10, "aria-hidden": "true" }, svg("rect", { width: 14, height: 10, fill: `var(--${(CAUSES[cause] ?? CAUSES["no epoch"]!).hue})` })), causeWords(cause));
     return el("p", { class: "map-legend note", id: "cause-legend" }, ...(present.size === 0 ? ["Every level was available at every expected epoch."] : [...present].sort().map(entry)));
 }
 
@@ -86,7 +91,10 @@ function ribbons(u: uPlot, scene: Scene, ids: string[]): void {
     const { table } = scene;
     const x = u.data[0]!;
     const hues = new Map(Object.entries(CAUSES).map(([cause, { hue }]) => [cause, colour(hue)]));
+    const names: (() => void)[] = [];
     ctx.save();
+    ctx.textBaseline = "middle";
+    ctx.textAlign = "left";
     ctx.font = `${11 * devicePixelRatio}px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
     ids.forEach((id, row) => {
         const bottom = u.valToPos(ids.length - 1 - row, "y", true) - 2 * devicePixelRatio;
@@ -94,15 +102,23 @@ function ribbons(u: uPlot, scene: Scene, ids: string[]): void {
         const lost = table.column(unavailableOf(id))!;
         ctx.fillStyle = colour("rule");
         ctx.fillRect(bbox.left, bottom, bbox.width, devicePixelRatio);
-        ctx.textBaseline = "middle";
-        ctx.textAlign = "left";
-        ctx.fillStyle = colour("muted");
-        ctx.fillText(id, bbox.left + bbox.width + 12 * devicePixelRatio, bottom - room / 2);
+        // Beside the row where there is room, else in it, on a ground of its own.
+        const wide = u.width - (bbox.left + bbox.width) / devicePixelRatio > 100;
+        names.push(() => {
+            const [left, middle] = [wide ? bbox.left + bbox.width + 12 * devicePixelRatio : bbox.left + 3 * devicePixelRatio, bottom - room / 2];
+            if (!wide) {
+                ctx.fillStyle = colour("ground");
+                ctx.fillRect(bbox.left, bottom - room, ctx.measureText(id).width + 6 * devicePixelRatio, room);
+            }
+            ctx.fillStyle = colour("muted");
+            ctx.fillText(id, left, middle);
+        });
         for (let i = 0; i < table.n; i++) {
             if (!(lost[i]! > 0)) continue;
             const left = u.valToPos(x[i]!, "x", true);
             const right = i + 1 < x.length ? u.valToPos(x[i + 1]!, "x", true) : left;
-            const [from, to] = [Math.max(left, bbox.left), Math.min(Math.max(right, left + 1.5 * devicePixelRatio), bbox.left + bbox.width)];
+            // On whole pixels, so that neighbours leave no seam.
+            const [from, to] = [Math.round(Math.max(left, bbox.left)), Math.round(Math.min(Math.max(right, left + 1.5 * devicePixelRatio), bbox.left + bbox.width))];
             if (to <= from) continue;
             const height = Math.max(LEAST, lost[i]!) * room;
             const cause = table.word(causeOf(id), i) ?? "";
@@ -114,5 +130,6 @@ function ribbons(u: uPlot, scene: Scene, ids: string[]): void {
             }
         }
     });
+    names.forEach((name) => name());
     ctx.restore();
 }

@@ -25,22 +25,28 @@ export const REGIONS: Region[] = [
 export interface Frame {
     limit_m: number;
     shown_m: number;
-    /** The alert limit lies within what is shown, so that all five regions do. */
+    /** The alert limit is on the axes, so that all five regions are drawn. */
     limitShown: boolean;
+    /** They have room for their names too. */
+    roomBeyond: boolean;
 }
 
 const STEPS_M = [5, 10, 15, 20, 25, 30, 40, 50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000];
 /** How far beyond the limit the axes go, so that what lies there has room. */
 const BEYOND = 1.3;
+/** A limit nearer to the end leaves no room for names beyond it. */
+const LEAST_ROOM = 0.84;
 
 export function frameOf(bins: StanfordBins, limit_m: number): Frame {
-    if (limit_m * 1.02 >= bins.limit_m) return { limit_m, shown_m: bins.limit_m, limitShown: false };
+    // A limit at the very end of the histogram parts the band at the edge from the rest.
+    if (limit_m >= bins.limit_m) return { limit_m, shown_m: bins.limit_m, limitShown: limit_m === bins.limit_m, roomBeyond: false };
     let largest = 0;
     const beyond = Math.round(bins.limit_m / bins.bin_m);
     for (const list of [bins.error_bin, bins.level_bin]) for (const k of list) if (k < beyond && k + 1 > largest) largest = k + 1;
     const wanted = Math.max(BEYOND * limit_m, largest * bins.bin_m);
     const step = STEPS_M.find((s) => s >= wanted) ?? bins.limit_m;
-    return { limit_m, shown_m: Math.min(bins.limit_m, step), limitShown: true };
+    const shown_m = Math.min(bins.limit_m, step);
+    return { limit_m, shown_m, limitShown: true, roomBeyond: limit_m <= LEAST_ROOM * shown_m };
 }
 
 /** Region of a bin by its indices. On the diagonal a bin may hold both sides: it is taken for the better one, the counts are exact. */
@@ -81,7 +87,7 @@ const HALF_NAME = { x: 0.1, y: 0.06 };
 
 /** Where a region's name stands: of the places that it may take, the one that covers the fewest bins. Null where the region is not shown. */
 export function nameAt(id: RegionId, frame: Frame, bins: StanfordBins): Place | null {
-    if (!frame.limitShown && id !== "nominal" && id !== "mi") return null;
+    if (!frame.roomBeyond && id !== "nominal" && id !== "mi") return null;
     const a = frame.limitShown ? frame.limit_m / frame.shown_m : 1;
     const middle = (x: number, y: number): Place => ({ x, y, anchor: "middle" });
     const places: Record<RegionId, Place[]> = {
@@ -89,7 +95,7 @@ export function nameAt(id: RegionId, frame: Frame, bins: StanfordBins): Place | 
         mi: [middle(0.68 * a, 0.26 * a), middle(0.86 * a, 0.12 * a), middle(0.8 * a, 0.5 * a), middle(0.45 * a, 0.12 * a)],
         hmi: [0.55, 0.15, 0.88, 0.35, 0.72].map((f) => middle((1 + a) / 2, f * a)),
         unavailable: [0.42, 0.65, 0.2].map((f) => middle(f * a, (1 + a) / 2)),
-        unavailable_mi: [{ x: 0.985, y: a + 0.17 * (1 - a), anchor: "end" }],
+        unavailable_mi: [{ x: 0.985, y: a + 0.27 * (1 - a), anchor: "end" }],
     };
     const covered = (p: Place): number => {
         let n = 0;

@@ -114,8 +114,9 @@ function overlay(options: StanfordOptions, frame: Frame): SVGElement {
     const x = (s: number): number => LEFT + s * SIDE;
     const y = (s: number): number => TOP + EDGE + (1 - s) * SIDE;
     const line = (kind: string, x1: number, y1: number, x2: number, y2: number): SVGElement => svg("line", { class: kind, x1, y1, x2, y2 });
+    const drawn = REGIONS.filter((r) => frame.limitShown || r.id === "nominal" || r.id === "mi");
     const named = REGIONS.map((region) => ({ region, place: nameAt(region.id, frame, bins) })).filter((n): n is { region: Region; place: Place } => n.place !== null);
-    const shades = named.map((n) => n.region).map((region) => svg("polygon", {
+    const shades = drawn.map((region) => svg("polygon", {
         class: `region region-${region.id}`, "data-some": counts !== null && region.count(counts) > 0, points: outline(region.id, frame).map(([px, py]) => `${x(px)},${y(py)}`).join(" "),
     }, svg("title", {}, region.words)));
     const ticks = ticksOf(frame).flatMap((t) => {
@@ -125,7 +126,7 @@ function overlay(options: StanfordOptions, frame: Frame): SVGElement {
     const a = limit_m / frame.shown_m;
     const limits = !frame.limitShown ? [] : [
         line("stanford-limit", x(a), y(0), x(a), y(1) - EDGE), line("stanford-limit", x(0), y(a), x(1) + EDGE, y(a)),
-        text(x(0) + 5, y(a) - 5, `${axis.limit} ${wholeMetres(limit_m)}`, "start", "limit-name"),
+        text(x(a) - 7, y(a) + (frame.roomBeyond ? -6 : 15), `${axis.limit} ${wholeMetres(limit_m)}`, "end", "limit-name"),
     ];
     const mark = options.experimental === "" ? "" : ` · ${options.experimental}`;
     const middle = TOP + EDGE + SIDE / 2;
@@ -146,7 +147,7 @@ function regionName(region: Region, place: Place, counts: StanfordCounts | null,
     // The small corner has room for two lines only.
     const lines = region.id === "unavailable_mi" ? [name, `${count(n)} · ${share(n / counts.n)}`] : [name, count(n), share(n / counts.n)];
     return lines.map((words, i) => {
-        const line = text(x, y + (i - (lines.length - 2) / 2) * LINE, words, place.anchor, kind);
+        const line = text(x, y + 4 + (i - (lines.length - 1) / 2) * LINE, words, place.anchor, kind);
         if (i === 1) Object.assign(line.dataset, { key: `n_${region.id}`, value: String(n) });
         return line;
     });
@@ -161,11 +162,11 @@ function ticksOf(frame: Frame): number[] {
     return Array.from({ length: Math.floor(frame.shown_m / step + 1e-9) + 1 }, (_, i) => i * step);
 }
 
-/** What the band at the edge holds; regions that lie there unseen are named here instead. */
+/** What the band at the edge holds; regions without room for a name are named here instead. */
 function edgeWords(frame: Frame, limit: string, counts: StanfordCounts | null): HTMLElement {
     const words = el("p", { class: "note" }, `The band at the edge holds what lies beyond ${plain(frame.shown_m, 0)} m.`);
-    if (frame.limitShown) return words;
-    words.append(` ${limit} ${wholeMetres(frame.limit_m)} lies beyond the axes. `);
+    if (frame.roomBeyond) return words;
+    words.append(frame.limitShown ? " There too: " : ` ${limit} ${wholeMetres(frame.limit_m)} lies beyond the axes: `);
     if (counts === null) return words;
     for (const region of REGIONS.filter((r) => r.id !== "nominal" && r.id !== "mi")) {
         const n = region.count(counts);

@@ -89,7 +89,8 @@ export function strip(host: HTMLElement, scene: Scene, options: StripOptions): (
         quiet = true;
         const x = u.data[0]![i];
         const left = x === undefined ? -10 : u.valToPos(x, "x");
-        u.setCursor({ left: left >= 0 && left <= u.over.clientWidth ? left : -10, top: 0 }, false);
+        // The width from the plot's own box: asking the page for it would lay the page out again for every chart.
+        u.setCursor({ left: left >= 0 && left <= u.bbox.width / devicePixelRatio ? left : -10, top: 0 }, false);
         quiet = false;
     };
     const showWindow = (): void => {

@@ -1,6 +1,6 @@
 // The performance report: what happened in words, the indicators of each level, diagrams, series, events, days.
 
-import { causes, protection } from "../chart/protection.ts";
+import { causes, causeWords, protection } from "../chart/protection.ts";
 import { stanford } from "../chart/stanford.ts";
 import { bucketTable, payloadOf } from "../data/buckets.ts";
 import type { Cursor } from "../data/link.ts";
@@ -126,6 +126,7 @@ class Section {
         const [from, to] = [Math.max(0, i - room), Math.min(this.table.n - 1, i + 2 * room)];
         this.window.set(to > from ? { from, to } : null);
         this.at.cursor.set(i);
+        this.charts.querySelector("#protection-h")?.scrollIntoView({ block: "start" });
     }
 }
 
@@ -141,7 +142,7 @@ function headline(record: Performance): HTMLElement {
     const tone = !record.truth_known ? "unknown" : hazards.length > 0 ? "warning" : record.n_mi_epochs > 0 ? "caution" : "inside";
     const list = hazards.map((r) => `${r.level.id}: ${count(r.n_hazard_epochs)} epochs, ${count(r.n_hazard_over_tta)} of ${count(r.n_hazard_events)} runs longer than the time to alert`).join("; ");
     const words = !record.truth_known ? "Integrity unknown: no truth to compare with." : hazards.length > 0 ? `■ Hazardously misleading information. ${list}.`
-        : record.n_mi_epochs > 0 ? `▲ No hazard, but ${count(record.n_mi_epochs)} epochs of misleading information.` : "No misleading information.";
+        : record.n_mi_epochs > 0 ? `▲ No hazard, but ${count(record.n_mi_epochs)} epochs of misleading information.` : `No misleading information in ${count(record.n_solution)} epochs with a solution.`;
     const said = el("p", { class: "performance-words", "data-tone": tone }, words);
     said.dataset.key = "n_mi_epochs";
     said.dataset.value = String(record.n_mi_epochs);
@@ -164,12 +165,12 @@ function eventTable(record: Performance, payload: Payload, go: (e: KpiEvent) => 
     const change = <V>(before: V | null, now: V | null): string => (before === null && now === null ? NONE : `${before ?? NONE} → ${now ?? NONE}`);
     const level = (name: string): string => (record.experimental === "" ? name : `${name}, experimental`);
     const length = (head: string, key: "hpe_max_m" | "hpl_max_m" | "vpe_max_m" | "vpl_max_m"): Column<KpiEvent> => ({ head, key, of: (e) => e[key], show: (e) => metres(e[key]) });
-    const text = (head: string, key: "level" | "cause" | "reason"): Column<KpiEvent> => ({ head, key, words: true, of: (e) => e[key], show: (e) => (e[key] === "" ? NONE : e[key]) });
+    const text = (head: string, key: "level" | "reason"): Column<KpiEvent> => ({ head, key, words: true, of: (e) => e[key], show: (e) => (e[key] === "" ? NONE : e[key]) });
     const columns: Column<KpiEvent>[] = [
         { head: "Onset, UTC", key: "onset_ns", of: (e) => e.onset_ns, show: (e) => at(e.onset_ns) }, text("Level", "level"), { head: "Kind", key: "kind", words: true, of: (e) => e.kind, show: (e) => KINDS[e.kind] },
         { head: "Duration", key: "duration_s", of: (e) => e.duration_s, show: (e) => `${duration(e.duration_s)}${e.clear_ns === null ? ", to the end" : ""}` }, { head: "Epochs", key: "n_epochs", of: (e) => e.n_epochs, show: (e) => count(e.n_epochs) },
         { head: "Over time to alert", key: "over_tta", words: true, of: (e) => (e.over_tta === null ? null : String(e.over_tta)), show: (e) => (e.over_tta === null ? NONE : e.over_tta ? "yes" : "no") },
-        text("Cause", "cause"), text("What the table says", "reason"), length("HPE", "hpe_max_m"), length(level("HPL"), "hpl_max_m"), length("VPE", "vpe_max_m"), length(level("VPL"), "vpl_max_m"),
+        { head: "Cause", key: "cause", words: true, of: (e) => e.cause, show: (e) => (e.cause === "" ? NONE : causeWords(e.cause)) }, text("What the table says", "reason"), length("HPE", "hpe_max_m"), length(level("HPL"), "hpl_max_m"), length("VPE", "vpe_max_m"), length(level("VPL"), "vpl_max_m"),
         { head: "Satellites", key: "n_sv_onset", of: (e) => e.n_sv_onset, show: (e) => change(e.n_sv_before, e.n_sv_onset) }, { head: "Mode", key: "mode_onset", words: true, of: (e) => e.mode_onset, show: (e) => change(e.mode_before, e.mode_onset) },
     ];
     const caption = `Integrity and availability events${record.events.length < total ? `; ${count(record.events.length)} of ${count(total)} shown, events.parquet has all` : ""}; press one to see it`;

@@ -80,7 +80,8 @@ export function share(value: number | null | undefined): string {
     if (percent === 0 || percent === 100) return `${percent} %`;
     for (let digits = 2; digits < 7; digits++) {
         const text = percent.toFixed(digits);
-        if (Number(text) !== 100 && Number(text) !== 0) return `${text} %`;
+        // What is missing to 0 or 100 % is what matters: it is shown to a twentieth of itself.
+        if (Math.abs(Number(text) - percent) <= Math.min(percent, 100 - percent) / 20) return `${text} %`;
     }
     return percent > 50 ? "> 99.999999 %" : "< 0.000001 %";
 }
@@ -97,8 +98,9 @@ export function date(utc_s: number): string {
 
 export function duration(seconds: number | null | undefined): string {
     if (seconds == null || !Number.isFinite(seconds)) return NONE;
-    if (seconds < 120) return `${plain(seconds, seconds % 1 === 0 ? 0 : 1)} s`;
     const whole = Math.round(seconds);
+    // Periods found by division miss the whole second by a rounding.
+    if (seconds < 120) return `${plain(seconds, Math.abs(seconds - whole) < 1e-6 ? 0 : 1)} s`;
     const h = Math.floor(whole / 3600);
     const m = Math.floor((whole % 3600) / 60);
     return h > 0 ? `${h} h ${String(m).padStart(2, "0")} min` : `${m} min ${String(whole % 60).padStart(2, "0")} s`;
