@@ -19,11 +19,6 @@ const NODES: [f64; TERMS] = [0.0, 0.5 - 0.5 * FRAC_1_SQRT_2, 0.5, 0.5 + 0.5 * FR
 /// it disturbs the cubic coefficient by less than a millionth, and the terms from there on are below a hundred-millionth of the sum.
 pub type Row = [f64; ROW];
 
-/// The rows one after the other, none of them across two lines of the cache.
-#[derive(Debug, Clone, PartialEq)]
-#[repr(align(64))]
-struct Table([f64; ROW * PIECES]);
-
 /// Prepared quantiles of the folded normal law at one risk.
 ///
 /// The excess u(m) of [`FoldedQuantile::excess`] is smooth, changes most near m = 0 and not at all beyond a few deviations. The table
@@ -39,7 +34,8 @@ struct Table([f64; ROW * PIECES]);
 pub struct PreparedQuantile {
     /// c of the formula.
     steepness: f64,
-    table: Table,
+    /// The rows one after the other. Not aligned beyond a double: an owner in another language may not keep more.
+    table: [f64; ROW * PIECES],
 }
 
 impl PreparedQuantile {
@@ -48,9 +44,9 @@ impl PreparedQuantile {
         let law = FoldedQuantile::new(risk);
         // Near the best for every risk from 1e-9 to 1/2 (measured): the quantile changes within a deviation over K of the path.
         let steepness = 0.5 + 0.4 * law.two_sided();
-        let mut table = Table([0.0; ROW * PIECES]);
+        let mut table = [0.0; ROW * PIECES];
         let mut last = [law.one_sided(), 0.0, 0.0, 0.0, 0.0];
-        for (index, row) in table.0.chunks_exact_mut(ROW).enumerate() {
+        for (index, row) in table.chunks_exact_mut(ROW).enumerate() {
             last = through(NODES.map(|x| {
                 let ratio = (PIECES as f64 / (index as f64 + x) - 1.0) / steepness;
                 // The polynomial before goes on to this piece with all but its last digits; one step restores those.
@@ -82,7 +78,7 @@ impl PreparedQuantile {
     pub fn row(&self, place: f64) -> Row {
         let first = ((place.to_bits() >> WITHIN) as usize * ROW) & (ROW * (PIECES - 1));
         // The mask leaves room for a whole row: the compiler sees it and checks nothing.
-        self.table.0[first..].first_chunk().copied().unwrap_or_default()
+        self.table[first..].first_chunk().copied().unwrap_or_default()
     }
 
     /// Third step: the bound.
