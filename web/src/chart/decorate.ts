@@ -47,16 +47,19 @@ export function drawHatch(u: uPlot, scene: Scene): void {
 export function drawEvents(u: uPlot, scene: Scene): void {
     const { ctx, bbox } = u;
     const size = 4.5 * devicePixelRatio;
-    for (const event of alertsOf(scene)) {
-        const x = u.valToPos(u.data[0]![eventIndex(event, scene)]!, "x", true);
+    const marks = alertsOf(scene).map((event) => ({ kind: event.kind, at: u.valToPos(u.data[0]![eventIndex(event, scene)]!, "x", true) }));
+    const warnings = marks.filter((m) => m.kind === "warning").map((m) => m.at);
+    for (const { kind, at } of marks) {
+        // A caution that grows into a warning stands before it, not under it.
+        const x = kind === "caution" && warnings.some((w) => Math.abs(w - at) < 2 * size) ? at - 2.3 * size : at;
         if (x < bbox.left || x > bbox.left + bbox.width) continue;
         const y = bbox.top - size - devicePixelRatio;
         ctx.save();
-        ctx.fillStyle = colour(event.kind);
+        ctx.fillStyle = colour(kind);
         ctx.strokeStyle = colour("ground");
         ctx.lineWidth = devicePixelRatio;
         ctx.beginPath();
-        if (event.kind === "warning") ctx.rect(x - size, y - size, 2 * size, 2 * size);
+        if (kind === "warning") ctx.rect(x - size, y - size, 2 * size, 2 * size);
         else {
             ctx.moveTo(x, y - size);
             ctx.lineTo(x + size, y + size);

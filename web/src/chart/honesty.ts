@@ -24,7 +24,7 @@ function words(h: Honesty): HTMLElement {
     const figures = el("p", { class: "sentence" }, h.words);
     figures.dataset.key = "nees_mean";
     figures.dataset.value = String(h.nees_mean);
-    return el("div", {}, figures, el("p", { class: "note" }, "Checked with ", valueOf("n", h.n, count(h.n)), " epochs, as good as ", valueOf("n_effective", h.n_effective, count(Math.floor(h.n_effective))), " independent ones."));
+    return el("div", {}, figures, el("p", { class: "note" }, "Checked with ", valueOf("n", h.n, count(h.n)), " epochs."));
 }
 
 function histogram(h: Honesty): HTMLElement {
