@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from navbound.run.records import Record
+from navbound.run.record import Record
 from navbound.sbas import EXTRACTION_LABEL
 
 if TYPE_CHECKING:
