@@ -89,18 +89,52 @@ def analyze(
         typer.Option(help="Where the aircraft should be: a runway (LFPG/08R), auto (the runway each aircraft lands on), or a route file."),
     ] = None,
     spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3', 'RNP AR 0.1' or 'RNP APCH'.")] = "RNP 0.3",
-    truth: Annotated[Path | None, typer.Option(help="A file with true positions, joined by time.")] = None,
+    truth: Annotated[
+        str | None, typer.Option(help="A file with true positions, joined by time; with --levels also X,Y,Z (Earth-fixed, metres).")
+    ] = None,
     truth_tolerance_s: Annotated[float, typer.Option(help="How far apart in time a truth epoch may be.")] = 0.1,
     sigma_m: Annotated[
         float | None, typer.Option(help="Stated standard deviation of the position per axis, where the file has no covariance.")
     ] = None,
     column: Annotated[list[str] | None, typer.Option("--map", help="Column mapping: canonical=column[:unit]; may be repeated.")] = None,
     methods: Methods = ",".join(DEFAULT_METHODS),
+    levels: Annotated[
+        str | None,
+        typer.Option(help="Evaluate protection levels against service levels instead (APV-I,LPV-200,...); see `navbound levels`."),
+    ] = None,
+    prn: Annotated[int | None, typer.Option(help="With --levels: whose SBAS messages, where a log holds several.")] = None,
+    period_s: Annotated[float | None, typer.Option(help="With --levels: sampling period. [default: the usual step]")] = None,
+    exclude_missing: Annotated[bool, typer.Option("--exclude-missing", help="With --levels: absent epochs are not expected.")] = False,
     out: Out = None,
     json: Json = False,
 ) -> None:
-    """Judge recorded tracks against a path and a specification."""
+    """Judge recorded tracks against a path and a specification; with --levels, evaluate errors and protection levels.
+
+    With --levels the files are tables with protection levels (any number, joined by time), or RINEX observations with navigation files and
+    SBAS message logs. A run that was interrupted goes on when it is started again with the same --out.
+    """
     out = out or Path("out") / files[0].name.split(".")[0]
+    if levels is not None:
+        if path is not None or sigma_m is not None:
+            raise InputError("levels", levels, domain="it without --path and --sigma-m, which judge a track")
+        with _Progress(len(files), "files") as progress:
+            run = navbound.analyze(
+                files,
+                levels=levels,
+                truth=truth,
+                truth_tolerance_s=truth_tolerance_s,
+                columns=_mapping(column or []),
+                prn=prn,
+                period_s=period_s,
+                exclude_missing=exclude_missing,
+                out=out,
+                progress=progress,
+                command=_command(),
+            )
+        _show(run, json=json)
+        return
+    if prn is not None or period_s is not None or exclude_missing:
+        raise InputError("levels", "none", domain="--levels together with --prn, --period-s and --exclude-missing")
     run = navbound.analyze(
         files,
         path=path,
@@ -142,6 +176,27 @@ def methods(json: Json = False) -> None:
         table.add_column(heading, overflow="fold")
     for m in found:
         table.add_row(m.id, m.title, m.error_column, m.source, m.provenance, m.assumes, "yes" if m.may_alert else "no")
+    out_console.print(table)
+
+
+@app.command()
+def levels(json: Json = False) -> None:
+    """List the service levels with their limits, source and provenance."""
+    from navbound import kpi  # noqa: PLC0415
+
+    found = list(kpi.levels().values())
+    if json:
+        sys.stdout.write(encoder.dumps([level.model_dump() for level in found], indent=1) + "\n")
+        return
+    table = Table(title="Service levels")
+    for heading in ("id", "operation", "HAL, m", "VAL, m", "accuracy H/V, m", "time to alert, s", "limits", "source"):
+        table.add_column(heading, overflow="fold")
+    for level in found:
+        vertical, accuracy_v = ("-" if value is None else f"{value:g}" for value in (level.val_m, level.accuracy_v_m))
+        accuracy = f"{level.accuracy_h_m:g} / {accuracy_v}"
+        table.add_row(
+            level.id, level.title, f"{level.hal_m:g}", vertical, accuracy, f"{level.tta_s:g}", level.provenance["hal_m"], level.source
+        )
     out_console.print(table)
 
 
@@ -204,20 +259,20 @@ def show(
 class _Progress:
     """A bar on a terminal, nothing elsewhere."""
 
-    def __init__(self, total: int) -> None:
+    def __init__(self, total: int, what: str = "flights") -> None:
         self._bar = Progress(
-            TextColumn("flights"),
+            TextColumn(what),
             BarColumn(),
             MofNCompleteColumn(),
             TimeRemainingColumn(),
             console=err_console,
             disable=total < 2 or not err_console.is_terminal,
         )
-        self._task = self._bar.add_task("flights", total=total)
+        self._task = self._bar.add_task(what, total=total)
 
     def __enter__(self) -> Callable[[int, int], None]:
         self._bar.start()
-        return lambda done, _total: self._bar.update(self._task, completed=done)
+        return lambda done, total: self._bar.update(self._task, completed=done, total=total)
 
     def __exit__(self, *_: object) -> None:
         self._bar.stop()

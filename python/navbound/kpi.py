@@ -124,13 +124,13 @@ def rnp(rnp_nm: float, *, tta_s: float, containment: int = 1) -> Level:
     )
 
 
-def continuity(available: ArrayLike, n_window_epochs: int) -> Continuity:
+def continuity(available: ArrayLike | str, n_window_epochs: int) -> Continuity:
     """Continuity of a pattern of available epochs by the sliding window; the look-ahead is cut at the end of the data.
 
     Parameters
     ----------
-    available : array_like of bool, shape (n,)
-        Whether the service was available at each epoch of an even grid.
+    available : array_like of bool, shape (n,), or str
+        Whether the service was available at each epoch of an even grid; as text ``X`` for available, ``O`` for not.
     n_window_epochs : int
         Epochs of the window.
 
@@ -139,6 +139,10 @@ def continuity(available: ArrayLike, n_window_epochs: int) -> Continuity:
     InputError
         Another shape or kind, or an empty window.
     """
+    if isinstance(available, str):
+        if set(available) - set("XO"):
+            raise InputError("available", available[:60], domain="letters X and O")
+        available = np.array([letter == "X" for letter in available], dtype=np.bool_)
     pattern = np.asarray(available)
     if pattern.ndim != 1 or pattern.dtype != np.bool_:
         raise InputError("available", f"{pattern.dtype}, shape {pattern.shape}", domain="bool, shape (n,)")

@@ -123,6 +123,22 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("callsign", "text", 0.0, 0.0, text="callsign flight"),
 )
 
+LEVEL_QUANTITIES: tuple[Quantity, ...] = (
+    _q("nse_e_m", "m", -1e8, 1e8, m="eerr e_err east_error_m"),
+    _q("nse_n_m", "m", -1e8, 1e8, m="nerr n_err north_error_m"),
+    _q("nse_u_m", "m", -1e8, 1e8, m="uerr u_err up_error_m"),
+    _q("hpe_m", "m", 0.0, 1e8, m="hpe"),
+    _q("vpe_m", "m", -1e8, 1e8, m="vpe"),
+    _q("hpl_m", "m", 0.0, 1e9, m="hpl"),
+    _q("vpl_m", "m", 0.0, 1e9, m="vpl"),
+    _q("hdop", "1", 0.0, 1e6, **{"1": "hdop"}),
+    _q("vdop", "1", 0.0, 1e6, **{"1": "vdop"}),
+    _q("mode", "text", 0.0, 0.0),
+    _q("status", "text", 0.0, 0.0),
+    _q("reason", "text", 0.0, 0.0),
+)
+"""What a table of errors and protection levels may hold beyond a recorded track."""
+
 TIME_NAMES: dict[str, str] = {
     "time_ns": "gps_ns", "gps_time_ns": "gps_ns", "gps_time_s": "gps_s", "gps_s": "gps_s",
     "gps_week": "gps_week", "week": "gps_week", "gps_tow": "gps_tow_s", "gps_tow_s": "gps_tow_s", "tow_s": "gps_tow_s", "tow": "gps_tow_s",
@@ -171,7 +187,7 @@ class Assignment:
     unused: list[str]
 
 
-def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path) -> Assignment:
+def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path, *, levels: bool = False) -> Assignment:
     """Find what each column is.
 
     Parameters
@@ -182,6 +198,8 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path)
         Quantity, or ``time``, to ``column`` or ``column:unit``; goes before the known names.
     path : Path
         The file, for messages.
+    levels : bool
+        A table of errors and protection levels: it needs a time and ``hpl_m``, not a position.
 
     Raises
     ------
@@ -191,11 +209,12 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path)
         A declared column that the file lacks, or no time, latitude or longitude: what is needed and the nearest names found.
     """
     names = list(names)
+    quantities = QUANTITIES + LEVEL_QUANTITIES if levels else QUANTITIES
     own = {"time_ns", "est_lat_rad"} <= set(names)
     columns: dict[str, Column] = {}
     times: list[Column] = []
     for key, value in (declared or {}).items():
-        column = _declared(key, value, names, path)
+        column = _declared(key, value, names, path, quantities)
         if column.quantity == "time":
             times.append(column)
         else:
@@ -205,7 +224,7 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path)
         states = {key: Column(key, name, unit) for key, (name, unit) in OPENSKY_STATES.items() if name not in taken}
         columns = states | columns
         taken |= {c.name for c in states.values()}
-    for quantity in QUANTITIES:
+    for quantity in quantities:
         if quantity.name not in columns:
             found = _known(quantity, [n for n in names if n not in taken], own=own)
             if found is not None:
@@ -214,7 +233,7 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path)
     if not times:
         times = _times([n for n in names if n not in taken])
         taken |= {c.name for c in times}
-    _require(columns, times, names, path)
+    _require(columns, times, names, path, ("hpl_m",) if levels else ("est_lat_rad", "est_lon_rad"))
     return Assignment(columns, times, [n for n in names if n not in taken])
 
 
@@ -249,8 +268,8 @@ def _times(names: list[str]) -> list[Column]:
     return single or (week + tow if week and tow else [])
 
 
-def _declared(key: str, value: str, names: list[str], path: Path) -> Column:
-    quantities = {q.name: q for q in QUANTITIES}
+def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Quantity, ...]) -> Column:
+    quantities = {q.name: q for q in known}
     name, separator, unit = value.rpartition(":")
     if not separator or name not in names:
         name, unit = (value, "") if value in names or not separator else (name, unit)
@@ -272,20 +291,21 @@ def _declared(key: str, value: str, names: list[str], path: Path) -> Column:
     return Column(key, name, unit.lower())
 
 
-def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path) -> None:
-    """Refuse a table without a time, a latitude or a longitude, and say what comes nearest."""
-    aliases = {q.name: list(q.aliases) for q in QUANTITIES}
+def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, wanted: tuple[str, ...]) -> None:
+    """Refuse a table without a time or a wanted quantity, and say what comes nearest."""
+    aliases = {q.name: list(q.aliases) for q in QUANTITIES + LEVEL_QUANTITIES}
     needs = {"time": ([*times], list(TIME_NAMES))}
-    needs |= {name: ([columns[name]] if name in columns else [], aliases[name]) for name in ("est_lat_rad", "est_lon_rad")}
+    needs |= {name: ([columns[name]] if name in columns else [], aliases[name]) for name in wanted}
     for need, (found, known) in needs.items():
         if found:
             continue
+        unit = {"time": "utc_s", "hpl_m": "m"}.get(need, "deg")
         near = {n: max(difflib.SequenceMatcher(None, _plain(n)[0], a).ratio() for a in known) for n in names}
         best = sorted(names, key=lambda n: -near[n])[:5]
         raise FormatError(
             path,
             f"no column holds it (known names: {', '.join(known[:6])}, ...); the nearest of the {len(names)} found are "
-            f"{', '.join(best)}; declare it, for instance {need}={best[0]}:{'utc_s' if need == 'time' else 'deg'}",
+            f"{', '.join(best)}; declare it, for instance {need}={best[0]}:{unit}",
             1,
             need,
         )

@@ -10,7 +10,7 @@ import polars as pl
 
 from navbound import _core
 from navbound.errors import FormatError
-from navbound.read.columns import QUANTITIES, UNITS, Assignment, Column, assign
+from navbound.read.columns import LEVEL_QUANTITIES, QUANTITIES, UNITS, Assignment, Column, assign
 from navbound.read.rejections import Rejections
 from navbound.read.source import Source, load
 from navbound.read.table import LINE, Table, table
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from navbound.run.records import InputFile, Rejection
 
-_QUANTITY = {q.name: q for q in QUANTITIES}
+_QUANTITY = {q.name: q for q in QUANTITIES + LEVEL_QUANTITIES}
 _REQUIRED = ("est_lat_rad", "est_lon_rad")
 _BAD = "__bad"
 
@@ -55,7 +55,7 @@ class Reading:
     columns: dict[str, str] = field(default_factory=dict)
 
 
-def read(path: str | Path, *, columns: Mapping[str, str] | None = None) -> Reading:
+def read(path: str | Path, *, columns: Mapping[str, str] | None = None, levels: bool = False) -> Reading:
     """Read a recorded track: CSV, JSON, Parquet (each also gzipped) or an RTKLIB solution file.
 
     Parameters
@@ -64,6 +64,8 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None) -> Readi
         The file.
     columns : mapping of str to str, optional
         What a column is, where its name does not say: ``{"est_lat_rad": "breite:deg", "time": "zeit:utc_ms"}``.
+    levels : bool
+        A table of protection levels, whose rows need a time, not a position.
 
     Raises
     ------
@@ -76,11 +78,11 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None) -> Readi
     if source.kind == "rtklib":
         return _rtklib(source)
     found = table(source)
-    mapping = assign(found.columns, columns, source.path)
-    return _epochs(source, found, mapping)
+    mapping = assign(found.columns, columns, source.path, levels=levels)
+    return _epochs(source, found, mapping, () if levels else _REQUIRED)
 
 
-def _epochs(source: Source, found: Table, mapping: Assignment) -> Reading:
+def _epochs(source: Source, found: Table, mapping: Assignment, required: tuple[str, ...]) -> Reading:
     frame, rejections, notes = found.frame, found.rejections, list[str]()
     out = pl.DataFrame({LINE: frame[LINE]})
     reasons = list[pl.Series]()
@@ -94,7 +96,7 @@ def _epochs(source: Source, found: Table, mapping: Assignment) -> Reading:
             continue
         values, reason = _numbers(frame[column.name], column)
         out = out.with_columns(values.alias(name))
-        if name in _REQUIRED:
+        if name in required:
             reasons.append(reason)
         else:
             _count(rejections, frame, column.name, reason)
@@ -102,7 +104,7 @@ def _epochs(source: Source, found: Table, mapping: Assignment) -> Reading:
     time, reason, units = gps_time(frame, mapping.times, source, notes)
     out = out.with_columns(time.alias("time_ns"))
     reasons.append(reason)
-    used = [mapping.columns[n].name for n in _REQUIRED] + [mapping.times[0].name]
+    used = [mapping.columns[n].name for n in required] + [mapping.times[0].name]
     out = _drop(out, frame, reasons, used, rejections)
     track = pl.col("track").fill_null(source.stem) if "track" in out.columns else pl.lit(source.stem)
     out = _in_order(out.with_columns(track.alias("track")), rejections, notes)
@@ -207,6 +209,8 @@ def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> pl
 
 def _look_like_radians(out: pl.DataFrame, mapping: Assignment, source: Source, notes: list[str]) -> None:
     """Note degrees that could be radians: a flight near 0 N 0 E and a wrong unit look alike, so a person must judge."""
+    if not {"est_lat_rad", "est_lon_rad"} <= mapping.columns.keys():
+        return
     lat, lon = mapping.columns["est_lat_rad"], mapping.columns["est_lon_rad"]
     largest = max(2 * _largest(out["est_lat_rad"]), _largest(out["est_lon_rad"]))
     if lat.unit == "deg" and lon.unit == "deg" and 0 < largest <= math.pi * UNITS["rad"]["deg"]:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from navbound import scenario as scenarios
 from navbound.errors import InputError
 from navbound.run import analyze as recorded
-from navbound.run import directory
+from navbound.run import directory, performance
 from navbound.run import fly as simulated
 from navbound.run.judge import Settings, judge
+from navbound.run.kpi_records import Level
 from navbound.run.requirement import requirement
 from navbound.run.studies import STUDIES
 
@@ -71,12 +72,14 @@ def analyze(
     *,
     spec: str = "RNP 0.3",
     phase: str | None = None,
+    levels: str | Level | Sequence[str | Level] | None = None,
     settings: Settings | None = None,
     out: str | Path | None = None,
+    progress: Callable[[int, int], None] | None = None,
     command: str = "",
     **reading: object,
 ) -> Run:
-    """Read recorded tracks and judge every epoch.
+    """Read recorded tracks and judge every epoch; or, with ``levels``, evaluate the performance indicators of protection levels.
 
     Parameters
     ----------
@@ -84,10 +87,16 @@ def analyze(
         CSV, Parquet, JSON tables or RTKLIB ``.pos``, plain or gzip.
     spec, phase : str
         Navigation specification, as :func:`navbound.run.requirement.requirement` reads it.
+    levels : names or Level, optional
+        Service levels (:func:`navbound.kpi.levels`). The files are then tables with protection levels, or RINEX observations with
+        navigation files and SBAS messages; ``spec``, ``phase`` and ``settings`` have no part in it.
     settings, out, command
         As in :func:`fly`.
+    progress : callable, optional
+        Called with (done, all) files of a performance run.
     **reading
-        See :func:`navbound.run.analyze.material`: ``path``, ``truth``, ``sigma_m``, ``columns``, ...
+        See :func:`navbound.run.analyze.material`: ``path``, ``truth``, ``sigma_m``, ``columns``, ...; with ``levels`` the fields of
+        :class:`navbound.run.performance.Options`.
 
     Raises
     ------
@@ -96,6 +105,10 @@ def analyze(
     FormatError
         A file that cannot be read; the message names file, line, field and the text found.
     """
+    if levels is not None:
+        named = [levels] if isinstance(levels, (str, Level)) else list(levels)
+        options = performance.Options(levels=named, **reading)  # type: ignore[arg-type]
+        return performance.evaluate_files(files, options, out=out, command=command, progress=progress)
     wanted = requirement(spec, phase)
     material = recorded.material(files, requirement=wanted.words, rnp_m=wanted.rnp_m, **reading)  # type: ignore[arg-type]
     return _finish(judge(material, settings, command), out)

@@ -6,7 +6,7 @@ use crate::evaluation::effective_size;
 use std::collections::BTreeMap;
 
 /// Most buckets; when there are more, two neighbours become one.
-const MOST: usize = 4096;
+const MOST: usize = 2048;
 
 /// What one stretch of time adds up to.
 #[derive(Debug, Clone, PartialEq, Default)]

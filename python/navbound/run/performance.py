@@ -1,0 +1,332 @@
+"""A performance run: any number of files, one part each, remembered in the run directory so that an interrupted run goes on."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+import sys
+import tempfile
+from contextlib import ExitStack
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import polars as pl
+
+from navbound import __version__, kpi
+from navbound.errors import FormatError, InputError
+from navbound.run import directory
+from navbound.run.directory import Run
+from navbound.run.field_csv import write_csv
+from navbound.run.levels_of import Part, Truth, from_observations, from_table, sort_out, truth_of
+from navbound.run.performance_words import performance_words
+from navbound.run.records import InputFile, Rejection, RunRecord, Summary, Verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+
+    from navbound.read.source import Source
+    from navbound.run.kpi_records import Performance
+    from navbound.run.levels_of import Files
+
+PARTS = "parts"
+"""Folder of the run directory that remembers the finished parts."""
+CSV = "epochs.csv"
+"""The epochs under the field's column names."""
+_OWN = {directory.RECORD, directory.SUMMARY, directory.EPOCHS, directory.EVENTS, directory.REPORT, PARTS, CSV}
+
+
+@dataclass(frozen=True)
+class Options:
+    """What changes the numbers.
+
+    Attributes
+    ----------
+    levels : sequence of names or Level
+        What is evaluated.
+    truth : str or path, optional
+        ``X,Y,Z`` (Earth-fixed, metres) or a recording.
+    truth_tolerance_s : float
+        How far apart in time an estimate and its truth may lie. [s]
+    columns : mapping, optional
+        What a column is, where its name does not say.
+    prn : int, optional
+        Which geostationary satellite's messages.
+    period_s : float, optional
+        Nominal sampling period. [s]
+    exclude_missing : bool
+        Absent epochs are not expected.
+    """
+
+    levels: Sequence[str | kpi.Level]
+    truth: str | Path | None = None
+    truth_tolerance_s: float = 0.1
+    columns: Mapping[str, str] | None = None
+    prn: int | None = None
+    period_s: float | None = None
+    exclude_missing: bool = False
+
+
+def evaluate_files(
+    files: str | Path | Sequence[str | Path],
+    options: Options,
+    *,
+    out: str | Path | None = None,
+    command: str = "",
+    progress: Callable[[int, int], None] | None = None,
+) -> Run:
+    """Evaluate the indicators of one receiver over any number of files.
+
+    Parameters
+    ----------
+    files : path or sequence of paths
+        Tables with protection levels (CSV, JSON, Parquet, RTKLIB solutions), in any order; or RINEX observations with navigation files and
+        SBAS message logs.
+    options : Options
+        What changes the numbers.
+    out : path, optional
+        Run directory. Parts that it remembers are not computed again, so a run that was interrupted goes on.
+    command : str
+        For the run record.
+    progress : callable, optional
+        Called with (done, all) parts.
+
+    Returns
+    -------
+    Run
+        With ``out`` the epochs stay on the disk (``epochs.parquet``) and the run's table holds the first alone; without, it holds all.
+
+    Raises
+    ------
+    InputError, FormatError
+        As the readers; a directory that holds something else.
+    """
+    names = [files] if isinstance(files, (str, Path)) else list(files)
+    if not names:
+        raise InputError("files", "nothing", domain="one file or more")
+    wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
+    truth = truth_of(options.truth, options.truth_tolerance_s)
+    sources = sort_out(names)
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) if out is None else _own(Path(out))
+        parts = _parts(sources, options, truth, folder / PARTS, progress)
+        campaign, events = _add_all(parts, wanted, options)
+        result = campaign.finish(lambda: _tables(parts), events.append)
+        run = _run(result, parts, events, sources=sources, options=options, command=command)
+        if out is None:
+            return Run(run.summary, run.record, pl.concat(_tables(parts)), run.events, [])
+        return _write(run, parts, folder)
+
+
+def _own(out: Path) -> Path:
+    """Make the run directory; refuse one that holds something else."""
+    try:
+        (out / PARTS).mkdir(parents=True, exist_ok=True)
+        strangers = sorted(p.name for p in out.iterdir() if p.name not in _OWN)
+    except OSError as e:
+        raise FormatError(out, f"cannot be written: {e.strerror}") from e
+    if strangers:
+        raise FormatError(out, f"holds files that are not a run's ({', '.join(strangers[:3])}); choose another --out")
+    return out
+
+
+@dataclass(frozen=True)
+class _Stored:
+    """A finished part on the disk."""
+
+    table: Path
+    first_ns: int
+    n_rows: int
+    n_epochs: int
+    rejected: list[dict[str, Any]]
+    notes: list[str]
+    source: Source
+
+
+def _parts(sources: Files, options: Options, truth: Truth, folder: Path, progress: Callable[[int, int], None] | None) -> list[_Stored]:
+    """Every part, computed or remembered, in the order of time."""
+    folder.mkdir(exist_ok=True)
+    jobs = sources.tables + sources.observations
+    shared = _shared_key(sources, options, truth)
+    stored = []
+    for done, source in enumerate(jobs):
+        key = hashlib.sha256(f"{source.sha256} {shared}".encode()).hexdigest()[:24]
+        found = _remembered(folder, key, source)
+        if found is None:
+            found = _remember(folder, key, source, _compute(source, sources, options, truth))
+        stored.append(found)
+        if progress is not None:
+            progress(done + 1, len(jobs))
+    filled = [part for part in stored if part.n_epochs]
+    if not filled:
+        raise FormatError(jobs[0].path, "no row holds a time")
+    return sorted(filled, key=lambda part: (part.first_ns, str(part.source.path)))
+
+
+def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
+    """What a part's numbers depend on beside its own file."""
+    recorded = None
+    if truth.given is not None and truth.ecef_m is None:
+        try:
+            recorded = hashlib.sha256(Path(truth.given).read_bytes()).hexdigest()
+        except OSError as e:
+            raise FormatError(truth.given, e.strerror or str(e)) from e
+    parts = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn]
+    return json.dumps([*parts, sorted(s.sha256 for s in sources.navigation + sources.messages)])
+
+
+def _compute(source: Source, sources: Files, options: Options, truth: Truth) -> Part:
+    if source in sources.tables:
+        return from_table(source.path, truth, options.columns)
+    navigation, logs = ([s.path for s in group] for group in (sources.navigation, sources.messages))
+    return from_observations(source.path, navigation, logs, truth, options.prn)
+
+
+def _remember(folder: Path, key: str, source: Source, part: Part) -> _Stored:
+    """Write a part so that it is there whole or not at all: the table first, then the record that makes it count."""
+    table, record = folder / f"{key}.parquet", folder / f"{key}.json"
+    facts: dict[str, Any] = {
+        "first_ns": part.epochs["time_ns"][0] if part.epochs.height else 0,
+        "n_rows": part.n_rows,
+        "n_epochs": part.epochs.height,
+        "rejected": part.rejected,
+        "notes": part.notes,
+    }
+    try:
+        part.epochs.write_parquet(partial := table.with_suffix(".partial"), compression="zstd")
+        partial.replace(table)
+        partial = record.with_suffix(".partial")
+        partial.write_text(json.dumps(facts), encoding="utf-8")
+        partial.replace(record)
+    except OSError as e:
+        raise FormatError(folder, f"cannot be written: {e.strerror}") from e
+    return _Stored(table=table, source=source, **facts)
+
+
+def _remembered(folder: Path, key: str, source: Source) -> _Stored | None:
+    record, table = folder / f"{key}.json", folder / f"{key}.parquet"
+    if not (record.is_file() and table.is_file()):
+        return None
+    try:
+        return _Stored(table=table, source=source, **json.loads(record.read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError) as e:
+        raise FormatError(record, f"is damaged ({e}); delete it to compute this part again") from e
+
+
+def _tables(parts: list[_Stored]) -> Iterator[pl.DataFrame]:
+    """One part in memory at a time."""
+    for part in parts:
+        try:
+            yield pl.read_parquet(part.table)
+        except (OSError, pl.exceptions.PolarsError) as e:
+            raise FormatError(part.table, f"is damaged ({e}); delete it to compute this part again") from e
+
+
+def _add_all(parts: list[_Stored], levels: Sequence[str | kpi.Level], options: Options) -> tuple[kpi.Campaign, list[pl.DataFrame]]:
+    tables = _tables(parts)
+    first = next(tables)
+    campaign = kpi.Campaign(levels, first=first, period_s=options.period_s, exclude_missing=options.exclude_missing, title=_title(parts))
+    events = [campaign.add(first)]
+    events.extend(campaign.add(table) for table in tables)
+    return campaign, events
+
+
+def _title(parts: list[_Stored]) -> str:
+    names = [part.source.path.name for part in parts]
+    return ", ".join(names) if len(names) <= 3 else f"{names[0]} and {len(names) - 1} more files"
+
+
+def _run(result: Performance, parts: list[_Stored], events: list[pl.DataFrame], *, sources: Files, options: Options, command: str) -> Run:
+    notes = list(dict.fromkeys(note for part in parts for note in part.notes))
+    result = result.model_copy(update={"notes": [*result.notes, *notes]})
+    everything = sources.tables + sources.observations + sources.navigation + sources.messages
+    n_rows = {part.source.path: part.n_rows for part in parts}
+    record = RunRecord(
+        navbound_version=__version__,
+        command=command,
+        created_utc=datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        kind="analyze",
+        scenario=None,
+        seed=None,
+        inputs=[InputFile(path=str(s.path), sha256=s.sha256, n_bytes=s.n_bytes, n_rows=n_rows.get(s.path)) for s in everything],
+        methods=[],
+        risk_accuracy=0.05,
+        risk_integrity=1e-5,
+        settings={
+            "levels": [found.level.id for found in result.levels],
+            "truth": None if options.truth is None else str(options.truth),
+            "truth_tolerance_s": options.truth_tolerance_s,
+            "columns": dict(options.columns or {}),
+            "prn": options.prn,
+            "period_s": result.period_s,
+            "exclude_missing": options.exclude_missing,
+        },
+        platform=f"Python {platform.python_version()}, {sys.platform} {platform.machine()}",
+    )
+    joined = pl.concat(events).sort("onset_ns", "level", "kind", maintain_order=True)
+    first = next(_tables(parts)).head(1)
+    return Run(_summary(result, parts), record, first, joined, [])
+
+
+def _summary(result: Performance, parts: list[_Stored]) -> Summary:
+    names = ", ".join(found.level.id for found in result.levels)
+    verdict = Verdict(
+        inside=None,
+        words=" ".join(performance_words(result)),
+        requirement=names,
+        method="performance",
+        share_inside=None,
+        share_contained=None,
+        n_epochs=result.n_expected,
+        n_judged=result.n_solution,
+        n_implausible=0,
+        worst_accuracy=None,
+        worst_integrity=None,
+        truth_known=result.truth_known,
+    )
+    sources = list(dict.fromkeys(f"{found.level.id}: {found.level.source}." for found in result.levels))
+    return Summary(
+        kind="analyze",
+        title=f"Performance: {result.title}",
+        verdict=verdict,
+        coverage_kind="",
+        assumptions=[*result.notes, *sources],
+        phases=[],
+        tracks=[],
+        accuracy=[],
+        integrity=[],
+        honesty=None,
+        states=[],
+        events=[],
+        cross_track=[],
+        rejected=[Rejection(**fields) for part in parts for fields in part.rejected],
+        n_status={"solution": result.n_solution, "no_solution": result.n_no_solution, "missing": result.n_missing},
+        performance=result,
+    )
+
+
+def _write(run: Run, parts: list[_Stored], out: Path) -> Run:
+    from navbound.report import render  # noqa: PLC0415  (the report is only loaded when one is written)
+
+    epochs = pl.scan_parquet([part.table for part in parts])
+    try:
+        _whole(out / directory.EPOCHS, lambda path: epochs.sink_parquet(path, compression="zstd", maintain_order=True))
+        _whole(out / CSV, lambda path: write_csv(epochs, path))
+        _whole(out / directory.EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
+        _whole(out / directory.RECORD, lambda path: path.write_text(run.record.model_dump_json(indent=1), encoding="utf-8"))
+        render(run.summary, run.record, run.epochs, run.events.clear(), [], out / directory.REPORT)
+        # Last: a directory with a summary is a finished run.
+        _whole(out / directory.SUMMARY, lambda path: path.write_text(run.summary.model_dump_json(indent=1), encoding="utf-8"))
+    except OSError as e:
+        raise FormatError(out, f"cannot be written: {e.strerror}") from e
+    return Run(run.summary, run.record, run.epochs, run.events, [], out)
+
+
+def _whole(path: Path, write: Callable[[Path], object]) -> None:
+    """Write a file so that it is there whole or not at all."""
+    partial = path.parent / PARTS / f"{path.name}.partial"
+    write(partial)
+    os.replace(partial, path)

@@ -1,0 +1,193 @@
+"""Performance runs: files joined by themselves, killed and gone on with, from tables and from a receiver's files."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+import pytest
+
+import navbound
+from navbound import FormatError, InputError, gnss, kpi
+from navbound.run import directory
+from navbound.run.performance import CSV, PARTS
+from test_kpi import comparable, series
+
+LEVELS = "NPA,APV-I,LPV-200"
+DAY = 4_000
+
+
+def days(folder: Path, n: int = 6) -> list[Path]:
+    whole = series(n * DAY)
+    start = int(whole["time_ns"][0])
+    paths = []
+    for k in range(n):
+        path = folder / f"day{k}.csv"
+        whole.filter((pl.col("time_ns") - start) // (DAY * 10**9) == k).write_csv(path)
+        paths.append(path)
+    return paths
+
+
+def command(files: list[Path], out: Path) -> list[str]:
+    return [sys.executable, "-m", "navbound", "analyze", *map(str, files), "--levels", LEVELS, "--period-s", "1", "--out", str(out)]
+
+
+def left(out: Path) -> dict[str, Any]:
+    """What a run leaves, but for the time of day and the folder."""
+    record = json.loads((out / directory.RECORD).read_text())
+    for name in ("created_utc", "command"):
+        record.pop(name)
+    return {
+        "record": record,
+        "summary": json.loads((out / directory.SUMMARY).read_text()),
+        "csv": (out / CSV).read_bytes(),
+        "epochs": pl.read_parquet(out / directory.EPOCHS).to_dict(as_series=False),
+        "events": pl.read_parquet(out / directory.EVENTS).to_dict(as_series=False),
+    }
+
+
+def test_killed_in_the_middle_and_started_again_it_gives_the_same(tmp_path: Path) -> None:
+    files = days(tmp_path)
+    subprocess.run(command(files, tmp_path / "whole"), check=True, capture_output=True)
+    out = tmp_path / "killed"
+    process = subprocess.Popen(command(files, out), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 60
+    while len(list((out / PARTS).glob("*.json"))) < 2 and time.monotonic() < deadline and process.poll() is None:
+        time.sleep(0.001)
+    process.send_signal(signal.SIGKILL)
+    assert process.wait() == -signal.SIGKILL, "the run was over before it could be killed"
+    kept = {p.name: p.stat().st_mtime_ns for p in (out / PARTS).glob("*.json")}
+    assert len(kept) >= 2
+    assert not (out / directory.SUMMARY).exists()
+    subprocess.run(command(files, out), check=True, capture_output=True)
+    for name, written in kept.items():
+        assert (out / PARTS / name).stat().st_mtime_ns == written, "a finished part was computed again"
+    assert left(out) == left(tmp_path / "whole")
+
+
+def test_files_in_any_order_give_what_one_table_gives(tmp_path: Path) -> None:
+    files = days(tmp_path)
+    run = navbound.analyze([files[k] for k in (4, 0, 5, 2, 1, 3)], levels=LEVELS, period_s=1.0)
+    expected = comparable(kpi.evaluate(series(6 * DAY), LEVELS, period_s=1.0))
+    found = comparable(run.summary.performance)  # type: ignore[arg-type]
+    for name in ("title", "notes"):
+        expected.pop(name), found.pop(name)
+    assert found == expected
+    assert run.events.height == sum(expected["n_events"].values())
+    assert run.epochs.height == series(6 * DAY).height
+
+
+def test_the_run_directory_holds_the_fields_columns(tmp_path: Path) -> None:
+    files = days(tmp_path, 1)
+    out = tmp_path / "run"
+    run = navbound.analyze(files, levels="APV-I", out=out)
+    assert run.report.is_file()
+    again = directory.load(out)
+    assert again.summary == run.summary
+    table = pl.read_csv(out / CSV, infer_schema_length=None)
+    assert {"YEAR", "DOY", "SOD", "WEEK", "TOW", "MODE", "NERR", "EERR", "UERR", "HPE", "HPL", "VPE", "VPL", "NUSED"} <= set(table.columns)
+    # 10^15 ns after 1980-01-06 00:00: 11 days, 13 h 46 min 40 s.
+    row = table.row(0, named=True)
+    assert (row["YEAR"], row["WEEK"]) == (1980, 1)
+    first = series(DAY)["time_ns"][0]
+    assert row["TOW"] == (first - 604_800 * 10**9) / 1e9
+    assert row["DOY"] == 6 + 11
+    assert row["SOD"] == (first - 11 * 86_400 * 10**9) / 1e9
+    assert row["NERR"] == pytest.approx(-series(DAY)["nse_n_m"][0], rel=1e-15)
+
+
+def test_positions_with_levels_and_a_fixed_truth(tmp_path: Path) -> None:
+    """A day of a service as a receiver's table has it: positions and levels; the truth is a point."""
+    truth = np.array([4_000_000.0, 1_000_000.0, 4_850_000.0])
+    lat, lon, h = gnss.geodetic(truth)
+    n = 600
+    rows = pl.DataFrame(
+        {
+            "time_ns": np.arange(n) * 10**9,
+            "est_lat_rad": np.full(n, lat) + 2.0 / 6.37e6,
+            "est_lon_rad": np.full(n, lon),
+            "est_h_m": np.full(n, h) + 3.0,
+            "HPL (m)": np.full(n, 20.0),
+            "vpl": np.full(n, 30.0),
+        }
+    )
+    rows.write_parquet(tmp_path / "positions.parquet")
+    run = navbound.analyze(tmp_path / "positions.parquet", levels="LPV-200", truth=",".join(map(str, truth)))
+    found = run.summary.performance
+    assert found is not None
+    h_error, v_error = found.axes[0].error_m, found.axes[1].error_m
+    assert h_error is not None
+    assert v_error is not None
+    # 2 m on a sphere of 6370 km; the meridian's radius is within 1 % of it.
+    assert h_error.p95 == pytest.approx(2.0, rel=0.01)
+    assert v_error.p95 == pytest.approx(3.0, abs=1e-6)
+    assert found.levels[0].availability_expected == 1.0
+
+
+def test_observations_navigation_and_messages_from_the_command_line(shared_data: Path, tmp_path: Path) -> None:
+    sbas = shared_data / "sbas"
+    names = ("virtual_user_2025046_17h.25O.gz", "gps_2025046_17h_rinex3.nav", "msas137_2025046_17h.ems")
+    arguments = ["--truth=-3962108.2258,3381309.0271,3668678.5241", "--levels", "APV-I", "--json", "--out", str(tmp_path / "run")]
+    done = subprocess.run(
+        [sys.executable, "-m", "navbound", "analyze", *(str(sbas / name) for name in names), *arguments], capture_output=True, check=True
+    )
+    found = json.loads(done.stdout)["performance"]
+    # The specification: the messages allow precision approach 143 s after the first, and nothing after it is lost.
+    assert (found["n_expected"], found["n_no_solution"]) == (3600, 143)
+    level = found["levels"][0]
+    assert (level["n_available"], level["n_continuity_events"]) == (3600 - 143, 0)
+    assert found["events"][0]["cause"] == "no solution"
+    # The oracle's levels over its own 3239 epochs, of which ours are a superset: HPL 11.8 to 15.2 m, VPL 20.6 to 34.0 m.
+    oracle = pl.read_csv(sbas / "msas2025046_pl_1hz.csv", comment_prefix="#")
+    ours = pl.read_parquet(tmp_path / "run" / directory.EPOCHS)["hpl_m"].drop_nulls()
+    assert oracle.height == 3239
+    assert ours.tail(3239).median() == pytest.approx(13.0, abs=0.05)
+    assert any("two different positions" in note for note in found["notes"])
+
+
+@pytest.mark.parametrize(
+    ("content", "options", "words"),
+    [
+        ("time_ns,vpl_m\n0,1\n1000000000,1\n", {}, "hpl_m"),
+        ("hpl_m\n1\n2\n", {}, "time"),
+        ("time_ns,hpl_m\n0,1\n1000000000,1\n", {"truth": "1,2,3"}, "within 100 km"),
+        ("time_ns,hpl_m\n0,1\n1000000000,1\n", {"truth": "4000000,1000000,4850000"}, "holds no positions"),
+        ("time_ns,hpl_m\n0,1\n1000000000,1\n", {"truth": "absent.csv"}, "absent.csv"),
+        ("icao24,time_ns,hpl_m\na,0,1\nb,1000000000,1\n", {}, "one receiver"),
+        ("time_ns,hpl_m\n0,1\n", {}, "period_s"),
+    ],
+)
+def test_what_cannot_be_evaluated_is_refused(tmp_path: Path, content: str, options: dict[str, Any], words: str) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text(content)
+    with pytest.raises((InputError, FormatError), match=words):
+        navbound.analyze(path, levels="NPA", **options)
+
+
+def test_other_files_in_the_directory_are_not_overwritten(tmp_path: Path) -> None:
+    out = tmp_path / "home"
+    out.mkdir()
+    (out / "thesis.txt").write_text("mine")
+    with pytest.raises(FormatError, match="thesis"):
+        navbound.analyze(days(tmp_path, 1), levels="NPA", out=out)
+
+
+def test_a_damaged_part_is_named(tmp_path: Path) -> None:
+    files, out = days(tmp_path, 1), tmp_path / "run"
+    navbound.analyze(files, levels="NPA", out=out)
+    (record,) = (out / PARTS).glob("*.json")
+    record.write_text("{")
+    with pytest.raises(FormatError, match="delete it"):
+        navbound.analyze(files, levels="NPA", out=out)
+
+
+def test_observations_alone_are_refused(shared_data: Path) -> None:
+    with pytest.raises(InputError, match="navigation file"):
+        navbound.analyze(shared_data / "sbas" / "virtual_user_2025046_17h.25O.gz", levels="NPA")
