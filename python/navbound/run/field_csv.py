@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
 _WEEK_NS = 604_800 * 10**9
@@ -47,6 +48,8 @@ def columns() -> list[pl.Expr]:
     ]
 
 
-def write_csv(epochs: pl.LazyFrame, path: Path) -> None:
-    """Write the epochs, one part in memory at a time."""
-    epochs.select(columns()).sink_csv(path, maintain_order=True)
+def write_csv(tables: Iterable[pl.DataFrame], path: Path) -> None:
+    """Write tables that follow each other as one file, one in memory at a time."""
+    with path.open("wb") as file:
+        for index, table in enumerate(tables):
+            table.select(columns()).write_csv(file, include_header=index == 0)

@@ -314,7 +314,7 @@ def _write(run: Run, parts: list[_Stored], out: Path) -> Run:
     epochs = pl.scan_parquet([part.table for part in parts])
     try:
         _whole(out / directory.EPOCHS, lambda path: epochs.sink_parquet(path, compression="zstd", maintain_order=True))
-        _whole(out / CSV, lambda path: write_csv(epochs, path))
+        _whole(out / CSV, lambda path: write_csv(_tables(parts), path))
         _whole(out / directory.EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
         _whole(out / directory.RECORD, lambda path: path.write_text(run.record.model_dump_json(indent=1), encoding="utf-8"))
         render(run.summary, run.record, run.epochs, run.events.clear(), [], out / directory.REPORT)

@@ -1,0 +1,81 @@
+"""Performance indicators: one epoch with four levels, and a month at 1 Hz from daily files, with the memory it takes.
+
+Memory is measured in a process of its own, for 10 and for 30 days: what it does not depend on shows itself as equal figures.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+
+LEVELS = "NPA,APV-I,LPV-200,APV-II"
+DAY = 86_400
+
+
+def day(k: int) -> pl.DataFrame:
+    """A day of a service whose vertical level crosses two limits now and then."""
+    rng = np.random.default_rng(k)
+    t = np.arange(DAY)
+    return pl.DataFrame(
+        {
+            "time_ns": (t + k * DAY) * 10**9,
+            "nse_e_m": 0.4 * rng.normal(size=DAY),
+            "nse_n_m": 0.5 * rng.normal(size=DAY),
+            "nse_u_m": 0.9 * rng.normal(size=DAY),
+            "hpl_m": 12 + 3 * np.sin(t / 900) + 0.2 * np.abs(rng.normal(size=DAY)),
+            "vpl_m": 24 + 12 * np.sin(t / 4000 + k) + 0.2 * np.abs(rng.normal(size=DAY)),
+        }
+    )
+
+
+def measure() -> list[dict[str, object]]:
+    """Seconds per epoch."""
+    from navbound import kpi  # noqa: PLC0415
+
+    table = day(0)
+    best = float("inf")
+    for _ in range(3):
+        start = time.perf_counter()
+        kpi.evaluate(table, LEVELS, period_s=1.0)
+        best = min(best, time.perf_counter() - start)
+    rows = [{"name": "kpi.evaluate, a day, four levels", "seconds_per_item": best / DAY, "n": DAY, "note": f"in memory; {best:.2f} s"}]
+    with tempfile.TemporaryDirectory() as folder:
+        files = []
+        for k in range(30):
+            path = Path(folder) / f"day{k:02}.parquet"
+            day(k).write_parquet(path)
+            files.append(str(path))
+        rows += [_campaign(files[:n], f"{folder}/run{n}") for n in (1, 10, 30)]
+    return rows
+
+
+def _campaign(files: list[str], out: str) -> dict[str, object]:
+    done = subprocess.run([sys.executable, __file__, out, *files], check=True, capture_output=True, text=True)
+    found = json.loads(done.stdout.splitlines()[-1])
+    n = DAY * len(files)
+    note = f"files to report; {found['wall_s']:.1f} s, {found['cpu_s']:.1f} s CPU, {found['peak_mb']:.0f} MB at most"
+    return {"name": f"campaign of {len(files)} daily files", "seconds_per_item": found["wall_s"] / n, "n": n, "note": note}
+
+
+def main() -> None:
+    """One campaign in this process; prints what it took."""
+    import navbound  # noqa: PLC0415
+
+    out, *files = sys.argv[1:]
+    start = time.perf_counter()
+    navbound.analyze(files, levels=LEVELS, period_s=1.0, out=out)
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    figures = {"wall_s": time.perf_counter() - start, "cpu_s": usage.ru_utime + usage.ru_stime, "peak_mb": usage.ru_maxrss / 1024}
+    print(json.dumps(figures))
+
+
+if __name__ == "__main__":
+    main()
