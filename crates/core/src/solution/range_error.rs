@@ -68,6 +68,11 @@ impl RangeError {
         reference_cn0_dbhz: 40.0,
     };
 
+    /// With orbits and clocks of an analysis centre: what is left of them, the centimetres they state and the decimetres between the
+    /// tracking codes of their clocks and of the user; by constellation as the others. Ours, not calibrated.
+    pub const PRECISE: Self =
+        Self { name: "calibrated-2020, orbits and clocks precise", ure_m: [0.3, 0.8, 0.1, 0.3, 5.0], ..Self::CALIBRATED };
+
     /// Variance of a range \[m²\].
     pub(super) fn variance(&self, at: &RangeConditions) -> f64 {
         let ure = self.ure_m[at.constellation] * at.ure_factor;
