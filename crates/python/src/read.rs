@@ -1,12 +1,12 @@
 //! Readers, and what recorded positions are checked for.
 
 use crate::error::{format_error, input_error};
+use nalgebra::Matrix3;
 use navbound_assess::error::navigation_errors;
 use navbound_assess::plausible::{Finding, Limits, Report, judge};
 use navbound_core::frame::{Covariance, Ecef, LatLon};
 use navbound_core::quantity::{GpsTime, OutOfDomain, Radians};
 use navbound_formats::{rtklib, time};
-use nalgebra::Matrix3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

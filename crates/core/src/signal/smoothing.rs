@@ -36,22 +36,25 @@ struct Last {
     time: GpsTime,
     phase: f64,
     smoothed: f64,
-    /// Time since the arc began \[s\].
-    age_s: f64,
+    /// Codes of the arc so far.
+    count: f64,
+    /// Shortest step of the arc \[s\]: after a gap one code counts as one, however long the gap was.
+    step_s: f64,
 }
 
 impl Channel {
     /// The smoothed pseudorange.
     ///
     /// ```text
-    /// R(k) = a P(k) + (1 - a) (R(k-1) + F(k) - F(k-1))      a = step / min(age + step, window), at most 1
+    /// R(k) = a P(k) + (1 - a) (R(k-1) + F(k) - F(k-1))      1 / a = min(n, window / step), at least 1
     /// ```
     ///
     /// | source | here                         | unit |
     /// |--------|------------------------------|------|
     /// | P, R   | `code`, the result           | m    |
     /// | F      | `phase`, of any ambiguity    | m    |
-    /// | 1 / a  | epochs averaged, in the mean | 1    |
+    /// | n      | codes of the arc so far      | 1    |
+    /// | step   | shortest step of the arc     | s    |
     ///
     /// An arc begins with its first code, again after a gap, after `lost` (the receiver's loss of lock), where the phase is missing
     /// (not finite), and where code and phase part by more than the limit.
@@ -61,22 +64,22 @@ impl Channel {
             self.last = None;
             return Metres::new(code);
         }
-        let (smoothed, age_s) = self.carried(how, time, phase, lost).map_or((code, 0.0), |(carried, step, age)| {
-            if !((code - carried).abs() <= how.slip.m()) {
-                return (code, 0.0);
-            }
-            let weight = step / (age + 2.0 * step).min(how.window_s).max(step);
-            (weight * code + (1.0 - weight) * carried, age + step)
+        let carried = self.carried(how, time, phase, lost).filter(|(carried, ..)| (code - carried).abs() <= how.slip.m());
+        let (smoothed, count, step_s) = carried.map_or((code, 1.0, f64::INFINITY), |(carried, count, step_s)| {
+            let weight = 1.0 / count.min(how.window_s / step_s).max(1.0);
+            (weight * code + (1.0 - weight) * carried, count, step_s)
         });
-        self.last = Some(Last { time, phase, smoothed, age_s });
+        self.last = Some(Last { time, phase, smoothed, count, step_s });
         Metres::new(smoothed)
     }
 
-    /// The last smoothed range carried on by the phase, the step and the age of the arc; `None` where an arc must begin.
+    /// The last smoothed range carried on by the phase, codes of the arc with this one, and its shortest step; `None` where an arc must
+    /// begin.
     fn carried(&self, how: &Smoothing, time: GpsTime, phase: f64, lost: bool) -> Option<(f64, f64, f64)> {
         let last = self.last.filter(|_| !lost)?;
         let step = time.seconds_since(last.time);
-        (step > 0.0 && step <= how.longest_gap_s).then(|| (last.smoothed + phase - last.phase, step, last.age_s))
+        let carried = last.smoothed + phase - last.phase;
+        (step > 0.0 && step <= how.longest_gap_s).then(|| (carried, last.count + 1.0, last.step_s.min(step)))
     }
 }
 

@@ -68,10 +68,10 @@ impl RangeError {
         reference_cn0_dbhz: 40.0,
     };
 
-    /// With orbits and clocks of an analysis centre: what is left of them, the centimetres they state and the decimetres between the
-    /// tracking codes of their clocks and of the user; by constellation as the others. Ours, not calibrated.
-    pub const PRECISE: Self =
-        Self { name: "calibrated-2020, orbits and clocks precise", ure_m: [0.3, 0.8, 0.1, 0.3, 5.0], ..Self::CALIBRATED };
+    /// With tabulated orbits and clocks of satellites' mass centres. Offsets of their antennas, which are not applied, differ by a metre
+    /// from one GPS satellite to the next and by decimetres among Galileo's; tracking codes differ from those of the clocks by
+    /// decimetres. Ours, looked at on ESBC 2020-177 only.
+    pub const PRECISE: Self = Self { name: "mass centres, looked at on ESBC 2020", ure_m: [1.0, 3.0, 0.2, 1.0, 5.0], ..Self::CALIBRATED };
 
     /// Variance of a range \[m²\].
     pub(super) fn variance(&self, at: &RangeConditions) -> f64 {

@@ -38,7 +38,8 @@ pub fn write(s: &Solutions, program: &str) -> Result<String, (usize, OutOfDomain
 }
 
 fn row(s: &Solutions, i: usize, out: &mut String) -> Result<(), OutOfDomain> {
-    let inside = |argument, value: f64, unit, domain, good: bool| if good { Ok(value) } else { Err(OutOfDomain { argument, value, unit, domain }) };
+    let inside =
+        |argument, value: f64, unit, domain, good: bool| if good { Ok(value) } else { Err(OutOfDomain { argument, value, unit, domain }) };
     let (lat, lon, h) = (s.lat_rad[i], s.lon_rad[i], s.h_m[i]);
     inside("est_lat_rad", lat, "rad", "[-pi/2, pi/2]", lat.abs() <= core::f64::consts::FRAC_PI_2)?;
     inside("est_lon_rad", lon, "rad", "[-2 pi, 2 pi]", lon.abs() <= core::f64::consts::TAU)?;

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from importlib import import_module
+from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
     from pathlib import Path
     from types import ModuleType
 
@@ -71,6 +73,45 @@ def package(name: str, path: Path) -> ModuleType:
     except ImportError as e:
         domain = f"a log that needs the package {name.partition('.')[0]}: install it with pip install 'navbound[receivers]'"
         raise InputError("files", str(path), domain=domain) from e
+
+
+def messages(
+    open_reader: Callable[[BytesIO, Callable[[Exception], None]], Iterator[Any]], content: bytes, log: Log
+) -> Iterator[tuple[int, Any]]:
+    """Numbered messages of a log; what the decoder refuses, or stumbles over, is counted as damaged.
+
+    Parameters
+    ----------
+    open_reader : callable
+        From a stream and a handler of errors to an iterator of the package.
+    content : bytes
+        The log.
+    log : Log
+        Where damage is counted.
+    """
+    stream, damaged = BytesIO(content), list[str]()
+    reader = open_reader(stream, lambda e: damaged.append(str(e)))
+    record, at = 0, -1
+    while True:
+        record += 1
+        try:
+            message = next(reader)
+        except StopIteration:
+            message = None
+        except Exception as e:
+            # A decoder of others, fed with damaged bytes, may raise anything; the stream has moved on unless it stands still.
+            damaged.append(f"{type(e).__name__}: {e}")
+            if stream.tell() == at:
+                message = None
+            else:
+                at = stream.tell()
+                continue
+        for what in damaged:
+            log.leave_out("damaged message", record, what, damaged=True)
+        damaged.clear()
+        if message is None:
+            return
+        yield record, message
 
 
 def diagonal(e_m: float, n_m: float, u_m: float) -> dict[str, float]:

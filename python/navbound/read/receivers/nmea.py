@@ -5,13 +5,12 @@ Source: NMEA 0183 version 4 as receivers' manuals give it, standard. GGA has no 
 
 from __future__ import annotations
 
-import io
 import math
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, time, timedelta
 from typing import TYPE_CHECKING, Any
 
-from navbound.read.receivers.log import Log, diagonal, package
+from navbound.read.receivers.log import Log, diagonal, messages, package
 
 if TYPE_CHECKING:
     from navbound.read.source import Source
@@ -33,15 +32,11 @@ def read(source: Source) -> Log:
     """Decode a log of NMEA sentences; other frames between them are passed over."""
     pynmeagps = package("pynmeagps", source.path)
     log = Log(source.path, "GGA")
-    damaged = list[str]()
-    sentences = pynmeagps.NMEAReader(
-        io.BytesIO(source.content), quitonerror=pynmeagps.ERR_LOG, errorhandler=lambda e: damaged.append(str(e))
-    )
+    settings = {"quitonerror": pynmeagps.ERR_LOG}
     fixes, dates, last = list[_Fix](), list[tuple[int, date, time]](), None
-    for record, (_, sentence) in enumerate(sentences, 1):
-        for what in damaged:
-            log.leave_out("damaged sentence", record, what, damaged=True)
-        damaged.clear()
+    for record, (_, sentence) in messages(
+        lambda s, handler: pynmeagps.NMEAReader(s, errorhandler=handler, **settings), source.content, log
+    ):
         name = getattr(sentence, "msgID", "")
         if name == "GGA":
             last = _Fix(record, sentence)

@@ -31,8 +31,17 @@ def read(source: Source) -> Log:
         if taken == 0:
             break
         at += taken
-        for message in parser:
+        # The parser ends by itself when it has taken what was written; `messages` would take that for the end of the log.
+        while True:
             record += 1
+            try:
+                message = next(iter(parser))
+            except StopIteration:
+                break
+            except Exception as e:
+                # A decoder of others, fed with damaged bytes, may raise anything; what it stumbled over is behind it.
+                log.leave_out("damaged message", record, f"{type(e).__name__}: {e}", damaged=True)
+                continue
             if getattr(message, "name", "") == "BESTPOS":
                 _row(message, record, log)
     if at < len(source.content):

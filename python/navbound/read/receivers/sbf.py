@@ -5,14 +5,13 @@ Source: Septentrio SBF reference guide, standard. Times are GPS weeks, not rolle
 
 from __future__ import annotations
 
-import io
 import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from navbound import _core
-from navbound.read.receivers.log import COVARIANCE, Log, package
+from navbound.read.receivers.log import COVARIANCE, Log, messages, package
 
 if TYPE_CHECKING:
     from navbound.read.source import Source
@@ -31,18 +30,9 @@ def read(source: Source) -> Log:
     """Decode a log of SBF blocks; other frames between them are passed over."""
     pysbf2 = package("pysbf2", source.path)
     log = Log(source.path, "PVTGeodetic or PVTCartesian")
-    damaged = list[str]()
-    blocks = pysbf2.SBFReader(
-        io.BytesIO(source.content),
-        protfilter=pysbf2.SBF_PROTOCOL,
-        quitonerror=pysbf2.ERR_LOG,
-        errorhandler=lambda e: damaged.append(str(e)),
-    )
+    settings = {"protfilter": pysbf2.SBF_PROTOCOL, "quitonerror": pysbf2.ERR_LOG}
     epoch: dict[str, Any] = {}
-    for record, (raw, block) in enumerate(blocks, 1):
-        for what in damaged:
-            log.leave_out("damaged block", record, what, damaged=True)
-        damaged.clear()
+    for record, (raw, block) in messages(lambda s, handler: pysbf2.SBFReader(s, errorhandler=handler, **settings), source.content, log):
         name = _WANTED.get(getattr(block, "identity", ""))
         if name is None:
             continue

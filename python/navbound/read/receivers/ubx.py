@@ -10,7 +10,7 @@ import math
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from navbound.read.receivers.log import COVARIANCE, Log, package
+from navbound.read.receivers.log import COVARIANCE, Log, messages, package
 
 if TYPE_CHECKING:
     from navbound.read.source import Source
@@ -27,19 +27,8 @@ def read(source: Source) -> Log:
     """Decode a log of UBX frames; other frames between them are passed over."""
     pyubx2 = package("pyubx2", source.path)
     log = Log(source.path, "NAV-PVT")
-    damaged = list[str]()
-    frames = pyubx2.UBXReader(
-        io.BytesIO(source.content),
-        protfilter=pyubx2.UBX_PROTOCOL,
-        parsing=pyubx2.PARSE_NONE,
-        quitonerror=pyubx2.ERR_LOG,
-        errorhandler=lambda e: damaged.append(str(e)),
-    )
     epoch: dict[str, Any] = {}
-    for record, (raw, _) in enumerate(frames, 1):
-        for what in damaged:
-            log.leave_out("damaged frame", record, what, damaged=True)
-        damaged.clear()
+    for record, (raw, _) in messages(lambda stream, handler: _reader(pyubx2, stream, handler), source.content, log):
         name = _WANTED.get(bytes(raw[2:4])) if raw is not None else None
         if name is None:
             continue
@@ -49,7 +38,7 @@ def read(source: Source) -> Log:
         try:
             message = pyubx2.UBXReader.parse(raw)
         except (pyubx2.UBXParseError, pyubx2.UBXMessageError, pyubx2.UBXTypeError, ValueError, IndexError) as e:
-            log.leave_out("damaged frame", record, str(e), damaged=True)
+            log.leave_out("damaged message", record, str(e), damaged=True)
             continue
         # Version 1 of NAV-PL keeps its time of week behind eight other bytes.
         start = _FRAME + (12 if name == "pl" else 0)
@@ -64,6 +53,12 @@ def read(source: Source) -> Log:
         _finish(epoch, log)
     log.n_rows += len(log.rows)
     return log
+
+
+def _reader(pyubx2: Any, stream: io.BytesIO, handler: Any) -> Any:
+    """Frames with a right check sum, not yet taken apart: most are not wanted."""
+    settings = {"protfilter": pyubx2.UBX_PROTOCOL, "parsing": pyubx2.PARSE_NONE, "quitonerror": pyubx2.ERR_LOG, "errorhandler": handler}
+    return pyubx2.UBXReader(stream, **settings)
 
 
 def _finish(epoch: dict[str, Any], log: Log) -> None:
