@@ -79,7 +79,7 @@ fn damage_is_refused_with_line_and_field() {
         let e = read(YUMA.replace(from, to).as_bytes()).unwrap_err();
         assert_eq!((e.line, e.field.as_deref()), (Some(line), Some(field)), "{e}");
     }
-    assert!(read(YUMA[..YUMA.find("Mean").unwrap()].as_bytes()).unwrap_err().reason.contains("ends early"));
+    assert!(read(&YUMA.as_bytes()[..YUMA.find("Mean").unwrap()]).unwrap_err().reason.contains("ends early"));
     assert!(read(format!("{YUMA}{YUMA}").as_bytes()).unwrap_err().reason.contains("twice"));
     assert!(read(SEM.replacen(" 1 ", " 2 ", 1).as_bytes()).unwrap_err().reason.contains("announces 2"));
     assert!(read(b"%PDF-1.4").is_err() && read(b"").is_err() && read(b"******").is_err());

@@ -128,7 +128,7 @@ mod tests {
 
     /// Noise without memory that adds to nothing over an even number of samples.
     fn noise(k: usize) -> f64 {
-        if k % 2 == 0 { 1.0 } else { -1.0 }
+        if k.is_multiple_of(2) { 1.0 } else { -1.0 }
     }
 
     #[test]
