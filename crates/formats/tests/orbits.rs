@@ -64,7 +64,7 @@ fn broadcast_orbits_differ_from_final_ones_as_an_independent_computation_says() 
     for (satellite, nodes) in orbits.orbits.iter().filter(|(s, _)| **s != gps(1)) {
         let healthy: Vec<_> = navigation.of(*satellite).iter().filter(|e| e.healthy(Carrier::L1)).copied().collect();
         for node in nodes {
-            let Some(e) = nearest(&healthy, node.time) else { continue };
+            let Some(e) = nearest(&healthy, node.time).map(|k| &healthy[k]) else { continue };
             let s = broadcast::state(e, node.time).unwrap();
             differences.push(axes(&s.velocity_mps, node).map(|axis| axis.dot(&(s.position.vector() - node.position.vector()))));
         }
