@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from navbound._precise import PreciseOrbits
+
 SYSTEMS = {"G": "GPS", "E": "Galileo", "C": "BeiDou"}
 """Constellations a position can be solved from, by their letter."""
 
@@ -173,7 +175,8 @@ class Positions:
     models: dict[str, str]
 
 
-def _content(path: str | Path) -> tuple[Path, bytes]:
+def file_content(path: str | Path) -> tuple[Path, bytes]:
+    """Path and bytes of a file, or a refusal."""
     place = Path(path)
     try:
         return place, place.read_bytes()
@@ -199,7 +202,7 @@ def read_observations(path: str | Path) -> Observations:
     FormatError
         Not such a file, with line and field. Damage that leaves the rest readable is listed in ``refused``.
     """
-    place, content = _content(path)
+    place, content = file_content(path)
     return Observations(_core.Observations(content, str(place)), place)
 
 
@@ -224,7 +227,7 @@ def read_navigation(paths: str | Path | Sequence[str | Path]) -> Navigation:
     several = [paths] if isinstance(paths, str | Path) else list(paths)
     if not several:
         raise InputError("paths", "nothing", domain="at least one file")
-    files = [_content(p) for p in several]
+    files = [file_content(p) for p in several]
     return Navigation(_core.Navigation([(content, str(place)) for place, content in files]), [place for place, _ in files])
 
 
@@ -238,6 +241,9 @@ def solve(
     mask_rad: float = float(np.radians(10.0)),
     false_alarm: float = 1e-4,
     most_excluded: int = 6,
+    orbits: PreciseOrbits | None = None,
+    smoothing_s: float | None = None,
+    smoothing: Literal["hatch", "divergence-free"] = "divergence-free",
     truth_ecef_m: ArrayLike | None = None,
     track: str | None = None,
 ) -> Positions:
@@ -261,6 +267,14 @@ def solve(
         Risk of a false alarm of the residual test, an epoch. [1]
     most_excluded : int, optional
         Satellites that may be excluded in one epoch. [1]
+    orbits : PreciseOrbits, optional
+        From :func:`read_orbits`: orbits and clocks instead of the broadcast ones. Health and group delays remain those broadcast.
+        Positions are of mass centres: the antennas' offsets (0.5 to 3 m towards the Earth) are not applied.
+    smoothing_s : float, optional
+        Time constant of carrier smoothing; without it the pseudoranges are used as measured. The weights do not count on it. [s]
+    smoothing : {"divergence-free", "hatch"}, optional
+        Phase of two carriers, whose smoothing leaves the ionosphere as it is; or of one, which parts from the code as the ionosphere
+        changes.
     truth_ecef_m : array_like, shape (3,) or (n_epochs, 3), optional
         True position, Earth-fixed; NaN where it is not known. [m]
     track : str, optional
@@ -287,6 +301,8 @@ def solve(
         raise InputError("ionosphere", "broadcast", domain="none, dual signals, or a navigation file with the ionosphere of GPS")
     if most_excluded < 0:
         raise InputError("most_excluded", most_excluded, "1", "[0, inf)")
+    if smoothing not in {"hatch", "divergence-free"}:
+        raise InputError("smoothing", smoothing, domain="hatch, divergence-free")
     found = _core.solve_positions(
         observations._core,
         navigation._core,
@@ -296,8 +312,12 @@ def solve(
         mask_rad=mask_rad,
         false_alarm=false_alarm,
         most_excluded=most_excluded,
+        precise=None if orbits is None else orbits._core,
+        smoothing_s=smoothing_s,
+        divergence_free=smoothing == "divergence-free",
     )
     unused, codes, weights = found.pop("unused"), found.pop("codes"), found.pop("weights")
+    share = found.pop("smoothed_share")
     name = track or observations.marker or observations.path.name
     columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **found}
     epochs = pl.DataFrame(columns).with_columns(pl.when(pl.col("reason") != "").then(pl.col("reason")).alias("reason"))
@@ -306,13 +326,24 @@ def solve(
     if truth_ecef_m is not None:
         epochs = epochs.hstack(_errors(epochs, truth_ecef_m))
     models = {
-        "orbits and clocks": "broadcast, nearest record inside its fit interval",
+        "orbits and clocks": _orbit_words(orbits),
+        "smoothing": "none" if smoothing_s is None else f"{smoothing}, {smoothing_s:g} s; {100 * share:.1f} % of the pseudoranges",
         "ionosphere": "ionosphere-free pairs" if signals == "dual" else {"broadcast": "Klobuchar, GPS message", "none": "none"}[ionosphere],
         "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",
         "weights": weights,
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
     }
     return Positions(epochs, unused, codes, models)
+
+
+def _orbit_words(orbits: PreciseOrbits | None) -> str:
+    if orbits is None:
+        return "broadcast, nearest record inside its fit interval"
+    step = "" if orbits.clock_step_s is None else f" every {orbits.clock_step_s:g} s"
+    return (
+        f"{', '.join(sorted(orbits.agencies))}: polynomial of order 10, mass centres; clocks of the {orbits.clock_source}{step}, linear; "
+        "health and group delays broadcast"
+    )
 
 
 def _errors(epochs: pl.DataFrame, truth_ecef_m: ArrayLike) -> pl.DataFrame:

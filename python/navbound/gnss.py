@@ -1,6 +1,6 @@
 """Satellite navigation: receivers' files and positions; nominal constellations, where their satellites stand, and what covariance follows.
 
-Orbits follow IS-GPS-200 without its correction terms (standard); the covariance is (H' W H)^-1 with one clock for each constellation
+Orbits follow IS-GPS-200 without its harmonic corrections (standard); the covariance is (H' W H)^-1 with one clock for each constellation
 (Fu, Zhang, Li 2014 for equal sigmas; printed).
 """
 
@@ -13,6 +13,8 @@ import numpy as np
 
 from navbound import _core
 from navbound._arrays import flatten
+from navbound._constellations import CONSTELLATIONS, Orbits, constellation, nominal
+from navbound._precise import PreciseOrbits, read_orbits
 from navbound._receivers import (
     SYSTEMS,
     Navigation,
@@ -40,6 +42,7 @@ __all__ = [
     "Orbits",
     "PositionCovariance",
     "Positions",
+    "PreciseOrbits",
     "Refused",
     "Sky",
     "constellation",
@@ -51,58 +54,9 @@ __all__ = [
     "nominal",
     "read_navigation",
     "read_observations",
+    "read_orbits",
     "solve",
 ]
-
-CONSTELLATIONS = ("gps", "glonass", "galileo", "beidou", "sbas")
-"""The systems in the order of their index; a solution has one clock for each that it uses."""
-
-_LETTERS = "GRECS"
-
-
-@dataclass(frozen=True)
-class Orbits:
-    """Satellites and their Kepler elements at a reference instant; all arrays have shape (n,).
-
-    Attributes
-    ----------
-    satellite : tuple of str
-        Names, ``G01``.
-    constellation : ndarray of int
-        Index in :data:`CONSTELLATIONS`.
-    semi_major_m : ndarray
-        Semi-major axis. [m]
-    eccentricity : ndarray
-        0 for a circle. [1]
-    inclination_rad : ndarray
-        Inclination to the equator. [rad]
-    node_rad : ndarray
-        Longitude of the ascending node at the reference instant: right ascension counted from Greenwich. [rad]
-    perigee_rad : ndarray
-        Argument of perigee. [rad]
-    mean_anomaly_rad : ndarray
-        Mean anomaly at the reference instant; with ``perigee_rad`` 0 and a circle the argument of latitude. [rad]
-    """
-
-    satellite: tuple[str, ...]
-    constellation: NDArray[np.int64]
-    semi_major_m: NDArray[np.float64]
-    eccentricity: NDArray[np.float64]
-    inclination_rad: NDArray[np.float64]
-    node_rad: NDArray[np.float64]
-    perigee_rad: NDArray[np.float64]
-    mean_anomaly_rad: NDArray[np.float64]
-
-    def __add__(self, other: Orbits) -> Orbits:
-        """Both sets of satellites."""
-        names = [n for n in self.__dataclass_fields__ if n != "satellite"]
-        joined = {n: np.concatenate([getattr(self, n), getattr(other, n)]) for n in names}
-        return Orbits(satellite=self.satellite + other.satellite, **joined)
-
-    def elements(self) -> NDArray[np.float64]:
-        """Six elements a row: axis, eccentricity, inclination, node, perigee, mean anomaly; shape (n, 6)."""
-        columns = (self.semi_major_m, self.eccentricity, self.inclination_rad, self.node_rad, self.perigee_rad, self.mean_anomaly_rad)
-        return np.ascontiguousarray(np.stack(columns, axis=-1))
 
 
 @dataclass(frozen=True)
@@ -195,76 +149,6 @@ class Dilution:
     n_sv: NDArray[np.int64]
     status: NDArray[np.str_]
     reason: NDArray[np.str_]
-
-
-def constellation(name: str) -> Orbits:
-    """Nominal constellation, as data that ships with navbound.
-
-    Parameters
-    ----------
-    name : {"gps", "beidou"}
-        GPS: 24 slots of the standard positioning service's performance standard. BeiDou-3: 24 in medium orbits (Walker 24/3/1), three
-        inclined geosynchronous, three geostationary. Join them with ``+``.
-
-    Raises
-    ------
-    InputError
-        A name that is not there.
-    """
-    shipped = _core.nominal_constellations()
-    if name not in shipped:
-        raise InputError("name", name, domain=f"one of {', '.join(shipped)}")
-    found = dict(shipped[name])
-    satellites = tuple(found.pop("satellite"))
-    indices = np.asarray(found.pop("constellation"), dtype=np.int64)
-    return Orbits(satellite=satellites, constellation=indices, **found)
-
-
-def nominal(
-    semi_major_m: ArrayLike,
-    inclination_rad: ArrayLike,
-    node_rad: ArrayLike,
-    latitude_argument_rad: ArrayLike,
-    *,
-    eccentricity: ArrayLike = 0.0,
-    perigee_rad: ArrayLike = 0.0,
-    system: str = "gps",
-) -> Orbits:
-    """Orbits from elements of your own.
-
-    Parameters
-    ----------
-    semi_major_m : array_like
-        Semi-major axis. [m]
-    inclination_rad, node_rad : array_like
-        Inclination, and longitude of the ascending node at the reference instant. [rad]
-    latitude_argument_rad : array_like
-        Argument of latitude at the reference instant; for an ellipse the mean anomaly plus ``perigee_rad``. [rad]
-    eccentricity : array_like, optional
-        0 for a circle. [1]
-    perigee_rad : array_like, optional
-        Argument of perigee. [rad]
-    system : str, optional
-        One of :data:`CONSTELLATIONS`.
-
-    Raises
-    ------
-    InputError
-        Shapes that do not broadcast, or a system that is not there. Elements are checked where they are used.
-    """
-    if system not in CONSTELLATIONS:
-        raise InputError("system", system, domain=f"one of {', '.join(CONSTELLATIONS)}")
-    _, (a, i, node, latitude, e, perigee) = flatten(
-        semi_major_m=(semi_major_m, ()),
-        inclination_rad=(inclination_rad, ()),
-        node_rad=(node_rad, ()),
-        latitude_argument_rad=(latitude_argument_rad, ()),
-        eccentricity=(eccentricity, ()),
-        perigee_rad=(perigee_rad, ()),
-    )
-    index = CONSTELLATIONS.index(system)
-    names = tuple(f"{_LETTERS[index]}{k + 1:02d}" for k in range(a.size))
-    return Orbits(names, np.full(a.size, index, dtype=np.int64), a, e, i, node, perigee, latitude - perigee)
 
 
 def directions(

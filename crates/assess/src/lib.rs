@@ -15,5 +15,6 @@ pub mod plausible;
 pub mod positions;
 pub mod sbas;
 pub mod sky;
+pub mod smoothing;
 pub mod states;
 pub mod tse;

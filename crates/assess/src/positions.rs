@@ -2,13 +2,17 @@
 
 use navbound_core::frame::ecef_from_geodetic;
 use navbound_core::geometry::atmosphere::ionosphere_factor;
-use navbound_core::geometry::broadcast::{Broadcast, clock_polynomial};
+use navbound_core::geometry::broadcast::{Broadcast, SatelliteState, clock_polynomial};
 use navbound_core::quantity::{GpsTime, Metres, Unavailable};
+use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};
 use navbound_core::solution::point::{self, Fix, Range, Settings};
+use navbound_formats::precise::{Precise, Tables};
 use navbound_formats::rinex::{Navigation, Observations};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+
+use crate::smoothing::{self, Form, Smoothed};
 
 /// Epochs in one task of the pool: about 0.5 ms of work. The first of them begins from nothing, each other from the position before it,
 /// so results depend on this number (by less than 2 mm) and not on the number of threads.
@@ -31,6 +35,8 @@ pub struct Job {
     pub systems: Vec<Constellation>,
     /// Which pseudoranges.
     pub signals: Signals,
+    /// Carrier smoothing of the pseudoranges, or none: its form and time constant.
+    pub smoothing: Option<(Form, Smoothing)>,
     /// How.
     pub settings: Settings,
 }
@@ -44,6 +50,8 @@ pub struct Positions {
     pub unused: BTreeMap<&'static str, usize>,
     /// Pseudoranges that were used, by constellation: codes in order of preference that the file has.
     pub codes: BTreeMap<char, Vec<String>>,
+    /// Share of the pseudoranges that the carrier smoothed, those at the beginning of an arc left out; `None` without smoothing.
+    pub smoothed_share: Option<f64>,
 }
 
 /// One frequency of a constellation: columns of the observation table.
@@ -68,10 +76,12 @@ struct Records<'a> {
     /// Of each record; `None` where it describes no orbit.
     orbits: Vec<Option<Broadcast>>,
     ranges: Vec<std::ops::Range<usize>>,
+    /// Orbits and clocks to use instead of the records' own.
+    precise: Option<Tables<'a>>,
 }
 
 impl<'a> Records<'a> {
-    fn new(navigation: &'a Navigation) -> Self {
+    fn new(navigation: &'a Navigation, precise: Option<&'a Precise>) -> Self {
         let mut ranges = vec![0..0; SYSTEMS * 100 * 5];
         for (k, e) in navigation.ephemerides.iter().enumerate() {
             if let Some(range) = ranges.get_mut(Self::slot(e.satellite, e.message)) {
@@ -79,10 +89,29 @@ impl<'a> Records<'a> {
             }
         }
         let orbits = navigation.ephemerides.iter().map(|e| Broadcast::new(e).ok()).collect();
-        Self { navigation, orbits, ranges }
+        Self { navigation, orbits, ranges, precise: precise.map(Precise::tables) }
     }
     fn slot(satellite: SatelliteId, message: Message) -> usize {
         (satellite.constellation.index() * 100 + usize::from(satellite.number)) * 5 + message as usize
+    }
+    /// Where the satellite was and what its clock showed when the signal left.
+    fn state(&self, satellite: SatelliteId, orbit: Option<&Broadcast>, sent: GpsTime) -> Result<SatelliteState, Unused> {
+        match &self.precise {
+            None => Ok(orbit.ok_or(Unused::NoOrbit)?.state(sent)),
+            Some(tables) => tables.state(satellite, sent).map_err(|_| Unused::NotTabulated),
+        }
+    }
+    /// Group delay against the clock in use \[s\]: broadcast clocks are those of the message, tabulated ones those of an ionosphere-free
+    /// pair of codes, by convention of the IGS.
+    fn group_delay(&self, e: &Ephemeris, carrier: Carrier) -> Option<f64> {
+        let own = e.group_delay(carrier)?;
+        if self.precise.is_none() {
+            return Some(own);
+        }
+        let pair = clock_pair(e.satellite.constellation);
+        let delays = [e.group_delay(pair[0])?, e.group_delay(pair[1])?];
+        let factors = ionosphere_free(pair);
+        Some(own - factors[0] * delays[0] - factors[1] * delays[1])
     }
     /// The record and its orbit.
     fn nearest(&self, satellite: SatelliteId, messages: &[Message], time: GpsTime) -> Option<(&'a Ephemeris, Option<&Broadcast>)> {
@@ -94,19 +123,24 @@ impl<'a> Records<'a> {
     }
 }
 
-/// Positions of every epoch.
-pub fn positions(observations: &Observations, navigation: &Navigation, job: &Job) -> Positions {
+/// Positions of every epoch, with broadcast orbits and clocks or `precise` ones; health and group delays are always those broadcast.
+pub fn positions(observations: &Observations, navigation: &Navigation, precise: Option<&Precise>, job: &Job) -> Positions {
     let plans: [Option<Plan>; SYSTEMS] = std::array::from_fn(|i| {
         let constellation = Constellation::from_index(i).filter(|c| job.systems.contains(c))?;
-        Some(Plan::new(constellation, job.signals, observations)).filter(|p| p.bands.iter().all(|b| !b.columns.is_empty()))
+        Some(Plan::new(constellation, job.signals, precise.is_some(), observations))
+            .filter(|p| p.bands.iter().all(|b| !b.columns.is_empty()))
     });
-    let records = Records::new(navigation);
+    let records = Records::new(navigation, precise);
+    let smoothed = job.smoothing.map(|(form, how)| {
+        let codes = plans.each_ref().map(|plan| plan.iter().flat_map(|p| &p.bands).flat_map(|b| b.columns.iter().map(|c| c.0)).collect());
+        smoothing::smooth(observations, &codes, form, &how)
+    });
     let epochs: Vec<usize> = (0..observations.n_epochs()).collect();
     let task = |epochs: &[usize]| {
         let (mut ranges, mut last, mut unused) = (Vec::new(), None, [0_usize; REASONS.len()]);
         let mut fixes = Vec::with_capacity(epochs.len());
         for epoch in epochs {
-            collect(observations, &records, &plans, *epoch, &mut ranges, &mut unused);
+            collect(observations, smoothed.as_ref(), &records, &plans, *epoch, &mut ranges, &mut unused);
             let fix = point::solve_near(&ranges, observations.time[*epoch], &job.settings, last.as_ref());
             last = fix.as_ref().ok().map(|f: &Fix| ecef_from_geodetic(&f.position)).or(last);
             fixes.push(fix);
@@ -114,7 +148,8 @@ pub fn positions(observations: &Observations, navigation: &Navigation, job: &Job
         (fixes, unused)
     };
     let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
-    let mut found = Positions { codes: codes(&plans, observations), ..Positions::default() };
+    let smoothed_share = smoothed.as_ref().map(Smoothed::share);
+    let mut found = Positions { codes: codes(&plans, observations), smoothed_share, ..Positions::default() };
     for (fixes, unused) in outcomes {
         found.fixes.extend(fixes);
         for (reason, n) in REASONS.iter().zip(unused).filter(|(_, n)| *n > 0) {
@@ -125,8 +160,14 @@ pub fn positions(observations: &Observations, navigation: &Navigation, job: &Job
 }
 
 /// Why a satellite in the file is not in the solution, before geometry is looked at.
-const REASONS: [&str; 5] =
-    ["no pseudorange", "no broadcast record fresh enough", "unhealthy", "accuracy not predicted", "record describes no orbit"];
+const REASONS: [&str; 6] = [
+    "no pseudorange",
+    "no broadcast record fresh enough",
+    "unhealthy",
+    "accuracy not predicted",
+    "record describes no orbit",
+    "no precise orbit or clock around this time",
+];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Unused {
@@ -135,14 +176,17 @@ enum Unused {
     Unhealthy,
     Unpredicted,
     NoOrbit,
+    NotTabulated,
 }
 
 impl Plan {
-    fn new(constellation: Constellation, signals: Signals, observations: &Observations) -> Self {
+    fn new(constellation: Constellation, signals: Signals, precise: bool, observations: &Observations) -> Self {
         // Attributes by preference: what most receivers track, then combined and encrypted forms.
         let (bands, messages): (&[(u8, &[u8])], &'static [Message]) = match (constellation, signals) {
             (Constellation::Gps, Signals::Single) => (&[(b'1', b"CWPXLSY")], &[Message::Lnav]),
             (Constellation::Gps, Signals::Dual) => (&[(b'1', b"CWPXLSY"), (b'2', b"WPLXSCY")], &[Message::Lnav]),
+            // Tabulated clocks of Galileo are those of E1 and E5a, whose group delays are in F/NAV.
+            (Constellation::Galileo, Signals::Single) if precise => (&[(b'1', b"CXBZA")], &[Message::Fnav]),
             (Constellation::Galileo, Signals::Single) => (&[(b'1', b"CXBZA")], &[Message::Inav, Message::Fnav]),
             (Constellation::Galileo, Signals::Dual) => (&[(b'1', b"CXBZA"), (b'5', b"QXI")], &[Message::Fnav]),
             (Constellation::BeiDou, Signals::Single) => (&[(b'2', b"IXQ")], &[Message::D1, Message::D2]),
@@ -174,11 +218,11 @@ impl Plan {
         }
         let sent = earlier(time, pseudorange / SPEED_OF_LIGHT_MPS);
         let sent = earlier(sent, clock_polynomial(e, sent));
-        let state = orbit.ok_or(Unused::NoOrbit)?.state(sent);
+        let state = records.state(satellite, orbit, sent)?;
         let (factors, ionosphere) = combination(measured);
         let mut corrected = SPEED_OF_LIGHT_MPS * state.clock_s;
         for (factor, m) in factors.iter().zip(measured) {
-            corrected += factor * (m.1 - SPEED_OF_LIGHT_MPS * e.group_delay(m.0).ok_or(Unused::NoRecord)?);
+            corrected += factor * (m.1 - SPEED_OF_LIGHT_MPS * records.group_delay(e, m.0).ok_or(Unused::NoRecord)?);
         }
         Ok(Range {
             satellite,
@@ -189,7 +233,8 @@ impl Plan {
             cn0_dbhz: cn0,
             ionosphere_factor: ionosphere,
             noise_factor: factors.iter().map(|f| f * f).sum::<f64>().sqrt(),
-            ure_factor: (e.accuracy_m / nominal_accuracy(satellite.constellation)).max(1.0),
+            // What the satellite says of its own orbit says nothing of a tabulated one.
+            ure_factor: if records.precise.is_some() { 1.0 } else { (e.accuracy_m / nominal_accuracy(satellite.constellation)).max(1.0) },
         })
     }
 }
@@ -210,12 +255,24 @@ impl Band {
 /// ```
 fn combination(measured: &[(Carrier, f64, f64, f64)]) -> ([f64; 2], f64) {
     match measured {
-        [(first, ..), (second, ..)] => {
-            let [f1, f2] = [first, second].map(|c| c.frequency_hz() * c.frequency_hz());
-            ([f1 / (f1 - f2), -f2 / (f1 - f2)], 0.0)
-        }
+        [(first, ..), (second, ..)] => (ionosphere_free([*first, *second]), 0.0),
         [(only, ..)] => ([1.0, 0.0], ionosphere_factor(*only)),
         _ => ([0.0; 2], 0.0),
+    }
+}
+
+/// Factors of a pair's pseudoranges that cancel the ionosphere to first order.
+fn ionosphere_free(pair: [Carrier; 2]) -> [f64; 2] {
+    let [f1, f2] = pair.map(|c| c.frequency_hz() * c.frequency_hz());
+    [f1 / (f1 - f2), -f2 / (f1 - f2)]
+}
+
+/// Carriers of the codes that clocks of the IGS and its analysis centres refer to (standard: IGS conventions of the products).
+const fn clock_pair(constellation: Constellation) -> [Carrier; 2] {
+    match constellation {
+        Constellation::Galileo => [Carrier::L1, Carrier::L5],
+        Constellation::BeiDou => [Carrier::B1I, Carrier::B3I],
+        _ => [Carrier::L1, Carrier::L2],
     }
 }
 
@@ -233,6 +290,7 @@ fn earlier(time: GpsTime, seconds: f64) -> GpsTime {
 
 fn collect(
     observations: &Observations,
+    smoothed: Option<&Smoothed>,
     records: &Records<'_>,
     plans: &[Option<Plan>; SYSTEMS],
     epoch: usize,
@@ -243,7 +301,12 @@ fn collect(
     for k in observations.satellites(epoch) {
         let satellite = observations.satellite[k];
         let Some(plan) = &plans[satellite.constellation.index()] else { continue };
-        match plan.range(satellite, observations.values(k), records, observations.time[epoch]) {
+        match plan.range(
+            satellite,
+            smoothed.map_or_else(|| observations.values(k), |s| s.values(observations, k)),
+            records,
+            observations.time[epoch],
+        ) {
             Ok(range) => ranges.push(range),
             Err(reason) => unused[reason as usize] += 1,
         }

@@ -36,6 +36,7 @@ const LAYERS: [&[&str]; 5] = [
         "evaluation",
         "verify",
         "read",
+        "write",
         "scenario",
         "simulate",
     ],

@@ -1,10 +1,13 @@
 //! Bytes to navigation records. Errors carry line, field and the text found; the caller knows the file.
 
+pub mod almanac;
 pub mod packed;
+pub mod precise;
 pub mod refusal;
 pub mod rinex;
 pub mod rtklib;
 pub mod sbas;
+pub mod sp3;
 pub mod time;
 
 pub use refusal::{Refusal, Unreadable};

@@ -74,6 +74,14 @@ pub fn from_calendar(c: Calendar, scale: Scale) -> Option<GpsTime> {
     Some(GpsTime::from_nanoseconds(gps(minute).nanoseconds() + c.nanoseconds - offset))
 }
 
+/// Calendar date of a GPS time, in GPS time; `None` outside 1980 to 2100.
+pub fn to_calendar(time: GpsTime) -> Option<Calendar> {
+    let epoch = Epoch::from_gpst_duration(Duration::from_truncated_nanoseconds(time.nanoseconds()));
+    let (year, month, day, hour, minute, second, nanoseconds) = epoch.to_gregorian(TimeScale::GPST);
+    let nanoseconds = i64::from(second) * 1_000_000_000 + i64::from(nanoseconds);
+    (1980..=2100).contains(&year).then_some(Calendar { year, month, day, hour, minute, nanoseconds })
+}
+
 fn gps(epoch: Epoch) -> GpsTime {
     GpsTime::from_nanoseconds(truncated(epoch.to_gpst_duration()))
 }
@@ -126,6 +134,17 @@ mod tests {
     fn beidou_time_begins_with_2006_in_utc() {
         let c = Calendar { year: 2006, month: 1, day: 1, hour: 0, minute: 0, nanoseconds: 0 };
         assert_eq!(from_calendar(c, Scale::BeiDou), from_calendar(c, Scale::Utc));
+    }
+
+    #[test]
+    fn dates_of_gps_times_are_those_they_came_from() {
+        let c = Calendar { year: 2016, month: 12, day: 31, hour: 23, minute: 59, nanoseconds: 59_000_000_001 };
+        let time = from_calendar(c, Scale::Gps).unwrap();
+        assert_eq!(to_calendar(time), Some(c));
+        // GPS time knows no leap second: a second and a day later it is 2017-01-02.
+        let next = to_calendar(time.plus_seconds(86_401.0)).unwrap();
+        assert_eq!((next.year, next.month, next.day, next.nanoseconds), (2017, 1, 2, 1));
+        assert_eq!(to_calendar(GpsTime::from_nanoseconds(i64::MAX)), None);
     }
 
     #[test]

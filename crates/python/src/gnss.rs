@@ -37,7 +37,7 @@ fn slots<'py>(py: Python<'py>, slots: &[Slot]) -> PyResult<Bound<'py, PyDict>> {
     Ok(d)
 }
 
-/// Azimuths and elevations, one row an epoch and one column an orbit; orbits are rows of six elements.
+/// Azimuths and elevations, one row an epoch and one column an orbit; orbits are rows of seven elements.
 #[pyfunction]
 fn satellite_directions<'py>(
     py: Python<'py>,
@@ -56,9 +56,9 @@ fn satellite_directions<'py>(
     Ok(d)
 }
 
-fn orbit(&[a, e, i, node, perigee, anomaly]: &[f64; 6]) -> Elements {
+fn orbit(&[a, e, i, node, perigee, anomaly, node_rate_radps]: &[f64; 7]) -> Elements {
     let [inclination, node, perigee, mean_anomaly] = [i, node, perigee, anomaly].map(Radians::new);
-    Elements { semi_major: Metres::new(a), eccentricity: e, inclination, node, perigee, mean_anomaly }
+    Elements { semi_major: Metres::new(a), eccentricity: e, inclination, node, node_rate_radps, perigee, mean_anomaly }
 }
 
 /// Covariances of least-squares positions, nine numbers an epoch, NaN where there is none; `n_sv`; `reason`, empty where there is one.

@@ -11,6 +11,7 @@ mod evaluation;
 mod gnss;
 mod kpi;
 mod methods;
+mod orbits;
 mod path;
 mod positions;
 mod read;
@@ -37,6 +38,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     gnss::register(m)?;
     kpi::register(m)?;
     dme::register(m)?;
+    orbits::register(m)?;
     path::register(m)?;
     positions::register(m)?;
     simulate::register(m)?;

@@ -1,9 +1,12 @@
 //! Receivers' files and the positions solved from them.
 
 use crate::error::{format_error, input_error};
+use crate::orbits::PreciseOrbits;
 use navbound_assess::positions::{Job, Positions, Signals, positions};
+use navbound_assess::smoothing::Form;
 use navbound_core::frame::{self, EcefPosition};
 use navbound_core::quantity::{OutOfDomain, Radians};
+use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Constellation, Klobuchar};
 use navbound_core::solution::RangeError;
 use navbound_core::solution::point::{Fix, Settings};
@@ -178,7 +181,7 @@ impl Navigation {
 
 /// Positions of every epoch as columns of the epoch table, with counts of what was not used.
 #[pyfunction]
-#[pyo3(signature = (observations, navigation, systems, *, dual, broadcast_ionosphere, mask_rad, false_alarm, most_excluded))]
+#[pyo3(signature = (observations, navigation, systems, *, dual, broadcast_ionosphere, mask_rad, false_alarm, most_excluded, precise, smoothing_s, divergence_free))]
 #[expect(clippy::too_many_arguments, reason = "one setting each, named by the caller")]
 fn solve_positions<'py>(
     py: Python<'py>,
@@ -190,23 +193,37 @@ fn solve_positions<'py>(
     mask_rad: f64,
     false_alarm: f64,
     most_excluded: usize,
+    precise: Option<&PreciseOrbits>,
+    smoothing_s: Option<f64>,
+    divergence_free: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
+    if let Some(window) = smoothing_s {
+        within("smoothing_s", window, "s", "(0, 86400]", window > 0.0 && window <= 86_400.0)?;
+    }
     within("mask_rad", mask_rad, "rad", "[0, pi/2)", (0.0..core::f64::consts::FRAC_PI_2).contains(&mask_rad))?;
     within("false_alarm", false_alarm, "1", "(0, 1)", false_alarm > 0.0 && false_alarm < 1.0)?;
     let settings = Settings {
         mask: Radians::new(mask_rad),
         ionosphere: navigation.records.klobuchar_gps.filter(|_| broadcast_ionosphere),
-        errors: RangeError::CALIBRATED,
+        errors: weights(precise),
         false_alarm,
         most_excluded,
     };
     let job = Job {
         systems: systems.bytes().filter_map(Constellation::from_letter).collect(),
         signals: if dual { Signals::Dual } else { Signals::Single },
+        smoothing: smoothing_s.map(|window| (if divergence_free { Form::DivergenceFree } else { Form::Single }, Smoothing::over(window))),
         settings,
     };
-    let found = py.detach(|| positions(&observations.0, &navigation.records, &job));
-    table(py, &found)
+    let found = py.detach(|| positions(&observations.0, &navigation.records, precise.map(PreciseOrbits::tables), &job));
+    let d = table(py, &found)?;
+    d.set_item("weights", weights(precise).name)?;
+    d.set_item("smoothed_share", found.smoothed_share)?;
+    Ok(d)
+}
+
+const fn weights(precise: Option<&PreciseOrbits>) -> RangeError {
+    if precise.is_some() { RangeError::PRECISE } else { RangeError::CALIBRATED }
 }
 
 fn within(argument: &'static str, value: f64, unit: &'static str, domain: &'static str, good: bool) -> PyResult<()> {
@@ -259,7 +276,6 @@ fn table<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, PyDict>
     d.set_item("reason", found.fixes.iter().map(reason).collect::<Vec<_>>())?;
     d.set_item("unused", found.unused.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect::<BTreeMap<_, _>>())?;
     d.set_item("codes", found.codes.clone())?;
-    d.set_item("weights", RangeError::CALIBRATED.name)?;
     Ok(d)
 }
 

@@ -1,9 +1,11 @@
 //! Readers, and what recorded positions are checked for.
 
 use crate::error::{format_error, input_error};
+use nalgebra::Matrix3;
 use navbound_assess::error::navigation_errors;
 use navbound_assess::plausible::{Finding, Limits, Report, judge};
-use navbound_core::quantity::{GpsTime, OutOfDomain};
+use navbound_core::frame::{Covariance, Ecef, LatLon};
+use navbound_core::quantity::{GpsTime, OutOfDomain, Radians};
 use navbound_formats::{rtklib, time};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -61,6 +63,54 @@ fn gps_from_week_ns<'py>(
         .map(|(i, (w, tow))| time::from_week(*w, *tow).map(|t| t.nanoseconds()).ok_or_else(|| input_error(beyond(*w), Some(i))))
         .collect();
     Ok(times?.into_pyarray(py))
+}
+
+/// Covariances (n, 6) east-north-up as [ee, en, nn, eu, nu, uu] of Earth-fixed ones (n, 6) as [xx, xy, yy, xz, yz, zz] \[m²\], at places
+/// (n, 3): latitude, longitude \[rad\], height \[m\].
+#[pyfunction]
+fn enu_covariance<'py>(
+    py: Python<'py>,
+    ecef_m2: PyReadonlyArray2<'py, f64>,
+    place: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (own, places) = (ecef_m2.as_slice()?.as_chunks::<6>().0, triples(&place)?);
+    let turn = |(index, (c, [lat, lon, _])): (usize, (&[f64; 6], &[f64; 3]))| {
+        let point = LatLon::new(Radians::new(*lat), Radians::new(*lon)).map_err(|e| input_error(e, Some(index)))?;
+        let [xx, xy, yy, xz, yz, zz] = *c;
+        let m = *Covariance::<Ecef>::claim_symmetric(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)).to_enu(&point).matrix();
+        Ok([m.m11, m.m12, m.m22, m.m13, m.m23, m.m33])
+    };
+    let turned: PyResult<Vec<[f64; 6]>> = own.iter().zip(places).enumerate().map(turn).collect();
+    rows(py, &turned?)
+}
+
+/// Positions as the text of an RTKLIB solution file; covariances as [ee, en, nn, eu, nu, uu].
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one array a column")]
+fn write_rtklib<'py>(
+    py: Python<'py>,
+    program: &str,
+    time_ns: PyReadonlyArray1<'py, i64>,
+    lat_rad: PyReadonlyArray1<'py, f64>,
+    lon_rad: PyReadonlyArray1<'py, f64>,
+    h_m: PyReadonlyArray1<'py, f64>,
+    cov_m2: PyReadonlyArray2<'py, f64>,
+    n_sv: PyReadonlyArray1<'py, u32>,
+    quality: u8,
+) -> PyResult<String> {
+    let time = time_ns.as_slice()?.iter().map(|t| GpsTime::from_nanoseconds(*t)).collect();
+    let n = time_ns.as_slice()?.len();
+    let solutions = rtklib::Solutions {
+        time,
+        lat_rad: lat_rad.as_slice()?.to_vec(),
+        lon_rad: lon_rad.as_slice()?.to_vec(),
+        h_m: h_m.as_slice()?.to_vec(),
+        cov_m2: cov_m2.as_slice()?.as_chunks::<6>().0.to_vec(),
+        n_sv: n_sv.as_slice()?.to_vec(),
+        quality: vec![quality; n],
+        ..rtklib::Solutions::default()
+    };
+    py.detach(|| rtklib::write(&solutions, program)).map_err(|(index, e)| input_error(e, Some(index)))
 }
 
 /// Navigation error (n, 3) [m], true minus estimated, east, north, up, of positions (n, 3): latitude, longitude [rad], height [m].
@@ -144,6 +194,8 @@ fn rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bou
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(read_rtklib, m)?)?;
+    m.add_function(wrap_pyfunction!(enu_covariance, m)?)?;
+    m.add_function(wrap_pyfunction!(write_rtklib, m)?)?;
     m.add_function(wrap_pyfunction!(gps_from_unix_ns, m)?)?;
     m.add_function(wrap_pyfunction!(gps_from_week_ns, m)?)?;
     m.add_function(wrap_pyfunction!(unix_from_gps_ns, m)?)?;

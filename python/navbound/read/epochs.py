@@ -6,10 +6,12 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
 import polars as pl
 
 from navbound import _core
 from navbound.errors import FormatError
+from navbound.read import receivers
 from navbound.read.columns import LEVEL_QUANTITIES, QUANTITIES, UNITS, Assignment, Column, assign
 from navbound.read.rejections import Rejections
 from navbound.read.source import Source, load
@@ -56,7 +58,9 @@ class Reading:
 
 
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, levels: bool = False) -> Reading:
-    """Read a recorded track: CSV, JSON, Parquet (each also gzipped) or an RTKLIB solution file.
+    """Read a recorded track: CSV, JSON, Parquet, an RTKLIB solution file, or the log of a receiver (each also gzipped).
+
+    Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183; they need the extra ``receivers``.
 
     Parameters
     ----------
@@ -72,11 +76,13 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, levels: 
     FormatError
         A file that cannot be interpreted, or of whose rows more than a tenth is malformed.
     InputError
-        A declared column that names no known quantity or unit.
+        A declared column that names no known quantity or unit; a log whose decoder is not installed.
     """
     source = load(path)
     if source.kind == "rtklib":
         return _rtklib(source)
+    if source.kind in {"ubx", "sbf", "novatel", "nmea"}:
+        return _log(source, source.kind)
     found = table(source)
     mapping = assign(found.columns, columns, source.path, levels=levels)
     return _epochs(source, found, mapping, () if levels else _REQUIRED)
@@ -130,6 +136,24 @@ def _rtklib(source: Source) -> Reading:
     _not_empty(source, out)
     empty = [c for c in out.columns if out[c].is_null().all()]
     return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes)
+
+
+def _log(source: Source, kind: receivers.Kind) -> Reading:
+    log = receivers.read(source, kind)
+    rejections = Rejections(source.path, "record")
+    for reason, (count, first, example, damaged) in log.left_out.items():
+        rejections.add(reason, count, first, example, malformed=damaged)
+    rejections.refuse_if_too_many(log.n_rows)
+    out = pl.DataFrame(log.rows, infer_schema_length=None)
+    _not_empty(source, out)
+    if "unix_ns" in out.columns:
+        gps = pl.Series("time_ns", _core.gps_from_unix_ns(np.ascontiguousarray(out["unix_ns"].fill_null(0).to_numpy(), dtype=np.int64)))
+        known = pl.coalesce("time_ns", gps) if "time_ns" in out.columns else gps
+        out = out.with_columns(known.alias("time_ns")).drop("unix_ns")
+    out = out.rename({"record": LINE}).with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
+    out = _in_order(out, rejections, log.notes)
+    empty = [c for c in out.columns if out[c].is_null().all()]
+    return Reading(out.drop(LINE, *empty), source.record(log.n_rows), rejections.records, notes=log.notes, columns=log.columns)
 
 
 def _not_empty(source: Source, out: pl.DataFrame) -> None:

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Literal
 
 from navbound.errors import FormatError
+from navbound.read import receivers
 from navbound.run.records import InputFile
 
-Kind = Literal["csv", "json", "parquet", "rtklib"]
+Kind = Literal["csv", "json", "parquet", "rtklib", "ubx", "sbf", "novatel", "nmea"]
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,9 @@ class Source:
         start = self.content[:4096].removeprefix(b"\xef\xbb\xbf").lstrip()
         if start.startswith((b"{", b"[")):
             return "json"
-        return "rtklib" if start.startswith(b"%") else "csv"
+        if start.startswith(b"%"):
+            return "rtklib"
+        return receivers.kind(self.content) or "csv"
 
     @property
     def stem(self) -> str:

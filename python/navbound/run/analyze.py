@@ -45,7 +45,7 @@ def material(
     Parameters
     ----------
     files : path or sequence of paths
-        Tables (CSV, JSON, Parquet, also gzipped) or RTKLIB solution files.
+        Tables (CSV, JSON, Parquet), RTKLIB solution files, or logs of receivers; all also gzipped.
     requirement : str
         The navigation specification in words.
     rnp_m : float

@@ -15,7 +15,7 @@ const MU_GPS: f64 = 3.986_005e14;
 /// Of Galileo and BeiDou.
 const MU_OTHERS: f64 = 3.986_004_418e14;
 /// Earth's rate of rotation: GPS and Galileo \[rad/s\].
-const EARTH_RATE: f64 = 7.292_115_146_7e-5;
+pub(super) const EARTH_RATE: f64 = 7.292_115_146_7e-5;
 /// BeiDou (CGCS2000).
 const EARTH_RATE_BEIDOU: f64 = 7.292_115_0e-5;
 /// Tilt of the frame in which BeiDou's geostationary orbits are fitted: -5 degrees.

@@ -4,6 +4,7 @@ pub mod atmosphere;
 pub mod broadcast;
 mod nominal;
 mod orbit;
+pub mod precise;
 mod sight;
 
 pub use nominal::{BEIDOU, GPS, Slot};

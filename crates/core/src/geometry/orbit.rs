@@ -1,6 +1,6 @@
 //! Kepler orbits seen from the turning Earth.
 //!
-//! Source: IS-GPS-200, 20.3.3.4.3 (user algorithm for ephemeris determination), without its correction terms; provenance: standard.
+//! Source: IS-GPS-200, 20.3.3.4.3 (user algorithm for ephemeris determination), without its harmonic corrections; provenance: standard.
 
 use crate::frame::EcefPosition;
 use crate::quantity::{Metres, OutOfDomain, Radians};
@@ -23,6 +23,8 @@ pub struct Elements {
     pub inclination: Radians,
     /// Longitude of the ascending node at the reference instant (the right ascension counted from Greenwich).
     pub node: Radians,
+    /// Rate of right ascension of the node \[rad/s\]; 0 for an orbit that keeps its plane among the stars.
+    pub node_rate_radps: f64,
     /// Argument of perigee; 0 for a circle.
     pub perigee: Radians,
     /// Mean anomaly at the reference instant; for a circle without perigee the argument of latitude.
@@ -32,7 +34,24 @@ pub struct Elements {
 impl Elements {
     /// A circular orbit.
     pub const fn circular(semi_major: Metres, inclination: Radians, node: Radians, latitude_argument: Radians) -> Self {
-        Self { semi_major, eccentricity: 0.0, inclination, node, perigee: Radians::new(0.0), mean_anomaly: latitude_argument }
+        let perigee = Radians::new(0.0);
+        Self { semi_major, eccentricity: 0.0, inclination, node, node_rate_radps: 0.0, perigee, mean_anomaly: latitude_argument }
+    }
+    /// Longitude of the node at a time of week, where its right ascension counts from Greenwich at the start of that week.
+    pub fn node_from_week_start(right_ascension: Radians, time_of_week_s: f64) -> Radians {
+        Radians::new(right_ascension.rad() - EARTH_RATE * time_of_week_s)
+    }
+    /// The same orbit with a later (or earlier) reference instant.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] as [`Orbit::new`].
+    pub fn moved(self, seconds: f64) -> Result<Self, OutOfDomain> {
+        let orbit = Orbit::new(self)?;
+        Ok(Self {
+            node: Radians::new(self.node.rad() + (self.node_rate_radps - EARTH_RATE) * seconds),
+            mean_anomaly: Radians::new(self.mean_anomaly.rad() + orbit.mean_motion * seconds),
+            ..self
+        })
     }
 }
 
@@ -65,6 +84,7 @@ impl Orbit {
             ("node_rad", elements.node),
             ("perigee_rad", elements.perigee),
             ("mean_anomaly_rad", elements.mean_anomaly),
+            ("node_rate_radps", Radians::new(elements.node_rate_radps)),
         ];
         for (argument, angle) in angles {
             if !angle.rad().is_finite() {
@@ -77,13 +97,13 @@ impl Orbit {
     /// Position in Earth-fixed axes, seconds after the reference instant.
     ///
     /// ```text
-    /// M = M0 + sqrt(mu / a^3) t      E - e sin E = M      node = node0 - Earth rate * t
+    /// M = M0 + sqrt(mu / a^3) t      E - e sin E = M      node = node0 + (node rate - Earth rate) t
     /// ```
     pub fn position(&self, seconds: f64) -> EcefPosition {
         let el = &self.elements;
         let (radius, latitude_argument) = self.in_plane(el.mean_anomaly.rad() + self.mean_motion * seconds);
         let (su, cu) = sin_cos(latitude_argument);
-        let (sn, cn) = sin_cos(el.node.rad() - EARTH_RATE * seconds);
+        let (sn, cn) = sin_cos(el.node.rad() + (el.node_rate_radps - EARTH_RATE) * seconds);
         let (si, ci) = self.tilt;
         EcefPosition::from_vector(radius * Vector3::new(cu * cn - su * ci * sn, cu * sn + su * ci * cn, su * si))
     }

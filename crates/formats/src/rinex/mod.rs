@@ -2,14 +2,16 @@
 //!
 //! Source: RINEX 2.10, 2.11, 3.05 and 4.00 (IGS/RTCM), compact RINEX 1.0 and 3.0 (Hatanaka 2008); provenance: standard.
 
+pub mod clock;
 mod compact;
-mod header;
+pub(crate) mod header;
 mod heading;
 pub mod navigation;
-mod number;
+pub(crate) mod number;
 pub mod observation;
 mod plain;
 mod value;
 
+pub use clock::read_clocks;
 pub use navigation::{Navigation, read_navigation};
 pub use observation::{Code, Observations, read_observations};

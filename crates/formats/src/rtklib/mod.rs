@@ -6,8 +6,10 @@
 
 mod header;
 mod row;
+mod write;
 
 pub use header::{Form, Layout};
+pub use write::write;
 
 use crate::refusal::{Refusal, Unreadable};
 use navbound_core::quantity::GpsTime;

@@ -1,0 +1,124 @@
+//! Pseudoranges of a recording smoothed by their carrier, channel by channel through time.
+
+use navbound_core::quantity::Metres;
+use navbound_core::signal::smoothing::{Channel, PhasePair, Smoothing, divergence_free};
+use navbound_core::signal::{Carrier, Constellation, SatelliteId};
+use navbound_formats::rinex::{Code, Observations};
+
+const SYSTEMS: usize = Constellation::ALL.len();
+/// Satellite numbers of a constellation.
+const NUMBERS: usize = 100;
+/// Loss of lock since the last epoch, bit 0 of the indicator (RINEX 3.05, table A15).
+const LOST: u8 = 1;
+
+/// Which phase goes with a code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// That of its own carrier: the ionosphere moves code and phase apart, by twice its change within the window.
+    Single,
+    /// That of two carriers, free of divergence; without a second carrier the code stays as it is.
+    DivergenceFree,
+}
+
+/// Values of a recording with its pseudoranges smoothed.
+pub struct Smoothed {
+    value: Vec<f64>,
+    n_smoothed: usize,
+    n_codes: usize,
+}
+
+impl Smoothed {
+    /// Values of a satellite, as [`Observations::values`].
+    pub fn values(&self, observations: &Observations, satellite: usize) -> &[f64] {
+        &self.value[observations.value_range(satellite)]
+    }
+    /// Share of the pseudoranges that an arc of phase supports; those that begin one are as measured.
+    pub fn share(&self) -> f64 {
+        if self.n_codes == 0 { f64::NAN } else { self.n_smoothed as f64 / self.n_codes as f64 }
+    }
+}
+
+/// A code and the phases that may go with it: columns of its constellation's values.
+struct Track {
+    code: usize,
+    own: Vec<usize>,
+    carrier: Carrier,
+    second: Vec<(usize, Carrier)>,
+}
+
+/// Where a channel stands; a change of the phase used is a loss of lock.
+#[derive(Clone, Copy, Default)]
+struct State {
+    channel: Channel,
+    pair: PhasePair,
+    used: Option<(usize, usize)>,
+}
+
+/// Smooth the given codes (columns of each constellation's values).
+pub fn smooth(observations: &Observations, codes: &[Vec<usize>; SYSTEMS], form: Form, how: &Smoothing) -> Smoothed {
+    let tracks: Vec<Vec<Track>> =
+        (0..SYSTEMS).map(|system| codes[system].iter().filter_map(|c| track(observations, system, *c)).collect()).collect();
+    let mut states: Vec<Vec<State>> = tracks.iter().map(|t| vec![State::default(); NUMBERS * t.len()]).collect();
+    let mut found = Smoothed { value: observations.value.clone(), n_smoothed: 0, n_codes: 0 };
+    for epoch in 0..observations.n_epochs() {
+        for k in observations.satellites(epoch) {
+            let satellite = observations.satellite[k];
+            let system = satellite.constellation.index();
+            let n = tracks[system].len();
+            for (j, track) in tracks[system].iter().enumerate() {
+                let Some(state) = states[system].get_mut(slot(satellite) * n + j) else { continue };
+                found.step(observations, (epoch, k), track, state, form, how);
+            }
+        }
+    }
+    found
+}
+
+fn slot(satellite: SatelliteId) -> usize {
+    usize::from(satellite.number) % NUMBERS
+}
+
+fn track(observations: &Observations, system: usize, code: usize) -> Option<Track> {
+    let constellation = Constellation::from_index(system)?;
+    let [_, band, attribute] = *observations.codes[system].get(code)?;
+    let phases = |wanted: fn(&Code, u8, u8) -> bool| {
+        let of_band = observations.codes[system].iter().enumerate().filter(move |(_, c)| c[0] == b'L' && wanted(c, band, attribute));
+        of_band.map(|(k, c)| (k, c[1]))
+    };
+    // The same signal's phase first, then any of the carrier.
+    let same = phases(|c, band, attribute| c[1] == band && c[2] == attribute);
+    let own: Vec<usize> = same.chain(phases(|c, band, attribute| c[1] == band && c[2] != attribute)).map(|(k, _)| k).collect();
+    let other = phases(|c, band, _| c[1] != band).filter_map(|(k, band)| Some((k, Carrier::from_band(constellation, band)?)));
+    let carrier = Carrier::from_band(constellation, band)?;
+    (!own.is_empty()).then(|| Track { code, own, carrier, second: other.collect() })
+}
+
+impl Smoothed {
+    fn step(&mut self, o: &Observations, (epoch, k): (usize, usize), track: &Track, state: &mut State, form: Form, how: &Smoothing) {
+        let at = o.value_range(k).start;
+        let code = self.value[at + track.code];
+        if code.is_nan() {
+            return;
+        }
+        self.n_codes += 1;
+        let there = |column: usize| !o.value[at + column].is_nan();
+        let first = track.own.iter().copied().find(|c| there(*c));
+        let second = track.second.iter().copied().find(|(c, _)| there(*c));
+        let metres = |column: usize, carrier: Carrier| Metres::new(o.value[at + column] * carrier.wavelength_m());
+        let lock = |column: usize| (o.indicator[at + column] >> 4) & LOST != 0;
+        let (phase, used, mut lost) = match (form, first, second) {
+            (Form::Single, Some(f), _) => (metres(f, track.carrier), Some((f, f)), lock(f)),
+            (Form::DivergenceFree, Some(f), Some((s, carrier))) => {
+                let (one, two) = (metres(f, track.carrier), metres(s, carrier));
+                let slipped = state.pair.slipped(o.time[epoch], Metres::new(one.m() - two.m()));
+                (divergence_free((track.carrier, one), (carrier, two)), Some((f, s)), slipped || lock(f) || lock(s))
+            }
+            _ => (Metres::new(f64::NAN), None, true),
+        };
+        lost |= o.interrupted[epoch] || used != state.used;
+        state.used = used;
+        let smoothed = state.channel.smoothed(how, o.time[epoch], Metres::new(code), phase, lost).m();
+        self.n_smoothed += usize::from(smoothed != code);
+        self.value[at + track.code] = smoothed;
+    }
+}

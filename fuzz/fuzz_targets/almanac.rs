@@ -1,0 +1,15 @@
+//! Almanacs: no panic, and every satellite that is kept has an orbit.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use navbound_core::geometry::Orbit;
+use navbound_core::quantity::GpsTime;
+use navbound_formats::almanac::{read, reference};
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(entries) = read(bytes) else { return };
+    for e in entries {
+        assert!(Orbit::new(e.elements).is_ok());
+        assert!(reference(e.week, e.time_of_week_s, Some(GpsTime::default())).is_some());
+    }
+});

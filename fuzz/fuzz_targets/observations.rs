@@ -1,0 +1,14 @@
+//! RINEX observations, plain and compact: no panic, and the table is whole.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use navbound_formats::rinex::read_observations;
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(o) = read_observations(bytes) else { return };
+    for epoch in 0..o.n_epochs() {
+        for satellite in o.satellites(epoch) {
+            assert_eq!(o.values(satellite).len(), o.codes[o.satellite[satellite].constellation.index()].len());
+        }
+    }
+});

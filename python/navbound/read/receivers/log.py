@@ -1,0 +1,119 @@
+"""What a log yields while it is decoded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from importlib import import_module
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
+
+from navbound.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+    from types import ModuleType
+
+COVARIANCE = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
+_KEPT_NOTES = 8
+
+
+@dataclass
+class Log:
+    """Rows of positions and a count of what did not become one.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    needs : str
+        Messages that hold a position.
+    rows : list of dict
+        Columns of docs/notation.md for each position, with ``time_ns`` or, before the scale is known, ``unix_ns``; and ``record``, the
+        number of the message from 1.
+    n_rows : int
+        Positions in the log, used or not.
+    left_out : dict
+        Reason to count, first record, example and whether the message is damaged.
+    columns : dict
+        Quantity to the message and field it was read from.
+    notes : list of str
+        Doubts that a person should settle.
+    """
+
+    path: Path
+    needs: str
+    rows: list[dict[str, Any]] = field(default_factory=list)
+    n_rows: int = 0
+    left_out: dict[str, tuple[int, int, str, bool]] = field(default_factory=dict)
+    columns: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    def leave_out(self, reason: str, record: int, example: str, *, damaged: bool = False) -> None:
+        """Count a position, or a damaged message, that is not used."""
+        count, first, shown, bad = self.left_out.get(reason, (0, record, example, damaged))
+        self.left_out[reason] = (count + 1, first, shown, bad)
+
+    def note(self, words: str) -> None:
+        """Add a note once."""
+        if words not in self.notes and len(self.notes) < _KEPT_NOTES:
+            self.notes.append(words)
+
+
+def package(name: str, path: Path) -> ModuleType:
+    """Import a decoder of the extra `receivers`.
+
+    Raises
+    ------
+    InputError
+        It is not installed.
+    """
+    try:
+        return import_module(name)
+    except ImportError as e:
+        domain = f"a log that needs the package {name.partition('.')[0]}: install it with pip install 'navbound[receivers]'"
+        raise InputError("files", str(path), domain=domain) from e
+
+
+def messages(
+    open_reader: Callable[[BytesIO, Callable[[Exception], None]], Iterator[Any]], content: bytes, log: Log
+) -> Iterator[tuple[int, Any]]:
+    """Numbered messages of a log; what the decoder refuses, or stumbles over, is counted as damaged.
+
+    Parameters
+    ----------
+    open_reader : callable
+        From a stream and a handler of errors to an iterator of the package.
+    content : bytes
+        The log.
+    log : Log
+        Where damage is counted.
+    """
+    stream, damaged = BytesIO(content), list[str]()
+    reader = open_reader(stream, lambda e: damaged.append(str(e)))
+    record, at = 0, -1
+    while True:
+        record += 1
+        try:
+            message = next(reader)
+        except StopIteration:
+            message = None
+        except Exception as e:
+            # A decoder of others, fed with damaged bytes, may raise anything; the stream has moved on unless it stands still.
+            damaged.append(f"{type(e).__name__}: {e}")
+            if stream.tell() == at:
+                message = None
+            else:
+                at = stream.tell()
+                continue
+        for what in damaged:
+            log.leave_out("damaged message", record, what, damaged=True)
+        damaged.clear()
+        if message is None:
+            return
+        yield record, message
+
+
+def diagonal(e_m: float, n_m: float, u_m: float) -> dict[str, float]:
+    """Covariance of standard deviations whose correlations are not known [m²]."""
+    return dict(zip(COVARIANCE, (e_m**2, 0.0, n_m**2, 0.0, 0.0, u_m**2), strict=True))

@@ -1,0 +1,148 @@
+"""NMEA 0183: GGA with GST (or GBS) of the same time of day, dated by RMC or ZDA.
+
+Source: NMEA 0183 version 4 as receivers' manuals give it, standard. GGA has no date and its height stands above the geoid.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from datetime import UTC, date, datetime, time, timedelta
+from typing import TYPE_CHECKING, Any
+
+from navbound.read.receivers.log import Log, diagonal, messages, package
+
+if TYPE_CHECKING:
+    from navbound.read.source import Source
+
+_HALF_DAY_S = 43_200
+
+
+@dataclass
+class _Fix:
+    """A GGA sentence and what belongs to it."""
+
+    record: int
+    gga: Any
+    gst: Any = None
+    gbs: Any = None
+
+
+def read(source: Source) -> Log:
+    """Decode a log of NMEA sentences; other frames between them are passed over."""
+    pynmeagps = package("pynmeagps", source.path)
+    log = Log(source.path, "GGA")
+    settings = {"quitonerror": pynmeagps.ERR_LOG}
+    fixes, dates, last = list[_Fix](), list[tuple[int, date, time]](), None
+    for record, (_, sentence) in messages(
+        lambda s, handler: pynmeagps.NMEAReader(s, errorhandler=handler, **settings), source.content, log
+    ):
+        name = getattr(sentence, "msgID", "")
+        if name == "GGA":
+            last = _Fix(record, sentence)
+            fixes.append(last)
+        elif name in {"GST", "GBS"} and last is not None and sentence.time == last.gga.time:
+            setattr(last, name.lower(), sentence)
+        elif name in {"RMC", "ZDA"}:
+            day = _day(sentence)
+            if day is not None and isinstance(sentence.time, time):
+                dates.append((record, day, sentence.time))
+    if fixes and not dates:
+        log.n_rows = len(fixes)
+        log.leave_out("no RMC or ZDA gives a date", fixes[0].record, "GGA holds a time of day only")
+        return log
+    place = 0
+    for fix in fixes:
+        # The nearest dated sentence before or after, by its number in the log.
+        while place + 1 < len(dates) and abs(dates[place + 1][0] - fix.record) <= abs(dates[place][0] - fix.record):
+            place += 1
+        _row(fix, dates[place], log)
+    log.n_rows += len(log.rows)
+    return log
+
+
+def _day(sentence: Any) -> date | None:
+    if sentence.msgID == "RMC":
+        return sentence.date if isinstance(sentence.date, date) and sentence.status == "A" else None
+    try:
+        return date(int(sentence.year), int(sentence.month), int(sentence.day))
+    except (TypeError, ValueError):
+        return None
+
+
+def _row(fix: _Fix, dated: tuple[int, date, time], log: Log) -> None:
+    gga = fix.gga
+    numbers = [_number(v) for v in (gga.lat, gga.lon, gga.alt)]
+    if not gga.quality or not isinstance(gga.time, time) or numbers[0] is None or numbers[1] is None:
+        log.n_rows += 1
+        log.leave_out("no fix", fix.record, f"quality {gga.quality}, latitude {gga.lat!r}")
+        return
+    undulation = _number(gga.sep)
+    if numbers[2] is not None and undulation is None:
+        log.note(f"{log.path.name}: GGA without the separation of the geoid: heights are left out")
+    height = None if numbers[2] is None or undulation is None else numbers[2] + undulation
+    log.columns |= {
+        "est_lat_rad": "GGA",
+        "est_lon_rad": "GGA",
+        "est_h_m": "GGA altitude + separation",
+        "time": "GGA, dated by RMC or ZDA:utc",
+    }
+    row = {
+        "record": fix.record,
+        "unix_ns": _unix_ns(gga.time, dated[1], dated[2]),
+        "est_lat_rad": math.radians(numbers[0]),
+        "est_lon_rad": math.radians(numbers[1]),
+        "est_h_m": height,
+        "n_sv": None if gga.numSV in {"", None} else int(gga.numSV),
+        "hdop": _number(gga.HDOP),
+    }
+    log.rows.append(row | _covariance(fix, log))
+
+
+def _number(value: Any) -> float | None:
+    """Field of a sentence; None where it is empty."""
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value) else None
+
+
+def _unix_ns(of_day: time, day: date, dated_at: time) -> int:
+    """Unix time [ns] of a time of day near a dated one; midnight may lie between them."""
+    apart = _seconds(of_day) - _seconds(dated_at)
+    day += timedelta(days=int(apart < -_HALF_DAY_S) - int(apart > _HALF_DAY_S))
+    midnight = int(datetime(day.year, day.month, day.day, tzinfo=UTC).timestamp())
+    whole = (of_day.hour * 60 + of_day.minute) * 60 + of_day.second
+    return (midnight + whole) * 1_000_000_000 + of_day.microsecond * 1000
+
+
+def _seconds(t: time) -> float:
+    return (t.hour * 60 + t.minute) * 60 + t.second + t.microsecond * 1e-6
+
+
+def _covariance(fix: _Fix, log: Log) -> dict[str, float]:
+    """From GST; else from the expected errors of GBS; else nothing."""
+    for sentence, names in ((fix.gst, ("stdLong", "stdLat", "stdAlt")), (fix.gbs, ("errLon", "errLat", "errAlt"))):
+        if sentence is None:
+            continue
+        sigma = [_number(getattr(sentence, name)) for name in names]
+        if sigma[0] is None or sigma[1] is None or sigma[2] is None:
+            continue
+        log.columns["covariance"] = sentence.msgID
+        found = diagonal(sigma[0], sigma[1], sigma[2])
+        if sentence is fix.gst:
+            found["cov_en_m2"] = _correlated(sentence, found["cov_ee_m2"] + found["cov_nn_m2"])
+        else:
+            log.note(f"{log.path.name}: without GST the expected errors of GBS stand for standard deviations")
+        return found
+    return {}
+
+
+def _correlated(gst: Any, trace_m2: float) -> float:
+    """East-north covariance from the ellipse of GST.
+
+    Its axes are scaled to the standard deviations beside them: the standard calls them standard deviations, some makers write 95 % axes.
+    """
+    major, minor, orient = (_number(getattr(gst, name)) for name in ("stdMajor", "stdMinor", "orient"))
+    if major is None or minor is None or orient is None or major**2 + minor**2 == 0:
+        return 0.0
+    turn = math.radians(orient)
+    share = (major**2 - minor**2) / (major**2 + minor**2)
+    return trace_m2 * share * math.sin(turn) * math.cos(turn)

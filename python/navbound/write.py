@@ -1,0 +1,98 @@
+"""The epoch table to files of other programs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import polars as pl
+
+from navbound import _core
+from navbound.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_POSITION = ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m")
+_COVARIANCE = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
+
+
+@dataclass(frozen=True)
+class Written:
+    """A file that was written.
+
+    Attributes
+    ----------
+    path : Path
+        Where.
+    n_rows : int
+        Positions in it. [1]
+    n_left_out : int
+        Epochs without a position or without a full covariance: the format has no word for what is absent. [1]
+    """
+
+    path: Path
+    n_rows: int
+    n_left_out: int
+
+
+def rtklib(epochs: pl.DataFrame, path: str | Path, *, track: str | None = None, quality: int = 5) -> Written:
+    """Write the epoch table as an RTKLIB solution file (`.pos`), which :func:`navbound.read.read` reads back.
+
+    Parameters
+    ----------
+    epochs : DataFrame
+        Epoch table with time, position and the six columns of the covariance; ``n_sv`` where it has it. Velocities are not written.
+    path : str or Path
+        The file.
+    track : str, optional
+        Which track; needed where the table holds several.
+    quality : int, optional
+        The program's word for the kind of position: 1 fix, 2 float, 3 SBAS, 4 differential, 5 single, 6 precise point.
+
+    Returns
+    -------
+    Written
+        Latitude and longitude are rounded to 1e-9 degrees, height and the roots of the covariance to 0.1 mm.
+
+    Raises
+    ------
+    InputError
+        Columns that are missing, several tracks, a quality that is none, a number outside its domain, or not one epoch to write.
+    """
+    missing = [c for c in (*_POSITION, *_COVARIANCE) if c not in epochs.columns]
+    if missing:
+        raise InputError("epochs", f"a table without {', '.join(missing)}", domain="a table with time, position and covariance")
+    if quality not in range(1, 8):
+        raise InputError("quality", quality, "1", "[1, 7]")
+    tracks = epochs["track"].unique(maintain_order=True).to_list() if "track" in epochs.columns else []
+    if track is not None:
+        if track not in tracks:
+            raise InputError("track", track, domain=f"one of {', '.join(map(str, tracks))}")
+        epochs = epochs.filter(pl.col("track") == track)
+    elif len(tracks) > 1:
+        raise InputError("track", None, domain=f"one of {', '.join(map(str, tracks[:8]))}: a solution file holds one track")
+    there = pl.all_horizontal(pl.col(c).is_not_null() & pl.col(c).is_finite() for c in (*_POSITION, *_COVARIANCE))
+    kept = epochs.filter(there)
+    if kept.is_empty():
+        raise InputError("epochs", f"{epochs.height} epochs", domain="a table with a position and a covariance in one epoch at least")
+    count = kept["n_sv"].fill_null(0).cast(pl.UInt32) if "n_sv" in kept.columns else pl.zeros(kept.height, pl.UInt32, eager=True)
+    text = _core.write_rtklib(
+        f"navbound {_core.__version__}",
+        np.ascontiguousarray(kept["time_ns"].to_numpy(), dtype=np.int64),
+        _floats(kept, "est_lat_rad"),
+        _floats(kept, "est_lon_rad"),
+        _floats(kept, "est_h_m"),
+        np.ascontiguousarray(np.column_stack([_floats(kept, c) for c in _COVARIANCE])),
+        np.ascontiguousarray(count.to_numpy(), dtype=np.uint32),
+        quality,
+    )
+    place = Path(path)
+    place.write_text(text, encoding="ascii")
+    return Written(place, kept.height, epochs.height - kept.height)
+
+
+def _floats(frame: pl.DataFrame, column: str) -> NDArray[np.float64]:
+    return np.ascontiguousarray(frame[column].to_numpy(), dtype=np.float64)
