@@ -238,6 +238,8 @@ def solve(
     mask_rad: float = float(np.radians(10.0)),
     false_alarm: float = 1e-4,
     most_excluded: int = 6,
+    range_factor: float = 1.0,
+    shared_factor: float = 1.0,
     truth_ecef_m: ArrayLike | None = None,
     track: str | None = None,
 ) -> Positions:
@@ -261,6 +263,9 @@ def solve(
         Risk of a false alarm of the residual test, an epoch. [1]
     most_excluded : int, optional
         Satellites that may be excluded in one epoch. [1]
+    range_factor, shared_factor : float, optional
+        Factors on the standard deviations of single ranges, and of the errors of the ionosphere that they share; other than 1 for a
+        calibration of your own (docs/methods/gnss-positions.md). [1]
     truth_ecef_m : array_like, shape (3,) or (n_epochs, 3), optional
         True position, Earth-fixed; NaN where it is not known. [m]
     track : str, optional
@@ -269,8 +274,8 @@ def solve(
     Returns
     -------
     Positions
-        ``status`` is ``degraded`` where the residuals contradict the weights or none can be spared, ``not_available`` where there is no
-        position.
+        ``status`` is ``degraded`` where the residuals contradict the weights, where the ranges of the past minute do (several satellites
+        excluded), or where none can be spared; ``not_available`` where there is no position.
 
     Raises
     ------
@@ -296,6 +301,8 @@ def solve(
         mask_rad=mask_rad,
         false_alarm=false_alarm,
         most_excluded=most_excluded,
+        range_factor=range_factor,
+        shared_factor=shared_factor,
     )
     unused, codes, weights = found.pop("unused"), found.pop("codes"), found.pop("weights")
     name = track or observations.marker or observations.path.name
@@ -309,7 +316,7 @@ def solve(
         "orbits and clocks": "broadcast, nearest record inside its fit interval",
         "ionosphere": "ionosphere-free pairs" if signals == "dual" else {"broadcast": "Klobuchar, GPS message", "none": "none"}[ionosphere],
         "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",
-        "weights": weights,
+        "weights": weights if weights != "scaled" else f"calibrated-2020 times {range_factor:g} (ranges), {shared_factor:g} (shared)",
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
     }
     return Positions(epochs, unused, codes, models)
