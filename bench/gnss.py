@@ -19,6 +19,7 @@ import shutil
 import subprocess
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -104,7 +105,8 @@ def measure() -> list[dict[str, object]]:
         row("gnss read compact gzip", seconds(lambda: gnss.read_observations(COMPACT)), "an epoch; 4.0 MB in all")
         row("gnss read navigation", seconds(lambda: gnss.read_navigation(BROADCAST)), "an epoch")
         for systems in ("G", "GE", "GEC"):
-            row(f"gnss solve {systems}", seconds(lambda s=systems: gnss.solve(observations, navigation, systems=s)), "an epoch")
+            solve = partial(gnss.solve, observations, navigation, systems=systems)
+            row(f"gnss solve {systems}", seconds(solve), "an epoch")
         spent = peer(text, folder) if text is not None else None
         if spent is not None:
             row("rnx2rtkp, plain text to positions", spent, "an epoch; GPS, Galileo and BeiDou, single point")

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     import polars as pl
     from numpy.typing import NDArray
 
+    Numbers = NDArray[np.float64] | np.float64
+
 FOLDER = Path(__file__).resolve().parents[2] / "shared" / "data"
 ESBC = FOLDER / "gnss" / "ESBC_2020_177"
 WEEK_S = 604_800
@@ -74,7 +76,7 @@ def recordings() -> dict[str, Recording]:
             "Taroz static rover",
             gnss.read_observations(taroz / "rover.obs.gz"),
             gnss.read_navigation(taroz / "base.nav"),
-            ecef(*np.radians(place[:2]), place[2]),
+            ecef(np.radians(place[0]), np.radians(place[1]), np.float64(place[2])),
         ),
         hong_kong(gnss_folder / "HK_TST_2019_118"),
     ]
@@ -94,7 +96,7 @@ def hong_kong(folder: Path) -> Recording:
     return Recording("HK, streets", observations, navigation, truth)
 
 
-def ecef(lat: NDArray[np.float64], lon: NDArray[np.float64], h: NDArray[np.float64]) -> NDArray[np.float64]:
+def ecef(lat: Numbers, lon: Numbers, h: Numbers) -> NDArray[np.float64]:
     """Earth-fixed coordinates of WGS-84 positions."""
     flattening = 1 / 298.257223563
     e2 = flattening * (2 - flattening)

@@ -101,8 +101,9 @@ impl Service {
         if !self.masked {
             return;
         }
-        for (slot, prn) in self.satellites.iter_mut().zip(prns) {
-            *slot = ranging(store, *prn, self.used_for, now, &orbit).ok();
+        let served = prns.iter().filter_map(|prn| ranging(store, *prn, self.used_for, now, &orbit).ok());
+        for (slot, satellite) in self.satellites.iter_mut().zip(served) {
+            *slot = Some(satellite);
         }
         // Message 28 replaces 27: a service sends one of them.
         if !store.covariance_heard() {
@@ -115,7 +116,8 @@ impl Service {
 
     /// Satellites corrected now.
     pub fn satellites(&self) -> impl Iterator<Item = &Ranging> {
-        self.satellites.iter().flatten()
+        // They stand first.
+        self.satellites.iter().map_while(Option::as_ref)
     }
 
     /// Factor of the UDRE by the user's place (message 27), 1 where nobody sent one. Of regions that overlap, the one of the highest
