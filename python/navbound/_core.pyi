@@ -245,6 +245,8 @@ def solve_positions(
     precise: PreciseOrbits | None,
     smoothing_s: float | None,
     divergence_free: bool,
+    range_factor: float,
+    shared_factor: float,
 ) -> dict[str, Any]: ...
 
 class PreciseOrbits:

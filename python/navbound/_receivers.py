@@ -241,6 +241,8 @@ def solve(
     mask_rad: float = float(np.radians(10.0)),
     false_alarm: float = 1e-4,
     most_excluded: int = 6,
+    range_factor: float = 1.0,
+    shared_factor: float = 1.0,
     orbits: PreciseOrbits | None = None,
     smoothing_s: float | None = None,
     smoothing: Literal["hatch", "divergence-free"] = "divergence-free",
@@ -267,6 +269,9 @@ def solve(
         Risk of a false alarm of the residual test, an epoch. [1]
     most_excluded : int, optional
         Satellites that may be excluded in one epoch. [1]
+    range_factor, shared_factor : float, optional
+        Factors on the standard deviations of single ranges, and of the errors of the ionosphere that they share; other than 1 for a
+        calibration of your own (docs/methods/gnss-positions.md). [1]
     orbits : PreciseOrbits, optional
         From :func:`read_orbits`: orbits and clocks instead of the broadcast ones. Health and group delays remain those broadcast.
         Positions are of mass centres: the antennas' offsets (0.5 to 3 m towards the Earth) are not applied.
@@ -283,8 +288,8 @@ def solve(
     Returns
     -------
     Positions
-        ``status`` is ``degraded`` where the residuals contradict the weights or none can be spared, ``not_available`` where there is no
-        position.
+        ``status`` is ``degraded`` where the residuals contradict the weights, where the ranges of the past minute do (several satellites
+        excluded), or where none can be spared; ``not_available`` where there is no position.
 
     Raises
     ------
@@ -312,6 +317,8 @@ def solve(
         mask_rad=mask_rad,
         false_alarm=false_alarm,
         most_excluded=most_excluded,
+        range_factor=range_factor,
+        shared_factor=shared_factor,
         precise=None if orbits is None else orbits._core,
         smoothing_s=smoothing_s,
         divergence_free=smoothing == "divergence-free",
@@ -330,7 +337,7 @@ def solve(
         "smoothing": "none" if smoothing_s is None else f"{smoothing}, {smoothing_s:g} s; {100 * share:.1f} % of the pseudoranges",
         "ionosphere": "ionosphere-free pairs" if signals == "dual" else {"broadcast": "Klobuchar, GPS message", "none": "none"}[ionosphere],
         "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",
-        "weights": weights,
+        "weights": weights if weights != "scaled" else f"calibrated-2020 times {range_factor:g} (ranges), {shared_factor:g} (shared)",
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
     }
     return Positions(epochs, unused, codes, models)

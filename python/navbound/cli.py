@@ -83,7 +83,10 @@ def fly(
 
 @app.command()
 def analyze(
-    files: Annotated[list[Path], typer.Argument(help="Tables (CSV, Parquet, JSON), RTKLIB .pos files, receiver logs (UBX, SBF, NMEA, NovAtel); plain or gzip.")],
+    files: Annotated[
+        list[Path],
+        typer.Argument(help="Tables (CSV, Parquet, JSON), RTKLIB .pos files, receiver logs (UBX, SBF, NMEA, NovAtel); plain or gzip."),
+    ],
     path: Annotated[
         str | None,
         typer.Option(help="Where the aircraft should be: a runway (LFPG/08R), auto (the runway each aircraft lands on), or a route file."),

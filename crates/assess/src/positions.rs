@@ -1,11 +1,12 @@
 //! Observations and navigation messages to positions, epoch by epoch on all cores.
 
-use navbound_core::frame::ecef_from_geodetic;
+use navbound_core::frame::{Covariance, ecef_from_geodetic};
 use navbound_core::geometry::atmosphere::ionosphere_factor;
 use navbound_core::geometry::broadcast::{Broadcast, SatelliteState, clock_polynomial};
 use navbound_core::quantity::{GpsTime, Metres, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};
+use navbound_core::solution::Surroundings;
 use navbound_core::solution::point::{self, Fix, Range, Settings};
 use navbound_formats::precise::{Precise, Tables};
 use navbound_formats::rinex::{Navigation, Observations};
@@ -44,8 +45,10 @@ pub struct Job {
 /// What came of a day, or an hour.
 #[derive(Debug, Clone, Default)]
 pub struct Positions {
-    /// One outcome an epoch.
+    /// One outcome an epoch. Where surroundings contradict the weights the covariance is widened by what that says.
     pub fixes: Vec<Result<Fix, Unavailable>>,
+    /// Whether they do, by epoch.
+    pub contradicted: Vec<bool>,
     /// Satellite-epochs of the wanted constellations that were not used, by reason.
     pub unused: BTreeMap<&'static str, usize>,
     /// Pseudoranges that were used, by constellation: codes in order of preference that the file has.
@@ -156,7 +159,23 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
             *found.unused.entry(reason).or_default() += n;
         }
     }
+    found.contradicted = widen(&observations.time, &mut found.fixes);
     found
+}
+
+/// Covariances by the surroundings of each epoch's past minute, which are followed through the file in its order.
+fn widen(times: &[GpsTime], fixes: &mut [Result<Fix, Unavailable>]) -> Vec<bool> {
+    let mut surroundings = Surroundings::default();
+    let follow = |(time, fix): (&GpsTime, &mut Result<Fix, Unavailable>)| {
+        let Ok(fix) = fix else { return false };
+        let Some(factor) = surroundings.judge(*time, fix) else { return false };
+        if factor > fix.inflation {
+            fix.covariance = Covariance::claim_symmetric(fix.covariance.matrix() * (factor / fix.inflation));
+            fix.inflation = factor;
+        }
+        true
+    };
+    times.iter().zip(fixes).map(follow).collect()
 }
 
 /// Why a satellite in the file is not in the solution, before geometry is looked at.

@@ -181,7 +181,7 @@ impl Navigation {
 
 /// Positions of every epoch as columns of the epoch table, with counts of what was not used.
 #[pyfunction]
-#[pyo3(signature = (observations, navigation, systems, *, dual, broadcast_ionosphere, mask_rad, false_alarm, most_excluded, precise, smoothing_s, divergence_free))]
+#[pyo3(signature = (observations, navigation, systems, *, dual, broadcast_ionosphere, mask_rad, false_alarm, most_excluded, range_factor, shared_factor, precise, smoothing_s, divergence_free))]
 #[expect(clippy::too_many_arguments, reason = "one setting each, named by the caller")]
 fn solve_positions<'py>(
     py: Python<'py>,
@@ -193,6 +193,8 @@ fn solve_positions<'py>(
     mask_rad: f64,
     false_alarm: f64,
     most_excluded: usize,
+    range_factor: f64,
+    shared_factor: f64,
     precise: Option<&PreciseOrbits>,
     smoothing_s: Option<f64>,
     divergence_free: bool,
@@ -202,10 +204,13 @@ fn solve_positions<'py>(
     }
     within("mask_rad", mask_rad, "rad", "[0, pi/2)", (0.0..core::f64::consts::FRAC_PI_2).contains(&mask_rad))?;
     within("false_alarm", false_alarm, "1", "(0, 1)", false_alarm > 0.0 && false_alarm < 1.0)?;
+    within("range_factor", range_factor, "1", "(0, inf)", range_factor > 0.0 && range_factor.is_finite())?;
+    within("shared_factor", shared_factor, "1", "[0, inf)", shared_factor >= 0.0 && shared_factor.is_finite())?;
+    let errors = weights(precise).scaled(range_factor, shared_factor);
     let settings = Settings {
         mask: Radians::new(mask_rad),
         ionosphere: navigation.records.klobuchar_gps.filter(|_| broadcast_ionosphere),
-        errors: weights(precise),
+        errors,
         false_alarm,
         most_excluded,
     };
@@ -216,8 +221,7 @@ fn solve_positions<'py>(
         settings,
     };
     let found = py.detach(|| positions(&observations.0, &navigation.records, precise.map(PreciseOrbits::tables), &job));
-    let d = table(py, &found)?;
-    d.set_item("weights", weights(precise).name)?;
+    let d = table(py, &found, errors.name)?;
     d.set_item("smoothed_share", found.smoothed_share)?;
     Ok(d)
 }
@@ -233,7 +237,7 @@ fn within(argument: &'static str, value: f64, unit: &'static str, domain: &'stat
 /// One number of a position.
 type Number = fn(&Fix) -> f64;
 
-fn table<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, PyDict>> {
+fn table<'py>(py: Python<'py>, found: &Positions, weights: &str) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
     let columns: [(&str, Number); 16] = [
         ("est_lat_rad", |f| f.position.point.lat().rad()),
@@ -261,21 +265,24 @@ fn table<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, PyDict>
     d.set_item("n_sv", count(|f| f.n_used).into_pyarray(py))?;
     d.set_item("n_excluded", count(|f| f.n_excluded).into_pyarray(py))?;
     d.set_item("n_redundant", count(|f| f.redundancy).into_pyarray(py))?;
-    let status = |f: &Result<Fix, _>| match f {
-        Ok(fix) if fix.consistent => "ok",
+    let status = |(f, contradicted): (&Result<Fix, _>, &bool)| match f {
+        Ok(fix) if fix.consistent && !contradicted => "ok",
         Ok(_) => "degraded",
         Err(_) => "not_available",
     };
-    d.set_item("status", found.fixes.iter().map(status).collect::<Vec<_>>())?;
-    let reason = |f: &Result<Fix, navbound_core::quantity::Unavailable>| match f {
-        Ok(fix) if fix.consistent => String::new(),
+    let outcomes = || found.fixes.iter().zip(&found.contradicted);
+    d.set_item("status", outcomes().map(status).collect::<Vec<_>>())?;
+    let reason = |(f, contradicted): (&Result<Fix, navbound_core::quantity::Unavailable>, &bool)| match f {
+        Ok(fix) if fix.redundancy > 0 && !fix.consistent => "the residuals contradict the weights".to_owned(),
+        Ok(_) if *contradicted => "the ranges of the last minute contradict the weights: reflections or obstruction".to_owned(),
         Ok(fix) if fix.redundancy == 0 => "no satellite to spare: the residuals cannot be tested".to_owned(),
-        Ok(_) => "the residuals contradict the weights".to_owned(),
+        Ok(_) => String::new(),
         Err(why) => why.to_string(),
     };
-    d.set_item("reason", found.fixes.iter().map(reason).collect::<Vec<_>>())?;
+    d.set_item("reason", outcomes().map(reason).collect::<Vec<_>>())?;
     d.set_item("unused", found.unused.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect::<BTreeMap<_, _>>())?;
     d.set_item("codes", found.codes.clone())?;
+    d.set_item("weights", weights)?;
     Ok(d)
 }
 

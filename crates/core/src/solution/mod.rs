@@ -5,7 +5,9 @@ mod epoch;
 pub mod extraction;
 pub mod point;
 mod range_error;
+mod surroundings;
 pub mod wls;
 
 pub use epoch::Epoch;
 pub use range_error::RangeError;
+pub use surroundings::Surroundings;

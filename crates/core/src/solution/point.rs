@@ -17,6 +17,8 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Most ranges of one epoch; receivers list fewer than 60 satellites.
 pub const MOST_RANGES: usize = 96;
+/// Excluded satellites that a position names; more are counted.
+pub const EXCLUDED_NAMED: usize = 8;
 const ROUNDS: usize = 12;
 /// A step below this is the last \[m\]: ranges are straight over it, to 1 m² / 2 / 2e7 m = 3e-8 m, and the Earth's turn during the way, which
 /// a step changes too, to 6e-6 of it.
@@ -83,6 +85,12 @@ pub struct Fix {
     pub n_used: usize,
     /// Satellites above the mask that were excluded.
     pub n_excluded: usize,
+    /// The first of them.
+    pub excluded: [Option<SatelliteId>; EXCLUDED_NAMED],
+    /// Sum of the weighted squared residuals, and ranges beyond the unknowns, with every range above the mask.
+    pub before_exclusion: (f64, usize),
+    /// Factor by which the residuals widened the covariance of the weights.
+    pub inflation: f64,
     /// Risk that residuals as large as these, or larger, come from errors as the weights say; NaN without redundancy.
     pub residual_risk: f64,
     /// Ranges beyond the unknowns.
@@ -158,6 +166,8 @@ struct Solver<'a> {
     clocks: [f64; CLOCKS],
     /// The equation of the last step.
     normal: Normal,
+    /// Statistic and redundancy before anything was excluded.
+    before: Option<(f64, usize)>,
 }
 
 /// Whether residuals agree with the weights.
@@ -207,7 +217,7 @@ fn way(range: &Range, at: &Vector3<f64>) -> (f64, Vector3<f64>) {
 impl<'a> Solver<'a> {
     fn new(ranges: &'a [Range], seen: &'a mut [Seen], time: GpsTime, settings: &'a Settings, at: Vector3<f64>) -> Self {
         let normal = Normal::default();
-        Self { ranges, seen, time, settings, at, modelled_at: Vector3::zeros(), clocks: [0.0; CLOCKS], normal }
+        Self { ranges, seen, time, settings, at, modelled_at: Vector3::zeros(), clocks: [0.0; CLOCKS], normal, before: None }
     }
 
     /// Rounds of least squares until the position stands still, which is told; robust rounds weigh large residuals down.
@@ -288,6 +298,7 @@ impl<'a> Solver<'a> {
                 return Ok(());
             }
             let Some(worst) = self.worst() else { return Ok(()) };
+            self.before = self.before.or(Some((judged.statistic, judged.redundancy)));
             self.seen[worst].excluded = true;
             self.settle(false)?;
         }
@@ -323,6 +334,11 @@ impl<'a> Solver<'a> {
         for s in self.seen.iter().filter(|s| s.counts()) {
             clock_m[s.row.clock] = self.clocks[s.row.clock];
         }
+        let mut excluded = [None; EXCLUDED_NAMED];
+        let all = self.ranges.iter().zip(self.seen.iter()).filter(|(_, s)| s.excluded);
+        for (slot, (range, _)) in excluded.iter_mut().zip(all) {
+            *slot = Some(range.satellite);
+        }
         Ok(Fix {
             position,
             covariance: Covariance::claim_symmetric(covariance.matrix() * inflation + self.shared(covariance.matrix())),
@@ -331,6 +347,9 @@ impl<'a> Solver<'a> {
             velocity: self.velocity(&position),
             n_used: self.seen.iter().filter(|s| s.counts()).count(),
             n_excluded: self.seen.iter().filter(|s| s.excluded).count(),
+            excluded,
+            before_exclusion: self.before.unwrap_or((judged.statistic, judged.redundancy)),
+            inflation,
             residual_risk: judged.risk,
             redundancy: judged.redundancy,
             consistent: judged.consistent,

@@ -73,6 +73,24 @@ impl RangeError {
     /// decimetres. Ours, looked at on ESBC 2020-177 only.
     pub const PRECISE: Self = Self { name: "mass centres, looked at on ESBC 2020", ure_m: [1.0, 3.0, 0.2, 1.0, 5.0], ..Self::CALIBRATED };
 
+    /// The same form with every standard deviation of single ranges times one factor, and that of the errors they share times another:
+    /// what a calibration on other data finds.
+    #[must_use]
+    pub fn scaled(&self, range: f64, shared: f64) -> Self {
+        let name = if range == 1.0 && shared == 1.0 { self.name } else { "scaled" };
+        Self {
+            name,
+            ure_m: self.ure_m.map(|s| s * range),
+            noise_m: self.noise_m.map(|s| s * range),
+            ionosphere_share: self.ionosphere_share * range,
+            ionosphere_common_share: self.ionosphere_common_share * shared,
+            ionosphere_gradient_share: self.ionosphere_gradient_share * shared,
+            ionosphere_floor_m: self.ionosphere_floor_m * range,
+            zenith_troposphere_m: self.zenith_troposphere_m * range,
+            reference_cn0_dbhz: self.reference_cn0_dbhz,
+        }
+    }
+
     /// Variance of a range \[m²\].
     pub(super) fn variance(&self, at: &RangeConditions) -> f64 {
         let ure = self.ure_m[at.constellation] * at.ure_factor;

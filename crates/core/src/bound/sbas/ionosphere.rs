@@ -144,7 +144,13 @@ impl Grid {
     }
 
     fn corners(&self, south: i16, west: i16, height: i16, width: i16) -> Corners {
-        [(height, width), (height, 0), (0, 0), (0, width)].map(|(north, east)| self.point(south + north, west + east))
+        let from = GridPoint { lat_deg: south, lon_deg: west };
+        let to = GridPoint { lat_deg: south + height, lon_deg: west + width };
+        match from.cells_to(to) {
+            Some(cells) => cells.map(|i| self.0.get(i).copied().unwrap_or_default()),
+            // A cell over the edge of the grid has some of its points.
+            None => [(height, width), (height, 0), (0, 0), (0, width)].map(|(north, east)| self.point(south + north, west + east)),
+        }
     }
 
     fn point(&self, lat_deg: i16, lon_deg: i16) -> Point {

@@ -140,11 +140,14 @@ impl Seen {
 pub struct Sky {
     count: usize,
     seen: [Option<Seen>; MASK_MOST],
+    /// What the solution needs of each.
+    rows: [WeightedSight; MASK_MOST],
 }
 
 impl Default for Sky {
     fn default() -> Self {
-        Self { count: 0, seen: [None; MASK_MOST] }
+        let none = WeightedSight { unit: Vector3::zeros(), weight: 0.0, constellation: Constellation::Gps };
+        Self { count: 0, seen: [None; MASK_MOST], rows: [none; MASK_MOST] }
     }
 }
 
@@ -154,7 +157,8 @@ impl Sky {
         let factor = service.region_factor(user.lat_deg, user.lon_deg);
         let mut seen = service.satellites().filter_map(|s| see(s, service, user, factor));
         self.count = 0;
-        for (slot, s) in self.seen.iter_mut().zip(&mut seen) {
+        for ((slot, row), s) in self.seen.iter_mut().zip(&mut self.rows).zip(&mut seen) {
+            *row = WeightedSight { unit: s.unit_enu, weight: 1.0 / s.error.variance_m2(), constellation: Constellation::Gps };
             *slot = Some(s);
             self.count += 1;
         }
@@ -176,17 +180,18 @@ impl Sky {
     /// # Errors
     /// As [`wls::covariance`].
     pub fn covariance(&self) -> Result<Covariance<Enu>, Unavailable> {
-        wls::covariance_of_weighted(self.satellites().map(|s| WeightedSight {
-            unit: s.unit_enu,
-            weight: 1.0 / s.error.variance_m2(),
-            constellation: Constellation::Gps,
-        }))
+        wls::covariance_of_weighted(self.rows.iter().take(self.count).copied())
     }
 }
 
 /// Time is the service's; the signal left earlier by its way.
 fn see(s: &Ranging, service: &Service, user: &User, region_factor: f64) -> Option<Seen> {
-    let way_s = (s.orbit.position_ecef_m - user.position_m).norm() / SPEED_OF_LIGHT_MPS;
+    let line = s.orbit.position_ecef_m - user.position_m;
+    // Below the horizon by more than the satellite moves during the signal's way, 0.14 s at 4 km/s: no mask has it above.
+    if user.up().dot(&line) < -1000.0 {
+        return None;
+    }
+    let way_s = line.norm() / SPEED_OF_LIGHT_MPS;
     let sent = s.orbit.position_ecef_m - s.orbit.velocity_ecef_mps * way_s;
     let unit = (in_axes_of_reception(&sent, way_s) - user.position_m).normalize();
     let unit_enu = user.enu * unit;

@@ -101,8 +101,9 @@ impl Service {
         if !self.masked {
             return;
         }
-        for (slot, prn) in self.satellites.iter_mut().zip(prns) {
-            *slot = ranging(store, *prn, self.used_for, now, &orbit).ok();
+        let served = prns.iter().filter_map(|prn| ranging(store, *prn, self.used_for, now, &orbit).ok());
+        for (slot, satellite) in self.satellites.iter_mut().zip(served) {
+            *slot = Some(satellite);
         }
         // Message 28 replaces 27: a service sends one of them.
         if !store.covariance_heard() {
@@ -115,12 +116,17 @@ impl Service {
 
     /// Satellites corrected now.
     pub fn satellites(&self) -> impl Iterator<Item = &Ranging> {
-        self.satellites.iter().flatten()
+        // They stand first.
+        self.satellites.iter().map_while(Option::as_ref)
     }
 
     /// Factor of the UDRE by the user's place (message 27), 1 where nobody sent one. Of regions that overlap, the one of the highest
     /// priority counts, and of equals the smaller factor (standard).
     pub fn region_factor(&self, lat_deg: f64, lon_deg: f64) -> f64 {
+        // They stand first: mostly there are none, and every user asks.
+        if self.regions[0].is_none() {
+            return 1.0;
+        }
         let inside = |s: &&ServiceRegions| s.regions.iter().flatten().any(|r| r.contains(lat_deg, lon_deg));
         let best = self.regions.iter().flatten().filter(inside).map(|s| (s.priority, s.inside));
         let best = best.reduce(|a, b| if b.0 > a.0 || (b.0 == a.0 && b.1 < a.1) { b } else { a });

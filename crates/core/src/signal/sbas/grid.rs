@@ -22,12 +22,29 @@ const COLUMNS: usize = 72;
 impl GridPoint {
     /// Its cell in a world grid of 5 degrees; none off that grid. Longitudes wrap.
     pub const fn cell(self) -> Option<usize> {
+        match self.row_and_column() {
+            Some((row, column)) => Some(row * COLUMNS + column),
+            None => None,
+        }
+    }
+
+    /// Cells of four points around a rectangle, this one in the south-west: north-east, north-west, south-west, south-east; none where
+    /// one of them is off the grid.
+    pub const fn cells_to(self, north_east: Self) -> Option<[usize; 4]> {
+        match (self.row_and_column(), north_east.row_and_column()) {
+            (Some((south, west)), Some((north, east))) => {
+                let (south, north) = (south * COLUMNS, north * COLUMNS);
+                Some([north + east, north + west, south + west, south + east])
+            }
+            _ => None,
+        }
+    }
+
+    const fn row_and_column(self) -> Option<(usize, usize)> {
         if self.lat_deg < -85 || self.lat_deg > 85 || self.lat_deg % 5 != 0 || self.lon_deg % 5 != 0 {
             return None;
         }
-        let row = (self.lat_deg + 85) as usize / 5;
-        let column = (self.lon_deg + 180).rem_euclid(360) as usize / 5;
-        Some(row * COLUMNS + column)
+        Some(((self.lat_deg + 85) as usize / 5, (self.lon_deg + 180).rem_euclid(360) as usize / 5))
     }
 }
 
