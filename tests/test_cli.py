@@ -42,6 +42,8 @@ def track(tmp_path: Path) -> Path:
         (["analyze"], USAGE, "Missing argument"),
         (["analyze", "missing.csv"], UNREADABLE, "missing.csv"),
         (["study", "nothing"], USAGE, "tse-coverage"),
+        (["study", "tse-coverage", "a.pos"], USAGE, "files"),
+        (["study", "error-extraction", "missing.pos"], UNREADABLE, "missing.pos"),
         (["show", "missing"], UNREADABLE, "missing"),
         (["nothing"], USAGE, "nothing"),
     ],

@@ -259,4 +259,4 @@ def _sets(satellites: ArrayLike | None, shape: tuple[int, ...]) -> NDArray[np.ui
 def _median_step_s(instants: NDArray[np.int64]) -> float:
     if instants.shape[-1] < 2:
         raise InputError("period_s", "nothing", domain="a number of seconds where there is one epoch only")
-    return float(np.median(np.diff(instants, axis=-1))) * 1e-9
+    return float(np.median(np.diff(instants, axis=-1))) / 1e9

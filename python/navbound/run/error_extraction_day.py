@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
 
-from navbound import _core, gnss, read, sbas
+from navbound import _core, gnss, kpi, read, sbas
 from navbound.errors import FormatError, InputError
 from navbound.run.error_extraction_records import Availability, BiasReading, Correlation, Stage
 
@@ -28,9 +28,8 @@ FOLDERS = (Path("../shared/data/sbas"), Path(__file__).parents[3].parent / "shar
 MASK_RAD = float(np.radians(15.0))
 """Of the recorded solution."""
 
-HAL_M = 40.0
-VAL_M = {"apv_i": 50.0, "lpv_200": 35.0, "apv_ii": 20.0, "cat_i_12": 12.0}
-"""Alert limits (standard; 12 m is the paper's for CAT-I)."""
+LEVELS = {"apv_i": "APV-I", "lpv_200": "LPV-200", "apv_ii": "APV-II", "cat_i_12": "CAT-I-12"}
+"""Levels by field; the last is CAT-I with the paper's limit."""
 
 MSAS = ("msas137_2025046_17h.ems", "gps_2025046_17h_rinex3.nav")
 MSAS_USER_ECEF_M = (-3962108.2258, 3381309.0271, 3668678.5241)
@@ -52,6 +51,11 @@ class Day:
     vdop: Floats
     """Of all satellites above the mask."""
     n_seen: NDArray[np.int64]
+
+    def after(self, first: int) -> Day:
+        """The epochs from one on."""
+        values = {f.name: getattr(self, f.name)[first:] for f in fields(self) if f.name != "path"}
+        return Day(path=self.path, **values)
 
 
 def find(files: Sequence[str | Path]) -> tuple[Path, Path, Path]:
@@ -106,31 +110,27 @@ WINDOW = 50
 """Samples of the paper's window."""
 
 
-def nearest_rank(values: Floats, share: float) -> float:
-    """Percentile by nearest rank."""
-    return float(np.sort(values)[int(np.ceil(share * values.size)) - 1])
-
-
-def availability(hpl_m: Floats, vpl_m: Floats) -> Availability:
-    """Share of epochs with both levels below the limits; a NaN is not below."""
-    horizontal = hpl_m < HAL_M
-    return Availability(**{name: float(np.mean(horizontal & (vpl_m < limit))) for name, limit in VAL_M.items()})
-
-
-def stage(name: str, cause: str, error_m: Floats, h_m: Floats, v_m: Floats) -> Stage:
-    """Availability of two bounds and how the errors stand to them."""
-    horizontal, vertical = np.hypot(error_m[:, 0], error_m[:, 1]), np.abs(error_m[:, 2])
+def stage(name: str, cause: str, day: Day, error_m: Floats, bounds: tuple[Floats, Floats]) -> Stage:
+    """Availability of two bounds over the solution epochs of the day, and how the errors stand to them."""
+    table = {"time_ns": day.time_ns, "hpl_m": bounds[0], "vpl_m": bounds[1]} | {
+        f"nse_{axis}_m": error_m[:, k] for k, axis in enumerate("enu")
+    }
+    found = kpi.evaluate(table, list(LEVELS.values()), exclude_missing=True)
+    horizontal, vertical = found.axes
+    if horizontal.error_m is None or vertical.error_m is None or horizontal.safety_index is None or vertical.safety_index is None:
+        raise FormatError(day.path, f"{name}: not one epoch has both bounds")
+    shares = {field: level.n_available / day.time_ns.size for field, level in zip(LEVELS, found.levels, strict=True)}
     return Stage(
         name=name,
         cause=cause,
         origin="computed",
-        availability=availability(h_m, v_m),
-        hpe95_m=nearest_rank(horizontal, 0.95),
-        vpe95_m=nearest_rank(vertical, 0.95),
-        vpe_max_m=float(vertical.max()),
-        safety_h_max=float(np.nanmax(horizontal / h_m)),
-        safety_v_max=float(np.nanmax(vertical / v_m)),
-        n_misleading=int(np.count_nonzero((horizontal > h_m) | (vertical > v_m))),
+        availability=Availability(**shares),
+        hpe95_m=horizontal.error_m.p95,
+        vpe95_m=vertical.error_m.p95,
+        vpe_max_m=vertical.error_m.max,
+        safety_h_max=horizontal.safety_index.max,
+        safety_v_max=vertical.safety_index.max,
+        n_misleading=found.n_mi_epochs,
     )
 
 

@@ -126,7 +126,7 @@ class Study(Record):
     n_epochs: int
     n_judged: int
     """Epochs after the filter has settled, the same for every stage."""
-    settings: dict[str, float | str]
+    settings: dict[str, float | int | str]
     day: Stage
     """The service's levels over all solution epochs of the day."""
     stages: list[Stage]

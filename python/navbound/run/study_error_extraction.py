@@ -89,7 +89,7 @@ def run(files: Sequence[str | Path] = (), *, seed: int = 2012, velocity_runs: in
         raise InputError("velocity_runs", velocity_runs, "1", "[1, inf)")
     positions, observations, navigation = find(files)
     day = load(positions, observations, navigation)
-    step_s = float(np.median(np.diff(day.time_ns))) * 1e-9
+    step_s = float(np.median(np.diff(day.time_ns))) / 1e9
     remembered = correlations(day, step_s)
     faults = inject(runs=fault_runs, seed=seed)
     computed = _compute(day, seed, velocity_runs, max(c.beta_measured for c in remembered))
@@ -112,7 +112,7 @@ def run(files: Sequence[str | Path] = (), *, seed: int = 2012, velocity_runs: in
             "velocity": f"zero, with noise of {1e3 * VELOCITY_SIGMA_MPS[0]:g} and {1e3 * VELOCITY_SIGMA_MPS[2]:g} mm/s, seed {seed}",
             "geometry": f"satellites tracked above 15 deg; as many as in the solution in {np.mean(day.n_seen == day.n_sv):.0%} of epochs",
         },
-        day=stage("DO-229, whole day", "", day.error_m, day.hpl_m, day.vpl_m),
+        day=stage("DO-229, whole day", "", day, day.error_m, (day.hpl_m, day.vpl_m)),
         stages=[*PUBLISHED, *stages],
         split=split,
         correlations=remembered,
@@ -162,10 +162,10 @@ def _compute(day: Day, seed: int, runs: int, honest_beta: float) -> _Computed:
     printed = _extract(day, bias, noise[0], BETA, printed=True)
     honest = _extract(day, bias, noise[0], honest_beta)
     perfect = _extract(day, bias, np.zeros(3), BETA)
-    late = slice(SETTLED, None)
+    late, settled = slice(SETTLED, None), day.after(SETTLED)
 
     def judged(name: str, cause: str, error: Floats, h: Floats, v: Floats) -> Stage:
-        return stage(name, cause, error[late], h[late], v[late])
+        return stage(name, cause, settled, error[late], (h[late], v[late]))
 
     drawn = [judged("", "", *one) for one in zip(every.error_m, every.bound_h_m, every.bound_v_m, strict=True)]
     return _Computed(
