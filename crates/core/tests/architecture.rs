@@ -46,7 +46,7 @@ const LAYERS: [&[&str]; 5] = [
 ];
 
 /// Modules that hold only what stages hand to each other.
-const EXCHANGED: [&str; 2] = ["run.records", "run.material"];
+const EXCHANGED: [&str; 4] = ["run.record", "run.records", "run.kpi_records", "run.material"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
