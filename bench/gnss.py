@@ -17,6 +17,7 @@ import math
 import resource
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from functools import partial
@@ -58,6 +59,7 @@ def plain_text(folder: Path) -> Path | None:
     try:
         hatanaka = importlib.import_module("hatanaka")
     except ImportError:
+        print("SKIPPED: hatanaka is not installed, so no plain text and no peer row", file=sys.stderr)
         return None
     path = folder / "day.rnx"
     path.write_bytes(hatanaka.decompress(COMPACT.read_bytes()))
@@ -68,6 +70,7 @@ def peer(observations: Path, folder: Path) -> float | None:
     """CPU seconds of rnx2rtkp on the same day, GPS, Galileo and BeiDou; None where it is not installed."""
     program = shutil.which("rnx2rtkp")
     if program is None:
+        print("SKIPPED: rnx2rtkp (package rtklib) is not installed, so no peer row", file=sys.stderr)
         return None
     (folder / "peer.conf").write_text(PEER_OPTIONS)
     (folder / "day.nav").write_bytes(gzip.decompress(BROADCAST.read_bytes()))
