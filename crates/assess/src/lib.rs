@@ -5,6 +5,7 @@
 pub mod anp;
 pub mod batch;
 pub mod bounds;
+pub mod dme;
 pub mod ee;
 pub mod error;
 pub mod evaluation;

@@ -14,6 +14,7 @@ mod methods;
 mod orbits;
 mod path;
 mod positions;
+mod radionav;
 mod read;
 mod rnp;
 mod sbas;
@@ -38,6 +39,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     gnss::register(m)?;
     kpi::register(m)?;
     dme::register(m)?;
+    radionav::register(m)?;
     orbits::register(m)?;
     path::register(m)?;
     positions::register(m)?;
