@@ -178,6 +178,30 @@ def dme_pairs(
     aircraft_enu_m: list[float], stations_enu_m: list[list[float]], sigma_altitude_m: float, course_rad: float | None
 ) -> list[dict[str, Any]]: ...
 def vor_dme(ground_m: _F, slant_m: _F, sigma_vor_rad: _F, sigma_dme_m: _F) -> tuple[_F, _F, _F]: ...
+def dme_reasons() -> list[str]: ...
+def dme_solve(
+    slant_m: _F,
+    sigma_m: _F | None,
+    stations: tuple[_F, _F, _F],
+    h_m: _F,
+    sigma_altitude_m: float,
+    prior_rad: tuple[_F, _F] | None,
+    prior_within_m: float,
+) -> dict[str, NDArray[Any]]: ...
+def dme_solve_vor(
+    slant_m: _F, bearing_rad: _F, stations: tuple[_F, _F, _F], h_m: _F, sigma_bearing_rad: float, sigma_altitude_m: float
+) -> dict[str, NDArray[Any]]: ...
+def dme_along(
+    track: tuple[_F, _F, _F],
+    time_ns: NDArray[np.int64],
+    course_rad: _F,
+    network: tuple[tuple[_F, _F, _F], _F, list[bool]],
+    sigmas: tuple[float, float],
+    switching: tuple[float, float],
+) -> dict[str, NDArray[Any]]: ...
+def dme_coverage(
+    points: tuple[_F, _F, _F], network: tuple[tuple[_F, _F, _F], _F, list[bool]], sigmas: tuple[float, float], risk: float
+) -> dict[str, NDArray[Any]]: ...
 
 @final
 class Outlook:

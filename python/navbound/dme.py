@@ -1,4 +1,4 @@
-"""DME/DME and VOR/DME: how good a range is, what two of them determine, which pair is best. Closed forms, altitude known.
+"""DME/DME and VOR/DME: how good a range is, what two of them determine, which pair is best, positions, selection along a flight, coverage.
 
 Constants are standard values from general knowledge, their clauses to be cited.
 """
@@ -12,12 +12,38 @@ import numpy as np
 
 from navbound import _core
 from navbound._arrays import flatten, unflatten
+from navbound._radionav import SWITCHING, VOR_SIGMA_RAD, Coverage, Positions, Selection, coverage, select, solve, solve_vor
+from navbound._stations import SERVICE_NM, Stations, read_stations, stations
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "SERVICE_NM",
+    "SWITCHING",
+    "VOR_SIGMA_RAD",
+    "Coverage",
+    "Pair",
+    "Positions",
+    "Selection",
+    "Stations",
+    "VorDme",
+    "best_pair",
+    "coverage",
+    "icao_two_sigma",
+    "pair",
+    "pairs",
+    "range_sigma",
+    "read_stations",
+    "select",
+    "solve",
+    "solve_vor",
+    "stations",
+    "vor_dme",
+]
 
 
 def range_sigma(slant_m: ArrayLike) -> NDArray[np.float64]:
