@@ -191,6 +191,7 @@ def dme_solve(
 def dme_solve_vor(
     slant_m: _F, bearing_rad: _F, stations: tuple[_F, _F, _F], h_m: _F, sigma_bearing_rad: float, sigma_altitude_m: float
 ) -> dict[str, NDArray[Any]]: ...
+def dme_sights(points: tuple[_F, _F, _F], network: tuple[tuple[_F, _F, _F], _F, list[bool]]) -> _F: ...
 def dme_along(
     track: tuple[_F, _F, _F],
     time_ns: NDArray[np.int64],

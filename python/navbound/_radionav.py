@@ -153,6 +153,41 @@ def solve_vor(
     return _positions(found, shape, residual_risk=0.5)
 
 
+class Sights(NamedTuple):
+    """Every station from every point; arrays of shape (..., m).
+
+    ``slant_m`` [m], ``elevation_rad`` of the aircraft seen from the station and its ``bearing_rad`` from there, clockwise from true north
+    [rad], ``usable`` whether the rules of `select` admit the station.
+    """
+
+    slant_m: Floats
+    elevation_rad: Floats
+    bearing_rad: Floats
+    usable: NDArray[np.bool_]
+
+
+def sights(lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, stations: Stations | Mapping[str, ArrayLike]) -> Sights:
+    """Slant ranges, elevations and bearings from every station, and which of them may be used.
+
+    Parameters
+    ----------
+    lat_rad, lon_rad, h_m : array_like, shape (...)
+        Where the aircraft is, WGS-84. [rad, rad, m]
+    stations : Stations, or mapping of identifier to (lat_rad, lon_rad, h_m)
+        The network of m stations.
+
+    Raises
+    ------
+    InputError
+        A point that is not on the Earth.
+    """
+    network = _network(stations)
+    shape, (lat, lon, h) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()), h_m=(h_m, ()))
+    found = _core.dme_sights((lat, lon, h), _core_network(network)).reshape(*shape, len(network), 4)
+    slant, elevation, bearing, usable = (np.ascontiguousarray(found[..., k]) for k in range(4))
+    return Sights(slant, elevation, bearing, usable == 1.0)
+
+
 class Selection(NamedTuple):
     """What a flight has at each epoch; stations by their place in the table, -1 for none; covariances (n, 2, 2) east-north, NaN without.
 

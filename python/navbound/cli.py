@@ -155,12 +155,13 @@ def analyze(
 
 @app.command()
 def study(
-    name: Annotated[str, typer.Argument(help="error-extraction, tse-coverage")],
+    name: Annotated[str, typer.Argument(help="error-extraction, tse-coverage, ukraine-rnav")],
     files: Annotated[list[Path] | None, typer.Argument(help="Recorded data, for a study that needs some.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Run directory to write, for a study of a flight (ukraine-rnav).")] = None,
     json: Json = False,
 ) -> None:
     """Repeat a published evaluation and say which of its numbers come out."""
-    result = navbound.study(name, files or [])
+    result = navbound.study(name, files or [], out=out)
     if json:
         sys.stdout.write(result.model_dump_json(indent=1) + "\n")
     else:

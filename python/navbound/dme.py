@@ -12,7 +12,19 @@ import numpy as np
 
 from navbound import _core
 from navbound._arrays import flatten, unflatten
-from navbound._radionav import SWITCHING, VOR_SIGMA_RAD, Coverage, Positions, Selection, coverage, select, solve, solve_vor
+from navbound._radionav import (
+    SWITCHING,
+    VOR_SIGMA_RAD,
+    Coverage,
+    Positions,
+    Selection,
+    Sights,
+    coverage,
+    select,
+    sights,
+    solve,
+    solve_vor,
+)
 from navbound._stations import SERVICE_NM, Stations, read_stations, stations
 from navbound.errors import InputError
 
@@ -29,6 +41,7 @@ __all__ = [
     "Pair",
     "Positions",
     "Selection",
+    "Sights",
     "Stations",
     "VorDme",
     "best_pair",
@@ -39,6 +52,7 @@ __all__ = [
     "range_sigma",
     "read_stations",
     "select",
+    "sights",
     "solve",
     "solve_vor",
     "stations",

@@ -153,6 +153,26 @@ pub fn vor_fixes(job: &Bearings, models: &Models) -> Result<Vec<Result<Fix, NoFi
     })
 }
 
+/// Every station seen from every point: slant range \[m\], elevation of the aircraft and its bearing from the station \[rad\], and 1 where
+/// the station may be used; NaN and 0 where both are in one place.
+///
+/// # Errors
+/// The first point that is no place.
+pub fn sights(points: &Places, stations: &[Station], models: &Models) -> Result<Vec<[f64; 4]>, Rejected> {
+    let rows = many(points.len(), |i| {
+        let place = points.at(i)?;
+        let one = |s: &Station| match Sight::between(&place, &s.place) {
+            None => [f64::NAN, f64::NAN, f64::NAN, 0.0],
+            Some(sight) => {
+                let usable = s.usable(&place, &models.admission, &models.horizon).is_some();
+                [sight.slant.m(), sight.elevation.rad(), s.place.bearing_of(&place).rad(), f64::from(u8::from(usable))]
+            }
+        };
+        Ok(stations.iter().map(one).collect::<Vec<_>>())
+    })?;
+    Ok(rows.concat())
+}
+
 /// What a network gives at one place.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Offer {

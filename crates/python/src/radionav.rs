@@ -6,7 +6,7 @@ use navbound_assess::dme::{self, Bearings, Models, Offer, Places, Ranges};
 use navbound_core::frame::{Covariance, Enu};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
 use navbound_core::solution::dme::{Best, Fix, NoFix, Station, Switching};
-use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -155,6 +155,19 @@ fn offers<'py>(py: Python<'py>, d: &Bound<'py, PyDict>, found: &[&Offer]) -> PyR
     d.set_item("vor_en_m2", matrices(&|o| of_space(o.vor.map(|v| v.1))).into_pyarray(py).reshape([n, 2, 2])?)
 }
 
+/// Every station from every point (n, m, 4): slant range, elevation, bearing, 1 where it may be used.
+#[pyfunction]
+fn dme_sights<'py>(
+    py: Python<'py>,
+    points: Points<'py>,
+    network: (Points<'py>, Numbers<'py>, Vec<bool>),
+) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    let (stations, points) = (stations(&network.0, &network.1, &network.2)?, points.places("lat_rad")?);
+    let models = models((0.0, 0.0))?;
+    let found = py.detach(|| dme::sights(&points, &stations, &models)).map_err(rejected)?;
+    found.concat().into_pyarray(py).reshape([points.len(), stations.len(), 4])
+}
+
 /// What a flight has, epoch by epoch.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)] // One an array of the Python call.
@@ -216,6 +229,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(dme_reasons, m)?)?;
     m.add_function(wrap_pyfunction!(dme_solve, m)?)?;
     m.add_function(wrap_pyfunction!(dme_solve_vor, m)?)?;
+    m.add_function(wrap_pyfunction!(dme_sights, m)?)?;
     m.add_function(wrap_pyfunction!(dme_along, m)?)?;
     m.add_function(wrap_pyfunction!(dme_coverage, m)?)
 }

@@ -13,7 +13,7 @@ from navbound.run import fly as simulated
 from navbound.run.judge import Settings, judge
 from navbound.run.kpi_records import Level
 from navbound.run.requirement import requirement
-from navbound.run.studies import STUDIES
+from navbound.run.studies import REPORTS, STUDIES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -114,7 +114,7 @@ def analyze(
     return _finish(judge(material, settings, command), out)
 
 
-def study(name: str, files: Sequence[str | Path] = ()) -> Study:
+def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None = None) -> Study:
     """Run a study by its name.
 
     Parameters
@@ -123,17 +123,24 @@ def study(name: str, files: Sequence[str | Path] = ()) -> Study:
         Which.
     files : sequence of str or Path
         Recorded data, for a study that needs some.
+    out : str or Path, optional
+        Run directory to write, with the report, for a study of a flight.
 
     Raises
     ------
     InputError
-        No such study; the message lists those that exist. Files for a study that needs none.
+        No such study; the message lists those that exist. Files for a study that needs none, a directory for one without a flight.
     FormatError
-        A file that is not there or cannot be read.
+        A file that is not there or cannot be read, or a run directory that cannot be written.
     """
     if name not in STUDIES:
         raise InputError("study", name, domain=", ".join(STUDIES))
-    return STUDIES[name](files)
+    if out is not None and name not in REPORTS:
+        raise InputError("out", str(out), domain=f"no directory: only {', '.join(REPORTS)} has a flight to report")
+    found = STUDIES[name](files)
+    if out is not None:
+        directory.write(REPORTS[name](), Path(out))
+    return found
 
 
 def _finish(run: Run, out: str | Path | None) -> Run:

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from navbound.errors import InputError
-from navbound.run import study_error_extraction, study_tse_coverage
+from navbound.run import study_error_extraction, study_tse_coverage, study_ukraine_rnav
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from rich.console import RenderableType
+
+    from navbound.run.directory import Run
 
 
 class Study(Protocol):
@@ -26,14 +28,27 @@ class Study(Protocol):
         ...
 
 
-def _tse_coverage(files: Sequence[str | Path]) -> Study:
+def _alone(files: Sequence[str | Path]) -> None:
     if files:
         raise InputError("files", len(files), "1", "{0}: this study makes its own data")
+
+
+def _tse_coverage(files: Sequence[str | Path]) -> Study:
+    _alone(files)
     return study_tse_coverage.run()
+
+
+def _ukraine_rnav(files: Sequence[str | Path]) -> Study:
+    _alone(files)
+    return study_ukraine_rnav.run()
 
 
 STUDIES: dict[str, Callable[[Sequence[str | Path]], Study]] = {
     "error-extraction": study_error_extraction.run,
     "tse-coverage": _tse_coverage,
+    "ukraine-rnav": _ukraine_rnav,
 }
 """Every study by its command-line name; each is given the files of the command line."""
+
+REPORTS: dict[str, Callable[[], Run]] = {"ukraine-rnav": study_ukraine_rnav.fly}
+"""Studies of a flight: that flight as a judged run, for a run directory with its report."""

@@ -31,6 +31,11 @@ impl Place {
     pub fn geodetic(&self) -> &Geodetic {
         &self.geodetic
     }
+    /// Bearing of another place seen from here, clockwise from true north.
+    pub fn bearing_of(&self, other: &Self) -> Radians {
+        let seen = self.axes * (other.ecef.vector() - self.ecef.vector());
+        Radians::new(atan2(seen.x, seen.y))
+    }
     /// Its Cartesian form.
     pub fn ecef(&self) -> &EcefPosition {
         &self.ecef
