@@ -107,6 +107,8 @@ def test_the_report_track_of_the_authors_differs_only_in_its_states() -> None:
     pair, authors = (epochs.filter(pl.col("track") == name) for name in (scene.PAIR, study.AUTHORS))
     states = [f"p_state_{k}" for k in range(1, 6)]
     assert pair.drop("track", "state", *states).equals(authors.drop("track", "state", *states))
+    # The twin shows states only: the verdict counts each epoch once.
+    assert flown().summary.verdict.n_epochs == 3 * pair.height
     total = authors.select(pl.sum_horizontal(states)).drop_nulls().to_series()
     usable = authors["sigma_cross_m"].is_not_null().sum()
     assert usable > 200

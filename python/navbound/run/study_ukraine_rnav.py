@@ -173,26 +173,24 @@ def _judged(seed: int) -> tuple[scene.Flight, Run, rnp.StateClassifier]:
         raise InputError("seed", seed, domain="[0, inf)")
     flown = scene.flight(scene.network())
     material = scene.material(flown, seed)
-    twin = material.epochs.filter(pl.col("track") == scene.PAIR).with_columns(pl.lit(AUTHORS).alias("track"))
-    label = "Optimal DME pair, states by the authors' classifier"
     said = (
         f"On the track {AUTHORS} the states are posteriors of the authors' classifier (safe form) for the 95 % navigation error across the "
         "route, with a flight technical error of half of each level (theirs is not known); elsewhere they come from the law of the error."
     )
-    material = replace(
-        material,
-        epochs=pl.concat([material.epochs, twin]),
-        labels=material.labels | {AUTHORS: label},
-        assumptions=[*material.assumptions, said],
-    )
-    judged, classifier = judge(material), _classifier()
-    return flown, replace(judged, epochs=_with_posteriors(judged.epochs, classifier)), classifier
+    judged, classifier = judge(replace(material, assumptions=[*material.assumptions, said])), _classifier()
+    pair = material.epochs.filter(pl.col("track") == scene.PAIR).with_columns(pl.lit(AUTHORS).alias("track"))
+    label = "Optimal DME pair, states by the authors' classifier"
+    # Judged apart: the same flight must not count twice in the verdict.
+    twin = judge(replace(material, epochs=pair, labels={AUTHORS: label}))
+    epochs = pl.concat([judged.epochs, _with_posteriors(twin.epochs, classifier)])
+    tracks = [*judged.summary.tracks, *twin.summary.tracks]
+    return flown, replace(judged, epochs=epochs, summary=judged.summary.model_copy(update={"tracks": tracks})), classifier
 
 
 def _with_posteriors(epochs: pl.DataFrame, classifier: rnp.StateClassifier) -> pl.DataFrame:
-    """The authors' posteriors in place of the others on their own track."""
+    """The authors' posteriors in place of the probabilities."""
     sigma = epochs["sigma_cross_m"].to_numpy()
-    mine = (epochs["track"] == AUTHORS).to_numpy() & np.isfinite(sigma)
+    mine = np.isfinite(sigma)
     nse95 = tse.exact(0.0, sigma[mine], RISK)
     posterior, decided = classifier.posterior(nse95), classifier.classify(nse95)
     state = epochs["state"].to_list()

@@ -139,6 +139,8 @@ def _assumptions() -> list[str]:
         "40 degrees: standard, clauses to be cited.",
         f"VOR bearings with a standard deviation of {np.degrees(dme.VOR_SIGMA_RAD):.2f} degrees: standard, clause to be cited.",
         f"Altitude known to {SIGMA_ALTITUDE_M:g} m (standard deviation), common to all ranges; heights are above the ellipsoid: ours.",
+        "The covariance of a VOR/DME position is linear: two deviations of a bearing at 60 NM also put it 350 m short along the radial, "
+        "which the covariance does not say.",
         "Errors of ranges, bearings and altitude are drawn anew at every epoch; a real station's stay for minutes and hours.",
         "No terrain: a station is seen above the horizon of a smooth Earth of four thirds the radius.",
         "Stations and points are those of cycle 2207; route, profile and speed are ours: the authors' are not known.",
