@@ -110,6 +110,17 @@ def test_wrong_arguments_are_refused_by_name(change: dict[str, object], named: s
         dme.solve(**(given | change))  # type: ignore[arg-type]
 
 
+def test_a_network_of_nothing_gives_nothing() -> None:
+    nothing = dme.Stations.of({})
+    with pytest.raises(InputError, match="at least one station"):
+        dme.solve(np.empty((2, 0)), nothing, H, sigma_altitude_m=0.0)
+    found = dme.coverage([LAT], [LON], H, nothing, rnp_m=NM, fte_m=0.0, sigma_altitude_m=0.0)
+    assert (found.n_stations.tolist(), found.supports_all.tolist()) == ([0], [False])
+    assert dme.sights([LAT], [LON], [H], nothing).slant_m.shape == (1, 0)
+    with pytest.raises(InputError, match="lat_rad"):
+        dme.coverage([np.nan], [LON], H, nothing, rnp_m=NM, fte_m=0.0, sigma_altitude_m=0.0)
+
+
 def track(n: int = 400) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     lon = np.radians(np.linspace(31.0, 36.0, n))
     return np.arange(n) * 5_000_000_000, np.full(n, LAT), lon, np.full(n, 10_000.0)

@@ -71,6 +71,10 @@ def test_the_pair_is_available_where_two_stations_are_and_better_than_a_bearing(
     assert every.nse95_median_m is not None
     assert vor.nse95_median_m is not None
     assert every.nse95_median_m < pair.nse95_median_m < 0.2 * vor.nse95_median_m
+    # Every epoch that has a pair has a position: no mirror is taken for it, and none is lost.
+    for m in result().means:
+        solved = flown().epochs.filter(pl.col("track") == m.track, pl.col("status") != "not_available").height
+        assert solved == round(m.share_available * result().n_epochs)
     # Two ranges of 182.6 m at right angles: 1.96 times that across any course, the least a pair can have.
     assert pair.nse95_median_m > 1.96 * 182.6
 

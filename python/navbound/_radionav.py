@@ -95,6 +95,8 @@ def solve(
     """
     network = _network(stations)
     m = len(network)
+    if m == 0:
+        raise InputError("stations", 0, "1", "at least one station")
     if not 0 < residual_risk < 1:
         raise InputError("residual_risk", residual_risk, "1", "(0, 1)")
     if (prior_lat_rad is None) != (prior_lon_rad is None):
@@ -192,8 +194,8 @@ class Selection(NamedTuple):
     """What a flight has at each epoch; stations by their place in the table, -1 for none; covariances (n, 2, 2) east-north, NaN without.
 
     ``used``, shape (n, 2), is the pair in use with its switching rule, ``best`` the optimal pair of the instant, ``vor`` the best VOR/DME,
-    ``n_stations`` how many may be used; ``used_en_m2``, ``best_en_m2``, ``all_en_m2`` (all stations together) and ``vor_en_m2``
-    their covariances. [m²]
+    ``n_stations`` how many may be used; ``used_en_m2``, ``best_en_m2``, ``all_en_m2`` (all stations together: three or more, or an
+    admissible pair) and ``vor_en_m2`` their covariances. [m²]
     """
 
     n_stations: NDArray[np.int64]
@@ -340,11 +342,12 @@ def _network(stations: Stations | Mapping[str, ArrayLike]) -> Stations:
 
 
 def _points(network: Stations) -> tuple[Floats, Floats, Floats]:
-    return network.lat_rad, network.lon_rad, network.h_m
+    lat, lon, h = (np.ascontiguousarray(column, dtype=np.float64) for column in (network.lat_rad, network.lon_rad, network.h_m))
+    return lat, lon, h
 
 
 def _core_network(network: Stations) -> tuple[tuple[Floats, Floats, Floats], Floats, list[bool]]:
-    return _points(network), network.service_m, network.bearing.tolist()
+    return _points(network), np.ascontiguousarray(network.service_m, dtype=np.float64), network.bearing.tolist()
 
 
 def _positions(found: dict[str, Any], shape: tuple[int, ...], residual_risk: float) -> Positions:

@@ -182,7 +182,7 @@ pub struct Offer {
     pub best: Option<Best>,
     /// The pair in use, which waits before it changes.
     pub used: Option<Best>,
-    /// All stations together.
+    /// All stations together: three or more, or an admissible pair.
     pub all: Option<Covariance<Enu>>,
     /// The best VOR/DME: its place in the list and its covariance.
     pub vor: Option<(usize, Covariance<Enu>)>,
@@ -233,11 +233,15 @@ fn offered(sights: &[Option<Sight>], stations: &[Station], figure: Figure, model
             vor = Some((k, found.drms, found.covariance(sight, models.sigma_altitude)));
         }
     }
+    let n_stations = sights.iter().flatten().count();
+    let best = best_pair(sights, figure, &models.range, &models.admission, models.sigma_altitude)?;
+    let all = all_in_view(sights.iter().flatten(), &models.range, models.sigma_altitude)?;
     Ok(Offer {
-        n_stations: sights.iter().flatten().count(),
-        best: best_pair(sights, figure, &models.range, &models.admission, models.sigma_altitude)?,
+        n_stations,
+        best,
         used: None,
-        all: all_in_view(sights.iter().flatten(), &models.range, models.sigma_altitude)?,
+        // Two alone are a pair, and must be an admissible one: outside its angles the mirror is near.
+        all: all.filter(|_| n_stations > 2 || best.is_some()),
         vor: vor.map(|(k, _, covariance)| (k, covariance)),
     })
 }

@@ -44,7 +44,8 @@ SIGMA_ALTITUDE_M = 30.0
 """Standard deviation of the altitude, common to all ranges. Ours. [m]"""
 RNP_M = METRES_PER_NM
 """RNP 1: what DME/DME is to support in terminal airspace. [m]"""
-PRIOR_WITHIN_M = 20_000.0
+PRIOR_WITHIN_M = 5_000.0
+"""How far the position predicted from five seconds before may be off: less than the way to the mirror of any admissible pair. Ours. [m]"""
 
 PAIR, ALL, VOR = "optimal-pair", "all-in-view", "vor-dme"
 LABELS = {PAIR: "Optimal DME pair", ALL: "All DMEs in view", VOR: "Best VOR/DME"}
@@ -116,7 +117,9 @@ def material(flown: Flight, seed: int) -> Material:
     by_bearing = dme.solve_vor(measured[row, column], bearings[row, column], station, h_m, sigma_altitude_m=SIGMA_ALTITUDE_M)
     tracks = {
         PAIR: _table(flown, _solved(flown, np.where(both, measured, np.nan), h_m), h_m, flown.selection.used[:, 0] >= 0, PAIR),
-        ALL: _table(flown, _solved(flown, np.where(seen.usable, measured, np.nan), h_m), h_m, flown.selection.n_stations >= 2, ALL),
+        ALL: _table(
+            flown, _solved(flown, np.where(seen.usable, measured, np.nan), h_m), h_m, np.isfinite(flown.selection.all_en_m2[:, 0, 0]), ALL
+        ),
         VOR: _table(flown, by_bearing, h_m, vor >= 0, VOR),
     }
     return Material(
