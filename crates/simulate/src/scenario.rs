@@ -1,6 +1,7 @@
 //! A scenario: what is flown, how, and how well the aircraft knows where it is. All numbers in SI units; the Python layer turns the
 //! units of a scenario file into these and explains every value it refuses.
 
+use navbound_core::geometry::{BEIDOU, GALILEO, GPS, Slot};
 use navbound_core::quantity::OutOfDomain;
 use serde::Deserialize;
 
@@ -124,8 +125,20 @@ pub struct Gusts {
 pub enum System {
     /// GPS, 24 nominal slots.
     Gps,
+    /// Galileo, 24 nominal satellites.
+    Galileo,
     /// BeiDou-3, 30 nominal satellites.
     Beidou,
+}
+
+impl System {
+    pub(crate) fn slots(self) -> &'static [Slot] {
+        match self {
+            Self::Gps => &GPS[..],
+            Self::Galileo => &GALILEO[..],
+            Self::Beidou => &BEIDOU[..],
+        }
+    }
 }
 
 /// How the aircraft knows where it is.
