@@ -20,7 +20,7 @@ pub use outlook::Outlook;
 pub use plan::{PhaseRange, Plan, Refused};
 pub use scenario::{Fault, Guidance, Gusts, Navigation, Phase, ProfileSettings, Scenario, System, Turns, Waypoint};
 pub use sensors::{
-    Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeErrors, RangeParts, SensedFlight, Sensing, SensorFault, Sensors, Station, StationKind,
+    Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeMode, RangeParts, SensedFlight, Sensing, SensorFault, Sensors, Station, StationKind,
     Step, Vor,
 };
 pub use trajectory::{Cursor, Motion, Trajectory};

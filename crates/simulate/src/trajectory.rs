@@ -14,7 +14,7 @@
 
 use crate::flight::FlownEpoch;
 use crate::outlook::Outlook;
-use crate::plan::{GRAVITY, Plan};
+use crate::plan::GRAVITY;
 use core::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, Vector3};
 use navbound_core::frame::{ECCENTRICITY_SQUARED, Geodetic, LatLon, SEMI_MAJOR, earth_rate_ned, gravity_of};
@@ -75,8 +75,9 @@ impl Trajectory {
     ///
     /// # Errors
     /// [`OutOfDomain`] for a path within one degree of a pole or an aircraft that does not move.
-    pub fn planned(plan: &Plan) -> Result<Self, OutOfDomain> {
-        Self::through(plan.profile.duration_s(), |time_s| {
+    pub fn planned(outlook: &Outlook) -> Result<Self, OutOfDomain> {
+        let plan = &outlook.plan;
+        Self::through(outlook.scenario.duration_s, |time_s| {
             let demand = plan.profile.at(time_s);
             let point = plan.route.at(Metres::new(demand.along_m))?.point;
             Ok([point.lat().rad(), point.lon().rad(), demand.height_m])
@@ -88,7 +89,7 @@ impl Trajectory {
     /// # Errors
     /// As [`Trajectory::planned`]; [`OutOfDomain`] for a flight of less than two epochs.
     pub fn flown(outlook: &Outlook, epochs: &[FlownEpoch]) -> Result<Self, OutOfDomain> {
-        if !(epochs.len() >= 2) {
+        if epochs.len() < 2 {
             return Err(OutOfDomain { argument: "epochs", value: epochs.len() as f64, unit: "items", domain: "two or more" });
         }
         let last = (epochs.len() - 1) as f64;

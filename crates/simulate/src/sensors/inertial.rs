@@ -152,7 +152,7 @@ impl InertialUnit {
 
     /// What it delivers for the interval that ends with a sample.
     pub(crate) fn sample(&mut self, index: u64, time: GpsTime, angle: &Vector3<f64>, velocity: &Vector3<f64>) -> ImuIncrement {
-        let second_begins = (index - 1) % self.rate == 0;
+        let second_begins = (index - 1).is_multiple_of(self.rate);
         if second_begins && index > 1 {
             self.gyros.next_second();
             self.accelerometers.next_second();

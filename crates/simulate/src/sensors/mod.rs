@@ -22,7 +22,7 @@ mod sky;
 mod stations;
 
 pub use faults::SensorFault;
-pub use settings::{Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeErrors, RangeParts, Sensors, Station, StationKind, Vor};
+pub use settings::{Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};
 
 use crate::flight::fly;
 use crate::outlook::Outlook;
@@ -88,7 +88,7 @@ impl Sensing {
     /// As [`Trajectory::planned`].
     pub fn trajectory(&self, seed: u64, number: u64) -> Result<Trajectory, OutOfDomain> {
         match self.sensors.path {
-            PathFlown::Planned => Trajectory::planned(self.outlook.plan()),
+            PathFlown::Planned => Trajectory::planned(&self.outlook),
             PathFlown::Flown => Trajectory::flown(&self.outlook, &fly(&self.outlook, seed, number)?),
         }
     }
@@ -110,7 +110,8 @@ impl Sensing {
         Ok(SensedFlight {
             begin,
             interval_ns: 1_000_000_000 / i64::from(rate_hz),
-            samples: (trajectory.duration_s() * rate) as u64,
+            // A product of two written numbers may fall short of a whole one by its last digit.
+            samples: (trajectory.duration_s() * rate + 1e-6) as u64,
             next: 1,
             truth,
             imu: InertialUnit::new(&s.imu, rate_hz, &s.faults, seed, number),
@@ -176,23 +177,23 @@ impl SensedFlight<'_> {
     fn aid(&mut self, index: u64, time_s: f64, time: GpsTime, truth: &Motion) -> Result<(), OutOfDomain> {
         self.aiding.clear();
         if let Some((every, receiver)) = &mut self.gnss
-            && index % *every == 0
+            && index.is_multiple_of(*every)
         {
             receiver.measure(time_s, truth, &mut self.aiding)?;
         }
         if let Some((every, dme)) = &mut self.dme
-            && index % *every == 0
+            && index.is_multiple_of(*every)
         {
             dme.measure(time_s, time, truth, &mut self.aiding)?;
         }
         if let Some((every, vor)) = &mut self.vor
-            && index % *every == 0
+            && index.is_multiple_of(*every)
         {
             vor.measure(time, truth, &mut self.aiding)?;
         }
         if let Some((every, baro)) = &mut self.baro {
             baro.follow(time_s, truth.position.height.m());
-            if index % *every == 0 {
+            if index.is_multiple_of(*every) {
                 baro.measure(time, &mut self.aiding);
             }
         }
@@ -207,6 +208,11 @@ impl SensedFlight<'_> {
     /// Accumulated carrier phases of the last measurement of the satellite receiver.
     pub fn phases(&self) -> &[PhaseRange] {
         self.gnss.as_ref().map_or(&[], |(_, receiver)| receiver.phases())
+    }
+
+    /// Whether the satellite receiver measured at the end of the last sample, even if it heard nothing.
+    pub fn received(&self) -> bool {
+        self.gnss.as_ref().is_some_and(|(every, _)| self.next > 1 && (self.next - 1).is_multiple_of(*every))
     }
 
     /// True offset \[m\] and drift \[m/s\] of the satellite receiver's clock at its last measurement.

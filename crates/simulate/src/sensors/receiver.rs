@@ -12,7 +12,7 @@
 use super::clock::ReceiverClock;
 use super::faults::{SensorFault, satellite};
 use super::markov::Markov;
-use super::settings::{Gnss, RangeErrors, RangeParts};
+use super::settings::{Gnss, RangeMode, RangeParts};
 use super::sky::{Satellite, Sent};
 use crate::philox::{Sensor, Stream};
 use crate::ranging;
@@ -66,11 +66,8 @@ impl<'a> Receiver<'a> {
         seed: u64,
         flight: u64,
     ) -> Self {
-        // In seed mode nothing is slow; the times then serve no purpose.
-        let times = match settings.errors {
-            RangeErrors::Seed { .. } => [1.0; 4],
-            RangeErrors::Real(p) => [p.ranging_time_s, p.ionosphere_time_s, p.multipath_time_s, p.troposphere_time_s],
-        };
+        let p = &settings.parts;
+        let times = [p.ranging_time_s, p.ionosphere_time_s, p.multipath_time_s, p.troposphere_time_s];
         let step = settings.interval_s;
         let channels = satellites.iter().map(|s| Channel::new(s, step, &times, seed, flight)).collect();
         let mut system_bias_m = [0.0; Constellation::ALL.len()];
@@ -119,7 +116,7 @@ impl<'a> Receiver<'a> {
                 continue;
             }
             let id = channel.satellite.id;
-            let (white_m, slow) = errors(&self.settings.errors, channel, &self.troposphere, elevation);
+            let (white_m, slow) = errors(self.settings, channel, &self.troposphere, elevation);
             let common =
                 sent.range_m + self.clock.now()[0] + self.system_bias_m[id.constellation.index()] + fault_m(self.faults, id, time_s);
             let range = SatelliteRange {
@@ -169,10 +166,10 @@ impl<'a> Channel<'a> {
 }
 
 /// Standard deviation of the white part \[m\], and the slow parts.
-fn errors(errors: &RangeErrors, channel: &Channel<'_>, troposphere: &Markov, elevation: Radians) -> (f64, Slow) {
-    match errors {
-        RangeErrors::Seed { sigma_m } => (*sigma_m, Slow { code_m: 0.0, phase_m: 0.0, sigma_m: 0.0, correlation_time_s: 1.0 }),
-        RangeErrors::Real(parts) => (parts.noise_sigma_m, slow(parts, channel, troposphere, elevation)),
+fn errors(settings: &Gnss, channel: &Channel<'_>, troposphere: &Markov, elevation: Radians) -> (f64, Slow) {
+    match settings.mode {
+        RangeMode::Seed => (settings.seed_sigma_m, Slow { code_m: 0.0, phase_m: 0.0, sigma_m: 0.0, correlation_time_s: 1.0 }),
+        RangeMode::Real => (settings.parts.noise_sigma_m, slow(&settings.parts, channel, troposphere, elevation)),
     }
 }
 

@@ -84,8 +84,12 @@ pub struct Gnss {
     pub mask_rad: f64,
     /// Time between measurements \[s\].
     pub interval_s: f64,
-    /// Errors of a code range.
-    pub errors: RangeErrors,
+    /// Which errors a code range has.
+    pub mode: RangeMode,
+    /// Standard deviation of a range in seed mode \[m\].
+    pub seed_sigma_m: f64,
+    /// Errors in real mode.
+    pub parts: RangeParts,
     /// Standard deviation of a range rate \[m/s\].
     pub rate_sigma_mps: f64,
     /// Standard deviation of an accumulated carrier phase, its part of the multipath included \[m\].
@@ -102,17 +106,14 @@ pub struct Gnss {
     pub system_bias_sigma_m: f64,
 }
 
-/// Errors of a code range: one white number, or parts white and slow.
-#[derive(Debug, Clone, Copy, Deserialize, PartialEq)]
-#[serde(tag = "mode", rename_all = "lowercase", deny_unknown_fields)]
-pub enum RangeErrors {
+/// Which errors a code range has.
+#[derive(Debug, Clone, Copy, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum RangeMode {
     /// As the published example: white, the same for all.
-    Seed {
-        /// Standard deviation \[m\].
-        sigma_m: f64,
-    },
+    Seed,
     /// White noise, and parts that stay.
-    Real(RangeParts),
+    Real,
 }
 
 /// Parts of a range error. All but the noise are first-order Gauss-Markov.
@@ -241,7 +242,7 @@ impl StationKind {
 impl Sensors {
     pub(crate) fn rules(&self) -> Vec<Rule> {
         let rate = f64::from(self.rate_hz);
-        let divides = (10..=200).contains(&self.rate_hz) && 1_000_000_000 % self.rate_hz == 0;
+        let divides = (10..=200).contains(&self.rate_hz) && 1_000_000_000_u32.is_multiple_of(self.rate_hz);
         let mut rules = vec![Rule("rate_hz", rate, "1/s", divides, "divisors of 10^9 from 10 to 200")];
         rules.extend(self.imu.rules());
         rules.extend(self.gnss.iter().flat_map(|g| g.rules(rate)));
@@ -260,7 +261,7 @@ impl Sensors {
 fn interval(interval_s: f64, rate: f64) -> Rule {
     let samples = interval_s * rate;
     // A product of two written numbers is a whole number to some 1e-12.
-    let whole = samples >= 0.5 && samples <= 1e9 && (samples - samples.round()).abs() < 1e-6;
+    let whole = (0.5..=1e9).contains(&samples) && (samples - samples.round()).abs() < 1e-6;
     Rule("interval_s", interval_s, "s", whole, "whole multiples of the inertial unit's interval")
 }
 
@@ -289,6 +290,7 @@ impl Gnss {
             Rule("constellations", n as f64, "items", n > 0, "one or more"),
             within("mask_rad", self.mask_rad, "rad", 0.0, 1.6, "[0, pi/2]"),
             interval(self.interval_s, rate),
+            positive("seed_sigma_m", self.seed_sigma_m, "m"),
             positive("rate_sigma_mps", self.rate_sigma_mps, "m/s"),
             positive("phase_sigma_m", self.phase_sigma_m, "m"),
             not_negative("clock_sigma_m", self.clock_sigma_m, "m"),
@@ -297,10 +299,7 @@ impl Gnss {
             not_negative("drift_density_m2ps3", self.drift_density_m2ps3, "m²/s³"),
             not_negative("system_bias_sigma_m", self.system_bias_sigma_m, "m"),
         ];
-        rules.extend(match &self.errors {
-            RangeErrors::Seed { sigma_m } => vec![positive("sigma_m", *sigma_m, "m")],
-            RangeErrors::Real(parts) => parts.rules(),
-        });
+        rules.extend(self.parts.rules());
         rules
     }
 }
