@@ -15,6 +15,7 @@ pub mod monitor;
 pub mod plausible;
 pub mod positions;
 pub mod sbas;
+pub mod sensed;
 pub mod sky;
 pub mod smoothing;
 pub mod states;

@@ -9,6 +9,7 @@ mod ee;
 mod error;
 mod evaluation;
 mod gnss;
+mod ins_simulate;
 mod kpi;
 mod methods;
 mod orbits;
@@ -44,5 +45,6 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     path::register(m)?;
     positions::register(m)?;
     simulate::register(m)?;
+    ins_simulate::register(m)?;
     read::register(m)
 }

@@ -24,10 +24,17 @@ struct Observations(rinex::Observations);
 
 /// Navigation files, read and merged.
 #[pyclass(frozen, module = "navbound._core")]
-struct Navigation {
+pub struct Navigation {
     records: rinex::Navigation,
     /// Refused records with their file.
     refused: Vec<(String, Refusal)>,
+}
+
+impl Navigation {
+    /// Keplerian records of all files.
+    pub fn ephemerides(&self) -> &[navbound_core::signal::Ephemeris] {
+        &self.records.ephemerides
+    }
 }
 
 type Refused = Vec<(usize, String, String, String)>;

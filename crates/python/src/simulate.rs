@@ -13,11 +13,13 @@ use pyo3::types::PyDict;
 #[pyclass(frozen, module = "navbound._core")]
 struct Outlook(Prepared);
 
-fn read(json: &str) -> PyResult<Scenario> {
+/// A scenario in SI units, from JSON.
+pub fn read(json: &str) -> PyResult<Scenario> {
     serde_json::from_str(json).map_err(|e| PyValueError::new_err(format!("scenario: {e}")))
 }
 
-fn refused(e: Refused) -> PyErr {
+/// Why a scenario cannot be flown.
+pub fn refused(e: Refused) -> PyErr {
     match e {
         Refused::Value(error) => input_error(error, None),
         Refused::Item(at) => input_error(at.error, Some(at.index)),

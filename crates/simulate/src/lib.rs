@@ -1,7 +1,8 @@
 //! Scenario and seed to truth and estimate: a simulator is a reader that also knows the truth.
 //!
 //! A [`Scenario`] becomes an [`Outlook`] once (route, heights and speeds, satellite geometry: the same for every flight), and [`fly`] turns
-//! that into a flight for each number. Random numbers are counted, not drawn in turn: a flight depends on scenario, seed and number only.
+//! that into a flight for each number. A scenario with sensors becomes a [`Sensing`], whose [`SensedFlight`] delivers what an inertial unit,
+//! receivers and an altimeter would: records of `navbound_core::signal`. Random numbers are counted, not drawn in turn: a flight depends on scenario, seed and number only.
 
 mod aircraft;
 mod flight;
@@ -11,8 +12,15 @@ mod plan;
 mod profile;
 mod ranging;
 mod scenario;
+mod sensors;
+mod trajectory;
 
 pub use flight::{FlownEpoch, fly};
 pub use outlook::Outlook;
 pub use plan::{PhaseRange, Plan, Refused};
 pub use scenario::{Fault, Guidance, Gusts, Navigation, Phase, ProfileSettings, Scenario, System, Turns, Waypoint};
+pub use sensors::{
+    Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeMode, RangeParts, SensedFlight, Sensing, SensorFault, Sensors, Station, StationKind,
+    Step, Vor,
+};
+pub use trajectory::{Cursor, Motion, Trajectory};

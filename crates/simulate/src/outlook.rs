@@ -5,10 +5,10 @@
 use crate::plan::{Plan, Refused};
 use crate::profile::Demand;
 use crate::ranging;
-use crate::scenario::{Fault, Navigation, Scenario, System};
+use crate::scenario::{Fault, Navigation, Scenario};
 use nalgebra::Matrix3;
 use navbound_core::frame::{Covariance, Enu, Geodetic};
-use navbound_core::geometry::{BEIDOU, GPS, LineOfSight, Observer, Orbit};
+use navbound_core::geometry::{LineOfSight, Observer, Orbit};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::Constellation;
 use navbound_core::solution::wls;
@@ -79,11 +79,7 @@ impl Satellites {
     fn new(navigation: &Navigation) -> Result<Self, OutOfDomain> {
         let mut orbits = Vec::new();
         for system in &navigation.constellations {
-            let slots = match system {
-                System::Gps => &GPS[..],
-                System::Beidou => &BEIDOU[..],
-            };
-            for slot in slots {
+            for slot in system.slots() {
                 orbits.push((slot.satellite.constellation, Orbit::new(slot.elements)?));
             }
         }

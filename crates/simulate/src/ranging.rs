@@ -16,13 +16,28 @@ use navbound_core::quantity::{Metres, Radians};
 const EARTH_RADIUS_M: f64 = 6_378_136.3;
 const SHELL_HEIGHT_M: f64 = 350_000.0;
 
+/// What the ionosphere leaves at an elevation, from the same at the zenith \[m\].
+pub(crate) fn ionosphere_m(zenith_m: f64, elevation: Radians) -> f64 {
+    let shell = EARTH_RADIUS_M * elevation.rad().cos() / (EARTH_RADIUS_M + SHELL_HEIGHT_M);
+    zenith_m / (1.0 - shell * shell).sqrt()
+}
+
+/// What the troposphere leaves, likewise \[m\].
+pub(crate) fn troposphere_m(zenith_m: f64, elevation: Radians) -> f64 {
+    let sin = elevation.rad().sin();
+    zenith_m * 1.001 / (0.002_001 + sin * sin).sqrt()
+}
+
+/// Airborne multipath model \[m\].
+pub(crate) fn multipath_m(elevation: Radians) -> f64 {
+    0.13 + 0.53 * (-elevation.rad() / 10.0_f64.to_radians()).exp()
+}
+
 /// Standard deviation of a range at an elevation.
 pub(crate) fn sigma(n: &Navigation, elevation: Radians) -> Metres {
-    let (sin, cos) = elevation.rad().sin_cos();
-    let shell = EARTH_RADIUS_M * cos / (EARTH_RADIUS_M + SHELL_HEIGHT_M);
-    let ionosphere = n.ionosphere_sigma_m / (1.0 - shell * shell).sqrt();
-    let troposphere = n.troposphere_sigma_m * 1.001 / (0.002_001 + sin * sin).sqrt();
-    let multipath = n.multipath_share * (0.13 + 0.53 * (-elevation.rad() / 10.0_f64.to_radians()).exp());
+    let ionosphere = ionosphere_m(n.ionosphere_sigma_m, elevation);
+    let troposphere = troposphere_m(n.troposphere_sigma_m, elevation);
+    let multipath = n.multipath_share * multipath_m(elevation);
     let parts = [n.ranging_sigma_m, ionosphere, troposphere, n.noise_sigma_m, multipath];
     Metres::new(parts.iter().map(|s| s * s).sum::<f64>().sqrt())
 }

@@ -1,7 +1,10 @@
 //! A scenario: what is flown, how, and how well the aircraft knows where it is. All numbers in SI units; the Python layer turns the
 //! units of a scenario file into these and explains every value it refuses.
 
+use crate::sensors::Sensors;
+use navbound_core::geometry::{BEIDOU, GALILEO, GPS, Slot};
 use navbound_core::quantity::OutOfDomain;
+use navbound_core::signal::Constellation;
 use serde::Deserialize;
 
 /// One simulated flight, or many of them.
@@ -28,6 +31,9 @@ pub struct Scenario {
     pub phases: Vec<Phase>,
     /// What goes wrong.
     pub faults: Vec<Fault>,
+    /// Sensors on board, for flights whose position is to be worked out rather than drawn.
+    #[serde(default)]
+    pub sensors: Option<Sensors>,
 }
 
 /// A point of the route.
@@ -124,8 +130,28 @@ pub struct Gusts {
 pub enum System {
     /// GPS, 24 nominal slots.
     Gps,
+    /// Galileo, 24 nominal satellites.
+    Galileo,
     /// BeiDou-3, 30 nominal satellites.
     Beidou,
+}
+
+impl System {
+    pub(crate) fn slots(self) -> &'static [Slot] {
+        match self {
+            Self::Gps => &GPS[..],
+            Self::Galileo => &GALILEO[..],
+            Self::Beidou => &BEIDOU[..],
+        }
+    }
+
+    pub(crate) fn constellation(self) -> Constellation {
+        match self {
+            Self::Gps => Constellation::Gps,
+            Self::Galileo => Constellation::Galileo,
+            Self::Beidou => Constellation::BeiDou,
+        }
+    }
 }
 
 /// How the aircraft knows where it is.
@@ -197,7 +223,7 @@ const NOT_NEGATIVE: &str = "[0, inf)";
 const QUARTER: f64 = core::f64::consts::FRAC_PI_2;
 
 /// A number that must be inside an interval.
-struct Rule(&'static str, f64, &'static str, bool, &'static str);
+pub(crate) struct Rule(pub(crate) &'static str, pub(crate) f64, pub(crate) &'static str, pub(crate) bool, pub(crate) &'static str);
 
 impl Scenario {
     /// That every number is inside its domain. Names and the shape of the route are checked where they are used.
@@ -213,6 +239,7 @@ impl Scenario {
         rules.extend(self.navigation.rules());
         rules.extend(self.phases.iter().map(|p| positive("rnp_m", p.rnp_m, "m")));
         rules.extend(self.faults.iter().flat_map(Fault::rules));
+        rules.extend(self.sensors.iter().flat_map(Sensors::rules));
         match rules.into_iter().find(|rule| !rule.3) {
             Some(Rule(argument, value, unit, _, domain)) => Err(OutOfDomain { argument, value, unit, domain }),
             None => Ok(()),
@@ -220,15 +247,15 @@ impl Scenario {
     }
 }
 
-fn within(argument: &'static str, value: f64, unit: &'static str, least: f64, most: f64, domain: &'static str) -> Rule {
+pub(crate) fn within(argument: &'static str, value: f64, unit: &'static str, least: f64, most: f64, domain: &'static str) -> Rule {
     Rule(argument, value, unit, least <= value && value <= most, domain)
 }
 
-fn positive(argument: &'static str, value: f64, unit: &'static str) -> Rule {
+pub(crate) fn positive(argument: &'static str, value: f64, unit: &'static str) -> Rule {
     Rule(argument, value, unit, value > 0.0 && value.is_finite(), POSITIVE)
 }
 
-fn not_negative(argument: &'static str, value: f64, unit: &'static str) -> Rule {
+pub(crate) fn not_negative(argument: &'static str, value: f64, unit: &'static str) -> Rule {
     Rule(argument, value, unit, value >= 0.0 && value.is_finite(), NOT_NEGATIVE)
 }
 

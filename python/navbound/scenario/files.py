@@ -11,12 +11,25 @@ from pydantic import ValidationError
 from navbound import _core
 from navbound.errors import FormatError, InputError
 from navbound.scenario.models import Scenario
+from navbound.scenario.sensors import grades, with_grade
 from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
 _FOLDER = Path(__file__).parent
+_KINDS = {
+    "lateral-ramp",
+    "degraded-ranging",
+    "satellite-step",
+    "satellite-ramp",
+    "interference",
+    "spoofing",
+    "dme-bias",
+    "imu-bias-jump",
+    "baro-blockage",
+}
+"""Kinds of faults; the checker puts them into its locations, where the file has nothing."""
 
 
 def shipped() -> list[str]:
@@ -64,7 +77,7 @@ def load(name_or_path: str | Path) -> Scenario:
     path = find(name_or_path)
     written: dict[Place, Written] = {}
     try:
-        table = to_si(_table(path), written)
+        table = to_si(_graded(path, _table(path)), written)
         scenario = Scenario.model_validate(table)
         _core.Outlook.check(scenario.core_json())
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as e:
@@ -91,6 +104,15 @@ def _table(path: Path) -> dict[str, Any]:
     return _laid_over(_table(_FOLDER / f"{base}.toml"), table)
 
 
+def _graded(path: Path, table: dict[str, Any]) -> dict[str, Any]:
+    try:
+        return with_grade(table)
+    except (KeyError, TypeError) as e:
+        raise FormatError(
+            path, f"{table['sensors']['imu']['grade']!r} is not one of {', '.join(grades())}", field="sensors.imu.grade"
+        ) from e
+
+
 def _laid_over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     """Merge tables key by key; anything else, lists too, is replaced as a whole."""
     merged = dict(below)
@@ -101,8 +123,7 @@ def _laid_over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
 
 
 def _explained(path: Path, error: ErrorDetails, written: dict[Place, Written]) -> FormatError:
-    # The kind of a fault stands in the location where the file has nothing.
-    place = tuple(part for part in error["loc"] if part not in {"lateral-ramp", "degraded-ranging"})
+    place = tuple(part for part in error["loc"] if part not in _KINDS)
     found = written.get(place)
     key = found.key if found else ".".join(str(part) for part in place)
     if error["type"] == "missing":

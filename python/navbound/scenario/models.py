@@ -9,15 +9,12 @@ import json
 from datetime import datetime, timedelta
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator
+from pydantic import Field, field_validator
+
+from navbound.scenario.part import Part
+from navbound.scenario.sensors import Sensors
 
 GPS_EPOCH = datetime(1980, 1, 6)
-
-
-class Part(BaseModel):
-    """Immutable, with no key that is not declared and no type that is only nearly right."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
 class Waypoint(Part):
@@ -78,7 +75,7 @@ class Gusts(Part):
 class Navigation(Part):
     """How the aircraft knows where it is."""
 
-    constellations: list[Literal["gps", "beidou"]]
+    constellations: list[Literal["gps", "galileo", "beidou"]]
     mask_rad: float
     ranging_sigma_m: float
     ionosphere_sigma_m: float
@@ -135,7 +132,8 @@ class Scenario(Part):
     gusts: Gusts
     navigation: Navigation
     phases: list[Phase] = Field(min_length=1)
-    faults: list[Fault] = []
+    faults: list[Fault] = Field(default=[])
+    sensors: Sensors | None = None
 
     @field_validator("start_gps")
     @classmethod

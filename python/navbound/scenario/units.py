@@ -17,8 +17,15 @@ TO_SI: dict[str, tuple[str, float]] = {
     "_kt": ("_mps", 1852 / 3600),
     "_fpm": ("_mps", 0.3048 / 60),
     "_min": ("_s", 60.0),
+    "_degph": ("_radps", math.pi / 180 / 3600),
+    "_degprth": ("_radprts", math.pi / 180 / 60),
+    "_urad": ("_rad", 1e-6),
+    "_ug": ("_mps2", 9.80665e-6),
+    "_ugprthz": ("_mpsprts", 9.80665e-6),
+    "_ppm": ("", 1e-6),
 }
-"""Suffix to the SI suffix and the factor; all exact by definition but for the rounding of pi."""
+"""Suffix to the SI suffix and the factor; all exact by definition but for the rounding of pi. ``prth`` and ``prts`` are "per root of an
+hour, a second": a random walk's growth; µg/√Hz is the same as m/s/√s."""
 
 
 @dataclass(frozen=True)

@@ -83,6 +83,17 @@ pub struct PositionFix {
     pub velocity_ned_mps: Option<(Vector3<f64>, nalgebra::Matrix3<f64>)>,
 }
 
+/// Accumulated carrier phase of a satellite, corrected as its code range is. It aids no filter here; differences over time do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhaseRange {
+    /// Which satellite.
+    pub satellite: SatelliteId,
+    /// As the code range, with the ionosphere's error of the other sign and a constant that nobody knows.
+    pub range: Metres,
+    /// Standard deviation of the white part.
+    pub sigma_white: Metres,
+}
+
 /// One measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Aiding {

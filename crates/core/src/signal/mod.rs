@@ -8,7 +8,7 @@ mod satellite;
 pub mod sbas;
 pub mod smoothing;
 
-pub use aiding::{Aiding, BaroHeight, DmeRange, PositionFix, SatelliteRange, TimedAiding, VorBearing};
+pub use aiding::{Aiding, BaroHeight, DmeRange, PhaseRange, PositionFix, SatelliteRange, TimedAiding, VorBearing};
 pub use carrier::{Carrier, SPEED_OF_LIGHT_MPS};
 pub use ephemeris::{Ephemeris, GeoEphemeris, Health, Klobuchar, Message, nearest};
 pub use inertial::ImuIncrement;

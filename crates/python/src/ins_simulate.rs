@@ -1,0 +1,59 @@
+//! Simulated sensors.
+
+use crate::error::input_error;
+use crate::positions::Navigation;
+use crate::simulate::{read, refused};
+use navbound_assess::sensed::{BARO, CLOCK, DME, IMU, SATELLITES, Sensed, TRUTH, Table, VOR};
+use navbound_simulate::Sensing;
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// The sensors of a scenario, ready for any flight.
+#[pyclass(frozen, module = "navbound._core")]
+struct Sensors(Sensing);
+
+fn columns<'py, const N: usize>(py: Python<'py>, names: &[&str; N], table: Table<N>) -> PyResult<Bound<'py, PyDict>> {
+    let d = PyDict::new(py);
+    d.set_item("time_ns", table.time_ns.into_pyarray(py))?;
+    for (name, column) in names.iter().zip(table.columns) {
+        d.set_item(name, column.into_pyarray(py))?;
+    }
+    Ok(d)
+}
+
+#[pymethods]
+impl Sensors {
+    /// From a scenario in SI units, as JSON; satellites nominal, or from navigation files.
+    #[new]
+    fn new(py: Python<'_>, scenario: &str, navigation: Option<&Navigation>) -> PyResult<Self> {
+        let scenario = read(scenario)?;
+        let records = navigation.map(|n| n.ephemerides());
+        py.detach(|| Sensing::new(scenario, records)).map(Self).map_err(refused)
+    }
+
+    /// One flight as tables of columns.
+    fn fly<'py>(&self, py: Python<'py>, seed: u64, number: u64, truth_every: u64) -> PyResult<Bound<'py, PyDict>> {
+        let flown = py.detach(|| Sensed::fly(&self.0, seed, number, truth_every));
+        let s = flown.map_err(|e| input_error(e, None))?;
+        let d = PyDict::new(py);
+        d.set_item("truth", columns(py, &TRUTH, s.truth)?)?;
+        d.set_item("imu", columns(py, &IMU, s.imu)?)?;
+        let satellites = columns(py, &SATELLITES, s.satellites)?;
+        satellites.set_item("satellite", s.satellite.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+        d.set_item("satellites", satellites)?;
+        let dme = columns(py, &DME, s.dme)?;
+        dme.set_item("station", s.dme_station.into_pyarray(py))?;
+        d.set_item("dme", dme)?;
+        let vor = columns(py, &VOR, s.vor)?;
+        vor.set_item("station", s.vor_station.into_pyarray(py))?;
+        d.set_item("vor", vor)?;
+        d.set_item("baro", columns(py, &BARO, s.baro)?)?;
+        d.set_item("clock", columns(py, &CLOCK, s.clock)?)?;
+        Ok(d)
+    }
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_class::<Sensors>()
+}

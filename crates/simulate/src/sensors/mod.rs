@@ -1,0 +1,222 @@
+//! What the aircraft's sensors deliver on a flight: inertial increments and the measurements that aid a filter.
+//!
+//! A flight is walked sample by sample and holds nothing of what has passed, so that many flights fit into memory:
+//!
+//! ```text
+//! let sensing = Sensing::new(scenario, None)?;
+//! let trajectory = sensing.trajectory(seed, number)?;
+//! let mut flight = sensing.flight(&trajectory, seed, number)?;
+//! while let Some(step) = flight.advance()? { propagate(&step.imu); for aid in flight.aiding() { update(aid) } }
+//! ```
+//!
+//! Every sensor, satellite, station and axis draws from a stream of its own, so leaving one out changes no other.
+
+mod altimeter;
+mod clock;
+mod faults;
+mod inertial;
+mod markov;
+mod receiver;
+mod settings;
+mod sky;
+mod stations;
+
+pub use faults::SensorFault;
+pub use settings::{Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};
+
+use crate::flight::fly;
+use crate::outlook::Outlook;
+use crate::plan::Refused;
+use crate::scenario::Scenario;
+use crate::trajectory::{Motion, Trajectory};
+use altimeter::Altimeter;
+use inertial::{InertialUnit, TrueIncrements};
+use navbound_core::quantity::{GpsTime, OutOfDomain};
+use navbound_core::signal::{Ephemeris, ImuIncrement, PhaseRange, TimedAiding};
+use receiver::Receiver;
+use sky::Satellite;
+use stations::{Bearings, Interrogator};
+
+/// A scenario's sensors, ready for any flight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensing {
+    outlook: Outlook,
+    sensors: Sensors,
+    satellites: Vec<Satellite>,
+}
+
+/// One sample of the inertial unit, and the truth at its end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// What the inertial unit delivers.
+    pub imu: ImuIncrement,
+    /// The true motion at the end of the sample.
+    pub truth: Motion,
+}
+
+impl Sensing {
+    /// From a scenario with sensors, its satellites nominal or from broadcast records.
+    ///
+    /// # Errors
+    /// As [`Outlook::new`]; [`OutOfDomain`] for a scenario without sensors or records that do not cover the flight.
+    pub fn new(scenario: Scenario, broadcast: Option<&[Ephemeris]>) -> Result<Self, Refused> {
+        let Some(sensors) = scenario.sensors.clone() else {
+            let domain = "a scenario with a [sensors] part";
+            return Err(OutOfDomain { argument: "sensors", value: 0.0, unit: "tables", domain }.into());
+        };
+        let outlook = Outlook::new(scenario)?;
+        let satellites = match &sensors.gnss {
+            Some(gnss) => sky::satellites(&outlook.scenario, &gnss.constellations, broadcast)?,
+            None => Vec::new(),
+        };
+        Ok(Self { outlook, sensors, satellites })
+    }
+
+    /// What all flights share besides the sensors.
+    pub fn outlook(&self) -> &Outlook {
+        &self.outlook
+    }
+
+    /// The settings.
+    pub fn sensors(&self) -> &Sensors {
+        &self.sensors
+    }
+
+    /// The path of a flight.
+    ///
+    /// # Errors
+    /// As [`Trajectory::planned`].
+    pub fn trajectory(&self, seed: u64, number: u64) -> Result<Trajectory, OutOfDomain> {
+        match self.sensors.path {
+            PathFlown::Planned => Trajectory::planned(&self.outlook),
+            PathFlown::Flown => Trajectory::flown(&self.outlook, &fly(&self.outlook, seed, number)?),
+        }
+    }
+
+    /// The sensors on a flight along a path, at its begin.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a station off the Earth.
+    pub fn flight<'a>(&'a self, trajectory: &'a Trajectory, seed: u64, number: u64) -> Result<SensedFlight<'a>, OutOfDomain> {
+        let (s, rate_hz) = (&self.sensors, self.sensors.rate_hz);
+        let rate = f64::from(rate_hz);
+        let begin = GpsTime::from_nanoseconds(self.outlook.scenario.start_ns);
+        let truth = TrueIncrements::new(trajectory, rate_hz)?;
+        let departure_m = truth.now().position.height.m();
+        let every = |interval_s: f64| (interval_s * rate).round() as u64;
+        let dme = s.dme.as_ref().map(|d| Interrogator::new(d, s, seed, number).map(|i| (every(d.interval_s), i))).transpose()?;
+        let vor = s.vor.as_ref().map(|v| Bearings::new(v, s, seed, number).map(|b| (every(v.interval_s), b))).transpose()?;
+        let receiver = |g| Receiver::new(g, &self.satellites, &s.faults, begin, seed, number);
+        Ok(SensedFlight {
+            begin,
+            interval_ns: 1_000_000_000 / i64::from(rate_hz),
+            // A product of two written numbers may fall short of a whole one by its last digit.
+            samples: (trajectory.duration_s() * rate + 1e-6) as u64,
+            next: 1,
+            truth,
+            imu: InertialUnit::new(&s.imu, rate_hz, &s.faults, seed, number),
+            gnss: s.gnss.as_ref().map(|g| (every(g.interval_s), receiver(g))),
+            dme,
+            vor,
+            baro: s.baro.as_ref().map(|b| (every(b.interval_s), Altimeter::new(b, &s.faults, departure_m, 1.0 / rate, seed, number))),
+            aiding: Vec::new(),
+        })
+    }
+}
+
+/// Sensors on a flight, each with the samples of the inertial unit between its measurements.
+pub struct SensedFlight<'a> {
+    begin: GpsTime,
+    interval_ns: i64,
+    samples: u64,
+    next: u64,
+    truth: TrueIncrements<'a>,
+    imu: InertialUnit,
+    gnss: Option<(u64, Receiver<'a>)>,
+    dme: Option<(u64, Interrogator<'a>)>,
+    vor: Option<(u64, Bearings<'a>)>,
+    baro: Option<(u64, Altimeter<'a>)>,
+    aiding: Vec<TimedAiding>,
+}
+
+impl SensedFlight<'_> {
+    /// Time of the begin.
+    pub fn begin(&self) -> GpsTime {
+        self.begin
+    }
+
+    /// The true motion at the begin of the next sample.
+    pub fn now(&self) -> &Motion {
+        self.truth.now()
+    }
+
+    /// Samples of the inertial unit in the whole flight.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// The next sample; `None` after the last.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a position that leaves the Earth's latitudes.
+    pub fn advance(&mut self) -> Result<Option<Step>, OutOfDomain> {
+        if self.next > self.samples {
+            self.aiding.clear();
+            return Ok(None);
+        }
+        let index = self.next;
+        self.next += 1;
+        let since_ns = index as i64 * self.interval_ns;
+        let time = GpsTime::from_nanoseconds(self.begin.nanoseconds() + since_ns);
+        let (angle, velocity, truth) = self.truth.step()?;
+        let imu = self.imu.sample(index, time, &angle, &velocity);
+        self.aid(index, since_ns as f64 * 1e-9, time, &truth)?;
+        Ok(Some(Step { imu, truth }))
+    }
+
+    fn aid(&mut self, index: u64, time_s: f64, time: GpsTime, truth: &Motion) -> Result<(), OutOfDomain> {
+        self.aiding.clear();
+        if let Some((every, receiver)) = &mut self.gnss
+            && index.is_multiple_of(*every)
+        {
+            receiver.measure(time_s, truth, &mut self.aiding)?;
+        }
+        if let Some((every, dme)) = &mut self.dme
+            && index.is_multiple_of(*every)
+        {
+            dme.measure(time_s, time, truth, &mut self.aiding)?;
+        }
+        if let Some((every, vor)) = &mut self.vor
+            && index.is_multiple_of(*every)
+        {
+            vor.measure(time, truth, &mut self.aiding)?;
+        }
+        if let Some((every, baro)) = &mut self.baro {
+            baro.follow(time_s, truth.position.height.m());
+            if index.is_multiple_of(*every) {
+                baro.measure(time, &mut self.aiding);
+            }
+        }
+        Ok(())
+    }
+
+    /// Measurements that hold at the end of the last sample.
+    pub fn aiding(&self) -> &[TimedAiding] {
+        &self.aiding
+    }
+
+    /// Accumulated carrier phases of the last measurement of the satellite receiver.
+    pub fn phases(&self) -> &[PhaseRange] {
+        self.gnss.as_ref().map_or(&[], |(_, receiver)| receiver.phases())
+    }
+
+    /// Whether the satellite receiver measured at the end of the last sample, even if it heard nothing.
+    pub fn received(&self) -> bool {
+        self.gnss.as_ref().is_some_and(|(every, _)| self.next > 1 && (self.next - 1).is_multiple_of(*every))
+    }
+
+    /// True offset \[m\] and drift \[m/s\] of the satellite receiver's clock at its last measurement.
+    pub fn clock(&self) -> Option<[f64; 2]> {
+        self.gnss.as_ref().map(|(_, receiver)| receiver.clock())
+    }
+}
