@@ -2,6 +2,7 @@
 
 pub mod anp;
 pub mod ee;
+pub mod level_equation;
 mod method;
 pub mod sbas;
 pub mod tse;
