@@ -342,3 +342,19 @@ def ee_bias_sights(
     mu_most_m: float,
     alpha: float,
 ) -> dict[str, Any]: ...
+
+# ARAIM
+def araim_services() -> dict[str, dict[str, Any]]: ...
+def araim_support() -> dict[str, Any]: ...
+def araim_error_models() -> dict[str, dict[str, Any]]: ...
+def araim_levels(
+    unit_enu: _F,
+    sigma_int_m: _F,
+    sigma_acc_m: _F,
+    bias_m: _F,
+    bias_continuity_m: _F,
+    p_sat: _F,
+    constellation: list[int],
+    p_const: list[float],
+    numbers: list[float],
+) -> dict[str, Any]: ...

@@ -3,6 +3,7 @@
 //! A loop over epochs contains a call, not mathematics: the mathematics is in `navbound-core`.
 
 pub mod anp;
+pub mod araim;
 pub mod batch;
 pub mod bounds;
 pub mod dme;

@@ -3,6 +3,7 @@
 //! One file a subject, each with a `register`; every refusal of the Rust side becomes a Python error in `error.rs` and nowhere else.
 
 mod anp;
+mod araim;
 mod batch;
 mod dme;
 mod ee;
@@ -32,6 +33,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     methods::register(m)?;
     tse::register(m)?;
     anp::register(m)?;
+    araim::register(m)?;
     rnp::register(m)?;
     sbas::register(m)?;
     ee::register(m)?;

@@ -1,7 +1,9 @@
 //! How wrong the position may be. One file a method family; one list, [`METHODS`], that everything else reads.
 
 pub mod anp;
+pub mod araim;
 pub mod ee;
+pub mod level_equation;
 mod method;
 pub mod sbas;
 pub mod tse;

@@ -2,6 +2,7 @@
 //!
 //! Everything takes the risk (the tail), never the probability, and keeps full relative accuracy where the tail is small.
 
+pub(crate) mod abreast;
 pub mod beta;
 pub(crate) mod bivariate;
 pub mod chi;

@@ -1,0 +1,312 @@
+//! Advanced receiver autonomous integrity monitoring: protection levels by solution separation over fault modes.
+//!
+//! In the order of the flow: [`service`] (what is allowed and what satellites promise), [`modes`] (what may be wrong together), the
+//! solutions without each mode's satellites, and here thresholds and levels.
+
+pub mod modes;
+pub mod ranging;
+pub mod service;
+mod subset;
+
+use super::level_equation::LevelEquation;
+use crate::quantity::{Metres, Risk, Unavailable};
+use crate::signal::Constellation;
+use crate::special::float::{hypot, sqrt};
+use crate::special::one_sided_factor;
+use modes::{FaultMode, FaultModes, MOST_MODES, MOST_SATELLITES};
+use service::Service;
+pub use subset::Sight;
+use subset::{MOST_TOGETHER, NO_SOLUTION, Satellites, Solution, Sums};
+
+/// Document of every formula here; provenance *standard*.
+pub const SOURCE: &str = "Blanch et al. 2015, baseline advanced RAIM user algorithm; Working Group C, ARAIM airborne algorithm description v3.0 (standard; levels checked against MAAST for ARAIM 2)";
+
+const CLOCKS: usize = Constellation::ALL.len();
+
+/// Protection levels of one epoch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Levels {
+    /// Horizontal: root of the sum of the squares of both axes; infinite where the budget is spent on modes that cannot be monitored.
+    pub hpl: Metres,
+    /// Vertical; infinite likewise.
+    pub vpl: Metres,
+    /// East and north.
+    pub axes: [Metres; 2],
+    /// Effective monitor threshold: the largest vertical threshold of a mode that the service counts.
+    pub emt: Metres,
+    /// Standard deviation of the position for accuracy, east, north, up.
+    pub sigma_accuracy: [Metres; 3],
+    /// Fault modes, the fault-free one among them, and those of them that the geometry can monitor.
+    pub n_modes: usize,
+    /// See above.
+    pub n_monitored: usize,
+    /// Probability of all that is not monitored.
+    pub p_unmonitored: f64,
+}
+
+/// One mode as the levels saw it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeReport {
+    /// The mode.
+    pub mode: FaultMode,
+    /// Whether the satellites left determine the position.
+    pub monitored: bool,
+    /// Standard deviation of the position without them, for integrity: east, north, up.
+    pub sigma: [Metres; 3],
+    /// Standard deviation of its separation from the position with all.
+    pub sigma_separation: [Metres; 3],
+    /// Largest effect of the nominal biases.
+    pub bias: [Metres; 3],
+    /// Detection threshold.
+    pub threshold: [Metres; 3],
+}
+
+/// Detection and levels, epoch after epoch. No heap; made once and used again, since it is large.
+#[derive(Debug, Clone)]
+pub struct Monitor {
+    satellites: Satellites,
+    all: Solution,
+    /// Solutions without one constellation, and which of them are worked out; then one without several.
+    without: [Solution; CLOCKS],
+    solved: [Option<bool>; CLOCKS],
+    several: Solution,
+    outcome: [Option<Sums>; MOST_MODES],
+    equation: LevelEquation,
+    factors: Factors,
+}
+
+impl Default for Monitor {
+    fn default() -> Self {
+        Self {
+            satellites: Satellites::default(),
+            all: NO_SOLUTION,
+            without: [NO_SOLUTION; CLOCKS],
+            solved: [None; CLOCKS],
+            several: NO_SOLUTION,
+            outcome: [None; MOST_MODES],
+            equation: LevelEquation::default(),
+            factors: Factors::default(),
+        }
+    }
+}
+
+/// Multipliers of the thresholds, worked out once for each number of modes.
+#[derive(Debug, Clone)]
+struct Factors {
+    false_alarm: [f64; 2],
+    known: [Option<[f64; 3]>; MOST_MODES],
+}
+
+impl Default for Factors {
+    fn default() -> Self {
+        Self { false_alarm: [0.0; 2], known: [None; MOST_MODES] }
+    }
+}
+
+impl Factors {
+    /// Q^-1(P_FA / (4 N)) in the horizontal (two axes, two sides), Q^-1(P_FA / (2 N)) in the vertical.
+    #[inline(always)]
+    fn of(&mut self, service: &Service, faults: usize) -> [f64; 3] {
+        let false_alarm = [service.false_alarm_h.q(), service.false_alarm_v.q()];
+        if self.false_alarm != false_alarm {
+            *self = Self { false_alarm, known: [None; MOST_MODES] };
+        }
+        if faults == 0 {
+            return [0.0; 3];
+        }
+        let work_out = || {
+            let n = faults as f64;
+            let h = one_sided_factor(0.25 * false_alarm[0] / n);
+            [h, h, one_sided_factor(0.5 * false_alarm[1] / n)]
+        };
+        match self.known.get_mut(faults) {
+            Some(known) => *known.get_or_insert_with(work_out),
+            None => work_out(),
+        }
+    }
+}
+
+impl Monitor {
+    /// Protection levels by detection alone: what bounds the error as long as no separation exceeds its threshold.
+    ///
+    /// ```text
+    /// T_k = K_fa sigma_ss,k + sum |s_k - s_0| b_cont
+    /// 2 Qm((PL - b_0)/s_0) + sum_k p_k Qm((PL - T_k - b_k)/s_k) = P_HMI,axis (1 - P_nm / P_HMI)        each axis
+    /// HPL = sqrt(PL_e^2 + PL_n^2)
+    /// ```
+    ///
+    /// # Errors
+    /// [`Unavailable`]: too few satellites, a geometry that does not determine the position, a number that is none.
+    #[inline(always)]
+    pub fn levels(&mut self, sights: &[Sight], modes: &FaultModes, service: &Service) -> Result<Levels, Unavailable> {
+        checked(sights)?;
+        self.satellites.fill(sights);
+        self.satellites.solve(0, &mut self.all)?;
+        self.solved = [None; CLOCKS];
+        let (mut monitored, mut p_unmonitored) = (0, modes.left());
+        for (k, mode) in modes.iter().enumerate() {
+            let sums = self.subset(mode, sights.len());
+            if sums.is_some() {
+                monitored += 1;
+            } else {
+                p_unmonitored += mode.p;
+            }
+            self.outcome[k] = sums;
+        }
+        let factors = self.factors.of(service, monitored - 1);
+        let emt = self.effective_monitor_threshold(modes, service, &factors);
+        let [east, north, up] = self.axis_levels(modes, service, p_unmonitored, &factors);
+        let sigma_accuracy = self.satellites.accuracy_m2(&self.all).map(|v| Metres::new(sqrt(v)));
+        Ok(Levels {
+            hpl: Metres::new(hypot(east, north)),
+            vpl: Metres::new(up),
+            axes: [Metres::new(east), Metres::new(north)],
+            emt,
+            sigma_accuracy,
+            n_modes: modes.len(),
+            n_monitored: monitored,
+            p_unmonitored,
+        })
+    }
+
+    /// The modes of the last epoch as its levels saw them; `modes` and `service` are those of that call.
+    pub fn report<'a>(&'a mut self, modes: &'a FaultModes, service: &Service) -> impl Iterator<Item = ModeReport> + 'a {
+        let faults = self.outcome[..modes.len()].iter().flatten().count().saturating_sub(1);
+        let factors = self.factors.of(service, faults);
+        modes.iter().zip(&self.outcome).map(move |(mode, outcome)| {
+            let sums = outcome.unwrap_or_default();
+            let root = |x: [f64; 3]| x.map(|v| Metres::new(sqrt(v)));
+            ModeReport {
+                mode: *mode,
+                monitored: outcome.is_some(),
+                sigma: root(sums.variance),
+                sigma_separation: root(sums.separation),
+                bias: sums.bias.map(Metres::new),
+                threshold: [0, 1, 2].map(|a| Metres::new(threshold(&sums, &factors, a))),
+            }
+        })
+    }
+
+    /// The solution without a mode's satellites.
+    #[inline(always)]
+    fn subset(&mut self, mode: &FaultMode, count: usize) -> Option<Sums> {
+        let left = count - (mode.satellites.count_ones() as usize).min(count);
+        if left < self.satellites.need_and_have(mode.constellations).0 {
+            return None;
+        }
+        let base = match mode.constellations.count_ones() {
+            0 => &self.all,
+            1 => {
+                let c = mode.constellations.trailing_zeros() as usize;
+                if self.solved[c].is_none() {
+                    self.solved[c] = Some(self.satellites.solve(mode.constellations, &mut self.without[c]).is_ok());
+                }
+                if self.solved[c] != Some(true) {
+                    return None;
+                }
+                &self.without[c]
+            }
+            _ => {
+                self.satellites.solve(mode.constellations, &mut self.several).ok()?;
+                &self.several
+            }
+        };
+        let single = mode.satellites & !self.satellites.of_constellations(mode.constellations);
+        let mut out = [0; MOST_TOGETHER];
+        let mut bits = single;
+        let together = single.count_ones() as usize;
+        for slot in out.iter_mut().take(together) {
+            *slot = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+        }
+        let (satellites, all) = (&self.satellites, &self.all);
+        match together {
+            0 => satellites.without(all, base, []),
+            1 => satellites.without(all, base, [out[0]]),
+            2 => satellites.without(all, base, [out[0], out[1]]),
+            3 => satellites.without(all, base, [out[0], out[1], out[2]]),
+            MOST_TOGETHER => satellites.without(all, base, out),
+            // More at a time than is worked out counts as not monitored: its probability is in the budget.
+            _ => None,
+        }
+    }
+
+    #[inline(always)]
+    fn effective_monitor_threshold(&self, modes: &FaultModes, service: &Service, factors: &[f64; 3]) -> Metres {
+        let counted = modes.iter().zip(&self.outcome).skip(1).filter(|(m, _)| m.p >= service.effective_monitor.q());
+        Metres::new(counted.filter_map(|(_, o)| o.as_ref()).map(|s| threshold(s, factors, 2)).fold(0.0, f64::max))
+    }
+
+    /// Levels of east, north and up.
+    #[inline(always)]
+    fn axis_levels(&mut self, modes: &FaultModes, service: &Service, p_unmonitored: f64, factors: &[f64; 3]) -> [f64; 3] {
+        let left = 1.0 - p_unmonitored / service.integrity();
+        let half = 0.5 * service.integrity_h.q();
+        [half, half, service.integrity_v.q()].map(|q| q * left).map(Risk::new).iter().enumerate().fold(
+            [f64::INFINITY; 3],
+            |mut out, (a, risk)| {
+                if let Ok(risk) = risk {
+                    out[a] = self.axis_level(modes, *risk, factors, a);
+                }
+                out
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn axis_level(&mut self, modes: &FaultModes, risk: Risk, factors: &[f64; 3], a: usize) -> f64 {
+        self.equation.clear();
+        for (k, (mode, outcome)) in modes.iter().zip(&self.outcome).enumerate() {
+            let Some(sums) = outcome else { continue };
+            // The fault-free error has two tails.
+            let (weight, threshold) = if k == 0 { (2.0, 0.0) } else { (mode.p, threshold(sums, factors, a)) };
+            let pushed = self.equation.push(weight, Metres::new(threshold + sums.bias[a]), Metres::new(sqrt(sums.variance[a])));
+            // There are as many places as modes; a sigma that is no number leaves no level.
+            if pushed.is_err() {
+                return f64::INFINITY;
+            }
+        }
+        self.equation.level(risk).m()
+    }
+}
+
+#[inline(always)]
+fn threshold(sums: &Sums, factors: &[f64; 3], axis: usize) -> f64 {
+    factors[axis] * sqrt(sums.separation[axis]) + sums.bias_continuity[axis]
+}
+
+#[inline(always)]
+fn checked(sights: &[Sight]) -> Result<(), Unavailable> {
+    if sights.len() > MOST_SATELLITES {
+        let (value, domain) = (sights.len() as f64, "at most 64 satellites");
+        return Err(Unavailable::Invalid { field: "n_sv", value, unit: "1", domain });
+    }
+    for s in sights {
+        let finite = |x: f64, least: f64| x >= least && x < f64::INFINITY;
+        let good = (s.unit.norm_squared() - 1.0).abs() < 1e-3
+            && finite(s.integrity_m2, f64::MIN_POSITIVE)
+            && finite(s.accuracy_m2, f64::MIN_POSITIVE)
+            && finite(s.bias.m(), 0.0)
+            && finite(s.bias_continuity.m(), 0.0);
+        if !good {
+            return Err(invalid(s));
+        }
+    }
+    Ok(())
+}
+
+#[cold]
+fn invalid(s: &Sight) -> Unavailable {
+    let positive = [("sigma_int_m", s.integrity_m2), ("sigma_acc_m", s.accuracy_m2)];
+    for (field, m2) in positive {
+        if !(f64::MIN_POSITIVE..f64::INFINITY).contains(&m2) {
+            return Unavailable::Invalid { field, value: sqrt(m2), unit: "m", domain: "(0, inf)" };
+        }
+    }
+    for (field, b) in [("bias_m", s.bias.m()), ("bias_continuity_m", s.bias_continuity.m())] {
+        if !(0.0..f64::INFINITY).contains(&b) {
+            return Unavailable::Invalid { field, value: b, unit: "m", domain: "[0, inf)" };
+        }
+    }
+    Unavailable::Invalid { field: "unit", value: s.unit.norm(), unit: "1", domain: "unit vectors" }
+}

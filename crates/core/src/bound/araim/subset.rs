@@ -1,0 +1,345 @@
+//! Solutions without some satellites, by closed-form downdates of the solution with all.
+//!
+//! ```text
+//! P    = (sum w_j d_j d_j')^-1,  s_j = -w_j P d_j          d_j = u_j - m_c, clocks eliminated (see solution::wls)
+//! Pi   = W - W H S,  Pi_ij = w_i (delta_ij - q_i[j]),      q_i[j] = [c_i = c_j] w_j / W_c - s_j . d_i
+//! S_(J)   = S - S_J Pi_JJ^-1 Pi_J,:                        columns J become exactly zero
+//! var_(J) = P_aa + S_J Pi_JJ^-1 S_J'
+//! ```
+//!
+//! A fault of a whole constellation takes one new P of size three; satellites on top of it are downdates of that. Derivation:
+//! Woodbury's identity on the normal equation (standard).
+
+use super::modes::MOST_SATELLITES;
+use crate::quantity::{Metres, Unavailable};
+use crate::signal::Constellation;
+use crate::solution::wls::CONDITION_LIMIT;
+use nalgebra::{Matrix3, Vector3};
+
+pub(super) const LANES: usize = 8;
+const GROUPS: usize = MOST_SATELLITES / LANES;
+const CLOCKS: usize = Constellation::ALL.len();
+/// Below this share of its weight a satellite's residual is determined by the others not at all: without it there is no solution.
+const ESSENTIAL: f64 = 1e-9;
+/// Most satellites that fail one by one at a time.
+pub(super) const MOST_TOGETHER: usize = 4;
+
+/// A satellite of the solution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight {
+    /// Unit vector from the receiver to the satellite, east-north-up.
+    pub unit: Vector3<f64>,
+    /// Whose clock.
+    pub constellation: Constellation,
+    /// Variance of the range for integrity; its inverse is the weight \[m²\].
+    pub integrity_m2: f64,
+    /// Variance of the range for accuracy and continuity \[m²\].
+    pub accuracy_m2: f64,
+    /// Nominal bias for integrity.
+    pub bias: Metres,
+    /// Nominal bias for continuity.
+    pub bias_continuity: Metres,
+}
+
+/// Eight satellites abreast; places beyond the last have no weight.
+#[derive(Debug, Clone, Copy)]
+struct Group {
+    centred: [[f64; LANES]; 3],
+    weight: [f64; LANES],
+    clock: [f64; LANES],
+    index: [f64; LANES],
+    accuracy: [f64; LANES],
+    bias: [f64; LANES],
+    bias_continuity: [f64; LANES],
+}
+
+const EMPTY: Group = Group {
+    centred: [[0.0; LANES]; 3],
+    weight: [0.0; LANES],
+    clock: [-1.0; LANES],
+    index: [-1.0; LANES],
+    accuracy: [0.0; LANES],
+    bias: [0.0; LANES],
+    bias_continuity: [0.0; LANES],
+};
+
+/// How the position moves with each range, eight abreast.
+type Gains = [[[f64; LANES]; 3]; GROUPS];
+
+/// A solution with every satellite of some constellations.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Solution {
+    pub(super) variance: [f64; 3],
+    gains: Gains,
+}
+
+pub(super) const NO_SOLUTION: Solution = Solution { variance: [0.0; 3], gains: [[[0.0; LANES]; 3]; GROUPS] };
+
+/// What a threshold and a level need of a subset, by axis.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Sums {
+    /// Of the position, for integrity \[m²\].
+    pub(super) variance: [f64; 3],
+    /// Of its separation from the position with all satellites, for accuracy \[m²\].
+    pub(super) separation: [f64; 3],
+    /// Largest effect of the nominal biases on the position \[m\].
+    pub(super) bias: [f64; 3],
+    /// Of those for continuity on the separation \[m\].
+    pub(super) bias_continuity: [f64; 3],
+}
+
+/// The satellites of one solution, and what each constellation contributes.
+#[derive(Debug, Clone)]
+pub(super) struct Satellites {
+    groups: [Group; GROUPS],
+    count: usize,
+    information: [Matrix3<f64>; CLOCKS],
+    weight: [f64; CLOCKS],
+    members: [u64; CLOCKS],
+}
+
+impl Default for Satellites {
+    fn default() -> Self {
+        Self { groups: [EMPTY; GROUPS], count: 0, information: [Matrix3::zeros(); CLOCKS], weight: [0.0; CLOCKS], members: [0; CLOCKS] }
+    }
+}
+
+impl Satellites {
+    /// Take up the satellites of an epoch. The caller has checked their number and their numbers.
+    #[inline(always)]
+    pub(super) fn fill(&mut self, sights: &[Sight]) {
+        let mut mean = [Vector3::zeros(); CLOCKS];
+        (self.count, self.weight, self.members) = (sights.len().min(MOST_SATELLITES), [0.0; CLOCKS], [0; CLOCKS]);
+        for (i, s) in sights.iter().enumerate() {
+            let (c, w) = (s.constellation.index(), 1.0 / s.integrity_m2);
+            self.members[c] |= 1 << i;
+            self.weight[c] += w;
+            mean[c] += w * s.unit;
+        }
+        for c in 0..CLOCKS {
+            mean[c] /= if self.weight[c] > 0.0 { self.weight[c] } else { 1.0 };
+        }
+        self.information = [Matrix3::zeros(); CLOCKS];
+        for (g, (group, sights)) in self.groups.iter_mut().zip(sights.chunks(LANES)).enumerate() {
+            *group = EMPTY;
+            for (l, s) in sights.iter().enumerate() {
+                let (c, w) = (s.constellation.index(), 1.0 / s.integrity_m2);
+                let d = s.unit - mean[c];
+                self.information[c] += (w * d) * d.transpose();
+                for a in 0..3 {
+                    group.centred[a][l] = d[a];
+                }
+                (group.weight[l], group.clock[l], group.index[l]) = (w, c as f64, (g * LANES + l) as f64);
+                (group.accuracy[l], group.bias[l], group.bias_continuity[l]) = (s.accuracy_m2, s.bias.m(), s.bias_continuity.m());
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn filled(&self) -> &[Group] {
+        &self.groups[..self.count.div_ceil(LANES).min(GROUPS)]
+    }
+
+    /// Every satellite of some constellations.
+    #[inline(always)]
+    pub(super) fn of_constellations(&self, which: u8) -> u64 {
+        (0..CLOCKS).filter(|c| which >> c & 1 == 1).fold(0, |m, c| m | self.members[c])
+    }
+
+    /// Unknowns that satellites outside some constellations must determine, at least four; and how many satellites there are.
+    #[inline(always)]
+    pub(super) fn need_and_have(&self, without: u8) -> (usize, usize) {
+        let (mut clocks, mut have) = (0, 0);
+        for c in (0..CLOCKS).filter(|c| without >> c & 1 == 0 && self.members[*c] != 0) {
+            (clocks, have) = (clocks + 1, have + self.members[c].count_ones() as usize);
+        }
+        ((3 + clocks).max(4), have)
+    }
+
+    /// The solution without some constellations.
+    ///
+    /// # Errors
+    /// [`Unavailable::TooFewSatellites`], [`Unavailable::Singular`].
+    #[inline(always)]
+    pub(super) fn solve(&self, without: u8, into: &mut Solution) -> Result<(), Unavailable> {
+        let (need, have) = self.need_and_have(without);
+        if have < need {
+            return Err(Unavailable::TooFewSatellites { need, have });
+        }
+        let kept = (0..CLOCKS).filter(|c| without >> c & 1 == 0);
+        let information = kept.fold(Matrix3::zeros(), |sum, c| sum + self.information[c]);
+        let singular = |condition| Unavailable::Singular { condition, limit: CONDITION_LIMIT };
+        let p = information.cholesky().ok_or(singular(f64::INFINITY))?.inverse();
+        // Never below the condition number of the position's part.
+        let condition = information.trace() * p.trace();
+        if !(condition <= CONDITION_LIMIT) {
+            return Err(singular(condition));
+        }
+        into.variance = [p[(0, 0)], p[(1, 1)], p[(2, 2)]];
+        for (group, gains) in self.filled().iter().zip(&mut into.gains) {
+            let mut weight = group.weight;
+            for c in (0..CLOCKS).filter(|c| without >> c & 1 == 1) {
+                for l in 0..LANES {
+                    weight[l] = if group.clock[l] == c as f64 { 0.0 } else { weight[l] };
+                }
+            }
+            for a in 0..3 {
+                for l in 0..LANES {
+                    let d = [group.centred[0][l], group.centred[1][l], group.centred[2][l]];
+                    gains[a][l] = -weight[l] * (p[(a, 0)] * d[0] + p[(a, 1)] * d[1] + p[(a, 2)] * d[2]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What a solution without the satellites `out` needs of it: `base` is the solution with them, `all` that with every satellite.
+    /// `None` where the rest does not determine the position.
+    #[inline(always)]
+    pub(super) fn without<const K: usize>(&self, all: &Solution, base: &Solution, out: [usize; K]) -> Option<Sums> {
+        let removed = Removed::new(self, base, out)?;
+        let mut sums = LaneSums::default();
+        for ((group, all), gains) in self.filled().iter().zip(&all.gains).zip(&base.gains) {
+            for l in 0..LANES {
+                let s = [gains[0][l], gains[1][l], gains[2][l]];
+                let mut kept = s;
+                for k in 0..K {
+                    let q = removed.share(k, group, l) - removed.across(k, &s);
+                    for a in 0..3 {
+                        kept[a] += removed.factor[k][a] * q;
+                    }
+                }
+                for k in 0..K {
+                    let gone = group.index[l] == removed.index[k];
+                    kept = kept.map(|x| if gone { 0.0 } else { x });
+                }
+                for a in 0..3 {
+                    let moved = kept[a] - all[a][l];
+                    sums.bias[a][l] += kept[a].abs() * group.bias[l];
+                    sums.bias_continuity[a][l] += moved.abs() * group.bias_continuity[l];
+                    sums.separation[a][l] += moved * moved * group.accuracy[l];
+                }
+            }
+        }
+        let variance = [0, 1, 2].map(|a| base.variance[a] + removed.added[a]);
+        Some(Sums {
+            variance,
+            separation: sums.separation.map(total),
+            bias: sums.bias.map(total),
+            bias_continuity: sums.bias_continuity.map(total),
+        })
+    }
+
+    /// Variance of the position for accuracy, by axis \[m²\].
+    #[inline(always)]
+    pub(super) fn accuracy_m2(&self, solution: &Solution) -> [f64; 3] {
+        let mut sums = [[0.0; LANES]; 3];
+        for (group, gains) in self.filled().iter().zip(&solution.gains) {
+            for a in 0..3 {
+                for l in 0..LANES {
+                    sums[a][l] += gains[a][l] * gains[a][l] * group.accuracy[l];
+                }
+            }
+        }
+        sums.map(total)
+    }
+}
+
+#[derive(Debug, Default)]
+struct LaneSums {
+    bias: [[f64; LANES]; 3],
+    bias_continuity: [[f64; LANES]; 3],
+    separation: [[f64; LANES]; 3],
+}
+
+/// The sum of lanes, by halves, so that vector registers can do it.
+#[inline(always)]
+fn total(x: [f64; LANES]) -> f64 {
+    let half = [x[0] + x[4], x[1] + x[5], x[2] + x[6], x[3] + x[7]];
+    (half[0] + half[2]) + (half[1] + half[3])
+}
+
+/// Satellites that leave a solution.
+struct Removed<const K: usize> {
+    index: [f64; K],
+    clock: [f64; K],
+    /// 1 / (weight of its constellation).
+    per_clock: [f64; K],
+    direction: [[f64; 3]; K],
+    /// w_k (S_J Pi_JJ^-1)_k by axis.
+    factor: [[f64; 3]; K],
+    /// S_J Pi_JJ^-1 S_J' by axis.
+    added: [f64; 3],
+}
+
+impl<const K: usize> Removed<K> {
+    #[inline(always)]
+    fn new(satellites: &Satellites, base: &Solution, out: [usize; K]) -> Option<Self> {
+        let none = [0.0; K];
+        let mut r = Self { index: none, clock: none, per_clock: none, direction: [[0.0; 3]; K], factor: [[0.0; 3]; K], added: [0.0; 3] };
+        let (mut weight, mut gains, mut pi) = ([0.0; K], [[0.0; 3]; K], [[0.0; K]; K]);
+        for k in 0..K {
+            let (group, l) = (satellites.groups.get(out[k] / LANES)?, out[k] % LANES);
+            r.index[k] = out[k] as f64;
+            r.clock[k] = group.clock[l];
+            r.per_clock[k] = 1.0 / satellites.weight.get(group.clock[l] as usize)?;
+            weight[k] = group.weight[l];
+            for a in 0..3 {
+                r.direction[k][a] = group.centred[a][l];
+                gains[k][a] = base.gains[out[k] / LANES][a][l];
+            }
+        }
+        for k in 0..K {
+            for j in 0..K {
+                let (group, l) = (&satellites.groups[out[j] / LANES], out[j] % LANES);
+                let q = r.share(k, group, l) - r.across(k, &gains[j]);
+                pi[k][j] = weight[k] * (f64::from(u8::from(k == j)) - q);
+            }
+        }
+        let solved = solve_small(pi, gains, &weight)?;
+        for k in 0..K {
+            for a in 0..3 {
+                r.factor[k][a] = weight[k] * solved[k][a];
+                r.added[a] += solved[k][a] * gains[k][a];
+            }
+        }
+        Some(r)
+    }
+
+    /// What satellite `l` of a group weighs in the clock of removed satellite `k`.
+    #[inline(always)]
+    fn share(&self, k: usize, group: &Group, l: usize) -> f64 {
+        if group.clock[l] == self.clock[k] { group.weight[l] * self.per_clock[k] } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn across(&self, k: usize, s: &[f64; 3]) -> f64 {
+        s[0] * self.direction[k][0] + s[1] * self.direction[k][1] + s[2] * self.direction[k][2]
+    }
+}
+
+/// The solution of a symmetric positive system by its L D L' factors; `None` where a pivot is below [`ESSENTIAL`] of its weight.
+#[inline(always)]
+fn solve_small<const K: usize>(mut m: [[f64; K]; K], mut x: [[f64; 3]; K], weight: &[f64; K]) -> Option<[[f64; 3]; K]> {
+    for k in 0..K {
+        if !(m[k][k] >= ESSENTIAL * weight[k]) {
+            return None;
+        }
+        for j in k + 1..K {
+            let factor = m[j][k] / m[k][k];
+            for i in k..K {
+                m[j][i] -= factor * m[k][i];
+            }
+            for a in 0..3 {
+                x[j][a] -= factor * x[k][a];
+            }
+        }
+    }
+    for k in (0..K).rev() {
+        for a in 0..3 {
+            let later: f64 = (k + 1..K).map(|j| m[k][j] * x[j][a]).sum();
+            x[k][a] = (x[k][a] - later) / m[k][k];
+        }
+    }
+    Some(x)
+}
