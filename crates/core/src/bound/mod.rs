@@ -2,8 +2,10 @@
 
 pub mod anp;
 pub mod ee;
+pub mod gbas;
 pub mod level_equation;
 mod method;
+pub mod rraim;
 pub mod sbas;
 pub mod tse;
 
