@@ -86,9 +86,10 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
 
     Parameters
     ----------
-    name : {"gps", "beidou"}, str or Path
-        GPS: 24 slots of the standard positioning service's performance standard. BeiDou-3: 24 in medium orbits (Walker 24/3/1), three
-        inclined geosynchronous, three geostationary. Join them with ``+``. Anything else is the path of an almanac, YUMA or SEM.
+    name : {"gps", "galileo", "beidou"}, str or Path
+        GPS: 24 slots of the standard positioning service's performance standard. Galileo: 24 in medium orbits (Walker 24/3/1).
+        BeiDou-3: 24 likewise, three inclined geosynchronous, three geostationary. Join them with ``+``. Anything else is the path of an
+        almanac, YUMA or SEM.
     near_ns : int, optional
         A GPS time within ten years of the almanac. Its week has ten bits and may have rolled over: without a time near it
         ``reference_ns`` is None unless the file holds a full week. [ns]

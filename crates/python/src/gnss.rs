@@ -2,7 +2,7 @@
 
 use crate::error::input_error;
 use navbound_assess::sky::{self, Receivers, Sights, Solved};
-use navbound_core::geometry::{BEIDOU, Elements, GPS, Slot};
+use navbound_core::geometry::{BEIDOU, Elements, GALILEO, GPS, Slot};
 use navbound_core::quantity::{Metres, Radians, Unavailable};
 use navbound_core::solution::wls;
 use navbound_path::AtIndex;
@@ -19,6 +19,7 @@ fn refused(e: AtIndex) -> PyErr {
 fn nominal_constellations(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let d = PyDict::new(py);
     d.set_item("gps", slots(py, &GPS)?)?;
+    d.set_item("galileo", slots(py, &GALILEO)?)?;
     d.set_item("beidou", slots(py, &BEIDOU)?)?;
     Ok(d)
 }

@@ -7,6 +7,6 @@ mod orbit;
 pub mod precise;
 mod sight;
 
-pub use nominal::{BEIDOU, GPS, Slot};
+pub use nominal::{BEIDOU, GALILEO, GPS, Slot};
 pub use orbit::{Elements, Orbit};
 pub use sight::{Direction, LineOfSight, Observer};

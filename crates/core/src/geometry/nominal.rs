@@ -3,6 +3,7 @@
 //! - GPS: the 24 nominal slots of the GPS Standard Positioning Service performance standard (standard, from memory; the same table is in
 //!   our specification "for repeatability"). The published epoch is 1993-07-01; here the right ascensions count from Greenwich at the
 //!   reference instant, so the sky of a date is typical of GPS and not that day's.
+//! - Galileo: 24 satellites in medium orbits (Walker 24/3/1, 29599.8 km, 56 deg; standard: Galileo OS service definition; phases ours).
 //! - BeiDou-3: 24 satellites in medium orbits (Walker 24/3/1, 27906.1 km, 55 deg), three in inclined geosynchronous orbits and three
 //!   geostationary at 80, 110.5 and 140 deg E (standard: BDS open service documents; phases of the first two kinds ours).
 
@@ -21,6 +22,8 @@ pub struct Slot {
 
 /// GPS: 24 slots in six planes.
 pub const GPS: [Slot; 24] = gps();
+/// Galileo: 24 satellites in three planes.
+pub const GALILEO: [Slot; 24] = galileo();
 /// BeiDou-3: 24 medium, 3 inclined geosynchronous, 3 geostationary.
 pub const BEIDOU: [Slot; 30] = beidou();
 
@@ -36,10 +39,12 @@ const GPS_LATITUDES: [[f64; 4]; 6] = [
     [238.886, 345.226, 105.206, 135.346],
 ];
 const GPS_AXIS: Metres = Metres::new(26_559_800.0);
+const GALILEO_AXIS: Metres = Metres::new(29_599_800.0);
 const MEDIUM_AXIS: Metres = Metres::new(27_906_100.0);
 /// Radius of an orbit of one sidereal day.
 const SYNCHRONOUS_AXIS: Metres = Metres::new(42_164_200.0);
 const INCLINATION: Radians = Radians::degrees(55.0);
+const GALILEO_INCLINATION: Radians = Radians::degrees(56.0);
 /// Longitude where the inclined satellites cross the equator northwards, standard: 118 deg E.
 const INCLINED_CROSSING: f64 = 118.0;
 const STATIONARY_LONGITUDES: [f64; 3] = [80.0, 110.5, 140.0];
@@ -61,13 +66,30 @@ const fn gps() -> [Slot; 24] {
     slots
 }
 
+/// Node and argument of latitude of a place in a Walker 24/3/1 \[deg\]: planes 120 deg apart, eight satellites 45 deg apart in each,
+/// neighbours' phases 360/24 deg apart.
+const fn walker(i: usize) -> (f64, f64) {
+    let (plane, place) = ((i / 8) as f64, (i % 8) as f64);
+    (120.0 * plane, 45.0 * place + 15.0 * plane)
+}
+
+const fn galileo() -> [Slot; 24] {
+    let mut slots = [slot(Constellation::Galileo, 0, GALILEO_AXIS, GALILEO_INCLINATION, 0.0, 0.0); 24];
+    let mut i = 0;
+    while i < 24 {
+        let (node, latitude) = walker(i);
+        slots[i] = slot(Constellation::Galileo, i, GALILEO_AXIS, GALILEO_INCLINATION, node, latitude);
+        i += 1;
+    }
+    slots
+}
+
 const fn beidou() -> [Slot; 30] {
     let mut slots = [slot(Constellation::BeiDou, 0, MEDIUM_AXIS, INCLINATION, 0.0, 0.0); 30];
     let mut i = 0;
     while i < 24 {
-        // Walker 24/3/1: planes 120 deg apart, eight satellites 45 deg apart in each, neighbours' phases 360/24 deg apart.
-        let (plane, place) = ((i / 8) as f64, (i % 8) as f64);
-        slots[i] = slot(Constellation::BeiDou, i, MEDIUM_AXIS, INCLINATION, 120.0 * plane, 45.0 * place + 15.0 * plane);
+        let (node, latitude) = walker(i);
+        slots[i] = slot(Constellation::BeiDou, i, MEDIUM_AXIS, INCLINATION, node, latitude);
         i += 1;
     }
     while i < 27 {
@@ -112,9 +134,20 @@ mod tests {
         }
     }
 
+    /// Galileo's published ground track repeats after 10 sidereal days and 17 turns, oblateness included; without it the turn of the
+    /// nominal axis is some seconds shorter (J2 turns node and perigee by some 1e-4 of the motion).
+    #[test]
+    fn galileo_turns_seventeen_times_in_ten_days() {
+        let orbit = Orbit::new(GALILEO[0].elements).unwrap();
+        let turn = 10.0 * 86_164.09 / 17.0;
+        // A satellite at its node is near it again; north of the equator a little later, south of it a little earlier.
+        let over_equator = |t: f64| orbit.position(t).vector().z;
+        assert!(over_equator(turn - 10.0) < 0.0 && over_equator(turn + 10.0) > 0.0);
+    }
+
     #[test]
     fn numbers_are_unique_in_each_constellation() {
-        for slots in [&GPS[..], &BEIDOU[..]] {
+        for slots in [&GPS[..], &GALILEO[..], &BEIDOU[..]] {
             for (i, slot) in slots.iter().enumerate() {
                 assert_eq!(usize::from(slot.satellite.number), i + 1);
             }

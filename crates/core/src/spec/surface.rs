@@ -40,6 +40,8 @@ pub struct Allocation {
     pub coasting_ground: f64,
     /// H2c: a fault that begins while coasting.
     pub coasting_fault: f64,
+    /// Share of [`Self::coasting_fault`] below which faults together need no monitoring.
+    pub unmonitored: f64,
     /// Probability that one of the reference receivers is faulty in an exposure.
     pub receiver_fault: f64,
     /// Equal coordinates among which the share is split.
@@ -140,6 +142,7 @@ pub const ALLOCATION: Allocation = Allocation {
     ground: 0.375,
     coasting_ground: 0.1875,
     coasting_fault: 0.1875,
+    unmonitored: 0.1,
     receiver_fault: 1e-5,
     axes: 1,
     marks: &[
@@ -150,6 +153,7 @@ pub const ALLOCATION: Allocation = Allocation {
         ),
         mark("ground", Provenance::Printed, "37.5 % to H2; the 37.5 % left for the inertial branch are inferred"),
         mark("coasting", Provenance::Inferred, "H2 split equally between faults before and while coasting"),
+        mark("unmonitored", Provenance::Ours, "a tenth of the share of faults while coasting; could not be established"),
         mark("receiver_fault", Provenance::Standard, "1e-5, confirmed by K_md = 4.06"),
     ],
 };

@@ -19,7 +19,7 @@ pub fn fault_probability(groups: impl IntoIterator<Item = (f64, f64)>, tau_s: f6
     let mut log = 0.0;
     for (satellites, per_hour) in groups {
         let one = per_hour * tau_s / 3600.0;
-        if !(one >= 0.0 && one < 1.0) {
+        if !(0.0..1.0).contains(&one) {
             return Err(OutOfDomain { argument: "rate_per_hour", value: per_hour, unit: "1/h", domain: "[0, 3600 / tau_s)" });
         }
         log += satellites * ln_1p(-one);

@@ -4,7 +4,8 @@ use super::bias::Ordering;
 use super::snapshot::{Form, Snapshot};
 use crate::frame::{Covariance, Enu};
 use crate::quantity::{Metres, OutOfDomain, Risk};
-use crate::special::float::hypot;
+use crate::spec::surface::ErrorBudget;
+use crate::special::float::{hypot, sqrt};
 use crate::special::{one_sided_factor, two_sided_factor};
 use nalgebra::Vector3;
 
@@ -44,10 +45,10 @@ impl Factors {
         if !(rule.share > 0.0 && rule.share <= 1.0) {
             return Err(OutOfDomain { argument: "share", value: rule.share, unit: "1", domain: "(0, 1]" });
         }
-        if !(rule.axes >= 1) {
+        if rule.axes < 1 {
             return Err(OutOfDomain { argument: "axes", value: f64::from(rule.axes), unit: "1", domain: "[1, inf)" });
         }
-        if !(rule.receivers >= 2) {
+        if rule.receivers < 2 {
             return Err(OutOfDomain { argument: "receivers", value: f64::from(rule.receivers), unit: "1", domain: "[2, inf)" });
         }
         let m = f64::from(rule.receivers);
@@ -121,6 +122,25 @@ pub fn receiver_shift<'a>(responses: impl Iterator<Item = (&'a Vector3<f64>, Met
     Metres::new(hypot(shift.x, shift.y))
 }
 
+/// The accuracy (95 %) that a containment leaves to navigation.
+///
+/// ```text
+/// sigma_TSE = TSC / K(risk)        NSE95 = 1.96 sqrt(sigma_TSE^2 - sigma_FTE^2 - sigma_PDE^2)
+/// ```
+///
+/// # Errors
+/// [`OutOfDomain`] where flight technical and path definition error alone leave the containment too often: no such budget can be met.
+pub fn accuracy_limit(containment: Metres, budget: &ErrorBudget) -> Result<Metres, OutOfDomain> {
+    let sigma = containment.m() / two_sided_factor(budget.containment_risk.q());
+    let [fte, pde] = [budget.sigma_fte.m(), budget.sigma_pde.m()];
+    let left = sigma * sigma - fte * fte - pde * pde;
+    if !(containment.m() > 0.0 && left > 0.0 && left.is_finite()) {
+        let domain = "containments that the flight technical and path definition errors leave room in";
+        return Err(OutOfDomain { argument: "containment_m", value: containment.m(), unit: "m", domain });
+    }
+    Ok(Metres::new(two_sided_factor(Risk::ACCURACY.q()) * sqrt(left)))
+}
+
 /// Accuracy, 95 %: 1.96 deviations of the worst direction and the bias (the statistic is inferred).
 pub fn accuracy(major: Metres, bias: Metres) -> Metres {
     Metres::new(two_sided_factor(Risk::ACCURACY.q()) * major.m() + bias.m())
@@ -129,6 +149,7 @@ pub fn accuracy(major: Metres, bias: Metres) -> Metres {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spec::surface::ERROR_BUDGET;
 
     const RULE: FactorRule = FactorRule { share: 0.25, axes: 1, receivers: 4, receiver_fault: 1e-5 };
 
@@ -156,6 +177,17 @@ mod tests {
         ] {
             assert_eq!(Factors::new(Risk::SURFACE_INTEGRITY, &rule).unwrap_err().argument, argument);
         }
+    }
+
+    /// The rebuilt table 1 prints two decimals of each sub-phase's accuracy; 4.8916 there is the factor of 1e-6.
+    #[test]
+    fn accuracy_limits_meet_the_table() {
+        for (containment, limit) in [(4.5, 1.77), (3.5, 1.36), (2.5, 0.94)] {
+            let found = accuracy_limit(Metres::new(containment), &ERROR_BUDGET).unwrap().m();
+            assert!((found - limit).abs() < 5e-3, "{containment}: {found}");
+        }
+        assert!(accuracy_limit(Metres::new(0.5), &ERROR_BUDGET).is_err());
+        assert!(accuracy_limit(Metres::new(f64::NAN), &ERROR_BUDGET).is_err());
     }
 
     #[test]

@@ -78,7 +78,7 @@ impl Snapshot {
     /// # Errors
     /// [`Unavailable::TooFewSatellites`], [`Unavailable::Singular`], [`Unavailable::Invalid`] for more than [`MOST_SATELLITES`].
     pub fn new(ranges: &[Range]) -> Result<Self, Unavailable> {
-        if !(ranges.len() <= MOST_SATELLITES) {
+        if ranges.len() > MOST_SATELLITES {
             let value = ranges.len() as f64;
             return Err(Unavailable::Invalid { field: "n_sv", value, unit: "1", domain: "[0, 48]" });
         }

@@ -87,7 +87,7 @@ impl Coast {
     /// # Errors
     /// [`OutOfDomain`] for a sigma that is not positive, or more than [`MOST_SATELLITES`].
     pub fn new(followed: &[Followed]) -> Result<Self, OutOfDomain> {
-        if !(followed.len() <= MOST_SATELLITES) {
+        if followed.len() > MOST_SATELLITES {
             return Err(OutOfDomain { argument: "n_sv", value: followed.len() as f64, unit: "1", domain: "[0, 48]" });
         }
         let none = (Vector3::zeros(), Vector3::zeros(), 0.0, 0);

@@ -212,7 +212,7 @@ impl Multipliers {
     /// # Errors
     /// [`OutOfDomain`] for a sum of probabilities that is negative or not finite, or no satellite.
     pub fn new(settings: &Settings, satellites: usize, faults: f64) -> Result<Self, OutOfDomain> {
-        if !(satellites > 0) {
+        if satellites == 0 {
             return Err(OutOfDomain { argument: "n_sv", value: 0.0, unit: "1", domain: "[1, 48]" });
         }
         if !(faults >= 0.0 && faults.is_finite()) {
