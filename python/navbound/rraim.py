@@ -77,6 +77,21 @@ class Levels:
     reason: NDArray[np.str_]
     multi_reason: NDArray[np.str_]
 
+    @property
+    def cov_ee_m2(self) -> NDArray[np.float64]:
+        """Variance east [m²]."""
+        return self.covariance_enu_m2[..., 0, 0]
+
+    @property
+    def cov_en_m2(self) -> NDArray[np.float64]:
+        """Covariance of east and north [m²]."""
+        return self.covariance_enu_m2[..., 0, 1]
+
+    @property
+    def cov_nn_m2(self) -> NDArray[np.float64]:
+        """Variance north [m²]."""
+        return self.covariance_enu_m2[..., 1, 1]
+
 
 def protection_levels(
     az_rad: ArrayLike,
