@@ -3,8 +3,10 @@
 pub mod anp;
 pub mod araim;
 pub mod ee;
+pub mod gbas;
 pub mod level_equation;
 mod method;
+pub mod rraim;
 pub mod sbas;
 pub mod tse;
 

@@ -61,6 +61,12 @@ impl Risk {
     pub const APPROACH_CONTINUITY: Self = Self(8e-6);
     /// The largest continuity risk of an hour from en route to non-precision approach.
     pub const HOUR_CONTINUITY: Self = Self(1e-4);
+    /// The integrity risk of a sub-phase of surface movement (inferred).
+    pub const SURFACE_INTEGRITY: Self = Self(1.25e-9);
+    /// The continuity risk of a sub-phase of surface movement (inferred).
+    pub const SURFACE_CONTINUITY: Self = Self(1.25e-5);
+    /// The risk that an aircraft on the ground leaves the containment of its sub-phase.
+    pub const SURFACE_CONTAINMENT: Self = Self(1e-6);
 
     /// A risk inside (0, 1).
     ///

@@ -95,21 +95,40 @@ pub struct WeightedSight {
 /// # Errors
 /// As [`covariance`].
 pub fn covariance_of_weighted(sights: impl Iterator<Item = WeightedSight> + Clone) -> Result<Covariance<Enu>, Unavailable> {
-    let row = |s: WeightedSight| Row { unit: s.unit, weight: s.weight, clock: s.constellation.index(), residual: 0.0 };
-    Normal::new(sights.map(row))?.covariance()
+    Normal::new(sights.map(weighted_row))?.covariance()
 }
 
-/// How far the position moves for one metre in each range: the rows s_i = (H'WH)^-1 H' w_i of the solution.
+/// Covariance, and how far the position moves for one metre in each range: the rows s_i = (H'WH)^-1 H' w_i of the solution.
+///
+/// # Errors
+/// As [`covariance`].
+pub fn responses_of_weighted(
+    sights: impl Iterator<Item = WeightedSight> + Clone,
+) -> Result<(Covariance<Enu>, impl Iterator<Item = Vector3<f64>> + Clone), Unavailable> {
+    responses_of_rows(sights.map(weighted_row))
+}
+
+/// How far the position moves for one metre in each range, as [`responses_of_weighted`].
 ///
 /// # Errors
 /// As [`covariance`].
 pub fn responses<'a>(
     sights: impl Iterator<Item = &'a LineOfSight> + Clone,
 ) -> Result<impl Iterator<Item = Vector3<f64>> + Clone, Unavailable> {
-    let rows = sights.map(|s| row(s, 1.0 / (s.sigma.m() * s.sigma.m())));
+    Ok(responses_of_rows(sights.map(|s| row(s, 1.0 / (s.sigma.m() * s.sigma.m()))))?.1)
+}
+
+fn responses_of_rows(
+    rows: impl Iterator<Item = Row> + Clone,
+) -> Result<(Covariance<Enu>, impl Iterator<Item = Vector3<f64>> + Clone), Unavailable> {
     let normal = Normal::new(rows.clone())?;
-    let v = *normal.covariance()?.matrix();
-    Ok(rows.map(move |row| v * (row.unit - normal.groups[row.clock].mean) * -row.weight))
+    let covariance = normal.covariance()?;
+    let v = *covariance.matrix();
+    Ok((covariance, rows.map(move |row| v * (row.unit - normal.groups[row.clock].mean) * -row.weight)))
+}
+
+fn weighted_row(s: WeightedSight) -> Row {
+    Row { unit: s.unit, weight: s.weight, clock: s.constellation.index(), residual: 0.0 }
 }
 
 /// One range of the normal equation.

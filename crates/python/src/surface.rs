@@ -1,0 +1,96 @@
+//! Surface movement: the rebuilt tables with their marks.
+
+use navbound_core::quantity::Risk;
+use navbound_core::spec::gbas::{CARRIER_DUAL, CARRIER_SINGLE, CarrierModel, ERROR_MODELS, INERTIAL, MONITOR_CURVES, Mark};
+use navbound_core::spec::surface::{ALLOCATION, ERROR_BUDGET, FAULT_RATES, SUB_PHASES};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+type Marks = Vec<(&'static str, &'static str, &'static str)>;
+
+fn marks(marks: &'static [Mark]) -> Marks {
+    marks.iter().map(|m| (m.name, m.held.word(), m.why)).collect()
+}
+
+fn carrier<'py>(py: Python<'py>, m: &CarrierModel) -> PyResult<Bound<'py, PyDict>> {
+    let d = PyDict::new(py);
+    d.set_item("noise_m", m.noise.m())?;
+    d.set_item("troposphere_gradient", m.troposphere_gradient)?;
+    d.set_item("clock_mps", m.clock_mps)?;
+    d.set_item("ionosphere_gradient", m.ionosphere_gradient)?;
+    d.set_item("marks", marks(m.marks))?;
+    Ok(d)
+}
+
+/// Everything the study takes as given, with how it is held.
+#[pyfunction]
+fn surface_tables(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let mut phases = Vec::new();
+    for p in SUB_PHASES {
+        let d = PyDict::new(py);
+        d.set_item("id", p.id)?;
+        d.set_item("title", p.title)?;
+        d.set_item("containment_m", p.containment.m())?;
+        d.set_item("hal_m", p.hal.m())?;
+        d.set_item("integrity_risk", p.integrity.q())?;
+        d.set_item("continuity_risk", p.continuity.q())?;
+        d.set_item("speed_mps", p.speed_mps)?;
+        d.set_item("exposure_s", p.exposure_s)?;
+        d.set_item("marks", marks(p.marks))?;
+        phases.push(d);
+    }
+    let mut rates = Vec::new();
+    for r in FAULT_RATES {
+        let d = PyDict::new(py);
+        d.set_item("id", r.id)?;
+        d.set_item("gps_per_hour", r.gps_per_hour)?;
+        d.set_item("galileo_per_hour", r.galileo_per_hour)?;
+        d.set_item("gps_wide", r.gps_wide)?;
+        d.set_item("galileo_wide", r.galileo_wide)?;
+        d.set_item("decorrelation_s", r.decorrelation_s)?;
+        d.set_item("satellites", r.satellites)?;
+        d.set_item("marks", marks(r.marks))?;
+        rates.push(d);
+    }
+    let mut curves = Vec::new();
+    for c in MONITOR_CURVES {
+        let d = PyDict::new(py);
+        d.set_item("id", c.id)?;
+        d.set_item("stretch", c.stretch)?;
+        d.set_item("projection", c.projection)?;
+        d.set_item("start_m", c.start.m())?;
+        d.set_item("end_m", c.end.m())?;
+        d.set_item("marks", marks(c.marks))?;
+        curves.push(d);
+    }
+    let models: Vec<(&str, &str, Marks)> = ERROR_MODELS.iter().map(|m| (m.id, m.title, marks(m.marks))).collect();
+    let d = PyDict::new(py);
+    d.set_item("sub_phases", phases)?;
+    d.set_item("fault_rates", rates)?;
+    d.set_item("monitor_curves", curves)?;
+    d.set_item("error_models", models)?;
+    d.set_item("carrier_single", carrier(py, &CARRIER_SINGLE)?)?;
+    d.set_item("carrier_dual", carrier(py, &CARRIER_DUAL)?)?;
+    d.set_item("inertial_marks", marks(INERTIAL.marks))?;
+    let a = PyDict::new(py);
+    a.set_item("no_fault_and_receiver", ALLOCATION.no_fault_and_receiver)?;
+    a.set_item("ground", ALLOCATION.ground)?;
+    a.set_item("coasting_ground", ALLOCATION.coasting_ground)?;
+    a.set_item("coasting_fault", ALLOCATION.coasting_fault)?;
+    a.set_item("unmonitored", ALLOCATION.unmonitored)?;
+    a.set_item("receiver_fault", ALLOCATION.receiver_fault)?;
+    a.set_item("axes", ALLOCATION.axes)?;
+    a.set_item("marks", marks(ALLOCATION.marks))?;
+    d.set_item("allocation", a)?;
+    let b = PyDict::new(py);
+    b.set_item("containment_risk", Risk::q(ERROR_BUDGET.containment_risk))?;
+    b.set_item("sigma_fte_m", ERROR_BUDGET.sigma_fte.m())?;
+    b.set_item("sigma_pde_m", ERROR_BUDGET.sigma_pde.m())?;
+    b.set_item("marks", marks(ERROR_BUDGET.marks))?;
+    d.set_item("error_budget", b)?;
+    Ok(d)
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(surface_tables, m)?)
+}
