@@ -476,6 +476,31 @@ def _job(
     }
 
 
+def covariance_levels(covariance_m2: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """HPL = 6.0 d_major and VPL = 5.33 d_U of covariances of the position (DO-229D J.2, precision approach; standard).
+
+    They are integrity levels only where the covariance is that of the SBAS error model.
+
+    Parameters
+    ----------
+    covariance_m2 : array_like, shape (..., 6)
+        ee, en, nn, eu, nu, uu; east, north, up. [m²]
+
+    Returns
+    -------
+    hpl_m, vpl_m : ndarray, shape (...)
+        NaN where the six numbers are no covariance. [m]
+
+    Raises
+    ------
+    InputError
+        Another shape.
+    """
+    shape, (flat,) = flatten(covariance_m2=(covariance_m2, (6,)))
+    found = _core.sbas_covariance_levels(flat)
+    return unflatten(found["hpl_m"], shape), unflatten(found["vpl_m"], shape)
+
+
 def levels_from_terms(
     *,
     az_rad: ArrayLike,

@@ -20,6 +20,7 @@ mod sbas;
 mod sbas_fields;
 mod simulate;
 mod states;
+mod subsets;
 mod tse;
 
 use pyo3::prelude::*;
@@ -42,5 +43,6 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     path::register(m)?;
     positions::register(m)?;
     simulate::register(m)?;
+    subsets::register(m)?;
     read::register(m)
 }

@@ -9,7 +9,7 @@ import platform
 import sys
 import tempfile
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -59,6 +59,10 @@ class Options:
         Nominal sampling period. [s]
     exclude_missing : bool
         Absent epochs are not expected.
+    stanford_esa : SubsetOptions, optional
+        Solve every subset of satellites too, for the Stanford-ESA diagram; observations and truth are needed.
+    experimental : str
+        Words that must stand beside levels that no integrity rests on, where the files do not say so themselves.
     """
 
     levels: Sequence[str | kpi.Level]
@@ -68,6 +72,8 @@ class Options:
     prn: int | None = None
     period_s: float | None = None
     exclude_missing: bool = False
+    stanford_esa: kpi.SubsetOptions | None = None
+    experimental: str = ""
 
 
 def evaluate_files(
@@ -110,11 +116,20 @@ def evaluate_files(
     wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
     truth = truth_of(options.truth, options.truth_tolerance_s)
     sources = sort_out(names)
+    if options.stanford_esa is not None and (sources.tables or sources.messages):
+        raise InputError(
+            "stanford_esa",
+            str((sources.tables or sources.messages)[0].path),
+            domain="it with observations and navigation data alone: a table holds no ranges, and ranges are not corrected by SBAS messages",
+        )
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) if out is None else _own(Path(out))
         parts = _parts(sources, options, truth, folder / PARTS, progress)
         campaign, events = _add_all(parts, wanted, options)
         result = campaign.finish(lambda: _tables(parts), events.append)
+        if options.stanford_esa is not None:
+            ranges = kpi.stanford_esa(lambda: _range_tables(parts), campaign.levels, options.stanford_esa)
+            result = kpi.with_subsets(result, ranges)
         run = _run(result, parts, events, sources=sources, options=options, command=command)
         if out is None:
             return Run(run.summary, run.record, pl.concat(_tables(parts)), run.events, [])
@@ -143,6 +158,7 @@ class _Stored:
     n_epochs: int
     rejected: list[dict[str, Any]]
     notes: list[str]
+    experimental: str
     source: Source
 
 
@@ -175,6 +191,7 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
         except OSError as e:
             raise FormatError(truth.given, e.strerror or str(e)) from e
     parts = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn]
+    parts.append(options.stanford_esa is not None)
     return json.dumps([*parts, sorted(s.sha256 for s in sources.navigation + sources.messages)])
 
 
@@ -182,7 +199,7 @@ def _compute(source: Source, sources: Files, options: Options, truth: Truth) -> 
     if source in sources.tables:
         return from_table(source.path, truth, options.columns)
     navigation, logs = ([s.path for s in group] for group in (sources.navigation, sources.messages))
-    return from_observations(source.path, navigation, logs, truth, options.prn)
+    return from_observations(source.path, navigation, logs, truth, prn=options.prn, keep_ranges=options.stanford_esa is not None)
 
 
 def _remember(folder: Path, key: str, source: Source, part: Part) -> _Stored:
@@ -194,8 +211,12 @@ def _remember(folder: Path, key: str, source: Source, part: Part) -> _Stored:
         "n_epochs": part.epochs.height,
         "rejected": part.rejected,
         "notes": part.notes,
+        "experimental": part.experimental,
     }
     try:
+        if part.ranges is not None:
+            part.ranges.write_parquet(partial := _ranges_of(table).with_suffix(".partial"), compression="zstd")
+            partial.replace(_ranges_of(table))
         part.epochs.write_parquet(partial := table.with_suffix(".partial"), compression="zstd")
         partial.replace(table)
         partial = record.with_suffix(".partial")
@@ -216,19 +237,43 @@ def _remembered(folder: Path, key: str, source: Source) -> _Stored | None:
         raise FormatError(record, f"is damaged ({e}); delete it to compute this part again") from e
 
 
+def _ranges_of(table: Path) -> Path:
+    return table.with_suffix(".ranges.parquet")
+
+
 def _tables(parts: list[_Stored]) -> Iterator[pl.DataFrame]:
     """One part in memory at a time."""
-    for part in parts:
-        try:
-            yield pl.read_parquet(part.table)
-        except (OSError, pl.exceptions.PolarsError) as e:
-            raise FormatError(part.table, f"is damaged ({e}); delete it to compute this part again") from e
+    return (_read(part.table) for part in parts)
+
+
+def _range_tables(parts: list[_Stored]) -> Iterator[pl.DataFrame]:
+    """The ranges of one part in memory at a time."""
+    return (_read(_ranges_of(part.table)) for part in parts)
+
+
+def _read(table: Path) -> pl.DataFrame:
+    try:
+        return pl.read_parquet(table)
+    except (OSError, pl.exceptions.PolarsError) as e:
+        raise FormatError(table, f"is damaged ({e}); delete its part to compute it again") from e
+
+
+def _experimental(parts: list[_Stored], options: Options) -> str:
+    """What must stand beside the levels: one experimental part marks the whole."""
+    return next((words for words in (options.experimental, *(part.experimental for part in parts)) if words), "")
 
 
 def _add_all(parts: list[_Stored], levels: Sequence[str | kpi.Level], options: Options) -> tuple[kpi.Campaign, list[pl.DataFrame]]:
     tables = _tables(parts)
     first = next(tables)
-    campaign = kpi.Campaign(levels, first=first, period_s=options.period_s, exclude_missing=options.exclude_missing, title=_title(parts))
+    campaign = kpi.Campaign(
+        levels,
+        first=first,
+        period_s=options.period_s,
+        exclude_missing=options.exclude_missing,
+        title=_title(parts),
+        experimental=_experimental(parts, options),
+    )
     events = [campaign.add(first)]
     events.extend(campaign.add(table) for table in tables)
     return campaign, events
@@ -263,6 +308,8 @@ def _run(result: Performance, parts: list[_Stored], events: list[pl.DataFrame], 
             "prn": options.prn,
             "period_s": result.period_s,
             "exclude_missing": options.exclude_missing,
+            "stanford_esa": None if options.stanford_esa is None else asdict(options.stanford_esa),
+            "experimental": result.experimental,
         },
         platform=f"Python {platform.python_version()}, {sys.platform} {platform.machine()}",
     )
@@ -314,7 +361,7 @@ def _write(run: Run, parts: list[_Stored], out: Path) -> Run:
     epochs = pl.scan_parquet([part.table for part in parts])
     try:
         _whole(out / directory.EPOCHS, lambda path: epochs.sink_parquet(path, compression="zstd", maintain_order=True))
-        _whole(out / CSV, lambda path: write_csv(_tables(parts), path))
+        _whole(out / CSV, lambda path: write_csv(_tables(parts), path, _marked(run)))
         _whole(out / directory.EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
         _whole(out / directory.RECORD, lambda path: path.write_text(run.record.model_dump_json(indent=1), encoding="utf-8"))
         render(run.summary, run.record, run.epochs, run.events.clear(), [], out / directory.REPORT)
@@ -323,6 +370,10 @@ def _write(run: Run, parts: list[_Stored], out: Path) -> Run:
     except OSError as e:
         raise FormatError(out, f"cannot be written: {e.strerror}") from e
     return Run(run.summary, run.record, run.epochs, run.events, [], out)
+
+
+def _marked(run: Run) -> str:
+    return run.summary.performance.experimental if run.summary.performance is not None else ""
 
 
 def _whole(path: Path, write: Callable[[Path], object]) -> None:

@@ -2,9 +2,9 @@
 
 use super::{Histogram, Regions};
 use navbound_core::bound::sbas;
-use navbound_core::quantity::Unavailable;
+use navbound_core::quantity::{GpsTime, Unavailable};
 use navbound_core::signal::sbas::timeout::Use;
-use navbound_core::solution::subsets::{MOST_RANGES, RangeInError, Subset, count, walk};
+use navbound_core::solution::subsets::{RangeInError, Subset, count, walk};
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
@@ -35,8 +35,8 @@ pub struct Job {
 /// A subset that is listed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Listed {
-    /// Place of its epoch among those given.
-    pub epoch: usize,
+    /// Its epoch.
+    pub time: GpsTime,
     /// Bit i: range i of the epoch is used.
     pub used: u64,
     /// HPE, VPE \[m\].
@@ -53,7 +53,7 @@ impl Listed {
     }
     /// The gravest first; then by time and satellites, so that the order is always the same.
     fn order(&self, other: &Self) -> Ordering {
-        other.index().total_cmp(&self.index()).then(self.epoch.cmp(&other.epoch)).then(self.used.cmp(&other.used))
+        other.index().total_cmp(&self.index()).then(self.time.cmp(&other.time)).then(self.used.cmp(&other.used))
     }
 }
 
@@ -84,16 +84,19 @@ pub struct Tally {
     pub listed: Vec<Listed>,
 }
 
+/// One epoch: when, and its ranges.
+pub type Epoch<'a> = (GpsTime, &'a [RangeInError]);
+
 /// The subsets of every epoch.
 ///
 /// # Errors
-/// The epoch's place, and [`Unavailable::Invalid`], where a range is no range.
-pub fn subsets(epochs: &[&[RangeInError]], job: &Job) -> Result<Tally, (usize, Unavailable)> {
-    let none = || Tally { regions: vec![Default::default(); job.limits_m.len()], ..Tally::default() };
+/// The epoch's place among those given, and [`Unavailable::Invalid`], where a range is no range.
+pub fn subsets(epochs: &[Epoch<'_>], job: &Job) -> Result<Tally, (usize, Unavailable)> {
+    let none = || Tally::none(job);
     // Sums of counts and an order without ties: how the pool cuts the epochs changes nothing.
     let all = epochs.par_iter().enumerate().with_min_len(LEAST_TASK);
-    let one = |mut tally: Tally, (epoch, ranges): (usize, &&[RangeInError])| {
-        tally.epoch(epoch, ranges, job).map_err(|e| (epoch, e))?;
+    let one = |mut tally: Tally, (index, (time, ranges)): (usize, &Epoch<'_>)| {
+        tally.epoch(*time, ranges, job).map_err(|e| (index, e))?;
         Ok(tally)
     };
     all.try_fold(none, one).try_reduce(none, |a, b| Ok(a.merged(b, job)))
@@ -107,9 +110,14 @@ fn depth(n: usize, least: usize, most_satellites: u32) -> usize {
 }
 
 impl Tally {
-    fn epoch(&mut self, epoch: usize, ranges: &[RangeInError], job: &Job) -> Result<(), Unavailable> {
+    /// Of no epoch.
+    pub fn none(job: &Job) -> Self {
+        Self { regions: vec![Default::default(); job.limits_m.len()], ..Self::default() }
+    }
+
+    fn epoch(&mut self, time: GpsTime, ranges: &[RangeInError], job: &Job) -> Result<(), Unavailable> {
         let depth = depth(ranges.len(), job.least, job.most_satellites);
-        match walk(ranges, job.least, depth, &mut |subset| self.point(epoch, subset, job)) {
+        match walk(ranges, job.least, depth, &mut |subset| self.point(time, subset, job)) {
             Ok(walked) => {
                 self.n_epochs += 1;
                 self.n_cut += u64::from(depth < ranges.len().saturating_sub(job.least));
@@ -125,7 +133,7 @@ impl Tally {
         }
     }
 
-    fn point(&mut self, epoch: usize, subset: &Subset, job: &Job) {
+    fn point(&mut self, time: GpsTime, subset: &Subset, job: &Job) {
         let levels = sbas::levels(&subset.covariance, job.used_for);
         let nse = subset.nse.vector();
         let error_m = [nse.x.hypot(nse.y), nse.z.abs()];
@@ -140,7 +148,7 @@ impl Tally {
                 regions[1].add(error_m[1], level_m[1], *val);
             }
         }
-        let found = Listed { epoch, used: subset.used, error_m, level_m };
+        let found = Listed { time, used: subset.used, error_m, level_m };
         self.n_misleading += u64::from(found.index() > 1.0);
         if found.index() >= job.listed_from {
             self.n_listed += 1;
@@ -156,7 +164,8 @@ impl Tally {
         self.listed.truncate(most);
     }
 
-    fn merged(mut self, other: Self, job: &Job) -> Self {
+    /// Both.
+    pub fn merged(mut self, other: Self, job: &Job) -> Self {
         self.n_epochs += other.n_epochs;
         self.n_unsolved += other.n_unsolved;
         self.n_cut += other.n_cut;
@@ -176,9 +185,6 @@ impl Tally {
         self
     }
 }
-
-/// Most satellites of one epoch.
-pub const MOST_SATELLITES: usize = MOST_RANGES;
 
 #[cfg(test)]
 mod tests {
@@ -213,6 +219,10 @@ mod tests {
         (0..n).map(one).collect()
     }
 
+    fn at<'a>(sets: &[&'a [RangeInError]]) -> Vec<Epoch<'a>> {
+        sets.iter().zip(0..).map(|(ranges, k)| (GpsTime::from_nanoseconds(k), *ranges)).collect()
+    }
+
     #[test]
     fn depth_keeps_within_the_subsets_of_so_many_satellites() {
         assert_eq!(depth(9, 4, 14), 5);
@@ -225,7 +235,7 @@ mod tests {
     #[test]
     fn the_regions_count_every_subset_that_has_a_position() {
         let (nine, twenty) = (ranges(9, 1.0), ranges(20, 1.0));
-        let found = subsets(&[&nine, &twenty, &nine[..3]], &job()).unwrap();
+        let found = subsets(&at(&[&nine, &twenty, &nine[..3]]), &job()).unwrap();
         // 126 + 126 + 84 + 36 + 9 + 1 subsets of nine; of twenty those that leave out four at most.
         assert_eq!((found.n_epochs, found.n_unsolved, found.n_cut, found.n_subsets), (2, 1, 1, 382 + 6196));
         let points = found.n_subsets - found.n_singular;
@@ -239,16 +249,16 @@ mod tests {
     fn the_gravest_are_listed_and_the_cut_into_tasks_changes_nothing() {
         let sets: Vec<Vec<RangeInError>> = (0..200).map(|k| ranges(8, 0.05 * f64::from(k))).collect();
         let all: Vec<&[RangeInError]> = sets.iter().map(Vec::as_slice).collect();
-        let found = subsets(&all, &job()).unwrap();
+        let found = subsets(&at(&all), &job()).unwrap();
         assert!(found.n_listed > 20 && found.listed.len() == 20, "{}", found.n_listed);
         // Errors grow with the epoch and levels do not, so the gravest subset is of the last.
-        assert_eq!(found.listed[0].epoch, 199);
+        assert_eq!(found.listed[0].time, GpsTime::from_nanoseconds(199));
         assert!(found.listed.windows(2).all(|w| w[0].index() >= w[1].index()));
         assert!((found.listed[0].index() - found.largest_index[0].max(found.largest_index[1])).abs() < 1e-15);
-        let one_by_one = all.iter().map(|e| subsets(&[e], &job()).unwrap());
-        let sum = one_by_one.fold(Tally { regions: vec![Default::default(); 2], ..Tally::default() }, |a, b| a.merged(b, &job()));
+        let one_by_one = at(&all).into_iter().map(|e| subsets(&[e], &job()).unwrap());
+        let sum = one_by_one.fold(Tally::none(&job()), |a, b| a.merged(b, &job()));
         assert_eq!((sum.n_subsets, sum.n_misleading, sum.n_listed), (found.n_subsets, found.n_misleading, found.n_listed));
-        assert_eq!((&sum.regions, &sum.histograms), (&found.regions, &found.histograms));
+        assert_eq!(sum, found);
     }
 
     #[test]
@@ -256,7 +266,7 @@ mod tests {
         let good = ranges(6, 1.0);
         let mut bad = ranges(6, 1.0);
         bad[3].error = Metres::new(f64::NAN);
-        let refused = subsets(&[&good, &bad], &job()).unwrap_err();
+        let refused = subsets(&at(&[&good, &bad]), &job()).unwrap_err();
         assert!(matches!(refused, (1, Unavailable::Invalid { field: "range_error_m", .. })), "{refused:?}");
     }
 }

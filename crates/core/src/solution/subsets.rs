@@ -70,12 +70,7 @@ pub fn count(n: usize, most_left_out: usize) -> u64 {
 /// # Errors
 /// [`Unavailable::TooFewSatellites`] with less than `least` or four ranges, [`Unavailable::Invalid`] with more than [`MOST_RANGES`] or a
 /// weight that is not positive, [`Unavailable::Singular`] where the whole set determines no position.
-pub fn walk(
-    ranges: &[RangeInError],
-    least: usize,
-    most_left_out: usize,
-    visit: &mut impl FnMut(&Subset),
-) -> Result<Walked, Unavailable> {
+pub fn walk(ranges: &[RangeInError], least: usize, most_left_out: usize, visit: &mut impl FnMut(&Subset)) -> Result<Walked, Unavailable> {
     let (have, need) = (ranges.len(), least.max(UNKNOWNS));
     if have < need {
         return Err(Unavailable::TooFewSatellites { need, have });
