@@ -24,12 +24,15 @@ if TYPE_CHECKING:
 
     from navbound.read.epochs import Reading
 
+COVARIANCE = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
+
 SCHEMA = pl.Schema(
     {
         "track": pl.String,
         "time_ns": pl.Int64,
         **dict.fromkeys(("est_lat_rad", "est_lon_rad", "est_h_m"), pl.Float64),
         **dict.fromkeys(("nse_e_m", "nse_n_m", "nse_u_m", "hpe_m", "vpe_m", "hpl_m", "vpl_m"), pl.Float64),
+        **dict.fromkeys(COVARIANCE, pl.Float64),
         "n_sv": pl.Int64,
         **dict.fromkeys(("hdop", "vdop"), pl.Float64),
         **dict.fromkeys(("mode", "status", "reason"), pl.String),
@@ -237,8 +240,7 @@ def from_observations(
 
 def _of_own(epochs: pl.DataFrame) -> pl.DataFrame:
     """Levels of the positions' own covariances."""
-    columns = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
-    found = sbas.covariance_levels(np.column_stack([epochs[name].fill_null(np.nan).to_numpy() for name in columns]))
+    found = sbas.covariance_levels(np.column_stack([epochs[name].fill_null(np.nan).to_numpy() for name in COVARIANCE]))
     return epochs.with_columns(hpl_m=pl.Series(found[0], nan_to_null=True), vpl_m=pl.Series(found[1], nan_to_null=True))
 
 

@@ -18,12 +18,14 @@ import polars as pl
 
 from navbound import __version__, kpi
 from navbound.errors import FormatError, InputError
+from navbound.read.source import load
 from navbound.run import directory
 from navbound.run.directory import Run
 from navbound.run.field_csv import write_csv
-from navbound.run.levels_of import Part, Truth, from_observations, from_table, sort_out, truth_of
+from navbound.run.levels_of import COVARIANCE, SCHEMA, Part, Truth, from_observations, from_table, sort_out, truth_of
 from navbound.run.performance_words import performance_words
-from navbound.run.records import InputFile, Rejection, RunRecord, Summary, Verdict
+from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
+from navbound.run.summarise import honesty_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -34,6 +36,8 @@ if TYPE_CHECKING:
 
 PARTS = "parts"
 """Folder of the run directory that remembers the finished parts."""
+MOST_HONESTY = 1_000_000
+"""Epochs whose covariances are compared with their errors: eleven days at 1 Hz, 100 MB."""
 CSV = "epochs.csv"
 """The epochs under the field's column names."""
 _OWN = {directory.RECORD, directory.SUMMARY, directory.EPOCHS, directory.EVENTS, directory.REPORT, PARTS, CSV}
@@ -130,7 +134,7 @@ def evaluate_files(
         if options.stanford_esa is not None:
             ranges = kpi.stanford_esa(lambda: _range_tables(parts), campaign.levels, options.stanford_esa)
             result = kpi.with_subsets(result, ranges)
-        run = _run(result, parts, events, sources=sources, options=options, command=command)
+        run = _run(result, parts, events, inputs=_inputs(sources, truth, parts), options=options, command=command)
         if out is None:
             return Run(run.summary, run.record, pl.concat(_tables(parts)), run.events, [])
         return _write(run, parts, folder)
@@ -191,7 +195,7 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
         except OSError as e:
             raise FormatError(truth.given, e.strerror or str(e)) from e
     parts = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn]
-    parts.append(options.stanford_esa is not None)
+    parts += [options.stanford_esa is not None, SCHEMA.names()]
     return json.dumps([*parts, sorted(s.sha256 for s in sources.navigation + sources.messages)])
 
 
@@ -284,11 +288,19 @@ def _title(parts: list[_Stored]) -> str:
     return ", ".join(names) if len(names) <= 3 else f"{names[0]} and {len(names) - 1} more files"
 
 
-def _run(result: Performance, parts: list[_Stored], events: list[pl.DataFrame], *, sources: Files, options: Options, command: str) -> Run:
+def _inputs(sources: Files, truth: Truth, parts: list[_Stored]) -> list[InputFile]:
+    """Every file that went in, a recorded truth among them."""
+    n_rows = {part.source.path: part.n_rows for part in parts}
+    files = sources.tables + sources.observations + sources.navigation + sources.messages
+    recorded = [load(truth.given)] if truth.given is not None and truth.ecef_m is None else []
+    return [source.record(n_rows.get(source.path)) for source in files + recorded]
+
+
+def _run(
+    result: Performance, parts: list[_Stored], events: list[pl.DataFrame], *, inputs: list[InputFile], options: Options, command: str
+) -> Run:
     notes = list(dict.fromkeys(note for part in parts for note in part.notes))
     result = result.model_copy(update={"notes": [*result.notes, *notes]})
-    everything = sources.tables + sources.observations + sources.navigation + sources.messages
-    n_rows = {part.source.path: part.n_rows for part in parts}
     record = RunRecord(
         navbound_version=__version__,
         command=command,
@@ -296,7 +308,7 @@ def _run(result: Performance, parts: list[_Stored], events: list[pl.DataFrame], 
         kind="analyze",
         scenario=None,
         seed=None,
-        inputs=[InputFile(path=str(s.path), sha256=s.sha256, n_bytes=s.n_bytes, n_rows=n_rows.get(s.path)) for s in everything],
+        inputs=inputs,
         methods=[],
         risk_accuracy=0.05,
         risk_integrity=1e-5,
@@ -315,10 +327,25 @@ def _run(result: Performance, parts: list[_Stored], events: list[pl.DataFrame], 
     )
     joined = pl.concat(events).sort("onset_ns", "level", "kind", maintain_order=True)
     first = next(_tables(parts)).head(1)
-    return Run(_summary(result, parts), record, first, joined, [])
+    honesty, notes = _honesty(parts)
+    return Run(_summary(result.model_copy(update={"notes": [*result.notes, *notes]}), parts, honesty), record, first, joined, [])
 
 
-def _summary(result: Performance, parts: list[_Stored]) -> Summary:
+def _honesty(parts: list[_Stored]) -> tuple[Honesty | None, list[str]]:
+    """Whether the covariances agree with the errors, where the files hold both; of the first epochs, so that memory has a limit."""
+    columns = ["track", "time_ns", "status", "nse_e_m", "nse_n_m", "nse_u_m", *COVARIANCE]
+    held: list[pl.DataFrame] = []
+    for table in _tables(parts):
+        known = table.select(columns).drop_nulls(["nse_e_m", "cov_ee_m2"])
+        held.append(known.with_columns(pl.col("status").fill_null("ok")))
+        if sum(part.height for part in held) > MOST_HONESTY:
+            break
+    together = pl.concat(held)
+    note = f"The covariances were compared with the errors at the first {MOST_HONESTY} epochs." if together.height > MOST_HONESTY else ""
+    return honesty_of(together.head(MOST_HONESTY)), [note] if note else []
+
+
+def _summary(result: Performance, parts: list[_Stored], honesty: Honesty | None) -> Summary:
     names = ", ".join(found.level.id for found in result.levels)
     verdict = Verdict(
         inside=None,
@@ -333,11 +360,15 @@ def _summary(result: Performance, parts: list[_Stored]) -> Summary:
         worst_accuracy=None,
         worst_integrity=None,
         truth_known=result.truth_known,
+        experimental=result.experimental != "",
     )
-    sources = list(dict.fromkeys(f"{found.level.id}: {found.level.source}." for found in result.levels))
+    by_source: dict[str, list[str]] = {}
+    for found in result.levels:
+        by_source.setdefault(found.level.source, []).append(found.level.id)
+    sources = [f"{', '.join(ids)}: {source}." for source, ids in by_source.items()]
     return Summary(
         kind="analyze",
-        title=f"Performance: {result.title}",
+        title=f"{names}: {result.title}",
         verdict=verdict,
         coverage_kind="",
         assumptions=[*result.notes, *sources],
@@ -345,7 +376,7 @@ def _summary(result: Performance, parts: list[_Stored]) -> Summary:
         tracks=[],
         accuracy=[],
         integrity=[],
-        honesty=None,
+        honesty=honesty,
         states=[],
         events=[],
         cross_track=[],
