@@ -305,9 +305,7 @@ def _subsets(levels: list[LevelResult]) -> Subsets:
         listed_from=0.7,
         n_listed=7,
         listed=[one, one.model_copy(update={"time_ns": START_NS, "vpl_m": None, "safety_index": 0.9})],
-        stanford={
-            r.level.id: [c.model_copy(update={name: 2 * getattr(c, name) for name in double}) for c in r.stanford] for r in levels
-        },
+        stanford={r.level.id: [c.model_copy(update={name: 2 * getattr(c, name) for name in double}) for c in r.stanford] for r in levels},
     )
 
 

@@ -110,7 +110,8 @@ def analyze(
     period_s: Annotated[float | None, typer.Option(help="With --levels: sampling period. [default: the usual step]")] = None,
     exclude_missing: Annotated[bool, typer.Option("--exclude-missing", help="With --levels: absent epochs are not expected.")] = False,
     stanford_esa: Annotated[
-        bool, typer.Option("--stanford-esa", help="With --levels, observations and --truth: every subset of satellites as a point of its own.")
+        bool,
+        typer.Option("--stanford-esa", help="With --levels, observations and --truth: every subset of satellites as a point of its own."),
     ] = False,
     min_satellites: Annotated[int, typer.Option(help="With --stanford-esa: fewest satellites of a subset.")] = 4,
     max_satellites: Annotated[
@@ -126,7 +127,8 @@ def analyze(
     """Judge recorded tracks against a path and a specification; with --levels, evaluate errors and protection levels.
 
     With --levels the files are tables with protection levels (any number, joined by time), or RINEX observations with navigation files and,
-    where a service corrects them, SBAS message logs; without messages the levels are the position's own and experimental. A run that was interrupted goes on when it is started again with the same --out.
+    where a service corrects them, SBAS message logs; without messages the levels are the position's own and experimental. A run that was
+    interrupted goes on when it is started again with the same --out.
     """
     out = out or Path("out") / files[0].name.split(".")[0]
     if levels is not None:

@@ -41,24 +41,30 @@ struct Wanted {
 
 impl Ranges<'_> {
     fn rows(&self) -> PyResult<Vec<RangeInError>> {
-        let angles = self.az_rad.as_slice()?.iter().zip(self.el_rad.as_slice()?);
-        let lengths = self.sigma_m.as_slice()?.iter().zip(self.range_error_m.as_slice()?);
+        let (az, el) = (self.az_rad.as_slice()?, self.el_rad.as_slice()?);
+        let (sigma, error) = (self.sigma_m.as_slice()?, self.range_error_m.as_slice()?);
         let shared = self.shared_m.as_slice()?.as_chunks::<3>().0;
-        let row = |(i, (((az, el), (sigma, error)), shared)): (usize, (((&f64, &f64), (&f64, &f64)), &[f64; 3]))| {
-            let direction = Direction::new(Radians::new(*az), Radians::new(*el)).map_err(|e| input_error(e, Some(i)))?;
-            if !(*sigma > 0.0 && sigma.is_finite()) {
-                let wrong = OutOfDomain { argument: "sigma_m", value: *sigma, unit: "m", domain: "(0, inf)" };
-                return Err(input_error(wrong, Some(i)));
-            }
-            if !(error.is_finite() && shared.iter().all(|s| s.is_finite())) {
-                let wrong = OutOfDomain { argument: "range_error_m", value: *error, unit: "m", domain: "finite errors" };
-                return Err(input_error(wrong, Some(i)));
-            }
-            let (weight, error) = (1.0 / (sigma * sigma), Metres::new(*error));
-            Ok(RangeInError { unit: direction.unit(), weight, error, shared_m: (*shared).into() })
-        };
-        angles.zip(lengths).zip(shared).enumerate().map(row).collect()
+        if [el.len(), sigma.len(), error.len(), shared.len()].iter().any(|n| *n != az.len()) {
+            return Err(PyValueError::new_err("columns of different lengths"));
+        }
+        (0..az.len()).map(|i| range(i, [az[i], el[i]], sigma[i], error[i], shared[i])).collect()
     }
+}
+
+/// Row `i`, its angles azimuth and elevation.
+fn range(i: usize, [az, el]: [f64; 2], sigma: f64, error: f64, shared: [f64; 3]) -> PyResult<RangeInError> {
+    let wrong = |argument, value, domain| Err(input_error(OutOfDomain { argument, value, unit: "m", domain }, Some(i)));
+    let direction = Direction::new(Radians::new(az), Radians::new(el)).map_err(|e| input_error(e, Some(i)))?;
+    if !(sigma > 0.0 && sigma.is_finite()) {
+        return wrong("sigma_m", sigma, "(0, inf)");
+    }
+    if !error.is_finite() {
+        return wrong("range_error_m", error, "finite errors");
+    }
+    if let Some(value) = shared.iter().find(|s| !s.is_finite()) {
+        return wrong("shared_m", *value, "finite errors");
+    }
+    Ok(RangeInError { unit: direction.unit(), weight: 1.0 / (sigma * sigma), error: Metres::new(error), shared_m: shared.into() })
 }
 
 /// Tables of ranges one after the other.

@@ -194,9 +194,9 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
             recorded = hashlib.sha256(Path(truth.given).read_bytes()).hexdigest()
         except OSError as e:
             raise FormatError(truth.given, e.strerror or str(e)) from e
-    parts = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn]
-    parts += [options.stanford_esa is not None, SCHEMA.names()]
-    return json.dumps([*parts, sorted(s.sha256 for s in sources.navigation + sources.messages)])
+    given = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn]
+    beside = sorted(s.sha256 for s in sources.navigation + sources.messages)
+    return json.dumps([given, options.stanford_esa is not None, SCHEMA.names(), beside])
 
 
 def _compute(source: Source, sources: Files, options: Options, truth: Truth) -> Part:

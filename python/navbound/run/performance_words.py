@@ -46,8 +46,8 @@ def _availability(result: Performance) -> str:
     span = f"{hours:.3g} hours" if hours < 48 else f"{hours / 24:.4g} days"
     absent = "absent epochs are not expected" if result.exclude_missing else f"{result.n_missing} absent"
     each = [
-        f"{found.level.id} {share(found.availability_expected)} ({share(found.availability_low)} to {share(found.availability_high)}, as from "
-        f"{found.n_effective:.0f} independent epochs)"
+        f"{found.level.id} {share(found.availability_expected)} ({share(found.availability_low)} to {share(found.availability_high)}, "
+        f"as from {found.n_effective:.0f} independent epochs)"
         for found in result.levels
     ]
     return (

@@ -96,6 +96,6 @@ def honesty_words(nees: Nees, pit: Pit) -> str:
     largest = max(pit.counts) * len(pit.counts) / sum(pit.counts)
     return (
         f"{found}: no reason to doubt the size of the covariance. But {n_outside} of the {len(pit.counts)} bins of the histogram "
-        f"{'is' if n_outside == 1 else 'are'} outside the band (one in twenty is by chance), and the fullest holds {largest:.2g} times its share: "
-        "errors are not spread as one Gaussian."
+        f"{'is' if n_outside == 1 else 'are'} outside the band (one in twenty is by chance), and the fullest holds {largest:.2g} times its "
+        "share: errors are not spread as one Gaussian."
     )
