@@ -234,7 +234,7 @@ def from_observations(
     ranges = _range_errors(positions.ranges, epochs) if positions.ranges is not None else None
     if logs:
         epochs = _of_service(epochs, navigation, _messages(logs, epochs["time_ns"], prn), truth)
-        return Part(_uniform(epochs), observations.n_epochs, [], [MIXED, *notes])
+        return Part(_uniform(epochs), observations.n_epochs, [], [MIXED, *notes] if truth.given is not None else notes)
     return Part(_uniform(_of_own(epochs)), observations.n_epochs, [], [OWN, *notes], EXTRACTION_LABEL, ranges)
 
 

@@ -43,7 +43,7 @@ def _integrity(result: Performance) -> str:
 
 def _availability(result: Performance) -> str:
     hours = result.n_expected * result.period_s / 3600
-    span = f"{hours:.3g} hours" if hours < 48 else f"{hours / 24:.4g} days"
+    span = f"{hours:.3g} h" if hours < 48 else f"{hours / 24:.4g} days"
     absent = "absent epochs are not expected" if result.exclude_missing else f"{result.n_missing} absent"
     each = [
         f"{found.level.id} {share(found.availability_expected)} ({share(found.availability_low)} to {share(found.availability_high)}, "

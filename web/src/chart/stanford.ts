@@ -46,7 +46,7 @@ export function stanford(host: HTMLElement, options: StanfordOptions): () => voi
     const esa = bins.variant === "stanford-esa";
     const note = el("figcaption", {}, esa ? `${count(bins.n)} satellite subsets. One point for every subset, not for every epoch: a good geometry hides nothing.` : `${count(bins.n)} epochs with a solution and a true error.`);
     const figure = el("figure", { class: "chart stanford", id: `stanford-${bins.axis}${esa ? "-esa" : ""}`, role: "group", "aria-labelledby": title },
-        el("h4", { id: title }, `${axis.name}, ${level.id}${esa ? ", every satellite subset (Stanford-ESA)" : ""}`, options.experimental === "" ? null : el("span", { class: "tag" }, options.experimental)), note,
+        el("h4", { id: title }, `${axis.name}, ${level.id}${esa ? ", satellite subsets" : ""}`, options.experimental === "" ? null : el("span", { class: "tag" }, options.experimental)), note,
         el("div", { class: "stanford-box" }, canvas, overlay(options, frame)), ramp(bins, frame), edgeWords(frame, axis.limit, counts), counts === null ? null : regionTable(counts, axis.name, esa ? "Subsets" : "Epochs"));
     host.append(figure);
     const draw = (): void => paint(canvas, bins, frame);
