@@ -149,7 +149,7 @@ def held_small(*, seed: int = 2012) -> list[HeldRisk]:
 
 
 def _responses() -> Floats:
-    """Rows that make the last 50 extracted errors, and beneath them the last corrected error, of the errors before: the filter's response."""
+    """Rows that make the last 50 extracted errors of the errors before, by the filter's response; beneath them the last corrected one."""
     position = np.zeros((2 * RESPONSE, 3))
     position[RESPONSE, 2] = 1.0
     found = sbas.error_extraction(np.arange(2 * RESPONSE) * 1_000_000_000, position, np.zeros(3))

@@ -16,8 +16,8 @@ from navbound import sbas
 from navbound.errors import InputError
 from navbound.run.error_extraction_day import WINDOW, Day, correlations, find, load, recorded_bias, stage
 from navbound.run.error_extraction_faults import SIGMA_VELOCITY_MPS, held_risks, inject, overshoot_m
-from navbound.run.error_extraction_risks import held_laws, held_small
 from navbound.run.error_extraction_records import Availability, Cause, Claim, Correlation, FaultEntry, Stage, Study
+from navbound.run.error_extraction_risks import held_laws, held_small
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
