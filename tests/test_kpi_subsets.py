@@ -14,6 +14,7 @@ import polars as pl
 import pytest
 from numpy.typing import NDArray
 
+import navbound
 from navbound import InputError, gnss, kpi
 
 Floats = NDArray[np.float64]
@@ -216,6 +217,15 @@ def test_the_stanford_esa_diagram_of_a_real_day_from_the_command_line(shared_dat
     choices = sum(int(np.prod(np.arange(n - k + 1, n + 1)) // np.prod(np.arange(1, k + 1))) for n in n_sv.tolist() for k in range(4, n + 1))
     assert found["subsets"]["n_subsets"] == choices
     assert found["subsets"]["n_cut"] == 0
+    # Started again it finds the part, its ranges too, and says the same.
+    (part,) = (tmp_path / "run" / "parts").glob("*.ranges.parquet")
+    written = part.stat().st_mtime_ns
+    again = navbound.analyze(
+        files, levels="APV-I,NPA", truth=",".join(map(str, ESBC_TRUTH)), stanford_esa=kpi.SubsetOptions(), out=tmp_path / "run"
+    )
+    assert part.stat().st_mtime_ns == written
+    assert again.summary.performance is not None
+    assert again.summary.performance.model_dump(mode="json") == found
     # Nobody monitors these levels: every place says so.
     assert found["experimental"] == "experimental, not integrity"
     assert summary["verdict"]["experimental"] is True
@@ -228,7 +238,5 @@ def test_the_stanford_esa_diagram_of_a_real_day_from_the_command_line(shared_dat
 def test_a_table_holds_no_ranges(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
     path.write_text("time_ns,hpl_m\n0,1\n1000000000,1\n")
-    arguments = ["analyze", str(path), "--levels", "NPA", "--stanford-esa", "--out", str(tmp_path / "run")]
-    done = subprocess.run([sys.executable, "-m", "navbound", *arguments], capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert "a table holds no ranges" in " ".join(done.stderr.split())
+    with pytest.raises(InputError, match="a table holds no ranges"):
+        navbound.analyze(path, levels="NPA", stanford_esa=kpi.SubsetOptions())

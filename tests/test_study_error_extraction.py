@@ -140,8 +140,8 @@ def test_independent_errors_hold_the_risk_of_their_own_law_alone() -> None:
 
 
 def test_another_law_is_not_reproducible(monkeypatch: pytest.MonkeyPatch) -> None:
-    heavier = replace(risks.LAWS[3], draw=risks.LAWS[2].draw)
-    monkeypatch.setattr(risks, "LAWS", (heavier,))
+    other = replace(risks.LAWS[3], tail=risks.LAWS[2].tail)
+    monkeypatch.setattr(risks, "LAWS", (other,))
     assert {h.verdict for h in risks.held_laws()} == {"not reproducible"}
 
 
@@ -165,7 +165,7 @@ def test_every_table_carries_the_label() -> None:
     console.print(result().table())
     text = console.export_text()
     tables = text.count("┏")
-    assert tables == 6
+    assert tables == 8
     assert text.count("experimental, not integrity)") >= tables
     assert "peak bound [m]" in text, "units in brackets are no markup"
     assert Study.model_validate_json(result().model_dump_json()) == result()
