@@ -52,6 +52,7 @@ __all__ = [
     "Messages",
     "Refused",
     "Satellites",
+    "covariance_levels",
     "decode",
     "error_extraction",
     "extraction_beta",

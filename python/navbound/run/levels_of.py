@@ -11,7 +11,6 @@ import numpy as np
 import polars as pl
 
 from navbound import gnss, sbas
-from navbound._extraction_gains import EXTRACTION_LABEL
 from navbound.errors import FormatError, InputError
 from navbound.read.epochs import read
 from navbound.read.source import Source, load
@@ -195,7 +194,7 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None) -> P
     rejected = [r.model_dump() for r in reading.rejected]
     # Columns of Error Extraction say in their own name what they are.
     of_extraction = any(reading.columns.get(name, "").startswith("ee_") for name in ("hpl_m", "vpl_m"))
-    return Part(_uniform(epochs), reading.source.n_rows or 0, rejected, notes, EXTRACTION_LABEL if of_extraction else "")
+    return Part(_uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
 
 
 def _with_truth(epochs: pl.DataFrame, reading: Reading, truth: Truth) -> tuple[pl.DataFrame, str]:
@@ -235,7 +234,7 @@ def from_observations(
     if logs:
         epochs = _of_service(epochs, navigation, _messages(logs, epochs["time_ns"], prn), truth)
         return Part(_uniform(epochs), observations.n_epochs, [], [MIXED, *notes] if truth.given is not None else notes)
-    return Part(_uniform(_of_own(epochs)), observations.n_epochs, [], [OWN, *notes], EXTRACTION_LABEL, ranges)
+    return Part(_uniform(_of_own(epochs)), observations.n_epochs, [], [OWN, *notes], sbas.EXTRACTION_LABEL, ranges)
 
 
 def _of_own(epochs: pl.DataFrame) -> pl.DataFrame:
