@@ -21,6 +21,8 @@ from navbound.run.kpi_records import (
     Spread,
     StanfordBins,
     StanfordCounts,
+    SubsetFound,
+    Subsets,
 )
 
 Floats = NDArray[np.float64]
@@ -276,6 +278,37 @@ def _events(e: dict[str, Floats], truth: bool) -> list[KpiEvent]:
     return sorted(found, key=lambda event: (event.kind != "hazard", -event.duration_s))
 
 
+def _subsets(levels: list[LevelResult]) -> Subsets:
+    """Counts that differ from those of the epochs, so that the page cannot show one for the other."""
+    one = SubsetFound(
+        time_ns=START_NS + 60 * 10**9,
+        satellites=["G01", "G02", "G03", "G05"],
+        left_out=["G07"],
+        hpe_m=9.0,
+        hpl_m=10.0,
+        vpe_m=30.0,
+        vpl_m=24.0,
+        safety_index=1.25,
+    )
+    double = {"n", "n_nominal", "n_mi", "n_hmi", "n_unavailable", "n_unavailable_mi"}
+    return Subsets(
+        n_epochs=N - 600,
+        n_unsolved=3,
+        n_cut=2,
+        n_subsets=2 * (N - 600),
+        n_singular=5,
+        n_mi=1,
+        min_satellites=4,
+        max_satellites=12,
+        safety_index_h_max=0.9,
+        safety_index_v_max=1.25,
+        listed_from=0.7,
+        n_listed=7,
+        listed=[one, one.model_copy(update={"time_ns": START_NS, "vpl_m": None, "safety_index": 0.9})],
+        stanford={r.level.id: [c.model_copy(update={name: 2 * getattr(c, name) for name in double}) for c in r.stanford] for r in levels},
+    )
+
+
 def performance(*, hazard: bool = True, truth: bool = True, experimental: str = "", esa: bool = True) -> Performance:
     """One made-up day."""
     e = _epochs(hazard)
@@ -319,6 +352,7 @@ def performance(*, hazard: bool = True, truth: bool = True, experimental: str = 
             )
             for k in range(2)
         ],
+        subsets=_subsets(levels) if esa and truth else None,
         experimental=experimental,
         notes=["Fixture: numbers that mean nothing."],
     )

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from navbound import InputError, evaluation
+from navbound.run.words import honesty_words
 
 SEED = 20261121
 
@@ -183,3 +184,13 @@ def test_what_cannot_be_scored_is_refused(call: object, named: str) -> None:
     assert callable(call)
     with pytest.raises(InputError, match=named):
         call()
+
+
+def test_a_histogram_outside_its_band_is_said_though_the_mean_is_right() -> None:
+    nees = evaluation.Nees(n=400, n_unusable=0, n_effective=80.0, dimension=3, nees_mean=3.0, nees_low=2.5, nees_high=3.5)
+    flat = evaluation.Pit(n=400, n_effective=80.0, counts=[20] * 20, low=5.0, high=40.0)
+    assert honesty_words(nees, flat).endswith("no reason to doubt the covariance.")
+    heaped = evaluation.Pit(n=400, n_effective=80.0, counts=[120, *[10] * 18, 100], low=5.0, high=40.0)
+    said = honesty_words(nees, heaped)
+    assert "2 of the 20 bins" in said
+    assert "6 times its share" in said

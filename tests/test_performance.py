@@ -171,6 +171,23 @@ def test_what_cannot_be_evaluated_is_refused(tmp_path: Path, content: str, optio
         navbound.analyze(path, levels="NPA", **options)
 
 
+def test_levels_of_error_extraction_say_everywhere_what_they_are(tmp_path: Path) -> None:
+    path, out = tmp_path / "table.csv", tmp_path / "run"
+    path.write_text("time_ns,ee_bound_h_m,ee_bound_v_m\n0,5,6\n1000000000,5,6\n2000000000,5,6\n")
+    run = navbound.analyze(path, levels="APV-I", columns={"hpl_m": "ee_bound_h_m", "vpl_m": "ee_bound_v_m"}, out=out)
+    label = "experimental, not integrity"
+    assert run.summary.performance is not None
+    assert run.summary.performance.experimental == label
+    assert run.summary.verdict.experimental
+    assert label in run.summary.verdict.words
+    header = (out / CSV).read_text().splitlines()[0]
+    assert all(f"{name} [{label}]" in header for name in ("HPL", "HSI", "VPL", "VSI"))
+    # Words of the caller's own stand in the same places; a table without any has none.
+    path.write_text("time_ns,hpl_m\n0,5\n1000000000,5\n")
+    assert navbound.analyze(path, levels="NPA", experimental="a trial").summary.performance.experimental == "a trial"  # type: ignore[union-attr]
+    assert navbound.analyze(path, levels="NPA").summary.performance.experimental == ""  # type: ignore[union-attr]
+
+
 def test_other_files_in_the_directory_are_not_overwritten(tmp_path: Path) -> None:
     out = tmp_path / "home"
     out.mkdir()

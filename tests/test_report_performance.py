@@ -152,11 +152,60 @@ def test_three_hazards_among_eighty_thousand_epochs_are_seen(page: Page, record:
     assert int(_value(page, '#stanford-h .note [data-key="n_hmi"]')) == 0
 
 
-def test_subsets_of_satellites_are_a_variant_without_counts_of_epochs(page: Page) -> None:
+def test_subsets_of_satellites_are_a_variant_with_counts_of_their_own(page: Page, record: Performance) -> None:
     page.locator('[data-choice="stanford-esa"]').click()
     assert page.locator("#stanford-v-esa").is_visible()
-    assert page.locator('#stanford-v-esa svg [data-key="n_hmi"]').count() == 0
     assert "satellite subsets" in page.locator("#stanford-v-esa figcaption").inner_text()
+    assert record.subsets is not None
+    counts = next(c for c in record.subsets.stanford["LPV-200"] if c.axis == "v")
+    assert counts.n_nominal != _counts(next(r for r in record.levels if r.level.id == "LPV-200"), "v").n_nominal
+    assert int(_value(page, '#stanford-v-esa svg [data-key="n_nominal"]')) == counts.n_nominal
+
+
+def test_the_gravest_subsets_are_listed_with_their_satellites(page: Page, record: Performance) -> None:
+    assert record.subsets is not None
+    rows = page.locator("#subsets tbody tr")
+    assert rows.count() == len(record.subsets.listed) == 2
+    for i, found in enumerate(record.subsets.listed):
+        for key in ("time_ns", "safety_index", "hpe_m", "hpl_m", "vpe_m"):
+            assert float(rows.nth(i).locator(f'[data-key="{key}"]').get_attribute("data-value") or "nan") == getattr(found, key)
+        assert rows.nth(i).locator('[data-key="satellites"]').inner_text() == " ".join(found.satellites)
+    said = page.locator("#subsets-section").inner_text()
+    assert "One is misleading" in said
+    assert "the gravest 2 of 7" in said
+    assert "At 2 epochs with many satellites" in said
+
+
+@pytest.mark.parametrize("experimental", ["", "experimental, not integrity"])
+def test_where_only_indicators_were_asked_the_page_leads_with_them(
+    browser: Browser, record: Performance, tmp_path: Path, experimental: str
+) -> None:
+    fixture = report_fixture.flight(1, n=200)
+    asked = record.model_copy(update={"experimental": experimental})
+    changes = {
+        "performance": asked,
+        "accuracy": [],
+        "integrity": [],
+        "honesty": None,
+        "tracks": [],
+        "phases": [],
+        "title": "levels: receiver",
+    }
+    summary = fixture.summary.model_copy(update=changes)
+    page = _open(browser, render(summary, fixture.record, fixture.epochs.head(0), fixture.events.head(0), [], tmp_path / "report.html"))
+    panel = page.locator("#verdict")
+    assert panel.get_attribute("data-tone") == "warning"
+    said = panel.inner_text()
+    assert said.startswith("Hazardous")
+    assert all(result.level.id in said for result in record.levels)
+    assert "RNP" not in said.replace("RNP 0.3", "")
+    assert ("experimental, not integrity" in said) == (experimental != "")
+    for i, result in enumerate(record.levels):
+        value = panel.locator('[data-key="verdict.availability_expected"]').nth(i).get_attribute("data-value")
+        assert float(value or "nan") == result.availability_expected
+    # What would be empty is not there.
+    assert page.locator("#tracks, #methods-section, #honesty").count() == 0
+    page.context.close()
 
 
 @pytest.mark.parametrize("bucket", [0, 500, 835, 1166, 1439])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -15,6 +16,7 @@ import navbound
 from navbound import FormatError, InputError
 from navbound.run import error_extraction_day as recorded
 from navbound.run import error_extraction_faults as faults
+from navbound.run import error_extraction_risks as risks
 from navbound.run import study_error_extraction as study
 from navbound.run.error_extraction_records import Stage, Study
 
@@ -118,6 +120,31 @@ def test_a_stated_risk_is_held_only_by_fast_errors() -> None:
     assert held[1800.0].found > 0.3
 
 
+def test_a_small_stated_risk_is_broken_by_errors_that_last() -> None:
+    """Specification 1.8(b) at 5e-8: 14 to 1.7 million times the stated risk."""
+    held = {h.tau_s: h for h in result().held_small}
+    assert all(h.verdict == "reproducible" for h in held.values()), held
+    assert held[60.0].found > 10 * 5e-8
+    assert held[1800.0].found > 1e6 * 5e-8
+
+
+def test_independent_errors_hold_the_risk_of_their_own_law_alone() -> None:
+    """Specification 1.8(a). With equal weights, outside the window, exponential errors hold it exactly: (1 + k)^-M."""
+    found = {(h.law, h.risk): h for h in result().held_laws}
+    assert all(h.verdict == "reproducible" for h in found.values()), found
+    for risk in (1e-3, 1e-5, 5e-8):
+        exact = found["exponential, outside the window, equal weights", risk]
+        assert abs(exact.found - risk) <= 4 * exact.standard_error
+    assert found["Student, 4 degrees of freedom", 5e-8].found > 20 * 5e-8
+    assert found["exponential", 1e-5].found < 1e-7
+
+
+def test_another_law_is_not_reproducible(monkeypatch: pytest.MonkeyPatch) -> None:
+    other = replace(risks.LAWS[3], tail=risks.LAWS[2].tail)
+    monkeypatch.setattr(risks, "LAWS", (other,))
+    assert {h.verdict for h in risks.held_laws()} == {"not reproducible"}
+
+
 def test_a_number_of_another_fault_is_not_reproducible(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(faults.FAULTS, "step 5 m", (10.0, 0.0, faults.FAULTS["step 5 m"][2]))
     verdicts = {(f.fault, f.quantity): f.verdict for f in faults.inject(runs=20)}
@@ -138,7 +165,7 @@ def test_every_table_carries_the_label() -> None:
     console.print(result().table())
     text = console.export_text()
     tables = text.count("┏")
-    assert tables == 6
+    assert tables == 8
     assert text.count("experimental, not integrity)") >= tables
     assert "peak bound [m]" in text, "units in brackets are no markup"
     assert Study.model_validate_json(result().model_dump_json()) == result()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import polars as pl
 
@@ -136,10 +136,12 @@ def _accuracy_met(level: Level, both: list[AxisResult]) -> bool | None:
     return all(error is not None and error.p95 <= limit for limit, error in wanted)
 
 
-def stanford_bins(found: list[dict[str, Any]], bin_m: float, limit_m: float) -> list[StanfordBins]:
+def stanford_bins(
+    found: list[dict[str, Any]], bin_m: float, limit_m: float, variant: Literal["stanford", "stanford-esa"] = "stanford"
+) -> list[StanfordBins]:
     """Histograms of both axes; an axis without a point is left out."""
     return [
-        StanfordBins(axis=axis, variant="stanford", bin_m=bin_m, limit_m=limit_m, n=sum(bins["count"]), **bins)
+        StanfordBins(axis=axis, variant=variant, bin_m=bin_m, limit_m=limit_m, n=sum(bins["count"]), **bins)
         for axis, bins in zip(AXES, found, strict=True)
         if bins["count"]
     ]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import polars as pl
@@ -167,12 +167,17 @@ class Positions:
         Pseudoranges used, by system, in order of preference.
     models : dict of str to str
         Every model by name, for the record of a run.
+    ranges : DataFrame, optional
+        The ranges of each position: ``time_ns``, ``sv``, ``az_rad``, ``el_rad``, ``sigma_m``, ``residual_m`` (measured less computed at
+        the position, receiver clock included), ``shared_1_m``, ``shared_2_m``, ``shared_3_m`` (errors that all ranges share: the size
+        of the ionosphere, its tilt east and north). Where it was asked for.
     """
 
     epochs: pl.DataFrame
     unused: dict[str, int]
     codes: dict[str, list[str]]
     models: dict[str, str]
+    ranges: pl.DataFrame | None = None
 
 
 def file_content(path: str | Path) -> tuple[Path, bytes]:
@@ -248,6 +253,7 @@ def solve(
     smoothing: Literal["hatch", "divergence-free"] = "divergence-free",
     truth_ecef_m: ArrayLike | None = None,
     track: str | None = None,
+    keep_ranges: bool = False,
 ) -> Positions:
     """Positions of every epoch by robust weighted least squares on pseudoranges, with their covariance.
 
@@ -284,6 +290,8 @@ def solve(
         True position, Earth-fixed; NaN where it is not known. [m]
     track : str, optional
         Name of the track; by default the marker's or the file's.
+    keep_ranges : bool, optional
+        Whether ``ranges`` is filled.
 
     Returns
     -------
@@ -322,7 +330,9 @@ def solve(
         precise=None if orbits is None else orbits._core,
         smoothing_s=smoothing_s,
         divergence_free=smoothing == "divergence-free",
+        keep_ranges=keep_ranges,
     )
+    kept = found.pop("ranges")
     unused, codes, weights = found.pop("unused"), found.pop("codes"), found.pop("weights")
     share = found.pop("smoothed_share")
     name = track or observations.marker or observations.path.name
@@ -340,7 +350,13 @@ def solve(
         "weights": weights if weights != "scaled" else f"calibrated-2020 times {range_factor:g} (ranges), {shared_factor:g} (shared)",
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
     }
-    return Positions(epochs, unused, codes, models)
+    ranges = None if kept is None else _with_times(kept, observations.time_ns)
+    return Positions(epochs, unused, codes, models, ranges)
+
+
+def _with_times(kept: dict[str, Any], time_ns: NDArray[np.int64]) -> pl.DataFrame:
+    instants = time_ns[kept.pop("epoch")]
+    return pl.DataFrame({"time_ns": instants, **kept})
 
 
 def _orbit_words(orbits: PreciseOrbits | None) -> str:

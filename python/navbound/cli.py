@@ -17,6 +17,7 @@ from rich.table import Table
 import navbound
 from navbound import verify as vectors
 from navbound.errors import FormatError, InputError, NavboundError
+from navbound.kpi import SubsetOptions
 from navbound.methods import methods as all_methods
 from navbound.run.judge import DEFAULT_METHODS, Settings
 
@@ -108,13 +109,26 @@ def analyze(
     prn: Annotated[int | None, typer.Option(help="With --levels: whose SBAS messages, where a log holds several.")] = None,
     period_s: Annotated[float | None, typer.Option(help="With --levels: sampling period. [default: the usual step]")] = None,
     exclude_missing: Annotated[bool, typer.Option("--exclude-missing", help="With --levels: absent epochs are not expected.")] = False,
+    stanford_esa: Annotated[
+        bool,
+        typer.Option("--stanford-esa", help="With --levels, observations and --truth: every subset of satellites as a point of its own."),
+    ] = False,
+    min_satellites: Annotated[int, typer.Option(help="With --stanford-esa: fewest satellites of a subset.")] = 4,
+    max_satellites: Annotated[
+        int, typer.Option(help="With --stanford-esa: at most 2 to this power subsets an epoch; beyond, fewer satellites are left out.")
+    ] = 14,
+    listed_from: Annotated[float, typer.Option(help="With --stanford-esa: safety index from which a subset is listed.")] = 0.7,
+    experimental: Annotated[
+        str, typer.Option(help="With --levels: words beside levels that no integrity rests on ('experimental, not integrity').")
+    ] = "",
     out: Out = None,
     json: Json = False,
 ) -> None:
     """Judge recorded tracks against a path and a specification; with --levels, evaluate errors and protection levels.
 
-    With --levels the files are tables with protection levels (any number, joined by time), or RINEX observations with navigation files and
-    SBAS message logs. A run that was interrupted goes on when it is started again with the same --out.
+    With --levels the files are tables with protection levels (any number, joined by time), or RINEX observations with navigation files and,
+    where a service corrects them, SBAS message logs; without messages the levels are the position's own and experimental. A run that was
+    interrupted goes on when it is started again with the same --out.
     """
     out = out or Path("out") / files[0].name.split(".")[0]
     if levels is not None:
@@ -130,14 +144,17 @@ def analyze(
                 prn=prn,
                 period_s=period_s,
                 exclude_missing=exclude_missing,
+                stanford_esa=SubsetOptions(min_satellites, max_satellites, listed_from) if stanford_esa else None,
+                experimental=experimental,
                 out=out,
                 progress=progress,
                 command=_command(),
             )
         _show(run, json=json)
         return
-    if prn is not None or period_s is not None or exclude_missing:
-        raise InputError("levels", "none", domain="--levels together with --prn, --period-s and --exclude-missing")
+    if prn is not None or period_s is not None or exclude_missing or stanford_esa or experimental:
+        domain = "--levels together with --prn, --period-s, --exclude-missing, --stanford-esa and --experimental"
+        raise InputError("levels", "none", domain=domain)
     run = navbound.analyze(
         files,
         path=path,

@@ -14,13 +14,30 @@ import polars as pl
 
 from navbound import _core, _kpi_records
 from navbound._arrays import flatten
+from navbound._kpi_subsets import RangeTable, StanfordEsa, SubsetOptions, n_bins, stanford_esa, with_subsets
 from navbound.errors import InputError
 from navbound.run.kpi_records import Level, Performance, StanfordBins, StanfordCounts
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Campaign", "Continuity", "Level", "Performance", "Stanford", "continuity", "evaluate", "level", "levels", "rnp", "stanford"]
+__all__ = [
+    "Campaign",
+    "Continuity",
+    "Level",
+    "Performance",
+    "Stanford",
+    "StanfordEsa",
+    "SubsetOptions",
+    "continuity",
+    "evaluate",
+    "level",
+    "levels",
+    "rnp",
+    "stanford",
+    "stanford_esa",
+    "with_subsets",
+]
 
 WINDOW_S = 15.0
 """Continuity window."""
@@ -183,19 +200,11 @@ def stanford(
     shape, (error, bound) = flatten(error_m=(error_m, ()), level_m=(level_m, ()))
     if len(shape) != 1:
         raise InputError("error_m", f"shape {shape}", domain="shape (n,)")
-    found = _core.kpi_stanford(np.abs(error), bound, alert_limit_m, bin_m, _bins(bin_m, limit_m))
+    found = _core.kpi_stanford(np.abs(error), bound, alert_limit_m, bin_m, n_bins(bin_m, limit_m))
     which = _kpi_records.AXES[_kpi_records.AXES.index(axis)]
     counts = StanfordCounts(axis=which, alert_limit_m=alert_limit_m, **found["regions"])
     bins = StanfordBins(axis=which, variant="stanford", bin_m=bin_m, limit_m=limit_m, n=counts.n, **found["bins"])
     return Stanford(counts, bins)
-
-
-def _bins(bin_m: float, limit_m: float) -> int:
-    if not 0 < bin_m < float("inf"):
-        raise InputError("bin_m", bin_m, "m", "(0, inf)")
-    if not bin_m <= limit_m <= 10_000 * bin_m:
-        raise InputError("limit_m", limit_m, "m", f"[{bin_m:g}, {10_000 * bin_m:g}]")
-    return round(limit_m / bin_m)
 
 
 def evaluate(
@@ -207,6 +216,9 @@ def evaluate(
     bin_m: float = 0.1,
     limit_m: float = 50.0,
     title: str = "",
+    experimental: str = "",
+    ranges: RangeTable | Sequence[RangeTable] | None = None,
+    subsets: SubsetOptions | None = None,
 ) -> Performance:
     """Evaluate the indicators of one receiver's series.
 
@@ -226,6 +238,12 @@ def evaluate(
         Stanford diagrams: width of a bin, and where their axes end. [m]
     title : str
         For the record.
+    experimental : str
+        Words that must stand beside every number where the levels are no integrity levels, such as ``experimental, not integrity``.
+    ranges : DataFrame or mapping of columns, or a sequence of such tables, optional
+        Ranges of the epochs, for the Stanford-ESA diagram; see :func:`stanford_esa`.
+    subsets : SubsetOptions, optional
+        How its subsets are made.
 
     Returns
     -------
@@ -241,11 +259,22 @@ def evaluate(
     if not frames:
         raise InputError("table", "nothing", domain="one table or more")
     campaign = Campaign(
-        levels, first=frames[0], period_s=period_s, exclude_missing=exclude_missing, bin_m=bin_m, limit_m=limit_m, title=title
+        levels,
+        first=frames[0],
+        period_s=period_s,
+        exclude_missing=exclude_missing,
+        bin_m=bin_m,
+        limit_m=limit_m,
+        title=title,
+        experimental=experimental,
     )
     for frame in frames:
         campaign.add(frame)
-    return campaign.finish(lambda: frames)
+    result = campaign.finish(lambda: frames)
+    if ranges is None:
+        return result
+    several = [ranges] if isinstance(ranges, (pl.DataFrame, Mapping)) else list(ranges)
+    return with_subsets(result, stanford_esa(several, campaign.levels, subsets, bin_m=bin_m, limit_m=limit_m))
 
 
 class Campaign:
@@ -257,7 +286,7 @@ class Campaign:
         As in :func:`evaluate`.
     first : DataFrame or mapping
         The first table: its first epoch anchors the grid, its median step is the period if ``period_s`` is not given.
-    period_s, exclude_missing, bin_m, limit_m, title
+    period_s, exclude_missing, bin_m, limit_m, title, experimental
         As in :func:`evaluate`.
     """
 
@@ -271,6 +300,7 @@ class Campaign:
         bin_m: float = 0.1,
         limit_m: float = 50.0,
         title: str = "",
+        experimental: str = "",
     ) -> None:
         self.levels = _levels(levels)
         times = _frame(first)["time_ns"]
@@ -280,7 +310,7 @@ class Campaign:
         self.window_s = WINDOW_S
         self.n_window_epochs = max(1, round(WINDOW_S / self.period_s))
         self._bins = (bin_m, limit_m)
-        self._title, self._exclude_missing = title, exclude_missing
+        self._title, self._exclude_missing, self._experimental = title, exclude_missing, experimental
         self._modes: dict[str, int] = {}
         self._reasons: dict[str, int] = {}
         self._gravest = pl.DataFrame(schema=_kpi_records.EVENT_SCHEMA)
@@ -292,7 +322,7 @@ class Campaign:
                 "demands": [(found.hal_m, found.val_m, found.tta_s) for found in self.levels],
                 "window": self.n_window_epochs,
                 "bin_m": bin_m,
-                "n_bins": _bins(bin_m, limit_m),
+                "n_bins": n_bins(bin_m, limit_m),
                 "exclude_missing": exclude_missing,
             }
         )
@@ -357,7 +387,8 @@ class Campaign:
             n_events=dict(zip(("loss", "hazard", "mi"), totals, strict=True)),
             events=_kpi_records.event_records(self._gravest),
             days=_kpi_records.days(found["days"], self.levels),
-            experimental="",
+            subsets=None,
+            experimental=self._experimental,
             notes=self._notes(),
         )
 
@@ -413,7 +444,8 @@ def _period(times: pl.Series) -> float:
     step = times.diff().drop_nulls().filter(times.diff().drop_nulls() > 0).median()
     if not isinstance(step, (int, float)) or not step > 0:
         raise InputError("period_s", "none", "s", "a period: the first table has no two instants to take it from")
-    return float(step) * 1e-9
+    # Divided, since 1e-9 is no double: 0.1 s stays 0.1 s.
+    return float(step) / 1e9
 
 
 def _codes(texts: pl.Series, known: dict[str, int]) -> NDArray[np.uint32]:

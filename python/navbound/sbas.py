@@ -52,6 +52,7 @@ __all__ = [
     "Messages",
     "Refused",
     "Satellites",
+    "covariance_levels",
     "decode",
     "error_extraction",
     "extraction_beta",
@@ -474,6 +475,31 @@ def _job(
         "divergence_m": float(divergence_m),
         "test_signal": test_signal,
     }
+
+
+def covariance_levels(covariance_m2: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """HPL = 6.0 d_major and VPL = 5.33 d_U of covariances of the position (DO-229D J.2, precision approach; standard).
+
+    They are integrity levels only where the covariance is that of the SBAS error model.
+
+    Parameters
+    ----------
+    covariance_m2 : array_like, shape (..., 6)
+        ee, en, nn, eu, nu, uu; east, north, up. [m²]
+
+    Returns
+    -------
+    hpl_m, vpl_m : ndarray, shape (...)
+        NaN where the six numbers are no covariance. [m]
+
+    Raises
+    ------
+    InputError
+        Another shape.
+    """
+    shape, (flat,) = flatten(covariance_m2=(covariance_m2, (6,)))
+    found = _core.sbas_covariance_levels(flat)
+    return unflatten(found["hpl_m"], shape), unflatten(found["vpl_m"], shape)
 
 
 def levels_from_terms(

@@ -17,6 +17,7 @@ import { Store } from "./data/store.ts";
 import { Table } from "./data/table.ts";
 import { map } from "./map/map.ts";
 import { cursorBar } from "./panel/cursorbar.ts";
+import { asked } from "./panel/kpi-verdict.ts";
 import { performance as performanceReport } from "./panel/performance.ts";
 import { smallPrint } from "./panel/smallprint.ts";
 import { crossTrack, events, methods, phases, rejections, tracks } from "./panel/tables.ts";
@@ -64,10 +65,13 @@ class Page {
         verdict(root.querySelector("#verdict-place")!, payload);
         this.series = performanceReport(this.measured, payload, this.theme);
         honesty(root, summary);
-        const tables = el("section", { id: "tables" }, el("h2", {}, summary.tracks.length === 1 ? "The flight in numbers" : "The tracks in numbers"), this.trackTable.element);
+        // A run that judged no track has no tracks and no methods to list.
+        const alone = asked(payload) !== null;
+        const heading = alone ? "The input" : summary.tracks.length === 1 ? "The flight in numbers" : "The tracks in numbers";
+        const tables = el("section", { id: "tables" }, el("h2", {}, heading), alone ? null : this.trackTable.element);
         if (summary.phases.length > 0) tables.append(phases(payload));
         for (const part of [crossTrack(payload), events(payload, () => this.current, (t) => this.select(t)), rejections(payload)]) if (part !== null) tables.append(part);
-        root.append(tables, methods(payload), smallPrint(payload), this.bar);
+        root.append(tables, ...(alone ? [] : [methods(payload)]), smallPrint(payload), this.bar);
         this.listTracks();
         const first = payload.tracks[0];
         if (first === undefined && this.series !== null) this.charts.replaceChildren();

@@ -7,7 +7,7 @@ use navbound_core::quantity::{GpsTime, Metres, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};
 use navbound_core::solution::Surroundings;
-use navbound_core::solution::point::{self, Fix, Range, Settings};
+use navbound_core::solution::point::{self, Fix, Range, Settings, Used};
 use navbound_formats::precise::{Precise, Tables};
 use navbound_formats::rinex::{Navigation, Observations};
 use rayon::prelude::*;
@@ -40,6 +40,8 @@ pub struct Job {
     pub smoothing: Option<(Form, Smoothing)>,
     /// How.
     pub settings: Settings,
+    /// Whether the ranges of each position are kept.
+    pub keep_ranges: bool,
 }
 
 /// What came of a day, or an hour.
@@ -49,6 +51,8 @@ pub struct Positions {
     pub fixes: Vec<Result<Fix, Unavailable>>,
     /// Whether they do, by epoch.
     pub contradicted: Vec<bool>,
+    /// The ranges of each position, where they are kept; weights and shared errors widened as the covariance is.
+    pub ranges: Vec<Vec<(SatelliteId, Used)>>,
     /// Satellite-epochs of the wanted constellations that were not used, by reason.
     pub unused: BTreeMap<&'static str, usize>,
     /// Pseudoranges that were used, by constellation: codes in order of preference that the file has.
@@ -141,25 +145,44 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
     let epochs: Vec<usize> = (0..observations.n_epochs()).collect();
     let task = |epochs: &[usize]| {
         let (mut ranges, mut last, mut unused) = (Vec::new(), None, [0_usize; REASONS.len()]);
-        let mut fixes = Vec::with_capacity(epochs.len());
+        let (mut fixes, mut kept) = (Vec::with_capacity(epochs.len()), Vec::new());
         for epoch in epochs {
             collect(observations, smoothed.as_ref(), &records, &plans, *epoch, &mut ranges, &mut unused);
-            let fix = point::solve_near(&ranges, observations.time[*epoch], &job.settings, last.as_ref());
+            let time = observations.time[*epoch];
+            let fix = if job.keep_ranges {
+                let mut used = Vec::with_capacity(ranges.len());
+                let tell = |u: Used| used.push((ranges[u.index].satellite, u));
+                let fix = point::solve_telling(&ranges, time, &job.settings, last.as_ref(), tell);
+                kept.push(used);
+                fix
+            } else {
+                point::solve_near(&ranges, time, &job.settings, last.as_ref())
+            };
             last = fix.as_ref().ok().map(|f: &Fix| ecef_from_geodetic(&f.position)).or(last);
             fixes.push(fix);
         }
-        (fixes, unused)
+        (fixes, kept, unused)
     };
     let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
     let smoothed_share = smoothed.as_ref().map(Smoothed::share);
     let mut found = Positions { codes: codes(&plans, observations), smoothed_share, ..Positions::default() };
-    for (fixes, unused) in outcomes {
+    for (fixes, kept, unused) in outcomes {
         found.fixes.extend(fixes);
+        found.ranges.extend(kept);
         for (reason, n) in REASONS.iter().zip(unused).filter(|(_, n)| *n > 0) {
             *found.unused.entry(reason).or_default() += n;
         }
     }
+    // The ranges are widened by all that their position was: by its own residuals, and by its surroundings.
+    let own: Vec<f64> = found.fixes.iter().map(|f| f.as_ref().map_or(1.0, |f| f.inflation)).collect();
     found.contradicted = widen(&observations.time, &mut found.fixes);
+    for ((used, fix), own) in found.ranges.iter_mut().zip(&found.fixes).zip(own) {
+        let whole = fix.as_ref().map_or(1.0, |f| f.inflation);
+        for (_, u) in used {
+            u.weight /= whole;
+            u.shared_m *= (whole / own).sqrt();
+        }
+    }
     found
 }
 

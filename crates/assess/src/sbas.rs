@@ -285,6 +285,12 @@ pub fn ignored(feed: &Feed, obedience: Obedience) -> Vec<(GpsTime, Ignored)> {
     listener.ignored
 }
 
+/// HPL and VPL \[m\] of a covariance by the multipliers of precision approach.
+pub fn of_covariance(covariance: &Covariance<Enu>) -> [f64; 2] {
+    let levels = sbas::levels(covariance, Use::PrecisionApproach);
+    [levels.hpl.m(), levels.vpl.map_or(f64::NAN, Metres::m)]
+}
+
 /// One solution from terms.
 #[derive(Debug, Clone)]
 pub struct FromTerms {

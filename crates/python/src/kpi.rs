@@ -243,7 +243,7 @@ fn kpi_continuity(available: PyReadonlyArray1<'_, bool>, window: u64) -> PyResul
     Ok((found.events(), found.at_risk(window)))
 }
 
-fn regions<'py>(py: Python<'py>, counts: &Regions) -> PyResult<Bound<'py, PyDict>> {
+pub fn regions<'py>(py: Python<'py>, counts: &Regions) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
     d.set_item("n", counts.n())?;
     d.set_item("n_nominal", counts.nominal)?;
@@ -254,7 +254,7 @@ fn regions<'py>(py: Python<'py>, counts: &Regions) -> PyResult<Bound<'py, PyDict
     Ok(d)
 }
 
-fn histogram<'py>(py: Python<'py>, bins: &Histogram) -> PyResult<Bound<'py, PyDict>> {
+pub fn histogram<'py>(py: Python<'py>, bins: &Histogram) -> PyResult<Bound<'py, PyDict>> {
     let rows = bins.rows();
     let d = PyDict::new(py);
     d.set_item("error_bin", rows.iter().map(|r| r.0).collect::<Vec<_>>())?;

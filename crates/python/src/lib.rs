@@ -26,6 +26,7 @@ mod sbas_fields;
 mod simulate;
 mod states;
 mod surface;
+mod subsets;
 mod tse;
 
 use pyo3::prelude::*;
@@ -54,5 +55,6 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     positions::register(m)?;
     simulate::register(m)?;
     ins_simulate::register(m)?;
+    subsets::register(m)?;
     read::register(m)
 }

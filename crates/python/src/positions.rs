@@ -9,7 +9,7 @@ use navbound_core::quantity::{OutOfDomain, Radians};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Constellation, Klobuchar};
 use navbound_core::solution::RangeError;
-use navbound_core::solution::point::{Fix, Settings};
+use navbound_core::solution::point::{Fix, Settings, Used};
 use navbound_formats::Refusal;
 use navbound_formats::packed::unpack;
 use navbound_formats::rinex::{self, Code};
@@ -188,7 +188,7 @@ impl Navigation {
 
 /// Positions of every epoch as columns of the epoch table, with counts of what was not used.
 #[pyfunction]
-#[pyo3(signature = (observations, navigation, systems, *, dual, broadcast_ionosphere, mask_rad, false_alarm, most_excluded, range_factor, shared_factor, precise, smoothing_s, divergence_free))]
+#[pyo3(signature = (observations, navigation, systems, *, dual, broadcast_ionosphere, mask_rad, false_alarm, most_excluded, range_factor, shared_factor, precise, smoothing_s, divergence_free, keep_ranges))]
 #[expect(clippy::too_many_arguments, reason = "one setting each, named by the caller")]
 fn solve_positions<'py>(
     py: Python<'py>,
@@ -205,6 +205,7 @@ fn solve_positions<'py>(
     precise: Option<&PreciseOrbits>,
     smoothing_s: Option<f64>,
     divergence_free: bool,
+    keep_ranges: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     if let Some(window) = smoothing_s {
         within("smoothing_s", window, "s", "(0, 86400]", window > 0.0 && window <= 86_400.0)?;
@@ -226,10 +227,29 @@ fn solve_positions<'py>(
         signals: if dual { Signals::Dual } else { Signals::Single },
         smoothing: smoothing_s.map(|window| (if divergence_free { Form::DivergenceFree } else { Form::Single }, Smoothing::over(window))),
         settings,
+        keep_ranges,
     };
     let found = py.detach(|| positions(&observations.0, &navigation.records, precise.map(PreciseOrbits::tables), &job));
     let d = table(py, &found, errors.name)?;
     d.set_item("smoothed_share", found.smoothed_share)?;
+    d.set_item("ranges", if keep_ranges { Some(kept_ranges(py, &found)?) } else { None })?;
+    Ok(d)
+}
+
+/// The ranges of every position, one row each: index of the epoch, and what the range was.
+fn kept_ranges<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, PyDict>> {
+    let rows: Vec<_> = found.ranges.iter().enumerate().flat_map(|(i, used)| used.iter().map(move |u| (i as i64, u))).collect();
+    let d = PyDict::new(py);
+    d.set_item("epoch", rows.iter().map(|(i, _)| *i).collect::<Vec<_>>().into_pyarray(py))?;
+    d.set_item("sv", rows.iter().map(|(_, (satellite, _))| satellite.to_string()).collect::<Vec<_>>())?;
+    let column = |f: fn(&Used) -> f64| rows.iter().map(|(_, (_, used))| f(used)).collect::<Vec<_>>().into_pyarray(py);
+    d.set_item("az_rad", column(|u| u.unit.x.atan2(u.unit.y)))?;
+    d.set_item("el_rad", column(|u| u.unit.z.clamp(-1.0, 1.0).asin()))?;
+    d.set_item("sigma_m", column(|u| 1.0 / u.weight.sqrt()))?;
+    d.set_item("residual_m", column(|u| u.residual.m()))?;
+    d.set_item("shared_1_m", column(|u| u.shared_m.x))?;
+    d.set_item("shared_2_m", column(|u| u.shared_m.y))?;
+    d.set_item("shared_3_m", column(|u| u.shared_m.z))?;
     Ok(d)
 }
 

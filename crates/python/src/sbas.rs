@@ -5,7 +5,7 @@ use crate::sbas_fields::fields;
 use navbound_assess::sbas::{self, Answer, Feed, FromTerms, Mode, Request, Settings, TermsRefused};
 use navbound_core::bound::sbas::model::Airborne;
 use navbound_core::bound::sbas::terms::RangeTerms;
-use navbound_core::frame::{Geodetic, LatLon};
+use navbound_core::frame::{Covariance, Enu, Geodetic, LatLon};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians};
 use navbound_core::signal::sbas::timeout::Use;
 use navbound_core::signal::sbas::{BLOCK_BYTES, Block, Obedience, decode};
@@ -187,6 +187,20 @@ fn sbas_satellites<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, P
     Ok(d)
 }
 
+/// HPL and VPL of covariances (n, 6) as ee, en, nn, eu, nu, uu, by the multipliers of precision approach; NaN where one is not a covariance.
+#[pyfunction]
+fn sbas_covariance_levels<'py>(py: Python<'py>, cov_m2: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyDict>> {
+    let of = |&[ee, en, nn, eu, nu, uu]: &[f64; 6]| {
+        Covariance::<Enu>::from_rows([ee, en, eu, en, nn, nu, eu, nu, uu]).ok().map(|c| sbas::of_covariance(&c))
+    };
+    let levels: Vec<_> = cov_m2.as_slice()?.as_chunks::<6>().0.iter().map(of).collect();
+    let d = PyDict::new(py);
+    for (axis, name) in ["hpl_m", "vpl_m"].into_iter().enumerate() {
+        d.set_item(name, levels.iter().map(|l| l.map_or(f64::NAN, |l| l[axis])).collect::<Vec<_>>().into_pyarray(py))?;
+    }
+    Ok(d)
+}
+
 /// Levels from terms; a row of `terms` holds the 24 numbers of one range in the order of `RangeTerms`.
 #[pyfunction]
 fn sbas_from_terms<'py>(py: Python<'py>, terms: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyDict>> {
@@ -287,5 +301,6 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(sbas_decode, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_levels, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_satellites, m)?)?;
+    m.add_function(wrap_pyfunction!(sbas_covariance_levels, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_from_terms, m)?)
 }

@@ -107,6 +107,19 @@ class HeldRisk(Record):
     verdict: Verdict
 
 
+class HeldLaw(Record):
+    """Share of independent errors of one law beyond the noise bound: what becomes of a stated risk."""
+
+    law: str
+    risk: float
+    """Stated."""
+    stated: float
+    """As computed before."""
+    found: float
+    standard_error: float
+    verdict: Verdict
+
+
 class Claim(Record):
     """One claim of the paper and what became of it."""
 
@@ -137,6 +150,10 @@ class Study(Record):
     faults: list[FaultEntry]
     n_fault_runs: int
     held: list[HeldRisk]
+    """At a stated risk of 1e-3, counted."""
+    held_small: list[HeldRisk]
+    """At 5e-8, the tail given each window."""
+    held_laws: list[HeldLaw]
     words: list[str]
 
     def table(self) -> RenderableType:

@@ -14,6 +14,8 @@ _WEEK_NS = 604_800 * 10**9
 _DAY_NS = 86_400 * 10**9
 _EPOCH = pl.datetime(1980, 1, 6, time_unit="ns")
 
+_OF_LEVELS = ("HPL", "HSI", "VPL", "VSI")
+
 
 def columns() -> list[pl.Expr]:
     """Year to time of week in GPS time; errors estimated minus true, as the field writes them, ours being true minus estimated."""
@@ -48,8 +50,9 @@ def columns() -> list[pl.Expr]:
     ]
 
 
-def write_csv(tables: Iterable[pl.DataFrame], path: Path) -> None:
-    """Write tables that follow each other as one file, one in memory at a time."""
+def write_csv(tables: Iterable[pl.DataFrame], path: Path, experimental: str = "") -> None:
+    """Write tables that follow each other as one file, one in memory at a time; experimental levels are marked in their names."""
+    marked = {name: f"{name} [{experimental}]" for name in _OF_LEVELS} if experimental else {}
     with path.open("wb") as file:
         for index, table in enumerate(tables):
-            table.select(columns()).write_csv(file, include_header=index == 0)
+            table.select(columns()).rename(marked).write_csv(file, include_header=index == 0)

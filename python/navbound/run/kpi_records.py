@@ -154,6 +154,52 @@ class StanfordBins(Record):
     count: list[int]
 
 
+class SubsetFound(Record):
+    """One subset of an epoch's satellites whose safety index is high."""
+
+    time_ns: int
+    satellites: list[str]
+    """Used."""
+    left_out: list[str]
+    hpe_m: float
+    hpl_m: float
+    vpe_m: float
+    vpl_m: float | None
+    """None where the levels' use has no vertical one."""
+    safety_index: float
+    """The larger of both axes."""
+
+
+class Subsets(Record):
+    """Every subset of each epoch's satellites, solved: the counts of the Stanford-ESA diagram and its gravest points."""
+
+    n_epochs: int
+    """Epochs whose satellites together give a position."""
+    n_unsolved: int
+    """Epochs whose satellites do not."""
+    n_cut: int
+    """Epochs with so many satellites that only subsets that leave out a few were looked at."""
+    n_subsets: int
+    n_singular: int
+    """Subsets that determine no position: no points."""
+    n_mi: int
+    """Subsets whose error is beyond their level in either axis."""
+    min_satellites: int
+    """Fewest satellites of a subset."""
+    max_satellites: int
+    """An epoch has at most as many subsets as this many satellites have: 2 to this power."""
+    safety_index_h_max: float
+    safety_index_v_max: float
+    listed_from: float
+    """Safety index from which a subset is listed."""
+    n_listed: int
+    """How many reach it."""
+    listed: list[SubsetFound]
+    """The gravest of them, at most 500."""
+    stanford: dict[str, list[StanfordCounts]]
+    """By level id: subsets in the regions; horizontal first, vertical where the level has a vertical limit."""
+
+
 class KpiSeries(Record):
     """Errors and levels against time: the largest of each bucket of equal duration. NaN never appears: None is "no epoch"."""
 
@@ -240,6 +286,8 @@ class Performance(Record):
     events: list[KpiEvent]
     """Hazards and misleading information first, then losses, longest first; at most 500 of all in events.parquet."""
     days: list[DayResult]
+    subsets: Subsets | None
+    """Where the Stanford-ESA diagram was asked for."""
     experimental: str
     """Words that must stand beside every number of an experimental level; empty for integrity levels."""
     notes: list[str]

@@ -23,12 +23,15 @@ if TYPE_CHECKING:
 
     from navbound.read.epochs import Reading
 
+COVARIANCE = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
+
 SCHEMA = pl.Schema(
     {
         "track": pl.String,
         "time_ns": pl.Int64,
         **dict.fromkeys(("est_lat_rad", "est_lon_rad", "est_h_m"), pl.Float64),
         **dict.fromkeys(("nse_e_m", "nse_n_m", "nse_u_m", "hpe_m", "vpe_m", "hpl_m", "vpl_m"), pl.Float64),
+        **dict.fromkeys(COVARIANCE, pl.Float64),
         "n_sv": pl.Int64,
         **dict.fromkeys(("hdop", "vdop"), pl.Float64),
         **dict.fromkeys(("mode", "status", "reason"), pl.String),
@@ -44,6 +47,13 @@ MIXED = (
     "and misleading information compare two different positions and are not the service's."
 )
 """Stands beside every number of a run on observations and SBAS messages."""
+
+
+OWN = (
+    "No service monitors these satellites: the protection levels are 6.0 and 5.33 standard deviations (the multipliers of SBAS) of the "
+    "position's own covariance, a bound of errors that are as the weights say and of no fault. Experimental, not integrity."
+)
+"""Stands beside every number of a run on observations alone."""
 
 
 @dataclass(frozen=True)
@@ -105,16 +115,15 @@ def sort_out(paths: Sequence[str | Path]) -> Files:
     FormatError
         A file that cannot be read.
     InputError
-        Observations without navigation data or without messages, or navigation data and messages without observations.
+        Observations without navigation data, or navigation data and messages without observations.
     """
     files = Files()
     for path in paths:
         source = load(path)
         kind = getattr(files, _kind(source))
         kind.append(Source(source.path, b"", source.sha256, source.n_bytes))
-    if files.observations and not (files.navigation and files.messages):
-        lacking = "a RINEX navigation file" if not files.navigation else "a log of SBAS messages, from which protection levels follow"
-        raise InputError("files", f"{files.observations[0].path}", domain=f"observations together with {lacking}")
+    if files.observations and not files.navigation:
+        raise InputError("files", f"{files.observations[0].path}", domain="observations together with a RINEX navigation file")
     if not files.observations and (files.navigation or files.messages):
         raise InputError("files", f"{(files.navigation + files.messages)[0].path}", domain="them together with RINEX observations")
     return files
@@ -146,12 +155,18 @@ class Part:
         Fields of `Rejection`.
     notes : list of str
         What a person should know.
+    experimental : str
+        Words that must stand beside levels that no integrity rests on; empty for others.
+    ranges : DataFrame, optional
+        Ranges with their errors, for the Stanford-ESA diagram; columns of :func:`navbound.kpi.stanford_esa`.
     """
 
     epochs: pl.DataFrame
     n_rows: int
     rejected: list[dict[str, Any]]
     notes: list[str]
+    experimental: str = ""
+    ranges: pl.DataFrame | None = None
 
 
 def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None) -> Part:
@@ -176,7 +191,10 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None) -> P
         notes.append(words)
     elif {"truth_lat_rad", "truth_lon_rad", "est_lat_rad", "est_lon_rad"} <= set(epochs.columns) and "nse_e_m" not in epochs.columns:
         epochs = with_error(epochs)
-    return Part(_uniform(epochs), reading.source.n_rows or 0, [r.model_dump() for r in reading.rejected], notes)
+    rejected = [r.model_dump() for r in reading.rejected]
+    # Columns of Error Extraction say in their own name what they are.
+    of_extraction = any(reading.columns.get(name, "").startswith("ee_") for name in ("hpl_m", "vpl_m"))
+    return Part(_uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
 
 
 def _with_truth(epochs: pl.DataFrame, reading: Reading, truth: Truth) -> tuple[pl.DataFrame, str]:
@@ -190,25 +208,53 @@ def _with_truth(epochs: pl.DataFrame, reading: Reading, truth: Truth) -> tuple[p
     return with_error(fixed), f"Truth: the fixed point {truth.given} m, Earth-fixed."
 
 
-def from_observations(path: Path, navigation: Sequence[Path], logs: Sequence[Path], truth: Truth, prn: int | None) -> Part:
-    """Solve a receiver's positions and compute the protection levels of the SBAS service where it was.
+def from_observations(
+    path: Path, navigation: Sequence[Path], logs: Sequence[Path], truth: Truth, *, prn: int | None = None, keep_ranges: bool = False
+) -> Part:
+    """Solve a receiver's positions; their protection levels are those of the SBAS service there, or without messages their own.
 
     Raises
     ------
     FormatError
         A file that cannot be read.
     InputError
-        Messages of several satellites and none chosen, or no message of the time.
+        Messages of several satellites and none chosen, no message of the time, or ranges wanted without truth or with messages.
     """
     observations, records = gnss.read_observations(path), gnss.read_navigation(list(navigation))
     ionosphere: Literal["broadcast", "none"] = "broadcast" if records.has_ionosphere else "none"
-    positions = gnss.solve(observations, records, systems="G", ionosphere=ionosphere, truth_ecef_m=truth.ecef_m)
-    epochs, notes = positions.epochs, [MIXED, *(f"{name}: {words}" for name, words in positions.models.items())]
+    positions = gnss.solve(
+        observations, records, systems="G", ionosphere=ionosphere, truth_ecef_m=truth.ecef_m, keep_ranges=keep_ranges and not logs
+    )
+    epochs, notes = positions.epochs, [f"{name}: {words}" for name, words in positions.models.items()]
     if truth.given is not None and truth.ecef_m is None:
         recorded = read(truth.given)
         epochs, words = join(epochs, recorded, truth.tolerance_s)
         notes.append(words)
-    messages = _messages(logs, epochs["time_ns"], prn)
+    ranges = _range_errors(positions.ranges, epochs) if positions.ranges is not None else None
+    if logs:
+        epochs = _of_service(epochs, navigation, _messages(logs, epochs["time_ns"], prn), truth)
+        return Part(_uniform(epochs), observations.n_epochs, [], [MIXED, *notes] if truth.given is not None else notes)
+    return Part(_uniform(_of_own(epochs)), observations.n_epochs, [], [OWN, *notes], sbas.EXTRACTION_LABEL, ranges)
+
+
+def _of_own(epochs: pl.DataFrame) -> pl.DataFrame:
+    """Levels of the positions' own covariances."""
+    found = sbas.covariance_levels(np.column_stack([epochs[name].fill_null(np.nan).to_numpy() for name in COVARIANCE]))
+    return epochs.with_columns(hpl_m=pl.Series(found[0], nan_to_null=True), vpl_m=pl.Series(found[1], nan_to_null=True))
+
+
+def _range_errors(ranges: pl.DataFrame, epochs: pl.DataFrame) -> pl.DataFrame:
+    """Residuals at the estimated position become errors at the true one: the true range is longer by -u . nse."""
+    if "nse_e_m" not in epochs.columns:
+        raise InputError("stanford_esa", "no truth", domain="it with --truth: a subset's error is that against the true position")
+    joined = ranges.join(epochs.select("time_ns", "nse_e_m", "nse_n_m", "nse_u_m"), on="time_ns", maintain_order="left")
+    east, north = pl.col("el_rad").cos() * pl.col("az_rad").sin(), pl.col("el_rad").cos() * pl.col("az_rad").cos()
+    moved = east * pl.col("nse_e_m") + north * pl.col("nse_n_m") + pl.col("el_rad").sin() * pl.col("nse_u_m")
+    return joined.with_columns(range_error_m=pl.col("residual_m") + moved).drop_nulls("range_error_m")
+
+
+def _of_service(epochs: pl.DataFrame, navigation: Sequence[Path], messages: sbas.Messages, truth: Truth) -> pl.DataFrame:
+    """Levels that the service gives at the receiver's place."""
     place = np.column_stack([epochs[name].fill_null(np.nan).to_numpy() for name in ("est_lat_rad", "est_lon_rad", "est_h_m")])
     if truth.ecef_m is not None:
         place = np.broadcast_to(gnss.geodetic(truth.ecef_m), place.shape)
@@ -221,8 +267,7 @@ def from_observations(path: Path, navigation: Sequence[Path], logs: Sequence[Pat
         lon_rad=place[known, 1],
         h_m=place[known, 2],
     )
-    epochs = _with_levels(epochs, found, known)
-    return Part(_uniform(epochs), observations.n_epochs, [], notes)
+    return _with_levels(epochs, found, known)
 
 
 def _with_levels(epochs: pl.DataFrame, found: sbas.Levels, known: NDArray[np.bool_]) -> pl.DataFrame:

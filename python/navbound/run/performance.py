@@ -9,7 +9,7 @@ import platform
 import sys
 import tempfile
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,12 +18,14 @@ import polars as pl
 
 from navbound import __version__, kpi
 from navbound.errors import FormatError, InputError
+from navbound.read.source import load
 from navbound.run import directory
 from navbound.run.directory import Run
 from navbound.run.field_csv import write_csv
-from navbound.run.levels_of import Part, Truth, from_observations, from_table, sort_out, truth_of
+from navbound.run.levels_of import COVARIANCE, SCHEMA, Part, Truth, from_observations, from_table, sort_out, truth_of
 from navbound.run.performance_words import performance_words
-from navbound.run.records import InputFile, Rejection, RunRecord, Summary, Verdict
+from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
+from navbound.run.summarise import honesty_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -34,6 +36,8 @@ if TYPE_CHECKING:
 
 PARTS = "parts"
 """Folder of the run directory that remembers the finished parts."""
+MOST_HONESTY = 1_000_000
+"""Epochs whose covariances are compared with their errors: eleven days at 1 Hz, 100 MB."""
 CSV = "epochs.csv"
 """The epochs under the field's column names."""
 _OWN = {directory.RECORD, directory.SUMMARY, directory.EPOCHS, directory.EVENTS, directory.REPORT, PARTS, CSV}
@@ -59,6 +63,10 @@ class Options:
         Nominal sampling period. [s]
     exclude_missing : bool
         Absent epochs are not expected.
+    stanford_esa : SubsetOptions, optional
+        Solve every subset of satellites too, for the Stanford-ESA diagram; observations and truth are needed.
+    experimental : str
+        Words that must stand beside levels that no integrity rests on, where the files do not say so themselves.
     """
 
     levels: Sequence[str | kpi.Level]
@@ -68,6 +76,8 @@ class Options:
     prn: int | None = None
     period_s: float | None = None
     exclude_missing: bool = False
+    stanford_esa: kpi.SubsetOptions | None = None
+    experimental: str = ""
 
 
 def evaluate_files(
@@ -110,12 +120,21 @@ def evaluate_files(
     wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
     truth = truth_of(options.truth, options.truth_tolerance_s)
     sources = sort_out(names)
+    if options.stanford_esa is not None and (sources.tables or sources.messages):
+        raise InputError(
+            "stanford_esa",
+            str((sources.tables or sources.messages)[0].path),
+            domain="it with observations and navigation data alone: a table holds no ranges, and ranges are not corrected by SBAS messages",
+        )
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) if out is None else _own(Path(out))
         parts = _parts(sources, options, truth, folder / PARTS, progress)
         campaign, events = _add_all(parts, wanted, options)
         result = campaign.finish(lambda: _tables(parts), events.append)
-        run = _run(result, parts, events, sources=sources, options=options, command=command)
+        if options.stanford_esa is not None:
+            ranges = kpi.stanford_esa(lambda: _range_tables(parts), campaign.levels, options.stanford_esa)
+            result = kpi.with_subsets(result, ranges)
+        run = _run(result, parts, events, inputs=_inputs(sources, truth, parts), options=options, command=command)
         if out is None:
             return Run(run.summary, run.record, pl.concat(_tables(parts)), run.events, [])
         return _write(run, parts, folder)
@@ -143,6 +162,7 @@ class _Stored:
     n_epochs: int
     rejected: list[dict[str, Any]]
     notes: list[str]
+    experimental: str
     source: Source
 
 
@@ -174,15 +194,16 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
             recorded = hashlib.sha256(Path(truth.given).read_bytes()).hexdigest()
         except OSError as e:
             raise FormatError(truth.given, e.strerror or str(e)) from e
-    parts = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn]
-    return json.dumps([*parts, sorted(s.sha256 for s in sources.navigation + sources.messages)])
+    given = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn]
+    beside = sorted(s.sha256 for s in sources.navigation + sources.messages)
+    return json.dumps([given, options.stanford_esa is not None, SCHEMA.names(), beside])
 
 
 def _compute(source: Source, sources: Files, options: Options, truth: Truth) -> Part:
     if source in sources.tables:
         return from_table(source.path, truth, options.columns)
     navigation, logs = ([s.path for s in group] for group in (sources.navigation, sources.messages))
-    return from_observations(source.path, navigation, logs, truth, options.prn)
+    return from_observations(source.path, navigation, logs, truth, prn=options.prn, keep_ranges=options.stanford_esa is not None)
 
 
 def _remember(folder: Path, key: str, source: Source, part: Part) -> _Stored:
@@ -194,8 +215,12 @@ def _remember(folder: Path, key: str, source: Source, part: Part) -> _Stored:
         "n_epochs": part.epochs.height,
         "rejected": part.rejected,
         "notes": part.notes,
+        "experimental": part.experimental,
     }
     try:
+        if part.ranges is not None:
+            part.ranges.write_parquet(partial := _ranges_of(table).with_suffix(".partial"), compression="zstd")
+            partial.replace(_ranges_of(table))
         part.epochs.write_parquet(partial := table.with_suffix(".partial"), compression="zstd")
         partial.replace(table)
         partial = record.with_suffix(".partial")
@@ -216,19 +241,43 @@ def _remembered(folder: Path, key: str, source: Source) -> _Stored | None:
         raise FormatError(record, f"is damaged ({e}); delete it to compute this part again") from e
 
 
+def _ranges_of(table: Path) -> Path:
+    return table.with_suffix(".ranges.parquet")
+
+
 def _tables(parts: list[_Stored]) -> Iterator[pl.DataFrame]:
     """One part in memory at a time."""
-    for part in parts:
-        try:
-            yield pl.read_parquet(part.table)
-        except (OSError, pl.exceptions.PolarsError) as e:
-            raise FormatError(part.table, f"is damaged ({e}); delete it to compute this part again") from e
+    return (_read(part.table) for part in parts)
+
+
+def _range_tables(parts: list[_Stored]) -> Iterator[pl.DataFrame]:
+    """The ranges of one part in memory at a time."""
+    return (_read(_ranges_of(part.table)) for part in parts)
+
+
+def _read(table: Path) -> pl.DataFrame:
+    try:
+        return pl.read_parquet(table)
+    except (OSError, pl.exceptions.PolarsError) as e:
+        raise FormatError(table, f"is damaged ({e}); delete its part to compute it again") from e
+
+
+def _experimental(parts: list[_Stored], options: Options) -> str:
+    """What must stand beside the levels: one experimental part marks the whole."""
+    return next((words for words in (options.experimental, *(part.experimental for part in parts)) if words), "")
 
 
 def _add_all(parts: list[_Stored], levels: Sequence[str | kpi.Level], options: Options) -> tuple[kpi.Campaign, list[pl.DataFrame]]:
     tables = _tables(parts)
     first = next(tables)
-    campaign = kpi.Campaign(levels, first=first, period_s=options.period_s, exclude_missing=options.exclude_missing, title=_title(parts))
+    campaign = kpi.Campaign(
+        levels,
+        first=first,
+        period_s=options.period_s,
+        exclude_missing=options.exclude_missing,
+        title=_title(parts),
+        experimental=_experimental(parts, options),
+    )
     events = [campaign.add(first)]
     events.extend(campaign.add(table) for table in tables)
     return campaign, events
@@ -239,11 +288,19 @@ def _title(parts: list[_Stored]) -> str:
     return ", ".join(names) if len(names) <= 3 else f"{names[0]} and {len(names) - 1} more files"
 
 
-def _run(result: Performance, parts: list[_Stored], events: list[pl.DataFrame], *, sources: Files, options: Options, command: str) -> Run:
+def _inputs(sources: Files, truth: Truth, parts: list[_Stored]) -> list[InputFile]:
+    """Every file that went in, a recorded truth among them."""
+    n_rows = {part.source.path: part.n_rows for part in parts}
+    files = sources.tables + sources.observations + sources.navigation + sources.messages
+    recorded = [load(truth.given)] if truth.given is not None and truth.ecef_m is None else []
+    return [source.record(n_rows.get(source.path)) for source in files + recorded]
+
+
+def _run(
+    result: Performance, parts: list[_Stored], events: list[pl.DataFrame], *, inputs: list[InputFile], options: Options, command: str
+) -> Run:
     notes = list(dict.fromkeys(note for part in parts for note in part.notes))
     result = result.model_copy(update={"notes": [*result.notes, *notes]})
-    everything = sources.tables + sources.observations + sources.navigation + sources.messages
-    n_rows = {part.source.path: part.n_rows for part in parts}
     record = RunRecord(
         navbound_version=__version__,
         command=command,
@@ -251,7 +308,7 @@ def _run(result: Performance, parts: list[_Stored], events: list[pl.DataFrame], 
         kind="analyze",
         scenario=None,
         seed=None,
-        inputs=[InputFile(path=str(s.path), sha256=s.sha256, n_bytes=s.n_bytes, n_rows=n_rows.get(s.path)) for s in everything],
+        inputs=inputs,
         methods=[],
         risk_accuracy=0.05,
         risk_integrity=1e-5,
@@ -263,15 +320,32 @@ def _run(result: Performance, parts: list[_Stored], events: list[pl.DataFrame], 
             "prn": options.prn,
             "period_s": result.period_s,
             "exclude_missing": options.exclude_missing,
+            "stanford_esa": None if options.stanford_esa is None else asdict(options.stanford_esa),
+            "experimental": result.experimental,
         },
         platform=f"Python {platform.python_version()}, {sys.platform} {platform.machine()}",
     )
     joined = pl.concat(events).sort("onset_ns", "level", "kind", maintain_order=True)
     first = next(_tables(parts)).head(1)
-    return Run(_summary(result, parts), record, first, joined, [])
+    honesty, notes = _honesty(parts)
+    return Run(_summary(result.model_copy(update={"notes": [*result.notes, *notes]}), parts, honesty), record, first, joined, [])
 
 
-def _summary(result: Performance, parts: list[_Stored]) -> Summary:
+def _honesty(parts: list[_Stored]) -> tuple[Honesty | None, list[str]]:
+    """Whether the covariances agree with the errors, where the files hold both; of the first epochs, so that memory has a limit."""
+    columns = ["track", "time_ns", "status", "nse_e_m", "nse_n_m", "nse_u_m", *COVARIANCE]
+    held: list[pl.DataFrame] = []
+    for table in _tables(parts):
+        known = table.select(columns).drop_nulls(["nse_e_m", "cov_ee_m2"])
+        held.append(known.with_columns(pl.col("status").fill_null("ok")))
+        if sum(part.height for part in held) > MOST_HONESTY:
+            break
+    together = pl.concat(held)
+    note = f"The covariances were compared with the errors at the first {MOST_HONESTY} epochs." if together.height > MOST_HONESTY else ""
+    return honesty_of(together.head(MOST_HONESTY)), [note] if note else []
+
+
+def _summary(result: Performance, parts: list[_Stored], honesty: Honesty | None) -> Summary:
     names = ", ".join(found.level.id for found in result.levels)
     verdict = Verdict(
         inside=None,
@@ -286,11 +360,15 @@ def _summary(result: Performance, parts: list[_Stored]) -> Summary:
         worst_accuracy=None,
         worst_integrity=None,
         truth_known=result.truth_known,
+        experimental=result.experimental != "",
     )
-    sources = list(dict.fromkeys(f"{found.level.id}: {found.level.source}." for found in result.levels))
+    by_source: dict[str, list[str]] = {}
+    for found in result.levels:
+        by_source.setdefault(found.level.source, []).append(found.level.id)
+    sources = [f"{', '.join(ids)}: {source}." for source, ids in by_source.items()]
     return Summary(
         kind="analyze",
-        title=f"Performance: {result.title}",
+        title=f"{names}: {result.title}",
         verdict=verdict,
         coverage_kind="",
         assumptions=[*result.notes, *sources],
@@ -298,7 +376,7 @@ def _summary(result: Performance, parts: list[_Stored]) -> Summary:
         tracks=[],
         accuracy=[],
         integrity=[],
-        honesty=None,
+        honesty=honesty,
         states=[],
         events=[],
         cross_track=[],
@@ -314,7 +392,7 @@ def _write(run: Run, parts: list[_Stored], out: Path) -> Run:
     epochs = pl.scan_parquet([part.table for part in parts])
     try:
         _whole(out / directory.EPOCHS, lambda path: epochs.sink_parquet(path, compression="zstd", maintain_order=True))
-        _whole(out / CSV, lambda path: write_csv(_tables(parts), path))
+        _whole(out / CSV, lambda path: write_csv(_tables(parts), path, _marked(run)))
         _whole(out / directory.EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
         _whole(out / directory.RECORD, lambda path: path.write_text(run.record.model_dump_json(indent=1), encoding="utf-8"))
         render(run.summary, run.record, run.epochs, run.events.clear(), [], out / directory.REPORT)
@@ -323,6 +401,10 @@ def _write(run: Run, parts: list[_Stored], out: Path) -> Run:
     except OSError as e:
         raise FormatError(out, f"cannot be written: {e.strerror}") from e
     return Run(run.summary, run.record, run.epochs, run.events, [], out)
+
+
+def _marked(run: Run) -> str:
+    return run.summary.performance.experimental if run.summary.performance is not None else ""
 
 
 def _whole(path: Path, write: Callable[[Path], object]) -> None:

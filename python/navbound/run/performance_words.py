@@ -7,34 +7,68 @@ from typing import TYPE_CHECKING
 from navbound.run.words import length, share
 
 if TYPE_CHECKING:
-    from navbound.run.kpi_records import LevelResult, Performance
+    from navbound.run.kpi_records import LevelResult, Performance, Subsets
 
 
 def performance_words(result: Performance) -> list[str]:
-    """Accuracy, then each level: availability, continuity, integrity."""
-    days = result.n_expected * result.period_s / 86_400
-    absent = " absent epochs are not expected" if result.exclude_missing else f" {result.n_missing} absent"
-    words = [
-        f"{result.n_solution} of {result.n_expected} expected epochs have a protection level ({days:.3g} days every {result.period_s:g} s,"
-        f"{absent}, {result.n_no_solution} without a solution)."
-    ]
+    """What was asked: integrity first, then availability, continuity and accuracy."""
+    words = [f"The protection levels are {result.experimental}."] if result.experimental else []
+    words += [_integrity(result), _availability(result), _continuity(result)]
     both = [axis.error_m for axis in result.axes]
     if both[0] is not None:
         vertical = "" if both[1] is None else f", vertical {length(both[1].p95)}"
         words.append(f"Accuracy (95 %): horizontal {length(both[0].p95)}{vertical}.")
-    else:
-        words.append("Without truth neither accuracy nor integrity can be judged.")
-    return words + [_level(found, result) for found in result.levels]
+    if result.subsets is not None:
+        words.append(_subsets(result.subsets))
+    return words
 
 
-def _level(found: LevelResult, result: Performance) -> str:
-    said = f"{found.level.id}: available {share(found.availability_expected)} of the epochs expected"
-    said += f" ({share(found.availability_low)} to {share(found.availability_high)}, {found.n_effective:.0f} effective epochs)"
-    if found.continuity_risk is None:
-        return said + "; never available, so continuity has no value."
-    meaning = "" if found.window_meaningful else " (not meaningful at this sampling period)"
-    said += f", {found.n_continuity_events} discontinuities, continuity risk {found.continuity_risk:.2g} in {found.window_s:g} s{meaning}"
-    if result.truth_known:
-        over = f", {found.n_hazard_over_tta} longer than {found.level.tta_s:g} s" if found.n_hazard_events else ""
-        said += f"; hazards {found.n_hazard_events}{over}; misleading information at {found.n_mi_epochs} available epochs"
-    return said + "."
+def _integrity(result: Performance) -> str:
+    if not result.truth_known:
+        return "Without truth neither integrity nor accuracy can be judged."
+    hazards = [
+        f"{found.level.id} at {found.n_hazard_epochs} epochs ({found.n_hazard_over_tta} of {found.n_hazard_events} runs longer than "
+        f"{found.level.tta_s:g} s)"
+        for found in result.levels
+        if found.n_hazard_epochs
+    ]
+    if hazards:
+        return f"Hazardously misleading information: {', '.join(hazards)}."
+    error = result.axes[0].error_m
+    compared = f"of {0 if error is None else error.n} epochs with a protection level and a true error"
+    if result.n_mi_epochs:
+        return f"No hazard, but misleading information at {result.n_mi_epochs} {compared}."
+    return f"No misleading information at any {compared}."
+
+
+def _availability(result: Performance) -> str:
+    hours = result.n_expected * result.period_s / 3600
+    span = f"{hours:.3g} h" if hours < 48 else f"{hours / 24:.4g} days"
+    absent = "absent epochs are not expected" if result.exclude_missing else f"{result.n_missing} absent"
+    each = [
+        f"{found.level.id} {share(found.availability_expected)} ({share(found.availability_low)} to {share(found.availability_high)}, "
+        f"as from {found.n_effective:.0f} independent epochs)"
+        for found in result.levels
+    ]
+    return (
+        f"Available, of {result.n_expected} expected epochs ({span}, one every {result.period_s:g} s; {absent}, {result.n_no_solution} "
+        f"without a level): {', '.join(each)}."
+    )
+
+
+def _continuity(result: Performance) -> str:
+    def one(found: LevelResult) -> str:
+        if found.continuity_risk is None:
+            return f"{found.level.id} never available"
+        losses = f"{found.level.id} {found.n_continuity_events} {'loss' if found.n_continuity_events == 1 else 'losses'}"
+        return f"{losses}, risk {found.continuity_risk:.2g}" if found.window_meaningful else losses
+
+    first = result.levels[0]
+    head = f"Continuity in {first.window_s:g} s" if first.window_meaningful else "Continuity (no risk can be told at this sampling period)"
+    return f"{head}: {', '.join(one(found) for found in result.levels)}."
+
+
+def _subsets(found: Subsets) -> str:
+    largest = max(found.safety_index_h_max, found.safety_index_v_max)
+    misleading = {0: "none is misleading", 1: "one is misleading"}.get(found.n_mi, f"{found.n_mi} are misleading")
+    return f"Of {found.n_subsets} satellite subsets {misleading}; the largest safety index is {largest:.3g}."

@@ -17,6 +17,7 @@ from navbound.errors import InputError
 from navbound.run.error_extraction_day import WINDOW, Day, correlations, find, load, recorded_bias, stage
 from navbound.run.error_extraction_faults import SIGMA_VELOCITY_MPS, held_risks, inject, overshoot_m
 from navbound.run.error_extraction_records import Availability, Cause, Claim, Correlation, FaultEntry, Stage, Study
+from navbound.run.error_extraction_risks import held_laws, held_small
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -121,6 +122,8 @@ def run(files: Sequence[str | Path] = (), *, seed: int = 2012, velocity_runs: in
         faults=faults,
         n_fault_runs=fault_runs,
         held=held_risks(seed=seed),
+        held_small=held_small(seed=seed),
+        held_laws=held_laws(seed=seed),
         words=_words(computed, split, velocity_runs),
     )
 

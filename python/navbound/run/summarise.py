@@ -79,7 +79,7 @@ def summarise(
         tracks=_tracks(margins, material.labels, events),
         accuracy=accuracy,
         integrity=[_method_result(epochs, i, risk_integrity, coverage_kind, integrity=True) for i in ids],
-        honesty=_honesty(epochs),
+        honesty=honesty_of(epochs),
         states=states,
         events=[EventSummary(**row) for row in events.head(LISTED_EVENTS).iter_rows(named=True)],
         cross_track=material.cross_track,
@@ -233,7 +233,7 @@ def _method_result(epochs: pl.DataFrame, method_id: str, risk: float, coverage_k
     return MethodResult.model_validate(described | scored)
 
 
-def _honesty(epochs: pl.DataFrame) -> Honesty | None:
+def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
     """NEES and PIT in three dimensions where the vertical is known, otherwise in two."""
     vertical = {"nse_u_m", "cov_uu_m2"} <= set(epochs.columns)
     errors = ("nse_e_m", "nse_n_m", "nse_u_m") if vertical else ("nse_e_m", "nse_n_m")
@@ -264,5 +264,5 @@ def _honesty(epochs: pl.DataFrame) -> Honesty | None:
         pit_counts=pit.counts,
         pit_low=pit.low,
         pit_high=pit.high,
-        words=honesty_words(nees),
+        words=honesty_words(nees, pit),
     )

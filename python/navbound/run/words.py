@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
-    from navbound.evaluation import Nees
+    from navbound.evaluation import Nees, Pit
     from navbound.run.records import MethodResult, Verdict, Worst
 
 METRES_PER_NM = 1852.0
@@ -79,7 +79,7 @@ def _worst(worst: Worst) -> str:
     )
 
 
-def honesty_words(nees: Nees) -> str:
+def honesty_words(nees: Nees, pit: Pit) -> str:
     """Whether the covariance may be believed, with the factor by which it is off, and on how much evidence."""
     found = (
         f"NEES {nees.nees_mean:.3g}, {nees.dimension} for an honest covariance, "
@@ -90,4 +90,12 @@ def honesty_words(nees: Nees) -> str:
         return f"{found}: the covariance claims too little; the errors are {factor:.2g} times larger than it says."
     if nees.nees_mean < nees.nees_low:
         return f"{found}: the covariance claims too much; the errors are {factor:.2g} times what it says."
-    return f"{found}: these data give no reason to doubt the covariance."
+    n_outside = sum(not pit.low <= count <= pit.high for count in pit.counts)
+    if n_outside == 0:
+        return f"{found}: these data give no reason to doubt the covariance."
+    largest = max(pit.counts) * len(pit.counts) / sum(pit.counts)
+    return (
+        f"{found}: no reason to doubt the size of the covariance. But {n_outside} of the {len(pit.counts)} bins of the histogram "
+        f"{'is' if n_outside == 1 else 'are'} outside the band (one in twenty is by chance), and the fullest holds {largest:.2g} times its "
+        "share: errors are not spread as one Gaussian."
+    )

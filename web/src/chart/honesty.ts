@@ -10,6 +10,8 @@ const LEFT = 40;
 const BOTTOM = 24;
 
 export function honesty(host: HTMLElement, summary: Summary): void {
+    // A table of errors and protection levels claims no covariance.
+    if (summary.honesty === null && summary.accuracy.length === 0 && summary.performance?.truth_known === true) return;
     const section = el("section", { class: "honesty", id: "honesty" }, el("h2", {}, "May the covariance be believed?"));
     host.append(section);
     if (summary.honesty === null) {

@@ -22,12 +22,14 @@ export function protection(host: HTMLElement, scene: Scene, performance: Perform
     const { name, error, level, limit } = NAMES[axis];
     const [high, low, errors] = [table.column(`${axis}pl_max_m`)!, table.column(`${axis}pl_min_m`)!, table.column(`${axis}pe_max_m`)!];
     const mark = performance.experimental === "" ? "" : `, ${performance.experimental}`;
-    const short = mark === "" ? "" : " (experimental)";
+    // The full words stand at the title and in the line of values; the end of a line has room for one.
+    const short = mark === "" ? "" : " experimental";
+    const [most, least] = mark === "" ? [`${level}, largest`, `${level}, smallest`] : [`${level} max,`, `${level} min,`];
     const one = performance.series.width_ns <= 1.5e9 * performance.period_s;
     const lines: Line[] = [];
     if (performance.truth_known) lines.push({ key: `${axis}pe_max_m`, label: one ? error : `${error}, largest`, values: errors, colour: "ink", width: 1, front: 2, about: `${name} position error against truth` });
-    lines.push({ key: `${axis}pl_max_m`, label: `${one ? level : `${level}, largest`}${mark}`, endLabel: `${one ? level : `${level}, largest`}${short}`, values: high, colour: "m1", width: 1.3, front: 1, about: `${name} protection level${mark}`, ...(one ? {} : { downTo: `${axis}pl_min_m` }) });
-    if (!one) lines.push({ key: `${axis}pl_min_m`, label: `${level}, smallest${mark}`, endLabel: `${level}, smallest${short}`, values: low, colour: "m1", width: 0.8, dash: [3, 3], front: 1, about: `${name} protection level${mark}` });
+    lines.push({ key: `${axis}pl_max_m`, label: `${one ? level : `${level}, largest`}${mark}`, endLabel: `${one ? level : most}${short}`, values: high, colour: "m1", width: 1.3, front: 1, about: `${name} protection level${mark}`, ...(one ? {} : { downTo: `${axis}pl_min_m` }) });
+    if (!one) lines.push({ key: `${axis}pl_min_m`, label: `${level}, smallest${mark}`, endLabel: `${least}${short}`, values: low, colour: "m1", width: 0.8, dash: [3, 3], front: 1, about: `${name} protection level${mark}` });
     const limits = new Map<number, string[]>();
     for (const { level: l } of performance.levels) {
         const value = axis === "h" ? l.hal_m : l.val_m;
@@ -68,6 +70,11 @@ const LEAST = 0.3;
 /** One row a level: what was not available, and why. */
 export function causes(host: HTMLElement, scene: Scene, performance: Performance): () => void {
     const ids = performance.levels.map((l) => l.level.id);
+    if (Object.values(performance.series.cause).every((causes) => causes.every((c) => c === ""))) {
+        const said = el("p", { class: "note", id: "causes" }, "Every level was available at every expected epoch.");
+        host.append(said);
+        return () => said.remove();
+    }
     const lines: Line[] = ids.map((id) => ({ key: unavailableOf(id), label: id, values: scene.table.column(unavailableOf(id))!, colour: "caution", quiet: true, about: `Share of the expected epochs at which ${id} was not available` }));
     const draw = (u: uPlot): void => ribbons(u, scene, ids);
     const one = performance.series.width_ns <= 1.5e9 * performance.period_s;
@@ -83,7 +90,7 @@ export function causes(host: HTMLElement, scene: Scene, performance: Performance
 function legend(performance: Performance): HTMLElement {
     const present = new Set(Object.values(performance.series.cause).flat().filter((c) => c !== ""));
     const entry = (cause: string): HTMLElement => el("span", { class: "key" }, svg("svg", { width: 14, height: 10, "aria-hidden": "true" }, svg("rect", { width: 14, height: 10, fill: `var(--${(CAUSES[cause] ?? CAUSES["no epoch"]!).hue})` })), causeWords(cause));
-    return el("p", { class: "map-legend note", id: "cause-legend" }, ...(present.size === 0 ? ["Every level was available at every expected epoch."] : [...present].sort().map(entry)));
+    return el("p", { class: "map-legend note", id: "cause-legend" }, ...[...present].sort().map(entry));
 }
 
 function ribbons(u: uPlot, scene: Scene, ids: string[]): void {

@@ -30,7 +30,7 @@ export interface StanfordOptions {
     bins: StanfordBins;
     level: Level;
     limit_m: number;
-    /** Absent for the variant of all subsets: its points are not epochs. */
+    /** Points in the regions of the level; absent where the record does not count them. */
     counts: StanfordCounts | null;
     /** Words that must stand on every axis of an experimental level; empty for integrity levels. */
     experimental: string;
@@ -46,8 +46,8 @@ export function stanford(host: HTMLElement, options: StanfordOptions): () => voi
     const esa = bins.variant === "stanford-esa";
     const note = el("figcaption", {}, esa ? `${count(bins.n)} satellite subsets. One point for every subset, not for every epoch: a good geometry hides nothing.` : `${count(bins.n)} epochs with a solution and a true error.`);
     const figure = el("figure", { class: "chart stanford", id: `stanford-${bins.axis}${esa ? "-esa" : ""}`, role: "group", "aria-labelledby": title },
-        el("h4", { id: title }, `${axis.name}, ${level.id}${esa ? ", every satellite subset (Stanford-ESA)" : ""}`, options.experimental === "" ? null : el("span", { class: "tag" }, options.experimental)), note,
-        el("div", { class: "stanford-box" }, canvas, overlay(options, frame)), ramp(bins, frame), edgeWords(frame, axis.limit, counts), counts === null ? null : regionTable(counts, axis.name));
+        el("h4", { id: title }, `${axis.name}, ${level.id}${esa ? ", satellite subsets" : ""}`, options.experimental === "" ? null : el("span", { class: "tag" }, options.experimental)), note,
+        el("div", { class: "stanford-box" }, canvas, overlay(options, frame)), ramp(bins, frame), edgeWords(frame, axis.limit, counts), counts === null ? null : regionTable(counts, axis.name, esa ? "Subsets" : "Epochs"));
     host.append(figure);
     const draw = (): void => paint(canvas, bins, frame);
     const resize = new ResizeObserver(draw);
@@ -186,8 +186,8 @@ function ramp(bins: StanfordBins, frame: Frame): HTMLElement {
         el("span", { class: "key" }, el("i", { class: "key-mi" }), "misleading"), " ", el("span", { class: "key" }, el("i", { class: "key-hmi" }), "hazardous, never smaller than this"));
 }
 
-function regionTable(c: StanfordCounts, name: string): HTMLElement {
+function regionTable(c: StanfordCounts, name: string, unit: string): HTMLElement {
     const rows = REGIONS.map((r) => el("tr", {}, el("th", { scope: "row" }, r.words), valueOf(`n_${r.id}`, r.count(c), count(r.count(c)), "td"), el("td", {}, c.n > 0 ? share(r.count(c) / c.n) : NONE)));
     return el("details", { class: "numbers" }, el("summary", {}, "Numbers", el("span", { class: "sr" }, ` of the Stanford diagram, ${name.toLowerCase()}`)),
-        el("div", { class: "scroll" }, el("table", {}, el("caption", { class: "sr" }, `Regions of the Stanford diagram, ${name.toLowerCase()}`), el("thead", {}, el("tr", {}, ...["Region", "Epochs", "Share"].map((h) => el("th", { scope: "col" }, h)))), el("tbody", {}, ...rows))));
+        el("div", { class: "scroll" }, el("table", {}, el("caption", { class: "sr" }, `Regions of the Stanford diagram, ${name.toLowerCase()}`), el("thead", {}, el("tr", {}, ...["Region", unit, "Share"].map((h) => el("th", { scope: "col" }, h)))), el("tbody", {}, ...rows))));
 }

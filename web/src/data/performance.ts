@@ -95,6 +95,34 @@ export interface StanfordBins {
     count: number[];
 }
 
+export interface SubsetFound {
+    time_ns: number;
+    satellites: string[];
+    left_out: string[];
+    hpe_m: number;
+    hpl_m: number;
+    vpe_m: number;
+    vpl_m: number | null;
+    safety_index: number;
+}
+
+export interface Subsets {
+    n_epochs: number;
+    n_unsolved: number;
+    n_cut: number;
+    n_subsets: number;
+    n_singular: number;
+    n_mi: number;
+    min_satellites: number;
+    max_satellites: number;
+    safety_index_h_max: number;
+    safety_index_v_max: number;
+    listed_from: number;
+    n_listed: number;
+    listed: SubsetFound[];
+    stanford: Record<string, StanfordCounts[]>;
+}
+
 export interface KpiSeries {
     width_ns: number;
     start_ns: number[];
@@ -157,6 +185,7 @@ export interface Performance {
     n_events: Record<string, number>;
     events: KpiEvent[];
     days: DayResult[];
+    subsets: Subsets | null;
     experimental: string;
     notes: string[];
 }

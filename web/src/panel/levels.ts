@@ -41,6 +41,17 @@ function accuracyRow(axis: "h" | "v", performance: Performance): Row {
     };
 }
 
+/** A share of what was counted: none is none. */
+export function counted(value: number | null): string {
+    return value === 0 ? "0" : risk(value);
+}
+
+/** Events for each 100 000 epochs, to three digits. */
+function rate(value: number | null): string {
+    if (value === null || value === 0) return value === null ? NONE : "0";
+    return plain(value, Math.max(0, 2 - Math.floor(Math.log10(value))));
+}
+
 function rows(performance: Performance): Row[] {
     const limit = (value: number | null): string => (value === null ? "none" : wholeMetres(value));
     const window = performance.levels[0]?.window_s ?? NaN;
@@ -52,12 +63,12 @@ function rows(performance: Performance): Row[] {
         {
             head: `Risk of a loss within ${duration(window)}`, group: "Continuity",
             cell: (r) => ({
-                key: "continuity_risk", value: r.continuity_risk, text: r.window_meaningful ? risk(r.continuity_risk) : "not meaningful",
+                key: "continuity_risk", value: r.continuity_risk, text: r.window_meaningful ? counted(r.continuity_risk) : "not meaningful",
                 more: r.window_meaningful ? asked(r.level.continuity_risk, r.level, "continuity_risk", (v) => `${risk(v)} per ${r.level.continuity_per ?? "window"}`) : `epochs are further apart than ${duration(r.window_s)}`,
             }),
         },
-        { head: "Losses", cell: (r) => ({ key: "n_continuity_events", value: r.n_continuity_events, text: count(r.n_continuity_events), more: r.events_per_1e5 === null ? "" : `in 100 000 epochs: ${plain(r.events_per_1e5, 2)}, 95 %: ${plain(r.events_per_1e5_low ?? NaN, 2)} to ${plain(r.events_per_1e5_high ?? NaN, 2)}` }) },
-        { head: "Maritime risk, 900 s", cell: (r) => ({ key: "continuity_risk_maritime", value: r.continuity_risk_maritime, text: risk(r.continuity_risk_maritime) }) },
+        { head: "Losses", cell: (r) => ({ key: "n_continuity_events", value: r.n_continuity_events, text: count(r.n_continuity_events), more: r.events_per_1e5 === null ? "" : `in 100 000 epochs: ${rate(r.events_per_1e5)}, 95 %: ${rate(r.events_per_1e5_low)} to ${rate(r.events_per_1e5_high)}` }) },
+        { head: "Losses to expect in 900 s (maritime)", cell: (r) => ({ key: "continuity_risk_maritime", value: r.continuity_risk_maritime, text: counted(r.continuity_risk_maritime) }) },
     ];
     return performance.truth_known ? [...list, ...integrityRows()] : [...list, { head: "Hazardous or misleading epochs", group: "Integrity", cell: () => ({ key: "integrity", value: null, text: "unknown", more: "no truth" }) }];
 }

@@ -13,8 +13,11 @@ import { Store } from "../data/store.ts";
 import type { Table } from "../data/table.ts";
 import { button, choice, el, setValue, valueOf } from "../show/dom.ts";
 import { clock, count, date, duration, metres, NONE, share } from "../show/format.ts";
+import { headline } from "./kpi-headline.ts";
+import { asked } from "./kpi-verdict.ts";
 import { levelTable, spreadTable } from "./levels.ts";
 import { liveTable, sortable, type Column } from "./sortable.ts";
+import { subsetTable } from "./subsets.ts";
 
 /** Returns its cursor, for others to follow; null where the run has no performance record. */
 export function performance(host: HTMLElement, payload: Payload, theme: Store<number>): Cursor | null {
@@ -47,8 +50,10 @@ class Section {
         this.chosen = worstLevel(record);
         this.variant = record.stanford[0]?.variant ?? "stanford";
         const events = eventTable(record, payload, (e) => this.goTo(e));
-        host.append(el("section", { id: "performance" }, el("h2", {}, `Performance: ${record.title}`), headline(record), scope(record, payload), levelTable(record),
-            spreadTable("spread", "Errors and protection levels over the epochs with a solution", record.axes, payload, record.experimental), this.choices(), this.timeline(), this.charts, events, days(record, payload), ...record.notes.map((n) => el("p", { class: "note" }, n))));
+        // Where nothing else was asked, the verdict above has said what this section would begin with.
+        const alone = asked(payload) !== null;
+        host.append(el("section", { id: "performance" }, el("h2", {}, alone ? "Indicators" : `Performance: ${record.title}`), !alone && record.experimental !== "" ? el("p", {}, el("span", { class: "tag" }, record.experimental)) : null, alone ? null : headline(record), scope(record, payload), levelTable(record),
+            spreadTable("spread", "Errors and protection levels over the epochs with a solution", record.axes, payload, record.experimental), this.choices(), this.timeline(), this.charts, subsetTable(record, payload), events, days(record, payload), ...(alone ? [] : record.notes.map((n) => el("p", { class: "note" }, n)))));
         this.at.cursor.set(Math.floor(this.table.n / 2));
         this.draw();
     }
@@ -104,7 +109,7 @@ class Section {
         this.ends = [
             ...bins.map((b) => stanford(pair, {
                 bins: b, level: chosen.level, limit_m: b.axis === "h" ? chosen.level.hal_m : chosen.level.val_m!, experimental: record.experimental, theme: this.theme,
-                counts: b.variant === "stanford" ? chosen.stanford.find((c) => c.axis === b.axis) ?? null : null,
+                counts: (b.variant === "stanford" ? chosen.stanford : record.subsets?.stanford[chosen.level.id])?.find((c) => c.axis === b.axis) ?? null,
             })),
             protection(this.charts, now, record, chosen, "h"), protection(this.charts, now, record, chosen, "v"), causes(this.charts, now, record),
         ];
@@ -136,23 +141,10 @@ function worstLevel(record: Performance): LevelResult {
     return [...record.levels].sort((a, b) => b.n_hazard_epochs - a.n_hazard_epochs || b.n_mi_epochs - a.n_mi_epochs || area(a) - area(b))[0]!;
 }
 
-/** Integrity before everything else. */
-function headline(record: Performance): HTMLElement {
-    const hazards = record.levels.filter((r) => r.n_hazard_epochs > 0);
-    const tone = !record.truth_known ? "unknown" : hazards.length > 0 ? "warning" : record.n_mi_epochs > 0 ? "caution" : "inside";
-    const list = hazards.map((r) => `${r.level.id}: ${count(r.n_hazard_epochs)} epochs, ${count(r.n_hazard_over_tta)} of ${count(r.n_hazard_events)} runs longer than the time to alert`).join("; ");
-    const words = !record.truth_known ? "Integrity unknown: no truth to compare with." : hazards.length > 0 ? `■ Hazardously misleading information. ${list}.`
-        : record.n_mi_epochs > 0 ? `▲ No hazard, but ${count(record.n_mi_epochs)} epochs of misleading information.` : `No misleading information in ${count(record.n_solution)} epochs with a solution.`;
-    const said = el("p", { class: "performance-words", "data-tone": tone }, words);
-    said.dataset.key = "n_mi_epochs";
-    said.dataset.value = String(record.n_mi_epochs);
-    return el("div", {}, record.experimental === "" ? null : el("p", {}, el("span", { class: "tag" }, record.experimental)), said);
-}
-
 function scope(record: Performance, payload: Payload): HTMLElement {
     const when = (ns: number): string => `${date(utcOf(ns, payload))} ${clock(utcOf(ns, payload))}`;
     const part = (key: "n_expected" | "n_solution" | "n_missing" | "n_no_solution" | "n_repeated", words: string): (HTMLElement | string)[] => [valueOf(key, record[key], count(record[key])), words];
-    return el("p", { class: "note" }, `${when(record.first_ns)} to ${when(record.last_ns)} UTC, an epoch each ${duration(record.period_s)}. `, ...part("n_expected", " epochs expected, "), ...part("n_solution", " with a solution, "),
+    return el("p", { class: "note" }, `${when(record.first_ns)} to ${when(record.last_ns)} UTC, an epoch every ${duration(record.period_s)}. `, ...part("n_expected", " epochs expected, "), ...part("n_solution", " with a solution, "),
         ...part("n_no_solution", " without, "), ...part("n_missing", record.exclude_missing ? " missing and left out of the grid" : " missing and counted as not available"), ...(record.n_repeated > 0 ? [", ", ...part("n_repeated", " repeated and not used")] : []), ".");
 }
 

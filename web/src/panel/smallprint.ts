@@ -12,10 +12,11 @@ export function smallPrint(payload: Payload): HTMLElement {
     return el("section", { class: "small-print", id: "run" }, el("h2", {}, "Run record"),
         el("dl", {},
             ...entry("navbound", record.navbound_version), ...entry("Command", record.command), ...entry("Created", record.created_utc), ...entry("Seed", record.seed === null ? "none" : String(record.seed)),
-            ...entry("Risks", `accuracy ${risk(record.risk_accuracy)}, integrity ${risk(record.risk_integrity)}`), ...entry("Methods", record.methods.join(", ")), ...entry("Platform", record.platform),
+            // Without a method no bound was made at any risk, and no map drawn.
+            ...(record.methods.length === 0 ? [] : [...entry("Risks", `accuracy ${risk(record.risk_accuracy)}, integrity ${risk(record.risk_integrity)}`), ...entry("Methods", record.methods.join(", "))]), ...entry("Platform", record.platform),
             ...entry("Time", `UTC is GPS time minus ${payload.utc_offset_s} s`),
             ...entry("Resolution", resolution(payload)),
-            ...entry("Coastline", "Natural Earth 1:50m, public domain; not for navigation")),
+            ...(record.methods.length === 0 ? [] : entry("Coastline", "Natural Earth 1:50m, public domain; not for navigation"))),
         record.inputs.length > 0 ? el("div", {}, el("h3", {}, "Inputs"), el("ul", {}, ...inputs)) : null,
         json("Settings", record.settings), record.scenario === null ? null : json("Scenario", record.scenario));
 }

@@ -4,6 +4,7 @@ import type { Payload, Verdict, Worst } from "../data/records.ts";
 import { utcOf } from "../data/events.ts";
 import { about } from "../chart/methods.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
+import { asked, kpiVerdict } from "./kpi-verdict.ts";
 import { clock, count, date, level, nauticalMiles, place, share, signedMetres } from "../show/format.ts";
 
 const STATES = {
@@ -15,6 +16,11 @@ const STATES = {
 
 export function verdict(host: HTMLElement, payload: Payload): void {
     const { summary } = payload;
+    const record = asked(payload);
+    if (record !== null) {
+        kpiVerdict(host, payload, record);
+        return;
+    }
     const v = summary.verdict;
     const state = stateOf(v);
     // Red is for integrity alone: an accuracy limit passed is a caution.

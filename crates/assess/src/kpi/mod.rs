@@ -12,6 +12,7 @@ mod select;
 mod series;
 mod spread;
 mod stanford;
+pub mod subsets;
 mod tally;
 
 pub use campaign::{Campaign, Event, Kind, Outcome, Totals};

@@ -1,6 +1,7 @@
 //! The Stanford diagram: exact counts in its regions, and the histogram that is drawn.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// Epochs of one axis in the five regions of a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -53,7 +54,24 @@ impl Regions {
 /// Points by bin of error and of level; only bins that hold any.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Histogram {
-    counts: HashMap<(u32, u32), u64>,
+    counts: HashMap<(u32, u32), u64, BuildHasherDefault<BinHasher>>,
+}
+
+/// Two bins to a word, mixed by a multiplication: bins come from measurements, not from an adversary, and there are many millions.
+#[derive(Debug, Clone, Copy, Default)]
+struct BinHasher(u64);
+
+impl Hasher for BinHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|b| self.write_u32(u32::from(*b)));
+    }
+    fn write_u32(&mut self, bin: u32) {
+        // 2^64 over the golden ratio, odd: Knuth's multiplicative hashing.
+        self.0 = (self.0.rotate_left(32) ^ u64::from(bin)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+    fn finish(&self) -> u64 {
+        self.0
+    }
 }
 
 impl Histogram {

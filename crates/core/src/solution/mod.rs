@@ -5,6 +5,7 @@ mod epoch;
 pub mod extraction;
 pub mod point;
 mod range_error;
+pub mod subsets;
 mod surroundings;
 pub mod wls;
 

@@ -99,6 +99,21 @@ pub struct Fix {
     pub consistent: bool,
 }
 
+/// A range of a solution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Used {
+    /// Its place among the epoch's ranges.
+    pub index: usize,
+    /// Unit vector from the receiver to the satellite, east-north-up.
+    pub unit: Vector3<f64>,
+    /// 1 / sigma² by the error model \[1/m²\].
+    pub weight: f64,
+    /// Measured less computed range at the position found; what the receiver's clock makes of it is in it.
+    pub residual: Metres,
+    /// Standard deviations here of the errors that all ranges share: of the ionosphere's size, of its tilt east and north \[m\].
+    pub shared_m: Vector3<f64>,
+}
+
 /// Where a range stands, seen from the last position.
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
@@ -133,6 +148,35 @@ pub fn solve(ranges: &[Range], time: GpsTime, settings: &Settings) -> Result<Fix
 /// # Errors
 /// As [`solve`].
 pub fn solve_near(ranges: &[Range], time: GpsTime, settings: &Settings, near: Option<&EcefPosition>) -> Result<Fix, Unavailable> {
+    settled(ranges, time, settings, near, |epoch| epoch.fix())?
+}
+
+/// The same, and each range of the solution is told.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_telling(
+    ranges: &[Range],
+    time: GpsTime,
+    settings: &Settings,
+    near: Option<&EcefPosition>,
+    tell: impl FnMut(Used),
+) -> Result<Fix, Unavailable> {
+    settled(ranges, time, settings, near, |epoch| {
+        let fix = epoch.fix()?;
+        epoch.used().for_each(tell);
+        Ok(fix)
+    })?
+}
+
+/// What `then` makes of the epoch once its position stands still.
+fn settled<T>(
+    ranges: &[Range],
+    time: GpsTime,
+    settings: &Settings,
+    near: Option<&EcefPosition>,
+    then: impl FnOnce(&Solver<'_>) -> T,
+) -> Result<T, Unavailable> {
     if ranges.len() > MOST_RANGES {
         let (value, unit, domain) = (ranges.len() as f64, "1", "[0, 96]");
         return Err(Unavailable::Invalid { field: "ranges", value, unit, domain });
@@ -142,7 +186,7 @@ pub fn solve_near(ranges: &[Range], time: GpsTime, settings: &Settings, near: Op
     if let Some(near) = near {
         let mut epoch = Solver::new(ranges, seen, time, settings, *near.vector());
         if epoch.settle(false) == Ok(true) && epoch.judge().consistent {
-            return epoch.fix();
+            return Ok(then(&epoch));
         }
         seen.fill(Seen::default());
     }
@@ -150,7 +194,7 @@ pub fn solve_near(ranges: &[Range], time: GpsTime, settings: &Settings, near: Op
     epoch.settle(true)?;
     epoch.settle(false)?;
     epoch.exclude()?;
-    epoch.fix()
+    Ok(then(&epoch))
 }
 
 const CLOCKS: usize = Constellation::ALL.len();
@@ -359,13 +403,27 @@ impl<'a> Solver<'a> {
     /// Covariance of what the ionosphere's error has in common: a factor of all modelled delays, and a tilt from horizon to horizon in
     /// two directions; each is what such range errors do to the position. `inverse` is that of the normal equation.
     fn shared(&self, inverse: &Matrix3<f64>) -> Matrix3<f64> {
+        let used = self.seen.iter().filter(|s| s.counts());
+        let moved = inverse * self.normal.sides(used.map(|s| (s.row, self.shape(s))));
+        moved * moved.transpose()
+    }
+
+    /// The shared errors' sizes in a range: the same over the whole sky, or growing eastwards, or northwards.
+    fn shape(&self, s: &Seen) -> Vector3<f64> {
         let errors = &self.settings.errors;
         let (common, tilt) = (errors.ionosphere_common_share, errors.ionosphere_gradient_share);
-        // Shape of the error over the sky: the same everywhere, or growing eastwards, or northwards.
-        let shapes = |s: &Seen| s.ionosphere * Vector3::new(common, tilt * s.row.unit.x, tilt * s.row.unit.y);
-        let used = self.seen.iter().filter(|s| s.counts());
-        let moved = inverse * self.normal.sides(used.map(|s| (s.row, shapes(s))));
-        moved * moved.transpose()
+        s.ionosphere * Vector3::new(common, tilt * s.row.unit.x, tilt * s.row.unit.y)
+    }
+
+    fn used(&self) -> impl Iterator<Item = Used> + '_ {
+        let of = |(index, s): (usize, &Seen)| Used {
+            index,
+            unit: s.row.unit,
+            weight: s.weight,
+            residual: Metres::new(s.row.residual),
+            shared_m: self.shape(s),
+        };
+        self.seen.iter().enumerate().filter(|(_, s)| s.counts()).map(of)
     }
 
     /// Velocity from Doppler: the same directions, one clock rate for all, weights of the ranges; robust.

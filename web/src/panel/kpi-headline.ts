@@ -1,0 +1,28 @@
+// Integrity in one sentence, before everything else that a performance record says.
+
+import type { Performance } from "../data/performance.ts";
+import { el } from "../show/dom.ts";
+import { count } from "../show/format.ts";
+
+/** Red for a hazard, amber for misleading information, grey where truth is unknown. */
+export function toneOf(record: Performance): "unknown" | "warning" | "caution" | "inside" {
+    if (!record.truth_known) return "unknown";
+    if (record.levels.some((r) => r.n_hazard_epochs > 0)) return "warning";
+    return record.n_mi_epochs > 0 ? "caution" : "inside";
+}
+
+export function headline(record: Performance): HTMLElement {
+    const tone = toneOf(record);
+    const hazards = record.levels.filter((r) => r.n_hazard_epochs > 0);
+    const list = hazards.map((r) => `${r.level.id}: ${count(r.n_hazard_epochs)} epochs, ${count(r.n_hazard_over_tta)} of ${count(r.n_hazard_events)} runs longer than the time to alert`).join("; ");
+    const compared = `, of ${count(record.axes.find((a) => a.axis === "h")?.error_m?.n ?? 0)} epochs with a protection level and a true error`;
+    const words = {
+        unknown: "Integrity unknown: no truth to compare with.", warning: `■ Hazardously misleading information. ${list}.`,
+        caution: `▲ No hazard, but ${record.n_mi_epochs === 1 ? "one epoch" : `${count(record.n_mi_epochs)} epochs`} of misleading information${compared}.`,
+        inside: `No misleading information${compared}.`,
+    }[tone];
+    const said = el("p", { class: "performance-words", "data-tone": tone }, words);
+    said.dataset.key = "n_mi_epochs";
+    said.dataset.value = String(record.n_mi_epochs);
+    return said;
+}
