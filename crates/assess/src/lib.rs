@@ -9,6 +9,7 @@ pub mod ee;
 pub mod error;
 pub mod evaluation;
 pub mod flights;
+pub mod fusion;
 pub mod kpi;
 pub mod monitor;
 pub mod plausible;

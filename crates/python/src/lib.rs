@@ -10,6 +10,7 @@ mod error;
 mod evaluation;
 mod gnss;
 mod ins_simulate;
+mod ins_fuse;
 mod kpi;
 mod methods;
 mod orbits;
@@ -37,6 +38,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     states::register(m)?;
     evaluation::register(m)?;
     gnss::register(m)?;
+    ins_fuse::register(m)?;
     kpi::register(m)?;
     dme::register(m)?;
     orbits::register(m)?;

@@ -62,6 +62,9 @@ impl Risk {
     /// The largest continuity risk of an hour from en route to non-precision approach.
     pub const HOUR_CONTINUITY: Self = Self(1e-4);
 
+    /// The risk that a navigation filter's gate throws away a good measurement.
+    pub const FILTER_GATE: Self = Self(1e-4);
+
     /// A risk inside (0, 1).
     ///
     /// # Errors
