@@ -156,7 +156,7 @@ pub fn mechanize(start: NavState, imu: impl Iterator<Item = ImuIncrement>) -> Re
     let mut strapdown = Strapdown::new(start);
     let mut states = Vec::with_capacity(imu.size_hint().0);
     for (index, sample) in imu.enumerate() {
-        if !(sample.time > strapdown.state().time) {
+        if sample.time <= strapdown.state().time {
             let value = sample.time.nanoseconds() as f64;
             return Err((index, OutOfDomain { argument: "time_ns", value, unit: "ns", domain: "times that increase, after the start" }));
         }

@@ -1,6 +1,7 @@
 //! Inertial navigation: mechanization and the filter.
 
 use crate::error::input_error;
+use nalgebra::{Matrix3, Vector3};
 use navbound_assess::fusion::{self, Flight, Moment, Plan};
 use navbound_core::frame::{Covariance, EcefPosition, Geodetic, LatLon};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Risk};
@@ -11,7 +12,6 @@ use navbound_core::solution::ins::{
     Attitude, ClockModel, Constraint, ErrorModel, Further, ImuModel, Kind, NavState, Patience, SensorNoise, Settings, Solution, StartSigma,
     Stop, coarse,
 };
-use nalgebra::{Matrix3, Vector3};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

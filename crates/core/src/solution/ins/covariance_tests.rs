@@ -88,7 +88,15 @@ fn steps_are_the_dense_product() {
         expected = phi * (expected + half) * phi.transpose() + half;
     }
     joint.settle(&fades);
-    let fade = Dense::from_fn(|i, j| if i != j { 0.0 } else if i < NAV { 1.0 } else { fades[i - NAV].factor });
+    let fade = Dense::from_fn(|i, j| {
+        if i != j {
+            0.0
+        } else if i < NAV {
+            1.0
+        } else {
+            fades[i - NAV].factor
+        }
+    });
     let added = Dense::from_fn(|i, j| if i == j && i >= NAV { fades[i - NAV].variance } else { 0.0 });
     expected = fade * expected * fade + added;
     // Some hundred roundings of numbers up to the largest element.

@@ -67,8 +67,7 @@ struct Rates {
 fn rates(e: &Local) -> Rates {
     let (v, tan) = (&e.v, e.sin / e.cos);
     let (m, n) = (1.0 / e.north, 1.0 / e.east);
-    let rr =
-        Matrix3::new(-v.z * m, 0.0, v.x * m, v.y * tan * m, -v.z * n - tan * v.x * m, v.y * n, 0.0, 0.0, 0.0);
+    let rr = Matrix3::new(-v.z * m, 0.0, v.x * m, v.y * tan * m, -v.z * n - tan * v.x * m, v.y * n, 0.0, 0.0, 0.0);
     // Turning of the axes for a velocity, for a metre north and for a metre down.
     let by_velocity = Matrix3::new(0.0, n, 0.0, -m, 0.0, 0.0, 0.0, -tan * n, 0.0);
     let earth_by_north = Vector3::new(e.earth.z * m, 0.0, -e.earth.x * m);

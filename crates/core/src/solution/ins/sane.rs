@@ -57,4 +57,3 @@ fn deviations(white: f64, slow: f64, unit: &'static str) -> Result<(), OutOfDoma
     }
     Ok(())
 }
-

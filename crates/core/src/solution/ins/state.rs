@@ -119,12 +119,7 @@ pub(super) fn quaternion(attitude: &Attitude) -> Quaternion<f64> {
     let (sr, cr) = sin_cos(0.5 * attitude.roll.rad());
     let (sp, cp) = sin_cos(0.5 * attitude.pitch.rad());
     let (sh, ch) = sin_cos(0.5 * attitude.heading.rad());
-    Quaternion::new(
-        cr * cp * ch + sr * sp * sh,
-        sr * cp * ch - cr * sp * sh,
-        cr * sp * ch + sr * cp * sh,
-        cr * cp * sh - sr * sp * ch,
-    )
+    Quaternion::new(cr * cp * ch + sr * sp * sh, sr * cp * ch - cr * sp * sh, cr * sp * ch + sr * cp * sh, cr * cp * sh - sr * sp * ch)
 }
 
 /// Quaternion of a turn by a rotation vector.

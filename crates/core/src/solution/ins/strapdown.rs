@@ -98,7 +98,7 @@ impl Strapdown {
     /// ```text
     /// k   = T1^2 / (6 T0 (T0 + T1)),  1/12 for equal intervals: angular rate and force linear over both
     /// phi = da1 + k da0 x da1
-    /// u   = dv1 + da1 x dv1 / 2 + k (da0 x dv1 + dv0 x da1)
+    /// u   = dv1 + da1 x dv1 / 2 + da1 x (da1 x dv1) / 6 + k (da0 x dv1 + dv0 x da1)
     /// v1  = v0 + (1 - [zeta/2 x]) C0 u + (g - (2 w_ie + w_en) x v_mid) T1,    zeta = (w_ie + w_en) T1
     /// q1  = q(-zeta) q0 q(phi);   position by the mean of both velocities and the radii at the middle
     /// ```
@@ -156,7 +156,8 @@ impl Strapdown {
     /// Rotation vector and velocity increment of a sample, coning and sculling included.
     fn compensated(&self, sample: &ImuIncrement) -> (Vector3<f64>, Vector3<f64>) {
         let (a1, v1) = (sample.angle_rad, sample.velocity_mps);
-        let turned = v1 + 0.5 * a1.cross(&v1);
+        let once = a1.cross(&v1);
+        let turned = v1 + 0.5 * once + a1.cross(&once) / 6.0;
         let Some(last) = &self.last else { return (a1, turned) };
         let (t0, t1) = (last.interval_s, sample.interval_s);
         let k = t1 * t1 / (6.0 * t0 * (t0 + t1));
