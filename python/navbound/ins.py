@@ -1,7 +1,45 @@
-"""Inertial navigation and the sensors that aid it."""
+"""Inertial navigation: simulated sensors, mechanization, and the navigation filter that aids it."""
 
 from __future__ import annotations
 
+from navbound._ins_aiding import Aiding, BaroHeights, DmeRanges, Fixes, SatelliteRanges, VorBearings
+from navbound._ins_fuse import (
+    Clock,
+    FilterSettings,
+    Fused,
+    Imu,
+    ImuModel,
+    Innovations,
+    SensorNoise,
+    Start,
+    Track,
+    Wheels,
+    coarse_attitude,
+    fuse,
+    mechanize,
+)
 from navbound._ins_simulate import Sensed, simulate
 
-__all__ = ["Sensed", "simulate"]
+__all__ = [
+    "Aiding",
+    "BaroHeights",
+    "Clock",
+    "DmeRanges",
+    "FilterSettings",
+    "Fixes",
+    "Fused",
+    "Imu",
+    "ImuModel",
+    "Innovations",
+    "SatelliteRanges",
+    "Sensed",
+    "SensorNoise",
+    "Start",
+    "Track",
+    "VorBearings",
+    "Wheels",
+    "coarse_attitude",
+    "fuse",
+    "mechanize",
+    "simulate",
+]

@@ -12,6 +12,7 @@ pub mod error;
 pub mod evaluation;
 pub mod flights;
 pub mod gbas;
+pub mod fusion;
 pub mod kpi;
 pub mod monitor;
 pub mod plausible;

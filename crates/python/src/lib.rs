@@ -12,6 +12,7 @@ mod evaluation;
 mod gbas;
 mod gnss;
 mod ins_simulate;
+mod ins_fuse;
 mod kpi;
 mod methods;
 mod orbits;
@@ -47,6 +48,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     gbas::register(m)?;
     rraim::register(m)?;
     surface::register(m)?;
+    ins_fuse::register(m)?;
     kpi::register(m)?;
     dme::register(m)?;
     radionav::register(m)?;

@@ -68,6 +68,9 @@ impl Risk {
     /// The risk that an aircraft on the ground leaves the containment of its sub-phase.
     pub const SURFACE_CONTAINMENT: Self = Self(1e-6);
 
+    /// The risk that a navigation filter's gate throws away a good measurement.
+    pub const FILTER_GATE: Self = Self(1e-4);
+
     /// A risk inside (0, 1).
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 pub mod dme;
 mod epoch;
 pub mod extraction;
+pub mod ins;
 pub mod point;
 mod range_error;
 pub mod subsets;

@@ -1,0 +1,167 @@
+//! Whole flights through the navigation filter: inertial samples and measurements in the order of their times.
+
+use navbound_core::quantity::{GpsTime, OutOfDomain};
+use navbound_core::signal::{Aiding, ImuIncrement, TimedAiding};
+use navbound_core::solution::ins::{Advance, Constraint, Filter, Kind, NavState, Samples, Settings, Solution, StartSigma, Stop, Strapdown};
+
+/// How a flight is run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plan {
+    /// Time between results \[s\]; 0 is one at every sample.
+    pub output_period_s: f64,
+    /// Least time between two uses of the same kind of measurement \[s\]; 0 uses all.
+    pub update_period_s: f64,
+    /// An assumption about the vehicle and how often it is used \[s\]; not for aircraft.
+    pub constraint: Option<(Constraint, f64)>,
+}
+
+/// The filter at an instant.
+#[derive(Debug, Clone, Copy)]
+pub struct Moment {
+    /// When.
+    pub time: GpsTime,
+    /// What it says; `None` after it has stopped.
+    pub solution: Option<Solution>,
+    /// States in the filter.
+    pub n_states: usize,
+}
+
+/// A flight that was run.
+#[derive(Debug, Clone)]
+pub struct Flight {
+    /// Results in the order of time.
+    pub moments: Vec<Moment>,
+    /// What became of the samples.
+    pub samples: Samples,
+    /// Why the filter stopped, if it did, and when.
+    pub stopped: Option<(GpsTime, Stop)>,
+    /// The filter at the end: innovations and further states.
+    pub filter: Box<Filter>,
+    /// First sample left out because of its numbers.
+    pub refused: Option<(GpsTime, OutOfDomain)>,
+}
+
+/// Run a flight.
+///
+/// `aiding` is in the order of time; what comes before the start is passed over, what comes after the last sample is not reached.
+///
+/// # Errors
+/// [`OutOfDomain`] for settings or a start that are none, or measurements whose times go backwards.
+pub fn run(
+    start: NavState,
+    sigma: &StartSigma,
+    settings: Settings,
+    plan: &Plan,
+    imu: impl Iterator<Item = ImuIncrement>,
+    aiding: &[TimedAiding],
+) -> Result<Flight, OutOfDomain> {
+    if let Some(k) = aiding.windows(2).position(|w| w[1].time < w[0].time) {
+        let value = aiding[k + 1].time.nanoseconds() as f64;
+        return Err(OutOfDomain { argument: "aiding time_ns", value, unit: "ns", domain: "times that do not go backwards" });
+    }
+    let filter = Box::new(Filter::new(start, sigma, settings)?);
+    let mut driver = Driver::new(filter, *plan);
+    let mut next = aiding.partition_point(|a| a.time < start.time);
+    for sample in imu {
+        driver.sample(&sample);
+        while let Some(timed) = aiding.get(next).filter(|a| a.time <= sample.time) {
+            driver.aid(timed);
+            next += 1;
+        }
+        driver.output(sample.time);
+    }
+    Ok(driver.flight())
+}
+
+struct Driver {
+    filter: Box<Filter>,
+    plan: Plan,
+    used: [Option<GpsTime>; Kind::ALL.len()],
+    constrained: Option<GpsTime>,
+    due: GpsTime,
+    moments: Vec<Moment>,
+    stopped: Option<(GpsTime, Stop)>,
+    refused: Option<(GpsTime, OutOfDomain)>,
+}
+
+impl Driver {
+    fn new(filter: Box<Filter>, plan: Plan) -> Self {
+        let due = filter.time();
+        Self { filter, plan, used: [None; Kind::ALL.len()], constrained: None, due, moments: Vec::new(), stopped: None, refused: None }
+    }
+
+    fn sample(&mut self, sample: &ImuIncrement) {
+        match self.filter.advance(sample) {
+            Advance::Refused(why) => {
+                self.refused.get_or_insert((sample.time, why));
+            }
+            Advance::Stopped(why) => {
+                self.stopped.get_or_insert((sample.time, why));
+            }
+            Advance::Done | Advance::Bridged { .. } | Advance::Late => {}
+        }
+        if let Some((constraint, period_s)) = &self.plan.constraint
+            && due(&mut self.constrained, sample.time, *period_s)
+        {
+            self.filter.constrain(constraint);
+        }
+    }
+
+    fn aid(&mut self, timed: &TimedAiding) {
+        let kind = match &timed.aiding {
+            Aiding::Satellite(_) => Kind::Range,
+            Aiding::Dme(_) => Kind::Dme,
+            Aiding::Vor(_) => Kind::Vor,
+            Aiding::Baro(_) => Kind::Baro,
+            Aiding::Fix(_) => Kind::FixPosition,
+        };
+        let last = &mut self.used[kind.index()];
+        // Measurements of one instant belong together.
+        if *last == Some(timed.time) || due(last, timed.time, self.plan.update_period_s) {
+            self.filter.aid(timed);
+        }
+    }
+
+    fn output(&mut self, time: GpsTime) {
+        if time < self.due {
+            return;
+        }
+        let solution = if self.filter.stopped().is_none() { Some(self.filter.solution()) } else { None };
+        self.moments.push(Moment { time, solution, n_states: self.filter.n_states() });
+        // At most one result a nanosecond; a hole is not filled with results that are late.
+        let missed = (time.seconds_since(self.due) / self.plan.output_period_s.max(1e-9)).floor();
+        self.due = self.due.plus_seconds((missed + 1.0) * self.plan.output_period_s).max(time.plus_seconds(1e-9));
+    }
+
+    fn flight(self) -> Flight {
+        let samples = *self.filter.samples();
+        Flight { moments: self.moments, samples, stopped: self.stopped, filter: self.filter, refused: self.refused }
+    }
+}
+
+/// Whether a period has passed since the last time, which this then is. A millisecond of jitter does not count.
+fn due(last: &mut Option<GpsTime>, time: GpsTime, period_s: f64) -> bool {
+    let yes = last.is_none_or(|t| time.seconds_since(t) >= period_s - 1e-3);
+    if yes {
+        *last = Some(time);
+    }
+    yes
+}
+
+/// Pure inertial navigation: the state after every sample.
+///
+/// # Errors
+/// The index of the first sample that is refused, and why; also one whose time is not after the one before.
+pub fn mechanize(start: NavState, imu: impl Iterator<Item = ImuIncrement>) -> Result<Vec<NavState>, (usize, OutOfDomain)> {
+    let mut strapdown = Strapdown::new(start);
+    let mut states = Vec::with_capacity(imu.size_hint().0);
+    for (index, sample) in imu.enumerate() {
+        if sample.time <= strapdown.state().time {
+            let value = sample.time.nanoseconds() as f64;
+            return Err((index, OutOfDomain { argument: "time_ns", value, unit: "ns", domain: "times that increase, after the start" }));
+        }
+        strapdown.advance(&sample).map_err(|refusal| (index, refusal))?;
+        states.push(*strapdown.state());
+    }
+    Ok(states)
+}

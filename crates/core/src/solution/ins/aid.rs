@@ -1,0 +1,292 @@
+//! Measurements come to the filter: judged first, then used.
+
+use super::covariance::Row;
+use super::filter::Filter;
+use super::innovation::Kind;
+use super::measure::{Antenna, Scalar, body_velocity};
+use super::settings::ErrorModel;
+use super::slots::{Further, Process};
+use crate::quantity::OutOfDomain;
+use crate::signal::{Aiding, BaroHeight, DmeRange, PositionFix, SatelliteRange, TimedAiding, VorBearing};
+use nalgebra::{Matrix3, Vector3};
+
+/// What became of a measurement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Aided {
+    /// Used; the squared normalised innovation, and of how many components.
+    Used {
+        /// Sum over the components.
+        square: f64,
+        /// Components.
+        dimension: usize,
+    },
+    /// Thrown away by the gate.
+    Gated {
+        /// As for [`Aided::Used`].
+        square: f64,
+    },
+    /// Not of the time of the last sample, or too old for it.
+    Late {
+        /// Last sample minus measurement \[s\].
+        age_s: f64,
+    },
+    /// A number that is none, or outside its domain.
+    Refused(OutOfDomain),
+    /// All places for further states are taken.
+    NoPlace,
+    /// The filter has stopped.
+    Stopped,
+}
+
+/// What a vehicle cannot do. Not for aircraft: an assumption of the user's, declared with its own standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Constraint {
+    /// It stands.
+    Standstill {
+        /// Standard deviation of each velocity component \[m/s\].
+        sigma_mps: f64,
+    },
+    /// It rolls where its wheels point: no velocity to the side or upwards at a point of the body.
+    Wheels {
+        /// That point, seen from the inertial unit, body axes \[m\].
+        arm_m: Vector3<f64>,
+        /// Standard deviation of both components \[m/s\].
+        sigma_mps: f64,
+        /// Standard deviation of the angles between the body axes and the wheels \[rad\], estimated as two constants.
+        mount_rad: f64,
+    },
+}
+
+impl Filter {
+    /// One measurement, at the time of the last sample or up to `age_most_s` before it.
+    pub fn aid(&mut self, timed: &TimedAiding) -> Aided {
+        let kind = kind(&timed.aiding);
+        let outcome = self.judge(timed);
+        if matches!(outcome, Aided::Late { .. } | Aided::Refused(_) | Aided::NoPlace | Aided::Stopped) {
+            self.innovations[kind.index()].n_refused += 1;
+        }
+        outcome
+    }
+
+    fn judge(&mut self, timed: &TimedAiding) -> Aided {
+        if self.stopped.is_some() {
+            return Aided::Stopped;
+        }
+        let age_s = self.time().seconds_since(timed.time);
+        // A nanosecond ahead is rounding of the clock; a sample ahead belongs to the next sample.
+        if !(age_s >= -1e-9 && age_s <= self.settings.age_most_s) {
+            return Aided::Late { age_s };
+        }
+        if let Err(refusal) = super::sane::check(&timed.aiding) {
+            return Aided::Refused(refusal);
+        }
+        self.settle();
+        let antenna = match Antenna::of(self.state(), &self.settings.lever_arm_m, &self.rate, age_s) {
+            Ok(antenna) => antenna,
+            Err(refusal) => return Aided::Refused(refusal),
+        };
+        let used = match &timed.aiding {
+            Aiding::Satellite(m) => self.satellite(&antenna, m),
+            Aiding::Dme(m) => self.dme(&antenna, m),
+            Aiding::Vor(m) => self.vor(&antenna, m),
+            Aiding::Baro(m) => self.baro(&antenna, m, age_s),
+            Aiding::Fix(m) => self.fix(&antenna, m),
+        };
+        if matches!(used, Aided::Used { .. }) {
+            self.note(&timed.aiding);
+            self.modes.tick(self.time());
+        }
+        used
+    }
+
+    fn note(&mut self, aiding: &Aiding) {
+        let time = self.time();
+        match aiding {
+            Aiding::Satellite(m) => {
+                let id = m.satellite.constellation.index() as u64 * 256 + u64::from(m.satellite.number);
+                self.modes.satellite(id, time);
+            }
+            Aiding::Dme(m) => self.modes.dme(m.station, time),
+            Aiding::Vor(m) => self.modes.vor(m.station, time),
+            Aiding::Fix(_) => self.modes.fix(time),
+            Aiding::Baro(_) => {}
+        }
+    }
+
+    fn satellite(&mut self, antenna: &Antenna, m: &SatelliteRange) -> Aided {
+        let mut range = antenna.range(m);
+        let (clock, joint) = (self.settings.clock, &mut self.joint);
+        let Some([bias, drift]) = self.slots.ensure_clock(joint, &clock, range.innovation) else { return Aided::NoPlace };
+        let mut more = [None; 2];
+        let first = *self.first_constellation.get_or_insert(m.satellite.constellation);
+        if first != m.satellite.constellation {
+            let bias = Process { sigma: clock.inter_system_m, tau_s: f64::INFINITY };
+            let what = Further::InterSystem(m.satellite.constellation);
+            let Some(found) = self.slots.ensure(joint, what, bias, 0.0) else { return Aided::NoPlace };
+            more[0] = Some(found);
+        }
+        let slow = Process { sigma: m.sigma_correlated.m(), tau_s: m.correlation_time_s };
+        match self.own_state(Further::Satellite(m.satellite), slow, &mut range.variance) {
+            Ok(found) => more[1] = found,
+            Err(outcome) => return outcome,
+        }
+        for place in [Some(bias), more[0], more[1]].into_iter().flatten() {
+            self.attach(&mut range, place);
+        }
+        let source = Further::Satellite(m.satellite);
+        let outcome = self.use_one((Kind::Range, source), &range, more[1]);
+        if let Some((rate, sigma)) = m.rate_mps {
+            let mut scalar = antenna.range_rate(m, rate, sigma);
+            self.attach(&mut scalar, drift);
+            self.use_one((Kind::RangeRate, source), &scalar, None);
+        }
+        outcome
+    }
+
+    fn dme(&mut self, antenna: &Antenna, m: &DmeRange) -> Aided {
+        let slow = Process { sigma: m.sigma_bias.m(), tau_s: f64::INFINITY };
+        self.with_own_state(Kind::Dme, antenna.slant(m), Further::Dme(m.station), slow)
+    }
+
+    fn vor(&mut self, antenna: &Antenna, m: &VorBearing) -> Aided {
+        let Some(scalar) = antenna.bearing(m) else {
+            let distance = OutOfDomain { argument: "vor_distance", value: 0.0, unit: "m", domain: "[100, inf): no bearing overhead" };
+            return Aided::Refused(distance);
+        };
+        let slow = Process { sigma: m.sigma_bias.rad(), tau_s: f64::INFINITY };
+        self.with_own_state(Kind::Vor, scalar, Further::Vor(m.station), slow)
+    }
+
+    fn baro(&mut self, antenna: &Antenna, m: &BaroHeight, age_s: f64) -> Aided {
+        let predicted = self.state().h + antenna.v.z * age_s;
+        let row = Row::empty().with(super::dynamics::R + 2, 1.0);
+        let variance = m.sigma_white.m() * m.sigma_white.m();
+        let scalar = Scalar { innovation: m.height.m() - predicted, row, variance };
+        let slow = Process { sigma: m.sigma_bias.m(), tau_s: m.correlation_time_s };
+        self.with_own_state(Kind::Baro, scalar, Further::Baro, slow)
+    }
+
+    fn fix(&mut self, antenna: &Antenna, m: &PositionFix) -> Aided {
+        let enu = m.covariance.matrix();
+        let ned = |i: usize| [1, 0, 2][i];
+        let sign = |i: usize| if i == 2 { -1.0 } else { 1.0 };
+        let r = Matrix3::from_fn(|i, j| sign(i) * sign(j) * enu[(ned(i), ned(j))]);
+        let outcome = self.use_three(Kind::FixPosition, &antenna.difference(&m.position), &r, |axis| antenna.along_position(axis));
+        if let Some((velocity, r)) = &m.velocity_ned_mps {
+            // The antenna as it was before the position was used: an error of second order, and the gate stays independent.
+            self.use_three(Kind::FixVelocity, &(velocity - antenna.v), r, |axis| antenna.along_velocity(axis));
+        }
+        outcome
+    }
+
+    /// One assumption about the vehicle.
+    pub fn constrain(&mut self, constraint: &Constraint) -> Aided {
+        if self.stopped.is_some() {
+            return Aided::Stopped;
+        }
+        self.settle();
+        match constraint {
+            Constraint::Standstill { sigma_mps } => {
+                let r = Matrix3::from_diagonal_element(sigma_mps * sigma_mps);
+                let v = -self.state().v;
+                let row = |axis: &Vector3<f64>| Row::empty().with_block(super::dynamics::V, &-axis);
+                self.use_three(Kind::Constraint, &v, &r, row)
+            }
+            Constraint::Wheels { arm_m, sigma_mps, mount_rad } => self.wheels(arm_m, *sigma_mps, *mount_rad),
+        }
+    }
+
+    /// Sideways and upwards velocity are what the mounting makes of the forward one.
+    fn wheels(&mut self, arm_m: &Vector3<f64>, sigma_mps: f64, mount_rad: f64) -> Aided {
+        let mount = Process { sigma: mount_rad, tau_s: f64::INFINITY };
+        let mut outcome = Aided::NoPlace;
+        for (j, what) in [(1, Further::MountHeading), (2, Further::MountPitch)] {
+            let Some(place) = self.slots.ensure(&mut self.joint, what, mount, 0.0) else { return Aided::NoPlace };
+            let (forward, _) = body_velocity(self.state(), arm_m, &self.rate, 0);
+            let (velocity, row) = body_velocity(self.state(), arm_m, &self.rate, j);
+            let innovation = self.slots.value(place) * forward - velocity;
+            let scalar = Scalar { innovation, row: row.with(place, -forward), variance: sigma_mps * sigma_mps };
+            outcome = self.use_one((Kind::Constraint, what), &scalar, Some(place));
+        }
+        outcome
+    }
+
+    /// A state of its own for what stays, or everything into the white part, as the error model has it.
+    fn own_state(&mut self, what: Further, slow: Process, variance: &mut f64) -> Result<Option<usize>, Aided> {
+        if self.settings.errors == ErrorModel::White || !(slow.sigma > 0.0) {
+            *variance += slow.sigma * slow.sigma;
+            return Ok(None);
+        }
+        self.slots.ensure(&mut self.joint, what, slow, 0.0).map(Some).ok_or(Aided::NoPlace)
+    }
+
+    fn with_own_state(&mut self, kind: Kind, mut scalar: Scalar, what: Further, slow: Process) -> Aided {
+        match self.own_state(what, slow, &mut scalar.variance) {
+            Err(outcome) => outcome,
+            Ok(place) => {
+                if let Some(place) = place {
+                    self.attach(&mut scalar, place);
+                }
+                self.use_one((kind, what), &scalar, place)
+            }
+        }
+    }
+
+    /// The measurement holds a further state, added as it is.
+    fn attach(&self, scalar: &mut Scalar, place: usize) {
+        scalar.innovation -= self.slots.value(place);
+        scalar.row = scalar.row.with(place, 1.0);
+    }
+
+    fn use_one(&mut self, (kind, source): (Kind, Further), scalar: &Scalar, place: Option<usize>) -> Aided {
+        let s = self.variance(&scalar.row, scalar.variance);
+        let normalised = scalar.innovation / crate::special::float::sqrt(s);
+        let square = normalised * normalised;
+        if !(square <= self.gates[0]) {
+            self.innovations[kind.index()].n_gated += 1;
+            return Aided::Gated { square };
+        }
+        if let Some(place) = place {
+            let time = self.time();
+            self.slots.saw(place, time);
+        }
+        let before = self.memory.replace(kind, source, normalised);
+        self.innovations[kind.index()].used(normalised, before);
+        self.correct(core::slice::from_ref(scalar));
+        Aided::Used { square, dimension: 1 }
+    }
+
+    /// Three components with a common variance matrix: judged together, used along the axes in which they are independent.
+    fn use_three(&mut self, kind: Kind, innovation: &Vector3<f64>, r: &Matrix3<f64>, row: impl Fn(&Vector3<f64>) -> Row) -> Aided {
+        let eigen = r.symmetric_eigen();
+        let axis = |k: usize| eigen.eigenvectors.column(k).into_owned();
+        let rows = [row(&axis(0)), row(&axis(1)), row(&axis(2))];
+        let y = eigen.eigenvectors.transpose() * innovation;
+        let carried = rows.map(|h| self.joint.times(&h));
+        let s = Matrix3::from_fn(|i, j| rows[i].of(&carried[j])) + Matrix3::from_diagonal(&eigen.eigenvalues);
+        let square = s.cholesky().map_or(f64::NAN, |c| y.dot(&c.solve(&y)));
+        if !(square <= self.gates[1]) {
+            self.innovations[kind.index()].n_gated += 3;
+            return Aided::Gated { square };
+        }
+        let scalar = |k: usize| Scalar { innovation: y[k], row: rows[k], variance: eigen.eigenvalues[k] };
+        // The first axis of the caller, whatever the independent ones are called this time.
+        let first = eigen.eigenvectors.row(0);
+        let normalised = innovation.x / crate::special::float::sqrt((first * s * first.transpose())[(0, 0)]);
+        // Solved positions and velocities and a standstill have one source each.
+        let before = self.memory.replace(kind, Further::Clock, normalised);
+        self.innovations[kind.index()].used_three(square, normalised, before);
+        self.correct(&[scalar(0), scalar(1), scalar(2)]);
+        Aided::Used { square, dimension: 3 }
+    }
+}
+
+fn kind(aiding: &Aiding) -> Kind {
+    match aiding {
+        Aiding::Satellite(_) => Kind::Range,
+        Aiding::Dme(_) => Kind::Dme,
+        Aiding::Vor(_) => Kind::Vor,
+        Aiding::Baro(_) => Kind::Baro,
+        Aiding::Fix(_) => Kind::FixPosition,
+    }
+}
