@@ -43,6 +43,8 @@ def track(tmp_path: Path) -> Path:
         (["analyze", "missing.csv"], UNREADABLE, "missing.csv"),
         (["study", "nothing"], USAGE, "tse-coverage"),
         (["study", "tse-coverage", "a.pos"], USAGE, "files"),
+        (["study", "tse-coverage", "--out", "x"], USAGE, "ukraine-rnav"),
+        (["study", "ukraine-rnav", "a.csv"], USAGE, "files"),
         (["study", "error-extraction", "missing.pos"], UNREADABLE, "missing.pos"),
         (["show", "missing"], UNREADABLE, "missing"),
         (["nothing"], USAGE, "nothing"),
