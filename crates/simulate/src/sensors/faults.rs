@@ -98,6 +98,14 @@ impl SensorFault {
         window.contains(&time_s).then_some(time_s - window.start)
     }
 
+    /// The satellite it concerns.
+    pub(crate) fn satellite(&self) -> Option<SatelliteId> {
+        match self {
+            Self::SatelliteStep { satellite: name, .. } | Self::SatelliteRamp { satellite: name, .. } => satellite(name),
+            _ => None,
+        }
+    }
+
     pub(crate) fn rules(&self, stations: &[Station]) -> Vec<Rule> {
         let window = self.window();
         let mut rules = vec![not_negative("start_s", window.start, "s")];
@@ -135,7 +143,7 @@ fn satellite_rule(name: &str) -> Rule {
 }
 
 /// The satellite of a name.
-pub(crate) fn satellite(name: &str) -> Option<SatelliteId> {
+fn satellite(name: &str) -> Option<SatelliteId> {
     let (letter, number) = name.split_at_checked(1)?;
     let number: u8 = number.parse().ok().filter(|n| *n > 0)?;
     Some(SatelliteId { constellation: Constellation::from_letter(letter.as_bytes()[0])?, number })

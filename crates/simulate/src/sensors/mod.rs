@@ -69,6 +69,11 @@ impl Sensing {
             Some(gnss) => sky::satellites(&outlook.scenario, &gnss.constellations, broadcast)?,
             None => Vec::new(),
         };
+        if let Some(fault) = sensors.faults.iter().find(|f| f.satellite().is_some_and(|id| satellites.iter().all(|s| s.id != id))) {
+            let domain = "names of satellites of the receiver's constellations";
+            let number = fault.satellite().map_or(f64::NAN, |id| f64::from(id.number));
+            return Err(OutOfDomain { argument: "satellite", value: number, unit: "number", domain }.into());
+        }
         Ok(Self { outlook, sensors, satellites })
     }
 

@@ -10,7 +10,7 @@
 //! satellite draws depends on no other.
 
 use super::clock::ReceiverClock;
-use super::faults::{SensorFault, satellite};
+use super::faults::SensorFault;
 use super::markov::Markov;
 use super::settings::{Gnss, RangeMode, RangeParts};
 use super::sky::{Satellite, Sent};
@@ -193,10 +193,10 @@ fn slow(parts: &RangeParts, channel: &Channel<'_>, troposphere: &Markov, elevati
 
 fn fault_m(faults: &[SensorFault], id: SatelliteId, time_s: f64) -> f64 {
     let added = |fault: &SensorFault| {
-        let since = fault.since(time_s)?;
+        let since = fault.since(time_s).filter(|_| fault.satellite() == Some(id))?;
         match fault {
-            SensorFault::SatelliteStep { satellite: name, step_m, .. } if satellite(name) == Some(id) => Some(*step_m),
-            SensorFault::SatelliteRamp { satellite: name, rate_mps, .. } if satellite(name) == Some(id) => Some(rate_mps * since),
+            SensorFault::SatelliteStep { step_m, .. } => Some(*step_m),
+            SensorFault::SatelliteRamp { rate_mps, .. } => Some(rate_mps * since),
             _ => None,
         }
     };

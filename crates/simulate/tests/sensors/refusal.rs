@@ -15,7 +15,7 @@ fn refused(scenario: Scenario) -> &'static str {
 
 #[test]
 fn what_no_sensor_can_be_is_refused_by_name() {
-    let changes: [(&str, Change); 22] = [
+    let changes: [(&str, Change); 23] = [
         ("rate_hz", |s| s.rate_hz = 0),
         ("rate_hz", |s| s.rate_hz = 90),
         ("rate_hz", |s| s.rate_hz = 500),
@@ -36,6 +36,10 @@ fn what_no_sensor_can_be_is_refused_by_name() {
         ("start_s", |s| s.faults = vec![SensorFault::Interference { start_s: f64::NAN, duration_s: 1.0 }]),
         ("satellite", |s| {
             s.faults = vec![SensorFault::SatelliteStep { start_s: 1.0, duration_s: 1.0, satellite: "Ä5".into(), step_m: 1.0 }];
+        }),
+        ("satellite", |s| {
+            // GPS has 24 nominal slots.
+            s.faults = vec![SensorFault::SatelliteStep { start_s: 1.0, duration_s: 1.0, satellite: "G25".into(), step_m: 1.0 }];
         }),
         ("station", |s| {
             // The third station offers no ranges.

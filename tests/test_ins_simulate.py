@@ -1,0 +1,164 @@
+"""Simulated sensors as the rest of navbound sees them; their statistics are proven in crates/simulate/tests/sensors."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+from navbound import FormatError, InputError, gnss, ins, scenario
+
+ROOT = Path(__file__).parents[1]
+TABLES = ("truth", "imu", "satellites", "dme", "vor", "baro", "clock")
+
+
+def short(name: str = "beijing-shanghai-modern", **sensors: object) -> scenario.Scenario:
+    """Ten samples a second are enough to look at."""
+    found = scenario.load(name)
+    assert found.sensors is not None
+    return found.model_copy(update={"sensors": found.sensors.model_copy(update={"rate_hz": 10} | sensors)})
+
+
+@pytest.fixture(scope="module")
+def sensed() -> ins.Sensed:
+    return ins.simulate(short(path="planned"))
+
+
+def ecef(sensed: ins.Sensed) -> pl.DataFrame:
+    """Truth in Earth-fixed axes, by the textbook's closed form."""
+    t = sensed.truth
+    lat, lon, h = (t[c].to_numpy() for c in ("truth_lat_rad", "truth_lon_rad", "truth_h_m"))
+    e2 = (2 - 1 / 298.257223563) / 298.257223563
+    n = 6378137.0 / np.sqrt(1 - e2 * np.sin(lat) ** 2)
+    x, y, z = (n + h) * np.cos(lat) * np.cos(lon), (n + h) * np.cos(lat) * np.sin(lon), (n * (1 - e2) + h) * np.sin(lat)
+    return pl.DataFrame({"time_ns": t["time_ns"], "x": x, "y": y, "z": z})
+
+
+def test_every_column_is_in_the_glossary(sensed: ins.Sensed) -> None:
+    glossary = (ROOT / "docs" / "notation.md").read_text(encoding="utf-8")
+    declared = set(re.findall(r"`([a-z0-9_]+)`", glossary[glossary.index("## The epoch table") :]))
+    for name in TABLES:
+        table = getattr(sensed, name)
+        assert table.height > 0
+        assert set(table.columns) <= declared, name
+        assert table.null_count().sum_horizontal().item() == 0
+
+
+def test_rows_come_when_they_should(sensed: ins.Sensed) -> None:
+    begin = sensed.scenario.start_ns
+    assert sensed.imu["time_ns"].to_list() == [begin + k * 10**8 for k in range(1, 70811)]
+    assert sensed.truth["time_ns"].to_list() == [begin + k * 10**9 for k in range(7082)]
+    assert sensed.baro["time_ns"].to_list() == [begin + k * 10**9 for k in range(1, 7082)]
+    seldom = ins.simulate(sensed.scenario, truth_interval_s=100.0).truth
+    assert seldom.equals(sensed.truth.gather_every(100))
+
+
+def test_ranges_are_distances_clock_and_errors_of_the_stated_size(sensed: ins.Sensed) -> None:
+    found = (
+        sensed.satellites.filter(pl.col("satellite").str.starts_with("G")).join(ecef(sensed), on="time_ns").join(sensed.clock, on="time_ns")
+    )
+    line = found.select(pl.col("sv_x_m") - pl.col("x"), pl.col("sv_y_m") - pl.col("y"), pl.col("sv_z_m") - pl.col("z")).to_numpy()
+    residual = found["range_m"].to_numpy() - np.linalg.norm(line, axis=1) - found["clock_m"].to_numpy()
+    sigma = np.hypot(found["sigma_white_m"].to_numpy(), found["sigma_correlated_m"].to_numpy())
+    # Some 30 satellites rise, the slow parts of 1 m and 2 m at the zenith forget in half an hour to two hours: about 60 independent errors.
+    assert abs(np.mean((residual / sigma) ** 2) - 1) < 4 * np.sqrt(2 / 60)
+    assert np.abs(residual / sigma).max() < 6
+
+
+def test_nothing_is_heard_while_jammed() -> None:
+    times = ins.simulate(short("beijing-shanghai-jammed")).satellites["time_ns"].unique().sort().to_numpy()
+    seconds = (times - scenario.load("beijing-shanghai").start_ns) // 10**9
+    assert seconds.tolist() == [*range(1, 2400), *range(3600, 7082)]
+
+
+def test_the_seed_is_the_scenarios_unless_given() -> None:
+    flown = short("beijing-shanghai-seed", gnss=None, dme=None, vor=None)
+    a, b = ins.simulate(flown), ins.simulate(flown, 0, flown.seed)
+    assert a.imu.equals(b.imu)
+    assert not ins.simulate(flown, 1).imu.equals(a.imu)
+    assert not ins.simulate(flown, 0, 5).imu.equals(a.imu)
+    assert a.satellites.height == 0
+    assert a.satellites.schema["satellite"] == pl.String
+
+
+def test_broadcast_orbits_serve_as_well(shared_data: Path) -> None:
+    path = shared_data / "gnss" / "ESBC_2020_177" / "ESBC00DNK_R_20201770000_01D_MN.rnx.gz"
+    navigation = gnss.read_navigation(path)
+    base = short("beijing-shanghai-modern", path="planned", dme=None, vor=None, baro=None)
+    day = base.model_copy(update={"start_gps": base.start_gps.replace(year=2020, month=6, day=25, hour=10)})
+    found = ins.simulate(day, navigation=navigation)
+    counts = found.satellites.group_by("time_ns").len()["len"]
+    # Full constellations of 2020 over East Asia above 7 degrees: some 8 to 12 of GPS and Galileo, 12 to 22 of BeiDou.
+    assert counts.min() >= 20  # type: ignore[operator]
+    assert counts.max() <= 50  # type: ignore[operator]
+    assert {s[0] for s in found.satellites["satellite"].unique()} == {"G", "E", "C"}
+    with pytest.raises(InputError, match="navigation"):
+        ins.simulate(base, navigation=navigation)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "argument"),
+    [
+        ({"scenario": "beijing-shanghai"}, "scenario"),
+        ({"flight": -1}, "flight"),
+        ({"seed": 2**64}, "seed"),
+        ({"truth_interval_s": 0.0}, "truth_interval_s"),
+        ({"truth_interval_s": 0.0123}, "truth_interval_s"),
+        ({"truth_interval_s": float("nan")}, "truth_interval_s"),
+    ],
+)
+def test_what_cannot_be_sensed_is_refused(arguments: dict[str, object], argument: str) -> None:
+    with pytest.raises(InputError) as caught:
+        ins.simulate(**({"scenario": "beijing-shanghai-real"} | arguments))  # type: ignore[arg-type]
+    assert caught.value.argument == argument
+
+
+@pytest.mark.parametrize(
+    ("text", "field", "said"),
+    [
+        ('[sensors.imu]\ngrade = "best"', "sensors.imu.grade", "navigation"),
+        ("[sensors]\nrate_hz = 90", "sensors.rate_hz", "divisors"),
+        ("[sensors.imu]\ngyro_bias_degph = -1.0", "sensors.imu.gyro_bias_degph", "[0, inf)"),
+        ('[sensors.gnss]\nmode = "best"', "sensors.gnss.mode", "'seed' or 'real'"),
+        ("[sensors.baro]\nlag = 1.0", "sensors.baro.lag", "not a key"),
+        ('[[sensors.faults]]\nkind = "meteor"', "sensors.faults[0]", "'satellite-step'"),
+        ('[[sensors.faults]]\nkind = "interference"\nstart_s = 1.0', "sensors.faults.0.duration_s", "missing"),
+        (
+            '[[sensors.faults]]\nkind = "dme-bias"\nstart_s = 1.0\nduration_s = 1.0\nstation = "XXX"\nbias_m = 1.0',
+            None,
+            "names of stations",
+        ),
+    ],
+)
+def test_a_wrong_sensor_is_explained(tmp_path: Path, text: str, field: str | None, said: str) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(f'base = "beijing-shanghai-real"\n{text}\n', encoding="utf-8")
+    with pytest.raises(FormatError) as caught:
+        scenario.load(file)
+    assert said in str(caught.value)
+    if field is not None:
+        assert caught.value.field == field
+
+
+def test_a_grade_gives_way_to_numbers_beside_it(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text('base = "beijing-shanghai-real"\n[sensors.imu]\ngyro_bias_degph = 0.5\n', encoding="utf-8")
+    mine, base = scenario.load(file).sensors, scenario.load("beijing-shanghai-real").sensors
+    assert mine is not None
+    assert base is not None
+    assert mine.imu.gyro_bias_radps == pytest.approx(np.radians(0.5) / 3600, rel=1e-12)
+    assert mine.imu == base.imu.model_copy(update={"gyro_bias_radps": mine.imu.gyro_bias_radps})
+    # The published biases: 0.01 deg/h and 1e-4 g.
+    assert base.imu.gyro_bias_radps == pytest.approx(4.84814e-8, rel=1e-5)
+    assert base.imu.accelerometer_bias_mps2 == pytest.approx(9.80665e-4, rel=1e-12)
+
+
+def test_the_rust_tests_fly_the_shipped_flight() -> None:
+    kept = json.loads((ROOT / "crates" / "simulate" / "tests" / "beijing-shanghai.json").read_text(encoding="utf-8"))
+    shipped = json.loads(scenario.load("beijing-shanghai").core_json())
+    assert shipped.pop("sensors") is None
+    assert kept == shipped
