@@ -30,17 +30,20 @@ from navbound._extraction_gains import (
     extraction_factor,
     extraction_gains,
 )
+from navbound._sbas_positions import MODES, CorrectedPositions, corrected_positions, service_of
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import ArrayLike, NDArray
+
+    from navbound._sbas_positions import Navigations
+    from navbound.gnss import Observations
 
 __all__ = [
     "ALPHA",
     "EXTRACTION_LABEL",
     "MU_MOST_M",
+    "CorrectedPositions",
     "Decoded",
     "ErrorExtraction",
     "ExtractionBeta",
@@ -66,11 +69,11 @@ __all__ = [
     "protection_levels",
     "read",
     "satellites",
+    "solve",
 ]
 
 Mode = Literal["auto", "pa", "npa"]
 
-_MODES = np.array(["", "pa", "npa"])
 _MASK_RAD = 0.08726646259971647
 """5 degrees: the standard's mask."""
 
@@ -201,6 +204,8 @@ class Satellites:
         Factor of the UDRE from messages 27 or 28.
     fast_correction_m, clock_correction_s, iono_vertical_m : ndarray
         To add to the range [m], to add to the broadcast clock offset [s], vertical delay on L1 at the pierce point [m].
+    from_grid : ndarray of bool
+        The ionosphere is the service's; false where en route the broadcast model stands in for it.
     sigma_flt_m, sigma_uire_m, sigma_tropo_m, sigma_air_m, sigma_m : ndarray
         The parts of the range's standard deviation, and their root sum of squares. [m]
     """
@@ -214,6 +219,7 @@ class Satellites:
     fast_correction_m: NDArray[np.float64]
     clock_correction_s: NDArray[np.float64]
     iono_vertical_m: NDArray[np.float64]
+    from_grid: NDArray[np.bool_]
     sigma_flt_m: NDArray[np.float64]
     sigma_uire_m: NDArray[np.float64]
     sigma_tropo_m: NDArray[np.float64]
@@ -321,7 +327,7 @@ def decode(messages: Messages) -> list[Decoded]:
 
 def protection_levels(
     messages: Messages,
-    navigation: str | Path | Sequence[str | Path],
+    navigation: Navigations,
     time_ns: ArrayLike,
     *,
     lat_rad: ArrayLike,
@@ -342,14 +348,16 @@ def protection_levels(
     ----------
     messages : Messages
         Of one geostationary satellite (``messages.of(prn)``). A message can be used 0.12 s after its end.
-    navigation : path or sequence of paths
-        RINEX navigation files. The record corrected is the healthy one of the issue (IODE) that the service names.
+    navigation : Navigation, path or sequence of paths
+        From :func:`navbound.gnss.read_navigation`, or its files. The record corrected is the healthy one of the issue (IODE) that the
+        service names.
     time_ns : array_like of int
         GPS time. [ns]
     lat_rad, lon_rad, h_m : array_like
         Place, WGS-84. [rad, m]
     mode : {"auto", "pa", "npa"}
-        Precision approach, en route to non-precision approach, or the first with the second where it has no level.
+        Precision approach, en route to non-precision approach, or the first with the second where it has no level. En route a satellite
+        whose pierce point the grid does not serve takes the ionosphere that GPS broadcasts, where ``navigation`` has it.
     mask_rad : float
         Lowest elevation used. [rad]
     noise_m, divergence_m : float
@@ -369,23 +377,16 @@ def protection_levels(
     FormatError
         An unreadable navigation file.
     """
-    shape, job = _job(
-        messages,
-        navigation,
-        time_ns,
-        place=(lat_rad, lon_rad, h_m),
-        mode=mode,
-        receiver=(mask_rad, noise_m, divergence_m),
-        test_signal=test_signal,
-    )
-    found = _core.sbas_levels(job)
+    service = service_of(messages, navigation, mode=mode, receiver=(mask_rad, noise_m, divergence_m), test_signal=test_signal)
+    shape, places = _places(time_ns, lat_rad, lon_rad, h_m)
+    found = _core.sbas_levels(service, places)
     codes = found["mode"].reshape(shape)
     good = "degraded" if test_signal else "ok"
     return Levels(
         hpl_m=unflatten(found["hpl_m"], shape),
         vpl_m=unflatten(found["vpl_m"], shape),
         n_sv=found["n_sv"].reshape(shape),
-        mode=_MODES[codes],
+        mode=MODES[codes],
         status=np.where(codes > 0, good, "not_available"),
         reason=found["reason"].reshape(shape),
         reasons=found["reasons"],
@@ -396,7 +397,7 @@ def protection_levels(
 
 def satellites(
     messages: Messages,
-    navigation: str | Path | Sequence[str | Path],
+    navigation: Navigations,
     time_ns: ArrayLike,
     *,
     lat_rad: ArrayLike,
@@ -425,56 +426,88 @@ def satellites(
     InputError, FormatError
         As there.
     """
-    _, job = _job(
-        messages,
-        navigation,
-        time_ns,
-        place=(lat_rad, lon_rad, h_m),
-        mode=mode,
-        receiver=(mask_rad, noise_m, divergence_m),
-        test_signal=test_signal,
-    )
-    return Satellites(**_core.sbas_satellites(job))
+    service = service_of(messages, navigation, mode=mode, receiver=(mask_rad, noise_m, divergence_m), test_signal=test_signal)
+    _, places = _places(time_ns, lat_rad, lon_rad, h_m)
+    return Satellites(**_core.sbas_satellites(service, places))
 
 
-def _job(
-    messages: Messages,
-    navigation: str | Path | Sequence[str | Path],
-    time_ns: ArrayLike,
-    *,
-    place: tuple[ArrayLike, ArrayLike, ArrayLike],
-    mode: str,
-    receiver: tuple[float, float, float],
-    test_signal: bool,
-) -> tuple[tuple[int, ...], dict[str, Any]]:
-    senders = np.unique(messages.prn).tolist()
-    if len(senders) > 1:
-        raise InputError("messages", f"PRNs {senders}", domain="the messages of one satellite: messages.of(prn)")
-    if mode not in ("auto", "pa", "npa"):
-        raise InputError("mode", mode, domain="auto, pa, npa")
+def _places(
+    time_ns: ArrayLike, lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike
+) -> tuple[tuple[int, ...], dict[str, NDArray[np.generic]]]:
     instants = np.asarray(time_ns)
     if instants.dtype.kind not in "iu":
         raise InputError("time_ns", f"{instants.dtype}", domain="whole nanoseconds")
-    lat_rad, lon_rad, h_m = place
     # Nanoseconds do not fit a double: only their shape takes part in the broadcast of the places.
     names = {"lat_rad": (lat_rad, ()), "lon_rad": (lon_rad, ()), "h_m": (h_m, ())}
     shape, (_, lat, lon, h) = flatten(time_ns=(np.zeros(instants.shape), ()), **names)
-    files = [navigation] if isinstance(navigation, (str, Path)) else list(navigation)
-    mask_rad, noise_m, divergence_m = receiver
-    return shape, {
-        "message_time_ns": np.ascontiguousarray(messages.time_ns, dtype=np.int64),
-        "data": np.ascontiguousarray(messages.data, dtype=np.uint8),
-        "navigation": [(str(f), Path(f).read_bytes()) for f in files],
-        "time_ns": np.ascontiguousarray(np.broadcast_to(instants, shape)).reshape(-1).astype(np.int64),
-        "lat_rad": lat,
-        "lon_rad": lon,
-        "h_m": h,
-        "mode": mode,
-        "mask_rad": float(mask_rad),
-        "noise_m": float(noise_m),
-        "divergence_m": float(divergence_m),
-        "test_signal": test_signal,
-    }
+    times = np.ascontiguousarray(np.broadcast_to(instants, shape)).reshape(-1).astype(np.int64)
+    return shape, {"time_ns": times, "lat_rad": lat, "lon_rad": lon, "h_m": h}
+
+
+def solve(
+    observations: Observations,
+    navigation: Navigations,
+    messages: Messages,
+    *,
+    mode: Mode = "auto",
+    mask_rad: float = _MASK_RAD,
+    noise_m: float = 0.36,
+    divergence_m: float = 0.0,
+    smoothing_s: float | None = 100.0,
+    false_alarm: float = 1e-4,
+    test_signal: bool = False,
+    truth_ecef_m: ArrayLike | None = None,
+    track: str | None = None,
+) -> CorrectedPositions:
+    """Positions of a recording with a service's corrections, each with the protection levels of that very solution.
+
+    C/A pseudoranges on L1, smoothed by their own carrier; broadcast orbits and clocks of the issue that the service corrects, with its
+    fast, range-rate and long-term corrections; ionosphere of the service's grid; troposphere of DO-229 A.4.2.4; weights of the
+    error model behind the levels. An error of the position is what its levels bound.
+
+    Parameters
+    ----------
+    observations : Observations
+        From :func:`navbound.gnss.read_observations`.
+    navigation : Navigation, path or sequence of paths
+        From :func:`navbound.gnss.read_navigation`, or its files.
+    messages : Messages
+        Of one geostationary satellite (``messages.of(prn)``). A message can be used 0.12 s after its end.
+    mode : {"auto", "pa", "npa"}
+        Precision approach, en route to non-precision approach, or the first with the second where it has no solution. En route a satellite
+        whose pierce point the grid does not serve takes the ionosphere that GPS broadcasts, where ``navigation`` has it.
+    mask_rad : float
+        Lowest elevation used. [rad]
+    noise_m, divergence_m : float
+        Receiver noise (0.36 m: accuracy designator A at minimum power) and code-carrier divergence. [m]
+    smoothing_s : float, optional
+        Time constant of the smoothing; ``None`` uses pseudoranges as measured. A code without carrier stays as measured. [s]
+    false_alarm : float
+        Risk of a false alarm of the residual test, an epoch; it marks an epoch ``degraded`` and excludes nothing. [1]
+    test_signal : bool
+        Disregard message 0 ("do not use"). Every position is then marked ``degraded``: it is not for navigation.
+    truth_ecef_m : array_like, shape (3,) or (n_epochs, 3), optional
+        True position, Earth-fixed; NaN where it is not known. [m]
+    track : str, optional
+        Name of the track; by default the marker's or the file's.
+
+    Returns
+    -------
+    CorrectedPositions
+        ``epochs`` with positions, covariance, ``hpl_m``, ``vpl_m``, ``mode``; the satellites of every solution; what was not used and why.
+
+    Raises
+    ------
+    InputError
+        Messages of several satellites, or a value outside its domain.
+    FormatError
+        An unreadable navigation file.
+    """
+    receiver = (mask_rad, noise_m, divergence_m)
+    service = service_of(messages, navigation, mode=mode, receiver=receiver, test_signal=test_signal)
+    return corrected_positions(
+        service, observations, smoothing_s=smoothing_s, false_alarm=false_alarm, truth_ecef_m=truth_ecef_m, track=track
+    )
 
 
 def covariance_levels(covariance_m2: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

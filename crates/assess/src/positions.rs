@@ -326,7 +326,7 @@ const fn nominal_accuracy(constellation: Constellation) -> f64 {
     }
 }
 
-fn earlier(time: GpsTime, seconds: f64) -> GpsTime {
+pub(crate) fn earlier(time: GpsTime, seconds: f64) -> GpsTime {
     GpsTime::from_nanoseconds(time.nanoseconds().saturating_sub((seconds * 1e9) as i64))
 }
 

@@ -3,6 +3,8 @@
 //! What a service offers at an instant is the same for everyone: it is found once an instant and used for every user. Instants are shared
 //! out among the cores; each task replays the messages before its first one, so the result does not depend on their number.
 
+pub mod positions;
+
 use navbound_core::bound::sbas::model::Airborne;
 use navbound_core::bound::sbas::service::{Orbit, Service};
 use navbound_core::bound::sbas::terms::{RangeSigmas, RangeTerms};
@@ -11,7 +13,8 @@ use navbound_core::frame::{Covariance, Enu, Geodetic};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::sbas::timeout::Use;
 use navbound_core::signal::sbas::{Ignored, Message, Obedience, Store, decode};
-use navbound_core::signal::{Carrier, Constellation, Ephemeris, SatelliteId};
+use navbound_core::geometry::broadcast::Broadcast;
+use navbound_core::signal::{Carrier, Constellation, Ephemeris, Klobuchar, SatelliteId};
 use navbound_core::solution::wls::{self, WeightedSight};
 use navbound_formats::rinex::Navigation;
 use navbound_formats::sbas::Received;
@@ -29,6 +32,16 @@ pub enum Mode {
     Best,
     /// One use only.
     Only(Use),
+}
+
+impl Mode {
+    /// What is tried first, and what where that has no level.
+    const fn uses(self) -> (Use, Option<Use>) {
+        match self {
+            Self::Best => (Use::PrecisionApproach, Some(Use::EnRoute)),
+            Self::Only(one) => (one, None),
+        }
+    }
 }
 
 /// How the levels are computed.
@@ -81,21 +94,35 @@ impl Feed {
     }
 }
 
-/// The broadcast orbits by issue of data.
-#[derive(Debug, Clone, Copy)]
-struct Orbits<'a>(&'a Navigation);
+/// PRN code numbers of GPS.
+const GPS: std::ops::RangeInclusive<u8> = 1..=37;
 
-impl Orbits<'_> {
-    /// The healthy record of this issue nearest in time, as an orbit now. PRN code numbers 1 to 37 are GPS.
+/// The broadcast orbits of GPS by satellite, worked out once; those that describe no orbit or no healthy signal are left out.
+#[derive(Debug, Clone)]
+struct Orbits {
+    of: Vec<Vec<Broadcast>>,
+    /// Of the same data.
+    klobuchar: Option<Klobuchar>,
+}
+
+impl Orbits {
+    fn new(navigation: &Navigation) -> Self {
+        let satellite = |number| SatelliteId { constellation: Constellation::Gps, number };
+        let healthy = |e: &&Ephemeris| e.healthy(Carrier::L1);
+        let all = |prn| navigation.of(satellite(prn)).iter().filter(healthy).filter_map(|e| Broadcast::new(e).ok()).collect();
+        Self { of: GPS.map(all).collect(), klobuchar: navigation.klobuchar_gps }
+    }
+    /// The record of this issue nearest in time.
+    fn record(&self, prn: u8, iode: u8, now: GpsTime) -> Option<&Broadcast> {
+        let fits = |b: &&Broadcast| b.record().issue_orbit == u16::from(iode) && b.record().covers(now);
+        let gap = |b: &&Broadcast| b.record().orbit_time.seconds_since(now).abs();
+        let own = self.of.get(usize::from(prn.checked_sub(*GPS.start())?))?;
+        own.iter().filter(fits).min_by(|a, b| gap(a).total_cmp(&gap(b)))
+    }
+    /// Where it is now.
     fn at(&self, prn: u8, iode: u8, now: GpsTime) -> Option<Orbit> {
-        if !(1..=37).contains(&prn) {
-            return None;
-        }
-        let satellite = SatelliteId { constellation: Constellation::Gps, number: prn };
-        let fits = |e: &&Ephemeris| e.issue_orbit == u16::from(iode) && e.covers(now) && e.healthy(Carrier::L1);
-        let gap = |e: &&Ephemeris| e.orbit_time.seconds_since(now).abs();
-        let record = self.0.of(satellite).iter().filter(fits).min_by(|a, b| gap(a).total_cmp(&gap(b)))?;
-        sbas::orbit(record, now).ok()
+        let state = self.record(prn, iode, now)?.state(now);
+        Some(Orbit { position_ecef_m: *state.position.vector(), velocity_ecef_mps: state.velocity_mps })
     }
 }
 
@@ -111,13 +138,13 @@ struct Listener<'a> {
 }
 
 impl<'a> Listener<'a> {
-    fn new(feed: &'a Feed, obedience: Obedience) -> Self {
+    fn new(feed: &'a Feed, obedience: Obedience, klobuchar: Option<Klobuchar>) -> Self {
         Self {
             feed: &feed.0,
             heard: 0,
             store: Box::new(Store::new(obedience)),
-            approach: Box::new(Service::new(Use::PrecisionApproach)),
-            en_route: Box::new(Service::new(Use::EnRoute)),
+            approach: Box::new(Service::new(Use::PrecisionApproach, klobuchar)),
+            en_route: Box::new(Service::new(Use::EnRoute, klobuchar)),
             ignored: Vec::new(),
         }
     }
@@ -131,7 +158,14 @@ impl<'a> Listener<'a> {
             self.heard += 1;
         }
     }
-    fn service(&mut self, used_for: Use, now: GpsTime, orbits: Orbits<'_>) -> &Service {
+    /// As last refreshed.
+    fn last(&self, used_for: Use) -> &Service {
+        match used_for {
+            Use::PrecisionApproach => &self.approach,
+            Use::EnRoute => &self.en_route,
+        }
+    }
+    fn service(&mut self, used_for: Use, now: GpsTime, orbits: &Orbits) -> &Service {
         let service = match used_for {
             Use::PrecisionApproach => &mut self.approach,
             Use::EnRoute => &mut self.en_route,
@@ -179,10 +213,11 @@ fn each<T: Send>(
     order.sort_by_key(|i| requests[*i].time);
     let tasks = rayon::current_num_threads().max(1);
     let size = requests.len().div_ceil(tasks).max(LEAST_TASK);
+    let orbits = Orbits::new(navigation);
     let work = |part: &[usize]| {
         let mut task = Task {
-            listener: Listener::new(feed, settings.obedience),
-            orbits: Orbits(navigation),
+            listener: Listener::new(feed, settings.obedience, orbits.klobuchar),
+            orbits: &orbits,
             settings,
             users: Vec::new(),
             sky: Sky::default(),
@@ -202,7 +237,7 @@ fn each<T: Send>(
 /// One core's share of the requests, in the order of time.
 struct Task<'a> {
     listener: Listener<'a>,
-    orbits: Orbits<'a>,
+    orbits: &'a Orbits,
     settings: &'a Settings,
     /// Users of the last instant: those who stay are not computed again.
     users: Vec<User>,
@@ -220,10 +255,7 @@ impl Task<'_> {
         let Some(now) = instant.first().map(|i| requests[*i].time) else { return Ok(()) };
         self.listener.listen(now);
         self.place(requests, instant)?;
-        let (first, second) = match self.settings.mode {
-            Mode::Best => (Use::PrecisionApproach, Some(Use::EnRoute)),
-            Mode::Only(one) => (one, None),
-        };
+        let (first, second) = self.settings.mode.uses();
         let mut without: Vec<usize> = Vec::new();
         let service = self.listener.service(first, now, self.orbits);
         for (k, (i, user)) in instant.iter().zip(&self.users).enumerate() {
@@ -280,7 +312,7 @@ fn answer(result: Result<Levels, NoLevel>, sky: &Sky) -> Answer {
 
 /// Messages that changed nothing when the whole feed is heard, with their reason.
 pub fn ignored(feed: &Feed, obedience: Obedience) -> Vec<(GpsTime, Ignored)> {
-    let mut listener = Listener::new(feed, obedience);
+    let mut listener = Listener::new(feed, obedience, None);
     listener.listen(GpsTime::from_nanoseconds(i64::MAX));
     listener.ignored
 }

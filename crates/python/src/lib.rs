@@ -24,6 +24,7 @@ mod rnp;
 mod rraim;
 mod sbas;
 mod sbas_fields;
+mod sbas_positions;
 mod simulate;
 mod states;
 mod surface;
@@ -41,6 +42,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     araim::register(m)?;
     rnp::register(m)?;
     sbas::register(m)?;
+    sbas_positions::register(m)?;
     ee::register(m)?;
     states::register(m)?;
     evaluation::register(m)?;

@@ -1,6 +1,7 @@
 //! SBAS: message logs, decoded messages, protection levels.
 
 use crate::error::{format_error, input_error};
+use crate::positions::Navigation;
 use crate::sbas_fields::fields;
 use navbound_assess::sbas::{self, Answer, Feed, FromTerms, Mode, Request, Settings, TermsRefused};
 use navbound_core::bound::sbas::model::Airborne;
@@ -9,7 +10,6 @@ use navbound_core::frame::{Covariance, Enu, Geodetic, LatLon};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians};
 use navbound_core::signal::sbas::timeout::Use;
 use navbound_core::signal::sbas::{BLOCK_BYTES, Block, Obedience, decode};
-use navbound_formats::rinex::{Navigation, read_navigation};
 use navbound_formats::sbas::{Received, Tag, read};
 use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -63,17 +63,13 @@ fn blocks(data: &PyReadonlyArray2<'_, u8>) -> PyResult<Vec<Block>> {
     rows.iter().enumerate().map(block).collect()
 }
 
-/// What the levels are computed from, as it comes from Python.
+/// A service as a user hears it, as it comes from Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Job<'py> {
+pub struct Service<'py> {
     message_time_ns: PyReadonlyArray1<'py, i64>,
     data: PyReadonlyArray2<'py, u8>,
-    navigation: Vec<(String, Vec<u8>)>,
-    time_ns: PyReadonlyArray1<'py, i64>,
-    lat_rad: PyReadonlyArray1<'py, f64>,
-    lon_rad: PyReadonlyArray1<'py, f64>,
-    h_m: PyReadonlyArray1<'py, f64>,
+    pub navigation: Bound<'py, Navigation>,
     mode: String,
     mask_rad: f64,
     noise_m: f64,
@@ -81,27 +77,23 @@ struct Job<'py> {
     test_signal: bool,
 }
 
-/// The same, converted.
-struct Work {
-    feed: Feed,
-    navigation: Navigation,
-    requests: Vec<Request>,
-    settings: Settings,
+/// Times and places.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Places<'py> {
+    time_ns: PyReadonlyArray1<'py, i64>,
+    lat_rad: PyReadonlyArray1<'py, f64>,
+    lon_rad: PyReadonlyArray1<'py, f64>,
+    h_m: PyReadonlyArray1<'py, f64>,
 }
 
-impl Job<'_> {
-    fn work(&self) -> PyResult<Work> {
+impl Service<'_> {
+    /// Its messages and how they are used.
+    pub fn heard(&self) -> PyResult<(Feed, Settings)> {
         let ends = self.message_time_ns.as_slice()?;
         // The levels use one satellite's messages; who sent them no longer matters.
         let received = |(block, end): (Block, &i64)| Received { end: GpsTime::from_nanoseconds(*end), prn: 0, block };
         let messages: Vec<_> = blocks(&self.data)?.into_iter().zip(ends).map(received).collect();
-        let mut navigation = Navigation::default();
-        for (path, bytes) in &self.navigation {
-            navigation.merge(read_navigation(bytes).map_err(|e| format_error(path, &e))?);
-        }
-        let places = self.lat_rad.as_slice()?.iter().zip(self.lon_rad.as_slice()?).zip(self.h_m.as_slice()?);
-        let requests: PyResult<Vec<_>> =
-            self.time_ns.as_slice()?.iter().zip(places).enumerate().map(|(i, (t, place))| request(i, *t, place)).collect();
         let mode = match self.mode.as_str() {
             "pa" => Mode::Only(Use::PrecisionApproach),
             "npa" => Mode::Only(Use::EnRoute),
@@ -109,8 +101,14 @@ impl Job<'_> {
         };
         let airborne = Airborne::new(self.noise_m, self.divergence_m).map_err(|e| input_error(e, None))?;
         let obedience = if self.test_signal { Obedience::UseTestSignal } else { Obedience::Obey };
-        let settings = Settings { mode, mask: Radians::new(self.mask_rad), airborne, obedience };
-        Ok(Work { feed: Feed::new(&messages), navigation, requests: requests?, settings })
+        Ok((Feed::new(&messages), Settings { mode, mask: Radians::new(self.mask_rad), airborne, obedience }))
+    }
+}
+
+impl Places<'_> {
+    fn requests(&self) -> PyResult<Vec<Request>> {
+        let places = self.lat_rad.as_slice()?.iter().zip(self.lon_rad.as_slice()?).zip(self.h_m.as_slice()?);
+        self.time_ns.as_slice()?.iter().zip(places).enumerate().map(|(i, (t, place))| request(i, *t, place)).collect()
     }
 }
 
@@ -121,15 +119,29 @@ fn request(index: usize, time_ns: i64, ((lat, lon), h): ((&f64, &f64), &f64)) ->
 
 /// Levels: hpl_m, vpl_m, n_sv, mode (0 none, 1 precision approach, 2 en route), reason (0 or 1 + index of reasons), reasons.
 #[pyfunction]
-fn sbas_levels<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDict>> {
-    let work = job.work()?;
-    let answers = py
-        .detach(|| sbas::levels(&work.feed, &work.navigation, &work.requests, &work.settings))
-        .map_err(|(index, e)| input_error(e, Some(index)))?;
+fn sbas_levels<'py>(py: Python<'py>, service: Service<'py>, places: Places<'py>) -> PyResult<Bound<'py, PyDict>> {
+    let ((feed, settings), requests) = (service.heard()?, places.requests()?);
+    let records = &service.navigation.get().records;
+    let answers =
+        py.detach(|| sbas::levels(&feed, records, &requests, &settings)).map_err(|(index, e)| input_error(e, Some(index)))?;
     let d = answers_columns(py, &answers)?;
-    let ignored = py.detach(|| sbas::ignored(&work.feed, work.settings.obedience));
-    d.set_item("ignored", ignored.into_iter().map(|(t, why)| (t.nanoseconds(), why.to_string())).collect::<Vec<_>>())?;
+    d.set_item("ignored", ignored(py, &feed, &settings))?;
     Ok(d)
+}
+
+/// Messages that changed nothing: time, why.
+pub fn ignored(py: Python<'_>, feed: &Feed, settings: &Settings) -> Vec<(i64, String)> {
+    let found = py.detach(|| sbas::ignored(feed, settings.obedience));
+    found.into_iter().map(|(t, why)| (t.nanoseconds(), why.to_string())).collect()
+}
+
+/// What a level is good for: 0 none, 1 precision approach, 2 en route.
+pub const fn mode_code(used_for: Option<Use>) -> u8 {
+    match used_for {
+        None => 0,
+        Some(Use::PrecisionApproach) => 1,
+        Some(Use::EnRoute) => 2,
+    }
 }
 
 fn answers_columns<'py>(py: Python<'py>, answers: &[Answer]) -> PyResult<Bound<'py, PyDict>> {
@@ -145,11 +157,7 @@ fn answers_columns<'py>(py: Python<'py>, answers: &[Answer]) -> PyResult<Bound<'
             u32::try_from(at + 1).unwrap_or(u32::MAX)
         }));
     }
-    let mode = |a: &Answer| match a.used_for {
-        None => 0_u8,
-        Some(Use::PrecisionApproach) => 1,
-        Some(Use::EnRoute) => 2,
-    };
+    let mode = |a: &Answer| mode_code(a.used_for);
     let d = PyDict::new(py);
     d.set_item("hpl_m", answers.iter().map(|a| a.hpl_m).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("vpl_m", answers.iter().map(|a| a.vpl_m).collect::<Vec<_>>().into_pyarray(py))?;
@@ -162,11 +170,11 @@ fn answers_columns<'py>(py: Python<'py>, answers: &[Answer]) -> PyResult<Bound<'
 
 /// The satellites of every solution, one row each: index of the request, and the parts of its range's error.
 #[pyfunction]
-fn sbas_satellites<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDict>> {
-    let work = job.work()?;
-    let skies = py
-        .detach(|| sbas::satellites(&work.feed, &work.navigation, &work.requests, &work.settings))
-        .map_err(|(index, e)| input_error(e, Some(index)))?;
+fn sbas_satellites<'py>(py: Python<'py>, service: Service<'py>, places: Places<'py>) -> PyResult<Bound<'py, PyDict>> {
+    let ((feed, settings), requests) = (service.heard()?, places.requests()?);
+    let records = &service.navigation.get().records;
+    let skies =
+        py.detach(|| sbas::satellites(&feed, records, &requests, &settings)).map_err(|(index, e)| input_error(e, Some(index)))?;
     let rows: Vec<_> = skies.iter().enumerate().flat_map(|(i, sky)| sky.iter().map(move |s| (i as i64, s))).collect();
     let d = PyDict::new(py);
     d.set_item("epoch", rows.iter().map(|(i, _)| *i).collect::<Vec<_>>().into_pyarray(py))?;
@@ -179,6 +187,7 @@ fn sbas_satellites<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, P
     d.set_item("fast_correction_m", column(|s| s.fast_m))?;
     d.set_item("clock_correction_s", column(|s| s.clock_s))?;
     d.set_item("iono_vertical_m", column(|s| s.vertical.delay_m))?;
+    d.set_item("from_grid", rows.iter().map(|(_, s)| s.from_grid).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("sigma_flt_m", column(|s| s.error.corrected_m2.sqrt()))?;
     d.set_item("sigma_uire_m", column(|s| s.error.ionosphere_m2.sqrt()))?;
     d.set_item("sigma_tropo_m", column(|s| s.error.troposphere_m2.sqrt()))?;

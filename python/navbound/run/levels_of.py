@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -42,12 +43,11 @@ SCHEMA = pl.Schema(
 BEFORE_NS = 3_600_000_000_000
 """Messages of the hour before the first epoch still count: nothing that a service broadcasts is valid longer."""
 
-MIXED = (
-    "Errors are those of the uncorrected broadcast positions, protection levels those of the SBAS service at the same epochs: safety index "
-    "and misleading information compare two different positions and are not the service's."
+SAME = (
+    "Errors and protection levels belong to the same solutions: the receiver's pseudoranges with the corrections of the SBAS service, "
+    "weighted by its error model, the satellites of the level."
 )
 """Stands beside every number of a run on observations and SBAS messages."""
-
 
 OWN = (
     "No service monitors these satellites: the protection levels are 6.0 and 5.33 standard deviations (the multipliers of SBAS) of the "
@@ -208,10 +208,61 @@ def _with_truth(epochs: pl.DataFrame, reading: Reading, truth: Truth) -> tuple[p
     return with_error(fixed), f"Truth: the fixed point {truth.given} m, Earth-fixed."
 
 
-def from_observations(
-    path: Path, navigation: Sequence[Path], logs: Sequence[Path], truth: Truth, *, prn: int | None = None, keep_ranges: bool = False
-) -> Part:
-    """Solve a receiver's positions; their protection levels are those of the SBAS service there, or without messages their own.
+class Service:
+    """Navigation data and SBAS messages of a campaign, read once for all its observation files.
+
+    Parameters
+    ----------
+    navigation, logs : sequence of paths
+        RINEX navigation files, logs of SBAS messages.
+    prn : int, optional
+        Which geostationary satellite's messages.
+    """
+
+    def __init__(self, navigation: Sequence[Path], logs: Sequence[Path], prn: int | None) -> None:
+        self._navigation, self._logs, self._prn = navigation, logs, prn
+
+    @property
+    def has_messages(self) -> bool:
+        """Whether there are logs of SBAS messages."""
+        return bool(self._logs)
+
+    @cached_property
+    def navigation(self) -> gnss.Navigation:
+        """Broadcast messages of all files."""
+        return gnss.read_navigation(list(self._navigation))
+
+    @cached_property
+    def _messages(self) -> sbas.Messages:
+        """Those of all logs in the order of time."""
+        logs = [sbas.read(log) for log in self._logs]
+        time_ns, sender, data = (np.concatenate([getattr(m, name) for m in logs]) for name in ("time_ns", "prn", "data"))
+        order = np.argsort(time_ns, kind="stable")
+        refused = [r for m in logs for r in m.refused]
+        return sbas.Messages(time_ns[order], sender[order], data[order], logs[0].format, logs[0].tag, refused)
+
+    def messages(self, first_ns: int, last_ns: int) -> sbas.Messages:
+        """Messages of one satellite that count between two instants.
+
+        Raises
+        ------
+        InputError
+            None of that time; messages of several satellites and none chosen, or a satellite that sent none.
+        """
+        every = self._messages
+        from_, to = np.searchsorted(every.time_ns, [first_ns - BEFORE_NS, last_ns + 1])
+        near = replace(every, time_ns=every.time_ns[from_:to], prn=every.prn[from_:to], data=every.data[from_:to])
+        if not near.time_ns.size:
+            raise InputError("files", ", ".join(map(str, self._logs))[:200], domain="message logs of the time of the observations")
+        senders = np.unique(near.prn).tolist()
+        if len(senders) > 1 if self._prn is None else self._prn not in senders:
+            wanted = "none" if self._prn is None else self._prn
+            raise InputError("prn", wanted, domain=f"one of the satellites of the logs: {', '.join(map(str, senders))}")
+        return near if self._prn is None else near.of(self._prn)
+
+
+def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges: bool = False) -> Part:
+    """Solve a receiver's positions: with the service's corrections and levels, or without messages with the levels of their own covariance.
 
     Raises
     ------
@@ -220,21 +271,37 @@ def from_observations(
     InputError
         Messages of several satellites and none chosen, no message of the time, or ranges wanted without truth or with messages.
     """
-    observations, records = gnss.read_observations(path), gnss.read_navigation(list(navigation))
-    ionosphere: Literal["broadcast", "none"] = "broadcast" if records.has_ionosphere else "none"
-    positions = gnss.solve(
-        observations, records, systems="G", ionosphere=ionosphere, truth_ecef_m=truth.ecef_m, keep_ranges=keep_ranges and not logs
-    )
-    epochs, notes = positions.epochs, [f"{name}: {words}" for name, words in positions.models.items()]
+    observations = gnss.read_observations(path)
+    if not observations.n_epochs:
+        raise FormatError(path, "holds no epoch")
+    ranges = None
+    if service.has_messages:
+        epochs, notes = _corrected(observations, service, truth)
+    else:
+        records = service.navigation
+        ionosphere: Literal["broadcast", "none"] = "broadcast" if records.has_ionosphere else "none"
+        positions = gnss.solve(
+            observations, records, systems="G", ionosphere=ionosphere, truth_ecef_m=truth.ecef_m, keep_ranges=keep_ranges
+        )
+        epochs, notes = positions.epochs, [OWN, *(f"{name}: {words}" for name, words in positions.models.items())]
+        ranges = positions.ranges
     if truth.given is not None and truth.ecef_m is None:
-        recorded = read(truth.given)
-        epochs, words = join(epochs, recorded, truth.tolerance_s)
+        epochs, words = join(epochs, read(truth.given), truth.tolerance_s)
         notes.append(words)
-    ranges = _range_errors(positions.ranges, epochs) if positions.ranges is not None else None
-    if logs:
-        epochs = _of_service(epochs, navigation, _messages(logs, epochs["time_ns"], prn), truth)
-        return Part(_uniform(epochs), observations.n_epochs, [], [MIXED, *notes] if truth.given is not None else notes)
-    return Part(_uniform(_of_own(epochs)), observations.n_epochs, [], [OWN, *notes], sbas.EXTRACTION_LABEL, ranges)
+    if service.has_messages:
+        return Part(_uniform(epochs), observations.n_epochs, [], notes)
+    errors = None if ranges is None else _range_errors(ranges, epochs)
+    return Part(_uniform(_of_own(epochs)), observations.n_epochs, [], notes, sbas.EXTRACTION_LABEL, errors)
+
+
+def _corrected(observations: gnss.Observations, service: Service, truth: Truth) -> tuple[pl.DataFrame, list[str]]:
+    """Positions with the corrections of the SBAS service and the protection levels of those solutions; words about them."""
+    messages = service.messages(int(observations.time_ns[0]), int(observations.time_ns[-1]))
+    positions = sbas.solve(observations, service.navigation, messages, truth_ecef_m=truth.ecef_m)
+    notes = [SAME, *(f"{name}: {words}" for name, words in positions.models.items())]
+    # Without counts: the same words of many files stand once.
+    notes.extend(f"Satellites left out where: {why}." for why in positions.unused)
+    return positions.epochs, notes
 
 
 def _of_own(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -251,60 +318,6 @@ def _range_errors(ranges: pl.DataFrame, epochs: pl.DataFrame) -> pl.DataFrame:
     east, north = pl.col("el_rad").cos() * pl.col("az_rad").sin(), pl.col("el_rad").cos() * pl.col("az_rad").cos()
     moved = east * pl.col("nse_e_m") + north * pl.col("nse_n_m") + pl.col("el_rad").sin() * pl.col("nse_u_m")
     return joined.with_columns(range_error_m=pl.col("residual_m") + moved).drop_nulls("range_error_m")
-
-
-def _of_service(epochs: pl.DataFrame, navigation: Sequence[Path], messages: sbas.Messages, truth: Truth) -> pl.DataFrame:
-    """Levels that the service gives at the receiver's place."""
-    place = np.column_stack([epochs[name].fill_null(np.nan).to_numpy() for name in ("est_lat_rad", "est_lon_rad", "est_h_m")])
-    if truth.ecef_m is not None:
-        place = np.broadcast_to(gnss.geodetic(truth.ecef_m), place.shape)
-    known = np.isfinite(place).all(axis=1)
-    found = sbas.protection_levels(
-        messages,
-        list(navigation),
-        epochs["time_ns"].to_numpy()[known],
-        lat_rad=place[known, 0],
-        lon_rad=place[known, 1],
-        h_m=place[known, 2],
-    )
-    return _with_levels(epochs, found, known)
-
-
-def _with_levels(epochs: pl.DataFrame, found: sbas.Levels, known: NDArray[np.bool_]) -> pl.DataFrame:
-    why = np.array(["", *found.reasons], dtype=np.str_)[found.reason]
-    levels = pl.DataFrame(
-        {
-            "row": np.flatnonzero(known),
-            "hpl_m": found.hpl_m,
-            "vpl_m": found.vpl_m,
-            "n_sv": found.n_sv,
-            "mode": found.mode.astype(str),
-            "why": why.astype(str),
-        }
-    )
-    joined = epochs.drop("n_sv").with_row_index("row").with_columns(pl.col("row").cast(pl.Int64))
-    joined = joined.join(levels, on="row", how="left", maintain_order="left")
-    solved = ~pl.col("status").is_in(["not_available", "invalid_input"])
-    reason = pl.when(solved & (pl.col("why") != "")).then("why").otherwise("reason").alias("reason")
-    return joined.with_columns(pl.selectors.by_name("hpl_m", "vpl_m").fill_nan(None), pl.col("mode").replace({"": None}), reason)
-
-
-def _messages(logs: Sequence[Path], times: pl.Series, prn: int | None) -> sbas.Messages:
-    """Those of the time of the epochs, of one satellite."""
-    first, last = int(times[0]) - BEFORE_NS, int(times[-1])
-    read_logs = [sbas.read(log) for log in logs]
-    near = [m for m in read_logs if len(m.time_ns) and m.time_ns[0] <= last and m.time_ns[-1] >= first]
-    if not near:
-        raise InputError("files", ", ".join(str(log) for log in logs)[:200], domain="message logs of the time of the observations")
-    time_ns, sender, data = (np.concatenate([getattr(m, name) for m in near]) for name in ("time_ns", "prn", "data"))
-    order = np.argsort(time_ns, kind="stable")
-    joined = sbas.Messages(time_ns[order], sender[order], data[order], near[0].format, near[0].tag, [r for m in near for r in m.refused])
-    senders = np.unique(sender).tolist()
-    if prn is None and len(senders) > 1:
-        raise InputError("prn", "none", domain=f"one of the satellites of the logs: {', '.join(map(str, senders))}")
-    if prn is not None and prn not in senders:
-        raise InputError("prn", prn, domain=f"one of the satellites of the logs: {', '.join(map(str, senders))}")
-    return joined if prn is None else joined.of(prn)
 
 
 def _uniform(epochs: pl.DataFrame) -> pl.DataFrame:

@@ -22,7 +22,7 @@ from navbound.read.source import load
 from navbound.run import directory
 from navbound.run.directory import Run
 from navbound.run.field_csv import write_csv
-from navbound.run.levels_of import COVARIANCE, SCHEMA, Part, Truth, from_observations, from_table, sort_out, truth_of
+from navbound.run.levels_of import COVARIANCE, SCHEMA, Part, Service, Truth, from_observations, from_table, sort_out, truth_of
 from navbound.run.performance_words import performance_words
 from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
 from navbound.run.summarise import honesty_of
@@ -171,12 +171,13 @@ def _parts(sources: Files, options: Options, truth: Truth, folder: Path, progres
     folder.mkdir(exist_ok=True)
     jobs = sources.tables + sources.observations
     shared = _shared_key(sources, options, truth)
+    service = Service([s.path for s in sources.navigation], [s.path for s in sources.messages], options.prn)
     stored = []
     for done, source in enumerate(jobs):
         key = hashlib.sha256(f"{source.sha256} {shared}".encode()).hexdigest()[:24]
         found = _remembered(folder, key, source)
         if found is None:
-            found = _remember(folder, key, source, _compute(source, sources, options, truth))
+            found = _remember(folder, key, source, _compute(source, sources, options, truth, service))
         stored.append(found)
         if progress is not None:
             progress(done + 1, len(jobs))
@@ -199,11 +200,10 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
     return json.dumps([given, options.stanford_esa is not None, SCHEMA.names(), beside])
 
 
-def _compute(source: Source, sources: Files, options: Options, truth: Truth) -> Part:
+def _compute(source: Source, sources: Files, options: Options, truth: Truth, service: Service) -> Part:
     if source in sources.tables:
         return from_table(source.path, truth, options.columns)
-    navigation, logs = ([s.path for s in group] for group in (sources.navigation, sources.messages))
-    return from_observations(source.path, navigation, logs, truth, prn=options.prn, keep_ranges=options.stanford_esa is not None)
+    return from_observations(source.path, service, truth, keep_ranges=options.stanford_esa is not None)
 
 
 def _remember(folder: Path, key: str, source: Source, part: Part) -> _Stored:

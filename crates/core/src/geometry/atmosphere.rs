@@ -21,13 +21,18 @@ pub fn klobuchar(model: &Klobuchar, receiver: &Geodetic, direction: &Direction, 
 }
 
 /// The same from the elevation \[rad\] and the azimuth's sine and cosine, which a line of sight has without the angle.
-pub(crate) fn klobuchar_towards(
+pub(crate) fn klobuchar_towards(model: &Klobuchar, receiver: &Geodetic, elevation_rad: f64, azimuth: (f64, f64), time: GpsTime) -> Metres {
+    klobuchar_and_latitude(model, receiver, elevation_rad, azimuth, time).0
+}
+
+/// With the geomagnetic latitude of the point where the signal pierces the model's shell \[rad\].
+pub(crate) fn klobuchar_and_latitude(
     model: &Klobuchar,
     receiver: &Geodetic,
     elevation_rad: f64,
     (sin_az, cos_az): (f64, f64),
     time: GpsTime,
-) -> Metres {
+) -> (Metres, f64) {
     let elevation = elevation_rad / PI;
     let angle = 0.0137 / (elevation + 0.11) - 0.022;
     let lat = (receiver.point.lat().rad() / PI + angle * cos_az).clamp(-0.416, 0.416);
@@ -42,7 +47,7 @@ pub(crate) fn klobuchar_towards(
     let cosine = if x.abs() < 1.57 { amplitude * (1.0 - x * x / 2.0 + x * x * x * x / 24.0) } else { 0.0 };
     let gap = 0.53 - elevation;
     let slant = 1.0 + 16.0 * gap * gap * gap;
-    Metres::new(slant * (5e-9 + cosine) * SPEED_OF_LIGHT_MPS)
+    (Metres::new(slant * (5e-9 + cosine) * SPEED_OF_LIGHT_MPS), magnetic * PI)
 }
 
 /// How much larger the ionospheric delay is on a carrier than on L1.

@@ -5,6 +5,7 @@ pub mod broadcast;
 mod nominal;
 mod orbit;
 pub mod precise;
+pub(crate) mod seasonal;
 mod sight;
 
 pub use nominal::{BEIDOU, GALILEO, GPS, Slot};

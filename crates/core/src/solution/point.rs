@@ -234,11 +234,18 @@ struct Place {
 /// A first position from nothing: equal weights, no atmosphere, from the Earth's centre. A few rounds bring it within kilometres,
 /// gross errors in the ranges apart.
 fn start(ranges: &[Range]) -> Result<Vector3<f64>, Unavailable> {
+    start_from(ranges.iter().map(|r| (&r.position, r.corrected, r.satellite.constellation)))
+}
+
+/// The same from satellites' positions, ranges with the satellite's clock taken out, and whose time they count in.
+pub(crate) fn start_from<'a>(
+    ranges: impl Iterator<Item = (&'a EcefPosition, Metres, Constellation)> + Clone,
+) -> Result<Vector3<f64>, Unavailable> {
     let mut at = Vector3::zeros();
     for _ in 0..ROUNDS {
-        let rows = ranges.iter().map(|r| {
-            let (way, unit) = way(r, &at);
-            Row { unit, weight: 1.0, clock: r.satellite.constellation.index(), residual: r.corrected.m() - way }
+        let rows = ranges.clone().map(|(satellite, corrected, constellation)| {
+            let (way, unit) = way(satellite, &at);
+            Row { unit, weight: 1.0, clock: constellation.index(), residual: corrected.m() - way }
         });
         let normal = Normal::new(rows)?;
         let step = normal.step().ok_or(SINGULAR)?;
@@ -251,9 +258,9 @@ fn start(ranges: &[Range]) -> Result<Vector3<f64>, Unavailable> {
 }
 
 /// Length of the signal's way and direction from receiver to satellite, Earth-fixed axes of reception.
-fn way(range: &Range, at: &Vector3<f64>) -> (f64, Vector3<f64>) {
-    let straight = (range.position.vector() - at).norm();
-    let line = in_axes_of_reception(range.position.vector(), straight / SPEED_OF_LIGHT_MPS) - at;
+pub(crate) fn way(satellite: &EcefPosition, at: &Vector3<f64>) -> (f64, Vector3<f64>) {
+    let straight = (satellite.vector() - at).norm();
+    let line = in_axes_of_reception(satellite.vector(), straight / SPEED_OF_LIGHT_MPS) - at;
     let length = line.norm();
     (length, line / length)
 }
@@ -301,7 +308,7 @@ impl<'a> Solver<'a> {
             self.modelled_at = self.at;
         }
         for (range, seen) in self.ranges.iter().zip(self.seen.iter_mut()) {
-            let (way, unit) = way(range, &self.at);
+            let (way, unit) = way(&range.position, &self.at);
             let unit = turn * unit;
             if let Some(place) = &place {
                 (seen.ionosphere, seen.delay, seen.weight) = self.settings.delay_and_weight(range, &unit, place);

@@ -133,20 +133,20 @@ fn weighted_row(s: WeightedSight) -> Row {
 
 /// One range of the normal equation.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Row {
+pub(crate) struct Row {
     /// From the receiver to the satellite, east-north-up.
-    pub(super) unit: Vector3<f64>,
+    pub(crate) unit: Vector3<f64>,
     /// 1 / variance.
-    pub(super) weight: f64,
+    pub(crate) weight: f64,
     /// Which clock.
-    pub(super) clock: usize,
+    pub(crate) clock: usize,
     /// Measured less computed range \[m\]; what the clock makes of it is common to its rows.
-    pub(super) residual: f64,
+    pub(crate) residual: f64,
 }
 
 /// The normal equation with its clocks eliminated.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Normal {
+pub(crate) struct Normal {
     groups: [Group; CLOCKS],
     information: Matrix3<f64>,
     /// Right side: -sum w (u - m_c)(r - r_c).
@@ -158,7 +158,7 @@ impl Normal {
     ///
     /// # Errors
     /// [`Unavailable::TooFewSatellites`].
-    pub(super) fn new(rows: impl Iterator<Item = Row> + Clone) -> Result<Self, Unavailable> {
+    pub(crate) fn new(rows: impl Iterator<Item = Row> + Clone) -> Result<Self, Unavailable> {
         let groups = groups(rows.clone());
         let have = groups.iter().map(|g| g.count).sum();
         let need = 3 + groups.iter().filter(|g| g.count > 0).count();
@@ -185,7 +185,7 @@ impl Normal {
     }
 
     /// Right sides of the rows for three other residuals each, as columns: -sum w (u - m_c) r. What is common to a clock's rows drops out.
-    pub(super) fn sides(&self, rows: impl Iterator<Item = (Row, Vector3<f64>)>) -> Matrix3<f64> {
+    pub(crate) fn sides(&self, rows: impl Iterator<Item = (Row, Vector3<f64>)>) -> Matrix3<f64> {
         let mut sides = Matrix3::zeros();
         for (row, residuals) in rows {
             sides -= (row.weight * (row.unit - self.groups[row.clock].mean)) * residuals.transpose();
@@ -194,29 +194,29 @@ impl Normal {
     }
 
     /// The least-squares step of the position; `None` where the geometry does not determine it at all.
-    pub(super) fn step(&self) -> Option<Vector3<f64>> {
+    pub(crate) fn step(&self) -> Option<Vector3<f64>> {
         Some(self.information.cholesky()?.solve(&self.side))
     }
 
     /// What a row's clock reads after a step: the weighted mean of residual and step along the line of sight.
-    pub(super) fn clock(&self, clock: usize, step: &Vector3<f64>) -> f64 {
+    pub(crate) fn clock(&self, clock: usize, step: &Vector3<f64>) -> f64 {
         self.groups[clock].residual + self.groups[clock].mean.dot(step)
     }
 
     /// Inverse of the information, for [`Self::leverage`].
-    pub(super) fn inverse(&self) -> Option<Matrix3<f64>> {
+    pub(crate) fn inverse(&self) -> Option<Matrix3<f64>> {
         Some(self.information.cholesky()?.inverse())
     }
 
     /// How much of its own residual a row takes away by moving the solution, 0 to 1: w (1/W_c + d' N^-1 d).
-    pub(super) fn leverage(&self, inverse: &Matrix3<f64>, row: &Row) -> f64 {
+    pub(crate) fn leverage(&self, inverse: &Matrix3<f64>, row: &Row) -> f64 {
         let group = &self.groups[row.clock];
         let d = row.unit - group.mean;
         row.weight * (1.0 / group.weight + d.dot(&(inverse * d)))
     }
 
     /// Number of clocks solved for.
-    pub(super) fn clocks(&self) -> usize {
+    pub(crate) fn clocks(&self) -> usize {
         self.groups.iter().filter(|g| g.count > 0).count()
     }
 
@@ -224,7 +224,7 @@ impl Normal {
     ///
     /// # Errors
     /// [`Unavailable::Singular`].
-    pub(super) fn covariance(&self) -> Result<Covariance<Enu>, Unavailable> {
+    pub(crate) fn covariance(&self) -> Result<Covariance<Enu>, Unavailable> {
         let inverse = self.inverse();
         // Traces bound the condition from above at no cost; eigenvalues only where that bound does not settle it.
         if let Some(inverse) = inverse.filter(|inverse| self.condition_bound(inverse) <= CONDITION_LIMIT) {
@@ -252,7 +252,7 @@ impl Normal {
 
 impl Dilution {
     /// From the covariance of ranges of 1 m.
-    pub(super) fn of(q: &Covariance<Enu>) -> Self {
+    pub(crate) fn of(q: &Covariance<Enu>) -> Self {
         let [e, n, v] = [0, 1, 2].map(|i| q.matrix()[(i, i)]);
         Self { east: sqrt(e), north: sqrt(n), horizontal: sqrt(e + n), vertical: sqrt(v), position: sqrt(e + n + v) }
     }

@@ -1,23 +1,26 @@
 //! SBAS protection levels: from what a service broadcasts to HPL and VPL at a place.
 //!
 //! In the order of the flow: [`service`] (what is offered now, the same for everyone), [`ionosphere`] (the grid where a signal pierces the
-//! shell), [`model`] (the terms of one range's error), and here the levels at a user's place.
+//! shell), [`model`] (the terms of one range's error), here the levels at a user's place, and [`position`] (a user's own ranges corrected,
+//! with the levels of that solution).
 
 pub mod ionosphere;
 pub mod model;
+pub mod position;
 pub mod service;
 pub mod terms;
 
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, ecef_from_geodetic, enu_from_ecef};
+use crate::geometry::atmosphere::klobuchar_and_latitude;
 use crate::geometry::broadcast::in_axes_of_reception;
-use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Unavailable};
+use crate::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use crate::signal::sbas::MASK_MOST;
 use crate::signal::sbas::timeout::Use;
 use crate::signal::{Constellation, SPEED_OF_LIGHT_MPS};
 use crate::solution::wls::{self, WeightedSight};
-use crate::special::float::asin;
+use crate::special::float::{asin, sqrt};
 use ionosphere::{Pierce, Vertical};
-use model::{Airborne, RangeError};
+use model::{Airborne, RangeError, broadcast_ionosphere_m2, obliquity_squared};
 use nalgebra::{Matrix3, Vector3};
 use service::{Ranging, Service};
 
@@ -52,7 +55,7 @@ pub fn levels(covariance: &Covariance<Enu>, used_for: Use) -> Levels {
     let (d_major, _) = wls::horizontal_axes(covariance);
     match used_for {
         Use::PrecisionApproach => {
-            let d_u = crate::special::float::sqrt(covariance.matrix()[(2, 2)]);
+            let d_u = sqrt(covariance.matrix()[(2, 2)]);
             Levels { hpl: Metres::new(K_H_PA * d_major.m()), vpl: Some(Metres::new(K_V * d_u)) }
         }
         Use::EnRoute => Levels { hpl: Metres::new(K_H_NPA * d_major.m()), vpl: None },
@@ -124,6 +127,8 @@ pub struct Seen {
     pub clock_s: f64,
     /// Vertical ionosphere at the pierce point.
     pub vertical: Vertical,
+    /// It is the service's, not the broadcast model's that serves en route instead.
+    pub from_grid: bool,
     /// Variances.
     pub error: RangeError,
 }
@@ -155,7 +160,9 @@ impl Sky {
     /// Corrected satellites above the user's mask, each with its error model complete.
     pub fn look(&mut self, service: &Service, user: &User) {
         let factor = service.region_factor(user.lat_deg, user.lon_deg);
-        let mut seen = service.satellites().filter_map(|s| see(s, service, user, factor));
+        self.fill(service.satellites().filter_map(|s| see(s, service, user, factor)));
+    }
+    fn fill(&mut self, mut seen: impl Iterator<Item = Seen>) {
         self.count = 0;
         for ((slot, row), s) in self.seen.iter_mut().zip(&mut self.rows).zip(&mut seen) {
             *row = WeightedSight { unit: s.unit_enu, weight: 1.0 / s.error.variance_m2(), constellation: Constellation::Gps };
@@ -194,16 +201,44 @@ fn see(s: &Ranging, service: &Service, user: &User, region_factor: f64) -> Optio
     let way_s = line.norm() / SPEED_OF_LIGHT_MPS;
     let sent = s.orbit.position_ecef_m - s.orbit.velocity_ecef_mps * way_s;
     let unit = (in_axes_of_reception(&sent, way_s) - user.position_m).normalize();
+    along(s, service, user, region_factor, &unit).ok()
+}
+
+/// Why a corrected satellite is not in a solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Unseen {
+    BelowMask,
+    /// Neither grid nor broadcast model says what the ionosphere does.
+    NoIonosphere,
+}
+
+/// A satellite in a direction (unit vector from the user, ECEF).
+fn along(s: &Ranging, service: &Service, user: &User, region_factor: f64, unit: &Vector3<f64>) -> Result<Seen, Unseen> {
     let unit_enu = user.enu * unit;
     let sin_el = unit_enu.z;
     if !(sin_el >= user.sin_mask) {
-        return None;
+        return Err(Unseen::BelowMask);
     }
     let elevation = Radians::new(asin(sin_el.min(1.0)));
-    let vertical = service.grid.vertical(Pierce::new(&user.up(), &unit, sin_el))?;
-    let delta_udre = s.covariance.map_or(region_factor, |(c, e_c)| c.along(&unit) + e_c);
+    let grid = service.grid.vertical(Pierce::new(&user.up(), unit, sin_el));
+    let from_grid = grid.is_some();
+    let vertical = grid.or_else(|| broadcast_vertical(service, user, &unit_enu, elevation)).ok_or(Unseen::NoIonosphere)?;
+    let delta_udre = s.covariance.map_or(region_factor, |(c, e_c)| c.along(unit) + e_c);
     let error = RangeError::new(s.corrected.variance_m2(delta_udre), vertical.variance_m2, sin_el, elevation.rad(), &user.airborne);
-    Some(Seen { prn: s.prn, iode: s.iode, unit_enu, elevation, delta_udre, fast_m: s.fast_m, clock_s: s.clock_s, vertical, error })
+    let (prn, iode, fast_m, clock_s) = (s.prn, s.iode, s.fast_m, s.clock_s);
+    Ok(Seen { prn, iode, unit_enu, elevation, delta_udre, fast_m, clock_s, vertical, from_grid, error })
+}
+
+/// En route, where the grid does not serve a satellite: the broadcast model, its slant delay and error as those overhead.
+fn broadcast_vertical(service: &Service, user: &User, unit_enu: &Vector3<f64>, elevation: Radians) -> Option<Vertical> {
+    let klobuchar = service.broadcast_ionosphere.filter(|_| service.used_for == Use::EnRoute)?;
+    let level = sqrt(unit_enu.x * unit_enu.x + unit_enu.y * unit_enu.y);
+    // Overhead every azimuth is as good.
+    let azimuth = if level > 0.0 { (unit_enu.x / level, unit_enu.y / level) } else { (0.0, 1.0) };
+    let (slant, magnetic_rad) = klobuchar_and_latitude(&klobuchar, &user.place, elevation.rad(), azimuth, service.now);
+    let squared = obliquity_squared(level * level);
+    let variance_m2 = broadcast_ionosphere_m2(slant.m(), squared, magnetic_rad) / squared;
+    Some(Vertical { delay_m: slant.m() / sqrt(squared), variance_m2 })
 }
 
 /// Why there is no level: data, counted.
@@ -220,26 +255,25 @@ pub enum NoLevel {
     Geometry(#[from] Unavailable),
 }
 
+impl Service {
+    /// Whether it serves at all now.
+    ///
+    /// # Errors
+    /// [`NoLevel::DoNotUse`], [`NoLevel::NoMask`].
+    pub const fn serves(&self) -> Result<(), NoLevel> {
+        if self.stopped {
+            return Err(NoLevel::DoNotUse);
+        }
+        if self.masked { Ok(()) } else { Err(NoLevel::NoMask) }
+    }
+}
+
 /// Levels at a place; `sky` holds the satellites used afterwards.
 ///
 /// # Errors
 /// [`NoLevel`].
 pub fn at(service: &Service, user: &User, sky: &mut Sky) -> Result<Levels, NoLevel> {
-    if service.stopped {
-        return Err(NoLevel::DoNotUse);
-    }
-    if !service.masked {
-        return Err(NoLevel::NoMask);
-    }
+    service.serves()?;
     sky.look(service, user);
     Ok(levels(&sky.covariance()?, service.used_for))
-}
-
-/// The orbit of a Keplerian record at an instant, for [`Service::refresh`].
-///
-/// # Errors
-/// As [`crate::geometry::broadcast::state`].
-pub fn orbit(ephemeris: &crate::signal::Ephemeris, now: GpsTime) -> Result<service::Orbit, Unavailable> {
-    let state = crate::geometry::broadcast::state(ephemeris, now)?;
-    Ok(service::Orbit { position_ecef_m: *state.position.vector(), velocity_ecef_mps: state.velocity_mps })
 }

@@ -111,6 +111,25 @@ pub fn obliquity_squared(cos_el_squared: f64) -> f64 {
     1.0 / (1.0 - ratio * ratio * cos_el_squared)
 }
 
+/// Variance of the slant delay by the broadcast model, for en route users whom the grid does not serve \[m²\].
+///
+/// ```text
+/// max((T_iono / 5)^2, (F_pp tau_vert)^2)     tau_vert = 9 m to 20, 4.5 m to 55, 6 m beyond 55 degrees of geomagnetic latitude
+/// ```
+///
+/// RTCA DO-229D J.2.3 (standard, from memory).
+pub fn broadcast_ionosphere_m2(slant_m: f64, obliquity_squared: f64, magnetic_lat_rad: f64) -> f64 {
+    let latitude = magnetic_lat_rad.abs().to_degrees();
+    let vertical_m = if latitude <= 20.0 {
+        9.0
+    } else if latitude <= 55.0 {
+        4.5
+    } else {
+        6.0
+    };
+    square(slant_m / 5.0).max(obliquity_squared * square(vertical_m))
+}
+
 /// Variance of the tropospheric model \[m²\].
 ///
 /// ```text

@@ -3,6 +3,7 @@
 use super::ionosphere::Grid;
 use super::model::{Corrected, fast_degradation_m, steps, udre_variance_m2};
 use crate::quantity::GpsTime;
+use crate::signal::Klobuchar;
 use crate::signal::sbas::timeout::{FAST, RANGE_RATE_INTERVALS, Use};
 use crate::signal::sbas::{
     ClockEphemerisCovariance, Correction, Degradation, IODF_ALERT, LongTerm, Satellite, ServiceRegions, Store, UDREI_NOT_MONITORED,
@@ -37,6 +38,8 @@ pub struct Ranging {
     pub iode: u8,
     /// Corrected orbit.
     pub orbit: Orbit,
+    /// What the long-term correction adds to the broadcast position \[m\], ECEF.
+    pub moved_ecef_m: Vector3<f64>,
     /// To add to a measured range: fast correction with its rate \[m\].
     pub fast_m: f64,
     /// To add to the broadcast clock offset \[s\].
@@ -75,6 +78,10 @@ pub enum Unserved {
 pub struct Service {
     /// What it is used for.
     pub used_for: Use,
+    /// When.
+    pub now: GpsTime,
+    /// The ionosphere that GPS broadcasts, for en route users where the grid does not serve them.
+    pub broadcast_ionosphere: Option<Klobuchar>,
     /// The grid.
     pub grid: Grid,
     satellites: [Option<Ranging>; SATELLITES],
@@ -87,12 +94,22 @@ pub struct Service {
 
 impl Service {
     /// Nothing offered.
-    pub fn new(used_for: Use) -> Self {
-        Self { used_for, grid: Grid::default(), satellites: [None; SATELLITES], regions: [None; REGIONS], stopped: false, masked: false }
+    pub fn new(used_for: Use, broadcast_ionosphere: Option<Klobuchar>) -> Self {
+        Self {
+            used_for,
+            now: GpsTime::default(),
+            broadcast_ionosphere,
+            grid: Grid::default(),
+            satellites: [None; SATELLITES],
+            regions: [None; REGIONS],
+            stopped: false,
+            masked: false,
+        }
     }
 
     /// Take what is in force now. `orbit` gives a satellite's orbit from the navigation data of an issue, or none.
     pub fn refresh(&mut self, store: &Store, now: GpsTime, orbit: impl Fn(u8, u8) -> Option<Orbit>) {
+        self.now = now;
         self.satellites = [None; SATELLITES];
         self.regions = [None; REGIONS];
         self.stopped = store.stopped(now);
@@ -112,6 +129,11 @@ impl Service {
             }
         }
         self.grid.refresh(store, self.used_for, now);
+    }
+
+    /// The correction of one satellite.
+    pub fn satellite(&self, prn: u8) -> Option<&Ranging> {
+        self.satellites().find(|s| s.prn == prn)
     }
 
     /// Satellites corrected now.
@@ -178,6 +200,7 @@ pub fn ranging(store: &Store, prn: u8, used_for: Use, now: GpsTime, orbit: impl 
         prn,
         iode: long_term.iode,
         orbit: Orbit { position_ecef_m: orbit.position_ecef_m + delta, ..orbit },
+        moved_ecef_m: delta,
         fast_m: satellite.fast.correction_m + rate.mps * rate.age_s,
         clock_s: moved(long_term.clock_s, |r| r.drift),
         corrected: Corrected {
