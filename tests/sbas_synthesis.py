@@ -82,8 +82,13 @@ def long_term(log: sbas.Messages, prn: int, iode: int, now_ns: int) -> Vector:
     return delta
 
 
-def pseudoranges(
-    log: sbas.Messages, navigation: Path, time_ns: int, place: dict[str, float], ecef: Vector, clock_m: float
+def pseudoranges(  # noqa: PLR0917
+    log: sbas.Messages,
+    navigation: Path,
+    time_ns: int,
+    place: dict[str, float],
+    ecef: Vector,
+    clock_m: float,
 ) -> dict[int, float]:
     """What a receiver at the place measures [m], its clock fast by ``clock_m``, if the service's corrections are perfect."""
     seen = sbas.satellites(log, navigation, np.array([time_ns]), **place, mode="pa")

@@ -149,7 +149,11 @@ def test_observations_navigation_and_messages_from_the_command_line(shared_data:
     ours = pl.read_parquet(tmp_path / "run" / directory.EPOCHS)["hpl_m"].drop_nulls()
     assert oracle.height == 3239
     assert ours.tail(3239).median() == pytest.approx(13.0, abs=0.05)
-    assert any("two different positions" in note for note in found["notes"])
+    assert any("belong to the same solutions" in note for note in found["notes"])
+    # Positions are the service's: the covariance of each is that of its level, and none stands where the service gives none.
+    epochs = pl.read_parquet(tmp_path / "run" / directory.EPOCHS)
+    assert epochs.filter(pl.col("hpl_m").is_null())["est_lat_rad"].is_null().all()
+    assert epochs.filter(pl.col("hpl_m").is_not_null())["nse_e_m"].is_not_null().all()
 
 
 @pytest.mark.parametrize(
