@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from navbound import sbas
+from navbound import gnss, sbas
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,6 +48,15 @@ def measure() -> list[dict[str, object]]:
     n = few.size * lat.size
     found = sbas.protection_levels(log, navigation, few[:, None], lat_rad=lat, lon_rad=lon, h_m=0.0, mode="pa")
     satellites = float(found.n_sv.mean())
+    sky = sbas.satellites(log, navigation, few[:1, None], lat_rad=lat, lon_rad=lon, h_m=0.0, mode="pa")
+    most = int(np.bincount(sky.epoch).max())
+    full = np.flatnonzero(np.bincount(sky.epoch) == most)
+    rows = np.isin(sky.epoch, full)
+    az, el, sigma = (np.tile(c[rows].reshape(full.size, most), (100, 1)) for c in (sky.az_rad, sky.el_rad, sky.sigma_m))
+    level = seconds(lambda: 6.0 * gnss.covariance(az, el, sigma).sigma_major_m) / az.shape[0]
+    observations = gnss.read_observations(FOLDER / "virtual_user_2025046_17h.25O.gz")
+    records = gnss.read_navigation(navigation)
+    solved = seconds(lambda: sbas.solve(observations, records, log, mode="pa"))
     return [
         {
             "name": "sbas read, EMS hour",
@@ -67,6 +76,18 @@ def measure() -> list[dict[str, object]]:
             "seconds_per_item": (users - setup) / n,
             "n": n,
             "note": f"a user and epoch: geometry, grid and level; {satellites:.1f} satellites",
+        },
+        {
+            "name": "sbas level alone",
+            "seconds_per_item": level,
+            "n": az.shape[0],
+            "note": f"a user and epoch: angles and sigmas of {most} satellites to the horizontal level",
+        },
+        {
+            "name": "sbas positions of a recording",
+            "seconds_per_item": (solved - setup) / observations.n_epochs,
+            "n": observations.n_epochs,
+            "note": "an epoch: smoothing, corrections, position and level",
         },
     ]
 

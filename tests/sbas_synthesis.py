@@ -86,7 +86,7 @@ def pseudoranges(  # noqa: PLR0917
     log: sbas.Messages,
     navigation: Path,
     time_ns: int,
-    place: dict[str, float],
+    place: dict[str, Any],
     ecef: Vector,
     clock_m: float,
 ) -> dict[int, float]:

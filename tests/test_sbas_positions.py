@@ -70,7 +70,9 @@ def test_levels_of_a_solution_are_those_of_its_place(msas: Recording) -> None:
     found = sbas.solve(observations, navigation, log)
     assert found.epochs["mode"].to_list() == [m or None for m in sbas.protection_levels(log, navigation, seconds(), **MSAS_USER).mode]
     solved = found.epochs.filter(pl.col("mode") == "pa")
-    place = dict(zip(("lat_rad", "lon_rad", "h_m"), (solved[f"est_{n}"].to_numpy() for n in ("lat_rad", "lon_rad", "h_m")), strict=True))
+    place: dict[str, Any] = dict(
+        zip(("lat_rad", "lon_rad", "h_m"), (solved[f"est_{n}"].to_numpy() for n in ("lat_rad", "lon_rad", "h_m")), strict=True)
+    )
     levels = sbas.protection_levels(log, navigation, solved["time_ns"].to_numpy(), **place, mode="pa")
     assert (solved["n_sv"].to_numpy() == levels.n_sv).all()
     # The same satellites from the same place; the receiver's clock moves them by up to 0.1 mm, directions by 1e-11.

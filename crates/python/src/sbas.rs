@@ -122,8 +122,7 @@ fn request(index: usize, time_ns: i64, ((lat, lon), h): ((&f64, &f64), &f64)) ->
 fn sbas_levels<'py>(py: Python<'py>, service: Service<'py>, places: Places<'py>) -> PyResult<Bound<'py, PyDict>> {
     let ((feed, settings), requests) = (service.heard()?, places.requests()?);
     let records = &service.navigation.get().records;
-    let answers =
-        py.detach(|| sbas::levels(&feed, records, &requests, &settings)).map_err(|(index, e)| input_error(e, Some(index)))?;
+    let answers = py.detach(|| sbas::levels(&feed, records, &requests, &settings)).map_err(|(index, e)| input_error(e, Some(index)))?;
     let d = answers_columns(py, &answers)?;
     d.set_item("ignored", ignored(py, &feed, &settings))?;
     Ok(d)
@@ -173,8 +172,7 @@ fn answers_columns<'py>(py: Python<'py>, answers: &[Answer]) -> PyResult<Bound<'
 fn sbas_satellites<'py>(py: Python<'py>, service: Service<'py>, places: Places<'py>) -> PyResult<Bound<'py, PyDict>> {
     let ((feed, settings), requests) = (service.heard()?, places.requests()?);
     let records = &service.navigation.get().records;
-    let skies =
-        py.detach(|| sbas::satellites(&feed, records, &requests, &settings)).map_err(|(index, e)| input_error(e, Some(index)))?;
+    let skies = py.detach(|| sbas::satellites(&feed, records, &requests, &settings)).map_err(|(index, e)| input_error(e, Some(index)))?;
     let rows: Vec<_> = skies.iter().enumerate().flat_map(|(i, sky)| sky.iter().map(move |s| (i as i64, s))).collect();
     let d = PyDict::new(py);
     d.set_item("epoch", rows.iter().map(|(i, _)| *i).collect::<Vec<_>>().into_pyarray(py))?;

@@ -73,7 +73,9 @@ fn epochs<'py>(py: Python<'py>, found: &Corrected, false_alarm: f64) -> PyResult
     let mode = found.fixes.iter().map(|f| mode_code(f.as_ref().ok().map(|f| f.used_for))).collect::<Vec<_>>();
     d.set_item("mode", mode.into_pyarray(py))?;
     let words = |f: &Result<Fix, _>| match f {
-        Ok(fix) if fix.solution.residual_risk < false_alarm => ("degraded", "the residuals contradict the service's error model".to_owned()),
+        Ok(fix) if fix.solution.residual_risk < false_alarm => {
+            ("degraded", "the residuals contradict the service's error model".to_owned())
+        }
         Ok(_) => ("ok", String::new()),
         Err(why) => ("not_available", navbound_core::bound::sbas::NoLevel::to_string(why)),
     };
@@ -90,8 +92,7 @@ fn satellites<'py>(py: Python<'py>, found: &Corrected) -> PyResult<Bound<'py, Py
     let d = PyDict::new(py);
     d.set_item("epoch", rows.iter().map(|(i, _)| *i).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("prn", rows.iter().map(|(_, s)| i64::from(s.prn)).collect::<Vec<_>>().into_pyarray(py))?;
-    let columns: [(&str, SatelliteNumber); 3] =
-        [("el_rad", |s| s.el_rad), ("residual_m", |s| s.residual_m), ("sigma_m", |s| s.sigma_m)];
+    let columns: [(&str, SatelliteNumber); 3] = [("el_rad", |s| s.el_rad), ("residual_m", |s| s.residual_m), ("sigma_m", |s| s.sigma_m)];
     for (name, value) in columns {
         d.set_item(name, rows.iter().map(|(_, s)| value(s)).collect::<Vec<_>>().into_pyarray(py))?;
     }

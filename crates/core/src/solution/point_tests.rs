@@ -132,7 +132,7 @@ fn the_covariance_is_that_of_the_errors_it_assumes() {
     let sigma: Vec<f64> = clean
         .iter()
         .map(|r| {
-            let unit = enu_from_ecef(&here.point) * way(r, ecef_from_geodetic(&here).vector()).1;
+            let unit = enu_from_ecef(&here.point) * way(&r.position, ecef_from_geodetic(&here).vector()).1;
             let place = Place { here, zenith: 0.0, sin_mask: settings().mask.rad().sin(), time: GpsTime::default() };
             1.0 / settings().delay_and_weight(r, &unit, &place).2.sqrt()
         })

@@ -57,7 +57,7 @@ pub(crate) fn tails<const L: usize>(x: &[f64; L]) -> ([f64; L], [f64; L]) {
 
 /// exp(y) for -708 <= y <= 0, relative error 1e-15: 2^n exp(r), r within half of ln 2, and the series of exp to r^13.
 #[inline(always)]
-fn exp_of_negative(y: f64) -> f64 {
+pub(crate) fn exp_of_negative(y: f64) -> f64 {
     /// 1.5 * 2^52: adding it rounds to an integer, which then stands in the last bits.
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
     /// ln 2 in two parts, the first with zeros at its end, so that its product with n is exact (fdlibm).

@@ -3,6 +3,7 @@
 //! Everything takes the risk (the tail), never the probability, and keeps full relative accuracy where the tail is small.
 
 pub(crate) mod abreast;
+pub(crate) mod angles;
 pub mod beta;
 pub(crate) mod bivariate;
 pub mod chi;

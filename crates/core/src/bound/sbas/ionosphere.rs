@@ -2,9 +2,10 @@
 
 use super::model::{EARTH_M, SHELL_M, aged_grid_m2, give_variance_m2};
 use crate::quantity::GpsTime;
-use crate::signal::sbas::grid::{GridPoint, WORLD_CELLS};
+use crate::signal::sbas::grid::{COLUMNS as WORLD_COLUMNS, GridPoint, WORLD_CELLS};
 use crate::signal::sbas::{GridDelay, Store, timeout::Use};
-use crate::special::float::{asin, atan2, sqrt};
+use crate::special::angles::atan2;
+use crate::special::float::sqrt;
 use nalgebra::Vector3;
 
 /// A grid point as a user finds it.
@@ -54,16 +55,26 @@ impl Pierce {
     /// direction = cos psi up + sin psi horizontal,   sin psi = cos(E + asin k)
     /// ```
     ///
-    /// The standard's spherical triangle, with vectors instead of angles: no case is special, at the poles either.
-    pub fn new(up: &Vector3<f64>, unit: &Vector3<f64>, sin_el: f64) -> Self {
-        let cos_el = sqrt(1.0 - sin_el * sin_el);
-        let k = EARTH_M / (EARTH_M + SHELL_M) * cos_el;
-        let root = sqrt(1.0 - k * k);
-        let cos_psi = sin_el * root + cos_el * k;
-        // sin psi / cos E, so that a satellite overhead divides by nothing.
-        let sin_psi_over = root - sin_el * EARTH_M / (EARTH_M + SHELL_M);
-        let direction = cos_psi * up + sin_psi_over * (unit - sin_el * up);
-        Self { lat_deg: asin(direction.z.clamp(-1.0, 1.0)).to_degrees(), lon_deg: atan2(direction.y, direction.x).to_degrees() }
+    /// The standard's spherical triangle, with vectors instead of angles: no case is special, at the poles either. Several satellites
+    /// abreast, their unit vectors and the sine and cosine of their elevation.
+    #[inline(always)]
+    pub fn abreast<const L: usize>(up: &Vector3<f64>, unit: &[[f64; L]; 3], sin_el: &[f64; L], cos_el: &[f64; L]) -> [Self; L] {
+        const RATIO: f64 = EARTH_M / (EARTH_M + SHELL_M);
+        let (mut x, mut y, mut z, mut level) = ([0.0; L], [0.0; L], [0.0; L], [0.0; L]);
+        for l in 0..L {
+            let k = RATIO * cos_el[l];
+            let root = sqrt(1.0 - k * k);
+            let cos_psi = sin_el[l] * root + cos_el[l] * k;
+            // sin psi / cos E, so that a satellite overhead divides by nothing.
+            let sin_psi_over = root - sin_el[l] * RATIO;
+            let along_up = cos_psi - sin_psi_over * sin_el[l];
+            x[l] = along_up * up.x + sin_psi_over * unit[0][l];
+            y[l] = along_up * up.y + sin_psi_over * unit[1][l];
+            z[l] = along_up * up.z + sin_psi_over * unit[2][l];
+            level[l] = sqrt(x[l] * x[l] + y[l] * y[l]);
+        }
+        let (lat, lon) = (atan2(&z, &level), atan2(&y, &x));
+        core::array::from_fn(|l| Self { lat_deg: lat[l].to_degrees(), lon_deg: lon[l].to_degrees() })
     }
 }
 
@@ -97,7 +108,31 @@ impl Grid {
     /// Cells are tried in the standard's order (A.4.4.10.2): four points of the small cell, three of it around the pierce point, four of
     /// the large cell, three of it. A chosen cell with a forbidden point gives nothing; with one point that is not monitored it serves the
     /// triangle of the others.
+    #[inline(always)]
     pub fn vertical(&self, at: Pierce) -> Option<Vertical> {
+        self.whole(at).or_else(|| self.chosen(at))
+    }
+
+    /// The first choice of all: a small cell below 60 degrees whose four points have values.
+    #[inline(always)]
+    fn whole(&self, at: Pierce) -> Option<Vertical> {
+        if !(at.lat_deg.abs() <= 60.0 && at.lon_deg.abs() <= 180.0) {
+            return None;
+        }
+        // Both sums are positive, so that cutting off is rounding down.
+        let (row, column) = (((at.lat_deg + 85.0) / 5.0) as usize, ((at.lon_deg + 180.0) / 5.0) as usize % WORLD_COLUMNS);
+        let (south, west) = (row * WORLD_COLUMNS, column);
+        let east = if column + 1 < WORLD_COLUMNS { column + 1 } else { 0 };
+        let cells = [south + WORLD_COLUMNS + east, south + WORLD_COLUMNS + west, south + west, south + east];
+        let y = (at.lat_deg + 85.0) / 5.0 - row as f64;
+        let turned = (at.lon_deg + 180.0) / 5.0;
+        let x = turned - (turned as usize) as f64;
+        let corners = cells.map(|cell| self.0.get(cell).copied().unwrap_or_default());
+        if corners.iter().all(|c| matches!(c, Point::Value(..))) { weighted(&corners, &four(x, y)) } else { None }
+    }
+
+    #[inline(never)]
+    fn chosen(&self, at: Pierce) -> Option<Vertical> {
         if !(at.lat_deg.abs() <= 90.0 && at.lon_deg.abs() <= 180.0) {
             return None;
         }
@@ -232,6 +267,7 @@ fn interpolate(corners: &Corners, x: f64, y: f64) -> Option<Vertical> {
 }
 
 /// Weighted sum; none when a corner that counts has no value, or any is forbidden.
+#[inline(always)]
 fn weighted(corners: &Corners, weights: &[f64; 4]) -> Option<Vertical> {
     let mut sum = Vertical { delay_m: 0.0, variance_m2: 0.0 };
     for (corner, w) in corners.iter().zip(weights) {
@@ -325,6 +361,26 @@ mod tests {
         assert_eq!(world(|_, _| 1.0).vertical(at(f64::NAN, 0.0)), None);
     }
 
+    #[test]
+    fn the_first_choice_is_what_choosing_finds() {
+        let mut grid = world(|lat, lon| 10.0 + 0.1 * lat + 0.01 * lon);
+        for (lat, lon, point) in [(40, 140, Point::NotMonitored), (35, 10, Point::DoNotUse), (0, -180, Point::Absent)] {
+            set(&mut grid, lat, lon, point);
+        }
+        let mut whole = 0;
+        for lat in -600..=600 {
+            for lon in -360..=360 {
+                let at = at(f64::from(lat) * 0.1, f64::from(lon) * 0.5);
+                if let Some(found) = grid.whole(at) {
+                    whole += 1;
+                    // A few roundings of values up to 20 apart.
+                    assert!((found.delay_m - grid.chosen(at).unwrap().delay_m).abs() < 1e-12, "{at:?}");
+                }
+            }
+        }
+        assert!(whole > 850_000 && whole < 1201 * 721);
+    }
+
     proptest! {
         // Bilinear interpolation is exact on a plane; the sum of a few products loses some 1e-14 of 30. Up to the last cell before the date line,
         // where a plane in longitude jumps.
@@ -346,7 +402,7 @@ mod tests {
             let east = Vector3::new(-lambda.sin(), lambda.cos(), 0.0);
             let north = up.cross(&east);
             let unit = e.cos() * (a.sin() * east + a.cos() * north) + e.sin() * up;
-            let found = Pierce::new(&up, &unit, e.sin());
+            let [found] = Pierce::abreast(&up, &[[unit.x], [unit.y], [unit.z]], &[e.sin()], &[e.cos()]);
             prop_assert!((found.lat_deg - want_lat.to_degrees()).abs() < 1e-9);
             let off = (found.lon_deg - want_lon.to_degrees()).rem_euclid(360.0);
             prop_assert!(off.min(360.0 - off) < 1e-8, "{off}");

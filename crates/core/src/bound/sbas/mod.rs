@@ -12,15 +12,14 @@ pub mod terms;
 
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, ecef_from_geodetic, enu_from_ecef};
 use crate::geometry::atmosphere::klobuchar_and_latitude;
-use crate::geometry::broadcast::in_axes_of_reception;
 use crate::quantity::{Metres, OutOfDomain, Radians, Unavailable};
+use crate::signal::Constellation;
 use crate::signal::sbas::MASK_MOST;
 use crate::signal::sbas::timeout::Use;
-use crate::signal::{Constellation, SPEED_OF_LIGHT_MPS};
 use crate::solution::wls::{self, WeightedSight};
-use crate::special::float::{asin, sqrt};
+use crate::special::float::sqrt;
 use ionosphere::{Pierce, Vertical};
-use model::{Airborne, RangeError, broadcast_ionosphere_m2, obliquity_squared};
+use model::{Airborne, Elevation, RangeError, broadcast_ionosphere_m2, obliquity_squared};
 use nalgebra::{Matrix3, Vector3};
 use service::{Ranging, Service};
 
@@ -158,15 +157,29 @@ impl Default for Sky {
 
 impl Sky {
     /// Corrected satellites above the user's mask, each with its error model complete.
+    #[inline(always)]
     pub fn look(&mut self, service: &Service, user: &User) {
         let factor = service.region_factor(user.lat_deg, user.lon_deg);
-        self.fill(service.satellites().filter_map(|s| see(s, service, user, factor)));
-    }
-    fn fill(&mut self, mut seen: impl Iterator<Item = Seen>) {
+        let orbits = service.orbits();
+        let (found, n) = orbits.above(&user.position_m, &user.up());
         self.count = 0;
-        for ((slot, row), s) in self.seen.iter_mut().zip(&mut self.rows).zip(&mut seen) {
-            *row = WeightedSight { unit: s.unit_enu, weight: 1.0 / s.error.variance_m2(), constellation: Constellation::Gps };
-            *slot = Some(s);
+        for group in found[..n].chunks(ABREAST) {
+            // The last group is filled up with its first satellite.
+            let which: [usize; ABREAST] = core::array::from_fn(|l| group.get(l).copied().unwrap_or(group[0]));
+            let sights = Sights::new(user, orbits.towards(&which, &user.position_m));
+            for (l, index) in group.iter().enumerate() {
+                let Some(ranging) = service.indexed(*index) else { continue };
+                if let Ok(seen) = sights.seen(l, ranging, service, user, factor) {
+                    self.push(seen);
+                }
+            }
+        }
+    }
+    #[inline(always)]
+    fn push(&mut self, seen: Seen) {
+        if let (Some(slot), Some(row)) = (self.seen.get_mut(self.count), self.rows.get_mut(self.count)) {
+            *row = WeightedSight { unit: seen.unit_enu, weight: 1.0 / seen.error.variance_m2(), constellation: Constellation::Gps };
+            *slot = Some(seen);
             self.count += 1;
         }
     }
@@ -191,19 +204,6 @@ impl Sky {
     }
 }
 
-/// Time is the service's; the signal left earlier by its way.
-fn see(s: &Ranging, service: &Service, user: &User, region_factor: f64) -> Option<Seen> {
-    let line = s.orbit.position_ecef_m - user.position_m;
-    // Below the horizon by more than the satellite moves during the signal's way, 0.14 s at 4 km/s: no mask has it above.
-    if user.up().dot(&line) < -1000.0 {
-        return None;
-    }
-    let way_s = line.norm() / SPEED_OF_LIGHT_MPS;
-    let sent = s.orbit.position_ecef_m - s.orbit.velocity_ecef_mps * way_s;
-    let unit = (in_axes_of_reception(&sent, way_s) - user.position_m).normalize();
-    along(s, service, user, region_factor, &unit).ok()
-}
-
 /// Why a corrected satellite is not in a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Unseen {
@@ -212,30 +212,60 @@ enum Unseen {
     NoIonosphere,
 }
 
-/// A satellite in a direction (unit vector from the user, ECEF).
-fn along(s: &Ranging, service: &Service, user: &User, region_factor: f64, unit: &Vector3<f64>) -> Result<Seen, Unseen> {
-    let unit_enu = user.enu * unit;
-    let sin_el = unit_enu.z;
-    if !(sin_el >= user.sin_mask) {
-        return Err(Unseen::BelowMask);
+/// Satellites looked at at once: two vector registers of two numbers, or one of four.
+const ABREAST: usize = 4;
+
+/// Directions to several satellites with what follows from them alone.
+struct Sights<const L: usize> {
+    unit_ecef: [[f64; L]; 3],
+    unit_enu: [[f64; L]; 3],
+    elevation: [Elevation; L],
+    pierce: [Pierce; L],
+}
+
+impl<const L: usize> Sights<L> {
+    /// From unit vectors from the user, ECEF.
+    #[inline(always)]
+    fn new(user: &User, unit_ecef: [[f64; L]; 3]) -> Self {
+        let [x, y, z] = &unit_ecef;
+        let (mut unit_enu, mut cos_el) = ([[0.0; L]; 3], [0.0; L]);
+        for l in 0..L {
+            for (k, axis) in unit_enu.iter_mut().enumerate() {
+                axis[l] = user.enu[(k, 0)] * x[l] + user.enu[(k, 1)] * y[l] + user.enu[(k, 2)] * z[l];
+            }
+            cos_el[l] = sqrt(unit_enu[0][l] * unit_enu[0][l] + unit_enu[1][l] * unit_enu[1][l]);
+        }
+        let sin_el = &unit_enu[2];
+        let (elevation, pierce) = (Elevation::abreast(sin_el, &cos_el), Pierce::abreast(&user.up(), &unit_ecef, sin_el, &cos_el));
+        Self { unit_ecef, unit_enu, elevation, pierce }
     }
-    let elevation = Radians::new(asin(sin_el.min(1.0)));
-    let grid = service.grid.vertical(Pierce::new(&user.up(), unit, sin_el));
-    let from_grid = grid.is_some();
-    let vertical = grid.or_else(|| broadcast_vertical(service, user, &unit_enu, elevation)).ok_or(Unseen::NoIonosphere)?;
-    let delta_udre = s.covariance.map_or(region_factor, |(c, e_c)| c.along(unit) + e_c);
-    let error = RangeError::new(s.corrected.variance_m2(delta_udre), vertical.variance_m2, sin_el, elevation.rad(), &user.airborne);
-    let (prn, iode, fast_m, clock_s) = (s.prn, s.iode, s.fast_m, s.clock_s);
-    Ok(Seen { prn, iode, unit_enu, elevation, delta_udre, fast_m, clock_s, vertical, from_grid, error })
+
+    /// One of them as the user sees it.
+    #[inline(always)]
+    fn seen(&self, l: usize, s: &Ranging, service: &Service, user: &User, region_factor: f64) -> Result<Seen, Unseen> {
+        let at = |axes: &[[f64; L]; 3]| Vector3::new(axes[0][l], axes[1][l], axes[2][l]);
+        let elevation = self.elevation[l];
+        if !(elevation.sin >= user.sin_mask) {
+            return Err(Unseen::BelowMask);
+        }
+        let unit_enu = at(&self.unit_enu);
+        let grid = service.grid.vertical(self.pierce[l]);
+        let from_grid = grid.is_some();
+        let vertical = grid.or_else(|| broadcast_vertical(service, user, &unit_enu, elevation.rad)).ok_or(Unseen::NoIonosphere)?;
+        let delta_udre = s.covariance.as_ref().map_or(region_factor, |(c, e_c)| c.along(&at(&self.unit_ecef)) + e_c);
+        let error = RangeError::new(s.corrected.variance_m2(delta_udre), vertical.variance_m2, &elevation, &user.airborne);
+        let (prn, iode, fast_m, clock_s, elevation) = (s.prn, s.iode, s.fast_m, s.clock_s, Radians::new(elevation.rad));
+        Ok(Seen { prn, iode, unit_enu, elevation, delta_udre, fast_m, clock_s, vertical, from_grid, error })
+    }
 }
 
 /// En route, where the grid does not serve a satellite: the broadcast model, its slant delay and error as those overhead.
-fn broadcast_vertical(service: &Service, user: &User, unit_enu: &Vector3<f64>, elevation: Radians) -> Option<Vertical> {
+fn broadcast_vertical(service: &Service, user: &User, unit_enu: &Vector3<f64>, el_rad: f64) -> Option<Vertical> {
     let klobuchar = service.broadcast_ionosphere.filter(|_| service.used_for == Use::EnRoute)?;
     let level = sqrt(unit_enu.x * unit_enu.x + unit_enu.y * unit_enu.y);
     // Overhead every azimuth is as good.
     let azimuth = if level > 0.0 { (unit_enu.x / level, unit_enu.y / level) } else { (0.0, 1.0) };
-    let (slant, magnetic_rad) = klobuchar_and_latitude(&klobuchar, &user.place, elevation.rad(), azimuth, service.now);
+    let (slant, magnetic_rad) = klobuchar_and_latitude(&klobuchar, &user.place, el_rad, azimuth, service.now);
     let squared = obliquity_squared(level * level);
     let variance_m2 = broadcast_ionosphere_m2(slant.m(), squared, magnetic_rad) / squared;
     Some(Vertical { delay_m: slant.m() / sqrt(squared), variance_m2 })
@@ -272,6 +302,7 @@ impl Service {
 ///
 /// # Errors
 /// [`NoLevel`].
+#[inline(always)]
 pub fn at(service: &Service, user: &User, sky: &mut Sky) -> Result<Levels, NoLevel> {
     service.serves()?;
     sky.look(service, user);

@@ -2,7 +2,9 @@
 
 use crate::quantity::OutOfDomain;
 use crate::signal::sbas::Degradation;
-use crate::special::float::{exp, sqrt};
+use crate::special::abreast::exp_of_negative;
+use crate::special::angles::atan2;
+use crate::special::float::sqrt;
 
 /// Variances of the UDRE by indicator 0 to 13 \[m²\] (standard).
 const UDRE_M2: [f64; 14] =
@@ -135,10 +137,10 @@ pub fn broadcast_ionosphere_m2(slant_m: f64, obliquity_squared: f64, magnetic_la
 /// ```text
 /// sigma = 0.12 m,   m = 1.001 / sqrt(0.002001 + sin^2 E),   times 1 + 0.015 (4 - E)^2 below 4 degrees
 /// ```
-pub fn troposphere_m2(el_rad: f64, sin_el: f64) -> f64 {
+pub fn troposphere_m2(elevation: &Elevation) -> f64 {
     let vertical = TROPOSPHERE_M * 1.001;
-    let slant = vertical * vertical / (0.002_001 + sin_el * sin_el);
-    let below = 4.0 - el_rad.to_degrees();
+    let slant = vertical * vertical / (0.002_001 + elevation.sin * elevation.sin);
+    let below = 4.0 - elevation.rad.to_degrees();
     if below > 0.0 { slant * square(1.0 + 0.015 * below * below) } else { slant }
 }
 
@@ -170,9 +172,31 @@ impl Airborne {
     /// ```text
     /// air^2 = noise^2 + divergence^2 + (0.13 + 0.53 exp(-E / 10 deg))^2
     /// ```
-    pub fn variance_m2(&self, el_rad: f64) -> f64 {
-        let multipath = 0.13 + 0.53 * exp(-el_rad.to_degrees() / 10.0);
+    pub fn variance_m2(&self, elevation: &Elevation) -> f64 {
+        let multipath = 0.13 + 0.53 * elevation.decay;
         square(self.noise_m) + square(self.divergence_m) + square(multipath)
+    }
+}
+
+/// An elevation as the model needs it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elevation {
+    /// \[rad\].
+    pub rad: f64,
+    /// Its sine.
+    pub sin: f64,
+    /// exp(-E / 10 degrees).
+    pub decay: f64,
+}
+
+impl Elevation {
+    /// Several from their sines and cosines \[rad\].
+    #[inline(always)]
+    pub fn abreast<const L: usize>(sin: &[f64; L], cos: &[f64; L]) -> [Self; L] {
+        let rad = atan2(sin, cos);
+        // Below the horizon, where no mask lets a satellite count, the argument is positive and as good.
+        let decay = rad.map(|e| exp_of_negative(-e.to_degrees() / 10.0));
+        core::array::from_fn(|l| Self { rad: rad[l], sin: sin[l], decay: decay[l] })
     }
 }
 
@@ -191,12 +215,12 @@ pub struct RangeError {
 
 impl RangeError {
     /// The terms of a range.
-    pub fn new(corrected_m2: f64, vertical_ionosphere_m2: f64, sin_el: f64, el_rad: f64, airborne: &Airborne) -> Self {
+    pub fn new(corrected_m2: f64, vertical_ionosphere_m2: f64, elevation: &Elevation, airborne: &Airborne) -> Self {
         Self {
             corrected_m2,
-            ionosphere_m2: obliquity_squared(1.0 - sin_el * sin_el) * vertical_ionosphere_m2,
-            troposphere_m2: troposphere_m2(el_rad, sin_el),
-            airborne_m2: airborne.variance_m2(el_rad),
+            ionosphere_m2: obliquity_squared(1.0 - elevation.sin * elevation.sin) * vertical_ionosphere_m2,
+            troposphere_m2: troposphere_m2(elevation),
+            airborne_m2: airborne.variance_m2(elevation),
         }
     }
     /// Their sum \[m²\].

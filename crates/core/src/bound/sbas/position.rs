@@ -5,7 +5,7 @@
 
 use super::model::Airborne;
 use super::service::{Ranging, Service};
-use super::{Levels, NoLevel, Sky, Unseen, User, along, levels};
+use super::{Levels, NoLevel, Sights, Sky, Unseen, User, levels};
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, geodetic_from_ecef};
 use crate::geometry::atmosphere::mapping_of;
 use crate::geometry::seasonal::seasonal_zenith_delay;
@@ -95,8 +95,7 @@ pub fn solve(service: &Service, measured: &[Measurement<'_>], receiver: &Receive
     Err(NoLevel::Geometry(SINGULAR))
 }
 
-const SINGULAR: Unavailable =
-    Unavailable::Singular { condition: f64::INFINITY, limit: crate::solution::wls::CONDITION_LIMIT };
+const SINGULAR: Unavailable = Unavailable::Singular { condition: f64::INFINITY, limit: crate::solution::wls::CONDITION_LIMIT };
 
 /// The ranges against one position.
 struct Round {
@@ -120,20 +119,19 @@ impl Round {
         let user = User::new(&place, receiver.mask, receiver.airborne).map_err(wrong)?;
         let zenith = seasonal_zenith_delay(&place, service.now);
         let factor = service.region_factor(user.lat_deg, user.lon_deg);
-        let (mut residual_m, mut used, mut without_ionosphere) = ([0.0; MASK_MOST], 0, 0);
-        sky.fill(measured.iter().filter_map(|m| {
+        let (mut residual_m, mut without_ionosphere) = ([0.0; MASK_MOST], 0);
+        sky.count = 0;
+        for m in measured {
             let (way, unit) = way(&m.position, at);
-            let seen = match along(m.ranging, service, &user, factor, &unit) {
-                Ok(seen) => seen,
-                Err(why) => {
-                    without_ionosphere += usize::from(why == Unseen::NoIonosphere);
-                    return None;
+            match Sights::new(&user, [[unit.x], [unit.y], [unit.z]]).seen(0, m.ranging, service, &user, factor) {
+                Err(why) => without_ionosphere += usize::from(why == Unseen::NoIonosphere),
+                Ok(seen) => {
+                    let Some(residual) = residual_m.get_mut(sky.count) else { break };
+                    *residual = m.corrected.m() - way - seen.slant_ionosphere_m() - zenith * mapping_of(seen.unit_enu.z);
+                    sky.push(seen);
                 }
-            };
-            *residual_m.get_mut(used)? = m.corrected.m() - way - seen.slant_ionosphere_m() - zenith * mapping_of(seen.unit_enu.z);
-            used += 1;
-            Some(seen)
-        }));
+            }
+        }
         let rows = rows(sky, &residual_m);
         let normal = Normal::new(rows)?;
         Ok(Self { user, normal, residual_m, without_ionosphere })

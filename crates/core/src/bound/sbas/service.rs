@@ -2,12 +2,14 @@
 
 use super::ionosphere::Grid;
 use super::model::{Corrected, fast_degradation_m, steps, udre_variance_m2};
+use crate::geometry::broadcast::in_axes_of_reception;
 use crate::quantity::GpsTime;
-use crate::signal::Klobuchar;
 use crate::signal::sbas::timeout::{FAST, RANGE_RATE_INTERVALS, Use};
 use crate::signal::sbas::{
     ClockEphemerisCovariance, Correction, Degradation, IODF_ALERT, LongTerm, Satellite, ServiceRegions, Store, UDREI_NOT_MONITORED,
 };
+use crate::signal::{Klobuchar, SPEED_OF_LIGHT_MPS};
+use crate::special::float::sqrt;
 use nalgebra::Vector3;
 
 /// Most satellites in one mask.
@@ -85,11 +87,78 @@ pub struct Service {
     /// The grid.
     pub grid: Grid,
     satellites: [Option<Ranging>; SATELLITES],
+    /// Orbits of the same, number by number, for many users to look at several at once.
+    orbits: Orbits,
     regions: [Option<ServiceRegions>; REGIONS],
     /// Message 0 is in force.
     pub stopped: bool,
     /// A PRN mask is in force.
     pub masked: bool,
+}
+
+/// Positions \[m\] and velocities \[m/s\], ECEF, axis by axis.
+#[derive(Debug, Clone)]
+pub(super) struct Orbits {
+    count: usize,
+    position: [[f64; SATELLITES]; 3],
+    velocity: [[f64; SATELLITES]; 3],
+}
+
+impl Default for Orbits {
+    fn default() -> Self {
+        Self { count: 0, position: [[0.0; SATELLITES]; 3], velocity: [[0.0; SATELLITES]; 3] }
+    }
+}
+
+impl Orbits {
+    fn take(&mut self, satellites: &[Option<Ranging>; SATELLITES]) {
+        self.count = 0;
+        for (i, s) in satellites.iter().map_while(Option::as_ref).enumerate() {
+            for axis in 0..3 {
+                self.position[axis][i] = s.orbit.position_ecef_m[axis];
+                self.velocity[axis][i] = s.orbit.velocity_ecef_mps[axis];
+            }
+            self.count += 1;
+        }
+    }
+
+    /// Indices of those less than a kilometre below the horizon of a place: satellites move less during the signal's way, 0.14 s at 4 km/s.
+    #[inline(always)]
+    pub(super) fn above(&self, place: &Vector3<f64>, up: &Vector3<f64>) -> ([usize; SATELLITES], usize) {
+        let level = up.dot(place) - 1000.0;
+        let (mut found, mut n) = ([0; SATELLITES], 0);
+        for i in 0..self.count {
+            let height = up.x * self.position[0][i] + up.y * self.position[1][i] + up.z * self.position[2][i];
+            found[n] = i;
+            n += usize::from(height >= level);
+        }
+        (found, n)
+    }
+
+    /// Unit vectors from a place to the satellites when their signals left, in axes of reception.
+    #[inline(always)]
+    pub(super) fn towards<const L: usize>(&self, which: &[usize; L], from: &Vector3<f64>) -> [[f64; L]; 3] {
+        let gather = |table: &[[f64; SATELLITES]; 3]| -> [[f64; L]; 3] {
+            core::array::from_fn(|axis| core::array::from_fn(|l| table[axis][which[l]]))
+        };
+        let (position, velocity) = (gather(&self.position), gather(&self.velocity));
+        let mut unit = [[0.0; L]; 3];
+        for l in 0..L {
+            let at = |k: usize| position[k][l] - from[k];
+            let way_s = sqrt(at(0) * at(0) + at(1) * at(1) + at(2) * at(2)) / SPEED_OF_LIGHT_MPS;
+            let sent = Vector3::new(
+                position[0][l] - velocity[0][l] * way_s,
+                position[1][l] - velocity[1][l] * way_s,
+                position[2][l] - velocity[2][l] * way_s,
+            );
+            let line = in_axes_of_reception(&sent, way_s) - from;
+            let inverse = 1.0 / sqrt(line.x * line.x + line.y * line.y + line.z * line.z);
+            for k in 0..3 {
+                unit[k][l] = line[k] * inverse;
+            }
+        }
+        unit
+    }
 }
 
 impl Service {
@@ -101,6 +170,7 @@ impl Service {
             broadcast_ionosphere,
             grid: Grid::default(),
             satellites: [None; SATELLITES],
+            orbits: Orbits::default(),
             regions: [None; REGIONS],
             stopped: false,
             masked: false,
@@ -111,6 +181,7 @@ impl Service {
     pub fn refresh(&mut self, store: &Store, now: GpsTime, orbit: impl Fn(u8, u8) -> Option<Orbit>) {
         self.now = now;
         self.satellites = [None; SATELLITES];
+        self.orbits.count = 0;
         self.regions = [None; REGIONS];
         self.stopped = store.stopped(now);
         let prns = store.prns(self.used_for, now);
@@ -122,6 +193,7 @@ impl Service {
         for (slot, satellite) in self.satellites.iter_mut().zip(served) {
             *slot = Some(satellite);
         }
+        self.orbits.take(&self.satellites);
         // Message 28 replaces 27: a service sends one of them.
         if !store.covariance_heard() {
             for (slot, regions) in self.regions.iter_mut().zip(store.regions(self.used_for, now)) {
@@ -129,6 +201,16 @@ impl Service {
             }
         }
         self.grid.refresh(store, self.used_for, now);
+    }
+
+    /// Their orbits.
+    pub(super) const fn orbits(&self) -> &Orbits {
+        &self.orbits
+    }
+
+    /// Satellites corrected now, by the index of their orbit.
+    pub(super) fn indexed(&self, index: usize) -> Option<&Ranging> {
+        self.satellites.get(index)?.as_ref()
     }
 
     /// The correction of one satellite.
@@ -203,11 +285,7 @@ pub fn ranging(store: &Store, prn: u8, used_for: Use, now: GpsTime, orbit: impl 
         moved_ecef_m: delta,
         fast_m: satellite.fast.correction_m + rate.mps * rate.age_s,
         clock_s: moved(long_term.clock_s, |r| r.drift),
-        corrected: Corrected {
-            udre_m: crate::special::float::sqrt(udre_m2),
-            degradation_m: terms,
-            rss: degradation.is_some_and(|d| d.rss_udre),
-        },
+        corrected: Corrected { udre_m: sqrt(udre_m2), degradation_m: terms, rss: degradation.is_some_and(|d| d.rss_udre) },
         covariance,
     })
 }

@@ -2,8 +2,8 @@
 
 use super::ionosphere::four;
 use super::model::{
-    Airborne, Corrected, RangeError, fast_degradation_m, give_variance_m2, grid_degradation_m, grid_variance_m2, obliquity_squared,
-    udre_variance_m2,
+    Airborne, Corrected, Elevation, RangeError, fast_degradation_m, give_variance_m2, grid_degradation_m, grid_variance_m2,
+    obliquity_squared, udre_variance_m2,
 };
 use crate::geometry::Direction;
 use crate::quantity::{OutOfDomain, Radians};
@@ -87,7 +87,8 @@ impl RangeTerms {
             let give_m2 = give_variance_m2(*givei).ok_or_else(|| refusal("givei", f64::from(*givei), "1", "0 to 14"))?;
             vertical_m2 += weight * grid_variance_m2(give_m2, aged, self.rss_iono);
         }
-        let error = RangeError::new(corrected.variance_m2(self.delta_udre), vertical_m2, sin(el), el, &self.airborne);
+        let [elevation] = Elevation::abreast(&[sin(el)], &[cos(el)]);
+        let error = RangeError::new(corrected.variance_m2(self.delta_udre), vertical_m2, &elevation, &self.airborne);
         Ok(RangeSigmas {
             fast_degradation_m: fc,
             grid_degradation_m: aged,

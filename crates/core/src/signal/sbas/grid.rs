@@ -17,7 +17,8 @@ pub struct GridPoint {
 /// Cells of a world grid of 5 degrees, from 85S to 85N.
 pub const WORLD_CELLS: usize = ROWS * COLUMNS;
 const ROWS: usize = 35;
-const COLUMNS: usize = 72;
+/// Cells of a row, from 180W.
+pub const COLUMNS: usize = 72;
 
 impl GridPoint {
     /// Its cell in a world grid of 5 degrees; none off that grid. Longitudes wrap.
