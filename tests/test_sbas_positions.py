@@ -140,6 +140,10 @@ def test_real_egnos_is_smoothed_and_stays_far_inside_its_levels(egnos: Recording
     assert (known["nse_u_m"].abs() < known["vpl_m"]).all()
     assert smooth.epochs["status"].is_in(["ok", "not_available"]).all()
     assert rough.unused["not in the PRN mask"] > 0
+    assert rough.smoothed_share is None
+    # All but the first code of each arc.
+    assert smooth.smoothed_share is not None
+    assert 0.95 < smooth.smoothed_share < 1.0
 
 
 def test_en_route_without_a_grid_the_broadcast_ionosphere_serves(shared_data: Path) -> None:

@@ -47,6 +47,8 @@ class CorrectedPositions:
         Satellite-epochs that were not used, by reason; those below the mask are not among them.
     models : dict of str to str
         Every model by name, for the record of a run.
+    smoothed_share : float or None
+        Share of the pseudoranges that the carrier smoothed; those that begin an arc are as measured. None without smoothing.
     test_signal : bool
         A message 0 was disregarded on request: nothing here is for navigation.
     ignored : list of (int, str)
@@ -57,6 +59,7 @@ class CorrectedPositions:
     satellites: pl.DataFrame
     unused: dict[str, int]
     models: dict[str, str]
+    smoothed_share: float | None
     test_signal: bool
     ignored: list[tuple[int, str]]
 
@@ -81,19 +84,18 @@ def corrected_positions(
     epochs = epochs.with_columns(pl.col("mode", "reason").replace({"": None}), pl.selectors.float().fill_nan(None))
     if truth_ecef_m is not None:
         epochs = with_errors(epochs, truth_ecef_m)
-    return CorrectedPositions(
-        epochs, pl.DataFrame(satellites), unused, _models(service, smoothing_s, share, false_alarm), bool(service["test_signal"]), ignored
-    )
+    models = _models(service, smoothing_s, false_alarm)
+    return CorrectedPositions(epochs, pl.DataFrame(satellites), unused, models, share, bool(service["test_signal"]), ignored)
 
 
-def _models(service: dict[str, Any], smoothing_s: float | None, share: float | None, false_alarm: float) -> dict[str, str]:
+def _models(service: dict[str, Any], smoothing_s: float | None, false_alarm: float) -> dict[str, str]:
     fallback = service["navigation"].klobuchar("G") is not None
     return {
         "orbits and clocks": "broadcast, of the issue that the service corrects; long-term, fast and range-rate corrections; group delay",
         "ionosphere": "the service's grid; en route without it "
         + ("Klobuchar, GPS message" if fallback else "nothing: the navigation file has no model"),
         "troposphere": "DO-229 A.4.2.4, by latitude and day of the year; height above the ellipsoid",
-        "smoothing": "none" if smoothing_s is None else f"hatch, {smoothing_s:g} s; {100 * (share or 0.0):.1f} % of the pseudoranges",
+        "smoothing": "none" if smoothing_s is None else f"hatch, {smoothing_s:g} s, where there is a carrier",
         "weights": f"DO-229 error model; receiver noise {service['noise_m']:g} m, airborne multipath",
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch; marks, never excludes: levels hold for the satellites used",
     }
