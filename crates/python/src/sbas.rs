@@ -9,7 +9,9 @@ use navbound_core::frame::{Covariance, Enu, Geodetic, LatLon};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians};
 use navbound_core::signal::sbas::timeout::Use;
 use navbound_core::signal::sbas::{BLOCK_BYTES, Block, Obedience, decode};
-use navbound_formats::rinex::{Navigation, read_navigation};
+use navbound_formats::packed::unpack;
+use navbound_formats::receiver::read_navigation;
+use navbound_formats::rinex::Navigation;
 use navbound_formats::sbas::{Received, Tag, read};
 use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -97,7 +99,8 @@ impl Job<'_> {
         let messages: Vec<_> = blocks(&self.data)?.into_iter().zip(ends).map(received).collect();
         let mut navigation = Navigation::default();
         for (path, bytes) in &self.navigation {
-            navigation.merge(read_navigation(bytes).map_err(|e| format_error(path, &e))?);
+            let read = unpack(bytes).and_then(|plain| read_navigation(&plain));
+            navigation.merge(read.map_err(|e| format_error(path, &e))?);
         }
         let places = self.lat_rad.as_slice()?.iter().zip(self.lon_rad.as_slice()?).zip(self.h_m.as_slice()?);
         let requests: PyResult<Vec<_>> =
