@@ -33,9 +33,7 @@ def _times(time_ns: ArrayLike) -> NDArray[np.int64]:
 
 def _joined(n: int, *columns: tuple[str, ArrayLike, int]) -> NDArray[np.float64]:
     """Join columns of given widths to one table of n rows."""
-    return np.ascontiguousarray(
-        np.concatenate([rows(name, np.reshape(value, (-1, width)), (n, width)) for name, value, width in columns], 1)
-    )
+    return np.ascontiguousarray(np.concatenate([rows(name, np.reshape(value, (-1, width)), (n, width)) for name, value, width in columns], 1))
 
 
 @dataclass(frozen=True)

@@ -141,7 +141,9 @@ class Levels:
     reason: NDArray[np.str_]
 
 
-def factors(integrity_risk: float, *, share: float = 0.25, axes: int = 1, receivers: int = 4, receiver_fault: float = 1e-5) -> Factors:
+def factors(
+    integrity_risk: float, *, share: float = 0.25, axes: int = 1, receivers: int = 4, receiver_fault: float = 1e-5
+) -> Factors:
     """Multipliers from an integrity risk (RTCA DO-245A; standard): 6.54 and 4.06 for 1.25e-9.
 
     Parameters
