@@ -40,6 +40,7 @@ def rawx(tow_s: float) -> bytes:
 
 
 def sfrbx(system: int, number: int, signal: int, words: list[int]) -> bytes:
+    """A navigation message of one satellite."""
     return struct.pack("<BBBBBBBB", system, number, signal, 0, len(words), 0, 2, 0) + struct.pack(f"<{len(words)}I", *words)
 
 
@@ -57,6 +58,7 @@ def lnav(number: int) -> list[int]:
 
 
 def receivers() -> list[bytes]:
+    """One seed a message, and one of plain bytes a maker."""
     epoch = record(0, rawx(1000.0)) + record(0, rawx(1001.0))
     old = struct.pack("<IhBB", 1_000_000, 1481, 1, 0) + struct.pack("<ddfBbBB", 1.1e8, 2.2e7, 100.0, 5, 7, 40, 0)
     sfrb = b"".join(record(3, struct.pack("<BB10I", 1, 5, *lnav(n))) for n in (1, 2, 3))
@@ -80,6 +82,7 @@ def receivers() -> list[bytes]:
 
 
 def corpus() -> dict[str, list[bytes]]:
+    """Seeds of every target."""
     observation, navigation = texts("src/rinex/observation_tests.rs"), texts("src/rinex/navigation_tests.rs")
     almanac, pos, sbas = texts("src/almanac_tests.rs"), texts("tests/rtklib.rs"), texts("src/sbas/tests.rs")
     clock, sp3 = texts("src/rinex/clock.rs"), texts("src/sp3.rs")
