@@ -282,6 +282,8 @@ def test_wrong_arguments_are_named(msas: sbas.Messages, navigation: Path, folder
         sbas.decode(replace(msas, data=damaged))
     with pytest.raises(InputError, match="tag"):
         sbas.read(navigation, tag="middle")  # type: ignore[arg-type]
+    with pytest.raises(FormatError, match=r"nowhere\.ems: No such file"):
+        sbas.read(tmp_path / "nowhere.ems")
     with pytest.raises(FormatError, match="neither EMS"):
         sbas.read(navigation)
     broken = tmp_path / "x.nav"

@@ -147,7 +147,11 @@ class Navigation:
         return self._core.klobuchar("G") is not None
 
     def records(self) -> pl.DataFrame:
-        """Keplerian records: ``satellite``, ``message``, ``orbit_time_ns``, ``clock_time_ns``, ``issue``, ``health``, ``accuracy_m``."""
+        """Keplerian records, one a row.
+
+        ``satellite``, ``message``, ``orbit_time_ns``, ``clock_time_ns``, ``issue``, ``health``, ``accuracy_m``, ``clock_s`` with drift
+        [s/s] and its rate [1/s], elements [sqrt(m), rad, rad/s, m], ``group_delay_first_s``, ``group_delay_second_s``, ``fit_interval_s``.
+        """
         return pl.DataFrame(self._core.records())
 
 
@@ -190,12 +194,12 @@ def file_content(path: str | Path) -> tuple[Path, bytes]:
 
 
 def read_observations(path: str | Path) -> Observations:
-    """Read a RINEX observation file.
+    """Read a RINEX observation file, or the raw measurements in a receiver's log.
 
     Parameters
     ----------
     path : str or Path
-        RINEX 2.10 to 4.0x, plain or compact (Hatanaka), packed by gzip or not.
+        RINEX 2.10 to 4.0x, plain or compact (Hatanaka); u-blox RXM-RAWX or RXM-RAW; Septentrio MeasEpoch. Packed by gzip or not.
 
     Returns
     -------
@@ -205,19 +209,21 @@ def read_observations(path: str | Path) -> Observations:
     Raises
     ------
     FormatError
-        Not such a file, with line and field. Damage that leaves the rest readable is listed in ``refused``.
+        Not such a file, with line and field. Damage that leaves the rest readable is listed in ``refused``; the line of a log is the
+        number of its frame.
     """
     place, content = file_content(path)
     return Observations(_core.Observations(content, str(place)), place)
 
 
 def read_navigation(paths: str | Path | Sequence[str | Path]) -> Navigation:
-    """Read RINEX navigation files.
+    """Read RINEX navigation files, or the subframes in receivers' logs.
 
     Parameters
     ----------
     paths : str, Path, or sequence of them
-        RINEX 2.10 to 4.0x, packed by gzip or not; several files are merged.
+        RINEX 2.10 to 4.0x; logs of u-blox (RXM-SFRBX, RXM-SFRB) or Septentrio (GPSRawCA, GALRawINAV) receivers, of which GPS LNAV and
+        Galileo I/NAV are taken. Packed by gzip or not; several files are merged.
 
     Returns
     -------

@@ -86,7 +86,10 @@ def fly(
 def analyze(
     files: Annotated[
         list[Path],
-        typer.Argument(help="Tables (CSV, Parquet, JSON), RTKLIB .pos files, receiver logs (UBX, SBF, NMEA, NovAtel); plain or gzip."),
+        typer.Argument(
+            help="Tables (CSV, Parquet, JSON), RTKLIB .pos files, receiver logs (UBX, SBF, NMEA, NovAtel), RINEX observations with "
+            "navigation files; plain or gzip."
+        ),
     ],
     path: Annotated[
         str | None,
@@ -121,14 +124,17 @@ def analyze(
     experimental: Annotated[
         str, typer.Option(help="With --levels: words beside levels that no integrity rests on ('experimental, not integrity').")
     ] = "",
+    solve: Annotated[
+        bool, typer.Option("--solve", help="Solve positions from the raw measurements of receiver logs instead of taking the receiver's.")
+    ] = False,
     out: Out = None,
     json: Json = False,
 ) -> None:
     """Judge recorded tracks against a path and a specification; with --levels, evaluate errors and protection levels.
 
     With --levels the files are tables with protection levels (any number, joined by time), or RINEX observations with navigation files and,
-    where a service corrects them, SBAS message logs; without messages the levels are the position's own and experimental. A run that was
-    interrupted goes on when it is started again with the same --out.
+    where a service corrects them, SBAS message logs; without messages the levels are the position's own and experimental. With --solve a
+    receiver's log may be all three. A run that was interrupted goes on when it is started again with the same --out.
     """
     out = out or Path("out") / files[0].name.split(".")[0]
     if levels is not None:
@@ -146,6 +152,7 @@ def analyze(
                 exclude_missing=exclude_missing,
                 stanford_esa=SubsetOptions(min_satellites, max_satellites, listed_from) if stanford_esa else None,
                 experimental=experimental,
+                solve=solve,
                 out=out,
                 progress=progress,
                 command=_command(),
@@ -163,6 +170,7 @@ def analyze(
         truth_tolerance_s=truth_tolerance_s,
         sigma_m=sigma_m,
         columns=_mapping(column or []),
+        solve=solve,
         settings=_settings(methods),
         out=out,
         command=_command(),

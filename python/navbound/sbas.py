@@ -30,6 +30,7 @@ from navbound._extraction_gains import (
     extraction_factor,
     extraction_gains,
 )
+from navbound._receivers import file_content
 from navbound._sbas_positions import MODES, CorrectedPositions, corrected_positions, service_of
 from navbound.errors import InputError
 
@@ -271,7 +272,7 @@ class FromTerms:
 
 
 def read(path: str | Path, *, tag: Literal["end", "start"] | None = None) -> Messages:
-    """Read a log of SBAS messages: EMS text, RTKLIB ``.sbs`` or RINEX-B, plain or packed by gzip.
+    """Read a log of SBAS messages: EMS text, RTKLIB ``.sbs``, RINEX-B or a receiver's raw log, plain or packed by gzip.
 
     Parameters
     ----------
@@ -289,13 +290,15 @@ def read(path: str | Path, *, tag: Literal["end", "start"] | None = None) -> Mes
     Raises
     ------
     FormatError
-        None of the formats, a damaged packing, or RINEX-B without ``tag``.
+        None of the formats, a damaged packing, RINEX-B without ``tag``, or a receiver's log with ``"start"``: its messages are dated by the
+        measurements beside them.
     InputError
         An unknown ``tag``.
     """
     if tag not in (None, "end", "start"):
         raise InputError("tag", tag, domain="end, start")
-    found = _core.sbas_read(Path(path).read_bytes(), str(path), tag)
+    place, content = file_content(path)
+    found = _core.sbas_read(content, str(place), tag)
     refused = [Refused(*row) for row in found.pop("refused")]
     return Messages(refused=refused, **found)
 

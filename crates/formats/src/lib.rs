@@ -3,6 +3,7 @@
 pub mod almanac;
 pub mod packed;
 pub mod precise;
+pub mod receiver;
 pub mod refusal;
 pub mod rinex;
 pub mod rtklib;

@@ -37,6 +37,15 @@ fn one(text: &str) -> Solutions {
     s
 }
 
+/// Found by fuzzing: a header cut short promised fewer columns than a position needs.
+#[test]
+fn a_header_that_names_part_of_a_position_is_refused() {
+    for cut in ["%  GPST latitude(deg) longituheight(l\n,05,,23.000,00.,00.0\n", "%  GPST x-ecef(m)\n2270 1.0 1.0\n"] {
+        let e = read(cut).unwrap_err();
+        assert!(e.line == Some(1) && e.reason.contains("the columns after"), "{e:?}");
+    }
+}
+
 #[test]
 fn a_row_of_degrees_is_read_as_it_stands() {
     let s = one(DEGREES);

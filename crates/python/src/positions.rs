@@ -7,11 +7,12 @@ use navbound_assess::smoothing::Form;
 use navbound_core::frame::{self, EcefPosition};
 use navbound_core::quantity::{OutOfDomain, Radians};
 use navbound_core::signal::smoothing::Smoothing;
-use navbound_core::signal::{Constellation, Klobuchar};
+use navbound_core::signal::{Constellation, Ephemeris, Klobuchar};
 use navbound_core::solution::RangeError;
 use navbound_core::solution::point::{Fix, Settings, Used};
 use navbound_formats::Refusal;
 use navbound_formats::packed::unpack;
+use navbound_formats::receiver;
 use navbound_formats::rinex::{self, Code};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -48,7 +49,7 @@ impl Observations {
     /// Read from the bytes of a file, plain or gzip; `path` for messages.
     #[new]
     fn new(py: Python<'_>, content: &[u8], path: &str) -> PyResult<Self> {
-        let read = || rinex::read_observations(&unpack(content)?);
+        let read = || receiver::read_observations(&unpack(content)?);
         Ok(Self(py.detach(read).map_err(|e| format_error(path, &e))?))
     }
     #[getter]
@@ -131,6 +132,48 @@ impl Observations {
     }
 }
 
+type Element = (&'static str, fn(&Ephemeris) -> f64);
+
+/// Numbers of a Keplerian record by column.
+const ELEMENTS: [Element; 22] = [
+    ("accuracy_m", |e| e.accuracy_m),
+    ("clock_s", |e| e.clock[0]),
+    ("clock_drift", |e| e.clock[1]),
+    ("clock_drift_rate_per_s", |e| e.clock[2]),
+    ("sqrt_a", |e| e.sqrt_a),
+    ("eccentricity", |e| e.eccentricity),
+    ("inclination_rad", |e| e.inclination[0]),
+    ("inclination_rate_radps", |e| e.inclination[1]),
+    ("node_rad", |e| e.node[0]),
+    ("node_rate_radps", |e| e.node[1]),
+    ("perigee_rad", |e| e.perigee),
+    ("mean_anomaly_rad", |e| e.mean_anomaly),
+    ("delta_n_radps", |e| e.delta_n),
+    ("cuc_rad", |e| e.latitude_harmonics[0]),
+    ("cus_rad", |e| e.latitude_harmonics[1]),
+    ("crc_m", |e| e.radius_harmonics[0]),
+    ("crs_m", |e| e.radius_harmonics[1]),
+    ("cic_rad", |e| e.inclination_harmonics[0]),
+    ("cis_rad", |e| e.inclination_harmonics[1]),
+    ("group_delay_first_s", |e| e.group_delay_s[0]),
+    ("group_delay_second_s", |e| e.group_delay_s[1]),
+    ("fit_interval_s", |e| e.fit_interval_s),
+];
+
+/// What a raw log holds: epochs of measurements, orbits from subframes, SBAS messages; None for any other file.
+#[pyfunction]
+fn raw_log(py: Python<'_>, content: &[u8], path: &str) -> PyResult<Option<(usize, usize, usize)>> {
+    let count = || {
+        let plain = unpack(content)?;
+        if !receiver::is_raw(&plain) {
+            return Ok(None);
+        }
+        let r = receiver::read(&plain)?;
+        Ok(Some((r.observations.n_epochs(), r.navigation.ephemerides.len(), r.messages.len())))
+    };
+    py.detach(count).map_err(|e| format_error(path, &e))
+}
+
 #[pymethods]
 impl Navigation {
     /// Read from the bytes of files, plain or gzip, each with its path for messages.
@@ -138,7 +181,7 @@ impl Navigation {
     fn new(py: Python<'_>, files: Vec<(Vec<u8>, String)>) -> PyResult<Self> {
         let (mut records, mut refused) = (rinex::Navigation::default(), Vec::new());
         for (content, path) in files {
-            let read = || rinex::read_navigation(&unpack(&content)?);
+            let read = || receiver::read_navigation(&unpack(&content)?);
             let mut file = py.detach(read).map_err(|e| format_error(&path, &e))?;
             refused.extend(file.refused.drain(..).map(|r| (path.clone(), r)));
             records.merge(file);
@@ -171,7 +214,7 @@ impl Navigation {
         let found = if system == 'C' { self.records.klobuchar_beidou } else { self.records.klobuchar_gps };
         found.map(|k: Klobuchar| (k.alpha, k.beta))
     }
-    /// Keplerian records: satellite, message, reference times, health, accuracy, issue.
+    /// Keplerian records: satellite, message, reference times, issue, health, accuracy, clock, elements, group delays.
     fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let e = &self.records.ephemerides;
         let d = PyDict::new(py);
@@ -181,7 +224,9 @@ impl Navigation {
         d.set_item("clock_time_ns", e.iter().map(|e| e.clock_time.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
         d.set_item("issue", e.iter().map(|e| i64::from(e.issue_orbit)).collect::<Vec<_>>().into_pyarray(py))?;
         d.set_item("health", e.iter().map(|e| i64::from(e.health.word)).collect::<Vec<_>>().into_pyarray(py))?;
-        d.set_item("accuracy_m", e.iter().map(|e| e.accuracy_m).collect::<Vec<_>>().into_pyarray(py))?;
+        for (name, value) in ELEMENTS {
+            d.set_item(name, e.iter().map(value).collect::<Vec<_>>().into_pyarray(py))?;
+        }
         Ok(d)
     }
 }
@@ -335,6 +380,7 @@ fn geodetic_from_ecef<'py>(py: Python<'py>, ecef_m: PyReadonlyArray2<'py, f64>) 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Observations>()?;
     m.add_class::<Navigation>()?;
+    m.add_function(wrap_pyfunction!(raw_log, m)?)?;
     m.add_function(wrap_pyfunction!(geodetic_from_ecef, m)?)?;
     m.add_function(wrap_pyfunction!(solve_positions, m)?)
 }

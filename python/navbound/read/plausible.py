@@ -91,7 +91,7 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
     Returns
     -------
     epochs : DataFrame
-        With ``status`` and ``reason``.
+        With ``status`` and ``reason``; those that a solver gave before stand where nothing is implausible.
     plausibility : Plausibility
         What was found.
     """
@@ -109,6 +109,10 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
         pl.Series("status", [_STATUS[c] for c in range(len(_STATUS))], dtype=pl.String).gather(code),
         pl.Series("reason", _REASON, dtype=pl.String).gather(code),
     )
+    if "status" in epochs.columns:
+        plausible = pl.col("status") == "ok"
+        given = ((pl.when(plausible).then(epochs[c]).otherwise(pl.col(c))).alias(c) for c in ("status", "reason"))
+        marked = marked.with_columns(given)
     believed = pl.col("status").is_in(["ok", "degraded"])
     marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COLUMNS if c in epochs.columns)
     n = np.bincount(code, minlength=len(_STATUS))

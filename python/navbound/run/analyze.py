@@ -16,8 +16,10 @@ from navbound.read.plausible import Limits, check
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
 from navbound.read.truth import TOLERANCE_S, join, with_error
+from navbound.run.files import sort_out
 from navbound.run.material import Material
 from navbound.run.records import Rejection, Waypoint
+from navbound.run.solved import solved
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -39,13 +41,15 @@ def material(
     columns: Mapping[str, str] | None = None,
     gates: Gates | None = None,
     limits: Limits | None = None,
+    solve: bool = False,
 ) -> Material:
     """Make recorded tracks ready to be judged.
 
     Parameters
     ----------
     files : path or sequence of paths
-        Tables (CSV, JSON, Parquet), RTKLIB solution files, or logs of receivers; all also gzipped.
+        Tables (CSV, JSON, Parquet), RTKLIB solution files, or logs of receivers; all also gzipped. Or measurements with navigation files,
+        from which positions are solved.
     requirement : str
         The navigation specification in words.
     rnp_m : float
@@ -63,6 +67,9 @@ def material(
         What a column is, where its name does not say; see :func:`navbound.read.read`.
     gates, limits : optional
         What counts as an approach; what an aircraft can do.
+    solve : bool
+        Solve positions from the raw measurements of receivers' logs, with the orbits in their subframes and in navigation files, instead
+        of taking the receivers' own.
 
     Raises
     ------
@@ -77,8 +84,11 @@ def material(
     names = [files] if isinstance(files, str) or not hasattr(files, "__iter__") else list(files)
     if not names:
         raise InputError("files", "nothing", domain="one file or more")
-    readings = [read(f, columns=columns) for f in names]
-    inputs, rejected = [r.source for r in readings], [x for r in readings for x in r.rejected]
+    found = sort_out(names, solve=solve)
+    found.require_navigation()
+    readings = [read(source.path, columns=columns) for source in found.tables] + (solved(found) if found.observations else [])
+    inputs = [r.source for r in readings] + [source.record(None) for source in found.navigation if source not in found.observations]
+    rejected = [x for r in readings for x in r.rejected]
     notes = [note for r in readings for note in r.notes]
     epochs = _together(readings, rejected)
     labels = _labels(epochs)
@@ -118,6 +128,7 @@ def material(
             "columns_not_used": {r.source.path: r.unused for r in readings},
             "gates": asdict(gates),
             "limits": asdict(limits),
+            "solve": solve,
         },
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -14,7 +14,6 @@ import polars as pl
 from navbound import gnss, sbas
 from navbound.errors import FormatError, InputError
 from navbound.read.epochs import read
-from navbound.read.source import Source, load
 from navbound.read.truth import join, with_error
 
 if TYPE_CHECKING:
@@ -93,52 +92,6 @@ def truth_of(given: str | Path | None, tolerance_s: float) -> Truth:
     if not 6.3e6 < float(np.linalg.norm(point)) < 6.5e6:
         raise InputError("truth", text, "m", "X,Y,Z of a point within 100 km of the Earth's surface, or a file")
     return Truth(text, point, tolerance_s)
-
-
-@dataclass(frozen=True)
-class Files:
-    """Files by what they hold."""
-
-    tables: list[Source] = field(default_factory=list)
-    observations: list[Source] = field(default_factory=list)
-    navigation: list[Source] = field(default_factory=list)
-    messages: list[Source] = field(default_factory=list)
-
-
-def sort_out(paths: Sequence[str | Path]) -> Files:
-    """Tell observations, navigation data, message logs and tables apart by their content.
-
-    Only digests and kinds are kept; contents are read again when they are needed.
-
-    Raises
-    ------
-    FormatError
-        A file that cannot be read.
-    InputError
-        Observations without navigation data, or navigation data and messages without observations.
-    """
-    files = Files()
-    for path in paths:
-        source = load(path)
-        kind = getattr(files, _kind(source))
-        kind.append(Source(source.path, b"", source.sha256, source.n_bytes))
-    if files.observations and not files.navigation:
-        raise InputError("files", f"{files.observations[0].path}", domain="observations together with a RINEX navigation file")
-    if not files.observations and (files.navigation or files.messages):
-        raise InputError("files", f"{(files.navigation + files.messages)[0].path}", domain="them together with RINEX observations")
-    return files
-
-
-def _kind(source: Source) -> str:
-    first = source.content[:200].split(b"\n", 1)[0]
-    if b"CRINEX VERS" in first:
-        return "observations"
-    if b"RINEX VERSION / TYPE" in first:
-        if first[20:21] == b"O":
-            return "observations"
-        return "messages" if first[20:21] in {b"B", b"H"} and b"NAV" not in first[20:40] else "navigation"
-    name = source.path.name.lower().removesuffix(".gz")
-    return "messages" if name.endswith((".ems", ".sbs")) else "tables"
 
 
 @dataclass(frozen=True)

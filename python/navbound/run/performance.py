@@ -22,7 +22,8 @@ from navbound.read.source import load
 from navbound.run import directory
 from navbound.run.directory import Run
 from navbound.run.field_csv import write_csv
-from navbound.run.levels_of import COVARIANCE, SCHEMA, Part, Service, Truth, from_observations, from_table, sort_out, truth_of
+from navbound.run.files import sort_out
+from navbound.run.levels_of import COVARIANCE, SCHEMA, Part, Service, Truth, from_observations, from_table, truth_of
 from navbound.run.performance_words import performance_words
 from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
 from navbound.run.summarise import honesty_of
@@ -31,8 +32,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from navbound.read.source import Source
+    from navbound.run.files import Files
     from navbound.run.kpi_records import Performance
-    from navbound.run.levels_of import Files
 
 PARTS = "parts"
 """Folder of the run directory that remembers the finished parts."""
@@ -67,6 +68,8 @@ class Options:
         Solve every subset of satellites too, for the Stanford-ESA diagram; observations and truth are needed.
     experimental : str
         Words that must stand beside levels that no integrity rests on, where the files do not say so themselves.
+    solve : bool
+        Take the raw measurements and messages of receivers' logs, not their own positions and levels.
     """
 
     levels: Sequence[str | kpi.Level]
@@ -78,6 +81,7 @@ class Options:
     exclude_missing: bool = False
     stanford_esa: kpi.SubsetOptions | None = None
     experimental: str = ""
+    solve: bool = False
 
 
 def evaluate_files(
@@ -119,7 +123,8 @@ def evaluate_files(
         raise InputError("files", "nothing", domain="one file or more")
     wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
     truth = truth_of(options.truth, options.truth_tolerance_s)
-    sources = sort_out(names)
+    sources = sort_out(names, solve=options.solve)
+    sources.require_navigation()
     if options.stanford_esa is not None and (sources.tables or sources.messages):
         raise InputError(
             "stanford_esa",
@@ -195,7 +200,7 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
             recorded = hashlib.sha256(Path(truth.given).read_bytes()).hexdigest()
         except OSError as e:
             raise FormatError(truth.given, e.strerror or str(e)) from e
-    given = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn]
+    given = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn, options.solve]
     beside = sorted(s.sha256 for s in sources.navigation + sources.messages)
     return json.dumps([given, options.stanford_esa is not None, SCHEMA.names(), beside])
 

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 #[path = "record.rs"]
 mod record;
 use record::Block;
+pub(crate) use record::{fit_interval, orbit_refusal};
 
 /// Everything of navigation files that navbound uses, and what it left.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -52,7 +53,7 @@ impl Navigation {
         self.sort();
     }
 
-    fn sort(&mut self) {
+    pub(crate) fn sort(&mut self) {
         self.ephemerides.sort_by_key(|e| (e.satellite, e.message, e.orbit_time, e.clock_time, e.issue_orbit));
         self.ephemerides.dedup();
         self.geostationary.sort_by_key(|e| (e.satellite, e.time));
@@ -248,7 +249,7 @@ impl Navigation {
 
 /// The instant nearest to `near` that has this time of week \[s\] in a scale `behind_ns` behind GPS time: no week number needed, so none
 /// can be wrong or rolled over.
-fn nearest_week(time_of_week_s: f64, near: GpsTime, behind_ns: i64) -> Option<GpsTime> {
+pub(crate) fn nearest_week(time_of_week_s: f64, near: GpsTime, behind_ns: i64) -> Option<GpsTime> {
     const WEEK_NS: i64 = 604_800_000_000_000;
     // Times beyond two weeks mean "unknown" (0.9999e9 in the standard).
     if !(time_of_week_s.abs() <= 1_209_600.0) {

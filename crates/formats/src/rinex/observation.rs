@@ -121,15 +121,15 @@ impl Observations {
     pub(super) fn n_codes(&self, constellation: Constellation) -> usize {
         self.codes[constellation.index()].len()
     }
-    pub(super) fn begin_satellite(&mut self, satellite: SatelliteId) {
+    pub(crate) fn begin_satellite(&mut self, satellite: SatelliteId) {
         self.satellite.push(satellite);
         self.first_value.push(self.value.len());
     }
-    pub(super) fn push(&mut self, value: f64, indicator: u8) {
+    pub(crate) fn push(&mut self, value: f64, indicator: u8) {
         self.value.push(value);
         self.indicator.push(indicator);
     }
-    pub(super) fn end_epoch(&mut self, time: GpsTime, interrupted: bool, clock_offset_s: f64) {
+    pub(crate) fn end_epoch(&mut self, time: GpsTime, interrupted: bool, clock_offset_s: f64) {
         self.time.push(time);
         self.interrupted.push(interrupted);
         self.clock_offset_s.push(clock_offset_s);
@@ -144,10 +144,10 @@ impl Observations {
         self.value.truncate(values);
         self.indicator.truncate(values);
     }
-    pub(super) fn skip(&mut self, kind: &str, n: usize) {
+    pub(crate) fn skip(&mut self, kind: &str, n: usize) {
         *self.skipped.entry(kind.to_owned()).or_default() += n;
     }
-    pub(super) fn refuse(&mut self, line: usize, field: &str, reason: &str, found: &[u8]) {
+    pub(crate) fn refuse(&mut self, line: usize, field: &str, reason: &str, found: &[u8]) {
         self.n_refused += 1;
         if self.refused.len() < REFUSALS_KEPT {
             let text = text(found, 0, 80);

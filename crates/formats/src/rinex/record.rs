@@ -106,11 +106,8 @@ impl<'a> Block<'a> {
         let [sent, last] = self.last_line();
         let orbit_time = nearest_week(v[11], clock_time, behind).ok_or_else(|| self.refusal("toe", "not a time of week"))?;
         let message = kind(satellite, message, v[20]);
-        if !(v[10] >= 2450.0 && v[10] <= 31_622.0) {
-            return Err(self.refusal("sqrt(A)", "outside [2450, 31622] sqrt(m)"));
-        }
-        if !(0.0..=0.9).contains(&v[8]) {
-            return Err(self.refusal("eccentricity", "outside [0, 0.9]"));
+        if let Some((field, reason)) = orbit_refusal(v[10], v[8]) {
+            return Err(self.refusal(field, reason));
         }
         Ok(Ephemeris {
             satellite,
@@ -174,6 +171,14 @@ impl<'a> Block<'a> {
     }
 }
 
+/// Field and reason, where the root of the semi-major axis \[sqrt(m)\] or the eccentricity is that of no satellite's orbit.
+pub(crate) fn orbit_refusal(sqrt_a: f64, eccentricity: f64) -> Option<(&'static str, &'static str)> {
+    if !(2450.0..=31_622.0).contains(&sqrt_a) {
+        return Some(("sqrt(A)", "outside [2450, 31622] sqrt(m)"));
+    }
+    (!(0.0..=0.9).contains(&eccentricity)).then_some(("eccentricity", "outside [0, 0.9]"))
+}
+
 /// The message a record came from. Version 3 does not say: Galileo's data sources tell (bit 1 is F/NAV), BeiDou's follow from the
 /// satellite, since D2 is what the geostationary ones send.
 fn kind(satellite: SatelliteId, message: Option<&[u8]>, sources: f64) -> Message {
@@ -192,7 +197,7 @@ fn kind(satellite: SatelliteId, message: Option<&[u8]>, sources: f64) -> Message
 
 /// Seconds around the reference time in which the record may be used. GPS states it (hours, or a flag in older files); the others do
 /// not, and get the times of their services: Galileo 4 h after, BeiDou 1 h renewal with one missed.
-fn fit_interval(message: Message, stated: f64) -> f64 {
+pub(crate) fn fit_interval(message: Message, stated: f64) -> f64 {
     let hours = match message {
         Message::Lnav if stated > 1.0 && stated <= 26.0 => stated,
         Message::Lnav if stated == 1.0 => 6.0,

@@ -90,6 +90,15 @@ fn columns(names: &[&str], scale: Scale, base: Option<[f64; 3]>) -> Result<Layou
         }
         other => return Err(format!("the column after the time is '{}', not a known position", other.unwrap_or(""))),
     };
+    let rest: [&str; 2] = match form {
+        Form::Degrees => ["longitude(deg)", "height(m)"],
+        Form::Sexagesimal => ["longitude(d'\")", "height(m)"],
+        Form::Ecef => ["y-ecef(m)", "z-ecef(m)"],
+        Form::Baseline(_) => ["n-baseline(m)", "u-baseline(m)"],
+    };
+    if names.get(2..4) != Some(&rest[..]) {
+        return Err(format!("the columns after '{}' are not '{}' and '{}'", names[1], rest[0], rest[1]));
+    }
     // Date and time of day stand under one name; so do degrees, minutes and seconds.
     let extra = 1 + if form == Form::Sexagesimal { 4 } else { 0 };
     let find = |name: &str| names.iter().position(|n| *n == name).map(|i| i + extra);

@@ -1,4 +1,4 @@
-//! SBAS message logs to 250-bit blocks: EMS text, RTKLIB `.sbs`, RINEX-B; plain or packed by gzip.
+//! SBAS message logs to 250-bit blocks: EMS text, RTKLIB `.sbs`, RINEX-B, raw logs of receivers; plain or packed by gzip.
 //!
 //! Logs differ in the instant they write beside a message. A reader is told ([`Tag`]), says what it assumed ([`Log::tag`]), and hands on one
 //! thing only: when the message ended.
@@ -6,6 +6,7 @@
 mod line;
 
 use crate::packed::unpack;
+use crate::receiver;
 use crate::refusal::{Refusal, Unreadable};
 use navbound_core::quantity::GpsTime;
 use navbound_core::signal::sbas::Block;
@@ -28,6 +29,8 @@ pub enum Format {
     Rtklib,
     /// RINEX-type broadcast data of geostationary satellites. The layout is inferred from a converter, no file of it was at hand.
     RinexB,
+    /// Frames of a receiver (see [`crate::receiver`]), dated by the measurements beside them.
+    Receiver,
 }
 
 impl Format {
@@ -37,6 +40,7 @@ impl Format {
             Self::Ems => "EMS",
             Self::Rtklib => "RTKLIB sbs",
             Self::RinexB => "RINEX-B",
+            Self::Receiver => "receiver log",
         }
     }
 }
@@ -75,10 +79,13 @@ pub struct Log {
 pub fn read(bytes: &[u8], tag: Option<Tag>) -> Result<Log, Unreadable> {
     let plain = unpack(bytes)?;
     let text = String::from_utf8_lossy(&plain);
-    let format = recognise(&text)?;
+    let format = if receiver::is_raw(&plain) { Format::Receiver } else { recognise(&text)? };
     let tag = match (format, tag) {
+        (Format::Receiver, Some(Tag::Start)) => {
+            return Err(Unreadable::whole("messages in a receiver's log are dated by their end, not their start"));
+        }
         (_, Some(tag)) => tag,
-        (Format::Ems | Format::Rtklib, None) => Tag::End,
+        (Format::Ems | Format::Rtklib | Format::Receiver, None) => Tag::End,
         (Format::RinexB, None) => {
             return Err(Unreadable::whole("state whether the times of this RINEX-B file are the start or the end of a message"));
         }
@@ -88,8 +95,19 @@ pub fn read(bytes: &[u8], tag: Option<Tag>) -> Result<Log, Unreadable> {
         Format::Ems => lines(&text, &mut log, line::ems),
         Format::Rtklib => lines(&text, &mut log, line::rtklib),
         Format::RinexB => records(&text, &mut log),
+        Format::Receiver => frames(&plain, &mut log)?,
     }
     Ok(log)
+}
+
+/// The messages of a raw log; their ends follow from the measurements beside them.
+fn frames(plain: &[u8], log: &mut Log) -> Result<(), Unreadable> {
+    let found = receiver::read(plain)?;
+    if found.messages.is_empty() {
+        return Err(Unreadable::whole("a receiver's log without one SBAS L1 message that is dated"));
+    }
+    (log.messages, log.refused) = (found.messages, found.observations.refused);
+    Ok(())
 }
 
 fn recognise(text: &str) -> Result<Format, Unreadable> {

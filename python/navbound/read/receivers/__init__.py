@@ -58,6 +58,7 @@ def read(source: Source, name: Kind) -> Log:
     """
     decode: Callable[[Source], Log] = import_module(f"navbound.read.receivers.{name}").read
     log = decode(source)
+    log.drop_unsound()
     if log.n_rows == 0:
         raise FormatError(source.path, f"a log of kind {name} without a message that holds a position ({log.needs})")
     return log

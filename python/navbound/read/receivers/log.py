@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from importlib import import_module
 from io import BytesIO
@@ -54,10 +55,37 @@ class Log:
         count, first, shown, bad = self.left_out.get(reason, (0, record, example, damaged))
         self.left_out[reason] = (count + 1, first, shown, bad)
 
+    def attempt(self, record: int, build: Callable[[], None]) -> None:
+        """Make a row of messages; one that is shorter than its definition, and so lacks a field, is counted as damaged."""
+        try:
+            build()
+        except AttributeError as e:
+            self.leave_out("damaged message", record, f"a field is missing: {e}", damaged=True)
+
+    def drop_unsound(self) -> None:
+        """Take out rows that lie nowhere or at no time, as whole messages with wrong contents give them, and count them."""
+        for row in self.rows:
+            if not _sound(row):
+                shown = {name: row.get(name) for name in ("est_lat_rad", "est_lon_rad", "est_h_m", "time_ns", "unix_ns") if name in row}
+                self.leave_out("position or time outside its domain", row["record"], str(shown), damaged=True)
+        self.rows = [row for row in self.rows if _sound(row)]
+
     def note(self, words: str) -> None:
         """Add a note once."""
         if words not in self.notes and len(self.notes) < _KEPT_NOTES:
             self.notes.append(words)
+
+
+_LATEST_NS = 4_000_000_000_000_000_000
+"""GPS or Unix time of the year 2096 or later: none that a log can hold."""
+_LOWEST_M, _HIGHEST_M = -20_000.0, 1e8
+"""Limits of the readers of positions."""
+
+
+def _sound(row: dict[str, Any]) -> bool:
+    time, h = row.get("time_ns", row.get("unix_ns", -1)), row.get("est_h_m")
+    on_earth = abs(row["est_lat_rad"]) <= math.pi / 2 and abs(row["est_lon_rad"]) <= math.tau
+    return bool(on_earth and (h is None or _LOWEST_M < h < _HIGHEST_M) and 0 <= time < _LATEST_NS)
 
 
 def package(name: str, path: Path) -> ModuleType:

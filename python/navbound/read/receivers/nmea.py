@@ -41,12 +41,13 @@ def read(source: Source) -> Log:
         if name == "GGA":
             last = _Fix(record, sentence)
             fixes.append(last)
-        elif name in {"GST", "GBS"} and last is not None and sentence.time == last.gga.time:
+        elif name in {"GST", "GBS"} and last is not None and _field(sentence, "time") == _field(last.gga, "time"):
             setattr(last, name.lower(), sentence)
         elif name in {"RMC", "ZDA"}:
             day = _day(sentence)
-            if day is not None and isinstance(sentence.time, time):
-                dates.append((record, day, sentence.time))
+            of_day = _field(sentence, "time")
+            if day is not None and isinstance(of_day, time):
+                dates.append((record, day, of_day))
     if fixes and not dates:
         log.n_rows = len(fixes)
         log.leave_out("no RMC or ZDA gives a date", fixes[0].record, "GGA holds a time of day only")
@@ -63,21 +64,23 @@ def read(source: Source) -> Log:
 
 def _day(sentence: Any) -> date | None:
     if sentence.msgID == "RMC":
-        return sentence.date if isinstance(sentence.date, date) and sentence.status == "A" else None
+        day = _field(sentence, "date")
+        return day if isinstance(day, date) and _field(sentence, "status") == "A" else None
     try:
-        return date(int(sentence.year), int(sentence.month), int(sentence.day))
+        return date(*(int(_field(sentence, name)) for name in ("year", "month", "day")))
     except (TypeError, ValueError):
         return None
 
 
 def _row(fix: _Fix, dated: tuple[int, date, time], log: Log) -> None:
     gga = fix.gga
-    numbers = [_number(v) for v in (gga.lat, gga.lon, gga.alt)]
-    if not gga.quality or not isinstance(gga.time, time) or numbers[0] is None or numbers[1] is None:
+    of_day, quality = _field(gga, "time"), _field(gga, "quality")
+    numbers = [_number(gga, name) for name in ("lat", "lon", "alt")]
+    if not quality or not isinstance(of_day, time) or numbers[0] is None or numbers[1] is None:
         log.n_rows += 1
-        log.leave_out("no fix", fix.record, f"quality {gga.quality}, latitude {gga.lat!r}")
+        log.leave_out("no fix", fix.record, f"quality {quality}, latitude {_field(gga, 'lat')!r}")
         return
-    undulation = _number(gga.sep)
+    undulation, n_sv = _number(gga, "sep"), _number(gga, "numSV")
     if numbers[2] is not None and undulation is None:
         log.note(f"{log.path.name}: GGA without the separation of the geoid: heights are left out")
     height = None if numbers[2] is None or undulation is None else numbers[2] + undulation
@@ -89,18 +92,24 @@ def _row(fix: _Fix, dated: tuple[int, date, time], log: Log) -> None:
     }
     row = {
         "record": fix.record,
-        "unix_ns": _unix_ns(gga.time, dated[1], dated[2]),
+        "unix_ns": _unix_ns(of_day, dated[1], dated[2]),
         "est_lat_rad": math.radians(numbers[0]),
         "est_lon_rad": math.radians(numbers[1]),
         "est_h_m": height,
-        "n_sv": None if gga.numSV in {"", None} else int(gga.numSV),
-        "hdop": _number(gga.HDOP),
+        "n_sv": None if n_sv is None else int(n_sv),
+        "hdop": _number(gga, "HDOP"),
     }
     log.rows.append(row | _covariance(fix, log))
 
 
-def _number(value: Any) -> float | None:
-    """Field of a sentence; None where it is empty."""
+def _field(sentence: Any, name: str) -> Any:
+    """Field of a sentence; None where the sentence ends before it."""
+    return getattr(sentence, name, None)
+
+
+def _number(sentence: Any, name: str) -> float | None:
+    """Number in a field; None where it is empty, absent or something else."""
+    value = _field(sentence, name)
     return float(value) if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value) else None
 
 
@@ -122,7 +131,7 @@ def _covariance(fix: _Fix, log: Log) -> dict[str, float]:
     for sentence, names in ((fix.gst, ("stdLong", "stdLat", "stdAlt")), (fix.gbs, ("errLon", "errLat", "errAlt"))):
         if sentence is None:
             continue
-        sigma = [_number(getattr(sentence, name)) for name in names]
+        sigma = [_number(sentence, name) for name in names]
         if sigma[0] is None or sigma[1] is None or sigma[2] is None:
             continue
         log.columns["covariance"] = sentence.msgID
@@ -140,7 +149,7 @@ def _correlated(gst: Any, trace_m2: float) -> float:
 
     Its axes are scaled to the standard deviations beside them: the standard calls them standard deviations, some makers write 95 % axes.
     """
-    major, minor, orient = (_number(getattr(gst, name)) for name in ("stdMajor", "stdMinor", "orient"))
+    major, minor, orient = (_number(gst, name) for name in ("stdMajor", "stdMinor", "orient"))
     if major is None or minor is None or orient is None or major**2 + minor**2 == 0:
         return 0.0
     turn = math.radians(orient)

@@ -6,6 +6,7 @@ Source: Septentrio SBF reference guide, standard. Times are GPS weeks, not rolle
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 _WANTED = {"PVTGeodetic": "pvt", "PVTCartesian": "pvt", "PosCovGeodetic": "cov", "PosCovCartesian": "cov", "DOP": "dop"}
 _ABSENT = -2e10
 """Value that means "do not use"."""
+_DEEPEST_M, _HIGHEST_M = 5e4, 1e9
+"""From the Earth's centre: nearer, latitude has no meaning; farther, no receiver is."""
 _TOW, _WEEK = 8, 12
 """Offsets of time of week [ms] and week in a block."""
 _UNKNOWN_TOW, _UNKNOWN_WEEK = 0xFFFFFFFF, 0xFFFF
@@ -38,14 +41,14 @@ def read(source: Source) -> Log:
             continue
         at = (int.from_bytes(raw[_WEEK : _WEEK + 2], "little"), int.from_bytes(raw[_TOW : _TOW + 4], "little"))
         if epoch and at != epoch["at"]:
-            _finish(epoch, log)
+            log.attempt(record, partial(_finish, epoch, log))
             epoch = {}
         # Of the two forms of a block in one epoch the geodetic one is kept: it needs no conversion.
         if name not in epoch or "Geodetic" in block.identity:
             epoch |= {"at": at, name: block}
         epoch.setdefault("record", record)
     if epoch:
-        _finish(epoch, log)
+        log.attempt(epoch["record"], partial(_finish, epoch, log))
     log.n_rows += len(log.rows)
     return log
 
@@ -81,10 +84,11 @@ def _finish(epoch: dict[str, Any], log: Log) -> None:
 
 
 def _place(pvt: Any) -> Any:
-    """Latitude, longitude [rad], height [m]; None where the block holds none."""
+    """Latitude, longitude [rad], height [m]; None where the block holds none, or no place."""
     if pvt.identity == "PVTGeodetic":
-        return None if min(pvt.Latitude, pvt.Longitude, pvt.Height) <= _ABSENT else (pvt.Latitude, pvt.Longitude, pvt.Height)
-    if min(pvt.X, pvt.Y, pvt.Z) <= _ABSENT:
+        found = (pvt.Latitude, pvt.Longitude, pvt.Height)
+        return found if abs(found[0]) <= math.pi / 2 and abs(found[1]) <= math.tau and math.isfinite(found[2]) else None
+    if min(pvt.X, pvt.Y, pvt.Z) <= _ABSENT or not _DEEPEST_M <= math.hypot(pvt.X, pvt.Y, pvt.Z) < _HIGHEST_M:
         return None
     return _core.geodetic_from_ecef(np.array([[pvt.X, pvt.Y, pvt.Z]]))[0]
 

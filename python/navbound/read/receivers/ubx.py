@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import math
 from datetime import UTC, datetime
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from navbound.read.receivers.log import COVARIANCE, Log, messages, package
@@ -44,13 +45,13 @@ def read(source: Source) -> Log:
         start = _FRAME + (12 if name == "pl" else 0)
         itow = int.from_bytes(raw[start : start + 4], "little")
         if epoch and itow != epoch["itow"]:
-            _finish(epoch, log)
+            log.attempt(record, partial(_finish, epoch, log))
             epoch = {}
         epoch |= {"itow": itow, name: message}
         if name == "pvt":
             epoch["record"] = record
     if epoch:
-        _finish(epoch, log)
+        log.attempt(epoch.get("record", 0), partial(_finish, epoch, log))
     log.n_rows += len(log.rows)
     return log
 

@@ -29,7 +29,7 @@ impl Block {
         if !PREAMBLES.contains(&preamble) {
             return Err(Malformed::Preamble { found: preamble });
         }
-        let (found, computed) = (block.unsigned(DATA_BITS, 24), crc24q(&bytes));
+        let (found, computed) = (block.unsigned(DATA_BITS, 24), crc24q(&bytes, DATA_BITS));
         if found != computed {
             return Err(Malformed::Parity { found, computed });
         }
@@ -37,7 +37,7 @@ impl Block {
     }
     /// A block built from data bits, with its parity set: what a transmitter does.
     pub fn with_parity(mut bytes: [u8; BLOCK_BYTES]) -> Result<Self, Malformed> {
-        let parity = crc24q(&bytes);
+        let parity = crc24q(&bytes, DATA_BITS);
         for bit in 0..24 {
             let (byte, mask) = ((DATA_BITS + bit) / 8, 0x80_u8 >> ((DATA_BITS + bit) % 8));
             if let Some(b) = bytes.get_mut(byte) {
@@ -81,11 +81,11 @@ impl Block {
     }
 }
 
-/// Parity of the first 226 bits: CRC-24Q over them with six zero bits in front, so that they fill 29 bytes.
-fn crc24q(bytes: &[u8; BLOCK_BYTES]) -> u32 {
+/// CRC-24Q of the first `n_bits` bits: parity of SBAS messages (226 bits) and of Galileo's I/NAV pages (196).
+pub fn crc24q(bytes: &[u8], n_bits: usize) -> u32 {
     let mut crc = 0_u32;
-    // Leading zeros do not change a CRC that starts at zero, so the bits are taken as they come.
-    for bit in 0..DATA_BITS {
+    // Leading zeros, which fill up the first byte, do not change a CRC that starts at zero: bits are taken as they come.
+    for bit in 0..n_bits {
         let data = bytes.get(bit / 8).map_or(0, |byte| byte >> (7 - bit % 8) & 1);
         let top = crc >> 23 & 1 ^ u32::from(data);
         crc = crc << 1 & 0x00FF_FFFF;

@@ -18,7 +18,7 @@ mod region;
 mod store;
 pub mod timeout;
 
-pub use bits::{BLOCK_BITS, BLOCK_BYTES, Block};
+pub use bits::{BLOCK_BITS, BLOCK_BYTES, Block, crc24q};
 pub use clock::NetworkTime;
 pub use degradation::{Degradation, FastDegradation};
 pub use fast::{Fast, IODF_ALERT, Integrity, UDREI_DO_NOT_USE, UDREI_NOT_MONITORED};

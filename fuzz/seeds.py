@@ -1,0 +1,121 @@
+"""Write a corpus of small seeds for every fuzz target: the texts that the readers' own tests hold, and frames made here.
+
+python3 fuzz/seeds.py    (writes fuzz/corpus/<target>/; nothing of it is committed)
+"""
+
+import gzip
+import re
+import struct
+from pathlib import Path
+
+HERE = Path(__file__).parent
+FORMATS = HERE.parent / "crates" / "formats"
+
+
+def texts(path: str) -> dict[str, str]:
+    """Text constants of a Rust file by name."""
+    source = (FORMATS / path).read_text(encoding="utf-8")
+    found = re.findall(r'const (\w+): &str =\s*"((?:[^"\\]|\\.)*)";', source, re.DOTALL)
+    plain = {name: re.sub(r"\\\n\s*", "", text).replace('\\"', '"').replace("\\n", "\n") for name, text in found}
+    several = re.search(r"const \w+: \[&str; \d+\] = \[(.*?)\n\];", source, re.DOTALL)
+    if several:
+        each = re.findall(r'"((?:[^"\\]|\\.)*)"', several[1], re.DOTALL)
+        plain |= {f"other{k}": re.sub(r"\\\n\s*", "", text).replace('\\"', '"') for k, text in enumerate(each)}
+    return plain
+
+
+def record(kind: int, payload: bytes) -> bytes:
+    """One record of the target `receivers`: UBX 0 to 3, SBF 4 to 7."""
+    return struct.pack("<BH", kind, len(payload)) + payload
+
+
+def rawx(tow_s: float) -> bytes:
+    """Two satellites of each system, two signals each."""
+    systems = [(0, 0), (0, 3), (1, 0), (2, 0), (2, 6), (3, 0), (3, 2), (6, 0), (6, 2)]
+    body = b"".join(
+        struct.pack("<ddfBBBBHBBBBBB", 2.2e7 + k, 1.1e8 + k, -500.0, system, 121 if system == 1 else 5, signal, 7, 64000, 42, 1, 1, 1, 7, 0)
+        for k, (system, signal) in enumerate(systems)
+    )
+    return struct.pack("<dHbBBBBB", tow_s, 2361, 18, len(systems), 1, 1, 0, 0) + body
+
+
+def sfrbx(system: int, number: int, signal: int, words: list[int]) -> bytes:
+    """A navigation message of one satellite."""
+    return struct.pack("<BBBBBBBB", system, number, signal, 0, len(words), 0, 2, 0) + struct.pack(f"<{len(words)}I", *words)
+
+
+def lnav(number: int) -> list[int]:
+    """Ten words of 24 bits: preamble, a time, the subframe's number, and an orbit of some kind."""
+    words = [0x8B0000, 1000 << 7 | number << 2] + [0x123456] * 8
+    if number == 2:
+        # sqrt(A) 5153.6 in the lower byte of word 8 and word 9; issue 0x34 in all three.
+        words = [words[0], words[1], 0x340000, 0x112233, 0x445566, 0x778800, 0x001234, 0x1234A1, 0x0D0000, 0x100000]
+    if number == 3:
+        words[9] = 0x341234
+    if number == 1:
+        words[7] = 0x341000
+    return words
+
+
+def receivers() -> list[bytes]:
+    """One seed a message, and one of plain bytes a maker."""
+    epoch = record(0, rawx(1000.0)) + record(0, rawx(1001.0))
+    old = struct.pack("<IhBB", 1_000_000, 1481, 1, 0) + struct.pack("<ddfBbBB", 1.1e8, 2.2e7, 100.0, 5, 7, 40, 0)
+    sfrb = b"".join(record(3, struct.pack("<BB10I", 1, 5, *lnav(n))) for n in (1, 2, 3))
+    ems = texts("src/sbas/tests.rs")["EMS"].split()[-1]
+    sbas = list(struct.unpack(">8I", bytes.fromhex(ems)))
+    galileo = [[word << 24 | 0x01234567, 0x01000000, 0x02A00000, 0x01000000, 0x80000000, 0, 0, 0] for word in (1, 2, 3, 4, 5)]
+    pages = b"".join(record(1, sfrbx(2, 5, 1, w)) for w in galileo)
+    head = struct.pack("<IH", 1_000_000, 2361)
+    first = struct.pack("<BBBBIiHbBHBB", 0, 0, 5, 5, 123456, 5000, 100, 1, 120, 30, 0, 1)
+    second = struct.pack("<BBBBbBHHH", 3, 30, 120, 1, 1, 0, 10, 20, 30)
+    measured = head + struct.pack("<BBBBBB", 1, 20, 12, 0, 0, 0) + first + second
+    bits = head + struct.pack("<BBBBBB", 121, 1, 0, 0, 0, 0) + struct.pack("<8I", *sbas)
+    return [
+        b"f" + epoch + record(1, sfrbx(1, 137, 0, sbas)),
+        b"f" + record(2, old) + sfrb,
+        b"f" + epoch + pages,
+        b"f" + record(4, measured) + record(5, bits),
+        b"r\xb5\x62\x02\x15\x10\x00" + bytes(16),
+        b"r$@" + bytes(16),
+    ]
+
+
+def corpus() -> dict[str, list[bytes]]:
+    """Seeds of every target."""
+    observation, navigation = texts("src/rinex/observation_tests.rs"), texts("src/rinex/navigation_tests.rs")
+    almanac, pos, sbas = texts("src/almanac_tests.rs"), texts("tests/rtklib.rs"), texts("src/sbas/tests.rs")
+    clock, sp3 = texts("src/rinex/clock.rs"), texts("src/sp3.rs")
+    records = [text for name, text in navigation.items() if name != "HEADER"]
+    third = [navigation["HEADER"] + text for text in records]
+    # Every second record also behind the header of version 4, which titles each.
+    fourth = [navigation["HEADER"].replace("3.02", "4.00", 1) + "> EPH G01 LNAV\n" + text for text in records]
+    plain = {
+        "observations": list(observation.values()),
+        "navigation": [*third, *fourth, *records],
+        "almanac": list(almanac.values()),
+        "clocks": [clock["HEAD"] + clock["BODY"]],
+        "orbits": [sp3["HEAD"] + sp3["BODY"]],
+        "rtklib": list(pos.values()),
+        "sbas": list(sbas.values()),
+    }
+    found = {target: [text.encode() for text in several] for target, several in plain.items()}
+    found["packed"] = [gzip.compress(text, mtime=0) for text in (found["sbas"][0], b"", bytes(5000))] + [b"\x1f\x9d", b"PK\x03\x04"]
+    found["receivers"] = receivers()
+    found["solutions"] = [bytes(range(256)), struct.pack("<q10d", 10**18, 0.5, 1.0, 100.0, 4.0, 1.0, 4.0, 0.5, 0.5, 9.0, 0.0)]
+    found["smoothing"] = [struct.pack("<d" + "q3dB" * 3, 100.0, *(v for k in range(3) for v in (k * 10**9, 2e7 + k, 2e7, 2e7, 0)))]
+    return found
+
+
+def main() -> None:
+    """Write them."""
+    for target, seeds in corpus().items():
+        folder = HERE / "corpus" / target
+        folder.mkdir(parents=True, exist_ok=True)
+        for k, seed in enumerate(seeds):
+            (folder / f"seed{k:02d}").write_bytes(seed)
+        print(f"{target}: {len(seeds)} seeds, {sum(map(len, seeds))} bytes")
+
+
+if __name__ == "__main__":
+    main()

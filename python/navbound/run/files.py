@@ -1,0 +1,92 @@
+"""Files of one run, told apart by what they hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from navbound import _core
+from navbound.errors import InputError
+from navbound.read.source import Source, load
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Files:
+    """Files by what they hold; the raw log of a receiver may stand in several lists.
+
+    Attributes
+    ----------
+    tables : list of Source
+        Tables, solution files, and logs of positions.
+    observations, navigation, messages : list of Source
+        Measurements, orbits and clocks, SBAS messages.
+    """
+
+    tables: list[Source] = field(default_factory=list)
+    observations: list[Source] = field(default_factory=list)
+    navigation: list[Source] = field(default_factory=list)
+    messages: list[Source] = field(default_factory=list)
+
+    def require_navigation(self) -> None:
+        """Refuse observations without orbits, or orbits without observations.
+
+        Raises
+        ------
+        InputError
+            Naming the file and what is lacking.
+        """
+        if self.observations and not self.navigation:
+            raise InputError("files", f"{self.observations[0].path}", domain="observations together with a RINEX navigation file")
+        if not self.observations and (self.navigation or self.messages):
+            raise InputError("files", f"{(self.navigation + self.messages)[0].path}", domain="them together with RINEX observations")
+
+
+def sort_out(paths: Sequence[str | Path], *, solve: bool = False) -> Files:
+    """Tell observations, navigation data, message logs and tables apart by their content.
+
+    Only digests and kinds are kept; contents are read again when they are needed.
+
+    Parameters
+    ----------
+    paths : sequence of paths
+        The files.
+    solve : bool
+        Take the measurements, subframes and SBAS messages of a receiver's raw log, not the positions that it found itself.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be read.
+    InputError
+        `solve` where no file holds measurements.
+    """
+    files = Files()
+    for path in paths:
+        source = load(path)
+        kept = Source(source.path, b"", source.sha256, source.n_bytes)
+        for kind in (_raw(source) if solve else None) or [_kind(source)]:
+            getattr(files, kind).append(kept)
+    if solve and not files.observations:
+        raise InputError("solve", "True", domain="it together with a file of raw measurements (RINEX, UBX RXM-RAWX, SBF MeasEpoch)")
+    return files
+
+
+def _raw(source: Source) -> list[str] | None:
+    found = _core.raw_log(source.content, str(source.path))
+    return None if found is None else [k for k, n in zip(("observations", "navigation", "messages"), found, strict=True) if n]
+
+
+def _kind(source: Source) -> str:
+    first = source.content[:200].split(b"\n", 1)[0]
+    if b"CRINEX VERS" in first:
+        return "observations"
+    if b"RINEX VERSION / TYPE" in first:
+        if first[20:21] == b"O":
+            return "observations"
+        return "messages" if first[20:21] in {b"B", b"H"} and b"NAV" not in first[20:40] else "navigation"
+    name = source.path.name.lower().removesuffix(".gz")
+    return "messages" if name.endswith((".ems", ".sbs")) else "tables"

@@ -1,0 +1,50 @@
+"""Positions solved from raw measurements, as one more file that was read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import polars as pl
+
+from navbound import gnss
+from navbound.errors import FormatError
+from navbound.read.epochs import Reading
+from navbound.run.records import Rejection
+
+if TYPE_CHECKING:
+    from navbound.read.source import Source
+    from navbound.run.files import Files
+
+
+def solved(files: Files) -> list[Reading]:
+    """Solve every file of measurements with the orbits and clocks of all.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be read, or in which no position can be solved.
+    """
+    navigation = gnss.read_navigation([source.path for source in files.navigation])
+    return [_reading(source, navigation) for source in files.observations]
+
+
+def _reading(source: Source, navigation: gnss.Navigation) -> Reading:
+    observations = gnss.read_observations(source.path)
+    ionosphere: Literal["broadcast", "none"] = "broadcast" if navigation.has_ionosphere else "none"
+    found = gnss.solve(observations, navigation, ionosphere=ionosphere, track=source.stem)
+    known = found.epochs.filter(pl.col("est_lat_rad").is_not_null()).unique("time_ns", keep="first", maintain_order=True).sort("time_ns")
+    if known.is_empty():
+        raise FormatError(source.path, f"no position could be solved; satellites not used: {found.unused}")
+    path = str(source.path)
+    rejected = [
+        Rejection(file=path, reason=f"no position: {reason}", count=count, first_line=None, example=f"{count} epochs")
+        for reason, count in found.epochs.filter(pl.col("est_lat_rad").is_null()).group_by("reason").len().sort("reason").iter_rows()
+    ]
+    if observations.n_refused:
+        first = observations.refused[0]
+        reason, example = f"{first.field}: {first.reason}, and others", first.text
+        rejected.append(Rejection(file=path, reason=reason, count=observations.n_refused, first_line=first.line, example=example))
+    notes = [f"{source.path.name}: {name}: {words}" for name, words in found.models.items()]
+    notes += [f"{source.path.name}: {count} satellite-epochs not used: {reason}" for reason, count in found.unused.items()]
+    columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in found.codes.values() for c in codes)}
+    return Reading(known, source.record(observations.n_epochs), rejected, notes=notes, columns=columns)

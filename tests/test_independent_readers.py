@@ -1,0 +1,175 @@
+"""Our readers against independent ones, value by value on real files: georinex, hatanaka and sidereon of the group `oracle` (./dev peers).
+
+Skipped aloud where the group or the files are absent. docs/methods/formats.md says where they differ and who is right.
+"""
+
+from __future__ import annotations
+
+import gzip
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+import pytest
+
+from navbound import gnss, sbas
+
+NS = 1_000_000_000
+WEEK_NS = 604_800 * NS
+J2000_GPS_NS = 1042 * WEEK_NS + (6 * 86_400 + 43_200) * NS
+"""2000-01-01 12:00:00 of GPS time: a Saturday, day 6 of week 1042."""
+
+
+def peer(name: str) -> Any:
+    return pytest.importorskip(name, reason=f"SKIPPED ALOUD: {name} of the group oracle is not installed (./dev peers)")
+
+
+@pytest.fixture(scope="module")
+def hour(shared_data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """First hour of the station day, decompressed by hatanaka's own program."""
+    packed = shared_data / "gnss" / "ESBC_2020_177" / "ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz"
+    text = peer("hatanaka").decompress(packed.read_bytes()).decode()
+    path: Path = tmp_path_factory.mktemp("hour") / "esbc.rnx"
+    path.write_text(text[: text.index("> 2020 06 25 01 00")], encoding="ascii")
+    return path
+
+
+def test_every_observation_is_that_of_sidereon(hour: Path) -> None:
+    theirs = peer("sidereon").parse_rinex_obs(hour.read_text(encoding="ascii"))
+    ours = gnss.read_observations(hour)
+    assert ours.n_epochs == theirs.epoch_count == 120
+    columns = [ours.column(s, c).with_columns(pl.lit(c).alias("code")) for s, codes in ours.codes.items() for c in codes]
+    table = pl.concat(columns)
+    parts = []
+    for k in range(theirs.epoch_count):
+        v = theirs.observation_values(k)
+        time = pl.lit(int(ours.time_ns[k])).alias("time_ns")
+        parts.append(
+            pl.DataFrame({"satellite": v.satellites, "code": v.codes, "theirs": v.values, "lli": v.lli, "ssi": v.ssi}).with_columns(time)
+        )
+    other = pl.concat(parts).filter(pl.col("theirs").is_not_nan() & ~pl.col("satellite").str.starts_with("J"))
+    joined = table.join(other, on=["time_ns", "satellite", "code"], how="full")
+    assert joined.drop_nulls(["value", "theirs"]).height == joined.height == table.height > 60_000
+    # Both round the same text correctly: equal to the last bit.
+    assert (joined["value"] == joined["theirs"]).all()
+    assert (joined["loss_of_lock"] == joined["lli"].fill_nan(0).fill_null(0)).all()
+    assert (joined["strength"] == joined["ssi"].fill_nan(0).fill_null(0)).all()
+
+
+@pytest.mark.filterwarnings("ignore")  # The peer's own: it concatenates in a way its library is about to change.
+def test_epochs_and_ranges_are_those_of_georinex(hour: Path) -> None:
+    theirs = peer("georinex").load(hour, use={"G"}, meas=["C1C", "L1C"])
+    ours = gnss.read_observations(hour)
+    # Its times are labels without a scale, as the file writes them; taken as GPS time they are ours, with no leap second between.
+    labels = theirs.time.values.astype("datetime64[ns]").astype(np.int64)
+    assert (ours.time_ns == labels - 315_964_800 * NS).all()
+    for code in ("C1C", "L1C"):
+        table = ours.column("G", code)
+        values = theirs[code].sel(time=theirs.time.values[0]).to_series().dropna()
+        first = table.filter(pl.col("time_ns") == int(ours.time_ns[0]))
+        assert dict(zip(first["satellite"], first["value"], strict=True)) == values.to_dict()
+        assert int(theirs[code].count()) == table.height
+
+
+ELEMENTS = {
+    "sqrt_a": "sqrt_a", "eccentricity": "e", "inclination_rad": "i0", "inclination_rate_radps": "idot", "node_rad": "omega0",
+    "node_rate_radps": "omega_dot", "perigee_rad": "omega", "mean_anomaly_rad": "m0", "delta_n_radps": "delta_n", "cuc_rad": "cuc",
+    "cus_rad": "cus", "crc_m": "crc", "crs_m": "crs", "cic_rad": "cic", "cis_rad": "cis",
+}  # fmt: skip
+MESSAGES = {"GPS_LNAV": "LNAV", "GALILEO_INAV": "INAV", "GALILEO_FNAV": "FNAV", "BEIDOU_D1": "D1", "BEIDOU_D2": "D2"}
+
+
+def _records(module: Any, path: Path) -> pl.DataFrame:
+    rows = []
+    for r in module.parse_rinex_nav_records(gzip.decompress(path.read_bytes()).decode()):
+        message = MESSAGES.get(str(r.message).partition(".")[2])
+        if message is None:
+            continue
+        # BeiDou weeks begin 1356 weeks and 14 s after those of GPS.
+        start = 1356 * WEEK_NS + 14 * NS if r.satellite[0] == "C" else 0
+        row = {"satellite": r.satellite, "message": message, "orbit_time_ns": start + r.toe_week * WEEK_NS + round(r.toe_tow_s) * NS}
+        row |= {"clock_time_ns": start + r.toc_week * WEEK_NS + round(r.toc_tow_s) * NS, "accuracy_m": r.sv_accuracy_m}
+        row |= {ours: getattr(r.elements, name) for ours, name in ELEMENTS.items()}
+        rows.append(row | {"clock_s": r.clock.af0, "clock_drift": r.clock.af1, "clock_drift_rate_per_s": r.clock.af2})
+    return pl.DataFrame(rows)
+
+
+# Counts by the catalogue, and by grep -c '^[GEC][0-9]'.
+@pytest.mark.parametrize(
+    ("name", "n"),
+    [
+        ("VILL_2018_170_nav/VILL00ESP_R_20181700000_01D_MN.rnx.gz", 1384),
+        ("ESBC_2020_177/ESBC00DNK_R_20201770000_01D_MN.rnx.gz", 2216),
+        ("rinex4_2023_071/BRD400DLR_S_20230710000_01D_MN.rnx.gz", 7329),
+    ],
+)
+def test_every_broadcast_record_is_that_of_sidereon(shared_data: Path, name: str, n: int) -> None:
+    path = shared_data / "gnss" / name
+    theirs, ours = _records(peer("sidereon"), path), gnss.read_navigation(path).records()
+    numbers = [*ELEMENTS, "clock_s", "clock_drift", "clock_drift_rate_per_s", "accuracy_m"]
+    keys = ["satellite", "message", "orbit_time_ns", "clock_time_ns"]
+    # A satellite may repeat a reference time with another content: whole records are compared, exactly, as both round text correctly.
+    mine, other = (table.select([*keys, *numbers]).unique().sort([*keys, *numbers]) for table in (ours, theirs))
+    assert ours.height == n
+    assert mine.equals(other)
+
+
+def test_orbits_and_clocks_of_a_precise_file_are_those_of_sidereon(shared_data: Path) -> None:
+    path = shared_data / "gnss" / "igs_2010_182" / "igs15904.sp3"
+    theirs, ours = peer("sidereon").load_sp3(str(path)), gnss.read_orbits(path)
+    times = J2000_GPS_NS + np.round(np.asarray(theirs.epochs_j2000_seconds) * 1e9).astype(np.int64)
+    assert len(times) == 96
+    n_positions = n_clocks = 0
+    for satellite in theirs.satellites:
+        states = [theirs.state(satellite, k) for k in range(96)]
+        place, _, clock = ours.states(satellite, times)
+        for k, state in enumerate(states):
+            if not np.isfinite(place[k]).all():
+                continue  # Nothing is interpolated without the record of its clock, or beside a hole.
+            n_positions += 1
+            # At a node the polynomial gives the node back: a few roundings of 2.6e7 m in axes that turn.
+            assert np.abs(place[k] - state.position_m).max() < 1e-6, (satellite, k)
+            if np.isfinite(clock[k]) and state.clock_s is not None:
+                n_clocks += 1
+                # Ours with the relativity of the orbit's eccentricity, at most 70 ns of it; the file's clock alone is theirs.
+                assert abs(clock[k] - state.clock_s) < 7e-8, (satellite, k)
+    assert n_positions > 2800
+    assert n_clocks > 2800
+
+
+def test_sbas_messages_are_those_of_sidereon(shared_data: Path) -> None:
+    path = shared_data / "sbas" / "msas137_2025046_17h.ems"
+    theirs, ours = peer("sidereon").parse_sbas_ems_log(path.read_text(encoding="ascii")), sbas.read(path)
+    assert len(theirs.blocks) == len(ours.time_ns) == 3600
+    assert [b.week * WEEK_NS + round(b.tow_s * 1e9) for b in theirs.blocks] == ours.time_ns.tolist()
+    compared = dict.fromkeys((1, 2, 3, 4, 7, 18, 26), 0)
+    for block, own in zip(theirs.blocks, sbas.decode(ours), strict=True):
+        assert block.message_type == own.type
+        message = block.decode().message
+        if own.type not in compared:
+            continue
+        compared[own.type] += 1
+        f = own.fields
+        if message.fast_corrections is not None:
+            fast = message.fast_corrections
+            count = len(f["position"])
+            assert (fast.iodf, fast.iodp, fast.udrei[:count]) == (f["iodf"], f["iodp"], f["udrei"])
+            # One unit is 0.125 m, exact.
+            assert [0.125 * prc for prc in fast.prc[:count]] == f["correction_m"]
+        elif message.prn_mask is not None:
+            # Position k of the mask, from 1: GPS 1 to 37, the geostationary satellites from 120.
+            assert [k + 1 for k, on in enumerate(message.prn_mask.mask) if on] == f["prn"]
+        elif message.fast_degradation is not None:
+            assert (message.fast_degradation.system_latency_s, message.fast_degradation.ai) == (f["latency_s"], f["indicator"])
+        elif message.igp_mask is not None:
+            assert [k + 1 for k, on in enumerate(message.igp_mask.mask) if on] == f["point"]
+            assert (message.igp_mask.band_number, message.igp_mask.iodi) == (f["band"], f["iodi"])
+        else:
+            delays = message.iono_delays
+            assert (delays.band_number, delays.block_id, delays.iodi) == (f["band"], f["block"], f["iodi"])
+            assert [e.givei for e in delays.entries] == f["givei"]
+            # All nine bits set mean "do not use": no delay with us, 63.875 m with the other.
+            assert [None if e.vertical_delay == 511 else 0.125 * e.vertical_delay for e in delays.entries] == f["delay_m"]
+    assert min(compared.values()) >= 3
+    assert sum(compared.values()) > 2000
