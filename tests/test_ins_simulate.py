@@ -69,6 +69,34 @@ def test_ranges_are_distances_clock_and_errors_of_the_stated_size(sensed: ins.Se
     assert np.abs(residual / sigma).max() < 6
 
 
+def test_an_error_free_run_of_the_mechanization_closes_to_a_metre_in_two_hours(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    text = 'base = "beijing-shanghai-seed"\n[sensors.imu]\ngrade = "perfect"\n'
+    file.write_text(text, encoding="utf-8")
+    loaded = scenario.load(file)
+    assert loaded.sensors is not None
+    bare = loaded.sensors.model_copy(update={"gnss": None, "dme": None, "vor": None, "baro": None})
+    flown = ins.simulate(loaded.model_copy(update={"sensors": bare}))
+    first = flown.truth.row(0, named=True)
+    start = ins.Start(
+        time_ns=first["time_ns"],
+        position=(first["truth_lat_rad"], first["truth_lon_rad"], first["truth_h_m"]),
+        velocity_ned_mps=(first["vel_n_mps"], first["vel_e_mps"], first["vel_d_mps"]),
+        attitude_rad=(first["roll_rad"], first["pitch_rad"], first["heading_rad"]),
+    )
+    imu = ins.Imu(
+        time_ns=flown.imu["time_ns"].to_numpy(),
+        angle_rad=flown.imu.select("angle_x_rad", "angle_y_rad", "angle_z_rad").to_numpy(),
+        velocity_mps=flown.imu.select("velocity_x_mps", "velocity_y_mps", "velocity_z_mps").to_numpy(),
+        interval_s=flown.imu["interval_s"].to_numpy(),
+    )
+    found = ins.mechanize(imu, start).position[199::200]
+    truth = flown.truth[1:].select("truth_lat_rad", "truth_lon_rad", "truth_h_m").to_numpy()
+    # Metres on a sphere: a per cent of a metre at most.
+    apart = (found - truth) * np.array([6.37e6, 6.37e6 * np.cos(0.6), 1.0])
+    assert np.abs(apart).max() < 1.0
+
+
 def test_nothing_is_heard_while_jammed() -> None:
     times = ins.simulate(short("beijing-shanghai-jammed")).satellites["time_ns"].unique().sort().to_numpy()
     seconds = (times - scenario.load("beijing-shanghai").start_ns) // 10**9

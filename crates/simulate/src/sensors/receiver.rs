@@ -105,39 +105,67 @@ impl<'a> Receiver<'a> {
         self.phases.clear();
         let seen = Seen::new(motion, self.faults, time_s)?;
         let silent = self.faults.iter().any(|f| matches!(f, SensorFault::Interference { .. }) && f.since(time_s).is_some());
+        let instant = Instant {
+            settings: self.settings,
+            faults: self.faults,
+            begin: self.begin,
+            time_s,
+            clock: self.clock.now(),
+            troposphere: self.troposphere.now(),
+            system_bias_m: &self.system_bias_m,
+        };
         for channel in &mut self.channels {
             let noise = channel.step();
-            if silent || !channel.satellite.rises(self.begin, time_s, &seen.receiver) {
-                continue;
+            let heard = if silent { None } else { instant.heard(channel, &seen, noise)? };
+            if let Some((range, phase)) = heard {
+                out.push(TimedAiding { time: self.begin.plus_seconds(time_s), aiding: Aiding::Satellite(range) });
+                self.phases.push(phase);
             }
-            let Some(sent) = channel.satellite.sent(self.begin, time_s, &seen.receiver) else { continue };
-            let elevation = seen.observer.direction(&sent.position)?.elevation();
-            if !(elevation.rad() >= self.settings.mask_rad) {
-                continue;
-            }
-            let id = channel.satellite.id;
-            let (white_m, slow) = errors(self.settings, channel, &self.troposphere, elevation);
-            let common =
-                sent.range_m + self.clock.now()[0] + self.system_bias_m[id.constellation.index()] + fault_m(self.faults, id, time_s);
-            let range = SatelliteRange {
-                satellite: id,
-                position: sent.position,
-                velocity_mps: sent.velocity_mps,
-                range: Metres::new(common + slow.code_m + white_m * noise[0]),
-                sigma_white: Metres::new(white_m),
-                sigma_correlated: Metres::new(slow.sigma_m),
-                correlation_time_s: slow.correlation_time_s,
-                rate_mps: Some((
-                    seen.rate(&sent) + self.clock.now()[1] + self.settings.rate_sigma_mps * noise[1],
-                    self.settings.rate_sigma_mps,
-                )),
-            };
-            out.push(TimedAiding { time: self.begin.plus_seconds(time_s), aiding: Aiding::Satellite(range) });
-            let phase_m = common + slow.phase_m + channel.ambiguity_m + self.settings.phase_sigma_m * noise[2];
-            let sigma_white = Metres::new(self.settings.phase_sigma_m);
-            self.phases.push(PhaseRange { satellite: id, range: Metres::new(phase_m), sigma_white });
         }
         Ok(())
+    }
+}
+
+/// What all satellites share at a measurement.
+struct Instant<'a> {
+    settings: &'a Gnss,
+    faults: &'a [SensorFault],
+    begin: GpsTime,
+    time_s: f64,
+    clock: [f64; 2],
+    troposphere: f64,
+    system_bias_m: &'a [f64; Constellation::ALL.len()],
+}
+
+impl Instant<'_> {
+    /// What is measured of a satellite; `None` below the mask or without a record.
+    fn heard(&self, channel: &Channel<'_>, seen: &Seen, noise: [f64; 3]) -> Result<Option<(SatelliteRange, PhaseRange)>, OutOfDomain> {
+        let (id, s) = (channel.satellite.id, self.settings);
+        if !channel.satellite.rises(self.begin, self.time_s, &seen.receiver) {
+            return Ok(None);
+        }
+        let Some(sent) = channel.satellite.sent(self.begin, self.time_s, &seen.receiver) else { return Ok(None) };
+        let elevation = seen.observer.direction(&sent.position)?.elevation();
+        if !(elevation.rad() >= s.mask_rad) {
+            return Ok(None);
+        }
+        let (white_m, slow) = errors(s, channel, self.troposphere, elevation);
+        let bias_m = self.system_bias_m[id.constellation.index()];
+        let [fault_m, fault_mps] = faulty(self.faults, id, self.time_s);
+        let common = sent.range_m + self.clock[0] + bias_m + fault_m;
+        let range = SatelliteRange {
+            satellite: id,
+            position: sent.position,
+            velocity_mps: sent.velocity_mps,
+            range: Metres::new(common + slow.code_m + white_m * noise[0]),
+            sigma_white: Metres::new(white_m),
+            sigma_correlated: Metres::new(slow.sigma_m),
+            correlation_time_s: slow.correlation_time_s,
+            rate_mps: Some((seen.rate(&sent) + self.clock[1] + fault_mps + s.rate_sigma_mps * noise[1], s.rate_sigma_mps)),
+        };
+        let phase_m = common + slow.phase_m + channel.ambiguity_m + s.phase_sigma_m * noise[2];
+        let phase = PhaseRange { satellite: id, range: Metres::new(phase_m), sigma_white: Metres::new(s.phase_sigma_m) };
+        Ok(Some((range, phase)))
     }
 }
 
@@ -166,7 +194,7 @@ impl<'a> Channel<'a> {
 }
 
 /// Standard deviation of the white part \[m\], and the slow parts.
-fn errors(settings: &Gnss, channel: &Channel<'_>, troposphere: &Markov, elevation: Radians) -> (f64, Slow) {
+fn errors(settings: &Gnss, channel: &Channel<'_>, troposphere: f64, elevation: Radians) -> (f64, Slow) {
     match settings.mode {
         RangeMode::Seed => (settings.seed_sigma_m, Slow { code_m: 0.0, phase_m: 0.0, sigma_m: 0.0, correlation_time_s: 1.0 }),
         RangeMode::Real => (settings.parts.noise_sigma_m, slow(&settings.parts, channel, troposphere, elevation)),
@@ -175,12 +203,12 @@ fn errors(settings: &Gnss, channel: &Channel<'_>, troposphere: &Markov, elevatio
 
 /// The parts as one: standard deviations add in squares, and the correlation time is their mean weighted with variance, which keeps the
 /// integral of the covariance over time.
-fn slow(parts: &RangeParts, channel: &Channel<'_>, troposphere: &Markov, elevation: Radians) -> Slow {
+fn slow(parts: &RangeParts, channel: &Channel<'_>, troposphere: f64, elevation: Radians) -> Slow {
     let [ranging, ionosphere, multipath] = &channel.slow;
     let delay = [
         (parts.ranging_sigma_m, parts.ranging_time_s, ranging.now()),
         (ranging::ionosphere_m(parts.ionosphere_sigma_m, elevation), parts.ionosphere_time_s, ionosphere.now()),
-        (ranging::troposphere_m(parts.troposphere_sigma_m, elevation), parts.troposphere_time_s, troposphere.now()),
+        (ranging::troposphere_m(parts.troposphere_sigma_m, elevation), parts.troposphere_time_s, troposphere),
         (parts.multipath_share * ranging::multipath_m(elevation), parts.multipath_time_s, multipath.now()),
     ];
     let code_m = delay.iter().map(|(sigma, _, x)| sigma * x).sum();
@@ -191,16 +219,20 @@ fn slow(parts: &RangeParts, channel: &Channel<'_>, troposphere: &Markov, elevati
     Slow { code_m, phase_m: r - i + t, sigma_m: variance.sqrt(), correlation_time_s }
 }
 
-fn fault_m(faults: &[SensorFault], id: SatelliteId, time_s: f64) -> f64 {
-    let added = |fault: &SensorFault| {
-        let since = fault.since(time_s).filter(|_| fault.satellite() == Some(id))?;
-        match fault {
-            SensorFault::SatelliteStep { step_m, .. } => Some(*step_m),
-            SensorFault::SatelliteRamp { rate_mps, .. } => Some(rate_mps * since),
-            _ => None,
+/// What faults add to a satellite's range \[m\] and range rate \[m/s\].
+fn faulty(faults: &[SensorFault], id: SatelliteId, time_s: f64) -> [f64; 2] {
+    let mut added = [0.0; 2];
+    for fault in faults {
+        match (fault, fault.since(time_s).filter(|_| fault.satellite() == Some(id))) {
+            (SensorFault::SatelliteStep { step_m, .. }, Some(_)) => added[0] += step_m,
+            (SensorFault::SatelliteRamp { rate_mps, .. }, Some(since)) => {
+                added[0] += rate_mps * since;
+                added[1] += rate_mps;
+            }
+            _ => {}
         }
-    };
-    faults.iter().filter_map(added).sum()
+    }
+    added
 }
 
 /// Where the antenna seems to be: a spoofer puts it elsewhere.

@@ -103,8 +103,8 @@ fn the_slow_part_forgets_with_its_correlation_time() {
     assert_unit_variance(fresh, "what is new after a correlation time");
 }
 
-/// Standard deviation at an elevation \[m\].
-type Sigma = fn(f64) -> f64;
+/// What switches a part on, and its standard deviation \[m\] at an elevation \[rad\].
+type Model = (fn(&mut Gnss), fn(f64) -> f64);
 
 #[test]
 fn parts_grow_towards_the_horizon_as_their_models_say() {
@@ -113,7 +113,7 @@ fn parts_grow_towards_the_horizon_as_their_models_say() {
         let line = enu_from_ecef(&s.step.truth.position.point) * (r.position.vector() - receiver_position(s));
         (line.z / line.norm()).asin()
     };
-    let models: [(fn(&mut Gnss), Sigma); 3] = [
+    let models: [Model; 3] = [
         (|g| g.parts.ionosphere_sigma_m = 2.0, |el| 2.0 / (1.0 - (6_378_136.3 * el.cos() / 6_728_136.3).powi(2)).sqrt()),
         (|g| g.parts.troposphere_sigma_m = 0.12, |el| 0.12 * 1.001 / (0.002_001 + el.sin().powi(2)).sqrt()),
         (|g| g.parts.multipath_share = 1.0, |el| 0.13 + 0.53 * (-el.to_degrees() / 10.0).exp()),
@@ -229,6 +229,8 @@ fn steps_and_ramps_come_when_declared_to_the_satellite_named() {
             let own = if r.satellite == one { expected } else { 0.0 };
             // Ranges of 3e7 m lose 4e-9 m.
             assert!((s.range.m() - r.range.m() - own).abs() < 1e-7, "{t} {}", r.satellite);
+            let drifts = if r.satellite == one && (40.0..50.0).contains(&t) { 2.0 } else { 0.0 };
+            assert!((s.rate_mps.unwrap().0 - r.rate_mps.unwrap().0 - drifts).abs() < 1e-9);
         }
     }
 }
