@@ -266,7 +266,6 @@ def protection_levels(
     shape, (az, el) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()))
     width, leading = _width(shape), shape[:-1]
     sigma, sigma_h1 = _sigmas(np.reshape(el, shape), service, sigma_m, sigma_h1_m)
-    _, (bias,) = flatten(bias_m=(np.broadcast_to(_numbers("bias_m", bias_m), leading), ()))
     multipliers = k or factors(integrity_risk)
     found = _core.gbas_levels(
         {
@@ -275,7 +274,7 @@ def protection_levels(
             "sigma_m": sigma,
             "sigma_h1_m": sigma_h1,
             "constellation": systems(width, constellation),
-            "bias_m": bias,
+            "bias_m": spread("bias_m", bias_m, leading, ()),
             "aided_m2": spread("aided_covariance_m2", aided_covariance_m2, leading, (3, 3)),
             "b_values_m": _b_values(b_values_m, leading, width),
             "k_ffmd": multipliers.k_ffmd,
@@ -401,7 +400,7 @@ def aided_covariance(
     lat_rad: float,
     service: Service = "D",
     noise: NoiseForm = "bound",
-    seconds: float = 300.0,
+    seconds: float = 900.0,
 ) -> NDArray[np.float64]:
     """Covariance of a fix from GBAS-corrected ranges and an inertial system (navi.673 equations 3 and 4, rebuilt).
 
