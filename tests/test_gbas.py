@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ AZ = np.radians([10.0, 60.0, 120.0, 180.0, 230.0, 290.0, 330.0])
 EL = np.radians([70.0, 25.0, 40.0, 15.0, 55.0, 20.0, 35.0])
 
 
-def responses(service: gbas.Service = "D") -> np.ndarray:
+def responses(service: Literal["D", "F"] = "D") -> np.ndarray:
     """S of the whole normal equation, position rows only."""
     h = np.column_stack([-np.cos(EL) * np.sin(AZ), -np.cos(EL) * np.cos(AZ), -np.sin(EL), np.ones(len(AZ))])
     w = np.diag(gbas.range_sigma(EL, service).sigma_m ** -2)

@@ -1,4 +1,4 @@
-"""RRAIM through the public functions: Monte Carlo of the propagation and of its safety; reference numbers stand in vectors/rraim-levels.toml."""
+"""RRAIM through the public functions: Monte Carlo of propagation and safety; reference numbers stand in vectors/rraim-levels.toml."""
 
 from __future__ import annotations
 
@@ -129,6 +129,7 @@ def test_the_multi_fault_level_solves_its_equation() -> None:
     n = len(AZ)
     rest = n * (n - 1) / 2 * p_sat**2 + (n * p_sat) ** 3 / 6
     for axis, level in ((0, float(found.hpl_multi_e_m)), (1, float(found.hpl_multi_n_m))):
+
         def spread(a: np.ndarray, b: np.ndarray) -> float:
             return float(np.sqrt((a @ p0 @ a.T + TD**2 * b @ b.T)[axis, axis]))  # noqa: B023 - called at once
 

@@ -167,8 +167,9 @@ class Navigation:
             An unknown system.
         """
         names, rows, _ = self._core.orbits(_system_index(system), time_ns)
-        columns = (np.ascontiguousarray(rows[:, k]) for k in range(7))
-        return Orbits(tuple(names), np.full(len(names), _system_index(system), dtype=np.int64), *columns, reference_ns=time_ns)
+        a, e, i, node, perigee, anomaly, rate = (np.ascontiguousarray(rows[:, k]) for k in range(7))
+        index = np.full(len(names), _system_index(system), dtype=np.int64)
+        return Orbits(tuple(names), index, a, e, i, node, perigee, anomaly, rate, time_ns)
 
     def nearest_age_s(self, system: str, time_ns: int) -> float:
         """How far the nearest healthy record of a constellation is from a GPS time [s]; infinite without one."""

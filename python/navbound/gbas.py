@@ -82,7 +82,7 @@ NoiseForm = Literal["paper", "bound"]
 
 @dataclass(frozen=True)
 class Factors:
-    """Multipliers of the hypotheses without a fault and with one faulty reference receiver. [1]
+    """Multipliers of the hypotheses without a fault and with one faulty reference receiver [1].
 
     Attributes
     ----------
@@ -141,9 +141,7 @@ class Levels:
     reason: NDArray[np.str_]
 
 
-def factors(
-    integrity_risk: float, *, share: float = 0.25, axes: int = 1, receivers: int = 4, receiver_fault: float = 1e-5
-) -> Factors:
+def factors(integrity_risk: float, *, share: float = 0.25, axes: int = 1, receivers: int = 4, receiver_fault: float = 1e-5) -> Factors:
     """Multipliers from an integrity risk (RTCA DO-245A; standard): 6.54 and 4.06 for 1.25e-9.
 
     Parameters
@@ -171,7 +169,7 @@ def factors(
 
 
 def accuracy_limit(containment_m: float, budget: ErrorBudget | None = None) -> float:
-    """Accuracy (95 %) that a containment leaves to navigation: 1.96 sqrt((TSC/4.8916)² - FTE² - PDE²). [m]
+    """Accuracy (95 %) that a containment leaves to navigation: 1.96 sqrt((TSC/4.8916)² - FTE² - PDE²) [m].
 
     Parameters
     ----------

@@ -76,7 +76,7 @@ def read_series(path: str | Path) -> tuple[float, dict[str, Floats]]:
     """
     path = Path(path)
     try:
-        table = pl.read_csv(path)
+        table = pl.read_csv(path, null_values=["nan", "NaN", ""])
     except (OSError, pl.exceptions.PolarsError) as e:
         raise FormatError(path, f"not a table of series: {e}") from e
     if "time_s" not in table.columns or table.width < 2 or table.height < SHORTEST:

@@ -105,7 +105,7 @@ def decorrelation(series: Floats, level: float) -> float:
 
 
 def spectral_zero(multipath_s: float) -> float:
-    """First zero of the autocorrelation whose spectrum is w² / ((1 + 900 w²)² (1 + w² tau²)). [s]"""
+    """First zero of the autocorrelation whose spectrum is w² / ((1 + 900 w²)² (1 + w² tau²)) [s]."""
     step, n = 0.05, 1 << 19
     w = 2 * np.pi * np.fft.rfftfreq(n, step)
     power = w**2 / ((1 + FILTER_S**2 * w**2) ** 2 * (1 + multipath_s**2 * w**2))

@@ -32,6 +32,7 @@ LONGEST_S, SHORTEST_S = 900.0, 5.0
 SAMPLES, RUN_IN = 7200, 600
 PUBLISHED_S = {30.0: (26.0, 2315.0), 100.0: (54.0, 2894.0)}
 CHUNK = 250
+FROM_ZERO = "First lag at which the autocorrelation, not counted from the mean, is 1/e."
 Z95 = NormalDist().inv_cdf(0.95)
 
 
@@ -95,9 +96,9 @@ def run(files: Sequence[str | Path] = (), *, draws: int = 1000, seed: int = 673)
     path = one_or_none(files)
     if path is not None:
         step, columns = read_series(path)
-        lags = {name: float(first_crossing(autocorrelation(x, remove_mean=False), INVERSE_E)) * step for name, x in columns.items()}
-        series = [Series(name=name, time_constant_s=None if np.isnan(lag) else lag) for name, lag in lags.items()]
-        return Study(draws=0, smoothed=[], series=series, words=["First lag at which the autocorrelation, not counted from the mean, is 1/e."])
+        own = {name: float(first_crossing(autocorrelation(x, remove_mean=False), INVERSE_E)) * step for name, x in columns.items()}
+        series = [Series(name=name, time_constant_s=None if np.isnan(lag) else lag) for name, lag in own.items()]
+        return Study(draws=0, smoothed=[], series=series, words=[FROM_ZERO])
     if draws < 20:
         raise InputError("draws", draws, "1", "[20, inf)")
     generator = np.random.Generator(np.random.Philox(seed))
@@ -105,8 +106,8 @@ def run(files: Sequence[str | Path] = (), *, draws: int = 1000, seed: int = 673)
     found: dict[float, list[Floats]] = {ts: [] for ts in PUBLISHED_S}
     for first in range(0, draws, CHUNK):
         raw = markov(generator, tau[first : first + CHUNK])
-        for ts, lags in found.items():
-            lags.append(first_crossing(autocorrelation(smooth(raw, ts)[:, RUN_IN:], remove_mean=False), INVERSE_E))
+        for ts, some in found.items():
+            some.append(first_crossing(autocorrelation(smooth(raw, ts)[:, RUN_IN:], remove_mean=False), INVERSE_E))
     checks = markov(generator, np.repeat([SHORTEST_S, PERCENTILES_S[2]], 100))
     return Study(
         draws=draws,
@@ -121,10 +122,11 @@ def run(files: Sequence[str | Path] = (), *, draws: int = 1000, seed: int = 673)
 
 
 def time_constants(generator: np.random.Generator, n: int) -> Floats:
-    """Time constants of raw multipath: two half log-normals, uniform above the 95th percentile, floored. [s]"""
+    """Time constants of raw multipath: two half log-normals, uniform above the 95th percentile, floored [s]."""
     low, middle, high = PERCENTILES_S
-    z = generator.standard_normal(n)
-    spread = np.where(z < 0, np.log(middle / low), np.log(high / middle)) / Z95
+    z = np.asarray(generator.standard_normal(n))
+    below, above = float(np.log(middle / low)) / Z95, float(np.log(high / middle)) / Z95
+    spread = np.where(z < 0, below, above)
     tail = generator.uniform(high, LONGEST_S, n)
     return np.maximum(SHORTEST_S, np.where(z > Z95, tail, middle * np.exp(spread * z)))
 
@@ -180,8 +182,8 @@ def _render(study: Study) -> RenderableType:
         table = Table(title="Time constants")
         table.add_column("series")
         table.add_column("time constant, s", justify="right")
-        for s in study.series:
-            table.add_row(s.name, "-" if s.time_constant_s is None else f"{s.time_constant_s:.1f}")
+        for own in study.series:
+            table.add_row(own.name, "-" if own.time_constant_s is None else f"{own.time_constant_s:.1f}")
         return Group(table, *study.words)
     table = Table(title=f"Time constants of smoothed multipath, {study.draws} draws [s]")
     for heading in ("smoothing", "least", "5 %", "median", "95 %", "most", "published least", "published most", "variance left, 5 / 170 s"):

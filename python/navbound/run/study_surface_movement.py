@@ -56,7 +56,7 @@ def run(files: Sequence[str | Path] = ()) -> Study:
     FormatError
         A file that cannot be read.
     """
-    config = _configured([Path(f) for f in files])
+    config = configured([Path(f) for f in files])
     return study(config, surface_sky.look(config))
 
 
@@ -69,7 +69,7 @@ def study(config: SurfaceMovement, sky: Sky) -> Study:
     cells = [c for f in found for c in f.cells]
     aided = surface_claims.aided_ratios(config, sky)
     grids = {f.mode.id: f.levels_of_cells[surface_grid.CASES[0]] for f in found}
-    claims = surface_claims.judge(config, rules, befores, cells, grids, aided)
+    claims = surface_claims.judge(config, rules, befores, cells, grids=grids, aided=aided)
     return Study(
         title=config.title,
         constellation=sky.words,
@@ -86,7 +86,8 @@ def study(config: SurfaceMovement, sky: Sky) -> Study:
     )
 
 
-def _configured(files: list[Path]) -> SurfaceMovement:
+def configured(files: list[Path]) -> SurfaceMovement:
+    """The configuration that files on a command line amount to."""
     tables = [f for f in files if f.suffix == ".toml"]
     if len(tables) > 1:
         raise InputError("files", len(tables), "1", "{0, 1}: configurations")
@@ -126,17 +127,25 @@ def _mode(config: SurfaceMovement, rules: Rules, mode: Mode, sky: Sky) -> _Found
     typical, typical_gain = float(statistic(sigma)), float(statistic(gain))
     for case in surface_grid.CASES:
         if case == surface_grid.CASES[0] or len(mode.systems) > 1:
-            found.levels_of_cells[case] = surface_grid.coasting(config, rules, mode, case, sky, covariance)
+            found.levels_of_cells[case] = surface_grid.coasting(config, rules, mode, case, sky, covariance_m2=covariance)
         else:
             found.levels_of_cells[case] = found.levels_of_cells[surface_grid.CASES[0]]
         for k, (name, phase) in enumerate(rules.phases.items()):
-            own = surface_grid.before(config, mode, sky, phase.integrity_risk, covariance) if phase.integrity_risk != first.integrity_risk else levels
-            decades = surface_grid.margins(rules, mode, case, phase, rules.allocation.ground, typical, biases * typical_gain)
+            own = (
+                surface_grid.before(config, mode, sky, phase.integrity_risk, covariance)
+                if phase.integrity_risk != first.integrity_risk
+                else levels
+            )
+            decades = surface_grid.margins(
+                rules, mode, case, phase, share=rules.allocation.ground, sigma_m=typical, bias_m=biases * typical_gain
+            )
             found.margins.append(Margin(mode=mode.id, case=case, phase=name, decades=decades.tolist()))
             grid = found.levels_of_cells[case][:, :, k]
             place = {"mode": mode.id, "case": case, "phase": name}
-            found.cells += list(_cells_before(place, own, gain, biases, rules.accuracy_m[name], phase.hal_m, decades))
-            found.cells += list(_cells_coasting(config, rules, mode, place, grid, statistic))
+            found.cells += list(
+                _cells_before(place, own, gain, biases, accuracy_m=rules.accuracy_m[name], hal_m=phase.hal_m, decades=decades)
+            )
+            found.cells += list(_cells_coasting(config, rules, mode, place, grid, statistic=statistic))
             found.curves.append(_curve(rules, mode, case, name, typical))
     return found
 
@@ -176,16 +185,16 @@ def _errors(mode: Mode, levels: Levels, gain: Floats, bias_m: float) -> Errors:
 
 
 def _cells_before(
-    place: dict[str, str], levels: Levels, gain: Floats, biases: Floats, accuracy_m: float, hal_m: float, decades: Floats
+    place: dict[str, str], levels: Levels, gain: Floats, biases: Floats, *, accuracy_m: float, hal_m: float, decades: Floats
 ) -> Iterator[Cell]:
     steps = biases[None, :] * gain[:, None]
-    yield _cell("accuracy", place, 0.0, levels.accuracy_m[:, None] + steps, biases, accuracy_m)
-    yield _cell("single", place, 0.0, levels.hpl_m[:, None] + steps, biases, hal_m)
+    yield _cell("accuracy", place, 0.0, levels.accuracy_m[:, None] + steps, biases, limit=accuracy_m)
+    yield _cell("single", place, 0.0, levels.hpl_m[:, None] + steps, biases, limit=hal_m)
     yield _monitor_cell(place, 0.0, decades, biases)
 
 
 def _cells_coasting(
-    config: SurfaceMovement, rules: Rules, mode: Mode, place: dict[str, str], grid: Floats, statistic: Any
+    config: SurfaceMovement, rules: Rules, mode: Mode, place: dict[str, str], grid: Floats, *, statistic: Any
 ) -> Iterator[Cell]:
     biases, phase = np.asarray(config.grid.bias_m), rules.phases[place["phase"]]
     limits: tuple[tuple[Quantity, float], ...] = (
@@ -195,7 +204,7 @@ def _cells_coasting(
     )
     for t, seconds in enumerate(config.grid.coasting_s):
         for q, (quantity, limit) in enumerate(limits):
-            yield _cell(quantity, place, seconds, grid[:, t, :, q], biases, limit)
+            yield _cell(quantity, place, seconds, grid[:, t, :, q], biases, limit=limit)
         accuracy = grid[:, t, :, 0]
         if np.isnan(accuracy).all():
             continue
@@ -203,7 +212,7 @@ def _cells_coasting(
         none = accuracy[:, 0] - biases[0] * _slope(accuracy, biases)
         sigma, gain = float(statistic(none)) / surface_grid.K95, float(statistic(_slope(accuracy, biases)))
         share = rules.allocation.coasting_ground
-        decades = surface_grid.margins(rules, mode, place["case"], phase, share, sigma, biases * gain)
+        decades = surface_grid.margins(rules, mode, place["case"], phase, share=share, sigma_m=sigma, bias_m=biases * gain)
         yield _monitor_cell(place, seconds, decades, biases)
 
 
@@ -213,7 +222,7 @@ def _slope(accuracy: Floats, biases: Floats) -> Floats:
     return (accuracy[:, -1] - accuracy[:, 0]) / spread if spread else np.zeros(len(accuracy))
 
 
-def _cell(quantity: Quantity, place: dict[str, str], seconds: float, values: Floats, biases: Floats, limit: float) -> Cell:
+def _cell(quantity: Quantity, place: dict[str, str], seconds: float, values: Floats, biases: Floats, *, limit: float) -> Cell:
     """The largest bias with every epoch within the limit; an epoch without a value is not."""
     passes = values <= limit
     every = passes.all(axis=0)
@@ -225,15 +234,13 @@ def _cell(quantity: Quantity, place: dict[str, str], seconds: float, values: Flo
 def _monitor_cell(place: dict[str, str], seconds: float, decades: Floats, biases: Floats) -> Cell:
     good = decades >= 0
     largest = float(biases[good].max()) if good.any() else None
-    return Cell(
-        quantity="monitor", **place, coasting_s=seconds, bias_m=largest, worst_m=float(decades[0]), share=float(good[0])
-    )
+    return Cell(quantity="monitor", **place, coasting_s=seconds, bias_m=largest, worst_m=float(decades[0]), share=float(good[0]))
 
 
 def _curve(rules: Rules, mode: Mode, case: str, name: str, sigma_m: float) -> Curve:
     curve = rules.curves[mode.service]
     error = np.linspace(0.0, 1.2 * curve.end_m * curve.stretch, 121)
-    numbers = surface_grid.hazard(rules, mode, case, rules.phases[name], rules.allocation.ground, sigma_m, 0.0)
+    numbers = surface_grid.hazard(rules, mode, case, rules.phases[name], share=rules.allocation.ground, sigma_m=sigma_m, bias_m=0.0)
     return Curve(
         mode=mode.id,
         case=case,
@@ -268,7 +275,8 @@ def _numbers(rules: Rules) -> Iterator[Number]:
     def each(where: str, marks: Sequence[Mark], record: Any = None) -> Iterator[Number]:
         for m in marks:
             fields = vars(record) if record is not None else {}
-            value = next((f"{v:g}" for k, v in fields.items() if (k == m.name or k.startswith(f"{m.name}_")) and isinstance(v, (int, float))), "")
+            named = (v for k, v in fields.items() if k == m.name or k.startswith(f"{m.name}_"))
+            value = next((f"{v:g}" for v in named if isinstance(v, (int, float))), "")
             yield Number(name=f"{where}: {m.name}", value=value, held=m.held, why=m.why)
 
     for name, phase in rules.phases.items():
@@ -288,12 +296,15 @@ def _numbers(rules: Rules) -> Iterator[Number]:
 def _words(config: SurfaceMovement, sky: Sky) -> list[str]:
     words = [
         f"Every verdict belongs to {sky.words}; the paper used geometries of January 2019 that are not public.",
-        "Requirements are inferred: the paper's table did not reach us. A claim that was used to choose a number is marked fitted: it is no evidence.",
-        "No column is a statement of safety: with the noise model that bounds, the covariance with an inertial system is larger, not smaller, than "
-        "that of the ranges alone (claim C04).",
+        "Requirements are inferred: the paper's table did not reach us. A claim that was used to choose a number is marked fitted: it is "
+        "no evidence.",
+        "No column is a statement of safety: with the noise model that bounds, the covariance with an inertial system is larger, not "
+        "smaller, than that of the ranges alone (claim C04).",
     ]
     if not sky.dated:
-        words.append("Nominal satellites: typical of the constellations, not of a date. With an almanac of a date the verdicts are that date's.")
+        words.append(
+            "Nominal satellites: typical of the constellations, not of a date. With an almanac of a date the verdicts are that date's."
+        )
     if config.method.covariance == "paper":
         words.append("The covariance is the paper's form, which nothing shows to bound.")
     return words

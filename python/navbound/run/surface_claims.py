@@ -68,7 +68,7 @@ def shown(bias_m: float) -> str:
 
 
 def aided_ratios(config: SurfaceMovement, sky: Sky) -> dict[str, tuple[float, float]]:
-    """Smallest and largest ratio of the deviation with an inertial system to that of the ranges alone, by form of the noise, over some skies."""
+    """Least and largest ratio of the deviation with an inertial system to that of ranges alone, by form of the noise, over some skies."""
     found: dict[str, list[float]] = {"paper": [], "bound": []}
     some = np.linspace(0, len(sky.az_rad) - 1, min(AIDED_SKIES, len(sky.az_rad))).astype(int)
     for mode in surface_grid.MODES:
@@ -76,13 +76,13 @@ def aided_ratios(config: SurfaceMovement, sky: Sky) -> dict[str, tuple[float, fl
         az, el = own.az_rad[some], own.el_rad[some]
         alone = gbas.protection_levels(az, el, own.systems, service=mode.service)
         usable = alone.status == "ok"
-        for form, ratios in found.items():
+        for form in found:
             lat_rad = float(np.radians(config.airport.lat_deg))
             covariance = gbas.aided_covariance(
                 az[usable], el[usable], own.systems, lat_rad=lat_rad, service=mode.service, noise="paper" if form == "paper" else "bound"
             )
             both = gbas.protection_levels(az[usable], el[usable], own.systems, service=mode.service, aided_covariance_m2=covariance)
-            ratios += (both.sigma_m / alone.sigma_m[usable]).tolist()
+            found[form] += (both.sigma_m / alone.sigma_m[usable]).tolist()
     return {form: (min(ratios), max(ratios)) for form, ratios in found.items() if ratios}
 
 
@@ -91,11 +91,12 @@ def judge(
     rules: Rules,
     befores: Sequence[Before],
     cells: Sequence[Cell],
+    *,
     grids: dict[str, Floats],
     aided: dict[str, tuple[float, float]],
 ) -> list[Claim]:
     """A verdict on each claim; none where the configuration leaves out what it is about."""
-    table = {(c.quantity, c.mode, c.case, c.phase, c.coasting_s): c for c in cells}
+    table: dict[tuple[str, str, str, str, float], Cell] = {(c.quantity, c.mode, c.case, c.phase, c.coasting_s): c for c in cells}
     evidence = Evidence(config, rules, {b.mode: b for b in befores}, table, grids, aided)
     whole = all(p in rules.phases for p in NEEDED_PHASES) and max(config.grid.bias_m) >= 0.5 and not any(b.n_unavailable for b in befores)
     needed = {10.0, 20.0, 60.0, 600.0} <= set(config.grid.coasting_s)
@@ -105,9 +106,7 @@ def judge(
             verdict, found = entry.judge(evidence)
         else:
             verdict, found = "not judged", "the configuration leaves out what the claim is about, or an epoch has no solution"
-        claims.append(
-            Claim(id=entry.id, claim=entry.claim, found=found, verdict=verdict, fitted=entry.fitted, expected=entry.expected)
-        )
+        claims.append(Claim(id=entry.id, claim=entry.claim, found=found, verdict=verdict, fitted=entry.fitted, expected=entry.expected))
     return claims
 
 
@@ -115,7 +114,7 @@ Verdict = Literal["reproduced", "not reproduced", "only without a bound", "bound
 Judged = tuple[Verdict, str]
 
 
-def _if(holds: bool, found: str, verdict: Verdict = "reproduced") -> Judged:  # noqa: FBT001 - the question itself
+def _if(holds: bool, found: str, verdict: Verdict = "reproduced") -> Judged:
     return (verdict if holds else "not reproduced"), found
 
 
@@ -195,7 +194,9 @@ def _c12(e: Evidence) -> Judged:
     d, f1 = e.largest("accuracy", "D", "NTW", 10.0), e.largest("accuracy", "F1", "NTW", 10.0)
     at = e.triple("accuracy", "NTW", 10.0)
     long = e.triple("accuracy", "NTW", 600.0)
-    best = all(e.largest("accuracy", "F2", p, t) >= e.largest("accuracy", m, p, t) for m in ("D", "F1") for p in NEEDED_PHASES for t in e.times)
+    best = all(
+        e.largest("accuracy", "F2", p, t) >= e.largest("accuracy", m, p, t) for m in ("D", "F1") for p in NEEDED_PHASES for t in e.times
+    )
     return _if(best and strict and d > f1, f"NTW at 10 s: {at}; at 600 s: {long}")
 
 
@@ -280,15 +281,25 @@ class _Entry:
 
 
 CLAIMS = (
-    _Entry("C01", "taxiway: HPL within HAL for D and F even with 0.5 m of bias", "reproduced: 4.34 (D), 3.27 m (F2)", _c01, "worst direction in equation 5"),
+    _Entry(
+        "C01",
+        "taxiway: HPL within HAL for D and F even with 0.5 m of bias",
+        "reproduced: 4.34 (D), 3.27 m (F2)",
+        _c01,
+        "worst direction in equation 5",
+    ),
     _Entry("C02", "taxiway: accuracy met only below 0.4 m (D) and 0.5 m (F)", "reproduced: 0.3 (D), 0.4 m (F2)", _c02),
     _Entry("C03", "F allows slightly more than D before coasting", "reproduced", _c03),
-    _Entry("C04", "sigma with the inertial system below that of the ranges", "only with the paper's noise: 0.89-0.95 against 2.6-3.3", _c04),
+    _Entry(
+        "C04", "sigma with the inertial system below that of the ranges", "only with the paper's noise: 0.89-0.95 against 2.6-3.3", _c04
+    ),
     _Entry("C05", "worst horizontal projection 2 (D) and 0.7 (F) over the globe", "bounded: 1.46 and 0.50", _c05),
     _Entry("C06", "missed detection: larger bias with F than D", "reproduced: 0 (D), 0.4 m (F2)", _c06),
     _Entry("C07", "case B allows more than case A", "reproduced: 0.5 against 0.4 m", _c07),
     _Entry("C08", "rapid exit and taxiway feasible, ample margin for F", "reproduced: 0 (D), 0.4/0.5 m (F2)", _c08, STRETCH),
-    _Entry("C09", "apron taxiway and taxi lane only with F2 and only without bias", "reproduced for case B", _c09, f"{STRETCH}; {TSC_CHOICE}"),
+    _Entry(
+        "C09", "apron taxiway and taxi lane only with F2 and only without bias", "reproduced for case B", _c09, f"{STRETCH}; {TSC_CHOICE}"
+    ),
     _Entry("C10", "stand lead-in line never met", "reproduced", _c10, f"{STRETCH}; {TSC_CHOICE}"),
     _Entry("C11", "transition with D before the apron, with F before the stand; taxiway up to 0.4 m", "reproduced", _c11, STRETCH),
     _Entry("C12", "coasting accuracy: F2 best, D slightly better than F1", "reproduced: 0.4 / 0.3 / 0.2 m on the taxiway", _c12),
@@ -297,6 +308,12 @@ CLAIMS = (
     _Entry("C15", "multi-fault at the stand: D beats F2 for short coasting, F2 wins for long", "not reproduced for short coasting", _c15),
     _Entry("C16", "multi-fault: F1 slightly above F2 on ATW at 60 s and TL at 20-60 s", "not reproduced", _c16),
     _Entry("C17", "biases while coasting at most those before", "by construction", _c17),
-    _Entry("C18", "rapid exit and taxiway met with margin by all modes while coasting", "fixes the clock drift: 0.4, 0.2, 0.5 m", _c18, "clock drift 0.3 mm/s"),
+    _Entry(
+        "C18",
+        "rapid exit and taxiway met with margin by all modes while coasting",
+        "fixes the clock drift: 0.4, 0.2, 0.5 m",
+        _c18,
+        "clock drift 0.3 mm/s",
+    ),
     _Entry("C19", "the multi-fault map has boxes without any bias", "reproduced", _c19),
 )

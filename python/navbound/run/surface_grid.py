@@ -102,9 +102,7 @@ def aided(config: SurfaceMovement, mode: Mode, sky: Sky) -> Floats | None:
     if config.method.covariance == "snapshot":
         return None
     lat_rad = float(np.radians(config.airport.lat_deg))
-    return gbas.aided_covariance(
-        sky.az_rad, sky.el_rad, sky.systems, lat_rad=lat_rad, service=mode.service, noise=config.method.covariance
-    )
+    return gbas.aided_covariance(sky.az_rad, sky.el_rad, sky.systems, lat_rad=lat_rad, service=mode.service, noise=config.method.covariance)
 
 
 def before(config: SurfaceMovement, mode: Mode, sky: Sky, risk: float, covariance_m2: Floats | None) -> Levels:
@@ -135,7 +133,7 @@ def fault_probability(mode: Mode, rates: FaultRates) -> float:
     return gbas.fault_probability([g[0] for g in groups], [g[1] for g in groups], rates.decorrelation_s)
 
 
-def hazard(rules: Rules, mode: Mode, case: str, phase: SubPhase, share: float, sigma_m: Any, bias_m: Any) -> dict[str, Any]:
+def hazard(rules: Rules, mode: Mode, case: str, phase: SubPhase, *, share: float, sigma_m: Any, bias_m: Any) -> dict[str, Any]:
     """Arguments of a missed-detection limit."""
     budget = rules.budget
     return {
@@ -148,14 +146,14 @@ def hazard(rules: Rules, mode: Mode, case: str, phase: SubPhase, share: float, s
     }
 
 
-def margins(rules: Rules, mode: Mode, case: str, phase: SubPhase, share: float, sigma_m: Any, bias_m: Any) -> Floats:
+def margins(rules: Rules, mode: Mode, case: str, phase: SubPhase, *, share: float, sigma_m: Any, bias_m: Any) -> Floats:
     """Decades that the ground monitors have to spare."""
     curve = rules.curves[mode.service]
-    numbers = hazard(rules, mode, case, phase, share, sigma_m, bias_m)
+    numbers = hazard(rules, mode, case, phase, share=share, sigma_m=sigma_m, bias_m=bias_m)
     return gbas.monitor_margin(service=mode.service, stretch=curve.stretch, **numbers)
 
 
-def coasting(config: SurfaceMovement, rules: Rules, mode: Mode, case: str, sky: Sky, covariance_m2: Floats | None) -> Floats:
+def coasting(config: SurfaceMovement, rules: Rules, mode: Mode, case: str, sky: Sky, *, covariance_m2: Floats | None) -> Floats:
     """Accuracy, single- and multi-fault level; shape (epochs, times, sub-phases, biases, 3), NaN where there is none."""
     rates, shares, grid = rules.rates[case], rules.allocation, config.grid
     flat = np.ascontiguousarray
@@ -166,13 +164,8 @@ def coasting(config: SurfaceMovement, rules: Rules, mode: Mode, case: str, sky: 
             phase.integrity_risk, share=shares.no_fault_and_receiver, axes=shares.axes, receiver_fault=shares.receiver_fault
         )
         allotted = shares.coasting_fault * phase.integrity_risk
-        method = config.method
-        demands.append(
-            (
-                phase.speed_mps,
-                rraim.rule(multipliers, phase.continuity_risk, allotted, method.ordering, method.form, biased_threshold=False),
-            )
-        )
+        rule = rraim.rule(multipliers, phase.continuity_risk, allotted, ordering=config.method.ordering, form=config.method.form)
+        demands.append((phase.speed_mps, rule))
     shape = sky.az_rad.shape
     gps, galileo = (gnss.CONSTELLATIONS.index(name) for name in ("gps", "galileo"))
     job = {
@@ -180,11 +173,9 @@ def coasting(config: SurfaceMovement, rules: Rules, mode: Mode, case: str, sky: 
             flat(sky.az_rad).ravel(),
             flat(sky.el_rad).ravel(),
             shape,
-            [int(c) for c in sky.systems],
-            mode.service,
-            None,
-            None,
-            covariance_m2,
+            constellation=[int(c) for c in sky.systems],
+            service=mode.service,
+            aided_covariance_m2=covariance_m2,
         ),
         "az_now_rad": flat(sky.az_now_rad).ravel(),
         "el_now_rad": flat(sky.el_now_rad).ravel(),
@@ -202,7 +193,7 @@ def coasting(config: SurfaceMovement, rules: Rules, mode: Mode, case: str, sky: 
 
 
 def worldwide(step_s: float = 1800.0) -> tuple[float, float]:
-    """Worst horizontal projections of one range over the globe for the nominal constellations: GPS with GAST D, GPS and Galileo with GAST F.
+    """Worst horizontal projections of one range over the globe: nominal GPS with GAST D, GPS and Galileo with GAST F.
 
     A grid of 10 by 20 degrees and a day.
     """

@@ -16,6 +16,8 @@ from navbound.gnss import Orbits
 from navbound.scenario.models import GPS_EPOCH
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from navbound.scenario.surface import SurfaceMovement
@@ -73,8 +75,15 @@ class _Source:
     dated: bool
 
 
-def look(config: SurfaceMovement) -> Sky:
+def look(config: SurfaceMovement, own: Mapping[str, tuple[Orbits, str]] | None = None) -> Sky:
     """Work out the skies.
+
+    Parameters
+    ----------
+    config : SurfaceMovement
+        Whose satellites, where and when.
+    own : mapping, optional
+        Orbits of the caller's own and their name, by constellation; the day begins at their reference instant.
 
     Raises
     ------
@@ -84,7 +93,13 @@ def look(config: SurfaceMovement) -> Sky:
         A file that cannot be read.
     """
     geometry, airport = config.geometry, config.airport
-    sources = [_source(system, getattr(geometry, system), geometry.start, geometry.duration_s) for system in SYSTEMS]
+    sources = []
+    for system in SYSTEMS:
+        if own is not None and system in own:
+            orbits, words = own[system]
+            sources.append(_Source(orbits, 0.0, words, dated=False))
+        else:
+            sources.append(_source(system, getattr(geometry, system), geometry.start, geometry.duration_s))
     fixes = np.arange(0.0, geometry.duration_s, geometry.step_s)
     place = np.radians(airport.lat_deg), np.radians(airport.lon_deg), airport.h_m
     at_fix, later = [], []

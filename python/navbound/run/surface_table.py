@@ -73,7 +73,9 @@ def _before(study: Study) -> Table:
 
 def _cases(study: Study, quantity: str) -> list[str]:
     """Cases that differ for a quantity."""
-    of = {case: [(c.mode, c.phase, c.coasting_s, c.bias_m) for c in study.cells if (c.quantity, c.case) == (quantity, case)] for case in "AB"}
+    of = {
+        case: [(c.mode, c.phase, c.coasting_s, c.bias_m) for c in study.cells if (c.quantity, c.case) == (quantity, case)] for case in "AB"
+    }
     return ["A"] if of["A"] == of["B"] else ["A", "B"]
 
 

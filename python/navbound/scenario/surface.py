@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import tomllib
 from datetime import datetime
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 
 from navbound.errors import FormatError
 from navbound.scenario.models import Part
@@ -41,6 +42,13 @@ class Grid(Part):
 
     coasting_s: list[float] = Field(min_length=1, max_length=32)
     bias_m: list[float] = Field(min_length=1, max_length=32)
+
+    @field_validator("bias_m")
+    @classmethod
+    def _from_zero(cls, values: list[float]) -> list[float]:
+        if values[0] != 0 or any(b <= a for a, b in pairwise(values)):
+            raise ValueError("sizes of the bias begin with 0 and grow")
+        return values
 
 
 class Method(Part):
@@ -85,8 +93,8 @@ class SurfaceMovement(Part):
     grid: Grid
     method: Method
     given: Given = Given()
-    requirement: list[Requirement] = []
-    only: list[str] = []
+    requirement: list[Requirement] = Field(default_factory=list)
+    only: list[str] = Field(default_factory=list)
     """Sub-phases to look at, by name; all without it."""
 
 
