@@ -68,7 +68,7 @@ def test_the_study_of_multipath_agrees_with_the_law_and_the_published_least() ->
     tau = multipath.time_constants(generator, 400)
     for row in found.smoothed:
         exact = np.median([exact_crossing(t, row.smoothing_s) for t in tau])
-        # A time constant from two hours scatters by a tenth, the median of 400 by a twentieth of the law's own width, and steps last a second.
+        # A time constant from two hours scatters by a tenth, the median of 400 by a twentieth of the law's width; steps last a second.
         assert abs(row.median_s / exact - 1.0) < 0.08
         # With the paper's draws the least is 26 and 54 s; fewer cannot be below by more than a tenth.
         assert row.published_least_s * 0.9 < row.least_s < row.median_s

@@ -114,8 +114,8 @@ def run(files: Sequence[str | Path] = (), *, draws: int = 1000, seed: int = 673)
         smoothed=[_smoothed(ts, np.concatenate(lags), checks) for ts, lags in found.items()],
         series=[],
         words=[
-            "Least and most are extremes of estimates from two hours of samples: the least falls slowly with the number of draws (65 s at 1000, 51 s "
-            "at 10 000 for 100 s of smoothing), the most is one sample of a heavy tail and moves by a factor of two.",
+            "Least and most are extremes of estimates from two hours of samples: the least falls slowly with the number of draws (for "
+            "100 s of smoothing 65 s at 1000, 51 s at 10 000), the most is one sample of a heavy tail and moves by a factor of two.",
             "The law between the percentiles is inferred: two half log-normals that meet all three.",
         ],
     )
