@@ -130,7 +130,7 @@ class FaultRates:
 
 @dataclass(frozen=True)
 class Allocation:
-    """How the integrity risk of a sub-phase is shared out; shares of it. [1]
+    """How the integrity risk of a sub-phase is shared out; shares of it [1].
 
     Attributes
     ----------
@@ -208,7 +208,7 @@ class MonitorCurve:
 
 @dataclass(frozen=True)
 class RangeSigma:
-    """Standard deviations of smoothed, corrected ranges; arrays have the shape of the elevations. [m]
+    """Standard deviations of smoothed, corrected ranges; arrays have the shape of the elevations [m].
 
     Attributes
     ----------

@@ -15,6 +15,7 @@ import polars as pl
 
 from navbound import _core
 from navbound._arrays import flatten
+from navbound._constellations import CONSTELLATIONS, Orbits
 from navbound.errors import FormatError, InputError
 
 if TYPE_CHECKING:
@@ -153,6 +154,37 @@ class Navigation:
         [s/s] and its rate [1/s], elements [sqrt(m), rad, rad/s, m], ``group_delay_first_s``, ``group_delay_second_s``, ``fit_interval_s``.
         """
         return pl.DataFrame(self._core.records())
+
+    def orbits(self, system: str, time_ns: int) -> Orbits:
+        """Kepler orbits of a constellation from each healthy satellite's nearest record, without harmonics: for the geometry of a day.
+
+        Parameters
+        ----------
+        system : str
+            One of ``gnss.CONSTELLATIONS``.
+        time_ns : int
+            GPS time that the records should be near; the reference instant of the orbits. [ns]
+
+        Raises
+        ------
+        InputError
+            An unknown system.
+        """
+        names, rows, _ = self._core.orbits(_system_index(system), time_ns)
+        a, e, i, node, perigee, anomaly, rate = (np.ascontiguousarray(rows[:, k]) for k in range(7))
+        index = np.full(len(names), _system_index(system), dtype=np.int64)
+        return Orbits(tuple(names), index, a, e, i, node, perigee, anomaly, rate, time_ns)
+
+    def nearest_age_s(self, system: str, time_ns: int) -> float:
+        """How far the nearest healthy record of a constellation is from a GPS time [s]; infinite without one."""
+        _, _, ages = self._core.orbits(_system_index(system), time_ns)
+        return min((abs(age) for age in ages), default=np.inf)
+
+
+def _system_index(system: str) -> int:
+    if system not in CONSTELLATIONS:
+        raise InputError("system", system, domain=f"one of {', '.join(CONSTELLATIONS)}")
+    return CONSTELLATIONS.index(system)
 
 
 @dataclass(frozen=True)

@@ -180,9 +180,15 @@ def analyze(
 
 @app.command()
 def study(
-    name: Annotated[str, typer.Argument(help="error-extraction, tse-coverage, ukraine-rnav")],
-    files: Annotated[list[Path] | None, typer.Argument(help="Recorded data, for a study that needs some.")] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Run directory to write, for a study of a flight (ukraine-rnav).")] = None,
+    name: Annotated[
+        str,
+        typer.Argument(help="decorrelation-time, error-extraction, multipath-time-constants, surface-movement, tse-coverage, ukraine-rnav"),
+    ],
+    files: Annotated[list[Path] | None, typer.Argument(help="Recorded data or a configuration, for a study that takes some.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Directory to write, for a study of a flight (ukraine-rnav) or with a page (surface-movement)."),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Repeat a published evaluation and say which of its numbers come out."""

@@ -82,7 +82,7 @@ NoiseForm = Literal["paper", "bound"]
 
 @dataclass(frozen=True)
 class Factors:
-    """Multipliers of the hypotheses without a fault and with one faulty reference receiver. [1]
+    """Multipliers of the hypotheses without a fault and with one faulty reference receiver [1].
 
     Attributes
     ----------
@@ -141,9 +141,7 @@ class Levels:
     reason: NDArray[np.str_]
 
 
-def factors(
-    integrity_risk: float, *, share: float = 0.25, axes: int = 1, receivers: int = 4, receiver_fault: float = 1e-5
-) -> Factors:
+def factors(integrity_risk: float, *, share: float = 0.25, axes: int = 1, receivers: int = 4, receiver_fault: float = 1e-5) -> Factors:
     """Multipliers from an integrity risk (RTCA DO-245A; standard): 6.54 and 4.06 for 1.25e-9.
 
     Parameters
@@ -171,7 +169,7 @@ def factors(
 
 
 def accuracy_limit(containment_m: float, budget: ErrorBudget | None = None) -> float:
-    """Accuracy (95 %) that a containment leaves to navigation: 1.96 sqrt((TSC/4.8916)² - FTE² - PDE²). [m]
+    """Accuracy (95 %) that a containment leaves to navigation: 1.96 sqrt((TSC/4.8916)² - FTE² - PDE²) [m].
 
     Parameters
     ----------
@@ -266,7 +264,6 @@ def protection_levels(
     shape, (az, el) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()))
     width, leading = _width(shape), shape[:-1]
     sigma, sigma_h1 = _sigmas(np.reshape(el, shape), service, sigma_m, sigma_h1_m)
-    _, (bias,) = flatten(bias_m=(np.broadcast_to(_numbers("bias_m", bias_m), leading), ()))
     multipliers = k or factors(integrity_risk)
     found = _core.gbas_levels(
         {
@@ -275,7 +272,7 @@ def protection_levels(
             "sigma_m": sigma,
             "sigma_h1_m": sigma_h1,
             "constellation": systems(width, constellation),
-            "bias_m": bias,
+            "bias_m": spread("bias_m", bias_m, leading, ()),
             "aided_m2": spread("aided_covariance_m2", aided_covariance_m2, leading, (3, 3)),
             "b_values_m": _b_values(b_values_m, leading, width),
             "k_ffmd": multipliers.k_ffmd,
@@ -401,7 +398,7 @@ def aided_covariance(
     lat_rad: float,
     service: Service = "D",
     noise: NoiseForm = "bound",
-    seconds: float = 300.0,
+    seconds: float = 900.0,
 ) -> NDArray[np.float64]:
     """Covariance of a fix from GBAS-corrected ranges and an inertial system (navi.673 equations 3 and 4, rebuilt).
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from navbound.gbas import Service
+    from navbound._gbas_models import Service
 
 __all__ = ["Levels", "protection_levels"]
 
@@ -93,7 +93,7 @@ class Levels:
         return self.covariance_enu_m2[..., 1, 1]
 
 
-def protection_levels(
+def protection_levels(  # noqa: PLR0917 - satellites then, satellites now, their phases, their systems
     az_rad: ArrayLike,
     el_rad: ArrayLike,
     az_now_rad: ArrayLike,
@@ -160,12 +160,21 @@ def protection_levels(
     leading, width = shape[:-1], shape[-1]
     multipliers = k or factors(integrity_risk)
     job = {
-        "fix": fix(az, el, shape, systems(width, constellation), service, sigma_m, sigma_h1_m, aided_covariance_m2),
+        "fix": fix(
+            az,
+            el,
+            shape,
+            constellation=systems(width, constellation),
+            service=service,
+            sigma_m=sigma_m,
+            sigma_h1_m=sigma_h1_m,
+            aided_covariance_m2=aided_covariance_m2,
+        ),
         "az_now_rad": az_now,
         "el_now_rad": el_now,
         "sigma_td_m": sigma_td,
         "bias_m": spread("bias_m", bias_m, leading, ()),
-        "rule": rule(multipliers, continuity_risk, allotted_risk, ordering, form, biased_threshold=biased_threshold),
+        "rule": rule(multipliers, continuity_risk, allotted_risk, ordering=ordering, form=form, biased_threshold=biased_threshold),
         "p_sat": by_system("p_sat", p_sat, 1e-5 / 60),
         "p_const": by_system("p_const", p_const, 0.0),
         "p_threshold": 0.1 * allotted_risk if p_threshold is None else p_threshold,
@@ -174,7 +183,7 @@ def protection_levels(
     reason, multi = (np.array(found.pop(name), dtype=np.str_).reshape(leading) for name in ("reason", "multi_reason"))
     covariance = found.pop("cov_enu_m2").reshape(*leading, 3, 3)
     subsets = found.pop("subsets").reshape(*leading, width, 4)
-    counts = {name: unflatten(np.nan_to_num(found.pop(name)).astype(np.int64), leading) for name in ("n_sv", "n_modes")}
+    counts: dict[str, Any] = {name: unflatten(np.nan_to_num(found.pop(name)).astype(np.int64), leading) for name in ("n_sv", "n_modes")}
     columns: dict[str, Any] = {name: unflatten(values, leading) for name, values in found.items()}
     return Levels(
         covariance_enu_m2=covariance,
@@ -193,11 +202,12 @@ def fix(
     az: NDArray[np.float64],
     el: NDArray[np.float64],
     shape: tuple[int, ...],
+    *,
     constellation: list[int],
     service: Service,
-    sigma_m: ArrayLike | None,
-    sigma_h1_m: ArrayLike | None,
-    aided_covariance_m2: ArrayLike | None,
+    sigma_m: ArrayLike | None = None,
+    sigma_h1_m: ArrayLike | None = None,
+    aided_covariance_m2: ArrayLike | None = None,
 ) -> dict[str, Any]:
     """The skies at the fix as the core takes them."""
     if (sigma_m is None) != (sigma_h1_m is None):
@@ -217,7 +227,9 @@ def fix(
     }
 
 
-def rule(k: Factors, continuity_risk: float, allotted_risk: float, ordering: str, form: str, *, biased_threshold: bool) -> dict[str, Any]:
+def rule(
+    k: Factors, continuity_risk: float, allotted_risk: float, *, ordering: str, form: str, biased_threshold: bool = False
+) -> dict[str, Any]:
     """Multipliers and risks as the core takes them."""
     for argument, value, allowed in (("ordering", ordering, ("exact", "rss", "sum")), ("form", form, ("major", "norm"))):
         if value not in allowed:

@@ -5,9 +5,10 @@ use crate::orbits::PreciseOrbits;
 use navbound_assess::positions::{Job, Positions, Signals, positions};
 use navbound_assess::smoothing::Form;
 use navbound_core::frame::{self, EcefPosition};
-use navbound_core::quantity::{OutOfDomain, Radians};
+use navbound_core::geometry::broadcast::mean_elements;
+use navbound_core::quantity::{GpsTime, OutOfDomain, Radians};
 use navbound_core::signal::smoothing::Smoothing;
-use navbound_core::signal::{Constellation, Ephemeris, Klobuchar};
+use navbound_core::signal::{Carrier, Constellation, Ephemeris, Klobuchar};
 use navbound_core::solution::RangeError;
 use navbound_core::solution::point::{Fix, Settings, Used};
 use navbound_formats::Refusal;
@@ -22,6 +23,9 @@ use std::collections::BTreeMap;
 /// One observation file, read.
 #[pyclass(frozen, module = "navbound._core")]
 pub struct Observations(pub rinex::Observations);
+
+/// Names, seven elements a row, ages.
+type Kepler<'py> = (Vec<String>, Bound<'py, PyArray2<f64>>, Vec<f64>);
 
 /// Navigation files, read and merged.
 #[pyclass(frozen, module = "navbound._core")]
@@ -213,6 +217,28 @@ impl Navigation {
     fn klobuchar(&self, system: char) -> Option<([f64; 4], [f64; 4])> {
         let found = if system == 'C' { self.records.klobuchar_beidou } else { self.records.klobuchar_gps };
         found.map(|k: Klobuchar| (k.alpha, k.beta))
+    }
+    /// Kepler orbits of a constellation at an instant, from each healthy satellite's nearest record: names, seven elements a row, ages [s].
+    fn orbits<'py>(&self, py: Python<'py>, system: usize, time_ns: i64) -> PyResult<Kepler<'py>> {
+        let time = GpsTime::from_nanoseconds(time_ns);
+        let age = |e: &Ephemeris| time.seconds_since(e.orbit_time);
+        let mut nearest: BTreeMap<String, &Ephemeris> = BTreeMap::new();
+        let of_system = |e: &&Ephemeris| e.satellite.constellation.index() == system && e.healthy(Carrier::L1);
+        for e in self.records.ephemerides.iter().filter(of_system) {
+            let slot = nearest.entry(e.satellite.to_string()).or_insert(e);
+            if age(e).abs() < age(slot).abs() {
+                *slot = e;
+            }
+        }
+        let (mut rows, mut ages) = (Vec::with_capacity(7 * nearest.len()), Vec::with_capacity(nearest.len()));
+        for e in nearest.values() {
+            let el = mean_elements(e).moved(age(e)).map_err(|e| input_error(e, None))?;
+            let [i, node, perigee, anomaly] = [el.inclination, el.node, el.perigee, el.mean_anomaly].map(Radians::rad);
+            rows.extend([el.semi_major.m(), el.eccentricity, i, node, perigee, anomaly, el.node_rate_radps]);
+            ages.push(age(e));
+        }
+        let n = nearest.len();
+        Ok((nearest.into_keys().collect(), rows.into_pyarray(py).reshape([n, 7])?, ages))
     }
     /// Keplerian records: satellite, message, reference times, issue, health, accuracy, clock, elements, group delays.
     fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

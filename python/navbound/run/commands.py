@@ -13,7 +13,7 @@ from navbound.run import fly as simulated
 from navbound.run.judge import Settings, judge
 from navbound.run.kpi_records import Level
 from navbound.run.requirement import requirement
-from navbound.run.studies import REPORTS, STUDIES
+from navbound.run.studies import PAGES, REPORTS, STUDIES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -124,7 +124,7 @@ def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None
     files : sequence of str or Path
         Recorded data, for a study that needs some.
     out : str or Path, optional
-        Run directory to write, with the report, for a study of a flight.
+        Directory to write: a run with its report for a study of a flight, records and a page for one that has a page.
 
     Raises
     ------
@@ -135,11 +135,15 @@ def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None
     """
     if name not in STUDIES:
         raise InputError("study", name, domain=", ".join(STUDIES))
-    if out is not None and name not in REPORTS:
-        raise InputError("out", str(out), domain=f"no directory: only {', '.join(REPORTS)} has a flight to report")
+    if out is not None and name not in REPORTS and name not in PAGES:
+        raise InputError("out", str(out), domain=f"no directory: only {', '.join([*REPORTS, *sorted(PAGES)])} have something to report")
     found = STUDIES[name](files)
-    if out is not None:
+    if out is not None and name in REPORTS:
         directory.write(REPORTS[name](), Path(out))
+    elif out is not None:
+        from navbound.report import studies  # noqa: PLC0415 - the page is presentation, made only where it is asked for
+
+        studies.write(found, Path(out))
     return found
 
 

@@ -5,7 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from navbound.errors import InputError
-from navbound.run import study_error_extraction, study_tse_coverage, study_ukraine_rnav
+from navbound.run import (
+    study_decorrelation_time,
+    study_error_extraction,
+    study_multipath_time_constants,
+    study_surface_movement,
+    study_tse_coverage,
+    study_ukraine_rnav,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -44,7 +51,10 @@ def _ukraine_rnav(files: Sequence[str | Path]) -> Study:
 
 
 STUDIES: dict[str, Callable[[Sequence[str | Path]], Study]] = {
+    "decorrelation-time": study_decorrelation_time.run,
     "error-extraction": study_error_extraction.run,
+    "multipath-time-constants": study_multipath_time_constants.run,
+    "surface-movement": study_surface_movement.run,
     "tse-coverage": _tse_coverage,
     "ukraine-rnav": _ukraine_rnav,
 }
@@ -52,3 +62,6 @@ STUDIES: dict[str, Callable[[Sequence[str | Path]], Study]] = {
 
 REPORTS: dict[str, Callable[[], Run]] = {"ukraine-rnav": study_ukraine_rnav.fly}
 """Studies of a flight: that flight as a judged run, for a run directory with its report."""
+
+PAGES = frozenset({"surface-movement"})
+"""Studies with a page of their own."""

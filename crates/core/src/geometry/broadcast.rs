@@ -3,9 +3,9 @@
 //! Source: IS-GPS-200 20.3.3.3.3.1 and table 20-IV, with velocities by differentiation (table 30-II); Galileo OS SIS ICD 5.1.1;
 //! BDS-SIS-ICD-B1I 5.2.4.12; RTCA DO-229 A.4.4.11 for geostationary augmentation; provenance: standard.
 
-use super::orbit::eccentric_anomaly;
+use super::orbit::{Elements, eccentric_anomaly};
 use crate::frame::EcefPosition;
-use crate::quantity::{GpsTime, Unavailable};
+use crate::quantity::{GpsTime, Metres, Radians, Unavailable};
 use crate::signal::{Constellation, Ephemeris, GeoEphemeris, Message, SPEED_OF_LIGHT_MPS};
 use crate::special::float::{sin_cos, sqrt};
 use nalgebra::{Matrix3, Vector3};
@@ -63,6 +63,21 @@ pub struct Broadcast {
 /// As [`Broadcast::new`].
 pub fn state(e: &Ephemeris, time: GpsTime) -> Result<SatelliteState, Unavailable> {
     Ok(Broadcast::new(e)?.state(time))
+}
+
+/// The Kepler orbit of a record at its reference time, without harmonics and without the correction of its mean motion: for the geometry of
+/// a day, where a record serves for hours. It is some kilometres off after half a day, 0.02 degrees in the sky.
+pub fn mean_elements(e: &Ephemeris) -> Elements {
+    let time_of_week_s = e.orbit_time.nanoseconds().rem_euclid(WEEK_NS) as f64 * 1e-9;
+    Elements {
+        semi_major: Metres::new(e.sqrt_a * e.sqrt_a),
+        eccentricity: e.eccentricity,
+        inclination: Radians::new(e.inclination[0]),
+        node: Elements::node_from_week_start(Radians::new(e.node[0]), time_of_week_s),
+        node_rate_radps: e.node[1],
+        perigee: Radians::new(e.perigee),
+        mean_anomaly: Radians::new(e.mean_anomaly),
+    }
 }
 
 impl Broadcast {

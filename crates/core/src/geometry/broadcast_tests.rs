@@ -98,3 +98,18 @@ fn elements_that_are_no_orbit_are_refused() {
         assert!(matches!(state(&bad, bad.orbit_time), Err(Unavailable::Invalid { .. })));
     }
 }
+
+#[test]
+fn the_kepler_orbit_of_a_record_stays_near_it_for_half_a_day() {
+    for constellation in [Constellation::Gps, Constellation::Galileo] {
+        let message = if constellation == Constellation::Gps { Message::Lnav } else { Message::Inav };
+        let e = record(constellation, message, 0.012);
+        let orbit = crate::geometry::Orbit::new(mean_elements(&e)).unwrap();
+        for hour in [-12.0, -1.0, 0.0, 1.0, 6.0, 12.0] {
+            let broadcast = state(&e, e.orbit_time.plus_seconds(3600.0 * hour)).unwrap().position;
+            let apart = orbit.position(3600.0 * hour).minus(&broadcast).vector().norm();
+            // Harmonics: 8e-6 rad of 26560 km; then 4.5e-9 rad/s of mean motion and 3e-10 rad/s of tilt over the time.
+            assert!(apart < 500.0 + 0.14 * 3600.0 * f64::abs(hour), "{hour} h: {apart} m");
+        }
+    }
+}

@@ -86,7 +86,7 @@ impl Aided {
 
     /// Covariance of the position.
     pub fn position(&self) -> Covariance<Enu> {
-        Covariance::claim_symmetric(Matrix3::from_fn(|i, j| self.covariance[i][j]))
+        Covariance::claim_symmetric(Matrix3::from_fn(|i, j| 0.5 * (self.covariance[i][j] + self.covariance[j][i])))
     }
 
     /// Seconds of moving and measuring.
@@ -104,6 +104,8 @@ impl Aided {
         let states = BASE + self.count;
         let base = SMatrix::<f64, BASE, BASE>::from_fn(|i, j| self.covariance[i][j]);
         let moved = self.transition * base * self.transition.transpose() + self.driven;
+        // Rounding must not make the two halves drift apart.
+        let moved = 0.5 * (moved + moved.transpose());
         for i in 0..BASE {
             self.covariance[i][..BASE].copy_from_slice(moved.row(i).transpose().as_slice());
         }

@@ -1,0 +1,62 @@
+"""Speed of navbound.gbas and navbound.rraim: one sky, one coasting phase, the filter, and the whole grid of the surface-movement study."""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("RAYON_NUM_THREADS", "1")
+
+import math
+import time
+from typing import TYPE_CHECKING
+
+from navbound import gbas, rraim
+from navbound.run import surface_grid, surface_sky
+from navbound.scenario import surface
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def seconds(call: Callable[[], object], repeats: int = 5) -> float:
+    """Best CPU time of a call."""
+    best = math.inf
+    for _ in range(repeats):
+        start = time.process_time()
+        call()
+        best = min(best, time.process_time() - start)
+    return best
+
+
+def measure() -> list[dict[str, object]]:
+    """One row a measurement: name, seconds_per_item, n, note."""
+    config = surface.load()
+    # Three days of ten-minute geometries: 432, by 3 modes, 5 sub-phases, 8 coasting times and 6 biases.
+    config = config.model_copy(update={"geometry": config.geometry.model_copy(update={"duration_s": 3 * 86_400.0})})
+    rules = surface_grid.rules(config)
+    sky = surface_sky.look(config)
+    own = {mode.id: sky.of(mode.systems) for mode in surface_grid.MODES}
+    both, n = own["F2"], len(sky.az_rad)
+    sigma_td = gbas.carrier_sigma(both.el_now_rad[3], 10.0, 60.0, gbas.carriers()["dual"])
+    levels = seconds(lambda: gbas.protection_levels(both.az_rad, both.el_rad, both.systems, service="F"))
+    arguments = (both.az_rad, both.el_rad, both.az_now_rad[3], both.el_now_rad[3], sigma_td, both.systems)
+    coasting = seconds(lambda: rraim.protection_levels(*arguments, service="F", p_const={0: 1e-8, 2: 1e-4}))
+    filtered = seconds(lambda: gbas.aided_covariance(both.az_rad[:2], both.el_rad[:2], both.systems, lat_rad=0.72, service="F"), repeats=3)
+
+    def grid() -> None:
+        for mode in surface_grid.MODES:
+            surface_grid.coasting(config, rules, mode, "A", own[mode.id], covariance_m2=None)
+
+    cells = n * 3 * 5 * 8 * 6
+    whole = seconds(grid, repeats=2)
+    return [
+        {"name": "gbas levels, GPS and Galileo", "seconds_per_item": levels / n, "n": n, "note": "a sky"},
+        {"name": "rraim levels, single and multi fault", "seconds_per_item": coasting / n, "n": n, "note": "a coasting phase of 60 s"},
+        {"name": "inertially aided covariance, 900 s", "seconds_per_item": filtered / 2, "n": 2, "note": "a run"},
+        {
+            "name": "surface-movement grid",
+            "seconds_per_item": whole / cells,
+            "n": cells,
+            "note": f"a cell; the whole grid in {whole:.2f} s of one core",
+        },
+    ]
