@@ -327,6 +327,7 @@ def gbas_offset_variances(form: str, ends_s: list[float], true_constant_s: float
 def rraim_levels(job: dict[str, Any]) -> dict[str, Any]: ...
 def surface_tables() -> dict[str, Any]: ...
 def surface_cells(job: dict[str, Any]) -> _F: ...
+
 # Inertial navigation
 def ins_mechanize(start: dict[str, Any], imu: dict[str, Any]) -> _F: ...
 def ins_fuse(start: dict[str, Any], imu: dict[str, Any], tables: dict[str, Any], told: dict[str, Any]) -> dict[str, Any]: ...
@@ -384,5 +385,42 @@ def araim_levels(
     p_sat: _F,
     constellation: list[int],
     p_const: list[float],
+    numbers: list[float],
+    exclusion: bool,
+) -> dict[str, Any]: ...
+def raim_requirement() -> dict[str, Any]: ...
+def araim_predict(
+    elements: _F,
+    constellation: list[int],
+    time_s: _F,
+    lat_rad: _F,
+    lon_rad: _F,
+    h_m: _F,
+    mask_rad: float,
+    support: list[tuple[float, ...]],
+    airborne: list[float],
+    numbers: list[float],
+    exclusion: bool,
+) -> dict[str, Any]: ...
+def araim_monitor(
+    unit_enu: _F,
+    residual_m: _F,
+    sigma_int_m: _F,
+    sigma_acc_m: _F,
+    bias_m: _F,
+    bias_continuity_m: _F,
+    p_sat: _F,
+    constellation: list[int],
+    p_const: list[float],
+    numbers: list[float],
+) -> dict[str, Any]: ...
+def araim_watch(
+    observations: Observations,
+    navigation: Navigation,
+    systems: str,
+    dual: bool,
+    mask_rad: float,
+    support: list[tuple[float, ...]],
+    airborne: list[float],
     numbers: list[float],
 ) -> dict[str, Any]: ...

@@ -341,7 +341,7 @@ def solve(
     floats = [c for c, kind in epochs.schema.items() if kind == pl.Float64]
     epochs = epochs.with_columns(pl.col(floats).fill_nan(None))
     if truth_ecef_m is not None:
-        epochs = epochs.hstack(_errors(epochs, truth_ecef_m))
+        epochs = epochs.hstack(position_errors(epochs, truth_ecef_m))
     models = {
         "orbits and clocks": _orbit_words(orbits),
         "smoothing": "none" if smoothing_s is None else f"{smoothing}, {smoothing_s:g} s; {100 * share:.1f} % of the pseudoranges",
@@ -369,7 +369,8 @@ def _orbit_words(orbits: PreciseOrbits | None) -> str:
     )
 
 
-def _errors(epochs: pl.DataFrame, truth_ecef_m: ArrayLike) -> pl.DataFrame:
+def position_errors(epochs: pl.DataFrame, truth_ecef_m: ArrayLike) -> pl.DataFrame:
+    """Columns ``truth_*`` and ``nse_*`` of estimated positions."""
     truth = np.asarray(truth_ecef_m, dtype=np.float64)
     if truth.shape not in {(3,), (epochs.height, 3)}:
         raise InputError("truth_ecef_m", f"shape {truth.shape}", domain=f"shape (3,) or ({epochs.height}, 3)")

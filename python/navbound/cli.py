@@ -121,6 +121,9 @@ def analyze(
     experimental: Annotated[
         str, typer.Option(help="With --levels: words beside levels that no integrity rests on ('experimental, not integrity').")
     ] = "",
+    protection: Annotated[
+        str | None, typer.Option(help="With --levels: protection levels of observations from given (the files), araim or araim-horizontal.")
+    ] = None,
     out: Out = None,
     json: Json = False,
 ) -> None:
@@ -146,14 +149,15 @@ def analyze(
                 exclude_missing=exclude_missing,
                 stanford_esa=SubsetOptions(min_satellites, max_satellites, listed_from) if stanford_esa else None,
                 experimental=experimental,
+                protection=protection or "given",
                 out=out,
                 progress=progress,
                 command=_command(),
             )
         _show(run, json=json)
         return
-    if prn is not None or period_s is not None or exclude_missing or stanford_esa or experimental:
-        domain = "--levels together with --prn, --period-s, --exclude-missing, --stanford-esa and --experimental"
+    if prn is not None or period_s is not None or exclude_missing or stanford_esa or experimental or protection:
+        domain = "--levels together with --prn, --period-s, --exclude-missing, --stanford-esa, --experimental and --protection"
         raise InputError("levels", "none", domain=domain)
     run = navbound.analyze(
         files,

@@ -4,6 +4,7 @@
 
 pub mod anp;
 pub mod araim;
+pub mod araim_watch;
 pub mod batch;
 pub mod bounds;
 pub mod dme;
@@ -11,8 +12,8 @@ pub mod ee;
 pub mod error;
 pub mod evaluation;
 pub mod flights;
-pub mod gbas;
 pub mod fusion;
+pub mod gbas;
 pub mod kpi;
 pub mod monitor;
 pub mod plausible;

@@ -20,12 +20,12 @@ use std::collections::BTreeMap;
 
 /// One observation file, read.
 #[pyclass(frozen, module = "navbound._core")]
-struct Observations(rinex::Observations);
+pub struct Observations(pub rinex::Observations);
 
 /// Navigation files, read and merged.
 #[pyclass(frozen, module = "navbound._core")]
 pub struct Navigation {
-    records: rinex::Navigation,
+    pub records: rinex::Navigation,
     /// Refused records with their file.
     refused: Vec<(String, Refusal)>,
 }

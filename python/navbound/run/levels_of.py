@@ -194,7 +194,7 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None) -> P
     rejected = [r.model_dump() for r in reading.rejected]
     # Columns of Error Extraction say in their own name what they are.
     of_extraction = any(reading.columns.get(name, "").startswith("ee_") for name in ("hpl_m", "vpl_m"))
-    return Part(_uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
+    return Part(uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
 
 
 def _with_truth(epochs: pl.DataFrame, reading: Reading, truth: Truth) -> tuple[pl.DataFrame, str]:
@@ -233,8 +233,8 @@ def from_observations(
     ranges = _range_errors(positions.ranges, epochs) if positions.ranges is not None else None
     if logs:
         epochs = _of_service(epochs, navigation, _messages(logs, epochs["time_ns"], prn), truth)
-        return Part(_uniform(epochs), observations.n_epochs, [], [MIXED, *notes] if truth.given is not None else notes)
-    return Part(_uniform(_of_own(epochs)), observations.n_epochs, [], [OWN, *notes], sbas.EXTRACTION_LABEL, ranges)
+        return Part(uniform(epochs), observations.n_epochs, [], [MIXED, *notes] if truth.given is not None else notes)
+    return Part(uniform(_of_own(epochs)), observations.n_epochs, [], [OWN, *notes], sbas.EXTRACTION_LABEL, ranges)
 
 
 def _of_own(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -307,7 +307,7 @@ def _messages(logs: Sequence[Path], times: pl.Series, prn: int | None) -> sbas.M
     return joined if prn is None else joined.of(prn)
 
 
-def _uniform(epochs: pl.DataFrame) -> pl.DataFrame:
+def uniform(epochs: pl.DataFrame) -> pl.DataFrame:
     """Every column of the schema, absent ones null, in the order of time."""
     return epochs.select(
         (pl.col(name) if name in epochs.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in SCHEMA.items()

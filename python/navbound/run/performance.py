@@ -23,6 +23,7 @@ from navbound.run import directory
 from navbound.run.directory import Run
 from navbound.run.field_csv import write_csv
 from navbound.run.levels_of import COVARIANCE, SCHEMA, Part, Truth, from_observations, from_table, sort_out, truth_of
+from navbound.run.levels_of_araim import GIVEN, from_araim, service_of
 from navbound.run.performance_words import performance_words
 from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
 from navbound.run.summarise import honesty_of
@@ -67,6 +68,8 @@ class Options:
         Solve every subset of satellites too, for the Stanford-ESA diagram; observations and truth are needed.
     experimental : str
         Words that must stand beside levels that no integrity rests on, where the files do not say so themselves.
+    protection : str
+        What protection levels of observations come from: ``given`` (the files), ``araim`` (LPV-200 budgets), ``araim-horizontal``.
     """
 
     levels: Sequence[str | kpi.Level]
@@ -78,6 +81,7 @@ class Options:
     exclude_missing: bool = False
     stanford_esa: kpi.SubsetOptions | None = None
     experimental: str = ""
+    protection: str = GIVEN
 
 
 def evaluate_files(
@@ -119,6 +123,8 @@ def evaluate_files(
         raise InputError("files", "nothing", domain="one file or more")
     wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
     truth = truth_of(options.truth, options.truth_tolerance_s)
+    if service_of(options.protection) and options.stanford_esa is not None:
+        raise InputError("protection", options.protection, domain="it without subsets of satellites, which are solved without monitoring")
     sources = sort_out(names)
     if options.stanford_esa is not None and (sources.tables or sources.messages):
         raise InputError(
@@ -194,7 +200,7 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
             recorded = hashlib.sha256(Path(truth.given).read_bytes()).hexdigest()
         except OSError as e:
             raise FormatError(truth.given, e.strerror or str(e)) from e
-    given = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn]
+    given = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn, options.protection]
     beside = sorted(s.sha256 for s in sources.navigation + sources.messages)
     return json.dumps([given, options.stanford_esa is not None, SCHEMA.names(), beside])
 
@@ -203,6 +209,9 @@ def _compute(source: Source, sources: Files, options: Options, truth: Truth) -> 
     if source in sources.tables:
         return from_table(source.path, truth, options.columns)
     navigation, logs = ([s.path for s in group] for group in (sources.navigation, sources.messages))
+    service = service_of(options.protection)
+    if service:
+        return from_araim(source.path, navigation, truth, service)
     return from_observations(source.path, navigation, logs, truth, prn=options.prn, keep_ranges=options.stanford_esa is not None)
 
 
@@ -318,6 +327,7 @@ def _run(
             "truth_tolerance_s": options.truth_tolerance_s,
             "columns": dict(options.columns or {}),
             "prn": options.prn,
+            "protection": options.protection,
             "period_s": result.period_s,
             "exclude_missing": options.exclude_missing,
             "stanford_esa": None if options.stanford_esa is None else asdict(options.stanford_esa),
