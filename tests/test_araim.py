@@ -228,3 +228,106 @@ def test_shipped_configurations_say_where_they_come_from() -> None:
         assert held.source
         assert held.provenance in {"standard", "inferred"}
     assert len(araim.SUPPORT.p_const) == len(gnss.CONSTELLATIONS)
+
+
+def test_the_published_equation_of_raim_is_met_by_whole_inversions() -> None:
+    unit, sigma = sky(9, 3), np.linspace(1.0, 3.0, 9)
+    found = araim.protection_levels(unit, [GPS] * 9, sigma, sigma, service="raim")
+    h = np.column_stack([-unit, np.ones(9)])
+
+    def gains(kept: list[int]) -> NDArray[np.float64]:
+        w = 1 / sigma[kept] ** 2
+        s = np.zeros((3, 9))
+        s[:, kept] = (np.linalg.inv(h[kept].T @ (h[kept] * w[:, None])) @ (h[kept].T * w))[:3]
+        return s
+
+    full = gains(list(range(9)))
+    k_fa, k_md, k_ff = _quantile(araim.RAIM.false_alarm / 18), _quantile(araim.RAIM.missed_detection), _quantile(araim.RAIM.fault_free / 2)
+    hpl, vpl = [k_ff * np.sqrt((full[:2] ** 2 * sigma**2).sum())], [k_ff * np.sqrt((full[2] ** 2 * sigma**2).sum())]
+    for i in range(9):
+        s = gains([j for j in range(9) if j != i])
+        for levels, axes in ((hpl, slice(0, 2)), (vpl, slice(2, 3))):
+            separation = np.sqrt(((s[axes] - full[axes]) ** 2 * sigma**2).sum())
+            levels.append(k_fa * separation + k_md * np.sqrt((s[axes] ** 2 * sigma**2).sum()))
+    # Bisections of the quantiles to 1e-12, and inversions of matrices whose condition is below 1e3.
+    assert abs(found.hpl_m - max(hpl)) <= 1e-9 * max(hpl)
+    assert abs(found.vpl_m - max(vpl)) <= 1e-9 * max(vpl)
+    # Five satellites detect and cannot exclude.
+    five = araim.protection_levels(sky(5, 2), [GPS] * 5, 1.0, 1.0, service="raim")
+    excluding = araim.protection_levels(sky(5, 2), [GPS] * 5, 1.0, 1.0, service="raim", exclusion=True)
+    assert five.status == "ok"
+    assert excluding.status == "not_monitored"
+
+
+def test_a_faulty_satellite_is_found_and_the_error_stays_inside_the_levels() -> None:
+    """Seeded noise of half the integrity sigma; a fault of 60 m on every satellite in turn, then on a whole constellation."""
+    unit, systems = sky(18, 11), np.repeat([GPS, GALILEO], 9)
+    rng = np.random.default_rng(7)
+    noise = rng.normal(0.0, 0.5, (19, 18)) + np.where(systems == GPS, 1234.5, -321.0)
+    fault = np.vstack([60.0 * np.eye(18), np.zeros(18)])
+    found = araim.monitor(unit, systems, noise + fault, 1.0, 0.7)
+    assert found.decision.tolist() == ["excluded"] * 18 + ["none"]
+    assert np.array_equal(found.excluded[:18], np.eye(18, dtype=bool))
+    assert (np.hypot(found.step_enu_m[:, 0], found.step_enu_m[:, 1]) < found.levels.hpl_m).all()
+    assert (np.abs(found.step_enu_m[:, 2]) < found.levels.vpl_m).all()
+    assert (found.worst_ratio[:18] > 1).all()
+    assert found.worst_ratio[18] <= 1
+    assert found.levels.n_sv.tolist() == [18] * 19
+    # Errors of a constellation that no clock explains: a shift of the position that all its ranges share.
+    shared = noise[18] + np.where(systems == GALILEO, unit @ np.array([40.0, -30.0, 60.0]), 0.0)
+    whole = araim.monitor(unit, systems, shared, 1.0, 0.7)
+    assert whole.decision == "excluded"
+    assert np.array_equal(whole.excluded, systems == GALILEO) or np.array_equal(whole.excluded, systems == GPS)
+    # Without redundancy beyond detection nothing can be excluded.
+    small, of = sky(5, 2), [GPS] * 5
+    lost = araim.monitor(small, of, [0, 0, 1000.0, 0, 0], 1.0, 1.0, p_const=[1e-9] * 5)
+    assert lost.decision == "not_excluded"
+
+
+def test_residuals_that_are_none_are_refused() -> None:
+    unit = sky(8)
+    with pytest.raises(InputError, match="residual_m"):
+        araim.monitor(unit, [GPS] * 8, [math.nan] * 8, 1.0, 1.0)
+    with pytest.raises(InputError, match="service"):
+        araim.monitor(unit, [GPS] * 8, 0.0, 1.0, 1.0, service="raim")
+
+
+@pytest.mark.parametrize("service", ["lpv-200", "horizontal", "raim"])
+def test_a_prediction_is_that_of_its_geometry_and_exclusion_costs(service: str) -> None:
+    orbits = gnss.constellation("gps") + gnss.constellation("galileo")
+    lat, lon, time = np.radians([-60.0, 5.0, 47.0]), np.radians([10.0, 100.0, -120.0]), np.array([0.0, 9000.0])
+    found = araim.predict(orbits, lat, lon, 0.0, time, service=service)
+    assert found.hpl_m.shape == (2, 3)
+    az, el = gnss.directions(orbits, lat, lon, 0.0, time[:, None])
+    seen = el >= math.radians(5)
+    unit = np.where(seen[..., None], np.stack([np.cos(el) * np.sin(az), np.cos(el) * np.cos(az), np.sin(el)], axis=-1), np.nan)
+    model = araim.ERROR_MODELS["dual-frequency"]
+    a, b, scale = model.noise
+    local = (a + b * np.exp(-el / scale)) ** 2 + (0.12 * 1.001) ** 2 / (0.002001 + np.sin(el) ** 2)
+    sigma = [np.sqrt(np.array(c)[orbits.constellation] ** 2 + local) for c in (araim.SUPPORT.sigma_ura_m, araim.SUPPORT.sigma_ure_m)]
+    given = araim.protection_levels(unit, orbits.constellation, *sigma, service=service)
+    # Angles and back cost a few units in the last place of vectors of 1, and gains up to 10.
+    np.testing.assert_allclose(found.vpl_m, given.vpl_m, rtol=1e-9)
+    np.testing.assert_allclose(found.hpl_m, given.hpl_m, rtol=1e-9)
+    assert np.array_equal(found.n_sv, given.n_sv)
+    with_exclusion = araim.predict(orbits, lat, lon, 0.0, time, service=service, exclusion=True)
+    assert (with_exclusion.hpl_m > found.hpl_m).all()
+    assert (with_exclusion.vpl_m > found.vpl_m).all()
+
+
+def test_the_recorded_day_stays_inside_its_levels(shared_data: Path) -> None:
+    folder = shared_data / "gnss" / "ESBC_2020_177"
+    observations = gnss.read_observations(folder / "ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz")
+    navigation = gnss.read_navigation(folder / "ESBC00DNK_R_20201770000_01D_MN.rnx.gz")
+    truth = json.loads((shared_data / "baselines.json").read_text(encoding="utf-8"))["ESBC_2020_177"]["reference_ecef_m"]
+    found = araim.watch(observations, navigation, truth_ecef_m=truth)
+    epochs = found.epochs
+    assert epochs.height == 2880
+    with_levels = epochs.drop_nulls(["hpl_m", "nse_e_m"])
+    assert with_levels.height > 0.99 * 2880
+    hpe = np.hypot(with_levels["nse_e_m"].to_numpy(), with_levels["nse_n_m"].to_numpy())
+    assert (hpe < with_levels["hpl_m"].to_numpy()).all()
+    assert (with_levels["nse_u_m"].abs() < with_levels["vpl_m"]).all()
+    assert "inferred" in found.models["promises of satellites"]
+    with pytest.raises(InputError, match="systems"):
+        araim.watch(observations, navigation, systems="X")

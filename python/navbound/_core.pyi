@@ -392,4 +392,41 @@ def araim_levels(
     constellation: list[int],
     p_const: list[float],
     numbers: list[float],
+    exclusion: bool,
+) -> dict[str, Any]: ...
+def raim_requirement() -> dict[str, Any]: ...
+def araim_predict(
+    elements: _F,
+    constellation: list[int],
+    time_s: _F,
+    lat_rad: _F,
+    lon_rad: _F,
+    h_m: _F,
+    mask_rad: float,
+    support: list[tuple[float, ...]],
+    airborne: list[float],
+    numbers: list[float],
+    exclusion: bool,
+) -> dict[str, Any]: ...
+def araim_monitor(
+    unit_enu: _F,
+    residual_m: _F,
+    sigma_int_m: _F,
+    sigma_acc_m: _F,
+    bias_m: _F,
+    bias_continuity_m: _F,
+    p_sat: _F,
+    constellation: list[int],
+    p_const: list[float],
+    numbers: list[float],
+) -> dict[str, Any]: ...
+def araim_watch(
+    observations: Observations,
+    navigation: Navigation,
+    systems: str,
+    dual: bool,
+    mask_rad: float,
+    support: list[tuple[float, ...]],
+    airborne: list[float],
+    numbers: list[float],
 ) -> dict[str, Any]: ...

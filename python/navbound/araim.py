@@ -7,14 +7,28 @@ provenance: :data:`SERVICES` and :data:`SUPPORT`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from navbound import _core
+from navbound._araim_settings import (
+    ERROR_MODELS,
+    RAIM,
+    SERVICES,
+    SUPPORT,
+    ErrorModel,
+    Requirement,
+    Service,
+    Support,
+    airborne_numbers,
+    rule_numbers,
+    support_rows,
+)
+from navbound._araim_watch import Watched, watch
 from navbound._arrays import flatten
-from navbound._constellations import CONSTELLATIONS
+from navbound._constellations import CONSTELLATIONS, Orbits
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,80 +36,23 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["SERVICES", "SUPPORT", "Levels", "Service", "Support", "protection_levels"]
-
-
-@dataclass(frozen=True)
-class Service:
-    """Risks that a service may take, and how they are split; each in (0, 1).
-
-    Attributes
-    ----------
-    integrity_v, integrity_h : float
-        Integrity risk of the vertical and of the horizontal level. [1]
-    false_alarm_v, false_alarm_h : float
-        Risk of a false alarm. [1]
-    unmonitored : float
-        Fault modes together below this need not be monitored; what they have counts against the integrity risk. [1]
-    effective_monitor : float
-        Modes at least this likely enter the effective monitor threshold. [1]
-    consolidation : float
-        Sets of satellites of one constellation less likely than this share of its own fault count with it. [1]
-    emt_limit_m : float
-        Largest effective monitor threshold; NaN where the service has none. [m]
-    source, provenance : str
-        Where the numbers come from, and how they are held.
-    """
-
-    integrity_v: float
-    integrity_h: float
-    false_alarm_v: float
-    false_alarm_h: float
-    unmonitored: float
-    effective_monitor: float = 1e-5
-    consolidation: float = 0.01
-    emt_limit_m: float = float("nan")
-    source: str = "the caller"
-    provenance: str = "ours"
-
-
-@dataclass(frozen=True)
-class Support:
-    """What is promised of satellites, one number a constellation in the order of ``gnss.CONSTELLATIONS``.
-
-    Attributes
-    ----------
-    sigma_ura_m, sigma_ure_m : tuple of float
-        Orbit and clock for integrity, and for accuracy. [m]
-    bias_m, bias_continuity_m : tuple of float
-        Nominal bias for integrity and for continuity. [m]
-    p_sat, p_const : tuple of float
-        Probability that a satellite is in fault, and that its constellation is, each in (0, 1). [1]
-    source, provenance : str
-        Where the numbers come from, and how they are held.
-    """
-
-    sigma_ura_m: tuple[float, ...]
-    sigma_ure_m: tuple[float, ...]
-    bias_m: tuple[float, ...]
-    bias_continuity_m: tuple[float, ...]
-    p_sat: tuple[float, ...]
-    p_const: tuple[float, ...]
-    source: str = "the caller"
-    provenance: str = "ours"
-
-
-def _support() -> Support:
-    found = _core.araim_support()
-    ura, ure, bias, continuity, p_sat, p_const = zip(*found["support"], strict=True)
-    return Support(ura, ure, bias, continuity, p_sat, p_const, found["source"], found["provenance"])
-
-
-SERVICES: dict[str, Service] = {name: Service(**numbers) for name, numbers in _core.araim_services().items()}
-"""The shipped services by name: ``lpv-200`` and ``horizontal``."""
-
-SUPPORT: Support = _support()
-"""The shipped promises; no integrity support message is broadcast, so they are those of a study, marked as inferred."""
+__all__ = [
+    "ERROR_MODELS",
+    "RAIM",
+    "SERVICES",
+    "SUPPORT",
+    "ErrorModel",
+    "Levels",
+    "Monitored",
+    "Requirement",
+    "Service",
+    "Support",
+    "Watched",
+    "monitor",
+    "predict",
+    "protection_levels",
+    "watch",
+]
 
 
 @dataclass(frozen=True)
@@ -140,6 +97,32 @@ class Levels:
     status: NDArray[np.str_]
 
 
+@dataclass(frozen=True)
+class Monitored:
+    """Epochs after detection and exclusion; arrays of the leading shape.
+
+    Attributes
+    ----------
+    levels : Levels
+        Of the satellites that are left.
+    decision : ndarray of str
+        ``none`` (all solutions agree), ``excluded``, ``not_excluded`` (a fault, and no exclusion brings agreement: the position is not
+        to be used); empty where there is no position.
+    excluded : ndarray of bool, shape (..., n)
+        Satellites excluded.
+    worst_ratio : ndarray
+        Largest separation before exclusion against its threshold. [1]
+    step_enu_m : ndarray, shape (..., 3)
+        The position from the place of the residuals, east, north, up. [m]
+    """
+
+    levels: Levels
+    decision: NDArray[np.str_]
+    excluded: NDArray[np.bool_]
+    worst_ratio: NDArray[np.float64]
+    step_enu_m: NDArray[np.float64]
+
+
 def protection_levels(
     unit_enu: ArrayLike,
     constellation: Sequence[int] | NDArray[np.int64],
@@ -150,12 +133,13 @@ def protection_levels(
     bias_continuity_m: ArrayLike | None = None,
     p_sat: ArrayLike | None = None,
     p_const: Sequence[float] | None = None,
-    service: str | Service = "lpv-200",
+    service: str | Service | Requirement = "lpv-200",
+    exclusion: bool = False,
 ) -> Levels:
     """Protection levels of many epochs from lines of sight, as long as no detection test fails.
 
     For each axis 2 Q((PL - b_0)/s_0) + sum_k p_k Q((PL - T_k - b_k)/s_k) = P_HMI (1 - P_nm/P_HMI,total), T_k = K_FA s_ss,k (Blanch et
-    al. 2015; standard).
+    al. 2015; standard). For RAIM max over satellites of K_FA s_ss,i + K_MD s_i (Brown and McBurney 1988; standard).
 
     Parameters
     ----------
@@ -171,8 +155,10 @@ def protection_levels(
         Prior of each satellite, in (0, 1); without it that of :data:`SUPPORT`. [1]
     p_const : sequence of float, shape (5,), optional
         Prior of each constellation in the order of ``gnss.CONSTELLATIONS``; without it those of :data:`SUPPORT`. [1]
-    service : str or Service, optional
-        A name of :data:`SERVICES`, or budgets of one's own.
+    service : str, Service or Requirement, optional
+        A name of :data:`SERVICES` or ``raim``, or budgets of one's own. RAIM knows no priors and no biases.
+    exclusion : bool, optional
+        The largest level after excluding any one likely fault, instead of that of detection.
 
     Returns
     -------
@@ -183,38 +169,159 @@ def protection_levels(
     InputError
         Vectors that are not of length one, sigmas or biases outside their domain, a prior outside (0, 1), budgets that cannot be met.
     """
+    numbers = rule_numbers(service)
+    shape, columns, of, constants = _columns(
+        unit_enu, constellation, (sigma_int_m, sigma_acc_m), (bias_m, bias_continuity_m, p_sat), p_const
+    )
+    unit, sigma_int, sigma_acc, bias, continuity, prior = columns
+    found = _core.araim_levels(unit, sigma_int, sigma_acc, bias, continuity, prior, of, constants, numbers, exclusion)
+    return _levels(found, shape[:-1])
+
+
+def monitor(
+    unit_enu: ArrayLike,
+    constellation: Sequence[int] | NDArray[np.int64],
+    residual_m: ArrayLike,
+    sigma_int_m: ArrayLike,
+    sigma_acc_m: ArrayLike,
+    *,
+    bias_m: ArrayLike | None = None,
+    bias_continuity_m: ArrayLike | None = None,
+    p_sat: ArrayLike | None = None,
+    p_const: Sequence[float] | None = None,
+    service: str | Service = "lpv-200",
+) -> Monitored:
+    """Detection and exclusion on residuals of many epochs, and the levels of what is left.
+
+    Every solution without a fault mode's satellites is compared with the one with all. Where a separation exceeds its threshold, modes are
+    tried for exclusion from the largest ratio on; the first is taken without which the rest agrees. The integrity risk is shared equally
+    by all decisions (ours, docs/methods/araim.md).
+
+    Parameters
+    ----------
+    residual_m : array_like, shape (..., n)
+        Measured less computed ranges at the place of the lines of sight; receiver clocks may be in them. [m]
+    unit_enu, constellation, sigma_int_m, sigma_acc_m, bias_m, bias_continuity_m, p_sat, p_const
+        As in :func:`protection_levels`.
+    service : str or Service, optional
+        A name of :data:`SERVICES`, or budgets of one's own.
+
+    Raises
+    ------
+    InputError
+        As :func:`protection_levels`; a residual of a satellite in use that is not finite.
+    """
+    numbers = rule_numbers(service)
+    if len(numbers) != 7:
+        raise InputError("service", service, domain=f"one of {', '.join(SERVICES)}, or a Service")
+    together, (lines, residual) = flatten(unit_enu=(unit_enu, (3,)), residual_m=(residual_m, ()))
+    shape, columns, of, constants = _columns(
+        lines.reshape(*together, 3), constellation, (sigma_int_m, sigma_acc_m), (bias_m, bias_continuity_m, p_sat), p_const
+    )
+    if shape != together:
+        raise InputError("residual_m", f"shape {together}", domain=f"shape {shape}, one for each range")
+    unit, sigma_int, sigma_acc, bias, continuity, prior = columns
+    found = _core.araim_monitor(unit, residual, sigma_int, sigma_acc, bias, continuity, prior, of, constants, numbers)
+    leading = shape[:-1]
+    step = np.stack([found.pop(f"step_{axis}_m") for axis in "enu"], axis=-1).reshape(*leading, 3)
+    decision = np.array(found.pop("decision"), dtype=np.str_).reshape(leading)
+    excluded, ratio = found.pop("excluded").reshape(shape), found.pop("worst_ratio").reshape(leading)
+    found["n_sv"] = np.isfinite(unit).reshape(-1, len(of), 3).all(axis=-1).sum(axis=-1)
+    return Monitored(_levels(found, leading), decision, excluded, ratio, step)
+
+
+def predict(
+    orbits: Orbits,
+    lat_rad: ArrayLike,
+    lon_rad: ArrayLike,
+    h_m: ArrayLike,
+    time_s: ArrayLike,
+    *,
+    mask_rad: float = float(np.radians(5.0)),
+    service: str | Service | Requirement = "lpv-200",
+    support: Support = SUPPORT,
+    model: str | ErrorModel = "dual-frequency",
+    exclusion: bool = False,
+) -> Levels:
+    """Protection levels of every user at every instant, from orbits.
+
+    Parameters
+    ----------
+    orbits : Orbits
+        From ``gnss.constellation``: nominal, or an almanac; join several with ``+``.
+    lat_rad, lon_rad, h_m : array_like
+        Users, WGS-84; shapes that broadcast. [rad, rad, m]
+    time_s : array_like
+        Instants since the reference instant of the orbits. [s]
+    mask_rad : float, optional
+        Lowest elevation. [rad]
+    service, exclusion
+        As in :func:`protection_levels`.
+    support : Support, optional
+        What is promised of the satellites.
+    model : str or ErrorModel, optional
+        A name of :data:`ERROR_MODELS`, or a model of one's own.
+
+    Returns
+    -------
+    Levels
+        Arrays of the shape of ``time_s`` followed by that of the users.
+
+    Raises
+    ------
+    InputError
+        A user that is not on the Earth, a time that is not finite, promises outside their domain, a mask outside [0, pi/2).
+    """
+    if not 0 <= mask_rad < np.pi / 2:
+        raise InputError("mask_rad", mask_rad, "rad", "[0, pi/2)")
+    users, (lat, lon, h) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()), h_m=(h_m, ()))
+    instants, (time,) = flatten(time_s=(time_s, ()))
+    found = _core.araim_predict(
+        orbits.elements(),
+        orbits.constellation.tolist(),
+        time,
+        lat,
+        lon,
+        h,
+        mask_rad,
+        support_rows(support),
+        airborne_numbers(model),
+        rule_numbers(service),
+        exclusion,
+    )
+    return _levels(found, instants + users)
+
+
+def _columns(
+    unit_enu: ArrayLike,
+    constellation: Sequence[int] | NDArray[np.int64],
+    sigmas_m: tuple[ArrayLike, ArrayLike],
+    given: tuple[ArrayLike | None, ArrayLike | None, ArrayLike | None],
+    p_const: Sequence[float] | None,
+) -> tuple[tuple[int, ...], list[NDArray[np.float64]], list[int], list[float]]:
+    """Shape with the satellites, flat columns, constellation of each satellite, priors of constellations."""
     of = np.asarray(constellation, dtype=np.int64)
     lines = np.shape(unit_enu)
     if of.shape != lines[-2:-1] or not 0 <= of.min(initial=0) <= of.max(initial=0) < len(CONSTELLATIONS):
         raise InputError("constellation", f"shape {of.shape}", domain=f"shape {lines[-2:-1]}, indices of CONSTELLATIONS")
     bias, continuity, prior = (
-        np.asarray(column)[of] if given is None else given
-        for given, column in ((bias_m, SUPPORT.bias_m), (bias_continuity_m, SUPPORT.bias_continuity_m), (p_sat, SUPPORT.p_sat))
+        np.asarray(column)[of] if own is None else own
+        for own, column in zip(given, (SUPPORT.bias_m, SUPPORT.bias_continuity_m, SUPPORT.p_sat), strict=True)
     )
-    shape, (unit, sigma_int, sigma_acc, bias, continuity, prior) = flatten(
+    shape, (unit, *columns) = flatten(
         unit_enu=(unit_enu, (3,)),
-        sigma_int_m=(sigma_int_m, ()),
-        sigma_acc_m=(sigma_acc_m, ()),
+        sigma_int_m=(sigmas_m[0], ()),
+        sigma_acc_m=(sigmas_m[1], ()),
         bias_m=(bias, ()),
         bias_continuity_m=(continuity, ()),
         p_sat=(prior, ()),
     )
     if shape[-1:] != of.shape:
         raise InputError("unit_enu", f"{of.size} satellites", domain=f"shape (..., {shape[-1]}, 3)")
-    constants = SUPPORT.p_const if p_const is None else tuple(float(p) for p in p_const)
+    constants = list(SUPPORT.p_const) if p_const is None else [float(p) for p in p_const]
     if len(constants) != len(CONSTELLATIONS):
         raise InputError("p_const", f"{len(constants)} numbers", domain=f"{len(CONSTELLATIONS)} numbers, one a constellation")
-    found = _core.araim_levels(unit.ravel(), sigma_int, sigma_acc, bias, continuity, prior, of.tolist(), list(constants), _numbers(service))
-    return _levels(found, shape[:-1])
-
-
-def _numbers(service: str | Service) -> list[float]:
-    """The seven numbers that the core takes."""
-    if isinstance(service, str):
-        if service not in SERVICES:
-            raise InputError("service", service, domain=f"one of {', '.join(SERVICES)}")
-        service = SERVICES[service]
-    return [float(getattr(service, f.name)) for f in fields(Service)[:7]]
+    return shape, [unit.ravel(), *columns], of.tolist(), constants
 
 
 def _levels(found: dict[str, Any], shape: tuple[int, ...]) -> Levels:

@@ -127,6 +127,9 @@ def analyze(
     solve: Annotated[
         bool, typer.Option("--solve", help="Solve positions from the raw measurements of receiver logs instead of taking the receiver's.")
     ] = False,
+    protection: Annotated[
+        str | None, typer.Option(help="With --levels: protection levels of observations from given (the files), araim or araim-horizontal.")
+    ] = None,
     out: Out = None,
     json: Json = False,
 ) -> None:
@@ -153,14 +156,15 @@ def analyze(
                 stanford_esa=SubsetOptions(min_satellites, max_satellites, listed_from) if stanford_esa else None,
                 experimental=experimental,
                 solve=solve,
+                protection=protection or "given",
                 out=out,
                 progress=progress,
                 command=_command(),
             )
         _show(run, json=json)
         return
-    if prn is not None or period_s is not None or exclude_missing or stanford_esa or experimental:
-        domain = "--levels together with --prn, --period-s, --exclude-missing, --stanford-esa and --experimental"
+    if prn is not None or period_s is not None or exclude_missing or stanford_esa or experimental or protection:
+        domain = "--levels together with --prn, --period-s, --exclude-missing, --stanford-esa, --experimental and --protection"
         raise InputError("levels", "none", domain=domain)
     run = navbound.analyze(
         files,

@@ -1,16 +1,22 @@
 //! ARAIM levels of many epochs: geometry given, or users and orbits.
 
 use crate::batch::CHUNK;
-use nalgebra::Vector3;
-use navbound_core::bound::araim::modes::{FaultModes, MOST_SATELLITES, NoModes, Priors};
-use navbound_core::bound::araim::service::Service;
+use nalgebra::{Matrix3, Vector3};
+use navbound_core::bound::araim::exclusion::{self, Monitored, NoLevels};
+use navbound_core::bound::araim::modes::{Book, FaultModes, MOST_SATELLITES, NoModes};
+use navbound_core::bound::araim::ranging::Airborne;
+use navbound_core::bound::araim::service::{Service, Support};
+use navbound_core::bound::araim::single::Requirement;
 use navbound_core::bound::araim::{Levels, Monitor, Sight};
-use navbound_core::quantity::{Metres, OutOfDomain, Unavailable};
+use navbound_core::frame::{Geodetic, ecef_from_geodetic, enu_from_ecef};
+use navbound_core::geometry::{Elements, Orbit};
+use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::Constellation;
 use navbound_path::AtIndex;
 use pulp::Arch;
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 /// Why an epoch has no finite levels; the order is that of [`Outcome::WORDS`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +37,8 @@ impl Outcome {
     /// The words of tables.
     pub const WORDS: [&'static str; 5] = ["ok", "too_few_satellites", "singular", "not_monitored", "too_many"];
 
-    fn of(levels: &Levels) -> Self {
+    /// Of levels: whether both are finite.
+    pub fn of(levels: &Levels) -> Self {
         if levels.hpl.m().is_finite() && levels.vpl.m().is_finite() { Self::Ok } else { Self::NotMonitored }
     }
 }
@@ -57,6 +64,17 @@ pub struct Sights<'a> {
     pub p_const: [f64; Constellation::ALL.len()],
 }
 
+impl Sights<'_> {
+    /// Epochs.
+    pub fn len(&self) -> usize {
+        self.sigma_int_m.len().checked_div(self.constellation.len()).unwrap_or(0)
+    }
+    /// None.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
 /// One epoch's result: satellites used, why there are no finite levels, the levels (infinite or absent then).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
@@ -68,61 +86,97 @@ pub struct Row {
     pub levels: Option<Levels>,
 }
 
+/// Which monitoring the levels are those of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rule {
+    /// Fault modes with priors, satellites and constellations.
+    Araim(Service),
+    /// One satellite at a time, no priors.
+    Raim(Requirement),
+}
+
+/// Fault modes by the constellations of the satellites: where satellites of one constellation share a prior these tell them all.
+struct Known {
+    p_const: [f64; Constellation::ALL.len()],
+    uniform: bool,
+    modes: HashMap<[u8; MOST_SATELLITES], Box<FaultModes>>,
+}
+
+impl Book for Known {
+    fn modes(&mut self, sights: &[Sight], service: &Service) -> Result<&FaultModes, NoModes> {
+        let mut key = [u8::MAX; MOST_SATELLITES];
+        for (slot, sight) in key.iter_mut().zip(sights) {
+            *slot = sight.constellation.index() as u8;
+        }
+        let work_out = || FaultModes::new(sights, &self.p_const, service).map(Box::new);
+        Ok(match self.modes.entry(key) {
+            Entry::Occupied(mut held) => {
+                if !self.uniform {
+                    held.insert(work_out()?);
+                }
+                held.into_mut()
+            }
+            Entry::Vacant(place) => place.insert(work_out()?),
+        })
+    }
+}
+
 /// What a thread keeps from epoch to epoch.
-struct Desk {
+pub(crate) struct Desk {
     monitor: Box<Monitor>,
-    known: HashMap<[u8; MOST_SATELLITES], Box<FaultModes>>,
-    sights: Vec<Sight>,
-    p_sat: Vec<f64>,
-    systems: Vec<Constellation>,
+    known: Known,
+    /// The satellites of the epoch at hand.
+    pub(crate) sights: Vec<Sight>,
 }
 
 impl Desk {
-    fn new() -> Self {
-        Self { monitor: Box::default(), known: HashMap::new(), sights: Vec::new(), p_sat: Vec::new(), systems: Vec::new() }
+    pub(crate) fn new(p_const: [f64; Constellation::ALL.len()], uniform: bool) -> Self {
+        Self { monitor: Box::default(), known: Known { p_const, uniform, modes: HashMap::new() }, sights: Vec::new() }
     }
 
-    fn clear(&mut self) {
-        self.sights.clear();
-        self.p_sat.clear();
-        self.systems.clear();
+    /// Detection and exclusion on the desk's satellites.
+    pub(crate) fn monitored(&mut self, residuals_m: &[f64], service: &Service) -> Result<Monitored, NoLevels> {
+        exclusion::monitored(&mut self.monitor, &mut self.known, &self.sights, residuals_m, service)
     }
 
-    fn push(&mut self, sight: Sight, p_sat: f64) {
-        self.sights.push(sight);
-        self.p_sat.push(p_sat);
-        self.systems.push(sight.constellation);
-    }
-
-    /// Levels of the satellites on the desk. Fault modes depend on the constellations of the satellites and on their priors; where these
-    /// are the same for all of a constellation the modes are looked up.
+    /// Levels of the satellites on the desk; with exclusion the worst of what may be left after one.
     #[inline(always)]
-    fn levels(&mut self, p_const: &[f64; Constellation::ALL.len()], service: &Service, uniform: bool) -> Result<Row, OutOfDomain> {
+    fn levels(&mut self, rule: &Rule, exclusion: bool) -> Result<Row, OutOfDomain> {
         let n_sv = self.sights.len();
-        if n_sv > MOST_SATELLITES {
-            return Ok(Row { n_sv, outcome: Outcome::TooMany, levels: None });
+        let row = |outcome, levels| Row { n_sv, outcome, levels };
+        let (monitor, known, sights) = (&mut self.monitor, &mut self.known, &self.sights[..]);
+        let levels = match (rule, exclusion) {
+            (Rule::Araim(service), false) => exclusion::detected(monitor, known, sights, service),
+            (Rule::Araim(service), true) => exclusion::predicted(monitor, known, sights, service),
+            (Rule::Raim(wanted), false) => monitor.single_levels(sights, wanted),
+            (Rule::Raim(wanted), true) => monitor.single_levels_after_exclusion(sights, wanted),
+        };
+        match levels {
+            Ok(levels) => Ok(row(Outcome::of(&levels), Some(levels))),
+            Err(e) => refusal(e).map_or_else(|outcome| Ok(row(outcome, None)), Err),
         }
-        if n_sv == 0 {
-            return Ok(Row { n_sv, outcome: Outcome::TooFewSatellites, levels: None });
-        }
-        let mut key = [u8::MAX; MOST_SATELLITES];
-        for (slot, c) in key.iter_mut().zip(&self.systems) {
-            *slot = c.index() as u8;
-        }
-        if !(uniform && self.known.contains_key(&key)) {
-            let priors = Priors { p_sat: &self.p_sat, constellation: &self.systems, p_const: *p_const };
-            match FaultModes::new(&priors, service) {
-                Ok(modes) => self.known.insert(key, Box::new(modes)),
-                Err(NoModes::OutOfDomain(e)) => return Err(e),
-                Err(_) => return Ok(Row { n_sv, outcome: Outcome::TooMany, levels: None }),
-            };
-        }
-        let Some(modes) = self.known.get(&key) else { return Ok(Row { n_sv, outcome: Outcome::TooMany, levels: None }) };
-        match self.monitor.levels(&self.sights, modes, service) {
-            Ok(levels) => Ok(Row { n_sv, outcome: Outcome::of(&levels), levels: Some(levels) }),
-            Err(Unavailable::Invalid { field, value, unit, domain }) => Err(OutOfDomain { argument: field, value, unit, domain }),
-            Err(Unavailable::TooFewSatellites { .. }) => Ok(Row { n_sv, outcome: Outcome::TooFewSatellites, levels: None }),
-            Err(_) => Ok(Row { n_sv, outcome: Outcome::Singular, levels: None }),
+    }
+
+    /// Take up a row's satellites; `each` is told the column of every one.
+    #[inline(always)]
+    fn take(&mut self, sights: &Sights<'_>, row: usize, mut each: impl FnMut(usize)) {
+        self.sights.clear();
+        for (column, constellation) in sights.constellation.iter().enumerate() {
+            let i = row * sights.constellation.len() + column;
+            let unit = Vector3::new(sights.unit_enu[3 * i], sights.unit_enu[3 * i + 1], sights.unit_enu[3 * i + 2]);
+            if unit.iter().all(|x| x.is_nan()) {
+                continue;
+            }
+            each(column);
+            self.sights.push(Sight {
+                unit,
+                constellation: *constellation,
+                integrity_m2: squared(sights.sigma_int_m[i]),
+                accuracy_m2: squared(sights.sigma_acc_m[i]),
+                bias: Metres::new(sights.bias_m[i]),
+                bias_continuity: Metres::new(sights.bias_continuity_m[i]),
+                p_sat: sights.p_sat[i],
+            });
         }
     }
 }
@@ -131,34 +185,177 @@ impl Desk {
 ///
 /// # Errors
 /// [`AtIndex`]: the first epoch with a number outside its domain.
-pub fn levels(sights: &Sights<'_>, service: &Service) -> Result<Vec<Row>, AtIndex> {
-    let width = sights.constellation.len();
-    let n = sights.sigma_int_m.len().checked_div(width).unwrap_or(0);
-    let uniform = uniform(sights, width);
+pub fn levels(sights: &Sights<'_>, rule: &Rule, exclusion: bool) -> Result<Vec<Row>, AtIndex> {
+    let uniform = uniform(sights);
     rows(
-        n,
+        sights.len(),
+        || Desk::new(sights.p_const, uniform),
         #[inline(always)]
         |desk, row| {
-            desk.clear();
-            for column in 0..width {
-                let i = row * width + column;
-                let unit = Vector3::new(sights.unit_enu[3 * i], sights.unit_enu[3 * i + 1], sights.unit_enu[3 * i + 2]);
-                if unit.iter().all(|x| x.is_nan()) {
-                    continue;
-                }
-                let sight = Sight {
-                    unit,
-                    constellation: sights.constellation[column],
-                    integrity_m2: squared(sights.sigma_int_m[i]),
-                    accuracy_m2: squared(sights.sigma_acc_m[i]),
-                    bias: Metres::new(sights.bias_m[i]),
-                    bias_continuity: Metres::new(sights.bias_continuity_m[i]),
-                };
-                desk.push(sight, sights.p_sat[i]);
-            }
-            desk.levels(&sights.p_const, service, uniform)
+            desk.take(sights, row, |_| ());
+            desk.levels(rule, exclusion)
         },
     )
+}
+
+/// Detection and exclusion at every epoch: `residual_m` holds measured less computed ranges, one a satellite.
+///
+/// # Errors
+/// As [`levels`], and for a residual of a satellite in use that is no number.
+pub fn monitored(sights: &Sights<'_>, residual_m: &[f64], service: &Service) -> Result<Vec<Tested>, AtIndex> {
+    let uniform = uniform(sights);
+    let each = |desk: &mut (Desk, Vec<f64>, Vec<usize>), row: usize| {
+        let (desk, residuals, columns) = desk;
+        residuals.clear();
+        columns.clear();
+        desk.take(sights, row, |column| {
+            residuals.push(residual_m[row * sights.constellation.len() + column]);
+            columns.push(column);
+        });
+        let monitored = match desk.monitored(residuals, service) {
+            Ok(monitored) => monitored,
+            Err(e) => return refusal(e).map_or_else(|outcome| Ok(Tested { outcome, monitored: None, excluded: Vec::new() }), Err),
+        };
+        let out = |i: usize| i < MOST_SATELLITES && monitored.excluded >> i & 1 == 1;
+        let excluded = columns.iter().enumerate().filter(|(i, _)| out(*i)).map(|(_, c)| *c).collect();
+        Ok(Tested { outcome: Outcome::of(&monitored.levels), monitored: Some(monitored), excluded })
+    };
+    (0..sights.len())
+        .into_par_iter()
+        .map_init(
+            || (Desk::new(sights.p_const, uniform), Vec::new(), Vec::new()),
+            |desk, index| each(desk, index).map_err(|error| AtIndex { index, error }),
+        )
+        .collect()
+}
+
+/// One epoch after detection and exclusion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tested {
+    /// Whether there are levels.
+    pub outcome: Outcome,
+    /// Decision and levels, where the geometry gives any.
+    pub monitored: Option<Monitored>,
+    /// Columns of the excluded satellites.
+    pub excluded: Vec<usize>,
+}
+
+/// Why there are no levels: the caller's mistake, or a status.
+///
+/// # Errors
+/// The status.
+pub fn refusal(e: NoLevels) -> Result<OutOfDomain, Outcome> {
+    match e {
+        NoLevels::Modes(NoModes::OutOfDomain(e)) => Ok(e),
+        NoLevels::Modes(_) => Err(Outcome::TooMany),
+        NoLevels::Geometry(Unavailable::Invalid { field, value, unit, domain }) => Ok(OutOfDomain { argument: field, value, unit, domain }),
+        NoLevels::Geometry(Unavailable::TooFewSatellites { .. }) => Err(Outcome::TooFewSatellites),
+        NoLevels::Geometry(_) => Err(Outcome::Singular),
+    }
+}
+
+/// What is promised of satellites, and how the user receives them.
+#[derive(Debug, Clone, Copy)]
+pub struct Promise {
+    /// By constellation.
+    pub support: [Support; Constellation::ALL.len()],
+    /// Receiver, multipath, atmosphere.
+    pub airborne: Airborne,
+}
+
+impl Promise {
+    /// A satellite with its range's error.
+    #[inline(always)]
+    pub(crate) fn sight(&self, unit: Vector3<f64>, constellation: Constellation) -> Sight {
+        let support = &self.support[constellation.index()];
+        let local = self.airborne.variance_m2(unit.z.clamp(-1.0, 1.0).asin(), unit.z);
+        let square = |m: Metres| m.m() * m.m();
+        Sight {
+            unit,
+            constellation,
+            integrity_m2: square(support.sigma_ura) + local,
+            accuracy_m2: square(support.sigma_ure) + local,
+            bias: support.bias,
+            bias_continuity: support.bias_continuity,
+            p_sat: support.p_sat,
+        }
+    }
+}
+
+/// Users and instants whose levels are worked out from orbits: every user at every instant.
+#[derive(Debug, Clone, Copy)]
+pub struct Outlook<'a> {
+    /// Orbits.
+    pub orbits: &'a [Elements],
+    /// Constellation of each.
+    pub constellation: &'a [Constellation],
+    /// Instants since the orbits' reference instant \[s\].
+    pub time_s: &'a [f64],
+    /// Users.
+    pub users: &'a [Geodetic],
+    /// Lowest elevation.
+    pub mask: Radians,
+    /// What is promised of the satellites.
+    pub promise: Promise,
+}
+
+/// A user's place and axes.
+struct Place {
+    position_m: Vector3<f64>,
+    enu: Matrix3<f64>,
+}
+
+/// Levels of every user at every instant: user after user, instant after instant.
+///
+/// # Errors
+/// [`AtIndex`]: the first orbit, instant, user or promise outside its domain.
+pub fn predict(outlook: &Outlook<'_>, rule: &Rule, exclusion: bool) -> Result<Vec<Row>, AtIndex> {
+    let at = |index| move |error| AtIndex { index, error };
+    for (index, support) in outlook.promise.support.iter().enumerate() {
+        support.checked().map_err(at(index))?;
+    }
+    if let Some(index) = outlook.time_s.iter().position(|t| !t.is_finite()) {
+        return Err(at(index)(OutOfDomain { argument: "time_s", value: outlook.time_s[index], unit: "s", domain: "finite times" }));
+    }
+    if let Some(index) = outlook.users.iter().position(|u| !u.height.m().is_finite()) {
+        return Err(at(index)(OutOfDomain {
+            argument: "h_m",
+            value: outlook.users[index].height.m(),
+            unit: "m",
+            domain: "finite heights",
+        }));
+    }
+    let orbits = outlook.orbits.iter().enumerate().map(|(k, e)| Orbit::new(*e).map_err(at(k))).collect::<Result<Vec<_>, _>>()?;
+    let positions: Vec<Vector3<f64>> =
+        outlook.time_s.par_iter().flat_map_iter(|t| orbits.iter().map(|orbit| *orbit.position(*t).vector())).collect();
+    let place = |u: &Geodetic| Place { position_m: *ecef_from_geodetic(u).vector(), enu: enu_from_ecef(&u.point) };
+    let places: Vec<Place> = outlook.users.iter().map(place).collect();
+    let sin_mask = outlook.mask.rad().sin();
+    rows(
+        outlook.time_s.len() * places.len(),
+        || Desk::new(outlook.promise.support.map(|s| s.p_const), true),
+        #[inline(always)]
+        |desk, index| {
+            let (instant, user) = (index / places.len(), index % places.len());
+            let sky = &positions[instant * orbits.len()..(instant + 1) * orbits.len()];
+            desk.sights.clear();
+            for (position, constellation) in sky.iter().zip(outlook.constellation) {
+                desk.sights.extend(seen(position, *constellation, &places[user], sin_mask, outlook));
+            }
+            desk.levels(rule, exclusion)
+        },
+    )
+}
+
+/// A satellite above the mask, with its range's error.
+#[inline(always)]
+fn seen(position: &Vector3<f64>, constellation: Constellation, place: &Place, sin_mask: f64, outlook: &Outlook<'_>) -> Option<Sight> {
+    let enu = place.enu * (position - place.position_m);
+    let unit = enu / enu.norm();
+    if !(unit.z >= sin_mask) {
+        return None;
+    }
+    Some(outlook.promise.sight(unit, constellation))
 }
 
 /// A negative sigma stays negative, so that it is refused.
@@ -167,21 +364,23 @@ fn squared(sigma: f64) -> f64 {
 }
 
 /// Whether satellites of one constellation share one prior everywhere.
-fn uniform(sights: &Sights<'_>, width: usize) -> bool {
+fn uniform(sights: &Sights<'_>) -> bool {
     let mut first = [None; Constellation::ALL.len()];
-    sights
-        .p_sat
-        .chunks(width.max(1))
-        .all(|row| row.iter().zip(sights.constellation).all(|(p, c)| *first[c.index()].get_or_insert(*p) == *p))
+    let same = |(p, c): (&f64, &Constellation)| *first[c.index()].get_or_insert(*p) == *p;
+    sights.p_sat.iter().zip(sights.constellation.iter().cycle()).all(same)
 }
 
 /// Every epoch by chunks on all cores.
-fn rows(n: usize, epoch: impl Fn(&mut Desk, usize) -> Result<Row, OutOfDomain> + Sync) -> Result<Vec<Row>, AtIndex> {
+fn rows(
+    n: usize,
+    desk: impl Fn() -> Desk + Sync + Send,
+    epoch: impl Fn(&mut Desk, usize) -> Result<Row, OutOfDomain> + Sync,
+) -> Result<Vec<Row>, AtIndex> {
     let arch = Arch::new();
     let chunk = CHUNK.min(256);
     let done: Result<Vec<Vec<Row>>, AtIndex> = (0..n.div_ceil(chunk))
         .into_par_iter()
-        .map_init(Desk::new, |desk, k| {
+        .map_init(desk, |desk, k| {
             let span = k * chunk..n.min((k + 1) * chunk);
             arch.dispatch(Job { desk, span, epoch: &epoch })
         })
@@ -201,6 +400,14 @@ impl<F: Fn(&mut Desk, usize) -> Result<Row, OutOfDomain>> pulp::NullaryFnOnce fo
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        self.span.map(|index| (self.epoch)(self.desk, index).map_err(|error| AtIndex { index, error })).collect()
+        // A plain loop: an iterator's closure would be compiled for the least processor.
+        let mut rows = Vec::with_capacity(self.span.len());
+        for index in self.span {
+            match (self.epoch)(self.desk, index) {
+                Ok(row) => rows.push(row),
+                Err(error) => return Err(AtIndex { index, error }),
+            }
+        }
+        Ok(rows)
     }
 }

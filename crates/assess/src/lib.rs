@@ -4,6 +4,7 @@
 
 pub mod anp;
 pub mod araim;
+pub mod araim_watch;
 pub mod batch;
 pub mod bounds;
 pub mod dme;

@@ -132,11 +132,7 @@ impl<'a> Records<'a> {
 
 /// Positions of every epoch, with broadcast orbits and clocks or `precise` ones; health and group delays are always those broadcast.
 pub fn positions(observations: &Observations, navigation: &Navigation, precise: Option<&Precise>, job: &Job) -> Positions {
-    let plans: [Option<Plan>; SYSTEMS] = std::array::from_fn(|i| {
-        let constellation = Constellation::from_index(i).filter(|c| job.systems.contains(c))?;
-        Some(Plan::new(constellation, job.signals, precise.is_some(), observations))
-            .filter(|p| p.bands.iter().all(|b| !b.columns.is_empty()))
-    });
+    let plans = plans(observations, precise.is_some(), job);
     let records = Records::new(navigation, precise);
     let smoothed = job.smoothing.map(|(form, how)| {
         let codes = plans.each_ref().map(|plan| plan.iter().flat_map(|p| &p.bands).flat_map(|b| b.columns.iter().map(|c| c.0)).collect());
@@ -184,6 +180,31 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
         }
     }
     found
+}
+
+/// What each constellation of a job contributes.
+fn plans(observations: &Observations, precise: bool, job: &Job) -> [Option<Plan>; SYSTEMS] {
+    std::array::from_fn(|i| {
+        let constellation = Constellation::from_index(i).filter(|c| job.systems.contains(c))?;
+        Some(Plan::new(constellation, job.signals, precise, observations)).filter(|p| p.bands.iter().all(|b| !b.columns.is_empty()))
+    })
+}
+
+/// What `each` makes of every epoch's ranges: broadcast orbits, pseudoranges as measured. `desk` makes what a task keeps from one epoch to
+/// the next; results must not depend on it.
+pub fn each_epoch<D, T: Send>(
+    observations: &Observations,
+    navigation: &Navigation,
+    job: &Job,
+    desk: impl Fn() -> D + Sync + Send,
+    each: impl Fn(&mut D, GpsTime, &[Range]) -> T + Sync + Send,
+) -> Vec<T> {
+    let (plans, records) = (plans(observations, false, job), Records::new(navigation, None));
+    let task = |(desk, ranges, unused): &mut (D, Vec<Range>, [usize; REASONS.len()]), epoch: usize| {
+        collect(observations, None, &records, &plans, epoch, ranges, unused);
+        each(desk, observations.time[epoch], ranges)
+    };
+    (0..observations.n_epochs()).into_par_iter().map_init(|| (desk(), Vec::new(), [0; REASONS.len()]), task).collect()
 }
 
 /// Covariances by the surroundings of each epoch's past minute, which are followed through the file in its order.

@@ -1,14 +1,24 @@
 //! ARAIM protection levels.
 
 use crate::error::input_error;
-use navbound_assess::araim::{self, Outcome, Row, Sights};
+use crate::gnss::orbit;
+use crate::positions::{Navigation, Observations};
+use navbound_assess::araim::{self, Outcome, Outlook, Promise, Row, Rule, Sights};
+use navbound_assess::araim_watch::{Watched, watch};
+use navbound_assess::positions::{Job, Signals};
 use navbound_core::bound::araim::Levels;
+use navbound_core::bound::araim::exclusion::{Decision, Monitored, NoLevels};
 use navbound_core::bound::araim::ranging::Airborne;
-use navbound_core::bound::araim::service::{Service, SupportMessage};
-use navbound_core::quantity::{Metres, OutOfDomain, Risk};
+use navbound_core::bound::araim::service::{Service, Support, SupportMessage};
+use navbound_core::bound::araim::single::Requirement;
+use navbound_core::frame::{Geodetic, LatLon};
+use navbound_core::geometry::Elements;
+use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
 use navbound_core::signal::Constellation;
+use navbound_core::solution::RangeError;
+use navbound_core::solution::point::Settings;
 use navbound_path::AtIndex;
-use numpy::{IntoPyArray, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -93,12 +103,99 @@ fn systems(indices: &[usize]) -> PyResult<Vec<Constellation>> {
     indices.iter().map(|&c| Constellation::from_index(c).ok_or_else(|| input_error(unknown(c), None))).collect()
 }
 
-/// Levels of many epochs from lines of sight. `numbers` are the service's.
+/// A rule from its numbers: seven of a service, or three of receivers without priors.
+fn rule(numbers: &[f64]) -> PyResult<Rule> {
+    match numbers {
+        [false_alarm, missed_detection, fault_free] => {
+            let risk = |argument, q: &f64| Risk::new(*q).map_err(|e| input_error(OutOfDomain { argument, ..e }, None));
+            Ok(Rule::Raim(Requirement {
+                id: "",
+                false_alarm: risk("false_alarm", false_alarm)?,
+                missed_detection: risk("missed_detection", missed_detection)?,
+                fault_free: risk("fault_free", fault_free)?,
+                ..Requirement::RAIM
+            }))
+        }
+        _ => {
+            let seven = numbers.try_into().map_err(|_| {
+                let domain = "seven numbers of a service, or three of RAIM";
+                input_error(OutOfDomain { argument: "service", value: numbers.len() as f64, unit: "1", domain }, None)
+            })?;
+            Ok(Rule::Araim(service(seven)?))
+        }
+    }
+}
+
+/// The shipped requirement of receivers without priors.
+#[pyfunction]
+fn raim_requirement(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let r = Requirement::RAIM;
+    let d = PyDict::new(py);
+    d.set_item("source", r.source)?;
+    d.set_item("provenance", r.provenance.word())?;
+    d.set_item("false_alarm", r.false_alarm.q())?;
+    d.set_item("missed_detection", r.missed_detection.q())?;
+    d.set_item("fault_free", r.fault_free.q())?;
+    Ok(d)
+}
+
+/// Promises by constellation (sigma_ura, sigma_ure, bias, bias for continuity, p_sat, p_const), and the airborne model's three noise
+/// terms and vertical ionosphere.
+fn promise(support: &[[f64; 6]; 5], airborne: [f64; 4]) -> PyResult<Promise> {
+    let each = |&[ura, ure, bias, continuity, p_sat, p_const]: &[f64; 6]| Support {
+        sigma_ura: Metres::new(ura),
+        sigma_ure: Metres::new(ure),
+        bias: Metres::new(bias),
+        bias_continuity: Metres::new(continuity),
+        p_sat,
+        p_const,
+    };
+    for (index, row) in support.iter().enumerate() {
+        each(row).checked().map_err(|e| input_error(e, Some(index)))?;
+    }
+    let [a, b, scale, vertical] = airborne;
+    let airborne = Airborne { noise: [a, b, scale], vertical_ionosphere: Metres::new(vertical), ..Airborne::DUAL_FREQUENCY };
+    Ok(Promise { support: support.each_ref().map(each), airborne })
+}
+
+/// Levels of every user at every instant, instants first; orbits are rows of seven elements.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "one for each array of the Python function")]
-fn araim_levels<'py>(
+fn araim_predict<'py>(
+    py: Python<'py>,
+    elements: PyReadonlyArray2<'_, f64>,
+    constellation: Vec<usize>,
+    time_s: PyReadonlyArray1<'_, f64>,
+    lat_rad: PyReadonlyArray1<'_, f64>,
+    lon_rad: PyReadonlyArray1<'_, f64>,
+    h_m: PyReadonlyArray1<'_, f64>,
+    mask_rad: f64,
+    support: [[f64; 6]; 5],
+    airborne: [f64; 4],
+    numbers: Vec<f64>,
+    exclusion: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let orbits: Vec<Elements> = elements.as_slice()?.as_chunks().0.iter().map(orbit).collect();
+    let places = lat_rad.as_slice()?.iter().zip(lon_rad.as_slice()?).zip(h_m.as_slice()?).enumerate();
+    let user = |(index, ((lat, lon), h)): (usize, ((&f64, &f64), &f64))| {
+        let point = LatLon::new(Radians::new(*lat), Radians::new(*lon)).map_err(|e| input_error(e, Some(index)))?;
+        Ok(Geodetic { point, height: Metres::new(*h) })
+    };
+    let users = places.map(user).collect::<PyResult<Vec<_>>>()?;
+    let (rule, systems, promise) = (rule(&numbers)?, systems(&constellation)?, promise(&support, airborne)?);
+    let mask = Radians::new(mask_rad);
+    let outlook = Outlook { orbits: &orbits, constellation: &systems, time_s: time_s.as_slice()?, users: &users, mask, promise };
+    let rows = py.detach(|| araim::predict(&outlook, &rule, exclusion)).map_err(refused)?;
+    columns(py, &rows)
+}
+
+/// Detection and exclusion at many epochs: columns of the levels, and the decision, its largest ratio, the step and the excluded columns.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one for each array of the Python function")]
+fn araim_monitor<'py>(
     py: Python<'py>,
     unit_enu: PyReadonlyArray1<'_, f64>,
+    residual_m: PyReadonlyArray1<'_, f64>,
     sigma_int_m: PyReadonlyArray1<'_, f64>,
     sigma_acc_m: PyReadonlyArray1<'_, f64>,
     bias_m: PyReadonlyArray1<'_, f64>,
@@ -119,7 +216,115 @@ fn araim_levels<'py>(
         constellation: &systems,
         p_const,
     };
-    let rows = py.detach(|| araim::levels(&sights, &service)).map_err(refused)?;
+    let residual_m = residual_m.as_slice()?;
+    let tested = py.detach(|| araim::monitored(&sights, residual_m, &service)).map_err(refused)?;
+    let mut excluded = vec![false; sights.sigma_int_m.len()];
+    for (row, test) in tested.iter().enumerate() {
+        for column in &test.excluded {
+            excluded[row * systems.len() + column] = true;
+        }
+    }
+    let monitored: Vec<_> = tested.iter().map(|t| (t.outcome, t.monitored)).collect();
+    let d = decisions(py, &monitored)?;
+    d.set_item("excluded", excluded.into_pyarray(py))?;
+    Ok(d)
+}
+
+/// Detection and exclusion at every epoch of an observation file.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one for each argument of the Python function")]
+fn araim_watch<'py>(
+    py: Python<'py>,
+    observations: &Observations,
+    navigation: &Navigation,
+    systems: &str,
+    dual: bool,
+    mask_rad: f64,
+    support: [[f64; 6]; 5],
+    airborne: [f64; 4],
+    numbers: [f64; 7],
+) -> PyResult<Bound<'py, PyDict>> {
+    let (service, promise) = (service(&numbers)?, promise(&support, airborne)?);
+    let settings = Settings {
+        mask: Radians::new(mask_rad),
+        ionosphere: navigation.records.klobuchar_gps.filter(|_| !dual),
+        errors: RangeError::CALIBRATED,
+        false_alarm: Risk::ACCURACY.q(),
+        most_excluded: 0,
+    };
+    let job = Job {
+        systems: systems.bytes().filter_map(Constellation::from_letter).collect(),
+        signals: if dual { Signals::Dual } else { Signals::Single },
+        smoothing: None,
+        settings,
+    };
+    let watched = py.detach(|| watch(&observations.0, &navigation.records, &job, &promise, &service));
+    let outcome = |w: &Result<Watched, NoLevels>| match w {
+        Ok(w) => (araim::Outcome::of(&w.monitored.levels), Some(w.monitored)),
+        Err(e) => (araim::refusal(*e).err().unwrap_or(araim::Outcome::Singular), None),
+    };
+    let d = decisions(py, &watched.iter().map(outcome).collect::<Vec<_>>())?;
+    let number = |f: fn(&Watched) -> f64| watched.iter().map(|w| w.as_ref().map_or(f64::NAN, f)).collect::<Vec<_>>().into_pyarray(py);
+    d.set_item("est_lat_rad", number(|w| w.position.point.lat().rad()))?;
+    d.set_item("est_lon_rad", number(|w| w.position.point.lon().rad()))?;
+    d.set_item("est_h_m", number(|w| w.position.height.m()))?;
+    let count = |f: fn(&Watched) -> usize| watched.iter().map(|w| w.as_ref().map_or(0, f) as i64).collect::<Vec<_>>().into_pyarray(py);
+    d.set_item("n_sv", count(|w| w.n_sv))?;
+    d.set_item("n_excluded", count(|w| w.excluded.len()))?;
+    let names =
+        |w: &Result<Watched, NoLevels>| w.as_ref().map_or_else(|_| Vec::new(), |w| w.excluded.iter().map(ToString::to_string).collect());
+    d.set_item("excluded", watched.iter().map(names).collect::<Vec<Vec<String>>>())?;
+    d.set_item("reason", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;
+    Ok(d)
+}
+
+/// Columns of levels and decisions.
+fn decisions<'py>(py: Python<'py>, rows: &[(Outcome, Option<Monitored>)]) -> PyResult<Bound<'py, PyDict>> {
+    let levels: Vec<Row> = rows.iter().map(|(outcome, m)| Row { n_sv: 0, outcome: *outcome, levels: m.map(|m| m.levels) }).collect();
+    let d = columns(py, &levels)?;
+    d.del_item("n_sv")?;
+    let number = |f: fn(&Monitored) -> f64| rows.iter().map(|r| r.1.as_ref().map_or(f64::NAN, f)).collect::<Vec<_>>().into_pyarray(py);
+    d.set_item("worst_ratio", number(|m| m.worst_ratio))?;
+    d.set_item("step_e_m", number(|m| m.step[0].m()))?;
+    d.set_item("step_n_m", number(|m| m.step[1].m()))?;
+    d.set_item("step_u_m", number(|m| m.step[2].m()))?;
+    let word = |m: &Monitored| match m.decision {
+        Decision::Nothing => "none",
+        Decision::Excluded => "excluded",
+        Decision::NotExcluded => "not_excluded",
+    };
+    d.set_item("decision", rows.iter().map(|r| r.1.as_ref().map_or("", word)).collect::<Vec<_>>())?;
+    Ok(d)
+}
+
+/// Levels of many epochs from lines of sight. `numbers` are the rule's.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "one for each array of the Python function")]
+fn araim_levels<'py>(
+    py: Python<'py>,
+    unit_enu: PyReadonlyArray1<'_, f64>,
+    sigma_int_m: PyReadonlyArray1<'_, f64>,
+    sigma_acc_m: PyReadonlyArray1<'_, f64>,
+    bias_m: PyReadonlyArray1<'_, f64>,
+    bias_continuity_m: PyReadonlyArray1<'_, f64>,
+    p_sat: PyReadonlyArray1<'_, f64>,
+    constellation: Vec<usize>,
+    p_const: [f64; 5],
+    numbers: Vec<f64>,
+    exclusion: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (rule, systems) = (rule(&numbers)?, systems(&constellation)?);
+    let sights = Sights {
+        unit_enu: unit_enu.as_slice()?,
+        sigma_int_m: sigma_int_m.as_slice()?,
+        sigma_acc_m: sigma_acc_m.as_slice()?,
+        bias_m: bias_m.as_slice()?,
+        bias_continuity_m: bias_continuity_m.as_slice()?,
+        p_sat: p_sat.as_slice()?,
+        constellation: &systems,
+        p_const,
+    };
+    let rows = py.detach(|| araim::levels(&sights, &rule, exclusion)).map_err(refused)?;
     columns(py, &rows)
 }
 
@@ -149,5 +354,9 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(araim_services, m)?)?;
     m.add_function(wrap_pyfunction!(araim_support, m)?)?;
     m.add_function(wrap_pyfunction!(araim_error_models, m)?)?;
-    m.add_function(wrap_pyfunction!(araim_levels, m)?)
+    m.add_function(wrap_pyfunction!(raim_requirement, m)?)?;
+    m.add_function(wrap_pyfunction!(araim_levels, m)?)?;
+    m.add_function(wrap_pyfunction!(araim_predict, m)?)?;
+    m.add_function(wrap_pyfunction!(araim_monitor, m)?)?;
+    m.add_function(wrap_pyfunction!(araim_watch, m)?)
 }

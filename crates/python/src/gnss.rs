@@ -57,7 +57,7 @@ fn satellite_directions<'py>(
     Ok(d)
 }
 
-fn orbit(&[a, e, i, node, perigee, anomaly, node_rate_radps]: &[f64; 7]) -> Elements {
+pub fn orbit(&[a, e, i, node, perigee, anomaly, node_rate_radps]: &[f64; 7]) -> Elements {
     let [inclination, node, perigee, mean_anomaly] = [i, node, perigee, anomaly].map(Radians::new);
     Elements { semi_major: Metres::new(a), eccentricity: e, inclination, node, node_rate_radps, perigee, mean_anomaly }
 }

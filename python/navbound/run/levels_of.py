@@ -147,7 +147,7 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None) -> P
     rejected = [r.model_dump() for r in reading.rejected]
     # Columns of Error Extraction say in their own name what they are.
     of_extraction = any(reading.columns.get(name, "").startswith("ee_") for name in ("hpl_m", "vpl_m"))
-    return Part(_uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
+    return Part(uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
 
 
 def _with_truth(epochs: pl.DataFrame, reading: Reading, truth: Truth) -> tuple[pl.DataFrame, str]:
@@ -242,9 +242,9 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
         epochs, words = join(epochs, read(truth.given), truth.tolerance_s)
         notes.append(words)
     if service.has_messages:
-        return Part(_uniform(epochs), observations.n_epochs, [], notes)
+        return Part(uniform(epochs), observations.n_epochs, [], notes)
     errors = None if ranges is None else _range_errors(ranges, epochs)
-    return Part(_uniform(_of_own(epochs)), observations.n_epochs, [], notes, sbas.EXTRACTION_LABEL, errors)
+    return Part(uniform(_of_own(epochs)), observations.n_epochs, [], notes, sbas.EXTRACTION_LABEL, errors)
 
 
 def _corrected(observations: gnss.Observations, service: Service, truth: Truth) -> tuple[pl.DataFrame, list[str]]:
@@ -273,7 +273,7 @@ def _range_errors(ranges: pl.DataFrame, epochs: pl.DataFrame) -> pl.DataFrame:
     return joined.with_columns(range_error_m=pl.col("residual_m") + moved).drop_nulls("range_error_m")
 
 
-def _uniform(epochs: pl.DataFrame) -> pl.DataFrame:
+def uniform(epochs: pl.DataFrame) -> pl.DataFrame:
     """Every column of the schema, absent ones null, in the order of time."""
     return epochs.select(
         (pl.col(name) if name in epochs.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in SCHEMA.items()

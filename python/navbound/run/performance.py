@@ -24,6 +24,7 @@ from navbound.run.directory import Run
 from navbound.run.field_csv import write_csv
 from navbound.run.files import sort_out
 from navbound.run.levels_of import COVARIANCE, SCHEMA, Part, Service, Truth, from_observations, from_table, truth_of
+from navbound.run.levels_of_araim import GIVEN, from_araim, service_of
 from navbound.run.performance_words import performance_words
 from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
 from navbound.run.summarise import honesty_of
@@ -70,6 +71,8 @@ class Options:
         Words that must stand beside levels that no integrity rests on, where the files do not say so themselves.
     solve : bool
         Take the raw measurements and messages of receivers' logs, not their own positions and levels.
+    protection : str
+        What protection levels of observations come from: ``given`` (the files), ``araim`` (LPV-200 budgets), ``araim-horizontal``.
     """
 
     levels: Sequence[str | kpi.Level]
@@ -82,6 +85,7 @@ class Options:
     stanford_esa: kpi.SubsetOptions | None = None
     experimental: str = ""
     solve: bool = False
+    protection: str = GIVEN
 
 
 def evaluate_files(
@@ -123,6 +127,8 @@ def evaluate_files(
         raise InputError("files", "nothing", domain="one file or more")
     wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
     truth = truth_of(options.truth, options.truth_tolerance_s)
+    if service_of(options.protection) and options.stanford_esa is not None:
+        raise InputError("protection", options.protection, domain="it without subsets of satellites, which are solved without monitoring")
     sources = sort_out(names, solve=options.solve)
     sources.require_navigation()
     if options.stanford_esa is not None and (sources.tables or sources.messages):
@@ -200,7 +206,16 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
             recorded = hashlib.sha256(Path(truth.given).read_bytes()).hexdigest()
         except OSError as e:
             raise FormatError(truth.given, e.strerror or str(e)) from e
-    given = [__version__, truth.given, recorded, truth.tolerance_s, dict(options.columns or {}), options.prn, options.solve]
+    given = [
+        __version__,
+        truth.given,
+        recorded,
+        truth.tolerance_s,
+        dict(options.columns or {}),
+        options.prn,
+        options.solve,
+        options.protection,
+    ]
     beside = sorted(s.sha256 for s in sources.navigation + sources.messages)
     return json.dumps([given, options.stanford_esa is not None, SCHEMA.names(), beside])
 
@@ -208,6 +223,9 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
 def _compute(source: Source, sources: Files, options: Options, truth: Truth, service: Service) -> Part:
     if source in sources.tables:
         return from_table(source.path, truth, options.columns)
+    monitoring = service_of(options.protection)
+    if monitoring:
+        return from_araim(source.path, service.navigation, truth, monitoring)
     return from_observations(source.path, service, truth, keep_ranges=options.stanford_esa is not None)
 
 
@@ -323,6 +341,7 @@ def _run(
             "truth_tolerance_s": options.truth_tolerance_s,
             "columns": dict(options.columns or {}),
             "prn": options.prn,
+            "protection": options.protection,
             "period_s": result.period_s,
             "exclude_missing": options.exclude_missing,
             "stanford_esa": None if options.stanford_esa is None else asdict(options.stanford_esa),

@@ -144,6 +144,7 @@ impl LevelEquation {
         self.sum(level.m()).value
     }
 
+    #[inline(always)]
     fn filled(&self) -> &[Group] {
         &self.groups[..self.count.div_ceil(LANES).min(GROUPS)]
     }

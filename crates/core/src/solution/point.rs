@@ -15,6 +15,10 @@ use crate::special::float::{asin, sin, sqrt};
 use crate::special::gamma::chi_square_tail;
 use nalgebra::{Matrix3, Vector3};
 
+#[path = "point_residuals.rs"]
+mod residuals;
+pub use residuals::{Sighted, sighted};
+
 /// Most ranges of one epoch; receivers list fewer than 60 satellites.
 pub const MOST_RANGES: usize = 96;
 /// Excluded satellites that a position names; more are counted.

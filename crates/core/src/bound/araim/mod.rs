@@ -3,9 +3,11 @@
 //! In the order of the flow: [`service`] (what is allowed and what satellites promise), [`modes`] (what may be wrong together), the
 //! solutions without each mode's satellites, and here thresholds and levels.
 
+pub mod exclusion;
 pub mod modes;
 pub mod ranging;
 pub mod service;
+pub mod single;
 mod subset;
 
 use super::level_equation::LevelEquation;
@@ -42,6 +44,17 @@ pub struct Levels {
     pub n_monitored: usize,
     /// Probability of all that is not monitored.
     pub p_unmonitored: f64,
+}
+
+impl Levels {
+    /// The larger of these levels and those of another decision, infinite where that has none.
+    fn widen(&mut self, other: Option<&Self>) {
+        let infinite = Metres::new(f64::INFINITY);
+        let larger = |a: Metres, b: Metres| if b > a { b } else { a };
+        self.hpl = larger(self.hpl, other.map_or(infinite, |o| o.hpl));
+        self.vpl = larger(self.vpl, other.map_or(infinite, |o| o.vpl));
+        self.axes = [0, 1].map(|a| larger(self.axes[a], other.map_or(infinite, |o| o.axes[a])));
+    }
 }
 
 /// One mode as the levels saw it.
@@ -139,23 +152,23 @@ impl Monitor {
     /// [`Unavailable`]: too few satellites, a geometry that does not determine the position, a number that is none.
     #[inline(always)]
     pub fn levels(&mut self, sights: &[Sight], modes: &FaultModes, service: &Service) -> Result<Levels, Unavailable> {
-        checked(sights)?;
-        self.satellites.fill(sights);
-        self.satellites.solve(0, &mut self.all)?;
-        self.solved = [None; CLOCKS];
-        let (mut monitored, mut p_unmonitored) = (0, modes.left());
-        for (k, mode) in modes.iter().enumerate() {
-            let sums = self.subset(mode, sights.len());
-            if sums.is_some() {
-                monitored += 1;
-            } else {
-                p_unmonitored += mode.p;
-            }
-            self.outcome[k] = sums;
-        }
-        let factors = self.factors.of(service, monitored - 1);
+        self.levels_with(sights, &[], modes, service, 1.0)
+    }
+
+    /// The same where the levels may take but a share of the integrity risk, and with residuals for [`Self::worst`] where there are any.
+    #[inline(always)]
+    fn levels_with(
+        &mut self,
+        sights: &[Sight],
+        residuals_m: &[f64],
+        modes: &FaultModes,
+        service: &Service,
+        share: f64,
+    ) -> Result<Levels, Unavailable> {
+        let (monitored, p_unmonitored) = self.separate(sights, residuals_m, modes)?;
+        let factors = self.factors.of(service, monitored.saturating_sub(1));
         let emt = self.effective_monitor_threshold(modes, service, &factors);
-        let [east, north, up] = self.axis_levels(modes, service, p_unmonitored, &factors);
+        let [east, north, up] = self.axis_levels(modes, service, share * (1.0 - p_unmonitored / service.integrity()), &factors);
         let sigma_accuracy = self.satellites.accuracy_m2(&self.all).map(|v| Metres::new(sqrt(v)));
         Ok(Levels {
             hpl: Metres::new(hypot(east, north)),
@@ -167,6 +180,27 @@ impl Monitor {
             n_monitored: monitored,
             p_unmonitored,
         })
+    }
+
+    /// Every subset of an epoch: how many can be monitored, and the probability of all that is not.
+    #[inline(always)]
+    fn separate(&mut self, sights: &[Sight], residuals_m: &[f64], modes: &FaultModes) -> Result<(usize, f64), Unavailable> {
+        checked(sights)?;
+        self.satellites.fill(sights);
+        self.satellites.measured(residuals_m);
+        self.satellites.solve(0, &mut self.all)?;
+        self.solved = [None; CLOCKS];
+        let (mut monitored, mut p_unmonitored) = (0_usize, modes.left());
+        for (k, mode) in modes.iter().enumerate() {
+            let sums = self.subset(mode, sights.len());
+            if sums.is_some() {
+                monitored += 1;
+            } else {
+                p_unmonitored += mode.p;
+            }
+            self.outcome[k] = sums;
+        }
+        Ok((monitored, p_unmonitored))
     }
 
     /// The modes of the last epoch as its levels saw them; `modes` and `service` are those of that call.
@@ -185,6 +219,26 @@ impl Monitor {
                 threshold: [0, 1, 2].map(|a| Metres::new(threshold(&sums, &factors, a))),
             }
         })
+    }
+
+    /// Separation of every monitored mode of the last epoch against its threshold, the largest of the axes, with the mode's satellites.
+    fn ratios(&mut self, modes: &FaultModes, service: &Service, mut each: impl FnMut(u64, f64)) {
+        let faults = self.outcome[..modes.len()].iter().flatten().count().saturating_sub(1);
+        let factors = self.factors.of(service, faults);
+        for (mode, outcome) in modes.iter().zip(&self.outcome).skip(1) {
+            let Some(sums) = outcome else { continue };
+            let ratio = |a: usize| {
+                let moved = sums.moved[a].abs();
+                // Satellites that do not count move nothing and have no threshold; below a micrometre is rounding.
+                if moved > 1e-6 { moved / threshold(sums, &factors, a) } else { 0.0 }
+            };
+            each(mode.satellites, ratio(0).max(ratio(1)).max(ratio(2)));
+        }
+    }
+
+    /// Where the solution of the last epoch stands from the place of its residuals, east, north, up.
+    fn step(&self) -> [Metres; 3] {
+        self.satellites.step(&self.all).map(Metres::new)
     }
 
     /// The solution without a mode's satellites.
@@ -237,20 +291,18 @@ impl Monitor {
         Metres::new(counted.filter_map(|(_, o)| o.as_ref()).map(|s| threshold(s, factors, 2)).fold(0.0, f64::max))
     }
 
-    /// Levels of east, north and up.
+    /// Levels of east, north and up where a share of the risk is left for them.
     #[inline(always)]
-    fn axis_levels(&mut self, modes: &FaultModes, service: &Service, p_unmonitored: f64, factors: &[f64; 3]) -> [f64; 3] {
-        let left = 1.0 - p_unmonitored / service.integrity();
+    fn axis_levels(&mut self, modes: &FaultModes, service: &Service, left: f64, factors: &[f64; 3]) -> [f64; 3] {
         let half = 0.5 * service.integrity_h.q();
-        [half, half, service.integrity_v.q()].map(|q| q * left).map(Risk::new).iter().enumerate().fold(
-            [f64::INFINITY; 3],
-            |mut out, (a, risk)| {
-                if let Ok(risk) = risk {
-                    out[a] = self.axis_level(modes, *risk, factors, a);
-                }
-                out
-            },
-        )
+        let budgets = [half, half, service.integrity_v.q()];
+        let mut levels = [f64::INFINITY; 3];
+        for a in 0..3 {
+            if let Ok(risk) = Risk::new(budgets[a] * left) {
+                levels[a] = self.axis_level(modes, risk, factors, a);
+            }
+        }
+        levels
     }
 
     #[inline(always)]
@@ -310,3 +362,6 @@ fn invalid(s: &Sight) -> Unavailable {
     }
     Unavailable::Invalid { field: "unit", value: s.unit.norm(), unit: "1", domain: "unit vectors" }
 }
+
+#[cfg(test)]
+mod tests;

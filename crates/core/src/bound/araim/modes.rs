@@ -12,6 +12,7 @@
 //! of their events (standard, checked on 17 cases of MAAST for ARAIM 2).
 
 use super::service::Service;
+use super::subset::Sight;
 use crate::quantity::OutOfDomain;
 use crate::signal::Constellation;
 
@@ -60,34 +61,50 @@ pub enum NoModes {
     TooManyModes,
 }
 
-const NONE: FaultMode = FaultMode { satellites: 0, constellations: 0, p: 0.0 };
-
-/// Satellites that fail one by one or with their constellation: probability of each, constellation of each, probability of each
-/// constellation (of those in use only).
-#[derive(Debug, Clone, Copy)]
-pub struct Priors<'a> {
-    /// By satellite.
-    pub p_sat: &'a [f64],
-    /// Constellation of each satellite.
-    pub constellation: &'a [Constellation],
-    /// By constellation.
-    pub p_const: [f64; CLOCKS],
-}
-
-impl FaultModes {
-    /// The modes of these satellites under a service's budgets.
+/// Where the modes of satellites are looked up, or worked out.
+pub trait Book {
+    /// The modes of these satellites.
     ///
     /// # Errors
     /// [`NoModes`].
-    pub fn new(priors: &Priors<'_>, service: &Service) -> Result<Self, NoModes> {
-        let events = Events::new(priors)?;
+    fn modes(&mut self, sights: &[Sight], service: &Service) -> Result<&FaultModes, NoModes>;
+}
+
+const NONE: FaultMode = FaultMode { satellites: 0, constellations: 0, p: 0.0 };
+
+impl FaultModes {
+    /// The modes of these satellites, with the priors of their constellations in the order of [`Constellation::index`], under a service's
+    /// budgets.
+    ///
+    /// # Errors
+    /// [`NoModes`].
+    pub fn new(sights: &[Sight], p_const: &[f64; CLOCKS], service: &Service) -> Result<Self, NoModes> {
+        let events = Events::new(sights, p_const)?;
         let (order, beyond) = events.order(service.unmonitored.q());
         let mut listed = Listed::default();
         events.list(order, &mut listed)?;
         listed.consolidate(&events, service.consolidation);
-        listed.by_size(priors.p_sat.len());
+        listed.by_size(sights.len());
         let mut modes = Self { list: [NONE; MOST_MODES], count: 0, left: beyond };
         modes.keep(&mut listed, service, &events)?;
+        Ok(modes)
+    }
+
+    /// No fault, and each satellite alone; nothing else can happen: what receivers without priors assume.
+    ///
+    /// # Errors
+    /// [`NoModes::TooManySatellites`].
+    pub fn single(sights: &[Sight]) -> Result<Self, NoModes> {
+        if sights.len() > MOST_SATELLITES {
+            return Err(NoModes::TooManySatellites { have: sights.len() });
+        }
+        let mut modes = Self { list: [NONE; MOST_MODES], count: 1 + sights.len(), left: 0.0 };
+        modes.list[0].p = 1.0;
+        for (i, (slot, sight)) in modes.list[1..].iter_mut().zip(sights).enumerate() {
+            let alone = sights.iter().filter(|s| s.constellation == sight.constellation).count() == 1;
+            let constellations = if alone { 1 << sight.constellation.index() } else { 0 };
+            *slot = FaultMode { satellites: 1 << i, constellations, p: sight.p_sat };
+        }
         Ok(modes)
     }
 
@@ -142,19 +159,18 @@ struct Events {
 }
 
 impl Events {
-    fn new(priors: &Priors<'_>) -> Result<Self, NoModes> {
-        let satellites = priors.p_sat.len().min(priors.constellation.len());
-        if satellites > MOST_SATELLITES {
-            return Err(NoModes::TooManySatellites { have: satellites });
+    fn new(sights: &[Sight], p_const: &[f64; CLOCKS]) -> Result<Self, NoModes> {
+        if sights.len() > MOST_SATELLITES {
+            return Err(NoModes::TooManySatellites { have: sights.len() });
         }
         let mut events = Self { p: [0.0; MOST_EVENTS], mask: [0; MOST_EVENTS], count: 0, members: [0; CLOCKS], fault_free: 1.0 };
-        for (i, (p, c)) in priors.p_sat.iter().zip(priors.constellation).enumerate() {
-            events.members[c.index()] |= 1 << i;
-            events.push("p_sat", *p, 1 << i)?;
+        for (i, sight) in sights.iter().enumerate() {
+            events.members[sight.constellation.index()] |= 1 << i;
+            events.push("p_sat", sight.p_sat, 1 << i)?;
         }
         for c in 0..CLOCKS {
             if events.members[c] != 0 {
-                events.push("p_const", priors.p_const[c], events.members[c])?;
+                events.push("p_const", p_const[c], events.members[c])?;
             }
         }
         Ok(events)

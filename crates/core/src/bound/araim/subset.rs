@@ -39,6 +39,21 @@ pub struct Sight {
     pub bias: Metres,
     /// Nominal bias for continuity.
     pub bias_continuity: Metres,
+    /// Probability that it is in fault.
+    pub p_sat: f64,
+}
+
+impl Sight {
+    /// A place for one.
+    pub(super) const NONE: Self = Self {
+        unit: Vector3::new(0.0, 0.0, 1.0),
+        constellation: Constellation::Gps,
+        integrity_m2: 1.0,
+        accuracy_m2: 1.0,
+        bias: Metres::new(0.0),
+        bias_continuity: Metres::new(0.0),
+        p_sat: 0.5,
+    };
 }
 
 /// Eight satellites abreast; places beyond the last have no weight.
@@ -51,6 +66,7 @@ struct Group {
     accuracy: [f64; LANES],
     bias: [f64; LANES],
     bias_continuity: [f64; LANES],
+    residual: [f64; LANES],
 }
 
 const EMPTY: Group = Group {
@@ -61,6 +77,7 @@ const EMPTY: Group = Group {
     accuracy: [0.0; LANES],
     bias: [0.0; LANES],
     bias_continuity: [0.0; LANES],
+    residual: [0.0; LANES],
 };
 
 /// How the position moves with each range, eight abreast.
@@ -86,6 +103,8 @@ pub(super) struct Sums {
     pub(super) bias: [f64; 3],
     /// Of those for continuity on the separation \[m\].
     pub(super) bias_continuity: [f64; 3],
+    /// The separation itself, by the residuals at hand \[m\].
+    pub(super) moved: [f64; 3],
 }
 
 /// The satellites of one solution, and what each constellation contributes.
@@ -133,6 +152,27 @@ impl Satellites {
                 (group.accuracy[l], group.bias[l], group.bias_continuity[l]) = (s.accuracy_m2, s.bias.m(), s.bias_continuity.m());
             }
         }
+    }
+
+    /// Measured less computed ranges at the place where the lines of sight are those of `fill`; what a clock explains does not matter \[m\].
+    #[inline(always)]
+    pub(super) fn measured(&mut self, residuals_m: &[f64]) {
+        for (group, residuals) in self.groups.iter_mut().zip(residuals_m.chunks(LANES)) {
+            group.residual[..residuals.len()].copy_from_slice(residuals);
+        }
+    }
+
+    /// Where the solution stands from that place \[m\].
+    pub(super) fn step(&self, solution: &Solution) -> [f64; 3] {
+        let mut sums = [[0.0; LANES]; 3];
+        for (group, gains) in self.filled().iter().zip(&solution.gains) {
+            for a in 0..3 {
+                for l in 0..LANES {
+                    sums[a][l] += gains[a][l] * group.residual[l];
+                }
+            }
+        }
+        sums.map(total)
     }
 
     #[inline(always)]
@@ -198,35 +238,42 @@ impl Satellites {
     #[inline(always)]
     pub(super) fn without<const K: usize>(&self, all: &Solution, base: &Solution, out: [usize; K]) -> Option<Sums> {
         let removed = Removed::new(self, base, out)?;
-        let mut sums = LaneSums::default();
+        let [mut bias, mut bias_continuity, mut separation, mut moved] = [[[0.0; LANES]; 3]; 4];
+        // Each small loop runs over lanes alone, so that it becomes a few vector instructions.
         for ((group, all), gains) in self.filled().iter().zip(&all.gains).zip(&base.gains) {
-            for l in 0..LANES {
-                let s = [gains[0][l], gains[1][l], gains[2][l]];
-                let mut kept = s;
-                for k in 0..K {
-                    let q = removed.share(k, group, l) - removed.across(k, &s);
-                    for a in 0..3 {
-                        kept[a] += removed.factor[k][a] * q;
+            let mut kept = *gains;
+            for k in 0..K {
+                let q = removed.shares(k, group, gains);
+                for a in 0..3 {
+                    for l in 0..LANES {
+                        kept[a][l] += removed.factor[k][a] * q[l];
                     }
                 }
-                for k in 0..K {
-                    let gone = group.index[l] == removed.index[k];
-                    kept = kept.map(|x| if gone { 0.0 } else { x });
-                }
+            }
+            for k in 0..K {
                 for a in 0..3 {
-                    let moved = kept[a] - all[a][l];
-                    sums.bias[a][l] += kept[a].abs() * group.bias[l];
-                    sums.bias_continuity[a][l] += moved.abs() * group.bias_continuity[l];
-                    sums.separation[a][l] += moved * moved * group.accuracy[l];
+                    for l in 0..LANES {
+                        kept[a][l] = if group.index[l] == removed.index[k] { 0.0 } else { kept[a][l] };
+                    }
+                }
+            }
+            for a in 0..3 {
+                for l in 0..LANES {
+                    let by = kept[a][l] - all[a][l];
+                    bias[a][l] += kept[a][l].abs() * group.bias[l];
+                    bias_continuity[a][l] += by.abs() * group.bias_continuity[l];
+                    separation[a][l] += by * by * group.accuracy[l];
+                    moved[a][l] += by * group.residual[l];
                 }
             }
         }
         let variance = [0, 1, 2].map(|a| base.variance[a] + removed.added[a]);
         Some(Sums {
             variance,
-            separation: sums.separation.map(total),
-            bias: sums.bias.map(total),
-            bias_continuity: sums.bias_continuity.map(total),
+            separation: separation.map(total),
+            bias: bias.map(total),
+            bias_continuity: bias_continuity.map(total),
+            moved: moved.map(total),
         })
     }
 
@@ -243,13 +290,6 @@ impl Satellites {
         }
         sums.map(total)
     }
-}
-
-#[derive(Debug, Default)]
-struct LaneSums {
-    bias: [[f64; LANES]; 3],
-    bias_continuity: [[f64; LANES]; 3],
-    separation: [[f64; LANES]; 3],
 }
 
 /// The sum of lanes, by halves, so that vector registers can do it.
@@ -310,6 +350,16 @@ impl<const K: usize> Removed<K> {
     #[inline(always)]
     fn share(&self, k: usize, group: &Group, l: usize) -> f64 {
         if group.clock[l] == self.clock[k] { group.weight[l] * self.per_clock[k] } else { 0.0 }
+    }
+
+    /// q of every satellite of a group.
+    #[inline(always)]
+    fn shares(&self, k: usize, group: &Group, gains: &[[f64; LANES]; 3]) -> [f64; LANES] {
+        let mut q = [0.0; LANES];
+        for l in 0..LANES {
+            q[l] = self.share(k, group, l) - self.across(k, &[gains[0][l], gains[1][l], gains[2][l]]);
+        }
+        q
     }
 
     #[inline(always)]

@@ -1,0 +1,214 @@
+//! Detection and exclusion: which satellites to leave out when the solutions disagree, and the levels that hold whatever is decided.
+//!
+//! Every decision (exclude nothing, or the satellites of one likely fault mode) takes an equal share of the integrity risk that is left
+//! after the unmonitored modes: the union over decisions then stays inside it. The rule is ours; the published algorithms leave the
+//! split of the risk between decisions to the designer.
+
+use super::modes::{Book, FaultModes, MOST_SATELLITES, NoModes};
+use super::service::Service;
+use super::{Levels, Monitor, Sight};
+use crate::quantity::{Metres, Unavailable};
+
+/// How exclusion shares the risk; provenance *ours*.
+pub const SOURCE: &str = "navbound, docs/methods/araim.md: equal shares of the integrity risk for every decision (ours)";
+
+/// Fault modes that are tried for exclusion at most, the most suspicious first.
+const MOST_TRIED: usize = 16;
+
+/// Why an epoch has no levels.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum NoLevels {
+    /// The fault modes cannot be made.
+    #[error(transparent)]
+    Modes(#[from] NoModes),
+    /// The geometry does not serve.
+    #[error(transparent)]
+    Geometry(#[from] Unavailable),
+}
+
+/// What was decided about an epoch's ranges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Decision {
+    /// All solutions agree within their thresholds.
+    Nothing,
+    /// Some disagreed; without the satellites excluded the rest agree.
+    Excluded,
+    /// Some disagreed, and no exclusion that was tried brought agreement: the position is not to be used.
+    NotExcluded,
+}
+
+/// An epoch after detection and exclusion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Monitored {
+    /// What was decided.
+    pub decision: Decision,
+    /// Levels of the solution with the satellites that are left.
+    pub levels: Levels,
+    /// That solution from the place where the residuals were taken, east, north, up.
+    pub step: [Metres; 3],
+    /// Satellites excluded, bit i for satellite i.
+    pub excluded: u64,
+    /// Largest separation before exclusion, against its threshold.
+    pub worst_ratio: f64,
+}
+
+/// Levels by detection alone.
+///
+/// # Errors
+/// [`NoLevels`].
+#[inline(always)]
+pub fn detected(monitor: &mut Monitor, book: &mut impl Book, sights: &[Sight], service: &Service) -> Result<Levels, NoLevels> {
+    let modes = some(book, sights, service)?;
+    Ok(monitor.levels(sights, modes, service)?)
+}
+
+/// Levels that are promised beforehand where faults may be excluded: the largest of those without exclusion and of those after excluding any
+/// one likely fault mode. Everything but the levels is that of the epoch without exclusion.
+///
+/// # Errors
+/// [`NoLevels`].
+#[inline(always)]
+pub fn predicted(monitor: &mut Monitor, book: &mut impl Book, sights: &[Sight], service: &Service) -> Result<Levels, NoLevels> {
+    let candidates = Candidates::likely(some(book, sights, service)?, service);
+    let share = candidates.share();
+    let modes = some(book, sights, service)?;
+    let mut worst = monitor.levels_with(sights, &[], modes, service, share)?;
+    let mut rest = Rest::default();
+    for mask in candidates.masks() {
+        let (left, _) = rest.without(sights, &[], mask);
+        match some(book, left, service).map(|modes| monitor.levels_with(left, &[], modes, service, share)) {
+            Ok(Ok(after)) => worst.widen(Some(&after)),
+            Err(e @ NoLevels::Modes(NoModes::OutOfDomain(_))) => return Err(e),
+            // Without these satellites there is no position: the fault cannot be excluded.
+            _ => worst.widen(None),
+        }
+    }
+    Ok(worst)
+}
+
+/// Detection and exclusion on residuals: measured less computed ranges at one place, clocks of any value in them \[m\].
+///
+/// Each separation is compared with its threshold; where one exceeds it, modes are tried for exclusion in the order of their largest
+/// ratio, and the first is taken without which all solutions agree.
+///
+/// # Errors
+/// [`NoLevels`]; a residual that is no number is [`Unavailable::Invalid`].
+pub fn monitored(
+    monitor: &mut Monitor,
+    book: &mut impl Book,
+    sights: &[Sight],
+    residuals_m: &[f64],
+    service: &Service,
+) -> Result<Monitored, NoLevels> {
+    if let Some(bad) = residuals_m.iter().find(|r| !r.is_finite()) {
+        return Err(Unavailable::Invalid { field: "residual_m", value: *bad, unit: "m", domain: "finite" }.into());
+    }
+    if residuals_m.len() != sights.len() {
+        let (value, domain) = (residuals_m.len() as f64, "one a satellite");
+        return Err(Unavailable::Invalid { field: "residual_m", value, unit: "1", domain }.into());
+    }
+    let share = Candidates::likely(some(book, sights, service)?, service).share();
+    let modes = some(book, sights, service)?;
+    let levels = monitor.levels_with(sights, residuals_m, modes, service, share)?;
+    let suspects = Candidates::suspects(monitor, modes, service);
+    let worst_ratio = suspects.ratio[0];
+    let all = Monitored { decision: Decision::Nothing, levels, step: monitor.step(), excluded: 0, worst_ratio };
+    if worst_ratio <= 1.0 {
+        return Ok(all);
+    }
+    let mut rest = Rest::default();
+    for mask in suspects.masks() {
+        let (sights, residuals_m) = rest.without(sights, residuals_m, mask);
+        let Ok(modes) = some(book, sights, service) else { continue };
+        let Ok(levels) = monitor.levels_with(sights, residuals_m, modes, service, share) else { continue };
+        // Where nothing is left to test with, agreement means nothing; the levels are infinite there.
+        let tested = levels.hpl.m().is_finite() && levels.vpl.m().is_finite();
+        if tested && Candidates::suspects(monitor, modes, service).ratio[0] <= 1.0 {
+            return Ok(Monitored { decision: Decision::Excluded, levels, step: monitor.step(), excluded: mask, worst_ratio });
+        }
+    }
+    Ok(Monitored { decision: Decision::NotExcluded, ..all })
+}
+
+fn some<'a>(book: &'a mut impl Book, sights: &[Sight], service: &Service) -> Result<&'a FaultModes, NoLevels> {
+    if sights.is_empty() {
+        return Err(Unavailable::TooFewSatellites { need: 4, have: 0 }.into());
+    }
+    Ok(book.modes(sights, service)?)
+}
+
+/// Fault modes that may be excluded.
+struct Candidates {
+    mask: [u64; MOST_SATELLITES + 8],
+    ratio: [f64; MOST_SATELLITES + 8],
+    count: usize,
+}
+
+impl Candidates {
+    const fn none() -> Self {
+        Self { mask: [0; MOST_SATELLITES + 8], ratio: [0.0; MOST_SATELLITES + 8], count: 0 }
+    }
+
+    /// Every fault more likely than the integrity risk: those that continuity needs to be excluded.
+    fn likely(modes: &FaultModes, service: &Service) -> Self {
+        let mut found = Self::none();
+        for (slot, mode) in found.mask.iter_mut().zip(modes.iter().skip(1).filter(|m| m.p > service.integrity())) {
+            *slot = mode.satellites;
+            found.count += 1;
+        }
+        found
+    }
+
+    /// The modes whose separation is largest against its threshold, in that order.
+    fn suspects(monitor: &mut Monitor, modes: &FaultModes, service: &Service) -> Self {
+        let mut found = Self::none();
+        monitor.ratios(modes, service, |mask, ratio| {
+            // Insertion into the few that are kept.
+            let mut place = found.count.min(MOST_TRIED - 1);
+            if found.count == MOST_TRIED && ratio <= found.ratio[place] {
+                return;
+            }
+            while place > 0 && found.ratio[place - 1] < ratio {
+                (found.mask[place], found.ratio[place]) = (found.mask[place - 1], found.ratio[place - 1]);
+                place -= 1;
+            }
+            (found.mask[place], found.ratio[place]) = (mask, ratio);
+            found.count = (found.count + 1).min(MOST_TRIED);
+        });
+        found
+    }
+
+    /// Of the risk for each decision, "nothing" among them.
+    fn share(&self) -> f64 {
+        1.0 / (1 + self.count) as f64
+    }
+
+    fn masks(&self) -> impl Iterator<Item = u64> + '_ {
+        self.mask[..self.count].iter().copied()
+    }
+}
+
+/// The satellites that are left, and their residuals where there are any.
+pub(super) struct Rest {
+    sights: [Sight; MOST_SATELLITES],
+    residuals_m: [f64; MOST_SATELLITES],
+}
+
+impl Default for Rest {
+    fn default() -> Self {
+        Self { sights: [Sight::NONE; MOST_SATELLITES], residuals_m: [0.0; MOST_SATELLITES] }
+    }
+}
+
+impl Rest {
+    #[inline(always)]
+    pub(super) fn without(&mut self, sights: &[Sight], residuals_m: &[f64], mask: u64) -> (&[Sight], &[f64]) {
+        let mut count = 0;
+        for (i, sight) in sights.iter().enumerate().take(MOST_SATELLITES).filter(|(i, _)| mask >> i & 1 == 0) {
+            self.sights[count] = *sight;
+            self.residuals_m[count] = residuals_m.get(i).copied().unwrap_or(0.0);
+            count += 1;
+        }
+        (&self.sights[..count], &self.residuals_m[..count.min(residuals_m.len())])
+    }
+}

@@ -1,0 +1,130 @@
+use super::exclusion::{NoLevels, detected, monitored, predicted};
+use super::modes::{Book, FaultModes, NoModes};
+use super::*;
+use nalgebra::Vector3;
+
+/// The published ten-satellite example (Blanch et al. 2012): unit vector, variances for integrity and for accuracy.
+const PUBLISHED: [([f64; 3], f64, f64); 10] = [
+    ([-0.0225, -0.9951, 0.0966], 3.8865, 3.574),
+    ([-0.675, 0.69, 0.2612], 1.4377, 1.1252),
+    ([-0.0723, 0.6601, 0.7477], 0.8604, 0.5479),
+    ([0.9398, -0.2553, 0.2269], 1.6383, 1.3258),
+    ([0.5907, 0.7539, 0.2877], 1.3229, 1.0104),
+    ([0.3236, 0.0354, 0.9455], 0.8434, 0.5309),
+    ([0.6748, -0.4356, 0.5957], 0.8963, 0.5838),
+    ([-0.0938, 0.7004, 0.7075], 0.8669, 0.5544),
+    ([-0.5571, -0.3088, 0.7709], 0.8573, 0.5448),
+    ([-0.6622, -0.6958, 0.278], 1.3616, 1.0491),
+];
+const P_CONST: [f64; CLOCKS] = [1e-4; CLOCKS];
+
+fn published(p_sat: f64) -> Vec<Sight> {
+    let sight = |(i, (unit, integrity_m2, accuracy_m2)): (usize, &([f64; 3], f64, f64))| Sight {
+        unit: Vector3::from(*unit),
+        constellation: if i < 5 { Constellation::Gps } else { Constellation::Galileo },
+        integrity_m2: *integrity_m2,
+        accuracy_m2: *accuracy_m2,
+        bias: Metres::new(0.5),
+        bias_continuity: Metres::new(0.0),
+        p_sat,
+    };
+    PUBLISHED.iter().enumerate().map(sight).collect()
+}
+
+/// Works every list out anew.
+struct Anew(Option<FaultModes>);
+
+impl Book for Anew {
+    fn modes(&mut self, sights: &[Sight], service: &Service) -> Result<&FaultModes, NoModes> {
+        Ok(self.0.insert(FaultModes::new(sights, &P_CONST, service)?))
+    }
+}
+
+#[test]
+fn constellations_of_the_published_example_are_met_to_the_printed_digit() {
+    let (sights, service, mut monitor) = (published(1e-5), Service::LPV_200, Monitor::default());
+    let modes = FaultModes::new(&sights, &P_CONST, &service).unwrap();
+    let levels = monitor.levels(&sights, &modes, &service).unwrap();
+    assert_eq!((modes.len(), levels.n_monitored), (13, 13));
+    let whole: Vec<_> = monitor.report(&modes, &service).filter(|r| r.mode.constellations != 0).collect();
+    for (report, sigma, separation, bias) in [(whole[0], 2.576, 1.5307, 2.8935), (whole[1], 2.5577, 1.5292, 2.0875)] {
+        // Half a unit of the last printed digit, and what the four digits of the printed geometry leave.
+        assert!((report.sigma[2].m() - sigma).abs() <= 5e-4, "{report:?}");
+        assert!((report.sigma_separation[2].m() - separation).abs() <= 5e-4, "{report:?}");
+        assert!((report.bias[2].m() - bias).abs() <= 5e-4, "{report:?}");
+        assert!(report.monitored);
+    }
+}
+
+#[test]
+fn the_variant_with_every_pair_has_57_modes() {
+    let (sights, service) = (published(1e-4), Service::LPV_200);
+    // 10 satellites, 45 pairs, 2 constellations; pairs inside a constellation count with it, and the rest is kept as far as needed.
+    let modes = FaultModes::new(&sights, &P_CONST, &Service { consolidation: 0.0, unmonitored: Risk::constant(1e-12), ..service }).unwrap();
+    let pairs = modes.iter().filter(|m| m.satellites.count_ones() == 2).count();
+    assert_eq!(pairs, 45);
+    let total: f64 = modes.iter().map(|m| m.p).sum::<f64>() + modes.left();
+    // Everything that can happen, by sums of 400 doubles.
+    assert!((total - 1.0).abs() <= 1e-13, "{total}");
+}
+
+#[test]
+fn pairs_and_pairs_beyond_a_constellation_agree_with_a_new_solution() {
+    let (sights, service, mut monitor) = (published(1e-4), Service::LPV_200, Monitor::default());
+    let every = Service { consolidation: 0.0, unmonitored: Risk::constant(1e-12), ..service };
+    let modes = FaultModes::new(&sights, &P_CONST, &every).unwrap();
+    monitor.levels(&sights, &modes, &every).unwrap();
+    let mut seen = 0;
+    for report in monitor.report(&modes, &every).filter(|r| r.monitored && r.mode.satellites != 0) {
+        let left: Vec<_> = (0..10).filter(|i| report.mode.satellites >> i & 1 == 0).map(|i| sights[i]).collect();
+        let weighted = left.iter().map(|s| crate::solution::wls::WeightedSight {
+            unit: s.unit,
+            weight: 1.0 / s.integrity_m2,
+            constellation: s.constellation,
+        });
+        let anew = crate::solution::wls::covariance_of_weighted(weighted).unwrap();
+        for a in 0..3 {
+            let sigma = sqrt(anew.matrix()[(a, a)]);
+            // Downdates lose as many digits as the satellites left are worse than all: conditions below 1e6.
+            assert!((report.sigma[a].m() - sigma).abs() <= 1e-9 * sigma, "{:?}: {sigma}", report.mode);
+        }
+        seen += 1;
+    }
+    assert!(seen > 50, "{seen}");
+}
+
+#[test]
+fn exclusion_promises_more_than_detection_and_finds_the_fault() {
+    let (sights, service, mut monitor) = (published(1e-5), Service::HORIZONTAL, Monitor::default());
+    let mut book = Anew(None);
+    let detection = detected(&mut monitor, &mut book, &sights, &service).unwrap();
+    let exclusion = predicted(&mut monitor, &mut book, &sights, &service).unwrap();
+    assert!(exclusion.hpl > detection.hpl && exclusion.vpl > detection.vpl);
+    let mut residuals = [3.0; 10];
+    residuals[2] += 200.0;
+    let found = monitored(&mut monitor, &mut book, &sights, &residuals, &service).unwrap();
+    assert_eq!((found.decision, found.excluded), (exclusion::Decision::Excluded, 1 << 2));
+    // Residuals without the fault are equal for all: clocks take them up.
+    assert!(found.step.iter().all(|s| s.m().abs() < 1e-9), "{:?}", found.step);
+    assert!(found.worst_ratio > 1.0);
+}
+
+#[test]
+fn satellites_that_cannot_be_tested_are_no_agreement() {
+    // Five of one constellation: without any one of them four are left, which always agree.
+    let (sights, mut monitor) = (published(1e-5)[..5].to_vec(), Monitor::default());
+    let found = monitored(&mut monitor, &mut Anew(None), &sights, &[0.0, 0.0, 1e4, 0.0, 0.0], &Service::LPV_200).unwrap();
+    assert!(found.worst_ratio > 1.0, "{found:?}");
+    assert_eq!((found.decision, found.excluded), (exclusion::Decision::NotExcluded, 0));
+}
+
+#[test]
+fn what_there_is_no_room_for_is_said() {
+    let one = published(1e-5)[0];
+    let many: Vec<_> = (0..65).map(|_| one).collect();
+    assert_eq!(FaultModes::new(&many, &P_CONST, &Service::LPV_200).unwrap_err(), NoModes::TooManySatellites { have: 65 });
+    let likely: Vec<_> = (0..60).map(|_| Sight { p_sat: 0.01, ..one }).collect();
+    assert_eq!(FaultModes::new(&likely, &P_CONST, &Service::LPV_200).unwrap_err(), NoModes::TooManyModes);
+    let none = detected(&mut Monitor::default(), &mut Anew(None), &[], &Service::LPV_200);
+    assert_eq!(none.unwrap_err(), NoLevels::Geometry(Unavailable::TooFewSatellites { need: 4, have: 0 }));
+}
