@@ -15,7 +15,7 @@ import sys
 from datetime import UTC, datetime
 from pathlib import Path
 
-MODULES = ("tse", "anp", "runs", "sbas", "gbas", "gnss", "kpi", "dme", "sensors")
+MODULES = ("tse", "anp", "runs", "sbas", "gbas", "gnss", "kpi", "dme", "sensors", "ins")
 RESULTS = Path(__file__).parent / "results"
 
 

@@ -61,6 +61,7 @@ pub fn run(
     }
     let filter = Box::new(Filter::new(start, sigma, settings)?);
     let mut driver = Driver::new(filter, *plan);
+    let mut moments = Vec::new();
     let mut next = aiding.partition_point(|a| a.time < start.time);
     for sample in imu {
         driver.sample(&sample);
@@ -68,29 +69,30 @@ pub fn run(
             driver.aid(timed);
             next += 1;
         }
-        driver.output(sample.time);
+        moments.extend(driver.output(sample.time));
     }
-    Ok(driver.flight())
+    let samples = *driver.filter.samples();
+    Ok(Flight { moments, samples, stopped: driver.stopped, filter: driver.filter, refused: driver.refused })
 }
 
-struct Driver {
-    filter: Box<Filter>,
+/// The filter and what it needs to be driven in the order of time.
+pub(crate) struct Driver {
+    pub(crate) filter: Box<Filter>,
     plan: Plan,
     used: [Option<GpsTime>; Kind::ALL.len()],
     constrained: Option<GpsTime>,
     due: GpsTime,
-    moments: Vec<Moment>,
     stopped: Option<(GpsTime, Stop)>,
     refused: Option<(GpsTime, OutOfDomain)>,
 }
 
 impl Driver {
-    fn new(filter: Box<Filter>, plan: Plan) -> Self {
-        let due = filter.time();
-        Self { filter, plan, used: [None; Kind::ALL.len()], constrained: None, due, moments: Vec::new(), stopped: None, refused: None }
+    pub(crate) fn new(filter: Box<Filter>, plan: Plan) -> Self {
+        let due = filter.time().plus_seconds(plan.output_period_s);
+        Self { filter, plan, used: [None; Kind::ALL.len()], constrained: None, due, stopped: None, refused: None }
     }
 
-    fn sample(&mut self, sample: &ImuIncrement) {
+    pub(crate) fn sample(&mut self, sample: &ImuIncrement) {
         match self.filter.advance(sample) {
             Advance::Refused(why) => {
                 self.refused.get_or_insert((sample.time, why));
@@ -107,7 +109,7 @@ impl Driver {
         }
     }
 
-    fn aid(&mut self, timed: &TimedAiding) {
+    pub(crate) fn aid(&mut self, timed: &TimedAiding) {
         let kind = match &timed.aiding {
             Aiding::Satellite(_) => Kind::Range,
             Aiding::Dme(_) => Kind::Dme,
@@ -122,20 +124,16 @@ impl Driver {
         }
     }
 
-    fn output(&mut self, time: GpsTime) {
+    /// The result, where one is due.
+    pub(crate) fn output(&mut self, time: GpsTime) -> Option<Moment> {
         if time < self.due {
-            return;
+            return None;
         }
-        let solution = if self.filter.stopped().is_none() { Some(self.filter.solution()) } else { None };
-        self.moments.push(Moment { time, solution, n_states: self.filter.n_states() });
         // At most one result a nanosecond; a hole is not filled with results that are late.
         let missed = (time.seconds_since(self.due) / self.plan.output_period_s.max(1e-9)).floor();
         self.due = self.due.plus_seconds((missed + 1.0) * self.plan.output_period_s).max(time.plus_seconds(1e-9));
-    }
-
-    fn flight(self) -> Flight {
-        let samples = *self.filter.samples();
-        Flight { moments: self.moments, samples, stopped: self.stopped, filter: self.filter, refused: self.refused }
+        let solution = if self.filter.stopped().is_none() { Some(self.filter.solution()) } else { None };
+        Some(Moment { time, solution, n_states: self.filter.n_states() })
     }
 }
 

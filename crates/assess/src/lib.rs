@@ -7,6 +7,7 @@ pub mod araim;
 pub mod batch;
 pub mod bounds;
 pub mod dme;
+pub mod consistency;
 pub mod ee;
 pub mod error;
 pub mod evaluation;
