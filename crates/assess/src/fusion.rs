@@ -2,7 +2,7 @@
 
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{Aiding, ImuIncrement, TimedAiding};
-use navbound_core::solution::ins::{Advance, Constraint, Filter, Kind, NavState, Samples, Settings, Solution, StartSigma, Stop, Strapdown};
+use navbound_core::solution::ins::{Advance, Filter, Kind, NavState, Samples, Settings, Solution, StartSigma, Stop, Strapdown, Wheels};
 
 /// How a flight is run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,7 +12,7 @@ pub struct Plan {
     /// Least time between two uses of the same kind of measurement \[s\]; 0 uses all.
     pub update_period_s: f64,
     /// An assumption about the vehicle and how often it is used \[s\]; not for aircraft.
-    pub constraint: Option<(Constraint, f64)>,
+    pub wheels: Option<(Wheels, f64)>,
 }
 
 /// The filter at an instant.
@@ -59,6 +59,9 @@ pub fn run(
         let value = aiding[k + 1].time.nanoseconds() as f64;
         return Err(OutOfDomain { argument: "aiding time_ns", value, unit: "ns", domain: "times that do not go backwards" });
     }
+    if let Some((wheels, _)) = &plan.wheels {
+        wheels.check()?;
+    }
     let filter = Box::new(Filter::new(start, sigma, settings)?);
     let mut driver = Driver::new(filter, *plan);
     let mut moments = Vec::new();
@@ -80,7 +83,7 @@ pub(crate) struct Driver {
     pub(crate) filter: Box<Filter>,
     plan: Plan,
     used: [Option<GpsTime>; Kind::ALL.len()],
-    constrained: Option<GpsTime>,
+    rolled: Option<GpsTime>,
     due: GpsTime,
     stopped: Option<(GpsTime, Stop)>,
     refused: Option<(GpsTime, OutOfDomain)>,
@@ -89,7 +92,7 @@ pub(crate) struct Driver {
 impl Driver {
     pub(crate) fn new(filter: Box<Filter>, plan: Plan) -> Self {
         let due = filter.time().plus_seconds(plan.output_period_s);
-        Self { filter, plan, used: [None; Kind::ALL.len()], constrained: None, due, stopped: None, refused: None }
+        Self { filter, plan, used: [None; Kind::ALL.len()], rolled: None, due, stopped: None, refused: None }
     }
 
     pub(crate) fn sample(&mut self, sample: &ImuIncrement) {
@@ -102,10 +105,10 @@ impl Driver {
             }
             Advance::Done | Advance::Bridged { .. } | Advance::Late => {}
         }
-        if let Some((constraint, period_s)) = &self.plan.constraint
-            && due(&mut self.constrained, sample.time, *period_s)
+        if let Some((wheels, period_s)) = &self.plan.wheels
+            && due(&mut self.rolled, sample.time, *period_s)
         {
-            self.filter.constrain(constraint);
+            self.filter.roll(wheels);
         }
     }
 

@@ -9,8 +9,8 @@ use navbound_core::signal::{
     Aiding, BaroHeight, Constellation, DmeRange, ImuIncrement, PositionFix, SatelliteId, SatelliteRange, TimedAiding, VorBearing,
 };
 use navbound_core::solution::ins::{
-    Attitude, ClockModel, Constraint, ErrorModel, Further, ImuModel, Kind, NavState, Patience, SensorNoise, Settings, Solution, StartSigma,
-    Stop, coarse,
+    Attitude, ClockModel, ErrorModel, Further, ImuModel, Kind, NavState, Patience, SensorNoise, Settings, Solution, StartSigma, Stop,
+    Wheels, coarse,
 };
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -263,10 +263,9 @@ impl Told {
     }
 
     pub fn plan(&self) -> Plan {
-        let wheels = |[x, y, z, sigma_mps, mount_rad, period_s]: [f64; 6]| {
-            (Constraint::Wheels { arm_m: Vector3::new(x, y, z), sigma_mps, mount_rad }, period_s)
-        };
-        Plan { output_period_s: self.period_s[0], update_period_s: self.period_s[1], constraint: self.wheels.map(wheels) }
+        let wheels =
+            |[x, y, z, sigma_mps, mount_rad, period_s]: [f64; 6]| (Wheels { arm_m: Vector3::new(x, y, z), sigma_mps, mount_rad }, period_s);
+        Plan { output_period_s: self.period_s[0], update_period_s: self.period_s[1], wheels: self.wheels.map(wheels) }
     }
 }
 
