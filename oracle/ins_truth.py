@@ -28,8 +28,6 @@ SECOND = np.array([2, -27, 270, -490, 270, -27, 2], dtype=L) / 180
 # Gauss-Legendre of four points.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(4)
 
-Motion = "Callable[[NDArray[Any]], tuple[NDArray[Any], NDArray[Any]]]"
-
 
 @dataclass(frozen=True)
 class Flight:
@@ -91,7 +89,7 @@ def ned_from_body(a: NDArray[Any]) -> NDArray[Any]:
 def gravity(p: NDArray[Any]) -> NDArray[Any]:
     """Downwards, centrifugal part included: Somigliana and second order in height."""
     s2, h = np.sin(p[..., 0]) ** 2, p[..., 2] / A
-    return G_EQUATOR * (1 + K * s2) / np.sqrt(1 - E2 * s2) * (1 - 2 * (1 + F + M - 2 * F * s2) * h + 3 * h * h)
+    return np.asarray(G_EQUATOR * (1 + K * s2) / np.sqrt(1 - E2 * s2) * (1 - 2 * (1 + F + M - 2 * F * s2) * h + 3 * h * h))
 
 
 def felt(motion: Callable[[NDArray[Any]], tuple[NDArray[Any], NDArray[Any]]], t: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:

@@ -12,6 +12,7 @@ from navbound.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import polars as pl
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -33,7 +34,9 @@ def _times(time_ns: ArrayLike) -> NDArray[np.int64]:
 
 def _joined(n: int, *columns: tuple[str, ArrayLike, int]) -> NDArray[np.float64]:
     """Join columns of given widths to one table of n rows."""
-    return np.ascontiguousarray(np.concatenate([rows(name, np.reshape(value, (-1, width)), (n, width)) for name, value, width in columns], 1))
+    return np.ascontiguousarray(
+        np.concatenate([rows(name, np.reshape(value, (-1, width)), (n, width)) for name, value, width in columns], 1)
+    )
 
 
 @dataclass(frozen=True)
@@ -232,6 +235,23 @@ class Aiding:
     vor: VorBearings | None = None
     baro: BaroHeights | None = None
 
+    @classmethod
+    def of_tables(
+        cls,
+        *,
+        satellites: pl.DataFrame | None = None,
+        dme: pl.DataFrame | None = None,
+        vor: pl.DataFrame | None = None,
+        baro: pl.DataFrame | None = None,
+    ) -> Aiding:
+        """Take tables with the columns of `navbound.ins.Sensed`; an empty table is a sensor that is not there."""
+        return cls(
+            satellites=None if satellites is None or satellites.is_empty() else _satellites_of(satellites),
+            dme=None if dme is None or dme.is_empty() else _dme_of(dme),
+            vor=None if vor is None or vor.is_empty() else _vor_of(vor),
+            baro=None if baro is None or baro.is_empty() else _baro_of(baro),
+        )
+
     def tables(self) -> dict[str, object]:
         """Give the tables as the core takes them."""
         no_time = np.empty(0, dtype=np.int64)
@@ -242,3 +262,64 @@ class Aiding:
             "vor": (no_time, [], np.empty((0, 6))) if self.vor is None else self.vor.table(),
             "baro": (no_time, np.empty((0, 4))) if self.baro is None else self.baro.table(),
         }
+
+
+def _numbers(table: pl.DataFrame, *names: str) -> NDArray[np.float64]:
+    """Columns side by side, one column flat."""
+    missing = [name for name in ("time_ns", *names) if name not in table.columns]
+    if missing:
+        raise InputError("table", ", ".join(table.columns), domain=f"a table with the columns {', '.join(missing)}")
+    joined = np.column_stack([table[name].cast(float).to_numpy() for name in names])
+    return joined[:, 0] if len(names) == 1 else joined
+
+
+def _places(table: pl.DataFrame) -> NDArray[np.int64]:
+    """Stations by number, in the order of their names."""
+    return np.unique(table["station"].to_numpy(), return_inverse=True)[1].astype(np.int64)
+
+
+def _satellites_of(table: pl.DataFrame) -> SatelliteRanges:
+    return SatelliteRanges(
+        time_ns=table["time_ns"].to_numpy(),
+        satellite=table["satellite"].to_list(),
+        position_ecef_m=_numbers(table, "sv_x_m", "sv_y_m", "sv_z_m"),
+        velocity_ecef_mps=_numbers(table, "sv_vx_mps", "sv_vy_mps", "sv_vz_mps"),
+        range_m=_numbers(table, "range_m"),
+        sigma_white_m=_numbers(table, "sigma_white_m"),
+        sigma_correlated_m=_numbers(table, "sigma_correlated_m"),
+        correlation_time_s=_numbers(table, "correlation_time_s"),
+        rate_mps=_numbers(table, "range_rate_mps"),
+        sigma_rate_mps=_numbers(table, "sigma_rate_mps"),
+    )
+
+
+def _dme_of(table: pl.DataFrame) -> DmeRanges:
+    return DmeRanges(
+        time_ns=table["time_ns"].to_numpy(),
+        station=_places(table),
+        position_ecef_m=_numbers(table, "station_x_m", "station_y_m", "station_z_m"),
+        slant_m=_numbers(table, "slant_m"),
+        sigma_white_m=_numbers(table, "sigma_white_m"),
+        sigma_bias_m=_numbers(table, "sigma_bias_m"),
+    )
+
+
+def _vor_of(table: pl.DataFrame) -> VorBearings:
+    return VorBearings(
+        time_ns=table["time_ns"].to_numpy(),
+        station=_places(table),
+        position=_numbers(table, "station_lat_rad", "station_lon_rad", "station_h_m"),
+        bearing_rad=_numbers(table, "bearing_rad"),
+        sigma_white_rad=_numbers(table, "sigma_white_rad"),
+        sigma_bias_rad=_numbers(table, "sigma_bias_rad"),
+    )
+
+
+def _baro_of(table: pl.DataFrame) -> BaroHeights:
+    return BaroHeights(
+        time_ns=table["time_ns"].to_numpy(),
+        height_m=_numbers(table, "baro_h_m"),
+        sigma_white_m=_numbers(table, "sigma_white_m"),
+        sigma_bias_m=_numbers(table, "sigma_bias_m"),
+        correlation_time_s=_numbers(table, "correlation_time_s"),
+    )

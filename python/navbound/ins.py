@@ -3,21 +3,9 @@
 from __future__ import annotations
 
 from navbound._ins_aiding import Aiding, BaroHeights, DmeRanges, Fixes, SatelliteRanges, VorBearings
-from navbound._ins_fuse import (
-    Clock,
-    FilterSettings,
-    Fused,
-    Imu,
-    ImuModel,
-    Innovations,
-    SensorNoise,
-    Start,
-    Track,
-    Wheels,
-    coarse_attitude,
-    fuse,
-    mechanize,
-)
+from navbound._ins_consistency import consistency
+from navbound._ins_fuse import Fused, Innovations, Track, coarse_attitude, fuse, mechanize
+from navbound._ins_settings import Clock, FilterSettings, Imu, ImuModel, SensorNoise, Start, StartSigma, Wheels
 from navbound._ins_simulate import Sensed, simulate
 
 __all__ = [
@@ -35,10 +23,12 @@ __all__ = [
     "Sensed",
     "SensorNoise",
     "Start",
+    "StartSigma",
     "Track",
     "VorBearings",
     "Wheels",
     "coarse_attitude",
+    "consistency",
     "fuse",
     "mechanize",
     "simulate",

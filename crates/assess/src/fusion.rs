@@ -2,7 +2,7 @@
 
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{Aiding, ImuIncrement, TimedAiding};
-use navbound_core::solution::ins::{Advance, Constraint, Filter, Kind, NavState, Samples, Settings, Solution, StartSigma, Stop, Strapdown};
+use navbound_core::solution::ins::{Advance, Filter, Kind, NavState, Samples, Settings, Solution, StartSigma, Stop, Strapdown, Wheels};
 
 /// How a flight is run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,7 +12,7 @@ pub struct Plan {
     /// Least time between two uses of the same kind of measurement \[s\]; 0 uses all.
     pub update_period_s: f64,
     /// An assumption about the vehicle and how often it is used \[s\]; not for aircraft.
-    pub constraint: Option<(Constraint, f64)>,
+    pub wheels: Option<(Wheels, f64)>,
 }
 
 /// The filter at an instant.
@@ -59,8 +59,12 @@ pub fn run(
         let value = aiding[k + 1].time.nanoseconds() as f64;
         return Err(OutOfDomain { argument: "aiding time_ns", value, unit: "ns", domain: "times that do not go backwards" });
     }
+    if let Some((wheels, _)) = &plan.wheels {
+        wheels.check()?;
+    }
     let filter = Box::new(Filter::new(start, sigma, settings)?);
     let mut driver = Driver::new(filter, *plan);
+    let mut moments = Vec::new();
     let mut next = aiding.partition_point(|a| a.time < start.time);
     for sample in imu {
         driver.sample(&sample);
@@ -68,29 +72,30 @@ pub fn run(
             driver.aid(timed);
             next += 1;
         }
-        driver.output(sample.time);
+        moments.extend(driver.output(sample.time));
     }
-    Ok(driver.flight())
+    let samples = *driver.filter.samples();
+    Ok(Flight { moments, samples, stopped: driver.stopped, filter: driver.filter, refused: driver.refused })
 }
 
-struct Driver {
-    filter: Box<Filter>,
+/// The filter and what it needs to be driven in the order of time.
+pub(crate) struct Driver {
+    pub(crate) filter: Box<Filter>,
     plan: Plan,
     used: [Option<GpsTime>; Kind::ALL.len()],
-    constrained: Option<GpsTime>,
+    rolled: Option<GpsTime>,
     due: GpsTime,
-    moments: Vec<Moment>,
     stopped: Option<(GpsTime, Stop)>,
     refused: Option<(GpsTime, OutOfDomain)>,
 }
 
 impl Driver {
-    fn new(filter: Box<Filter>, plan: Plan) -> Self {
-        let due = filter.time();
-        Self { filter, plan, used: [None; Kind::ALL.len()], constrained: None, due, moments: Vec::new(), stopped: None, refused: None }
+    pub(crate) fn new(filter: Box<Filter>, plan: Plan) -> Self {
+        let due = filter.time().plus_seconds(plan.output_period_s);
+        Self { filter, plan, used: [None; Kind::ALL.len()], rolled: None, due, stopped: None, refused: None }
     }
 
-    fn sample(&mut self, sample: &ImuIncrement) {
+    pub(crate) fn sample(&mut self, sample: &ImuIncrement) {
         match self.filter.advance(sample) {
             Advance::Refused(why) => {
                 self.refused.get_or_insert((sample.time, why));
@@ -100,14 +105,14 @@ impl Driver {
             }
             Advance::Done | Advance::Bridged { .. } | Advance::Late => {}
         }
-        if let Some((constraint, period_s)) = &self.plan.constraint
-            && due(&mut self.constrained, sample.time, *period_s)
+        if let Some((wheels, period_s)) = &self.plan.wheels
+            && due(&mut self.rolled, sample.time, *period_s)
         {
-            self.filter.constrain(constraint);
+            self.filter.roll(wheels);
         }
     }
 
-    fn aid(&mut self, timed: &TimedAiding) {
+    pub(crate) fn aid(&mut self, timed: &TimedAiding) {
         let kind = match &timed.aiding {
             Aiding::Satellite(_) => Kind::Range,
             Aiding::Dme(_) => Kind::Dme,
@@ -122,20 +127,16 @@ impl Driver {
         }
     }
 
-    fn output(&mut self, time: GpsTime) {
+    /// The result, where one is due.
+    pub(crate) fn output(&mut self, time: GpsTime) -> Option<Moment> {
         if time < self.due {
-            return;
+            return None;
         }
-        let solution = if self.filter.stopped().is_none() { Some(self.filter.solution()) } else { None };
-        self.moments.push(Moment { time, solution, n_states: self.filter.n_states() });
         // At most one result a nanosecond; a hole is not filled with results that are late.
         let missed = (time.seconds_since(self.due) / self.plan.output_period_s.max(1e-9)).floor();
         self.due = self.due.plus_seconds((missed + 1.0) * self.plan.output_period_s).max(time.plus_seconds(1e-9));
-    }
-
-    fn flight(self) -> Flight {
-        let samples = *self.filter.samples();
-        Flight { moments: self.moments, samples, stopped: self.stopped, filter: self.filter, refused: self.refused }
+        let solution = if self.filter.stopped().is_none() { Some(self.filter.solution()) } else { None };
+        Some(Moment { time, solution, n_states: self.filter.n_states() })
     }
 }
 

@@ -7,6 +7,7 @@ pub mod araim;
 pub mod araim_watch;
 pub mod batch;
 pub mod bounds;
+pub mod consistency;
 pub mod dme;
 pub mod ee;
 pub mod error;

@@ -8,7 +8,7 @@
 //! - [`frame`]: ECEF, east-north-up and track frames; covariances that know their frame.
 //! - [`signal`]: which satellite, from which constellation.
 //! - [`geometry`]: nominal orbits, lines of sight, dilution of precision.
-//! - [`solution`]: weighted least squares and the one record of an instant, [`solution::Epoch`].
+//! - [`solution`]: weighted least squares, inertial navigation and its filter, and the one record of an instant, [`solution::Epoch`].
 //! - [`spec`]: navigation specifications and requirement tables, as data.
 //! - [`bound`]: how wrong the position may be: total system error and actual navigation performance; the list [`bound::METHODS`].
 //! - [`monitor`]: whether to tell the crew: the RNP monitor and the RNP-state classifier.

@@ -9,8 +9,8 @@ use navbound_core::signal::{
     Aiding, BaroHeight, Constellation, DmeRange, ImuIncrement, PositionFix, SatelliteId, SatelliteRange, TimedAiding, VorBearing,
 };
 use navbound_core::solution::ins::{
-    Attitude, ClockModel, Constraint, ErrorModel, Further, ImuModel, Kind, NavState, Patience, SensorNoise, Settings, Solution, StartSigma,
-    Stop, coarse,
+    Attitude, ClockModel, ErrorModel, Further, ImuModel, Kind, NavState, Patience, SensorNoise, Settings, Solution, StartSigma, Stop,
+    Wheels, coarse,
 };
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -209,7 +209,7 @@ impl Tables<'_> {
 /// Everything the filter is told.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Told {
+pub struct Told {
     /// White, bias, its time: gyroscopes, accelerometers.
     gyroscope: [f64; 3],
     accelerometer: [f64; 3],
@@ -235,7 +235,7 @@ struct Told {
 }
 
 impl Told {
-    fn settings(&self) -> PyResult<Settings> {
+    pub fn settings(&self) -> PyResult<Settings> {
         let noise = |[white, bias, bias_time_s]: [f64; 3]| SensorNoise { white, bias, bias_time_s };
         let [bias_m, drift_mps, frequency_m2ps, walk_m2ps3, inter_system_m] = self.clock;
         Ok(Settings {
@@ -254,7 +254,7 @@ impl Told {
         })
     }
 
-    fn sigma(&self) -> StartSigma {
+    pub fn sigma(&self) -> StartSigma {
         StartSigma {
             position: self.position_sigma_m.map(Metres::new),
             velocity_mps: self.velocity_sigma_mps,
@@ -262,11 +262,10 @@ impl Told {
         }
     }
 
-    fn plan(&self) -> Plan {
-        let wheels = |[x, y, z, sigma_mps, mount_rad, period_s]: [f64; 6]| {
-            (Constraint::Wheels { arm_m: Vector3::new(x, y, z), sigma_mps, mount_rad }, period_s)
-        };
-        Plan { output_period_s: self.period_s[0], update_period_s: self.period_s[1], constraint: self.wheels.map(wheels) }
+    pub fn plan(&self) -> Plan {
+        let wheels =
+            |[x, y, z, sigma_mps, mount_rad, period_s]: [f64; 6]| (Wheels { arm_m: Vector3::new(x, y, z), sigma_mps, mount_rad }, period_s);
+        Plan { output_period_s: self.period_s[0], update_period_s: self.period_s[1], wheels: self.wheels.map(wheels) }
     }
 }
 

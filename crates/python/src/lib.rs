@@ -11,6 +11,7 @@ mod error;
 mod evaluation;
 mod gbas;
 mod gnss;
+mod ins_consistency;
 mod ins_fuse;
 mod ins_simulate;
 mod kpi;
@@ -51,6 +52,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     rraim::register(m)?;
     surface::register(m)?;
     ins_fuse::register(m)?;
+    ins_consistency::register(m)?;
     kpi::register(m)?;
     dme::register(m)?;
     radionav::register(m)?;

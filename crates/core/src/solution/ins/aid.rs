@@ -4,8 +4,9 @@ use super::covariance::Row;
 use super::filter::Filter;
 use super::innovation::Kind;
 use super::measure::{Antenna, Scalar, body_velocity};
-use super::settings::ErrorModel;
+use super::settings::{ErrorModel, positive};
 use super::slots::{Further, Process};
+use super::state::finite;
 use crate::quantity::OutOfDomain;
 use crate::signal::{Aiding, BaroHeight, DmeRange, PositionFix, SatelliteRange, TimedAiding, VorBearing};
 use nalgebra::{Matrix3, Vector3};
@@ -38,23 +39,26 @@ pub enum Aided {
     Stopped,
 }
 
-/// What a vehicle cannot do. Not for aircraft: an assumption of the user's, declared with its own standard deviation.
+/// The vehicle rolls where its wheels point: no velocity to the side or upwards at a point of the body. Not for aircraft: an assumption of
+/// the user's, declared with its own standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Constraint {
-    /// It stands.
-    Standstill {
-        /// Standard deviation of each velocity component \[m/s\].
-        sigma_mps: f64,
-    },
-    /// It rolls where its wheels point: no velocity to the side or upwards at a point of the body.
-    Wheels {
-        /// That point, seen from the inertial unit, body axes \[m\].
-        arm_m: Vector3<f64>,
-        /// Standard deviation of both components \[m/s\].
-        sigma_mps: f64,
-        /// Standard deviation of the angles between the body axes and the wheels \[rad\], estimated as two constants.
-        mount_rad: f64,
-    },
+pub struct Wheels {
+    /// That point, seen from the inertial unit, body axes \[m\].
+    pub arm_m: Vector3<f64>,
+    /// Standard deviation of both components \[m/s\].
+    pub sigma_mps: f64,
+    /// Standard deviation of the angles between the body axes and the wheels \[rad\], estimated as two constants.
+    pub mount_rad: f64,
+}
+
+impl Wheels {
+    /// # Errors
+    /// [`OutOfDomain`] for a lever arm that is not finite or a deviation that is not positive.
+    pub fn check(&self) -> Result<(), OutOfDomain> {
+        self.arm_m.iter().try_for_each(|x| finite("wheels_arm_m", *x, "m"))?;
+        positive("wheels_sigma_mps", self.sigma_mps, "m/s")?;
+        positive("wheels_mount_rad", self.mount_rad, "rad")
+    }
 }
 
 impl Filter {
@@ -149,9 +153,9 @@ impl Filter {
     }
 
     fn vor(&mut self, antenna: &Antenna, m: &VorBearing) -> Aided {
-        let Some(scalar) = antenna.bearing(m) else {
-            let distance = OutOfDomain { argument: "vor_distance", value: 0.0, unit: "m", domain: "[100, inf): no bearing overhead" };
-            return Aided::Refused(distance);
+        let scalar = match antenna.bearing(m) {
+            Ok(scalar) => scalar,
+            Err(refusal) => return Aided::Refused(refusal),
         };
         let slow = Process { sigma: m.sigma_bias.rad(), tau_s: f64::INFINITY };
         self.with_own_state(Kind::Vor, scalar, Further::Vor(m.station), slow)
@@ -179,34 +183,25 @@ impl Filter {
         outcome
     }
 
-    /// One assumption about the vehicle.
-    pub fn constrain(&mut self, constraint: &Constraint) -> Aided {
+    /// Sideways and upwards velocity are what the mounting makes of the forward one; what became of the second of both.
+    pub fn roll(&mut self, wheels: &Wheels) -> Aided {
         if self.stopped.is_some() {
             return Aided::Stopped;
         }
-        self.settle();
-        match constraint {
-            Constraint::Standstill { sigma_mps } => {
-                let r = Matrix3::from_diagonal_element(sigma_mps * sigma_mps);
-                let v = -self.state().v;
-                let row = |axis: &Vector3<f64>| Row::empty().with_block(super::dynamics::V, &-axis);
-                self.use_three(Kind::Constraint, &v, &r, row)
-            }
-            Constraint::Wheels { arm_m, sigma_mps, mount_rad } => self.wheels(arm_m, *sigma_mps, *mount_rad),
+        if let Err(refusal) = wheels.check() {
+            return Aided::Refused(refusal);
         }
-    }
-
-    /// Sideways and upwards velocity are what the mounting makes of the forward one.
-    fn wheels(&mut self, arm_m: &Vector3<f64>, sigma_mps: f64, mount_rad: f64) -> Aided {
-        let mount = Process { sigma: mount_rad, tau_s: f64::INFINITY };
+        self.settle();
+        let mount = Process { sigma: wheels.mount_rad, tau_s: f64::INFINITY };
         let mut outcome = Aided::NoPlace;
         for (j, what) in [(1, Further::MountHeading), (2, Further::MountPitch)] {
             let Some(place) = self.slots.ensure(&mut self.joint, what, mount, 0.0) else { return Aided::NoPlace };
-            let (forward, _) = body_velocity(self.state(), arm_m, &self.rate, 0);
-            let (velocity, row) = body_velocity(self.state(), arm_m, &self.rate, j);
+            let (forward, _) = body_velocity(self.state(), &wheels.arm_m, &self.rate, 0);
+            let (velocity, row) = body_velocity(self.state(), &wheels.arm_m, &self.rate, j);
             let innovation = self.slots.value(place) * forward - velocity;
-            let scalar = Scalar { innovation, row: row.with(place, -forward), variance: sigma_mps * sigma_mps };
-            outcome = self.use_one((Kind::Constraint, what), &scalar, Some(place));
+            let variance = wheels.sigma_mps * wheels.sigma_mps;
+            let scalar = Scalar { innovation, row: row.with(place, -forward), variance };
+            outcome = self.use_one((Kind::Wheels, what), &scalar, Some(place));
         }
         outcome
     }
@@ -259,6 +254,15 @@ impl Filter {
     /// Three components with a common variance matrix: judged together, used along the axes in which they are independent.
     fn use_three(&mut self, kind: Kind, innovation: &Vector3<f64>, r: &Matrix3<f64>, row: impl Fn(&Vector3<f64>) -> Row) -> Aided {
         let eigen = r.symmetric_eigen();
+        if !(eigen.eigenvalues.min() > 0.0) {
+            let value = eigen.eigenvalues.min();
+            return Aided::Refused(OutOfDomain {
+                argument: "covariance",
+                value,
+                unit: "m² or m²/s²",
+                domain: "variances (0, inf) along every axis",
+            });
+        }
         let axis = |k: usize| eigen.eigenvectors.column(k).into_owned();
         let rows = [row(&axis(0)), row(&axis(1)), row(&axis(2))];
         let y = eigen.eigenvectors.transpose() * innovation;
@@ -273,7 +277,7 @@ impl Filter {
         // The first axis of the caller, whatever the independent ones are called this time.
         let first = eigen.eigenvectors.row(0);
         let normalised = innovation.x / crate::special::float::sqrt((first * s * first.transpose())[(0, 0)]);
-        // Solved positions and velocities and a standstill have one source each.
+        // Solved positions and velocities have one source each.
         let before = self.memory.replace(kind, Further::Clock, normalised);
         self.innovations[kind.index()].used_three(square, normalised, before);
         self.correct(&[scalar(0), scalar(1), scalar(2)]);

@@ -147,7 +147,8 @@ mod tests {
         let v = b.v - a.v;
         // C_b = (1 - [phi x]) C_a.
         let turned = b.ned_from_body() * a.ned_from_body().transpose();
-        let phi = [turned[(1, 2)] - turned[(2, 1)], turned[(2, 0)] - turned[(0, 2)], turned[(0, 1)] - turned[(1, 0)]].map(|x| 0.5 * x);
+        let sine = 0.5 * Vector3::new(turned[(1, 2)] - turned[(2, 1)], turned[(2, 0)] - turned[(0, 2)], turned[(0, 1)] - turned[(1, 0)]);
+        let phi = if sine.norm() > 0.0 { sine * (sine.norm().asin() / sine.norm()) } else { sine };
         [(b.lat - a.lat) * local.north, (b.lon - a.lon) * local.east * local.cos, a.h - b.h, v.x, v.y, v.z, phi[0], phi[1], phi[2]]
     }
 

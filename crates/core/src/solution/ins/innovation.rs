@@ -20,14 +20,14 @@ pub enum Kind {
     FixPosition,
     /// Solved velocity.
     FixVelocity,
-    /// What the vehicle cannot do.
-    Constraint,
+    /// No velocity across the wheels.
+    Wheels,
 }
 
 impl Kind {
     /// Every kind, in the order of [`Kind::index`].
     pub const ALL: [Self; 8] =
-        [Self::Range, Self::RangeRate, Self::Dme, Self::Vor, Self::Baro, Self::FixPosition, Self::FixVelocity, Self::Constraint];
+        [Self::Range, Self::RangeRate, Self::Dme, Self::Vor, Self::Baro, Self::FixPosition, Self::FixVelocity, Self::Wheels];
 
     /// Position in [`Kind::ALL`].
     pub const fn index(self) -> usize {
@@ -43,7 +43,7 @@ impl Kind {
             Self::Baro => "baro",
             Self::FixPosition => "fix_position",
             Self::FixVelocity => "fix_velocity",
-            Self::Constraint => "constraint",
+            Self::Wheels => "wheels",
         }
     }
 }

@@ -6,7 +6,7 @@ use super::state::NavState;
 use crate::frame::{EcefPosition, Geodetic, ecef_from_geodetic, enu_from_ecef};
 use crate::quantity::OutOfDomain;
 use crate::signal::{DmeRange, SatelliteRange, VorBearing};
-use crate::special::float::atan2;
+use crate::special::float::{atan2, hypot};
 use core::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, Vector3};
 
@@ -97,22 +97,26 @@ impl Antenna {
         Scalar { innovation: m.slant.m() - distance, row: self.position_row(&-u), variance }
     }
 
-    /// Bearing from a station, clockwise from its north; `None` straight above it, where there is none.
+    /// Bearing from a station, clockwise from its north.
     ///
     /// ```text
     /// bearing = atan2(e, n) of the aircraft in the station's axes,   d bearing = (n de - e dn) / (e^2 + n^2)
     /// ```
-    pub(super) fn bearing(&self, m: &VorBearing) -> Option<Scalar> {
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] straight above it, where there is none.
+    pub(super) fn bearing(&self, m: &VorBearing) -> Result<Scalar, OutOfDomain> {
         let enu_from_ecef = enu_from_ecef(&m.position.point);
         let d = enu_from_ecef * (self.ecef - ecef_from_geodetic(&m.position).vector());
         let square = d.x * d.x + d.y * d.y;
         if !(square > OVERHEAD_M * OVERHEAD_M) {
-            return None;
+            let value = hypot(d.x, d.y);
+            return Err(OutOfDomain { argument: "vor_distance", value, unit: "m", domain: "[100, inf) over the ground" });
         }
         let at_station = Vector3::new(d.y, -d.x, 0.0) / square;
         let g = self.ned_from_ecef * (enu_from_ecef.transpose() * at_station);
         let innovation = turned(m.bearing.rad() - atan2(d.x, d.y));
-        Some(Scalar { innovation, row: self.position_row(&g), variance: m.sigma_white.rad() * m.sigma_white.rad() })
+        Ok(Scalar { innovation, row: self.position_row(&g), variance: m.sigma_white.rad() * m.sigma_white.rad() })
     }
 }
 

@@ -24,7 +24,7 @@ mod slots;
 mod state;
 mod strapdown;
 
-pub use aid::{Aided, Constraint};
+pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};
 pub use filter::{Advance, Filter, Samples, Solution, Stop};
 pub use innovation::{Innovations, Kind};

@@ -160,3 +160,90 @@ impl Slots {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::covariance::{Row, WIDTH};
+    use super::super::dynamics::NAV;
+    use super::*;
+
+    const SLOW: Process = Process { sigma: 5.0, tau_s: 100.0 };
+
+    fn at(seconds: f64) -> GpsTime {
+        GpsTime::default().plus_seconds(seconds)
+    }
+    fn satellite(number: u8) -> Further {
+        Further::Satellite(SatelliteId { constellation: Constellation::Gps, number })
+    }
+    fn empty() -> (Joint, Slots) {
+        (Joint::new(&[1.0; NAV]), Slots::new(at(0.0)))
+    }
+    /// A range that holds the position, the clock and the satellite's own state ties them together.
+    fn tie(joint: &mut Joint, places: [usize; 2]) {
+        let row = Row::empty().with(0, 0.6).with(1, -0.3).with(places[0], 1.0).with(places[1], 1.0);
+        joint.update(&row, 0.0, 1.0, &mut [0.0; WIDTH]);
+    }
+
+    #[test]
+    fn a_satellite_that_sets_leaves_the_others_as_they_are() {
+        let (mut joint, mut slots) = empty();
+        let model = ClockModel::default();
+        let [clock, drift] = slots.ensure_clock(&mut joint, &model, 7.0).unwrap();
+        for number in 1..=3 {
+            let place = slots.ensure(&mut joint, satellite(number), SLOW, 0.0).unwrap();
+            tie(&mut joint, [clock, place]);
+        }
+        let third = slots.find(satellite(3)).unwrap();
+        let before = [joint.get(third, third), joint.get(third, clock), joint.get(third, 0), joint.get(clock, drift)];
+        slots.remove(&mut joint, slots.find(satellite(1)).unwrap() - BASE);
+        let third = slots.find(satellite(3)).unwrap();
+        assert_eq!(before, [joint.get(third, third), joint.get(third, clock), joint.get(third, 0), joint.get(clock, drift)]);
+        assert_eq!((slots.len(), slots.value(clock)), (4, 7.0));
+        // What rises again knows nothing of before.
+        let again = slots.ensure(&mut joint, satellite(1), SLOW, 0.0).unwrap();
+        assert_eq!((joint.get(again, again), joint.get(again, clock), joint.get(0, again)), (25.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn unseen_satellites_are_forgotten_and_stations_are_not() {
+        let (mut joint, mut slots) = empty();
+        let model = ClockModel::default();
+        let seen = slots.ensure(&mut joint, satellite(1), SLOW, 0.0).unwrap();
+        slots.ensure(&mut joint, satellite(2), SLOW, 0.0).unwrap();
+        slots.ensure(&mut joint, Further::Dme(4), Process { sigma: 90.0, tau_s: f64::INFINITY }, 0.0).unwrap();
+        slots.saw(seen, at(50.0));
+        slots.settle(&mut joint, at(70.0), &model, 60.0);
+        assert!(slots.find(satellite(1)).is_some() && slots.find(satellite(2)).is_none());
+        let station = slots.find(Further::Dme(4)).unwrap();
+        assert_eq!(joint.get(station, station), 8100.0);
+    }
+
+    #[test]
+    fn with_all_places_taken_the_longest_unseen_makes_room_and_nothing_else_does() {
+        let (mut joint, mut slots) = empty();
+        for k in 0..FURTHER {
+            let place = slots.ensure(&mut joint, Further::Dme(k as u16), SLOW, 0.0).unwrap();
+            slots.saw(place, at(if k == 20 { 1.0 } else { 2.0 }));
+        }
+        assert!(slots.ensure(&mut joint, Further::Baro, SLOW, 0.0).is_some());
+        assert!(slots.find(Further::Dme(20)).is_none() && slots.find(Further::Dme(19)).is_some());
+        let (mut joint, mut slots) = empty();
+        for k in 0..FURTHER {
+            slots.slot[k].what = Further::Baro;
+        }
+        slots.n = FURTHER;
+        assert!(slots.ensure(&mut joint, Further::Dme(1), SLOW, 0.0).is_none());
+    }
+
+    /// A clock without a bias of its own drifts: variance of the bias grows by drift dt, and by the noise's integrals.
+    #[test]
+    fn a_clock_grows_with_its_drift() {
+        let (mut joint, mut slots) = empty();
+        let model = ClockModel { bias_m: 2.0, drift_mps: 3.0, frequency_m2ps: 0.5, walk_m2ps3: 0.06, inter_system_m: 1.0 };
+        let [clock, drift] = slots.ensure_clock(&mut joint, &model, 0.0).unwrap();
+        slots.settle(&mut joint, at(10.0), &model, 60.0);
+        // 4 + 900 + 0.5 * 10 + 0.06 * 1000 / 3; 90 + 0.06 * 100 / 2; 9 + 0.6, to the rounding of some additions.
+        let found = [joint.get(clock, clock), joint.get(clock, drift), joint.get(drift, drift)];
+        assert!(found.iter().zip([929.0, 93.0, 9.6]).all(|(f, e)| (f - e).abs() < 1e-12 * e), "{found:?}");
+    }
+}
