@@ -257,6 +257,7 @@ fn araim_watch<'py>(
         signals: if dual { Signals::Dual } else { Signals::Single },
         smoothing: None,
         settings,
+        keep_ranges: false,
     };
     let watched = py.detach(|| watch(&observations.0, &navigation.records, &job, &promise, &service));
     let outcome = |w: &Result<Watched, NoLevels>| match w {

@@ -25,7 +25,7 @@ pub fn sighted<'a>(ranges: &'a [Range], time: GpsTime, settings: &'a Settings, h
     let turn = enu_from_ecef(&here.point);
     let place = Place { here: *here, zenith: zenith_delay(here), sin_mask: sin(settings.mask.rad()), time };
     ranges.iter().enumerate().filter_map(move |(index, range)| {
-        let (length, unit) = way(range, at.vector());
+        let (length, unit) = way(&range.position, at.vector());
         let unit = turn * unit;
         let (_, delay, weight) = settings.delay_and_weight(range, &unit, &place);
         let residual = range.corrected.m() - length - delay;
