@@ -13,6 +13,9 @@ import numpy as np
 
 from navbound import _core
 from navbound._arrays import flatten, unflatten
+from navbound._gbas_arguments import named, spread, systems, width_of
+from navbound._gbas_detection import fault_probability, missed_by_monitor, missed_detection_limit, monitor_margin
+from navbound._gbas_filter import aided_covariance, offset_variances
 from navbound._gbas_models import (
     SERVICES,
     Allocation,
@@ -27,7 +30,6 @@ from navbound._gbas_models import (
     allocation,
     carrier_sigma,
     carriers,
-    check_service,
     error_budget,
     fault_rates,
     model_marks,
@@ -77,7 +79,6 @@ __all__ = [
 
 Ordering = Literal["exact", "rss", "sum"]
 Form = Literal["major", "norm"]
-NoiseForm = Literal["paper", "bound"]
 
 
 @dataclass(frozen=True)
@@ -205,7 +206,7 @@ def bias_gain(east_north: ArrayLike, ordering: Ordering = "exact") -> float:
     _, (rows,) = flatten(east_north=(east_north, (2,)))
     if len(rows) > 48 or not np.isfinite(rows).all():
         raise InputError("east_north", f"{len(rows)} rows", domain="at most 48 rows of finite numbers")
-    return _core.gbas_bias_gain(rows, _named("ordering", ordering, ("exact", "rss", "sum")))
+    return _core.gbas_bias_gain(rows, named("ordering", ordering, ("exact", "rss", "sum")))
 
 
 def protection_levels(
@@ -262,7 +263,7 @@ def protection_levels(
         Numbers outside their domains, shapes that do not fit.
     """
     shape, (az, el) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()))
-    width, leading = _width(shape), shape[:-1]
+    width, leading = width_of(shape), shape[:-1]
     sigma, sigma_h1 = _sigmas(np.reshape(el, shape), service, sigma_m, sigma_h1_m)
     multipliers = k or factors(integrity_risk)
     found = _core.gbas_levels(
@@ -277,8 +278,8 @@ def protection_levels(
             "b_values_m": _b_values(b_values_m, leading, width),
             "k_ffmd": multipliers.k_ffmd,
             "k_md": multipliers.k_md,
-            "ordering": _named("ordering", ordering, ("exact", "rss", "sum")),
-            "form": _named("form", form, ("major", "norm")),
+            "ordering": named("ordering", ordering, ("exact", "rss", "sum")),
+            "form": named("form", form, ("major", "norm")),
         }
     )
     reason = np.array(found.pop("reason"), dtype=np.str_).reshape(leading)
@@ -286,225 +287,6 @@ def protection_levels(
     columns: dict[str, Any] = {name: unflatten(values, leading) for name, values in found.items()}
     status = np.where(reason == "", "ok", "not_available")
     return Levels(covariance_enu_m2=covariance, status=status, reason=reason, **columns)
-
-
-def fault_probability(n_sv: ArrayLike, rate_per_hour: ArrayLike, tau_s: float = 100.0) -> float:
-    """Probability of a satellite fault that monitors with memory do not yet show (navi.673 equation 9).
-
-    Parameters
-    ----------
-    n_sv, rate_per_hour : array_like
-        How many satellites have which rate: 18 at 1e-5 give 5.000e-6. [1, 1/h]
-    tau_s : float
-        Decorrelation time of the monitors. [s]
-
-    Raises
-    ------
-    InputError
-        A rate outside [0, 3600 / tau_s).
-    """
-    _, (n, rate) = flatten(n_sv=(n_sv, ()), rate_per_hour=(rate_per_hour, ()))
-    return _core.gbas_fault_probability(list(zip(n.tolist(), rate.tolist(), strict=True)), tau_s)
-
-
-def missed_by_monitor(error_m: ArrayLike, service: Service = "D", *, stretch: float | None = None) -> NDArray[np.float64]:
-    """Probability that the ground monitors miss a range error (ICAO Annex 10 appendix B, from memory; GAST F inferred).
-
-    Parameters
-    ----------
-    error_m : array_like
-        Size of the range error. [m]
-    service : {"D", "F"}
-        Whose curve.
-    stretch : float, optional
-        How many times larger an error must be than under the standard's curve; the service's own without it. [1]
-
-    Raises
-    ------
-    InputError
-        An unknown service, a stretch that is not positive.
-    """
-    check_service(service)
-    shape, (error,) = flatten(error_m=(error_m, ()))
-    return unflatten(_core.gbas_missed_by_monitor(service, _stretch(service, stretch), error), shape)
-
-
-def missed_detection_limit(
-    error_m: ArrayLike,
-    *,
-    containment_m: ArrayLike,
-    sigma_tse_m: ArrayLike,
-    projection: ArrayLike,
-    allotted_risk: ArrayLike,
-    p_fault: ArrayLike,
-    bias_hor_m: ArrayLike = 0.0,
-) -> NDArray[np.float64]:
-    """Largest missed detection of ground monitors that keeps the risk (navi.673 equations 7, 8 and 10).
-
-    Parameters
-    ----------
-    error_m : array_like
-        Size of the range error. [m]
-    containment_m, sigma_tse_m : array_like
-        Total system containment and standard deviation of the total system error. [m]
-    projection : array_like
-        Metres of position for a metre of range: 2 (GAST D), 0.7 (GAST F). [1]
-    allotted_risk : array_like
-        Risk allotted to the hypothesis. [1]
-    p_fault : array_like
-        Probability of the fault, :func:`fault_probability`. [1]
-    bias_hor_m : array_like
-        Horizontal effect of nominal biases. [m]
-
-    Raises
-    ------
-    InputError
-        A number outside its domain.
-    """
-    hazards = (containment_m, sigma_tse_m, bias_hor_m, projection, allotted_risk, p_fault)
-    names = ("containment_m", "sigma_tse_m", "bias_hor_m", "projection", "allotted_risk", "p_fault")
-    shape, (error, *rows) = flatten(error_m=(error_m, ()), **{n: (v, ()) for n, v in zip(names, hazards, strict=True)})
-    return unflatten(_core.gbas_missed_detection_limit(error, np.ascontiguousarray(np.stack(rows, axis=-1))), shape)
-
-
-def monitor_margin(
-    *,
-    service: Service,
-    containment_m: ArrayLike,
-    sigma_tse_m: ArrayLike,
-    projection: ArrayLike,
-    allotted_risk: ArrayLike,
-    p_fault: ArrayLike,
-    bias_hor_m: ArrayLike = 0.0,
-    stretch: float | None = None,
-) -> NDArray[np.float64]:
-    """Decades between :func:`missed_detection_limit` and :func:`missed_by_monitor` where they are closest; the monitor suffices from 0 on.
-
-    Parameters and errors as those two.
-    """
-    check_service(service)
-    hazards = (containment_m, sigma_tse_m, bias_hor_m, projection, allotted_risk, p_fault)
-    names = ("containment_m", "sigma_tse_m", "bias_hor_m", "projection", "allotted_risk", "p_fault")
-    shape, rows = flatten(**{n: (v, ()) for n, v in zip(names, hazards, strict=True)})
-    table = np.ascontiguousarray(np.stack(rows, axis=-1))
-    return unflatten(_core.gbas_monitor_margin(service, _stretch(service, stretch), table), shape)
-
-
-def aided_covariance(
-    az_rad: ArrayLike,
-    el_rad: ArrayLike,
-    constellation: Sequence[int] | NDArray[np.int64] | None = None,
-    *,
-    lat_rad: float,
-    service: Service = "D",
-    noise: NoiseForm = "bound",
-    seconds: float = 900.0,
-) -> NDArray[np.float64]:
-    """Covariance of a fix from GBAS-corrected ranges and an inertial system (navi.673 equations 3 and 4, rebuilt).
-
-    Parameters
-    ----------
-    az_rad, el_rad : array_like, shape (..., n)
-        Satellites, which stand still; both NaN for one that is not used. [rad]
-    constellation : sequence of int, shape (n,), optional
-        Index of each satellite's system; without it all share one clock.
-    service : {"D", "F"}
-        Error model.
-    noise : {"bound", "paper"}
-        Smoothed multipath of unknown time constant: as Langel et al. 2021 bound it, or as the paper's words have it. Only the first may
-        support a statement of safety; only the second makes the sigma smaller than that of the ranges alone.
-    lat_rad : float
-        Latitude. [rad]
-    seconds : float
-        How long the filter has run. [s]
-
-    Returns
-    -------
-    ndarray, shape (..., 3, 3)
-        East-north-up. [m²]
-
-    Raises
-    ------
-    InputError
-        A sky without satellites, numbers outside their domains.
-    """
-    check_service(service)
-    shape, (az, el) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()))
-    if not 0 <= seconds <= 86_400:
-        raise InputError("seconds", seconds, "s", "[0, 86400]")
-    job = {
-        "service": service,
-        "form": _named("noise", noise, ("paper", "bound")),
-        "lat_rad": lat_rad,
-        "seconds": seconds,
-        "az_rad": az,
-        "el_rad": el,
-        "constellation": systems(_width(shape), constellation),
-    }
-    return _core.gbas_aided_covariance(job).reshape(*shape[:-1], 3, 3)
-
-
-def offset_variances(
-    true_constant_s: float, *, noise: NoiseForm = "bound", shortest_s: float = 54.0, longest_s: float = 2894.0, n: int = 901
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Variance of a constant offset seen every second through correlated noise of 1 m: as the filter has it, and as it is.
-
-    Parameters
-    ----------
-    true_constant_s : float
-        Time constant the noise really has. [s]
-    noise : {"bound", "paper"}
-        The filter's model.
-    shortest_s, longest_s : float
-        Between which the filter knows the constant to lie. [s]
-    n : int
-        Measurements.
-
-    Returns
-    -------
-    filter_m2, true_m2 : ndarray, shape (n,)
-        After each measurement. [m²]
-
-    Raises
-    ------
-    InputError
-        Constants that are not positive or not in order.
-    """
-    if not 1 <= n <= 1_000_000:
-        raise InputError("n", n, "1", "[1, 1000000]")
-    form = _named("noise", noise, ("paper", "bound"))
-    found = _core.gbas_offset_variances(form, [shortest_s, longest_s], true_constant_s, n)
-    return np.ascontiguousarray(found[:, 0]), np.ascontiguousarray(found[:, 1])
-
-
-def systems(width: int, constellation: Sequence[int] | NDArray[np.int64] | None) -> list[int]:
-    """Index of each satellite's system."""
-    indices = np.zeros(width, dtype=np.int64) if constellation is None else np.asarray(constellation)
-    if indices.shape != (width,) or not np.issubdtype(indices.dtype, np.integer) or indices.min() < 0:
-        raise InputError("constellation", f"shape {indices.shape}", domain=f"{width} indices of gnss.CONSTELLATIONS")
-    return [int(c) for c in indices]
-
-
-def spread(name: str, value: ArrayLike | None, leading: tuple[int, ...], item: tuple[int, ...]) -> NDArray[np.float64] | None:
-    """An optional argument broadcast to the leading shape, flat; None where it was not given."""
-    if value is None:
-        return None
-    array = _numbers(name, value)
-    try:
-        return np.ascontiguousarray(np.broadcast_to(array, leading + item)).reshape(-1)
-    except ValueError as e:
-        raise InputError(name, f"shape {array.shape}", domain=f"shapes that broadcast to {leading + item}") from e
-
-
-def _width(shape: tuple[int, ...]) -> int:
-    if not shape or shape[-1] == 0:
-        raise InputError("az_rad", f"shape {shape}", domain="shape (..., n), n at least 1")
-    return shape[-1]
-
-
-def _numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    _, (flat,) = flatten(**{name: (value, ())})
-    return flat.reshape(np.shape(value))
 
 
 def _sigmas(
@@ -530,13 +312,3 @@ def _b_values(value: ArrayLike | None, leading: tuple[int, ...], width: int) -> 
     if flat is not None and not np.isfinite(flat).all():
         raise InputError("b_values_m", "not finite", "m", "finite numbers")
     return flat
-
-
-def _stretch(service: Service, stretch: float | None) -> float:
-    return monitor_curves()[service].stretch if stretch is None else stretch
-
-
-def _named(argument: str, value: str, allowed: tuple[str, ...]) -> str:
-    if value not in allowed:
-        raise InputError(argument, value, domain=", ".join(allowed))
-    return value

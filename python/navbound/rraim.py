@@ -14,8 +14,9 @@ import numpy as np
 
 from navbound import _core
 from navbound._arrays import flatten, unflatten
+from navbound._gbas_arguments import spread, systems
 from navbound.errors import InputError
-from navbound.gbas import Factors, Form, Ordering, factors, range_sigma, spread, systems
+from navbound.gbas import Factors, Form, Ordering, factors, range_sigma
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -11,7 +11,7 @@ from typing import Any, Literal
 from pydantic import Field, ValidationError, field_validator
 
 from navbound.errors import FormatError
-from navbound.scenario.models import Part
+from navbound.scenario.part import Part
 
 SHIPPED = Path(__file__).parent / "studies" / "surface-movement.toml"
 
