@@ -130,6 +130,29 @@ def test_coasting_under_stress_is_the_specifications_table(reference: Reference,
     assert any(n.held == "given" and "clock_mps" in n.name for n in found.numbers)
 
 
+def test_by_the_worst_epoch_the_taxiway_needs_two_centimetres_more_with_gast_d(reference: Reference, tmp_path: Path) -> None:
+    row = "[[requirement]]\nid = '{0}'\ntitle = 'taxiway'\ncontainment_m = {0}\nhal_m = 4.5\nintegrity_risk = 1.25e-9\n"
+    rest = "continuity_risk = 1.25e-5\nspeed_mps = 10.0\nexposure_s = 120.0\n"
+    table = "[grid]\ncoasting_s = [10.0]\n[method]\nmissed_detection = 'worst'\n" + "".join(row.format(c) + rest for c in (4.50, 4.53))
+    (tmp_path / "worst.toml").write_text(table, encoding="utf-8")
+    found = reference.study(tmp_path / "worst.toml")
+    margins = {m.phase: m.decades[0] for m in found.margins if (m.mode, m.case) == ("D", "A")}
+    # The specification: 4.52 m, printed to the centimetre.
+    assert margins["4.5"] < 0 < margins["4.53"]
+
+
+def test_a_covariance_that_bounds_costs_and_the_papers_gains(tmp_path: Path) -> None:
+    worst = {}
+    for form in ("snapshot", "paper", "bound"):
+        table = f"only = ['NTW']\n[geometry]\nduration_s = 1200.0\n[grid]\ncoasting_s = [10.0]\n[method]\ncovariance = '{form}'\n"
+        (tmp_path / "form.toml").write_text(table, encoding="utf-8")
+        found = study_surface_movement.run([tmp_path / "form.toml"])
+        worst[form] = {c.mode: c.worst_m or np.nan for c in found.cells if (c.quantity, c.case, c.coasting_s) == ("single", "A", 10.0)}
+        assert any("nothing shows to bound" in words for words in found.words) is (form == "paper")
+    for mode in ("D", "F1", "F2"):
+        assert worst["paper"][mode] < worst["snapshot"][mode] < worst["bound"][mode] / 1.5
+
+
 @pytest.fixture(scope="module")
 def nominal() -> Study:
     found = study("surface-movement")
