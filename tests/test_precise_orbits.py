@@ -185,7 +185,7 @@ def test_unhealthy_satellites_are_left_out_unless_wanted(shared_data: Path, tmp_
     assert "G01" not in gnss.constellation(path).satellite
     assert "G01" in gnss.constellation(path, unhealthy=True).satellite
     with pytest.raises(InputError, match="almanac"):
-        gnss.constellation("galileo")
+        gnss.constellation("glonass")
     (tmp_path / "broken.alm").write_text(text[:500], encoding="ascii")
     with pytest.raises(FormatError, match=r"broken\.alm"):
         gnss.constellation(tmp_path / "broken.alm")
