@@ -14,6 +14,7 @@ import numpy as np
 from navbound import _core
 from navbound._arrays import flatten
 from navbound._constellations import CONSTELLATIONS, Orbits, constellation, nominal
+from navbound._dop_map import DopMap, dop_map
 from navbound._precise import PreciseOrbits, read_orbits
 from navbound._receivers import (
     SYSTEMS,
@@ -37,6 +38,7 @@ __all__ = [
     "CONSTELLATIONS",
     "SYSTEMS",
     "Dilution",
+    "DopMap",
     "Navigation",
     "Observations",
     "Orbits",
@@ -49,6 +51,7 @@ __all__ = [
     "covariance",
     "directions",
     "dop",
+    "dop_map",
     "geodetic",
     "geometry",
     "nominal",

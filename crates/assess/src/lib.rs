@@ -9,6 +9,7 @@ pub mod batch;
 pub mod bounds;
 pub mod consistency;
 pub mod dme;
+pub mod dop_map;
 pub mod ee;
 pub mod error;
 pub mod evaluation;

@@ -1,6 +1,7 @@
 //! Satellite geometry.
 
 use crate::error::input_error;
+use navbound_assess::dop_map::{Users, dops};
 use navbound_assess::sky::{self, Receivers, Sights, Solved};
 use navbound_core::geometry::{BEIDOU, Elements, GALILEO, GPS, Slot};
 use navbound_core::quantity::{Metres, Radians, Unavailable};
@@ -109,6 +110,30 @@ fn dilutions<'py>(
     Ok(d)
 }
 
+/// Dilutions of users at instants, the instants of a user together, NaN where there is none; `n_sv`.
+#[pyfunction]
+fn dop_map<'py>(
+    py: Python<'py>,
+    elements: PyReadonlyArray2<'_, f64>,
+    constellation: Vec<usize>,
+    users: (PyReadonlyArray1<'_, f64>, PyReadonlyArray1<'_, f64>, PyReadonlyArray1<'_, f64>),
+    time_s: PyReadonlyArray1<'_, f64>,
+    mask_rad: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let elements = elements.as_slice()?.as_chunks().0.iter().map(orbit);
+    let orbits: Vec<(Elements, usize)> = elements.zip(constellation).collect();
+    let users = Users { lat_rad: users.0.as_slice()?, lon_rad: users.1.as_slice()?, h_m: users.2.as_slice()? };
+    let time_s = time_s.as_slice()?;
+    let found = py.detach(|| dops(&orbits, &users, time_s, Radians::new(mask_rad))).map_err(refused)?;
+    let d = PyDict::new(py);
+    d.set_item("hdop", found.hdop.into_pyarray(py))?;
+    d.set_item("vdop", found.vdop.into_pyarray(py))?;
+    d.set_item("pdop", found.pdop.into_pyarray(py))?;
+    d.set_item("gdop", found.gdop.into_pyarray(py))?;
+    d.set_item("n_sv", found.n_sv.into_pyarray(py))?;
+    Ok(d)
+}
+
 type Columns = (Vec<f64>, Vec<(f64, f64)>);
 
 /// `n_sv` and `reason` of every epoch, and its numbers: `width` of them, and a pair; NaN where there is no result.
@@ -141,5 +166,6 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(nominal_constellations, m)?)?;
     m.add_function(wrap_pyfunction!(satellite_directions, m)?)?;
     m.add_function(wrap_pyfunction!(position_covariances, m)?)?;
-    m.add_function(wrap_pyfunction!(dilutions, m)?)
+    m.add_function(wrap_pyfunction!(dilutions, m)?)?;
+    m.add_function(wrap_pyfunction!(dop_map, m)?)
 }

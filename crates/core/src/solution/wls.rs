@@ -65,6 +65,32 @@ pub fn dilution<'a>(sights: impl Iterator<Item = &'a LineOfSight> + Clone) -> Re
     Ok(Dilution::of(&Normal::new(sights.map(|s| row(s, 1.0)))?.covariance()?))
 }
 
+/// Dilutions of precision with the clocks'.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Geometric {
+    /// Of the position.
+    pub dilution: Dilution,
+    /// Geometric: position and every clock.
+    pub geometric: f64,
+}
+
+/// Dilutions of precision from unit vectors, east-north-up, from the receiver to the satellites.
+///
+/// ```text
+/// GDOP^2 = PDOP^2 + sum over constellations c of (1/n_c + m_c' P m_c)
+/// ```
+///
+/// # Errors
+/// As [`covariance`].
+#[inline]
+pub fn dilution_of_units(sights: impl Iterator<Item = (Vector3<f64>, Constellation)> + Clone) -> Result<Geometric, Unavailable> {
+    let normal = Normal::new(sights.map(|(unit, c)| Row { unit, weight: 1.0, clock: c.index(), residual: 0.0 }))?;
+    let covariance = normal.covariance()?;
+    let dilution = Dilution::of(&covariance);
+    let clocks = normal.clock_variances(covariance.matrix());
+    Ok(Geometric { dilution, geometric: sqrt(dilution.position * dilution.position + clocks) })
+}
+
 /// Standard deviations along the axes of the horizontal ellipse, the larger first.
 ///
 /// ```text
@@ -241,12 +267,15 @@ impl Normal {
     /// trace(N) trace(N^-1) of the whole normal matrix N: never below its condition number. The clocks' diagonal of N^-1 is
     /// 1/w_c + m_c' P m_c with P the inverse of the eliminated form.
     fn condition_bound(&self, inverse: &Matrix3<f64>) -> f64 {
-        let (mut normal, mut inverted) = (self.information.trace(), inverse.trace());
-        for g in self.groups.iter().filter(|g| g.count > 0) {
-            normal += g.weight * (1.0 + g.mean.norm_squared());
-            inverted += 1.0 / g.weight + g.mean.dot(&(inverse * g.mean));
-        }
-        normal * inverted
+        let used = self.groups.iter().filter(|g| g.count > 0);
+        let normal = self.information.trace() + used.map(|g| g.weight * (1.0 + g.mean.norm_squared())).sum::<f64>();
+        normal * (inverse.trace() + self.clock_variances(inverse))
+    }
+
+    /// Variances of all clocks together, from the covariance of the position.
+    fn clock_variances(&self, position: &Matrix3<f64>) -> f64 {
+        let used = self.groups.iter().filter(|g| g.count > 0);
+        used.map(|g| 1.0 / g.weight + g.mean.dot(&(position * g.mean))).sum()
     }
 }
 
@@ -327,6 +356,20 @@ mod tests {
         // All at one elevation: height and clock cannot be told apart.
         let cone: [LineOfSight; 6] = core::array::from_fn(|i| sight(60.0 * i as f64, 30.0, 1.0, Constellation::Gps));
         assert!(matches!(covariance(cone.iter()), Err(Unavailable::Singular { .. })));
+    }
+
+    /// Against the trace of the inverse of the whole normal matrix. 1e-9: both lose about condition * 1e-16, and the condition is below 1e3.
+    #[test]
+    fn the_geometric_dilution_is_the_trace_of_the_whole_inverse() {
+        use Constellation::{Galileo, Gps};
+        let sky = [(0.0, 80.0), (70.0, 20.0), (150.0, 30.0), (220.0, 15.0), (300.0, 45.0), (20.0, 60.0), (110.0, 40.0), (260.0, 35.0)];
+        let units: [(Vector3<f64>, Constellation); 8] =
+            core::array::from_fn(|i| (sight(sky[i].0, sky[i].1, 1.0, Gps).direction.unit(), if i < 5 { Gps } else { Galileo }));
+        let h = SMatrix::<f64, 8, 5>::from_fn(|i, j| if j < 3 { -units[i].0[j] } else { f64::from(u8::from((i < 5) == (j == 3))) });
+        let whole = (h.transpose() * h).try_inverse().unwrap();
+        let found = dilution_of_units(units.iter().copied()).unwrap();
+        assert!((found.geometric - whole.trace().sqrt()).abs() < 1e-9 * found.geometric);
+        assert!((found.dilution.vertical - whole[(2, 2)].sqrt()).abs() < 1e-9 * found.geometric);
     }
 
     #[test]
