@@ -45,7 +45,8 @@ def flatten(**arguments: tuple[ArrayLike, tuple[int, ...]]) -> tuple[tuple[int, 
             leading = np.broadcast_shapes(leading, array.shape[:split])
         except ValueError as e:
             raise InputError(name, f"shape {array.shape}", domain=f"shapes that broadcast with {leading}") from e
-        arrays.append((array, item))
+        # Arrays that came in messages, as from a cluster, may start at any byte.
+        arrays.append((array if array.flags.aligned else array.copy(), item))
     flat = [np.ascontiguousarray(np.broadcast_to(array, leading + item)).reshape(-1, *item) for array, item in arrays]
     return leading, flat
 

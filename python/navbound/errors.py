@@ -33,6 +33,10 @@ class InputError(NavboundError, ValueError):
         refusal = f"is outside {domain}" if domain[:1] in "([{" else f"is not accepted; expected {domain}"
         super().__init__(f"{where} = {shown} {refusal}")
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[object, ...]]:
+        """From its parts, so that a refusal crosses from a worker process to the caller."""
+        return type(self), (self.argument, self.value, self.unit, self.domain, self.index)
+
 
 class FormatError(NavboundError, ValueError):
     """Data that cannot be read.
@@ -49,7 +53,12 @@ class FormatError(NavboundError, ValueError):
 
     def __init__(self, path: str | Path, message: str, line: int | None = None, field: str | None = None) -> None:
         self.path = Path(path)
+        self.message = message
         self.line = line
         self.field = field
         where = f"{path}" if line is None else f"{path}:{line}"
         super().__init__(f"{where}: {field}: {message}" if field else f"{where}: {message}")
+
+    def __reduce__(self) -> tuple[type[FormatError], tuple[object, ...]]:
+        """From its parts, as that of :class:`InputError`."""
+        return type(self), (self.path, self.message, self.line, self.field)

@@ -1,0 +1,132 @@
+"""Who works the tiles off."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from navbound.errors import InputError, NavboundError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    Function = Callable[[Any], Any]
+    Pending = Sequence[tuple[int, Any]]
+
+MOST_LOSSES = 3
+"""Losses of a worker in a row, without one tile finished in between, after which it is the tile's fault. [1]"""
+
+
+@dataclass(frozen=True)
+class Workers:
+    """Who there is.
+
+    Attributes
+    ----------
+    count : int, optional
+        Worker processes; one a core without it. [1]
+    cluster : str or distributed.Client, optional
+        Dask: the address of a scheduler, or a client. Without it a cluster on this machine is started, and stopped at the end.
+    """
+
+    count: int | None = None
+    cluster: Any = None
+
+    def __post_init__(self) -> None:
+        if self.count is not None and not self.count >= 1:
+            raise InputError("count", self.count, "1", "[1, inf)")
+
+    @property
+    def processes(self) -> int:
+        """How many processes. [1]."""
+        return self.count or os.cpu_count() or 1
+
+
+def one_thread() -> None:
+    """Let a worker use one thread: the workers are as many as the cores already. What the user has set stands."""
+    os.environ.setdefault("RAYON_NUM_THREADS", "1")
+
+
+def serial(function: Function, pending: Pending, _workers: Workers) -> Iterator[tuple[int, Any]]:
+    """One tile after the other; a tile may use every core."""
+    for index, tile in pending:
+        yield index, function(tile)
+
+
+def processes(function: Function, pending: Pending, workers: Workers) -> Iterator[tuple[int, Any]]:
+    """Processes of this machine. When one is lost the others are given up as well, and what is unfinished starts again."""
+    left = dict(pending)
+    losses = 0
+    while left:
+        try:
+            for index, result in _pool(function, left, workers.processes):
+                del left[index]
+                losses = 0
+                yield index, result
+        except BrokenProcessPool as e:
+            losses += 1
+            if losses >= MOST_LOSSES:
+                first = min(left)
+                words = f"{losses} worker processes in a row were lost before tile {first} or a later one was finished"
+                advice = "a program of your own needs `if __name__ == '__main__':` around its work, and a file that it is read from"
+                raise NavboundError(f"{words}; {advice}") from e
+
+
+def _pool(function: Function, left: dict[int, Any], count: int) -> Iterator[tuple[int, Any]]:
+    # A forked child would inherit the locks of the threads of this process; a fresh interpreter has none.
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(min(count, len(left)), mp_context=context, initializer=one_thread) as pool:
+        futures = {pool.submit(function, tile): index for index, tile in left.items()}
+        try:
+            for future in as_completed(futures):
+                yield futures[future], future.result()
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def dask(function: Function, pending: Pending, workers: Workers) -> Iterator[tuple[int, Any]]:
+    """Processes of a Dask cluster. What a lost worker had is done again by another."""
+    distributed = _distributed()
+    if isinstance(workers.cluster, distributed.Client):
+        yield from _gather(distributed, workers.cluster, function, pending)
+        return
+    if workers.cluster is not None:
+        with distributed.Client(workers.cluster) as client:
+            yield from _gather(distributed, client, function, pending)
+        return
+    with (
+        distributed.LocalCluster(
+            n_workers=workers.processes, threads_per_worker=1, processes=True, dashboard_address=None, env={"RAYON_NUM_THREADS": "1"}
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        yield from _gather(distributed, client, function, pending)
+
+
+def _gather(distributed: Any, client: Any, function: Function, pending: Pending) -> Iterator[tuple[int, Any]]:
+    futures = {client.submit(function, tile, pure=False): index for index, tile in pending}
+    try:
+        for future, result in distributed.as_completed(futures, with_results=True):
+            yield futures.pop(future), result
+    finally:
+        client.cancel(list(futures))
+
+
+def _distributed() -> Any:
+    try:
+        import distributed  # noqa: PLC0415
+    except ImportError as e:
+        raise InputError("backend", "dask", domain="serial or processes: Dask is not installed (pip install 'navbound[dask]')") from e
+    return distributed
+
+
+BACKENDS: dict[str, Callable[[Function, Pending, Workers], Iterator[tuple[int, Any]]]] = {
+    "serial": serial,
+    "processes": processes,
+    "dask": dask,
+}
+"""Every back end by its name."""

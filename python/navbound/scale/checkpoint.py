@@ -1,0 +1,67 @@
+"""Finished tiles in a folder."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from navbound import _core
+from navbound.errors import FormatError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class Nothing:
+    """Keeps nothing."""
+
+    def load(self, index: int, tile: object) -> None:
+        """Nothing is there."""
+
+    def store(self, index: int, tile: object, result: dict[str, NDArray[np.generic]]) -> None:
+        """Nothing is kept."""
+
+
+class Folder:
+    """One file a tile. Its name holds a digest of version, function and tile, so that no job takes the tile of another."""
+
+    def __init__(self, path: str | Path, function: object) -> None:
+        self.path = Path(path)
+        self._function = pickle.dumps((_core.__version__, function))
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as e:
+            raise FormatError(self.path, f"cannot keep tiles: {e.strerror}") from e
+
+    def file(self, index: int, tile: object) -> Path:
+        """Where a tile's result lies."""
+        digest = hashlib.sha256(self._function + pickle.dumps(tile)).hexdigest()[:24]
+        return self.path / f"tile-{index:06d}-{digest}.npz"
+
+    def load(self, index: int, tile: object) -> dict[str, NDArray[np.generic]] | None:
+        """A tile's result; None where there is none, or none that can be read whole."""
+        file = self.file(index, tile)
+        try:
+            with file.open("rb") as content, np.load(content, allow_pickle=False) as columns:
+                return {name: columns[name] for name in columns.files}
+        except (OSError, ValueError, EOFError, zipfile.BadZipFile):
+            return None
+
+    def store(self, index: int, tile: object, result: dict[str, NDArray[np.generic]]) -> None:
+        """Keep a result: written whole under another name, then renamed, so that a kill leaves no half tile."""
+        file = self.file(index, tile)
+        partial = file.with_suffix(".partial")
+        try:
+            # Not savez: the keyword names it needs clash with a column called "file".
+            with zipfile.ZipFile(partial, "w") as archive:
+                for name, values in result.items():
+                    with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                        np.lib.format.write_array(member, np.asarray(values), allow_pickle=False)
+            partial.replace(file)
+        except OSError as e:
+            raise FormatError(self.path, f"cannot keep tile {index}: {e.strerror}") from e
