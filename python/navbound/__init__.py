@@ -1,7 +1,8 @@
 """navbound: how wrong an aircraft's position may be, and when that is not good enough.
 
 The subject modules take and give arrays: :mod:`navbound.tse`, :mod:`navbound.anp`, :mod:`navbound.rnp`, :mod:`navbound.gnss`.
-Whole jobs are functions that return a :class:`navbound.run.directory.Run`: :func:`fly`, :func:`analyze`, :func:`study`.
+Maps are made by :func:`navbound.maps.make`, long work is cut into tiles by :mod:`navbound.scale`. Whole jobs are functions that return a
+:class:`navbound.run.directory.Run`: :func:`fly`, :func:`analyze`, :func:`study`.
 """
 
 from __future__ import annotations

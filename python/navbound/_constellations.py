@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +21,8 @@ CONSTELLATIONS = ("gps", "glonass", "galileo", "beidou", "sbas")
 """The systems in the order of their index; a solution has one clock for each that it uses."""
 
 _LETTERS = "GRECS"
+BROADCAST_AGE_S = 86_400.0
+"""A broadcast record serves geometry this far from its reference time: by then a satellite stands some 1e-3 rad off. [s]"""
 
 
 @dataclass(frozen=True)
@@ -89,7 +93,7 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
     name : {"gps", "galileo", "beidou"}, str or Path
         GPS: 24 slots of the standard positioning service's performance standard. Galileo: 24 in medium orbits (Walker 24/3/1).
         BeiDou-3: 24 likewise, three inclined geosynchronous, three geostationary. Join them with ``+``. Anything else is the path of an
-        almanac, YUMA or SEM.
+        almanac, YUMA or SEM, or of a RINEX navigation file: the healthy satellites with a record within a day.
     near_ns : int, optional
         A GPS time within ten years of the almanac. Its week has ten bits and may have rolled over: without a time near it
         ``reference_ns`` is None unless the file holds a full week. [ns]
@@ -121,6 +125,8 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
             content = path.read_bytes()
         except OSError as e:
             raise FormatError(path, e.strerror or str(e)) from e
+        if _is_navigation(content):
+            return _broadcast(content, path, near_ns)
         found = _core.read_almanac(content, str(path), near_ns)
         kept = (np.asarray(found.pop("health")) == 0) | unhealthy
     reference = found.pop("reference_ns", None)
@@ -128,6 +134,42 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
     indices = np.asarray(found.pop("constellation"), dtype=np.int64)[kept]
     columns = {column: values[kept] for column, values in found.items()}
     return Orbits(satellite=satellites, constellation=indices, reference_ns=reference, **columns)
+
+
+def _is_navigation(content: bytes) -> bool:
+    """Whether a file, packed or not, begins like a RINEX one."""
+    head = content[:4096]
+    if head[:2] == b"\x1f\x8b":
+        with contextlib.suppress(zlib.error):
+            head = zlib.decompressobj(wbits=31).decompress(head, 4096)
+    return b"RINEX VERSION" in head.split(b"\n", 1)[0]
+
+
+def _broadcast(content: bytes, path: Path, near_ns: int | None) -> Orbits:
+    """Orbits of a RINEX navigation file at an instant, by default the middle of its records."""
+    navigation = _core.Navigation([(content, str(path))])
+    records = navigation.records()
+    times = records["orbit_time_ns"]
+    if len(times) == 0:
+        raise FormatError(path, "holds no orbit of GPS, Galileo or BeiDou")
+    first, last = int(times.min()), int(times.max())
+    reference = (first + last) // 2 if near_ns is None else near_ns
+    # Geostationary satellites of BeiDou count from a tilted frame, which plain elements do not know.
+    tilted = {s for s, m in zip(records["satellite"], records["message"], strict=True) if m == "D2"}
+    names: list[str] = []
+    indices: list[int] = []
+    rows: list[NDArray[np.float64]] = []
+    for index in range(len(CONSTELLATIONS)):
+        for name, row, age in zip(*navigation.orbits(index, reference), strict=True):
+            if abs(age) <= BROADCAST_AGE_S and name not in tilted:
+                names.append(name)
+                indices.append(index)
+                rows.append(row)
+    if not names:
+        raise InputError("near_ns", reference, "ns", f"a time within a day of the file's records, [{first}, {last}]")
+    axis, eccentricity, inclination, node, perigee, anomaly, node_rate = np.ascontiguousarray(np.stack(rows).T)
+    of = np.array(indices, dtype=np.int64)
+    return Orbits(tuple(names), of, axis, eccentricity, inclination, node, perigee, anomaly, node_rate, reference)
 
 
 def nominal(

@@ -15,6 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 import navbound
+from navbound import cli_map
 from navbound import verify as vectors
 from navbound.errors import FormatError, InputError, NavboundError
 from navbound.kpi import SubsetOptions
@@ -60,7 +61,8 @@ def _mapping(pairs: list[str]) -> dict[str, str]:
     return {name: column for name, _, column in split}
 
 
-def _command() -> str:
+def command_line() -> str:
+    """The command as it was given, for the run record."""
     return shlex.join(["navbound", *sys.argv[1:]])
 
 
@@ -75,9 +77,9 @@ def fly(
 ) -> None:
     """Fly a scenario, judge every epoch, write the report."""
     out = out or Path("out") / Path(scenario).stem
-    with _Progress(flights) as progress:
+    with Bar(flights) as progress:
         run = navbound.fly(
-            scenario, flights=flights, seed=seed, settings=_settings(methods), out=out, progress=progress, command=_command()
+            scenario, flights=flights, seed=seed, settings=_settings(methods), out=out, progress=progress, command=command_line()
         )
     _show(run, json=json)
 
@@ -143,7 +145,7 @@ def analyze(
     if levels is not None:
         if path is not None or sigma_m is not None:
             raise InputError("levels", levels, domain="it without --path and --sigma-m, which judge a track")
-        with _Progress(len(files), "files") as progress:
+        with Bar(len(files), "files") as progress:
             run = navbound.analyze(
                 files,
                 levels=levels,
@@ -159,7 +161,7 @@ def analyze(
                 protection=protection or "given",
                 out=out,
                 progress=progress,
-                command=_command(),
+                command=command_line(),
             )
         _show(run, json=json)
         return
@@ -177,7 +179,7 @@ def analyze(
         solve=solve,
         settings=_settings(methods),
         out=out,
-        command=_command(),
+        command=command_line(),
     )
     _show(run, json=json)
 
@@ -295,7 +297,10 @@ def show(
     _show(directory.load(run_directory), json=json)
 
 
-class _Progress:
+app.command("map")(cli_map.map_command)
+
+
+class Bar:
     """A bar on a terminal, nothing elsewhere."""
 
     def __init__(self, total: int, what: str = "flights") -> None:

@@ -34,3 +34,16 @@ def utc_offset_s(time_ns: int) -> int:
     """
     unix_ns = int(_core.unix_from_gps_ns(np.array([time_ns], dtype=np.int64))[0])
     return round((time_ns + GPS_EPOCH_UNIX_NS - unix_ns) * 1e-9)
+
+
+def gps_ns(when: datetime) -> int:
+    """GPS time of an instant of UTC, to the microsecond. [ns].
+
+    Parameters
+    ----------
+    when : datetime
+        With a time zone.
+    """
+    since = when - datetime(1970, 1, 1, tzinfo=UTC)
+    unix_ns = (since.days * 86_400 + since.seconds) * 1_000_000_000 + since.microseconds * 1000
+    return int(_core.gps_from_unix_ns(np.array([unix_ns], dtype=np.int64))[0])

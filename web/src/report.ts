@@ -23,6 +23,8 @@ import { smallPrint } from "./panel/smallprint.ts";
 import { crossTrack, events, methods, phases, rejections, tracks } from "./panel/tables.ts";
 import { verdict } from "./panel/verdict.ts";
 import { choice, el } from "./show/dom.ts";
+import { showWorld } from "./world/page.ts";
+import type { World } from "./world/records.ts";
 import { choose, themeStore, type Choice } from "./show/theme.ts";
 
 /** The parts of the page that show one track, in order, and the columns of which one is needed to say anything. */
@@ -117,8 +119,9 @@ class Page {
 }
 
 const root = document.getElementById("report")!;
-const payload = JSON.parse(document.getElementById("navbound-data")!.textContent) as Payload;
-new Page(payload).show(root).catch((error: unknown) => {
+const payload = JSON.parse(document.getElementById("navbound-data")!.textContent) as Payload | World;
+const shown = payload.schema_id === "navbound-world-1" ? showWorld(root, payload) : new Page(payload).show(root);
+shown.catch((error: unknown) => {
     root.prepend(el("p", { role: "alert", class: "failed" }, `This page could not be drawn: ${error instanceof Error ? error.message : String(error)}. The records are in summary.json and epochs.parquet beside it.`));
     throw error;
 });

@@ -53,22 +53,26 @@ def render(summary: Summary, record: RunRecord, epochs: pl.DataFrame, events: pl
         if name not in epochs.columns:
             raise InputError("epochs", f"columns {epochs.columns}", domain=f"tables with a column {name}")
     page = payload.build(summary, record, epochs, events, waypoints)
-    target = out / "report.html" if out.is_dir() else out
+    return write_page(summary.title, summary.verdict.words, page, out / "report.html" if out.is_dir() else out)
+
+
+def write_page(title: str, words: str, page: payload.Page, target: Path) -> Path:
+    """Write a page: its title, what it found in words for a browser without scripts, and its data."""
     target.parent.mkdir(parents=True, exist_ok=True)
     # The page is written whole or not at all: a report cut short could pass for a report.
     partial = target.with_name(target.name + ".partial")
-    partial.write_text(_html(summary, page), encoding="utf-8")
+    partial.write_text(_html(title, words, page), encoding="utf-8")
     partial.replace(target)
     return target
 
 
-def _html(summary: Summary, page: payload.Page) -> str:
+def _html(title: str, words: str, page: payload.Page) -> str:
     web = files("navbound").joinpath("_web")
     template = files("navbound").joinpath("report/template.html.j2").read_text(encoding="utf-8")
     environment = Environment(autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True, trim_blocks=True, lstrip_blocks=True)
     return environment.from_string(template).render(
-        title=summary.title,
-        words=summary.verdict.words,
+        title=title,
+        words=words,
         css=Markup(web.joinpath("report.css").read_text(encoding="utf-8")),
         script=Markup(web.joinpath("report.js").read_text(encoding="utf-8")),
         data=Markup(script_safe(page.data)),

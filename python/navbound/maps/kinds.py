@@ -1,0 +1,116 @@
+"""What can be mapped: each kind says what it takes, what it gives and what is asked of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+from navbound.maps.ground import Dme, Sbas
+from navbound.maps.orbital import Araim, Dop, Raim
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from navbound.maps.limits import Limit
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A number of every user and instant."""
+
+    name: str
+    title: str
+    unit: Literal["1", "m"]
+
+
+class Levels(Protocol):
+    """Numbers of users: latitudes and longitudes [rad] to columns of shape (users, instants), NaN where there is none."""
+
+    def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, Floats]:
+        """Work out the users of a tile."""
+        ...
+
+
+class Options(Protocol):
+    """The arguments of one kind."""
+
+    def levels(self) -> Levels:
+        """What works out the numbers, to be sent to workers."""
+        ...
+
+    def n_epochs(self) -> int:
+        """Instants."""
+        ...
+
+    def limits(self) -> list[Limit]:
+        """What is asked without a word of the caller."""
+        ...
+
+    def assumptions(self) -> list[str]:
+        """What the numbers rest on, as sentences."""
+        ...
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One thing that can be mapped.
+
+    Attributes
+    ----------
+    id, title, source : str
+        Its name, what it is, and where its numbers come from.
+    columns : tuple of Column
+        What it gives; the first is shown first.
+    options : callable
+        Its arguments.
+    user_epoch_s : float
+        What a user costs at one instant on one core, about: tiles are cut by it. [s]
+    """
+
+    id: str
+    title: str
+    source: str
+    columns: tuple[Column, ...]
+    options: Callable[..., Any]
+    user_epoch_s: float
+
+
+_HPL, _VPL = Column("hpl_m", "Horizontal protection level", "m"), Column("vpl_m", "Vertical protection level", "m")
+_DOPS = tuple(
+    Column(name, f"{title} dilution of precision", "1")
+    for name, title in (("pdop", "Position"), ("hdop", "Horizontal"), ("vdop", "Vertical"), ("gdop", "Geometric"))
+)
+
+KINDS: dict[str, Kind] = {
+    kind.id: kind
+    for kind in (
+        Kind("dop", "Dilution of precision", "normal equation of ranges of equal weight", _DOPS, Dop, 0.6e-6),
+        Kind("raim", "RAIM protection level", "navbound.araim.predict, service raim", (_HPL,), Raim, 8e-6),
+        Kind(
+            "araim",
+            "ARAIM protection levels",
+            "navbound.araim.predict",
+            (_VPL, _HPL, Column("emt_m", "Effective monitor threshold", "m")),
+            Araim,
+            8e-6,
+        ),
+        Kind("sbas", "SBAS protection levels", "navbound.sbas.protection_levels", (_VPL, _HPL), Sbas, 4e-6),
+        Kind(
+            "dme",
+            "DME/DME coverage",
+            "navbound.dme.coverage",
+            (
+                Column("nse_best_m", "95 % navigation error of the best pair", "m"),
+                Column("nse_all_m", "95 % navigation error of all stations", "m"),
+            ),
+            Dme,
+            200e-6,
+        ),
+    )
+}
+"""Every kind by its name."""

@@ -1,0 +1,37 @@
+"""What is asked of a column of a map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from navbound import kpi
+from navbound.errors import InputError
+
+
+@dataclass(frozen=True)
+class Limit:
+    """What is asked of a column: at most this, with where the number comes from and how it is held."""
+
+    column: str
+    limit: float
+    source: str = "the caller"
+    provenance: str = "ours"
+
+    def __post_init__(self) -> None:
+        if not self.limit > 0:
+            raise InputError(f"limits[{self.column}]", self.limit, domain="(0, inf)")
+
+
+def limits_of(level: str, *, vertical: bool = True) -> list[Limit]:
+    """Alert limits of a service level as limits of protection levels.
+
+    Raises
+    ------
+    InputError
+        No such level.
+    """
+    found = kpi.level(level)
+    limits = [Limit("hpl_m", found.hal_m, f"{found.id}: {found.source}", found.provenance["hal_m"])]
+    if vertical and found.val_m is not None:
+        limits.append(Limit("vpl_m", found.val_m, f"{found.id}: {found.source}", found.provenance["val_m"]))
+    return limits

@@ -1,0 +1,208 @@
+"""One map: options, tiles, results, words."""
+
+from __future__ import annotations
+
+import math
+import platform
+from dataclasses import fields
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import polars as pl
+
+from navbound import _core, scale
+from navbound.errors import InputError
+from navbound.maps import files, records
+from navbound.maps.grid import Grid
+from navbound.maps.kinds import KINDS, Column, Kind
+from navbound.maps.limits import Limit, limits_of
+from navbound.maps.sources import File
+from navbound.maps.statistics import PERCENTILES, Evaluate, Tile, percentile_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+COVERAGE_AT = (0.95, 0.99, 0.995, 0.999)
+"""Availabilities at which the share of the area is told."""
+_RESULT_BYTES = 80.0
+"""A number of every column for a user and an instant, and its sorted copy. [B]"""
+
+
+def make(
+    kind: str,
+    *,
+    grid: Grid | None = None,
+    limits: Mapping[str, float] | None = None,
+    level: str | None = None,
+    backend: str = "serial",
+    checkpoint: str | Path | None = None,
+    workers: scale.Workers | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    out: str | Path | None = None,
+    command: str = "",
+    **options: object,
+) -> files.Map:
+    """Evaluate a grid of users over a day.
+
+    Parameters
+    ----------
+    kind : str
+        A name of :data:`KINDS`.
+    grid : Grid, optional
+        Users; without it the world in cells of five degrees.
+    limits : mapping of column to float, optional
+        What is asked, in the unit of the column; without it that of the kind.
+    level : str, optional
+        A service level of `navbound.kpi.levels` instead: its alert limits.
+    backend, checkpoint, workers, progress
+        As in :func:`navbound.scale.map_tiles`.
+    out : str or Path, optional
+        Run directory to write; without it nothing is written.
+    command : str, optional
+        For the run record.
+    **options
+        The arguments of the kind: the fields of ``KINDS[kind].options``.
+
+    Returns
+    -------
+    Map
+        One row a grid point: percentiles of every column over the day, and the share of epochs within all limits.
+
+    Raises
+    ------
+    InputError
+        No such kind, an option that it does not take, a number outside its domain, an almanac of another week.
+    FormatError
+        A file that cannot be read, or a folder that cannot be written.
+    """
+    chosen = KINDS.get(kind)
+    if chosen is None:
+        raise InputError("kind", kind, domain=f"one of {', '.join(KINDS)}")
+    grid = grid or Grid()
+    job = _options(chosen, options)
+    asked = _limits(chosen, job, limits, level)
+    evaluate = Evaluate(job.levels(), tuple(c.name for c in chosen.columns), tuple((one.column, one.limit) for one in asked))
+    lat, lon = grid.points()
+    n_epochs = job.n_epochs()
+    tiles = [Tile(lat[s], lon[s]) for s in scale.cut(len(grid), n_epochs * chosen.user_epoch_s, n_epochs * _RESULT_BYTES)]
+    parts = scale.map_tiles(evaluate, tiles, backend=backend, checkpoint=checkpoint, progress=progress, workers=workers)
+    columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    points = pl.DataFrame({"lat_rad": lat, "lon_rad": lon} | columns)
+    summary = _summary(chosen, grid, points, asked, job)
+    record = records.MapRecord(
+        navbound_version=_core.__version__,
+        command=command,
+        created_utc=datetime.now(UTC).isoformat(timespec="seconds"),
+        kind=kind,
+        options={f.name: str(getattr(job, f.name)) for f in fields(job)},
+        inputs=_inputs(job),
+        backend=backend,
+        n_tiles=len(tiles),
+        platform=platform.platform(),
+    )
+    made = files.Map(summary, record, points)
+    return made if out is None else files.write(made, Path(out))
+
+
+def _options(kind: Kind, options: dict[str, object]) -> Any:
+    known = [f.name for f in fields(kind.options)]  # type: ignore[arg-type]
+    for name, value in options.items():
+        if name not in known:
+            raise InputError(name, str(value), domain=f"none: {kind.id} takes {', '.join(known)}")
+    return kind.options(**options)
+
+
+def _limits(kind: Kind, job: Any, limits: Mapping[str, float] | None, level: str | None) -> list[Limit]:
+    names = [column.name for column in kind.columns]
+    if limits and level:
+        raise InputError("level", level, domain="none beside limits")
+    if level:
+        asked = [one for one in limits_of(level) if one.column in names]
+        if not asked:
+            raise InputError("level", level, domain=f"none: {kind.id} gives {', '.join(names)}")
+        return asked
+    if not limits:
+        return list(job.limits())
+    for name in limits:
+        if name not in names:
+            raise InputError("limits", name, domain=f"columns of {kind.id}: {', '.join(names)}")
+    return [Limit(name, float(limit)) for name, limit in limits.items()]
+
+
+def _inputs(job: Any) -> dict[str, str]:
+    """Digests of the files among the options."""
+    values = [getattr(job, f.name) for f in fields(job)]
+    flat = [item for value in values for item in (value if isinstance(value, tuple) else (value,))]
+    paths = [Path(item) for item in flat if isinstance(item, (str, Path)) and str(item)]
+    return {str(path): File.of(path).sha256 for path in paths if path.is_file()}
+
+
+def _summary(kind: Kind, grid: Grid, points: pl.DataFrame, asked: list[Limit], job: Any) -> records.MapSummary:
+    n_epochs = job.n_epochs()
+    weights, available = grid.weights(), points["p_available"].to_numpy()
+    coverage = [records.MapCoverage(available=at, share=_share(weights, available >= at)) for at in COVERAGE_AT]
+    worst = int(np.argmin(available))
+    where = records.MapWorst(
+        lat_rad=float(points["lat_rad"][worst]), lon_rad=float(points["lon_rad"][worst]), available=float(available[worst])
+    )
+    own = {f.name: getattr(grid, f.name) for f in fields(grid)}
+    return records.MapSummary(
+        kind=kind.id,
+        title=f"{kind.title}: {grid.n_lat} × {grid.n_lon} points" + ("" if n_epochs == 1 else f", {n_epochs} epochs"),
+        words=_words(kind, asked, coverage, where, n_epochs),
+        source=kind.source,
+        grid=records.MapGrid(n_lat=grid.n_lat, n_lon=grid.n_lon, **own),
+        n_epochs=n_epochs,
+        percentiles=list(PERCENTILES) if n_epochs > 1 else [],
+        columns=[_column(column, points, weights) for column in kind.columns],
+        limits=[records.MapLimit(column=a.column, limit=a.limit, source=a.source, provenance=a.provenance) for a in asked],
+        coverage=coverage,
+        available_mean=float(np.clip((weights * available).sum(), 0.0, 1.0)),
+        worst=where,
+        assumptions=job.assumptions(),
+    )
+
+
+def _share(weights: np.ndarray[Any, np.dtype[np.float64]], where: np.ndarray[Any, np.dtype[np.bool_]]) -> float:
+    # All of the area is 1, however the weights are rounded.
+    return 1.0 if where.all() else float(weights[where].sum())
+
+
+def _column(column: Column, points: pl.DataFrame, weights: np.ndarray[Any, np.dtype[np.float64]]) -> records.MapColumn:
+    names = {f"{p:g}": percentile_name(column.name, p) for p in PERCENTILES}
+    present = {p: name for p, name in names.items() if name in points.columns} or {"": column.name}
+    typical = {p: _half(points[name].to_numpy(), weights) for p, name in present.items()}
+    return records.MapColumn(name=column.name, title=column.title, unit=column.unit, typical=typical)
+
+
+def _half(values: np.ndarray[Any, np.dtype[np.float64]], weights: np.ndarray[Any, np.dtype[np.float64]]) -> float | None:
+    """The number that half of the area is within."""
+    order = np.argsort(values, kind="stable")
+    place = min(int(np.searchsorted(np.cumsum(weights[order]), 0.5)), len(values) - 1)
+    found = float(values[order[place]])
+    return found if math.isfinite(found) else None
+
+
+def _words(kind: Kind, asked: list[Limit], coverage: list[records.MapCoverage], worst: records.MapWorst, n_epochs: int) -> str:
+    units = {column.name: "" if column.unit == "1" else " m" for column in kind.columns}
+    titles = {column.name: column.title[0].lower() + column.title[1:] for column in kind.columns}
+    within = " and ".join(f"{titles[a.column]} of at most {a.limit:.6g}{units[a.column]}" for a in asked)
+    if n_epochs == 1:
+        return f"{_percent(coverage[0].share)} of the area has a {within}."
+    parts = [
+        f"{_percent(c.share)} of the area for at least {100 * c.available:g} % of the time"
+        for c in coverage
+        if c.available in (0.99, 0.995)
+    ]
+    lat, lon = math.degrees(worst.lat_rad), math.degrees(worst.lon_rad)
+    place = f"{abs(lat):.1f}° {'N' if lat >= 0 else 'S'}, {abs(lon):.1f}° {'E' if lon >= 0 else 'W'}"
+    return f"A {within}: on {', on '.join(parts)}. Least at {place}: {_percent(worst.available)} of the time."
+
+
+def _percent(share: float) -> str:
+    """A share that is never rounded up to all or down to nothing."""
+    if share in (0.0, 1.0):
+        return f"{100 * share:g} %"
+    return f"{min(max(100 * share, 0.01), 99.99):.2f} %"

@@ -1,0 +1,167 @@
+"""Tiles: the same bits from every back end, nothing lost with a worker, nothing done twice after a kill."""
+
+from __future__ import annotations
+
+import pickle
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tiles_fixture
+from navbound import maps, scale
+from navbound.errors import FormatError, InputError, NavboundError
+from navbound.maps.orbital import Dop
+from navbound.maps.sources import Times
+from navbound.maps.statistics import Evaluate, Tile
+
+TILES = list(range(8))
+Parts = list[dict[str, Any]]
+
+
+@pytest.fixture(scope="module")
+def workers() -> Iterator[dict[str, scale.Workers]]:
+    """One Dask cluster for all tests; its workers start again when they are lost."""
+    distributed = pytest.importorskip("distributed", reason="SKIPPED ALOUD: Dask is not installed")
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL") as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        yield {"serial": scale.Workers(), "processes": scale.Workers(2), "dask": scale.Workers(cluster=client)}
+
+
+def same(first: Parts, second: Parts) -> bool:
+    """Bit for bit, in order."""
+    return len(first) == len(second) and all(
+        a.keys() == b.keys() and all(a[k].dtype == b[k].dtype and a[k].tobytes() == b[k].tobytes() for k in a)
+        for a, b in zip(first, second, strict=True)
+    )
+
+
+@pytest.mark.parametrize("backend", ["processes", "dask"])
+def test_a_map_has_the_same_bits_whoever_works_it_off(backend: str, workers: dict[str, scale.Workers]) -> None:
+    job = Dop(times=Times(step_s=7200.0))
+    evaluate = Evaluate(job.levels(), ("pdop", "hdop"), (("pdop", 6.0),))
+    lat, lon = maps.Grid.degrees(30.0).points()
+    tiles = [Tile(lat[s], lon[s]) for s in (slice(0, 20), slice(20, 50), slice(50, len(lat)))]
+    alone = scale.map_tiles(evaluate, tiles)
+    assert same(scale.map_tiles(evaluate, tiles, backend=backend, workers=workers[backend]), alone)
+    # Another cut of the same users: no number depends on who stands in the same tile.
+    whole = scale.map_tiles(evaluate, [Tile(lat, lon)])[0]
+    assert all(np.concatenate([part[k] for part in alone]).tobytes() == whole[k].tobytes() for k in whole)
+
+
+@pytest.mark.parametrize("backend", ["processes", "dask"])
+def test_a_worker_lost_in_mid_run_loses_nothing(backend: str, workers: dict[str, scale.Workers], tmp_path: Path) -> None:
+    function = tiles_fixture.LosesWorker(str(tmp_path), tile=3)
+    found = scale.map_tiles(function, TILES, backend=backend, workers=workers[backend])
+    assert (tmp_path / "lost").exists(), "no worker was lost: this test tests nothing"
+    assert same(found, [tiles_fixture.numbers(t) for t in TILES])
+
+
+def test_a_tile_that_loses_every_worker_is_an_error(tmp_path: Path) -> None:
+    function = tiles_fixture.LosesWorker(str(tmp_path), tile=0, always=True)
+    with pytest.raises(NavboundError, match="3 worker processes in a row"):
+        scale.map_tiles(function, [0], backend="processes", workers=scale.Workers(1))
+
+
+def test_a_job_that_was_killed_goes_on(tmp_path: Path) -> None:
+    log, kept = tmp_path / "log", tmp_path / "kept"
+    log.mkdir()
+    program = (
+        "import tiles_fixture; from navbound import scale; "
+        f"scale.map_tiles(tiles_fixture.Logged({str(log)!r}, 0.05), list(range(60)), checkpoint={str(kept)!r})"
+    )
+    run = subprocess.Popen([sys.executable, "-c", program], cwd=Path(__file__).parent)
+    deadline = time.monotonic() + 60.0
+    while len(list(kept.glob("*.npz"))) < 3 and time.monotonic() < deadline:
+        time.sleep(0.01)
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    finished = len(list(kept.glob("*.npz")))
+    assert 3 <= finished < 60, "the job was not killed in the middle"
+    for call in log.iterdir():
+        call.unlink()
+    told: list[tuple[int, int]] = []
+    # The pause is part of the function and so of the job.
+    found = scale.map_tiles(
+        tiles_fixture.Logged(str(log), 0.05), list(range(60)), checkpoint=kept, progress=lambda done, all_: told.append((done, all_))
+    )
+    assert len(list(log.iterdir())) == 60 - finished
+    assert told[0] == (finished, 60)
+    assert told[-1] == (60, 60)
+    assert same(found, [tiles_fixture.numbers(t) for t in range(60)])
+
+
+def test_tiles_of_another_job_and_damaged_ones_are_not_taken(tmp_path: Path) -> None:
+    kept, log = tmp_path / "kept", tmp_path / "log"
+    log.mkdir()
+    first = tiles_fixture.Logged(str(log))
+    scale.map_tiles(first, TILES, checkpoint=kept)
+    assert len(list(log.iterdir())) == 8
+    scale.map_tiles(first, TILES, checkpoint=kept)
+    assert len(list(log.iterdir())) == 8, "finished tiles were done again"
+    scale.map_tiles(tiles_fixture.Logged(str(log), 0.001), TILES, checkpoint=kept)
+    assert len(list(log.iterdir())) == 16, "tiles of another function were taken"
+    for file in kept.glob("tile-000002-*.npz"):
+        file.write_bytes(file.read_bytes()[:100])
+    assert same(scale.map_tiles(first, TILES, checkpoint=kept), [tiles_fixture.numbers(t) for t in TILES])
+    assert len(list(log.iterdir())) == 17
+
+
+def test_a_refusal_crosses_from_a_process_whole() -> None:
+    with pytest.raises(InputError) as refused:
+        scale.map_tiles(tiles_fixture.refuses, TILES, backend="processes", workers=scale.Workers(1))
+    assert (refused.value.argument, refused.value.value, refused.value.index) == ("tile", 2, 7)
+
+
+def test_a_damaged_file_crosses_from_a_process_whole() -> None:
+    refused = pickle.loads(pickle.dumps(FormatError("a.rnx", "no number", 3, "toe")))
+    assert (str(refused), refused.path, refused.line, refused.field) == ("a.rnx:3: toe: no number", Path("a.rnx"), 3, "toe")
+
+
+def test_wrong_calls_are_sentences(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="serial, processes, dask"):
+        scale.map_tiles(tiles_fixture.numbers, TILES, backend="threads")
+    with pytest.raises(InputError, match="dictionary of arrays"):
+        scale.map_tiles(tiles_fixture.wrong, TILES)
+    with pytest.raises(InputError, match="count"):
+        scale.Workers(0)
+    (tmp_path / "file").touch()
+    with pytest.raises(NavboundError, match="cannot keep tiles"):
+        scale.map_tiles(tiles_fixture.numbers, TILES, checkpoint=tmp_path / "file")
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError, match="not installed"):
+        scale.map_tiles(tiles_fixture.numbers, TILES, backend="dask")
+
+
+@pytest.mark.parametrize(
+    ("n", "each_s", "bytes_each"), [(64_800, 1.7e-4, 0.0), (648, 1e-6, 0.0), (7, 3.0, 0.0), (3, 0.45, 0.0), (1000, 1e-3, 1e7)]
+)
+def test_a_cut_covers_everything_once(n: int, each_s: float, bytes_each: float) -> None:
+    tiles = scale.cut(n, each_s, bytes_each)
+    assert [i for t in tiles for i in range(t.start, t.stop)] == list(range(n))
+    sizes = [t.stop - t.start for t in tiles]
+    if bytes_each == 0.0 and len(tiles) > 1:
+        assert min(sizes) * each_s >= 0.2
+    # One item more than the share: sizes are whole.
+    assert all(size * bytes_each <= 2e8 + bytes_each for size in sizes)
+
+
+@pytest.mark.parametrize(("n", "each_s"), [(0, 1.0), (5, 0.0), (5, float("nan")), (5, float("inf"))])
+def test_nothing_to_cut_is_refused(n: int, each_s: float) -> None:
+    with pytest.raises(InputError):
+        scale.cut(n, each_s)
+
+
+def test_arrays_that_start_at_any_byte_are_taken() -> None:
+    shifted = np.frombuffer(b"\0" + np.array([0.1, 0.2]).tobytes(), dtype=np.uint8)[1:].view(np.float64)
+    assert not shifted.flags.aligned
+    found = maps.KINDS["dop"].options(times=Times(step_s=43_200.0)).levels()(shifted, shifted)
+    assert found["pdop"].shape == (2, 2)
