@@ -34,7 +34,7 @@ impl Airborne {
     /// Ionosphere-free pair of L1 and L5, E1 and E5a.
     pub const DUAL_FREQUENCY: Self = Self {
         id: "dual-frequency",
-        source: "ED-259A airborne model of the ionosphere-free pair, 0.34 + 0.40 exp(-E/14 deg) m; troposphere DO-229 A.4.2.4 (standard)",
+        source: "ED-259A airborne model of the ionosphere-free pair, 0.34 + 0.40 exp(-E/14 deg) m; troposphere DO-229 A.4.2.4",
         provenance: Provenance::Standard,
         noise: [0.34, 0.40, 14.0_f64.to_radians()],
         vertical_ionosphere: Metres::new(0.0),
@@ -44,7 +44,7 @@ impl Airborne {
     /// allows up to 9 m near the geomagnetic equator.
     pub const SINGLE_FREQUENCY: Self = Self {
         id: "single-frequency",
-        source: "ED-259A airborne model of L1 and E1, 0.13 + 0.17 exp(-E/13 deg) m (standard); 1.5 m of vertical ionosphere left (inferred)",
+        source: "ED-259A airborne model of L1 and E1, 0.13 + 0.17 exp(-E/13 deg) m (standard); 1.5 m of vertical ionosphere left",
         provenance: Provenance::Inferred,
         noise: [0.13, 0.17, 13.0_f64.to_radians()],
         vertical_ionosphere: Metres::new(1.5),

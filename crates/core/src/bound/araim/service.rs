@@ -30,7 +30,7 @@ pub struct Service {
     pub effective_monitor_limit: Option<Metres>,
 }
 
-const REFERENCE: &str = "Working Group C, ARAIM airborne algorithm description v3.0, as run by MAAST for ARAIM 2 (standard)";
+const REFERENCE: &str = "Working Group C, ARAIM airborne algorithm description v3.0, as run by MAAST for ARAIM 2";
 const HORIZONTAL: &str = "horizontal settings of MAAST for ARAIM 2's cross-check; risks of RNP 0.1 to 0.3 inferred from 1e-7 an hour";
 
 impl Service {
@@ -153,7 +153,7 @@ impl SupportMessage {
         let gps = Support { p_const: 1e-8, ..other };
         Self {
             id: "study",
-            source: "values of MAAST for ARAIM 2's shipped study; no integrity support message is broadcast (inferred)",
+            source: "values of MAAST for ARAIM 2's shipped study; no integrity support message is broadcast",
             provenance: Provenance::Inferred,
             support: [gps, other, other, other, other],
         }
