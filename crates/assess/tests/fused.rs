@@ -1,4 +1,5 @@
 //! Flights on a filter: what is carried over from the first path to the second, and what a unit in trouble does.
+#![allow(clippy::unwrap_used)] // A test may stop at the first surprise, its helpers too.
 
 use navbound_assess::flights::COLUMNS;
 use navbound_assess::fused::{Fused, navigate};
