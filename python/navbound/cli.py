@@ -39,6 +39,9 @@ app = typer.Typer(
 PAPER_WIDTH = 140
 """Columns of a table that goes to a file or a pipe, where the width of a terminal means nothing."""
 
+LISTED_FAULTS = 10
+"""Faults that are said at the end of a run; all of them are in its records."""
+
 out_console = Console(width=None if sys.stdout.isatty() else PAPER_WIDTH)
 err_console = Console(stderr=True)
 
@@ -188,7 +191,10 @@ def analyze(
 def study(
     name: Annotated[
         str,
-        typer.Argument(help="decorrelation-time, error-extraction, multipath-time-constants, surface-movement, tse-coverage, ukraine-rnav"),
+        typer.Argument(
+            help="anp-comparison, decorrelation-time, error-extraction, multipath-time-constants, surface-movement, tse-coverage, "
+            "ukraine-rnav"
+        ),
     ],
     files: Annotated[list[Path] | None, typer.Argument(help="Recorded data or a configuration, for a study that takes some.")] = None,
     out: Annotated[
@@ -344,6 +350,10 @@ def _show(run: Run, *, json: bool) -> None:
         out_console.print(
             f"Alerts: {cautions} cautions, {warnings} warnings, {unavailable} losses of monitoring, over {len(summary.tracks)} tracks."
         )
+        for fault in summary.faults[:LISTED_FAULTS]:
+            out_console.print(f"{fault.track}, {fault.kind}: {fault.words}", markup=False, highlight=False)
+        if len(summary.faults) > LISTED_FAULTS:
+            out_console.print(f"... and {len(summary.faults) - LISTED_FAULTS} more in summary.json.")
     if run.path is not None:
         out_console.print(f"Report: {run.report.resolve()}", markup=False, highlight=False, soft_wrap=True)
 

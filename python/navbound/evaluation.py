@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ import numpy as np
 from navbound import _core
 from navbound._arrays import flatten
 from navbound.errors import InputError
+from navbound.tse import exceedance_risk
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -237,6 +239,43 @@ def pit(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = 
     """
     dimension, error, covariance = _vectors(error_m, covariance_m2)
     return Pit(**_core.evaluate_pit(dimension, error, covariance, _labels(track), _count("n_bins", n_bins)))
+
+
+def crps(error_m: ArrayLike, sigma_m: ArrayLike) -> NDArray[np.float64]:
+    """Continuous ranked probability score of a centred Gaussian: how far its law is from the error that came.
+
+    ``sigma (z (2 Phi(z) - 1) + 2 phi(z) - 1 / sqrt(pi))``, ``z = |error| / sigma`` (Gneiting and Raftery 2007, standard). It is small for a
+    law that is sharp and right; a law that claims too little pays as one that claims too much does.
+
+    Parameters
+    ----------
+    error_m : array_like, shape (n,)
+        Error against truth. [m]
+    sigma_m : array_like, shape (n,)
+        Its claimed standard deviation. [m]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [m]
+
+    Raises
+    ------
+    InputError
+        Columns of unequal length, a deviation that is not positive or an error that is not finite.
+    """
+    error, sigma = _columns(error_m=error_m, sigma_m=sigma_m)
+    if error.shape != sigma.shape:
+        raise InputError("sigma_m", f"shape {sigma.shape}", domain=f"shape {error.shape}, that of error_m")
+    wrong = ~((sigma > 0.0) & np.isfinite(sigma))
+    if wrong.any():
+        raise InputError("sigma_m", float(sigma[wrong][0]), "m", "(0, inf)")
+    if not np.isfinite(error).all():
+        raise InputError("error_m", float(error[~np.isfinite(error)][0]), "m", "finite errors")
+    z = np.abs(error) / sigma
+    inside = 1.0 - exceedance_risk(0.0, 1.0, z)
+    density = np.exp(-0.5 * z * z) / math.sqrt(2.0 * math.pi)
+    return np.asarray(sigma * (z * inside + 2.0 * density - 1.0 / math.sqrt(math.pi)))
 
 
 def effective_size(values: ArrayLike, track: ArrayLike | None = None) -> float:

@@ -60,12 +60,17 @@ fn flight(sensing: &Sensing, seed: u64, number: u64, normals: &[f64; 9], trial: 
     let trajectory = sensing.trajectory(seed, number)?;
     let mut sensed = sensing.flight(&trajectory, seed, number)?;
     let begin = sensed.begin();
-    let start =
-        wrong_start(NavState::new(begin, &sensed.now().position, sensed.now().velocity_ned_mps, &attitude(sensed.now()))?, normals, trial)?;
+    let start = wrong_start(
+        NavState::new(begin, &sensed.now().position, sensed.now().velocity_ned_mps, &attitude(sensed.now()))?,
+        normals,
+        &trial.sigma,
+    )?;
     let mut driver = Driver::new(Box::new(Filter::new(start, &trial.sigma, trial.settings)?), trial.plan);
     let mut score = Score::default();
     while let Some(step) = sensed.advance()? {
-        driver.sample(&step.imu);
+        if step.delivered {
+            driver.sample(&step.imu);
+        }
         for timed in sensed.aiding() {
             driver.aid(timed);
         }
@@ -79,14 +84,14 @@ fn flight(sensing: &Sensing, seed: u64, number: u64, normals: &[f64; 9], trial: 
     Ok(score)
 }
 
-fn attitude(motion: &Motion) -> Attitude {
+pub(crate) fn attitude(motion: &Motion) -> Attitude {
     let [roll, pitch, heading] = motion.roll_pitch_yaw_rad().map(Radians::new);
     Attitude { roll, pitch, heading }
 }
 
 /// The true start with errors of the deviations: estimate minus truth, `C_estimated = (1 - [phi x]) C`.
-fn wrong_start(truth: NavState, normals: &[f64; 9], trial: &Trial) -> Result<NavState, OutOfDomain> {
-    let (position, sigma) = (truth.position()?, &trial.sigma);
+pub(crate) fn wrong_start(truth: NavState, normals: &[f64; 9], sigma: &StartSigma) -> Result<NavState, OutOfDomain> {
+    let position = truth.position()?;
     let r = radii(position.point.lat());
     let (lat, h) = (position.point.lat().rad(), position.height.m());
     let ned: [f64; 3] = core::array::from_fn(|k| normals[k] * sigma.position[k].m());

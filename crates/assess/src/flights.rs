@@ -1,5 +1,6 @@
 //! Many flights of one scenario on all cores, as columns of the epoch table.
 
+use crate::fused::MODES;
 use navbound_core::quantity::OutOfDomain;
 use navbound_simulate::{FlownEpoch, Outlook, fly};
 use rayon::prelude::*;
@@ -15,7 +16,7 @@ pub struct Flights {
 pub type Column = (&'static str, fn(&FlownEpoch) -> f64);
 
 /// Every column of numbers.
-pub const COLUMNS: [Column; 31] = [
+pub const COLUMNS: [Column; 33] = [
     ("est_lat_rad", |e| e.estimate[0]),
     ("est_lon_rad", |e| e.estimate[1]),
     ("est_h_m", |e| e.estimate[2]),
@@ -47,6 +48,8 @@ pub const COLUMNS: [Column; 31] = [
     ("n_sv", |e| f64::from(e.n_sv)),
     ("leg", |e| f64::from(e.leg)),
     ("phase", |e| f64::from(e.phase)),
+    ("n_gated", |e| f64::from(e.n_gated)),
+    ("nav_mode", |e| MODES.iter().position(|m| Some(*m) == e.mode).unwrap_or(MODES.len()) as f64),
     ("available", |e| f64::from(u8::from(e.reason.is_none()))),
 ];
 
@@ -59,6 +62,10 @@ impl Flights {
         let epochs =
             (first..first.saturating_add(count)).into_par_iter().map(|number| fly(outlook, seed, number)).collect::<Result<_, _>>()?;
         Ok(Self { epochs, first })
+    }
+
+    pub(crate) fn of(epochs: Vec<Vec<FlownEpoch>>, first: u64) -> Self {
+        Self { epochs, first }
     }
 
     /// One column, all flights.
@@ -79,6 +86,11 @@ impl Flights {
     /// Why an estimate does not exist, for each epoch where it does not, in order.
     pub fn reasons(&self) -> Vec<String> {
         self.all().filter_map(|e| e.reason).map(|r| r.to_string()).collect()
+    }
+
+    /// The epochs of the first flight.
+    pub fn first_flight(&self) -> &[FlownEpoch] {
+        self.epochs.first().map_or(&[], Vec::as_slice)
     }
 
     fn all(&self) -> impl Iterator<Item = &FlownEpoch> {

@@ -2,7 +2,9 @@
 
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{Aiding, ImuIncrement, TimedAiding};
-use navbound_core::solution::ins::{Advance, Filter, Kind, NavState, Samples, Settings, Solution, StartSigma, Stop, Strapdown, Wheels};
+use navbound_core::solution::ins::{
+    Advance, Aided, Filter, Kind, NavState, Samples, Settings, Solution, StartSigma, Stop, Strapdown, Wheels,
+};
 
 /// How a flight is run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,7 +114,8 @@ impl Driver {
         }
     }
 
-    pub(crate) fn aid(&mut self, timed: &TimedAiding) {
+    /// What became of a measurement; `None` where the plan passes over it.
+    pub(crate) fn aid(&mut self, timed: &TimedAiding) -> Option<Aided> {
         let kind = match &timed.aiding {
             Aiding::Satellite(_) => Kind::Range,
             Aiding::Dme(_) => Kind::Dme,
@@ -122,9 +125,8 @@ impl Driver {
         };
         let last = &mut self.used[kind.index()];
         // Measurements of one instant belong together.
-        if *last == Some(timed.time) || due(last, timed.time, self.plan.update_period_s) {
-            self.filter.aid(timed);
-        }
+        let wanted = *last == Some(timed.time) || due(last, timed.time, self.plan.update_period_s);
+        wanted.then(|| self.filter.aid(timed))
     }
 
     /// The result, where one is due.

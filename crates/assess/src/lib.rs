@@ -14,6 +14,7 @@ pub mod ee;
 pub mod error;
 pub mod evaluation;
 pub mod flights;
+pub mod fused;
 pub mod fusion;
 pub mod gbas;
 pub mod kpi;

@@ -140,7 +140,9 @@ impl Sensed {
 
     fn sample(&mut self, step: &Step, with_truth: bool) {
         let (time_ns, a, v) = (step.imu.time.nanoseconds(), &step.imu.angle_rad, &step.imu.velocity_mps);
-        self.imu.push(time_ns, [step.imu.interval_s, a.x, a.y, a.z, v.x, v.y, v.z]);
+        if step.delivered {
+            self.imu.push(time_ns, [step.imu.interval_s, a.x, a.y, a.z, v.x, v.y, v.z]);
+        }
         if with_truth {
             self.truth.push(time_ns, truth_row(&step.truth));
         }

@@ -2,8 +2,10 @@
 
 use crate::error::input_error;
 use crate::positions::Navigation;
-use crate::simulate::{read, refused};
+use crate::simulate::{epochs, read, refused};
+use navbound_assess::fused::{Fused, MODES, Verdict};
 use navbound_assess::sensed::{BARO, CLOCK, DME, IMU, SATELLITES, Sensed, TRUTH, Table, VOR};
+use navbound_core::solution::ins::Kind;
 use navbound_simulate::Sensing;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -52,6 +54,30 @@ impl Sensors {
         d.set_item("clock", columns(py, &CLOCK, s.clock)?)?;
         Ok(d)
     }
+
+    /// Flights `first .. first + count` on the scenario's filter: columns of epochs, and what each filter says of itself.
+    fn navigate<'py>(&self, py: Python<'py>, seed: u64, first: u64, count: u64) -> PyResult<(Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>)> {
+        let flown = py.detach(|| Fused::fly(&self.0, seed, first, count)).map_err(|e| input_error(e, None))?;
+        let verdicts = flown.verdicts.iter().map(|v| verdict(py, v)).collect::<PyResult<_>>()?;
+        Ok((epochs(py, &flown.flights)?, verdicts))
+    }
+
+    /// Words of the codes of the column `nav_mode`.
+    #[staticmethod]
+    fn modes() -> Vec<&'static str> {
+        MODES.iter().map(|mode| mode.word()).collect()
+    }
+}
+
+/// Of each kind of measurement: used, gated, refused, mean square, lag-one correlation, pairs behind it; and the inertial samples.
+fn verdict<'py>(py: Python<'py>, verdict: &Verdict) -> PyResult<Bound<'py, PyDict>> {
+    let d = PyDict::new(py);
+    for (kind, i) in Kind::ALL.iter().zip(&verdict.innovations) {
+        d.set_item(kind.word(), (i.n_used, i.n_gated, i.n_refused, i.mean_square(), i.lag_one(), i.n_pairs()))?;
+    }
+    let s = &verdict.samples;
+    d.set_item("samples", [s.n_done, s.n_bridged, s.n_late, s.n_refused, s.n_stopped])?;
+    Ok(d)
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -60,16 +60,20 @@ impl Outlook {
     /// Flights `first .. first + count` as columns.
     fn fly<'py>(&self, py: Python<'py>, seed: u64, first: u64, count: u64) -> PyResult<Bound<'py, PyDict>> {
         let flown: Result<Flights, OutOfDomain> = py.detach(|| Flights::fly(&self.0, seed, first, count));
-        let flights = flown.map_err(|e| input_error(e, None))?;
-        let d = PyDict::new(py);
-        for column in &COLUMNS {
-            d.set_item(column.0, flights.column(column).into_pyarray(py))?;
-        }
-        d.set_item("time_ns", flights.time_ns().into_pyarray(py))?;
-        d.set_item("flight", flights.number().into_pyarray(py))?;
-        d.set_item("reason", flights.reasons())?;
-        Ok(d)
+        epochs(py, &flown.map_err(|e| input_error(e, None))?)
     }
+}
+
+/// Epochs of flights as columns.
+pub fn epochs<'py>(py: Python<'py>, flights: &Flights) -> PyResult<Bound<'py, PyDict>> {
+    let d = PyDict::new(py);
+    for column in &COLUMNS {
+        d.set_item(column.0, flights.column(column).into_pyarray(py))?;
+    }
+    d.set_item("time_ns", flights.time_ns().into_pyarray(py))?;
+    d.set_item("flight", flights.number().into_pyarray(py))?;
+    d.set_item("reason", flights.reasons())?;
+    Ok(d)
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

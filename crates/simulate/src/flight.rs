@@ -1,11 +1,16 @@
-//! One flight: navigation error drawn from its covariance, the aircraft steered by the estimate, both set down as epochs.
+//! One flight: the aircraft steered by a navigation that is wrong, both set down as epochs.
+//!
+//! Where the navigation comes from is the caller's: drawn from the covariance of the geometry ([`fly`]), or worked out by a filter from
+//! sensors ([`fly_by`]).
 
 use crate::aircraft::{Aircraft, Deviation, STEPS};
 use crate::outlook::{Instant, Outlook, lateral_fault_m, right_of};
 use crate::philox::{Sensor, Stream};
+use crate::sensors::PathFlown;
 use nalgebra::Vector3;
-use navbound_core::frame::{Displacement, Enu, Geodetic};
+use navbound_core::frame::{Covariance, Displacement, Enu, Geodetic};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
+use navbound_core::solution::ins::Mode;
 use navbound_path::Line;
 
 /// One epoch of a flight. Numbers of an estimate that does not exist are NaN.
@@ -45,20 +50,66 @@ pub struct FlownEpoch {
     pub dop: [f64; 2],
     /// Why there is no estimate.
     pub reason: Option<Unavailable>,
+    /// What keeps the position of a filter; `None` without one.
+    pub mode: Option<Mode>,
+    /// Measurements that a filter threw away in the last second.
+    pub n_gated: u32,
 }
 
-/// A flight of a scenario; the number chooses its random streams.
+/// What the navigation says at an instant, and how wrong it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Navigated {
+    /// True minus estimated position, east, north, up \[m\]; the last one where there is no estimate.
+    pub error_enu_m: Vector3<f64>,
+    /// What it claims of that error, or why there is no estimate.
+    pub covariance: Result<Covariance<Enu>, Unavailable>,
+    /// Satellites in use.
+    pub n_sv: u32,
+    /// Dilutions of precision, horizontal and vertical.
+    pub dop: [f64; 2],
+    /// As in [`FlownEpoch`].
+    pub mode: Option<Mode>,
+    /// As in [`FlownEpoch`].
+    pub n_gated: u32,
+}
+
+/// A flight of a scenario with position errors drawn from the covariance of the geometry; the number chooses its random streams.
 ///
 /// # Errors
 /// [`OutOfDomain`] for a route that leaves the Earth's latitudes: beside a pole.
 pub fn fly(outlook: &Outlook, seed: u64, number: u64) -> Result<Vec<FlownEpoch>, OutOfDomain> {
     let errors = navigation_errors(outlook, seed, number);
-    let scenario = &outlook.scenario;
+    let drawn = |(instant, error): (&Instant, &Vector3<f64>)| Navigated {
+        error_enu_m: *error,
+        covariance: instant.sky.covariance,
+        n_sv: instant.sky.n_sv as u32,
+        dop: instant.dop(),
+        mode: None,
+        n_gated: 0,
+    };
+    let navigated: Vec<_> = outlook.instants.iter().zip(&errors).map(drawn).collect();
+    fly_by(outlook, seed, number, &navigated, PathFlown::Flown)
+}
+
+/// A flight steered by a navigation of the caller's, one item for each second of the outlook.
+///
+/// Flown, the guidance sees the estimate and leaves a technical error; planned, it leaves none and the estimate stays on the path.
+///
+/// # Errors
+/// As [`fly`]; [`OutOfDomain`] for more or fewer items than seconds.
+pub fn fly_by(outlook: &Outlook, seed: u64, number: u64, navigated: &[Navigated], path: PathFlown) -> Result<Vec<FlownEpoch>, OutOfDomain> {
+    let (scenario, n) = (&outlook.scenario, outlook.instants.len());
+    if navigated.len() != n {
+        return Err(OutOfDomain { argument: "navigated", value: navigated.len() as f64, unit: "items", domain: "one for each second" });
+    }
     let mut aircraft = Aircraft::new(&outlook.plan, scenario.guidance, scenario.gusts, seed, number);
-    let mut epochs = Vec::with_capacity(errors.len());
+    let mut epochs = Vec::with_capacity(n);
     for (i, instant) in outlook.instants.iter().enumerate() {
-        epochs.push(epoch(outlook, instant, aircraft.deviation(), &errors[i])?);
-        let (from, to) = (seen_error(outlook, i, &errors), seen_error(outlook, (i + 1).min(errors.len() - 1), &errors));
+        let from = seen_error(instant, &navigated[i]);
+        let deviation = if path == PathFlown::Planned { from } else { aircraft.deviation() };
+        epochs.push(epoch(outlook, instant, deviation, &navigated[i])?);
+        let next = (i + 1).min(n - 1);
+        let to = seen_error(&outlook.instants[next], &navigated[next]);
         for step in 0..STEPS {
             let share = step as f64 / STEPS as f64;
             let error =
@@ -89,12 +140,12 @@ fn navigation_errors(outlook: &Outlook, seed: u64, number: u64) -> Vec<Vector3<f
     errors
 }
 
-fn seen_error(outlook: &Outlook, i: usize, errors: &[Vector3<f64>]) -> Deviation {
-    let right = right_of(outlook.instants[i].place.course);
-    Deviation { right_m: right.dot(&errors[i]), up_m: errors[i].z }
+fn seen_error(instant: &Instant, navigated: &Navigated) -> Deviation {
+    let error = &navigated.error_enu_m;
+    Deviation { right_m: right_of(instant.place.course).dot(error), up_m: error.z }
 }
 
-fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, error: &Vector3<f64>) -> Result<FlownEpoch, OutOfDomain> {
+fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, navigated: &Navigated) -> Result<FlownEpoch, OutOfDomain> {
     let demand = &instant.demand;
     let beside = Radians::new(instant.place.course.rad() + core::f64::consts::FRAC_PI_2);
     let point = Line::from_azimuth(instant.place.point, beside)?.at(Metres::new(deviation.right_m))?.point;
@@ -115,18 +166,20 @@ fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, error: &Vec
         ground_speed_mps: demand.speed_mps,
         fte_m: [f64::NAN; 2],
         nse_enu_m: [f64::NAN; 3],
-        n_sv: instant.sky.n_sv as u32,
-        dop: instant.sky.dilution.map_or([f64::NAN; 2], |d| [d.horizontal, d.vertical]),
-        reason: instant.sky.covariance.as_ref().err().copied(),
+        n_sv: navigated.n_sv,
+        dop: navigated.dop,
+        reason: navigated.covariance.as_ref().err().copied(),
+        mode: navigated.mode,
+        n_gated: navigated.n_gated,
     };
-    epoch.estimate(outlook, instant, &truth, error)?;
+    epoch.estimate(outlook, instant, &truth, navigated)?;
     Ok(epoch)
 }
 
 impl FlownEpoch {
     /// Adds what rests on the estimate, where there is one.
-    fn estimate(&mut self, outlook: &Outlook, instant: &Instant, truth: &Geodetic, error: &Vector3<f64>) -> Result<(), OutOfDomain> {
-        let Ok(covariance) = &instant.sky.covariance else { return Ok(()) };
+    fn estimate(&mut self, outlook: &Outlook, instant: &Instant, truth: &Geodetic, navigated: &Navigated) -> Result<(), OutOfDomain> {
+        let (Ok(covariance), error) = (&navigated.covariance, &navigated.error_enu_m) else { return Ok(()) };
         let estimate = truth.moved(&Displacement::<Enu>::from_vector(-error))?;
         let foot = outlook.plan.route.project(&estimate.point, Some(Metres::new(instant.demand.along_m)))?;
         let path_height = instant.demand.height_m + instant.demand.slope * (foot.along.m() - instant.demand.along_m);

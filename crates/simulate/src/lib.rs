@@ -6,6 +6,7 @@
 
 mod aircraft;
 mod flight;
+mod navigator;
 mod outlook;
 mod philox;
 mod plan;
@@ -15,12 +16,13 @@ mod scenario;
 mod sensors;
 mod trajectory;
 
-pub use flight::{FlownEpoch, fly};
+pub use flight::{FlownEpoch, Navigated, fly, fly_by};
+pub use navigator::{BelievedErrors, Navigator};
 pub use outlook::Outlook;
 pub use plan::{PhaseRange, Plan, Refused};
 pub use scenario::{Fault, Guidance, Gusts, Navigation, Phase, ProfileSettings, Scenario, System, Turns, Waypoint};
 pub use sensors::{
     Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeMode, RangeParts, SensedFlight, Sensing, SensorFault, Sensors, Station, StationKind,
-    Step, Vor,
+    Step, Trouble, Vor,
 };
 pub use trajectory::{Cursor, Motion, Trajectory};

@@ -23,6 +23,13 @@ pub(crate) struct Instant {
     pub(crate) sky: Sky,
 }
 
+impl Instant {
+    /// Dilutions of precision, horizontal and vertical; NaN where there are none.
+    pub(crate) fn dop(&self) -> [f64; 2] {
+        self.sky.dilution.map_or([f64::NAN; 2], |d| [d.horizontal, d.vertical])
+    }
+}
+
 /// What the satellites allow at an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sky {
@@ -69,6 +76,14 @@ impl Outlook {
         Ok(Self { plan, scenario, instants })
     }
 
+    /// How many seconds it has.
+    pub fn seconds(&self) -> usize {
+        self.instants.len()
+    }
+    /// Dilutions of precision at one of them, horizontal and vertical; NaN where there are none.
+    pub fn dop(&self, second: usize) -> [f64; 2] {
+        self.instants.get(second).map_or([f64::NAN; 2], Instant::dop)
+    }
     /// The plan.
     pub fn plan(&self) -> &Plan {
         &self.plan

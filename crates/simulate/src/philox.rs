@@ -51,6 +51,8 @@ pub(crate) enum Sensor {
     VorNoise,
     BaroConstants,
     Baro,
+    /// What the navigation filter starts with that is wrong.
+    FilterStart,
 }
 
 /// A stream of random numbers for one sensor of one flight.

@@ -1,6 +1,7 @@
 //! A scenario: what is flown, how, and how well the aircraft knows where it is. All numbers in SI units; the Python layer turns the
 //! units of a scenario file into these and explains every value it refuses.
 
+use crate::navigator::Navigator;
 use crate::sensors::Sensors;
 use navbound_core::geometry::{BEIDOU, GALILEO, GPS, Slot};
 use navbound_core::quantity::OutOfDomain;
@@ -34,6 +35,9 @@ pub struct Scenario {
     /// Sensors on board, for flights whose position is to be worked out rather than drawn.
     #[serde(default)]
     pub sensors: Option<Sensors>,
+    /// The filter that works it out; without one the position errors are drawn from the covariance of the geometry.
+    #[serde(default)]
+    pub filter: Option<Navigator>,
 }
 
 /// A point of the route.
@@ -240,6 +244,7 @@ impl Scenario {
         rules.extend(self.phases.iter().map(|p| positive("rnp_m", p.rnp_m, "m")));
         rules.extend(self.faults.iter().flat_map(Fault::rules));
         rules.extend(self.sensors.iter().flat_map(Sensors::rules));
+        rules.extend(self.filter.iter().flat_map(|f| f.rules(self.sensors.is_some(), self.faults.len())));
         match rules.into_iter().find(|rule| !rule.3) {
             Some(Rule(argument, value, unit, _, domain)) => Err(OutOfDomain { argument, value, unit, domain }),
             None => Ok(()),

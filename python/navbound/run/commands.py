@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from navbound.errors import InputError
 from navbound.run import analyze as recorded
 from navbound.run import directory, performance
 from navbound.run import fly as simulated
+from navbound.run.faults import fault_summaries
 from navbound.run.judge import Settings, judge
 from navbound.run.kpi_records import Level
 from navbound.run.requirement import requirement
@@ -63,8 +65,11 @@ def fly(
     """
     if not 1 <= flights <= MAX_FLIGHTS:
         raise InputError("flights", flights, "1", f"[1, {MAX_FLIGHTS}]")
-    material = simulated.material(scenarios.load(scenario), flights=flights, seed=seed, progress=progress)
-    return _finish(judge(material, settings, command), out)
+    found = scenarios.load(scenario)
+    material = simulated.material(found, flights=flights, seed=seed, progress=progress)
+    run = judge(material, settings, command)
+    summary = run.summary.model_copy(update={"faults": fault_summaries(found, run.epochs, run.events)})
+    return _finish(replace(run, summary=summary), out)
 
 
 def analyze(

@@ -23,7 +23,14 @@ __all__ = ["material"]
 
 _CHUNK = 8
 """Flights between two reports of progress: enough to keep the cores busy."""
-_CODES = ("leg", "phase", "available", "flight", "reason")
+_FUSED_CHUNK = 2
+"""The same where every flight runs a filter for some seconds."""
+_KEPT = {
+    "dme_dme": "without satellites: ranges to DME keep the position",
+    "vor_dme": "without satellites: a VOR and a DME keep the position",
+    "coasting": "without satellites and stations: inertial navigation alone",
+}
+_CODES = ("nav_mode", "leg", "phase", "available", "flight", "reason")
 """Columns that become words."""
 
 
@@ -66,13 +73,21 @@ def material(
     if not (isinstance(chosen, int) and 0 <= chosen < 2**64):
         raise InputError("seed", chosen, domain="[0, 2^64)")
     outlook = _core.Outlook(found.core_json())
-    parts = []
-    for first in range(0, flights, _CHUNK):
-        count = min(_CHUNK, flights - first)
-        parts.append(_table(outlook.fly(chosen, first, count), found))
+    sensors = None if found.filter is None else _core.Sensors(found.core_json(), None)
+    parts, verdicts = [], []
+    chunk = _CHUNK if sensors is None else _FUSED_CHUNK
+    for first in range(0, flights, chunk):
+        count = min(chunk, flights - first)
+        if sensors is None:
+            columns = outlook.fly(chosen, first, count)
+        else:
+            columns, said = sensors.navigate(chosen, first, count)
+            verdicts += said
+        parts.append(_table(columns, found))
         if progress is not None:
             progress(first + count, flights)
     plan = outlook.plan()
+    told = {"filter": filter_verdict(verdicts) | {"restarts": len(verdicts) - flights}} if verdicts else {}
     return Material(
         epochs=pl.concat(parts),
         kind="fly",
@@ -85,7 +100,8 @@ def material(
         inputs=[] if isinstance(scenario, Scenario) else [_input_file(find(scenario))],
         scenario=found.model_dump(mode="json"),
         seed=chosen,
-        settings={"flights": flights, **{key: plan[key] for key in ("length_m", "cruise_speed_mps", "top_of_climb_s", "top_of_descent_s")}},
+        settings={"flights": flights, **{key: plan[key] for key in ("length_m", "cruise_speed_mps", "top_of_climb_s", "top_of_descent_s")}}
+        | told,
     )
 
 
@@ -100,12 +116,47 @@ def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
         "leg": _words(legs, columns["leg"]),
         "phase": _words([p.name for p in scenario.phases], columns["phase"]),
         "status": _words(["not_available", "ok"], columns["available"]),
-        "reason": pl.Series(reasons, dtype=pl.String),
+        "reason": pl.Series(reasons.tolist(), dtype=pl.String),
     }
+    if scenario.filter is None:
+        columns = {name: values for name, values in columns.items() if name != "n_gated"}
+    else:
+        words["nav_mode"] = _words([*_core.Sensors.modes(), "stopped"], columns["nav_mode"])
+        # What keeps the position is less than it should be: usable, and said.
+        lesser = (columns["nav_mode"] != _core.Sensors.modes().index("gnss")) & available
+        words["status"] = words["status"].zip_with(pl.Series(~lesser), pl.Series(["degraded"]))
+        kept = words["nav_mode"].replace_strict(_KEPT, default=None)
+        words["reason"] = kept.zip_with(pl.Series(lesser), words["reason"])
     numbers = {name: values for name, values in columns.items() if name not in _CODES}
     table = pl.DataFrame({"track": words.pop("track"), "time_ns": numbers.pop("time_ns"), **numbers, **words})
     # A value that does not exist is null in a table.
-    return table.with_columns(pl.col(pl.Float64).fill_nan(None)).with_columns(pl.col("n_sv").cast(pl.Int32))
+    return table.with_columns(pl.col(pl.Float64).fill_nan(None)).with_columns(pl.col("^n_(sv|gated)$").cast(pl.Int32))
+
+
+def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
+    """What the filters of all flights say of themselves: innovations by kind of measurement, and the inertial samples.
+
+    ``mean_square`` is the mean squared normalised innovation (NIS), ``lag_one`` the correlation with the one before it of the same source,
+    both over all flights.
+    """
+    found: dict[str, Any] = {}
+    for kind in (key for key in verdicts[0] if key != "samples"):
+        used, gated, refused, square, lag, pairs = np.array([v[kind] for v in verdicts], dtype=float).T
+        if used.sum() + gated.sum() + refused.sum() > 0:
+            found[kind] = {
+                "n_used": int(used.sum()),
+                "n_gated": int(gated.sum()),
+                "n_refused": int(refused.sum()),
+                "mean_square": _weighted(square, used),
+                "lag_one": _weighted(lag, pairs),
+            }
+    samples = np.sum([v["samples"] for v in verdicts], axis=0).tolist()
+    return found | {"samples": dict(zip(("done", "bridged", "late", "refused", "stopped"), samples, strict=True))}
+
+
+def _weighted(values: np.ndarray[Any, Any], weights: np.ndarray[Any, Any]) -> float | None:
+    known = weights > 0
+    return float(np.average(values[known], weights=weights[known])) if known.any() else None
 
 
 def _words(words: list[str], codes: np.ndarray[Any, Any]) -> pl.Series:
@@ -118,6 +169,15 @@ def _track(number: int) -> str:
 
 def _assumptions(scenario: Scenario) -> list[str]:
     said = list(scenario.assumptions)
+    if scenario.filter is not None:
+        said.append(
+            "The position comes from simulated sensors through a navigation filter that is told their statistics; guidance follows the "
+            "filter's error, worked out on a first flight of the same number."
+        )
+        if scenario.filter.mode == "white":
+            said.append("The filter takes errors that stay for new at every measurement: it is wrong about itself on purpose.")
+    if scenario.sensors is not None and scenario.sensors.faults:
+        said.append(f"Sensors fail: {', '.join(f'{f.kind} from {f.start_s:g} s' for f in scenario.sensors.faults)}.")
     scale = scenario.navigation.claimed_sigma_scale
     if scale != 1.0:
         said.append(f"The covariance claims {scale:g} times the true standard deviation: it is dishonest on purpose.")

@@ -7,6 +7,9 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
+from navbound.run.faults import FaultSummary
 from navbound.run.kpi_records import Performance
 from navbound.run.record import Record
 
@@ -211,6 +214,8 @@ class Summary(Record):
     """Epochs by status."""
     performance: Performance | None = None
     """The ICAO indicators, where errors and protection levels are known."""
+    faults: list[FaultSummary] = Field(default=[])
+    """Of the sensors of a simulated flight: what they did, and when the monitors spoke."""
 
 
 class RunRecord(Record):

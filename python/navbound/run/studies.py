@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from navbound.errors import InputError
 from navbound.run import (
+    study_anp_comparison,
     study_decorrelation_time,
     study_error_extraction,
     study_multipath_time_constants,
@@ -40,6 +41,11 @@ def _alone(files: Sequence[str | Path]) -> None:
         raise InputError("files", len(files), "1", "{0}: this study makes its own data")
 
 
+def _anp_comparison(files: Sequence[str | Path]) -> Study:
+    _alone(files)
+    return study_anp_comparison.run()
+
+
 def _tse_coverage(files: Sequence[str | Path]) -> Study:
     _alone(files)
     return study_tse_coverage.run()
@@ -51,6 +57,7 @@ def _ukraine_rnav(files: Sequence[str | Path]) -> Study:
 
 
 STUDIES: dict[str, Callable[[Sequence[str | Path]], Study]] = {
+    "anp-comparison": _anp_comparison,
     "decorrelation-time": study_decorrelation_time.run,
     "error-extraction": study_error_extraction.run,
     "multipath-time-constants": study_multipath_time_constants.run,

@@ -27,6 +27,7 @@ _KINDS = {
     "spoofing",
     "dme-bias",
     "imu-bias-jump",
+    "imu-trouble",
     "baro-blockage",
 }
 """Kinds of faults; the checker puts them into its locations, where the file has nothing."""

@@ -113,6 +113,18 @@ class DegradedRanging(Part):
     sigma_factor: float
 
 
+class Filter(Part):
+    """The navigation filter that joins the sensors."""
+
+    mode: Literal["correlated", "white"]
+    gate_risk: float
+    samples_per_step: int
+    restart_after_s: float
+    position_sigma_m: list[float] = Field(min_length=3, max_length=3)
+    velocity_sigma_mps: float
+    attitude_sigma_rad: list[float] = Field(min_length=3, max_length=3)
+
+
 Fault = Annotated[LateralRamp | DegradedRanging, Field(discriminator="kind")]
 
 
@@ -134,6 +146,8 @@ class Scenario(Part):
     phases: list[Phase] = Field(min_length=1)
     faults: list[Fault] = Field(default=[])
     sensors: Sensors | None = None
+    filter: Filter | None = None
+    """Without one the position errors are drawn from the covariance of the satellite geometry."""
 
     @field_validator("start_gps")
     @classmethod

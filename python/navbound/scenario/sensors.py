@@ -175,6 +175,15 @@ class ImuBiasJump(Part):
     accelerometer_mps2: list[float] = Field(min_length=3, max_length=3)
 
 
+class ImuTrouble(Part):
+    """The inertial unit's samples cannot be used."""
+
+    kind: Literal["imu-trouble"]
+    start_s: float
+    duration_s: float
+    what: Literal["silent", "not-a-number", "late"]
+
+
 class BaroBlockage(Part):
     """The static port is blocked: the altimeter stays where it was."""
 
@@ -184,7 +193,7 @@ class BaroBlockage(Part):
 
 
 SensorFault = Annotated[
-    SatelliteStep | SatelliteRamp | Interference | Spoofing | DmeBias | ImuBiasJump | BaroBlockage, Field(discriminator="kind")
+    SatelliteStep | SatelliteRamp | Interference | Spoofing | DmeBias | ImuBiasJump | ImuTrouble | BaroBlockage, Field(discriminator="kind")
 ]
 
 

@@ -107,6 +107,25 @@ export interface EventSummary {
     words: string;
 }
 
+/** Times count from the begin of the fault, in seconds. */
+export interface FaultSummary {
+    track: string;
+    kind: string;
+    start_ns: number;
+    end_ns: number | null;
+    gate_after_s: number | null;
+    mode_after_s: number | null;
+    mode: string | null;
+    alert_after_s: number | null;
+    alert: string | null;
+    outside_after_s: number | null;
+    outside_twice_after_s: number | null;
+    nse_h_max_m: number | null;
+    nse_u_max_m: number | null;
+    outcome: string;
+    words: string;
+}
+
 export interface Summary {
     kind: string;
     title: string;
@@ -125,6 +144,8 @@ export interface Summary {
     n_status: Record<string, number>;
     /** The ICAO indicators, where errors and protection levels are known. */
     performance: Performance | null;
+    /** Of the sensors of a simulated flight: what they did, and when the monitors spoke. */
+    faults: FaultSummary[];
 }
 
 export interface RunRecord {

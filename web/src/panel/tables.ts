@@ -1,6 +1,6 @@
 // Tables of the records.
 
-import type { EventSummary, MethodResult, Payload, TrackSummary } from "../data/records.ts";
+import type { EventSummary, FaultSummary, MethodResult, Payload, TrackSummary } from "../data/records.ts";
 import { indexAt, utcOf } from "../data/events.ts";
 import type { Scene } from "../data/scene.ts";
 import { el } from "../show/dom.ts";
@@ -61,6 +61,24 @@ export function phases(payload: Payload): HTMLElement {
             number("Risk, mean", "p_exceed_2rnp_mean", risk), number("Coverage", "coverage", share), number("Cautions", "n_cautions", count), number("Warnings", "n_warnings", count),
         ],
     });
+}
+
+export function faults(payload: Payload): HTMLElement | null {
+    const rows = payload.summary.faults;
+    if (rows.length === 0) return null;
+    const labels = new Map(payload.summary.tracks.map((t) => [t.track, t.label]));
+    const after = (v: number | null): string => (v === null ? NONE : `${plain(v, 0)} s`);
+    const table = sortable<FaultSummary>({
+        id: "faults", caption: "Faults of the sensors: when the monitors spoke, in seconds after the fault began", rows, sortable: rows.length > 1,
+        columns: [
+            { head: "Track", key: "track", words: true, of: (f) => f.track, show: (f) => labels.get(f.track) ?? f.track }, text("Fault", "kind"),
+            { head: "Begin, UTC", key: "start_ns", of: (f) => f.start_ns, show: (f) => clock(utcOf(f.start_ns, payload)) },
+            number("Gate", "gate_after_s", after), number("Mode fell", "mode_after_s", after), text("To", "mode"), number("First alert", "alert_after_s", after), text("Alert", "alert"),
+            number("Truth outside RNP", "outside_after_s", after), number("Outside 2 RNP", "outside_twice_after_s", after),
+            number("Horizontal error, largest", "nse_h_max_m", metres), number("Vertical, largest", "nse_u_max_m", metres), text("Outcome", "outcome"),
+        ],
+    });
+    return el("div", {}, el("p", { class: "note" }, ...rows.slice(0, 1).map((f) => `${f.kind}: ${f.words}`)), table);
 }
 
 export function crossTrack(payload: Payload): HTMLElement | null {

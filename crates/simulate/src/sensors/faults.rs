@@ -69,6 +69,15 @@ pub enum SensorFault {
         /// Of the accelerometers \[m/s²\].
         accelerometer_mps2: [f64; 3],
     },
+    /// The inertial unit's samples cannot be used.
+    ImuTrouble {
+        /// Time after the begin of the flight \[s\].
+        start_s: f64,
+        /// How long \[s\].
+        duration_s: f64,
+        /// What is wrong with them.
+        what: Trouble,
+    },
     /// The static port is blocked: the altimeter stays where it was.
     BaroBlockage {
         /// Time after the begin of the flight \[s\].
@@ -78,7 +87,27 @@ pub enum SensorFault {
     },
 }
 
+/// What is wrong with samples that cannot be used.
+#[derive(Debug, Clone, Copy, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Trouble {
+    /// None come.
+    Silent,
+    /// An angle is not a number.
+    NotANumber,
+    /// Their times lie a second back.
+    Late,
+}
+
 impl SensorFault {
+    /// What is wrong with the inertial unit's samples at a time.
+    pub(crate) fn trouble(&self, time_s: f64) -> Option<Trouble> {
+        match self {
+            Self::ImuTrouble { what, .. } => self.since(time_s).map(|_| *what),
+            _ => None,
+        }
+    }
+
     /// When it acts \[s\].
     pub(crate) fn window(&self) -> core::ops::Range<f64> {
         match *self {
@@ -87,6 +116,7 @@ impl SensorFault {
             | Self::Interference { start_s, duration_s }
             | Self::Spoofing { start_s, duration_s, .. }
             | Self::DmeBias { start_s, duration_s, .. }
+            | Self::ImuTrouble { start_s, duration_s, .. }
             | Self::BaroBlockage { start_s, duration_s } => start_s..start_s + duration_s,
             Self::ImuBiasJump { start_s, .. } => start_s..f64::INFINITY,
         }
@@ -132,7 +162,7 @@ impl SensorFault {
                 rules.extend(gyro_radps.map(|w| within("gyro_radps", w, "rad/s", -1.0, 1.0, "[-1, 1]")));
                 rules.extend(accelerometer_mps2.map(|f| within("accelerometer_mps2", f, "m/s²", -100.0, 100.0, "[-100, 100]")));
             }
-            Self::Interference { .. } | Self::BaroBlockage { .. } => {}
+            Self::Interference { .. } | Self::ImuTrouble { .. } | Self::BaroBlockage { .. } => {}
         }
         rules
     }

@@ -21,10 +21,11 @@ mod settings;
 mod sky;
 mod stations;
 
-pub use faults::SensorFault;
+pub use faults::{SensorFault, Trouble};
 pub use settings::{Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};
 
 use crate::flight::fly;
+use crate::navigator::Navigator;
 use crate::outlook::Outlook;
 use crate::plan::Refused;
 use crate::scenario::Scenario;
@@ -50,6 +51,8 @@ pub struct Sensing {
 pub struct Step {
     /// What the inertial unit delivers.
     pub imu: ImuIncrement,
+    /// Whether it does: a declared fault may silence it.
+    pub delivered: bool,
     /// The true motion at the end of the sample.
     pub truth: Motion,
 }
@@ -80,6 +83,11 @@ impl Sensing {
     /// What all flights share besides the sensors.
     pub fn outlook(&self) -> &Outlook {
         &self.outlook
+    }
+
+    /// The filter on board, if there is one.
+    pub fn navigator(&self) -> Option<Navigator> {
+        self.outlook.scenario.filter
     }
 
     /// The settings.
@@ -113,6 +121,7 @@ impl Sensing {
         let vor = s.vor.as_ref().map(|v| Bearings::new(v, s, seed, number).map(|b| (every(v.interval_s), b))).transpose()?;
         let receiver = |g| Receiver::new(g, &self.satellites, &s.faults, begin, seed, number);
         Ok(SensedFlight {
+            faults: &s.faults,
             begin,
             interval_ns: 1_000_000_000 / i64::from(rate_hz),
             // A product of two written numbers may fall short of a whole one by its last digit.
@@ -131,6 +140,7 @@ impl Sensing {
 
 /// Sensors on a flight, each with the samples of the inertial unit between its measurements.
 pub struct SensedFlight<'a> {
+    faults: &'a [SensorFault],
     begin: GpsTime,
     interval_ns: i64,
     samples: u64,
@@ -174,9 +184,16 @@ impl SensedFlight<'_> {
         let since_ns = index as i64 * self.interval_ns;
         let time = GpsTime::from_nanoseconds(self.begin.nanoseconds() + since_ns);
         let (angle, velocity, truth) = self.truth.step()?;
-        let imu = self.imu.sample(index, time, &angle, &velocity);
-        self.aid(index, since_ns as f64 * 1e-9, time, &truth)?;
-        Ok(Some(Step { imu, truth }))
+        let time_s = since_ns as f64 * 1e-9;
+        let mut imu = self.imu.sample(index, time, &angle, &velocity);
+        let trouble = self.faults.iter().find_map(|f| f.trouble(time_s));
+        match trouble {
+            Some(Trouble::NotANumber) => imu.angle_rad.x = f64::NAN,
+            Some(Trouble::Late) => imu.time = time.plus_seconds(-1.0),
+            Some(Trouble::Silent) | None => {}
+        }
+        self.aid(index, time_s, time, &truth)?;
+        Ok(Some(Step { imu, delivered: trouble != Some(Trouble::Silent), truth }))
     }
 
     fn aid(&mut self, index: u64, time_s: f64, time: GpsTime, truth: &Motion) -> Result<(), OutOfDomain> {

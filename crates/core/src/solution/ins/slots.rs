@@ -90,8 +90,11 @@ impl Slots {
     pub(super) fn ensure(&mut self, joint: &mut Joint, what: Further, process: Process, value: f64) -> Option<usize> {
         if let Some(place) = self.find(what) {
             let slot = &mut self.slot[place - BASE];
-            // The budget of a satellite changes with its elevation: the process noise follows, the estimate stays.
+            // The budget of a satellite changes with its elevation, that of a barometer with the height. The process noise follows and the
+            // estimate stays; what the budget gains or loses was not in the estimate, or is no longer: that much is not known of it.
+            let changed = (process.sigma * process.sigma - slot.sigma * slot.sigma).abs();
             (slot.sigma, slot.tau_s) = (process.sigma, process.tau_s);
+            joint.add_variance(place, changed);
             return Some(place);
         }
         if self.n == FURTHER && !self.evict(joint) {

@@ -1,0 +1,183 @@
+//! Flights that navigate by their sensors: sensors to filter to epochs, on all cores.
+//!
+//! The loop through the guidance is closed in two passes. The sensors ride along a first path, the filter's error follows; then the
+//! aircraft is flown again, its guidance seeing that error second by second, and the epochs are of this second flight. The error is carried
+//! over unchanged: it comes from ranges, clocks and biases, and a path some tens of metres beside the first has the same of all of them. A
+//! test flies the sensors along the second path and compares.
+
+use crate::consistency::{attitude, wrong_start};
+use crate::error::navigation_error;
+use crate::flights::Flights;
+use crate::fusion::{Driver, Plan};
+use nalgebra::Vector3;
+use navbound_core::quantity::{GpsTime, OutOfDomain, Unavailable};
+use navbound_core::signal::Aiding;
+use navbound_core::solution::ins::{Aided, Filter, Innovations, Kind, Mode, NavState, Samples};
+use navbound_simulate::{FlownEpoch, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by};
+use rayon::prelude::*;
+
+/// Flights, and what their filters say of themselves.
+#[derive(Debug, Clone)]
+pub struct Fused {
+    /// The epochs.
+    pub flights: Flights,
+    /// Of each filter: one a flight, and one more for every new start.
+    pub verdicts: Vec<Verdict>,
+}
+
+/// What a filter says of itself at its end.
+#[derive(Debug, Clone)]
+pub struct Verdict {
+    /// By kind of measurement, in the order of [`Kind::ALL`].
+    pub innovations: [Innovations; Kind::ALL.len()],
+    /// What became of the inertial samples.
+    pub samples: Samples,
+}
+
+impl Fused {
+    /// Flights `first .. first + count`, each a function of scenario, seed and its number, whatever the threads.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a scenario without a filter, or as [`Sensing::flight`].
+    pub fn fly(sensing: &Sensing, seed: u64, first: u64, count: u64) -> Result<Self, OutOfDomain> {
+        let numbers = (first..first.saturating_add(count)).into_par_iter();
+        let flown: Vec<_> = numbers.map(|number| flight(sensing, seed, number)).collect::<Result<_, _>>()?;
+        let (epochs, verdicts): (_, Vec<_>) = flown.into_iter().unzip();
+        Ok(Self { flights: Flights::of(epochs, first), verdicts: verdicts.concat() })
+    }
+}
+
+fn flight(sensing: &Sensing, seed: u64, number: u64) -> Result<(Vec<FlownEpoch>, Vec<Verdict>), OutOfDomain> {
+    let trajectory = sensing.trajectory(seed, number)?;
+    let (navigated, verdicts) = navigate(sensing, &trajectory, seed, number)?;
+    Ok((fly_by(sensing.outlook(), seed, number, &navigated, sensing.sensors().path)?, verdicts))
+}
+
+/// The sensors of a flight along a path, and the filter on them: what it says at each second of the outlook.
+///
+/// # Errors
+/// As [`Fused::fly`].
+pub fn navigate(sensing: &Sensing, path: &Trajectory, seed: u64, number: u64) -> Result<(Vec<Navigated>, Vec<Verdict>), OutOfDomain> {
+    let Some(navigator) = sensing.navigator() else {
+        return Err(OutOfDomain { argument: "filter", value: 0.0, unit: "tables", domain: "a scenario with a [filter] part" });
+    };
+    let mut sensed = sensing.flight(path, seed, number)?;
+    let mut watch = Watch::start(&sensed, navigator, sensing, &Navigator::start_normals(seed, number))?;
+    let mut navigated = Vec::with_capacity(sensing.outlook().seconds());
+    navigated.push(watch.say(sensing, 0, sensed.begin(), sensed.now())?);
+    let rate = u64::from(sensing.sensors().rate_hz);
+    let mut index = 0;
+    while navigated.len() < sensing.outlook().seconds()
+        && let Some(step) = sensed.advance()?
+    {
+        index += 1;
+        watch.take(&sensed, &step);
+        if index % rate == 0 {
+            navigated.push(watch.say(sensing, navigated.len(), sensed.begin().plus_seconds(navigated.len() as f64), &step.truth)?);
+            watch.reconsider(sensing)?;
+        }
+    }
+    watch.close();
+    Ok((navigated, watch.verdicts))
+}
+
+/// A filter under way, and what is counted beside it.
+struct Watch {
+    driver: Driver,
+    navigator: Navigator,
+    /// Satellites measured last, and used of them.
+    n_seen: u32,
+    n_sv: u32,
+    n_gated: u64,
+    /// Seconds for which the satellites have contradicted the filter.
+    contradicted_s: f64,
+    last_error: Vector3<f64>,
+    verdicts: Vec<Verdict>,
+}
+
+/// Satellites that must be measured, and those that may be used of them, in a contradiction: with fewer there is no fix to believe.
+const CONTRADICTION: (u32, u32) = (5, 3);
+
+/// Results are taken by the second, and every measurement is used.
+const PLAN: Plan = Plan { output_period_s: 1.0, update_period_s: 0.0, wheels: None };
+
+impl Watch {
+    fn start(sensed: &SensedFlight<'_>, navigator: Navigator, sensing: &Sensing, normals: &[f64; 9]) -> Result<Self, OutOfDomain> {
+        let (now, sigma) = (sensed.now(), navigator.start_sigma());
+        let truth = NavState::new(sensed.begin(), &now.position, now.velocity_ned_mps, &attitude(now))?;
+        let filter = Filter::new(wrong_start(truth, normals, &sigma)?, &sigma, navigator.settings(sensing.sensors())?)?;
+        Ok(Self {
+            driver: Driver::new(Box::new(filter), PLAN),
+            navigator,
+            n_seen: 0,
+            n_sv: 0,
+            n_gated: 0,
+            contradicted_s: 0.0,
+            last_error: Vector3::zeros(),
+            verdicts: Vec::new(),
+        })
+    }
+
+    fn take(&mut self, sensed: &SensedFlight<'_>, step: &Step) {
+        if step.delivered {
+            self.driver.sample(&step.imu);
+        }
+        if sensed.received() {
+            (self.n_seen, self.n_sv) = (0, 0);
+        }
+        for timed in sensed.aiding() {
+            let used = matches!(self.driver.aid(timed), Some(Aided::Used { .. }));
+            let satellite = matches!(timed.aiding, Aiding::Satellite(_));
+            self.n_seen += u32::from(satellite);
+            self.n_sv += u32::from(satellite && used);
+        }
+    }
+
+    /// A second has passed: a filter that its satellites have contradicted for too long starts anew where it is, knowing nothing.
+    fn reconsider(&mut self, sensing: &Sensing) -> Result<(), OutOfDomain> {
+        let contradicted = self.n_seen >= CONTRADICTION.0 && self.n_sv <= CONTRADICTION.1;
+        self.contradicted_s = if contradicted { self.contradicted_s + 1.0 } else { 0.0 };
+        if self.contradicted_s < self.navigator.restart_after_s || self.driver.filter.stopped().is_some() {
+            return Ok(());
+        }
+        self.close();
+        let filter =
+            Filter::new(*self.driver.filter.state(), &self.navigator.restart_sigma(), self.navigator.settings(sensing.sensors())?)?;
+        self.driver = Driver::new(Box::new(filter), PLAN);
+        (self.contradicted_s, self.n_gated) = (0.0, 0);
+        Ok(())
+    }
+
+    /// What the filter says, against the truth.
+    fn say(&mut self, sensing: &Sensing, second: usize, time: GpsTime, truth: &Motion) -> Result<Navigated, OutOfDomain> {
+        let filter = &mut self.driver.filter;
+        let n_gated: u64 = Kind::ALL.iter().map(|kind| filter.innovations(*kind).n_gated).sum();
+        let new = (n_gated - self.n_gated) as u32;
+        self.n_gated = n_gated;
+        let dop = if self.n_sv == 0 { [f64::NAN; 2] } else { sensing.outlook().dop(second) };
+        let mut said = Navigated {
+            error_enu_m: self.last_error,
+            covariance: Err(Unavailable::Missing { method: "the navigation filter", field: "inertial samples up to it" }),
+            n_sv: self.n_sv,
+            dop,
+            mode: None,
+            n_gated: new,
+        };
+        // A state of an earlier instant is no answer to where the aircraft is now; half a millisecond is rounding.
+        if filter.stopped().is_none() && time.seconds_since(filter.time()) < 5e-4 {
+            let solution = filter.solution();
+            self.last_error = *navigation_error(&solution.state.position()?, &truth.position).vector();
+            (said.error_enu_m, said.covariance, said.mode) = (self.last_error, Ok(solution.covariance), Some(solution.mode));
+        }
+        Ok(said)
+    }
+
+    /// What the filter says at its end.
+    fn close(&mut self) {
+        let filter = &self.driver.filter;
+        self.verdicts.push(Verdict { innovations: Kind::ALL.map(|kind| *filter.innovations(kind)), samples: *filter.samples() });
+    }
+}
+
+/// The code of a mode in a column: its place in this list; one more where there is none.
+pub const MODES: [Mode; 4] = [Mode::Coasting, Mode::VorDme, Mode::DmeDme, Mode::Gnss];

@@ -1,0 +1,126 @@
+//! The navigation filter on board: the `[filter]` part of a scenario, and what it is told of the sensors.
+//!
+//! It is told what a maker would declare, the standard deviations and correlation times of the `[sensors]` part, and never what was drawn.
+
+use crate::philox::{Sensor, Stream};
+use crate::plan::GRAVITY;
+use crate::scenario::{Rule, positive, within};
+use crate::sensors::{Imu, Sensors};
+use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
+use navbound_core::solution::ins::{ClockModel, ErrorModel, ImuModel, SensorNoise, Settings, StartSigma};
+use serde::Deserialize;
+
+/// A filter that joins the sensors.
+#[derive(Debug, Clone, Copy, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Navigator {
+    /// What it believes of errors that stay.
+    pub mode: BelievedErrors,
+    /// Risk of throwing away a good measurement.
+    pub gate_risk: f64,
+    /// Inertial samples that share a step of the covariance.
+    pub samples_per_step: u32,
+    /// Time for which the satellites must contradict the filter, all but three gated, before it is started anew \[s\].
+    pub restart_after_s: f64,
+    /// Standard deviations of the start: position north, east, down \[m\],
+    pub position_sigma_m: [f64; 3],
+    /// velocity of each axis \[m/s\],
+    pub velocity_sigma_mps: f64,
+    /// and misalignment about north, east, down \[rad\].
+    pub attitude_sigma_rad: [f64; 3],
+}
+
+/// What a filter believes of errors that stay.
+#[derive(Debug, Clone, Copy, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum BelievedErrors {
+    /// They stay: each has a state.
+    Correlated,
+    /// All is new at each measurement. Shipped to show that it fails.
+    White,
+}
+
+impl Navigator {
+    pub(crate) fn rules(&self, sensors: bool, faults: usize) -> Vec<Rule> {
+        let mut rules = vec![
+            Rule("filter", 0.0, "tables", sensors, "a scenario with a [sensors] part"),
+            Rule("faults", faults as f64, "items", faults == 0, "none with a [filter]: sensors fail, [[sensors.faults]]"),
+            within("gate_risk", self.gate_risk, "1", 1e-12, 0.1, "[1e-12, 0.1]"),
+            within("samples_per_step", f64::from(self.samples_per_step), "samples", 1.0, 200.0, "[1, 200]"),
+            positive("restart_after_s", self.restart_after_s, "s"),
+            positive("velocity_sigma_mps", self.velocity_sigma_mps, "m/s"),
+        ];
+        rules.extend(self.position_sigma_m.map(|s| positive("position_sigma_m", s, "m")));
+        rules.extend(self.attitude_sigma_rad.map(|s| within("attitude_sigma_rad", s, "rad", 1e-9, 0.2, "[1e-9, 0.2]")));
+        rules
+    }
+
+    /// What the filter is told.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a gate that is no risk.
+    pub fn settings(&self, sensors: &Sensors) -> Result<Settings, OutOfDomain> {
+        let mut settings = Settings::of(imu_model(&sensors.imu));
+        settings.gate = Risk::new(self.gate_risk)?;
+        settings.samples_per_step = self.samples_per_step;
+        settings.errors = match self.mode {
+            BelievedErrors::Correlated => ErrorModel::Correlated,
+            BelievedErrors::White => ErrorModel::White,
+        };
+        if let Some(g) = &sensors.gnss {
+            settings.clock = ClockModel {
+                drift_mps: g.drift_sigma_mps,
+                frequency_m2ps: g.clock_density_m2ps,
+                walk_m2ps3: g.drift_density_m2ps3,
+                inter_system_m: g.system_bias_sigma_m,
+                ..ClockModel::default()
+            };
+        }
+        Ok(settings)
+    }
+
+    /// How wrong the start may be, as the filter is told.
+    pub fn start_sigma(&self) -> StartSigma {
+        StartSigma {
+            position: self.position_sigma_m.map(Metres::new),
+            velocity_mps: self.velocity_sigma_mps,
+            attitude: self.attitude_sigma_rad.map(Radians::new),
+        }
+    }
+
+    /// How wrong a filter that contradicts its satellites may be: nothing is known of position and velocity but that the ranges are linear.
+    pub fn restart_sigma(&self) -> StartSigma {
+        StartSigma { position: [Metres::new(10_000.0); 3], velocity_mps: 100.0, attitude: [Radians::new(5e-3); 3] }
+    }
+
+    /// How wrong it is on a flight, in those standard deviations: position, velocity, misalignment.
+    pub fn start_normals(seed: u64, number: u64) -> [f64; 9] {
+        let mut stream = Stream::new(seed, number, Sensor::FilterStart);
+        core::array::from_fn(|_| stream.normal())
+    }
+}
+
+/// One Gauss-Markov bias an axis stands for everything that stays: turn-on and in-run bias, and what scale factor and misalignment make of
+/// the weight, which is most of the specific force of an aeroplane.
+fn imu_model(imu: &Imu) -> ImuModel {
+    let weight = GRAVITY * imu.accelerometer_scale.max(imu.accelerometer_misalignment_rad);
+    let [gyro, accelerometer] = [imu.gyro_bias_radps, imu.accelerometer_bias_mps2.hypot(weight)];
+    ImuModel {
+        gyroscope: staying(imu.gyro_noise_radprts, gyro, imu.gyro_in_run_radps, imu.in_run_time_s),
+        accelerometer: staying(imu.accelerometer_noise_mpsprts, accelerometer, imu.accelerometer_in_run_mps2, imu.in_run_time_s),
+    }
+}
+
+/// A constant and a process as one process: its variance is that of both, and it moves as the process alone does.
+///
+/// ```text
+/// sigma^2 = constant^2 + process^2        2 sigma^2 / tau = 2 process^2 / tau_process
+/// ```
+fn staying(white: f64, constant: f64, process: f64, time_s: f64) -> SensorNoise {
+    let bias = constant.hypot(process);
+    let slower = if process > 0.0 { (bias / process) * (bias / process) } else { f64::INFINITY };
+    SensorNoise { white, bias, bias_time_s: (time_s * slower).min(CONSTANT_S) }
+}
+
+/// A correlation time that is as good as none: thirty years \[s\].
+const CONSTANT_S: f64 = 1e9;
