@@ -5,7 +5,7 @@ import { utcOf } from "../data/events.ts";
 import { about } from "../chart/methods.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
 import { asked, kpiVerdict } from "./kpi-verdict.ts";
-import { clock, count, date, level, nauticalMiles, place, share, signedMetres } from "../show/format.ts";
+import { clock, count, date, level, limitName, nauticalMiles, place, share, signedMetres } from "../show/format.ts";
 
 const STATES = {
     inside: { word: "Inside", mark: "M5 13 L10 18 L19 7" },
@@ -67,5 +67,5 @@ function worst(label: string, key: string, w: Worst, payload: Payload): HTMLElem
     const where = [`${clock(when, true)} UTC ${date(when)}`, many, w.phase, along, place(w.lat_rad, w.lon_rad)].filter((x) => x !== null).join(" · ");
     return el("div", { class: "fact" }, el("dt", {}, label),
         el("dd", {}, valueOf(`${key}.margin_m`, w.margin_m, signedMetres(w.margin_m)), el("span", { class: "also" }, nauticalMiles(w.margin_m))),
-        el("dd", { class: "more" }, `bound ${signedMetres(w.bound_m).replace("+", "")} of ${nauticalMiles(w.limit_m)} · ${where}`));
+        el("dd", { class: "more" }, `bound ${signedMetres(w.bound_m).replace("+", "")} of ${limitName(w.limit_m)} · ${where}`));
 }
