@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -254,3 +255,42 @@ def test_a_route_that_cannot_be_driven_and_a_satellite_that_is_not_there_are_ref
         flown.material(BASE, seed=-1)
     with pytest.raises(InputError, match="barcelona-taxi"):
         navbound.fly("barcelona")
+
+
+def test_the_page_draws_route_levels_and_limits_with_their_word(tmp_path: Path) -> None:
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        pytest.skip("chromium is not installed: the report was NOT opened in a browser")
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - its driver starts only where chromium exists
+
+    run = navbound.fly("barcelona-taxi-gast-d", out=tmp_path / "run")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        page = browser.new_page(offline=True)
+        failures: list[str] = []
+        page.on("pageerror", lambda e: failures.append(str(e)))
+        page.goto(run.report.as_uri())
+        page.wait_for_selector("[data-ready=true]")
+        page.get_by_role("button", name="Error at cursor").click()
+        assert page.locator("#map .key-hpl").count() == page.locator("#map .key-hal").count() == 1
+        assert "alert limit (inferred)" in page.locator("#map").inner_text()
+        assert "HAL (inferred)" in page.locator("#alert-limit").inner_text()
+        rows = page.locator("#alert-limits tbody tr").all_inner_texts()
+        assert [row.split("\t")[1] for row in rows] == [f"{p.hal_m:.2f} m (inferred)" for p in run.summary.protection]
+        # The protection circle is drawn: its colour is on the moving layer of the map.
+        found = page.evaluate(
+            """() => {
+                const canvas = document.querySelectorAll("#map canvas")[1];
+                const hue = getComputedStyle(document.documentElement).getPropertyValue("--m2").trim();
+                const [r, g, b] = [1, 3, 5].map((k) => parseInt(hue.slice(k, k + 2), 16));
+                const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+                let n = 0;
+                for (let k = 0; k < data.length; k += 4) {
+                    if (data[k] === r && data[k + 1] === g && data[k + 2] === b && data[k + 3] === 255) n++;
+                }
+                return n;
+            }"""
+        )
+        assert found > 100
+        assert not failures
+        browser.close()

@@ -111,9 +111,10 @@ export function map(host: HTMLElement, scene: Scene): () => void {
 function errorSize(scene: Scene): number {
     const i = scene.cursor.get();
     const sigma = Math.sqrt(scene.table.value("cov_ee_m2", i) + scene.table.value("cov_nn_m2", i));
-    const limit = scene.table.value("hal_m", i);
     if (!Number.isFinite(sigma)) return 50;
-    return Math.max(2.5 * sigma, Number.isFinite(limit) ? 0.6 * limit : 0.5);
+    // Both circles fit the view: their diameter is less than twice the room.
+    const circles = ["hal_m", "hpl_m"].map((name) => 0.6 * scene.table.value(name, i)).filter(Number.isFinite);
+    return Math.max(2.5 * sigma, 0.5, ...circles);
 }
 
 function nearest(shapes: Shapes, view: View, px: number, py: number): number | null {

@@ -43,7 +43,8 @@ export function nauticalMiles(value_m: number | null | undefined, digits?: numbe
     return `${plain(nm, digits ?? (Math.abs(nm) >= 100 ? 1 : Math.abs(nm) >= 1 ? 2 : 3))} NM`;
 }
 
-const SHORT_M = 50;
+/** Limits below it are spoken of in metres. */
+export const SHORT_M = 50;
 
 /** A limit in the unit that it is spoken of in. */
 export function limitName(value_m: number | null | undefined): string {
