@@ -217,6 +217,26 @@ def test_levels_are_those_of_the_public_functions(plain: Run) -> None:
     assert plain.epochs["hpl_m"][0] == pytest.approx(float(alone.hpl_m), rel=1e-12)
 
 
+@pytest.mark.parametrize("mask_deg", [45.0, 80.0])
+def test_too_few_satellites_are_a_status_with_a_reason(tmp_path: Path, mask_deg: float) -> None:
+    run = navbound.fly(changed(tmp_path, "mask_deg = 5.0", f"mask_deg = {mask_deg}"))
+    assert run.epochs["status"].unique().to_list() == ["not_available"]
+    assert run.epochs["reason"].str.contains("satellites").all()
+    assert run.epochs["hpl_m"].null_count() == run.epochs["est_lat_rad"].null_count() == run.epochs.height
+    assert all(p.share_available == 0.0 for p in run.summary.protection)
+    assert run.summary.verdict.inside is None
+
+
+def test_the_covariance_that_bounds_leaves_no_room_at_the_stand(tmp_path: Path, plain: Run) -> None:
+    run = navbound.fly(changed(tmp_path, 'covariance = "paper"', 'covariance = "bound"'))
+    grown = (run.epochs["hpl_m"] / plain.epochs["hpl_m"]).to_numpy()
+    # The study finds 2.6 to 3.6 times the sigma; the bias part of the level does not grow.
+    assert 2.0 < grown.min() <= grown.max() < 3.6
+    assert run.summary.protection[-1].share_available == 0.0
+    # Only what is claimed changes, not what happens.
+    assert run.epochs["nse_e_m"].equals(plain.epochs["nse_e_m"])
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

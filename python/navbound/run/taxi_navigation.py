@@ -319,7 +319,12 @@ class Navigator:
         anew = np.arange(len(el)) % FILTERED_EVERY_S == 0
         anew[1:] |= (used[1:] != used[:-1]).any(axis=1)
         lat_rad = float(self.movement.lat_rad[0])
-        found = gbas.aided_covariance(az[anew], el[anew], self.sky.systems, lat_rad=lat_rad, service=self.mode.service, noise=noise)
+        # Under an empty sky there is no filter to ask, and no level that would use its covariance.
+        found = np.tile(np.eye(3), (int(anew.sum()), 1, 1))
+        seen = used[anew].any(axis=1)
+        if seen.any():
+            skies = az[anew][seen], el[anew][seen], self.sky.systems
+            found[seen] = gbas.aided_covariance(*skies, lat_rad=lat_rad, service=self.mode.service, noise=noise)
         held: Floats = found[np.cumsum(anew) - 1]
         return held
 
