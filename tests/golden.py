@@ -15,6 +15,7 @@ from navbound import ins, scenario
 from navbound.run import fly
 from navbound.run.directory import Run
 from navbound.run.judge import judge
+from navbound.scenario import taxi
 
 FOLDER = Path(__file__).parent / "golden"
 DIGITS = 10
@@ -47,6 +48,17 @@ def sensed(flown: ins.Sensed) -> dict[str, Any]:
     }
 
 
+def taxied(run: Run) -> dict[str, Any]:
+    """The numbers of a landing and the way to the stand."""
+    columns = ("est_lat_rad", "est_lon_rad", "ground_speed_mps", "fte_m", "nse_e_m", "nse_n_m", "hpl_m", "hpl_multi_m", "tse_exact_m")
+    rows = run.epochs.gather_every(20)
+    return {
+        "protection": [{k: _short(v) for k, v in p.model_dump().items()} for p in run.summary.protection],
+        "events": [[e.kind, e.onset_ns, e.clear_ns, _short(e.peak_m)] for e in run.summary.events],
+        "epochs": {name: [_short(v) for v in rows[name].to_list()] for name in columns},
+    }
+
+
 FLOWN = {"beijing-shanghai-jammed-flown": "beijing-shanghai-jammed"}
 """Kept besides the measurements: a flight on them, with ten inertial samples a second."""
 _LAID_OVER = {
@@ -57,11 +69,13 @@ _LAID_OVER = {
 
 def names() -> list[str]:
     """Every file that is kept."""
-    return [*sorted(set(scenario.shipped()) - _LAID_OVER), *FLOWN]
+    return [*sorted(set(scenario.shipped()) - _LAID_OVER), *FLOWN, *taxi.shipped()]
 
 
 def kept(name: str) -> dict[str, Any]:
-    """What is kept of a scenario: its run, or its sensors' measurements where it has sensors, or a flight on them."""
+    """What is kept of a scenario: its run; its measurements where it has sensors; a flight on them; its way to the stand."""
+    if name in taxi.shipped():
+        return taxied(navbound.fly(name))
     if name in FLOWN:
         found = scenario.load(FLOWN[name])
         assert found.sensors is not None

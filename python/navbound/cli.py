@@ -71,7 +71,7 @@ def command_line() -> str:
 
 @app.command()
 def fly(
-    scenario: Annotated[str, typer.Argument(help="A shipped scenario (beijing-shanghai) or a TOML file.")],
+    scenario: Annotated[str, typer.Argument(help="A shipped scenario (beijing-shanghai, barcelona-taxi) or a TOML file.")],
     flights: Annotated[int, typer.Option(help="How many flights, on all cores.")] = 1,
     seed: Annotated[int | None, typer.Option(help="Overrides the scenario's seed.")] = None,
     methods: Methods = ",".join(DEFAULT_METHODS),

@@ -6,6 +6,7 @@ import { anp } from "./chart/anp.ts";
 import { lateral, vertical } from "./chart/deviation.ts";
 import { honesty } from "./chart/honesty.ts";
 import { modes } from "./chart/modes.ts";
+import { alertLimit } from "./chart/alertlimit.ts";
 import { exceedance } from "./chart/risk.ts";
 import { performance } from "./chart/scales.ts";
 import { states } from "./chart/states.ts";
@@ -21,7 +22,7 @@ import { cursorBar } from "./panel/cursorbar.ts";
 import { asked } from "./panel/kpi-verdict.ts";
 import { performance as performanceReport } from "./panel/performance.ts";
 import { smallPrint } from "./panel/smallprint.ts";
-import { crossTrack, events, faults, methods, phases, rejections, tracks } from "./panel/tables.ts";
+import { alertLimits, crossTrack, events, faults, methods, phases, rejections, tracks } from "./panel/tables.ts";
 import { verdict } from "./panel/verdict.ts";
 import { choice, el } from "./show/dom.ts";
 import { showWorld } from "./world/page.ts";
@@ -35,6 +36,7 @@ const PARTS: { component: Component; host: "upper" | "charts"; needs: string[] }
     { component: lateral, host: "charts", needs: ["fte_m"] },
     { component: vertical, host: "charts", needs: ["fte_v_m"] },
     { component: anp, host: "charts", needs: ["anp_circle_m", "anp_sphere_m"] },
+    { component: alertLimit, host: "charts", needs: ["hal_m"] },
     { component: exceedance, host: "charts", needs: ["p_exceed_2rnp"] },
     { component: modes, host: "charts", needs: ["n_gated"] },
     { component: states, host: "charts", needs: ["p_state_1"] },
@@ -74,7 +76,7 @@ class Page {
         const heading = alone ? "The input" : summary.tracks.length === 1 ? "The flight in numbers" : "The tracks in numbers";
         const tables = el("section", { id: "tables" }, el("h2", {}, heading), alone ? null : this.trackTable.element);
         if (summary.phases.length > 0) tables.append(phases(payload));
-        for (const part of [faults(payload), crossTrack(payload), events(payload, () => this.current, (t) => this.select(t)), rejections(payload)]) if (part !== null) tables.append(part);
+        for (const part of [alertLimits(payload), faults(payload), crossTrack(payload), events(payload, () => this.current, (t) => this.select(t)), rejections(payload)]) if (part !== null) tables.append(part);
         root.append(tables, ...(alone ? [] : [methods(payload)]), smallPrint(payload), this.bar);
         this.listTracks();
         const first = payload.tracks[0];

@@ -11,11 +11,13 @@ from navbound.errors import InputError
 from navbound.run import analyze as recorded
 from navbound.run import directory, performance
 from navbound.run import fly as simulated
+from navbound.run import taxi as taxiing
 from navbound.run.faults import fault_summaries
 from navbound.run.judge import Settings, judge
 from navbound.run.kpi_records import Level
 from navbound.run.requirement import requirement
 from navbound.run.studies import PAGES, REPORTS, STUDIES
+from navbound.scenario import taxi as taxi_scenarios
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -65,6 +67,9 @@ def fly(
     """
     if not 1 <= flights <= MAX_FLIGHTS:
         raise InputError("flights", flights, "1", f"[1, {MAX_FLIGHTS}]")
+    route = taxi_scenarios.route_file(scenario)
+    if route is not None:
+        return _finish(judge(taxiing.material(route, flights=flights, seed=seed, progress=progress), settings, command), out)
     found = scenarios.load(scenario)
     material = simulated.material(found, flights=flights, seed=seed, progress=progress)
     run = judge(material, settings, command)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.run.material import Material
+    from navbound.run.records import EventSummary
 
 DEFAULT_METHODS = (
     "tse-exact",
@@ -84,6 +85,7 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
     epochs = _with_bounds(epochs, ids, judging, settings)
     epochs = _with_risks(epochs)
     epochs, events, counters = _with_alerts(epochs, judging, material.sample_period_s)
+    events = _with_points(events, material.events)
     epochs, states = _with_states(epochs, settings.risk_accuracy)
     shown = [i for i in ids if i == judging or _has_values(epochs, method(i).column)]
     risks = (settings.risk_accuracy, settings.risk_integrity)
@@ -189,6 +191,14 @@ def _with_alerts(epochs: pl.DataFrame, judging: str, sample_period_s: float) -> 
         **asdict(result.counters),
     }
     return epochs.with_columns(result.alert.alias("alert")), _in_words(result.events), described
+
+
+def _with_points(events: pl.DataFrame, points: list[EventSummary]) -> pl.DataFrame:
+    """The monitor's alerts and the points of the flight, in the order of time."""
+    if not points:
+        return events
+    added = pl.DataFrame([p.model_dump() for p in points], infer_schema_length=None).select(events.columns).cast(events.schema)
+    return pl.concat([events, added]).sort("track", "onset_ns", maintain_order=True)
 
 
 def _in_words(events: pl.DataFrame) -> pl.DataFrame:

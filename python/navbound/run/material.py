@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     import polars as pl
 
-    from navbound.run.records import CrossTrack, InputFile, Rejection, Waypoint
+    from navbound.run.records import CrossTrack, EventSummary, InputFile, Rejection, Waypoint
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,10 @@ class Material:
         Sentences for the verdict: where the covariance came from, what was not modelled.
     labels : dict
         Track to a label a person recognises.
+    events : list of EventSummary
+        Points of the flight besides the monitor's alerts.
+    limits_held : dict
+        Phase to how its alert limit is held ("inferred", ...), where epochs have ``hpl_m`` and ``hal_m``.
     """
 
     epochs: pl.DataFrame
@@ -51,3 +55,5 @@ class Material:
     scenario: dict[str, object] | None = None
     seed: int | None = None
     settings: dict[str, object] = field(default_factory=dict)
+    events: list[EventSummary] = field(default_factory=list)
+    limits_held: dict[str, str] = field(default_factory=dict)

@@ -33,7 +33,7 @@ class Verdict(Record):
     """Inside or not, in one look."""
 
     inside: bool | None
-    """None when no epoch could be judged, or when epochs that cannot be true make the others doubtful."""
+    """None when no epoch could be judged, or when epochs that cannot be true or errors above protection levels make the others doubtful."""
     words: str
     """The verdict as sentences: what, how much, worst where and when, what was assumed, whether truth was known."""
     requirement: str
@@ -70,6 +70,26 @@ class PhaseSummary(Record):
     """Share of epochs whose |tse| is within the accuracy bound, where truth is known."""
     n_cautions: int
     n_warnings: int
+
+
+class ProtectionSummary(Record):
+    """Protection levels against the alert limit in one phase."""
+
+    phase: str
+    hal_m: float
+    hal_held: str
+    """How the limit is held: printed, re-derived, standard, ours, inferred, given."""
+    n_epochs: int
+    hpl_max_m: float | None
+    hpl_multi_max_m: float | None
+    hpe_max_m: float | None
+    accuracy_max_m: float | None
+    """Largest accuracy (95 %)."""
+    accuracy_limit_m: float | None
+    share_available: float
+    """Share of epochs with a protection level within the limit."""
+    n_misleading: int
+    """Epochs whose horizontal error is above the protection level, where truth is known."""
 
 
 class TrackSummary(Record):
@@ -212,6 +232,8 @@ class Summary(Record):
     rejected: list[Rejection]
     n_status: dict[str, int]
     """Epochs by status."""
+    protection: list[ProtectionSummary] = Field(default_factory=list)
+    """By phase, where epochs carry protection levels and alert limits."""
     performance: Performance | None = None
     """The ICAO indicators, where errors and protection levels are known."""
     faults: list[FaultSummary] = Field(default=[])

@@ -14,12 +14,13 @@ from navbound.run.records import (
     Honesty,
     MethodResult,
     PhaseSummary,
+    ProtectionSummary,
     Summary,
     TrackSummary,
     Verdict,
     Worst,
 )
-from navbound.run.words import honesty_words, verdict_words
+from navbound.run.words import honesty_words, protection_words, verdict_words
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -68,7 +69,8 @@ def summarise(
     )
     coverage_kind = evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED
     accuracy = [_method_result(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
-    verdict = _verdict(material, margins, accuracy[0], risks)
+    protection = _protection(epochs, material.limits_held)
+    verdict = _verdict(material, margins, accuracy[0], risks, protection)
     return Summary(
         kind=material.kind,
         title=material.title,
@@ -76,6 +78,7 @@ def summarise(
         coverage_kind=coverage_kind,
         assumptions=material.assumptions,
         phases=_phases(margins, judged.column, material.sample_period_s, events),
+        protection=protection,
         tracks=_tracks(margins, material.labels, events),
         accuracy=accuracy,
         integrity=[_method_result(epochs, i, risk_integrity, coverage_kind, integrity=True) for i in ids],
@@ -88,14 +91,18 @@ def summarise(
     )
 
 
-def _verdict(material: Material, margins: pl.DataFrame, judge: MethodResult, risks: tuple[float, float]) -> Verdict:
+def _verdict(
+    material: Material, margins: pl.DataFrame, judge: MethodResult, risks: tuple[float, float], protection: list[ProtectionSummary]
+) -> Verdict:
     judging = judge.id
     judged = margins.filter(pl.col("_margin").is_not_null())
     share = _mean(judged.get_column("_margin") >= 0)
     contained = _mean(margins.get_column("_margin_integrity").drop_nulls() >= 0)
     n_implausible = margins.get_column("status").eq("invalid_input").sum()
     inside = None if share is None or contained is None else share == 1.0 and contained == 1.0
-    if inside and n_implausible:
+    if inside and any(p.share_available < 1.0 for p in protection):
+        inside = False
+    if inside and (n_implausible or any(p.n_misleading for p in protection)):
         inside = None
     worst = _worst(margins, "_margin", method(judging).column, 1.0)
     worst_integrity = _worst(margins, "_margin_integrity", method(judging).integrity_column, 2.0)
@@ -114,7 +121,7 @@ def _verdict(material: Material, margins: pl.DataFrame, judge: MethodResult, ris
         worst_integrity=worst_integrity,
         truth_known=truth_known,
     )
-    return verdict.model_copy(update={"words": verdict_words(verdict, judge, risks)})
+    return verdict.model_copy(update={"words": f"{verdict_words(verdict, judge, risks)}{protection_words(protection)}"})
 
 
 def _mean(flags: pl.Series) -> float | None:
@@ -166,6 +173,29 @@ def _phases(margins: pl.DataFrame, bound: str, sample_period_s: float, events: p
         )
         for row in grouped.iter_rows(named=True)
     ]
+
+
+def _protection(epochs: pl.DataFrame, held: dict[str, str]) -> list[ProtectionSummary]:
+    """Protection levels against the alert limit of each phase whose limit says how it is held."""
+    if not (held and {"phase", "hpl_m", "hal_m"} <= set(epochs.columns)):
+        return []
+
+    def most(name: str) -> pl.Expr:
+        return pl.col(name).max() if name in epochs.columns else pl.lit(None, dtype=pl.Float64)
+
+    truth = "nse_h_m" in epochs.columns
+    misleading = (pl.col("nse_h_m") > pl.col("hpl_m")).sum() if truth else pl.lit(0)
+    grouped = epochs.group_by("phase", "hal_m", maintain_order=True).agg(
+        pl.len().alias("n_epochs"),
+        most("hpl_m").alias("hpl_max_m"),
+        most("hpl_multi_m").alias("hpl_multi_max_m"),
+        most("nse_h_m").alias("hpe_max_m"),
+        most("accuracy_m").alias("accuracy_max_m"),
+        most("accuracy_limit_m").alias("accuracy_limit_m"),
+        (pl.col("hpl_m") <= pl.col("hal_m")).fill_null(value=False).mean().alias("share_available"),
+        misleading.alias("n_misleading"),
+    )
+    return [ProtectionSummary(**row, hal_held=held[row["phase"]]) for row in grouped.iter_rows(named=True)]
 
 
 def _tracks(margins: pl.DataFrame, labels: dict[str, str], events: pl.DataFrame) -> list[TrackSummary]:

@@ -8,7 +8,7 @@ from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from navbound.evaluation import Nees, Pit
-    from navbound.run.records import MethodResult, Verdict, Worst
+    from navbound.run.records import MethodResult, ProtectionSummary, Verdict, Worst
 
 METRES_PER_NM = 1852.0
 
@@ -77,6 +77,18 @@ def _worst(worst: Worst) -> str:
         f"Worst {sign} {length(abs(worst.margin_m))} (bound {length(worst.bound_m)}, limit {length(worst.limit_m)}) "
         f"at {utc_text(worst.time_ns)} UTC{where}, track {worst.track}."
     )
+
+
+def protection_words(protection: list[ProtectionSummary]) -> str:
+    """How protection levels stood against alert limits, and whether they told the truth; nothing where there are none."""
+    if not protection:
+        return ""
+    n = sum(p.n_epochs for p in protection)
+    available = share(sum(p.share_available * p.n_epochs for p in protection) / n)
+    held = ", ".join(sorted({p.hal_held for p in protection}))
+    misled = sum(p.n_misleading for p in protection)
+    truth = f" At {misled} epochs the true error is above the protection level: misleading information." if misled else ""
+    return f" Protection level within the alert limit ({held}) at {available} of {n} epochs.{truth}"
 
 
 def honesty_words(nees: Nees, pit: Pit) -> str:

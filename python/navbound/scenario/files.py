@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from navbound import _core
 from navbound.errors import FormatError, InputError
+from navbound.scenario import taxi
 from navbound.scenario.models import Scenario
 from navbound.scenario.sensors import grades, with_grade
 from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
@@ -50,7 +51,8 @@ def find(name_or_path: str | Path) -> Path:
         return _FOLDER / f"{name_or_path}.toml"
     path = Path(name_or_path)
     if not path.is_file():
-        raise InputError("scenario", str(name_or_path), domain=f"shipped scenarios ({', '.join(shipped())}) and files that exist")
+        names = ", ".join([*shipped(), *taxi.shipped()])
+        raise InputError("scenario", str(name_or_path), domain=f"shipped scenarios ({names}) and files that exist")
     return path
 
 

@@ -45,6 +45,20 @@ export interface PhaseSummary {
     n_warnings: number;
 }
 
+export interface ProtectionSummary {
+    phase: string;
+    hal_m: number;
+    hal_held: string;
+    n_epochs: number;
+    hpl_max_m: number | null;
+    hpl_multi_max_m: number | null;
+    hpe_max_m: number | null;
+    accuracy_max_m: number | null;
+    accuracy_limit_m: number | null;
+    share_available: number;
+    n_misleading: number;
+}
+
 export interface TrackSummary {
     track: string;
     label: string;
@@ -142,6 +156,8 @@ export interface Summary {
     cross_track: { path: string; n_tracks: number; n_points: number; mean_m: number; std_m: number; abs95_m: number; between_tracks_std_m: number | null }[];
     rejected: { file: string; reason: string; count: number; first_line: number | null; example: string }[];
     n_status: Record<string, number>;
+    /** By phase, where epochs carry protection levels and alert limits. */
+    protection: ProtectionSummary[];
     /** The ICAO indicators, where errors and protection levels are known. */
     performance: Performance | null;
     /** Of the sensors of a simulated flight: what they did, and when the monitors spoke. */

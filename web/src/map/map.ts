@@ -111,7 +111,10 @@ export function map(host: HTMLElement, scene: Scene): () => void {
 function errorSize(scene: Scene): number {
     const i = scene.cursor.get();
     const sigma = Math.sqrt(scene.table.value("cov_ee_m2", i) + scene.table.value("cov_nn_m2", i));
-    return Number.isFinite(sigma) ? Math.max(2.5 * sigma, 0.5) : 50;
+    if (!Number.isFinite(sigma)) return 50;
+    // Both circles fit the view: their diameter is less than twice the room.
+    const circles = ["hal_m", "hpl_m"].map((name) => 0.6 * scene.table.value(name, i)).filter(Number.isFinite);
+    return Math.max(2.5 * sigma, 0.5, ...circles);
 }
 
 function nearest(shapes: Shapes, view: View, px: number, py: number): number | null {
@@ -158,6 +161,7 @@ function legend(scene: Scene, shapes: Shapes, otherKey: HTMLElement): HTMLElemen
     if (shapes.tunnel !== null) keys.push(["one", "±RNP, to scale"], ["two", "±2 RNP"]);
     if (scene.table.has("cov_ee_m2")) keys.push(["ellipse", "error ellipse"]);
     if (scene.table.has("anp_circle_m")) keys.push(["circle", "ANP circle"]);
+    if (scene.table.has("hal_m")) keys.push(["hpl", "protection level"], ["hal", `alert limit (${[...new Set(scene.payload.summary.protection.map((p) => p.hal_held))].join(", ")})`]);
     if (scene.table.has("nse_e_m")) keys.push(["truth", "true position ×"]);
     const why = shapes.tunnel === null ? el("span", { class: "note" }, "No path: no tunnel.") : null;
     return el("figcaption", { class: "map-legend" }, ...keys.map(([kind, name]) => el("span", { class: "key" }, el("i", { class: `key-${kind}` }), name)), otherKey, why);

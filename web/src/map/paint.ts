@@ -177,6 +177,10 @@ function paintError(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, s
     stroke(pen, { colour: colour("m1"), width: 1.5 }, () => pen.ellipse(at[0], at[1], e.major_m * px, e.minor_m * px, -e.angle_rad, 0, 2 * Math.PI));
     const circle = table.value("anp_circle_m", i);
     if (Number.isFinite(circle)) stroke(pen, { colour: colour("m1"), width: 1, dash: [4, 3] }, () => pen.arc(at[0], at[1], circle * px, 0, 2 * Math.PI));
+    for (const [column, hue, dash] of [["hpl_m", "m2", []], ["hal_m", "limit", [6, 4]]] as const) {
+        const radius = table.value(column, i);
+        if (Number.isFinite(radius)) stroke(pen, { colour: colour(hue), width: 2, dash: [...dash] }, () => pen.arc(at[0], at[1], radius * px, 0, 2 * Math.PI));
+    }
     const [east, north] = [table.value("nse_e_m", i), table.value("nse_n_m", i)];
     if (Number.isFinite(east) && Number.isFinite(north)) {
         const [x, y] = [at[0] + east * px, at[1] - north * px];

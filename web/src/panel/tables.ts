@@ -1,10 +1,10 @@
 // Tables of the records.
 
-import type { EventSummary, FaultSummary, MethodResult, Payload, TrackSummary } from "../data/records.ts";
+import type { EventSummary, FaultSummary, MethodResult, Payload, ProtectionSummary, TrackSummary } from "../data/records.ts";
 import { indexAt, utcOf } from "../data/events.ts";
 import type { Scene } from "../data/scene.ts";
 import { el } from "../show/dom.ts";
-import { clock, count, date, duration, level, metres, nauticalMiles, NONE, plain, risk, rnpName, share, signedMetres } from "../show/format.ts";
+import { clock, count, date, duration, level, limitName, metres, NONE, plain, risk, rnpName, share, signedMetres } from "../show/format.ts";
 import { liveTable, sortable, type Column } from "./sortable.ts";
 
 const number = <T>(head: string, key: keyof T & string, show: (v: number | null) => string): Column<T> => ({ head, key, of: (row) => row[key] as number | null, show: (row) => show(row[key] as number | null) });
@@ -81,6 +81,21 @@ export function faults(payload: Payload): HTMLElement | null {
     return el("div", {}, el("p", { class: "note" }, ...rows.slice(0, 1).map((f) => `${f.kind}: ${f.words}`)), table);
 }
 
+/** Protection levels against the alert limits of the phases; a limit stands beside how it is held. */
+export function alertLimits(payload: Payload): HTMLElement | null {
+    const rows = payload.summary.protection;
+    if (rows.length === 0) return null;
+    const held = (p: ProtectionSummary, value: number | null): string => (value === null ? NONE : `${metres(value)} (${p.hal_held})`);
+    return sortable<ProtectionSummary>({
+        id: "alert-limits", caption: "Protection levels against alert limits", rows,
+        columns: [
+            text("Phase", "phase"), { head: "HAL", key: "hal_m", of: (p) => p.hal_m, show: (p) => held(p, p.hal_m) }, number("HPL, largest", "hpl_max_m", metres), number("for all faults together", "hpl_multi_max_m", metres),
+            number("Within HAL", "share_available", share), number("HPE, largest", "hpe_max_m", metres), number("Epochs with HPE above HPL", "n_misleading", count),
+            number("Accuracy 95 %, largest", "accuracy_max_m", metres), { head: "Accuracy asked", key: "accuracy_limit_m", of: (p) => p.accuracy_limit_m, show: (p) => held(p, p.accuracy_limit_m) }, number("Epochs", "n_epochs", count),
+        ],
+    });
+}
+
 export function crossTrack(payload: Payload): HTMLElement | null {
     const rows = payload.summary.cross_track;
     if (rows.length === 0) return null;
@@ -107,7 +122,7 @@ export function events(payload: Payload, scene: () => Scene | null, choose: (tra
     const columns: Column<EventSummary>[] = [
         { head: "Onset, UTC", key: "onset_ns", of: (e) => e.onset_ns, show: (e) => at(e.onset_ns) },
         { head: "Kind", key: "kind", words: true, of: (e) => e.kind, show: (e) => `${{ warning: "■ ", caution: "▲ " }[e.kind] ?? ""}${e.kind}` },
-        number("Annunciated", "annunciation_ns", at), number("Cleared", "clear_ns", at), number("Peak bound", "peak_m", metres), number("Limit", "limit_m", nauticalMiles), number("Smallest margin", "min_margin_m", signedMetres), text("What happened", "words"),
+        number("Annunciated", "annunciation_ns", at), number("Cleared", "clear_ns", at), number("Peak bound", "peak_m", metres), number("Limit", "limit_m", limitName), number("Smallest margin", "min_margin_m", signedMetres), text("What happened", "words"),
     ];
     if (payload.summary.tracks.length > 1) columns.splice(1, 0, { head: "Track", key: "track", words: true, of: (e) => e.track, show: (e) => label.get(e.track) ?? e.track });
     return sortable({ id: "events", caption: "Events; press one to move the cursor there", columns, rows, sortable: true, press: (e) => void go(e), pressable: (e) => embedded.has(e.track) });

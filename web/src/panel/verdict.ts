@@ -5,7 +5,7 @@ import { utcOf } from "../data/events.ts";
 import { about } from "../chart/methods.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
 import { asked, kpiVerdict } from "./kpi-verdict.ts";
-import { clock, count, date, level, nauticalMiles, place, share, signedMetres } from "../show/format.ts";
+import { clock, count, date, level, limitName, nauticalMiles, place, share, SHORT_M, signedMetres } from "../show/format.ts";
 
 const STATES = {
     inside: { word: "Inside", mark: "M5 13 L10 18 L19 7" },
@@ -22,7 +22,7 @@ export function verdict(host: HTMLElement, payload: Payload): void {
         return;
     }
     const v = summary.verdict;
-    const state = stateOf(v);
+    const state = stateOf(v, summary.protection.reduce((n, p) => n + p.n_misleading, 0));
     // Red is for integrity alone: an accuracy limit passed is a caution.
     const lost = (v.worst_integrity?.margin_m ?? 0) < 0 || (v.share_contained ?? 1) < 1;
     const tone = state === "outside" ? (lost ? "warning" : "caution") : state === "doubtful" ? "caution" : state;
@@ -41,9 +41,9 @@ export function verdict(host: HTMLElement, payload: Payload): void {
     host.append(section);
 }
 
-/** Epochs that cannot be true make the others doubtful; without them no verdict means that nothing could be judged. */
-export function stateOf(v: Pick<Verdict, "inside" | "n_implausible">): keyof typeof STATES {
-    if (v.inside === null) return v.n_implausible > 0 ? "doubtful" : "unknown";
+/** Epochs that cannot be true and errors above protection levels make the others doubtful; without them no verdict means that nothing could be judged. */
+export function stateOf(v: Pick<Verdict, "inside" | "n_implausible">, misleading = 0): keyof typeof STATES {
+    if (v.inside === null) return v.n_implausible + misleading > 0 ? "doubtful" : "unknown";
     return v.inside ? "inside" : "outside";
 }
 
@@ -66,6 +66,6 @@ function worst(label: string, key: string, w: Worst, payload: Payload): HTMLElem
     const many = payload.summary.tracks.length > 1 ? payload.summary.tracks.find((t) => t.track === w.track)?.label ?? w.track : null;
     const where = [`${clock(when, true)} UTC ${date(when)}`, many, w.phase, along, place(w.lat_rad, w.lon_rad)].filter((x) => x !== null).join(" · ");
     return el("div", { class: "fact" }, el("dt", {}, label),
-        el("dd", {}, valueOf(`${key}.margin_m`, w.margin_m, signedMetres(w.margin_m)), el("span", { class: "also" }, nauticalMiles(w.margin_m))),
-        el("dd", { class: "more" }, `bound ${signedMetres(w.bound_m).replace("+", "")} of ${nauticalMiles(w.limit_m)} · ${where}`));
+        el("dd", {}, valueOf(`${key}.margin_m`, w.margin_m, signedMetres(w.margin_m)), w.limit_m < SHORT_M ? null : el("span", { class: "also" }, nauticalMiles(w.margin_m))),
+        el("dd", { class: "more" }, `bound ${signedMetres(w.bound_m).replace("+", "")} of ${limitName(w.limit_m)} · ${where}`));
 }

@@ -43,8 +43,18 @@ export function nauticalMiles(value_m: number | null | undefined, digits?: numbe
     return `${plain(nm, digits ?? (Math.abs(nm) >= 100 ? 1 : Math.abs(nm) >= 1 ? 2 : 3))} NM`;
 }
 
+/** Limits below it are spoken of in metres. */
+export const SHORT_M = 50;
+
+/** A limit in the unit that it is spoken of in. */
+export function limitName(value_m: number | null | undefined): string {
+    return value_m != null && value_m < SHORT_M ? wholeMetres(value_m) : nauticalMiles(value_m);
+}
+
 /** RNP values are names as much as numbers: "RNP 0.3". */
 export function rnpName(value_m: number): string {
+    // On the ground a requirement is some metres, which no one says in miles.
+    if (value_m < SHORT_M) return `RNP ${wholeMetres(value_m)}`;
     return Number.isFinite(value_m) ? `RNP ${Number((value_m / METRES_PER_NM).toFixed(3))}` : NONE;
 }
 

@@ -1,0 +1,316 @@
+"""The landing and the way to the stand at Barcelona: the route, what is simulated, what the monitors do, what is refused."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import polars as pl
+import pytest
+
+import navbound
+from navbound import FormatError, InputError, gbas, gnss
+from navbound.run import taxi as flown
+from navbound.run import taxi_errors as errors
+from navbound.run.directory import Run
+from navbound.run.taxi_motion import move
+from navbound.run.taxi_navigation import look
+from navbound.scenario import taxi
+
+NETWORK = Path(__file__).parents[2] / "shared" / "data" / "infra" / "flightgear_airports" / "LEBL.groundnet.xml"
+BASE = taxi.FOLDER / "barcelona-taxi.toml"
+SECOND_NS = 1_000_000_000
+
+
+@pytest.fixture(scope="module")
+def plain() -> Run:
+    return navbound.fly("barcelona-taxi")
+
+
+def seconds_of(run: Run, kind: str) -> list[int]:
+    return [(e.onset_ns - run.summary.tracks[0].start_ns) // SECOND_NS for e in run.summary.events if e.kind == kind]
+
+
+def changed(tmp_path: Path, old: str, new: str) -> Path:
+    text = BASE.read_text(encoding="utf-8")
+    assert old in text, "the shipped scenario has changed: this test would prove nothing"
+    file = tmp_path / "mine.toml"
+    file.write_text(text.replace(old, new, 1), encoding="utf-8")
+    return file
+
+
+def test_the_route_follows_nodes_of_the_real_taxiways() -> None:
+    if not NETWORK.is_file():
+        pytest.skip(f"no ground network at {NETWORK}")
+    nodes = [
+        [float(text[1:].split()[0]) + float(text.split()[1]) / 60 for text in (e.attrib["lat"], e.attrib["lon"])]
+        for tag in ("parkingList", "TaxiNodes")
+        for e in ElementTree.parse(NETWORK).getroot().find(tag)  # type: ignore[union-attr]
+    ]
+    # Five decimals of a degree are kept: half a unit of the last.
+    for point in taxi.load(BASE).points[1:]:
+        away = np.abs(np.degrees([point.lat_rad, point.lon_rad]) - np.array(nodes)).max(axis=1).min()
+        assert away <= 0.51e-5, point.name
+
+
+def test_speeds_keep_to_sub_phases_turns_and_brakes() -> None:
+    found = taxi.load(BASE)
+    asked = flown.limits()
+    way = move(found, asked)
+    assert list(dict.fromkeys(way.phase)) == ["RWY", "RET", "NTW", "ATW", "TL", "SLL"]
+    for name, limit in asked.items():
+        # The landing roll is limited by the speed of touching down alone.
+        most = found.motion.touchdown_speed_mps if name == "RWY" else limit.speed_mps
+        assert way.speed_mps[way.phase == name].max() <= most + 1e-9
+    gained = np.diff(way.speed_mps)
+    # Between whole seconds speed is interpolated over a metre of way: a hundredth covers it.
+    assert gained.max() <= found.motion.acceleration_mps2 + 0.01
+    assert gained.min() >= -found.motion.braking_mps2 - 0.01
+    turned = np.abs(np.angle(np.exp(1j * np.diff(way.course_rad))))
+    # Lateral acceleration is speed times turn rate; a second's mean is below its largest.
+    assert (turned * np.minimum(way.speed_mps[1:], way.speed_mps[:-1])).max() <= found.motion.lateral_acceleration_mps2 * 1.05
+    assert (np.diff(way.along_m) > 0).all()
+
+
+def test_metres_of_a_radian_are_those_of_the_ellipsoid() -> None:
+    way = move(taxi.load(BASE), flown.limits())
+    lat, a, e2 = np.radians(41.2877), 6_378_137.0, 6.69437999014e-3
+    root = np.sqrt(1 - e2 * np.sin(lat) ** 2)
+    # The latitude of the test is that of the route to 0.01 degree: some 2e-4 of the east scale.
+    assert way.per_radian_m[0] == pytest.approx(a / root * np.cos(lat), rel=3e-4)
+    assert way.per_radian_m[1] == pytest.approx(a * (1 - e2) / root**3, rel=3e-5)
+
+
+def test_a_solved_error_is_the_one_put_in() -> None:
+    rng = np.random.default_rng(5)
+    az, el = rng.uniform(0, 2 * np.pi, (3, 12)), rng.uniform(0.2, 1.5, (3, 12))
+    az[1, 4] = el[1, 4] = np.nan
+    systems = np.array([0] * 6 + [2] * 6)
+    sight = errors.Sight.of(az, el, systems)
+    put = rng.normal(size=(3, 5))
+    ranges = np.einsum("kij,kj->ki", sight.rows, put)
+    solved = sight.solve(np.full((3, 12), 0.3), ranges)
+    np.testing.assert_allclose(solved, put[:, :3], atol=1e-10)  # rounding of a five by five system
+
+
+def test_simulated_errors_have_the_covariance_that_the_core_claims() -> None:
+    az, el = np.radians([10.0, 80, 150, 220, 290, 340, 45]), np.radians([70.0, 30, 50, 20, 40, 15, 60])
+    systems = np.zeros(7, dtype=np.int64)
+    sigma = gbas.range_sigma(el, "D").sigma_m
+    n = 40_000
+    noise = sigma * np.random.Generator(np.random.Philox(3)).standard_normal((n, 7))
+    sight = errors.Sight.of(np.tile(az, (n, 1)), np.tile(el, (n, 1)), systems)
+    own = gnss.covariance(az, el, sigma, systems).enu_m2
+    found = np.cov(sight.solve(np.tile(sigma, (n, 1)), noise), rowvar=False)
+    # Elements of a sample covariance of 40 000 draws scatter by 0.7 %; four times that, against the variances.
+    scale = np.sqrt(np.outer(np.diag(own), np.diag(own)))
+    assert (np.abs(found - own) / scale).max() < 0.03
+    wanted = 0.5 * own + 0.01 * np.eye(3)
+    scaled = np.cov(errors.scaled_to(sight.solve(np.tile(sigma, (n, 1)), noise), own, wanted), rowvar=False)
+    scale = np.sqrt(np.outer(np.diag(wanted), np.diag(wanted)))
+    assert (np.abs(scaled - wanted) / scale).max() < 0.03
+
+
+def test_gauss_markov_keeps_variance_and_memory() -> None:
+    x = errors.gauss_markov(errors.stream(1, 0, errors.CODE), 200_000, 10.0)
+    # Some 10 000 independent samples: the variance scatters by 1.4 %.
+    assert x.var() == pytest.approx(1.0, abs=0.06)
+    assert np.mean(x[10:] * x[:-10]) == pytest.approx(np.exp(-1), abs=0.06)
+
+
+def test_streams_of_satellites_do_not_disturb_one_another() -> None:
+    drawn = {errors.stream(7, track, use, k).uniform() for track in range(3) for use in range(6) for k in range(48)}
+    assert len(drawn) == 3 * 6 * 48
+
+
+def test_a_run_judges_every_second_and_nothing_misleads(plain: Run) -> None:
+    assert plain.summary.verdict.inside is True
+    assert plain.epochs["status"].unique().to_list() == ["ok"]
+    assert (plain.epochs["nse_h_m"] <= plain.epochs["hpl_m"]).all()
+    assert plain.epochs.filter(pl.col("mode") == "gbas")["hpl_multi_m"].null_count() == seconds_of(plain, "transition")[0]
+    tse = plain.epochs.select(
+        east=(pl.col("truth_lon_rad") - pl.col("path_lon_rad")) * pl.col("path_lat_rad").cos() * 6_383_500.0,
+        north=(pl.col("truth_lat_rad") - pl.col("path_lat_rad")) * 6_362_800.0,
+    )
+    course = plain.epochs["course_rad"].to_numpy()
+    across = tse["east"].to_numpy() * np.cos(course) - tse["north"].to_numpy() * np.sin(course)
+    # Round radii of curvature, to a thousandth of errors of a metre.
+    np.testing.assert_allclose(across, plain.epochs["tse_m"].to_numpy(), atol=5e-3)
+
+
+def test_a_requirement_that_is_inferred_never_stands_without_the_word(plain: Run) -> None:
+    assert {p.hal_held for p in plain.summary.protection} == {"inferred"}
+    assert [p.hal_m for p in plain.summary.protection] == [4.5, 4.5, 4.5, 3.5, 3.5, 2.5]
+    assert "inferred" in plain.summary.verdict.requirement
+    assert re.search(r"alert limit \(inferred\)", plain.summary.verdict.words)
+    assert "inferred" in plain.summary.assumptions[0]
+
+
+def test_seeds_and_numbers_choose_the_flight(plain: Run) -> None:
+    many = navbound.fly("barcelona-taxi", flights=2)
+    first, second = (many.epochs.filter(pl.col("track") == f"flight-00{k}") for k in (0, 1))
+    assert first.drop("track").equals(plain.epochs.drop("track"))
+    assert not second["nse_e_m"].equals(first["nse_e_m"])
+    other = flown.material(BASE, seed=1)
+    assert not other.epochs["nse_e_m"].equals(plain.epochs["nse_e_m"])
+
+
+def test_a_fault_while_coasting_is_left_out_and_does_no_harm(plain: Run) -> None:
+    run = navbound.fly("barcelona-taxi-coasting-fault")
+    (begins,), (alarm,) = seconds_of(run, "fault"), seconds_of(run, "excluded")
+    assert begins == 230
+    assert 0 < alarm - begins < 10
+    before, after = run.epochs[:alarm], run.epochs[alarm + 1 :]
+    assert before["status"].unique().to_list() == ["ok"]
+    assert after["status"].unique().to_list() == ["degraded"]
+    assert after["reason"].str.contains("G01").all()
+    assert (after["n_sv"] == plain.epochs["n_sv"][alarm + 1 :] - 1).all()
+    # A hundred seconds of 0.1 m/s would be 10 m of range; without the satellite nothing of it arrives.
+    assert (run.epochs["nse_h_m"] <= run.epochs["hpl_m"]).all()
+    east, north = ((after[name] - plain.epochs[name][alarm + 1 :]).to_numpy() for name in ("nse_e_m", "nse_n_m"))
+    moved = np.hypot(east, north)
+    # With its weight of some 0.17 the ramp would move the position by 1.8 m; leaving the satellite out, by noise of phase.
+    assert moved.max() < 0.18
+
+
+def test_a_fault_the_ground_sees_is_withdrawn_before_the_fix() -> None:
+    run = navbound.fly("barcelona-taxi-ground-fault")
+    (begins,), (seen,) = seconds_of(run, "fault"), seconds_of(run, "withdrawn")
+    # A ramp of 0.1 m/s: the curve of GAST F leaves one at 0.75 * 2.2 m and is at its floor from 2.7 * 2.2 m.
+    assert 0.75 * 2.2 / 0.1 <= seen - begins <= 2.7 * 2.2 / 0.1
+    assert run.epochs["n_sv"][seen] == run.epochs["n_sv"][seen - 1] - 1
+    assert not seconds_of(run, "excluded")
+
+
+def test_a_fault_the_ground_misses_misleads_and_the_verdict_says_so(plain: Run) -> None:
+    run = navbound.fly("barcelona-taxi-missed-fault")
+    misled = (run.epochs["nse_h_m"] > run.epochs["hpl_m"]).sum()
+    assert misled == sum(p.n_misleading for p in run.summary.protection) > 100
+    assert run.summary.verdict.inside is None
+    assert f"At {misled} epochs the true error is above the protection level" in run.summary.verdict.words
+    # What the aircraft believes is what it would believe without the fault.
+    assert run.epochs["hpl_m"].equals(plain.epochs["hpl_m"])
+
+
+def test_gast_d_does_not_meet_what_apron_and_stand_ask() -> None:
+    run = navbound.fly("barcelona-taxi-gast-d")
+    by_phase = {p.phase: p for p in run.summary.protection}
+    assert by_phase["normal taxiway"].share_available == 1.0
+    for name in ("apron taxiway", "taxi lane", "stand lead-in line"):
+        assert by_phase[name].share_available == 0.0
+    assert run.summary.verdict.inside is False
+    assert seconds_of(run, "hpl_above_hal")
+
+
+def test_levels_are_those_of_the_public_functions(plain: Run) -> None:
+    found = taxi.load(BASE)
+    sky = look(found, move(found, flown.limits()))
+    up = sky.el_rad[0] >= found.navigation.mask_rad
+    az, el = np.where(up, sky.az_rad[0], np.nan), np.where(up, sky.el_rad[0], np.nan)
+    lat = found.points[0].lat_rad
+    aided = gbas.aided_covariance(az, el, sky.systems, lat_rad=lat, service="F", noise="paper")
+    alone = gbas.protection_levels(az, el, sky.systems, service="F", bias_m=found.navigation.bias_m, aided_covariance_m2=aided)
+    # Both go through the same core; only the argument lists could differ.
+    assert plain.epochs["hpl_m"][0] == pytest.approx(float(alone.hpl_m), rel=1e-12)
+
+
+@pytest.mark.parametrize("mask_deg", [45.0, 80.0])
+def test_too_few_satellites_are_a_status_with_a_reason(tmp_path: Path, mask_deg: float) -> None:
+    run = navbound.fly(changed(tmp_path, "mask_deg = 5.0", f"mask_deg = {mask_deg}"))
+    assert run.epochs["status"].unique().to_list() == ["not_available"]
+    assert run.epochs["reason"].str.contains("satellites").all()
+    assert run.epochs["hpl_m"].null_count() == run.epochs["est_lat_rad"].null_count() == run.epochs.height
+    assert all(p.share_available == 0.0 for p in run.summary.protection)
+    assert run.summary.verdict.inside is None
+
+
+def test_the_covariance_that_bounds_leaves_no_room_at_the_stand(tmp_path: Path, plain: Run) -> None:
+    run = navbound.fly(changed(tmp_path, 'covariance = "paper"', 'covariance = "bound"'))
+    grown = (run.epochs["hpl_m"] / plain.epochs["hpl_m"]).to_numpy()
+    # The study finds 2.6 to 3.6 times the sigma; the bias part of the level does not grow.
+    assert 2.0 < grown.min() <= grown.max() < 3.6
+    assert run.summary.protection[-1].share_available == 0.0
+    # Only what is claimed changes, not what happens.
+    assert run.epochs["nse_e_m"].equals(plain.epochs["nse_e_m"])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('transition = "N3"', 'transition = "X9"', "X9"),
+        ('mode = "F2"', 'mode = "F3"', "F3"),
+        ("bias_m = 0.1", "bias_m = -0.1", "-0.1"),
+        ("mask_deg = 5.0", "mask_deg = 95.0", "95"),
+        ("start_gps = 2024-01-10T06:00:00", "start_gps = 2024-01-10T06:00:00Z", "GPS time has no zone"),
+        ('name = "N2"', 'name = "N1"', "names of their own"),
+        ('phase = "RWY"', 'phase = "RUN"', "RUN"),
+        ("[motion]", "[motion]\nspeed = 1", "motion.speed"),
+        ('kind = "taxi"', 'kind = "taxi"\nkind = 3', "not TOML"),
+    ],
+)
+def test_what_is_wrong_in_a_file_is_named(tmp_path: Path, old: str, new: str, said: str) -> None:
+    file = changed(tmp_path, old, new)
+    with pytest.raises(FormatError, match=re.escape(said)):
+        taxi.load(file)
+
+
+def test_a_route_that_cannot_be_driven_and_a_satellite_that_is_not_there_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="radius_m"):
+        navbound.fly(changed(tmp_path, "radius_m = 28.0", "radius_m = 128.0"))
+    with pytest.raises(InputError, match="braking_mps2"):
+        navbound.fly(changed(tmp_path, "braking_mps2 = 1.8", "braking_mps2 = 1.5"))
+    file = tmp_path / "fault.toml"
+    file.write_text(
+        'base = "barcelona-taxi"\n[[faults]]\nkind = "range-step"\nsatellite = "E99"\nstart_s = 1.0\nduration_s = 5.0\nsize_m = 3.0\n',
+        encoding="utf-8",
+    )
+    with pytest.raises(InputError, match="E99"):
+        navbound.fly(file)
+    with pytest.raises(InputError, match="flights"):
+        flown.material(BASE, flights=0)
+    with pytest.raises(InputError, match="seed"):
+        flown.material(BASE, seed=-1)
+    with pytest.raises(InputError, match="barcelona-taxi"):
+        navbound.fly("barcelona")
+
+
+def test_the_page_draws_route_levels_and_limits_with_their_word(tmp_path: Path) -> None:
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        pytest.skip("chromium is not installed: the report was NOT opened in a browser")
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - its driver starts only where chromium exists
+
+    run = navbound.fly("barcelona-taxi-gast-d", out=tmp_path / "run")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        page = browser.new_page(offline=True)
+        failures: list[str] = []
+        page.on("pageerror", lambda e: failures.append(str(e)))
+        page.goto(run.report.as_uri())
+        page.wait_for_selector("[data-ready=true]")
+        page.get_by_role("button", name="Error at cursor").click()
+        assert page.locator("#map .key-hpl").count() == page.locator("#map .key-hal").count() == 1
+        assert "alert limit (inferred)" in page.locator("#map").inner_text()
+        assert "HAL (inferred)" in page.locator("#alert-limit").inner_text()
+        rows = page.locator("#alert-limits tbody tr").all_inner_texts()
+        assert [row.split("\t")[1] for row in rows] == [f"{p.hal_m:.2f} m (inferred)" for p in run.summary.protection]
+        # The protection circle is drawn: its colour is on the moving layer of the map.
+        found = page.evaluate(
+            """() => {
+                const canvas = document.querySelectorAll("#map canvas")[1];
+                const hue = getComputedStyle(document.documentElement).getPropertyValue("--m2").trim();
+                const [r, g, b] = [1, 3, 5].map((k) => parseInt(hue.slice(k, k + 2), 16));
+                const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+                let n = 0;
+                for (let k = 0; k < data.length; k += 4) {
+                    if (data[k] === r && data[k + 1] === g && data[k + 2] === b && data[k + 3] === 255) n++;
+                }
+                return n;
+            }"""
+        )
+        assert found > 100
+        assert not failures
+        browser.close()
