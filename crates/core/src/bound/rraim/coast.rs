@@ -234,29 +234,32 @@ mod tests {
     }
 
     /// M of the whole normal equation two ways, and the covariance of the phase; none for what is badly conditioned. Satellites removed
-    /// have no weight.
+    /// have no weight. Last, how far rounding may take them: the inverse loses the condition times the rounding of each of its sums (at most
+    /// 12 x 6 terms), and what is multiplied by Sd loses its size more.
     fn whole<const M: usize>(f: &[Followed], removed: Set) -> Option<([SMatrix<f64, M, M>; 2], SMatrix<f64, M, M>, f64)> {
         let (h, h0) = (dense::<M>(f, |s| s.now), dense::<M>(f, |s| s.before));
         let w = SMatrix::<f64, 12, 12>::from_fn(|i, j| if i == j && removed >> i & 1 == 0 { f[i].sigma.m().powi(-2) } else { 0.0 });
         let normal = h.transpose() * w * h;
-        let p = normal.try_inverse()?;
-        if !(normal.norm() * p.norm() < 1e7) {
+        // Not by cofactors: a closed inverse of four rows loses more than the condition.
+        let p = normal.cholesky()?.inverse();
+        let condition = normal.norm() * p.norm();
+        if !(condition < 1e7) {
             return None;
         }
         let sd = p * h.transpose() * w;
-        Some(([sd * h0, SMatrix::identity() - sd * (h - h0)], p, 1.0 + sd.norm()))
+        let lost = 72.0 * f64::EPSILON * condition * (1.0 + sd.norm());
+        Some(([sd * h0, SMatrix::identity() - sd * (h - h0)], p, lost))
     }
 
     fn compare<const M: usize>(f: &[Followed], removed: Set) -> Result<(), TestCaseError> {
-        let Some(([by_product, by_difference], p, scale)) = whole::<M>(f, removed) else {
+        let Some(([by_product, by_difference], p, lost)) = whole::<M>(f, removed) else {
             return Err(TestCaseError::reject("badly conditioned"));
         };
-        // Rounding of sums of products of Sd, whose entries grow with the condition; the inverse itself loses some more for M = 6.
-        prop_assert!((by_product - by_difference).amax() < 1e-10 * scale);
+        prop_assert!((by_product - by_difference).amax() < lost);
         let found = Coast::new(f).unwrap().without(removed).unwrap();
         let m = by_difference.fixed_view::<3, 3>(0, 0);
-        prop_assert!((found.carried - m).amax() < 1e-9 * scale, "{}", (found.carried - m).amax());
-        prop_assert!((found.added - p.fixed_view::<3, 3>(0, 0)).amax() < 1e-9 * (1.0 + p.amax()) * scale);
+        prop_assert!((found.carried - m).amax() < 2.0 * lost, "{}", (found.carried - m).amax());
+        prop_assert!((found.added - p.fixed_view::<3, 3>(0, 0)).amax() < 2.0 * lost * (1.0 + p.amax()));
         Ok(())
     }
 
