@@ -9,7 +9,8 @@ use crate::special::float::{ln, sqrt};
 /// Where the equation comes from; provenance *standard*.
 pub const SOURCE: &str = "Blanch et al. 2015, baseline advanced RAIM user algorithm, protection level equation (standard)";
 
-const LANES: usize = 8;
+/// Hypotheses that are worked out at once.
+pub(crate) const LANES: usize = 8;
 const GROUPS: usize = 64;
 /// Most hypotheses of one equation.
 pub const MOST_TERMS: usize = LANES * GROUPS;
@@ -106,6 +107,23 @@ impl LevelEquation {
         Ok(())
     }
 
+    /// Eight hypotheses at once, after a multiple of eight: weights, shifts \[m\], sigmas \[m\], which the caller has made such that they are
+    /// in their domains; those without weight do not count.
+    ///
+    /// # Errors
+    /// [`NoLevel::TooMany`] after [`MOST_TERMS`].
+    #[inline(always)]
+    pub(crate) fn push_abreast(&mut self, weight: &[f64; LANES], shift: &[f64; LANES], sigma: &[f64; LANES]) -> Result<(), NoLevel> {
+        debug_assert!(self.count.is_multiple_of(LANES));
+        let group = self.groups.get_mut(self.count / LANES).ok_or(NoLevel::TooMany)?;
+        *group = Group { weight: *weight, shift: *shift, inverse_sigma: [0.0; LANES] };
+        for l in 0..LANES {
+            group.inverse_sigma[l] = 1.0 / sigma[l];
+        }
+        self.count += LANES;
+        Ok(())
+    }
+
     /// The level: the least x >= 0 at which the sum is no larger than the risk, to 1e-9 m or 1e-12 of it, whichever is more.
     ///
     /// A bracket stands between the largest shift of a hypothesis that alone outweighs the risk and the place where no hypothesis
@@ -140,6 +158,7 @@ impl LevelEquation {
     }
 
     /// Risk that the error exceeds a level: the left side of the equation.
+    #[inline(always)]
     pub fn risk_beyond(&self, level: Metres) -> f64 {
         self.sum(level.m()).value
     }

@@ -6,7 +6,8 @@
 
 use super::modes::{Book, FaultModes, MOST_SATELLITES, NoModes};
 use super::service::Service;
-use super::{Levels, Monitor, Sight};
+use super::separation::Separation;
+use super::{Levels, Monitor, Sight, Solver, Terms};
 use crate::quantity::{Metres, Unavailable};
 
 /// How exclusion shares the risk; provenance *ours*.
@@ -14,6 +15,8 @@ pub const SOURCE: &str = "navbound, docs/methods/araim.md: equal shares of the i
 
 /// Fault modes that are tried for exclusion at most, the most suspicious first.
 const MOST_TRIED: usize = 16;
+/// Fault modes that may be excluded at most: every satellite and some constellations.
+const MOST_DECISIONS: usize = MOST_SATELLITES + 8;
 
 /// Why an epoch has no levels.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -69,18 +72,27 @@ pub fn detected(monitor: &mut Monitor, book: &mut impl Book, sights: &[Sight], s
 /// [`NoLevels`].
 #[inline(always)]
 pub fn predicted(monitor: &mut Monitor, book: &mut impl Book, sights: &[Sight], service: &Service) -> Result<Levels, NoLevels> {
-    let candidates = Candidates::likely(some(book, sights, service)?, service);
-    let share = candidates.share();
     let modes = some(book, sights, service)?;
-    let mut worst = monitor.levels_with(sights, &[], modes, service, share)?;
+    let mut candidates = Candidates::likely(modes, service)?;
+    let share = candidates.share();
+    let mut worst = monitor.solver.levels(&mut monitor.every, sights, &[], &Terms { modes, service, share })?;
+    monitor.ceiling.fill(&monitor.every);
+    candidates.worst_first(|out| monitor.ceiling.damage(&monitor.every, out));
     let mut rest = Rest::default();
     for mask in candidates.masks() {
         let (left, _) = rest.without(sights, &[], mask);
-        match some(book, left, service).map(|modes| monitor.levels_with(left, &[], modes, service, share)) {
-            Ok(Ok(after)) => worst.widen(Some(&after)),
+        let modes = match some(book, left, service) {
+            Ok(modes) => modes,
             Err(e @ NoLevels::Modes(NoModes::OutOfDomain(_))) => return Err(e),
-            // Without these satellites there is no position: the fault cannot be excluded.
-            _ => worst.widen(None),
+            // The fault cannot be excluded: without these satellites there is no position.
+            Err(_) => {
+                worst.widen(None);
+                continue;
+            }
+        };
+        let terms = Terms { modes, service, share };
+        if !monitor.ceiling.holds(&mut monitor.every, &mut monitor.solver, mask, &terms, &worst.limits()) {
+            worst.widen(monitor.solver.levels(&mut monitor.rest, left, &[], &terms).ok().as_ref());
         }
     }
     Ok(worst)
@@ -107,24 +119,27 @@ pub fn monitored(
         let (value, domain) = (residuals_m.len() as f64, "one a satellite");
         return Err(Unavailable::Invalid { field: "residual_m", value, unit: "1", domain }.into());
     }
-    let share = Candidates::likely(some(book, sights, service)?, service).share();
     let modes = some(book, sights, service)?;
-    let levels = monitor.levels_with(sights, residuals_m, modes, service, share)?;
-    let suspects = Candidates::suspects(monitor, modes, service);
+    let likely = Candidates::likely(modes, service)?;
+    let share = likely.share();
+    let Monitor { every, rest: other, solver, .. } = monitor;
+    let levels = solver.levels(every, sights, residuals_m, &Terms { modes, service, share })?;
+    let suspects = Candidates::suspects(solver, every, modes, service);
     let worst_ratio = suspects.ratio[0];
-    let all = Monitored { decision: Decision::Nothing, levels, step: monitor.step(), excluded: 0, worst_ratio };
+    let all = Monitored { decision: Decision::Nothing, levels, step: every.step(), excluded: 0, worst_ratio };
     if worst_ratio <= 1.0 {
         return Ok(all);
     }
     let mut rest = Rest::default();
-    for mask in suspects.masks() {
+    // Only decisions that have a share of the risk.
+    for mask in suspects.masks().filter(|mask| likely.masks().any(|m| m == *mask)) {
         let (sights, residuals_m) = rest.without(sights, residuals_m, mask);
         let Ok(modes) = some(book, sights, service) else { continue };
-        let Ok(levels) = monitor.levels_with(sights, residuals_m, modes, service, share) else { continue };
+        let Ok(levels) = solver.levels(other, sights, residuals_m, &Terms { modes, service, share }) else { continue };
         // Where nothing is left to test with, agreement means nothing; the levels are infinite there.
         let tested = levels.hpl.m().is_finite() && levels.vpl.m().is_finite();
-        if tested && Candidates::suspects(monitor, modes, service).ratio[0] <= 1.0 {
-            return Ok(Monitored { decision: Decision::Excluded, levels, step: monitor.step(), excluded: mask, worst_ratio });
+        if tested && Candidates::suspects(solver, other, modes, service).ratio[0] <= 1.0 {
+            return Ok(Monitored { decision: Decision::Excluded, levels, step: other.step(), excluded: mask, worst_ratio });
         }
     }
     Ok(Monitored { decision: Decision::NotExcluded, ..all })
@@ -139,30 +154,48 @@ fn some<'a>(book: &'a mut impl Book, sights: &[Sight], service: &Service) -> Res
 
 /// Fault modes that may be excluded.
 struct Candidates {
-    mask: [u64; MOST_SATELLITES + 8],
-    ratio: [f64; MOST_SATELLITES + 8],
+    mask: [u64; MOST_DECISIONS],
+    /// What they are sorted by.
+    ratio: [f64; MOST_DECISIONS],
     count: usize,
 }
 
 impl Candidates {
     const fn none() -> Self {
-        Self { mask: [0; MOST_SATELLITES + 8], ratio: [0.0; MOST_SATELLITES + 8], count: 0 }
+        Self { mask: [0; MOST_DECISIONS], ratio: [0.0; MOST_DECISIONS], count: 0 }
     }
 
     /// Every fault more likely than the integrity risk: those that continuity needs to be excluded.
-    fn likely(modes: &FaultModes, service: &Service) -> Self {
+    ///
+    /// # Errors
+    /// [`NoModes::TooManyDecisions`].
+    fn likely(modes: &FaultModes, service: &Service) -> Result<Self, NoModes> {
         let mut found = Self::none();
-        for (slot, mode) in found.mask.iter_mut().zip(modes.iter().skip(1).filter(|m| m.p > service.integrity())) {
-            *slot = mode.satellites;
+        for mode in modes.iter().skip(1).filter(|m| m.p > service.integrity()) {
+            *found.mask.get_mut(found.count).ok_or(NoModes::TooManyDecisions { most: MOST_DECISIONS })? = mode.satellites;
             found.count += 1;
         }
-        found
+        Ok(found)
+    }
+
+    /// In the order of what they do to the position, so that the first are likely to have the largest levels.
+    #[inline(always)]
+    fn worst_first(&mut self, damage: impl Fn(u64) -> f64) {
+        for k in 0..self.count {
+            let (mask, ratio) = (self.mask[k], damage(self.mask[k]));
+            let mut place = k;
+            while place > 0 && self.ratio[place - 1] < ratio {
+                (self.mask[place], self.ratio[place]) = (self.mask[place - 1], self.ratio[place - 1]);
+                place -= 1;
+            }
+            (self.mask[place], self.ratio[place]) = (mask, ratio);
+        }
     }
 
     /// The modes whose separation is largest against its threshold, in that order.
-    fn suspects(monitor: &mut Monitor, modes: &FaultModes, service: &Service) -> Self {
+    fn suspects(solver: &mut Solver, of: &Separation, modes: &FaultModes, service: &Service) -> Self {
         let mut found = Self::none();
-        monitor.ratios(modes, service, |mask, ratio| {
+        solver.ratios(of, modes, service, |mask, ratio| {
             // Insertion into the few that are kept.
             let mut place = found.count.min(MOST_TRIED - 1);
             if found.count == MOST_TRIED && ratio <= found.ratio[place] {

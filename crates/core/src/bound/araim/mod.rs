@@ -3,27 +3,28 @@
 //! In the order of the flow: [`service`] (what is allowed and what satellites promise), [`modes`] (what may be wrong together), the
 //! solutions without each mode's satellites, and here thresholds and levels.
 
+mod ceiling;
 pub mod exclusion;
 pub mod modes;
 pub mod ranging;
+mod separation;
 pub mod service;
 pub mod single;
 mod subset;
 
 use super::level_equation::LevelEquation;
 use crate::quantity::{Metres, Risk, Unavailable};
-use crate::signal::Constellation;
 use crate::special::float::{hypot, sqrt};
 use crate::special::one_sided_factor;
+use ceiling::Ceiling;
 use modes::{FaultMode, FaultModes, MOST_MODES, MOST_SATELLITES};
+use separation::Separation;
 use service::Service;
 pub use subset::Sight;
-use subset::{MOST_TOGETHER, NO_SOLUTION, Satellites, Solution, Sums};
+use subset::Sums;
 
 /// Document of every formula here; provenance *standard*.
 pub const SOURCE: &str = "Blanch et al. 2015, baseline advanced RAIM user algorithm; Working Group C, ARAIM airborne algorithm description v3.0 (standard; levels checked against MAAST for ARAIM 2)";
-
-const CLOCKS: usize = Constellation::ALL.len();
 
 /// Protection levels of one epoch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +56,16 @@ impl Levels {
         self.vpl = larger(self.vpl, other.map_or(infinite, |o| o.vpl));
         self.axes = [0, 1].map(|a| larger(self.axes[a], other.map_or(infinite, |o| o.axes[a])));
     }
+
+    /// Levels east, north and up that leave these unchanged when they are widened to them.
+    #[inline(always)]
+    fn limits(&self) -> [f64; 3] {
+        // The axes may be those of different decisions: both together must stay within the horizontal level.
+        let [east, north] = self.axes.map(Metres::m);
+        let both = hypot(east, north);
+        let part = if both > self.hpl.m() { self.hpl.m() / both } else { 1.0 };
+        [part * east, part * north, self.vpl.m()]
+    }
 }
 
 /// One mode as the levels saw it.
@@ -75,32 +86,40 @@ pub struct ModeReport {
 }
 
 /// Detection and levels, epoch after epoch. No heap; made once and used again, since it is large.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Monitor {
-    satellites: Satellites,
-    all: Solution,
-    /// Solutions without one constellation, and which of them are worked out; then one without several.
-    without: [Solution; CLOCKS],
-    solved: [Option<bool>; CLOCKS],
-    several: Solution,
-    outcome: [Option<Sums>; MOST_MODES],
-    equation: LevelEquation,
-    factors: Factors,
+    /// With every satellite of the epoch.
+    every: Separation,
+    /// After an exclusion, and what its levels cannot exceed.
+    rest: Separation,
+    ceiling: Ceiling,
+    solver: Solver,
 }
 
-impl Default for Monitor {
-    fn default() -> Self {
-        Self {
-            satellites: Satellites::default(),
-            all: NO_SOLUTION,
-            without: [NO_SOLUTION; CLOCKS],
-            solved: [None; CLOCKS],
-            several: NO_SOLUTION,
-            outcome: [None; MOST_MODES],
-            equation: LevelEquation::default(),
-            factors: Factors::default(),
-        }
+/// What the levels of a decision may take, and against what.
+#[derive(Debug, Clone, Copy)]
+struct Terms<'a> {
+    modes: &'a FaultModes,
+    service: &'a Service,
+    /// Of the integrity risk.
+    share: f64,
+}
+
+impl Terms<'_> {
+    /// What is left for the levels east, north and up after the modes that are not monitored: half of the horizontal risk for each axis.
+    #[inline(always)]
+    fn budgets(&self, p_unmonitored: f64) -> [f64; 3] {
+        let left = self.share * (1.0 - p_unmonitored / self.service.integrity());
+        let half = 0.5 * self.service.integrity_h.q();
+        [half * left, half * left, self.service.integrity_v.q() * left]
     }
+}
+
+/// From separations to levels.
+#[derive(Debug, Clone, Default)]
+struct Solver {
+    equation: LevelEquation,
+    factors: Factors,
 }
 
 /// Multipliers of the thresholds, worked out once for each number of modes.
@@ -152,62 +171,13 @@ impl Monitor {
     /// [`Unavailable`]: too few satellites, a geometry that does not determine the position, a number that is none.
     #[inline(always)]
     pub fn levels(&mut self, sights: &[Sight], modes: &FaultModes, service: &Service) -> Result<Levels, Unavailable> {
-        self.levels_with(sights, &[], modes, service, 1.0)
-    }
-
-    /// The same where the levels may take but a share of the integrity risk, and with residuals for [`Self::worst`] where there are any.
-    #[inline(always)]
-    fn levels_with(
-        &mut self,
-        sights: &[Sight],
-        residuals_m: &[f64],
-        modes: &FaultModes,
-        service: &Service,
-        share: f64,
-    ) -> Result<Levels, Unavailable> {
-        let (monitored, p_unmonitored) = self.separate(sights, residuals_m, modes)?;
-        let factors = self.factors.of(service, monitored.saturating_sub(1));
-        let emt = self.effective_monitor_threshold(modes, service, &factors);
-        let [east, north, up] = self.axis_levels(modes, service, share * (1.0 - p_unmonitored / service.integrity()), &factors);
-        let sigma_accuracy = self.satellites.accuracy_m2(&self.all).map(|v| Metres::new(sqrt(v)));
-        Ok(Levels {
-            hpl: Metres::new(hypot(east, north)),
-            vpl: Metres::new(up),
-            axes: [Metres::new(east), Metres::new(north)],
-            emt,
-            sigma_accuracy,
-            n_modes: modes.len(),
-            n_monitored: monitored,
-            p_unmonitored,
-        })
-    }
-
-    /// Every subset of an epoch: how many can be monitored, and the probability of all that is not.
-    #[inline(always)]
-    fn separate(&mut self, sights: &[Sight], residuals_m: &[f64], modes: &FaultModes) -> Result<(usize, f64), Unavailable> {
-        checked(sights)?;
-        self.satellites.fill(sights);
-        self.satellites.measured(residuals_m);
-        self.satellites.solve(0, &mut self.all)?;
-        self.solved = [None; CLOCKS];
-        let (mut monitored, mut p_unmonitored) = (0_usize, modes.left());
-        for (k, mode) in modes.iter().enumerate() {
-            let sums = self.subset(mode, sights.len());
-            if sums.is_some() {
-                monitored += 1;
-            } else {
-                p_unmonitored += mode.p;
-            }
-            self.outcome[k] = sums;
-        }
-        Ok((monitored, p_unmonitored))
+        self.solver.levels(&mut self.every, sights, &[], &Terms { modes, service, share: 1.0 })
     }
 
     /// The modes of the last epoch as its levels saw them; `modes` and `service` are those of that call.
     pub fn report<'a>(&'a mut self, modes: &'a FaultModes, service: &Service) -> impl Iterator<Item = ModeReport> + 'a {
-        let faults = self.outcome[..modes.len()].iter().flatten().count().saturating_sub(1);
-        let factors = self.factors.of(service, faults);
-        modes.iter().zip(&self.outcome).map(move |(mode, outcome)| {
+        let factors = self.solver.factors.of(service, self.every.faults(modes));
+        modes.iter().zip(&self.every.outcome).map(move |(mode, outcome)| {
             let sums = outcome.unwrap_or_default();
             let root = |x: [f64; 3]| x.map(|v| Metres::new(sqrt(v)));
             ModeReport {
@@ -220,12 +190,33 @@ impl Monitor {
             }
         })
     }
+}
 
-    /// Separation of every monitored mode of the last epoch against its threshold, the largest of the axes, with the mode's satellites.
-    fn ratios(&mut self, modes: &FaultModes, service: &Service, mut each: impl FnMut(u64, f64)) {
-        let faults = self.outcome[..modes.len()].iter().flatten().count().saturating_sub(1);
-        let factors = self.factors.of(service, faults);
-        for (mode, outcome) in modes.iter().zip(&self.outcome).skip(1) {
+impl Solver {
+    /// Levels of some satellites, with residuals for [`Solver::ratios`] where there are any.
+    #[inline(always)]
+    fn levels(&mut self, of: &mut Separation, sights: &[Sight], residuals_m: &[f64], terms: &Terms<'_>) -> Result<Levels, Unavailable> {
+        checked(sights)?;
+        let (monitored, p_unmonitored) = of.separate(sights, residuals_m, terms.modes)?;
+        let factors = self.factors.of(terms.service, monitored.saturating_sub(1));
+        let emt = effective_monitor_threshold(of, terms, &factors);
+        let [east, north, up] = self.axis_levels(of, terms, &factors, terms.budgets(p_unmonitored));
+        Ok(Levels {
+            hpl: Metres::new(hypot(east, north)),
+            vpl: Metres::new(up),
+            axes: [Metres::new(east), Metres::new(north)],
+            emt,
+            sigma_accuracy: of.sigma_accuracy(),
+            n_modes: terms.modes.len(),
+            n_monitored: monitored,
+            p_unmonitored,
+        })
+    }
+
+    /// Separation of every monitored mode against its threshold, the largest of the axes, with the mode's satellites.
+    fn ratios(&mut self, of: &Separation, modes: &FaultModes, service: &Service, mut each: impl FnMut(u64, f64)) {
+        let factors = self.factors.of(service, of.faults(modes));
+        for (mode, outcome) in modes.iter().zip(&of.outcome).skip(1) {
             let Some(sums) = outcome else { continue };
             let ratio = |a: usize| {
                 let moved = sums.moved[a].abs();
@@ -236,79 +227,21 @@ impl Monitor {
         }
     }
 
-    /// Where the solution of the last epoch stands from the place of its residuals, east, north, up.
-    fn step(&self) -> [Metres; 3] {
-        self.satellites.step(&self.all).map(Metres::new)
-    }
-
-    /// The solution without a mode's satellites.
     #[inline(always)]
-    fn subset(&mut self, mode: &FaultMode, count: usize) -> Option<Sums> {
-        let left = count - (mode.satellites.count_ones() as usize).min(count);
-        if left < self.satellites.need_and_have(mode.constellations).0 {
-            return None;
-        }
-        let base = match mode.constellations.count_ones() {
-            0 => &self.all,
-            1 => {
-                let c = mode.constellations.trailing_zeros() as usize;
-                if self.solved[c].is_none() {
-                    self.solved[c] = Some(self.satellites.solve(mode.constellations, &mut self.without[c]).is_ok());
-                }
-                if self.solved[c] != Some(true) {
-                    return None;
-                }
-                &self.without[c]
-            }
-            _ => {
-                self.satellites.solve(mode.constellations, &mut self.several).ok()?;
-                &self.several
-            }
-        };
-        let single = mode.satellites & !self.satellites.of_constellations(mode.constellations);
-        let mut out = [0; MOST_TOGETHER];
-        let mut bits = single;
-        let together = single.count_ones() as usize;
-        for slot in out.iter_mut().take(together) {
-            *slot = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-        }
-        let (satellites, all) = (&self.satellites, &self.all);
-        match together {
-            0 => satellites.without(all, base, []),
-            1 => satellites.without(all, base, [out[0]]),
-            2 => satellites.without(all, base, [out[0], out[1]]),
-            3 => satellites.without(all, base, [out[0], out[1], out[2]]),
-            MOST_TOGETHER => satellites.without(all, base, out),
-            // More at a time than is worked out counts as not monitored: its probability is in the budget.
-            _ => None,
-        }
-    }
-
-    #[inline(always)]
-    fn effective_monitor_threshold(&self, modes: &FaultModes, service: &Service, factors: &[f64; 3]) -> Metres {
-        let counted = modes.iter().zip(&self.outcome).skip(1).filter(|(m, _)| m.p >= service.effective_monitor.q());
-        Metres::new(counted.filter_map(|(_, o)| o.as_ref()).map(|s| threshold(s, factors, 2)).fold(0.0, f64::max))
-    }
-
-    /// Levels of east, north and up where a share of the risk is left for them.
-    #[inline(always)]
-    fn axis_levels(&mut self, modes: &FaultModes, service: &Service, left: f64, factors: &[f64; 3]) -> [f64; 3] {
-        let half = 0.5 * service.integrity_h.q();
-        let budgets = [half, half, service.integrity_v.q()];
+    fn axis_levels(&mut self, of: &Separation, terms: &Terms<'_>, factors: &[f64; 3], budgets: [f64; 3]) -> [f64; 3] {
         let mut levels = [f64::INFINITY; 3];
         for a in 0..3 {
-            if let Ok(risk) = Risk::new(budgets[a] * left) {
-                levels[a] = self.axis_level(modes, risk, factors, a);
+            if let Ok(risk) = Risk::new(budgets[a]) {
+                levels[a] = self.axis_level(of, terms.modes, risk, factors, a);
             }
         }
         levels
     }
 
     #[inline(always)]
-    fn axis_level(&mut self, modes: &FaultModes, risk: Risk, factors: &[f64; 3], a: usize) -> f64 {
+    fn axis_level(&mut self, of: &Separation, modes: &FaultModes, risk: Risk, factors: &[f64; 3], a: usize) -> f64 {
         self.equation.clear();
-        for (k, (mode, outcome)) in modes.iter().zip(&self.outcome).enumerate() {
+        for (k, (mode, outcome)) in modes.iter().zip(&of.outcome).enumerate() {
             let Some(sums) = outcome else { continue };
             // The fault-free error has two tails.
             let (weight, threshold) = if k == 0 { (2.0, 0.0) } else { (mode.p, threshold(sums, factors, a)) };
@@ -320,6 +253,12 @@ impl Monitor {
         }
         self.equation.level(risk).m()
     }
+}
+
+#[inline(always)]
+fn effective_monitor_threshold(of: &Separation, terms: &Terms<'_>, factors: &[f64; 3]) -> Metres {
+    let counted = terms.modes.iter().zip(&of.outcome).skip(1).filter(|(m, _)| m.p >= terms.service.effective_monitor.q());
+    Metres::new(counted.filter_map(|(_, o)| o.as_ref()).map(|s| threshold(s, factors, 2)).fold(0.0, f64::max))
 }
 
 #[inline(always)]

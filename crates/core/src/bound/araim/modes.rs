@@ -59,6 +59,12 @@ pub enum NoModes {
     /// Priors so large that more modes must be monitored than there is room for.
     #[error("more than {MOST_MODES} fault modes must be monitored")]
     TooManyModes,
+    /// More modes likely enough to be excluded than decisions are weighed.
+    #[error("more than {most} fault modes may have to be excluded")]
+    TooManyDecisions {
+        /// As many as there is room for.
+        most: usize,
+    },
 }
 
 /// Where the modes of satellites are looked up, or worked out.

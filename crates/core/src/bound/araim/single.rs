@@ -1,7 +1,7 @@
 //! RAIM, the simple case: one satellite may be wrong at a time, and no prior is known.
 
 use super::modes::{FaultModes, NoModes};
-use super::{Levels, Monitor, Sight, exclusion::NoLevels};
+use super::{Levels, Monitor, Sight, checked, exclusion::NoLevels};
 use crate::quantity::{Metres, OutOfDomain, Provenance, Risk, Unavailable};
 use crate::special::float::sqrt;
 use crate::special::one_sided_factor;
@@ -53,13 +53,14 @@ impl Monitor {
     #[inline(always)]
     pub fn single_levels(&mut self, sights: &[Sight], wanted: &Requirement) -> Result<Levels, NoLevels> {
         let modes = FaultModes::single(sights)?;
-        let (monitored, _) = self.separate(sights, &[], &modes)?;
+        checked(sights)?;
+        let (monitored, _) = self.every.separate(sights, &[], &modes)?;
         let faults = sights.len().max(1) as f64;
         let k_ff = one_sided_factor(0.5 * wanted.fault_free.q());
         let k_fa = one_sided_factor(0.5 * wanted.false_alarm.q() / faults);
         let k_md = one_sided_factor(wanted.missed_detection.q());
         let (mut east_north, mut axes, mut up, mut threshold_u) = (0.0_f64, [0.0_f64; 2], 0.0_f64, 0.0_f64);
-        for (k, outcome) in self.outcome[..modes.len()].iter().enumerate() {
+        for (k, outcome) in self.every.outcome[..modes.len()].iter().enumerate() {
             let Some(sums) = outcome else {
                 (east_north, axes, up) = (f64::INFINITY, [f64::INFINITY; 2], f64::INFINITY);
                 break;
@@ -78,7 +79,7 @@ impl Monitor {
             vpl: Metres::new(up),
             axes: axes.map(Metres::new),
             emt: Metres::new(threshold_u),
-            sigma_accuracy: self.satellites.accuracy_m2(&self.all).map(|v| Metres::new(sqrt(v))),
+            sigma_accuracy: self.every.sigma_accuracy(),
             n_modes: modes.len(),
             n_monitored: monitored,
             p_unmonitored: 0.0,

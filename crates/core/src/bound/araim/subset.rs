@@ -17,7 +17,7 @@ use crate::solution::wls::CONDITION_LIMIT;
 use nalgebra::{Matrix3, Vector3};
 
 pub(super) const LANES: usize = 8;
-const GROUPS: usize = MOST_SATELLITES / LANES;
+pub(super) const GROUPS: usize = MOST_SATELLITES / LANES;
 const CLOCKS: usize = Constellation::ALL.len();
 /// Below this share of its weight a satellite's residual is determined by the others not at all: without it there is no solution.
 const ESSENTIAL: f64 = 1e-9;
@@ -58,14 +58,14 @@ impl Sight {
 
 /// Eight satellites abreast; places beyond the last have no weight.
 #[derive(Debug, Clone, Copy)]
-struct Group {
-    centred: [[f64; LANES]; 3],
-    weight: [f64; LANES],
-    clock: [f64; LANES],
+pub(super) struct Group {
+    pub(super) centred: [[f64; LANES]; 3],
+    pub(super) weight: [f64; LANES],
+    pub(super) clock: [f64; LANES],
     index: [f64; LANES],
-    accuracy: [f64; LANES],
-    bias: [f64; LANES],
-    bias_continuity: [f64; LANES],
+    pub(super) accuracy: [f64; LANES],
+    pub(super) bias: [f64; LANES],
+    pub(super) bias_continuity: [f64; LANES],
     residual: [f64; LANES],
 }
 
@@ -87,7 +87,7 @@ type Gains = [[[f64; LANES]; 3]; GROUPS];
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Solution {
     pub(super) variance: [f64; 3],
-    gains: Gains,
+    pub(super) gains: Gains,
 }
 
 pub(super) const NO_SOLUTION: Solution = Solution { variance: [0.0; 3], gains: [[[0.0; LANES]; 3]; GROUPS] };
@@ -110,11 +110,11 @@ pub(super) struct Sums {
 /// The satellites of one solution, and what each constellation contributes.
 #[derive(Debug, Clone)]
 pub(super) struct Satellites {
-    groups: [Group; GROUPS],
-    count: usize,
+    pub(super) groups: [Group; GROUPS],
+    pub(super) count: usize,
     information: [Matrix3<f64>; CLOCKS],
-    weight: [f64; CLOCKS],
-    members: [u64; CLOCKS],
+    pub(super) weight: [f64; CLOCKS],
+    pub(super) members: [u64; CLOCKS],
 }
 
 impl Default for Satellites {
@@ -176,7 +176,7 @@ impl Satellites {
     }
 
     #[inline(always)]
-    fn filled(&self) -> &[Group] {
+    pub(super) fn filled(&self) -> &[Group] {
         &self.groups[..self.count.div_ceil(LANES).min(GROUPS)]
     }
 
@@ -196,6 +196,13 @@ impl Satellites {
         ((3 + clocks).max(4), have)
     }
 
+    /// Of the position, from every constellation but some.
+    #[inline(always)]
+    pub(super) fn information(&self, without: u8) -> Matrix3<f64> {
+        let kept = (0..CLOCKS).filter(|c| without >> c & 1 == 0);
+        kept.fold(Matrix3::zeros(), |sum, c| sum + self.information[c])
+    }
+
     /// The solution without some constellations.
     ///
     /// # Errors
@@ -206,8 +213,7 @@ impl Satellites {
         if have < need {
             return Err(Unavailable::TooFewSatellites { need, have });
         }
-        let kept = (0..CLOCKS).filter(|c| without >> c & 1 == 0);
-        let information = kept.fold(Matrix3::zeros(), |sum, c| sum + self.information[c]);
+        let information = self.information(without);
         let singular = |condition| Unavailable::Singular { condition, limit: CONDITION_LIMIT };
         let p = information.cholesky().ok_or(singular(f64::INFINITY))?.inverse();
         // Never below the condition number of the position's part.
@@ -237,7 +243,7 @@ impl Satellites {
     /// `None` where the rest does not determine the position.
     #[inline(always)]
     pub(super) fn without<const K: usize>(&self, all: &Solution, base: &Solution, out: [usize; K]) -> Option<Sums> {
-        let removed = Removed::new(self, base, out)?;
+        let removed = Removed::new(self, base, out, ESSENTIAL)?;
         let [mut bias, mut bias_continuity, mut separation, mut moved] = [[[0.0; LANES]; 3]; 4];
         // Each small loop runs over lanes alone, so that it becomes a few vector instructions.
         for ((group, all), gains) in self.filled().iter().zip(&all.gains).zip(&base.gains) {
@@ -300,21 +306,22 @@ fn total(x: [f64; LANES]) -> f64 {
 }
 
 /// Satellites that leave a solution.
-struct Removed<const K: usize> {
+pub(super) struct Removed<const K: usize> {
     index: [f64; K],
     clock: [f64; K],
     /// 1 / (weight of its constellation).
     per_clock: [f64; K],
     direction: [[f64; 3]; K],
     /// w_k (S_J Pi_JJ^-1)_k by axis.
-    factor: [[f64; 3]; K],
+    pub(super) factor: [[f64; 3]; K],
     /// S_J Pi_JJ^-1 S_J' by axis.
-    added: [f64; 3],
+    pub(super) added: [f64; 3],
 }
 
 impl<const K: usize> Removed<K> {
+    /// `None` where the rest determines the position with less than `least` of a satellite's weight.
     #[inline(always)]
-    fn new(satellites: &Satellites, base: &Solution, out: [usize; K]) -> Option<Self> {
+    pub(super) fn new(satellites: &Satellites, base: &Solution, out: [usize; K], least: f64) -> Option<Self> {
         let none = [0.0; K];
         let mut r = Self { index: none, clock: none, per_clock: none, direction: [[0.0; 3]; K], factor: [[0.0; 3]; K], added: [0.0; 3] };
         let (mut weight, mut gains, mut pi) = ([0.0; K], [[0.0; 3]; K], [[0.0; K]; K]);
@@ -336,7 +343,7 @@ impl<const K: usize> Removed<K> {
                 pi[k][j] = weight[k] * (f64::from(u8::from(k == j)) - q);
             }
         }
-        let solved = solve_small(pi, gains, &weight)?;
+        let solved = solve_small(pi, gains, &weight.map(|w| least * w))?;
         for k in 0..K {
             for a in 0..3 {
                 r.factor[k][a] = weight[k] * solved[k][a];
@@ -354,7 +361,7 @@ impl<const K: usize> Removed<K> {
 
     /// q of every satellite of a group.
     #[inline(always)]
-    fn shares(&self, k: usize, group: &Group, gains: &[[f64; LANES]; 3]) -> [f64; LANES] {
+    pub(super) fn shares(&self, k: usize, group: &Group, gains: &[[f64; LANES]; 3]) -> [f64; LANES] {
         let mut q = [0.0; LANES];
         for l in 0..LANES {
             q[l] = self.share(k, group, l) - self.across(k, &[gains[0][l], gains[1][l], gains[2][l]]);
@@ -368,11 +375,11 @@ impl<const K: usize> Removed<K> {
     }
 }
 
-/// The solution of a symmetric positive system by its L D L' factors; `None` where a pivot is below [`ESSENTIAL`] of its weight.
+/// The solution of a symmetric positive system by its L D L' factors; `None` where a pivot is below the least.
 #[inline(always)]
-fn solve_small<const K: usize>(mut m: [[f64; K]; K], mut x: [[f64; 3]; K], weight: &[f64; K]) -> Option<[[f64; 3]; K]> {
+fn solve_small<const K: usize>(mut m: [[f64; K]; K], mut x: [[f64; 3]; K], least: &[f64; K]) -> Option<[[f64; 3]; K]> {
     for k in 0..K {
-        if !(m[k][k] >= ESSENTIAL * weight[k]) {
+        if !(m[k][k] >= least[k]) {
             return None;
         }
         for j in k + 1..K {

@@ -1,6 +1,7 @@
 use super::exclusion::{NoLevels, detected, monitored, predicted};
 use super::modes::{Book, FaultModes, NoModes};
 use super::*;
+use crate::signal::Constellation;
 use nalgebra::Vector3;
 
 /// The published ten-satellite example (Blanch et al. 2012): unit vector, variances for integrity and for accuracy.
@@ -16,7 +17,7 @@ const PUBLISHED: [([f64; 3], f64, f64); 10] = [
     ([-0.5571, -0.3088, 0.7709], 0.8573, 0.5448),
     ([-0.6622, -0.6958, 0.278], 1.3616, 1.0491),
 ];
-const P_CONST: [f64; CLOCKS] = [1e-4; CLOCKS];
+const P_CONST: [f64; Constellation::ALL.len()] = [1e-4; Constellation::ALL.len()];
 
 fn published(p_sat: f64) -> Vec<Sight> {
     let sight = |(i, (unit, integrity_m2, accuracy_m2)): (usize, &([f64; 3], f64, f64))| Sight {
@@ -127,4 +128,98 @@ fn what_there_is_no_room_for_is_said() {
     assert_eq!(FaultModes::new(&likely, &P_CONST, &Service::LPV_200).unwrap_err(), NoModes::TooManyModes);
     let none = detected(&mut Monitor::default(), &mut Anew(None), &[], &Service::LPV_200);
     assert_eq!(none.unwrap_err(), NoLevels::Geometry(Unavailable::TooFewSatellites { need: 4, have: 0 }));
+}
+
+/// Seeded skies of two constellations, or of one.
+fn skies(seed: u64, plain: bool) -> impl Iterator<Item = Vec<Sight>> {
+    let mut state = seed;
+    let mut uniform = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..60).map(move |k| {
+        let n = 7 + k % 12;
+        let sight = |i: usize| {
+            let (azimuth, up) = (core::f64::consts::TAU * uniform(), 0.1 + 0.89 * uniform());
+            let level = sqrt(1.0 - up * up);
+            let integrity_m2 = 0.5 + 2.0 * uniform();
+            Sight {
+                unit: Vector3::new(level * azimuth.sin(), level * azimuth.cos(), up),
+                constellation: if k % 3 == 0 || i < n / 2 { Constellation::Gps } else { Constellation::Galileo },
+                integrity_m2,
+                accuracy_m2: if plain { integrity_m2 } else { integrity_m2 * (0.3 + 0.6 * uniform()) },
+                bias: Metres::new(if plain { 0.0 } else { 0.75 * uniform() }),
+                bias_continuity: Metres::new(if plain { 0.0 } else { 0.2 * uniform() }),
+                p_sat: 1e-5,
+            }
+        };
+        (0..n).map(sight).collect()
+    })
+}
+
+/// Levels after each exclusion, all of them worked out.
+fn each_exclusion(sights: &[Sight], service: &Service) -> (f64, Vec<(u64, Option<Levels>)>) {
+    let modes = FaultModes::new(sights, &P_CONST, service).unwrap();
+    let likely: Vec<_> = modes.iter().skip(1).filter(|m| m.p > service.integrity()).map(|m| m.satellites).collect();
+    let share = 1.0 / (1 + likely.len()) as f64;
+    let mut monitor = Monitor::default();
+    let mut without = |out: u64| {
+        let left: Vec<_> = (0..sights.len()).filter(|i| out >> i & 1 == 0).map(|i| sights[i]).collect();
+        let modes = FaultModes::new(&left, &P_CONST, service).ok().filter(|_| !left.is_empty())?;
+        monitor.solver.levels(&mut monitor.rest, &left, &[], &Terms { modes: &modes, service, share }).ok()
+    };
+    (share, core::iter::once(0).chain(likely).map(|out| (out, without(out))).collect())
+}
+
+#[test]
+fn the_promise_with_exclusion_is_the_largest_of_all_decisions() {
+    for service in Service::ALL {
+        for (k, sights) in skies(7, false).chain(skies(8, true)).enumerate() {
+            let found = predicted(&mut Monitor::default(), &mut Anew(None), &sights, &service);
+            let (_, decisions) = each_exclusion(&sights, &service);
+            if decisions[0].1.is_none() {
+                assert!(found.is_err(), "sky {k}");
+                continue;
+            }
+            let found = found.unwrap();
+            let largest =
+                |of: fn(&Levels) -> f64| decisions.iter().map(|d| d.1.as_ref().map_or(f64::INFINITY, of)).fold(0.0, f64::max).to_bits();
+            // The same numbers compared, so the same bits.
+            assert_eq!(found.hpl.m().to_bits(), largest(|l| l.hpl.m()), "sky {k}");
+            assert_eq!(found.vpl.m().to_bits(), largest(|l| l.vpl.m()), "sky {k}");
+            assert_eq!(found.axes.map(|x| x.m().to_bits()), [largest(|l| l.axes[0].m()), largest(|l| l.axes[1].m())], "sky {k}");
+        }
+    }
+}
+
+/// Whether the ceiling of a decision is below the levels times a factor, axis by axis, and whether it is below on all.
+fn below(sights: &[Sight], out: u64, levels: &Levels, share: f64, factor: f64) -> ([bool; 3], bool) {
+    let (service, mut monitor) = (&Service::LPV_200, Monitor::default());
+    let modes = FaultModes::new(sights, &P_CONST, service).unwrap();
+    monitor.levels(sights, &modes, service).unwrap();
+    monitor.ceiling.fill(&monitor.every);
+    let left: Vec<_> = (0..sights.len()).filter(|i| out >> i & 1 == 0).map(|i| sights[i]).collect();
+    let modes = FaultModes::new(&left, &P_CONST, service).unwrap();
+    let terms = Terms { modes: &modes, service, share };
+    let limits = [levels.axes[0].m(), levels.axes[1].m(), levels.vpl.m()].map(|x| factor * x);
+    let mut holds = |limits| monitor.ceiling.holds(&mut monitor.every, &mut monitor.solver, out, &terms, &limits);
+    let alone = |a: usize| core::array::from_fn(|b| if a == b { limits[b] } else { f64::INFINITY });
+    ([holds(alone(0)), holds(alone(1)), holds(alone(2))], holds(limits))
+}
+
+#[test]
+fn a_ceiling_is_above_the_level_and_meets_it_where_variances_tell_all() {
+    let (mut tight, mut near, mut seen) = (0, 0, 0);
+    for (plain, sights) in skies(3, true).map(|s| (true, s)).chain(skies(4, false).map(|s| (false, s))) {
+        let (share, decisions) = each_exclusion(&sights, &Service::LPV_200);
+        for (out, levels) in decisions.iter().filter(|d| d.0.count_ones() == 1) {
+            let Some(levels) = levels.as_ref().filter(|l| l.hpl.m().is_finite() && l.vpl.m().is_finite()) else { continue };
+            // Rounding of subsets is below 1e-9, and 1e-6 of the risk are less than 1e-7 of a level.
+            assert_eq!(below(&sights, *out, levels, share, 1.0 - 1e-6).0, [false; 3], "{out:b}");
+            seen += 1;
+            tight += usize::from(plain && below(&sights, *out, levels, share, 1.0 + 1e-6).1);
+            near += usize::from(!plain && below(&sights, *out, levels, share, 1.5).1);
+        }
+    }
+    assert!(seen > 500 && 10 * (tight + near) > 9 * seen, "{tight} and {near} of {seen}");
 }
