@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import os
-
-os.environ.setdefault("RAYON_NUM_THREADS", "1")
-
 import math
-import time
+import os
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import integrate, optimize
 
+from clock import Row, seconds, show
 from navbound import anp
 
 if TYPE_CHECKING:
@@ -46,18 +43,8 @@ def imhof_radius(covariance: NDArray[np.float64], risk: float) -> float:
     return math.sqrt(float(optimize.brentq(lambda x: outside(x) - risk, 1e-3 * top, 40.0 * top, xtol=1e-9 * top)))
 
 
-def seconds(call: Callable[[], object], repeats: int = 5) -> float:
-    """Best time of a call."""
-    best = math.inf
-    for _ in range(repeats):
-        start = time.process_time()
-        call()
-        best = min(best, time.process_time() - start)
-    return best
-
-
-def measure() -> list[dict[str, object]]:
-    """One row a measurement: name, seconds_per_item, n, note."""
+def measure() -> list[Row]:
+    """One row a measurement."""
     spatial, flat = covariances(N, 3), covariances(N, 2)
     rng = np.random.default_rng(SEED + 1)
     some = 5_000
@@ -66,10 +53,10 @@ def measure() -> list[dict[str, object]]:
         for v, d in ((spatial, 3), (flat, 2))
     )
     threads = os.environ["RAYON_NUM_THREADS"]
-    rows: list[dict[str, object]] = []
+    rows: list[Row] = []
 
     def row(name: str, n: int, note: str, call: Callable[[], object], repeats: int = 5) -> None:
-        rows.append({"name": name, "seconds_per_item": seconds(call, repeats) / n, "n": n, "note": note})
+        rows.append(Row(name, seconds(call, repeats) / n, n, note))
 
     where = f"batch from Python, {threads} thread(s)"
     row("anp.sphere, zero mean, risk 0.05", N, where, lambda: anp.sphere(spatial, 0.05))
@@ -87,5 +74,4 @@ def measure() -> list[dict[str, object]]:
 
 
 if __name__ == "__main__":
-    for entry in measure():
-        print(f"{entry['name']:45s} {float(str(entry['seconds_per_item'])) * 1e6:12.3f} us   n = {entry['n']}, {entry['note']}")
+    show(measure())

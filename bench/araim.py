@@ -1,35 +1,39 @@
-"""Speed of navbound.araim: a world grid under 24 GPS and 24 Galileo satellites, detection and exclusion, on one core."""
+"""Speed of navbound.araim: a world grid under 24 GPS and 24 Galileo satellites, detection and exclusion; sidereon beside it.
+
+sidereon takes one epoch a call and lines of sight, not orbits; its objects are made beforehand. MAAST under Octave is not run here.
+"""
 
 from __future__ import annotations
 
-import os
-
-os.environ.setdefault("RAYON_NUM_THREADS", "1")
-
-import math
-import time
+import importlib
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+
+import araim_peer
+from clock import Row, seconds, show, wall
 from navbound import araim, gnss
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from numpy.typing import NDArray
+
+PEER_EPOCHS = 300
+DAY = """
+import numpy as np
+from navbound import araim, gnss
+orbits = gnss.constellation("gps") + gnss.constellation("galileo")
+lat, lon = np.meshgrid(np.radians(np.arange(-85, 90, 10.0)), np.radians(np.arange(-175, 180, 10.0)), indexing="ij")
+def job():
+    araim.predict(orbits, lat, lon, 0.0, np.arange(288) * 300.0)
+"""
 
 
-def seconds(call: Callable[[], object], repeats: int = 5) -> float:
-    """Best CPU time of a call."""
-    best = math.inf
-    for _ in range(repeats):
-        start = time.process_time()
-        call()
-        best = min(best, time.process_time() - start)
-    return best
-
-
-def measure() -> list[dict[str, object]]:
-    """One row a measurement: name, seconds_per_item, n, note."""
+def measure() -> list[Row]:
+    """One row a measurement."""
     orbits = gnss.constellation("gps") + gnss.constellation("galileo")
     lat, lon = np.meshgrid(np.radians(np.arange(-85, 90, 10.0)), np.radians(np.arange(-175, 180, 10.0)), indexing="ij")
     instants = np.arange(0, 86_400, 3600.0)
@@ -39,17 +43,47 @@ def measure() -> list[dict[str, object]]:
 
     found = levels(1)
     n, ok = found.vpl_m.size, found.status == "ok"
-    note = f"{found.n_sv.mean():.1f} satellites, {found.n_modes.mean():.1f} modes, mean VPL {found.vpl_m[ok].mean():.2f} m"
-    few = levels(12, exclusion=True).vpl_m.size
-    rows = [
-        ("araim detection, geometry and sigmas", seconds(lambda: levels(1)) / n, n, note),
-        ("araim with exclusion", seconds(lambda: levels(12, exclusion=True), repeats=3) / few, few, "every likely fault excluded in turn"),
-        ("raim detection", seconds(lambda: levels(1, service="raim")) / n, n, "one fault at a time"),
-        (
-            "raim with exclusion",
-            seconds(lambda: levels(12, service="raim", exclusion=True), repeats=3) / few,
-            few,
-            "every satellite in turn",
-        ),
+    few = levels(6, exclusion=True).vpl_m.size
+    words = f"{found.n_sv.mean():.1f} satellites, {found.n_modes.mean():.1f} modes, mean VPL {found.vpl_m[ok].mean():.2f} m"
+    excluded = seconds(lambda: levels(6, exclusion=True)) / few
+    day = wall(DAY)
+    day_n = lat.size * 288
+    return [
+        Row("araim detection", seconds(lambda: levels(1)) / n, n, f"geometry and sigmas included; {words}", goal_s=5e-6),
+        Row("araim with exclusion", excluded, few, "the largest levels over every likely exclusion", goal_s=60e-6),
+        Row("araim world day, detection", day / day_n, day_n, f"wall clock on all cores; {day:.2f} s the day", goal_s=1.0 / day_n),
+        Row("raim detection", seconds(lambda: levels(1, service="raim")) / n, n, "one fault at a time"),
+        Row("raim with exclusion", seconds(lambda: levels(6, service="raim", exclusion=True), 3) / few, few, "every satellite in turn"),
+        *beside_sidereon(orbits, lat.ravel(), lon.ravel()),
     ]
-    return [{"name": name, "seconds_per_item": each, "n": items, "note": words} for name, each, items, words in rows]
+
+
+def beside_sidereon(orbits: gnss.Orbits, lat: NDArray[np.float64], lon: NDArray[np.float64]) -> list[Row]:
+    """Levels of the same lines of sight and sigmas, ours in one call and one epoch a call, sidereon's one epoch a call."""
+    try:
+        sidereon = importlib.import_module("sidereon")
+    except ImportError:
+        print("SKIPPED: sidereon is not installed (uv sync --group oracle), so no peer row", file=sys.stderr)
+        return []
+    sky = gnss.geometry(orbits, lat, lon, 0.0, 0.0, mask_rad=np.radians(5.0))
+    az, el = (x[:PEER_EPOCHS] for x in (sky.az_rad, sky.el_rad))
+    unit = np.stack([np.cos(el) * np.sin(az), np.cos(el) * np.cos(az), np.sin(el)], axis=-1)
+    systems = np.asarray(orbits.constellation)
+    local = 0.2 + 0.15 / (np.sin(el) ** 2 + 0.01)
+    sigma_int, sigma_acc = np.sqrt(araim_peer.URA_M**2 + local), np.sqrt(araim_peer.URE_M**2 + local)
+    seen = ~np.isnan(el)
+    skies = [(unit[k, seen[k]], systems[seen[k]], sigma_int[k, seen[k]], sigma_acc[k, seen[k]]) for k in range(len(el))]
+    theirs = [araim_peer.arguments(sidereon, *sky) for sky in skies]
+    n = len(skies)
+    batch = seconds(lambda: araim_peer.ours(unit, systems, sigma_int, sigma_acc)) / n
+    single = seconds(lambda: [araim_peer.ours(*sky) for sky in skies]) / n
+    peer = seconds(lambda: [sidereon.araim(*each) for each in theirs]) / n
+    return [
+        Row("araim levels of given lines of sight", batch, n, "one call for all"),
+        Row("the same, a call an epoch", single, n, "the language's boundary included"),
+        Row("sidereon, a call an epoch", peer, n, f"{peer / batch:.0f} times the batch, {peer / single:.1f} times the single call"),
+    ]
+
+
+if __name__ == "__main__":
+    show(measure())

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import os
-
-os.environ.setdefault("RAYON_NUM_THREADS", "1")
-
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clock import Row, seconds, show
 from navbound import dme
 from navbound.run.ukraine_flight import network
 
@@ -22,17 +18,7 @@ N = 20_000
 NEAR = ("BRP", "KSN", "STB", "YHT")
 
 
-def best(action: Callable[[], object], n: int, repeats: int = 5) -> float:
-    """Seconds of process time an item, the best of several runs."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        action()
-        times.append(time.process_time() - start)
-    return min(times) / n
-
-
-def measure() -> list[dict[str, object]]:
+def measure() -> list[Row]:
     """Every figure of this module."""
     generator = np.random.Generator(np.random.Philox(SEED))
     four = network().only(*NEAR)
@@ -58,9 +44,8 @@ def measure() -> list[dict[str, object]]:
             f"a point of {lat_map.size}",
         ),
     ]
-    return [{"name": name, "seconds_per_item": best(action, n), "n": n, "note": note} for name, action, n, note in jobs]
+    return [Row(name, seconds(action) / n, n, note) for name, action, n, note in jobs]
 
 
 if __name__ == "__main__":
-    for item in measure():
-        print(f"{item['name']:40} {float(str(item['seconds_per_item'])) * 1e6:10.2f} us   {item['note']}")
+    show(measure())

@@ -1,4 +1,4 @@
-"""Speed of navbound.gnss: a real station day, 30 s, every system, from files to positions; one thread, process CPU time.
+"""Speed of navbound.gnss: a real station day, 30 s, every system, from files to positions; one thread.
 
 The plain text is made from the compact file of the shared data by hatanaka where that is installed; rnx2rtkp (Debian package rtklib)
 gives the ratio where it is.
@@ -6,28 +6,22 @@ gives the ratio where it is.
 
 from __future__ import annotations
 
-import os
-
-os.environ.setdefault("RAYON_NUM_THREADS", "1")
-os.environ.setdefault("POLARS_MAX_THREADS", "1")
-
 import gzip
 import importlib
-import math
 import resource
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from clock import Row, seconds, show
 from navbound import gnss
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    pass
 
 FOLDER = Path(__file__).parents[1].parent / "shared" / "data" / "gnss" / "ESBC_2020_177"
 COMPACT = FOLDER / "ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz"
@@ -42,16 +36,6 @@ pos1-sateph=brdc
 pos1-navsys=41
 out-solformat=xyz
 """
-
-
-def seconds(call: Callable[[], object], repeats: int = 7) -> float:
-    """Best CPU time of a call."""
-    best = math.inf
-    for _ in range(repeats):
-        start = time.process_time()
-        call()
-        best = min(best, time.process_time() - start)
-    return best
 
 
 def plain_text(folder: Path) -> Path | None:
@@ -81,14 +65,15 @@ def peer(observations: Path, folder: Path) -> float | None:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def measure() -> list[dict[str, object]]:
-    """One row a measurement: name, seconds_per_item, n, note. Nothing where the day is absent."""
+def measure() -> list[Row]:
+    """One row a measurement. Nothing where the day is absent."""
     if not FOLDER.is_dir():
         return []
-    rows: list[dict[str, object]] = []
+    rows: list[Row] = []
 
-    def row(name: str, total: float, note: str) -> None:
-        rows.append({"name": name, "seconds_per_item": total / EPOCHS, "n": EPOCHS, "note": f"{note}; the day {1e3 * total:.0f} ms"})
+    def row(name: str, total: float, note: str, goal_s: float | None = None) -> None:
+        goal = None if goal_s is None else goal_s / EPOCHS
+        rows.append(Row(name, total / EPOCHS, EPOCHS, f"{note}; the day {1e3 * total:.0f} ms", goal))
 
     def whole(path: Path) -> gnss.Positions:
         return gnss.solve(gnss.read_observations(path), gnss.read_navigation(BROADCAST))
@@ -100,10 +85,11 @@ def measure() -> list[dict[str, object]]:
         if text is not None:
             row(
                 "gnss day, plain text to positions",
-                seconds(lambda: whole(text)),
+                seconds(lambda: whole(text), 7),
                 "an epoch; GPS, Galileo and BeiDou, with covariance and DOP",
+                goal_s=0.1,
             )
-            row("gnss read plain text", seconds(lambda: gnss.read_observations(text)), "an epoch; 32.9 MB in all")
+            row("gnss read plain text", seconds(lambda: gnss.read_observations(text), 7), "an epoch; 32.9 MB in all", goal_s=0.04)
         row("gnss day, compact gzip to positions", seconds(lambda: whole(COMPACT)), "an epoch")
         row("gnss read compact gzip", seconds(lambda: gnss.read_observations(COMPACT)), "an epoch; 4.0 MB in all")
         row("gnss read navigation", seconds(lambda: gnss.read_navigation(BROADCAST)), "an epoch")
@@ -117,5 +103,4 @@ def measure() -> list[dict[str, object]]:
 
 
 if __name__ == "__main__":
-    for entry in measure():
-        print(f"{entry['name']:40s} {1e6 * float(str(entry['seconds_per_item'])):9.2f} us  {entry['note']}")
+    show(measure())

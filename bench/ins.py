@@ -1,22 +1,18 @@
-"""Speed of navbound.ins: mechanization, and the filter with the covariance propagated at every sample, on one core, CPU time.
+"""Speed of navbound.ins: mechanization, and the filter with the covariance propagated at every sample, on one core.
 
 The cost does not depend on the motion: a unit at rest serves, as in the peers' measurement (an hour at 200 Hz with 1 Hz fixes).
 """
 
 from __future__ import annotations
 
-import math
-import os
 import sys
-import time
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-os.environ.setdefault("RAYON_NUM_THREADS", "1")
-
 import numpy as np
 
+from clock import Row, seconds, show
 from navbound import ins
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
@@ -24,17 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 import ins_fixture as body
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-
-def seconds(call: Callable[[], object], repeats: int = 3) -> float:
-    """Best CPU time of a call."""
-    best = math.inf
-    for _ in range(repeats):
-        start = time.process_time()
-        call()
-        best = min(best, time.process_time() - start)
-    return best
+    pass
 
 
 def fixes(time_ns: np.ndarray) -> ins.Fixes:
@@ -42,8 +28,8 @@ def fixes(time_ns: np.ndarray) -> ins.Fixes:
     return ins.Fixes(time_ns, np.tile(body.PLACE, (time_ns.size, 1)), np.tile(np.eye(3), (time_ns.size, 1, 1)))
 
 
-def measure() -> list[dict[str, object]]:
-    """One row a measurement: name, seconds_per_item, n, note."""
+def measure() -> list[Row]:
+    """One row a measurement."""
     quarter = body.standing(1, 900.0, 200)
     n = quarter.time_ns.size
     second = quarter.time_ns[199::200]
@@ -53,39 +39,26 @@ def measure() -> list[dict[str, object]]:
     slow = np.where(np.arange(6 * second.size) % 6 < 2, 5.0, 0.0)
     six = ins.SatelliteRanges(few.time_ns, few.satellite, few.position_ecef_m, few.velocity_ecef_mps, few.range_m, 3.0, slow, 100.0)
     cases = [
-        ("ins fuse, 15 states, 200 Hz", ins.Aiding(fixes=fixes(second)), 15),
-        ("ins fuse, 21 states, 200 Hz", ins.Aiding(satellites=six, baro=baro), 21),
+        ("ins fuse, 15 states, 200 Hz", ins.Aiding(fixes=fixes(second)), 15, 1.5e-6),
+        ("ins fuse, 21 states, 200 Hz", ins.Aiding(satellites=six, baro=baro), 21, 2e-6),
     ]
-    rows: list[dict[str, object]] = [
-        {
-            "name": "ins mechanize, 200 Hz",
-            "seconds_per_item": seconds(lambda: ins.mechanize(quarter.imu, quarter.start)) / n,
-            "n": n,
-            "note": "a sample, results at every sample",
-        }
-    ]
-    for name, aiding, states in cases:
+    mechanized = seconds(lambda: ins.mechanize(quarter.imu, quarter.start), 3) / n
+    rows = [Row("ins mechanize, 200 Hz", mechanized, n, "a sample, results at every sample")]
+    for name, aiding, states, goal_s in cases:
         found = ins.fuse(quarter.imu, aiding, quarter.start)
         assert int(found.n_states.max()) == states, found.n_states.max()
-        cost = seconds(partial(ins.fuse, quarter.imu, aiding, quarter.start)) / n
-        rows.append({"name": name, "seconds_per_item": cost, "n": n, "note": "a sample; covariance at every sample, updates at 1 Hz"})
+        cost = seconds(partial(ins.fuse, quarter.imu, aiding, quarter.start), 3) / n
+        rows.append(Row(name, cost, n, "a sample; covariance at every sample, updates at 1 Hz", goal_s))
     hours = body.standing(2, 7200.0, 100)
     second = hours.time_ns[99::100]
     sky = body.satellites(2, second, white_m=3.0, slow_m=10.0, tau_s=1800.0, n=26)
     aiding = ins.Aiding(satellites=sky, baro=ins.BaroHeights(second, body.PLACE[2], 5.0, 30.0, 3600.0))
     found = ins.fuse(hours.imu, aiding, hours.start)
     cost = seconds(lambda: ins.fuse(hours.imu, aiding, hours.start), repeats=1)
-    rows.append(
-        {
-            "name": "ins fuse, two hours at 100 Hz",
-            "seconds_per_item": cost / hours.time_ns.size,
-            "n": hours.time_ns.size,
-            "note": f"a sample; {found.n_states.max()} states, 26 satellites at 1 Hz; {cost:.2f} s the flight",
-        }
-    )
-    return rows
+    n = hours.time_ns.size
+    note = f"a sample; {found.n_states.max()} states, 26 satellites at 1 Hz; {cost:.2f} s the flight"
+    return [*rows, Row("ins fuse, two hours at 100 Hz", cost / n, n, note, goal_s=10.0 / n)]
 
 
 if __name__ == "__main__":
-    for row in measure():
-        print(f"{row['name']:40s} {1e6 * float(str(row['seconds_per_item'])):9.3f} us  {row['note']}")
+    show(measure())

@@ -16,6 +16,8 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
+from clock import Row, seconds
+
 LEVELS = "NPA,APV-I,LPV-200,APV-II"
 DAY = 86_400
 
@@ -52,25 +54,17 @@ def ranges(n_epochs: int, n_sv: int) -> pl.DataFrame:
     )
 
 
-def measure() -> list[dict[str, object]]:
+def measure() -> list[Row]:
     """Seconds per epoch."""
     from navbound import kpi  # noqa: PLC0415
 
     table = day(0)
-    best = float("inf")
-    for _ in range(3):
-        start = time.perf_counter()
-        kpi.evaluate(table, LEVELS, period_s=1.0)
-        best = min(best, time.perf_counter() - start)
-    rows = [{"name": "kpi.evaluate, a day, four levels", "seconds_per_item": best / DAY, "n": DAY, "note": f"in memory; {best:.2f} s"}]
-    table, wanted = ranges(2880, 10), [kpi.level(name) for name in LEVELS.split(",")]
-    start = time.perf_counter()
-    found = kpi.stanford_esa(table, wanted).subsets
-    took = time.perf_counter() - start
-    note = f"2880 epochs of ten satellites; {took:.2f} s"
-    rows.append(
-        {"name": "kpi.stanford_esa, a subset, four levels", "seconds_per_item": took / found.n_subsets, "n": found.n_subsets, "note": note}
-    )
+    best = seconds(lambda: kpi.evaluate(table, LEVELS, period_s=1.0), 3)
+    rows = [Row("kpi.evaluate, a day, four levels", best / DAY, DAY, f"in memory; {best:.2f} s")]
+    sky, wanted = ranges(2880, 10), [kpi.level(name) for name in LEVELS.split(",")]
+    n = kpi.stanford_esa(sky, wanted).subsets.n_subsets
+    took = seconds(lambda: kpi.stanford_esa(sky, wanted), 1)
+    rows.append(Row("kpi.stanford_esa, a subset, four levels", took / n, n, f"2880 epochs of ten satellites; {took:.2f} s"))
     with tempfile.TemporaryDirectory() as folder:
         files = []
         for k in range(30):
@@ -81,12 +75,12 @@ def measure() -> list[dict[str, object]]:
     return rows
 
 
-def _campaign(files: list[str], out: str) -> dict[str, object]:
+def _campaign(files: list[str], out: str) -> Row:
     done = subprocess.run([sys.executable, __file__, out, *files], check=True, capture_output=True, text=True)
     found = json.loads(done.stdout.splitlines()[-1])
     n = DAY * len(files)
     note = f"files to report; {found['wall_s']:.1f} s, {found['cpu_s']:.1f} s CPU, {found['peak_mb']:.0f} MB at most"
-    return {"name": f"campaign of {len(files)} daily files", "seconds_per_item": found["wall_s"] / n, "n": n, "note": note}
+    return Row(f"campaign of {len(files)} daily files", found["wall_s"] / n, n, note)
 
 
 def main() -> None:

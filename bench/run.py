@@ -1,7 +1,7 @@
-"""Speed as ratios in one run: every bench module's figures, written to bench/results with the machine's description.
+"""Speed in one run: every bench module's figures with their goals, written to bench/results with the machine's description.
 
-Wall clock on a shared machine means little; the ratio of two figures of the same run means something. Each figure is the best of its
-repeats, on one thread unless its note says otherwise.
+Wall clock on a shared machine means little; the ratio of two figures of the same run means something. Each figure is the least CPU time
+of its repeats on one thread unless its note says otherwise.
 """
 
 from __future__ import annotations
@@ -15,7 +15,11 @@ import sys
 from datetime import UTC, datetime
 from pathlib import Path
 
-MODULES = ("tse", "anp", "runs", "sbas", "gbas", "gnss", "kpi", "dme", "sensors", "araim", "ins", "maps")
+sys.path.insert(0, str(Path(__file__).parent))
+
+from clock import Row, show
+
+MODULES = ("tse", "anp", "runs", "sbas", "gbas", "gnss", "kpi", "dme", "sensors", "araim", "ins", "maps", "rnp")
 RESULTS = Path(__file__).parent / "results"
 
 
@@ -35,26 +39,34 @@ def machine() -> dict[str, object]:
 
 
 def main() -> None:
-    """Measure, print, write."""
+    """Measure, print; write where everything was measured."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("modules", nargs="*", default=list(MODULES), help=f"of {', '.join(MODULES)}")
+    parser.add_argument("modules", nargs="*", default=list(MODULES), help=f"of {', '.join(MODULES)}; nothing is written unless all are run")
     arguments = parser.parse_args()
-    sys.path.insert(0, str(Path(__file__).parent))
-    os.environ.setdefault("RAYON_NUM_THREADS", "1")
-    rows = []
     for name in arguments.modules:
         if name not in MODULES:
             parser.error(f"no bench {name}; there are {', '.join(MODULES)}")
-        group = importlib.import_module(name).measure()
-        base = group[0]["seconds_per_item"]
-        for row in group:
-            row |= {"group": name, "ratio": row["seconds_per_item"] / base}
-            print(f"{name:5} {row['name']:44} {1e9 * row['seconds_per_item']:14.1f} ns  {row['ratio']:12.2f} x  {row['note']}")
-        rows += group
+    rows: list[tuple[str, Row]] = []
+    for name in arguments.modules:
+        print(f"== {name}")
+        group: list[Row] = importlib.import_module(name).measure()
+        show(group)
+        rows += [(name, row) for row in group]
+    wanted = [row for _, row in rows if row.met is not None]
+    missed = [row.name for row in wanted if not row.met]
+    print(f"{len(wanted) - len(missed)} of {len(wanted)} goals met" + (f"; not met: {', '.join(missed)}" if missed else ""))
+    if set(arguments.modules) == set(MODULES):
+        write(rows)
+
+
+def write(rows: list[tuple[str, Row]]) -> None:
+    """The results of today, beside the machine."""
+    first = {group: row.seconds_per_item for group, row in reversed(rows)}
+    found = [row._asdict() | {"met": row.met, "group": group, "ratio": row.seconds_per_item / first[group]} for group, row in rows]
     RESULTS.mkdir(exist_ok=True)
     stamp = datetime.now(UTC).strftime("%Y-%m-%d")
     out = RESULTS / f"{stamp}.json"
-    out.write_text(json.dumps({"date": stamp, "machine": machine(), "results": rows}, indent=1) + "\n")
+    out.write_text(json.dumps({"date": stamp, "machine": machine(), "results": found}, indent=1) + "\n")
     print(f"written to {out}")
 
 

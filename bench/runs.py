@@ -9,11 +9,13 @@ import tempfile
 import time
 from pathlib import Path
 
+from clock import Row, show
+
 SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
 EPOCHS = 7081
 
 
-def measure() -> list[dict[str, object]]:
+def measure() -> list[Row]:
     """Seconds per epoch of `fly` (one flight, ten on all cores, one on sensors and filter) and of `analyze` on a morning over Paris."""
     rows = [
         _job("fly beijing-shanghai, one flight", ["fly", "beijing-shanghai"], EPOCHS, "whole command, one process"),
@@ -33,8 +35,8 @@ def measure() -> list[dict[str, object]]:
     return rows
 
 
-def _job(name: str, arguments: list[str], items: int, note: str) -> dict[str, object]:
-    environment = {k: v for k, v in os.environ.items() if k != "RAYON_NUM_THREADS"}
+def _job(name: str, arguments: list[str], items: int, note: str) -> Row:
+    environment = {k: v for k, v in os.environ.items() if k not in ("RAYON_NUM_THREADS", "POLARS_MAX_THREADS")}
     best = float("inf")
     for _ in range(3):
         with tempfile.TemporaryDirectory() as folder:
@@ -42,4 +44,8 @@ def _job(name: str, arguments: list[str], items: int, note: str) -> dict[str, ob
             start = time.perf_counter()
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=environment)
             best = min(best, time.perf_counter() - start)
-    return {"name": name, "seconds_per_item": best / items, "n": items, "note": f"{note}; {best:.2f} s in all"}
+    return Row(name, best / items, items, f"{note}; {best:.2f} s in all, wall clock")
+
+
+if __name__ == "__main__":
+    show(measure())

@@ -2,38 +2,23 @@
 
 from __future__ import annotations
 
-import os
-
-os.environ.setdefault("RAYON_NUM_THREADS", "1")
-
-import math
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clock import Row, seconds, show
 from navbound import gnss, sbas
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    pass
 
 FOLDER = Path(__file__).parents[1].parent / "shared" / "data" / "sbas"
 WEEK_S = 2353 * 604_800
 
 
-def seconds(call: Callable[[], object], repeats: int = 5) -> float:
-    """Best CPU time of a call."""
-    best = math.inf
-    for _ in range(repeats):
-        start = time.process_time()
-        call()
-        best = min(best, time.process_time() - start)
-    return best
-
-
-def measure() -> list[dict[str, object]]:
-    """One row a measurement: name, seconds_per_item, n, note. Nothing where the recorded hour is absent."""
+def measure() -> list[Row]:
+    """One row a measurement. Nothing where the recorded hour is absent."""
     if not FOLDER.is_dir():
         return []
     log = sbas.read(FOLDER / "msas137_2025046_17h.ems")
@@ -57,41 +42,20 @@ def measure() -> list[dict[str, object]]:
     observations = gnss.read_observations(FOLDER / "virtual_user_2025046_17h.25O.gz")
     records = gnss.read_navigation(navigation)
     solved = seconds(lambda: sbas.solve(observations, records, log, mode="pa"))
+    read = seconds(lambda: sbas.read(FOLDER / "msas137_2025046_17h.ems"))
+    place_words = "an epoch: corrections, orbits, grid and level"
+    users_words = f"a user and epoch: geometry, grid and level; {satellites:.1f} satellites"
+    level_words = f"a user and epoch: angles and sigmas of {most} satellites to the horizontal level"
+    record_words = "an epoch: smoothing, corrections, position and level"
     return [
-        {
-            "name": "sbas read, EMS hour",
-            "seconds_per_item": seconds(lambda: sbas.read(FOLDER / "msas137_2025046_17h.ems")) / 3600,
-            "n": 3600,
-            "note": "a message",
-        },
-        {"name": "sbas decode and hear, navigation read", "seconds_per_item": setup / 3600, "n": 3600, "note": "a message"},
-        {
-            "name": "sbas one user",
-            "seconds_per_item": (alone - setup) / instants.size,
-            "n": instants.size,
-            "note": "an epoch: corrections, orbits, grid and level",
-        },
-        {
-            "name": "sbas many users",
-            "seconds_per_item": (users - setup) / n,
-            "n": n,
-            "note": f"a user and epoch: geometry, grid and level; {satellites:.1f} satellites",
-        },
-        {
-            "name": "sbas level alone",
-            "seconds_per_item": level,
-            "n": az.shape[0],
-            "note": f"a user and epoch: angles and sigmas of {most} satellites to the horizontal level",
-        },
-        {
-            "name": "sbas positions of a recording",
-            "seconds_per_item": (solved - setup) / observations.n_epochs,
-            "n": observations.n_epochs,
-            "note": "an epoch: smoothing, corrections, position and level",
-        },
+        Row("sbas read, EMS hour", read / 3600, 3600, "a message"),
+        Row("sbas decode and hear, navigation read", setup / 3600, 3600, "a message"),
+        Row("sbas one user", (alone - setup) / instants.size, instants.size, place_words),
+        Row("sbas many users", (users - setup) / n, n, users_words, goal_s=1e-6),
+        Row("sbas level alone", level, az.shape[0], level_words, goal_s=0.3e-6),
+        Row("sbas positions of a recording", (solved - setup) / observations.n_epochs, observations.n_epochs, record_words),
     ]
 
 
 if __name__ == "__main__":
-    for row in measure():
-        print(f"{row['name']:40s} {1e6 * float(str(row['seconds_per_item'])):9.3f} us  {row['note']}")
+    show(measure())

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import os
-
-os.environ.setdefault("RAYON_NUM_THREADS", "1")
-
 import math
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import integrate, optimize, special, stats
 
+from clock import Row, seconds, show
 from navbound import tse
 
 if TYPE_CHECKING:
@@ -23,16 +19,6 @@ N = 1_000_000
 # Epochs whose inputs and results, together with the table, stay in the second level of the cache.
 FIT = 32_768
 RISK = 0.05
-
-
-def best(action: Callable[[], object], n: int, repeats: int = 7) -> float:
-    """Seconds an item, the best of several runs."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        action()
-        times.append(time.perf_counter() - start)
-    return min(times) / n
 
 
 def by_quadrature(offset: tuple[float, float], sigma: tuple[float, float], slope: float) -> float:
@@ -49,7 +35,7 @@ def by_quadrature(offset: tuple[float, float], sigma: tuple[float, float], slope
     return float(optimize.brentq(beyond, 0.1, 200.0, xtol=1e-9))
 
 
-def measure() -> list[dict[str, object]]:
+def measure() -> list[Row]:
     """Seconds an epoch of each method, one thread."""
     rng = np.random.default_rng(SEED)
     fte, sigma = rng.normal(0, 20, N), rng.uniform(5, 15, N)
@@ -75,16 +61,10 @@ def measure() -> list[dict[str, object]]:
             "the same number, vectorised",
         ),
     ]
-    found: list[dict[str, object]] = [
-        {"name": name, "seconds_per_item": best(action, n), "n": n, "note": note} for name, action, n, note in jobs
-    ]
-    quadrature = best(lambda: by_quadrature((3.0, 6.0), (10.0, 6.0), 2.0), 1, repeats=2)
-    found.append(
-        {"name": "quadrature and search", "seconds_per_item": quadrature, "n": 1, "note": "SciPy quad inside brentq, as published"}
-    )
-    return found
+    found = [Row(name, seconds(action, 7) / n, n, note) for name, action, n, note in jobs]
+    quadrature = seconds(lambda: by_quadrature((3.0, 6.0), (10.0, 6.0), 2.0), repeats=2)
+    return [*found, Row("quadrature and search", quadrature, 1, "SciPy quad inside brentq, as published")]
 
 
 if __name__ == "__main__":
-    for item in measure():
-        print(f"{item['name']:24} {float(str(item['seconds_per_item'])) * 1e9:14.2f} ns   {item['note']}")
+    show(measure())

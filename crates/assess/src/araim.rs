@@ -16,7 +16,6 @@ use navbound_path::AtIndex;
 use pulp::Arch;
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 
 /// Why an epoch has no finite levels; the order is that of [`Outcome::WORDS`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,25 +98,47 @@ pub enum Rule {
 struct Known {
     p_const: [f64; Constellation::ALL.len()],
     uniform: bool,
-    modes: HashMap<[u8; MOST_SATELLITES], Box<FaultModes>>,
+    places: HashMap<Key, usize>,
+    modes: Vec<FaultModes>,
+    /// What was asked for last: exclusions of one constellation's satellites ask for the same again and again.
+    last: Option<(Key, usize)>,
+}
+
+/// Constellations of the satellites in their order.
+type Key = [u8; MOST_SATELLITES];
+
+impl Known {
+    fn new(p_const: [f64; Constellation::ALL.len()], uniform: bool) -> Self {
+        Self { p_const, uniform, places: HashMap::new(), modes: Vec::new(), last: None }
+    }
+
+    fn place(&mut self, key: Key, sights: &[Sight], service: &Service) -> Result<usize, NoModes> {
+        if let Some(place) = self.places.get(&key) {
+            return Ok(*place);
+        }
+        self.modes.push(service.modes(sights, &self.p_const)?);
+        self.places.insert(key, self.modes.len() - 1);
+        Ok(self.modes.len() - 1)
+    }
 }
 
 impl Book for Known {
     fn modes(&mut self, sights: &[Sight], service: &Service) -> Result<&FaultModes, NoModes> {
+        if !self.uniform {
+            self.modes.clear();
+            self.modes.push(service.modes(sights, &self.p_const)?);
+            return Ok(&self.modes[0]);
+        }
         let mut key = [u8::MAX; MOST_SATELLITES];
         for (slot, sight) in key.iter_mut().zip(sights) {
             *slot = sight.constellation.index() as u8;
         }
-        let work_out = || FaultModes::new(sights, &self.p_const, service).map(Box::new);
-        Ok(match self.modes.entry(key) {
-            Entry::Occupied(mut held) => {
-                if !self.uniform {
-                    held.insert(work_out()?);
-                }
-                held.into_mut()
-            }
-            Entry::Vacant(place) => place.insert(work_out()?),
-        })
+        let place = match self.last {
+            Some((last, place)) if last == key => place,
+            _ => self.place(key, sights, service)?,
+        };
+        self.last = Some((key, place));
+        Ok(&self.modes[place])
     }
 }
 
@@ -131,7 +152,7 @@ pub(crate) struct Desk {
 
 impl Desk {
     pub(crate) fn new(p_const: [f64; Constellation::ALL.len()], uniform: bool) -> Self {
-        Self { monitor: Box::default(), known: Known { p_const, uniform, modes: HashMap::new() }, sights: Vec::new() }
+        Self { monitor: Box::default(), known: Known::new(p_const, uniform), sights: Vec::new() }
     }
 
     /// Detection and exclusion on the desk's satellites.
@@ -350,7 +371,12 @@ pub fn predict(outlook: &Outlook<'_>, rule: &Rule, exclusion: bool) -> Result<Ve
 /// A satellite above the mask, with its range's error.
 #[inline(always)]
 fn seen(position: &Vector3<f64>, constellation: Constellation, place: &Place, sin_mask: f64, outlook: &Outlook<'_>) -> Option<Sight> {
-    let enu = place.enu * (position - place.position_m);
+    let apart = position - place.position_m;
+    // Half of the satellites are below the horizon, and most masks are not.
+    if sin_mask >= 0.0 && !(place.enu.row(2).tr_dot(&apart) >= 0.0) {
+        return None;
+    }
+    let enu = place.enu * apart;
     let unit = enu / enu.norm();
     if !(unit.z >= sin_mask) {
         return None;

@@ -1,10 +1,11 @@
 //! RRAIM protection levels of many coasting phases.
 
 use crate::gbas::{Skies, covariance, size_of_bias};
+use navbound_core::bound::faults::NoModes;
 use navbound_core::bound::gbas::snapshot::{Form, Range, Snapshot};
 use navbound_core::bound::level_equation::LevelEquation;
 use navbound_core::bound::rraim::coast::{Coast, Followed};
-use navbound_core::bound::rraim::modes::{Modes, Priors};
+use navbound_core::bound::rraim::modes::Priors;
 use navbound_core::bound::rraim::multiple::{Budget, MultipleFaults, NoLevel};
 use navbound_core::bound::rraim::single::{Fix, Levels, Multipliers, Settings, SingleFault, Without};
 use navbound_core::frame::{Covariance, Enu};
@@ -69,12 +70,43 @@ pub struct Answer {
 /// What is large and made once for a thread.
 #[derive(Debug, Default)]
 pub struct Room {
-    /// Modes of faults.
-    pub modes: Modes,
-    /// Terms of the equation.
-    pub multiple: MultipleFaults,
-    /// The equation.
-    pub equation: LevelEquation,
+    multiple: MultipleFaults,
+    equation: LevelEquation,
+    /// Why the faults of the phase at hand could not be listed.
+    refused: Option<NoModes>,
+}
+
+impl Room {
+    /// Work out every fault mode of a phase.
+    ///
+    /// # Errors
+    /// [`Unavailable`] as [`MultipleFaults::fill`].
+    pub fn fill(&mut self, fix: &Fix<'_>, coast: &Coast, priors: &Priors) -> Result<(), Unavailable> {
+        match priors.modes(coast) {
+            Ok(modes) => {
+                self.refused = None;
+                self.multiple.fill(fix, coast, &modes)
+            }
+            Err(why) => {
+                self.refused = Some(why);
+                Ok(())
+            }
+        }
+    }
+
+    /// Levels east, north and horizontal of that phase.
+    ///
+    /// # Errors
+    /// [`NoLevel`].
+    pub fn levels(&mut self, bias: Metres, budget: &Budget) -> Result<[Metres; 3], NoLevel> {
+        self.refused.map_or(Ok(()), Err)?;
+        self.multiple.levels(bias, budget, &mut self.equation)
+    }
+
+    /// Modes monitored, and the probability of faults that are not.
+    pub fn monitored(&self) -> (usize, f64) {
+        if self.refused.is_some() { (0, 1.0) } else { (self.multiple.len(), self.multiple.not_monitored()) }
+    }
 }
 
 /// Levels of every coasting phase.
@@ -123,11 +155,11 @@ fn one(coasting: &Coasting<'_>, asked: &Asked<'_>, sky: usize, room: &mut Room) 
         Ok(single) => single,
         Err(why) => return Ok(Err(why)),
     };
-    room.modes.fill(&coast, &asked.priors);
-    if let Err(why) = room.multiple.fill(&fix, &coast, &room.modes) {
+    if let Err(why) = room.fill(&fix, &coast, &asked.priors) {
         return Ok(Err(why));
     }
-    let multipliers = Multipliers::new(&asked.single, coast.len(), room.modes.satellites).map_err(at)?;
+    let multipliers = Multipliers::new(&asked.single, coast.len(), asked.priors.of_satellites(&coast)).map_err(at)?;
+    let (n_modes, not_monitored) = room.monitored();
     Ok(Ok(Answer {
         n_sv: coast.len(),
         covariance: *single.covariance(),
@@ -135,9 +167,9 @@ fn one(coasting: &Coasting<'_>, asked: &Asked<'_>, sky: usize, room: &mut Room) 
         gain: single.gain(),
         accuracy: single.accuracy(bias),
         single: single.levels(bias, Metres::new(0.0), &multipliers, asked.single.biased_threshold),
-        multiple: room.multiple.levels(bias, &asked.budget, &mut room.equation),
-        n_modes: room.multiple.len(),
-        not_monitored: room.multiple.not_monitored(),
+        multiple: room.levels(bias, &asked.budget),
+        n_modes,
+        not_monitored,
         without: kept.iter().map(|k| k.0).zip(single.without().iter().copied()).collect(),
     }))
 }

@@ -126,19 +126,18 @@ fn of_demand(
     let priors = Priors { satellite, constellation: grid.rates.1, threshold }.check()?;
     let settings = &demand.single;
     let found = SingleFault::new(fix, coast, settings.form, settings.ordering).and_then(|single| {
-        room.modes.fill(coast, &priors);
-        room.multiple.fill(fix, coast, &room.modes)?;
+        room.fill(fix, coast, &priors)?;
         Ok(single)
     });
     let Ok(single) = found else {
         cells.resize(cells.len() + grid.bias_m.len(), [f64::NAN; 3]);
         return Ok(());
     };
-    let multipliers = Multipliers::new(settings, coast.len(), room.modes.satellites)?;
+    let multipliers = Multipliers::new(settings, coast.len(), priors.of_satellites(coast))?;
     for bias_m in grid.bias_m {
         let bias = crate::gbas::size_of_bias(*bias_m)?;
         let levels = single.levels(bias, Metres::new(0.0), &multipliers, settings.biased_threshold);
-        let multiple = room.multiple.levels(bias, &demand.budget, &mut room.equation);
+        let multiple = room.levels(bias, &demand.budget);
         cells.push([single.accuracy(bias).m(), levels.hpl.m(), multiple.map_or(f64::NAN, |m| m[2].m())]);
     }
     Ok(())

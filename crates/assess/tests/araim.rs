@@ -3,7 +3,6 @@
 
 use nalgebra::Vector3;
 use navbound_assess::araim::{Outcome, Rule, Sights, levels};
-use navbound_core::bound::araim::modes::FaultModes;
 use navbound_core::bound::araim::service::Service;
 use navbound_core::bound::araim::{Levels, Monitor, Sight};
 use navbound_core::quantity::Metres;
@@ -51,7 +50,7 @@ fn alone(c: &Columns, epoch: usize) -> (usize, Levels) {
         p_sat: c.p_sat[i],
     };
     let sights: Vec<_> = (epoch * SATELLITES..(epoch + 1) * SATELLITES).filter(|i| !c.unit[3 * i].is_nan()).map(sight).collect();
-    let modes = FaultModes::new(&sights, &P_CONST, &Service::LPV_200).unwrap();
+    let modes = Service::LPV_200.modes(&sights, &P_CONST).unwrap();
     (sights.len(), Monitor::default().levels(&sights, &modes, &Service::LPV_200).unwrap())
 }
 

@@ -127,13 +127,12 @@ impl LevelEquation {
     /// The level: the least x >= 0 at which the sum is no larger than the risk, to 1e-9 m or 1e-12 of it, whichever is more.
     ///
     /// A bracket stands between the largest shift of a hypothesis that alone outweighs the risk and the place where no hypothesis
-    /// can take more than its share (from Q(z) <= exp(-z²/2)/2); inside it Halley's steps on the logarithm of the sum, and bisection where
-    /// a step leaves it.
+    /// can take more than its share (from Q(z) <= exp(-z²/2)/2); inside it Halley's steps on the logarithm of the sum, from about where the
+    /// worst hypothesis alone would meet the risk, and bisection where a step leaves it.
     #[inline(always)]
     pub fn level(&self, risk: Risk) -> Metres {
         let q = risk.q();
-        let (mut low, mut high) = self.bracket(q);
-        let mut x = high;
+        let Bracket { mut low, mut high, start: mut x } = self.bracket(q);
         for step in 0..MOST_STEPS {
             let sum = self.sum(x);
             if sum.value > q {
@@ -170,14 +169,15 @@ impl LevelEquation {
 
     /// Where the level lies for certain.
     #[inline(always)]
-    fn bracket(&self, risk: f64) -> (f64, f64) {
+    fn bracket(&self, risk: f64) -> Bracket {
         // The fault-free hypothesis and faults differ in weight by many decades: each kind is given half of the risk.
-        let (mut heavy, mut light) = ([0.0; LANES], [0.0; LANES]);
+        let (mut heavy, mut light, mut heaviest) = ([0.0; LANES], [0.0; LANES], [0.0_f64; LANES]);
         for group in self.filled() {
             for l in 0..LANES {
                 let w = group.weight[l];
                 heavy[l] += if w >= HEAVY { w } else { 0.0 };
                 light[l] += if w >= HEAVY { 0.0 } else { w };
+                heaviest[l] = if w < HEAVY && w > heaviest[l] { w } else { heaviest[l] };
             }
         }
         let reach = |weights: &[f64; LANES]| {
@@ -185,22 +185,26 @@ impl LevelEquation {
             if w > risk { sqrt(2.0 * ln(w / risk)) } else { 0.0 }
         };
         if heavy.iter().chain(&light).sum::<f64>() <= risk {
-            return (0.0, 0.0);
+            return Bracket { low: 0.0, high: 0.0, start: 0.0 };
         }
+        let about = (quantile_about(heavy.iter().sum::<f64>() / risk), quantile_about(largest(heaviest) / risk));
         let (heavy, light) = (reach(&heavy), reach(&light));
-        let (mut low, mut high) = ([0.0_f64; LANES], [0.0_f64; LANES]);
+        let [mut low, mut high, mut start] = [[0.0_f64; LANES]; 3];
         for group in self.filled() {
             for l in 0..LANES {
                 let (w, t) = (group.weight[l], group.shift[l]);
-                let factor = if w >= HEAVY { heavy } else { light };
-                let end = if w > 0.0 { t + factor / group.inverse_sigma[l] } else { 0.0 };
-                let start = if w > risk { t } else { 0.0 };
-                low[l] = if start > low[l] { start } else { low[l] };
+                let (factor, nearer) = if w >= HEAVY { (heavy, about.0) } else { (light, about.1) };
+                let sigma = 1.0 / group.inverse_sigma[l];
+                let end = if w > 0.0 { t + factor * sigma } else { 0.0 };
+                let alone = if w > 0.0 { t + nearer * sigma } else { 0.0 };
+                let begin = if w > risk { t } else { 0.0 };
+                low[l] = if begin > low[l] { begin } else { low[l] };
                 high[l] = if end > high[l] { end } else { high[l] };
+                start[l] = if alone > start[l] { alone } else { start[l] };
             }
         }
-        let largest = |x: [f64; LANES]| x.into_iter().fold(0.0, f64::max);
-        (largest(low), largest(high))
+        let (low, high) = (largest(low), largest(high));
+        Bracket { low, high, start: largest(start).max(low).min(high) }
     }
 
     /// The sum and its derivatives by x.
@@ -223,6 +227,28 @@ impl LevelEquation {
         }
         Sum { value: value.iter().sum(), slope: slope.iter().sum(), curvature: curvature.iter().sum() }
     }
+}
+
+/// Where a level lies for certain, and about where.
+struct Bracket {
+    low: f64,
+    high: f64,
+    start: f64,
+}
+
+#[inline(always)]
+fn largest(x: [f64; LANES]) -> f64 {
+    x.into_iter().fold(0.0, f64::max)
+}
+
+/// z with Q(z) = 1 / ratio, to some hundredths for ratios above a hundred: Q(z) is about exp(-z²/2) / (z sqrt(2 pi)). For a start only.
+#[inline(always)]
+fn quantile_about(ratio: f64) -> f64 {
+    if !(ratio > 2.0) {
+        return 0.0;
+    }
+    let square = 2.0 * ln(ratio);
+    sqrt((square - ln(core::f64::consts::TAU * square)).max(0.0))
 }
 
 struct Sum {

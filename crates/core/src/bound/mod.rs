@@ -3,6 +3,7 @@
 pub mod anp;
 pub mod araim;
 pub mod ee;
+pub mod faults;
 pub mod gbas;
 pub mod level_equation;
 mod method;

@@ -14,7 +14,7 @@
 
 use super::modes::{FaultMode, FaultModes, MOST_SATELLITES};
 use super::separation::Separation;
-use super::subset::{GROUPS, Group, LANES, Removed, Solution};
+use super::subset::{GROUPS, Group, LANES, Removed, Satellites, Solution};
 use super::{Solver, Terms};
 use crate::bound::level_equation::{LevelEquation, NoLevel};
 use crate::quantity::Metres;
@@ -50,6 +50,8 @@ const EMPTY: Lanes =
 pub(super) struct Ceiling {
     /// Pi_jj of every satellite.
     own: [[f64; LANES]; GROUPS],
+    /// Largest variance of the position without each satellite, of the solutions with all and without one constellation.
+    damage: [[f64; LANES]; GROUPS],
     /// Trace of the information.
     trace: f64,
     /// Sums of b^2 / v: for integrity, of each constellation's satellites, for continuity.
@@ -65,9 +67,9 @@ pub(super) struct Ceiling {
 
 impl Default for Ceiling {
     fn default() -> Self {
-        let own = [[0.0; LANES]; GROUPS];
+        let (own, damage) = ([[0.0; LANES]; GROUPS], [[0.0; LANES]; GROUPS]);
         let [trace, load, load_continuity, accuracy] = [0.0; 4];
-        Self { own, trace, load, load_of: [0.0; CLOCKS], load_continuity, accuracy, lanes: [EMPTY; GROUPS + 1], groups: 0 }
+        Self { own, damage, trace, load, load_of: [0.0; CLOCKS], load_continuity, accuracy, lanes: [EMPTY; GROUPS + 1], groups: 0 }
     }
 }
 
@@ -87,32 +89,33 @@ impl Ceiling {
         let filled = satellites.filled();
         (self.groups, self.trace) = (filled.len(), satellites.information(0).trace());
         (self.load, self.load_of, self.load_continuity, self.accuracy) = (0.0, [0.0; CLOCKS], 0.0, 0.0);
-        for (g, (group, gains)) in filled.iter().zip(&every.all.gains).enumerate() {
-            for l in 0..LANES {
-                if !(group.weight[l] > 0.0) {
-                    continue;
-                }
-                let (c, w) = (group.clock[l] as usize, group.weight[l]);
-                let across: f64 = (0..3).map(|a| gains[a][l] * group.centred[a][l]).sum();
-                self.own[g][l] = w * (1.0 - w / satellites.weight[c] + across);
+        for group in filled {
+            for l in (0..LANES).filter(|l| group.weight[*l] > 0.0) {
                 let (load, load_continuity) = loads(group, l);
                 (self.load, self.load_continuity) = (self.load + load, self.load_continuity + load_continuity);
-                self.load_of[c] += load;
-                self.accuracy = self.accuracy.max(group.accuracy[l] * w);
+                self.load_of[group.clock[l] as usize] += load;
+                self.accuracy = self.accuracy.max(group.accuracy[l] * group.weight[l]);
+            }
+        }
+        for (g, (group, gains)) in filled.iter().zip(&every.all.gains).enumerate() {
+            self.own[g] = own(satellites, group, gains);
+            self.damage[g] = damage(&every.all, &self.own[g], gains);
+        }
+        for base in every.without_one() {
+            for (g, (group, gains)) in filled.iter().zip(&base.gains).enumerate() {
+                let more = damage(base, &own(satellites, group, gains), gains);
+                for l in 0..LANES {
+                    self.damage[g][l] = self.damage[g][l].max(more[l]);
+                }
             }
         }
     }
 
-    /// How much the position's variance grows without a satellite; more than any for several satellites.
+    /// How large levels are to be expected without some satellites: more for several than for any one.
     #[inline(always)]
-    pub(super) fn damage(&self, every: &Separation, out: u64) -> f64 {
-        if out.count_ones() != 1 {
-            return f64::INFINITY;
-        }
+    pub(super) fn damage(&self, out: u64) -> f64 {
         let i = out.trailing_zeros() as usize;
-        let gains = &every.all.gains[i / LANES];
-        let square: f64 = (0..3).map(|a| gains[a][i % LANES] * gains[a][i % LANES]).sum();
-        square / self.own[i / LANES][i % LANES]
+        if out.count_ones() == 1 { self.damage[i / LANES][i % LANES] } else { f64::INFINITY }
     }
 
     /// Whether the levels east, north and up without the satellites `out` are `limits` or less for certain. `false` says nothing.
@@ -252,6 +255,28 @@ impl Ceiling {
         }
         Ok(())
     }
+}
+
+/// Pi_jj of eight satellites in a solution.
+#[inline(always)]
+fn own(satellites: &Satellites, group: &Group, gains: &[[f64; LANES]; 3]) -> [f64; LANES] {
+    let mut own = [0.0; LANES];
+    for l in 0..LANES {
+        let share = satellites.weight.get(group.clock[l] as usize).map_or(0.0, |all| group.weight[l] / all);
+        let across = gains[0][l] * group.centred[0][l] + gains[1][l] * group.centred[1][l] + gains[2][l] * group.centred[2][l];
+        own[l] = group.weight[l] * (1.0 - share + across);
+    }
+    own
+}
+
+/// Sum of the position's variances without each of eight satellites.
+#[inline(always)]
+fn damage(base: &Solution, own: &[f64; LANES], gains: &[[f64; LANES]; 3]) -> [f64; LANES] {
+    let mut sums = [base.variance[0] + base.variance[1] + base.variance[2]; LANES];
+    for l in 0..LANES {
+        sums[l] += (gains[0][l] * gains[0][l] + gains[1][l] * gains[1][l] + gains[2][l] * gains[2][l]) / own[l];
+    }
+    sums
 }
 
 /// b^2 / v of a satellite, for integrity and for continuity.

@@ -5,8 +5,8 @@
 //! split of the risk between decisions to the designer.
 
 use super::modes::{Book, FaultModes, MOST_SATELLITES, NoModes};
-use super::service::Service;
 use super::separation::Separation;
+use super::service::Service;
 use super::{Levels, Monitor, Sight, Solver, Terms};
 use crate::quantity::{Metres, Unavailable};
 
@@ -77,7 +77,7 @@ pub fn predicted(monitor: &mut Monitor, book: &mut impl Book, sights: &[Sight], 
     let share = candidates.share();
     let mut worst = monitor.solver.levels(&mut monitor.every, sights, &[], &Terms { modes, service, share })?;
     monitor.ceiling.fill(&monitor.every);
-    candidates.worst_first(|out| monitor.ceiling.damage(&monitor.every, out));
+    candidates.worst_first(|out| monitor.ceiling.damage(out));
     let mut rest = Rest::default();
     for mask in candidates.masks() {
         let (left, _) = rest.without(sights, &[], mask);

@@ -77,6 +77,11 @@ impl Separation {
         *self.solved[c].get_or_insert_with(|| self.satellites.solve(1 << c, &mut self.without[c]).is_ok())
     }
 
+    /// The solutions without one constellation that have been worked out.
+    pub(super) fn without_one(&self) -> impl Iterator<Item = &Solution> {
+        self.without.iter().zip(&self.solved).filter(|(_, solved)| **solved == Some(true)).map(|(base, _)| base)
+    }
+
     /// The solution without a mode's satellites.
     #[inline(always)]
     fn subset(&mut self, mode: &FaultMode, count: usize) -> Option<Sums> {

@@ -1,6 +1,6 @@
 //! RAIM, the simple case: one satellite may be wrong at a time, and no prior is known.
 
-use super::modes::{FaultModes, NoModes};
+use super::modes::{self, NoModes};
 use super::{Levels, Monitor, Sight, checked, exclusion::NoLevels};
 use crate::quantity::{Metres, OutOfDomain, Provenance, Risk, Unavailable};
 use crate::special::float::sqrt;
@@ -52,7 +52,7 @@ impl Monitor {
     /// [`NoLevels`].
     #[inline(always)]
     pub fn single_levels(&mut self, sights: &[Sight], wanted: &Requirement) -> Result<Levels, NoLevels> {
-        let modes = FaultModes::single(sights)?;
+        let modes = modes::single(sights)?;
         checked(sights)?;
         let (monitored, _) = self.every.separate(sights, &[], &modes)?;
         let faults = sights.len().max(1) as f64;

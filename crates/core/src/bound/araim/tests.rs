@@ -37,14 +37,14 @@ struct Anew(Option<FaultModes>);
 
 impl Book for Anew {
     fn modes(&mut self, sights: &[Sight], service: &Service) -> Result<&FaultModes, NoModes> {
-        Ok(self.0.insert(FaultModes::new(sights, &P_CONST, service)?))
+        Ok(self.0.insert(service.modes(sights, &P_CONST)?))
     }
 }
 
 #[test]
 fn constellations_of_the_published_example_are_met_to_the_printed_digit() {
     let (sights, service, mut monitor) = (published(1e-5), Service::LPV_200, Monitor::default());
-    let modes = FaultModes::new(&sights, &P_CONST, &service).unwrap();
+    let modes = service.modes(&sights, &P_CONST).unwrap();
     let levels = monitor.levels(&sights, &modes, &service).unwrap();
     assert_eq!((modes.len(), levels.n_monitored), (13, 13));
     let whole: Vec<_> = monitor.report(&modes, &service).filter(|r| r.mode.constellations != 0).collect();
@@ -61,7 +61,7 @@ fn constellations_of_the_published_example_are_met_to_the_printed_digit() {
 fn the_variant_with_every_pair_has_57_modes() {
     let (sights, service) = (published(1e-4), Service::LPV_200);
     // 10 satellites, 45 pairs, 2 constellations; pairs inside a constellation count with it, and the rest is kept as far as needed.
-    let modes = FaultModes::new(&sights, &P_CONST, &Service { consolidation: 0.0, unmonitored: Risk::constant(1e-12), ..service }).unwrap();
+    let modes = (Service { consolidation: 0.0, unmonitored: Risk::constant(1e-12), ..service }).modes(&sights, &P_CONST).unwrap();
     let pairs = modes.iter().filter(|m| m.satellites.count_ones() == 2).count();
     assert_eq!(pairs, 45);
     let total: f64 = modes.iter().map(|m| m.p).sum::<f64>() + modes.left();
@@ -73,7 +73,7 @@ fn the_variant_with_every_pair_has_57_modes() {
 fn pairs_and_pairs_beyond_a_constellation_agree_with_a_new_solution() {
     let (sights, service, mut monitor) = (published(1e-4), Service::LPV_200, Monitor::default());
     let every = Service { consolidation: 0.0, unmonitored: Risk::constant(1e-12), ..service };
-    let modes = FaultModes::new(&sights, &P_CONST, &every).unwrap();
+    let modes = every.modes(&sights, &P_CONST).unwrap();
     monitor.levels(&sights, &modes, &every).unwrap();
     let mut seen = 0;
     for report in monitor.report(&modes, &every).filter(|r| r.monitored && r.mode.satellites != 0) {
@@ -123,9 +123,9 @@ fn satellites_that_cannot_be_tested_are_no_agreement() {
 fn what_there_is_no_room_for_is_said() {
     let one = published(1e-5)[0];
     let many: Vec<_> = (0..65).map(|_| one).collect();
-    assert_eq!(FaultModes::new(&many, &P_CONST, &Service::LPV_200).unwrap_err(), NoModes::TooManySatellites { have: 65 });
+    assert_eq!(Service::LPV_200.modes(&many, &P_CONST).unwrap_err(), NoModes::TooManySatellites { have: 65 });
     let likely: Vec<_> = (0..60).map(|_| Sight { p_sat: 0.01, ..one }).collect();
-    assert_eq!(FaultModes::new(&likely, &P_CONST, &Service::LPV_200).unwrap_err(), NoModes::TooManyModes);
+    assert_eq!(Service::LPV_200.modes(&likely, &P_CONST).unwrap_err(), NoModes::TooManyModes);
     let none = detected(&mut Monitor::default(), &mut Anew(None), &[], &Service::LPV_200);
     assert_eq!(none.unwrap_err(), NoLevels::Geometry(Unavailable::TooFewSatellites { need: 4, have: 0 }));
 }
@@ -159,13 +159,13 @@ fn skies(seed: u64, plain: bool) -> impl Iterator<Item = Vec<Sight>> {
 
 /// Levels after each exclusion, all of them worked out.
 fn each_exclusion(sights: &[Sight], service: &Service) -> (f64, Vec<(u64, Option<Levels>)>) {
-    let modes = FaultModes::new(sights, &P_CONST, service).unwrap();
+    let modes = service.modes(sights, &P_CONST).unwrap();
     let likely: Vec<_> = modes.iter().skip(1).filter(|m| m.p > service.integrity()).map(|m| m.satellites).collect();
     let share = 1.0 / (1 + likely.len()) as f64;
     let mut monitor = Monitor::default();
     let mut without = |out: u64| {
         let left: Vec<_> = (0..sights.len()).filter(|i| out >> i & 1 == 0).map(|i| sights[i]).collect();
-        let modes = FaultModes::new(&left, &P_CONST, service).ok().filter(|_| !left.is_empty())?;
+        let modes = service.modes(&left, &P_CONST).ok().filter(|_| !left.is_empty())?;
         monitor.solver.levels(&mut monitor.rest, &left, &[], &Terms { modes: &modes, service, share }).ok()
     };
     (share, core::iter::once(0).chain(likely).map(|out| (out, without(out))).collect())
@@ -195,11 +195,11 @@ fn the_promise_with_exclusion_is_the_largest_of_all_decisions() {
 /// Whether the ceiling of a decision is below the levels times a factor, axis by axis, and whether it is below on all.
 fn below(sights: &[Sight], out: u64, levels: &Levels, share: f64, factor: f64) -> ([bool; 3], bool) {
     let (service, mut monitor) = (&Service::LPV_200, Monitor::default());
-    let modes = FaultModes::new(sights, &P_CONST, service).unwrap();
+    let modes = service.modes(sights, &P_CONST).unwrap();
     monitor.levels(sights, &modes, service).unwrap();
     monitor.ceiling.fill(&monitor.every);
     let left: Vec<_> = (0..sights.len()).filter(|i| out >> i & 1 == 0).map(|i| sights[i]).collect();
-    let modes = FaultModes::new(&left, &P_CONST, service).unwrap();
+    let modes = service.modes(&left, &P_CONST).unwrap();
     let terms = Terms { modes: &modes, service, share };
     let limits = [levels.axes[0].m(), levels.axes[1].m(), levels.vpl.m()].map(|x| factor * x);
     let mut holds = |limits| monitor.ceiling.holds(&mut monitor.every, &mut monitor.solver, out, &terms, &limits);

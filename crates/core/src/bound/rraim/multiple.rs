@@ -1,8 +1,8 @@
 //! Levels over all faults together: equation 17.
 
 use super::coast::{Coast, Travel};
-use super::modes::{MOST_MODES, Modes};
 use super::single::Fix;
+use crate::bound::faults::{FaultModes, MOST_MODES, NoModes};
 use crate::bound::level_equation::LevelEquation;
 use crate::quantity::{Metres, Risk, Unavailable};
 use crate::special::float::{hypot, sqrt};
@@ -14,6 +14,9 @@ pub enum NoLevel {
     /// The geometry does not serve.
     #[error(transparent)]
     Geometry(#[from] Unavailable),
+    /// The faults cannot be listed.
+    #[error(transparent)]
+    Modes(#[from] NoModes),
     /// Faults that cannot be monitored are likelier than all that is allotted.
     #[error("faults of risk {not_monitored:e} cannot be monitored, {allotted:e} is allotted")]
     Budget {
@@ -67,17 +70,17 @@ impl MultipleFaults {
     /// # Errors
     /// [`Unavailable`] where the geometry does not determine the position with all satellites. Modes whose rest does not determine it count
     /// as not monitored.
-    pub fn fill(&mut self, fix: &Fix<'_>, coast: &Coast, modes: &Modes) -> Result<(), Unavailable> {
+    pub fn fill(&mut self, fix: &Fix<'_>, coast: &Coast, modes: &FaultModes) -> Result<(), Unavailable> {
         let all = coast.all()?;
-        (self.count, self.not_monitored) = (0, modes.not_monitored);
+        (self.count, self.not_monitored) = (0, modes.left());
         self.all = axes(fix, &all, &all, 2.0);
-        for &(set, p) in modes.list() {
-            match coast.without(set) {
+        for mode in modes.iter().skip(1) {
+            match coast.without(mode.satellites) {
                 Ok(less) => {
-                    self.terms[self.count] = axes(fix, &less, &all, p);
+                    self.terms[self.count] = axes(fix, &less, &all, mode.p);
                     self.count += 1;
                 }
-                Err(_) => self.not_monitored += p,
+                Err(_) => self.not_monitored += mode.p,
             }
         }
         Ok(())
