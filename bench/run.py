@@ -15,7 +15,7 @@ import sys
 from datetime import UTC, datetime
 from pathlib import Path
 
-MODULES = ("tse", "anp", "runs", "sbas", "gbas", "gnss", "kpi", "dme", "sensors", "araim", "ins", "maps")
+MODULES = ("tse", "anp", "runs", "sbas", "gbas", "gnss", "kpi", "dme", "sensors", "araim", "raim", "ins", "maps")
 RESULTS = Path(__file__).parent / "results"
 
 

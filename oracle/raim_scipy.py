@@ -1,7 +1,7 @@
-"""The slope method by whole inversions and forty-digit chi-square laws: nothing shared with navbound. Prints vectors/raim.toml and its factors.
+"""The slope method by whole inversions and forty-digit chi-square laws: nothing shared with navbound. Prints its vector files.
 
-    python oracle/raim_scipy.py levels > vectors/raim.toml
-    python oracle/raim_scipy.py factors > vectors/raim-factors.toml
+python oracle/raim_scipy.py levels > vectors/raim.toml
+python oracle/raim_scipy.py factors > vectors/raim-factors.toml
 """
 
 from __future__ import annotations
@@ -113,9 +113,11 @@ PUBLISHED = [
 def print_levels() -> None:
     """vectors/raim.toml."""
     print('call = "raim.protection_levels"')
-    print('source = "whole inversions (NumPy) and forty-digit chi-square laws (mpmath), oracle/raim_scipy.py; geometry of ten satellites as printed by Blanch et al. 2012"')
+    document = "whole inversions (NumPy) and forty-digit chi-square laws (mpmath), oracle/raim_scipy.py"
+    print(f'source = "{document}; geometry of ten satellites as printed by Blanch et al. 2012"')
     print('provenance = "ours"')
-    print('tolerance = { rel = 1e-10, because = "inversions of condition below 1e4 lose four of sixteen digits, and the difference 1 - leverage two more" }')
+    reason = "inversions of condition below 1e4 lose four of sixteen digits, and the difference 1 - leverage two more"
+    print(f'tolerance = {{ rel = 1e-10, because = "{reason}" }}')
     cases: list[tuple[str, Floats, list[int], Floats]] = [
         ("published-ten-satellites", np.array(PUBLISHED), [0] * 5 + [2] * 5, np.array([2.0, 1.2, 0.9, 1.3, 1.2, 0.9, 0.9, 0.9, 0.9, 1.2])),
         ("gps-nine", sky(9, 3), [0] * 9, np.linspace(1.0, 3.0, 9)),

@@ -83,9 +83,7 @@ def watch(
     chosen = checked_model(navigation, systems, signals, model, mask_rad)
     numbers = requirement_numbers(requirement)
     promises, airborne = support_rows(support), airborne_numbers(chosen)
-    found = _core.raim_watch(
-        observations._core, navigation._core, systems, signals == "dual", mask_rad, promises, airborne, numbers
-    )
+    found = _core.raim_watch(observations._core, navigation._core, systems, signals == "dual", mask_rad, promises, airborne, numbers)
     status = np.array(found.pop("words"))[found.pop("outcome")]
     decision = np.array(found.pop("decision"), dtype=np.str_)
     usable = np.isin(decision, ["none", "excluded"]) & (status == "ok")
@@ -115,7 +113,8 @@ def watch(
         "protection levels": f"RAIM, weighted slope: {SOURCES[0]}",
         "noise in the levels": SOURCES[1],
         "risks": f"false alarm {requirement.false_alarm:g}, missed detection {requirement.missed_detection:g}, without a fault "
-        f"{requirement.fault_free:g}: {requirement.source} ({requirement.provenance})",
+        f"{requirement.fault_free:g}: {requirement.source}; together {requirement.provenance}",
+        "use": "the risks are those of en route to non-precision approach; vertical levels at them promise nothing for vertical guidance",
         "promises of satellites": f"{support.source} ({support.provenance})",
         "range errors": f"{chosen.source} ({chosen.provenance})",
         "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange, Klobuchar",

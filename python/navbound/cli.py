@@ -112,7 +112,7 @@ def analyze(
     methods: Methods = ",".join(DEFAULT_METHODS),
     levels: Annotated[
         str | None,
-        typer.Option(help="Evaluate protection levels against service levels instead (APV-I,LPV-200,...); see `navbound levels`."),
+        typer.Option(help="Evaluate protection levels against service levels instead (APV-I,LPV-200,RNP 0.3,...); see `navbound levels`."),
     ] = None,
     prn: Annotated[int | None, typer.Option(help="With --levels: whose SBAS messages, where a log holds several.")] = None,
     period_s: Annotated[float | None, typer.Option(help="With --levels: sampling period. [default: the usual step]")] = None,
@@ -138,7 +138,8 @@ def analyze(
         bool, typer.Option("--solve", help="Solve positions from the raw measurements of receiver logs instead of taking the receiver's.")
     ] = False,
     protection: Annotated[
-        str | None, typer.Option(help="With --levels: protection levels of observations from given (the files), raim, araim or araim-horizontal.")
+        str | None,
+        typer.Option(help="With --levels: protection levels of observations from given (the files), raim, araim or araim-horizontal."),
     ] = None,
     out: Out = None,
     json: Json = False,

@@ -122,8 +122,8 @@ class Monitored:
 def factors(n_redundant: ArrayLike, requirement: Requirement = RAIM) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Threshold and missed bias of a test, by the number of redundant ranges.
 
-    T² is what a chi-square variable exceeds with the risk of a false alarm; the variable of non-centrality bias² is at most T² with the risk
-    of a missed detection (Brown and Chin 1997; standard, from memory).
+    T² is what a chi-square variable exceeds with the risk of a false alarm; the variable of non-centrality bias² is at most T² with the
+    risk of a missed detection (Brown and Chin 1997; standard, from memory).
 
     Parameters
     ----------

@@ -57,13 +57,7 @@ pub(crate) struct Taken {
 ///
 /// # Errors
 /// [`Unavailable`]: no position.
-pub(crate) fn taken(
-    ranges: &[Range],
-    time: GpsTime,
-    job: &Job,
-    promise: &Promise,
-    sights: &mut Vec<Sight>,
-) -> Result<Taken, Unavailable> {
+pub(crate) fn taken(ranges: &[Range], time: GpsTime, job: &Job, promise: &Promise, sights: &mut Vec<Sight>) -> Result<Taken, Unavailable> {
     let fix = point::solve(ranges, time, &job.settings)?;
     sights.clear();
     let (mut residuals_m, mut satellites) = (Vec::new(), Vec::new());

@@ -3,6 +3,7 @@
 use crate::araim::{Outcome, Outlook, Overhead, Promise, rows};
 use crate::araim_watch::taken;
 use crate::positions::{Job, each_epoch};
+use nalgebra::Vector3;
 use navbound_core::bound::araim::Sight;
 use navbound_core::bound::raim::exclusion::Monitored;
 use navbound_core::bound::raim::{ExclusionLevels, Levels, Monitor, Requirement};
@@ -13,7 +14,6 @@ use navbound_core::solution::point::Range;
 use navbound_core::solution::wls::WeightedSight;
 use navbound_formats::rinex::{Navigation, Observations};
 use navbound_path::AtIndex;
-use nalgebra::Vector3;
 
 /// Satellites in many solutions: rows are epochs, columns satellites; one whose line of sight is NaN is not used.
 #[derive(Debug, Clone, Copy)]

@@ -98,13 +98,18 @@ def decisions(epochs: pl.DataFrame) -> list[str]:
     without = epochs.filter(pl.col("hpl_m").is_null() & pl.col("est_lat_rad").is_not_null()).height - lost
     each = excluded["reason"].value_counts(sort=True).iter_rows()
     named = ", ".join(f"{str(reason).removeprefix('excluded ')} at {count}" for reason, count in each)
+    which = f" ({named})" if named else ""
     words = [
-        f"{n} epochs: a fault detected at {lost + excluded.height}, excluded at {excluded.height}{f' ({named})' if named else ''}, not to be "
-        f"excluded at {lost}; a position but no way to detect a fault at {without}."
+        f"{n} epochs: a fault detected at {lost + excluded.height}, excluded at {excluded.height}{which}, not to be excluded at {lost}; a "
+        f"position but no way to detect a fault at {without}."
     ]
     if "hel_m" in epochs.columns:
         limits = ", ".join(f"{rnp:g} NM" for rnp in RNP_NM)
-        for column, what in (("hpl_m", "Detection (HPL)"), ("hel_m", "Detection and exclusion (HEL)"), ("hpl_slope_m", "Published slope level")):
+        for column, what in (
+            ("hpl_m", "Detection (HPL)"),
+            ("hel_m", "Detection and exclusion (HEL)"),
+            ("hpl_slope_m", "Published slope level"),
+        ):
             within = (epochs.filter(pl.col(column) <= rnp * METRES_PER_NM).height / n for rnp in RNP_NM)
             words.append(f"{what} within {limits} at {', '.join(share(part) for part in within)} of the epochs.")
     return words

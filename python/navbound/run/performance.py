@@ -72,7 +72,8 @@ class Options:
     solve : bool
         Take the raw measurements and messages of receivers' logs, not their own positions and levels.
     protection : str
-        What protection levels of observations come from: ``given`` (the files), ``raim``, ``araim`` (LPV-200 budgets), ``araim-horizontal``.
+        What protection levels of observations come from: ``given`` (the files), ``raim``, ``araim`` (LPV-200 budgets) or
+        ``araim-horizontal``.
     """
 
     levels: Sequence[str | kpi.Level]

@@ -1,4 +1,4 @@
-"""RAIM for a flight that is yet to be flown: when, over a day, a fault could not be detected, or not be excluded, at a place or on a route."""
+"""RAIM for a flight that is yet to be flown: when a fault could not be detected, or not be excluded, at a place or on a route."""
 
 from __future__ import annotations
 
@@ -71,7 +71,10 @@ def place(text: str) -> PredictedPlace:
         Neither; no such runway; a latitude or longitude that is none.
     """
     if "/" in text:
-        found = runway(text)
+        try:
+            found = runway(text)
+        except InputError as e:
+            raise InputError("at", text, domain=e.domain) from e
         return PredictedPlace(name=found.name, lat_rad=[found.lat_rad], lon_rad=[found.lon_rad], h_m=[found.elevation_m])
     domain = "LAT,LON or LAT,LON,H in degrees and metres, latitude within 90 and longitude within 180; or a runway, as LFPG/08R"
     try:
@@ -105,8 +108,8 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
     Raises
     ------
     InputError
-        No place or limit, a place twice, a limit that is none, satellites to leave out that are not there, an almanac of another week, nominal orbits for a
-        date.
+        No place or limit, a place twice, a limit that is none, satellites to leave out that are not there, an almanac of another week,
+        nominal orbits for a date.
     FormatError
         A file that is no almanac.
     """
@@ -123,22 +126,23 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
         raise InputError("every_s", asked.times.step_s, "s", f"at most {MOST_POINTS} points times instants; here are {points} points")
     sky = satellites(asked.constellation, asked.times, asked.mask_rad, 0.0)
     orbits = sky.orbits.without(list(dict.fromkeys(asked.without)))
-    offsets = asked.times.offsets_s()
     start_ns = asked.times.start_ns if asked.times.start_ns is not None else sky.orbits.reference_ns
+    when = _Instants(asked.times.offsets_s(), asked.times.step_s, start_ns)
+    unhealthy = _unhealthy(asked, sky)
     lines: list[PredictedLine] = []
     holes: list[Hole] = []
     for each in places:
         found = raim.predict(orbits, each.lat_rad, each.lon_rad, each.h_m, sky.time_s, mask_rad=asked.mask_rad, model=asked.model)
         for wanted in limits:
-            line, more = _judge(each.name, wanted, found, offsets, asked.times.step_s, start_ns)
+            line, more = _judge(each.name, wanted, found, when)
             lines.append(line)
             holes += more
     times = PredictedTimes(
-        start_utc=_utc(start_ns, 0.0),
-        end_utc=_utc(start_ns, asked.times.duration_s),
+        start_utc=when.utc(0.0),
+        end_utc=when.utc(asked.times.duration_s),
         duration_s=asked.times.duration_s,
         step_s=asked.times.step_s,
-        n=len(offsets),
+        n=len(when.offsets_s),
     )
     return Prediction(
         navbound_version=__version__,
@@ -146,7 +150,7 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
         orbits=[str(name) for name in asked.constellation],
         satellites=list(orbits.satellite),
         without=list(dict.fromkeys(asked.without)),
-        unhealthy=_unhealthy(asked, sky),
+        unhealthy=unhealthy,
         times=times,
         mask_rad=asked.mask_rad,
         model=asked.model,
@@ -154,7 +158,7 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
         limits=limits,
         lines=lines,
         holes=sorted(holes, key=lambda h: (h.start_s, h.place, h.limit, h.function)),
-        assumptions=_assumptions(asked, sky, start_ns),
+        assumptions=_assumptions(asked, unhealthy, start_ns),
     )
 
 
@@ -166,40 +170,49 @@ def limit(name: str) -> PredictedLimit:
     InputError
         No such limit.
     """
-    if name.upper().startswith("RNP "):
-        try:
-            found = kpi.rnp(float(name[4:]), tta_s=10.0)
-        except ValueError as e:
-            raise InputError("spec", name, domain="RNP followed by nautical miles, as RNP 0.3") from e
-        return PredictedLimit(id=found.id, hal_m=found.hal_m, source="alert limit inferred from the RNP value", provenance="inferred")
     found = kpi.level(name)
     return PredictedLimit(id=found.id, hal_m=found.hal_m, source=found.source, provenance=found.provenance["hal_m"])
 
 
-def _judge(
-    name: str, wanted: PredictedLimit, found: raim.Levels, offsets: Floats, step_s: float, start_ns: int | None
-) -> tuple[PredictedLine, list[Hole]]:
+@dataclass(frozen=True)
+class _Instants:
+    """When: since the start, and the start itself where the orbits have a date."""
+
+    offsets_s: Floats
+    step_s: float
+    start_ns: int | None
+
+    def utc(self, since_s: float) -> str | None:
+        return None if self.start_ns is None else utc_text(self.start_ns + round(since_s * NS))
+
+
+def _judge(name: str, wanted: PredictedLimit, found: raim.Levels, when: _Instants) -> tuple[PredictedLine, list[Hole]]:
     """One place, or one route whose every point counts, against one limit."""
-    levels: dict[Function, Floats] = {"detection": _worst(found.hpl_m), "exclusion": _worst(found.hel_m)}
     n_sv = found.n_sv.min(axis=-1)
-    holes = [
-        _hole(name, wanted.id, function, level, n_sv, offsets, step_s, start_ns, first, last)
-        for function, level in levels.items()
-        for first, last in _runs(level > wanted.hal_m)
-    ]
-    of = {function: [h for h in holes if h.function == function] for function in levels}
+    detection, exclusion = _worst(found.hpl_m), _worst(found.hel_m)
+    seen = _holes(_Kind(name, wanted, "detection"), detection, n_sv, when)
+    left = _holes(_Kind(name, wanted, "exclusion"), exclusion, n_sv, when)
     line = PredictedLine(
         place=name,
         limit=wanted.id,
-        p_detection=float((levels["detection"] <= wanted.hal_m).mean()),
-        p_exclusion=float((levels["exclusion"] <= wanted.hal_m).mean()),
+        p_detection=float((detection <= wanted.hal_m).mean()),
+        p_exclusion=float((exclusion <= wanted.hal_m).mean()),
         p_detection_published=float((_worst(found.hpl_slope_m) <= wanted.hal_m).mean()),
-        n_holes_detection=len(of["detection"]),
-        n_holes_exclusion=len(of["exclusion"]),
-        longest_detection_s=max((h.end_s - h.start_s for h in of["detection"]), default=0.0),
-        longest_exclusion_s=max((h.end_s - h.start_s for h in of["exclusion"]), default=0.0),
+        n_holes_detection=len(seen),
+        n_holes_exclusion=len(left),
+        longest_detection_s=max((h.end_s - h.start_s for h in seen), default=0.0),
+        longest_exclusion_s=max((h.end_s - h.start_s for h in left), default=0.0),
     )
-    return line, holes
+    return line, seen + left
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """What is missing in a hole, and where."""
+
+    place: str
+    limit: PredictedLimit
+    function: Function
 
 
 def _worst(level_m: Floats) -> Floats:
@@ -214,36 +227,26 @@ def _runs(out: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return list(zip(np.flatnonzero(edges == 1).tolist(), (np.flatnonzero(edges == -1) - 1).tolist(), strict=True))
 
 
-def _hole(
-    name: str,
-    limit_id: str,
-    function: Function,
-    level_m: Floats,
-    n_sv: NDArray[np.int64],
-    offsets: Floats,
-    step_s: float,
-    start_ns: int | None,
-    first: int,
-    last: int,
-) -> Hole:
-    start_s, end_s = float(offsets[first]), float(offsets[last]) + step_s
-    largest = float(level_m[first : last + 1].max())
-    return Hole(
-        place=name,
-        limit=limit_id,
-        function=function,
-        start_s=start_s,
-        end_s=end_s,
-        start_utc=_utc(start_ns, start_s),
-        end_utc=_utc(start_ns, end_s),
-        cut=first == 0 or last == len(offsets) - 1,
-        n_sv_least=int(n_sv[first : last + 1].min()),
-        level_max_m=largest if math.isfinite(largest) else None,
-    )
-
-
-def _utc(start_ns: int | None, since_s: float) -> str | None:
-    return None if start_ns is None else utc_text(start_ns + round(since_s * NS))
+def _holes(kind: _Kind, level_m: Floats, n_sv: NDArray[np.int64], when: _Instants) -> list[Hole]:
+    """Every time that the level is outside the limit."""
+    found = []
+    for first, last in _runs(level_m > kind.limit.hal_m):
+        start_s, end_s = float(when.offsets_s[first]), float(when.offsets_s[last]) + when.step_s
+        largest = float(level_m[first : last + 1].max())
+        hole = Hole(
+            place=kind.place,
+            limit=kind.limit.id,
+            function=kind.function,
+            start_s=start_s,
+            end_s=end_s,
+            start_utc=when.utc(start_s),
+            end_utc=when.utc(end_s),
+            cut=first == 0 or last == len(level_m) - 1,
+            n_sv_least=int(n_sv[first : last + 1].min()),
+            level_max_m=largest if math.isfinite(largest) else None,
+        )
+        found.append(hole)
+    return found
 
 
 def _unhealthy(asked: Asked, sky: Satellites) -> list[str]:
@@ -252,16 +255,17 @@ def _unhealthy(asked: Asked, sky: Satellites) -> list[str]:
     return sorted(every - set(sky.orbits.satellite))
 
 
-def _assumptions(asked: Asked, sky: Satellites, start_ns: int | None) -> list[str]:
+def _assumptions(asked: Asked, unhealthy: list[str], start_ns: int | None) -> list[str]:
     needs, chosen = raim.RAIM, araim.ERROR_MODELS[asked.model]
-    dated = "Orbits of no date: times count from their reference instant." if start_ns is None else "Orbits of the files at the times asked."
-    unhealthy = _unhealthy(asked, sky)
+    dated = (
+        "Orbits of no date: times count from their reference instant." if start_ns is None else "Orbits of the files at the times asked."
+    )
     return [
         f"{dated} {'Unhealthy by the almanac and not used: ' + ', '.join(unhealthy) + '.' if unhealthy else 'None is called unhealthy.'}",
-        f"Satellites are tracked as soon as they are above {math.degrees(asked.mask_rad):g}°; terrain, bank and interference are not considered.",
+        f"Satellites are tracked as soon as they are above {math.degrees(asked.mask_rad):g}°, whatever terrain, bank and interference do.",
         f"Levels: {raim.SOURCES[0]}; {raim.SOURCES[1]}. No aiding by a barometric altimeter.",
         f"Risks: false alarm {needs.false_alarm:g}, missed detection {needs.missed_detection:g}, without a fault {needs.fault_free:g}: "
-        f"{needs.source} ({needs.provenance}).",
+        f"{needs.source}; together {needs.provenance}.",
         f"Range errors: {chosen.source} ({chosen.provenance}); orbits and clocks: {raim.SUPPORT.source} ({raim.SUPPORT.provenance}).",
         f"One satellite fails at a time. A hole is exact to the step of {asked.times.step_s:g} s; one that is shorter may be missed.",
     ]

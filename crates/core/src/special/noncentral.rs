@@ -123,7 +123,9 @@ mod tests {
 
     #[test]
     fn outside_the_domain_there_is_no_number() {
-        for (dof, lambda, x) in [(0.0, 1.0, 1.0), (2.0, -1.0, 1.0), (2.0, 1.0, -1.0), (2.0, f64::NAN, 1.0), (2.0, 1e7, 1.0), (f64::NAN, 1.0, 1.0)] {
+        for (dof, lambda, x) in
+            [(0.0, 1.0, 1.0), (2.0, -1.0, 1.0), (2.0, 1.0, -1.0), (2.0, f64::NAN, 1.0), (2.0, 1e7, 1.0), (f64::NAN, 1.0, 1.0)]
+        {
             assert!(noncentral_head(dof, lambda, x).is_nan(), "{dof} {lambda} {x}");
         }
         assert!(noncentrality(2.0, 1.0, 0.0).is_nan() && noncentrality(-2.0, 1.0, 0.1).is_nan());
