@@ -36,6 +36,8 @@ def track(tmp_path: Path) -> Path:
     [
         (["fly", "nowhere"], USAGE, "beijing-shanghai"),
         (["fly", "beijing-shanghai", "--flights", "0"], USAGE, "[1, 1000]"),
+        (["analyze", "day.csv", "--levels", "APV-I", "--min-satellites", "5"], USAGE, "--stanford-esa"),
+        (["analyze", "day.csv", "--listed-from", "0.5"], USAGE, "--stanford-esa"),
         (["fly", "beijing-shanghai", "--flights", "many"], USAGE, "--flights"),
         (["fly", "beijing-shanghai", "--methods", "tse-exakt"], USAGE, "tse-exact"),
         (["fly", "--wrong"], USAGE, "--wrong"),

@@ -11,7 +11,23 @@ from navbound.methods import methods
 
 ROOT = Path(__file__).parents[1]
 GLOSSARY = (ROOT / "docs" / "notation.md").read_text(encoding="utf-8")
-WORDS = {"sv", "track", "leg", "phase", "status", "reason", "mode", "nav_mode", "alert", "state", "kind", "words", "satellite", "station"}
+WORDS = {
+    "sv",
+    "track",
+    "leg",
+    "phase",
+    "status",
+    "reason",
+    "mode",
+    "nav_mode",
+    "alert",
+    "state",
+    "kind",
+    "words",
+    "satellite",
+    "station",
+    "decision",
+}
 SUFFIXES = ("_m", "_m2", "_s", "_ns", "_rad", "_mps", "_mps2", "_radps")
 UNITLESS = ("p_", "n_")
 DIMENSIONLESS = {"hdop", "vdop"}

@@ -142,6 +142,13 @@ def rule_numbers(service: str | Service | Requirement) -> list[float]:
     return [float(getattr(service, f.name)) for f in fields(service)[:count]]
 
 
+def requirement_numbers(requirement: Requirement) -> list[float]:
+    """Three numbers that the core takes."""
+    if not isinstance(requirement, Requirement):
+        raise InputError("requirement", repr(requirement)[:60], domain="a Requirement, such as RAIM")
+    return rule_numbers(requirement)
+
+
 def error_model(model: str | ErrorModel) -> ErrorModel:
     """A shipped model by its name, or the caller's."""
     if isinstance(model, ErrorModel):

@@ -86,18 +86,10 @@ def watch(
     InputError
         Systems that are not there, single signals without a broadcast ionosphere, numbers outside their domain.
     """
-    if not systems or any(s not in SYSTEMS for s in systems):
-        raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
-    if signals not in {"single", "dual"}:
-        raise InputError("signals", signals, domain="single, dual")
-    if signals == "single" and not navigation.has_ionosphere:
-        raise InputError("signals", "single", domain="dual, or a navigation file with the ionosphere of GPS")
-    if not 0 <= mask_rad < np.pi / 2:
-        raise InputError("mask_rad", mask_rad, "rad", "[0, pi/2)")
+    chosen = checked_model(navigation, systems, signals, model, mask_rad)
     numbers = rule_numbers(service)
     if len(numbers) != 7:
         raise InputError("service", service, domain=f"one of {', '.join(SERVICES)}, or a Service")
-    chosen = error_model(f"{signals}-frequency" if model is None else model)
     found = _core.araim_watch(
         observations._core, navigation._core, systems, signals == "dual", mask_rad, support_rows(support), airborne_numbers(chosen), numbers
     )
@@ -121,8 +113,6 @@ def watch(
             "reason": [f"excluded {e}" if e else w for e, w in zip(excluded, why.tolist(), strict=True)],
         }
     ).with_columns(pl.selectors.float().fill_nan(None), pl.col("reason").replace({"": None}))
-    if truth_ecef_m is not None:
-        epochs = with_errors(epochs, truth_ecef_m)
     budgets = SERVICES[service] if isinstance(service, str) else service
     name = service if isinstance(service, str) else "the caller's"
     models = {
@@ -132,4 +122,28 @@ def watch(
         "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange, Klobuchar",
         "exclusion": "equal shares of the integrity risk for every decision (ours)",
     }
-    return Watched(epochs, models)
+    return Watched(with_truth(epochs, truth_ecef_m), models)
+
+
+def checked_model(navigation: Navigation, systems: str, signals: str, model: str | ErrorModel | None, mask_rad: float) -> ErrorModel:
+    """The error model of a receiver's signals, after a look at what else was asked.
+
+    Raises
+    ------
+    InputError
+        Systems that are not there, other signals, single signals without a broadcast ionosphere, a mask outside [0, pi/2), no such model.
+    """
+    if not systems or any(s not in SYSTEMS for s in systems):
+        raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
+    if signals not in {"single", "dual"}:
+        raise InputError("signals", signals, domain="single, dual")
+    if signals == "single" and not navigation.has_ionosphere:
+        raise InputError("signals", "single", domain="dual, or a navigation file with the ionosphere of GPS")
+    if not 0 <= mask_rad < np.pi / 2:
+        raise InputError("mask_rad", mask_rad, "rad", "[0, pi/2)")
+    return error_model(f"{signals}-frequency" if model is None else model)
+
+
+def with_truth(epochs: pl.DataFrame, truth_ecef_m: ArrayLike | None) -> pl.DataFrame:
+    """Errors beside the positions, where truth is known."""
+    return epochs if truth_ecef_m is None else with_errors(epochs, truth_ecef_m)

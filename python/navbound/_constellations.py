@@ -15,6 +15,8 @@ from navbound._arrays import flatten
 from navbound.errors import FormatError, InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
 CONSTELLATIONS = ("gps", "glonass", "galileo", "beidou", "sbas")
@@ -70,6 +72,22 @@ class Orbits:
         joined = {n: np.concatenate([getattr(self, n), getattr(other, n)]) for n in names}
         reference = self.reference_ns if self.reference_ns == other.reference_ns else None
         return Orbits(satellite=self.satellite + other.satellite, reference_ns=reference, **joined)
+
+    def without(self, satellites: Sequence[str]) -> Orbits:
+        """The same without some satellites, as for those that a notice takes out of service.
+
+        Raises
+        ------
+        InputError
+            One that is not among them.
+        """
+        absent = sorted(set(satellites) - set(self.satellite))
+        if absent:
+            raise InputError("without", ", ".join(absent), domain=f"satellites of these orbits: {', '.join(self.satellite)}")
+        kept = np.array([name not in satellites for name in self.satellite], dtype=bool)
+        columns = [n for n in self.__dataclass_fields__ if n not in {"satellite", "reference_ns"}]
+        names = tuple(name for name, keep in zip(self.satellite, kept, strict=True) if keep)
+        return Orbits(satellite=names, reference_ns=self.reference_ns, **{n: getattr(self, n)[kept] for n in columns})
 
     def elements(self) -> NDArray[np.float64]:
         """Seven elements a row: axis, eccentricity, inclination, node, perigee, mean anomaly, rate of the node; shape (n, 7)."""

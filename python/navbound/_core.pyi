@@ -437,3 +437,31 @@ def araim_watch(
     airborne: list[float],
     numbers: list[float],
 ) -> dict[str, Any]: ...
+
+# RAIM
+def raim_sources() -> tuple[str, str]: ...
+def raim_factors(n_redundant: list[int], numbers: list[float]) -> list[tuple[float, float]]: ...
+def raim_levels(unit_enu: _F, sigma_m: _F, constellation: list[int], numbers: list[float]) -> dict[str, Any]: ...
+def raim_monitor(unit_enu: _F, residual_m: _F, sigma_m: _F, constellation: list[int], numbers: list[float]) -> dict[str, Any]: ...
+def raim_predict(
+    elements: _F,
+    constellation: list[int],
+    time_s: _F,
+    lat_rad: _F,
+    lon_rad: _F,
+    h_m: _F,
+    mask_rad: float,
+    support: list[tuple[float, ...]],
+    airborne: list[float],
+    numbers: list[float],
+) -> dict[str, Any]: ...
+def raim_watch(
+    observations: Observations,
+    navigation: Navigation,
+    systems: str,
+    dual: bool,
+    mask_rad: float,
+    support: list[tuple[float, ...]],
+    airborne: list[float],
+    numbers: list[float],
+) -> dict[str, Any]: ...

@@ -15,7 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 import navbound
-from navbound import cli_map
+from navbound import cli_map, cli_predict
 from navbound import verify as vectors
 from navbound.errors import FormatError, InputError, NavboundError
 from navbound.kpi import SubsetOptions
@@ -112,7 +112,7 @@ def analyze(
     methods: Methods = ",".join(DEFAULT_METHODS),
     levels: Annotated[
         str | None,
-        typer.Option(help="Evaluate protection levels against service levels instead (APV-I,LPV-200,...); see `navbound levels`."),
+        typer.Option(help="Evaluate protection levels against service levels instead (APV-I,LPV-200,RNP 0.3,...); see `navbound levels`."),
     ] = None,
     prn: Annotated[int | None, typer.Option(help="With --levels: whose SBAS messages, where a log holds several.")] = None,
     period_s: Annotated[float | None, typer.Option(help="With --levels: sampling period. [default: the usual step]")] = None,
@@ -121,11 +121,16 @@ def analyze(
         bool,
         typer.Option("--stanford-esa", help="With --levels, observations and --truth: every subset of satellites as a point of its own."),
     ] = False,
-    min_satellites: Annotated[int, typer.Option(help="With --stanford-esa: fewest satellites of a subset.")] = 4,
+    min_satellites: Annotated[int | None, typer.Option(help="With --stanford-esa: fewest satellites of a subset. [default: 4]")] = None,
     max_satellites: Annotated[
-        int, typer.Option(help="With --stanford-esa: at most 2 to this power subsets an epoch; beyond, fewer satellites are left out.")
-    ] = 14,
-    listed_from: Annotated[float, typer.Option(help="With --stanford-esa: safety index from which a subset is listed.")] = 0.7,
+        int | None,
+        typer.Option(
+            help="With --stanford-esa: at most 2 to this power subsets an epoch; beyond, fewer satellites are left out. [default: 14]"
+        ),
+    ] = None,
+    listed_from: Annotated[
+        float | None, typer.Option(help="With --stanford-esa: safety index from which a subset is listed. [default: 0.7]")
+    ] = None,
     experimental: Annotated[
         str, typer.Option(help="With --levels: words beside levels that no integrity rests on ('experimental, not integrity').")
     ] = "",
@@ -133,7 +138,8 @@ def analyze(
         bool, typer.Option("--solve", help="Solve positions from the raw measurements of receiver logs instead of taking the receiver's.")
     ] = False,
     protection: Annotated[
-        str | None, typer.Option(help="With --levels: protection levels of observations from given (the files), araim or araim-horizontal.")
+        str | None,
+        typer.Option(help="With --levels: protection levels of observations from given (the files), raim, araim or araim-horizontal."),
     ] = None,
     out: Out = None,
     json: Json = False,
@@ -145,6 +151,7 @@ def analyze(
     receiver's log may be all three. A run that was interrupted goes on when it is started again with the same --out.
     """
     out = out or Path("out") / files[0].name.split(".")[0]
+    subsets = _subsets(min_satellites, max_satellites, listed_from, asked=stanford_esa)
     if levels is not None:
         if path is not None or sigma_m is not None:
             raise InputError("levels", levels, domain="it without --path and --sigma-m, which judge a track")
@@ -158,7 +165,7 @@ def analyze(
                 prn=prn,
                 period_s=period_s,
                 exclude_missing=exclude_missing,
-                stanford_esa=SubsetOptions(min_satellites, max_satellites, listed_from) if stanford_esa else None,
+                stanford_esa=subsets,
                 experimental=experimental,
                 solve=solve,
                 protection=protection or "given",
@@ -185,6 +192,17 @@ def analyze(
         command=command_line(),
     )
     _show(run, json=json)
+
+
+def _subsets(min_satellites: int | None, max_satellites: int | None, listed_from: float | None, *, asked: bool) -> SubsetOptions | None:
+    """Options of subsets; refused where no subsets are asked for, since they would do nothing."""
+    given = {"min_satellites": min_satellites, "max_satellites": max_satellites, "listed_from": listed_from}
+    known = {name: value for name, value in given.items() if value is not None}
+    if asked:
+        return SubsetOptions(**known)  # type: ignore[arg-type]
+    for name, value in known.items():
+        raise InputError(name, value, domain="it together with --stanford-esa: without subsets of satellites it would do nothing")
+    return None
 
 
 @app.command()
@@ -304,6 +322,7 @@ def show(
 
 
 app.command("map")(cli_map.map_command)
+app.command("predict")(cli_predict.predict_command)
 
 
 class Bar:

@@ -5,6 +5,7 @@ Definitions follow docs/methods/kpi.md; the levels' numbers carry their own sour
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -41,6 +42,8 @@ __all__ = [
 
 WINDOW_S = 15.0
 """Continuity window."""
+RNP_TTA_S = 10.0
+"""Time to alert of a level that is named by its RNP value: that of non-precision approach, inferred. [s]"""
 MOST_EVENTS = 500
 """Events that a performance record lists; a campaign hands out all of them."""
 
@@ -86,7 +89,7 @@ def levels() -> dict[str, Level]:
 
 
 def level(wanted: str | Level) -> Level:
-    """A level by its name.
+    """A level by its name, or the RNP value as horizontal limit where the name is ``RNP 0.3`` or the like.
 
     Raises
     ------
@@ -96,9 +99,14 @@ def level(wanted: str | Level) -> Level:
     if isinstance(wanted, Level):
         return wanted
     known = levels()
-    if wanted not in known:
-        raise InputError("levels", wanted, domain=", ".join(known))
-    return known[wanted]
+    if wanted in known:
+        return known[wanted]
+    value = re.fullmatch(r"RNP (\d+(?:\.\d+)?)", wanted.strip(), re.IGNORECASE)
+    if value is None:
+        raise InputError("levels", wanted, domain=f"{', '.join(known)}, RNP 0.3 and the like")
+    found = rnp(float(value.group(1)), tta_s=RNP_TTA_S)
+    source = "alert limit inferred from the RNP value; time to alert that of non-precision approach"
+    return found.model_copy(update={"source": source, "provenance": {"hal_m": "inferred", "tta_s": "inferred"}})
 
 
 def rnp(rnp_nm: float, *, tta_s: float, containment: int = 1) -> Level:

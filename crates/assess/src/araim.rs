@@ -326,43 +326,71 @@ struct Place {
     enu: Matrix3<f64>,
 }
 
+/// Satellites over users at instants, worked out once for all of them.
+pub(crate) struct Overhead<'a> {
+    outlook: &'a Outlook<'a>,
+    positions: Vec<Vector3<f64>>,
+    places: Vec<Place>,
+    sin_mask: f64,
+}
+
+impl<'a> Overhead<'a> {
+    /// # Errors
+    /// [`AtIndex`]: the first orbit, instant, user or promise outside its domain.
+    pub(crate) fn new(outlook: &'a Outlook<'a>) -> Result<Self, AtIndex> {
+        let at = |index| move |error| AtIndex { index, error };
+        for (index, support) in outlook.promise.support.iter().enumerate() {
+            support.checked().map_err(at(index))?;
+        }
+        if let Some(index) = outlook.time_s.iter().position(|t| !t.is_finite()) {
+            return Err(at(index)(OutOfDomain { argument: "time_s", value: outlook.time_s[index], unit: "s", domain: "finite times" }));
+        }
+        if let Some(index) = outlook.users.iter().position(|u| !u.height.m().is_finite()) {
+            let value = outlook.users[index].height.m();
+            return Err(at(index)(OutOfDomain { argument: "h_m", value, unit: "m", domain: "finite heights" }));
+        }
+        let orbits = outlook.orbits.iter().enumerate().map(|(k, e)| Orbit::new(*e).map_err(at(k))).collect::<Result<Vec<_>, _>>()?;
+        let sky = |t: &f64| orbits.iter().map(|orbit| *orbit.position(*t).vector()).collect::<Vec<_>>();
+        let place = |u: &Geodetic| Place { position_m: *ecef_from_geodetic(u).vector(), enu: enu_from_ecef(&u.point) };
+        Ok(Self {
+            outlook,
+            positions: outlook.time_s.par_iter().flat_map_iter(sky).collect(),
+            places: outlook.users.iter().map(place).collect(),
+            sin_mask: outlook.mask.rad().sin(),
+        })
+    }
+
+    /// Every user at every instant.
+    pub(crate) fn len(&self) -> usize {
+        self.outlook.time_s.len() * self.places.len()
+    }
+
+    /// Satellites of one user and instant, instants first.
+    #[inline(always)]
+    pub(crate) fn each(&self, index: usize, mut each: impl FnMut(Sight)) {
+        let (instant, user) = (index / self.places.len(), index % self.places.len());
+        let n = self.outlook.orbits.len();
+        for (position, constellation) in self.positions[instant * n..(instant + 1) * n].iter().zip(self.outlook.constellation) {
+            if let Some(sight) = seen(position, *constellation, &self.places[user], self.sin_mask, self.outlook) {
+                each(sight);
+            }
+        }
+    }
+}
+
 /// Levels of every user at every instant: user after user, instant after instant.
 ///
 /// # Errors
 /// [`AtIndex`]: the first orbit, instant, user or promise outside its domain.
 pub fn predict(outlook: &Outlook<'_>, rule: &Rule, exclusion: bool) -> Result<Vec<Row>, AtIndex> {
-    let at = |index| move |error| AtIndex { index, error };
-    for (index, support) in outlook.promise.support.iter().enumerate() {
-        support.checked().map_err(at(index))?;
-    }
-    if let Some(index) = outlook.time_s.iter().position(|t| !t.is_finite()) {
-        return Err(at(index)(OutOfDomain { argument: "time_s", value: outlook.time_s[index], unit: "s", domain: "finite times" }));
-    }
-    if let Some(index) = outlook.users.iter().position(|u| !u.height.m().is_finite()) {
-        return Err(at(index)(OutOfDomain {
-            argument: "h_m",
-            value: outlook.users[index].height.m(),
-            unit: "m",
-            domain: "finite heights",
-        }));
-    }
-    let orbits = outlook.orbits.iter().enumerate().map(|(k, e)| Orbit::new(*e).map_err(at(k))).collect::<Result<Vec<_>, _>>()?;
-    let positions: Vec<Vector3<f64>> =
-        outlook.time_s.par_iter().flat_map_iter(|t| orbits.iter().map(|orbit| *orbit.position(*t).vector())).collect();
-    let place = |u: &Geodetic| Place { position_m: *ecef_from_geodetic(u).vector(), enu: enu_from_ecef(&u.point) };
-    let places: Vec<Place> = outlook.users.iter().map(place).collect();
-    let sin_mask = outlook.mask.rad().sin();
+    let overhead = Overhead::new(outlook)?;
     rows(
-        outlook.time_s.len() * places.len(),
+        overhead.len(),
         || Desk::new(outlook.promise.support.map(|s| s.p_const), true),
         #[inline(always)]
         |desk, index| {
-            let (instant, user) = (index / places.len(), index % places.len());
-            let sky = &positions[instant * orbits.len()..(instant + 1) * orbits.len()];
             desk.sights.clear();
-            for (position, constellation) in sky.iter().zip(outlook.constellation) {
-                desk.sights.extend(seen(position, *constellation, &places[user], sin_mask, outlook));
-            }
+            overhead.each(index, |sight| desk.sights.push(sight));
             desk.levels(rule, exclusion)
         },
     )
@@ -397,14 +425,14 @@ fn uniform(sights: &Sights<'_>) -> bool {
 }
 
 /// Every epoch by chunks on all cores.
-fn rows(
+pub(crate) fn rows<D: Send, T: Send>(
     n: usize,
-    desk: impl Fn() -> Desk + Sync + Send,
-    epoch: impl Fn(&mut Desk, usize) -> Result<Row, OutOfDomain> + Sync,
-) -> Result<Vec<Row>, AtIndex> {
+    desk: impl Fn() -> D + Sync + Send,
+    epoch: impl Fn(&mut D, usize) -> Result<T, OutOfDomain> + Sync,
+) -> Result<Vec<T>, AtIndex> {
     let arch = Arch::new();
     let chunk = CHUNK.min(256);
-    let done: Result<Vec<Vec<Row>>, AtIndex> = (0..n.div_ceil(chunk))
+    let done: Result<Vec<Vec<T>>, AtIndex> = (0..n.div_ceil(chunk))
         .into_par_iter()
         .map_init(desk, |desk, k| {
             let span = k * chunk..n.min((k + 1) * chunk);
@@ -415,14 +443,14 @@ fn rows(
 }
 
 /// One chunk as a job for [`Arch::dispatch`], which compiles it once for each width of instructions.
-struct Job<'a, F> {
-    desk: &'a mut Desk,
+struct Job<'a, D, F> {
+    desk: &'a mut D,
     span: std::ops::Range<usize>,
     epoch: &'a F,
 }
 
-impl<F: Fn(&mut Desk, usize) -> Result<Row, OutOfDomain>> pulp::NullaryFnOnce for Job<'_, F> {
-    type Output = Result<Vec<Row>, AtIndex>;
+impl<D, T, F: Fn(&mut D, usize) -> Result<T, OutOfDomain>> pulp::NullaryFnOnce for Job<'_, D, F> {
+    type Output = Result<Vec<T>, AtIndex>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {

@@ -2,13 +2,14 @@
 
 use crate::araim::{Desk, Promise};
 use crate::positions::{Job, each_epoch};
+use navbound_core::bound::araim::Sight;
 use navbound_core::bound::araim::exclusion::{Monitored, NoLevels};
 use navbound_core::bound::araim::modes::MOST_SATELLITES;
 use navbound_core::bound::araim::service::Service;
 use navbound_core::frame::{Displacement, Geodetic};
 use navbound_core::quantity::{GpsTime, Unavailable};
 use navbound_core::signal::SatelliteId;
-use navbound_core::solution::point::{self, MOST_RANGES, Range, sighted};
+use navbound_core::solution::point::{self, Fix, MOST_RANGES, Range, sighted};
 use navbound_formats::rinex::{Navigation, Observations};
 
 /// One epoch.
@@ -42,20 +43,39 @@ pub fn watch(
     )
 }
 
-fn epoch(desk: &mut Desk, time: GpsTime, ranges: &[Range], job: &Job, promise: &Promise, service: &Service) -> Result<Watched, NoLevels> {
+/// Ranges of an epoch as a monitor takes them.
+pub(crate) struct Taken {
+    /// Least squares of all ranges, nothing excluded.
+    pub(crate) fix: Fix,
+    /// Measured less computed ranges there, one a line of sight.
+    pub(crate) residuals_m: Vec<f64>,
+    /// Whose they are.
+    pub(crate) satellites: Vec<SatelliteId>,
+}
+
+/// The position of an epoch's ranges, its lines of sight into `sights`, and its residuals.
+///
+/// # Errors
+/// [`Unavailable`]: no position.
+pub(crate) fn taken(ranges: &[Range], time: GpsTime, job: &Job, promise: &Promise, sights: &mut Vec<Sight>) -> Result<Taken, Unavailable> {
     let fix = point::solve(ranges, time, &job.settings)?;
-    desk.sights.clear();
-    let (mut residuals, mut names) = ([0.0; MOST_RANGES], Vec::new());
-    for (slot, seen) in residuals.iter_mut().zip(sighted(ranges, time, &job.settings, &fix.position)) {
+    sights.clear();
+    let (mut residuals_m, mut satellites) = (Vec::new(), Vec::new());
+    for seen in sighted(ranges, time, &job.settings, &fix.position).take(MOST_RANGES) {
         let satellite = ranges[seen.index].satellite;
-        *slot = seen.residual.m();
-        names.push(satellite);
-        desk.sights.push(promise.sight(seen.unit, satellite.constellation));
+        residuals_m.push(seen.residual.m());
+        satellites.push(satellite);
+        sights.push(promise.sight(seen.unit, satellite.constellation));
     }
-    let monitored = desk.monitored(&residuals[..names.len()], service)?;
+    Ok(Taken { fix, residuals_m, satellites })
+}
+
+fn epoch(desk: &mut Desk, time: GpsTime, ranges: &[Range], job: &Job, promise: &Promise, service: &Service) -> Result<Watched, NoLevels> {
+    let Taken { fix, residuals_m, satellites } = taken(ranges, time, job, promise, &mut desk.sights)?;
+    let monitored = desk.monitored(&residuals_m, service)?;
     let [east, north, up] = monitored.step;
     let position = fix.position.moved(&Displacement::new(east, north, up)).map_err(Unavailable::from)?;
     let out = |i: usize| i < MOST_SATELLITES && monitored.excluded >> i & 1 == 1;
-    let excluded = names.iter().enumerate().filter(|(i, _)| out(*i)).map(|(_, s)| *s).collect();
-    Ok(Watched { position, n_sv: names.len(), excluded, monitored })
+    let excluded = satellites.iter().enumerate().filter(|(i, _)| out(*i)).map(|(_, s)| *s).collect();
+    Ok(Watched { position, n_sv: satellites.len(), excluded, monitored })
 }

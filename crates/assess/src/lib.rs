@@ -21,6 +21,7 @@ pub mod kpi;
 pub mod monitor;
 pub mod plausible;
 pub mod positions;
+pub mod raim;
 pub mod rraim;
 pub mod sbas;
 pub mod sensed;

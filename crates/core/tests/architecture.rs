@@ -25,6 +25,7 @@ const LAYERS: [&[&str]; 5] = [
         "gnss",
         "sbas",
         "araim",
+        "raim",
         "rraim",
         "gbas",
         "ins",

@@ -22,7 +22,7 @@ use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-fn refused(e: AtIndex) -> PyErr {
+pub(crate) fn refused(e: AtIndex) -> PyErr {
     input_error(e.error, Some(e.index))
 }
 
@@ -98,7 +98,7 @@ fn service(
     service.checked().map_err(|e| input_error(e, None))
 }
 
-fn systems(indices: &[usize]) -> PyResult<Vec<Constellation>> {
+pub(crate) fn systems(indices: &[usize]) -> PyResult<Vec<Constellation>> {
     let unknown = |c: usize| OutOfDomain { argument: "constellation", value: c as f64, unit: "1", domain: "indices of CONSTELLATIONS" };
     indices.iter().map(|&c| Constellation::from_index(c).ok_or_else(|| input_error(unknown(c), None))).collect()
 }
@@ -106,16 +106,7 @@ fn systems(indices: &[usize]) -> PyResult<Vec<Constellation>> {
 /// A rule from its numbers: seven of a service, or three of receivers without priors.
 fn rule(numbers: &[f64]) -> PyResult<Rule> {
     match numbers {
-        [false_alarm, missed_detection, fault_free] => {
-            let risk = |argument, q: &f64| Risk::new(*q).map_err(|e| input_error(OutOfDomain { argument, ..e }, None));
-            Ok(Rule::Raim(Requirement {
-                id: "",
-                false_alarm: risk("false_alarm", false_alarm)?,
-                missed_detection: risk("missed_detection", missed_detection)?,
-                fault_free: risk("fault_free", fault_free)?,
-                ..Requirement::RAIM
-            }))
-        }
+        [false_alarm, missed_detection, fault_free] => Ok(Rule::Raim(requirement([*false_alarm, *missed_detection, *fault_free])?)),
         _ => {
             let seven = numbers.try_into().map_err(|_| {
                 let domain = "seven numbers of a service, or three of RAIM";
@@ -124,6 +115,18 @@ fn rule(numbers: &[f64]) -> PyResult<Rule> {
             Ok(Rule::Araim(service(seven)?))
         }
     }
+}
+
+/// What receivers without priors must meet: risks of a false alarm, of a missed detection, and without a fault.
+pub(crate) fn requirement([false_alarm, missed_detection, fault_free]: [f64; 3]) -> PyResult<Requirement> {
+    let risk = |argument, q| Risk::new(q).map_err(|e| input_error(OutOfDomain { argument, ..e }, None));
+    Ok(Requirement {
+        id: "",
+        false_alarm: risk("false_alarm", false_alarm)?,
+        missed_detection: risk("missed_detection", missed_detection)?,
+        fault_free: risk("fault_free", fault_free)?,
+        ..Requirement::RAIM
+    })
 }
 
 /// The shipped requirement of receivers without priors.
@@ -141,7 +144,7 @@ fn raim_requirement(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 
 /// Promises by constellation (sigma_ura, sigma_ure, bias, bias for continuity, p_sat, p_const), and the airborne model's three noise
 /// terms and vertical ionosphere.
-fn promise(support: &[[f64; 6]; 5], airborne: [f64; 4]) -> PyResult<Promise> {
+pub(crate) fn promise(support: &[[f64; 6]; 5], airborne: [f64; 4]) -> PyResult<Promise> {
     let each = |&[ura, ure, bias, continuity, p_sat, p_const]: &[f64; 6]| Support {
         sigma_ura: Metres::new(ura),
         sigma_ure: Metres::new(ure),
@@ -156,6 +159,15 @@ fn promise(support: &[[f64; 6]; 5], airborne: [f64; 4]) -> PyResult<Promise> {
     let [a, b, scale, vertical] = airborne;
     let airborne = Airborne { noise: [a, b, scale], vertical_ionosphere: Metres::new(vertical), ..Airborne::DUAL_FREQUENCY };
     Ok(Promise { support: support.each_ref().map(each), airborne })
+}
+
+/// Users from their coordinates.
+pub(crate) fn users(lat_rad: &[f64], lon_rad: &[f64], h_m: &[f64]) -> PyResult<Vec<Geodetic>> {
+    let user = |(index, ((lat, lon), h)): (usize, ((&f64, &f64), &f64))| {
+        let point = LatLon::new(Radians::new(*lat), Radians::new(*lon)).map_err(|e| input_error(e, Some(index)))?;
+        Ok(Geodetic { point, height: Metres::new(*h) })
+    };
+    lat_rad.iter().zip(lon_rad).zip(h_m).enumerate().map(user).collect()
 }
 
 /// Levels of every user at every instant, instants first; orbits are rows of seven elements.
@@ -176,12 +188,7 @@ fn araim_predict<'py>(
     exclusion: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let orbits: Vec<Elements> = elements.as_slice()?.as_chunks().0.iter().map(orbit).collect();
-    let places = lat_rad.as_slice()?.iter().zip(lon_rad.as_slice()?).zip(h_m.as_slice()?).enumerate();
-    let user = |(index, ((lat, lon), h)): (usize, ((&f64, &f64), &f64))| {
-        let point = LatLon::new(Radians::new(*lat), Radians::new(*lon)).map_err(|e| input_error(e, Some(index)))?;
-        Ok(Geodetic { point, height: Metres::new(*h) })
-    };
-    let users = places.map(user).collect::<PyResult<Vec<_>>>()?;
+    let users = users(lat_rad.as_slice()?, lon_rad.as_slice()?, h_m.as_slice()?)?;
     let (rule, systems, promise) = (rule(&numbers)?, systems(&constellation)?, promise(&support, airborne)?);
     let mask = Radians::new(mask_rad);
     let outlook = Outlook { orbits: &orbits, constellation: &systems, time_s: time_s.as_slice()?, users: &users, mask, promise };
@@ -230,6 +237,24 @@ fn araim_monitor<'py>(
     Ok(d)
 }
 
+/// Positions that a monitor tests afterwards: nothing is excluded.
+pub(crate) fn unmonitored(navigation: &Navigation, systems: &str, dual: bool, mask_rad: f64) -> Job {
+    let settings = Settings {
+        mask: Radians::new(mask_rad),
+        ionosphere: navigation.records.klobuchar_gps.filter(|_| !dual),
+        errors: RangeError::CALIBRATED,
+        false_alarm: Risk::ACCURACY.q(),
+        most_excluded: 0,
+    };
+    Job {
+        systems: systems.bytes().filter_map(Constellation::from_letter).collect(),
+        signals: if dual { Signals::Dual } else { Signals::Single },
+        smoothing: None,
+        settings,
+        keep_ranges: false,
+    }
+}
+
 /// Detection and exclusion at every epoch of an observation file.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "one for each argument of the Python function")]
@@ -245,20 +270,7 @@ fn araim_watch<'py>(
     numbers: [f64; 7],
 ) -> PyResult<Bound<'py, PyDict>> {
     let (service, promise) = (service(&numbers)?, promise(&support, airborne)?);
-    let settings = Settings {
-        mask: Radians::new(mask_rad),
-        ionosphere: navigation.records.klobuchar_gps.filter(|_| !dual),
-        errors: RangeError::CALIBRATED,
-        false_alarm: Risk::ACCURACY.q(),
-        most_excluded: 0,
-    };
-    let job = Job {
-        systems: systems.bytes().filter_map(Constellation::from_letter).collect(),
-        signals: if dual { Signals::Dual } else { Signals::Single },
-        smoothing: None,
-        settings,
-        keep_ranges: false,
-    };
+    let job = unmonitored(navigation, systems, dual, mask_rad);
     let watched = py.detach(|| watch(&observations.0, &navigation.records, &job, &promise, &service));
     let outcome = |w: &Result<Watched, NoLevels>| match w {
         Ok(w) => (araim::Outcome::of(&w.monitored.levels), Some(w.monitored)),
@@ -279,6 +291,15 @@ fn araim_watch<'py>(
     Ok(d)
 }
 
+/// A decision as tables say it.
+pub(crate) fn word(decision: Decision) -> &'static str {
+    match decision {
+        Decision::Nothing => "none",
+        Decision::Excluded => "excluded",
+        Decision::NotExcluded => "not_excluded",
+    }
+}
+
 /// Columns of levels and decisions.
 fn decisions<'py>(py: Python<'py>, rows: &[(Outcome, Option<Monitored>)]) -> PyResult<Bound<'py, PyDict>> {
     let levels: Vec<Row> = rows.iter().map(|(outcome, m)| Row { n_sv: 0, outcome: *outcome, levels: m.map(|m| m.levels) }).collect();
@@ -289,12 +310,7 @@ fn decisions<'py>(py: Python<'py>, rows: &[(Outcome, Option<Monitored>)]) -> PyR
     d.set_item("step_e_m", number(|m| m.step[0].m()))?;
     d.set_item("step_n_m", number(|m| m.step[1].m()))?;
     d.set_item("step_u_m", number(|m| m.step[2].m()))?;
-    let word = |m: &Monitored| match m.decision {
-        Decision::Nothing => "none",
-        Decision::Excluded => "excluded",
-        Decision::NotExcluded => "not_excluded",
-    };
-    d.set_item("decision", rows.iter().map(|r| r.1.as_ref().map_or("", word)).collect::<Vec<_>>())?;
+    d.set_item("decision", rows.iter().map(|r| r.1.as_ref().map_or("", |m| word(m.decision))).collect::<Vec<_>>())?;
     Ok(d)
 }
 

@@ -20,6 +20,7 @@ mod orbits;
 mod path;
 mod positions;
 mod radionav;
+mod raim;
 mod read;
 mod rnp;
 mod rraim;
@@ -41,6 +42,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     tse::register(m)?;
     anp::register(m)?;
     araim::register(m)?;
+    raim::register(m)?;
     rnp::register(m)?;
     sbas::register(m)?;
     sbas_positions::register(m)?;

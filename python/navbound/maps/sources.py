@@ -14,6 +14,7 @@ import numpy as np
 
 from navbound import gnss
 from navbound.errors import FormatError, InputError
+from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -92,7 +93,9 @@ def satellites(constellation: Sequence[str | Path], times: Times, mask_rad: floa
         since = (times.start_ns - orbits.reference_ns) / NS
         if abs(since) > ALMANAC_AGE_S:
             days = since / 86_400
-            raise InputError("start_ns", times.start_ns, "ns", f"a day within a week of the almanac, which is {days:+.1f} days from it")
+            of = f"{utc_text(orbits.reference_ns)} UTC, {abs(days):.1f} days {'before' if days > 0 else 'after'} it"
+            why = "a week number of ten bits is read as the nearest to the day asked"
+            raise InputError("start_ns", times.start_ns, "ns", f"a day within a week of the almanac, which is of {of}; {why}")
     return Satellites(orbits, since + times.offsets_s(), mask_rad, h_m)
 
 

@@ -24,7 +24,7 @@ from navbound.run.directory import Run
 from navbound.run.field_csv import write_csv
 from navbound.run.files import sort_out
 from navbound.run.levels_of import COVARIANCE, SCHEMA, Part, Service, Truth, from_observations, from_table, truth_of
-from navbound.run.levels_of_araim import GIVEN, from_araim, service_of
+from navbound.run.levels_of_monitor import GIVEN, from_monitor, monitor_of
 from navbound.run.performance_words import performance_words
 from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
 from navbound.run.summarise import honesty_of
@@ -72,7 +72,8 @@ class Options:
     solve : bool
         Take the raw measurements and messages of receivers' logs, not their own positions and levels.
     protection : str
-        What protection levels of observations come from: ``given`` (the files), ``araim`` (LPV-200 budgets), ``araim-horizontal``.
+        What protection levels of observations come from: ``given`` (the files), ``raim``, ``araim`` (LPV-200 budgets) or
+        ``araim-horizontal``.
     """
 
     levels: Sequence[str | kpi.Level]
@@ -127,7 +128,7 @@ def evaluate_files(
         raise InputError("files", "nothing", domain="one file or more")
     wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
     truth = truth_of(options.truth, options.truth_tolerance_s)
-    if service_of(options.protection) and options.stanford_esa is not None:
+    if monitor_of(options.protection) is not None and options.stanford_esa is not None:
         raise InputError("protection", options.protection, domain="it without subsets of satellites, which are solved without monitoring")
     sources = sort_out(names, solve=options.solve)
     sources.require_navigation()
@@ -223,9 +224,9 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
 def _compute(source: Source, sources: Files, options: Options, truth: Truth, service: Service) -> Part:
     if source in sources.tables:
         return from_table(source.path, truth, options.columns)
-    monitoring = service_of(options.protection)
-    if monitoring:
-        return from_araim(source.path, service.navigation, truth, monitoring)
+    monitor = monitor_of(options.protection)
+    if monitor is not None:
+        return from_monitor(source.path, service.navigation, truth, monitor)
     return from_observations(source.path, service, truth, keep_ranges=options.stanford_esa is not None)
 
 

@@ -7,6 +7,7 @@ pub mod faults;
 pub mod gbas;
 pub mod level_equation;
 mod method;
+pub mod raim;
 pub mod rraim;
 pub mod sbas;
 pub mod tse;

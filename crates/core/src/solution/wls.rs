@@ -150,10 +150,10 @@ fn responses_of_rows(
     let normal = Normal::new(rows.clone())?;
     let covariance = normal.covariance()?;
     let v = *covariance.matrix();
-    Ok((covariance, rows.map(move |row| v * (row.unit - normal.groups[row.clock].mean) * -row.weight)))
+    Ok((covariance, rows.map(move |row| normal.response(&v, &row))))
 }
 
-fn weighted_row(s: WeightedSight) -> Row {
+pub(crate) fn weighted_row(s: WeightedSight) -> Row {
     Row { unit: s.unit, weight: s.weight, clock: s.constellation.index(), residual: 0.0 }
 }
 
@@ -236,9 +236,20 @@ impl Normal {
 
     /// How much of its own residual a row takes away by moving the solution, 0 to 1: w (1/W_c + d' N^-1 d).
     pub(crate) fn leverage(&self, inverse: &Matrix3<f64>, row: &Row) -> f64 {
-        let group = &self.groups[row.clock];
-        let d = row.unit - group.mean;
-        row.weight * (1.0 / group.weight + d.dot(&(inverse * d)))
+        self.coupling(inverse, row, row)
+    }
+
+    /// How much of a metre of `cause` the least-squares solution puts into what `row` is computed to be: w ([one clock]/W_c + d' N^-1 d).
+    pub(crate) fn coupling(&self, inverse: &Matrix3<f64>, row: &Row, cause: &Row) -> f64 {
+        let (group, of_cause) = (&self.groups[row.clock], &self.groups[cause.clock]);
+        let (d, d_cause) = (row.unit - group.mean, cause.unit - of_cause.mean);
+        let shared = if row.clock == cause.clock { 1.0 / group.weight } else { 0.0 };
+        cause.weight * (shared + d.dot(&(inverse * d_cause)))
+    }
+
+    /// How far the position moves for one metre in a row.
+    pub(crate) fn response(&self, inverse: &Matrix3<f64>, row: &Row) -> Vector3<f64> {
+        inverse * (row.unit - self.groups[row.clock].mean) * -row.weight
     }
 
     /// Number of clocks solved for.

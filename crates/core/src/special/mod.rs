@@ -10,6 +10,7 @@ pub mod chi;
 pub(crate) mod float;
 pub mod folded;
 pub mod gamma;
+pub mod noncentral;
 pub mod normal;
 pub mod prepared;
 pub(crate) mod quadrature;

@@ -1,0 +1,230 @@
+//! RAIM of many epochs by the slope method: geometry given, users and orbits, or a receiver's file.
+
+use crate::araim::{Outcome, Outlook, Overhead, Promise, rows};
+use crate::araim_watch::taken;
+use crate::positions::{Job, each_epoch};
+use nalgebra::Vector3;
+use navbound_core::bound::araim::Sight;
+use navbound_core::bound::raim::exclusion::Monitored;
+use navbound_core::bound::raim::{ExclusionLevels, Levels, Monitor, Requirement};
+use navbound_core::frame::{Displacement, Geodetic};
+use navbound_core::quantity::{GpsTime, OutOfDomain, Unavailable};
+use navbound_core::signal::{Constellation, SatelliteId};
+use navbound_core::solution::point::Range;
+use navbound_core::solution::wls::WeightedSight;
+use navbound_formats::rinex::{Navigation, Observations};
+use navbound_path::AtIndex;
+
+/// Satellites in many solutions: rows are epochs, columns satellites; one whose line of sight is NaN is not used.
+#[derive(Debug, Clone, Copy)]
+pub struct Sights<'a> {
+    /// East, north, up of each unit vector, three numbers a satellite.
+    pub unit_enu: &'a [f64],
+    /// Standard deviation of each range \[m\].
+    pub sigma_m: &'a [f64],
+    /// Constellation of each column.
+    pub constellation: &'a [Constellation],
+}
+
+impl Sights<'_> {
+    /// Epochs.
+    pub fn len(&self) -> usize {
+        self.sigma_m.len().checked_div(self.constellation.len()).unwrap_or(0)
+    }
+    /// None.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// One epoch's result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Satellites used.
+    pub n_sv: usize,
+    /// Whether there are levels of detection.
+    pub outcome: Outcome,
+    /// Levels of detection, and after exclusion, where the geometry gives a position.
+    pub levels: Option<(Levels, ExclusionLevels)>,
+}
+
+/// One epoch after detection and exclusion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tested {
+    /// Geometry before exclusion.
+    pub before: Row,
+    /// Whether there are levels of what is left.
+    pub outcome: Outcome,
+    /// Decision and levels.
+    pub monitored: Option<Monitored>,
+    /// Column of the excluded satellite.
+    pub excluded: Option<usize>,
+}
+
+/// What a thread keeps from epoch to epoch.
+struct Desk {
+    monitor: Box<Monitor>,
+    sights: Vec<WeightedSight>,
+    columns: Vec<usize>,
+    residuals: Vec<f64>,
+}
+
+impl Desk {
+    fn new(requirement: &Requirement) -> Self {
+        Self { monitor: Box::new(Monitor::new(requirement)), sights: Vec::new(), columns: Vec::new(), residuals: Vec::new() }
+    }
+
+    /// Take up a row's satellites, and their residuals where there are any.
+    fn take(&mut self, sights: &Sights<'_>, row: usize, residual_m: &[f64]) {
+        (self.sights.clear(), self.columns.clear(), self.residuals.clear());
+        for (column, constellation) in sights.constellation.iter().enumerate() {
+            let i = row * sights.constellation.len() + column;
+            let unit = Vector3::new(sights.unit_enu[3 * i], sights.unit_enu[3 * i + 1], sights.unit_enu[3 * i + 2]);
+            if unit.iter().all(|x| x.is_nan()) {
+                continue;
+            }
+            // A negative sigma stays negative, so that it is refused.
+            let weight = 1.0 / (sights.sigma_m[i] * sights.sigma_m[i].abs());
+            self.sights.push(WeightedSight { unit, weight, constellation: *constellation });
+            self.columns.push(column);
+            self.residuals.extend(residual_m.get(i));
+        }
+    }
+
+    fn levels(&mut self) -> Result<Row, OutOfDomain> {
+        let n_sv = self.sights.len();
+        match self.monitor.levels(&self.sights) {
+            Ok(levels) => {
+                let excluding = self.monitor.after_exclusion(&levels);
+                Ok(Row { n_sv, outcome: outcome_of(&levels), levels: Some((levels, excluding)) })
+            }
+            Err(e) => Ok(Row { n_sv, outcome: refusal(&e)?, levels: None }),
+        }
+    }
+
+    fn tested(&mut self) -> Result<Tested, OutOfDomain> {
+        let before = self.levels()?;
+        match self.monitor.monitored(&self.sights, &self.residuals) {
+            Ok(monitored) => {
+                let excluded = monitored.excluded.and_then(|i| self.columns.get(i).copied());
+                Ok(Tested { before, outcome: outcome_of(&monitored.levels), monitored: Some(monitored), excluded })
+            }
+            Err(e) => Ok(Tested { before, outcome: refusal(&e)?, monitored: None, excluded: None }),
+        }
+    }
+}
+
+fn outcome_of(levels: &Levels) -> Outcome {
+    if levels.hpl.m().is_finite() && levels.vpl.m().is_finite() { Outcome::Ok } else { Outcome::NotMonitored }
+}
+
+/// Why there are no levels: a status.
+///
+/// # Errors
+/// The caller's mistake.
+fn refusal(e: &Unavailable) -> Result<Outcome, OutOfDomain> {
+    match *e {
+        Unavailable::Invalid { field: "n_sv", .. } => Ok(Outcome::TooMany),
+        Unavailable::Invalid { field, value, unit, domain } => Err(OutOfDomain { argument: field, value, unit, domain }),
+        Unavailable::TooFewSatellites { .. } => Ok(Outcome::TooFewSatellites),
+        _ => Ok(Outcome::Singular),
+    }
+}
+
+/// Levels of every epoch.
+///
+/// # Errors
+/// [`AtIndex`]: the first epoch with a number outside its domain.
+pub fn levels(sights: &Sights<'_>, requirement: &Requirement) -> Result<Vec<Row>, AtIndex> {
+    rows(
+        sights.len(),
+        || Desk::new(requirement),
+        |desk, row| {
+            desk.take(sights, row, &[]);
+            desk.levels()
+        },
+    )
+}
+
+/// Detection and exclusion at every epoch: `residual_m` holds measured less computed ranges, one a satellite.
+///
+/// # Errors
+/// As [`levels`], and for a residual of a satellite in use that is no number.
+pub fn monitored(sights: &Sights<'_>, residual_m: &[f64], requirement: &Requirement) -> Result<Vec<Tested>, AtIndex> {
+    rows(
+        sights.len(),
+        || Desk::new(requirement),
+        |desk, row| {
+            desk.take(sights, row, residual_m);
+            desk.tested()
+        },
+    )
+}
+
+/// Levels of every user at every instant: user after user, instant after instant.
+///
+/// # Errors
+/// [`AtIndex`]: the first orbit, instant, user or promise outside its domain.
+pub fn predict(outlook: &Outlook<'_>, requirement: &Requirement) -> Result<Vec<Row>, AtIndex> {
+    let overhead = Overhead::new(outlook)?;
+    rows(
+        overhead.len(),
+        || Desk::new(requirement),
+        #[inline(always)]
+        |desk, index| {
+            desk.sights.clear();
+            overhead.each(index, |sight| desk.sights.push(weighted(&sight)));
+            desk.levels()
+        },
+    )
+}
+
+/// A range as RAIM takes it: the sigma for integrity, no bias and no prior.
+fn weighted(sight: &Sight) -> WeightedSight {
+    WeightedSight { unit: sight.unit, weight: 1.0 / sight.integrity_m2, constellation: sight.constellation }
+}
+
+/// One epoch of a receiver's file.
+#[derive(Debug, Clone)]
+pub struct Watched {
+    /// The position with the satellites that are left.
+    pub position: Geodetic,
+    /// The satellite excluded.
+    pub excluded: Option<SatelliteId>,
+    /// Decision and levels.
+    pub tested: Tested,
+}
+
+/// Every epoch of a receiver's file: position by least squares without any exclusion of its own, then residuals there, test, exclusion,
+/// levels. The position of the result is that of RAIM's weights.
+pub fn watch(
+    observations: &Observations,
+    navigation: &Navigation,
+    job: &Job,
+    promise: &Promise,
+    requirement: &Requirement,
+) -> Vec<Result<Watched, Unavailable>> {
+    let desk = || (Desk::new(requirement), Vec::new());
+    let each = |(desk, sights): &mut (Desk, Vec<Sight>), time: GpsTime, ranges: &[Range]| epoch(desk, sights, time, ranges, job, promise);
+    each_epoch(observations, navigation, job, desk, each)
+}
+
+fn epoch(
+    desk: &mut Desk,
+    sights: &mut Vec<Sight>,
+    time: GpsTime,
+    ranges: &[Range],
+    job: &Job,
+    promise: &Promise,
+) -> Result<Watched, Unavailable> {
+    let taken = taken(ranges, time, job, promise, sights)?;
+    desk.sights = sights.iter().map(weighted).collect();
+    desk.columns = (0..sights.len()).collect();
+    desk.residuals = taken.residuals_m;
+    let tested = desk.tested().map_err(Unavailable::from)?;
+    let position = match tested.monitored {
+        Some(Monitored { step: [east, north, up], .. }) => taken.fix.position.moved(&Displacement::new(east, north, up))?,
+        None => taken.fix.position,
+    };
+    Ok(Watched { position, excluded: tested.excluded.and_then(|i| taken.satellites.get(i).copied()), tested })
+}

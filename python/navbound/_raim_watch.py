@@ -1,0 +1,123 @@
+"""RAIM on a receiver's recorded observations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import polars as pl
+
+from navbound import _core
+from navbound._araim_settings import RAIM, SUPPORT, ErrorModel, Requirement, Support, airborne_numbers, requirement_numbers, support_rows
+from navbound._araim_watch import checked_model, with_truth
+from navbound._receivers import Navigation, Observations
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+SOURCES: tuple[str, str] = _core.raim_sources()
+"""Documents of the method: of the published level, and of the noise added to it."""
+
+
+@dataclass(frozen=True)
+class Watched:
+    """A receiver's epochs after detection and exclusion.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        The epoch table (docs/notation.md): ``track``, ``time_ns``, ``est_*``, ``hpl_m``, ``vpl_m``, ``hel_m``, ``vel_m``, ``hpl_slope_m``,
+        ``vpl_slope_m``, ``n_sv``, ``n_excluded``, ``n_redundant``, ``decision``, ``mode``, ``status``, ``reason``, with truth also
+        ``truth_*`` and ``nse_*``. ``status`` is ``degraded`` after an exclusion, ``not_available`` where a fault could not be excluded or
+        there is no position. Where a fault could not be detected or not be excluded there are no levels: null.
+    models : dict of str to str
+        Every model by name, for the record of a run.
+    """
+
+    epochs: pl.DataFrame
+    models: dict[str, str]
+
+
+def watch(
+    observations: Observations,
+    navigation: Navigation,
+    *,
+    systems: str = "G",
+    signals: Literal["single", "dual"] = "single",
+    requirement: Requirement = RAIM,
+    support: Support = SUPPORT,
+    model: str | ErrorModel | None = None,
+    mask_rad: float = float(np.radians(5.0)),
+    truth_ecef_m: ArrayLike | None = None,
+    track: str | None = None,
+) -> Watched:
+    """RAIM of every epoch of an observation file: position, test of its residuals, exclusion, levels.
+
+    Parameters
+    ----------
+    observations, navigation
+        From ``gnss.read_observations`` and ``gnss.read_navigation``.
+    systems : str, optional
+        Letters of ``gnss.SYSTEMS``.
+    signals : {"single", "dual"}, optional
+        L1, E1, B1I with the broadcast ionosphere; or ionosphere-free pairs.
+    requirement : Requirement, optional
+        Risks.
+    support : Support, optional
+        What is promised of the satellites: of it RAIM takes ``sigma_ura_m``.
+    model : str or ErrorModel, optional
+        A name of ``araim.ERROR_MODELS``; without it that of the signals.
+    mask_rad : float, optional
+        Lowest elevation. [rad]
+    truth_ecef_m : array_like, shape (3,) or (n_epochs, 3), optional
+        True position, Earth-fixed. [m]
+    track : str, optional
+        Name of the track; by default the marker's or the file's.
+
+    Raises
+    ------
+    InputError
+        Systems that are not there, single signals without a broadcast ionosphere, numbers outside their domain.
+    """
+    chosen = checked_model(navigation, systems, signals, model, mask_rad)
+    numbers = requirement_numbers(requirement)
+    promises, airborne = support_rows(support), airborne_numbers(chosen)
+    found = _core.raim_watch(observations._core, navigation._core, systems, signals == "dual", mask_rad, promises, airborne, numbers)
+    status = np.array(found.pop("words"))[found.pop("outcome")]
+    decision = np.array(found.pop("decision"), dtype=np.str_)
+    usable = np.isin(decision, ["none", "excluded"]) & (status == "ok")
+    excluded = np.array(found.pop("excluded"), dtype=np.str_)
+    reason = np.select(
+        [decision == "not_excluded", decision == "excluded", (decision == "none") & (status == "not_monitored")],
+        ["a fault that cannot be excluded", np.char.add("excluded ", excluded), "a fault could not be detected"],
+        default=np.array(found.pop("reason"), dtype=np.str_),
+    )
+    levels = ("hpl_m", "vpl_m", "hpl_slope_m", "vpl_slope_m")
+    epochs = pl.DataFrame(
+        {
+            "track": [track or observations.marker or observations.path.name] * observations.n_epochs,
+            "time_ns": observations.time_ns,
+            **{name: found[name] for name in ("est_lat_rad", "est_lon_rad", "est_h_m")},
+            **{name: np.where(usable, found[name], np.nan) for name in levels},
+            **{name: np.where(np.isfinite(found[name]), found[name], np.nan) for name in ("hel_m", "vel_m")},
+            **{name: found[name] for name in ("n_sv", "n_redundant")},
+            "n_excluded": (decision == "excluded").astype(np.int64),
+            "decision": decision,
+            "mode": ["raim"] * observations.n_epochs,
+            "status": np.select([np.isin(decision, ["", "not_excluded"]), decision == "excluded"], ["not_available", "degraded"], "ok"),
+            "reason": reason,
+        }
+    ).with_columns(pl.selectors.float().fill_nan(None), pl.col("reason", "decision").replace({"": None}))
+    models = {
+        "protection levels": f"RAIM, weighted slope: {SOURCES[0]}",
+        "noise in the levels": SOURCES[1],
+        "risks": f"false alarm {requirement.false_alarm:g}, missed detection {requirement.missed_detection:g}, without a fault "
+        f"{requirement.fault_free:g}: {requirement.source}; together {requirement.provenance}",
+        "use": "the risks are those of en route to non-precision approach; vertical levels at them promise nothing for vertical guidance",
+        "promises of satellites": f"{support.source} ({support.provenance})",
+        "range errors": f"{chosen.source} ({chosen.provenance})",
+        "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange, Klobuchar",
+        "satellites": f"{systems}, elevation {np.degrees(mask_rad):g} deg and more",
+    }
+    return Watched(with_truth(epochs, truth_ecef_m), models)

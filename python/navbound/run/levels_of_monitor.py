@@ -1,0 +1,115 @@
+"""One part of a campaign: a receiver's observations with the positions and protection levels of a monitor on board (RAIM, ARAIM)."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol
+
+import polars as pl
+
+from navbound import araim, gnss, raim
+from navbound.errors import FormatError, InputError
+from navbound.read.epochs import read
+from navbound.read.truth import join
+from navbound.run.levels_of import Part, uniform
+from navbound.run.words import METRES_PER_NM, share
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from navbound.run.levels_of import Truth
+
+GIVEN = "given"
+"""Protection levels of the files: a table's, those of an augmentation service's messages."""
+
+RNP_NM = (0.3, 1.0, 2.0)
+"""Limits that detection and exclusion are counted against: those of non-precision approach, terminal area and en route."""
+
+
+class Watched(Protocol):
+    """A receiver's epochs after detection and exclusion."""
+
+    @property
+    def epochs(self) -> pl.DataFrame:
+        """The epoch table."""
+        ...
+
+    @property
+    def models(self) -> dict[str, str]:
+        """Every model by name."""
+        ...
+
+
+class Monitor(Protocol):
+    """Observations to tested positions with levels."""
+
+    def __call__(self, observations: gnss.Observations, navigation: gnss.Navigation, *, truth_ecef_m: Any) -> Watched:
+        """Watch every epoch."""
+        ...
+
+
+MONITORS: dict[str, Monitor] = {
+    "raim": raim.watch,
+    "araim": partial(araim.watch, service="lpv-200"),
+    "araim-horizontal": partial(araim.watch, service="horizontal"),
+}
+"""What protection levels of observations may come from, beside the files themselves."""
+
+
+def monitor_of(protection: str) -> Monitor | None:
+    """The monitor of a source of protection levels; None for those of the files.
+
+    Raises
+    ------
+    InputError
+        No such source.
+    """
+    if protection != GIVEN and protection not in MONITORS:
+        raise InputError("protection", protection, domain=f"one of {', '.join([GIVEN, *MONITORS])}")
+    return MONITORS.get(protection)
+
+
+def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Monitor) -> Part:
+    """Positions, tests and levels of every epoch of an observation file.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be read, or without epochs.
+    """
+    observations = gnss.read_observations(path)
+    if not observations.n_epochs:
+        raise FormatError(path, "holds no epoch")
+    found = monitor(observations, records, truth_ecef_m=truth.ecef_m)
+    notes = [f"{path.name}: {words}" for words in decisions(found.epochs)]
+    notes += [f"{name}: {words}" for name, words in found.models.items()]
+    epochs = found.epochs
+    if truth.given is not None and truth.ecef_m is None:
+        epochs, words = join(epochs, read(truth.given), truth.tolerance_s)
+        notes.append(words)
+    return Part(uniform(epochs), observations.n_epochs, [], notes)
+
+
+def decisions(epochs: pl.DataFrame) -> list[str]:
+    """What the monitor decided, counted; and how often it could detect and exclude within the limits of operations, where it says so."""
+    n = epochs.height
+    lost = epochs.filter(pl.col("reason") == "a fault that cannot be excluded").height
+    excluded = epochs.filter(pl.col("n_excluded") > 0)
+    without = epochs.filter(pl.col("hpl_m").is_null() & pl.col("est_lat_rad").is_not_null()).height - lost
+    each = excluded["reason"].value_counts(sort=True).iter_rows()
+    named = ", ".join(f"{str(reason).removeprefix('excluded ')} at {count}" for reason, count in each)
+    which = f" ({named})" if named else ""
+    words = [
+        f"{n} epochs: a fault detected at {lost + excluded.height}, excluded at {excluded.height}{which}, not to be excluded at {lost}; a "
+        f"position but no way to detect a fault at {without}."
+    ]
+    if "hel_m" in epochs.columns:
+        limits = ", ".join(f"{rnp:g} NM" for rnp in RNP_NM)
+        for column, what in (
+            ("hpl_m", "Detection (HPL)"),
+            ("hel_m", "Detection and exclusion (HEL)"),
+            ("hpl_slope_m", "Published slope level"),
+        ):
+            within = (epochs.filter(pl.col(column) <= rnp * METRES_PER_NM).height / n for rnp in RNP_NM)
+            words.append(f"{what} within {limits} at {', '.join(share(part) for part in within)} of the epochs.")
+    return words
