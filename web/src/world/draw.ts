@@ -96,6 +96,11 @@ function angle(value: number, positive: string, negative: string): string {
     return shown === 0 || shown === 180 ? `${shown}°` : `${shown}° ${value < 0 ? negative : positive}`;
 }
 
+/** The middle of a cell as people write it. */
+export function centre(lat_rad: number, lon_rad: number): string {
+    return `${angle(lat_rad * DEG, "N", "S")}, ${angle(((((lon_rad * DEG + 540) % 360) + 360) % 360) - 180, "E", "W")}`;
+}
+
 /** Units a degree, and where the cells begin: a region higher than wide stands in the middle. */
 function placed(grid: MapGrid, margins: Margins): { k: number; left: number } {
     const f = frame(grid);
@@ -122,8 +127,11 @@ export function picture(layer: Layer, all: Class[], grid: MapGrid, coastline: nu
         svg("rect", { width: 1000, height, fill: colours.ground }),
         ...cells(layer, all, grid).map((d, i) => svg("path", { d, fill: fills[i]!, transform: place, "shape-rendering": "crispEdges" })),
         svg("path", { d: net.path, stroke: colours.muted, "stroke-opacity": 0.25, "stroke-width": 0.6, ...thin }),
-        svg("path", { d: coast(coastline, grid), stroke: colours.ground, "stroke-opacity": 0.7, "stroke-width": 1.6, ...thin }),
-        svg("path", { d: coast(coastline, grid), stroke: colours.ink, "stroke-width": 0.6, ...thin }),
+        // Lines of the coast that begin beside the region end at its edge.
+        svg("clipPath", { id: "world-region" }, svg("rect", { x: left, y: TOP, width: f.width * f.squeeze * k, height: f.height * k })),
+        svg("g", { "clip-path": "url(#world-region)" },
+            svg("path", { d: coast(coastline, grid), stroke: colours.ground, "stroke-opacity": 0.7, "stroke-width": 1.6, ...thin }),
+            svg("path", { d: coast(coastline, grid), stroke: colours.ink, "stroke-width": 0.6, ...thin })),
         ...text);
 }
 
