@@ -97,6 +97,7 @@ def test_every_column_of_every_kind_is_declared() -> None:
     for kind in maps.KINDS.values():
         assert {c.name for c in kind.columns} <= declared
         assert all((c.unit == "m") == c.name.endswith("_m") for c in kind.columns)
+        assert {c.name for c in kind.causes} <= declared
     assert {"p_available", "n_sv_least"} <= declared
 
 
@@ -218,9 +219,9 @@ def test_protection_levels_of_a_map_are_those_of_its_subject(shared_data: Path) 
     assert made.points["p_available"].to_list() == covered.supports_best.astype(float).tolist()
     assert made.summary.n_epochs == 1
     log, navigation = shared_data / "sbas" / "msas137_2025046_17h.ems", shared_data / "sbas" / "gps_2025046_17h_rinex3.nav"
-    times = Times(duration_s=3_600.0, step_s=600.0)
-    made = maps.make("sbas", grid=region, messages=log, navigation=(navigation,), mode="npa", times=times)
     heard = sbas.read(log)
+    times = Times(int(heard.time_ns.min()), duration_s=3_600.0, step_s=600.0)
+    made = maps.make("sbas", grid=region, messages=log, navigation=(navigation,), mode="npa", times=times)
     instants = int(heard.time_ns.min()) + (times.offsets_s() * 1e9).astype(np.int64)
     levels = sbas.protection_levels(heard, navigation, instants[:, None], lat_rad=lat, lon_rad=lon, h_m=0.0, mode="npa")
     assert np.isfinite(levels.hpl_m).any(), "no level: this compares nothing"

@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
+from xml.etree import ElementTree
 
 import pytest
 
@@ -86,6 +87,25 @@ def test_classes_share_out_the_whole_area(page: Page) -> None:
     assert sum(shares) == pytest.approx(100.0, abs=0.005 * len(shares))
     label = page.locator(".world-surface svg").get_attribute("aria-label") or ""
     assert label.startswith("Availability. ")
+
+
+def test_the_saved_picture_says_what_it_shows(page: Page, made: maps.Map, tmp_path: Path) -> None:
+    page.select_option("#layer", "pdop_p95")
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save SVG").click()
+    download.value.save_as(tmp_path / "picture.svg")
+    words = " ".join("".join(e.itertext()) for e in ElementTree.parse(tmp_path / "picture.svg").iter("{http://www.w3.org/2000/svg}text"))
+    keys = page.locator(".world-key").all_inner_texts()
+    assert len(keys) > 1
+    assert all("".join(key.split()) in "".join(words.split()) for key in keys), words
+    assert "Position dilution of precision, 95 % of the time" in words
+    assert made.summary.title in words
+
+
+def test_outcomes_share_out_time_and_area(page: Page, made: maps.Map) -> None:
+    shown = {o.name: value(page, f"outcome_{o.name}") for o in made.summary.outcomes if o.share > 0}
+    assert set(shown) == {"p_available", "beyond"}
+    assert sum(shown.values()) == pytest.approx(1.0, abs=1e-12)
 
 
 @pytest.mark.parametrize(("kind", "magic"), [("PNG", b"\x89PNG\r\n\x1a\n"), ("SVG", b"<svg ")])

@@ -57,6 +57,75 @@ def test_a_map_has_the_same_bits_whoever_works_it_off(backend: str, workers: dic
     assert all(np.concatenate([part[k] for part in alone]).tobytes() == whole[k].tobytes() for k in whole)
 
 
+@pytest.fixture(scope="module")
+def jobs(shared_data: Path) -> list[tuple[Evaluate, Tile]]:
+    """Two tiles of every kind of map."""
+    options: dict[str, dict[str, Any]] = {kind: {"times": Times(duration_s=21_600.0, step_s=3_600.0)} for kind in maps.KINDS}
+    navigation = (shared_data / "sbas" / "gps_2025046_17h_rinex3.nav",)
+    options |= {"dme": {}, "sbas": {"messages": shared_data / "sbas" / "msas137_2025046_17h.ems", "navigation": navigation}}
+    lat, lon = maps.Grid.degrees(4.0, (28.0, 44.0, 128.0, 144.0)).points()
+    tiles = [Tile(lat[s], lon[s]) for s in (slice(0, 7), slice(7, None))]
+    found = []
+    for kind in maps.KINDS.values():
+        job = kind.options(**options[kind.id])
+        causes, columns = tuple(c.name for c in kind.causes), tuple(c.name for c in kind.columns)
+        evaluate = Evaluate(job.levels(), columns, tuple((one.column, one.limit) for one in job.limits()), causes)
+        found += [(evaluate, tile) for tile in tiles]
+    return found
+
+
+@pytest.mark.parametrize("backend", ["processes", "dask"])
+def test_every_kind_of_map_has_the_same_bits_whoever_works_it_off(
+    backend: str, workers: dict[str, scale.Workers], jobs: list[tuple[Evaluate, Tile]]
+) -> None:
+    alone = scale.map_tiles(tiles_fixture.evaluated, jobs)
+    assert len(alone) == 2 * len(maps.KINDS)
+    assert all(part["p_available"].max() > 0 for part in alone), "a kind without one level compares nothing"
+    assert same(scale.map_tiles(tiles_fixture.evaluated, jobs, backend=backend, workers=workers[backend]), alone)
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="SKIPPED ALOUD: children are found by Linux's /proc")
+@pytest.mark.parametrize("backend", ["serial", "processes"])
+def test_a_command_that_was_killed_goes_on_and_leaves_no_worker(backend: str, tmp_path: Path) -> None:
+    asked = ["--step-deg", "5", "--every-s", "600", "--backend", backend, "--workers", "1", "--checkpoint", str(tmp_path / "kept")]
+    command = [sys.executable, "-m", "navbound", "map", "araim", *asked, "--out", str(tmp_path / "map"), "--json"]
+    run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 120.0
+    while not list((tmp_path / "kept").glob("*.npz")) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    children = _children(run.pid)
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    assert bool(children) == (backend == "processes")
+    before = {file.name: file.stat().st_mtime_ns for file in (tmp_path / "kept").glob("*.npz")}
+    assert 1 <= len(before) < 3, "the command was not killed in the middle"
+    assert not (tmp_path / "map").exists()
+    while any(map(_lives, children)) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not any(map(_lives, children)), "workers outlive the command"
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=120.0)
+    after = {file.name: file.stat().st_mtime_ns for file in (tmp_path / "kept").glob("*.npz")}
+    assert len(after) == 3
+    assert after.items() >= before.items(), "finished tiles were done again"
+    found = maps.load(tmp_path / "map")
+    whole = maps.make("araim", times=Times(step_s=600.0))
+    assert found.points.equals(whole.points)
+    assert found.summary == whole.summary
+
+
+def _lives(pid: int) -> bool:
+    try:
+        # Who has ended and was not yet waited for is a zombie.
+        return Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def _children(pid: int) -> list[int]:
+    """Processes that a process has started."""
+    return [int(one) for task in Path(f"/proc/{pid}/task").glob("*/children") for one in task.read_text(encoding="ascii").split()]
+
+
 @pytest.mark.parametrize("backend", ["processes", "dask"])
 def test_a_worker_lost_in_mid_run_loses_nothing(backend: str, workers: dict[str, scale.Workers], tmp_path: Path) -> None:
     function = tiles_fixture.LosesWorker(str(tmp_path), tile=3)
@@ -65,10 +134,31 @@ def test_a_worker_lost_in_mid_run_loses_nothing(backend: str, workers: dict[str,
     assert same(found, [tiles_fixture.numbers(t) for t in TILES])
 
 
-def test_a_tile_that_loses_every_worker_is_an_error(tmp_path: Path) -> None:
+def test_a_tile_that_loses_every_worker_is_an_error(workers: dict[str, scale.Workers], tmp_path: Path) -> None:
     function = tiles_fixture.LosesWorker(str(tmp_path), tile=0, always=True)
     with pytest.raises(NavboundError, match="3 worker processes in a row"):
         scale.map_tiles(function, [0], backend="processes", workers=scale.Workers(1))
+    with pytest.raises(NavboundError, match="worker after worker"):
+        scale.map_tiles(function, [0], backend="dask", workers=workers["dask"])
+
+
+def test_a_full_disk_is_named_and_leaves_no_half_tile(tmp_path: Path) -> None:
+    program = (
+        "import resource, signal, tiles_fixture; from navbound import scale; signal.signal(signal.SIGXFSZ, signal.SIG_IGN); "
+        f"resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300)); scale.map_tiles(tiles_fixture.numbers, [0], checkpoint={str(tmp_path)!r})"
+    )
+    run = subprocess.run([sys.executable, "-B", "-c", program], cwd=Path(__file__).parent, capture_output=True, text=True, check=False)
+    assert "cannot keep tile 0: File too large" in run.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_scheduler_that_does_not_answer_is_named() -> None:
+    distributed = pytest.importorskip("distributed", reason="SKIPPED ALOUD: Dask is not installed")
+    import dask  # noqa: PLC0415
+
+    assert distributed
+    with dask.config.set({"distributed.comm.timeouts.connect": "1s"}), pytest.raises(InputError, match="cluster = tcp://127"):
+        scale.map_tiles(tiles_fixture.numbers, [0], backend="dask", workers=scale.Workers(cluster="tcp://127.0.0.1:1"))
 
 
 def test_a_job_that_was_killed_goes_on(tmp_path: Path) -> None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import signal
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,3 +63,9 @@ def refuses(tile: int) -> dict[str, NDArray[np.generic]]:
 def wrong(tile: int) -> dict[str, NDArray[np.generic]]:
     """No dictionary of arrays."""
     return {"y": [tile]}  # type: ignore[dict-item]
+
+
+def evaluated(job: tuple[Callable[[Any], dict[str, NDArray[np.generic]]], Any]) -> dict[str, NDArray[np.generic]]:
+    """Any function with any tile: jobs of several kinds on one set of workers."""
+    function, tile = job
+    return function(tile)

@@ -26,12 +26,14 @@ def map_command(
         typer.Option(help="gps, galileo, beidou, or a YUMA or SEM almanac or RINEX navigation file; may be repeated. [dop, raim, araim]"),
     ] = None,
     start: Annotated[
-        str | None, typer.Option(help="First instant, UTC, as 2026-11-21T00:00. [default: that of the orbits or messages]")
+        str | None,
+        typer.Option(help="First instant, UTC, as 2026-11-21T00:00. [default: the orbits' own; ten minutes into the messages]"),
     ] = None,
-    hours: Annotated[float | None, typer.Option(help="Length. [default: 24]")] = None,
+    hours: Annotated[float | None, typer.Option(help="Length. [default: 24; of sbas to the end of the messages]")] = None,
     every_s: Annotated[float | None, typer.Option(help="Step between instants. [default: 300]")] = None,
     mask_deg: Annotated[float | None, typer.Option(help="Lowest elevation used. [default: 5]")] = None,
     height_m: Annotated[float | None, typer.Option(help="Height of the users above the ellipsoid.")] = None,
+    without: Annotated[list[str] | None, typer.Option(help="Satellite out of service, as G05; may be repeated. [dop, raim, araim]")] = None,
     service: Annotated[str | None, typer.Option(help="Service of araim: lpv-200, horizontal.")] = None,
     model: Annotated[str | None, typer.Option(help="Error model of araim and raim: dual-frequency, single-frequency.")] = None,
     messages: Annotated[Path | None, typer.Option(help="Message log of sbas.")] = None,
@@ -60,6 +62,7 @@ def map_command(
         "times": _times(start, hours, every_s),
         "mask_rad": None if mask_deg is None else math.radians(mask_deg),
         "h_m": height_m,
+        "without": tuple(without) if without else None,
         "service": service,
         "model": model,
         "messages": messages,
@@ -103,7 +106,7 @@ def _times(start: str | None, hours: float | None, every_s: float | None) -> Tim
     usual = Times()
     return Times(
         None if start is None else _instant(start),
-        usual.duration_s if hours is None else hours * 3600.0,
+        None if hours is None else hours * 3600.0,
         usual.step_s if every_s is None else every_s,
     )
 
@@ -136,6 +139,9 @@ def _show(made: maps.Map, *, json: bool) -> None:
     show = cli.out_console.print
     show(made.summary.title, style="bold", markup=False)
     show(made.summary.words, markup=False, highlight=False)
+    for outcome in made.summary.outcomes:
+        if outcome.share > 0:
+            show(f"  {100 * outcome.share:6.2f} % of time and area: {outcome.title}", markup=False, highlight=False)
     for asked in made.summary.limits:
         show(f"  {asked.column} <= {asked.limit:.6g} ({asked.source}; {asked.provenance})", markup=False, highlight=False)
     for assumption in made.summary.assumptions:

@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { areas, classes, classOf, steps } from "../src/world/classes.ts";
-import { cellAt, cells, WIDE } from "../src/world/draw.ts";
+import { cellAt, cells, centre, labels, WIDE } from "../src/world/draw.ts";
+import { flow } from "../src/world/leave.ts";
 import { percentileName, type Layer, type MapGrid } from "../src/world/records.ts";
 
 const DEG = Math.PI / 180;
@@ -60,4 +61,24 @@ test("a point of the picture is in the cell drawn there", () => {
     assert.deepEqual(cellAt((left + 1) / 1000, 0.02, GRID, WIDE), { row: 3, column: 0 });
     assert.equal(cellAt((left - 1) / 1000, 0.02, GRID, WIDE), null);
     assert.equal(cellAt(0.001, 0.5, GRID, WIDE), null);
+});
+
+test("labels leave room between each other, on a small picture too", () => {
+    for (const [width, font] of [[946, 11], [904, 24], [550, 11], [40, 24]] as const) {
+        // Seven letters of 0.6 of the font, "180° W" and a blank.
+        assert.ok(labels(width, font) * 7 * 0.6 * font <= Math.max(width, 7 * 0.6 * font), `${width} ${font}`);
+    }
+    assert.equal(labels(5000, 11), 12);
+});
+
+test("the middle of a cell is written as people do, on both sides of the antimeridian", () => {
+    assert.equal(centre(-2.5 * DEG, 182.5 * DEG), "2.5° S, 177.5° W");
+    assert.equal(centre(0, -180 * DEG), "0°, 180°");
+});
+
+test("entries of a legend follow each other and begin a line before they leave the picture", () => {
+    const found = flow(["x".repeat(40), "x".repeat(40), "x".repeat(40), "x"]);
+    assert.deepEqual(found.map((f) => f.line), [0, 0, 1, 1]);
+    assert.equal(found[0]!.x, found[2]!.x);
+    assert.ok(found[1]!.x > found[0]!.x + 40 * 12 * 0.6);
 });

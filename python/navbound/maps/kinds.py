@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
-from navbound.maps.ground import Dme, Sbas
+from navbound.maps.ground import Dme
 from navbound.maps.orbital import Araim, Dop, Raim
+from navbound.maps.service import Sbas
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,10 +29,21 @@ class Column:
     unit: Literal["1", "m"]
 
 
-class Levels(Protocol):
-    """Numbers of users: latitudes and longitudes [rad] to columns of shape (users, instants), NaN where there is none."""
+@dataclass(frozen=True)
+class Cause:
+    """Why a user has no number at an instant, or an infinite one; ``name`` is the column of its share of the instants."""
 
-    def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, Floats]:
+    name: str
+    title: str
+
+
+class Levels(Protocol):
+    """Numbers of users: latitudes and longitudes [rad] to columns of shape (users, instants), NaN where there is none.
+
+    The causes of the kind are columns of the same shape, true where the cause holds; at most one holds for a user at an instant.
+    """
+
+    def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
         """Work out the users of a tile."""
         ...
 
@@ -66,6 +78,8 @@ class Kind:
         Its name, what it is, and where its numbers come from.
     columns : tuple of Column
         What it gives; the first is shown first.
+    causes : tuple of Cause
+        Why a user may have none of it.
     options : callable
         Its arguments.
     user_epoch_s : float
@@ -76,6 +90,7 @@ class Kind:
     title: str
     source: str
     columns: tuple[Column, ...]
+    causes: tuple[Cause, ...]
     options: Callable[..., Any]
     user_epoch_s: float
 
@@ -86,20 +101,33 @@ _DOPS = tuple(
     for name, title in (("pdop", "Position"), ("hdop", "Horizontal"), ("vdop", "Vertical"), ("gdop", "Geometric"))
 )
 
+_FEW = Cause("p_too_few", "Too few satellites, or badly placed ones")
+_MONITORED = (
+    _FEW,
+    Cause("p_too_many", "More satellites or fault modes than are worked out"),
+    Cause("p_not_monitored", "Faults that cannot be monitored take the whole integrity risk"),
+)
+_SERVED = (
+    Cause("p_no_signal", "The service's satellite is too low"),
+    Cause("p_no_service", "The service offers no usable satellite: no mask or corrections in force, no ionosphere there, or message 0"),
+    Cause("p_too_few", "Too few usable satellites, or badly placed ones"),
+)
+
 KINDS: dict[str, Kind] = {
     kind.id: kind
     for kind in (
-        Kind("dop", "Dilution of precision", "normal equation of ranges of equal weight", _DOPS, Dop, 0.6e-6),
-        Kind("raim", "RAIM protection level", "navbound.araim.predict, service raim", (_HPL,), Raim, 8e-6),
+        Kind("dop", "Dilution of precision", "normal equation of ranges of equal weight", _DOPS, (_FEW,), Dop, 0.6e-6),
+        Kind("raim", "RAIM protection level", "navbound.araim.predict, service raim", (_HPL,), _MONITORED, Raim, 8e-6),
         Kind(
             "araim",
             "ARAIM protection levels",
             "navbound.araim.predict",
             (_VPL, _HPL, Column("emt_m", "Effective monitor threshold", "m")),
+            _MONITORED,
             Araim,
             8e-6,
         ),
-        Kind("sbas", "SBAS protection levels", "navbound.sbas.protection_levels", (_VPL, _HPL), Sbas, 4e-6),
+        Kind("sbas", "SBAS protection levels", "navbound.sbas.protection_levels", (_VPL, _HPL), _SERVED, Sbas, 4e-6),
         Kind(
             "dme",
             "DME/DME coverage",
@@ -108,6 +136,7 @@ KINDS: dict[str, Kind] = {
                 Column("nse_best_m", "95 % navigation error of the best pair", "m"),
                 Column("nse_all_m", "95 % navigation error of all stations", "m"),
             ),
+            (Cause("p_too_few", "No pair of stations in sight that serves"),),
             Dme,
             200e-6,
         ),

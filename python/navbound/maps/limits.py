@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from navbound import kpi
+from navbound import _core, kpi
 from navbound.errors import InputError
 
 
@@ -31,7 +31,10 @@ def limits_of(level: str, *, vertical: bool = True) -> list[Limit]:
         No such level.
     """
     found = kpi.level(level)
-    limits = [Limit("hpl_m", found.hal_m, f"{found.id}: {found.source}", found.provenance["hal_m"])]
+    # The level's own source speaks of its other demands too.
+    sources = {row["id"]: row["limits_source"] for row in _core.service_levels()}
+    source = f"{found.id}: {sources[found.id]}"
+    limits = [Limit("hpl_m", found.hal_m, source, found.provenance["hal_m"])]
     if vertical and found.val_m is not None:
-        limits.append(Limit("vpl_m", found.val_m, f"{found.id}: {found.source}", found.provenance["val_m"]))
+        limits.append(Limit("vpl_m", found.val_m, source, found.provenance["val_m"]))
     return limits

@@ -18,14 +18,17 @@ from navbound.maps import files, records
 from navbound.maps.grid import Grid
 from navbound.maps.kinds import KINDS, Column, Kind
 from navbound.maps.limits import Limit, limits_of
-from navbound.maps.sources import File
+from navbound.maps.sources import File, Times
 from navbound.maps.statistics import PERCENTILES, Evaluate, Tile, percentile_name
+from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 COVERAGE_AT = (0.95, 0.99, 0.995, 0.999)
 """Availabilities at which the share of the area is told."""
+_ROUNDING = 1e-12
+"""Less than this is left of shares that make one: some millions of additions of weights below one. [1]"""
 _RESULT_BYTES = 80.0
 """A number of every column for a user and an instant, and its sorted copy. [B]"""
 
@@ -83,7 +86,12 @@ def make(
     grid = grid or Grid()
     job = _options(chosen, options)
     asked = _limits(chosen, job, limits, level)
-    evaluate = Evaluate(job.levels(), tuple(c.name for c in chosen.columns), tuple((one.column, one.limit) for one in asked))
+    evaluate = Evaluate(
+        job.levels(),
+        tuple(c.name for c in chosen.columns),
+        tuple((one.column, one.limit) for one in asked),
+        tuple(c.name for c in chosen.causes),
+    )
     lat, lon = grid.points()
     n_epochs = job.n_epochs()
     tiles = [Tile(lat[s], lon[s]) for s in scale.cut(len(grid), n_epochs * chosen.user_epoch_s, n_epochs * _RESULT_BYTES)]
@@ -96,7 +104,7 @@ def make(
         command=command,
         created_utc=datetime.now(UTC).isoformat(timespec="seconds"),
         kind=kind,
-        options={f.name: str(getattr(job, f.name)) for f in fields(job)},
+        options={f.name: _option_words(getattr(job, f.name)) for f in fields(job)},
         inputs=_inputs(job),
         backend=backend,
         n_tiles=len(tiles),
@@ -131,6 +139,19 @@ def _limits(kind: Kind, job: Any, limits: Mapping[str, float] | None, level: str
     return [Limit(name, float(limit)) for name, limit in limits.items()]
 
 
+def _option_words(value: object) -> str:
+    """As the caller wrote it, not as Python shows it."""
+    if isinstance(value, Times):
+        start = "usual start" if value.start_ns is None else f"from {utc_text(value.start_ns)} UTC"
+        length = "usual length" if value.duration_s is None else f"{value.duration_s:g} s"
+        return f"{start}, {length}, every {value.step_s:g} s"
+    if isinstance(value, tuple):
+        return ", ".join(map(_option_words, value)) or "none"
+    if isinstance(value, float):
+        return f"{value:.9g}"
+    return "none" if value is None else str(value)
+
+
 def _inputs(job: Any) -> dict[str, str]:
     """Digests of the files among the options."""
     values = [getattr(job, f.name) for f in fields(job)]
@@ -145,7 +166,10 @@ def _summary(kind: Kind, grid: Grid, points: pl.DataFrame, asked: list[Limit], j
     coverage = [records.MapCoverage(available=at, share=_share(weights, available >= at)) for at in COVERAGE_AT]
     worst = int(np.argmin(available))
     where = records.MapWorst(
-        lat_rad=float(points["lat_rad"][worst]), lon_rad=float(points["lon_rad"][worst]), available=float(available[worst])
+        lat_rad=float(points["lat_rad"][worst]),
+        lon_rad=float(points["lon_rad"][worst]),
+        available=float(available[worst]),
+        share=_share(weights, available == available[worst]),
     )
     own = {f.name: getattr(grid, f.name) for f in fields(grid)}
     return records.MapSummary(
@@ -160,6 +184,7 @@ def _summary(kind: Kind, grid: Grid, points: pl.DataFrame, asked: list[Limit], j
         limits=[records.MapLimit(column=a.column, limit=a.limit, source=a.source, provenance=a.provenance) for a in asked],
         coverage=coverage,
         available_mean=float(np.clip((weights * available).sum(), 0.0, 1.0)),
+        outcomes=_outcomes(kind, points, weights),
         worst=where,
         assumptions=job.assumptions(),
     )
@@ -168,6 +193,16 @@ def _summary(kind: Kind, grid: Grid, points: pl.DataFrame, asked: list[Limit], j
 def _share(weights: np.ndarray[Any, np.dtype[np.float64]], where: np.ndarray[Any, np.dtype[np.bool_]]) -> float:
     # All of the area is 1, however the weights are rounded.
     return 1.0 if where.all() else float(weights[where].sum())
+
+
+def _outcomes(kind: Kind, points: pl.DataFrame, weights: np.ndarray[Any, np.dtype[np.float64]]) -> list[records.MapOutcome]:
+    named = {"p_available": "Within the limits"} | {cause.name: cause.title for cause in kind.causes}
+    shares = {name: float(np.clip((weights * points[name].to_numpy()).sum(), 0.0, 1.0)) for name in named}
+    # What is left has a number; a rounding of the shares is none of it.
+    beyond = 1.0 - sum(shares.values())
+    found = [records.MapOutcome(name=name, title=title, share=shares[name]) for name, title in named.items()]
+    rest = records.MapOutcome(name="beyond", title="Beyond the limits", share=beyond if beyond > _ROUNDING else 0.0)
+    return [found[0], rest, *found[1:]]
 
 
 def _column(column: Column, points: pl.DataFrame, weights: np.ndarray[Any, np.dtype[np.float64]]) -> records.MapColumn:
@@ -196,6 +231,10 @@ def _words(kind: Kind, asked: list[Limit], coverage: list[records.MapCoverage], 
         for c in coverage
         if c.available in (0.99, 0.995)
     ]
+    if worst.available == 1.0:
+        return f"A {within}: everywhere, at every instant."
+    if worst.available == 0.0:
+        return f"A {within}: on {', on '.join(parts)}; at no instant on {_percent(worst.share)}."
     lat, lon = math.degrees(worst.lat_rad), math.degrees(worst.lon_rad)
     place = f"{abs(lat):.1f}° {'N' if lat >= 0 else 'S'}, {abs(lon):.1f}° {'E' if lon >= 0 else 'W'}"
     return f"A {within}: on {', on '.join(parts)}. Least at {place}: {_percent(worst.available)} of the time."

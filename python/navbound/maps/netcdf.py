@@ -24,6 +24,7 @@ def of_map(summary: MapSummary, points: pl.DataFrame) -> bytes:
     """The points of a map: coordinates ``lat`` and ``lon``, and every column with its unit and title."""
     g = summary.grid
     titles = {column.name: (column.title, column.unit) for column in summary.columns}
+    titles |= {outcome.name: (f"{outcome.title}, share of the time", "1") for outcome in summary.outcomes}
     lat = np.degrees(points["lat_rad"].to_numpy().reshape(g.n_lat, g.n_lon)[:, 0])
     lon = np.degrees(points["lon_rad"].to_numpy()[: g.n_lon])
     # A region across the antimeridian keeps its order: longitudes go on beyond 180.

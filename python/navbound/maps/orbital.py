@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from navbound.errors import InputError
 from navbound.maps import sources
 from navbound.maps.limits import Limit, limits_of
 from navbound.maps.sources import Satellites, Times
+from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,16 +37,19 @@ class _Day:
         Instants.
     mask_rad, h_m : float
         Lowest elevation used, and height of the users. [rad, m]
+    without : tuple of str
+        Satellites out of service the whole time, as ``G05``.
     """
 
     constellation: tuple[str | Path, ...] = ("gps",)
     times: Times = field(default_factory=Times)
     mask_rad: float = math.radians(5.0)
     h_m: float = 0.0
+    without: tuple[str, ...] = ()
 
     def sky(self) -> Satellites:
         """Satellites at the instants."""
-        return sources.satellites(self.constellation, self.times, self.mask_rad, self.h_m)
+        return sources.satellites(self.constellation, self.times, self.mask_rad, self.h_m, self.without)
 
     def n_epochs(self) -> int:
         """Instants. [1]."""
@@ -55,11 +59,15 @@ class _Day:
         """What the numbers rest on."""
         sky = self.sky()
         named = ", ".join(str(name) for name in self.constellation)
-        dated = "orbits of no date, from their reference instant on" if sky.orbits.reference_ns is None else "orbits of the files"
+        reference = sky.orbits.reference_ns
+        dated = "nominal orbits, which belong to no date" if reference is None else f"orbits of {utc_text(reference)} UTC"
+        out = f" without {', '.join(self.without)}," if self.without else ""
+        first = None if reference is None else reference + round(float(sky.time_s[0]) * sources.NS)
         return [
-            f"{len(sky.orbits.satellite)} satellites ({named}): {dated}, all healthy and tracked above {math.degrees(self.mask_rad):g}°; "
-            "terrain is not considered.",
-            f"{self.n_epochs()} instants, {self.times.step_s:g} s apart.",
+            f"{len(sky.orbits.satellite)} satellites ({named}),{out} {dated}: all healthy and tracked above "
+            f"{math.degrees(self.mask_rad):g}°; terrain is not considered.",
+            self.times.words(self.n_epochs(), first),
+            *([f"Users {self.h_m:g} m above the ellipsoid."] if self.h_m else []),
         ]
 
 
@@ -67,10 +75,11 @@ class _Day:
 class _DopLevels:
     sky: Satellites
 
-    def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, Floats]:
+    def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
         s = self.sky
         found = gnss.dop_map(s.orbits, lat_rad, lon_rad, s.h_m, s.time_s, mask_rad=s.mask_rad)
-        return {name: getattr(found, name) for name in ("hdop", "vdop", "pdop", "gdop", "n_sv")}
+        columns = {name: getattr(found, name) for name in ("hdop", "vdop", "pdop", "gdop", "n_sv")}
+        return columns | {"p_too_few": np.isnan(found.pdop)}
 
 
 @dataclass(frozen=True)
@@ -86,18 +95,25 @@ class Dop(_Day):
         return [Limit("pdop", 6.0, "GPS SPS performance standard, PDOP availability (from memory, clause to be cited)", "standard")]
 
 
+_CAUSES = {"p_too_few": ("too_few_satellites", "singular"), "p_too_many": ("too_many",), "p_not_monitored": ("not_monitored",)}
+"""The statuses of ``navbound.araim`` behind each cause."""
+
+
 @dataclass(frozen=True)
 class _AraimLevels:
     sky: Satellites
     service: str
     model: str
 
-    def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, Floats]:
+    def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
         from navbound import araim  # noqa: PLC0415
 
         s = self.sky
         found = araim.predict(s.orbits, lat_rad, lon_rad, s.h_m, s.time_s, mask_rad=s.mask_rad, service=self.service, model=self.model)
-        return {name: np.ascontiguousarray(getattr(found, name).T, dtype=np.float64) for name in ("hpl_m", "vpl_m", "emt_m", "n_sv")}
+        columns: dict[str, NDArray[Any]] = {
+            name: np.ascontiguousarray(getattr(found, name).T, dtype=np.float64) for name in ("hpl_m", "vpl_m", "emt_m", "n_sv")
+        }
+        return columns | {cause: np.isin(found.status, words).T for cause, words in _CAUSES.items()}
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,16 @@ class MapCoverage(Record):
     """Share of the area, cells weighted by the cosine of their latitude."""
 
 
+class MapOutcome(Record):
+    """What became of users and instants: within the limits, beyond them, or without a number for one cause."""
+
+    name: str
+    """The column that holds its share of the instants at each point; ``beyond`` is what the others leave."""
+    title: str
+    share: float
+    """Share of time and area; all outcomes make 1."""
+
+
 class MapGrid(Record):
     """Cells of the map; the columns of map.parquet go row after row from the south-west."""
 
@@ -48,11 +58,13 @@ class MapGrid(Record):
 
 
 class MapWorst(Record):
-    """The point with the smallest availability."""
+    """The first point with the smallest availability."""
 
     lat_rad: float
     lon_rad: float
     available: float
+    share: float
+    """Share of the area that has no more."""
 
 
 class MapSummary(Record):
@@ -72,6 +84,7 @@ class MapSummary(Record):
     coverage: list[MapCoverage]
     available_mean: float
     """Share of time and area within the limits."""
+    outcomes: list[MapOutcome]
     worst: MapWorst
     assumptions: list[str]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache, reduce
 from operator import add
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from navbound import gnss
+from navbound import gnss, sbas
 from navbound.errors import FormatError, InputError
 from navbound.time import utc_text
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 NS = 1_000_000_000
+DAY_S = 86_400.0
 ALMANAC_AGE_S = 7 * 86_400
 """An almanac farther from the day of the map is that of another week. [s]"""
 MOST_INSTANTS = 100_000
@@ -34,24 +35,37 @@ class Times:
     Attributes
     ----------
     start_ns : int, optional
-        GPS time of the first; None for a day of nominal orbits, which belongs to no date. [ns]
-    duration_s, step_s : float
-        Length and step; the last instant is before the end. [s]
+        GPS time of the first; None for what the kind begins with: a day of nominal orbits belongs to no date. [ns]
+    duration_s : float, optional
+        Length; the last instant is before the end. Without it a day of orbits, or to the end of a log. [s]
+    step_s : float
+        Step. [s]
     """
 
     start_ns: int | None = None
-    duration_s: float = 86_400.0
+    duration_s: float | None = None
     step_s: float = 300.0
 
     def __post_init__(self) -> None:
         if not (self.step_s > 0 and math.isfinite(self.step_s)):
             raise InputError("step_s", self.step_s, "s", "(0, inf)")
-        if not self.step_s <= self.duration_s <= MOST_INSTANTS * self.step_s:
-            raise InputError("duration_s", self.duration_s, "s", f"[step_s, {MOST_INSTANTS} step_s]")
+        if self.duration_s is not None:
+            self._within(self.duration_s)
 
-    def offsets_s(self) -> NDArray[np.float64]:
-        """Since the first instant. [s]."""
-        return np.asarray(np.arange(math.ceil(self.duration_s / self.step_s - 1e-9)) * self.step_s, dtype=np.float64)
+    def _within(self, duration_s: float) -> float:
+        if not self.step_s <= duration_s <= MOST_INSTANTS * self.step_s:
+            raise InputError("duration_s", duration_s, "s", f"[step_s, {MOST_INSTANTS} step_s]")
+        return duration_s
+
+    def offsets_s(self, usual_s: float = DAY_S) -> NDArray[np.float64]:
+        """Since the first instant, over the usual length where none was asked for. [s]."""
+        duration_s = self._within(usual_s) if self.duration_s is None else self.duration_s
+        return np.asarray(np.arange(math.ceil(duration_s / self.step_s - 1e-9)) * self.step_s, dtype=np.float64)
+
+    def words(self, n: int, first_ns: int | None) -> str:
+        """How many, how far apart, and from when where there is a date."""
+        since = "" if first_ns is None else f", from {utc_text(first_ns)} UTC on"
+        return f"{n} instants, {self.step_s:g} s apart{since}."
 
 
 @dataclass(frozen=True)
@@ -64,14 +78,14 @@ class Satellites:
     h_m: float
 
 
-def satellites(constellation: Sequence[str | Path], times: Times, mask_rad: float, h_m: float) -> Satellites:
-    """Satellites of nominal constellations or almanacs at the instants of a map.
+def satellites(constellation: Sequence[str | Path], times: Times, mask_rad: float, h_m: float, without: Sequence[str] = ()) -> Satellites:
+    """Satellites of nominal constellations or almanacs at the instants of a map, without those named.
 
     Raises
     ------
     InputError
         No constellation, nominal orbits for a date, several almanacs of different instants, an almanac of another week, a mask outside
-        [0, pi/2), a height that is not finite.
+        [0, pi/2), a height that is not finite, a satellite to leave out that is not there.
     FormatError
         A file that is no almanac.
     """
@@ -85,7 +99,7 @@ def satellites(constellation: Sequence[str | Path], times: Times, mask_rad: floa
     references = {part.reference_ns for part in parts}
     if len(references) > 1:
         raise InputError("constellation", ", ".join(map(str, constellation)), domain="nominal ones, or files of one reference instant")
-    orbits = reduce(add, parts)
+    orbits = _less(reduce(add, parts), without)
     since = 0.0
     if times.start_ns is not None:
         if orbits.reference_ns is None:
@@ -122,10 +136,39 @@ class File:
         return cls(str(Path(path).resolve()), hashlib.sha256(content).hexdigest())
 
 
-@lru_cache(maxsize=2)
-def messages(path: str, _sha256: str, prn: int | None) -> object:
-    """Messages of one satellite, read once a process."""
-    from navbound import sbas  # noqa: PLC0415
+def _less(orbits: gnss.Orbits, without: Sequence[str]) -> gnss.Orbits:
+    for name in without:
+        if name not in orbits.satellite:
+            raise InputError("without", name, domain=f"satellites of the constellation: {', '.join(orbits.satellite)}")
+    kept = np.array([name not in without for name in orbits.satellite])
+    if not kept.any():
+        raise InputError("without", ", ".join(without), domain="satellites that leave at least one")
+    columns = {f.name: getattr(orbits, f.name)[kept] for f in fields(orbits) if f.name not in {"satellite", "reference_ns"}}
+    return replace(orbits, satellite=tuple(name for name in orbits.satellite if name not in without), **columns)
 
-    found = sbas.read(path)
-    return found if prn is None else found.of(prn)
+
+def messages(log: File, prn: int | None) -> sbas.Messages:
+    """Messages of one satellite of a log, which is read once a process.
+
+    Raises
+    ------
+    InputError
+        No message; several satellites' without a choice; none of the satellite chosen.
+    FormatError
+        Not a message log.
+    """
+    found = _read(log.path, log.sha256)
+    senders = ", ".join(map(str, np.unique(found.prn)))
+    if not senders:
+        raise InputError("messages", log.path, domain="a log that holds a message")
+    if prn is None and "," in senders:
+        raise InputError("prn", "none", domain=f"one of {senders}: the log holds the messages of several satellites")
+    chosen = found if prn is None else found.of(prn)
+    if len(chosen.prn) == 0:
+        raise InputError("prn", prn, domain=f"one of {senders}, whose messages the log holds")
+    return chosen
+
+
+@lru_cache(maxsize=2)
+def _read(path: str, _sha256: str) -> sbas.Messages:
+    return sbas.read(path)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -36,15 +36,16 @@ class Tile:
 
 @dataclass(frozen=True)
 class Evaluate:
-    """Rows of the map for a tile: percentiles of every column, and the share of epochs that meets every limit.
+    """Rows of the map for a tile: percentiles of every column, the share of epochs that meets every limit, and that of every cause.
 
     A percentile is the smallest number found that is not exceeded in that share of the epochs (nearest rank); an epoch without a number
     counts as infinite, so that a percentile is infinite where there is none for longer than the rest.
     """
 
-    levels: Callable[[Floats, Floats], dict[str, Floats]]
+    levels: Callable[[Floats, Floats], dict[str, NDArray[Any]]]
     columns: tuple[str, ...]
     limits: tuple[tuple[str, float], ...]
+    causes: tuple[str, ...] = ()
 
     def __call__(self, tile: Tile) -> dict[str, NDArray[np.generic]]:
         """Evaluate the users of a tile."""
@@ -54,6 +55,7 @@ class Evaluate:
         rows: dict[str, NDArray[np.generic]] = {"p_available": met.mean(axis=1)}
         if "n_sv" in found:
             rows["n_sv_least"] = found["n_sv"].min(axis=1).astype(np.int64)
+        rows |= {cause: found[cause].mean(axis=1) for cause in self.causes}
         for column in self.columns:
             rows |= _percentiles(column, found[column])
         return rows

@@ -103,7 +103,7 @@ def _difference(values: NDArray[np.int64]) -> tuple[int, NDArray[np.int64]]:
 
 def deflate(columns: list[Packed]) -> str:
     """All columns of one track in one deflated stream, as base64."""
-    return base64.b64encode(zlib.compress(b"".join(column.planes for column in columns), 9)).decode("ascii")
+    return base64.b64encode(zlib.compress(b"".join(column.planes for column in columns), 6)).decode("ascii")
 
 
 def run_lengths(values: list[str | None]) -> dict[str, object]:

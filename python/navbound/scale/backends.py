@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import threading
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from navbound.errors import InputError, NavboundError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from multiprocessing.process import BaseProcess
 
     Function = Callable[[Any], Any]
     Pending = Sequence[tuple[int, Any]]
@@ -46,9 +48,18 @@ class Workers:
         return self.count or os.cpu_count() or 1
 
 
-def one_thread() -> None:
-    """Let a worker use one thread: the workers are as many as the cores already. What the user has set stands."""
+def begin_worker() -> None:
+    """One thread, as the workers are as many as the cores already (what the user has set stands), and no longer life than the parent's."""
     os.environ.setdefault("RAYON_NUM_THREADS", "1")
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: BaseProcess) -> None:
+    # A pool's worker waits for work from a parent that was killed for ever.
+    parent.join()
+    os._exit(1)
 
 
 def serial(function: Function, pending: Pending, _workers: Workers) -> Iterator[tuple[int, Any]]:
@@ -79,7 +90,7 @@ def processes(function: Function, pending: Pending, workers: Workers) -> Iterato
 def _pool(function: Function, left: dict[int, Any], count: int) -> Iterator[tuple[int, Any]]:
     # A forked child would inherit the locks of the threads of this process; a fresh interpreter has none.
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(count, len(left)), mp_context=context, initializer=one_thread) as pool:
+    with ProcessPoolExecutor(min(count, len(left)), mp_context=context, initializer=begin_worker) as pool:
         futures = {pool.submit(function, tile): index for index, tile in left.items()}
         try:
             for future in as_completed(futures):
@@ -95,7 +106,7 @@ def dask(function: Function, pending: Pending, workers: Workers) -> Iterator[tup
         yield from _gather(distributed, workers.cluster, function, pending)
         return
     if workers.cluster is not None:
-        with distributed.Client(workers.cluster) as client:
+        with _client(distributed, workers.cluster) as client:
             yield from _gather(distributed, client, function, pending)
         return
     with (
@@ -107,11 +118,20 @@ def dask(function: Function, pending: Pending, workers: Workers) -> Iterator[tup
         yield from _gather(distributed, client, function, pending)
 
 
+def _client(distributed: Any, address: str) -> Any:
+    try:
+        return distributed.Client(address)
+    except (OSError, ValueError) as e:
+        raise InputError("cluster", address, domain=f"the address of a Dask scheduler that answers: {e}") from e
+
+
 def _gather(distributed: Any, client: Any, function: Function, pending: Pending) -> Iterator[tuple[int, Any]]:
     futures = {client.submit(function, tile, pure=False): index for index, tile in pending}
     try:
         for future, result in distributed.as_completed(futures, with_results=True):
             yield futures.pop(future), result
+    except distributed.KilledWorker as e:
+        raise NavboundError(f"the cluster lost worker after worker over a tile: {e}") from e
     finally:
         client.cancel(list(futures))
 

@@ -64,4 +64,6 @@ class Folder:
                         np.lib.format.write_array(member, np.asarray(values), allow_pickle=False)
             partial.replace(file)
         except OSError as e:
+            # Half a tile on a full disk is of no use, and in the way.
+            partial.unlink(missing_ok=True)
             raise FormatError(self.path, f"cannot keep tile {index}: {e.strerror}") from e

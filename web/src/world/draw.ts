@@ -96,6 +96,16 @@ function angle(value: number, positive: string, negative: string): string {
     return shown === 0 || shown === 180 ? `${shown}°` : `${shown}° ${value < 0 ? negative : positive}`;
 }
 
+/** Labels that a width has room for: six letters and as much again between them, no more than a dozen. */
+export function labels(width: number, font: number): number {
+    return Math.max(1, Math.min(12, Math.floor(width / (6.5 * font))));
+}
+
+/** The middle of a cell as people write it. */
+export function centre(lat_rad: number, lon_rad: number): string {
+    return `${angle(lat_rad * DEG, "N", "S")}, ${angle(((((lon_rad * DEG + 540) % 360) + 360) % 360) - 180, "E", "W")}`;
+}
+
 /** Units a degree, and where the cells begin: a region higher than wide stands in the middle. */
 function placed(grid: MapGrid, margins: Margins): { k: number; left: number } {
     const f = frame(grid);
@@ -112,7 +122,7 @@ export function picture(layer: Layer, all: Class[], grid: MapGrid, coastline: nu
     const height = f.height * k + bottom + TOP;
     const place = `translate(${left} ${TOP}) scale(${k * f.squeeze} ${k})`;
     const thin = { fill: "none", "vector-effect": "non-scaling-stroke", transform: place };
-    const net = graticule(grid, margins === NARROW ? 6 : 12);
+    const net = graticule(grid, labels(f.width * f.squeeze * k, font));
     const fills = [...all.map((c) => c.fill), colours.none];
     const text = net.labels.map((l) => svg("text", {
         x: left + l.x * k * f.squeeze - (l.across ? 0 : 5), y: TOP + l.y * k + font * (l.across ? 1.4 : 0.36), fill: colours.muted, "font-size": font,
@@ -122,8 +132,11 @@ export function picture(layer: Layer, all: Class[], grid: MapGrid, coastline: nu
         svg("rect", { width: 1000, height, fill: colours.ground }),
         ...cells(layer, all, grid).map((d, i) => svg("path", { d, fill: fills[i]!, transform: place, "shape-rendering": "crispEdges" })),
         svg("path", { d: net.path, stroke: colours.muted, "stroke-opacity": 0.25, "stroke-width": 0.6, ...thin }),
-        svg("path", { d: coast(coastline, grid), stroke: colours.ground, "stroke-opacity": 0.7, "stroke-width": 1.6, ...thin }),
-        svg("path", { d: coast(coastline, grid), stroke: colours.ink, "stroke-width": 0.6, ...thin }),
+        // Lines of the coast that begin beside the region end at its edge.
+        svg("clipPath", { id: "world-region" }, svg("rect", { x: left, y: TOP, width: f.width * f.squeeze * k, height: f.height * k })),
+        svg("g", { "clip-path": "url(#world-region)" },
+            svg("path", { d: coast(coastline, grid), stroke: colours.ground, "stroke-opacity": 0.7, "stroke-width": 1.6, ...thin }),
+            svg("path", { d: coast(coastline, grid), stroke: colours.ink, "stroke-width": 0.6, ...thin })),
         ...text);
 }
 

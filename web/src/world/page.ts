@@ -2,13 +2,13 @@
 
 import { inflate } from "../data/packing.ts";
 import { button, choice, el, setValue, valueOf } from "../show/dom.ts";
-import { count, place, plain, share } from "../show/format.ts";
+import { count, plain, share } from "../show/format.ts";
 import { choose, colour, themeStore, type Choice } from "../show/theme.ts";
 import { areas, classes, NONE_WORDS } from "./classes.ts";
-import { cellAt, NARROW, picture, WIDE } from "./draw.ts";
+import { cellAt, centre, NARROW, picture, WIDE } from "./draw.ts";
+import { figure, leave, type Key } from "./leave.ts";
 import { layers, type Layer, type MapSummary, type World } from "./records.ts";
 
-const EXPORT_WIDTH = 2000;
 /** Below this the labels of the picture could not be read. */
 const NARROW_PX = 700;
 
@@ -35,6 +35,7 @@ function mapPart(world: World, all: Layer[]): HTMLElement {
     const select = el("select", { id: "layer", "aria-label": "What the map shows" }, ...all.map((l) => el("option", { value: l.id }, l.title)));
     const surface = el("div", { class: "world-surface", tabindex: 0, role: "group", "aria-label": "Map; the arrow keys move from cell to cell" });
     const legend = el("div", { class: "world-legend" });
+    const meaning = el("p", { class: "world-meaning" });
     const readout = el("p", { class: "world-readout", "aria-live": "polite" });
     const value = valueOf("cell", null, "");
     const where = el("span", {});
@@ -45,19 +46,24 @@ function mapPart(world: World, all: Layer[]): HTMLElement {
 
     const read = (): void => {
         const at = current().values[cell.row * grid.n_lon + cell.column]!;
-        where.textContent = `${place(grid.south_rad + (cell.row + 0.5) * grid.step_rad, longitude(grid.west_rad + (cell.column + 0.5) * grid.step_rad))}:`;
+        where.textContent = `${centre(grid.south_rad + (cell.row + 0.5) * grid.step_rad, grid.west_rad + (cell.column + 0.5) * grid.step_rad)}:`;
         setValue(value, at, shown(current(), at));
+    };
+    const colours = (): { ink: string; muted: string; ground: string; none: string } => ({ ink: colour("ink"), muted: colour("muted"), ground: colour("ground"), none: colour("s5") });
+    const drawn = (layer: Layer, room: typeof WIDE): { drawing: SVGSVGElement; keys: Key[] } => {
+        const sorted = classes(layer);
+        const parts = areas(layer, sorted, grid);
+        const all = [...sorted.map((c) => ({ fill: c.fill, words: c.words })), { fill: colours().none, words: NONE_WORDS }];
+        const keys = all.map((c, i) => ({ ...c, share: parts[i]! })).filter((c) => c.share > 0).map(({ fill, words, share: part }) => ({ fill, words, part: share(part) }));
+        return { drawing: picture(layer, sorted, grid, world.coastline, colours(), room), keys };
     };
     const draw = (): void => {
         const layer = current();
-        const sorted = classes(layer);
-        const drawing = picture(layer, sorted, grid, world.coastline, { ink: colour("ink"), muted: colour("muted"), ground: colour("ground"), none: colour("s5") }, margins());
-        const parts = areas(layer, sorted, grid);
-        drawing.setAttribute("aria-label", `${layer.title}. ${sorted.map((c, i) => `${c.words}: ${share(parts[i]!)} of the area`).join("; ")}`);
+        const { drawing, keys } = drawn(layer, margins());
+        drawing.setAttribute("aria-label", `${layer.title}. ${keys.map((k) => `${k.words}: ${k.part} of the area`).join("; ")}`);
         surface.replaceChildren(drawing);
-        legend.replaceChildren(...[...sorted.map((c) => ({ fill: c.fill, words: c.words })), { fill: colour("s5"), words: NONE_WORDS }]
-            .map((c, i) => ({ ...c, part: parts[i]! })).filter((c) => c.part > 0)
-            .map((c) => el("span", { class: "world-key" }, el("i", { style: `background:${c.fill}` }), c.words, el("span", { class: "also" }, share(c.part)))));
+        meaning.textContent = `${headed(layer)}; beside each colour its share of the area`;
+        legend.replaceChildren(...keys.map((k) => el("span", { class: "world-key" }, el("i", { style: `background:${k.fill}` }), k.words, el("span", { class: "also" }, k.part))));
         read();
     };
     const point = (event: PointerEvent): void => {
@@ -76,41 +82,26 @@ function mapPart(world: World, all: Layer[]): HTMLElement {
     });
     select.addEventListener("change", draw);
     matchMedia(`(width < ${NARROW_PX}px)`).addEventListener("change", draw);
-    const save = (kind: "svg" | "png"): void => void leave(surface.querySelector("svg")!, `${world.summary.kind}-${current().id}`, kind);
+    // A file is read on a desk: it has the wide margins, whatever screen it was saved on.
+    const save = (kind: "svg" | "png"): void => {
+        const { drawing, keys } = drawn(current(), WIDE);
+        void leave(figure(drawing, keys, { title: world.summary.title, layer: headed(current()), colours: colours() }), `${world.summary.kind}-${current().id}`, kind);
+    };
     themeStore().watch(draw);
     return el("section", { id: "world", class: "chart" },
         el("div", { class: "chart-head" }, el("h2", {}, "Map"), el("div", { class: "map-controls" }, el("label", { class: "selector" }, "Shown ", select), button("Save PNG", {}, () => save("png")), button("Save SVG", {}, () => save("svg")))),
-        surface, legend, readout);
+        surface, meaning, legend, readout);
 }
 
-function longitude(rad: number): number {
-    return Math.atan2(Math.sin(rad), Math.cos(rad));
+/** What a layer shows, in which unit. */
+function headed(layer: Layer): string {
+    return layer.unit === "%" ? `${layer.title} [% of the time]` : layer.unit === "m" ? `${layer.title} [m]` : layer.title;
 }
 
 function shown(layer: Layer, value: number): string {
     if (!Number.isFinite(value)) return NONE_WORDS;
     if (layer.unit === "%") return share(value / 100);
     return layer.unit === "m" ? `${plain(value, value < 100 ? 1 : 0)} m` : plain(value, 2);
-}
-
-/** Hands the picture to the browser as a file. */
-async function leave(drawing: SVGSVGElement, name: string, kind: "svg" | "png"): Promise<void> {
-    const text = new XMLSerializer().serializeToString(drawing);
-    const blob = kind === "svg" ? new Blob([text], { type: "image/svg+xml" }) : await raster(text, drawing.viewBox.baseVal);
-    const link = el("a", { href: URL.createObjectURL(blob), download: `${name}.${kind}` });
-    link.click();
-    URL.revokeObjectURL(link.href);
-}
-
-async function raster(text: string, box: { width: number; height: number }): Promise<Blob> {
-    const image = new Image();
-    const [width, height] = [EXPORT_WIDTH, Math.round((EXPORT_WIDTH * box.height) / box.width)];
-    // Without a size of its own an image of vectors has none on a canvas.
-    image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text.replace("<svg ", `<svg width="${width}" height="${height}" `))}`;
-    await image.decode();
-    const canvas = el("canvas", { width, height });
-    canvas.getContext("2d")!.drawImage(image, 0, 0, width, height);
-    return new Promise((done, failed) => canvas.toBlob((blob) => (blob === null ? failed(new Error("no image")) : done(blob)), "image/png"));
 }
 
 function numbers(summary: MapSummary): HTMLElement {
@@ -121,8 +112,11 @@ function numbers(summary: MapSummary): HTMLElement {
         ...keys.map((key) => valueOf(`${c.name}_${key}`, c.typical[key] ?? null, c.typical[key] == null ? NONE_WORDS : `${plain(c.typical[key]!, 2)}${unit(c.unit)}`, "td"))));
     const caption = "Half of the area is within";
     const table = el("table", {}, el("caption", { class: "sr" }, caption), el("thead", {}, el("tr", {}, el("th", {}, "quantity"), ...heads.map((h) => el("th", { scope: "col" }, h)))), el("tbody", {}, ...rows));
+    const outcomes = summary.outcomes.filter((o) => o.share > 0).map((o) => el("tr", {}, el("th", { scope: "row" }, o.title), valueOf(`outcome_${o.name}`, o.share, share(o.share), "td")));
+    const what = summary.n_epochs === 1 ? "Share of the area" : "Share of time and area";
     const limits = summary.limits.map((l) => el("li", {}, `${summary.columns.find((c) => c.name === l.column)?.title ?? l.column}: at most ${plain(l.limit, l.limit % 1 === 0 ? 0 : 2)}${unit(summary.columns.find((c) => c.name === l.column)?.unit ?? "1")} · ${l.source} · `, el("strong", {}, l.provenance)));
-    return el("section", { id: "numbers" }, el("h2", {}, "Numbers"), el("div", { class: "table-box" }, el("p", { class: "table-title", "aria-hidden": "true" }, caption), el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": caption }, table)), el("h3", {}, "Limits"), el("ul", {}, ...limits));
+    return el("section", { id: "numbers" }, el("h2", {}, "Numbers"), el("div", { class: "table-box" }, el("p", { class: "table-title", "aria-hidden": "true" }, caption), el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": caption }, table)),
+        el("div", { class: "table-box" }, el("p", { class: "table-title", "aria-hidden": "true" }, what), el("table", {}, el("caption", { class: "sr" }, what), el("tbody", {}, ...outcomes))), el("h3", {}, "Limits"), el("ul", {}, ...limits));
 }
 
 function basis(world: World): HTMLElement {

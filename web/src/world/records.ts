@@ -38,7 +38,8 @@ export interface MapSummary {
     limits: MapLimit[];
     coverage: { available: number; share: number }[];
     available_mean: number;
-    worst: { lat_rad: number; lon_rad: number; available: number };
+    outcomes: { name: string; title: string; share: number }[];
+    worst: { lat_rad: number; lon_rad: number; available: number; share: number };
     assumptions: string[];
 }
 
