@@ -150,7 +150,7 @@ fn responses_of_rows(
     let normal = Normal::new(rows.clone())?;
     let covariance = normal.covariance()?;
     let v = *covariance.matrix();
-    Ok((covariance, rows.map(move |row| v * (row.unit - normal.groups[row.clock].mean) * -row.weight)))
+    Ok((covariance, rows.map(move |row| normal.response(&v, &row))))
 }
 
 fn weighted_row(s: WeightedSight) -> Row {
@@ -222,6 +222,11 @@ impl Normal {
     /// The least-squares step of the position; `None` where the geometry does not determine it at all.
     pub(crate) fn step(&self) -> Option<Vector3<f64>> {
         Some(self.information.cholesky()?.solve(&self.side))
+    }
+
+    /// How far the position moves for one metre in a row's range, by the inverse of the information.
+    pub(crate) fn response(&self, inverse: &Matrix3<f64>, row: &Row) -> Vector3<f64> {
+        inverse * (row.unit - self.groups[row.clock].mean) * -row.weight
     }
 
     /// What a row's clock reads after a step: the weighted mean of residual and step along the line of sight.
