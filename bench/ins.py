@@ -42,6 +42,13 @@ def fixes(time_ns: np.ndarray) -> ins.Fixes:
     return ins.Fixes(time_ns, np.tile(body.PLACE, (time_ns.size, 1)), np.tile(np.eye(3), (time_ns.size, 1, 1)))
 
 
+def stations(time_ns: np.ndarray) -> ins.DmeRanges:
+    """Slant ranges to four places 60 km away, once a second."""
+    places = body.place_ecef(6e4 * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]))
+    slant = np.full(4 * time_ns.size, 6e4)
+    return ins.DmeRanges(np.repeat(time_ns, 4), np.tile(np.arange(4), time_ns.size), np.tile(places, (time_ns.size, 1)), slant, 157.0, 93.0)
+
+
 def measure() -> list[dict[str, object]]:
     """One row a measurement: name, seconds_per_item, n, note."""
     quarter = body.standing(1, 900.0, 200)
@@ -72,17 +79,26 @@ def measure() -> list[dict[str, object]]:
     hours = body.standing(2, 7200.0, 100)
     second = hours.time_ns[99::100]
     sky = body.satellites(2, second, white_m=3.0, slow_m=10.0, tau_s=1800.0, n=26)
-    aiding = ins.Aiding(satellites=sky, baro=ins.BaroHeights(second, body.PLACE[2], 5.0, 30.0, 3600.0))
-    found = ins.fuse(hours.imu, aiding, hours.start)
-    cost = seconds(lambda: ins.fuse(hours.imu, aiding, hours.start), repeats=1)
-    rows.append(
-        {
-            "name": "ins fuse, two hours at 100 Hz",
-            "seconds_per_item": cost / hours.time_ns.size,
-            "n": hours.time_ns.size,
-            "note": f"a sample; {found.n_states.max()} states, 26 satellites at 1 Hz; {cost:.2f} s the flight",
-        }
-    )
+    baro = ins.BaroHeights(second, body.PLACE[2], 5.0, 30.0, 3600.0)
+    whole = ins.Aiding(satellites=sky, baro=baro)
+    with_stations = ins.Aiding(satellites=sky, baro=baro, dme=stations(second))
+    for name, aiding, how in (
+        ("two hours at 100 Hz", whole, ins.FilterSettings()),
+        ("the same and four DME", with_stations, ins.FilterSettings()),
+        ("with the reversion filter beside", with_stations, ins.FilterSettings(reversion=True)),
+        ("loose", with_stations, ins.FilterSettings(form="loose")),
+        ("federated", with_stations, ins.FilterSettings(form="federated")),
+    ):
+        found = ins.fuse(hours.imu, aiding, hours.start, settings=how)
+        cost = seconds(partial(ins.fuse, hours.imu, aiding, hours.start, settings=how), repeats=1)
+        rows.append(
+            {
+                "name": f"ins fuse, {name}",
+                "seconds_per_item": cost / hours.time_ns.size,
+                "n": hours.time_ns.size,
+                "note": f"a sample; {found.n_states.max()} states, 26 satellites at 1 Hz; {cost:.2f} s the flight",
+            }
+        )
     return rows
 
 

@@ -14,7 +14,7 @@ GLOSSARY = (ROOT / "docs" / "notation.md").read_text(encoding="utf-8")
 WORDS = {"sv", "track", "leg", "phase", "status", "reason", "mode", "nav_mode", "alert", "state", "kind", "words", "satellite", "station"}
 SUFFIXES = ("_m", "_m2", "_s", "_ns", "_rad", "_mps", "_mps2", "_radps")
 UNITLESS = ("p_", "n_")
-DIMENSIONLESS = {"hdop", "vdop"}
+DIMENSIONLESS = {"hdop", "vdop", "innovation_memory"}
 
 
 def declared() -> set[str]:
