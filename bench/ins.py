@@ -28,6 +28,13 @@ def fixes(time_ns: np.ndarray) -> ins.Fixes:
     return ins.Fixes(time_ns, np.tile(body.PLACE, (time_ns.size, 1)), np.tile(np.eye(3), (time_ns.size, 1, 1)))
 
 
+def stations(time_ns: np.ndarray) -> ins.DmeRanges:
+    """Slant ranges to four places 60 km away, once a second."""
+    places = body.place_ecef(6e4 * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]))
+    slant = np.full(4 * time_ns.size, 6e4)
+    return ins.DmeRanges(np.repeat(time_ns, 4), np.tile(np.arange(4), time_ns.size), np.tile(places, (time_ns.size, 1)), slant, 157.0, 93.0)
+
+
 def measure() -> list[Row]:
     """One row a measurement."""
     quarter = body.standing(1, 900.0, 200)
@@ -52,12 +59,22 @@ def measure() -> list[Row]:
     hours = body.standing(2, 7200.0, 100)
     second = hours.time_ns[99::100]
     sky = body.satellites(2, second, white_m=3.0, slow_m=10.0, tau_s=1800.0, n=26)
-    aiding = ins.Aiding(satellites=sky, baro=ins.BaroHeights(second, body.PLACE[2], 5.0, 30.0, 3600.0))
-    found = ins.fuse(hours.imu, aiding, hours.start)
-    cost = seconds(lambda: ins.fuse(hours.imu, aiding, hours.start), repeats=1)
+    baro = ins.BaroHeights(second, body.PLACE[2], 5.0, 30.0, 3600.0)
+    whole = ins.Aiding(satellites=sky, baro=baro)
+    with_stations = ins.Aiding(satellites=sky, baro=baro, dme=stations(second))
     n = hours.time_ns.size
-    note = f"a sample; {found.n_states.max()} states, 26 satellites at 1 Hz; {cost:.2f} s the flight"
-    return [*rows, Row("ins fuse, two hours at 100 Hz", cost / n, n, note, goal_s=10.0 / n)]
+    for name, aiding, how in (
+        ("two hours at 100 Hz", whole, ins.FilterSettings()),
+        ("the same and four DME", with_stations, ins.FilterSettings()),
+        ("with the reversion filter beside", with_stations, ins.FilterSettings(reversion=True)),
+        ("loose", with_stations, ins.FilterSettings(form="loose")),
+        ("federated", with_stations, ins.FilterSettings(form="federated")),
+    ):
+        found = ins.fuse(hours.imu, aiding, hours.start, settings=how)
+        cost = seconds(partial(ins.fuse, hours.imu, aiding, hours.start, settings=how), repeats=1)
+        note = f"a sample; {found.n_states.max()} states, 26 satellites at 1 Hz; {cost:.2f} s the flight"
+        rows.append(Row(f"ins fuse, {name}", cost / n, n, note, goal_s=10.0 / n))
+    return rows
 
 
 if __name__ == "__main__":

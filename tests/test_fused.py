@@ -100,7 +100,7 @@ def test_the_mode_falls_back_without_satellites_and_returns() -> None:
 
 def summary(name: str, faults: list[dict[str, Any]] | None = None) -> tuple[Run, list[navbound.run.faults.FaultSummary]]:
     # Fewer satellites are faster, and enough where none of them is at fault.
-    found = quick(name, faults, ["gps", "beidou"] if "satellite" in name else ["gps"])
+    found = quick(name, faults, ["gps", "beidou"] if "satellite" in name or "approach" in name else ["gps"])
     run = judge(fly.material(found), Settings(methods=()))
     return run, fault_summaries(found, run.epochs, run.events)
 
@@ -128,6 +128,16 @@ def test_every_shipped_fault_is_flown_and_summed_up(name: str, kinds: list[str])
         # A hundred metres against a deviation of some metres: gated from the first second, said after three.
         assert by_kind["satellite-step"].gate_after_s == pytest.approx(2.0, abs=1.0)
         assert by_kind["satellite-step"].nse_h_max_m < 20.0  # type: ignore[operator]
+    if name == "beijing-shanghai-spoofed-approach":
+        # The crew knows in the second in which the filters are found to disagree.
+        assert by_kind["spoofing"].alert_after_s == by_kind["spoofing"].disagree_after_s
+        assert by_kind["spoofing"].alert == "unavailable"
+        assert by_kind["spoofing"].outcome == "before"
+    if name == "beijing-shanghai-spoofed":
+        # Half a metre a second: found before the 300 m are reached, though each gate lets it pass.
+        assert by_kind["spoofing"].disagree_after_s < 600.0  # type: ignore[operator]
+    if name == "beijing-shanghai-jammed":
+        assert by_kind["interference"].disagree_after_s is None
     if "interference" in by_kind:
         assert by_kind["interference"].mode_after_s == pytest.approx(6.0, abs=2.0)
 
@@ -176,6 +186,8 @@ def test_samples_whose_times_run_a_second_behind_give_no_position_until_they_are
         ('base = "beijing-shanghai"\n[filter]\nmode = "white"\n', "filter"),
         ('base = "beijing-shanghai-real"\n[filter]\ngate_risk = 0.0\n', "gate_risk"),
         ('base = "beijing-shanghai-real"\n[filter]\nmode = "grey"\n', "mode"),
+        ('base = "beijing-shanghai-real"\n[filter]\nform = "ultra-tight"\n', "form"),
+        ('base = "beijing-shanghai-real"\n[filter]\nseparation_risk = 0.0\n', "separation_risk"),
         ('base = "beijing-shanghai-real"\n[[faults]]\nkind = "lateral-ramp"\nstart_s = 1.0\nduration_s = 2.0\nrate_mps = 1.0\n', "faults"),
         (
             'base = "beijing-shanghai-real"\n[[sensors.faults]]\nkind = "imu-trouble"\nstart_s = 1.0\nduration_s = 2.0\nwhat = "odd"\n',

@@ -30,7 +30,7 @@ WORDS = {
 }
 SUFFIXES = ("_m", "_m2", "_s", "_ns", "_rad", "_mps", "_mps2", "_radps")
 UNITLESS = ("p_", "n_")
-DIMENSIONLESS = {"hdop", "vdop"}
+DIMENSIONLESS = {"hdop", "vdop", "innovation_memory"}
 
 
 def declared() -> set[str]:

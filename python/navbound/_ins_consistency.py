@@ -15,7 +15,7 @@ from navbound.scenario import Scenario, load
 if TYPE_CHECKING:
     from pathlib import Path
 
-COLUMNS = (
+SCORE = (
     "n_epochs",
     "nees",
     "p_circle",
@@ -23,12 +23,25 @@ COLUMNS = (
     *(f"rms_{axis}_m" for axis in "enu"),
     *(f"sigma_{axis}_m" for axis in "enu"),
     *(f"p_{mode}" for mode in ("coasting", "vor_dme", "dme_dme", "gnss")),
+    "n_stopped",
+)
+"""Of one filter."""
+COLUMNS = (
+    *SCORE,
     "range_mean_square",
     "range_lag_one",
     "n_ranges_used",
     "n_ranges_gated",
-    "n_stopped",
+    "range_memory_max",
 )
+REVERSION = (
+    "n_compared",
+    "separation_mean_square",
+    "separation_max_square",
+    "n_disagreements",
+    *(f"reversion_{name}" for name in SCORE),
+)
+"""Only with a filter without satellites beside the main one."""
 
 
 def consistency(
@@ -65,8 +78,11 @@ def consistency(
     polars.DataFrame
         ``flight``; ``n_epochs`` judged, one a second; ``nees``, mean of e' V^-1 e, 3 for a filter that is right; ``p_circle``,
         ``p_sphere``, shares inside the 95 % circle and sphere; ``rms_e_m`` ... of the errors and ``sigma_e_m`` ... that the filter
-        says; ``p_gnss`` ... of the modes; ``range_mean_square``, ``range_lag_one``, ``n_ranges_used``, ``n_ranges_gated`` of the
-        innovations; ``n_stopped`` epochs after a stop.
+        says; ``p_gnss`` ... of the modes; ``n_stopped`` epochs after a stop; ``range_mean_square``, ``range_lag_one``,
+        ``n_ranges_used``, ``n_ranges_gated`` of the innovations (in the loose form of the solved positions), ``range_memory_max`` the
+        largest memory of a minute in standard deviations. With a reversion filter also ``n_compared`` instants at which both filters
+        were compared, ``separation_mean_square`` of their horizontal difference, 2 where both are right, ``separation_max_square``,
+        ``n_disagreements``, and ``reversion_nees`` ..., the first columns of that filter.
 
     Raises
     ------
@@ -84,6 +100,8 @@ def consistency(
     normals = np.array([np.random.default_rng([chosen, number]).normal(size=9) for number in range(first, first + flights)])
     words = told(imu_model or ImuModel(), settings or FilterSettings(), start or StartSigma(), (1.0, 0.0), None)
     table = _core.ins_consistency(found.core_json(), chosen, first, normals, words, skip_s)
-    columns = {name: table[:, k] for k, name in enumerate(COLUMNS)}
-    counts = [name for name in COLUMNS if name.startswith("n_")]
+    how = settings or FilterSettings()
+    names = (*COLUMNS, *REVERSION) if how.reversion or how.form == "federated" else COLUMNS
+    columns = {name: table[:, k] for k, name in enumerate(names)}
+    counts = [name for name in names if name.startswith(("n_", "reversion_n_"))]
     return pl.DataFrame({"flight": np.arange(first, first + flights), **columns}).with_columns(pl.col(counts).cast(pl.Int64))

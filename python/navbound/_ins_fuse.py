@@ -50,6 +50,29 @@ class Innovations:
 
 
 @dataclass(frozen=True)
+class Reversion:
+    """The filter without satellites, and how far the one with satellites is from it; a row a result, NaN where there is nothing to say.
+
+    Attributes
+    ----------
+    position : ndarray, shape (n, 3)
+        Latitude, longitude, height. [rad, rad, m]
+    covariance_enu_m2 : ndarray, shape (n, 3, 3)
+        Of its position error. [m²]
+    mode : list of str
+        What keeps its position.
+    separation_m, separation_limit_m : ndarray, shape (n,)
+        Horizontal distance between both, and the distance in that direction which filters that are right exceed with `separation_risk`. [m]
+    """
+
+    position: NDArray[np.float64]
+    covariance_enu_m2: NDArray[np.float64]
+    mode: list[str]
+    separation_m: NDArray[np.float64]
+    separation_limit_m: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Fused(Track):
     """The filter's results; NaN with the mode ``stopped`` after a stop.
 
@@ -73,6 +96,8 @@ class Fused(Track):
         Further states at the end, by name.
     innovations : dict of str to Innovations
         By kind of measurement.
+    reversion : Reversion or None
+        The filter without satellites, where one runs beside the main one.
     """
 
     covariance_enu_m2: NDArray[np.float64]
@@ -87,6 +112,7 @@ class Fused(Track):
     refused: tuple[int, str] | None
     further: dict[str, float]
     innovations: dict[str, Innovations]
+    reversion: Reversion | None
 
 
 def _start(start: Start) -> dict[str, object]:
@@ -168,8 +194,8 @@ def fuse(
     """Run a flight through the closed-loop error-state filter.
 
     Fifteen states of the inertial navigator (phi-angle error model, north, east, down) and one for everything that stays wrong for a
-    while: clock and drift, constellations, barometer, stations, satellites. Satellite ranges are coupled tightly, solved positions
-    loosely, by what `aiding` holds. Equations and limits in docs/methods/ins.md.
+    while: clock and drift, constellations, barometer, stations, satellites. Satellite ranges are coupled as ``settings.form`` says; solved
+    positions of `aiding` are taken for new each time. Equations and limits in docs/methods/ins.md.
 
     Parameters
     ----------
@@ -205,15 +231,25 @@ def fuse(
     return _fused(_core.ins_fuse(_start(start), imu.columns(), aiding.tables(), told(model, how, start, periods, wheels)))
 
 
+def _covariance(table: NDArray[np.float64]) -> NDArray[np.float64]:
+    return table[:, [9, 10, 12, 10, 11, 13, 12, 13, 14]].reshape(-1, 3, 3)
+
+
+def _reversion(found: tuple[NDArray[np.float64], list[str], NDArray[np.float64]] | None) -> Reversion | None:
+    if found is None:
+        return None
+    table, mode, apart = found
+    return Reversion(table[:, :3].copy(), _covariance(table), mode, apart[:, 0].copy(), apart[:, 1].copy())
+
+
 def _fused(found: dict[str, Any]) -> Fused:
     table = found["rows"]
-    upper = table[:, [9, 10, 12, 10, 11, 13, 12, 13, 14]].reshape(-1, 3, 3)
     return Fused(
         time_ns=found["time_ns"],
         position=table[:, :3].copy(),
         velocity_ned_mps=table[:, 3:6].copy(),
         attitude_rad=table[:, 6:9].copy(),
-        covariance_enu_m2=upper,
+        covariance_enu_m2=_covariance(table),
         velocity_sigma_mps=table[:, 15:18].copy(),
         attitude_sigma_rad=table[:, 18:21].copy(),
         gyroscope_bias_radps=table[:, 21:24].copy(),
@@ -225,4 +261,5 @@ def _fused(found: dict[str, Any]) -> Fused:
         refused=found["refused"],
         further=dict(found["further"]),
         innovations={kind: Innovations(*numbers) for kind, numbers in found["innovations"].items()},
+        reversion=_reversion(found["reversion"]),
     )

@@ -188,6 +188,13 @@ class FilterSettings:
     errors : {"correlated", "white"}
         Whether what stays in the measurements has states of its own. ``"white"`` takes everything for new at each measurement; it is
         here to show that it fails.
+    form : {"tight", "loose", "federated"}
+        One filter with every range; positions solved from the ranges of an instant, with three states for what stays in them; or a filter
+        for the satellites, one for the rest, and a master without reset, whose covariance is an upper bound.
+    reversion : bool
+        Whether a filter without satellites runs beside the main one and is given with the results. The federated form has one always.
+    separation_risk : float
+        Risk, at an instant, of saying that both disagree when both are right.
     lever_arm_m : tuple of float
         From the inertial unit to the antenna, body axes. [m]
     gate_risk : float
@@ -205,6 +212,9 @@ class FilterSettings:
     """
 
     errors: Literal["correlated", "white"] = "correlated"
+    form: Literal["tight", "loose", "federated"] = "tight"
+    reversion: bool = False
+    separation_risk: float = 1e-7
     lever_arm_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     gate_risk: float = 1e-4
     samples_per_step: int = 1
@@ -218,6 +228,10 @@ class FilterSettings:
     clock: Clock = field(default_factory=Clock)
 
 
+FORMS = ("tight", "loose", "federated")
+"""In the order of the core."""
+
+
 def told(
     model: ImuModel, how: FilterSettings, start: Start | StartSigma, periods: tuple[float, float], wheels: Wheels | None
 ) -> dict[str, object]:
@@ -227,11 +241,16 @@ def told(
             raise InputError(name, value, "s", "[0, inf)")
     if how.samples_per_step < 1:
         raise InputError("samples_per_step", how.samples_per_step, "1", "[1, inf)")
+    if how.form not in FORMS:
+        raise InputError("form", how.form, domain=", ".join(FORMS))
     return {
         "gyroscope": [model.gyroscope.white, model.gyroscope.bias, model.gyroscope.bias_time_s],
         "accelerometer": [model.accelerometer.white, model.accelerometer.bias, model.accelerometer.bias_time_s],
         "clock": [how.clock.bias_m, how.clock.drift_mps, how.clock.frequency_m2ps, how.clock.walk_m2ps3, how.clock.inter_system_m],
         "white": how.errors == "white",
+        "form": FORMS.index(how.form),
+        "reversion": how.reversion,
+        "separation_risk": how.separation_risk,
         "lever_arm_m": list(how.lever_arm_m),
         "gate_risk": how.gate_risk,
         "samples_per_step": how.samples_per_step,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from navbound._ins_aiding import Aiding, BaroHeights, DmeRanges, Fixes, SatelliteRanges, VorBearings
 from navbound._ins_consistency import consistency
-from navbound._ins_fuse import Fused, Innovations, Track, coarse_attitude, fuse, mechanize
+from navbound._ins_fuse import Fused, Innovations, Reversion, Track, coarse_attitude, fuse, mechanize
 from navbound._ins_settings import Clock, FilterSettings, Imu, ImuModel, SensorNoise, Start, StartSigma, Wheels
 from navbound._ins_simulate import Sensed, simulate
 
@@ -19,6 +19,7 @@ __all__ = [
     "Imu",
     "ImuModel",
     "Innovations",
+    "Reversion",
     "SatelliteRanges",
     "Sensed",
     "SensorNoise",

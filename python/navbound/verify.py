@@ -174,9 +174,13 @@ def _is_number(text: str) -> bool:
 
 
 def _argument(value: Any) -> Any:
-    """Numbers written as strings keep all their digits in the file; here they become doubles."""
+    """Numbers written as strings keep all their digits in the file; here they become doubles. A table with a class becomes one of it."""
     if isinstance(value, str):
         return float(value) if _is_number(value) else value
     if isinstance(value, list):
         return [_argument(v) for v in value]
+    if isinstance(value, dict) and "class" in value:
+        module, _, name = str(value["class"]).rpartition(".")
+        made = getattr(importlib.import_module(f"navbound.{module}"), name)
+        return made(**{key: _argument(v) for key, v in value.items() if key != "class"})
     return value

@@ -5,8 +5,9 @@ use crate::fusion::{Driver, Plan};
 use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::anp::{circle, sphere};
 use navbound_core::frame::{Geodetic, LatLon, radii};
-use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
-use navbound_core::solution::ins::{Attitude, Filter, Kind, Mode, NavState, Settings, Solution, StartSigma};
+use navbound_core::monitor::separation::Verdict;
+use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Risk};
+use navbound_core::solution::ins::{Attitude, Beside, Fusion, Innovations, Kind, Mode, NavState, Settings, Solution, StartSigma};
 use navbound_simulate::{Motion, Sensing};
 use rayon::prelude::*;
 
@@ -27,10 +28,37 @@ pub struct Score {
     pub sum_variance_m2: [f64; 3],
     /// Results in each mode: coasting, VOR/DME, DME/DME, satellites.
     pub n_mode: [u64; 4],
-    /// Mean squared innovation of the ranges, their lag-one correlation, and how many ranges were used and gated.
-    pub ranges: [f64; 4],
     /// Results after a stop.
     pub n_stopped: u64,
+}
+
+/// A flight judged.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Judged {
+    /// The solution.
+    pub main: Score,
+    /// The filter without satellites beside it, where one runs.
+    pub beside: Score,
+    /// Of the ranges, or of the positions solved from them in the loose form: mean squared innovation, lag-one correlation, how many were
+    /// used and gated.
+    pub ranges: [f64; 4],
+    /// Largest memory of those innovations, in standard deviations; NaN where there were too few.
+    pub memory_most: f64,
+    /// Whether both filters agree.
+    pub agreement: Agreement,
+}
+
+/// How far both filters were from each other.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Agreement {
+    /// Instants compared.
+    pub n: u64,
+    /// Sum of the squared normalised differences, two degrees of freedom each, and the largest.
+    pub sum_square: f64,
+    /// See [`Agreement::sum_square`].
+    pub most: f64,
+    /// Times that they were said to disagree.
+    pub n_raised: u64,
 }
 
 /// How flights are run and judged.
@@ -50,13 +78,13 @@ pub struct Trial {
 /// standard deviations), on all cores. Each depends on scenario, seed, number and row only; no samples are kept.
 ///
 /// # Errors
-/// [`OutOfDomain`] as [`Sensing::flight`] and [`Filter::new`], of the first flight that fails.
-pub fn flights(sensing: &Sensing, seed: u64, first: u64, starts: &[[f64; 9]], trial: &Trial) -> Result<Vec<Score>, OutOfDomain> {
+/// [`OutOfDomain`] as [`Sensing::flight`] and [`Fusion::new`], of the first flight that fails.
+pub fn flights(sensing: &Sensing, seed: u64, first: u64, starts: &[[f64; 9]], trial: &Trial) -> Result<Vec<Judged>, OutOfDomain> {
     let numbered: Vec<_> = (first..).zip(starts).collect();
     numbered.into_par_iter().map(|(number, normals)| flight(sensing, seed, number, normals, trial)).collect()
 }
 
-fn flight(sensing: &Sensing, seed: u64, number: u64, normals: &[f64; 9], trial: &Trial) -> Result<Score, OutOfDomain> {
+fn flight(sensing: &Sensing, seed: u64, number: u64, normals: &[f64; 9], trial: &Trial) -> Result<Judged, OutOfDomain> {
     let trajectory = sensing.trajectory(seed, number)?;
     let mut sensed = sensing.flight(&trajectory, seed, number)?;
     let begin = sensed.begin();
@@ -65,23 +93,45 @@ fn flight(sensing: &Sensing, seed: u64, number: u64, normals: &[f64; 9], trial: 
         normals,
         &trial.sigma,
     )?;
-    let mut driver = Driver::new(Box::new(Filter::new(start, &trial.sigma, trial.settings)?), trial.plan);
-    let mut score = Score::default();
+    let mut driver = Driver::new(Box::new(Fusion::new(start, &trial.sigma, trial.settings)?), trial.plan);
+    let (mut judged, mut verdict) = (Judged { memory_most: f64::NAN, ..Judged::default() }, Verdict::new(trial.settings.separation));
     while let Some(step) = sensed.advance()? {
         if step.delivered {
             driver.sample(&step.imu);
         }
-        for timed in sensed.aiding() {
-            driver.aid(timed);
-        }
+        driver.aid(sensed.aiding());
         let Some(moment) = driver.output(step.imu.time) else { continue };
         if moment.time.seconds_since(begin) >= trial.skip_s {
-            score.add(moment.solution.as_ref(), &step.truth.position)?;
+            judged.main.add(moment.solution.as_ref(), &step.truth.position)?;
+            if let Some(beside) = &moment.beside {
+                judged.beside.add(Some(&beside.solution), &step.truth.position)?;
+                judged.agreement.add(&mut verdict, moment.time, beside)?;
+            }
+            judged.memory_most = judged.memory_most.max(ranges(&driver.filter).memory(moment.time).abs());
         }
     }
-    let ranges = driver.filter.innovations(Kind::Range);
-    score.ranges = [ranges.mean_square(), ranges.lag_one(), ranges.n_used as f64, ranges.n_gated as f64];
-    Ok(score)
+    let ranges = ranges(&driver.filter);
+    judged.ranges = [ranges.mean_square(), ranges.lag_one(), ranges.n_used as f64, ranges.n_gated as f64];
+    Ok(judged)
+}
+
+/// The innovations that satellites leave: of their ranges, or in the loose form of the positions solved from them.
+fn ranges(filter: &Fusion) -> &Innovations {
+    let ranges = filter.innovations(Kind::Range);
+    if ranges.n_used > 0 { ranges } else { filter.innovations(Kind::FixPosition) }
+}
+
+impl Agreement {
+    fn add(&mut self, verdict: &mut Verdict, time: GpsTime, beside: &Beside) -> Result<(), OutOfDomain> {
+        let before = verdict.disagree();
+        if let Some(found) = verdict.judge(time, &beside.difference, &beside.covariance, &beside.solution.covariance)? {
+            self.n += 1;
+            self.sum_square += found.square;
+            self.most = self.most.max(found.square);
+        }
+        self.n_raised += u64::from(verdict.disagree() && !before);
+        Ok(())
+    }
 }
 
 pub(crate) fn attitude(motion: &Motion) -> Attitude {

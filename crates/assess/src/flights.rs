@@ -16,7 +16,7 @@ pub struct Flights {
 pub type Column = (&'static str, fn(&FlownEpoch) -> f64);
 
 /// Every column of numbers.
-pub const COLUMNS: [Column; 33] = [
+pub const COLUMNS: [Column; 37] = [
     ("est_lat_rad", |e| e.estimate[0]),
     ("est_lon_rad", |e| e.estimate[1]),
     ("est_h_m", |e| e.estimate[2]),
@@ -44,12 +44,16 @@ pub const COLUMNS: [Column; 33] = [
     ("nse_u_m", |e| e.nse_enu_m[2]),
     ("hdop", |e| e.dop[0]),
     ("vdop", |e| e.dop[1]),
+    ("separation_m", |e| e.separation_m[0]),
+    ("separation_limit_m", |e| e.separation_m[1]),
+    ("innovation_memory", |e| e.memory),
     // Whole numbers and codes; a double holds them exactly.
     ("n_sv", |e| f64::from(e.n_sv)),
     ("leg", |e| f64::from(e.leg)),
     ("phase", |e| f64::from(e.phase)),
     ("n_gated", |e| f64::from(e.n_gated)),
     ("nav_mode", |e| MODES.iter().position(|m| Some(*m) == e.mode).unwrap_or(MODES.len()) as f64),
+    ("disagree", |e| f64::from(u8::from(e.disagree))),
     ("available", |e| f64::from(u8::from(e.reason.is_none()))),
 ];
 

@@ -10,9 +10,9 @@ use crate::error::navigation_error;
 use crate::flights::Flights;
 use crate::fusion::{Driver, Plan};
 use nalgebra::Vector3;
+use navbound_core::monitor::separation;
 use navbound_core::quantity::{GpsTime, OutOfDomain, Unavailable};
-use navbound_core::signal::Aiding;
-use navbound_core::solution::ins::{Aided, Filter, Innovations, Kind, Mode, NavState, Samples};
+use navbound_core::solution::ins::{Fusion, Innovations, Kind, Mode, NavState, Samples, Solution};
 use navbound_simulate::{FlownEpoch, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by};
 use rayon::prelude::*;
 
@@ -74,7 +74,7 @@ pub fn navigate(sensing: &Sensing, path: &Trajectory, seed: u64, number: u64) ->
         watch.take(&sensed, &step);
         if index % rate == 0 {
             navigated.push(watch.say(sensing, navigated.len(), sensed.begin().plus_seconds(navigated.len() as f64), &step.truth)?);
-            watch.reconsider(sensing)?;
+            watch.reconsider()?;
         }
     }
     watch.close();
@@ -85,6 +85,8 @@ pub fn navigate(sensing: &Sensing, path: &Trajectory, seed: u64, number: u64) ->
 struct Watch {
     driver: Driver,
     navigator: Navigator,
+    /// Whether the filter with satellites and the one without agree.
+    verdict: separation::Verdict,
     /// Satellites measured last, and used of them.
     n_seen: u32,
     n_sv: u32,
@@ -105,10 +107,12 @@ impl Watch {
     fn start(sensed: &SensedFlight<'_>, navigator: Navigator, sensing: &Sensing, normals: &[f64; 9]) -> Result<Self, OutOfDomain> {
         let (now, sigma) = (sensed.now(), navigator.start_sigma());
         let truth = NavState::new(sensed.begin(), &now.position, now.velocity_ned_mps, &attitude(now))?;
-        let filter = Filter::new(wrong_start(truth, normals, &sigma)?, &sigma, navigator.settings(sensing.sensors())?)?;
+        let settings = navigator.settings(sensing.sensors())?;
+        let filter = Fusion::new(wrong_start(truth, normals, &sigma)?, &sigma, settings)?;
         Ok(Self {
             driver: Driver::new(Box::new(filter), PLAN),
             navigator,
+            verdict: separation::Verdict::new(settings.separation),
             n_seen: 0,
             n_sv: 0,
             n_gated: 0,
@@ -125,33 +129,28 @@ impl Watch {
         if sensed.received() {
             (self.n_seen, self.n_sv) = (0, 0);
         }
-        for timed in sensed.aiding() {
-            let used = matches!(self.driver.aid(timed), Some(Aided::Used { .. }));
-            let satellite = matches!(timed.aiding, Aiding::Satellite(_));
-            self.n_seen += u32::from(satellite);
-            self.n_sv += u32::from(satellite && used);
-        }
+        let [seen, used] = self.driver.aid(sensed.aiding());
+        self.n_seen += seen as u32;
+        self.n_sv += used as u32;
     }
 
     /// A second has passed: a filter that its satellites have contradicted for too long starts anew where it is, knowing nothing.
-    fn reconsider(&mut self, sensing: &Sensing) -> Result<(), OutOfDomain> {
+    fn reconsider(&mut self) -> Result<(), OutOfDomain> {
         let contradicted = self.n_seen >= CONTRADICTION.0 && self.n_sv <= CONTRADICTION.1;
         self.contradicted_s = if contradicted { self.contradicted_s + 1.0 } else { 0.0 };
         if self.contradicted_s < self.navigator.restart_after_s || self.driver.filter.stopped().is_some() {
             return Ok(());
         }
         self.close();
-        let filter =
-            Filter::new(*self.driver.filter.state(), &self.navigator.restart_sigma(), self.navigator.settings(sensing.sensors())?)?;
-        self.driver = Driver::new(Box::new(filter), PLAN);
-        (self.contradicted_s, self.n_gated) = (0.0, 0);
+        self.driver.filter.restart(&self.navigator.restart_sigma())?;
+        (self.contradicted_s, self.n_gated) = (0.0, gated(&self.driver.filter));
         Ok(())
     }
 
     /// What the filter says, against the truth.
     fn say(&mut self, sensing: &Sensing, second: usize, time: GpsTime, truth: &Motion) -> Result<Navigated, OutOfDomain> {
         let filter = &mut self.driver.filter;
-        let n_gated: u64 = Kind::ALL.iter().map(|kind| filter.innovations(*kind).n_gated).sum();
+        let n_gated = gated(filter);
         let new = (n_gated - self.n_gated) as u32;
         self.n_gated = n_gated;
         let dop = if self.n_sv == 0 { [f64::NAN; 2] } else { sensing.outlook().dop(second) };
@@ -162,14 +161,32 @@ impl Watch {
             dop,
             mode: None,
             n_gated: new,
+            separation_m: [f64::NAN; 2],
+            memory: filter.innovations(Kind::Range).memory(time),
+            disagree: false,
         };
         // A state of an earlier instant is no answer to where the aircraft is now; half a millisecond is rounding.
         if filter.stopped().is_none() && time.seconds_since(filter.time()) < 5e-4 {
-            let solution = filter.solution();
+            let solution = self.given(time, &mut said)?;
             self.last_error = *navigation_error(&solution.state.position()?, &truth.position).vector();
             (said.error_enu_m, said.covariance, said.mode) = (self.last_error, Ok(solution.covariance), Some(solution.mode));
         }
         Ok(said)
+    }
+
+    /// The solution that is given. While both filters disagree and the satellites keep the position, nobody knows which of them is right,
+    /// and that is said. When they disagree and the satellites are lost, what the main filter remembers of them is not believed either.
+    fn given(&mut self, time: GpsTime, said: &mut Navigated) -> Result<Solution, OutOfDomain> {
+        let filter = &mut self.driver.filter;
+        let main = filter.solution();
+        let Some(beside) = filter.beside() else { return Ok(main) };
+        let found = self.verdict.judge(time, &beside.difference, &beside.covariance, &beside.solution.covariance)?;
+        said.separation_m = found.map_or([f64::NAN; 2], |s| [s.distance.m(), s.limit.m()]);
+        if self.verdict.disagree() && filter.mode() != Mode::Gnss {
+            return Ok(beside.solution);
+        }
+        said.disagree = self.verdict.disagree();
+        Ok(main)
     }
 
     /// What the filter says at its end.
@@ -177,6 +194,10 @@ impl Watch {
         let filter = &self.driver.filter;
         self.verdicts.push(Verdict { innovations: Kind::ALL.map(|kind| *filter.innovations(kind)), samples: *filter.samples() });
     }
+}
+
+fn gated(filter: &Fusion) -> u64 {
+    Kind::ALL.iter().map(|kind| filter.innovations(*kind).n_gated).sum()
 }
 
 /// The code of a mode in a column: its place in this list; one more where there is none.

@@ -1,9 +1,9 @@
 //! Whole flights through the navigation filter: inertial samples and measurements in the order of their times.
 
 use navbound_core::quantity::{GpsTime, OutOfDomain};
-use navbound_core::signal::{Aiding, ImuIncrement, TimedAiding};
+use navbound_core::signal::{ImuIncrement, TimedAiding};
 use navbound_core::solution::ins::{
-    Advance, Aided, Filter, Kind, NavState, Samples, Settings, Solution, StartSigma, Stop, Strapdown, Wheels,
+    Advance, Beside, Fusion, Kind, NavState, Samples, Settings, Solution, StartSigma, Stop, Strapdown, Wheels,
 };
 
 /// How a flight is run.
@@ -24,6 +24,8 @@ pub struct Moment {
     pub time: GpsTime,
     /// What it says; `None` after it has stopped.
     pub solution: Option<Solution>,
+    /// The filter without satellites, where one runs.
+    pub beside: Option<Beside>,
     /// States in the filter.
     pub n_states: usize,
 }
@@ -38,7 +40,7 @@ pub struct Flight {
     /// Why the filter stopped, if it did, and when.
     pub stopped: Option<(GpsTime, Stop)>,
     /// The filter at the end: innovations and further states.
-    pub filter: Box<Filter>,
+    pub filter: Box<Fusion>,
     /// First sample left out because of its numbers.
     pub refused: Option<(GpsTime, OutOfDomain)>,
 }
@@ -64,16 +66,15 @@ pub fn run(
     if let Some((wheels, _)) = &plan.wheels {
         wheels.check()?;
     }
-    let filter = Box::new(Filter::new(start, sigma, settings)?);
+    let filter = Box::new(Fusion::new(start, sigma, settings)?);
     let mut driver = Driver::new(filter, *plan);
     let mut moments = Vec::new();
     let mut next = aiding.partition_point(|a| a.time < start.time);
     for sample in imu {
         driver.sample(&sample);
-        while let Some(timed) = aiding.get(next).filter(|a| a.time <= sample.time) {
-            driver.aid(timed);
-            next += 1;
-        }
+        let until = next + aiding[next..].iter().take_while(|a| a.time <= sample.time).count();
+        driver.aid(&aiding[next..until]);
+        next = until;
         moments.extend(driver.output(sample.time));
     }
     let samples = *driver.filter.samples();
@@ -82,7 +83,7 @@ pub fn run(
 
 /// The filter and what it needs to be driven in the order of time.
 pub(crate) struct Driver {
-    pub(crate) filter: Box<Filter>,
+    pub(crate) filter: Box<Fusion>,
     plan: Plan,
     used: [Option<GpsTime>; Kind::ALL.len()],
     rolled: Option<GpsTime>,
@@ -92,7 +93,7 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    pub(crate) fn new(filter: Box<Filter>, plan: Plan) -> Self {
+    pub(crate) fn new(filter: Box<Fusion>, plan: Plan) -> Self {
         let due = filter.time().plus_seconds(plan.output_period_s);
         Self { filter, plan, used: [None; Kind::ALL.len()], rolled: None, due, stopped: None, refused: None }
     }
@@ -114,19 +115,23 @@ impl Driver {
         }
     }
 
-    /// What became of a measurement; `None` where the plan passes over it.
-    pub(crate) fn aid(&mut self, timed: &TimedAiding) -> Option<Aided> {
-        let kind = match &timed.aiding {
-            Aiding::Satellite(_) => Kind::Range,
-            Aiding::Dme(_) => Kind::Dme,
-            Aiding::Vor(_) => Kind::Vor,
-            Aiding::Baro(_) => Kind::Baro,
-            Aiding::Fix(_) => Kind::FixPosition,
-        };
-        let last = &mut self.used[kind.index()];
+    /// Measurements in the order of time, as far as the plan wants them: satellites measured, and used of them.
+    pub(crate) fn aid(&mut self, aiding: &[TimedAiding]) -> [usize; 2] {
+        let mut satellites = [0; 2];
         // Measurements of one instant belong together.
-        let wanted = *last == Some(timed.time) || due(last, timed.time, self.plan.update_period_s);
-        wanted.then(|| self.filter.aid(timed))
+        for together in aiding.chunk_by(|a, b| a.time == b.time && Kind::of(&a.aiding) == Kind::of(&b.aiding)) {
+            let (kind, time) = (Kind::of(&together[0].aiding), together[0].time);
+            let last = &mut self.used[kind.index()];
+            if *last != Some(time) && !due(last, time, self.plan.update_period_s) {
+                continue;
+            }
+            let used = self.filter.aid(together);
+            if kind == Kind::Range {
+                satellites[0] += together.len();
+                satellites[1] += used;
+            }
+        }
+        satellites
     }
 
     /// The result, where one is due.
@@ -137,8 +142,9 @@ impl Driver {
         // At most one result a nanosecond; a hole is not filled with results that are late.
         let missed = (time.seconds_since(self.due) / self.plan.output_period_s.max(1e-9)).floor();
         self.due = self.due.plus_seconds((missed + 1.0) * self.plan.output_period_s).max(time.plus_seconds(1e-9));
-        let solution = if self.filter.stopped().is_none() { Some(self.filter.solution()) } else { None };
-        Some(Moment { time, solution, n_states: self.filter.n_states() })
+        let running = self.filter.stopped().is_none();
+        let solution = running.then(|| self.filter.solution());
+        Some(Moment { time, solution, beside: self.filter.beside(), n_states: self.filter.n_states() })
     }
 }
 

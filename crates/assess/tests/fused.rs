@@ -3,7 +3,7 @@
 
 use navbound_assess::flights::COLUMNS;
 use navbound_assess::fused::{Fused, navigate};
-use navbound_simulate::{BelievedErrors, Navigator, Scenario, Sensing, Sensors, Trajectory};
+use navbound_simulate::{BelievedErrors, Coupling, Navigator, Scenario, Sensing, Sensors, Trajectory};
 
 /// Fifteen minutes at ten samples a second.
 fn sensing(change: impl FnOnce(&mut Sensors)) -> Sensing {
@@ -15,6 +15,9 @@ fn sensing(change: impl FnOnce(&mut Sensors)) -> Sensing {
     scenario.faults.clear();
     scenario.filter = Some(Navigator {
         mode: BelievedErrors::Correlated,
+        form: Coupling::Tight,
+        reversion: true,
+        separation_risk: 1e-7,
         gate_risk: 1e-4,
         samples_per_step: 1,
         restart_after_s: 60.0,

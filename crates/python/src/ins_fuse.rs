@@ -4,12 +4,13 @@ use crate::error::input_error;
 use nalgebra::{Matrix3, Vector3};
 use navbound_assess::fusion::{self, Flight, Moment, Plan};
 use navbound_core::frame::{Covariance, EcefPosition, Geodetic, LatLon};
+use navbound_core::monitor::separation::Separation;
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Risk};
 use navbound_core::signal::{
     Aiding, BaroHeight, Constellation, DmeRange, ImuIncrement, PositionFix, SatelliteId, SatelliteRange, TimedAiding, VorBearing,
 };
 use navbound_core::solution::ins::{
-    Attitude, ClockModel, ErrorModel, Further, ImuModel, Kind, NavState, Patience, SensorNoise, Settings, Solution, StartSigma, Stop,
+    Attitude, ClockModel, ErrorModel, Form, Further, ImuModel, Kind, NavState, Patience, SensorNoise, Settings, Solution, StartSigma, Stop,
     Wheels, coarse,
 };
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -216,6 +217,10 @@ pub struct Told {
     /// Bias, drift, frequency, walk, inter-system.
     clock: [f64; 5],
     white: bool,
+    /// Its place in [`Form::ALL`].
+    form: usize,
+    reversion: bool,
+    separation_risk: f64,
     lever_arm_m: [f64; 3],
     gate_risk: f64,
     samples_per_step: u32,
@@ -234,6 +239,10 @@ pub struct Told {
     wheels: Option<[f64; 6]>,
 }
 
+fn unknown_form(form: usize) -> OutOfDomain {
+    OutOfDomain { argument: "form", value: form as f64, unit: "1", domain: "{0, 1, 2}" }
+}
+
 impl Told {
     pub fn settings(&self) -> PyResult<Settings> {
         let noise = |[white, bias, bias_time_s]: [f64; 3]| SensorNoise { white, bias, bias_time_s };
@@ -242,6 +251,9 @@ impl Told {
             imu: ImuModel { gyroscope: noise(self.gyroscope), accelerometer: noise(self.accelerometer) },
             clock: ClockModel { bias_m, drift_mps, frequency_m2ps, walk_m2ps3, inter_system_m },
             errors: if self.white { ErrorModel::White } else { ErrorModel::Correlated },
+            form: *Form::ALL.get(self.form).ok_or_else(|| refused(unknown_form(self.form)))?,
+            reversion: self.reversion,
+            separation: Risk::new(self.separation_risk).map_err(|e| refused(OutOfDomain { argument: "separation_risk", ..e }))?,
             lever_arm_m: vector(self.lever_arm_m),
             gate: Risk::new(self.gate_risk).map_err(|e| refused(OutOfDomain { argument: "gate_risk", ..e }))?,
             samples_per_step: self.samples_per_step,
@@ -269,12 +281,12 @@ impl Told {
     }
 }
 
-/// Numbers of a moment: motion, covariance (ee en nn eu nu uu), deviations of velocity and attitude, biases.
+/// Numbers of a solution: motion, covariance (ee en nn eu nu uu), deviations of velocity and attitude, biases.
 const WIDTH: usize = 27;
 
-fn numbers(moment: &Moment) -> [f64; WIDTH] {
+fn numbers(solution: &Option<Solution>) -> [f64; WIDTH] {
     let mut row = [f64::NAN; WIDTH];
-    let Some(s) = &moment.solution else { return row };
+    let Some(s) = solution else { return row };
     let Ok(motion) = motion(&s.state) else { return row };
     let c = s.covariance.matrix();
     row[..9].copy_from_slice(&motion);
@@ -309,6 +321,7 @@ fn further_word(further: Further) -> String {
         Further::Dme(k) => format!("dme_{k}_m"),
         Further::Vor(k) => format!("vor_{k}_rad"),
         Further::Satellite(id) => format!("satellite_{id}_m"),
+        Further::SolvedPosition(k) => format!("solved_position_{k}"),
         Further::MountHeading => "mount_heading_rad".to_owned(),
         Further::MountPitch => "mount_pitch_rad".to_owned(),
     }
@@ -322,14 +335,39 @@ fn ins_fuse<'py>(py: Python<'py>, start: Start, imu: Imu<'py>, tables: Tables<'p
     let flight = py.detach(|| fusion::run(state, &sigma, settings, &plan, samples.iter(), &aiding)).map_err(refused)?;
     let d = flight_dict(py, &flight)?;
     d.set_item("innovations", innovations(py, &flight)?)?;
+    d.set_item("reversion", reversion(py, &flight, settings.separation)?)?;
     Ok(d)
+}
+
+/// The filter without satellites at each moment, in the columns of the main one, its modes, and the horizontal distance between both with its
+/// limit; `None` where none runs.
+#[allow(clippy::type_complexity)] // Three tables of one row a moment.
+fn reversion<'py>(
+    py: Python<'py>,
+    flight: &Flight,
+    risk: Risk,
+) -> PyResult<Option<(Bound<'py, PyArray2<f64>>, Vec<&'static str>, Bound<'py, PyArray2<f64>>)>> {
+    if flight.moments.iter().all(|m| m.beside.is_none()) {
+        return Ok(None);
+    }
+    let n = flight.moments.len();
+    let solutions: Vec<_> = flight.moments.iter().map(|m| m.beside.map(|b| b.solution)).collect();
+    let apart = |m: &Moment| -> Result<[f64; 2], OutOfDomain> {
+        let Some(b) = &m.beside else { return Ok([f64::NAN; 2]) };
+        let found = Separation::of(&b.difference, &b.covariance, &b.solution.covariance, risk)?;
+        Ok(found.map_or([f64::NAN; 2], |s| [s.distance.m(), s.limit.m()]))
+    };
+    let separations = flight.moments.iter().map(apart).collect::<Result<Vec<_>, _>>().map_err(refused)?;
+    let rows = solutions.iter().flat_map(numbers).collect::<Vec<_>>().into_pyarray(py).reshape([n, WIDTH])?;
+    let separations = separations.concat().into_pyarray(py).reshape([n, 2])?;
+    Ok(Some((rows, solutions.iter().map(mode).collect(), separations)))
 }
 
 fn flight_dict<'py>(py: Python<'py>, flight: &Flight) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
     let moments = &flight.moments;
     d.set_item("time_ns", moments.iter().map(|m| m.time.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
-    let rows = moments.iter().flat_map(numbers).collect::<Vec<_>>().into_pyarray(py);
+    let rows = moments.iter().flat_map(|m| numbers(&m.solution)).collect::<Vec<_>>().into_pyarray(py);
     d.set_item("rows", rows.reshape([moments.len(), WIDTH])?)?;
     d.set_item("mode", moments.iter().map(|m| mode(&m.solution)).collect::<Vec<_>>())?;
     d.set_item("n_states", moments.iter().map(|m| m.n_states as i64).collect::<Vec<_>>().into_pyarray(py))?;

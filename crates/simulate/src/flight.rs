@@ -54,6 +54,12 @@ pub struct FlownEpoch {
     pub mode: Option<Mode>,
     /// Measurements that a filter threw away in the last second.
     pub n_gated: u32,
+    /// Horizontal distance between the filter with satellites and the one without, and how far they may be \[m\]; NaN without both.
+    pub separation_m: [f64; 2],
+    /// What the innovations of the ranges remember, in standard deviations; NaN without a filter or ranges.
+    pub memory: f64,
+    /// Both filters disagree, and the one with satellites is given: nobody knows which is right.
+    pub disagree: bool,
 }
 
 /// What the navigation says at an instant, and how wrong it is.
@@ -71,6 +77,12 @@ pub struct Navigated {
     pub mode: Option<Mode>,
     /// As in [`FlownEpoch`].
     pub n_gated: u32,
+    /// As in [`FlownEpoch`].
+    pub separation_m: [f64; 2],
+    /// As in [`FlownEpoch`].
+    pub memory: f64,
+    /// As in [`FlownEpoch`].
+    pub disagree: bool,
 }
 
 /// A flight of a scenario with position errors drawn from the covariance of the geometry; the number chooses its random streams.
@@ -86,6 +98,9 @@ pub fn fly(outlook: &Outlook, seed: u64, number: u64) -> Result<Vec<FlownEpoch>,
         dop: instant.dop(),
         mode: None,
         n_gated: 0,
+        separation_m: [f64::NAN; 2],
+        memory: f64::NAN,
+        disagree: false,
     };
     let navigated: Vec<_> = outlook.instants.iter().zip(&errors).map(drawn).collect();
     fly_by(outlook, seed, number, &navigated, PathFlown::Flown)
@@ -171,6 +186,9 @@ fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, navigated: 
         reason: navigated.covariance.as_ref().err().copied(),
         mode: navigated.mode,
         n_gated: navigated.n_gated,
+        separation_m: navigated.separation_m,
+        memory: navigated.memory,
+        disagree: navigated.disagree,
     };
     epoch.estimate(outlook, instant, &truth, navigated)?;
     Ok(epoch)

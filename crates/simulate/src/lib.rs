@@ -17,7 +17,7 @@ mod sensors;
 mod trajectory;
 
 pub use flight::{FlownEpoch, Navigated, fly, fly_by};
-pub use navigator::{BelievedErrors, Navigator};
+pub use navigator::{BelievedErrors, Coupling, Navigator};
 pub use outlook::Outlook;
 pub use plan::{PhaseRange, Plan, Refused};
 pub use scenario::{Fault, Guidance, Gusts, Navigation, Phase, ProfileSettings, Scenario, System, Turns, Waypoint};

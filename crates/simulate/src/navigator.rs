@@ -7,7 +7,7 @@ use crate::plan::GRAVITY;
 use crate::scenario::{Rule, positive, within};
 use crate::sensors::{Imu, Sensors};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
-use navbound_core::solution::ins::{ClockModel, ErrorModel, ImuModel, SensorNoise, Settings, StartSigma};
+use navbound_core::solution::ins::{ClockModel, ErrorModel, Form, ImuModel, SensorNoise, Settings, StartSigma};
 use serde::Deserialize;
 
 /// A filter that joins the sensors.
@@ -16,6 +16,12 @@ use serde::Deserialize;
 pub struct Navigator {
     /// What it believes of errors that stay.
     pub mode: BelievedErrors,
+    /// How ranges and inertial unit come together.
+    pub form: Coupling,
+    /// Whether a filter without satellites runs beside the main one; the federated form has one always.
+    pub reversion: bool,
+    /// Risk, at an instant, of saying that both disagree when both are right.
+    pub separation_risk: f64,
     /// Risk of throwing away a good measurement.
     pub gate_risk: f64,
     /// Inertial samples that share a step of the covariance.
@@ -40,11 +46,24 @@ pub enum BelievedErrors {
     White,
 }
 
+/// How ranges and inertial unit come together.
+#[derive(Debug, Clone, Copy, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Coupling {
+    /// Every range into one filter.
+    Tight,
+    /// Positions solved from the ranges of an instant.
+    Loose,
+    /// A filter for the satellites, one for the rest, and a master.
+    Federated,
+}
+
 impl Navigator {
     pub(crate) fn rules(&self, sensors: bool, faults: usize) -> Vec<Rule> {
         let mut rules = vec![
             Rule("filter", 0.0, "tables", sensors, "a scenario with a [sensors] part"),
             Rule("faults", faults as f64, "items", faults == 0, "none with a [filter]: sensors fail, [[sensors.faults]]"),
+            within("separation_risk", self.separation_risk, "1", 1e-15, 0.1, "[1e-15, 0.1]"),
             within("gate_risk", self.gate_risk, "1", 1e-12, 0.1, "[1e-12, 0.1]"),
             within("samples_per_step", f64::from(self.samples_per_step), "samples", 1.0, 200.0, "[1, 200]"),
             positive("restart_after_s", self.restart_after_s, "s"),
@@ -63,6 +82,13 @@ impl Navigator {
         let mut settings = Settings::of(imu_model(&sensors.imu));
         settings.gate = Risk::new(self.gate_risk)?;
         settings.samples_per_step = self.samples_per_step;
+        settings.form = match self.form {
+            Coupling::Tight => Form::Tight,
+            Coupling::Loose => Form::Loose,
+            Coupling::Federated => Form::Federated,
+        };
+        settings.reversion = self.reversion;
+        settings.separation = Risk::new(self.separation_risk)?;
         settings.errors = match self.mode {
             BelievedErrors::Correlated => ErrorModel::Correlated,
             BelievedErrors::White => ErrorModel::White,

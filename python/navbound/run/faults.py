@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import polars as pl
 
-from navbound import rnp
+from navbound import anp, rnp
 from navbound.methods import column_of
 from navbound.run.record import Record
 
@@ -33,6 +33,10 @@ class FaultSummary(Record):
     """None for one that stays."""
     gate_after_s: float | None
     """Measurements thrown away by the filter's gate, several seconds on end."""
+    memory_after_s: float | None
+    """The innovations of the ranges remembered more than white ones do at the risk of the separation."""
+    disagree_after_s: float | None
+    """The filters with and without satellites were said to disagree."""
     mode_after_s: float | None
     mode: str | None
     """What the navigation fell back to first."""
@@ -79,14 +83,14 @@ def fault_summaries(scenario: Scenario, epochs: pl.DataFrame, events: pl.DataFra
             start = scenario.start_ns + round(fault.start_s * _SECOND_NS)
             duration = getattr(fault, "duration_s", None)
             end = None if duration is None else start + round(duration * _SECOND_NS)
-            found.append(_summary(fault.kind, (start, end), frame, alerts, time_to_alert_s))
+            found.append(_summary(fault.kind, (start, end), frame, alerts, (time_to_alert_s, scenario.filter.separation_risk)))
     return found
 
 
 def _summary(
-    kind: str, window: tuple[int, int | None], frame: pl.DataFrame, alerts: list[tuple[Any, ...]], time_to_alert_s: float
+    kind: str, window: tuple[int, int | None], frame: pl.DataFrame, alerts: list[tuple[Any, ...]], limits: tuple[float, float]
 ) -> FaultSummary:
-    start, end = window
+    (start, end), (time_to_alert_s, separation_risk) = window, limits
     time = frame["time_ns"].to_numpy()
     last = int(time[-1]) if end is None else end + round(_AFTER_S * _SECOND_NS)
     during = (time >= start) & (time <= last)
@@ -107,6 +111,8 @@ def _summary(
     outcome = _outcome(alert_after, outside, time_to_alert_s)
     values = {
         "gate_after_s": first(run),
+        "memory_after_s": first(_values(frame, "innovation_memory") > float(anp.chi_factor(1, separation_risk))),
+        "disagree_after_s": first(_values(frame, "separation_m") > _values(frame, "separation_limit_m")),
         "mode_after_s": first(fallen),
         "mode": str(modes[np.flatnonzero(fallen)[0]]) if fallen.any() else None,
         "alert_after_s": alert_after,
@@ -117,10 +123,15 @@ def _summary(
         "nse_u_max_m": _largest(frame, "nse_u_m", during),
         "outcome": outcome,
     }
-    words = _words(values, time_to_alert_s)
+    words = _words(values, time_to_alert_s, compared=bool((np.isfinite(_values(frame, "separation_m")) & during).any()))
     return FaultSummary.model_validate(
         {"track": frame["track"][0], "kind": kind, "start_ns": start, "end_ns": end, "words": words} | values
     )
+
+
+def _values(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:
+    """Without the filter that a column is about there is nothing in it."""
+    return column_of(frame, name) if name in frame.columns else np.full(frame.height, np.nan)
 
 
 def _largest(frame: pl.DataFrame, name: str, during: NDArray[np.bool_]) -> float | None:
@@ -138,9 +149,12 @@ def _outcome(alert_s: float | None, outside_s: float | None, time_to_alert_s: fl
     return "within the time to alert" if alert_s <= outside_s + time_to_alert_s else "late"
 
 
-def _words(v: dict[str, Any], time_to_alert_s: float) -> str:
+def _words(v: dict[str, Any], time_to_alert_s: float, *, compared: bool) -> str:
+    agreed = ["the filters with and without satellites agreed"] if compared else []
     spoke = [
         f"the filter's gate after {v['gate_after_s']:.0f} s" if v["gate_after_s"] is not None else "the filter's gate not at all",
+        *([f"the memory of the innovations after {v['memory_after_s']:.0f} s"] if v["memory_after_s"] is not None else []),
+        *([f"the filters disagreed after {v['disagree_after_s']:.0f} s"] if v["disagree_after_s"] is not None else agreed),
         f"the mode fell to {v['mode']} after {v['mode_after_s']:.0f} s" if v["mode_after_s"] is not None else "the mode did not fall",
         f"the first alert ({v['alert']}) after {v['alert_after_s']:.0f} s" if v["alert_after_s"] is not None else "no alert",
     ]

@@ -30,7 +30,10 @@ _KEPT = {
     "vor_dme": "without satellites: a VOR and a DME keep the position",
     "coasting": "without satellites and stations: inertial navigation alone",
 }
-_CODES = ("nav_mode", "leg", "phase", "available", "flight", "reason")
+_DISAGREE = "the filters with and without satellites disagree: nobody knows which of them is right"
+_WATCHED = ("separation_m", "separation_limit_m", "innovation_memory")
+"""Columns of the monitors across measurements."""
+_CODES = ("nav_mode", "leg", "phase", "available", "disagree", "flight", "reason")
 """Columns that become words."""
 
 
@@ -119,7 +122,7 @@ def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
         "reason": pl.Series(reasons.tolist(), dtype=pl.String),
     }
     if scenario.filter is None:
-        columns = {name: values for name, values in columns.items() if name != "n_gated"}
+        columns = {name: values for name, values in columns.items() if name not in ("n_gated", *_WATCHED)}
     else:
         words["nav_mode"] = _words([*_core.Sensors.modes(), "stopped"], columns["nav_mode"])
         # What keeps the position is less than it should be: usable, and said.
@@ -127,6 +130,9 @@ def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
         words["status"] = words["status"].zip_with(pl.Series(~lesser), pl.Series(["degraded"]))
         kept = words["nav_mode"].replace_strict(_KEPT, default=None)
         words["reason"] = kept.zip_with(pl.Series(lesser), words["reason"])
+        disagree = pl.Series(columns["disagree"] == 1)
+        words["status"] = words["status"].zip_with(~disagree, pl.Series(["not_available"]))
+        words["reason"] = words["reason"].zip_with(~disagree, pl.Series([_DISAGREE]))
     numbers = {name: values for name, values in columns.items() if name not in _CODES}
     table = pl.DataFrame({"track": words.pop("track"), "time_ns": numbers.pop("time_ns"), **numbers, **words})
     # A value that does not exist is null in a table.

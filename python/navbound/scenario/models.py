@@ -117,6 +117,10 @@ class Filter(Part):
     """The navigation filter that joins the sensors."""
 
     mode: Literal["correlated", "white"]
+    form: Literal["tight", "loose", "federated"] = "tight"
+    reversion: bool = True
+    """A filter without satellites beside the main one, which it is compared with."""
+    separation_risk: float = 1e-7
     gate_risk: float
     samples_per_step: int
     restart_after_s: float

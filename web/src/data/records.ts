@@ -128,6 +128,8 @@ export interface FaultSummary {
     start_ns: number;
     end_ns: number | null;
     gate_after_s: number | null;
+    memory_after_s: number | null;
+    disagree_after_s: number | null;
     mode_after_s: number | null;
     mode: string | null;
     alert_after_s: number | null;

@@ -73,7 +73,8 @@ export function faults(payload: Payload): HTMLElement | null {
         columns: [
             { head: "Track", key: "track", words: true, of: (f) => f.track, show: (f) => labels.get(f.track) ?? f.track }, text("Fault", "kind"),
             { head: "Begin, UTC", key: "start_ns", of: (f) => f.start_ns, show: (f) => clock(utcOf(f.start_ns, payload)) },
-            number("Gate", "gate_after_s", after), number("Mode fell", "mode_after_s", after), text("To", "mode"), number("First alert", "alert_after_s", after), text("Alert", "alert"),
+            number("Gate", "gate_after_s", after), number("Memory", "memory_after_s", after), number("Filters disagree", "disagree_after_s", after),
+            number("Mode fell", "mode_after_s", after), text("To", "mode"), number("First alert", "alert_after_s", after), text("Alert", "alert"),
             number("Truth outside RNP", "outside_after_s", after), number("Outside 2 RNP", "outside_twice_after_s", after),
             number("Horizontal error, largest", "nse_h_max_m", metres), number("Vertical, largest", "nse_u_max_m", metres), text("Outcome", "outcome"),
         ],

@@ -4,6 +4,7 @@ pub mod consistency;
 pub mod exposure;
 mod latch;
 pub mod rnp;
+pub mod separation;
 mod settings;
 pub mod state;
 mod state_order;

@@ -70,6 +70,8 @@ impl Risk {
 
     /// The risk that a navigation filter's gate throws away a good measurement.
     pub const FILTER_GATE: Self = Self(1e-4);
+    /// The risk that two navigation filters that are right are said to disagree, at an instant.
+    pub const SEPARATION: Self = Self(1e-7);
 
     /// A risk inside (0, 1).
     ///

@@ -224,6 +224,11 @@ impl Normal {
         Some(self.information.cholesky()?.solve(&self.side))
     }
 
+    /// How far the position moves for one metre in a row's range, by the inverse of the information.
+    pub(crate) fn response(&self, inverse: &Matrix3<f64>, row: &Row) -> Vector3<f64> {
+        inverse * (row.unit - self.groups[row.clock].mean) * -row.weight
+    }
+
     /// What a row's clock reads after a step: the weighted mean of residual and step along the line of sight.
     pub(crate) fn clock(&self, clock: usize, step: &Vector3<f64>) -> f64 {
         self.groups[clock].residual + self.groups[clock].mean.dot(step)

@@ -7,7 +7,7 @@ use super::measure::{Antenna, Scalar, body_velocity};
 use super::settings::{ErrorModel, positive};
 use super::slots::{Further, Process};
 use super::state::finite;
-use crate::quantity::OutOfDomain;
+use crate::quantity::{GpsTime, OutOfDomain};
 use crate::signal::{Aiding, BaroHeight, DmeRange, PositionFix, SatelliteRange, TimedAiding, VorBearing};
 use nalgebra::{Matrix3, Vector3};
 
@@ -35,6 +35,8 @@ pub enum Aided {
     Refused(OutOfDomain),
     /// All places for further states are taken.
     NoPlace,
+    /// The ranges of the instant determine no position (the loose form).
+    NoPosition,
     /// The filter has stopped.
     Stopped,
 }
@@ -64,31 +66,36 @@ impl Wheels {
 impl Filter {
     /// One measurement, at the time of the last sample or up to `age_most_s` before it.
     pub fn aid(&mut self, timed: &TimedAiding) -> Aided {
-        let kind = kind(&timed.aiding);
+        let kind = Kind::of(&timed.aiding);
         let outcome = self.judge(timed);
-        if matches!(outcome, Aided::Late { .. } | Aided::Refused(_) | Aided::NoPlace | Aided::Stopped) {
+        if matches!(outcome, Aided::Late { .. } | Aided::Refused(_) | Aided::NoPlace | Aided::NoPosition | Aided::Stopped) {
             self.innovations[kind.index()].n_refused += 1;
         }
         outcome
     }
 
-    fn judge(&mut self, timed: &TimedAiding) -> Aided {
+    /// Everything brought to the last sample, and the antenna and the age \[s\] of a measurement of this time; or why none can be used.
+    pub(super) fn ready(&mut self, time: GpsTime) -> Result<(Antenna, f64), Aided> {
         if self.stopped.is_some() {
-            return Aided::Stopped;
+            return Err(Aided::Stopped);
         }
-        let age_s = self.time().seconds_since(timed.time);
+        let age_s = self.time().seconds_since(time);
         // A nanosecond ahead is rounding of the clock; a sample ahead belongs to the next sample.
         if !(age_s >= -1e-9 && age_s <= self.settings.age_most_s) {
-            return Aided::Late { age_s };
+            return Err(Aided::Late { age_s });
         }
+        self.settle();
+        Antenna::of(self.state(), &self.settings.lever_arm_m, &self.rate, age_s).map(|a| (a, age_s)).map_err(Aided::Refused)
+    }
+
+    fn judge(&mut self, timed: &TimedAiding) -> Aided {
+        let (antenna, age_s) = match self.ready(timed.time) {
+            Ok(found) => found,
+            Err(outcome) => return outcome,
+        };
         if let Err(refusal) = super::sane::check(&timed.aiding) {
             return Aided::Refused(refusal);
         }
-        self.settle();
-        let antenna = match Antenna::of(self.state(), &self.settings.lever_arm_m, &self.rate, age_s) {
-            Ok(antenna) => antenna,
-            Err(refusal) => return Aided::Refused(refusal),
-        };
         let used = match &timed.aiding {
             Aiding::Satellite(m) => self.satellite(&antenna, m),
             Aiding::Dme(m) => self.dme(&antenna, m),
@@ -246,13 +253,20 @@ impl Filter {
             self.slots.saw(place, time);
         }
         let before = self.memory.replace(kind, source, normalised);
-        self.innovations[kind.index()].used(normalised, before);
+        let time = self.time();
+        self.innovations[kind.index()].used(normalised, before, time);
         self.correct(core::slice::from_ref(scalar));
         Aided::Used { square, dimension: 1 }
     }
 
     /// Three components with a common variance matrix: judged together, used along the axes in which they are independent.
-    fn use_three(&mut self, kind: Kind, innovation: &Vector3<f64>, r: &Matrix3<f64>, row: impl Fn(&Vector3<f64>) -> Row) -> Aided {
+    pub(super) fn use_three(
+        &mut self,
+        kind: Kind,
+        innovation: &Vector3<f64>,
+        r: &Matrix3<f64>,
+        row: impl Fn(&Vector3<f64>) -> Row,
+    ) -> Aided {
         let eigen = r.symmetric_eigen();
         if !(eigen.eigenvalues.min() > 0.0) {
             let value = eigen.eigenvalues.min();
@@ -279,18 +293,22 @@ impl Filter {
         let normalised = innovation.x / crate::special::float::sqrt((first * s * first.transpose())[(0, 0)]);
         // Solved positions and velocities have one source each.
         let before = self.memory.replace(kind, Further::Clock, normalised);
-        self.innovations[kind.index()].used_three(square, normalised, before);
+        let time = self.time();
+        self.innovations[kind.index()].used_three(square, normalised, before, time);
         self.correct(&[scalar(0), scalar(1), scalar(2)]);
         Aided::Used { square, dimension: 3 }
     }
 }
 
-fn kind(aiding: &Aiding) -> Kind {
-    match aiding {
-        Aiding::Satellite(_) => Kind::Range,
-        Aiding::Dme(_) => Kind::Dme,
-        Aiding::Vor(_) => Kind::Vor,
-        Aiding::Baro(_) => Kind::Baro,
-        Aiding::Fix(_) => Kind::FixPosition,
+impl Kind {
+    /// Of a measurement: of a satellite its range, of a solved position the position.
+    pub const fn of(aiding: &Aiding) -> Self {
+        match aiding {
+            Aiding::Satellite(_) => Self::Range,
+            Aiding::Dme(_) => Self::Dme,
+            Aiding::Vor(_) => Self::Vor,
+            Aiding::Baro(_) => Self::Baro,
+            Aiding::Fix(_) => Self::FixPosition,
+        }
     }
 }

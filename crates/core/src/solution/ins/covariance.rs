@@ -5,6 +5,7 @@
 //! square. A test runs millions of updates and takes Cholesky's factor along the way.
 
 use super::dynamics::{MOTION, NAV, Transition, decay};
+use nalgebra::{Matrix3, Vector3};
 
 /// Columns of the navigation block, one of them empty: whole vectors.
 pub(super) const BASE: usize = 16;
@@ -202,6 +203,25 @@ impl Joint {
         self.p[i][rate] += noise[1];
         self.p[rate][i] += noise[1];
         self.p[rate][rate] += noise[2];
+    }
+
+    /// Three further states become a mixture of themselves with noise added; see [`super::slots::Slots::mix`].
+    pub(super) fn mix(&mut self, places: [usize; 3], a: &Matrix3<f64>, q: &Matrix3<f64>) {
+        for j in 0..self.used {
+            let line = a * Vector3::from(places.map(|place| self.p[place][j]));
+            places.into_iter().zip(line.iter()).for_each(|(place, x)| self.p[place][j] = *x);
+        }
+        for j in 0..self.used {
+            let line = a * Vector3::from(places.map(|place| self.p[j][place]));
+            places.into_iter().zip(line.iter()).for_each(|(place, x)| self.p[j][place] = *x);
+        }
+        for (i, a) in places.into_iter().enumerate() {
+            for (j, b) in places.into_iter().enumerate().take(i + 1) {
+                // Mirrored, so that the matrix stays symmetric to the last bit.
+                self.p[a][b] += q[(i, j)];
+                self.p[b][a] = self.p[a][b];
+            }
+        }
     }
 
     /// P h'.

@@ -331,7 +331,7 @@ impl Filter {
 
 impl NavState {
     /// The errors are taken away: `r - dr, v - dv, C = (1 + [phi x]) C_estimated`.
-    fn correct(&mut self, dr: &Vector3<f64>, dv: &Vector3<f64>, phi: &Vector3<f64>) {
+    pub(super) fn correct(&mut self, dr: &Vector3<f64>, dv: &Vector3<f64>, phi: &Vector3<f64>) {
         let local = Local::at(self.lat, self.h, &self.v);
         self.lat -= dr.x / local.north;
         self.lon = wrapped(self.lon - dr.y / (local.east * local.cos));

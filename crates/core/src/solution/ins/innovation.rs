@@ -2,6 +2,14 @@
 
 use super::covariance::FURTHER;
 use super::slots::Further;
+use crate::quantity::GpsTime;
+use crate::special::float::{exp, sqrt};
+
+/// Time after which an innovation weighs a third in [`Innovations::memory`] \[s\]. Provenance: ours.
+pub const MEMORY_S: f64 = 60.0;
+/// Pairs, as they weigh, from which [`Innovations::memory`] is near enough to normal: products of normal numbers have a kurtosis of 9, so
+/// the risk beyond five deviations is twice the normal one. Provenance: ours.
+pub const PAIRS_LEAST: f64 = 100.0;
 
 /// A kind of measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,22 +72,46 @@ pub struct Innovations {
     n_pairs: u64,
     sum_product: f64,
     sum_pair_square: f64,
+    lately: Lately,
+}
+
+/// Products of an innovation and the one before it, forgotten over [`MEMORY_S`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Lately {
+    sum: f64,
+    /// Its variance if each product has 1, as those of white innovations have.
+    variance: f64,
+    time: Option<GpsTime>,
+}
+
+impl Lately {
+    fn add(&mut self, product: f64, time: GpsTime) {
+        if self.time != Some(time) {
+            let keep = self.time.map_or(0.0, |t| exp(-time.seconds_since(t) / MEMORY_S));
+            self.sum *= keep;
+            self.variance *= keep * keep;
+            self.time = Some(time);
+        }
+        self.sum += product;
+        self.variance += 1.0;
+    }
 }
 
 impl Innovations {
-    pub(super) fn used(&mut self, normalised: f64, before: Option<f64>) {
+    pub(super) fn used(&mut self, normalised: f64, before: Option<f64>, time: GpsTime) {
         self.n_used += 1;
         self.sum_square += normalised * normalised;
         if let Some(before) = before {
             self.n_pairs += 1;
             self.sum_product += normalised * before;
+            self.lately.add(normalised * before, time);
             self.sum_pair_square += 0.5 * (normalised * normalised + before * before);
         }
     }
 
     /// Three components that were judged together; the correlation is that of one of them.
-    pub(super) fn used_three(&mut self, square: f64, normalised: f64, before: Option<f64>) {
-        self.used(normalised, before);
+    pub(super) fn used_three(&mut self, square: f64, normalised: f64, before: Option<f64>, time: GpsTime) {
+        self.used(normalised, before, time);
         self.n_used += 2;
         self.sum_square += square - normalised * normalised;
     }
@@ -92,6 +124,20 @@ impl Innovations {
     /// Correlation of an innovation with the one before it of the same source; NaN without a pair. White ones stay within 2/sqrt(n).
     pub fn lag_one(&self) -> f64 {
         self.sum_product / self.sum_pair_square
+    }
+
+    /// What the innovations of the last minute or so remember, in standard deviations: standard normal for a filter that is right, NaN
+    /// while there are fewer than [`PAIRS_LEAST`] pairs or none has come for [`MEMORY_S`].
+    ///
+    /// ```text
+    /// m = sum_k g^(age of k) n_k n_(k-1) / sqrt(sum_k g^(2 age of k)),    g^age = exp(-age / MEMORY_S)
+    /// ```
+    pub fn memory(&self, now: GpsTime) -> f64 {
+        let fresh = self.lately.time.is_some_and(|t| now.seconds_since(t) <= MEMORY_S);
+        if !(fresh && self.lately.variance >= PAIRS_LEAST) {
+            return f64::NAN;
+        }
+        self.lately.sum / sqrt(self.lately.variance)
     }
 
     /// Pairs behind [`Innovations::lag_one`].
@@ -122,5 +168,55 @@ impl Memory {
             next
         });
         self.last[place].replace((kind, source, normalised)).map(|(_, _, before)| before)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ten sources a second, each innovation `share` of the one before and the rest new: the memory after five minutes, and its largest.
+    fn memory_of(share: f64) -> (f64, f64) {
+        let mut state = 0x2545_f491_4f6c_dd1d_u64;
+        let mut uniform = || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1u64 << 53) as f64 + 1e-17
+        };
+        let mut normal = || (-2.0 * uniform().ln()).sqrt() * (core::f64::consts::TAU * uniform()).cos();
+        let (mut sums, mut last, mut most) = (Innovations::default(), [None; 10], 0.0f64);
+        let mut found = f64::NAN;
+        for second in 0..300 {
+            let time = GpsTime::default().plus_seconds(f64::from(second));
+            for before in &mut last {
+                let new = share * before.unwrap_or(0.0) + (1.0 - share * share).sqrt() * normal();
+                sums.used(new, before.replace(new), time);
+            }
+            found = sums.memory(time);
+            most = most.max(found.abs());
+        }
+        (found, most)
+    }
+
+    /// White: five deviations either way. A share of 0.3 among 10 * 60 / 2 pairs that weigh: 0.3 sqrt of their sum over that of their squares,
+    /// 0.3 * 600 / sqrt(300) = 10.4 ± 1.2.
+    #[test]
+    fn innovations_that_remember_are_found_within_a_minute() {
+        let (_, most) = memory_of(0.0);
+        assert!(most < 5.0, "{most}");
+        let (found, _) = memory_of(0.3);
+        assert!((found - 10.4).abs() < 4.0, "{found}");
+    }
+
+    #[test]
+    fn few_pairs_or_old_ones_say_nothing() {
+        let mut sums = Innovations::default();
+        let time = GpsTime::default();
+        (0..99).for_each(|_| sums.used(1.0, Some(1.0), time));
+        assert!(sums.memory(time).is_nan());
+        sums.used(1.0, Some(1.0), time);
+        assert!((sums.memory(time) - 10.0).abs() < 1e-12);
+        assert!(sums.memory(time.plus_seconds(61.0)).is_nan());
     }
 }

@@ -69,8 +69,13 @@ impl Antenna {
         self.ned_from_ecef * (ecef_from_geodetic(fix).vector() - self.ecef)
     }
 
+    /// The same antenna beside where it is believed, local axes \[m\].
+    pub(super) fn moved(&self, by: &Vector3<f64>) -> Self {
+        Self { ecef: self.ecef + self.ned_from_ecef.transpose() * by, ..*self }
+    }
+
     /// Unit vector from the antenna to a place, local axes, and the distance.
-    fn towards(&self, place: &EcefPosition) -> (Vector3<f64>, f64) {
+    pub(super) fn towards(&self, place: &EcefPosition) -> (Vector3<f64>, f64) {
         let d = self.ned_from_ecef * (place.vector() - self.ecef);
         let distance = d.norm();
         (d / distance, distance)

@@ -2,7 +2,8 @@
 //!
 //! - [`Strapdown`]: increments of angle and velocity become position, velocity and attitude.
 //! - [`Filter`]: the same with fifteen error states and a further one for everything that stays wrong for a while: clock, constellations,
-//!   barometer, stations, satellites. Loose aiding is a [`crate::signal::Aiding::Fix`] to the same filter.
+//!   barometer, stations, satellites.
+//! - [`Fusion`]: one filter or several, in the form that [`Settings::form`] names, and the one without satellites beside them.
 //! - [`Mode`], [`Innovations`]: what keeps the position now, and what the innovations say of the filter.
 //!
 //! Local axes point north, east and down and the equations hold the tangent of the latitude: within 0.1 degree of a pole a state is
@@ -14,8 +15,13 @@ mod covariance;
 #[cfg(test)]
 mod covariance_tests;
 mod dynamics;
+mod federated;
 mod filter;
+#[cfg(test)]
+mod forms_tests;
+mod fusion;
 mod innovation;
+mod loose;
 mod measure;
 mod mode;
 mod sane;
@@ -27,9 +33,10 @@ mod strapdown;
 pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};
 pub use filter::{Advance, Filter, Samples, Solution, Stop};
-pub use innovation::{Innovations, Kind};
+pub use fusion::{Beside, Fusion};
+pub use innovation::{Innovations, Kind, MEMORY_S, PAIRS_LEAST};
 pub use mode::Mode;
-pub use settings::{ClockModel, ErrorModel, GATE, ImuModel, Patience, SensorNoise, Settings, StartSigma};
+pub use settings::{ClockModel, ErrorModel, Form, GATE, ImuModel, Patience, SensorNoise, Settings, StartSigma};
 pub use slots::Further;
 pub use state::{Attitude, LATITUDE_MOST_RAD, NavState};
 pub use strapdown::{PROVENANCE, SOURCE, Strapdown};

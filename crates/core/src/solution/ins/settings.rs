@@ -91,6 +91,22 @@ pub enum ErrorModel {
     White,
 }
 
+/// How measurements and inertial unit come together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// One filter with every range, and a state for what stays in each.
+    Tight,
+    /// The ranges of an instant are solved to a position and a velocity first, and these aid the filter.
+    Loose,
+    /// A filter for the satellites and one for the stations and the altimeter, and a master that joins what they say.
+    Federated,
+}
+
+impl Form {
+    /// Every form, in the order in which they are named.
+    pub const ALL: [Self; 3] = [Self::Tight, Self::Loose, Self::Federated];
+}
+
 /// How long a kind of aiding must be there, or be missed, before the mode follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patience {
@@ -109,6 +125,12 @@ pub struct Settings {
     pub clock: ClockModel,
     /// What is believed of the errors.
     pub errors: ErrorModel,
+    /// How measurements and inertial unit come together.
+    pub form: Form,
+    /// Whether a filter without satellites runs beside the main one. The federated form has one always.
+    pub reversion: bool,
+    /// Risk, at an instant, of saying that both disagree when both are right.
+    pub separation: Risk,
     /// From the inertial unit to the antenna, body axes \[m\].
     pub lever_arm_m: Vector3<f64>,
     /// Risk of throwing away a good measurement, per measurement.
@@ -136,6 +158,9 @@ impl Settings {
             imu,
             clock: ClockModel::default(),
             errors: ErrorModel::Correlated,
+            form: Form::Tight,
+            reversion: false,
+            separation: Risk::SEPARATION,
             lever_arm_m: Vector3::zeros(),
             gate: GATE,
             samples_per_step: 1,

@@ -4,6 +4,7 @@ use super::covariance::{BASE, FURTHER, Fade, Joint};
 use super::settings::ClockModel;
 use crate::quantity::GpsTime;
 use crate::signal::{Constellation, SatelliteId};
+use nalgebra::{Matrix3, Vector3};
 
 /// What a further state is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,6 +23,8 @@ pub enum Further {
     Vor(u16),
     /// What stays in the ranges to a satellite.
     Satellite(SatelliteId),
+    /// What stays in a position solved from ranges (the loose form), one of three numbers with variance 1 that its errors are made of.
+    SolvedPosition(u8),
     /// The vehicle's heading and pitch against the inertial unit's, where it cannot slip sideways.
     MountHeading,
     /// See [`Further::MountHeading`].
@@ -115,6 +118,15 @@ impl Slots {
         let clock = self.ensure(joint, Further::Clock, constant(model.bias_m), first)?;
         // The second may have moved the first.
         Some([clock, self.find(Further::ClockDrift)?])
+    }
+
+    /// Three states become a mixture of themselves, `z <- A z` plus noise of variance `q`.
+    pub(super) fn mix(&mut self, joint: &mut Joint, places: [usize; 3], a: &Matrix3<f64>, q: &Matrix3<f64>) {
+        let mixed = a * Vector3::from(places.map(|place| self.value(place)));
+        for (k, place) in places.into_iter().enumerate() {
+            self.slot[place - BASE].value = mixed[k];
+        }
+        joint.mix(places, a, q);
     }
 
     /// The station or satellite unseen for longest makes room.
