@@ -27,7 +27,7 @@ def seconds(flight: Scenario, repeats: int = 3) -> tuple[float, int]:
 
 def measure() -> list[dict[str, object]]:
     """One row a measurement: name, seconds_per_item, n, note."""
-    full = scenario.load("beijing-shanghai-modern")
+    full = scenario.load("beijing-shanghai")
     assert full.sensors is not None
     bare: dict[str, Any] = {"gnss": None, "dme": None, "vor": None, "baro": None}
     rows: list[dict[str, object]] = []
