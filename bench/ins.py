@@ -8,7 +8,6 @@ from __future__ import annotations
 import sys
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,9 +17,6 @@ from navbound import ins
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
 import ins_fixture as body
-
-if TYPE_CHECKING:
-    pass
 
 
 def fixes(time_ns: np.ndarray) -> ins.Fixes:

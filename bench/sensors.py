@@ -14,7 +14,7 @@ from navbound import ins, scenario
 
 def measure() -> list[Row]:
     """One row a measurement."""
-    full = scenario.load("beijing-shanghai-modern")
+    full = scenario.load("beijing-shanghai")
     assert full.sensors is not None
     bare: dict[str, Any] = {"gnss": None, "dme": None, "vor": None, "baro": None}
     rows: list[Row] = []

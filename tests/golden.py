@@ -59,8 +59,8 @@ def taxied(run: Run) -> dict[str, Any]:
     }
 
 
-FLOWN = {"beijing-shanghai-jammed-flown": "beijing-shanghai-jammed"}
-"""Kept besides the measurements: a flight on them, with ten inertial samples a second."""
+FLOWN = {"beijing-shanghai-flown": "beijing-shanghai", "beijing-shanghai-jammed-flown": "beijing-shanghai-jammed"}
+"""Kept besides the measurements: flights on them, with ten inertial samples a second."""
 _LAID_OVER = {
     f"beijing-shanghai-{name}" for name in ("white", "satellite-wrong", "dme-wrong", "imu-jump", "baro-blocked", "spoofed-approach")
 }

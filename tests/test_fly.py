@@ -1,4 +1,4 @@
-"""The simulated flight as the rest of navbound sees it; its physics is proven in crates/simulate/tests."""
+"""The simulated flight with drawn errors as the rest of navbound sees it; its physics is proven in crates/simulate/tests."""
 
 from __future__ import annotations
 
@@ -17,19 +17,20 @@ from navbound import InputError, path, scenario
 from navbound.run.fly import material
 from navbound.run.material import Material
 
+DRAWN = "beijing-shanghai-drawn"
 NOTATION = Path(__file__).parents[1] / "docs" / "notation.md"
 
 
 @pytest.fixture(scope="module")
 def flown() -> Material:
-    return material("beijing-shanghai")
+    return material(DRAWN)
 
 
 def test_one_epoch_for_every_second(flown: Material) -> None:
     times = flown.epochs["time_ns"]
     assert times.len() == 7081
     assert (times.diff().drop_nulls() == 10**9).all()
-    assert times[0] == scenario.load("beijing-shanghai").start_ns
+    assert times[0] == scenario.load(DRAWN).start_ns
 
 
 def test_columns_are_those_of_the_glossary(flown: Material) -> None:
@@ -60,7 +61,7 @@ def test_cruise_is_as_long_and_as_fast_as_the_sums_say(flown: Material) -> None:
 
 def test_technical_error_is_the_distance_from_the_corners_route(flown: Material) -> None:
     # Away from turns the flown path is the leg itself, which navbound.path knows without the simulator.
-    waypoints = scenario.load("beijing-shanghai").waypoints
+    waypoints = scenario.load(DRAWN).waypoints
     e = flown.epochs
     leg = e.filter(pl.col("leg") == "ABTUB-UDINO")
     line = path.line(waypoints[8].lat_rad, waypoints[8].lon_rad, waypoints[9].lat_rad, waypoints[9].lon_rad)
@@ -88,19 +89,19 @@ def test_phases_carry_their_rnp_in_order(flown: Material) -> None:
 
 def test_flights_are_tracks_and_seeds_matter() -> None:
     done: list[tuple[int, int]] = []
-    many = material("beijing-shanghai", flights=9, progress=lambda n, total: done.append((n, total)))
-    assert done == [(8, 9), (9, 9)]
-    assert many.epochs["track"].unique(maintain_order=True).to_list() == [f"flight-{i:03d}" for i in range(9)]
+    many = material(DRAWN, flights=17, progress=lambda n, total: done.append((n, total)))
+    assert done == [(0, 17), (16, 17), (17, 17)]
+    assert many.epochs["track"].unique(maintain_order=True).to_list() == [f"flight-{i:03d}" for i in range(17)]
     assert many.labels["flight-008"] == "Flight 9"
-    alone = material("beijing-shanghai").epochs
+    alone = material(DRAWN).epochs
     assert many.epochs[:7081].equals(alone)
-    assert not material("beijing-shanghai", seed=1).epochs.equals(alone)
+    assert not material(DRAWN, seed=1).epochs.equals(alone)
 
 
 def test_context_says_what_was_assumed_and_read(flown: Material) -> None:
     assert flown.seed == 20220801
     assert flown.scenario is not None
-    assert flown.scenario["title"] == flown.title == "Beijing to Shanghai"
+    assert flown.scenario["title"] == flown.title == "Beijing to Shanghai, errors drawn"
     file = Path(flown.inputs[0].path)
     assert flown.inputs[0].sha256 == hashlib.sha256(file.read_bytes()).hexdigest()
     assert [w.name for w in flown.waypoints][::20] == ["ZBAA", "ZSSS"]
@@ -110,7 +111,7 @@ def test_context_says_what_was_assumed_and_read(flown: Material) -> None:
 
 
 def test_interference_is_admitted_and_a_ramp_is_not() -> None:
-    plain, poor, led = (material(name).epochs for name in ("beijing-shanghai", "beijing-shanghai-degraded", "beijing-shanghai-misled"))
+    plain, poor, led = (material(name).epochs for name in (DRAWN, "beijing-shanghai-degraded", "beijing-shanghai-misled"))
     at = 6_900
     assert poor["cov_ee_m2"][at] == pytest.approx(250**2 * plain["cov_ee_m2"][at], rel=1e-12)
     assert led["cov_ee_m2"][at] == plain["cov_ee_m2"][at]
@@ -120,7 +121,7 @@ def test_interference_is_admitted_and_a_ramp_is_not() -> None:
 
 def test_no_satellites_is_a_status_with_a_reason(tmp_path: Path) -> None:
     file = tmp_path / "blind.toml"
-    file.write_text('base = "beijing-shanghai"\n[navigation]\nmask_deg = 85.0\n', encoding="utf-8")
+    file.write_text('base = "beijing-shanghai-drawn"\n[navigation]\nmask_deg = 85.0\n', encoding="utf-8")
     e = material(file).epochs
     lost = e.filter(pl.col("status") == "not_available")
     assert lost.height == e.height
@@ -132,7 +133,7 @@ def test_no_satellites_is_a_status_with_a_reason(tmp_path: Path) -> None:
 
 def test_results_do_not_depend_on_the_number_of_threads() -> None:
     program = (
-        "import hashlib; from navbound.run.fly import material; e = material('beijing-shanghai', flights=3).epochs;"
+        "import hashlib; from navbound.run.fly import material; e = material('beijing-shanghai-drawn', flights=3).epochs;"
         "print(hashlib.sha256(e.drop('reason').hash_rows(seed=1).to_numpy().tobytes()).hexdigest())"
     )
     digests = {
@@ -145,13 +146,13 @@ def test_results_do_not_depend_on_the_number_of_threads() -> None:
     assert len(digests.pop().strip()) == 64
 
 
-@pytest.mark.parametrize("flights", [0, -1, 1.5])
+@pytest.mark.parametrize("flights", [0, -1, 1.5, 1001])
 def test_no_flight_is_refused(flights: int) -> None:
     with pytest.raises(InputError, match="flights"):
-        material("beijing-shanghai", flights=flights)
+        material(DRAWN, flights=flights)
 
 
 @pytest.mark.parametrize("seed", [-1, 2**64])
 def test_a_seed_outside_its_range_is_refused(seed: int) -> None:
     with pytest.raises(InputError, match="seed"):
-        material("beijing-shanghai", seed=seed)
+        material(DRAWN, seed=seed)

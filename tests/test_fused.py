@@ -15,7 +15,8 @@ from navbound import FormatError, anp, evaluation, scenario
 from navbound.run import fly, study_anp_comparison
 from navbound.run.directory import Run
 from navbound.run.faults import fault_summaries
-from navbound.run.judge import Settings, judge
+from navbound.run.judge import judge
+from navbound.run.settings import Settings
 from navbound.scenario import Scenario
 
 RATE_HZ = 10
@@ -152,7 +153,7 @@ WITHOUT_SATELLITES = {"kind": "interference", "start_s": 0.0, "duration_s": 8000
 
 @pytest.mark.parametrize("what", ["silent", "not-a-number", "late"])
 def test_a_short_trouble_of_the_inertial_unit_is_bridged_and_counted(what: str) -> None:
-    run, _ = summary("beijing-shanghai-modern", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=0.5, what=what)])
+    run, _ = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=0.5, what=what)])
     told = run.record.settings["filter"]
     assert isinstance(told, dict)
     assert told["samples"]["bridged"] == 1
@@ -163,7 +164,7 @@ def test_a_short_trouble_of_the_inertial_unit_is_bridged_and_counted(what: str) 
 
 @pytest.mark.parametrize("what", ["silent", "not-a-number"])
 def test_an_inertial_unit_that_is_lost_ends_the_navigation_with_its_reason(what: str) -> None:
-    run, found = summary("beijing-shanghai-modern", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=30.0, what=what)])
+    run, found = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=30.0, what=what)])
     after = run.epochs[3000:]
     assert after["status"].unique().to_list() == ["not_available"]
     assert after["nav_mode"].unique().to_list() == ["stopped"]
@@ -173,7 +174,7 @@ def test_an_inertial_unit_that_is_lost_ends_the_navigation_with_its_reason(what:
 
 
 def test_samples_whose_times_run_a_second_behind_give_no_position_until_they_are_right_again() -> None:
-    run, found = summary("beijing-shanghai-modern", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=30.0, what="late")])
+    run, found = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=30.0, what="late")])
     status = run.epochs["status"].to_list()
     assert set(status[3000:3030]) == {"not_available"}
     assert "not_available" not in status[3031:]
@@ -183,7 +184,8 @@ def test_samples_whose_times_run_a_second_behind_give_no_position_until_they_are
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ('base = "beijing-shanghai"\n[filter]\nmode = "white"\n', "filter"),
+        ('base = "beijing-shanghai-drawn"\n[filter]\nmode = "white"\n', "filter"),
+        ('base = "beijing-shanghai"\n[navigation]\nclaimed_sigma_scale = 0.5\n', "navigation.claimed_sigma_scale"),
         ('base = "beijing-shanghai-real"\n[filter]\ngate_risk = 0.0\n', "gate_risk"),
         ('base = "beijing-shanghai-real"\n[filter]\nmode = "grey"\n', "mode"),
         ('base = "beijing-shanghai-real"\n[filter]\nform = "ultra-tight"\n', "form"),

@@ -44,4 +44,4 @@ def test_numbers_of_flights_that_are_none_are_refused(real: Scenario) -> None:
     with pytest.raises(InputError, match="flights"):
         ins.consistency(real, 0)
     with pytest.raises(InputError, match="sensors"):
-        ins.consistency("beijing-shanghai", 1)
+        ins.consistency("beijing-shanghai-drawn", 1)

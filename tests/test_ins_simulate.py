@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 TABLES = ("truth", "imu", "satellites", "dme", "vor", "baro", "clock")
 
 
-def short(name: str = "beijing-shanghai-modern", **sensors: object) -> scenario.Scenario:
+def short(name: str = "beijing-shanghai", **sensors: object) -> scenario.Scenario:
     """Ten samples a second are enough to look at."""
     found = scenario.load(name)
     assert found.sensors is not None
@@ -116,7 +116,7 @@ def test_the_seed_is_the_scenarios_unless_given() -> None:
 def test_broadcast_orbits_serve_as_well(shared_data: Path) -> None:
     path = shared_data / "gnss" / "ESBC_2020_177" / "ESBC00DNK_R_20201770000_01D_MN.rnx.gz"
     navigation = gnss.read_navigation(path)
-    base = short("beijing-shanghai-modern", path="planned", dme=None, vor=None, baro=None)
+    base = short("beijing-shanghai", path="planned", dme=None, vor=None, baro=None)
     day = base.model_copy(update={"start_gps": base.start_gps.replace(year=2020, month=6, day=25, hour=10)})
     found = ins.simulate(day, navigation=navigation)
     counts = found.satellites.group_by("time_ns").len()["len"]
@@ -131,7 +131,7 @@ def test_broadcast_orbits_serve_as_well(shared_data: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "argument"),
     [
-        ({"scenario": "beijing-shanghai"}, "scenario"),
+        ({"scenario": "beijing-shanghai-drawn"}, "scenario"),
         ({"flight": -1}, "flight"),
         ({"seed": 2**64}, "seed"),
         ({"truth_interval_s": 0.0}, "truth_interval_s"),
@@ -187,7 +187,7 @@ def test_a_grade_gives_way_to_numbers_beside_it(tmp_path: Path) -> None:
 
 def test_the_rust_tests_fly_the_shipped_flight() -> None:
     kept = json.loads((ROOT / "crates" / "simulate" / "tests" / "beijing-shanghai.json").read_text(encoding="utf-8"))
-    shipped = json.loads(scenario.load("beijing-shanghai").core_json())
+    shipped = json.loads(scenario.load("beijing-shanghai-drawn").core_json())
     assert shipped.pop("sensors") is None
     assert shipped.pop("filter") is None
     assert kept == shipped

@@ -9,7 +9,7 @@ import pytest
 
 from navbound import FormatError, InputError, scenario
 
-SHIPPED = Path(scenario.__file__).parent / "beijing-shanghai.toml"
+SHIPPED = Path(scenario.__file__).parent / "beijing-shanghai-drawn.toml"
 
 
 def changed(tmp_path: Path, old: str, new: str) -> Path:
@@ -47,8 +47,8 @@ def test_start_is_gps_time() -> None:
 
 def test_a_file_may_say_only_what_differs(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
-    file.write_text('base = "beijing-shanghai"\ntitle = "Mine"\n[navigation]\nclaimed_sigma_scale = 0.5\n', encoding="utf-8")
-    mine, base = scenario.load(file), scenario.load("beijing-shanghai")
+    file.write_text('base = "beijing-shanghai-drawn"\ntitle = "Mine"\n[navigation]\nclaimed_sigma_scale = 0.5\n', encoding="utf-8")
+    mine, base = scenario.load(file), scenario.load("beijing-shanghai-drawn")
     assert mine.title == "Mine"
     assert mine.navigation == base.navigation.model_copy(update={"claimed_sigma_scale": 0.5})
     assert mine.waypoints == base.waypoints
@@ -73,7 +73,7 @@ def test_a_file_may_say_only_what_differs(tmp_path: Path) -> None:
         ("start_gps = 2022-08-01T00:00:00", "start_gps = 2022-08-01T00:00:00Z", "start_gps", "no zone"),
         ("seed = 20220801", "seed = -1", "seed", "greater than or equal to 0"),
         ("[turns]", "[turns", None, "not TOML"),
-        ('title = "Beijing to Shanghai"', 'base = "nowhere"', "base", "shipped scenarios"),
+        ('title = "Beijing to Shanghai, errors drawn"', 'base = "nowhere"', "base", "shipped scenarios"),
         ("landing_speed_mps = 70.0", "landing_speed_mps = 70.0\n[[faults]]\nkind = 'meteor'", "faults[0]", "'lateral-ramp'"),
         (
             "landing_speed_mps = 70.0",

@@ -4,28 +4,23 @@ from __future__ import annotations
 
 import json as encoder
 import os
-import shlex
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
 
 import navbound
 from navbound import cli_map, cli_predict
-from navbound import verify as vectors
+from navbound.cli_parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, err_console, out_console, work_of
 from navbound.errors import FormatError, InputError, NavboundError
-from navbound.kpi import SubsetOptions
-from navbound.methods import methods as all_methods
-from navbound.run.judge import DEFAULT_METHODS, Settings
+from navbound.run.settings import DEFAULT_METHODS, Settings
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from rich.table import Table
 
     from navbound.run.directory import Run
+    from navbound.verify import Outcome
 
 USAGE, UNREADABLE, OUR_BUG = 2, 3, 70
 
@@ -36,16 +31,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-PAPER_WIDTH = 140
-"""Columns of a table that goes to a file or a pipe, where the width of a terminal means nothing."""
-
 LISTED_FAULTS = 10
 """Faults that are said at the end of a run; all of them are in its records."""
 
-out_console = Console(width=None if sys.stdout.isatty() else PAPER_WIDTH)
-err_console = Console(stderr=True)
-
-Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")]
 Out = Annotated[Path | None, typer.Option("--out", help="Run directory to write. [default: out/<name>]")]
 Methods = Annotated[str, typer.Option("--methods", help="Comma-separated method ids; see `navbound methods`.")]
 
@@ -64,26 +52,24 @@ def _mapping(pairs: list[str]) -> dict[str, str]:
     return {name: column for name, _, column in split}
 
 
-def command_line() -> str:
-    """The command as it was given, for the run record."""
-    return shlex.join(["navbound", *sys.argv[1:]])
-
-
 @app.command()
 def fly(
     scenario: Annotated[str, typer.Argument(help="A shipped scenario (beijing-shanghai, barcelona-taxi) or a TOML file.")],
-    flights: Annotated[int, typer.Option(help="How many flights, on all cores.")] = 1,
+    flights: Annotated[int, typer.Option(help="How many flights, with random streams of their own.")] = 1,
     seed: Annotated[int | None, typer.Option(help="Overrides the scenario's seed.")] = None,
     methods: Methods = ",".join(DEFAULT_METHODS),
+    backend: Backend = None,
+    workers: NWorkers = None,
+    cluster: Cluster = None,
+    checkpoint: Checkpoint = None,
     out: Out = None,
     json: Json = False,
 ) -> None:
     """Fly a scenario, judge every epoch, write the report."""
     out = out or Path("out") / Path(scenario).stem
-    with Bar(flights) as progress:
-        run = navbound.fly(
-            scenario, flights=flights, seed=seed, settings=_settings(methods), out=out, progress=progress, command=command_line()
-        )
+    work = work_of(backend, workers, cluster, checkpoint)
+    with Bar("flights") as work["progress"]:
+        run = navbound.fly(scenario, flights=flights, seed=seed, settings=_settings(methods), out=out, command=command_line(), **work)
     _show(run, json=json)
 
 
@@ -153,9 +139,11 @@ def analyze(
     out = out or Path("out") / files[0].name.split(".")[0]
     subsets = _subsets(min_satellites, max_satellites, listed_from, asked=stanford_esa)
     if levels is not None:
+        from navbound.kpi import SubsetOptions  # noqa: PLC0415
+
         if path is not None or sigma_m is not None:
             raise InputError("levels", levels, domain="it without --path and --sigma-m, which judge a track")
-        with Bar(len(files), "files") as progress:
+        with Bar("files") as progress:
             run = navbound.analyze(
                 files,
                 levels=levels,
@@ -219,10 +207,19 @@ def study(
         Path | None,
         typer.Option("--out", help="Directory to write, for a study of a flight (ukraine-rnav) or with a page (surface-movement)."),
     ] = None,
+    backend: Backend = None,
+    workers: NWorkers = None,
+    cluster: Cluster = None,
+    checkpoint: Checkpoint = None,
     json: Json = False,
 ) -> None:
-    """Repeat a published evaluation and say which of its numbers come out."""
-    result = navbound.study(name, files or [], out=out)
+    """Repeat a published evaluation and say which of its numbers come out.
+
+    Who works and what is kept can be chosen for studies that are cut into parts: anp-comparison, tse-coverage.
+    """
+    work = work_of(backend, workers, cluster, checkpoint)
+    with Bar(name) as work["progress"]:
+        result = navbound.study(name, files or [], out=out, **work)
     if json:
         sys.stdout.write(result.model_dump_json(indent=1) + "\n")
     else:
@@ -232,10 +229,14 @@ def study(
 @app.command()
 def methods(json: Json = False) -> None:
     """List every method with its source, provenance and promises."""
+    from navbound.methods import methods as all_methods  # noqa: PLC0415
+
     found = list(all_methods().values())
     if json:
         sys.stdout.write(encoder.dumps([m.__dict__ for m in found], indent=1) + "\n")
         return
+    from rich.table import Table  # noqa: PLC0415
+
     table = Table(title="Methods", show_lines=True)
     for heading in ("id", "what", "bounds |…|", "source", "provenance", "assumes", "may alert"):
         table.add_column(heading, overflow="fold")
@@ -253,6 +254,8 @@ def levels(json: Json = False) -> None:
     if json:
         sys.stdout.write(encoder.dumps([level.model_dump() for level in found], indent=1) + "\n")
         return
+    from rich.table import Table  # noqa: PLC0415
+
     table = Table(title="Service levels")
     for heading in ("id", "operation", "HAL, m", "VAL, m", "accuracy H/V, m", "time to alert, s", "limits", "source"):
         table.add_column(heading, overflow="fold")
@@ -268,6 +271,8 @@ def levels(json: Json = False) -> None:
 @app.command()
 def verify(json: Json = False) -> None:
     """Run the reference vectors on this machine; exit status 70 if one fails."""
+    from navbound import verify as vectors  # noqa: PLC0415
+
     outcomes = [vectors.run(file) for file in vectors.files()]
     failures = [f"{o.file.id}: {text}" for o in outcomes for text in o.failures]
     if json:
@@ -294,7 +299,9 @@ def verify(json: Json = False) -> None:
         raise typer.Exit(OUR_BUG)
 
 
-def _verified(outcomes: list[vectors.Outcome]) -> Table:
+def _verified(outcomes: list[Outcome]) -> Table:
+    from rich.table import Table  # noqa: PLC0415
+
     table = Table(title=f"navbound {navbound.__version__}: reference vectors on this machine")
     table.add_column("vectors", no_wrap=True)
     table.add_column("function", no_wrap=True)
@@ -323,28 +330,6 @@ def show(
 
 app.command("map")(cli_map.map_command)
 app.command("predict")(cli_predict.predict_command)
-
-
-class Bar:
-    """A bar on a terminal, nothing elsewhere."""
-
-    def __init__(self, total: int, what: str = "flights") -> None:
-        self._bar = Progress(
-            TextColumn(what),
-            BarColumn(),
-            MofNCompleteColumn(),
-            TimeRemainingColumn(),
-            console=err_console,
-            disable=total < 2 or not err_console.is_terminal,
-        )
-        self._task = self._bar.add_task(what, total=total)
-
-    def __enter__(self) -> Callable[[int, int], None]:
-        self._bar.start()
-        return lambda done, total: self._bar.update(self._task, completed=done, total=total)
-
-    def __exit__(self, *_: object) -> None:
-        self._bar.stop()
 
 
 def _show(run: Run, *, json: bool) -> None:

@@ -6,19 +6,20 @@ import math
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from navbound import maps, scale
+from navbound.cli_parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, out_console, work_of
 from navbound.errors import InputError
-from navbound.maps.ground import METRES_PER_NM
-from navbound.maps.sources import Times
-from navbound.time import gps_ns
+
+if TYPE_CHECKING:
+    from navbound.maps import Map
+    from navbound.maps.sources import Times
 
 
 def map_command(
-    kind: Annotated[str, typer.Argument(help=f"What to map: {', '.join(maps.KINDS)}.")],
+    kind: Annotated[str, typer.Argument(help="What to map: dop, raim, araim, sbas, dme.")],
     step_deg: Annotated[float, typer.Option(help="Side of a cell.")] = 5.0,
     region: Annotated[str | None, typer.Option(help="South,north,west,east in degrees. [default: the world]")] = None,
     constellation: Annotated[
@@ -45,18 +46,18 @@ def map_command(
     fte_nm: Annotated[float | None, typer.Option(help="Flight technical error of dme, 95 %. [default: 0.5]")] = None,
     limit: Annotated[list[str] | None, typer.Option(help="Asked instead: column=number; may be repeated.")] = None,
     level: Annotated[str | None, typer.Option(help="Asked instead: alert limits of a service level; see `navbound levels`.")] = None,
-    backend: Annotated[str, typer.Option(help=f"Who works: {', '.join(scale.BACKENDS)}.")] = "serial",
-    workers: Annotated[int | None, typer.Option(help="Worker processes. [default: one a core]")] = None,
-    cluster: Annotated[str | None, typer.Option(help="Address of a Dask scheduler. [default: one on this machine]")] = None,
-    checkpoint: Annotated[
-        Path | None, typer.Option(help="Folder that keeps finished tiles: an interrupted map goes on from there.")
-    ] = None,
+    backend: Backend = None,
+    workers: NWorkers = None,
+    cluster: Cluster = None,
+    checkpoint: Checkpoint = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder to write. [default: out/map-<kind>]")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,
+    json: Json = False,
 ) -> None:
     """Map what a grid of users gets over a day, and say on what share of the area that is enough."""
-    from navbound import cli  # noqa: PLC0415  (which registers this command)
+    from navbound import maps  # noqa: PLC0415
+    from navbound.maps.ground import METRES_PER_NM  # noqa: PLC0415
 
+    work = work_of(backend, workers, cluster, checkpoint)
     given: dict[str, Any] = {
         "constellation": tuple(constellation) if constellation else None,
         "times": _times(start, hours, every_s),
@@ -73,18 +74,15 @@ def map_command(
         "rnp_m": None if rnp_nm is None else rnp_nm * METRES_PER_NM,
         "fte_m": None if fte_nm is None else fte_nm * METRES_PER_NM,
     }
-    with cli.Bar(2, "tiles") as progress:
+    with Bar("tiles") as work["progress"]:
         made = maps.make(
             kind,
             grid=maps.Grid.degrees(step_deg, *_region(region)),
             limits=_limits(limit or []),
             level=level,
-            backend=backend,
-            workers=scale.Workers(workers, cluster),
-            checkpoint=checkpoint,
-            progress=progress,
             out=out or Path("out") / f"map-{kind}",
-            command=cli.command_line(),
+            command=command_line(),
+            **work,
             **{name: value for name, value in given.items() if value is not None},
         )
     _show(made, json=json)
@@ -103,6 +101,8 @@ def _region(text: str | None) -> tuple[()] | tuple[tuple[float, float, float, fl
 def _times(start: str | None, hours: float | None, every_s: float | None) -> Times | None:
     if start is None and hours is None and every_s is None:
         return None
+    from navbound.maps.sources import Times  # noqa: PLC0415
+
     usual = Times()
     return Times(
         None if start is None else _instant(start),
@@ -112,6 +112,8 @@ def _times(start: str | None, hours: float | None, every_s: float | None) -> Tim
 
 
 def _instant(text: str) -> int:
+    from navbound.time import gps_ns  # noqa: PLC0415
+
     try:
         when = datetime.fromisoformat(text)
     except ValueError as e:
@@ -130,13 +132,11 @@ def _limits(pairs: list[str]) -> dict[str, float]:
     return found
 
 
-def _show(made: maps.Map, *, json: bool) -> None:
-    from navbound import cli  # noqa: PLC0415
-
+def _show(made: Map, *, json: bool) -> None:
     if json:
         sys.stdout.write(made.summary.model_dump_json(indent=1) + "\n")
         return
-    show = cli.out_console.print
+    show = out_console.print
     show(made.summary.title, style="bold", markup=False)
     show(made.summary.words, markup=False, highlight=False)
     for outcome in made.summary.outcomes:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
+from navbound.cli_parts import command_line, out_console
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def predict_command(
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,
 ) -> None:
     """Say when, over a day, RAIM could not detect or not exclude a faulty satellite at a place or on a route."""
-    from navbound import cli, raim  # noqa: PLC0415  (which registers this command; only where it is used)
+    from navbound import raim  # noqa: PLC0415
     from navbound.run import predict_raim  # noqa: PLC0415
 
     if kind not in KINDS:
@@ -61,7 +62,7 @@ def predict_command(
         model=model,
     )
     places = [predict_raim.place(text) for text in at or ()] + [predict_raim.route(file) for file in route or ()]
-    found = predict_raim.predict(asked, places, command=cli.command_line())
+    found = predict_raim.predict(asked, places, command=command_line())
     if json:
         sys.stdout.write(found.model_dump_json(indent=1) + "\n")
         return
@@ -82,10 +83,9 @@ def _times(date: str | None, hours: float, every_s: float) -> Times:
 
 
 def _show(found: Prediction) -> None:
-    from navbound import cli  # noqa: PLC0415
     from navbound.run.words import length, share  # noqa: PLC0415
 
-    out = cli.out_console
+    out = out_console
     span = "from the reference instant of the orbits" if found.times.start_utc is None else f"from {found.times.start_utc} UTC"
     gone = f", without {', '.join(found.without)}" if found.without else ""
     out.print(f"RAIM, {len(found.satellites)} satellites ({', '.join(found.orbits)}){gone}", style="bold", markup=False, highlight=False)

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Literal, cast
 
-import numpy as np
-import polars as pl
-
 from navbound import _core
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
+    import numpy as np
+    import polars as pl
     from numpy.typing import NDArray
 
 Provenance = Literal["printed", "re-derived", "standard", "ours", "inferred"]
@@ -129,5 +128,8 @@ def bounds(epochs: pl.DataFrame, method_id: str, risk: float) -> BoundColumn:
 
 def column_of(epochs: pl.DataFrame, name: str) -> NDArray[np.float64]:
     """A numeric column as float64, null as NaN."""
+    import numpy as np  # noqa: PLC0415  (the list of methods is asked for without tables too)
+    import polars as pl  # noqa: PLC0415
+
     values = epochs.get_column(name).cast(pl.Float64).fill_null(float("nan")).to_numpy()
     return cast("NDArray[np.float64]", np.ascontiguousarray(values))

@@ -245,6 +245,9 @@ impl Scenario {
         rules.extend(self.faults.iter().flat_map(Fault::rules));
         rules.extend(self.sensors.iter().flat_map(Sensors::rules));
         rules.extend(self.filter.iter().flat_map(|f| f.rules(self.sensors.is_some(), self.faults.len())));
+        // A filter claims what it works out: the scale would be ignored, and the report would name it.
+        let scale = self.navigation.claimed_sigma_scale;
+        rules.extend(self.filter.iter().map(|_| Rule("claimed_sigma_scale", scale, "1", scale == 1.0, "{1} with a [filter]")));
         match rules.into_iter().find(|rule| !rule.3) {
             Some(Rule(argument, value, unit, _, domain)) => Err(OutOfDomain { argument, value, unit, domain }),
             None => Ok(()),

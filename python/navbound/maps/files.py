@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from navbound import _folder
 from navbound.errors import FormatError
 from navbound.maps import netcdf, records
 
@@ -45,18 +46,12 @@ def write(made: Map, out: Path) -> Map:
     """
     from navbound.report.world import render  # noqa: PLC0415  (the report is only loaded when one is written)
 
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        strangers = [p.name for p in out.iterdir() if p.name not in {RECORD, SUMMARY, POINTS, ARRAYS, REPORT}]
-        if strangers:
-            raise FormatError(out, f"holds files that are not a map's ({', '.join(sorted(strangers)[:3])}); choose another --out")
+    with _folder.own(out, {RECORD, SUMMARY, POINTS, ARRAYS, REPORT}, "a map's"):
         (out / RECORD).write_text(made.record.model_dump_json(indent=1), encoding="utf-8")
         (out / SUMMARY).write_text(made.summary.model_dump_json(indent=1), encoding="utf-8")
         made.points.write_parquet(out / POINTS, compression="zstd")
         (out / ARRAYS).write_bytes(netcdf.of_map(made.summary, made.points))
         render(made, out / REPORT)
-    except OSError as e:
-        raise FormatError(out, f"cannot be written: {e.strerror}") from e
     return Map(made.summary, made.record, made.points, out)
 
 

@@ -13,7 +13,7 @@ from navbound.run import directory, performance
 from navbound.run import fly as simulated
 from navbound.run import taxi as taxiing
 from navbound.run.faults import fault_summaries
-from navbound.run.judge import Settings, judge
+from navbound.run.judge import judge
 from navbound.run.kpi_records import Level
 from navbound.run.requirement import requirement
 from navbound.run.studies import PAGES, REPORTS, STUDIES
@@ -21,12 +21,12 @@ from navbound.scenario import taxi as taxi_scenarios
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from typing import Unpack
 
     from navbound.run.directory import Run
+    from navbound.run.settings import Settings
     from navbound.run.studies import Study
-
-MAX_FLIGHTS = 1000
-"""One process holds all epochs of a run; a thousand two-hour flights are 7 million rows (about 3 GB)."""
+    from navbound.scale import Work
 
 
 def fly(
@@ -36,8 +36,8 @@ def fly(
     seed: int | None = None,
     settings: Settings | None = None,
     out: str | Path | None = None,
-    progress: Callable[[int, int], None] | None = None,
     command: str = "",
+    **work: Unpack[Work],
 ) -> Run:
     """Fly a scenario and judge every epoch.
 
@@ -46,33 +46,34 @@ def fly(
     scenario : str or Path
         Name of a shipped scenario, or a TOML file.
     flights : int
-        How many flights, each with random streams of its own; results do not depend on the number of threads. [1]
+        How many flights, each with random streams of its own; results do not depend on the number of threads nor on the back end. [1]
     seed : int, optional
         Overrides the scenario's seed. [1]
     settings : Settings, optional
         Methods and risks.
     out : str or Path, optional
         Run directory to write; without it nothing is written.
-    progress : callable, optional
-        Called with (done, all) flights.
     command : str
         For the run record.
+    **work
+        ``backend``, ``checkpoint``, ``workers`` and ``progress`` (done, all flights) of :func:`navbound.scale.map_tiles`.
 
     Raises
     ------
     InputError
-        No such scenario, or a number outside its domain.
+        No such scenario or back end, or a number outside its domain.
     FormatError
         A scenario file that cannot be read, or a run directory that cannot be written.
     """
-    if not 1 <= flights <= MAX_FLIGHTS:
-        raise InputError("flights", flights, "1", f"[1, {MAX_FLIGHTS}]")
+    if out is not None:
+        # Before the flights, not after them.
+        with directory.own(Path(out)):
+            pass
     route = taxi_scenarios.route_file(scenario)
     if route is not None:
-        return _finish(judge(taxiing.material(route, flights=flights, seed=seed, progress=progress), settings, command), out)
+        return _finish(judge(taxiing.material(route, flights=flights, seed=seed, **work), settings, command), out)
     found = scenarios.load(scenario)
-    material = simulated.material(found, flights=flights, seed=seed, progress=progress)
-    run = judge(material, settings, command)
+    run = judge(simulated.material(found, flights=flights, seed=seed, **work), settings, command)
     summary = run.summary.model_copy(update={"faults": fault_summaries(found, run.epochs, run.events)})
     return _finish(replace(run, summary=summary), out)
 
@@ -124,7 +125,7 @@ def analyze(
     return _finish(judge(material, settings, command), out)
 
 
-def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None = None) -> Study:
+def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None = None, **work: Unpack[Work]) -> Study:
     """Run a study by its name.
 
     Parameters
@@ -135,11 +136,15 @@ def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None
         Recorded data, for a study that needs some.
     out : str or Path, optional
         Directory to write: a run with its report for a study of a flight, records and a page for one that has a page.
+    **work
+        ``backend``, ``checkpoint`` and ``workers`` of :func:`navbound.scale.map_tiles` for a study that is cut into tiles; ``progress`` for
+        any.
 
     Raises
     ------
     InputError
-        No such study; the message lists those that exist. Files for a study that needs none, a directory for one without a flight.
+        No such study; the message lists those that exist. Files for a study that needs none, a directory for one without a flight, a back
+        end for one that is not cut into tiles.
     FormatError
         A file that is not there or cannot be read, or a run directory that cannot be written.
     """
@@ -147,7 +152,7 @@ def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None
         raise InputError("study", name, domain=", ".join(STUDIES))
     if out is not None and name not in REPORTS and name not in PAGES:
         raise InputError("out", str(out), domain=f"no directory: only {', '.join([*REPORTS, *sorted(PAGES)])} have something to report")
-    found = STUDIES[name](files)
+    found = STUDIES[name](files, **work)
     if out is not None and name in REPORTS:
         directory.write(REPORTS[name](), Path(out))
     elif out is not None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from navbound import _folder
 from navbound.errors import FormatError
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
     from pathlib import Path
 
     import polars as pl
@@ -46,6 +48,11 @@ class Run:
         return self.path / REPORT
 
 
+def own(out: Path) -> AbstractContextManager[None]:
+    """Make a run directory and write in it; one that holds something else is refused with a :class:`FormatError`."""
+    return _folder.own(out, {RECORD, SUMMARY, EPOCHS, EVENTS, REPORT}, "a run's")
+
+
 def write(run: Run, out: Path) -> Run:
     """Write every record and the report; a directory that holds something else is refused.
 
@@ -56,18 +63,12 @@ def write(run: Run, out: Path) -> Run:
     """
     from navbound.report import render  # noqa: PLC0415  (the report is only loaded when one is written)
 
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        strangers = [p.name for p in out.iterdir() if p.name not in {RECORD, SUMMARY, EPOCHS, EVENTS, REPORT}]
-        if strangers:
-            raise FormatError(out, f"holds files that are not a run's ({', '.join(sorted(strangers)[:3])}); choose another --out")
+    with own(out):
         (out / RECORD).write_text(run.record.model_dump_json(indent=1), encoding="utf-8")
         (out / SUMMARY).write_text(run.summary.model_dump_json(indent=1), encoding="utf-8")
         run.epochs.write_parquet(out / EPOCHS, compression="zstd")
         run.events.write_parquet(out / EVENTS, compression="zstd")
         render(run.summary, run.record, run.epochs, run.events, run.waypoints, out / REPORT)
-    except OSError as e:
-        raise FormatError(out, f"cannot be written: {e.strerror}") from e
     return Run(run.summary, run.record, run.epochs, run.events, run.waypoints, out)
 
 

@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-import hashlib
 import itertools
-from pathlib import Path
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
 
 from navbound import _core
-from navbound.errors import InputError
+from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
 from navbound.run.material import Material
-from navbound.run.records import InputFile, Waypoint
+from navbound.run.records import Waypoint
 from navbound.scenario import Scenario, find, load
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from pathlib import Path
+    from typing import Unpack
+
+    from navbound.scale import Work
 
 __all__ = ["material"]
 
-_CHUNK = 8
-"""Flights between two reports of progress: enough to keep the cores busy."""
-_FUSED_CHUNK = 2
-"""The same where every flight runs a filter for some seconds."""
+_DRAWN_AT_ONCE = 16
+"""Flights of one tile, of some hundredths of a second each."""
+_FUSED_AT_ONCE = 4
+"""The same where every flight runs a filter for some seconds: enough for the cores of most machines, and the bar still moves."""
 _KEPT = {
     "dme_dme": "without satellites: ranges to DME keep the position",
     "vor_dme": "without satellites: a VOR and a DME keep the position",
@@ -42,7 +45,7 @@ def material(
     *,
     flights: int = 1,
     seed: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    **work: Unpack[Work],
 ) -> Material:
     """Fly a scenario.
 
@@ -54,58 +57,65 @@ def material(
         How many flights; each has random streams of its own, chosen by its number.
     seed : int, optional
         In place of the scenario's.
-    progress : callable, optional
-        Called with the flights done and their total.
+    **work
+        Who flies, what is kept, who is told: as in :func:`navbound.scale.map_tiles`; progress counts flights.
 
     Returns
     -------
     Material
-        Tracks ``flight-000``, ``flight-001``, ...; the same scenario, seed and number give the same epochs on any number of cores.
+        Tracks ``flight-000``, ``flight-001``, ...; the same scenario, seed and number give the same epochs on any number of cores, from
+        any back end.
 
     Raises
     ------
     InputError
-        A scenario that is not there, fewer than one flight, a seed outside [0, 2^64).
+        A scenario that is not there, flights outside [1, 1000], a seed outside [0, 2^64), an unknown back end.
     FormatError
-        A scenario file that cannot be flown.
+        A scenario file that cannot be flown, a folder that cannot keep tiles.
     """
     found = scenario if isinstance(scenario, Scenario) else load(scenario)
-    if not (isinstance(flights, int) and 1 <= flights <= 100_000):
-        raise InputError("flights", flights, domain="[1, 100000]")
-    chosen = found.seed if seed is None else seed
-    if not (isinstance(chosen, int) and 0 <= chosen < 2**64):
-        raise InputError("seed", chosen, domain="[0, 2^64)")
-    outlook = _core.Outlook(found.core_json())
-    sensors = None if found.filter is None else _core.Sensors(found.core_json(), None)
-    parts, verdicts = [], []
-    chunk = _CHUNK if sensors is None else _FUSED_CHUNK
-    for first in range(0, flights, chunk):
-        count = min(chunk, flights - first)
-        if sensors is None:
-            columns = outlook.fly(chosen, first, count)
-        else:
-            columns, said = sensors.navigate(chosen, first, count)
-            verdicts += said
-        parts.append(_table(columns, found))
-        if progress is not None:
-            progress(first + count, flights)
-    plan = outlook.plan()
+    chosen = chosen_seed(flights, seed, found.seed)
+    plan = _core.Outlook(found.core_json()).plan()
+    fly = _Flights(found.model_dump_json(), chosen)
+    epochs, verdicts = fly_all(fly, flights, _DRAWN_AT_ONCE if found.filter is None else _FUSED_AT_ONCE, **work)
     told = {"filter": filter_verdict(verdicts) | {"restarts": len(verdicts) - flights}} if verdicts else {}
     return Material(
-        epochs=pl.concat(parts),
+        epochs=epochs,
         kind="fly",
         title=found.title,
         requirement="RNP by phase of flight",
         sample_period_s=1.0,
         assumptions=_assumptions(found),
-        labels={_track(i): f"Flight {i + 1}" for i in range(flights)},
+        labels={track_name(i): f"Flight {i + 1}" for i in range(flights)},
         waypoints=[Waypoint(name=w.name, lat_rad=w.lat_rad, lon_rad=w.lon_rad, kind=w.kind) for w in found.waypoints],
-        inputs=[] if isinstance(scenario, Scenario) else [_input_file(find(scenario))],
+        inputs=[] if isinstance(scenario, Scenario) else [scenario_file(find(scenario))],
         scenario=found.model_dump(mode="json"),
         seed=chosen,
         settings={"flights": flights, **{key: plan[key] for key in ("length_m", "cruise_speed_mps", "top_of_climb_s", "top_of_descent_s")}}
         | told,
     )
+
+
+@dataclass(frozen=True)
+class _Flights:
+    """Flights of a scenario by their numbers. The scenario is text: its bytes are the same in every process."""
+
+    scenario: str
+    seed: int
+
+    def __call__(self, flights: range) -> tuple[pl.DataFrame, list[Any]]:
+        found, flyer = _opened(self.scenario)
+        if isinstance(flyer, _core.Outlook):
+            return _table(flyer.fly(self.seed, flights.start, len(flights)), found), []
+        columns, verdicts = flyer.navigate(self.seed, flights.start, len(flights))
+        return _table(columns, found), verdicts
+
+
+@lru_cache(maxsize=1)
+def _opened(scenario: str) -> tuple[Scenario, _core.Outlook | _core.Sensors]:
+    """What all flights of a scenario share, worked out once a process."""
+    found = Scenario.model_validate_json(scenario)
+    return found, _core.Outlook(found.core_json()) if found.filter is None else _core.Sensors(found.core_json(), None)
 
 
 def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
@@ -115,7 +125,7 @@ def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
     names = [w.name for w in scenario.waypoints]
     legs = [f"{a}-{b}" for a, b in itertools.pairwise(names)]
     words = {
-        "track": _words([_track(i) for i in range(int(columns["flight"].max()) + 1)], columns["flight"]),
+        "track": _words([track_name(i) for i in range(int(columns["flight"].max()) + 1)], columns["flight"]),
         "leg": _words(legs, columns["leg"]),
         "phase": _words([p.name for p in scenario.phases], columns["phase"]),
         "status": _words(["not_available", "ok"], columns["available"]),
@@ -169,10 +179,6 @@ def _words(words: list[str], codes: np.ndarray[Any, Any]) -> pl.Series:
     return pl.Series(words, dtype=pl.String).gather(pl.Series(codes.astype(np.uint32)))
 
 
-def _track(number: int) -> str:
-    return f"flight-{number:03d}"
-
-
 def _assumptions(scenario: Scenario) -> list[str]:
     said = list(scenario.assumptions)
     if scenario.filter is not None:
@@ -190,8 +196,3 @@ def _assumptions(scenario: Scenario) -> list[str]:
     if scenario.faults:
         said.append(f"Faults are injected: {', '.join(f'{f.kind} from {f.start_s:g} s for {f.duration_s:g} s' for f in scenario.faults)}.")
     return said
-
-
-def _input_file(path: Path) -> InputFile:
-    data = path.read_bytes()
-    return InputFile(path=str(path), sha256=hashlib.sha256(data).hexdigest(), n_bytes=len(data), n_rows=None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import platform
 import sys
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ from navbound.errors import InputError
 from navbound.methods import BoundColumn, bounds, column_of, method
 from navbound.run.directory import Run
 from navbound.run.records import RunRecord
+from navbound.run.settings import Settings
 from navbound.run.summarise import summarise
 
 if TYPE_CHECKING:
@@ -25,20 +26,6 @@ if TYPE_CHECKING:
     from navbound.run.material import Material
     from navbound.run.records import EventSummary
 
-DEFAULT_METHODS = (
-    "tse-exact",
-    "tse-ltem",
-    "tse-ctem-foot",
-    "tse-sqsm",
-    "tse-vertical",
-    "anp-circle",
-    "anp-sphere",
-    "anp-along",
-    "anp-cross",
-    "anp-vertical",
-)
-"""Shown unless others are asked for: the exact bounds, and the published approximations beside them."""
-
 STATE_LEVELS_NM = (0.3, 1.0, 2.0, 5.0)
 """The levels of the state classifier's authors (Ostroumov and Kuzmenko 2018)."""
 
@@ -46,15 +33,6 @@ WITHOUT_PATH = "anp-circle"
 """What judges when there is no path to deviate from: the 95 % horizontal radius against RNP, as ANP against RNP on a flight deck."""
 
 WITH_PATH = "tse-exact"
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How to judge."""
-
-    methods: tuple[str, ...] = DEFAULT_METHODS
-    risk_accuracy: float = 0.05
-    risk_integrity: float = 1e-5
 
 
 def judge(material: Material, settings: Settings | None = None, command: str = "") -> Run:

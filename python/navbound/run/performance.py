@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import polars as pl
 
-from navbound import __version__, kpi
+from navbound import __version__, _folder, kpi
 from navbound.errors import FormatError, InputError
 from navbound.read.source import load
 from navbound.run import directory
@@ -154,13 +154,8 @@ def evaluate_files(
 
 def _own(out: Path) -> Path:
     """Make the run directory; refuse one that holds something else."""
-    try:
-        (out / PARTS).mkdir(parents=True, exist_ok=True)
-        strangers = sorted(p.name for p in out.iterdir() if p.name not in _OWN)
-    except OSError as e:
-        raise FormatError(out, f"cannot be written: {e.strerror}") from e
-    if strangers:
-        raise FormatError(out, f"holds files that are not a run's ({', '.join(strangers[:3])}); choose another --out")
+    with _folder.own(out, _OWN, "a run's"):
+        (out / PARTS).mkdir(exist_ok=True)
     return out
 
 

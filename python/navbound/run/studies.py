@@ -18,10 +18,14 @@ from navbound.run import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
+    from typing import Unpack
 
     from rich.console import RenderableType
 
     from navbound.run.directory import Run
+    from navbound.scale import Work
+
+    Files = Sequence[str | Path]
 
 
 class Study(Protocol):
@@ -36,36 +40,63 @@ class Study(Protocol):
         ...
 
 
-def _alone(files: Sequence[str | Path]) -> None:
+class _Run(Protocol):
+    """What runs a study: the files of the command line, and who works."""
+
+    def __call__(self, files: Files, **work: Unpack[Work]) -> Study: ...
+
+
+def _alone(files: Files) -> None:
     if files:
         raise InputError("files", len(files), "1", "{0}: this study makes its own data")
 
 
-def _anp_comparison(files: Sequence[str | Path]) -> Study:
+def _in_one_piece(run: Callable[[Files], Study]) -> _Run:
+    """A study of seconds, which nobody shares."""
+
+    def whole(files: Files, **work: Unpack[Work]) -> Study:
+        _refuse_tiles(work)
+        return run(files)
+
+    return whole
+
+
+def _refuse_tiles(work: Work) -> None:
+    for name in ("backend", "workers", "checkpoint"):
+        if name in work:
+            raise InputError(name, str(work[name]), domain="none: this study is not cut into tiles")
+
+
+def _anp_comparison(files: Files, **work: Unpack[Work]) -> Study:
     _alone(files)
-    return study_anp_comparison.run()
+    return study_anp_comparison.run(**work)
 
 
-def _tse_coverage(files: Sequence[str | Path]) -> Study:
+def _surface_movement(files: Files, **work: Unpack[Work]) -> Study:
+    _refuse_tiles(work)
+    return study_surface_movement.run(files, progress=work.get("progress"))
+
+
+def _tse_coverage(files: Files, **work: Unpack[Work]) -> Study:
     _alone(files)
-    return study_tse_coverage.run()
+    return study_tse_coverage.run(**work)
 
 
-def _ukraine_rnav(files: Sequence[str | Path]) -> Study:
+def _ukraine_rnav(files: Files) -> Study:
     _alone(files)
     return study_ukraine_rnav.run()
 
 
-STUDIES: dict[str, Callable[[Sequence[str | Path]], Study]] = {
+STUDIES: dict[str, _Run] = {
     "anp-comparison": _anp_comparison,
-    "decorrelation-time": study_decorrelation_time.run,
-    "error-extraction": study_error_extraction.run,
-    "multipath-time-constants": study_multipath_time_constants.run,
-    "surface-movement": study_surface_movement.run,
+    "decorrelation-time": _in_one_piece(study_decorrelation_time.run),
+    "error-extraction": _in_one_piece(study_error_extraction.run),
+    "multipath-time-constants": _in_one_piece(study_multipath_time_constants.run),
+    "surface-movement": _surface_movement,
     "tse-coverage": _tse_coverage,
-    "ukraine-rnav": _ukraine_rnav,
+    "ukraine-rnav": _in_one_piece(_ukraine_rnav),
 }
-"""Every study by its command-line name; each is given the files of the command line."""
+"""Every study by its command-line name."""
 
 REPORTS: dict[str, Callable[[], Run]] = {"ukraine-rnav": study_ukraine_rnav.fly}
 """Studies of a flight: that flight as a judged run, for a run directory with its report."""

@@ -12,18 +12,21 @@ from typing import TYPE_CHECKING, Literal, cast
 import numpy as np
 
 from navbound import anp, evaluation
-from navbound.errors import InputError
 from navbound.methods import column_of
 from navbound.run import fly
 from navbound.run.anp_comparison_table import render
+from navbound.run.campaign import check_flights
 from navbound.run.record import Record
 from navbound.run.summarise import COVARIANCE_COLUMNS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Unpack
 
     from numpy.typing import NDArray
     from rich.console import RenderableType
+
+    from navbound.scale import Work
 
     Floats = NDArray[np.float64]
 
@@ -134,34 +137,39 @@ class Study(Record):
         return render(self)
 
 
-def run(*, flights: int = 50, progress: Callable[[int, int], None] | None = None) -> Study:
+def run(*, flights: int = 50, **work: Unpack[Work]) -> Study:
     """Do the comparison.
 
     Parameters
     ----------
     flights : int
         Monte Carlo flights of each case, a fifth of them for the one that fails. [1]
-    progress : callable, optional
-        Called with the flights done and their total.
+    **work
+        Who flies, what is kept, who is told: as in :func:`navbound.scale.map_tiles`; progress counts the flights of all cases.
 
     Raises
     ------
     InputError
-        Fewer than one flight.
+        Flights outside [1, 1000], an unknown back end.
     """
-    if not 1 <= flights <= 1000:
-        raise InputError("flights", flights, "1", "[1, 1000]")
+    check_flights(flights)
     counts = [max(flights // share, 1) for _, _, share in CASES]
-    cases = []
-    for k, (name, scenario, _) in enumerate(CASES):
-        before = sum(counts[:k])
-        told = None if progress is None else lambda done, _, before=before: progress(before + done, sum(counts))
-        cases.append(_case(name, scenario, counts[k], told))
+    tell = work.get("progress")
+    cases: list[Case] = []
+    for (name, scenario, _), count in zip(CASES, counts, strict=True):
+        if tell is not None:
+            work["progress"] = _further(tell, sum(case.flights for case in cases), sum(counts))
+        cases.append(_case(name, scenario, count, **work))
     return Study(cases=cases, entries=_entries(cases[0]), words=_words(cases))
 
 
-def _case(name: str, scenario: str, flights: int, progress: Callable[[int, int], None] | None) -> Case:
-    material = fly.material(scenario, flights=flights, progress=progress)
+def _further(tell: Callable[[int, int], None], before: int, total: int) -> Callable[[int, int], None]:
+    """Progress of one case as that of all."""
+    return lambda done, _: tell(before + done, total)
+
+
+def _case(name: str, scenario: str, flights: int, **work: Unpack[Work]) -> Case:
+    material = fly.material(scenario, flights=flights, **work)
     epochs = material.epochs
     late = (epochs["time_ns"] - epochs["time_ns"].min() >= SKIP_S * 1e9) & epochs["cov_uu_m2"].is_not_null()
     epochs = epochs.filter(late)

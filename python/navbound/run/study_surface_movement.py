@@ -19,7 +19,7 @@ from navbound.run.surface_records import Before, Cell, Curve, Errors, Margin, Nu
 from navbound.scenario import surface
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -36,13 +36,15 @@ WEAKEST = ("given", "ours", "inferred", "re-derived", "standard", "printed")
 SEED = 673
 
 
-def run(files: Sequence[str | Path] = ()) -> Study:
+def run(files: Sequence[str | Path] = (), *, progress: Callable[[int, int], None] | None = None) -> Study:
     """Do the study.
 
     Parameters
     ----------
     files : sequence of path
         A configuration (``.toml``), and files of satellites: YUMA or SEM for GPS, RINEX navigation for both constellations.
+    progress : callable, optional
+        Called with the modes done and their total.
 
     Returns
     -------
@@ -57,13 +59,17 @@ def run(files: Sequence[str | Path] = ()) -> Study:
         A file that cannot be read.
     """
     config = configured([Path(f) for f in files])
-    return study(config, surface_sky.look(config))
+    return study(config, surface_sky.look(config), progress)
 
 
-def study(config: SurfaceMovement, sky: Sky) -> Study:
+def study(config: SurfaceMovement, sky: Sky, progress: Callable[[int, int], None] | None = None) -> Study:
     """The study of given skies."""
     rules = surface_grid.rules(config)
-    found = [_mode(config, rules, mode, sky.of(mode.systems)) for mode in surface_grid.MODES]
+    tell, found = progress or (lambda _done, _all: None), []
+    for done, mode in enumerate(surface_grid.MODES):
+        tell(done, len(surface_grid.MODES))
+        found.append(_mode(config, rules, mode, sky.of(mode.systems)))
+    tell(len(found), len(found))
     befores = [f.before for f in found]
     margins = [m for f in found for m in f.margins]
     cells = [c for f in found for c in f.cells]

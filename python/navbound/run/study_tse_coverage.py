@@ -8,20 +8,23 @@ does not state, is assumed in several ways; one constant ratio to the navigation
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from navbound import gnss, tse
 from navbound.errors import InputError
 from navbound.run.record import Record
+from navbound.scale import map_tiles
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterator
+    from typing import Unpack
 
     from numpy.typing import NDArray
     from rich.console import RenderableType
+
+    from navbound.scale import Work
 
     Floats = NDArray[np.float64]
 
@@ -42,6 +45,9 @@ PAPER_FACTORS = {"accuracy": 1.96, "integrity": 4.41}
 RISKS = {"accuracy": 0.05, "integrity": 1e-5}
 Level = Literal["accuracy", "integrity"]
 LEVELS: tuple[Level, ...] = ("accuracy", "integrity")
+
+DRAWN_AT_ONCE = 2_000_000
+"""Samples of one tile: some tenths of a second."""
 
 
 class Shares(Record):
@@ -138,7 +144,7 @@ class _Day:
     sigma_major_m: Floats
 
 
-def run(*, step_s: float = 60.0, monte_carlo: int = 0, seed: int = 2014) -> Study:
+def run(*, step_s: float = 60.0, monte_carlo: int = 0, seed: int = 2014, **work: Unpack[Work]) -> Study:
     """Do the comparison.
 
     Parameters
@@ -149,6 +155,8 @@ def run(*, step_s: float = 60.0, monte_carlo: int = 0, seed: int = 2014) -> Stud
         Samples of an extra row drawn at the fitted ratio; 0 leaves it out. [1]
     seed : int
         Of that row.
+    **work
+        As in :func:`navbound.scale.map_tiles`: a tile is a row, or a part of the drawn one.
 
     Returns
     -------
@@ -165,12 +173,19 @@ def run(*, step_s: float = 60.0, monte_carlo: int = 0, seed: int = 2014) -> Stud
     if monte_carlo < 0:
         raise InputError("monte_carlo", monte_carlo, "1", "[0, inf)")
     day = _day(step_s)
-    fitted = _row(f"fte = {FITTED_RATIO} sigma", day, lambda sigma: [(FITTED_RATIO * sigma, 1.0)])
-    rows = [PUBLISHED, fitted]
-    if monte_carlo:
-        rows.append(_monte_carlo(day, monte_carlo, seed))
-    rows.append(_row("fte = 0", day, lambda sigma: [(np.zeros_like(sigma), 1.0)]))
-    rows += [_row(f"fte normal, {spread:g} m", day, partial(_half_normal, spread_m=spread)) for spread in (2.0, 10.0, 50.0)]
+    assumed = [
+        _Assumed(f"fte = {FITTED_RATIO} sigma", ratio=FITTED_RATIO),
+        _Assumed("fte = 0"),
+        *(_Assumed(f"fte normal, {spread:g} m", spread_m=spread) for spread in (2.0, 10.0, 50.0)),
+    ]
+    drawn = [_Drawn(seed, k, min(DRAWN_AT_ONCE, monte_carlo - k * DRAWN_AT_ONCE)) for k in range(-(-monte_carlo // DRAWN_AT_ONCE))]
+    tiles: list[_Assumed | _Drawn] = [*assumed, *drawn]
+    beyond = map_tiles(_Beyond(day), tiles, **work)
+    fitted, *others = (_row(a.words, "computed", b) for a, b in zip(assumed, beyond, strict=False))
+    rows = [PUBLISHED, fitted, *others]
+    if drawn:
+        counts = {level: np.sum([part[level] for part in beyond[len(assumed) :]], axis=0) / monte_carlo for level in LEVELS}
+        rows.insert(2, _row(f"fte = {FITTED_RATIO} sigma, drawn", "monte carlo", counts, monte_carlo))
     return Study(
         n_epochs=len(day.n_sv),
         n_sv_min=int(day.n_sv.min()),
@@ -231,6 +246,53 @@ def _bounds(day: _Day, fte_m: Floats, level: Level) -> dict[str, Floats]:
     }
 
 
+@dataclass(frozen=True)
+class _Assumed:
+    """A law of the flight technical error: a constant share of the navigation deviation, or normal with a spread."""
+
+    words: str
+    ratio: float = 0.0
+    spread_m: float = 0.0
+
+    def beyond(self, day: _Day) -> dict[str, Floats]:
+        """Share of the day beyond each method's bound, worked out in closed form at every epoch."""
+        found: dict[str, Floats] = {level: np.zeros(len(METHODS)) for level in LEVELS}
+        sigma = day.sigma_cross_m
+        for fte_m, weight in _half_normal(sigma, self.spread_m) if self.spread_m else [(self.ratio * sigma, 1.0)]:
+            for level in LEVELS:
+                bounds = _bounds(day, fte_m, level)
+                found[level] += [weight * float(tse.exceedance_risk(fte_m, sigma, bounds[method]).mean()) for method in METHODS]
+        return found
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """A part of the row that is drawn at the fitted ratio: epochs and navigation errors from a stream of its own."""
+
+    seed: int
+    part: int
+    n: int
+
+    def beyond(self, day: _Day) -> dict[str, Floats]:
+        """How many are beyond each method's bound."""
+        generator = np.random.Generator(np.random.Philox(self.seed).jumped(self.part))
+        fte_m = FITTED_RATIO * day.sigma_cross_m
+        epoch = generator.integers(len(fte_m), size=self.n)
+        error = np.abs(fte_m[epoch] + day.sigma_cross_m[epoch] * generator.standard_normal(self.n))
+        bounds = {level: _bounds(day, fte_m, level) for level in LEVELS}
+        return {level: np.array([np.count_nonzero(error > bounds[level][m][epoch]) for m in METHODS], dtype=float) for level in LEVELS}
+
+
+@dataclass(frozen=True)
+class _Beyond:
+    """What works off a tile: the day, and what is assumed about the flight technical error in it."""
+
+    day: _Day
+
+    def __call__(self, tile: _Assumed | _Drawn) -> dict[str, NDArray[np.generic]]:
+        return {**tile.beyond(self.day)}
+
+
 def _half_normal(sigma: Floats, spread_m: float) -> Iterator[tuple[Floats, float]]:
     """Flight technical errors of a normal law, by magnitude, and their weights: Gauss-Legendre on [0, 9] of its deviations.
 
@@ -244,40 +306,9 @@ def _half_normal(sigma: Floats, spread_m: float) -> Iterator[tuple[Floats, float
         yield np.full_like(sigma, spread_m * node), float(weight)
 
 
-def _row(assumption: str, day: _Day, errors: Callable[[Floats], Iterable[tuple[Floats, float]]]) -> Row:
-    shares = {}
-    for level in LEVELS:
-        beyond = dict.fromkeys(METHODS, 0.0)
-        for fte_m, weight in errors(day.sigma_cross_m):
-            for method, bound in _bounds(day, fte_m, level).items():
-                beyond[method] += weight * float(tse.exceedance_risk(fte_m, day.sigma_cross_m, bound).mean())
-        shares[level] = Shares(**{method: 1.0 - risk for method, risk in beyond.items()})
-    return Row(assumption=assumption, origin="computed", accuracy=shares["accuracy"], integrity=shares["integrity"])
-
-
-def _monte_carlo(day: _Day, n: int, seed: int) -> Row:
-    """Count the fitted row: epochs and navigation errors drawn from one counter-based stream."""
-    generator = np.random.Generator(np.random.Philox(seed))
-    fte_m = FITTED_RATIO * day.sigma_cross_m
-    bounds = {level: _bounds(day, fte_m, level) for level in LEVELS}
-    inside = {level: dict.fromkeys(METHODS, 0) for level in LEVELS}
-    left = n
-    while left:
-        size = min(left, 1_000_000)
-        left -= size
-        epoch = generator.integers(len(fte_m), size=size)
-        error = np.abs(fte_m[epoch] + day.sigma_cross_m[epoch] * generator.standard_normal(size))
-        for level in LEVELS:
-            for method, bound in bounds[level].items():
-                inside[level][method] += int(np.count_nonzero(error <= bound[epoch]))
-    shares = {level: Shares(**{method: count / n for method, count in inside[level].items()}) for level in LEVELS}
-    return Row(
-        assumption=f"fte = {FITTED_RATIO} sigma, drawn",
-        origin="monte carlo",
-        accuracy=shares["accuracy"],
-        integrity=shares["integrity"],
-        n_samples=n,
-    )
+def _row(assumption: str, origin: Literal["computed", "monte carlo"], beyond: Any, n_samples: int | None = None) -> Row:
+    shares = {level: Shares(**dict(zip(METHODS, (1.0 - beyond[level]).tolist(), strict=True))) for level in LEVELS}
+    return Row(assumption=assumption, origin=origin, accuracy=shares["accuracy"], integrity=shares["integrity"], n_samples=n_samples)
 
 
 def _entry(method: str, level: Level, fitted: Row) -> Entry:

@@ -2,30 +2,34 @@
 
 from __future__ import annotations
 
-import hashlib
-from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
 
 from navbound import gbas
-from navbound.errors import InputError
 from navbound.run import taxi_errors as errors
+from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
 from navbound.run.material import Material
-from navbound.run.records import EventSummary, InputFile, Waypoint
+from navbound.run.records import EventSummary, Waypoint
 from navbound.run.surface_grid import K95
 from navbound.run.taxi_motion import move
 from navbound.run.taxi_navigation import Navigated, Navigator, look
 from navbound.scenario import taxi as scenarios
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from pathlib import Path
+    from typing import Unpack
 
     from navbound.gbas import SubPhase
     from navbound.run.taxi_motion import Movement
+    from navbound.scale import Work
     from navbound.scenario.taxi import Taxi
+
+_AT_ONCE = 4
+"""Flights of one tile, of some tenths of a second each."""
 
 __all__ = ["limits", "material"]
 
@@ -36,7 +40,7 @@ def limits() -> dict[str, SubPhase]:
     return {"RWY": replace(phases["RET"], id="RWY", title="landing roll")} | phases
 
 
-def material(file: Path, *, flights: int = 1, seed: int | None = None, progress: Callable[[int, int], None] | None = None) -> Material:
+def material(file: Path, *, flights: int = 1, seed: int | None = None, **work: Unpack[Work]) -> Material:
     """Land and taxi.
 
     Parameters
@@ -47,56 +51,79 @@ def material(file: Path, *, flights: int = 1, seed: int | None = None, progress:
         How many; each has random streams of its own, chosen by its number.
     seed : int, optional
         In place of the scenario's.
-    progress : callable, optional
-        Called with the flights done and their total.
+    **work
+        Who flies, what is kept, who is told: as in :func:`navbound.scale.map_tiles`; progress counts flights.
 
     Returns
     -------
     Material
-        Tracks ``flight-000``, ...; the same scenario, seed and number give the same epochs.
+        Tracks ``flight-000``, ...; the same scenario, seed and number give the same epochs, from any back end.
 
     Raises
     ------
     InputError
-        Fewer than one flight, a seed outside [0, 2^64), a fault of a satellite that is not there, a route that cannot be driven.
+        Flights outside [1, 1000], a seed outside [0, 2^64), a fault of a satellite that is not there, a route that cannot be driven.
     FormatError
         A scenario file that cannot be read.
     """
     found = scenarios.load(file)
-    if not (isinstance(flights, int) and 1 <= flights <= 1000):
-        raise InputError("flights", flights, domain="[1, 1000]")
-    chosen = found.seed if seed is None else seed
-    if not (isinstance(chosen, int) and 0 <= chosen < 2**64):
-        raise InputError("seed", chosen, domain="[0, 2^64)")
-    asked = limits()
-    movement = move(found, asked)
-    sky = look(found, movement)
-    scenarios.check_satellites(found, sky.names)
-    navigator = Navigator(found, movement, asked, sky)
-    parts, events = [], []
-    for track in range(flights):
-        navigated = navigator.fly(chosen, track)
-        parts.append(_table(found, movement, navigated, asked, chosen, track))
-        events += _events(found, navigated, parts[-1])
-        if progress is not None:
-            progress(track + 1, flights)
-    data = file.read_bytes()
+    chosen = chosen_seed(flights, seed, found.seed)
+    fly = _Flights(found.model_dump_json(), chosen)
+    ground = _ground(fly.taxi)
+    epochs, events = fly_all(fly, flights, _AT_ONCE, **work)
     return Material(
-        epochs=pl.concat(parts),
+        epochs=epochs,
         kind="fly",
         title=found.title,
         requirement="surface movement: twice RNP is the total system containment of each sub-phase (inferred)",
         sample_period_s=1.0,
-        assumptions=_assumptions(found, navigator, asked),
-        labels={_track(i): f"Flight {i + 1}" for i in range(flights)},
+        assumptions=_assumptions(found, ground.navigator, ground.asked),
+        labels={track_name(i): f"Flight {i + 1}" for i in range(flights)},
         waypoints=[Waypoint(name=p.name, lat_rad=p.lat_rad, lon_rad=p.lon_rad, kind="waypoint") for p in found.points],
-        inputs=[InputFile(path=str(file), sha256=hashlib.sha256(data).hexdigest(), n_bytes=len(data), n_rows=None)],
+        inputs=[scenario_file(file)],
         scenario=found.model_dump(mode="json"),
         seed=chosen,
-        settings={"flights": flights, "length_m": float(movement.along_m[-1]), "transition_s": navigator.fixes},
-        events=events,
-        limits_held={p.title: _held(p) for p in asked.values()},
+        settings={"flights": flights, "length_m": float(ground.movement.along_m[-1]), "transition_s": ground.navigator.fixes},
+        events=[EventSummary.model_validate(event) for event in events],
+        limits_held={p.title: _held(p) for p in ground.asked.values()},
     )
+
+
+@dataclass(frozen=True)
+class _Ground:
+    """What all flights of a scenario share."""
+
+    taxi: Taxi
+    asked: dict[str, SubPhase]
+    movement: Movement
+    navigator: Navigator
+
+
+@lru_cache(maxsize=1)
+def _ground(taxi: str) -> _Ground:
+    """From a scenario as text, worked out once a process."""
+    found, asked = scenarios.Taxi.model_validate_json(taxi), limits()
+    movement = move(found, asked)
+    sky = look(found, movement)
+    scenarios.check_satellites(found, sky.names)
+    return _Ground(found, asked, movement, Navigator(found, movement, asked, sky))
+
+
+@dataclass(frozen=True)
+class _Flights:
+    """Flights of a scenario by their numbers. The scenario is text: its bytes are the same in every process."""
+
+    taxi: str
+    seed: int
+
+    def __call__(self, flights: range) -> tuple[pl.DataFrame, list[Any]]:
+        ground = _ground(self.taxi)
+        parts, events = [], []
+        for track in flights:
+            navigated = ground.navigator.fly(self.seed, track)
+            parts.append(_table(ground.taxi, ground.movement, navigated, ground.asked, self.seed, track))
+            events += [event.model_dump(mode="json") for event in _events(ground.taxi, navigated, parts[-1])]
+        return pl.concat(parts), events
 
 
 def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, SubPhase], seed: int, track: int) -> pl.DataFrame:  # noqa: PLR0917 - a scenario, its parts, and which flight
@@ -136,7 +163,7 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
     legs = [f"{a.name}-{b.name}" for a, b in zip(taxi.points[:-1], taxi.points[1:], strict=True)]
     return pl.DataFrame(
         {
-            "track": [_track(track)] * n,
+            "track": [track_name(track)] * n,
             "time_ns": taxi.start_ns + np.arange(n) * 1_000_000_000,
             **numbers,
             "n_sv": found.n_sv.astype(np.int32),
@@ -186,10 +213,6 @@ def _point(track: str, kind: str, onset_ns: int | None, clear_ns: int | None, wo
 
 def _held(phase: SubPhase) -> str:
     return next(m.held for m in phase.marks if m.name == "hal")
-
-
-def _track(number: int) -> str:
-    return f"flight-{number:03d}"
 
 
 def _assumptions(taxi: Taxi, navigator: Navigator, asked: dict[str, SubPhase]) -> list[str]:

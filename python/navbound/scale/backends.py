@@ -111,7 +111,7 @@ def dask(function: Function, pending: Pending, workers: Workers) -> Iterator[tup
         return
     with (
         distributed.LocalCluster(
-            n_workers=workers.processes, threads_per_worker=1, processes=True, dashboard_address=None, env={"RAYON_NUM_THREADS": "1"}
+            n_workers=workers.processes, threads_per_worker=1, processes=True, dashboard_address=":0", env={"RAYON_NUM_THREADS": "1"}
         ) as cluster,
         distributed.Client(cluster) as client,
     ):

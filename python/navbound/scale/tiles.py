@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, TypedDict, TypeVar
 
 import numpy as np
 
@@ -23,6 +23,15 @@ USUAL_S = 1.0
 """Work that a tile holds where there is enough: little is lost when a worker is. [s]"""
 
 Tile = TypeVar("Tile")
+
+
+class Work(TypedDict, total=False):
+    """How tiles are worked off: the keyword arguments of :func:`map_tiles` that every job on tiles takes and hands on."""
+
+    backend: str
+    checkpoint: str | Path | None
+    progress: Callable[[int, int], None] | None
+    workers: Workers | None
 
 
 def cut(n: int, seconds_each: float, bytes_each: float = 0.0, *, most_bytes: float = 2e8) -> list[slice]:

@@ -1,0 +1,112 @@
+"""Many flights of one scenario: cut into tiles, worked off by whoever is there, put together in order."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import polars as pl
+
+from navbound.errors import InputError
+from navbound.run.records import InputFile
+from navbound.scale import map_tiles
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+    from typing import Unpack
+
+    from numpy.typing import NDArray
+
+    from navbound.scale import Work
+
+    Fly = Callable[[range], tuple[pl.DataFrame, list[Any]]]
+
+MAX_FLIGHTS = 1000
+"""One process holds all epochs of a run; a thousand two-hour flights are 7 million rows (about 3 GB)."""
+
+
+def check_flights(flights: int) -> None:
+    """Refuse another number than 1 to 1000, with an :class:`InputError`."""
+    if not (isinstance(flights, int) and 1 <= flights <= MAX_FLIGHTS):
+        raise InputError("flights", flights, "1", f"[1, {MAX_FLIGHTS}]")
+
+
+def chosen_seed(flights: int, seed: int | None, own: int) -> int:
+    """The seed of a campaign that can be flown: the one given, or the scenario's own.
+
+    Raises
+    ------
+    InputError
+        Flights outside [1, 1000], a seed outside [0, 2^64).
+    """
+    check_flights(flights)
+    found = own if seed is None else seed
+    if not (isinstance(found, int) and 0 <= found < 2**64):
+        raise InputError("seed", found, "1", "[0, 2^64)")
+    return found
+
+
+def track_name(number: int) -> str:
+    """The track of a flight, by its number from 0."""
+    return f"flight-{number:03d}"
+
+
+def scenario_file(path: Path) -> InputFile:
+    """The file of a scenario, for the run record."""
+    data = path.read_bytes()
+    return InputFile(path=str(path), sha256=hashlib.sha256(data).hexdigest(), n_bytes=len(data), n_rows=None)
+
+
+@dataclass(frozen=True)
+class _Packed:
+    """Flights as a function of a tile: a dictionary of arrays, which any worker can send and any folder keep."""
+
+    fly: Fly
+
+    def __call__(self, flights: range) -> dict[str, NDArray[np.generic]]:
+        epochs, told = self.fly(flights)
+        table = io.BytesIO()
+        epochs.write_ipc(table)
+        return {"epochs": _bytes(table.getvalue()), "told": _bytes(json.dumps(told).encode())}
+
+
+def _bytes(content: bytes) -> NDArray[np.uint8]:
+    return np.frombuffer(content, dtype=np.uint8)
+
+
+def fly_all(fly: Fly, flights: int, at_once: int, **work: Unpack[Work]) -> tuple[pl.DataFrame, list[Any]]:
+    """Fly a campaign.
+
+    Parameters
+    ----------
+    fly : callable
+        Makes of the numbers of some flights their epochs, and a list of whatever JSON holds besides. It depends on nothing else, and pickle
+        takes it.
+    flights : int
+        How many. [1]
+    at_once : int
+        Flights of one tile: worth at least 0.2 s, and enough to keep the threads of one process busy. [1]
+    **work
+        As in :func:`navbound.scale.map_tiles`; progress counts flights.
+
+    Returns
+    -------
+    epochs : DataFrame
+        Of all flights, in order; the same bits whoever flew them.
+    told : list
+        What was told besides, in order.
+    """
+    tiles = [range(first, min(first + at_once, flights)) for first in range(0, flights, at_once)]
+    tell = work.get("progress")
+    if tell is not None:
+        work["progress"] = lambda done, _tiles: tell(min(done * at_once, flights), flights)
+    parts = map_tiles(_Packed(fly), tiles, **work)
+    told = [item for part in parts for item in json.loads(part["told"].tobytes())]
+    # Each part is given up as soon as it is read: only one copy of a long campaign stays.
+    tables = [pl.read_ipc(parts.pop(0)["epochs"].tobytes()) for _ in range(len(parts))]
+    return pl.concat(tables), told

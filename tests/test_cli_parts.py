@@ -1,0 +1,84 @@
+"""What the commands share: a bar on a terminal and nothing elsewhere, an answer at once, help that names everything there is."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+
+import pytest
+from rich.console import Console
+from typer.testing import CliRunner
+
+from navbound import cli_parts, maps, scale
+from navbound.cli import app
+from navbound.run.studies import STUDIES
+
+HEAVY = {"numpy", "polars", "navbound.run.judge"}
+
+
+@pytest.fixture
+def screen(monkeypatch: pytest.MonkeyPatch) -> io.StringIO:
+    """A terminal of which every character is kept."""
+    kept = io.StringIO()
+    monkeypatch.setattr(cli_parts, "err_console", Console(file=kept, force_terminal=True, width=100))
+    return kept
+
+
+def test_a_bar_counts_and_says_how_long_it_takes(screen: io.StringIO) -> None:
+    with cli_parts.Bar("flights") as tell:
+        tell(0, 3)
+        tell(2, 3)
+        tell(3, 3)
+    shown = screen.getvalue()
+    assert "flights" in shown
+    assert "3/3" in shown
+    assert "0:00:00" in shown
+    assert "left" in shown
+
+
+def test_work_of_one_part_needs_no_bar(screen: io.StringIO) -> None:
+    with cli_parts.Bar("flights") as tell:
+        tell(0, 1)
+        tell(1, 1)
+    assert screen.getvalue() == ""
+
+
+def test_off_a_terminal_there_is_no_bar(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = io.StringIO()
+    monkeypatch.setattr(cli_parts, "err_console", Console(file=kept))
+    with cli_parts.Bar("flights") as tell:
+        tell(0, 3)
+        tell(3, 3)
+    assert kept.getvalue() == ""
+
+
+def test_what_was_not_asked_for_is_left_to_the_job() -> None:
+    assert cli_parts.work_of(None, None, None, None) == {}
+    assert cli_parts.work_of("processes", 2, None, None) == {"backend": "processes", "workers": scale.Workers(2)}
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["methods", "--json"]])
+def test_the_command_line_answers_without_loading_tables(arguments: list[str]) -> None:
+    program = f"""
+import sys
+from navbound.cli import app
+try:
+    app({arguments!r})
+except SystemExit:
+    pass
+print([name for name in {sorted(HEAVY)!r} if name in sys.modules], file=sys.stderr)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout
+    assert done.stderr.strip() == "[]"
+
+
+def test_help_names_everything_there_is() -> None:
+    def helped(command: str) -> str:
+        return CliRunner().invoke(app, [command, "--help"], terminal_width=200).output
+
+    assert all(kind in helped("map") for kind in maps.KINDS)
+    assert all(name in helped("study") for name in STUDIES)
+    for command in ("fly", "map", "study"):
+        assert all(backend in helped(command) for backend in scale.BACKENDS), command
