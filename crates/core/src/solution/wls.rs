@@ -252,11 +252,6 @@ impl Normal {
         cause.weight * (shared + d.dot(&(inverse * d_cause)))
     }
 
-    /// How far the position moves for one metre in a row.
-    pub(crate) fn response(&self, inverse: &Matrix3<f64>, row: &Row) -> Vector3<f64> {
-        inverse * (row.unit - self.groups[row.clock].mean) * -row.weight
-    }
-
     /// Number of clocks solved for.
     pub(crate) fn clocks(&self) -> usize {
         self.groups.iter().filter(|g| g.count > 0).count()
