@@ -302,8 +302,12 @@ def _columns(
     """Shape with the satellites, flat columns, constellation of each satellite, priors of constellations."""
     of = np.asarray(constellation, dtype=np.int64)
     lines = np.shape(unit_enu)
-    if of.shape != lines[-2:-1] or not 0 <= of.min(initial=0) <= of.max(initial=0) < len(CONSTELLATIONS):
-        raise InputError("constellation", f"shape {of.shape}", domain=f"shape {lines[-2:-1]}, indices of CONSTELLATIONS")
+    if of.shape != lines[-2:-1]:
+        raise InputError("constellation", f"shape {of.shape}", domain=f"shape {lines[-2:-1]}, one for each satellite of unit_enu")
+    if of.size == 0:
+        raise InputError("unit_enu", f"shape {lines}", domain="shape (..., n, 3) with at least one satellite; NaN for one not used")
+    for k in np.flatnonzero((of < 0) | (of >= len(CONSTELLATIONS)))[:1]:
+        raise InputError("constellation", int(of[k]), domain=f"indices of CONSTELLATIONS, 0 to {len(CONSTELLATIONS) - 1}", index=int(k))
     bias, continuity, prior = (
         np.asarray(column)[of] if own is None else own
         for own, column in zip(given, (SUPPORT.bias_m, SUPPORT.bias_continuity_m, SUPPORT.p_sat), strict=True)
@@ -321,6 +325,9 @@ def _columns(
     constants = list(SUPPORT.p_const) if p_const is None else [float(p) for p in p_const]
     if len(constants) != len(CONSTELLATIONS):
         raise InputError("p_const", f"{len(constants)} numbers", domain=f"{len(CONSTELLATIONS)} numbers, one a constellation")
+    for k in sorted(set(of.tolist())):
+        if not 0.0 < constants[k] < 1.0:
+            raise InputError("p_const", constants[k], "1", "(0, 1)", index=k)
     return shape, [unit.ravel(), *columns], of.tolist(), constants
 
 

@@ -1,9 +1,10 @@
 //! ARAIM levels of many epochs: geometry given, or users and orbits.
 
+use crate::araim_modes::Known;
 use crate::batch::CHUNK;
 use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::araim::exclusion::{self, Monitored, NoLevels};
-use navbound_core::bound::araim::modes::{Book, FaultModes, MOST_SATELLITES, NoModes};
+use navbound_core::bound::araim::modes::{MOST_SATELLITES, NoModes};
 use navbound_core::bound::araim::ranging::Airborne;
 use navbound_core::bound::araim::service::{Service, Support};
 use navbound_core::bound::araim::single::Requirement;
@@ -15,7 +16,6 @@ use navbound_core::signal::Constellation;
 use navbound_path::AtIndex;
 use pulp::Arch;
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// Why an epoch has no finite levels; the order is that of [`Outcome::WORDS`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,54 +92,6 @@ pub enum Rule {
     Araim(Service),
     /// One satellite at a time, no priors.
     Raim(Requirement),
-}
-
-/// Fault modes by the constellations of the satellites: where satellites of one constellation share a prior these tell them all.
-struct Known {
-    p_const: [f64; Constellation::ALL.len()],
-    uniform: bool,
-    places: HashMap<Key, usize>,
-    modes: Vec<FaultModes>,
-    /// What was asked for last: exclusions of one constellation's satellites ask for the same again and again.
-    last: Option<(Key, usize)>,
-}
-
-/// Constellations of the satellites in their order.
-type Key = [u8; MOST_SATELLITES];
-
-impl Known {
-    fn new(p_const: [f64; Constellation::ALL.len()], uniform: bool) -> Self {
-        Self { p_const, uniform, places: HashMap::new(), modes: Vec::new(), last: None }
-    }
-
-    fn place(&mut self, key: Key, sights: &[Sight], service: &Service) -> Result<usize, NoModes> {
-        if let Some(place) = self.places.get(&key) {
-            return Ok(*place);
-        }
-        self.modes.push(service.modes(sights, &self.p_const)?);
-        self.places.insert(key, self.modes.len() - 1);
-        Ok(self.modes.len() - 1)
-    }
-}
-
-impl Book for Known {
-    fn modes(&mut self, sights: &[Sight], service: &Service) -> Result<&FaultModes, NoModes> {
-        if !self.uniform {
-            self.modes.clear();
-            self.modes.push(service.modes(sights, &self.p_const)?);
-            return Ok(&self.modes[0]);
-        }
-        let mut key = [u8::MAX; MOST_SATELLITES];
-        for (slot, sight) in key.iter_mut().zip(sights) {
-            *slot = sight.constellation.index() as u8;
-        }
-        let place = match self.last {
-            Some((last, place)) if last == key => place,
-            _ => self.place(key, sights, service)?,
-        };
-        self.last = Some((key, place));
-        Ok(&self.modes[place])
-    }
 }
 
 /// What a thread keeps from epoch to epoch.

@@ -4,6 +4,7 @@
 
 pub mod anp;
 pub mod araim;
+mod araim_modes;
 pub mod araim_watch;
 pub mod batch;
 pub mod bounds;

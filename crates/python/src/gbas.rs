@@ -117,7 +117,8 @@ fn gbas_carrier_sigma<'py>(
 #[pyfunction]
 fn gbas_factors(risk: f64, share: f64, axes: u8, receivers: u8, receiver_fault: f64) -> PyResult<(f64, f64)> {
     let rule = FactorRule { share, axes, receivers, receiver_fault };
-    let found = Risk::new(risk).and_then(|risk| Factors::new(risk, &rule)).map_err(refusal)?;
+    let risk = Risk::new(risk).map_err(|e| OutOfDomain { argument: "integrity_risk", ..e });
+    let found = risk.and_then(|risk| Factors::new(risk, &rule)).map_err(refusal)?;
     Ok((found.fault_free, found.missed))
 }
 

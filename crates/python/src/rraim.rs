@@ -8,7 +8,7 @@ use navbound_core::bound::gbas::levels::Factors;
 use navbound_core::bound::rraim::modes::Priors;
 use navbound_core::bound::rraim::multiple::{Budget, NoLevel};
 use navbound_core::bound::rraim::single::Settings;
-use navbound_core::quantity::{Metres, Risk};
+use navbound_core::quantity::{Metres, OutOfDomain, Risk};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -40,8 +40,9 @@ struct Rule {
 
 impl Rule {
     fn read(&self) -> PyResult<(Settings, Budget)> {
-        let continuity = Risk::new(self.continuity_risk).map_err(refusal)?;
-        let allotted = Risk::new(self.allotted_risk).map_err(refusal)?;
+        let named = |argument, q| Risk::new(q).map_err(|e| refusal(OutOfDomain { argument, ..e }));
+        let continuity = named("continuity_risk", self.continuity_risk)?;
+        let allotted = named("allotted_risk", self.allotted_risk)?;
         let factors = Factors { fault_free: self.k_ff, missed: self.k_md };
         let (form, ordering) = (form(&self.form)?, ordering(&self.ordering)?);
         Ok((

@@ -291,7 +291,9 @@ fn invalid(s: &Sight) -> Unavailable {
     let positive = [("sigma_int_m", s.integrity_m2), ("sigma_acc_m", s.accuracy_m2)];
     for (field, m2) in positive {
         if !(f64::MIN_POSITIVE..f64::INFINITY).contains(&m2) {
-            return Unavailable::Invalid { field, value: sqrt(m2), unit: "m", domain: "(0, inf)" };
+            // The sign is the caller's: a negative sigma comes as a negative square.
+            let value = if m2 < 0.0 { -sqrt(-m2) } else { sqrt(m2) };
+            return Unavailable::Invalid { field, value, unit: "m", domain: "(0, inf)" };
         }
     }
     for (field, b) in [("bias_m", s.bias.m()), ("bias_continuity_m", s.bias_continuity.m())] {

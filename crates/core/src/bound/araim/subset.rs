@@ -115,11 +115,15 @@ pub(super) struct Satellites {
     information: [Matrix3<f64>; CLOCKS],
     pub(super) weight: [f64; CLOCKS],
     pub(super) members: [u64; CLOCKS],
+    /// Whether there are residuals, and biases for continuity: sums of zeros are not worked out.
+    tested: bool,
+    continuity: bool,
 }
 
 impl Default for Satellites {
     fn default() -> Self {
-        Self { groups: [EMPTY; GROUPS], count: 0, information: [Matrix3::zeros(); CLOCKS], weight: [0.0; CLOCKS], members: [0; CLOCKS] }
+        let (information, weight, members) = ([Matrix3::zeros(); CLOCKS], [0.0; CLOCKS], [0; CLOCKS]);
+        Self { groups: [EMPTY; GROUPS], count: 0, information, weight, members, tested: false, continuity: false }
     }
 }
 
@@ -139,6 +143,7 @@ impl Satellites {
             mean[c] /= if self.weight[c] > 0.0 { self.weight[c] } else { 1.0 };
         }
         self.information = [Matrix3::zeros(); CLOCKS];
+        self.continuity = sights.iter().any(|s| s.bias_continuity.m() != 0.0);
         for (g, (group, sights)) in self.groups.iter_mut().zip(sights.chunks(LANES)).enumerate() {
             *group = EMPTY;
             for (l, s) in sights.iter().enumerate() {
@@ -157,6 +162,7 @@ impl Satellites {
     /// Measured less computed ranges at the place where the lines of sight are those of `fill`; what a clock explains does not matter \[m\].
     #[inline(always)]
     pub(super) fn measured(&mut self, residuals_m: &[f64]) {
+        self.tested = !residuals_m.is_empty();
         for (group, residuals) in self.groups.iter_mut().zip(residuals_m.chunks(LANES)) {
             group.residual[..residuals.len()].copy_from_slice(residuals);
         }
@@ -267,9 +273,16 @@ impl Satellites {
                 for l in 0..LANES {
                     let by = kept[a][l] - all[a][l];
                     bias[a][l] += kept[a][l].abs() * group.bias[l];
-                    bias_continuity[a][l] += by.abs() * group.bias_continuity[l];
                     separation[a][l] += by * by * group.accuracy[l];
-                    moved[a][l] += by * group.residual[l];
+                }
+            }
+            if self.continuity || self.tested {
+                for a in 0..3 {
+                    for l in 0..LANES {
+                        let by = kept[a][l] - all[a][l];
+                        bias_continuity[a][l] += by.abs() * group.bias_continuity[l];
+                        moved[a][l] += by * group.residual[l];
+                    }
                 }
             }
         }
