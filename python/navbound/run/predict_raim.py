@@ -141,10 +141,11 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
             line, more = _judge(each.name, wanted, found, when)
             lines.append(line)
             holes += more
+    length_s = len(when.offsets_s) * when.step_s
     times = PredictedTimes(
         start_utc=when.utc(0.0),
-        end_utc=when.utc(asked.times.duration_s),
-        duration_s=asked.times.duration_s,
+        end_utc=when.utc(length_s),
+        duration_s=length_s,
         step_s=asked.times.step_s,
         n=len(when.offsets_s),
     )
