@@ -206,7 +206,7 @@ def test_the_recorded_day_stays_inside_its_levels(shared_data: Path, tmp_path: P
     assert npa.availability_expected > 0.999
     assert apv.availability_expected < npa.availability_expected
     words = " ".join(run.summary.assumptions)
-    for said in ("a fault detected at", "Detection and exclusion (HEL) within 0.3 NM", "inferred", "slope"):
+    for said in ("a fault detected at", "detection and exclusion (HEL) 100 %, 100 %, 100 %", "inferred", "slope"):
         assert said in words
     assert (tmp_path / "run" / "report.html").is_file()
 

@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from navbound import _core
+from navbound._arrays import flatten
 from navbound.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from navbound._constellations import Orbits
+
+    Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -165,6 +175,23 @@ def support_rows(support: Support) -> list[tuple[Any, ...]]:
     if lengths != {5}:
         raise InputError("support", f"{sorted(lengths)} numbers", domain="five numbers of each kind, one a constellation")
     return list(zip(*columns, strict=True))
+
+
+def overhead(
+    orbits: Orbits, users: tuple[ArrayLike, ArrayLike, ArrayLike], time_s: ArrayLike, mask_rad: float
+) -> tuple[tuple[int, ...], tuple[Floats, list[int], Floats, Floats, Floats, Floats, float]]:
+    """Shape of every user (latitude, longitude, height) at every instant, and the satellites, instants and users as the core takes them.
+
+    Raises
+    ------
+    InputError
+        A mask outside [0, pi/2), users that do not broadcast.
+    """
+    if not 0 <= mask_rad < np.pi / 2:
+        raise InputError("mask_rad", mask_rad, "rad", "[0, pi/2)")
+    shape, (lat, lon, h) = flatten(lat_rad=(users[0], ()), lon_rad=(users[1], ()), h_m=(users[2], ()))
+    instants, (time,) = flatten(time_s=(time_s, ()))
+    return instants + shape, (orbits.elements(), orbits.constellation.tolist(), time, lat, lon, h, mask_rad)
 
 
 def airborne_numbers(model: str | ErrorModel) -> list[float]:

@@ -23,6 +23,7 @@ from navbound._araim_settings import (
     Service,
     Support,
     airborne_numbers,
+    overhead,
     rule_numbers,
     support_rows,
 )
@@ -272,24 +273,9 @@ def predict(
     InputError
         A user that is not on the Earth, a time that is not finite, promises outside their domain, a mask outside [0, pi/2).
     """
-    if not 0 <= mask_rad < np.pi / 2:
-        raise InputError("mask_rad", mask_rad, "rad", "[0, pi/2)")
-    users, (lat, lon, h) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()), h_m=(h_m, ()))
-    instants, (time,) = flatten(time_s=(time_s, ()))
-    found = _core.araim_predict(
-        orbits.elements(),
-        orbits.constellation.tolist(),
-        time,
-        lat,
-        lon,
-        h,
-        mask_rad,
-        support_rows(support),
-        airborne_numbers(model),
-        rule_numbers(service),
-        exclusion,
-    )
-    return _levels(found, instants + users)
+    shape, sky = overhead(orbits, (lat_rad, lon_rad, h_m), time_s, mask_rad)
+    promises, airborne = support_rows(support), airborne_numbers(model)
+    return _levels(_core.araim_predict(*sky, promises, airborne, rule_numbers(service), exclusion), shape)
 
 
 def _columns(

@@ -41,6 +41,9 @@ def predict_command(
         list[str] | None, typer.Option(help="RNP 0.3, RNP 1, ... or a service level (NPA); may be repeated. [default: RNP 0.3, RNP 1]")
     ] = None,
     without: Annotated[list[str] | None, typer.Option(help="Satellite out of service (a NANU), as G05; may be repeated.")] = None,
+    systems: Annotated[
+        str | None, typer.Option(help="Constellations that the receiver uses, letters of GEC. [default: G, and nominal ones as named]")
+    ] = None,
     mask_deg: Annotated[float, typer.Option(help="Lowest elevation used.")] = 5.0,
     model: Annotated[str, typer.Option(help="Error of a range: single-frequency, dual-frequency.")] = "single-frequency",
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,
@@ -58,6 +61,7 @@ def predict_command(
         times=_times(date, hours, every_s),
         limits=tuple(spec) if spec else ("RNP 0.3", "RNP 1"),
         without=tuple(without or ()),
+        systems=systems,
         mask_rad=math.radians(mask_deg),
         model=model,
     )
@@ -83,12 +87,19 @@ def _times(date: str | None, hours: float, every_s: float) -> Times:
 
 
 def _show(found: Prediction) -> None:
+    from navbound import gnss  # noqa: PLC0415
     from navbound.run.words import length, share  # noqa: PLC0415
 
     out = out_console
     span = "from the reference instant of the orbits" if found.times.start_utc is None else f"from {found.times.start_utc} UTC"
     gone = f", without {', '.join(found.without)}" if found.without else ""
-    out.print(f"RAIM, {len(found.satellites)} satellites ({', '.join(found.orbits)}){gone}", style="bold", markup=False, highlight=False)
+    systems = ", ".join(words for letter, words in gnss.SYSTEMS.items() if any(s[0] == letter for s in found.satellites))
+    out.print(
+        f"RAIM, {len(found.satellites)} satellites of {systems} ({', '.join(found.orbits)}){gone}",
+        style="bold",
+        markup=False,
+        highlight=False,
+    )
     out.print(f"{found.times.duration_s / 3600:g} h {span}, every {found.times.step_s:g} s", markup=False, highlight=False)
     table = Table()
     for heading in ("where", "asked", "alert limit", "detection", "holes", "longest", "exclusion", "holes", "longest"):

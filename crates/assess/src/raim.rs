@@ -76,7 +76,9 @@ impl Desk {
 
     /// Take up a row's satellites, and their residuals where there are any.
     fn take(&mut self, sights: &Sights<'_>, row: usize, residual_m: &[f64]) {
-        (self.sights.clear(), self.columns.clear(), self.residuals.clear());
+        self.sights.clear();
+        self.columns.clear();
+        self.residuals.clear();
         for (column, constellation) in sights.constellation.iter().enumerate() {
             let i = row * sights.constellation.len() + column;
             let unit = Vector3::new(sights.unit_enu[3 * i], sights.unit_enu[3 * i + 1], sights.unit_enu[3 * i + 2]);

@@ -65,8 +65,8 @@ fn a_batch_is_its_epochs_one_by_one_and_names_the_column_of_the_excluded() {
 #[test]
 fn the_first_bad_number_is_told_with_its_epoch() {
     let (unit, mut sigma, systems) = columns();
-    sigma[300 * SATELLITES + 1] = -1.0;
+    sigma[300 * SATELLITES + 2] = -1.0;
     let sights = Sights { unit_enu: &unit, sigma_m: &sigma, constellation: &systems };
-    let refused = levels(&sights, &Requirement::RAIM).unwrap_err();
+    let refused = levels(&sights, &Requirement::RAIM).err().unwrap();
     assert_eq!((refused.index, refused.error.argument), (300, "sigma_m"));
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field
 from functools import lru_cache, reduce
 from operator import add
 from pathlib import Path
@@ -99,7 +99,9 @@ def satellites(constellation: Sequence[str | Path], times: Times, mask_rad: floa
     references = {part.reference_ns for part in parts}
     if len(references) > 1:
         raise InputError("constellation", ", ".join(map(str, constellation)), domain="nominal ones, or files of one reference instant")
-    orbits = _less(reduce(add, parts), without)
+    orbits = reduce(add, parts).without(without)
+    if not orbits.satellite:
+        raise InputError("without", ", ".join(without), domain="satellites that leave at least one")
     since = 0.0
     if times.start_ns is not None:
         if orbits.reference_ns is None:
@@ -134,17 +136,6 @@ class File:
         except OSError as e:
             raise FormatError(path, e.strerror or str(e)) from e
         return cls(str(Path(path).resolve()), hashlib.sha256(content).hexdigest())
-
-
-def _less(orbits: gnss.Orbits, without: Sequence[str]) -> gnss.Orbits:
-    for name in without:
-        if name not in orbits.satellite:
-            raise InputError("without", name, domain=f"satellites of the constellation: {', '.join(orbits.satellite)}")
-    kept = np.array([name not in without for name in orbits.satellite])
-    if not kept.any():
-        raise InputError("without", ", ".join(without), domain="satellites that leave at least one")
-    columns = {f.name: getattr(orbits, f.name)[kept] for f in fields(orbits) if f.name not in {"satellite", "reference_ns"}}
-    return replace(orbits, satellite=tuple(name for name in orbits.satellite if name not in without), **columns)
 
 
 def messages(log: File, prn: int | None) -> sbas.Messages:

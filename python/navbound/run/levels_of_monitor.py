@@ -25,6 +25,13 @@ GIVEN = "given"
 RNP_NM = (0.3, 1.0, 2.0)
 """Limits that detection and exclusion are counted against: those of non-precision approach, terminal area and en route."""
 
+WITHIN = {
+    "hpl_m": "detection (HPL)",
+    "hel_m": "detection and exclusion (HEL)",
+    "hpl_slope_m": "published level, which is not used",
+}
+"""Columns of a monitor that says how often it can detect and exclude."""
+
 
 class Watched(Protocol):
     """A receiver's epochs after detection and exclusion."""
@@ -104,12 +111,12 @@ def decisions(epochs: pl.DataFrame) -> list[str]:
         f"position but no way to detect a fault at {without}."
     ]
     if "hel_m" in epochs.columns:
-        limits = ", ".join(f"{rnp:g} NM" for rnp in RNP_NM)
-        for column, what in (
-            ("hpl_m", "Detection (HPL)"),
-            ("hel_m", "Detection and exclusion (HEL)"),
-            ("hpl_slope_m", "Published slope level"),
-        ):
-            within = (epochs.filter(pl.col(column) <= rnp * METRES_PER_NM).height / n for rnp in RNP_NM)
-            words.append(f"{what} within {limits} at {', '.join(share(part) for part in within)} of the epochs.")
+        limits = ", ".join(f"{rnp:g}" for rnp in RNP_NM)
+        shares = "; ".join(f"{what} {_within(epochs[column])}" for column, what in WITHIN.items())
+        words.append(f"Share of the epochs within {limits} NM: {shares}.")
     return words
+
+
+def _within(level_m: pl.Series) -> str:
+    """Shares of all epochs; one without a level is not within."""
+    return ", ".join(share(int((level_m <= rnp * METRES_PER_NM).sum()) / len(level_m)) for rnp in RNP_NM)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,6 +48,9 @@ class Asked:
         ``RNP 0.3`` and the like, or names of :func:`navbound.kpi.levels`.
     without : sequence of str
         Satellites out of service, as ``G05``.
+    systems : str, optional
+        Letters of the constellations that the receiver uses (G, E, C). Without it GPS, which is what RAIM receivers use, and the nominal
+        constellations that were named.
     mask_rad : float
         Lowest elevation. [rad]
     model : str
@@ -58,6 +61,7 @@ class Asked:
     times: Times
     limits: Sequence[str] = ("RNP 0.3", "RNP 1")
     without: Sequence[str] = ()
+    systems: str | None = None
     mask_rad: float = math.radians(5.0)
     model: str = "single-frequency"
 
@@ -124,7 +128,7 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
     points = sum(len(p.lat_rad) for p in places)
     if points * len(asked.times.offsets_s()) > MOST_POINTS:
         raise InputError("every_s", asked.times.step_s, "s", f"at most {MOST_POINTS} points times instants; here are {points} points")
-    sky = satellites(asked.constellation, asked.times, asked.mask_rad, 0.0)
+    sky = _sky(asked)
     orbits = sky.orbits.without(list(dict.fromkeys(asked.without)))
     start_ns = asked.times.start_ns if asked.times.start_ns is not None else sky.orbits.reference_ns
     when = _Instants(asked.times.offsets_s(), asked.times.step_s, start_ns)
@@ -137,10 +141,11 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
             line, more = _judge(each.name, wanted, found, when)
             lines.append(line)
             holes += more
+    length_s = len(when.offsets_s) * when.step_s
     times = PredictedTimes(
         start_utc=when.utc(0.0),
-        end_utc=when.utc(asked.times.duration_s),
-        duration_s=asked.times.duration_s,
+        end_utc=when.utc(length_s),
+        duration_s=length_s,
         step_s=asked.times.step_s,
         n=len(when.offsets_s),
     )
@@ -160,6 +165,24 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
         holes=sorted(holes, key=lambda h: (h.start_s, h.place, h.limit, h.function)),
         assumptions=_assumptions(asked, unhealthy, start_ns),
     )
+
+
+def _sky(asked: Asked) -> Satellites:
+    """Satellites of the receiver's constellations, at the instants."""
+    named = {letter for letter, words in gnss.SYSTEMS.items() if words.lower() in asked.constellation}
+    letters = named | {"G"} if asked.systems is None else set(asked.systems)
+    if not letters or not letters <= set(gnss.SYSTEMS):
+        raise InputError("systems", asked.systems, domain=f"letters of {''.join(gnss.SYSTEMS)}")
+    try:
+        sky = satellites(asked.constellation, asked.times, asked.mask_rad, 0.0)
+    except InputError as e:
+        if e.argument != "start_ns" or asked.times.start_ns is None:
+            raise
+        raise InputError("date", f"{utc_text(asked.times.start_ns)} UTC", domain=e.domain) from e
+    orbits = sky.orbits.without([name for name in sky.orbits.satellite if name[0] not in letters])
+    if not orbits.satellite:
+        raise InputError("systems", "".join(sorted(letters)), domain="constellations of the orbits given")
+    return replace(sky, orbits=orbits)
 
 
 def limit(name: str) -> PredictedLimit:
@@ -252,7 +275,8 @@ def _holes(kind: _Kind, level_m: Floats, n_sv: NDArray[np.int64], when: _Instant
 def _unhealthy(asked: Asked, sky: Satellites) -> list[str]:
     """Satellites that an almanac calls unhealthy: they are not used."""
     every = {s for name in asked.constellation for s in gnss.constellation(name, near_ns=asked.times.start_ns, unhealthy=True).satellite}
-    return sorted(every - set(sky.orbits.satellite))
+    used = {name[0] for name in sky.orbits.satellite}
+    return sorted(name for name in every - set(sky.orbits.satellite) if name[0] in used)
 
 
 def _assumptions(asked: Asked, unhealthy: list[str], start_ns: int | None) -> list[str]:
