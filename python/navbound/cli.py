@@ -19,6 +19,7 @@ from navbound.run.settings import DEFAULT_METHODS, Settings
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from navbound.kpi import SubsetOptions
     from navbound.run.directory import Run
     from navbound.verify import Outcome
 
@@ -139,8 +140,6 @@ def analyze(
     out = out or Path("out") / files[0].name.split(".")[0]
     subsets = _subsets(min_satellites, max_satellites, listed_from, asked=stanford_esa)
     if levels is not None:
-        from navbound.kpi import SubsetOptions  # noqa: PLC0415
-
         if path is not None or sigma_m is not None:
             raise InputError("levels", levels, domain="it without --path and --sigma-m, which judge a track")
         with Bar("files") as progress:
@@ -187,6 +186,8 @@ def _subsets(min_satellites: int | None, max_satellites: int | None, listed_from
     given = {"min_satellites": min_satellites, "max_satellites": max_satellites, "listed_from": listed_from}
     known = {name: value for name, value in given.items() if value is not None}
     if asked:
+        from navbound.kpi import SubsetOptions  # noqa: PLC0415
+
         return SubsetOptions(**known)  # type: ignore[arg-type]
     for name, value in known.items():
         raise InputError(name, value, domain="it together with --stanford-esa: without subsets of satellites it would do nothing")
