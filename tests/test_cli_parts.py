@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
-from navbound import cli_parts, maps, scale
+from navbound import InputError, cli_parts, maps, scale
 from navbound.cli import app
 from navbound.run.studies import STUDIES
 
@@ -56,6 +56,20 @@ def test_off_a_terminal_there_is_no_bar(monkeypatch: pytest.MonkeyPatch) -> None
 def test_what_was_not_asked_for_is_left_to_the_job() -> None:
     assert cli_parts.work_of(None, None, None, None) == {}
     assert cli_parts.work_of("processes", 2, None, None) == {"backend": "processes", "workers": scale.Workers(2)}
+
+
+@pytest.mark.parametrize(
+    ("backend", "workers", "cluster", "named"),
+    [
+        (None, 2, None, "workers"),
+        ("serial", 2, None, "workers"),
+        ("processes", None, "tcp://a:1", "cluster"),
+        (None, None, "tcp://a:1", "cluster"),
+    ],
+)
+def test_workers_that_would_not_be_asked_are_refused(backend: str | None, workers: int | None, cluster: str | None, named: str) -> None:
+    with pytest.raises(InputError, match=named):
+        cli_parts.work_of(backend, workers, cluster, None)
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["methods", "--json"]])

@@ -15,7 +15,9 @@ import pytest
 
 from navbound import InputError, path, scenario
 from navbound.run.fly import material
+from navbound.run.judge import judge
 from navbound.run.material import Material
+from navbound.run.settings import Settings
 
 DRAWN = "beijing-shanghai-drawn"
 NOTATION = Path(__file__).parents[1] / "docs" / "notation.md"
@@ -96,6 +98,23 @@ def test_flights_are_tracks_and_seeds_matter() -> None:
     alone = material(DRAWN).epochs
     assert many.epochs[:7081].equals(alone)
     assert not material(DRAWN, seed=1).epochs.equals(alone)
+
+
+def test_circle_and_sphere_of_many_flights_come_with_their_uncertainty() -> None:
+    run = judge(material(DRAWN, flights=12), Settings(methods=("anp-circle", "anp-sphere")))
+    honesty = run.summary.honesty
+    assert honesty is not None
+    scored = {m.id: m.coverage for m in run.summary.accuracy}
+    for held in honesty.regions:
+        assert held.share == pytest.approx(scored[f"anp-{held.region}"], abs=1e-12)
+        # Errors are drawn from the covariance: some 400 independent epochs, a deviation of a point.
+        assert held.low < 0.95 < held.high
+        assert held.high - held.low < 0.1
+        assert f"the 95 % {held.region} held" in honesty.words
+    assert [held.region for held in honesty.regions] == ["circle", "sphere"]
+    few = judge(material(DRAWN, flights=9), Settings(methods=())).summary.honesty
+    assert few is not None
+    assert few.regions == []
 
 
 def test_context_says_what_was_assumed_and_read(flown: Material) -> None:

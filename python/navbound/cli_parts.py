@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
+from navbound.errors import InputError
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -41,8 +43,12 @@ def command_line() -> str:
 
 
 def work_of(backend: str | None, workers: int | None, cluster: str | None, checkpoint: Path | None) -> Work:
-    """Who works and what is kept, as far as it was asked for."""
+    """Who works and what is kept, as far as it was asked for; refused where it would mean nothing."""
     found: Work = {}
+    if cluster is not None and backend != "dask":
+        raise InputError("cluster", cluster, domain="none without --backend dask")
+    if workers is not None and backend in {None, "serial"}:
+        raise InputError("workers", workers, domain="none without --backend processes or dask")
     if backend is not None:
         found["backend"] = backend
     if workers is not None or cluster is not None:

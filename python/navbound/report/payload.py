@@ -94,11 +94,11 @@ def _worst_tracks(summary: Summary, epochs: pl.DataFrame, room_bytes: int) -> tu
     """Heads and blocks of the worst track and of those after it that fit."""
     heads: list[dict[str, object]] = []
     blocks: list[str] = []
-    frames = {str(key[0]): frame for key, frame in epochs.group_by("track", maintain_order=True)} if epochs.height else {}
     columns = _columns(summary, epochs)
     for track in _worst_first(summary.tracks):
-        frame = frames.get(track.track)
-        if frame is None:
+        # One track at a time: the table of a campaign is not copied whole.
+        frame = epochs.filter(pl.col("track") == track.track) if epochs.height else epochs
+        if frame.height == 0:
             continue
         head, block = _pack_track(track.track, frame, columns)
         room_bytes -= len(block) + len(json.dumps(head, separators=(",", ":")))

@@ -137,6 +137,16 @@ class MethodResult(Record):
     pinball_m: float | None
 
 
+class Held(Record):
+    """Share of epochs within a region that claims 95 %, over many tracks."""
+
+    region: Literal["circle", "sphere"]
+    share: float
+    low: float
+    high: float
+    """95 % limits from drawing whole tracks again."""
+
+
 class Honesty(Record):
     """May the covariance be believed? Only where truth is known."""
 
@@ -153,6 +163,8 @@ class Honesty(Record):
     pit_low: float
     pit_high: float
     """Band (95 %) of one bin."""
+    regions: list[Held] = Field(default_factory=list)
+    """Circle and sphere, where there are at least ten tracks."""
     words: str
 
 

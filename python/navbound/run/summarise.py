@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound import evaluation
+from navbound import anp, evaluation
 from navbound.methods import column_of, method
 from navbound.run.records import (
     EventSummary,
+    Held,
     Honesty,
     MethodResult,
     PhaseSummary,
@@ -29,6 +30,11 @@ if TYPE_CHECKING:
 
 LISTED_EVENTS = 500
 """Events in summary.json; all of them are in events.parquet, and the report says how many are not listed."""
+
+TRACKS_TO_DRAW = 10
+"""Fewer tracks drawn again say little of how tracks differ."""
+
+REGION_RISK = 0.05
 
 COVARIANCE_COLUMNS = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
 
@@ -95,8 +101,8 @@ def _verdict(
     material: Material, margins: pl.DataFrame, judge: MethodResult, risks: tuple[float, float], protection: list[ProtectionSummary]
 ) -> Verdict:
     judging = judge.id
-    judged = margins.filter(pl.col("_margin").is_not_null())
-    share = _mean(judged.get_column("_margin") >= 0)
+    judged = margins.get_column("_margin").drop_nulls()
+    share = _mean(judged >= 0)
     contained = _mean(margins.get_column("_margin_integrity").drop_nulls() >= 0)
     n_implausible = margins.get_column("status").eq("invalid_input").sum()
     inside = None if share is None or contained is None else share == 1.0 and contained == 1.0
@@ -115,7 +121,7 @@ def _verdict(
         share_inside=share,
         share_contained=contained,
         n_epochs=margins.height,
-        n_judged=judged.height,
+        n_judged=judged.len(),
         n_implausible=n_implausible,
         worst_accuracy=worst,
         worst_integrity=worst_integrity,
@@ -129,10 +135,11 @@ def _mean(flags: pl.Series) -> float | None:
 
 
 def _worst(margins: pl.DataFrame, margin: str, bound: str, factor: float) -> Worst | None:
-    known = margins.filter(pl.col(margin).is_not_null())
-    if known.height == 0:
+    # The table may be large: the row is looked up, nothing is copied.
+    place = margins.get_column(margin).arg_min()
+    if place is None:
         return None
-    row = known.row(int(known.get_column(margin).arg_min() or 0), named=True)
+    row = margins.row(place, named=True)
     return Worst(
         track=row["track"],
         time_ns=row["time_ns"],
@@ -284,6 +291,7 @@ def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
     track = _codes(epochs)[known]
     nees = evaluation.nees(error[known], covariance, track=track)
     pit = evaluation.pit(error[known], covariance, track=track)
+    regions = _regions(error[known], covariance, track)
     return Honesty(
         n=nees.n,
         n_effective=nees.n_effective,
@@ -294,5 +302,20 @@ def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
         pit_counts=pit.counts,
         pit_low=pit.low,
         pit_high=pit.high,
-        words=honesty_words(nees, pit),
+        regions=regions,
+        words=honesty_words(nees, pit, regions),
     )
+
+
+def _regions(error: NDArray[np.float64], covariance: NDArray[np.float64], track: NDArray[np.int64]) -> list[Held]:
+    """The 95 % circle and sphere against the error, where there are tracks enough to draw again."""
+    if len(np.unique(track)) < TRACKS_TO_DRAW:
+        return []
+    sizes = {"circle": (np.hypot(error[:, 0], error[:, 1]), anp.circle(np.ascontiguousarray(covariance[:, :2, :2]), REGION_RISK))}
+    if error.shape[1] == 3:
+        sizes["sphere"] = (np.linalg.norm(error, axis=1), anp.sphere(covariance, REGION_RISK))
+    found = []
+    for region, (size, radius) in sizes.items():
+        low, high = evaluation.bootstrap_coverage(size, radius, track)
+        found.append(Held.model_validate({"region": region, "share": float((size <= radius).mean()), "low": low, "high": high}))
+    return found

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from navbound import anp
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from navbound.evaluation import Nees, Pit
-    from navbound.run.records import MethodResult, ProtectionSummary, Verdict, Worst
+    from navbound.run.records import Held, MethodResult, ProtectionSummary, Verdict, Worst
 
 METRES_PER_NM = 1852.0
 
@@ -91,23 +94,46 @@ def protection_words(protection: list[ProtectionSummary]) -> str:
     return f" Protection level within the alert limit ({held}) at {available} of {n} epochs.{truth}"
 
 
-def honesty_words(nees: Nees, pit: Pit) -> str:
+FEW_EPOCHS = 10.0
+"""Effective epochs below which their number is no better known than by its own size: it comes from the same correlated data."""
+
+
+def honesty_words(nees: Nees, pit: Pit, regions: Sequence[Held] = ()) -> str:
     """Whether the covariance may be believed, with the factor by which it is off, and on how much evidence."""
     found = (
         f"NEES {nees.nees_mean:.3g}, {nees.dimension} for an honest covariance, "
         f"limits {nees.nees_low:.3g} to {nees.nees_high:.3g} for {nees.n_effective:.0f} effective epochs"
     )
+    return f"{found}{_judgement(nees, pit)}{_regions(regions)}"
+
+
+def _judgement(nees: Nees, pit: Pit) -> str:
     factor = (nees.nees_mean / nees.dimension) ** 0.5
-    if nees.nees_mean > nees.nees_high:
-        return f"{found}: the covariance claims too little; the errors are {factor:.2g} times larger than it says."
-    if nees.nees_mean < nees.nees_low:
-        return f"{found}: the covariance claims too much; the errors are {factor:.2g} times what it says."
+    outside = not nees.nees_low <= nees.nees_mean <= nees.nees_high
+    low, high = (anp.chi_factor(nees.dimension, risk) ** 2 for risk in (0.975, 0.025))
+    if outside and nees.n_effective < FEW_EPOCHS and low <= nees.nees_mean <= high:
+        return (
+            ", outside. But so few say little, and where errors stay for a whole track even their number is a guess: a single epoch may "
+            f"have {low:.2g} to {high:.2g}. More tracks decide it."
+        )
+    if outside:
+        claims = (
+            "too little; the errors are {:.2g} times larger than it says"
+            if factor > 1
+            else "too much; the errors are {:.2g} times what it says"
+        )
+        return f": the covariance claims {claims.format(factor)}."
     n_outside = sum(not pit.low <= count <= pit.high for count in pit.counts)
     if n_outside == 0:
-        return f"{found}: these data give no reason to doubt the covariance."
+        return ": these data give no reason to doubt the covariance."
     largest = max(pit.counts) * len(pit.counts) / sum(pit.counts)
     return (
-        f"{found}: no reason to doubt the size of the covariance. But {n_outside} of the {len(pit.counts)} bins of the histogram "
+        f": no reason to doubt the size of the covariance. But {n_outside} of the {len(pit.counts)} bins of the histogram "
         f"{'is' if n_outside == 1 else 'are'} outside the band (one in twenty is by chance), and the fullest holds {largest:.2g} times its "
         "share: errors are not spread as one Gaussian."
     )
+
+
+def _regions(regions: Sequence[Held]) -> str:
+    held = [f"the 95 % {r.region} held {share(r.share)} of the epochs ({share(r.low)} to {share(r.high)})" for r in regions]
+    return f" Over all tracks {', '.join(held)}; limits from drawing whole tracks again." if held else ""

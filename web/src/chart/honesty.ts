@@ -6,7 +6,7 @@ import { count, plain } from "../show/format.ts";
 
 const WIDTH = 420;
 const HEIGHT = 150;
-const LEFT = 40;
+const LEFT = 50;
 const BOTTOM = 24;
 
 export function honesty(host: HTMLElement, summary: Summary): void {

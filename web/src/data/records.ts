@@ -96,6 +96,13 @@ export interface MethodResult {
     pinball_m: number | null;
 }
 
+export interface Held {
+    region: "circle" | "sphere";
+    share: number;
+    low: number;
+    high: number;
+}
+
 export interface Honesty {
     n: number;
     n_effective: number;
@@ -106,6 +113,7 @@ export interface Honesty {
     pit_counts: number[];
     pit_low: number;
     pit_high: number;
+    regions: Held[];
     words: string;
 }
 
