@@ -55,9 +55,11 @@ def test_solved_positions_taken_for_new_each_time_fail(real: Scenario) -> None:
     assert "reversion_nees" not in table.columns
 
 
-def test_a_form_that_is_none_is_refused(real: Scenario) -> None:
+def test_a_form_and_a_risk_that_are_none_are_refused(real: Scenario) -> None:
     with pytest.raises(InputError, match="form"):
         ins.consistency(real, 1, settings=ins.FilterSettings(form="ultra-tight"))  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="separation_risk"):
+        ins.consistency(real, 1, settings=ins.FilterSettings(separation_risk=0.0))
 
 
 @pytest.fixture(scope="module")
