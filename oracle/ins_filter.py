@@ -136,7 +136,7 @@ def update(p: Floats, x: Floats, row: Floats, innovation: float, r: float) -> tu
 def start(more: list[float]) -> Floats:
     sigma = [*POSITION_SIGMA, *[VELOCITY_SIGMA] * 3, *ATTITUDE_SIGMA, *[GYRO[1]] * 3, *[ACCELEROMETER[1]] * 3]
     to_local = np.linalg.inv(local(0.0))
-    return block_diag(to_local @ np.diag(np.square(sigma)) @ to_local.T, np.diag(np.square(more)))
+    return doubles(block_diag(to_local @ np.diag(np.square(sigma)) @ to_local.T, np.diag(np.square(more))))
 
 
 def noise(n: int) -> Floats:
@@ -174,7 +174,7 @@ BARO_OFFSETS = (12.0, 9.0, 15.0, 20.0)
 def moved(t: float, enu: tuple[float, float, float]) -> list[float]:
     """A place beside the path, to the third order of some metres over the Earth's radius."""
     meridian, ring = radii()
-    return (place(t) + np.array([enu[1] / meridian, enu[0] / ring, enu[2]])).tolist()
+    return [float(v) for v in place(t) + np.array([enu[1] / meridian, enu[0] / ring, enu[2]])]
 
 
 def with_fixes() -> dict[str, Any]:
@@ -246,7 +246,7 @@ def with_ranges() -> dict[str, Any]:
         own, measured = doubles(truth.ecef(place(t))), ranges(t, FIX_TIMES.index(t))
         for i, (satellite, value) in enumerate(zip(satellites(), measured, strict=True)):
             line = satellite - own
-            distance = np.linalg.norm(line)
+            distance = float(np.linalg.norm(line))
             if t == FIX_TIMES[0] and i == 0:
                 # The first range sets the clock.
                 x[15] = value - distance

@@ -93,3 +93,14 @@ def error_enu(fused: ins.Fused) -> Floats:
     """Estimate minus truth. [m]"""
     d = fused.position - np.array(PLACE)
     return np.stack([d[:, 1] * 6.3875e6 * np.cos(PLACE[0]), d[:, 0] * 6.3625e6, d[:, 2]], 1)
+
+
+def true_start(flown: ins.Sensed) -> ins.Start:
+    """The truth at the begin of a simulated flight."""
+    first = flown.truth.row(0, named=True)
+    return ins.Start(
+        time_ns=first["time_ns"],
+        position=(first["truth_lat_rad"], first["truth_lon_rad"], first["truth_h_m"]),
+        velocity_ned_mps=(first["vel_n_mps"], first["vel_e_mps"], first["vel_d_mps"]),
+        attitude_rad=(first["roll_rad"], first["pitch_rad"], first["heading_rad"]),
+    )

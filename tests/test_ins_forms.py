@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ins_fixture import true_start
 from navbound import anp, ins
 from navbound.errors import InputError
 from navbound.scenario import Scenario, load
@@ -54,9 +55,11 @@ def test_solved_positions_taken_for_new_each_time_fail(real: Scenario) -> None:
     assert "reversion_nees" not in table.columns
 
 
-def test_a_form_that_is_none_is_refused(real: Scenario) -> None:
+def test_a_form_and_a_risk_that_are_none_are_refused(real: Scenario) -> None:
     with pytest.raises(InputError, match="form"):
         ins.consistency(real, 1, settings=ins.FilterSettings(form="ultra-tight"))  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="separation_risk"):
+        ins.consistency(real, 1, settings=ins.FilterSettings(separation_risk=0.0))
 
 
 @pytest.fixture(scope="module")
@@ -67,13 +70,7 @@ def jammed() -> tuple[ins.Sensed, ins.Fused]:
     quick = scenario.model_copy(update={"sensors": scenario.sensors.model_copy(update={"rate_hz": 10})})
     sensed = ins.simulate(quick)
     aiding = ins.Aiding.of_tables(satellites=sensed.satellites, dme=sensed.dme, vor=sensed.vor, baro=sensed.baro)
-    first = sensed.truth.row(0, named=True)
-    start = ins.Start(
-        time_ns=first["time_ns"],
-        position=(first["truth_lat_rad"], first["truth_lon_rad"], first["truth_h_m"]),
-        velocity_ned_mps=(first["vel_n_mps"], first["vel_e_mps"], first["vel_d_mps"]),
-        attitude_rad=(first["roll_rad"], first["pitch_rad"], first["heading_rad"]),
-    )
+    start = true_start(sensed)
     return sensed, ins.fuse(ins.Imu.of_table(sensed.imu), aiding, start, settings=ins.FilterSettings(reversion=True))
 
 

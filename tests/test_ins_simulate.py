@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 import pytest
 
+from ins_fixture import true_start
 from navbound import FormatError, InputError, gnss, ins, scenario
 
 ROOT = Path(__file__).parents[1]
@@ -77,13 +78,7 @@ def test_an_error_free_run_of_the_mechanization_closes_to_a_metre_in_two_hours(t
     assert loaded.sensors is not None
     bare = loaded.sensors.model_copy(update={"gnss": None, "dme": None, "vor": None, "baro": None})
     flown = ins.simulate(loaded.model_copy(update={"sensors": bare}))
-    first = flown.truth.row(0, named=True)
-    start = ins.Start(
-        time_ns=first["time_ns"],
-        position=(first["truth_lat_rad"], first["truth_lon_rad"], first["truth_h_m"]),
-        velocity_ned_mps=(first["vel_n_mps"], first["vel_e_mps"], first["vel_d_mps"]),
-        attitude_rad=(first["roll_rad"], first["pitch_rad"], first["heading_rad"]),
-    )
+    start = true_start(flown)
     imu = ins.Imu(
         time_ns=flown.imu["time_ns"].to_numpy(),
         angle_rad=flown.imu.select("angle_x_rad", "angle_y_rad", "angle_z_rad").to_numpy(),

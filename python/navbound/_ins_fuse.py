@@ -87,7 +87,7 @@ class Fused(Track):
     mode : list of str
         ``gnss``, ``dme_dme``, ``vor_dme``, ``coasting``, ``stopped``.
     n_states : ndarray of int, shape (n,)
-        States in the filter. [1]
+        States in the filter, with those of the one beside it. [1]
     samples : dict of str to int
         Inertial samples done, bridged, late, refused, stopped.
     stopped, refused : tuple of (int, str), or None

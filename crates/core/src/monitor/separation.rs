@@ -153,28 +153,21 @@ mod tests {
         assert!((least.m() - 2.0 * (5.677_692 + 3.090_232)).abs() < 1e-5, "{}", least.m());
     }
 
-    /// Two independent normal numbers turned into a covariance: the share beyond the limit is the risk. 2e5 draws at 1e-3 are 200 ± 14;
-    /// five of these deviations.
+    /// Two independent normal numbers have a squared length of -2 ln u with u uniform: the limit must be passed just where u is below the
+    /// risk, whatever their direction.
     #[test]
     fn the_risk_is_that_of_a_false_alert() {
         let v = covariance(9.0, 2.0, 4.0);
-        let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-        let mut uniform = || {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            (state >> 11) as f64 / (1u64 << 53) as f64 + 1e-17
-        };
-        let beyond = (0..200_000)
-            .filter(|_| {
-                let (length, turn) = ((-2.0 * uniform().ln()).sqrt(), core::f64::consts::TAU * uniform());
+        for turn in (0..100).map(f64::from) {
+            for (u, beyond) in [(1e-3 * (1.0 - 1e-9), true), (1e-3 * (1.0 + 1e-9), false), (0.5, false), (1e-9, true)] {
+                let length = (-2.0 * f64::ln(u)).sqrt();
                 let (a, b) = (length * turn.cos(), length * turn.sin());
                 // Cholesky's factor of the covariance: 3; 2/3, sqrt(4 - 4/9).
                 let d = enu(3.0 * a, 2.0 / 3.0 * a + (4.0f64 - 4.0 / 9.0).sqrt() * b);
-                Separation::of(&d, &v, &v, risk(1e-3)).unwrap().unwrap().exceeds()
-            })
-            .count();
-        assert!((130..=270).contains(&beyond), "{beyond}");
+                let found = Separation::of(&d, &v, &v, risk(1e-3)).unwrap().unwrap();
+                assert_eq!(found.exceeds(), beyond, "{u} {turn} {found:?}");
+            }
+        }
     }
 
     #[test]
