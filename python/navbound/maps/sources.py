@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field
 from functools import lru_cache, reduce
 from operator import add
 from pathlib import Path
@@ -57,10 +57,13 @@ class Times:
             raise InputError("duration_s", duration_s, "s", f"[step_s, {MOST_INSTANTS} step_s]")
         return duration_s
 
+    def length_s(self, usual_s: float = DAY_S) -> float:
+        """The duration, or the usual one where none was asked for. [s]."""
+        return self._within(usual_s) if self.duration_s is None else self.duration_s
+
     def offsets_s(self, usual_s: float = DAY_S) -> NDArray[np.float64]:
-        """Since the first instant, over the usual length where none was asked for. [s]."""
-        duration_s = self._within(usual_s) if self.duration_s is None else self.duration_s
-        return np.asarray(np.arange(math.ceil(duration_s / self.step_s - 1e-9)) * self.step_s, dtype=np.float64)
+        """Since the first instant. [s]."""
+        return np.asarray(np.arange(math.ceil(self.length_s(usual_s) / self.step_s - 1e-9)) * self.step_s, dtype=np.float64)
 
     def words(self, n: int, first_ns: int | None) -> str:
         """How many, how far apart, and from when where there is a date."""
@@ -99,7 +102,7 @@ def satellites(constellation: Sequence[str | Path], times: Times, mask_rad: floa
     references = {part.reference_ns for part in parts}
     if len(references) > 1:
         raise InputError("constellation", ", ".join(map(str, constellation)), domain="nominal ones, or files of one reference instant")
-    orbits = _less(reduce(add, parts), without)
+    orbits = reduce(add, parts).without(without)
     since = 0.0
     if times.start_ns is not None:
         if orbits.reference_ns is None:
@@ -134,17 +137,6 @@ class File:
         except OSError as e:
             raise FormatError(path, e.strerror or str(e)) from e
         return cls(str(Path(path).resolve()), hashlib.sha256(content).hexdigest())
-
-
-def _less(orbits: gnss.Orbits, without: Sequence[str]) -> gnss.Orbits:
-    for name in without:
-        if name not in orbits.satellite:
-            raise InputError("without", name, domain=f"satellites of the constellation: {', '.join(orbits.satellite)}")
-    kept = np.array([name not in without for name in orbits.satellite])
-    if not kept.any():
-        raise InputError("without", ", ".join(without), domain="satellites that leave at least one")
-    columns = {f.name: getattr(orbits, f.name)[kept] for f in fields(orbits) if f.name not in {"satellite", "reference_ns"}}
-    return replace(orbits, satellite=tuple(name for name in orbits.satellite if name not in without), **columns)
 
 
 def messages(log: File, prn: int | None) -> sbas.Messages:

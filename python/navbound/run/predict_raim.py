@@ -139,8 +139,8 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
             holes += more
     times = PredictedTimes(
         start_utc=when.utc(0.0),
-        end_utc=when.utc(asked.times.duration_s),
-        duration_s=asked.times.duration_s,
+        end_utc=when.utc(asked.times.length_s()),
+        duration_s=asked.times.length_s(),
         step_s=asked.times.step_s,
         n=len(when.offsets_s),
     )
