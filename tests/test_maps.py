@@ -151,6 +151,7 @@ def test_empty_regions_are_refused(region: tuple[float, float, float, float]) ->
         ("dop", {"constellation": ("sirius",)}, "sirius"),
         ("dop", {"mask_rad": 2.0}, "mask_rad"),
         ("dop", {"h_m": math.nan}, "h_m"),
+        ("dop", {"without": ("G01", "X99")}, "X99"),
         ("dop", {"times": Times(start_ns=0)}, "no date"),
         ("araim", {"service": "lpv-9"}, "lpv-200"),
         ("sbas", {}, "message log"),

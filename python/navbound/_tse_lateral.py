@@ -41,45 +41,6 @@ class Projection(NamedTuple):
     """Standard deviation of the navigation error across the path. [m]"""
 
 
-class Rotated(NamedTuple):
-    """All lateral bounds in the paper's rotated frame."""
-
-    fte_m: Floats
-    """Signed: positive where the estimate is above the line y = k x. [m]"""
-    sigma_m: Floats
-    """Standard deviation across the line. [m]"""
-    factor: Floats
-    """K. [1]"""
-    exact_m: Floats
-    ltem_m: Floats
-    sqsm_m: Floats
-    ctem_m: Floats
-    risk_ltem: Floats
-    """True risk at the LTEM bound. [1]"""
-    risk_sqsm: Floats
-    risk_ctem: Floats
-
-
-class Explanation(NamedTuple):
-    """Everything behind a lateral bound."""
-
-    fte_m: Floats
-    """Signed flight technical error. [m]"""
-    along_m: Floats
-    sigma_m: Floats
-    sigma_major_m: Floats
-    """Largest horizontal deviation. [m]"""
-    sigma_minor_m: Floats
-    """Smallest. [m]"""
-    factor: Floats
-    """K. [1]"""
-    exact_m: Floats
-    ltem_m: Floats
-    sqsm_m: Floats
-    ctem_m: Floats
-    ctem_foot_m: Floats
-
-
 def factors(risk: ArrayLike) -> Factors:
     """Factors of a risk in one, two and three dimensions.
 
@@ -215,12 +176,8 @@ def ltem(fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Floats:
 
     Parameters
     ----------
-    fte_m : array_like, shape (...)
-        Flight technical error, of either sign. [m]
-    sigma_m : array_like, shape (...)
-        Standard deviation of the navigation error across the path. [m]
-    risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+    fte_m, sigma_m, risk : array_like, shape (...)
+        As :func:`exact`. [m, m, 1]
 
     Returns
     -------
@@ -230,7 +187,7 @@ def ltem(fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Floats:
     Raises
     ------
     InputError
-        Not finite, a negative deviation, or a risk outside (0, 1).
+        As :func:`exact`.
     """
     if _is_single(risk):
         shape, [f, s] = flatten(fte_m=(fte_m, ()), sigma_m=(sigma_m, ()))
@@ -244,12 +201,10 @@ def sqsm(fte_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -> Floa
 
     Parameters
     ----------
-    fte_m : array_like, shape (...)
-        Flight technical error, of either sign. [m]
+    fte_m, risk : array_like, shape (...)
+        As :func:`exact`. [m, 1]
     covariance_en_m2 : array_like, shape (..., 2, 2)
-        Covariance of the navigation error, east and north. [m²]
-    risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        As :func:`project`. [m²]
 
     Returns
     -------
@@ -259,7 +214,7 @@ def sqsm(fte_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -> Floa
     Raises
     ------
     InputError
-        Not finite, a covariance that is not symmetric or is indefinite, or a risk outside (0, 1).
+        As :func:`project`, or a risk outside (0, 1).
     """
     shape, [f, c, q] = flatten(fte_m=(fte_m, ()), covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ()))
     return unflatten(_core.tse_sqsm(f, c, q), shape)
@@ -272,10 +227,8 @@ def ctem(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -
 
     Parameters
     ----------
-    offset_en_m : array_like, shape (..., 2)
-        Estimated position minus expected point, east and north. [m]
-    covariance_en_m2 : array_like, shape (..., 2, 2)
-        Covariance of the navigation error, east and north. [m²]
+    offset_en_m, covariance_en_m2 : array_like, shapes (..., 2) and (..., 2, 2)
+        As :func:`project`. [m, m²]
     risk : array_like, shape (...)
         Allowed risk in (0, 1). [1]
 
@@ -287,7 +240,7 @@ def ctem(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -
     Raises
     ------
     InputError
-        Not finite, a covariance that is not symmetric or is indefinite, or a risk outside (0, 1).
+        As :func:`project`, or a risk outside (0, 1).
     """
     shape, [p, c, q] = flatten(offset_en_m=(offset_en_m, (2,)), covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ()))
     return unflatten(_core.tse_ctem(p, c, q), shape)
@@ -300,10 +253,8 @@ def ctem_foot(fte_m: ArrayLike, course_rad: ArrayLike, covariance_en_m2: ArrayLi
     ----------
     fte_m : array_like, shape (...)
         Flight technical error, positive right of the path. [m]
-    course_rad : array_like, shape (...)
-        Course of the path, clockwise from true north. [rad]
-    covariance_en_m2 : array_like, shape (..., 2, 2)
-        Covariance of the navigation error, east and north. [m²]
+    course_rad, covariance_en_m2 : array_like, shapes (...) and (..., 2, 2)
+        As :func:`project`. [rad, m²]
     risk : array_like, shape (...)
         Allowed risk in (0, 1). [1]
 
@@ -315,7 +266,7 @@ def ctem_foot(fte_m: ArrayLike, course_rad: ArrayLike, covariance_en_m2: ArrayLi
     Raises
     ------
     InputError
-        Not finite, a covariance that is not symmetric or is indefinite, or a risk outside (0, 1).
+        As :func:`project`, or a risk outside (0, 1).
     """
     shape, [f, chi, c, q] = flatten(
         fte_m=(fte_m, ()), course_rad=(course_rad, ()), covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ())
@@ -362,10 +313,8 @@ def exceedance_risk(fte_m: ArrayLike, sigma_m: ArrayLike, limit_m: ArrayLike) ->
 
     Parameters
     ----------
-    fte_m : array_like, shape (...)
-        Flight technical error, of either sign. [m]
-    sigma_m : array_like, shape (...)
-        Standard deviation of the navigation error across the path. [m]
+    fte_m, sigma_m : array_like, shape (...)
+        As :func:`exact`. [m]
     limit_m : array_like, shape (...)
         The limit, e.g. RNP or twice RNP. [m]
 
@@ -403,103 +352,6 @@ def log_exceedance_risk(fte_m: ArrayLike, sigma_m: ArrayLike, limit_m: ArrayLike
     """
     shape, [f, s, limit] = flatten(fte_m=(fte_m, ()), sigma_m=(sigma_m, ()), limit_m=(limit_m, ()))
     return unflatten(np.ascontiguousarray(_core.tse_exceedance(f, s, limit)[:, 1]), shape)
-
-
-def rotated_frame(
-    k: ArrayLike, x0_m: ArrayLike, y0_m: ArrayLike, sigma_a_m: ArrayLike, sigma_b_m: ArrayLike, *, risk: ArrayLike
-) -> Rotated:
-    """All lateral bounds in the frame of the paper: axes along the ellipse, the path the line y = k x, the estimate at (x0, y0).
-
-    For comparison with published numbers; :func:`project` needs neither slope nor eigenvectors.
-
-    Parameters
-    ----------
-    k : array_like, shape (...)
-        Slope of the path, plus or minus infinity along the second axis. [1]
-    x0_m, y0_m : array_like, shape (...)
-        Estimated position. [m]
-    sigma_a_m, sigma_b_m : array_like, shape (...)
-        Standard deviations along the two axes. [m]
-    risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
-
-    Returns
-    -------
-    Rotated
-        Bounds, and the true risk at each quicker one, shape (...).
-
-    Raises
-    ------
-    InputError
-        A NaN slope, not finite, a negative deviation, or a risk outside (0, 1).
-    """
-    shape, [slope, x, y, a, b, q] = flatten(
-        k=(k, ()), x0_m=(x0_m, ()), y0_m=(y0_m, ()), sigma_a_m=(sigma_a_m, ()), sigma_b_m=(sigma_b_m, ()), risk=(risk, ())
-    )
-    columns = split_columns(_core.tse_rotated(slope, np.column_stack([x, y]), np.column_stack([a, b]), q), shape)
-    fte, sigma, *bounds = columns
-    risks = [exceedance_risk(fte, sigma, bound) for bound in bounds[1:]]
-    return Rotated(fte, sigma, unflatten(factors(q).two_sided, shape), *bounds, *risks)
-
-
-def explain(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, course_rad: ArrayLike, risk: ArrayLike) -> Explanation:
-    """Everything behind a lateral bound: projection, axes, factor and each method's result.
-
-    Parameters
-    ----------
-    offset_en_m : array_like, shape (..., 2)
-        Estimated position minus expected point, east and north. [m]
-    covariance_en_m2 : array_like, shape (..., 2, 2)
-        Covariance of the navigation error, east and north. [m²]
-    course_rad : array_like, shape (...)
-        Course of the path, clockwise from true north. [rad]
-    risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
-
-    Returns
-    -------
-    Explanation
-        Lengths of shape (...). [m]
-
-    Raises
-    ------
-    InputError
-        As :func:`project`, or a risk outside (0, 1).
-    """
-    shape, [p, c, chi, q] = flatten(
-        offset_en_m=(offset_en_m, (2,)), covariance_en_m2=(covariance_en_m2, (2, 2)), course_rad=(course_rad, ()), risk=(risk, ())
-    )
-    fte, along, sigma = project(p, c, chi)
-    major, minor = split_columns(_core.tse_axes(c), (len(c),))
-    bounds = [exact(fte, sigma, q), ltem(fte, sigma, q), sqsm(fte, c, q), ctem(p, c, q), ctem_foot(fte, chi, c, q)]
-    columns = [fte, along, sigma, major, minor, factors(q).two_sided, *bounds]
-    return Explanation(*(unflatten(column, shape) for column in columns))
-
-
-def ltem_as_printed(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -> Floats:
-    """LTEM exactly as printed (F-39, slope cot phi, factors 1.96 and 4.41): an exhibit of errata E2, E3 and E13, not a bound.
-
-    Parameters
-    ----------
-    offset_en_m : array_like, shape (..., 2)
-        Estimated position minus expected point, east and north. [m]
-    covariance_en_m2 : array_like, shape (..., 2, 2)
-        Covariance of the navigation error, east and north. [m²]
-    risk : array_like, shape (...)
-        0.05 or 1e-5, the two the paper prints. [1]
-
-    Returns
-    -------
-    ndarray, shape (...)
-        What the printed formula gives; it may be negative. [m]
-
-    Raises
-    ------
-    InputError
-        As :func:`ctem`, or another risk.
-    """
-    shape, [p, c, q] = flatten(offset_en_m=(offset_en_m, (2,)), covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ()))
-    return unflatten(_core.tse_ltem_as_printed(p, c, q), shape)
 
 
 def _is_single(risk: ArrayLike) -> bool:

@@ -5,7 +5,6 @@ Definitions follow docs/methods/kpi.md; the levels' numbers carry their own sour
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -15,7 +14,9 @@ import polars as pl
 
 from navbound import _core, _kpi_records
 from navbound._arrays import flatten
+from navbound._kpi_levels import chosen_levels, level, levels, rnp
 from navbound._kpi_subsets import RangeTable, StanfordEsa, SubsetOptions, n_bins, stanford_esa, with_subsets
+from navbound._kpi_tables import FLOATS, Table, codes_of, frame_of, period_of
 from navbound.errors import InputError
 from navbound.run.kpi_records import Level, Performance, StanfordBins, StanfordCounts
 
@@ -42,15 +43,10 @@ __all__ = [
 
 WINDOW_S = 15.0
 """Continuity window."""
-RNP_TTA_S = 10.0
-"""Time to alert of a level that is named by its RNP value: that of non-precision approach, inferred. [s]"""
 MOST_EVENTS = 500
 """Events that a performance record lists; a campaign hands out all of them."""
 
 _NO_SOLUTION = ("not_available", "invalid_input")
-_FLOATS = ("nse_e_m", "nse_n_m", "nse_u_m", "hpl_m", "vpl_m")
-
-Table = pl.DataFrame | Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -81,72 +77,6 @@ class Continuity:
     n_at_risk: int
     n_events: int
     risk: float
-
-
-def levels() -> dict[str, Level]:
-    """Every service level by its name, with limits, demands, source and provenance."""
-    return {found.id: found for found in _kpi_records.table_of_levels()}
-
-
-def level(wanted: str | Level) -> Level:
-    """A level by its name, or the RNP value as horizontal limit where the name is ``RNP 0.3`` or the like.
-
-    Raises
-    ------
-    InputError
-        No such level; the message lists those that exist.
-    """
-    if isinstance(wanted, Level):
-        return wanted
-    known = levels()
-    if wanted in known:
-        return known[wanted]
-    value = re.fullmatch(r"RNP (\d+(?:\.\d+)?)", wanted.strip(), re.IGNORECASE)
-    if value is None:
-        raise InputError("levels", wanted, domain=f"{', '.join(known)}, RNP 0.3 and the like")
-    found = rnp(float(value.group(1)), tta_s=RNP_TTA_S)
-    source = "alert limit inferred from the RNP value; time to alert that of non-precision approach"
-    return found.model_copy(update={"source": source, "provenance": {"hal_m": "inferred", "tta_s": "inferred"}})
-
-
-def rnp(rnp_nm: float, *, tta_s: float, containment: int = 1) -> Level:
-    """A level whose horizontal limit is an RNP value. That the limit is the RNP value is inferred, and marked so.
-
-    Parameters
-    ----------
-    rnp_nm : float
-        RNP value. [NM]
-    tta_s : float
-        Time to alert of the operation. [s]
-    containment : {1, 2}
-        The limit as a multiple of the RNP value.
-
-    Raises
-    ------
-    InputError
-        A value that is not positive, or another multiple.
-    """
-    for name, value, unit in (("rnp_nm", rnp_nm, "NM"), ("tta_s", tta_s, "s")):
-        if not 0 < value < float("inf"):
-            raise InputError(name, value, unit, "(0, inf)")
-    if containment not in {1, 2}:
-        raise InputError("containment", containment, "1", "{1, 2}")
-    name = f"RNP {rnp_nm:g}"
-    return Level(
-        id=name if containment == 1 else f"{name} x 2",
-        title=f"{name}, alert limit {containment} x RNP",
-        hal_m=containment * rnp_nm * 1852.0,
-        val_m=None,
-        accuracy_h_m=None,
-        accuracy_v_m=None,
-        tta_s=tta_s,
-        integrity_risk=None,
-        integrity_per=None,
-        continuity_risk=None,
-        continuity_per=None,
-        source="alert limit inferred from the RNP value; time to alert given by the caller",
-        provenance={"hal_m": "inferred", "tta_s": "ours"},
-    )
 
 
 def continuity(available: ArrayLike | str, n_window_epochs: int) -> Continuity:
@@ -263,7 +193,7 @@ def evaluate(
         A missing column, times that fall, an unknown level, a number outside its domain.
     """
     tables = [table] if isinstance(table, (pl.DataFrame, Mapping)) else list(table)
-    frames = [_frame(t) for t in tables]
+    frames = [frame_of(t) for t in tables]
     if not frames:
         raise InputError("table", "nothing", domain="one table or more")
     campaign = Campaign(
@@ -310,9 +240,9 @@ class Campaign:
         title: str = "",
         experimental: str = "",
     ) -> None:
-        self.levels = _levels(levels)
-        times = _frame(first)["time_ns"]
-        self.period_s = _period(times) if period_s is None else float(period_s)
+        self.levels = chosen_levels(levels)
+        times = frame_of(first)["time_ns"]
+        self.period_s = period_of(times) if period_s is None else float(period_s)
         if not 1e-9 <= self.period_s < float("inf"):
             raise InputError("period_s", self.period_s, "s", "[1e-9, inf)")
         self.window_s = WINDOW_S
@@ -348,7 +278,7 @@ class Campaign:
         InputError
             A missing column, times that fall, a number outside its domain.
         """
-        columns, n_bad = self._columns(_frame(table))
+        columns, n_bad = self._columns(frame_of(table))
         self._n_bad_levels += n_bad
         return self._keep(self._core.add(columns))
 
@@ -404,7 +334,7 @@ class Campaign:
         selector = self._core.selector()
         for _ in range(_core.KpiSelector.passes()):
             for table in tables():
-                selector.scan(self._columns(_frame(table))[0])
+                selector.scan(self._columns(frame_of(table))[0])
             selector.narrow()
         values = selector.values()
         return [values[k : k + 4] for k in range(0, len(values), 4)]
@@ -423,76 +353,14 @@ class Campaign:
         return notes
 
     def _columns(self, frame: pl.DataFrame) -> tuple[dict[str, NDArray[Any]], int]:
-        numbers = frame.select(pl.col(name).fill_null(np.nan) for name in _FLOATS)
+        numbers = frame.select(pl.col(name).fill_null(np.nan) for name in FLOATS)
         bad = {name: ~numbers[name].is_nan() & ~((numbers[name] > 0) & numbers[name].is_finite()) for name in ("hpl_m", "vpl_m")}
-        columns: dict[str, NDArray[Any]] = {name: np.ascontiguousarray(numbers[name].to_numpy()) for name in _FLOATS}
+        columns: dict[str, NDArray[Any]] = {name: np.ascontiguousarray(numbers[name].to_numpy()) for name in FLOATS}
         solved = ~frame["status"].is_in(_NO_SOLUTION).fill_null(value=False).to_numpy()
         for name in ("hpl_m", "vpl_m"):
             columns[name] = np.where(solved & ~bad[name].to_numpy(), columns[name], np.nan)
         columns["time_ns"] = np.ascontiguousarray(frame["time_ns"].to_numpy())
         columns["n_sv"] = np.ascontiguousarray(frame["n_sv"].fill_null(-1).to_numpy())
-        columns["mode"] = _codes(frame["mode"], self._modes)
-        columns["reason"] = _codes(frame["reason"], self._reasons)
+        columns["mode"] = codes_of(frame["mode"], self._modes)
+        columns["reason"] = codes_of(frame["reason"], self._reasons)
         return columns, int((bad["hpl_m"] | bad["vpl_m"]).sum())
-
-
-def _levels(wanted: str | Level | Sequence[str | Level]) -> list[Level]:
-    given = [wanted] if isinstance(wanted, (str, Level)) else list(wanted)
-    names = [part for item in given for part in ([p.strip() for p in item.split(",")] if isinstance(item, str) else [item])]
-    found = [level(name) for name in names if name != ""]
-    if not found:
-        raise InputError("levels", "nothing", domain="one level or more")
-    for index, each in enumerate(found):
-        if any(each.id == other.id for other in found[:index]):
-            raise InputError("levels", each.id, domain="levels named once")
-    return found
-
-
-def _period(times: pl.Series) -> float:
-    step = times.diff().drop_nulls().filter(times.diff().drop_nulls() > 0).median()
-    if not isinstance(step, (int, float)) or not step > 0:
-        raise InputError("period_s", "none", "s", "a period: the first table has no two instants to take it from")
-    # Divided, since 1e-9 is no double: 0.1 s stays 0.1 s.
-    return float(step) / 1e9
-
-
-def _codes(texts: pl.Series, known: dict[str, int]) -> NDArray[np.uint32]:
-    for text in texts.drop_nulls().unique(maintain_order=True):
-        if text:
-            known.setdefault(text, len(known) + 1)
-    codes = texts.replace_strict(known, default=0, return_dtype=pl.UInt32) if known else pl.zeros(len(texts), pl.UInt32, eager=True)
-    return np.ascontiguousarray(codes.fill_null(0).to_numpy())
-
-
-def _frame(table: Table) -> pl.DataFrame:
-    """Columns that the indicators need, absent ones null."""
-    frame = table if isinstance(table, pl.DataFrame) else _from_mapping(table)
-    for name in ("time_ns", "hpl_m"):
-        if name not in frame.columns:
-            raise InputError("table", f"columns {', '.join(frame.columns[:12])}", domain=f"a table with a column {name}")
-    if "nse_e_m" not in frame.columns and "hpe_m" in frame.columns:
-        vertical = pl.col("vpe_m") if "vpe_m" in frame.columns else pl.lit(None, pl.Float64)
-        frame = frame.with_columns(nse_e_m=pl.col("hpe_m"), nse_n_m=pl.lit(0.0), nse_u_m=vertical)
-    if not frame["time_ns"].dtype.is_integer():
-        raise InputError("time_ns", f"{frame['time_ns'].dtype}", domain="whole nanoseconds")
-    if frame["time_ns"].null_count():
-        raise InputError("time_ns", "null", "ns", "an instant in every row")
-    wanted = {
-        "time_ns": pl.Int64,
-        **dict.fromkeys(_FLOATS, pl.Float64),
-        "n_sv": pl.Int32,
-        **dict.fromkeys(("status", "mode", "reason"), pl.String),
-    }
-    try:
-        return frame.select(
-            (pl.col(name) if name in frame.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in wanted.items()
-        )
-    except pl.exceptions.PolarsError as e:
-        raise InputError("table", str(e).splitlines()[0][:120], domain="numbers in the columns that hold numbers") from e
-
-
-def _from_mapping(table: Mapping[str, Any]) -> pl.DataFrame:
-    try:
-        return pl.DataFrame({name: np.asarray(values) if not isinstance(values, pl.Series) else values for name, values in table.items()})
-    except (pl.exceptions.PolarsError, TypeError, ValueError) as e:
-        raise InputError("table", str(e).splitlines()[0][:120], domain="columns of equal length") from e

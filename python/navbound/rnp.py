@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, cast
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
 
 import numpy as np
 import polars as pl
 
 from navbound import _core
 from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
+from navbound._rnp_exposure import PER_EPOCH, ExposureBasis, PerEpoch, PerHour, per_epoch_risk, per_hour_risk
+from navbound._rnp_specifications import Specification, specification, specifications
 from navbound._states import (
     StateClassifier,
     StateOfError,
@@ -58,173 +60,6 @@ USABLE = ("ok", "degraded")
 """Words of `status` with which an epoch is judged."""
 UNUSABLE = ("not_available", "invalid_input")
 """Words of `status` with which monitoring is lost."""
-
-
-@dataclass(frozen=True)
-class Specification:
-    """What a navigation specification asks for in one phase of flight.
-
-    Attributes
-    ----------
-    name, phase : str
-        Row and column of the table.
-    accuracy_m : float
-        Lateral accuracy (95 %), the RNP value. Where the specification gives a range and none was chosen, the tightest. [m]
-    accuracy_least_m, accuracy_most_m : float
-        The range that may be chosen from. [m]
-    containment_m : float or None
-        Twice the accuracy; None for RNAV specifications, which ask for no monitoring on board. [m]
-    accuracy_risk : float
-        Risk that goes with the accuracy.
-    containment_risk : float or None
-        Risk that goes with the containment.
-    source, provenance : str
-        Where the row comes from and how we hold it.
-    time_to_alert_s : float
-        Default time to alert of the phase. [s]
-    time_to_alert_source, time_to_alert_provenance : str
-        The same for the time to alert.
-    """
-
-    name: str
-    phase: str
-    accuracy_m: float
-    accuracy_least_m: float
-    accuracy_most_m: float
-    containment_m: float | None
-    accuracy_risk: float
-    containment_risk: float | None
-    source: str
-    provenance: str
-    time_to_alert_s: float
-    time_to_alert_source: str
-    time_to_alert_provenance: str
-
-
-def specifications() -> list[Specification]:
-    """Every cell of the table of navigation specifications; ranges stand at their tightest value."""
-    cells = []
-    for row in _core.specifications():
-        containment = row.pop("containment_least_m")
-        row.pop("containment_most_m")
-        cells.append(Specification(accuracy_m=row["accuracy_least_m"], containment_m=containment, **row))
-    return cells
-
-
-def specification(name: str, phase: str, accuracy_m: float | None = None) -> Specification:
-    """One cell of the table of navigation specifications.
-
-    Parameters
-    ----------
-    name : str
-        The specification, e.g. ``"RNP APCH"``.
-    phase : str
-        The phase of flight, e.g. ``"final"``.
-    accuracy_m : float, optional
-        The value chosen from a range (RNP AR APCH, A-RNP); the tightest if not given. [m]
-
-    Raises
-    ------
-    InputError
-        An unknown name or phase, an empty cell, or an accuracy outside the range; the message lists what exists.
-    """
-    cells = specifications()
-    if name not in (names := list(dict.fromkeys(c.name for c in cells))):
-        raise InputError("name", repr(name), domain=", ".join(names))
-    mine = {c.phase: c for c in cells if c.name == name}
-    if phase not in mine:
-        raise InputError("phase", repr(phase), domain=f"the phases of {name}: {', '.join(mine)}")
-    cell = mine[phase]
-    if accuracy_m is None:
-        return cell
-    if not cell.accuracy_least_m <= accuracy_m <= cell.accuracy_most_m:
-        domain = f"[{cell.accuracy_least_m:g}, {cell.accuracy_most_m:g}] for {name}, {phase}"
-        raise InputError("accuracy_m", accuracy_m, "m", domain)
-    doubled = None if cell.containment_m is None else 2.0 * accuracy_m
-    return Specification(**{**cell.__dict__, "accuracy_m": accuracy_m, "containment_m": doubled})
-
-
-def per_epoch_risk(risk_per_hour: float, tau_s: float, sample_period_s: float = 0.0) -> float:
-    """Risk per epoch whose hour carries a risk: what the bounds must be evaluated at.
-
-    The lateral error is taken as a Gauss-Markov process, centred, of one variance. Below 20 samples in a correlation time, where
-    the crossing rate falls short of the true risk, the independent epochs' risk is used, which no Gaussian dependence exceeds.
-
-    Parameters
-    ----------
-    risk_per_hour : float
-        Risk to be outside at least once in an hour.
-    tau_s : float
-        Correlation time of the error. [s]
-    sample_period_s : float
-        Time between epochs; 0 for continuous monitoring. [s]
-
-    Returns
-    -------
-    float
-        ``2 Q(u)`` of the level ``u`` that carries it.
-
-    Raises
-    ------
-    InputError
-        An argument outside its domain, or a risk no level above one sigma carries.
-    """
-    return _core.per_epoch_risk(risk_per_hour, tau_s, sample_period_s)
-
-
-def per_hour_risk(risk_per_epoch: float, tau_s: float, sample_period_s: float = 0.0) -> float:
-    """Risk to be outside at least once in an hour; the inverse of `per_epoch_risk`, with the same arguments."""
-    return _core.per_hour_risk(risk_per_epoch, tau_s, sample_period_s)
-
-
-class ExposureBasis(Protocol):
-    """What the integrity risk is counted over."""
-
-    def per_epoch(self, risk: float, sample_period_s: float) -> float:
-        """Give the risk at which each epoch's bound is evaluated."""
-        ...
-
-    def words(self, risk: float, sample_period_s: float) -> str:
-        """Say the basis and what the risk is in the other one, for reports."""
-        ...
-
-
-@dataclass(frozen=True)
-class PerEpoch:
-    """The risk is each epoch's own, as in the source; how often it is met in an hour is not said."""
-
-    tau_s: float = 60.0
-    """Correlation time for which the report prints the risk per hour. [s]"""
-
-    def per_epoch(self, risk: float, sample_period_s: float) -> float:  # noqa: ARG002 (the other basis needs it)
-        """Give the risk itself."""
-        return risk
-
-    def words(self, risk: float, sample_period_s: float) -> str:
-        """Say the risk per epoch, and what it is over an hour."""
-        hour = per_hour_risk(risk, self.tau_s, sample_period_s)
-        return f"{risk:.3g} per epoch, which is {hour:.2g} per hour for an error that forgets in {self.tau_s:g} s"
-
-
-@dataclass(frozen=True)
-class PerHour:
-    """The risk is that of being outside at least once in an hour of flight."""
-
-    tau_s: float
-    """Correlation time of the lateral error. [s]"""
-
-    def per_epoch(self, risk: float, sample_period_s: float) -> float:
-        """Give the equivalent risk of one epoch."""
-        return per_epoch_risk(risk, self.tau_s, sample_period_s)
-
-    def words(self, risk: float, sample_period_s: float) -> str:
-        """Say the risk per hour, and what it is per epoch."""
-        epoch = self.per_epoch(risk, sample_period_s)
-        return f"{risk:.3g} per hour, which is {epoch:.2g} per epoch for an error that forgets in {self.tau_s:g} s"
-
-
-PER_EPOCH = PerEpoch()
-"""The basis of the source."""
 
 
 class Event(NamedTuple):

@@ -9,6 +9,7 @@ Sources: Fu, Zhang, Li 2014 (equations cited as F-n); docs/methods/tse.md says w
 
 from __future__ import annotations
 
+from navbound._tse_explained import Explanation, Rotated, explain, ltem_as_printed, rotated_frame
 from navbound._tse_extended import (
     Box,
     RandomFte,
@@ -24,21 +25,16 @@ from navbound._tse_extended import (
 )
 from navbound._tse_lateral import (
     Exact,
-    Explanation,
     Factors,
     Projection,
-    Rotated,
     ctem,
     ctem_foot,
     exact,
     exceedance_risk,
-    explain,
     factors,
     log_exceedance_risk,
     ltem,
-    ltem_as_printed,
     project,
-    rotated_frame,
     rssm,
     sqsm,
 )

@@ -31,9 +31,9 @@ def limits_of(level: str, *, vertical: bool = True) -> list[Limit]:
         No such level.
     """
     found = kpi.level(level)
-    # The level's own source speaks of its other demands too.
+    # The source of a level of the table speaks of its other demands too.
     sources = {row["id"]: row["limits_source"] for row in _core.service_levels()}
-    source = f"{found.id}: {sources[found.id]}"
+    source = f"{found.id}: {sources.get(found.id, found.source)}"
     limits = [Limit("hpl_m", found.hal_m, source, found.provenance["hal_m"])]
     if vertical and found.val_m is not None:
         limits.append(Limit("vpl_m", found.val_m, source, found.provenance["val_m"]))

@@ -57,10 +57,13 @@ class Times:
             raise InputError("duration_s", duration_s, "s", f"[step_s, {MOST_INSTANTS} step_s]")
         return duration_s
 
+    def length_s(self, usual_s: float = DAY_S) -> float:
+        """The duration, or the usual one where none was asked for. [s]."""
+        return self._within(usual_s) if self.duration_s is None else self.duration_s
+
     def offsets_s(self, usual_s: float = DAY_S) -> NDArray[np.float64]:
-        """Since the first instant, over the usual length where none was asked for. [s]."""
-        duration_s = self._within(usual_s) if self.duration_s is None else self.duration_s
-        return np.asarray(np.arange(math.ceil(duration_s / self.step_s - 1e-9)) * self.step_s, dtype=np.float64)
+        """Since the first instant. [s]."""
+        return np.asarray(np.arange(math.ceil(self.length_s(usual_s) / self.step_s - 1e-9)) * self.step_s, dtype=np.float64)
 
     def words(self, n: int, first_ns: int | None) -> str:
         """How many, how far apart, and from when where there is a date."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import platform
 import sys
@@ -12,7 +10,7 @@ from contextlib import ExitStack
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import polars as pl
 
@@ -23,16 +21,16 @@ from navbound.run import directory
 from navbound.run.directory import Run
 from navbound.run.field_csv import write_csv
 from navbound.run.files import sort_out
-from navbound.run.levels_of import COVARIANCE, SCHEMA, Part, Service, Truth, from_observations, from_table, truth_of
-from navbound.run.levels_of_monitor import GIVEN, from_monitor, monitor_of
+from navbound.run.levels_of import COVARIANCE, Truth, truth_of
+from navbound.run.levels_of_monitor import GIVEN, monitor_of
+from navbound.run.performance_parts import Stored, finished_parts, ranges_of_parts, tables_of
 from navbound.run.performance_words import performance_words
 from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
 from navbound.run.summarise import honesty_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
-    from navbound.read.source import Source
     from navbound.run.files import Files
     from navbound.run.kpi_records import Performance
 
@@ -140,15 +138,15 @@ def evaluate_files(
         )
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) if out is None else _own(Path(out))
-        parts = _parts(sources, options, truth, folder / PARTS, progress)
+        parts = finished_parts(sources, options, truth, folder / PARTS, progress)
         campaign, events = _add_all(parts, wanted, options)
-        result = campaign.finish(lambda: _tables(parts), events.append)
+        result = campaign.finish(lambda: tables_of(parts), events.append)
         if options.stanford_esa is not None:
-            ranges = kpi.stanford_esa(lambda: _range_tables(parts), campaign.levels, options.stanford_esa)
+            ranges = kpi.stanford_esa(lambda: ranges_of_parts(parts), campaign.levels, options.stanford_esa)
             result = kpi.with_subsets(result, ranges)
         run = _run(result, parts, events, inputs=_inputs(sources, truth, parts), options=options, command=command)
         if out is None:
-            return Run(run.summary, run.record, pl.concat(_tables(parts)), run.events, [])
+            return Run(run.summary, run.record, pl.concat(tables_of(parts)), run.events, [])
         return _write(run, parts, folder)
 
 
@@ -159,135 +157,13 @@ def _own(out: Path) -> Path:
     return out
 
 
-@dataclass(frozen=True)
-class _Stored:
-    """A finished part on the disk."""
-
-    table: Path
-    first_ns: int
-    n_rows: int
-    n_epochs: int
-    rejected: list[dict[str, Any]]
-    notes: list[str]
-    experimental: str
-    source: Source
-
-
-def _parts(sources: Files, options: Options, truth: Truth, folder: Path, progress: Callable[[int, int], None] | None) -> list[_Stored]:
-    """Every part, computed or remembered, in the order of time."""
-    folder.mkdir(exist_ok=True)
-    jobs = sources.tables + sources.observations
-    shared = _shared_key(sources, options, truth)
-    service = Service([s.path for s in sources.navigation], [s.path for s in sources.messages], options.prn)
-    stored = []
-    for done, source in enumerate(jobs):
-        key = hashlib.sha256(f"{source.sha256} {shared}".encode()).hexdigest()[:24]
-        found = _remembered(folder, key, source)
-        if found is None:
-            found = _remember(folder, key, source, _compute(source, sources, options, truth, service))
-        stored.append(found)
-        if progress is not None:
-            progress(done + 1, len(jobs))
-    filled = [part for part in stored if part.n_epochs]
-    if not filled:
-        raise FormatError(jobs[0].path, "no row holds a time")
-    return sorted(filled, key=lambda part: (part.first_ns, str(part.source.path)))
-
-
-def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
-    """What a part's numbers depend on beside its own file."""
-    recorded = None
-    if truth.given is not None and truth.ecef_m is None:
-        try:
-            recorded = hashlib.sha256(Path(truth.given).read_bytes()).hexdigest()
-        except OSError as e:
-            raise FormatError(truth.given, e.strerror or str(e)) from e
-    given = [
-        __version__,
-        truth.given,
-        recorded,
-        truth.tolerance_s,
-        dict(options.columns or {}),
-        options.prn,
-        options.solve,
-        options.protection,
-    ]
-    beside = sorted(s.sha256 for s in sources.navigation + sources.messages)
-    return json.dumps([given, options.stanford_esa is not None, SCHEMA.names(), beside])
-
-
-def _compute(source: Source, sources: Files, options: Options, truth: Truth, service: Service) -> Part:
-    if source in sources.tables:
-        return from_table(source.path, truth, options.columns)
-    monitor = monitor_of(options.protection)
-    if monitor is not None:
-        return from_monitor(source.path, service.navigation, truth, monitor)
-    return from_observations(source.path, service, truth, keep_ranges=options.stanford_esa is not None)
-
-
-def _remember(folder: Path, key: str, source: Source, part: Part) -> _Stored:
-    """Write a part so that it is there whole or not at all: the table first, then the record that makes it count."""
-    table, record = folder / f"{key}.parquet", folder / f"{key}.json"
-    facts: dict[str, Any] = {
-        "first_ns": part.epochs["time_ns"][0] if part.epochs.height else 0,
-        "n_rows": part.n_rows,
-        "n_epochs": part.epochs.height,
-        "rejected": part.rejected,
-        "notes": part.notes,
-        "experimental": part.experimental,
-    }
-    try:
-        if part.ranges is not None:
-            part.ranges.write_parquet(partial := _ranges_of(table).with_suffix(".partial"), compression="zstd")
-            partial.replace(_ranges_of(table))
-        part.epochs.write_parquet(partial := table.with_suffix(".partial"), compression="zstd")
-        partial.replace(table)
-        partial = record.with_suffix(".partial")
-        partial.write_text(json.dumps(facts), encoding="utf-8")
-        partial.replace(record)
-    except OSError as e:
-        raise FormatError(folder, f"cannot be written: {e.strerror}") from e
-    return _Stored(table=table, source=source, **facts)
-
-
-def _remembered(folder: Path, key: str, source: Source) -> _Stored | None:
-    record, table = folder / f"{key}.json", folder / f"{key}.parquet"
-    if not (record.is_file() and table.is_file()):
-        return None
-    try:
-        return _Stored(table=table, source=source, **json.loads(record.read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError) as e:
-        raise FormatError(record, f"is damaged ({e}); delete it to compute this part again") from e
-
-
-def _ranges_of(table: Path) -> Path:
-    return table.with_suffix(".ranges.parquet")
-
-
-def _tables(parts: list[_Stored]) -> Iterator[pl.DataFrame]:
-    """One part in memory at a time."""
-    return (_read(part.table) for part in parts)
-
-
-def _range_tables(parts: list[_Stored]) -> Iterator[pl.DataFrame]:
-    """The ranges of one part in memory at a time."""
-    return (_read(_ranges_of(part.table)) for part in parts)
-
-
-def _read(table: Path) -> pl.DataFrame:
-    try:
-        return pl.read_parquet(table)
-    except (OSError, pl.exceptions.PolarsError) as e:
-        raise FormatError(table, f"is damaged ({e}); delete its part to compute it again") from e
-
-
-def _experimental(parts: list[_Stored], options: Options) -> str:
+def _experimental(parts: list[Stored], options: Options) -> str:
     """What must stand beside the levels: one experimental part marks the whole."""
     return next((words for words in (options.experimental, *(part.experimental for part in parts)) if words), "")
 
 
-def _add_all(parts: list[_Stored], levels: Sequence[str | kpi.Level], options: Options) -> tuple[kpi.Campaign, list[pl.DataFrame]]:
-    tables = _tables(parts)
+def _add_all(parts: list[Stored], levels: Sequence[str | kpi.Level], options: Options) -> tuple[kpi.Campaign, list[pl.DataFrame]]:
+    tables = tables_of(parts)
     first = next(tables)
     campaign = kpi.Campaign(
         levels,
@@ -302,12 +178,12 @@ def _add_all(parts: list[_Stored], levels: Sequence[str | kpi.Level], options: O
     return campaign, events
 
 
-def _title(parts: list[_Stored]) -> str:
+def _title(parts: list[Stored]) -> str:
     names = [part.source.path.name for part in parts]
     return ", ".join(names) if len(names) <= 3 else f"{names[0]} and {len(names) - 1} more files"
 
 
-def _inputs(sources: Files, truth: Truth, parts: list[_Stored]) -> list[InputFile]:
+def _inputs(sources: Files, truth: Truth, parts: list[Stored]) -> list[InputFile]:
     """Every file that went in, a recorded truth among them."""
     n_rows = {part.source.path: part.n_rows for part in parts}
     files = sources.tables + sources.observations + sources.navigation + sources.messages
@@ -316,7 +192,7 @@ def _inputs(sources: Files, truth: Truth, parts: list[_Stored]) -> list[InputFil
 
 
 def _run(
-    result: Performance, parts: list[_Stored], events: list[pl.DataFrame], *, inputs: list[InputFile], options: Options, command: str
+    result: Performance, parts: list[Stored], events: list[pl.DataFrame], *, inputs: list[InputFile], options: Options, command: str
 ) -> Run:
     notes = list(dict.fromkeys(note for part in parts for note in part.notes))
     result = result.model_copy(update={"notes": [*result.notes, *notes]})
@@ -346,16 +222,16 @@ def _run(
         platform=f"Python {platform.python_version()}, {sys.platform} {platform.machine()}",
     )
     joined = pl.concat(events).sort("onset_ns", "level", "kind", maintain_order=True)
-    first = next(_tables(parts)).head(1)
+    first = next(tables_of(parts)).head(1)
     honesty, notes = _honesty(parts)
     return Run(_summary(result.model_copy(update={"notes": [*result.notes, *notes]}), parts, honesty), record, first, joined, [])
 
 
-def _honesty(parts: list[_Stored]) -> tuple[Honesty | None, list[str]]:
+def _honesty(parts: list[Stored]) -> tuple[Honesty | None, list[str]]:
     """Whether the covariances agree with the errors, where the files hold both; of the first epochs, so that memory has a limit."""
     columns = ["track", "time_ns", "status", "nse_e_m", "nse_n_m", "nse_u_m", *COVARIANCE]
     held: list[pl.DataFrame] = []
-    for table in _tables(parts):
+    for table in tables_of(parts):
         known = table.select(columns).drop_nulls(["nse_e_m", "cov_ee_m2"])
         held.append(known.with_columns(pl.col("status").fill_null("ok")))
         if sum(part.height for part in held) > MOST_HONESTY:
@@ -365,7 +241,7 @@ def _honesty(parts: list[_Stored]) -> tuple[Honesty | None, list[str]]:
     return honesty_of(together.head(MOST_HONESTY)), [note] if note else []
 
 
-def _summary(result: Performance, parts: list[_Stored], honesty: Honesty | None) -> Summary:
+def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) -> Summary:
     names = ", ".join(found.level.id for found in result.levels)
     verdict = Verdict(
         inside=None,
@@ -406,13 +282,13 @@ def _summary(result: Performance, parts: list[_Stored], honesty: Honesty | None)
     )
 
 
-def _write(run: Run, parts: list[_Stored], out: Path) -> Run:
+def _write(run: Run, parts: list[Stored], out: Path) -> Run:
     from navbound.report import render  # noqa: PLC0415  (the report is only loaded when one is written)
 
     epochs = pl.scan_parquet([part.table for part in parts])
     try:
         _whole(out / directory.EPOCHS, lambda path: epochs.sink_parquet(path, compression="zstd", maintain_order=True))
-        _whole(out / CSV, lambda path: write_csv(_tables(parts), path, _marked(run)))
+        _whole(out / CSV, lambda path: write_csv(tables_of(parts), path, _marked(run)))
         _whole(out / directory.EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
         _whole(out / directory.RECORD, lambda path: path.write_text(run.record.model_dump_json(indent=1), encoding="utf-8"))
         render(run.summary, run.record, run.epochs, run.events.clear(), [], out / directory.REPORT)

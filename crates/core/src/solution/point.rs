@@ -4,19 +4,24 @@
 //! weights (Huber 1964); test of the residuals by chi-square and exclusion of the largest (Parkinson and Axelrad 1988); provenance: ours,
 //! of standard parts.
 
-use super::range_error::{RangeConditions, RangeError};
+use super::range_error::RangeConditions;
 use super::wls::{Dilution, Normal, Row};
-use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, enu_from_ecef, geodetic_from_ecef};
+use crate::frame::{Covariance, EcefPosition, Geodetic, enu_from_ecef, geodetic_from_ecef};
 use crate::geometry::atmosphere::{klobuchar_towards, mapping_of, zenith_delay};
 use crate::geometry::broadcast::in_axes_of_reception;
-use crate::quantity::{GpsTime, Metres, Radians, Unavailable};
-use crate::signal::{Constellation, Klobuchar, SPEED_OF_LIGHT_MPS, SatelliteId};
+use crate::quantity::{GpsTime, Metres, Unavailable};
+use crate::signal::{Constellation, SPEED_OF_LIGHT_MPS};
 use crate::special::float::{asin, sin, sqrt};
 use crate::special::gamma::chi_square_tail;
 use nalgebra::{Matrix3, Vector3};
 
+#[path = "point_records.rs"]
+mod records;
 #[path = "point_residuals.rs"]
 mod residuals;
+#[path = "point_velocity.rs"]
+mod velocity;
+pub use records::{Fix, Range, Settings, Used};
 pub use residuals::{Sighted, sighted};
 
 /// Most ranges of one epoch; receivers list fewer than 60 satellites.
@@ -33,90 +38,6 @@ const DELAYS_MOVE: f64 = 1.0;
 const SINGULAR: Unavailable = Unavailable::Singular { condition: f64::INFINITY, limit: super::wls::CONDITION_LIMIT };
 /// Residuals beyond this many standard deviations count less in the robust rounds; Huber's choice costs 5 % of efficiency.
 const HUBER: f64 = 1.345;
-
-/// A pseudorange of one satellite, ready but for what depends on the receiver's position.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
-    /// Which satellite.
-    pub satellite: SatelliteId,
-    /// Pseudorange plus satellite clock (group delay taken out) times c.
-    pub corrected: Metres,
-    /// Satellite at transmission, axes of transmission.
-    pub position: EcefPosition,
-    /// Its velocity \[m/s\].
-    pub velocity_mps: Vector3<f64>,
-    /// Range rate from Doppler plus satellite clock drift times c \[m/s\]; NaN where there is none.
-    pub rate_mps: f64,
-    /// Carrier-to-noise density \[dB-Hz\]; NaN where there is none.
-    pub cn0_dbhz: f64,
-    /// Ionospheric delay against that on L1; 0 for an ionosphere-free combination.
-    pub ionosphere_factor: f64,
-    /// Noise against that of one pseudorange.
-    pub noise_factor: f64,
-    /// Stated accuracy against the nominal one of its system, at least 1.
-    pub ure_factor: f64,
-}
-
-/// How a position is made.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Lowest elevation.
-    pub mask: Radians,
-    /// Broadcast ionosphere; `None` leaves the delay in the ranges.
-    pub ionosphere: Option<Klobuchar>,
-    /// Weights.
-    pub errors: RangeError,
-    /// Risk of a false alarm of the residual test.
-    pub false_alarm: f64,
-    /// Most satellites that may be excluded.
-    pub most_excluded: usize,
-}
-
-/// A position and what it rests on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fix {
-    /// Where.
-    pub position: Geodetic,
-    /// Covariance of the position, by the weights; inflated by the residuals where the test fails.
-    pub covariance: Covariance<Enu>,
-    /// Dilution of precision of the satellites used.
-    pub dilution: Dilution,
-    /// Receiver clock against each constellation's time \[m\], NaN where none of its satellites is used.
-    pub clock_m: [f64; Constellation::ALL.len()],
-    /// Velocity, east, north, up \[m/s\], and its covariance \[m²/s²\], where Doppler allows.
-    pub velocity: Option<(Vector3<f64>, Matrix3<f64>)>,
-    /// Satellites used.
-    pub n_used: usize,
-    /// Satellites above the mask that were excluded.
-    pub n_excluded: usize,
-    /// The first of them.
-    pub excluded: [Option<SatelliteId>; EXCLUDED_NAMED],
-    /// Sum of the weighted squared residuals, and ranges beyond the unknowns, with every range above the mask.
-    pub before_exclusion: (f64, usize),
-    /// Factor by which the residuals widened the covariance of the weights.
-    pub inflation: f64,
-    /// Risk that residuals as large as these, or larger, come from errors as the weights say; NaN without redundancy.
-    pub residual_risk: f64,
-    /// Ranges beyond the unknowns.
-    pub redundancy: usize,
-    /// The residuals agree with the weights, after exclusion where there was any; without redundancy nothing can be said.
-    pub consistent: bool,
-}
-
-/// A range of a solution.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Used {
-    /// Its place among the epoch's ranges.
-    pub index: usize,
-    /// Unit vector from the receiver to the satellite, east-north-up.
-    pub unit: Vector3<f64>,
-    /// 1 / sigma² by the error model \[1/m²\].
-    pub weight: f64,
-    /// Measured less computed range at the position found; what the receiver's clock makes of it is in it.
-    pub residual: Metres,
-    /// Standard deviations here of the errors that all ranges share: of the ionosphere's size, of its tilt east and north \[m\].
-    pub shared_m: Vector3<f64>,
-}
 
 /// Where a range stands, seen from the last position.
 #[derive(Debug, Clone, Copy, Default)]
@@ -435,53 +356,6 @@ impl<'a> Solver<'a> {
             shared_m: self.shape(s),
         };
         self.seen.iter().enumerate().filter(|(_, s)| s.counts()).map(of)
-    }
-
-    /// Velocity from Doppler: the same directions, one clock rate for all, weights of the ranges; robust.
-    ///
-    /// ```text
-    /// rate = u . (v_satellite - v) + c (receiver clock rate)
-    /// ```
-    ///
-    /// The covariance takes its scale from the residuals: no error model of Doppler is assumed.
-    fn velocity(&self, here: &Geodetic) -> Option<(Vector3<f64>, Matrix3<f64>)> {
-        let turn = enu_from_ecef(&here.point);
-        let mut rows = [(Row::default(), 0.0); MOST_RANGES];
-        let mut n = 0;
-        for (r, s) in self.ranges.iter().zip(self.seen.iter()).filter(|(r, s)| s.counts() && r.rate_mps.is_finite()) {
-            let moving = in_axes_of_reception(&r.velocity_mps, r.corrected.m() / SPEED_OF_LIGHT_MPS);
-            // Of a receiver at rest.
-            let residual = r.rate_mps - s.row.unit.dot(&(turn * moving));
-            rows[n] = (Row { unit: s.row.unit, weight: s.weight, clock: 0, residual }, s.weight);
-            n += 1;
-        }
-        let rows = &mut rows[..n];
-        let (mut v, mut clock, mut huber) = (Vector3::zeros(), 0.0, f64::INFINITY);
-        for _ in 0..4 {
-            weigh_down(rows, &v, clock, huber);
-            let normal = Normal::new(rows.iter().map(|r| r.0)).ok()?;
-            v = normal.step()?;
-            clock = normal.clock(0, &v);
-            let left = rows.iter().map(|(r, _)| left_over(r, &v, clock).abs());
-            huber = 1.5 * left.sum::<f64>() / n as f64;
-        }
-        weigh_down(rows, &v, clock, huber);
-        let squares: f64 = rows.iter().map(|(r, _)| r.weight * left_over(r, &v, clock) * left_over(r, &v, clock)).sum();
-        let covariance = Normal::new(rows.iter().map(|r| r.0)).ok()?.covariance().ok()?;
-        (n > 4).then(|| (v, covariance.matrix() * (squares / (n - 4) as f64)))
-    }
-}
-
-/// What a velocity and a clock rate leave of a rate.
-fn left_over(row: &Row, v: &Vector3<f64>, clock: f64) -> f64 {
-    row.residual + row.unit.dot(v) - clock
-}
-
-/// Huber's weights of rates with their full weights beside them.
-fn weigh_down(rows: &mut [(Row, f64)], v: &Vector3<f64>, clock: f64, huber: f64) {
-    for (row, full) in rows {
-        let size = left_over(row, v, clock).abs();
-        row.weight = if size > huber { *full * huber / size } else { *full };
     }
 }
 

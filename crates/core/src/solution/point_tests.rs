@@ -2,6 +2,8 @@ use super::*;
 use crate::frame::{LatLon, ecef_from_geodetic};
 use crate::geometry::atmosphere::saastamoinen;
 use crate::geometry::{GPS, Observer, Orbit};
+use crate::quantity::Radians;
+use crate::solution::range_error::RangeError;
 
 const EARTH_RATE: f64 = 7.292_115_146_7e-5;
 const CLOCK: f64 = 123_456.789;
