@@ -108,6 +108,30 @@ def vor(name: str, distance: Any, bearing: Any, h: Any, start: tuple[Any, Any]) 
     return tuple(findroot(miss, start, tol=1e-40, maxsteps=50))
 
 
+def vor_covariance(name: str, distance: Any, place: tuple[Any, Any, Any], sigma_h: Any, sigma_bearing: Any) -> list[list[Any]]:
+    """Second moments about the position, those of the bearing's arc by quadrature over its normal error."""
+    lat, lon, h = place
+    station = stations([name])[0]
+    d = [a - b for a, b in zip(cartesian(lat, lon, h), cartesian(*station), strict=True)]
+    e = -sin(lon) * d[0] + cos(lon) * d[1]
+    n = -sin(lat) * cos(lon) * d[0] - sin(lat) * sin(lon) * d[1] + cos(lat) * d[2]
+    u = cos(lat) * cos(lon) * d[0] + cos(lat) * sin(lon) * d[1] + sin(lat) * d[2]
+    ground = sqrt(e * e + n * n)
+
+    def mean(f: Any) -> Any:
+        # Twelve deviations: what is beyond is below 1e-31.
+        limits = [k * 3 * sigma_bearing for k in range(-4, 5)]
+        return mp.quad(lambda b: f(b) * mp.npdf(b, 0, sigma_bearing), limits)
+
+    radial = (sigma_of(mpf(distance)) * distance / ground) ** 2
+    along2 = radial + ground**2 * mean(lambda b: (1 - cos(b)) ** 2)
+    across2 = ground**2 * mean(lambda b: sin(b) ** 2)
+    along, across = matrix([e / ground, n / ground, 0]), matrix([n / ground, -e / ground, 0])
+    leaning = matrix([-e * u / ground**2, -n * u / ground**2, 1])
+    m = along2 * along * along.T + across2 * across * across.T + mpf(sigma_h) ** 2 * leaning * leaning.T
+    return [[m[i, j] for j in range(3)] for i in range(3)]
+
+
 def text(x: Any) -> str:
     if isinstance(x, list):
         return "[" + ", ".join(text(v) for v in x) + "]"
@@ -147,22 +171,28 @@ def solve_vectors() -> str:
 def vor_vectors() -> str:
     lines = [
         'call = "dme.solve_vor"',
-        'source = "root of slant range and bearing in geodetic coordinates, 40 digits: oracle/dme_mpmath.py"',
+        'source = "root of slant range and bearing in geodetic coordinates, moments of the arc by quadrature: oracle/dme_mpmath.py"',
         'provenance = "ours"',
-        'tolerance = { rel = 1e-12, because = "the elevation ends at a micrometre of height: 1e-12 rad of ground, slope one in six" }',
+        'tolerance = { rel = 1e-11, because = "the elevation ends at a micrometre: 1e-12 rad, slope one in six; covariance 1e-11" }',
     ]
-    for station, distance, bearing, h in [("BRP", 80e3, 1.2, 9000.0), ("YHT", 150e3, -2.5, 10058.4), ("STB", 30e3, 3.0, 3000.0)]:
+    sigma_bearing = 0.0396
+    for station, distance, bearing, h, sigma_h in [
+        ("BRP", 80e3, 1.2, 9000.0, 0.0),
+        ("YHT", 150e3, -2.5, 10058.4, 60.0),
+        ("STB", 30e3, 3.0, 3000.0, 0.0),
+    ]:
         lat0, lon0, h0 = stations([station])[0]
         start = (lat0 + distance * cos(mpf(bearing)) / A, lon0 + distance * sin(mpf(bearing)) / (A * cos(lat0)))
         lat, lon = vor(station, mpf(distance), mpf(bearing), h, start)
         place = [float(lat0), float(lon0), float(h0)]
-        given = f"slant_m = {distance}, bearing_rad = {bearing}, station_rad_m = {place}, h_m = {h}, sigma_altitude_m = 0.0"
+        covariance = vor_covariance(station, distance, (lat, lon, mpf(h)), sigma_h, mpf(sigma_bearing))
+        given = f"slant_m = {distance}, bearing_rad = {bearing}, station_rad_m = {place}, h_m = {h}, sigma_altitude_m = {sigma_h}"
         lines += [
             "",
             "[[case]]",
             f'id = "{station}"',
-            f"input = {{ {given} }}",
-            f"expect = {{ lat_rad = {text(lat)}, lon_rad = {text(lon)} }}",
+            f"input = {{ {given}, sigma_bearing_rad = {sigma_bearing} }}",
+            f"expect = {{ lat_rad = {text(lat)}, lon_rad = {text(lon)}, covariance_enu_m2 = {text(covariance)} }}",
         ]
     return "\n".join(lines) + "\n"
 

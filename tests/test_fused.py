@@ -162,15 +162,65 @@ def test_a_short_trouble_of_the_inertial_unit_is_bridged_and_counted(what: str) 
     assert run.epochs["reason"][3000] == "the navigation filter needs inertial samples up to it, which this epoch lacks"
 
 
-@pytest.mark.parametrize("what", ["silent", "not-a-number"])
-def test_an_inertial_unit_that_is_lost_ends_the_navigation_with_its_reason(what: str) -> None:
-    run, found = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=30.0, what=what)])
-    after = run.epochs[3000:]
-    assert after["status"].unique().to_list() == ["not_available"]
-    assert after["nav_mode"].unique().to_list() == ["stopped"]
-    assert after["reason"].str.contains("inertial samples").all()
-    assert after["est_lat_rad"].null_count() == after.height
-    assert found[1].alert == "unavailable"
+@pytest.mark.parametrize(("what", "duration_s"), [("silent", 5.0), ("not-a-number", 5.0), ("silent", 60.0)])
+def test_an_inertial_unit_that_was_lost_is_aligned_in_flight(what: str, duration_s: float) -> None:
+    run, found = summary("beijing-shanghai", fault("imu-trouble", duration_s=duration_s, what=what))
+    end = 3000 + round(duration_s)
+    lost = run.epochs[3000:end]
+    assert lost["status"].unique().to_list() == ["not_available"]
+    assert lost["nav_mode"].unique().to_list() == ["stopped"]
+    assert lost["reason"].str.contains("inertial samples").all()
+    assert lost["est_lat_rad"].null_count() == lost.height
+    assert found[0].alert == "unavailable"
+    # The satellites of the first second after it give a position; the attitude takes some minutes at the most.
+    after = run.epochs[end + 1 :]
+    assert "not_available" not in after["status"].to_list()
+    mode = after["nav_mode"].to_list()
+    settled = len(mode) - mode[::-1].index("aligning")
+    assert set(mode[:settled]) == {"aligning"}
+    assert set(after["status"][:settled].to_list()) == {"degraded"}
+    assert set(mode[settled:]) == {"gnss"}
+    assert 10 < settled < 600
+    told = run.record.settings["filter"]
+    assert isinstance(told, dict)
+    assert told["samples"]["adrift"] > 0
+    assert told["samples"]["stopped"] == 0
+
+
+@pytest.mark.parametrize("duration_s", [5.0, 60.0])
+def test_after_a_lost_unit_the_filter_is_as_good_as_it_says(duration_s: float) -> None:
+    faults = [{"kind": "imu-trouble", "start_s": 3000.0, "duration_s": duration_s, "what": "silent"}]
+    flights = fly.material(quick("beijing-shanghai-seed", faults, ["gps"]), flights=6).epochs
+    since = pl.col("time_ns") - pl.col("time_ns").min()
+    again = flights.filter(pl.col("status") != "not_available", since >= round((3000 + duration_s) * 1e9))
+    error, covariance, track = errors(again, skip_s=0.0)
+    aligning = (again["nav_mode"] == "aligning").to_numpy()
+    for part in (aligning, ~aligning):
+        assert np.count_nonzero(part) > 60
+        nees = evaluation.nees(error[part], covariance[part], track[part])
+        # Not more than its limits; less while it aligns, because 3 m/s² are more than this flight has.
+        assert nees.nees_mean <= nees.nees_high
+
+
+def test_a_lost_unit_is_aligned_by_stations_alone() -> None:
+    run, _ = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=30.0, what="silent")])
+    after = run.epochs[3031:]
+    assert "not_available" not in after["status"].to_list()
+    assert after["nav_mode"][0] == "aligning"
+    assert "dme_dme" in after["nav_mode"].to_list()
+    ratio = after["nse_h_m"] / (after["cov_ee_m2"] + after["cov_nn_m2"]).sqrt()
+    # Three drms, of a flight.
+    assert ratio.max() < 3.0  # type: ignore[operator]
+
+
+def test_a_wrong_station_without_satellites_is_left_out_before_it_takes_the_height_along() -> None:
+    flights = fly.material(quick("beijing-shanghai-dme-wrong", constellations=["gps"]), flights=4).epochs
+    second = (pl.col("time_ns") - pl.col("time_ns").min()) / 1e9
+    lost = flights.filter(second >= 2400, second < 4200)
+    for axis, cov in (("nse_e_m", "cov_ee_m2"), ("nse_n_m", "cov_nn_m2"), ("nse_u_m", "cov_uu_m2")):
+        # Before, up to 18 deviations: one measurement in six passed the gate. Four flights of half an hour: 4.5 is beyond chance.
+        assert (lost[axis].abs() / lost[cov].sqrt()).max() < 4.5  # type: ignore[operator]
+    assert lost["nse_u_m"].abs().max() < 150.0  # type: ignore[operator]
 
 
 def test_samples_whose_times_run_a_second_behind_give_no_position_until_they_are_right_again() -> None:

@@ -204,7 +204,7 @@ def test_samples_that_are_none_late_or_missing_are_counted_and_bridged() -> None
     keep[300:305] = False
     imu = ins.Imu(swapped[keep], angle[keep], np.asarray(still.imu.velocity_mps)[keep], 0.1)
     fused = ins.fuse(imu, ins.Aiding(), still.start)
-    assert fused.samples == {"done": 593, "bridged": 3, "late": 1, "refused": 1, "stopped": 0}
+    assert fused.samples == {"done": 593, "bridged": 3, "adrift": 0, "late": 1, "refused": 1, "stopped": 0}
     assert fused.refused is not None
     assert fused.refused[0] == time_ns[100]
     assert "angle_rad" in fused.refused[1]
@@ -214,16 +214,108 @@ def test_samples_that_are_none_late_or_missing_are_counted_and_bridged() -> None
     assert np.isfinite(fused.position).all()
 
 
-def test_a_unit_that_falls_silent_stops_the_filter_and_says_when() -> None:
+def silent(still: body.Standing, first: int, after: int) -> ins.Imu:
+    """Samples of the unit but for some."""
+    keep = np.ones(np.asarray(still.imu.time_ns).size, bool)
+    keep[first:after] = False
+    time_ns, angle, velocity = (np.asarray(x)[keep] for x in (still.imu.time_ns, still.imu.angle_rad, still.imu.velocity_mps))
+    return ins.Imu(time_ns, angle, velocity, 0.1)
+
+
+def test_after_a_hole_nothing_is_said_without_a_measurement_and_it_is_said_when() -> None:
     still = body.standing(8, 60.0)
-    keep = np.ones(600, bool)
-    keep[300:330] = False
-    imu = ins.Imu(np.asarray(still.imu.time_ns)[keep], np.asarray(still.imu.angle_rad)[keep], np.asarray(still.imu.velocity_mps)[keep], 0.1)
-    fused = ins.fuse(imu, ins.Aiding(), still.start)
-    assert fused.stopped == (33_100_000_000, "no inertial sample for 3.000 s")
+    fused = ins.fuse(silent(still, 300, 330), ins.Aiding(), still.start)
+    ((time_ns, since_s),) = fused.holes
+    assert (time_ns, since_s) == (33_100_000_000, pytest.approx(3.1, abs=1e-9))
+    assert fused.stopped is None
     assert fused.mode[-1] == "stopped"
     assert np.isnan(fused.position[-1]).all()
-    assert fused.samples["stopped"] == 270
+    assert fused.samples == {"done": 300, "bridged": 0, "adrift": 270, "late": 0, "refused": 0, "stopped": 0}
+
+
+def test_after_a_hole_the_satellites_give_a_position_and_a_body_without_a_course_stays_unaligned() -> None:
+    nees = []
+    for seed in range(20):
+        still = body.standing(seed, 60.0)
+        aiding = ins.Aiding(satellites=body.satellites(seed, still.time_ns[9::10], white_m=1.0, slow_m=5.0, tau_s=60.0))
+        fused = ins.fuse(silent(still, 300, 350), aiding, still.start)
+        second = (fused.time_ns / 1e9).round().astype(int)
+        after = second >= 36
+        # The first measurement after the hole ends it; a body at rest has no course, so nothing says where it heads.
+        assert {m for m, later in zip(fused.mode, after, strict=True) if later} == {"aligning"}
+        assert (fused.attitude_sigma_rad[after, 2] > 1.0).all()
+        error, p = body.error_enu(fused)[after], fused.covariance_enu_m2[after]
+        nees.append(np.einsum("ni,nij,nj->n", error, np.linalg.inv(p), error).mean() / 3)
+    # Errors that stay over the 25 s: 20 samples of three degrees, sqrt(2 / 60) = 0.18; below by as much as 3 m/s² are too many for rest.
+    assert 0.4 < np.mean(nees) < 1 + 3 * 0.18
+
+
+def test_a_receiver_whose_clock_jumps_is_followed_after_a_second_and_counted() -> None:
+    still = body.standing(21, 120.0)
+    sky = body.satellites(21, still.time_ns[9::10], white_m=1.0, slow_m=5.0, tau_s=60.0)
+    # A millisecond, as receivers jump.
+    jumped = np.asarray(sky.range_m) + np.where(np.asarray(sky.time_ns) >= 60 * SECOND, 299_792.458, 0.0)
+    whole, after = (ins.fuse(still.imu, ins.Aiding(satellites=s), still.start) for s in (sky, replace(sky, range_m=jumped)))
+    assert (whole.clock_jumps, after.clock_jumps) == (0, 1)
+    # The nine ranges of one second are lost.
+    assert after.innovations["range"].n_gated - whole.innovations["range"].n_gated == 9
+    assert after.further["clock_m"] - whole.further["clock_m"] == pytest.approx(299_792.458, abs=5.0)
+    error, sigma = body.error_enu(after)[60:], np.sqrt(np.diagonal(after.covariance_enu_m2[60:], axis1=1, axis2=2))
+    assert (np.abs(error) < 4 * sigma).all()
+
+
+def ring(time_ns: np.ndarray, n: int, slant_m: float, errors: np.ndarray) -> ins.DmeRanges:
+    """Ranges to stations all around the body at its height, with given errors, shape (time, n)."""
+    angle = 2 * np.pi * np.arange(n) / n
+    where = body.place_ecef(slant_m * np.column_stack([np.cos(angle), np.sin(angle), np.zeros(n)]))
+    m = time_ns.size
+    return ins.DmeRanges(
+        np.repeat(time_ns, n), np.tile(np.arange(n), m), np.tile(where, (m, 1)), slant_m + np.asarray(errors).ravel(), 150.0, 90.0
+    )
+
+
+def test_a_station_whose_ranges_go_wrong_is_left_out_and_comes_back() -> None:
+    reach = []
+    for seed in range(8):
+        still = body.standing(seed, 400.0)
+        second = still.time_ns[9::10]
+        draw = np.random.default_rng(seed)
+        errors = 90.0 * draw.normal(size=5) + 150.0 * draw.normal(size=(second.size, 5))
+        wrong = (second >= 100 * SECOND) & (second < 250 * SECOND)
+        errors[wrong, 2] += 0.5 * 1852.0
+        fused = ins.fuse(still.imu, ins.Aiding(dme=ring(second, 5, 60_000.0, errors)), still.start)
+        error = np.hypot(*body.error_enu(fused)[:, :2].T)
+        sigma = np.sqrt(fused.covariance_enu_m2[:, 0, 0] + fused.covariance_enu_m2[:, 1, 1])
+        reach.append((error / sigma)[100:].max())
+        # Some of its 150 wrong ranges pass before the sum speaks; all of the others are gated, and 30 more until it is believed again.
+        assert 140 <= fused.innovations["dme"].n_gated <= 240
+        # One good measurement in ten thousand is gated and takes its station out for half a minute, perhaps another one now.
+        assert "dme_2_m" not in fused.left_out
+    # drms of a horizontal error: three of them at the most in eight flights; before, the wrong station took the filter along for 300 m.
+    assert max(reach) < 3.0
+
+
+def test_a_position_by_a_bearing_and_a_range_knows_that_the_range_bends() -> None:
+    """One station at 110 km, five kilometres across at the start: what the arc adds along the radial stays as long as the error across."""
+    nees = []
+    for seed in range(60):
+        draw = np.random.default_rng(1000 + seed)
+        still = body.standing(seed, 60.0)
+        second = still.time_ns[9::10]
+        across = 4_500.0 * draw.normal()
+        lat, lon, h = body.PLACE
+        position = (lat, lon + across / (6.3875e6 * np.cos(lat)), h)
+        start = replace(still.start, position=position, position_sigma_m=(2000.0, 4500.0, 15.0))
+        start = replace(start, position=(lat + 2000.0 * draw.normal() / 6.3625e6, position[1], h))
+        where = body.place_ecef(np.array([[-110_000.0, 0.0, 0.0]]))
+        n = second.size
+        slant = 110_000.0 + 90.0 * draw.normal() + 150.0 * draw.normal(size=n)
+        dme = ins.DmeRanges(second, np.zeros(n, int), np.tile(where, (n, 1)), slant, 150.0, 90.0)
+        fused = ins.fuse(still.imu, ins.Aiding(dme=dme), start)
+        error, p = body.error_enu(fused)[-1, :2], fused.covariance_enu_m2[-1, :2, :2]
+        nees.append(float(error @ np.linalg.solve(p, error)))
+    # 60 samples of two degrees: 2 within 3 * sqrt(4 / 60).
+    assert abs(np.mean(nees) - 2.0) < 3 * np.sqrt(4 / 60)
 
 
 def test_a_wild_measurement_is_gated_and_a_meaningless_one_refused() -> None:

@@ -67,10 +67,90 @@ def test_all_in_view_is_better_than_the_pair_and_a_wrong_range_is_seen() -> None
     pair = np.where(np.arange(4) < 2, ranges, np.nan)
     two = dme.solve(pair, stations, h, sigma_altitude_m=SIGMA_H, prior_lat_rad=LAT, prior_lon_rad=LON)
     assert (every.drms_m < two.drms_m).all()
-    ranges[:, 3] += 10 * 182.6
-    wrong = dme.solve(ranges, stations, h, sigma_altitude_m=SIGMA_H)
+    assert (every.excluded == -1).all()
+    # Three do not tell which of them is wrong.
+    ranges[:, 2] += 20 * 182.6
+    prior = {"prior_lat_rad": LAT, "prior_lon_rad": LON}
+    wrong = dme.solve(ranges[:, :3], stations.take(range(3)), h, sigma_altitude_m=SIGMA_H, **prior)
     assert (wrong.status == "degraded").mean() > 0.95
-    assert "contradict" in str(wrong.reason[wrong.status == "degraded"][0])
+    assert "three do not tell" in str(wrong.reason[wrong.status == "degraded"][0])
+    assert (wrong.excluded == -1).all()
+
+
+@pytest.mark.parametrize(("column", "deviations", "least"), [(0, 15, 0.0), (1, 30, 0.75), (2, 15, 0.85), (3, 15, 0.85)])
+def test_one_wrong_range_of_four_is_left_out_or_said_not_to_be_found(column: int, deviations: int, least: float) -> None:
+    """The first two stations lie in nearly the same direction: which of them is wrong shows at larger errors only, and is not guessed."""
+    n = 2000
+    stations, ranges, h = drawn(n, seed=20 + column)
+    ranges[:, column] += deviations * 182.6
+    prior = {"prior_lat_rad": LAT, "prior_lon_rad": LON}
+    found = dme.solve(ranges, stations, h, sigma_altitude_m=SIGMA_H, **prior)
+    out = found.excluded == column
+    assert out.mean() >= least
+    # Another is blamed at the most as often as the odds of a thousand allow, with room for the draw.
+    wrong = np.count_nonzero((found.excluded >= 0) & ~out)
+    assert stats.binomtest(wrong, n, 1e-3, alternative="greater").pvalue > 1e-4
+    # Nearly none goes unseen, and what is not found is said.
+    assert (found.status[~out] == "degraded").mean() > 0.95
+    assert set(found.status[out].tolist()) <= {"ok"}
+    assert (found.n_ranges[out] == 3).all()
+    others = np.where(np.arange(4) == column, np.nan, ranges)
+    alone = dme.solve(others, stations, h, sigma_altitude_m=SIGMA_H, **prior)
+    # The same sums in another order, to the end of the iteration at a micrometre.
+    np.testing.assert_allclose(found.lat_rad[out], alone.lat_rad[out], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(found.covariance_enu_m2[out], alone.covariance_enu_m2[out], rtol=1e-9)
+
+
+def bearing_error(distance_nm: float, n: int) -> tuple[NDArray[np.float64], dme.Positions]:
+    """Errors east and north of VOR/DME positions drawn with the stated deviations, at a distance to the north-east of a station."""
+    station = network().only("BRP")
+    generator = np.random.Generator(np.random.Philox(int(distance_nm)))
+    angle = distance_nm * NM / 6_380_000.0
+    lat = station.lat_rad[0] + angle * np.cos(0.8)
+    lon = station.lon_rad[0] + angle * np.sin(0.8) / np.cos(lat)
+    seen = dme.sights(lat, lon, H, station)
+    slant, bearing = seen.slant_m[0], seen.bearing_rad[0]
+    h = H + SIGMA_H * generator.standard_normal(n)
+    found = dme.solve_vor(
+        slant + dme.range_sigma(slant) * generator.standard_normal(n),
+        bearing + dme.VOR_SIGMA_RAD * generator.standard_normal(n),
+        [station.lat_rad[0], station.lon_rad[0], station.h_m[0]],
+        h,
+        sigma_altitude_m=SIGMA_H,
+    )
+    assert set(found.status.tolist()) == {"ok"}
+    # Differences of Cartesian places in the axes at the truth: an error of 10 km turns the axes by 1.6e-3.
+    east = (lon - found.lon_rad) * 6_399_700.0 * np.cos(lat)
+    return np.column_stack((east, (lat - found.lat_rad) * 6_373_000.0)), found
+
+
+@pytest.mark.parametrize("distance_nm", [10.0, 30.0, 60.0, 120.0])
+def test_a_position_by_a_bearing_is_as_good_as_it_says_at_any_distance(distance_nm: float) -> None:
+    n = 20_000
+    error, found = bearing_error(distance_nm, n)
+    level = found.covariance_enu_m2[:, :2, :2]
+    nees = np.einsum("ni,nij,nj->n", error, np.linalg.inv(level), error)
+    # Four standard errors of the mean; radii and turned axes bring 1 % at the most.
+    assert nees.mean() == pytest.approx(2.0, abs=4 * nees.std() / np.sqrt(n) + 0.02)
+    # Its own 95 % circle: the arc's error is no normal one, so the share may differ by some tenths of a per cent.
+    inside = (np.hypot(error[:, 0], error[:, 1]) <= anp.circle(level, 0.05)).mean()
+    assert inside == pytest.approx(0.95, abs=0.012)
+
+
+def test_the_bend_of_the_arc_is_what_a_straight_line_leaves_out() -> None:
+    """At 60 NM, against the first order of `dme.vor_dme`, which is the printed one."""
+    error, found = bearing_error(60.0, 20_000)
+    level = found.covariance_enu_m2[:, :2, :2]
+    first = dme.vor_dme(60 * NM, np.hypot(60 * NM, H), dme.VOR_SIGMA_RAD, dme.range_sigma(60 * NM))
+    # The same directions, which are those of the largest and the smallest deviation.
+    _, axes = np.linalg.eigh(level)
+    outwards = np.sign(axes[:, :, 0] @ [np.sin(0.8), np.cos(0.8)])
+    along, across = outwards * np.einsum("ni,ni->n", error, axes[:, :, 0]), np.einsum("ni,ni->n", error, axes[:, :, 1])
+    nees = np.mean((along / first.radial_m) ** 2 + (across / first.cross_m) ** 2)
+    # 2 + 3/4 sigma⁴ ground² / radial², with 0.0396 rad, 111.1 km and 182.6 m: 2.68; five per cent for the draw.
+    assert nees == pytest.approx(2.68, rel=0.05)
+    # On average the aircraft is nearer to the station than its position, by ground · sigma² / 2 = 87 m; four standard errors are 7 m.
+    assert along.mean() == pytest.approx(-87.0, abs=7.0)
 
 
 def test_what_cannot_be_solved_is_a_status() -> None:

@@ -188,6 +188,7 @@ def dme_solve(
     sigma_altitude_m: float,
     prior_rad: tuple[_F, _F] | None,
     prior_within_m: float,
+    residual_risk: float,
 ) -> dict[str, NDArray[Any]]: ...
 def dme_solve_vor(
     slant_m: _F, bearing_rad: _F, stations: tuple[_F, _F, _F], h_m: _F, sigma_bearing_rad: float, sigma_altitude_m: float

@@ -22,7 +22,7 @@ SCORE = (
     "p_sphere",
     *(f"rms_{axis}_m" for axis in "enu"),
     *(f"sigma_{axis}_m" for axis in "enu"),
-    *(f"p_{mode}" for mode in ("coasting", "vor_dme", "dme_dme", "gnss")),
+    *(f"p_{mode}" for mode in ("coasting", "vor_dme", "dme_dme", "gnss", "aligning")),
     "n_stopped",
 )
 """Of one filter."""

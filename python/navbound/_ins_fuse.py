@@ -74,7 +74,7 @@ class Reversion:
 
 @dataclass(frozen=True)
 class Fused(Track):
-    """The filter's results; NaN with the mode ``stopped`` after a stop.
+    """The filter's results; NaN with the mode ``stopped`` after a stop, and in a hole of the inertial samples until a measurement ends it.
 
     Attributes
     ----------
@@ -85,13 +85,19 @@ class Fused(Track):
     gyroscope_bias_radps, accelerometer_bias_mps2 : ndarray, shape (n, 3)
         Estimates, body axes. [rad/s, m/s²]
     mode : list of str
-        ``gnss``, ``dme_dme``, ``vor_dme``, ``coasting``, ``stopped``.
+        ``gnss``, ``dme_dme``, ``vor_dme``, ``coasting``, ``aligning`` (after a hole, until the tilt is known again), ``stopped``.
     n_states : ndarray of int, shape (n,)
         States in the filter, with those of the one beside it. [1]
     samples : dict of str to int
-        Inertial samples done, bridged, late, refused, stopped.
+        Inertial samples done, bridged, adrift (heard only, after a hole), late, refused, stopped.
     stopped, refused : tuple of (int, str), or None
         Time and reason of the stop, and of the first refused sample. [ns]
+    holes : list of tuple of (int, float)
+        Holes too long to be bridged: time of the first sample after each, and how long before it the last state was. [ns, s]
+    clock_jumps : int
+        How often the receiver's clock has jumped and was set anew.
+    left_out : list of str
+        Stations left out at the end because they contradict the filter.
     further : dict of str to float
         Further states at the end, by name.
     innovations : dict of str to Innovations
@@ -110,6 +116,9 @@ class Fused(Track):
     samples: dict[str, int]
     stopped: tuple[int, str] | None
     refused: tuple[int, str] | None
+    holes: list[tuple[int, float]]
+    clock_jumps: int
+    left_out: list[str]
     further: dict[str, float]
     innovations: dict[str, Innovations]
     reversion: Reversion | None
@@ -200,7 +209,7 @@ def fuse(
     Parameters
     ----------
     imu : Imu
-        Samples; one that is not finite is left out and counted, a hole is bridged or stops the filter.
+        Samples; one that is not finite is left out and counted, a short hole is bridged, after a long one the filter aligns anew.
     aiding : Aiding
         Measurements with their budgets.
     start : Start
@@ -256,9 +265,12 @@ def _fused(found: dict[str, Any]) -> Fused:
         accelerometer_bias_mps2=table[:, 24:27].copy(),
         mode=found["mode"],
         n_states=found["n_states"],
-        samples=dict(zip(("done", "bridged", "late", "refused", "stopped"), found["samples"], strict=True)),
+        samples=dict(zip(("done", "bridged", "adrift", "late", "refused", "stopped"), found["samples"], strict=True)),
         stopped=found["stopped"],
         refused=found["refused"],
+        holes=found["holes"],
+        clock_jumps=found["clock_jumps"],
+        left_out=found["left_out"],
         further=dict(found["further"]),
         innovations={kind: Innovations(*numbers) for kind, numbers in found["innovations"].items()},
         reversion=_reversion(found["reversion"]),

@@ -27,6 +27,14 @@ SWITCHING = (0.05, 10.0)
 """A pair replaces the one in use when it has been better by this share for this time. Ours. [1, s]"""
 
 _REASONS = ("", *_core.dme_reasons())
+_VERDICTS = (
+    "",
+    "one range contradicts the others and is left out",
+    "the residuals contradict the deviations of the ranges, and three do not tell which",
+    "the residuals contradict the deviations of the ranges, and leaving out one does not mend it",
+)
+"""What the residuals say, in the order of the core."""
+_LEFT_OUT = 1
 
 
 class Positions(NamedTuple):
@@ -34,7 +42,8 @@ class Positions(NamedTuple):
 
     ``lat_rad``, ``lon_rad`` at the altitude given [rad], ``covariance_enu_m2`` of the navigation error, shape (..., 3, 3) [m²], its
     horizontal ``drms_m`` [m], ``n_ranges`` used, ``p_residual`` the risk of residuals as large if the errors are as the weights say (NaN
-    without redundancy), ``status`` ``ok``, ``degraded`` (the residuals contradict the weights) or ``not_available``, and ``reason``.
+    without redundancy), ``status`` ``ok``, ``degraded`` (the residuals contradict the weights) or ``not_available``, ``reason``, and
+    ``excluded``, the station whose range is left out by its place in the table (-1: none); the position is then that of the others.
     """
 
     lat_rad: Floats
@@ -45,6 +54,7 @@ class Positions(NamedTuple):
     p_residual: Floats
     status: NDArray[np.str_]
     reason: NDArray[np.str_]
+    excluded: NDArray[np.int64]
 
 
 def solve(
@@ -62,7 +72,8 @@ def solve(
     """Positions from slant ranges at a known altitude: all ranges, weighted, by Gauss-Newton over the Earth.
 
     Two ranges have two solutions, one on either side of the line of the stations: the prior chooses, and without one there is no position.
-    From three ranges on the residuals choose as well, and are tested.
+    From three ranges on the residuals choose as well, and are tested. From four on one that contradicts the others is left out, where
+    what is left passes the test and leaving out any other is a thousand times less likely; else the position is ``degraded``.
 
     Parameters
     ----------
@@ -81,7 +92,7 @@ def solve(
     prior_within_m : float
         The aircraft is certainly not farther from the prior than this. [m]
     residual_risk : float
-        Residuals that are less likely than this make a position ``degraded``. [1]
+        Residuals that are less likely than this contradict the deviations. [1]
 
     Returns
     -------
@@ -97,8 +108,6 @@ def solve(
     m = len(network)
     if m == 0:
         raise InputError("stations", 0, "1", "at least one station")
-    if not 0 < residual_risk < 1:
-        raise InputError("residual_risk", residual_risk, "1", "(0, 1)")
     if (prior_lat_rad is None) != (prior_lon_rad is None):
         raise InputError("prior_lat_rad, prior_lon_rad", "one of them", domain="both or neither")
     arguments: dict[str, tuple[ArrayLike, tuple[int, ...]]] = {"slant_m": (slant_m, (m,)), "h_m": (h_m, ())}
@@ -109,8 +118,9 @@ def solve(
     shape, arrays = flatten(**arguments)
     flat = dict(zip(arguments, arrays, strict=True))
     prior = (flat["prior_lat_rad"], flat["prior_lon_rad"]) if "prior_lat_rad" in flat else None
-    found = _core.dme_solve(flat["slant_m"], flat.get("sigma_m"), _points(network), flat["h_m"], sigma_altitude_m, prior, prior_within_m)
-    return _positions(found, shape, residual_risk)
+    given = (flat["slant_m"], flat.get("sigma_m"), _points(network), flat["h_m"])
+    found = _core.dme_solve(*given, sigma_altitude_m, prior, prior_within_m, residual_risk)
+    return _positions(found, shape)
 
 
 def solve_vor(
@@ -140,7 +150,8 @@ def solve_vor(
     Returns
     -------
     Positions
-        Not available overhead (below 3 NM or above 40 degrees), or where the range does not reach the altitude.
+        Not available overhead (below 3 NM or above 40 degrees), or where the range does not reach the altitude. The covariance holds the
+        bend of the bearing's arc: second moments about the position, exact for a normal error of the bearing.
 
     Raises
     ------
@@ -152,7 +163,8 @@ def solve_vor(
     )
     lat, lon, height = (np.ascontiguousarray(station[:, k]) for k in range(3))
     found = _core.dme_solve_vor(slant, bearing, (lat, lon, height), h, sigma_bearing_rad, sigma_altitude_m)
-    return _positions(found, shape, residual_risk=0.5)
+    n = len(h)
+    return _positions(found | {"excluded": np.full(n, -1), "verdict": np.zeros(n, dtype=np.uint8)}, shape)
 
 
 class Sights(NamedTuple):
@@ -350,11 +362,10 @@ def _core_network(network: Stations) -> tuple[tuple[Floats, Floats, Floats], Flo
     return _points(network), np.ascontiguousarray(network.service_m, dtype=np.float64), network.bearing.tolist()
 
 
-def _positions(found: dict[str, Any], shape: tuple[int, ...], residual_risk: float) -> Positions:
-    code = found.pop("reason")
-    reason = np.array(_REASONS)[code]
-    contradicted = found["p_residual"] < residual_risk
+def _positions(found: dict[str, Any], shape: tuple[int, ...]) -> Positions:
+    code, verdict = found.pop("reason"), found.pop("verdict")
+    contradicted = verdict > _LEFT_OUT
     status = np.where(code > 0, "not_available", np.where(contradicted, "degraded", "ok"))
-    reason = np.where(contradicted, "the residuals contradict the deviations of the ranges", reason)
+    reason = np.where(code > 0, np.array(_REASONS)[code], np.array(_VERDICTS)[verdict])
     numbers: dict[str, Any] = {name: unflatten(values, shape) for name, values in found.items()}
     return Positions(**numbers, status=status.reshape(shape), reason=reason.reshape(shape))

@@ -26,8 +26,8 @@ pub struct Score {
     pub sum_square_m2: [f64; 3],
     /// See [`Score::sum_square_m2`].
     pub sum_variance_m2: [f64; 3],
-    /// Results in each mode: coasting, VOR/DME, DME/DME, satellites.
-    pub n_mode: [u64; 4],
+    /// Results in each mode: coasting, VOR/DME, DME/DME, satellites, aligning.
+    pub n_mode: [u64; 5],
     /// Results after a stop.
     pub n_stopped: u64,
 }
@@ -180,6 +180,7 @@ impl Score {
             Mode::VorDme => 1,
             Mode::DmeDme => 2,
             Mode::Gnss => 3,
+            Mode::Aligning => 4,
         };
         self.n_mode[mode] += 1;
         Ok(())

@@ -5,8 +5,8 @@ use navbound_core::bound::anp::circle;
 use navbound_core::frame::{Covariance, Enu, Geodetic, LatLon};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Risk};
 use navbound_core::solution::dme::{
-    Admission, Altitude, Best, Figure, Fix, Horizon, NoFix, Pair, Place, Prior, Range, RangeModel, Selector, Sight, Station, Switching,
-    VorRange, all_in_view, best_pair, solve, vor_dme, vor_fix,
+    Admission, Altitude, Best, Checked, Figure, Fix, Horizon, NoFix, Pair, Place, Prior, Range, RangeModel, Selector, Sight, Station,
+    Switching, Verdict, VorRange, all_in_view, best_pair, solve_checked, vor_dme, vor_fix,
 };
 use rayon::prelude::*;
 
@@ -87,23 +87,25 @@ pub struct Ranges<'a> {
     pub sigma_altitude: Metres,
     /// Latitude and longitude known beforehand, by epoch, NaN where none is \[rad\]; and how far off they may be.
     pub prior: Option<(&'a [f64], &'a [f64], Metres)>,
+    /// Residuals that are less likely than this contradict the deviations.
+    pub residual_risk: Risk,
 }
 
-/// Positions of all epochs.
+/// Positions of all epochs; an excluded range is named by the column of its station.
 ///
 /// # Errors
 /// The first epoch with a number outside its domain.
-pub fn fixes(job: &Ranges) -> Result<Vec<Result<Fix, NoFix>>, Rejected> {
+pub fn fixes(job: &Ranges) -> Result<Vec<Result<Checked, NoFix>>, Rejected> {
     many(job.h.len(), |i| match one(job, i) {
         Err(NoFix::Invalid(reason)) => Err(reason),
         outcome => Ok(outcome),
     })
 }
 
-fn one(job: &Ranges, i: usize) -> Result<Fix, NoFix> {
+fn one(job: &Ranges, i: usize) -> Result<Checked, NoFix> {
     let width = job.stations.len();
     let row = i * width..(i + 1) * width;
-    let mut ranges = Vec::with_capacity(width);
+    let (mut ranges, mut columns) = (Vec::with_capacity(width), Vec::with_capacity(width));
     for (k, (station, slant)) in job.stations.iter().zip(&job.slant[row.clone()]).enumerate().filter(|(_, (_, s))| !s.is_nan()) {
         let slant = Metres::new(*slant);
         let sigma = match job.sigma {
@@ -111,6 +113,7 @@ fn one(job: &Ranges, i: usize) -> Result<Fix, NoFix> {
             None => RangeModel::STANDARD.sigma(slant)?,
         };
         ranges.push(Range { station: *station.ecef(), slant, sigma });
+        columns.push(k);
     }
     let altitude = Altitude { height: Metres::new(job.h[i]), sigma: job.sigma_altitude };
     let prior = match job.prior {
@@ -120,7 +123,11 @@ fn one(job: &Ranges, i: usize) -> Result<Fix, NoFix> {
         }
         _ => None,
     };
-    solve(&ranges, &altitude, prior.as_ref())
+    let mut found = solve_checked(&mut ranges, &altitude, prior.as_ref(), job.residual_risk)?;
+    if let Verdict::Excluded(place) = &mut found.verdict {
+        *place = columns[*place];
+    }
+    Ok(found)
 }
 
 /// Bearings and ranges of many epochs.

@@ -32,6 +32,8 @@ pub struct Verdict {
     pub innovations: [Innovations; Kind::ALL.len()],
     /// What became of the inertial samples.
     pub samples: Samples,
+    /// How often the receiver's clock has jumped.
+    pub clock_jumps: u32,
 }
 
 impl Fused {
@@ -166,7 +168,7 @@ impl Watch {
             disagree: false,
         };
         // A state of an earlier instant is no answer to where the aircraft is now; half a millisecond is rounding.
-        if filter.stopped().is_none() && time.seconds_since(filter.time()) < 5e-4 {
+        if filter.is_current() && time.seconds_since(filter.time()) < 5e-4 {
             let solution = self.given(time, &mut said)?;
             self.last_error = *navigation_error(&solution.state.position()?, &truth.position).vector();
             (said.error_enu_m, said.covariance, said.mode) = (self.last_error, Ok(solution.covariance), Some(solution.mode));
@@ -192,7 +194,11 @@ impl Watch {
     /// What the filter says at its end.
     fn close(&mut self) {
         let filter = &self.driver.filter;
-        self.verdicts.push(Verdict { innovations: Kind::ALL.map(|kind| *filter.innovations(kind)), samples: *filter.samples() });
+        self.verdicts.push(Verdict {
+            innovations: Kind::ALL.map(|kind| *filter.innovations(kind)),
+            samples: *filter.samples(),
+            clock_jumps: filter.clock_jumps(),
+        });
     }
 }
 
@@ -201,4 +207,4 @@ fn gated(filter: &Fusion) -> u64 {
 }
 
 /// The code of a mode in a column: its place in this list; one more where there is none.
-pub const MODES: [Mode; 4] = [Mode::Coasting, Mode::VorDme, Mode::DmeDme, Mode::Gnss];
+pub const MODES: [Mode; 5] = [Mode::Coasting, Mode::VorDme, Mode::DmeDme, Mode::Gnss, Mode::Aligning];

@@ -22,7 +22,7 @@ pub struct Plan {
 pub struct Moment {
     /// When.
     pub time: GpsTime,
-    /// What it says; `None` after it has stopped.
+    /// What it says; `None` after it has stopped, and while it is adrift without a measurement.
     pub solution: Option<Solution>,
     /// The filter without satellites, where one runs.
     pub beside: Option<Beside>,
@@ -39,6 +39,8 @@ pub struct Flight {
     pub samples: Samples,
     /// Why the filter stopped, if it did, and when.
     pub stopped: Option<(GpsTime, Stop)>,
+    /// Holes that were too long to be bridged: the first sample after each, and the time since the state before it \[s\].
+    pub holes: Vec<(GpsTime, f64)>,
     /// The filter at the end: innovations and further states.
     pub filter: Box<Fusion>,
     /// First sample left out because of its numbers.
@@ -78,7 +80,7 @@ pub fn run(
         moments.extend(driver.output(sample.time));
     }
     let samples = *driver.filter.samples();
-    Ok(Flight { moments, samples, stopped: driver.stopped, filter: driver.filter, refused: driver.refused })
+    Ok(Flight { moments, samples, stopped: driver.stopped, holes: driver.holes, filter: driver.filter, refused: driver.refused })
 }
 
 /// The filter and what it needs to be driven in the order of time.
@@ -89,24 +91,42 @@ pub(crate) struct Driver {
     rolled: Option<GpsTime>,
     due: GpsTime,
     stopped: Option<(GpsTime, Stop)>,
+    holes: Vec<(GpsTime, f64)>,
+    adrift: bool,
     refused: Option<(GpsTime, OutOfDomain)>,
 }
 
 impl Driver {
     pub(crate) fn new(filter: Box<Fusion>, plan: Plan) -> Self {
         let due = filter.time().plus_seconds(plan.output_period_s);
-        Self { filter, plan, used: [None; Kind::ALL.len()], rolled: None, due, stopped: None, refused: None }
+        Self {
+            filter,
+            plan,
+            used: [None; Kind::ALL.len()],
+            rolled: None,
+            due,
+            stopped: None,
+            holes: Vec::new(),
+            adrift: false,
+            refused: None,
+        }
     }
 
     pub(crate) fn sample(&mut self, sample: &ImuIncrement) {
-        match self.filter.advance(sample) {
+        let outcome = self.filter.advance(sample);
+        if let (Advance::Adrift { since_s }, false) = (outcome, self.adrift) {
+            self.holes.push((sample.time, since_s));
+        }
+        match outcome {
+            Advance::Adrift { .. } => self.adrift = true,
+            Advance::Done => self.adrift = false,
             Advance::Refused(why) => {
                 self.refused.get_or_insert((sample.time, why));
             }
             Advance::Stopped(why) => {
                 self.stopped.get_or_insert((sample.time, why));
             }
-            Advance::Done | Advance::Bridged { .. } | Advance::Late => {}
+            Advance::Bridged { .. } | Advance::Late => {}
         }
         if let Some((wheels, period_s)) = &self.plan.wheels
             && due(&mut self.rolled, sample.time, *period_s)
@@ -125,8 +145,10 @@ impl Driver {
             if *last != Some(time) && !due(last, time, self.plan.update_period_s) {
                 continue;
             }
+            let judged = self.filter.judges(time);
             let used = self.filter.aid(together);
-            if kind == Kind::Range {
+            // What comes in a hole of the inertial samples is not judged, and contradicts nothing.
+            if kind == Kind::Range && judged {
                 satellites[0] += together.len();
                 satellites[1] += used;
             }
@@ -142,8 +164,8 @@ impl Driver {
         // At most one result a nanosecond; a hole is not filled with results that are late.
         let missed = (time.seconds_since(self.due) / self.plan.output_period_s.max(1e-9)).floor();
         self.due = self.due.plus_seconds((missed + 1.0) * self.plan.output_period_s).max(time.plus_seconds(1e-9));
-        let running = self.filter.stopped().is_none();
-        let solution = running.then(|| self.filter.solution());
+        let current = self.filter.is_current();
+        let solution = current.then(|| self.filter.solution());
         Some(Moment { time, solution, beside: self.filter.beside(), n_states: self.filter.n_states() })
     }
 }

@@ -2,10 +2,10 @@
 #![allow(clippy::unwrap_used)] // A test may stop at the first surprise.
 
 use navbound_core::frame::{Covariance, Enu, Geodetic, LatLon, ecef_from_geodetic};
-use navbound_core::quantity::{GpsTime, Metres, Radians};
+use navbound_core::quantity::{GpsTime, Metres, Radians, Risk};
 use navbound_core::solution::dme::{
-    Admission, Altitude, Best, Figure, Horizon, NoFix, Pair, Place, Prior, Range, RangeModel, Selector, Sight, Station, Switching,
-    VorRange, all_in_view, best_pair, solve, vor_fix,
+    Admission, Altitude, Best, Figure, Horizon, NoFix, Pair, Place, Prior, Range, RangeModel, Selector, Sight, Station, Switching, Verdict,
+    VorRange, all_in_view, best_pair, solve, solve_checked, vor_fix,
 };
 use proptest::prelude::*;
 
@@ -180,6 +180,33 @@ fn a_wrong_range_shows_in_the_residuals() {
     let p = |ranges: &[Range]| solve(ranges, &exact(truth.height), None).unwrap().p_residual.unwrap();
     assert!(p(&clean) > 0.999);
     assert!(p(&wrong) < 1e-6, "{}", p(&wrong));
+}
+
+#[test]
+fn the_wrong_range_of_four_is_named_and_three_do_not_tell() {
+    let truth = geodetic(49.9, 31.4, 9000.0);
+    let clean = STATIONS.map(|s| range(s, &truth, 0.0));
+    let risk = Risk::new(1e-3).unwrap();
+    let checked = |ranges: &mut [Range]| solve_checked(ranges, &exact(truth.height), None, risk).unwrap();
+    assert_eq!(checked(&mut clean.clone()).verdict, Verdict::Consistent);
+    for wrong in 0..4 {
+        let mut ranges = clean;
+        ranges[wrong].slant = Metres::new(ranges[wrong].slant.m() + 60.0 * 182.6);
+        let given = ranges;
+        let found = checked(&mut ranges);
+        assert_eq!((found.verdict, found.fix.used), (Verdict::Excluded(wrong), 3));
+        assert_eq!(ranges, given, "the list comes back in its order");
+        // Error-free ranges are left: a micrometre on the ground, magnified by the geometry.
+        assert!((found.fix.position.point.lat().rad() - truth.point.lat().rad()).abs() < 1e-11);
+        let mut three: Vec<Range> = (0..4).filter(|k| *k != (wrong + 1) % 4).map(|k| given[k]).collect();
+        let near = Prior { position: truth, within: Metres::new(50e3) };
+        assert_eq!(solve_checked(&mut three, &exact(truth.height), Some(&near), risk).unwrap().verdict, Verdict::TooFew);
+    }
+    let mut two = clean;
+    for (k, error) in [(0, 3000.0), (2, -2500.0)] {
+        two[k].slant = Metres::new(two[k].slant.m() + error);
+    }
+    assert_eq!(checked(&mut two).verdict, Verdict::Undecided);
 }
 
 fn best(stations: [usize; 2], figure: f64) -> Best {

@@ -24,8 +24,8 @@ fn row(j: &Judged) -> [f64; WIDTH] {
 }
 
 /// Of one filter: results, mean NEES, shares in circle and sphere, errors and deviations (RMS, east, north, up), shares of the modes
-/// (coasting, VOR/DME, DME/DME, satellites), and results after a stop.
-const SCORE: usize = 15;
+/// (coasting, VOR/DME, DME/DME, satellites, aligning), and results after a stop.
+const SCORE: usize = 16;
 
 fn score(s: &Score) -> [f64; SCORE] {
     let n = s.n as f64;
@@ -36,10 +36,10 @@ fn score(s: &Score) -> [f64; SCORE] {
         row[4 + k] = (s.sum_square_m2[k] / n).sqrt();
         row[7 + k] = (s.sum_variance_m2[k] / n).sqrt();
     }
-    for k in 0..4 {
+    for k in 0..5 {
         row[10 + k] = share(s.n_mode[k]);
     }
-    row[14] = s.n_stopped as f64;
+    row[15] = s.n_stopped as f64;
     row
 }
 

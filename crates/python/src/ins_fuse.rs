@@ -10,8 +10,8 @@ use navbound_core::signal::{
     Aiding, BaroHeight, Constellation, DmeRange, ImuIncrement, PositionFix, SatelliteId, SatelliteRange, TimedAiding, VorBearing,
 };
 use navbound_core::solution::ins::{
-    Attitude, ClockModel, ErrorModel, Form, Further, ImuModel, Kind, NavState, Patience, SensorNoise, Settings, Solution, StartSigma, Stop,
-    Wheels, coarse,
+    Attitude, ClockModel, ErrorModel, Form, Further, ImuModel, Kind, NavState, Patience, Resumption, SensorNoise, Settings, Solution,
+    StartSigma, Stop, Wheels, coarse,
 };
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -263,6 +263,7 @@ impl Told {
             age_most_s: self.age_most_s,
             set_after_s: self.set_after_s,
             patience: Patience { lose_s: self.patience_s[0], gain_s: self.patience_s[1] },
+            resumption: Resumption::USUAL,
         })
     }
 
@@ -306,7 +307,6 @@ fn mode(solution: &Option<Solution>) -> &'static str {
 
 fn stop_words(stop: &Stop) -> String {
     match stop {
-        Stop::Gap { gap_s } => format!("no inertial sample for {gap_s:.3} s"),
         Stop::Place(e) => e.to_string(),
         Stop::Covariance => "a variance is not positive".to_owned(),
     }
@@ -372,8 +372,11 @@ fn flight_dict<'py>(py: Python<'py>, flight: &Flight) -> PyResult<Bound<'py, PyD
     d.set_item("mode", moments.iter().map(|m| mode(&m.solution)).collect::<Vec<_>>())?;
     d.set_item("n_states", moments.iter().map(|m| m.n_states as i64).collect::<Vec<_>>().into_pyarray(py))?;
     let s = &flight.samples;
-    d.set_item("samples", [s.n_done, s.n_bridged, s.n_late, s.n_refused, s.n_stopped])?;
+    d.set_item("samples", [s.n_done, s.n_bridged, s.n_adrift, s.n_late, s.n_refused, s.n_stopped])?;
     d.set_item("stopped", flight.stopped.as_ref().map(|(t, why)| (t.nanoseconds(), stop_words(why))))?;
+    d.set_item("holes", flight.holes.iter().map(|(t, since_s)| (t.nanoseconds(), *since_s)).collect::<Vec<_>>())?;
+    d.set_item("clock_jumps", flight.filter.clock_jumps())?;
+    d.set_item("left_out", flight.filter.stations_left_out().map(further_word).collect::<Vec<_>>())?;
     d.set_item("refused", flight.refused.as_ref().map(|(t, why)| (t.nanoseconds(), why.to_string())))?;
     d.set_item("further", flight.filter.further().map(|(what, value)| (further_word(what), value)).collect::<Vec<_>>())?;
     Ok(d)

@@ -5,7 +5,7 @@ use crate::error::input_error;
 use navbound_assess::dme::{self, Bearings, Models, Offer, Places, Ranges};
 use navbound_core::frame::{Covariance, Enu};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
-use navbound_core::solution::dme::{Best, Fix, NoFix, Station, Switching};
+use navbound_core::solution::dme::{Best, Checked, Fix, NoFix, Station, Switching, Verdict};
 use numpy::{IntoPyArray, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -78,6 +78,24 @@ fn positions<'py>(py: Python<'py>, found: &[Result<Fix, NoFix>]) -> PyResult<Bou
     Ok(d)
 }
 
+/// The column of the station whose range is left out, -1 for none.
+fn excluded(checked: &Checked) -> i64 {
+    match checked.verdict {
+        Verdict::Excluded(column) => column as i64,
+        Verdict::Consistent | Verdict::TooFew | Verdict::Undecided => -1,
+    }
+}
+
+/// Consistent, excluded, too few, undecided.
+const fn verdict(checked: &Checked) -> u8 {
+    match checked.verdict {
+        Verdict::Consistent => 0,
+        Verdict::Excluded(_) => 1,
+        Verdict::TooFew => 2,
+        Verdict::Undecided => 3,
+    }
+}
+
 /// Positions from slant ranges (n, m) of m stations, NaN where none was received.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)] // One an array of the Python call.
@@ -90,6 +108,7 @@ fn dme_solve<'py>(
     sigma_altitude_m: f64,
     prior_rad: Option<(Numbers<'py>, Numbers<'py>)>,
     prior_within_m: f64,
+    residual_risk: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
     if !(prior_within_m > 0.0) {
         return Err(refused(OutOfDomain { argument: "prior_within_m", value: prior_within_m, unit: "m", domain: "(0, inf)" }));
@@ -105,9 +124,14 @@ fn dme_solve<'py>(
     };
     alike("prior_lat_rad", h.len(), &prior.iter().flat_map(|(lat, lon, _)| [lat.len(), lon.len()]).collect::<Vec<_>>())?;
     let sigma_altitude = Metres::new(sigma_altitude_m);
-    let job = Ranges { stations: &places, slant, sigma, h, sigma_altitude, prior };
+    let residual_risk = Risk::new(residual_risk).map_err(|e| refused(OutOfDomain { argument: "residual_risk", ..e }))?;
+    let job = Ranges { stations: &places, slant, sigma, h, sigma_altitude, prior, residual_risk };
     let found = py.detach(|| dme::fixes(&job)).map_err(rejected)?;
-    positions(py, &found)
+    let fixes: Vec<_> = found.iter().map(|r| r.as_ref().map(|checked| checked.fix).map_err(|e| *e)).collect();
+    let d = positions(py, &fixes)?;
+    d.set_item("excluded", found.iter().map(|r| r.as_ref().map_or(-1, excluded)).collect::<Vec<i64>>().into_pyarray(py))?;
+    d.set_item("verdict", found.iter().map(|r| r.as_ref().map_or(0, verdict)).collect::<Vec<u8>>().into_pyarray(py))?;
+    Ok(d)
 }
 
 /// Positions from a bearing and a slant range, one station an epoch.

@@ -5,7 +5,7 @@
 use crate::philox::{Sensor, Stream};
 use crate::plan::GRAVITY;
 use crate::scenario::{Rule, positive, within};
-use crate::sensors::{Imu, Sensors};
+use crate::sensors::{Imu, Sensors, staying};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
 use navbound_core::solution::ins::{ClockModel, ErrorModel, Form, ImuModel, SensorNoise, Settings, StartSigma};
 use serde::Deserialize;
@@ -132,21 +132,12 @@ fn imu_model(imu: &Imu) -> ImuModel {
     let weight = GRAVITY * imu.accelerometer_scale.max(imu.accelerometer_misalignment_rad);
     let [gyro, accelerometer] = [imu.gyro_bias_radps, imu.accelerometer_bias_mps2.hypot(weight)];
     ImuModel {
-        gyroscope: staying(imu.gyro_noise_radprts, gyro, imu.gyro_in_run_radps, imu.in_run_time_s),
-        accelerometer: staying(imu.accelerometer_noise_mpsprts, accelerometer, imu.accelerometer_in_run_mps2, imu.in_run_time_s),
+        gyroscope: noise(imu.gyro_noise_radprts, gyro, imu.gyro_in_run_radps, imu.in_run_time_s),
+        accelerometer: noise(imu.accelerometer_noise_mpsprts, accelerometer, imu.accelerometer_in_run_mps2, imu.in_run_time_s),
     }
 }
 
-/// A constant and a process as one process: its variance is that of both, and it moves as the process alone does.
-///
-/// ```text
-/// sigma^2 = constant^2 + process^2        2 sigma^2 / tau = 2 process^2 / tau_process
-/// ```
-fn staying(white: f64, constant: f64, process: f64, time_s: f64) -> SensorNoise {
-    let bias = constant.hypot(process);
-    let slower = if process > 0.0 { (bias / process) * (bias / process) } else { f64::INFINITY };
-    SensorNoise { white, bias, bias_time_s: (time_s * slower).min(CONSTANT_S) }
+fn noise(white: f64, constant: f64, process: f64, time_s: f64) -> SensorNoise {
+    let (bias, bias_time_s) = staying(constant, process, time_s);
+    SensorNoise { white, bias, bias_time_s }
 }
-
-/// A correlation time that is as good as none: thirty years \[s\].
-const CONSTANT_S: f64 = 1e9;

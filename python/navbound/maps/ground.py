@@ -78,6 +78,7 @@ class Dme:
         """What the numbers rest on."""
         named = "the shipped table" if self.stations is None else str(self.stations)
         return [
-            f"{len(self._network())} stations ({named}), all of them working; service volumes as navbound.dme states them; no terrain.",
+            f"{len(self._network())} stations ({named}), all of them working; service volumes as navbound.dme states them.",
+            "No terrain: only the horizon of a smooth Earth of four thirds the radius hides a station; behind hills there is less.",
             f"Users at {self.h_m:g} m, altitude known to {self.sigma_altitude_m:g} m (one sigma).",
         ]

@@ -32,12 +32,15 @@ _KEPT = {
     "dme_dme": "without satellites: ranges to DME keep the position",
     "vor_dme": "without satellites: a VOR and a DME keep the position",
     "coasting": "without satellites and stations: inertial navigation alone",
+    "aligning": "the attitude settles after a hole in the inertial samples",
 }
 _DISAGREE = "the filters with and without satellites disagree: nobody knows which of them is right"
 _WATCHED = ("separation_m", "separation_limit_m", "innovation_memory")
 """Columns of the monitors across measurements."""
 _CODES = ("nav_mode", "leg", "phase", "available", "disagree", "flight", "reason")
 """Columns that become words."""
+_COUNTS = ("samples", "clock_jumps")
+"""What a filter counts besides its innovations."""
 
 
 def material(
@@ -156,7 +159,7 @@ def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
     both over all flights.
     """
     found: dict[str, Any] = {}
-    for kind in (key for key in verdicts[0] if key != "samples"):
+    for kind in (key for key in verdicts[0] if key not in _COUNTS):
         used, gated, refused, square, lag, pairs = np.array([v[kind] for v in verdicts], dtype=float).T
         if used.sum() + gated.sum() + refused.sum() > 0:
             found[kind] = {
@@ -167,7 +170,9 @@ def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
                 "lag_one": _weighted(lag, pairs),
             }
     samples = np.sum([v["samples"] for v in verdicts], axis=0).tolist()
-    return found | {"samples": dict(zip(("done", "bridged", "late", "refused", "stopped"), samples, strict=True))}
+    words = ("done", "bridged", "adrift", "late", "refused", "stopped")
+    jumps = sum(v["clock_jumps"] for v in verdicts)
+    return found | {"samples": dict(zip(words, samples, strict=True)), "clock_jumps": jumps}
 
 
 def _weighted(values: np.ndarray[Any, Any], weights: np.ndarray[Any, Any]) -> float | None:

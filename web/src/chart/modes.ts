@@ -14,6 +14,7 @@ const MODES: Record<string, { words: string; hue: Colour }> = {
     dme_dme: { words: "DME/DME/INS", hue: "s1" },
     vor_dme: { words: "VOR/DME/INS", hue: "s3" },
     coasting: { words: "INS coasting", hue: "caution" },
+    aligning: { words: "INS aligning", hue: "caution" },
     stopped: { words: "no navigation", hue: "warning" },
 };
 const BAND = 0.2;

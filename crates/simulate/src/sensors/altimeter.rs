@@ -8,7 +8,7 @@
 //! departure, and the error grows with the height above it. What is said of the slow part includes it.
 
 use super::faults::SensorFault;
-use super::markov::Markov;
+use super::markov::{Markov, staying};
 use super::settings::Baro;
 use crate::philox::{Sensor, Stream};
 use navbound_core::quantity::{GpsTime, Metres};
@@ -57,11 +57,13 @@ impl<'a> Altimeter<'a> {
         self.bias.step();
         let climbed = self.lagged_m - self.departure_m;
         let slow = s.bias_sigma_m * self.bias.now() + s.temperature_share * self.temperature_k * climbed;
+        // At one height the air's error is a constant; where the height changes, so does the deviation that is told.
+        let (sigma, correlation_time_s) = staying(s.temperature_share * s.temperature_sigma_k * climbed, s.bias_sigma_m, s.bias_time_s);
         let height = BaroHeight {
             height: Metres::new(self.lagged_m + slow + s.noise_sigma_m * self.noise.normal()),
             sigma_white: Metres::new(s.noise_sigma_m),
-            sigma_bias: Metres::new(s.bias_sigma_m.hypot(s.temperature_share * s.temperature_sigma_k * climbed)),
-            correlation_time_s: s.bias_time_s,
+            sigma_bias: Metres::new(sigma),
+            correlation_time_s,
         };
         out.push(TimedAiding { time, aiding: Aiding::Baro(height) });
     }

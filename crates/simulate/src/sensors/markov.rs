@@ -29,3 +29,18 @@ impl Markov {
         self.now = self.keep * self.now + self.fresh * self.stream.normal();
     }
 }
+
+/// A constant and a process told as one process, its deviation and its correlation time: the variance is that of both, and it moves as the
+/// process alone does.
+///
+/// ```text
+/// sigma^2 = constant^2 + process^2        2 sigma^2 / tau = 2 process^2 / tau_process
+/// ```
+pub(crate) fn staying(constant: f64, process: f64, time_s: f64) -> (f64, f64) {
+    let sigma = constant.hypot(process);
+    let slower = if process > 0.0 { (sigma / process) * (sigma / process) } else { f64::INFINITY };
+    (sigma, (time_s * slower).min(CONSTANT_S))
+}
+
+/// A correlation time that is as good as none: thirty years \[s\].
+const CONSTANT_S: f64 = 1e9;

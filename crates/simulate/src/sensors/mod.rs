@@ -21,6 +21,8 @@ mod settings;
 mod sky;
 mod stations;
 
+pub(crate) use markov::staying;
+
 pub use faults::{SensorFault, Trouble};
 pub use settings::{Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};
 

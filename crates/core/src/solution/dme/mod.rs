@@ -1,5 +1,6 @@
 //! DME ranges: how good one is, what a pair determines, which pair is best, when to change it, and where the aircraft is; VOR/DME beside.
 
+mod exclude;
 mod fix;
 mod intersection;
 mod normal;
@@ -8,6 +9,7 @@ mod select;
 mod sight;
 mod vor;
 
+pub use exclude::{Checked, Verdict, solve_checked};
 pub use fix::{Altitude, Fix, NoFix, Prior, Range, solve};
 pub use normal::all_in_view;
 pub use pair::{Pair, icao_two_sigma};

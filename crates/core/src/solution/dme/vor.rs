@@ -3,7 +3,7 @@
 use super::{Altitude, Fix, NoFix, Place, Sight};
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, geodetic_from_ecef};
 use crate::quantity::{Metres, OutOfDomain, Radians};
-use crate::special::float::{acos, asin, hypot, sin_cos};
+use crate::special::float::{acos, asin, exp_m1, hypot, sin_cos};
 use nalgebra::{Matrix3, Vector3};
 
 /// Standard deviations of a VOR/DME position.
@@ -64,16 +64,31 @@ pub struct VorRange {
 }
 
 impl VorDme {
-    /// Covariance of the navigation error at a line of sight, with an altitude error that the slant range turns into one along the radial.
+    /// Second moments of the navigation error at a line of sight, with an altitude error that the slant range turns into one along the
+    /// radial.
+    ///
+    /// An error b of the bearing moves the position along an arc, not along a straight line: seen from the position, the aircraft is
+    /// `ground (1 - cos b)` nearer to the station and `ground sin b` beside the radial. With `a = exp(-cross^2 / 2 ground^2)`:
+    ///
+    /// ```text
+    /// along^2  = radial^2 + ground^2 ((1 - a)^2 + (1 - a^2)^2 / 2)      E (1 - cos b)^2, b normal: exact, and its mean is in it
+    /// across^2 = ground^2 (1 - a^4) / 2                                 E sin^2 b
+    /// ```
+    ///
+    /// The first order, `radial^2` and `cross^2`, is the printed one. Provenance: ours.
     pub fn covariance(&self, sight: &Sight, sigma_altitude: Metres) -> Covariance<Enu> {
         let g = sight.level();
         let along = Vector3::new(sight.unit.x, sight.unit.y, 0.0) / g;
         let across = Vector3::new(along.y, -along.x, 0.0);
-        let (radial, cross, sigma_h) = (self.radial.m(), self.cross.m(), sigma_altitude.m());
+        let (radial, sigma_h, ground) = (self.radial.m(), sigma_altitude.m(), sight.slant.m() * g);
+        let half = 0.5 * (self.cross.m() / ground) * (self.cross.m() / ground);
+        // 1 - a, 1 - a^2 and 1 - a^4 of a small angle are small themselves.
+        let [once, twice, fourth] = [1.0, 2.0, 4.0].map(|power| -exp_m1(-power * half));
+        let bend = ground * ground * (once * once + 0.5 * twice * twice);
         // Higher than thought means nearer on the ground: slant^2 = ground^2 + up^2.
         let leaning = Vector3::z() - along * (sight.unit.z / g);
-        let m: Matrix3<f64> = radial * radial * along * along.transpose()
-            + cross * cross * across * across.transpose()
+        let m: Matrix3<f64> = (radial * radial + bend) * along * along.transpose()
+            + 0.5 * ground * ground * fourth * across * across.transpose()
             + sigma_h * sigma_h * leaning * leaning.transpose();
         Covariance::claim_symmetric(m)
     }

@@ -1,14 +1,17 @@
 //! Measurements come to the filter: judged first, then used.
 
 use super::covariance::Row;
+use super::dynamics::R;
 use super::filter::Filter;
 use super::innovation::Kind;
 use super::measure::{Antenna, Scalar, body_velocity};
 use super::settings::{ErrorModel, positive};
 use super::slots::{Further, Process};
 use super::state::finite;
+use super::stations::{Look, Standing};
 use crate::quantity::{GpsTime, OutOfDomain};
 use crate::signal::{Aiding, BaroHeight, DmeRange, PositionFix, SatelliteRange, TimedAiding, VorBearing};
+use crate::special::float::hypot;
 use nalgebra::{Matrix3, Vector3};
 
 /// What became of a measurement.
@@ -74,16 +77,22 @@ impl Filter {
         outcome
     }
 
+    /// Last sample heard minus a time \[s\], where a measurement of that time may be used.
+    pub(super) fn age_of(&self, time: GpsTime) -> Option<f64> {
+        let age_s = self.heard().seconds_since(time);
+        // A nanosecond ahead is rounding of the clock; a sample ahead belongs to the next sample.
+        (age_s >= -1e-9 && age_s <= self.settings.age_most_s).then_some(age_s)
+    }
+
     /// Everything brought to the last sample, and the antenna and the age \[s\] of a measurement of this time; or why none can be used.
     pub(super) fn ready(&mut self, time: GpsTime) -> Result<(Antenna, f64), Aided> {
         if self.stopped.is_some() {
             return Err(Aided::Stopped);
         }
-        let age_s = self.time().seconds_since(time);
-        // A nanosecond ahead is rounding of the clock; a sample ahead belongs to the next sample.
-        if !(age_s >= -1e-9 && age_s <= self.settings.age_most_s) {
-            return Err(Aided::Late { age_s });
-        }
+        let Some(age_s) = self.age_of(time) else {
+            return Err(Aided::Late { age_s: self.heard().seconds_since(time) });
+        };
+        self.drift().map_err(Aided::Refused)?;
         self.settle();
         Antenna::of(self.state(), &self.settings.lever_arm_m, &self.rate, age_s).map(|a| (a, age_s)).map_err(Aided::Refused)
     }
@@ -97,7 +106,7 @@ impl Filter {
             return Aided::Refused(refusal);
         }
         let used = match &timed.aiding {
-            Aiding::Satellite(m) => self.satellite(&antenna, m),
+            Aiding::Satellite(m) => self.satellite(&antenna, m, timed.time),
             Aiding::Dme(m) => self.dme(&antenna, m),
             Aiding::Vor(m) => self.vor(&antenna, m),
             Aiding::Baro(m) => self.baro(&antenna, m, age_s),
@@ -124,10 +133,15 @@ impl Filter {
         }
     }
 
-    fn satellite(&mut self, antenna: &Antenna, m: &SatelliteRange) -> Aided {
+    fn satellite(&mut self, antenna: &Antenna, m: &SatelliteRange, time: GpsTime) -> Aided {
         let mut range = antenna.range(m);
         let (clock, joint) = (self.settings.clock, &mut self.joint);
         let Some([bias, drift]) = self.slots.ensure_clock(joint, &clock, range.innovation) else { return Aided::NoPlace };
+        if let Some(jump) = self.instant.at(time) {
+            self.n_clock_jumps += 1;
+            let value = self.slots.value(bias) + jump;
+            self.slots.set_anew(joint, bias, value, clock.bias_m);
+        }
         let mut more = [None; 2];
         let first = *self.first_constellation.get_or_insert(m.satellite.constellation);
         if first != m.satellite.constellation {
@@ -146,8 +160,13 @@ impl Filter {
         }
         let source = Further::Satellite(m.satellite);
         let outcome = self.use_one((Kind::Range, source), &range, more[1]);
+        match outcome {
+            Aided::Used { .. } => self.instant.used(),
+            _ => self.instant.gated(range.innovation, self.variance(&range.row, range.variance)),
+        }
         if let Some((rate, sigma)) = m.rate_mps {
-            let mut scalar = antenna.range_rate(m, rate, sigma);
+            // The range may have moved the velocity, much so where both are tied: after a hole.
+            let mut scalar = antenna.moving(self.state()).range_rate(m, rate, sigma);
             self.attach(&mut scalar, drift);
             self.use_one((Kind::RangeRate, source), &scalar, None);
         }
@@ -155,7 +174,9 @@ impl Filter {
     }
 
     fn dme(&mut self, antenna: &Antenna, m: &DmeRange) -> Aided {
-        let slow = Process { sigma: m.sigma_bias.m(), tau_s: f64::INFINITY };
+        let p = Matrix3::from_fn(|i, j| self.joint.get(R + i, R + j));
+        // The bend stays as long as the error across the line of sight does: it belongs to the station's bias, not to what is new.
+        let slow = Process { sigma: hypot(m.sigma_bias.m(), antenna.bend(m, &p)), tau_s: f64::INFINITY };
         self.with_own_state(Kind::Dme, antenna.slant(m), Further::Dme(m.station), slow)
     }
 
@@ -170,7 +191,7 @@ impl Filter {
 
     fn baro(&mut self, antenna: &Antenna, m: &BaroHeight, age_s: f64) -> Aided {
         let predicted = self.state().h + antenna.v.z * age_s;
-        let row = Row::empty().with(super::dynamics::R + 2, 1.0);
+        let row = Row::empty().with(R + 2, 1.0);
         let variance = m.sigma_white.m() * m.sigma_white.m();
         let scalar = Scalar { innovation: m.height.m() - predicted, row, variance };
         let slow = Process { sigma: m.sigma_bias.m(), tau_s: m.correlation_time_s };
@@ -184,7 +205,7 @@ impl Filter {
         let r = Matrix3::from_fn(|i, j| sign(i) * sign(j) * enu[(ned(i), ned(j))]);
         let outcome = self.use_three(Kind::FixPosition, &antenna.difference(&m.position), &r, |axis| antenna.along_position(axis));
         if let Some((velocity, r)) = &m.velocity_ned_mps {
-            // The antenna as it was before the position was used: an error of second order, and the gate stays independent.
+            let antenna = antenna.moving(self.state());
             self.use_three(Kind::FixVelocity, &(velocity - antenna.v), r, |axis| antenna.along_velocity(axis));
         }
         outcome
@@ -194,6 +215,9 @@ impl Filter {
     pub fn roll(&mut self, wheels: &Wheels) -> Aided {
         if self.stopped.is_some() {
             return Aided::Stopped;
+        }
+        if let Some(adrift) = &self.adrift {
+            return Aided::Late { age_s: self.time().seconds_since(adrift.heard) };
         }
         if let Err(refusal) = wheels.check() {
             return Aided::Refused(refusal);
@@ -228,10 +252,31 @@ impl Filter {
             Ok(place) => {
                 if let Some(place) = place {
                     self.attach(&mut scalar, place);
+                    if let Some(outcome) = self.watch((kind, what), &scalar, place, slow) {
+                        return outcome;
+                    }
                 }
                 self.use_one((kind, what), &scalar, place)
             }
         }
+    }
+
+    /// A station's measurement that may not be used, because the station contradicts the filter; its bias is then forgotten.
+    fn watch(&mut self, (kind, what): (Kind, Further), scalar: &Scalar, place: usize, slow: Process) -> Option<Aided> {
+        if !matches!(kind, Kind::Dme | Kind::Vor) {
+            return None;
+        }
+        let states = self.variance(&scalar.row, 0.0);
+        let look = Look { innovation: scalar.innovation, white: scalar.variance, states };
+        let standing = self.stations.judge(what, &look, self.gates[0]);
+        if standing == Standing::Good {
+            return None;
+        }
+        if standing == Standing::LeftOut {
+            self.slots.set_anew(&mut self.joint, place, 0.0, slow.sigma);
+        }
+        self.innovations[kind.index()].n_gated += 1;
+        Some(Aided::Gated { square: look.innovation * look.innovation / (look.white + look.states) })
     }
 
     /// The measurement holds a further state, added as it is.

@@ -16,6 +16,7 @@
 
 use super::dynamics::{BA, BG, NAV, PHI, R, V};
 use super::filter::{Filter, Solution};
+use super::mode::Mode;
 use super::settings::{SensorNoise, Settings, StartSigma};
 use super::strapdown::Local;
 use crate::frame::Covariance;
@@ -37,6 +38,7 @@ pub(super) fn shared(sigma: &StartSigma, settings: &Settings) -> (StartSigma, Se
     told.imu.accelerometer = noise(&settings.imu.accelerometer);
     told.gap_acceleration_mps2 *= wider;
     told.gap_rate_radps *= wider;
+    told.resumption = settings.resumption.wider(wider);
     let start = StartSigma {
         position: sigma.position.map(|s| Metres::new(s.m() * wider)),
         velocity_mps: sigma.velocity_mps * wider,
@@ -65,7 +67,7 @@ pub(super) fn master(first: &mut Filter, second: &mut Filter) -> Solution {
     joined.covariance = Covariance::from_upper([r[(1, 1)], r[(0, 1)], r[(0, 0)], -r[(1, 2)], -r[(0, 2)], r[(2, 2)]]);
     joined.velocity_m2ps2 = block(V);
     joined.attitude_rad2 = block(PHI);
-    joined.mode = joined.mode.max(other.mode);
+    joined.mode = if [joined.mode, other.mode].contains(&Mode::Aligning) { Mode::Aligning } else { joined.mode.max(other.mode) };
     joined
 }
 

@@ -1,13 +1,16 @@
 //! The filter: inertial samples carry the state, measurements correct it, nothing brings it down.
 
+use super::adrift::Adrift;
 use super::covariance::{BASE, Fade, Joint, Row, StepNoise, WIDTH};
 use super::dynamics::{BA, BG, NAV, PHI, R, V, transition};
 use super::innovation::{Innovations, Kind, Memory};
+use super::jump::Instant;
 use super::measure::Scalar;
 use super::mode::{Mode, Modes};
 use super::settings::{Settings, StartSigma, positive};
 use super::slots::{Further, Slots};
 use super::state::{NavState, turn, wrapped};
+use super::stations::Stations;
 use super::strapdown::{Local, Step, Strapdown, check};
 use crate::frame::{Covariance, Enu};
 use crate::quantity::{GpsTime, OutOfDomain};
@@ -25,6 +28,11 @@ pub enum Advance {
         /// Length of the hole \[s\].
         gap_s: f64,
     },
+    /// Heard, not integrated: what turned in a hole before it is not known.
+    Adrift {
+        /// Time since the state that the filter holds \[s\].
+        since_s: f64,
+    },
     /// Left out: not after the last one.
     Late,
     /// Left out: a number that is none, or outside its domain. The next good sample finds a hole.
@@ -36,11 +44,6 @@ pub enum Advance {
 /// Why a filter stopped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stop {
-    /// A hole longer than is bridged.
-    Gap {
-        /// Its length \[s\].
-        gap_s: f64,
-    },
     /// Too near a pole, or nowhere on the Earth.
     Place(OutOfDomain),
     /// A variance that is not positive.
@@ -58,6 +61,8 @@ pub struct Samples {
     pub n_late: u64,
     /// Outside their domain.
     pub n_refused: u64,
+    /// Heard only, after a hole too long to be bridged.
+    pub n_adrift: u64,
     /// After the stop.
     pub n_stopped: u64,
 }
@@ -98,12 +103,17 @@ pub struct Filter {
     pub(super) memory: Memory,
     /// Whose time the clock is in.
     pub(super) first_constellation: Option<Constellation>,
-    biases: [Vector3<f64>; 2],
+    pub(super) biases: [Vector3<f64>; 2],
     /// Rate over the Earth, body axes, for lever arms \[rad/s\].
     pub(super) rate: Vector3<f64>,
     waiting: Option<Waiting>,
     samples: Samples,
     pub(super) stopped: Option<Stop>,
+    pub(super) adrift: Option<Adrift>,
+    pub(super) aligning: bool,
+    pub(super) stations: Stations,
+    pub(super) instant: Instant,
+    pub(super) n_clock_jumps: u32,
     /// Squared gates of one and of three components.
     pub(super) gates: [f64; 2],
 }
@@ -141,6 +151,11 @@ impl Filter {
             waiting: None,
             samples: Samples::default(),
             stopped: None,
+            adrift: None,
+            aligning: false,
+            stations: Stations::new(),
+            instant: Instant::default(),
+            n_clock_jumps: 0,
             gates: [one * one, three * three],
         })
     }
@@ -165,6 +180,14 @@ impl Filter {
     pub fn further(&self) -> impl Iterator<Item = (Further, f64)> + '_ {
         self.slots.iter()
     }
+    /// Stations that are left out now because they contradict the others.
+    pub fn stations_left_out(&self) -> impl Iterator<Item = Further> + '_ {
+        self.stations.left_out()
+    }
+    /// How often the receiver's clock has jumped and was set anew.
+    pub const fn clock_jumps(&self) -> u32 {
+        self.n_clock_jumps
+    }
     /// Number of states.
     pub const fn n_states(&self) -> usize {
         NAV + self.slots.len()
@@ -173,6 +196,7 @@ impl Filter {
     /// Everything at once, the covariance brought up to the last sample.
     pub fn solution(&mut self) -> Solution {
         self.catch_up();
+        self.watch_alignment();
         let block = |first: usize| Matrix3::from_fn(|i, j| self.joint.get(first + i, first + j));
         let p = block(R);
         // North, east, down to east, north, up.
@@ -183,7 +207,7 @@ impl Filter {
             velocity_m2ps2: block(V),
             attitude_rad2: block(PHI),
             biases: self.biases,
-            mode: self.modes.mode(),
+            mode: if self.is_aligning() { Mode::Aligning } else { self.modes.mode() },
         }
     }
 
@@ -196,6 +220,7 @@ impl Filter {
                 self.samples.n_done += 1;
                 self.samples.n_bridged += 1;
             }
+            Advance::Adrift { .. } => self.samples.n_adrift += 1,
             Advance::Late => self.samples.n_late += 1,
             Advance::Refused(_) => self.samples.n_refused += 1,
             Advance::Stopped(_) => self.samples.n_stopped += 1,
@@ -210,6 +235,9 @@ impl Filter {
         if let Err(refusal) = check(sample) {
             return Advance::Refused(refusal);
         }
+        if self.adrift.is_some() {
+            return self.listen(sample);
+        }
         let since_s = sample.time.seconds_since(self.state().time);
         if !(since_s > 0.0) {
             return Advance::Late;
@@ -220,7 +248,7 @@ impl Filter {
             return self.taken(sample, Advance::Done);
         }
         if !(gap_s <= self.settings.gap_most_s) {
-            return self.stop(Stop::Gap { gap_s });
+            return self.lose(sample);
         }
         self.bridge(sample, since_s, gap_s)
     }
@@ -236,7 +264,7 @@ impl Filter {
             velocity_mps: sample.velocity_mps * stretch,
         };
         if check(&whole).is_err() {
-            return self.stop(Stop::Gap { gap_s });
+            return self.lose(sample);
         }
         let outcome = self.taken(&whole, Advance::Bridged { gap_s });
         self.strapdown.forget();
@@ -255,7 +283,7 @@ impl Filter {
         Advance::Stopped(why)
     }
 
-    fn taken(&mut self, sample: &ImuIncrement, outcome: Advance) -> Advance {
+    pub(super) fn taken(&mut self, sample: &ImuIncrement, outcome: Advance) -> Advance {
         let dt = sample.interval_s;
         let corrected = ImuIncrement {
             angle_rad: sample.angle_rad - self.biases[0] * dt,

@@ -6,7 +6,7 @@ use super::filter::{Advance, Filter, Samples, Solution, Stop};
 use super::innovation::{Innovations, Kind};
 use super::loose::Receiver;
 use super::mode::Mode;
-use super::settings::{Form, Settings, StartSigma};
+use super::settings::{ClockModel, Form, Settings, StartSigma};
 use super::slots::Further;
 use super::state::NavState;
 use crate::frame::{Covariance, Displacement, Enu};
@@ -57,7 +57,10 @@ impl Fusion {
     /// # Errors
     /// As [`Filter::new`].
     pub fn restart(&mut self, sigma: &StartSigma) -> Result<(), OutOfDomain> {
-        let anew = Self::new(*self.main.state(), sigma, self.settings)?;
+        let mut settings = self.settings;
+        // The clock has wandered since the begin: its drift is as little known as that of any receiver.
+        settings.clock.drift_mps = settings.clock.drift_mps.max(ClockModel::default().drift_mps);
+        let anew = Self::new(*self.main.state(), sigma, settings)?;
         (self.main, self.receiver, self.nested) = (anew.main, anew.receiver, false);
         Ok(())
     }
@@ -67,7 +70,15 @@ impl Fusion {
         if let Some(beside) = &mut self.beside {
             beside.advance(sample);
         }
-        self.main.advance(sample)
+        let outcome = self.main.advance(sample);
+        // Each finds its own attitude after a hole.
+        self.nested &= !matches!(outcome, Advance::Adrift { .. });
+        outcome
+    }
+
+    /// Whether a measurement of this time is judged: not before the start, too old, or in a hole of the inertial samples.
+    pub fn judges(&self, time: GpsTime) -> bool {
+        self.main.stopped().is_none() && self.main.age_of(time).is_some()
     }
 
     /// Measurements of one kind and one time; how many of them are used in a filter.
@@ -96,7 +107,7 @@ impl Fusion {
     /// Everything at once: the main filter's, or what the master makes of both.
     pub fn solution(&mut self) -> Solution {
         match &mut self.beside {
-            Some(beside) if self.settings.form == Form::Federated && beside.stopped().is_none() => master(&mut self.main, beside),
+            Some(beside) if self.settings.form == Form::Federated && together(&self.main, beside) => master(&mut self.main, beside),
             _ => self.main.solution(),
         }
     }
@@ -108,10 +119,7 @@ impl Fusion {
     ///               = V(without) + V(with)      bound for errors without negative correlation: federated, or after a new start
     /// ```
     pub fn beside(&mut self) -> Option<Beside> {
-        let without = self.beside.as_mut().filter(|b| b.stopped().is_none())?;
-        if self.main.stopped().is_some() {
-            return None;
-        }
+        let without = self.beside.as_mut().filter(|b| together(&self.main, b))?;
         let (with, solution) = (self.main.solution(), without.solution());
         let (a, b) = (with.state.position().ok()?, solution.state.position().ok()?);
         let difference = crate::frame::ecef_from_geodetic(&a).minus(&crate::frame::ecef_from_geodetic(&b)).to_enu(&b.point);
@@ -155,6 +163,19 @@ impl Fusion {
     pub const fn samples(&self) -> &Samples {
         self.main.samples()
     }
+    /// Whether it speaks of the last sample: not in a hole before a measurement.
+    pub fn is_current(&self) -> bool {
+        self.main.is_current()
+    }
+    /// How often the receiver's clock has jumped and was set anew.
+    pub const fn clock_jumps(&self) -> u32 {
+        self.main.clock_jumps()
+    }
+    /// Stations that are left out now, of the filter that has them.
+    pub fn stations_left_out(&self) -> impl Iterator<Item = Further> + '_ {
+        let second = self.beside.as_ref().filter(|_| self.settings.form == Form::Federated);
+        self.main.stations_left_out().chain(second.into_iter().flat_map(Filter::stations_left_out))
+    }
     /// Why it has stopped, if it has.
     pub const fn stopped(&self) -> Option<&Stop> {
         self.main.stopped()
@@ -163,6 +184,11 @@ impl Fusion {
     pub fn time(&self) -> GpsTime {
         self.main.time()
     }
+}
+
+/// Whether both speak, and of the same instant: after a hole each waits for a measurement of its own.
+fn together(main: &Filter, beside: &Filter) -> bool {
+    main.is_current() && beside.is_current() && main.time() == beside.time()
 }
 
 fn aid(filter: &mut Filter, together: &[TimedAiding]) -> usize {

@@ -153,7 +153,8 @@ impl Filter {
             }
         };
         let outcome = self.use_position(receiver, &antenna, &solved, &held);
-        if let Some((step, covariance)) = velocity(&antenna, ranges) {
+        // The position may have moved the velocity, much so where both are tied: after a hole.
+        if let Some((step, covariance)) = velocity(&antenna.moving(self.state()), ranges) {
             self.use_three(Kind::FixVelocity, &step, &covariance, |axis| antenna.along_velocity(axis));
         }
         if matches!(outcome, Aided::Used { .. }) {

@@ -6,7 +6,7 @@ use super::state::NavState;
 use crate::frame::{EcefPosition, Geodetic, ecef_from_geodetic, enu_from_ecef};
 use crate::quantity::OutOfDomain;
 use crate::signal::{DmeRange, SatelliteRange, VorBearing};
-use crate::special::float::{atan2, hypot};
+use crate::special::float::{atan2, hypot, sqrt};
 use core::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, Vector3};
 
@@ -42,6 +42,11 @@ impl Antenna {
         let v = state.v + swing;
         let ecef = ecef_from_geodetic(&position).vector() + ned_from_ecef.transpose() * (arm - v * age_s);
         Ok(Self { ecef, ned_from_ecef, v, arm, swing })
+    }
+
+    /// With the velocity as another measurement of the same instant has left it.
+    pub(super) fn moving(&self, state: &NavState) -> Self {
+        Self { v: state.v + self.swing, ..*self }
     }
 
     /// Row of a quantity whose gradient by position is `g`: the estimate is wrong by dr + arm x phi.
@@ -93,6 +98,19 @@ impl Antenna {
         let (u, _) = self.towards(&m.position);
         let predicted = u.dot(&(self.ned_from_ecef * m.velocity_mps - self.v));
         Scalar { innovation: rate_mps - predicted, row: self.velocity_row(&-u), variance: sigma_mps * sigma_mps }
+    }
+
+    /// Root mean square \[m\] of what a straight line leaves of a slant range where the position is known by the variances `p`: across the
+    /// line of sight the ranges bend.
+    ///
+    /// ```text
+    /// e' B e / 2,  B = (1 - u u') / distance        mean tr(B p) / 2, variance tr(B p B p) / 2
+    /// ```
+    pub(super) fn bend(&self, m: &DmeRange, p: &Matrix3<f64>) -> f64 {
+        let (u, distance) = self.towards(&m.position);
+        let bent = (Matrix3::identity() - u * u.transpose()) / distance * p;
+        let mean = 0.5 * bent.trace();
+        sqrt(mean * mean + 0.5 * (bent * bent).trace())
     }
 
     /// Slant range to a station.

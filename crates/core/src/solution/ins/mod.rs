@@ -9,6 +9,7 @@
 //! Local axes point north, east and down and the equations hold the tangent of the latitude: within 0.1 degree of a pole a state is
 //! refused, and no wander angle is carried.
 
+mod adrift;
 mod aid;
 mod align;
 mod covariance;
@@ -21,6 +22,7 @@ mod filter;
 mod forms_tests;
 mod fusion;
 mod innovation;
+mod jump;
 mod loose;
 mod measure;
 mod mode;
@@ -28,8 +30,10 @@ mod sane;
 mod settings;
 mod slots;
 mod state;
+mod stations;
 mod strapdown;
 
+pub use adrift::Resumption;
 pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};
 pub use filter::{Advance, Filter, Samples, Solution, Stop};

@@ -6,6 +6,8 @@ use crate::quantity::GpsTime;
 /// What keeps the position: the best of what is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Mode {
+    /// A hole in the inertial samples has passed and the attitude is not yet as good as it will be.
+    Aligning,
     /// Nothing: the covariance grows as the inertial errors do.
     Coasting,
     /// A bearing and a range.
@@ -21,6 +23,7 @@ impl Mode {
     /// The word of tables.
     pub const fn word(self) -> &'static str {
         match self {
+            Self::Aligning => "aligning",
             Self::Coasting => "coasting",
             Self::VorDme => "vor_dme",
             Self::DmeDme => "dme_dme",

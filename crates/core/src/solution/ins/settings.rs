@@ -1,5 +1,6 @@
 //! What the filter is told: noise of the sensors, first uncertainty, gates, patience.
 
+use super::adrift::Resumption;
 use super::state::finite;
 use crate::quantity::{Metres, OutOfDomain, Radians, Risk};
 use nalgebra::Vector3;
@@ -149,6 +150,8 @@ pub struct Settings {
     pub set_after_s: f64,
     /// Of the mode.
     pub patience: Patience,
+    /// After a hole that is not bridged.
+    pub resumption: Resumption,
 }
 
 impl Settings {
@@ -170,6 +173,7 @@ impl Settings {
             age_most_s: 0.2,
             set_after_s: 60.0,
             patience: Patience { lose_s: 5.0, gain_s: 10.0 },
+            resumption: Resumption::USUAL,
         }
     }
 
@@ -201,6 +205,7 @@ impl Settings {
         if self.samples_per_step == 0 {
             return Err(OutOfDomain { argument: "samples_per_step", value: 0.0, unit: "1", domain: "[1, inf)" });
         }
+        self.resumption.check()?;
         self.lever_arm_m.iter().try_for_each(|x| finite("lever_arm_m", *x, "m"))
     }
 }

@@ -129,6 +129,12 @@ impl Slots {
         joint.mix(places, a, q);
     }
 
+    /// A value of which nothing is known any more but about where it is.
+    pub(super) fn set_anew(&mut self, joint: &mut Joint, place: usize, value: f64, sigma: f64) {
+        self.slot[place - BASE].value = value;
+        joint.reset(place, sigma * sigma);
+    }
+
     /// The station or satellite unseen for longest makes room.
     fn evict(&mut self, joint: &mut Joint) -> bool {
         let leaving = |s: &Slot| matches!(s.what, Further::Dme(_) | Further::Vor(_) | Further::Satellite(_));
