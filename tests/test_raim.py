@@ -86,6 +86,13 @@ def test_the_risks_of_the_page_come_out(slope: float, published: float, held: fl
     assert raim_scipy.worst_joint(5, slope * float(bias) + noise, slope, 1.0) <= held
 
 
+def test_the_published_level_holds_where_the_slope_is_steep() -> None:
+    """docs/methods/raim.md: from some 1.7 sigma on."""
+    _, bias = raim.factors(5)
+    risk = {slope: raim_scipy.worst_joint(5, slope * float(bias), slope, 1.0) for slope in (1.5, 1.7, 5.0)}
+    assert risk[1.5] > raim.RAIM.missed_detection >= max(risk[1.7], risk[5.0])
+
+
 def test_no_faultless_epoch_alarms_more_often_than_promised() -> None:
     needs = raim.Requirement(false_alarm=0.01, missed_detection=0.05, fault_free=1e-3)
     unit, of, sigma = sky(9, 12), [GPS] * 5 + [GALILEO] * 4, np.linspace(1.0, 2.0, 9)
