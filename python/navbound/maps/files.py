@@ -11,6 +11,8 @@ from navbound.errors import FormatError
 from navbound.maps import netcdf, records
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
     import polars as pl
 
 RECORD, SUMMARY, POINTS, ARRAYS, REPORT = "run.json", "summary.json", "map.parquet", "map.nc", "report.html"
@@ -36,6 +38,11 @@ class Map:
     path: Path | None = None
 
 
+def own(out: Path) -> AbstractContextManager[None]:
+    """Make the folder of a map and write in it; one that holds something else is refused with a :class:`FormatError`."""
+    return _folder.own(out, {RECORD, SUMMARY, POINTS, ARRAYS, REPORT}, "a map's")
+
+
 def write(made: Map, out: Path) -> Map:
     """Write every record, the points as Parquet and NetCDF, and the report; a folder that holds something else is refused.
 
@@ -46,7 +53,7 @@ def write(made: Map, out: Path) -> Map:
     """
     from navbound.report.world import render  # noqa: PLC0415  (the report is only loaded when one is written)
 
-    with _folder.own(out, {RECORD, SUMMARY, POINTS, ARRAYS, REPORT}, "a map's"):
+    with own(out):
         (out / RECORD).write_text(made.record.model_dump_json(indent=1), encoding="utf-8")
         (out / SUMMARY).write_text(made.summary.model_dump_json(indent=1), encoding="utf-8")
         made.points.write_parquet(out / POINTS, compression="zstd")

@@ -92,6 +92,10 @@ def make(
         tuple((one.column, one.limit) for one in asked),
         tuple(c.name for c in chosen.causes),
     )
+    if out is not None:
+        # What the folder refuses is said before the work, not after it.
+        with files.own(Path(out)):
+            pass
     lat, lon = grid.points()
     n_epochs = job.n_epochs()
     tiles = [Tile(lat[s], lon[s]) for s in scale.cut(len(grid), n_epochs * chosen.user_epoch_s, n_epochs * _RESULT_BYTES)]
