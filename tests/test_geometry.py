@@ -126,13 +126,13 @@ def test_the_satellites_of_a_year_stand_in_the_expanded_slots(shared_data: Path)
     slots = gnss.constellation("gps-expanded")
 
     def turned(angle: NDArray[np.float64]) -> NDArray[np.float64]:
-        return (angle + 180.0) % 360.0 - 180.0
+        return np.asarray((angle + 180.0) % 360.0 - 180.0)
 
     def away(along: float, nodes: float) -> NDArray[np.float64]:
         # A satellite of another plane is none of this slot.
         off = turned(np.degrees(node)[:, None] - np.degrees(slots.node_rad) - nodes)
         found = np.abs(turned(latitude[:, None] - np.degrees(slots.mean_anomaly_rad) - along))
-        return np.where(np.abs(off) < 25.0, found, 180.0).min(axis=0)
+        return np.asarray(np.where(np.abs(off) < 25.0, found, 180.0).min(axis=0))
 
     best = min((away(a, n) for a in range(0, 360, 2) for n in range(0, 360, 8)), key=lambda d: float(np.minimum(d, 20.0).sum()))
     split = [slots.satellite.index(name) for name in ("G05", "G06", "G15", "G16", "G24", "G25")]

@@ -140,7 +140,7 @@ def test_units_on_wheels_err_by_flight_and_refuse_what_is_none() -> None:
         ((bend(), PERFECT.model_copy(update={"gyro_scale": 2.0})), "gyro_scale"),
     ):
         with pytest.raises(InputError, match=argument):
-            ins.roll(0, *arguments)  # type: ignore[arg-type]
+            ins.roll(0, *arguments)
     for keywords in ({"rate_hz": 7}, {"truth_interval_s": 0.03}, {"seed": -1}):
         with pytest.raises(InputError, match=next(iter(keywords))):
             ins.roll(0, bend(), PERFECT, **keywords)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -93,8 +93,8 @@ class InertialFlight:
         self.start = self._start(seed, track, attitude)
         self.clock_m, self.drift_mps = self._clock(seed, track, len(self.truth))
         self.doppler_mps = shared.parts.doppler_mps * errors.normals(seed, track, errors.DOPPLER, range(wide), len(shared.flown.position))
-        place = np.ascontiguousarray(self.truth.T)
-        receiver, self.place = (gnss.places(*place, shared.sky.az_rad, shared.sky.el_rad, away) for away in (0.0, AWAY_M))
+        lat, lon, h = np.ascontiguousarray(self.truth.T)
+        receiver, self.place = (gnss.places(lat, lon, h, shared.sky.az_rad, shared.sky.el_rad, away) for away in (0.0, AWAY_M))
         self.ray_mps = np.gradient(self.place - receiver, 1.0 / STEPS, axis=0)
 
     def _start(self, seed: int, track: int, attitude: tuple[float, ...]) -> ins.Start:
@@ -145,9 +145,9 @@ class InertialFlight:
         covariance[second] = fused.covariance_enu_m2
         return Solved(error[shared.flown.lead :], covariance[shared.flown.lead :])
 
-    def _joined(self, *parts: dict[str, Floats]) -> dict[str, object]:
+    def _joined(self, *parts: dict[str, Floats]) -> dict[str, Any]:
         """Columns of ranges and of rates, satellites by name."""
-        columns: dict[str, object] = {name: np.concatenate([part[name] for part in parts]) for name in parts[0] if name != "number"}
+        columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0] if name != "number"}
         numbers = np.concatenate([part["number"] for part in parts]).astype(np.int64)
         return {**columns, "satellite": [self.shared.sky.names[k] for k in numbers]}
 
