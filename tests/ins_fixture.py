@@ -89,6 +89,13 @@ def satellites(seed: int, time_ns: NDArray[np.int64], *, white_m: float, slow_m:
     )
 
 
+def some(sky: ins.SatelliteRanges, keep: NDArray[np.bool_]) -> ins.SatelliteRanges:
+    """Some of the ranges, with their white part alone."""
+    position, velocity, measured = (np.asarray(a)[keep] for a in (sky.position_ecef_m, sky.velocity_ecef_mps, sky.range_m))
+    names = [name for name, kept in zip(sky.satellite, keep, strict=True) if kept]
+    return ins.SatelliteRanges(np.asarray(sky.time_ns)[keep], names, position, velocity, measured, sky.sigma_white_m, 0.0, 60.0)
+
+
 def error_enu(fused: ins.Fused) -> Floats:
     """Estimate minus truth. [m]"""
     d = fused.position - np.array(PLACE)

@@ -163,16 +163,7 @@ def test_the_mode_falls_back_and_returns_with_patience() -> None:
     t = second // SECOND
     sky = body.satellites(5, second, white_m=1.0, slow_m=0.0, tau_s=60.0)
     seen = np.repeat((t <= 20) | (t > 90), 9)
-    kept = ins.SatelliteRanges(
-        np.asarray(sky.time_ns)[seen],
-        [name for name, keep in zip(sky.satellite, seen, strict=True) if keep],
-        np.asarray(sky.position_ecef_m)[seen],
-        np.asarray(sky.velocity_ecef_mps)[seen],
-        np.asarray(sky.range_m)[seen],
-        1.0,
-        0.0,
-        60.0,
-    )
+    kept = body.some(sky, seen)
     dme, vor = radio(second)
     two = np.repeat(t <= 40, 2) | (np.arange(2 * t.size) % 2 == 0) & np.repeat(t <= 60, 2)
     dme = ins.DmeRanges(
@@ -192,6 +183,30 @@ def test_the_mode_falls_back_and_returns_with_patience() -> None:
     sigma = np.sqrt(fused.covariance_enu_m2[:, 0, 0])
     assert sigma[105] < sigma[89]
     assert np.all(np.diff(sigma[62:90]) > 0)
+
+
+def test_rates_alone_hold_what_ranges_have_found() -> None:
+    """Ranges for half a minute, then carrier phase: the position stays, and what the filter says of it grows as slowly."""
+    still = body.standing(6, 120.0)
+    second = still.time_ns[9::10]
+    sky = body.satellites(6, second, white_m=0.3, slow_m=0.0, tau_s=60.0)
+    ranged = np.repeat(second // SECOND <= 30, 9)
+    geometry = (np.asarray(sky.position_ecef_m), np.asarray(sky.velocity_ecef_mps))
+    # The sky of the fixture stands still, as the body does: a rate is the clock's 0.5 m/s and noise.
+    rates = 0.5 + 0.005 * np.random.default_rng(61).normal(size=ranged.size)
+    mixed = ins.SatelliteRanges(sky.time_ns, sky.satellite, *geometry, np.where(ranged, sky.range_m, np.nan), 0.3, 0.0, 60.0, rates, 0.005)
+    fused = ins.fuse(still.imu, ins.Aiding(satellites=mixed), still.start)
+    sigma = np.sqrt(fused.covariance_enu_m2[:, 0, 0])
+    alone = ins.fuse(still.imu, ins.Aiding(satellites=body.some(mixed, ranged)), still.start)
+    free = np.sqrt(alone.covariance_enu_m2[:, 0, 0])
+    # Ninety seconds of white rates of 5 mm/s add less than a decimetre; without them the unit's own errors add metres.
+    assert sigma[119] - sigma[30] < 0.1
+    assert free[119] - free[30] > 1.0
+    # The mode knows positions only: rates hold none.
+    assert fused.mode[119] == "coasting"
+    assert fused.innovations["range_rate"].n_used > fused.innovations["range"].n_used
+    none = ins.SatelliteRanges(sky.time_ns, sky.satellite, *geometry, np.nan, 0.3, 0.0, 60.0)
+    assert ins.fuse(still.imu, ins.Aiding(satellites=none), still.start).innovations["range_rate"].n_refused == len(sky.satellite)
 
 
 def test_samples_that_are_none_late_or_missing_are_counted_and_bridged() -> None:

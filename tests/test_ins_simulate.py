@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
@@ -12,6 +13,10 @@ import pytest
 
 from ins_fixture import true_start
 from navbound import FormatError, InputError, gnss, ins, scenario
+from navbound.scenario.sensors import Imu
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 ROOT = Path(__file__).parents[1]
 TABLES = ("truth", "imu", "satellites", "dme", "vor", "baro", "clock")
@@ -90,6 +95,55 @@ def test_an_error_free_run_of_the_mechanization_closes_to_a_metre_in_two_hours(t
     # Metres on a sphere: a per cent of a metre at most.
     apart = (found - truth) * np.array([6.37e6, 6.37e6 * np.cos(0.6), 1.0])
     assert np.abs(apart).max() < 1.0
+
+
+PERFECT = Imu(**dict.fromkeys(Imu.model_fields, 0.0) | {"in_run_time_s": 3600.0})
+
+
+def bend(n: int = 90) -> NDArray[np.float64]:
+    """Straight on, a quarter turn to the right in 15 s, straight on; 10 m/s."""
+    turn = np.clip((np.arange(n) - 30.0) / 15.0, 0.0, 1.0) * np.pi / 2
+    north, east = np.cumsum(10.0 * np.cos(turn)), np.cumsum(10.0 * np.sin(turn))
+    return np.stack([0.72 + north / 6.3628e6, 0.04 + east / (6.3858e6 * np.cos(0.72)), np.full(n, 50.0)], axis=-1)
+
+
+def test_a_way_on_wheels_closes_and_does_not_bank() -> None:
+    put = bend()
+    rolled = ins.roll(0, put, PERFECT, rate_hz=50)
+    truth = rolled.truth.select("truth_lat_rad", "truth_lon_rad", "truth_h_m").to_numpy()
+    metres = np.array([6.3628e6, 6.3858e6 * np.cos(0.72), 1.0])
+    # The spline's second moment cuts a corner of curvature by centimetres where the turn begins.
+    assert np.abs((truth - put) * metres).max() < 0.15
+    assert rolled.truth["roll_rad"].abs().max() == 0.0
+    # v² / R: 10 m/s and a quarter turn in 15 s.
+    assert rolled.truth["force_y_mps2"][37] == pytest.approx(10.0 * np.pi / 30.0, rel=2e-3)
+    velocity, attitude = (
+        tuple(rolled.truth.select(names).row(0))
+        for names in (["vel_n_mps", "vel_e_mps", "vel_d_mps"], ["roll_rad", "pitch_rad", "heading_rad"])
+    )
+    track = ins.mechanize(ins.Imu.of_table(rolled.imu), ins.Start(0, tuple(truth[0]), velocity, attitude))
+    # Increments are exact to fourth order and the mechanization to third: a millimetre in a minute and a half.
+    assert np.abs((track.position[49::50] - truth[1:]) * metres).max() < 2e-3
+
+
+def test_units_on_wheels_err_by_flight_and_refuse_what_is_none() -> None:
+    wrong = PERFECT.model_copy(update={"gyro_noise_radprts": 1e-5})
+    first, again, other = (ins.roll(0, bend(), wrong, seed=3, flight=k).imu for k in (0, 0, 1))
+    assert first.equals(again)
+    assert not first["angle_x_rad"].equals(other["angle_x_rad"])
+    assert ins.roll(0, bend(), wrong, truth_interval_s=0.2).truth.height == 89 * 5 + 1
+    for arguments, argument in (
+        ((bend()[:5], PERFECT), "position"),
+        ((bend()[:, :2], PERFECT), "position"),
+        ((np.where(np.arange(90)[:, None] == 7, np.nan, bend()), PERFECT), "position"),
+        ((np.repeat(bend()[:1], 20, axis=0), PERFECT), "ground speed"),
+        ((bend(), PERFECT.model_copy(update={"gyro_scale": 2.0})), "gyro_scale"),
+    ):
+        with pytest.raises(InputError, match=argument):
+            ins.roll(0, *arguments)
+    for keywords in ({"rate_hz": 7}, {"truth_interval_s": 0.03}, {"seed": -1}):
+        with pytest.raises(InputError, match=next(iter(keywords))):
+            ins.roll(0, bend(), PERFECT, **keywords)
 
 
 def test_nothing_is_heard_while_jammed() -> None:

@@ -74,7 +74,9 @@ def test_ramps_that_hurt_are_detected_as_often_as_allotted(size: float) -> None:
         kept = every.copy()
         kept[i] = False
         apart = np.linalg.norm(drawn.travelled(kept, fault) - whole, axis=1)
-        alarm |= apart > k_false * found.subset_separation_m[i]
+        alarm |= apart > found.subset_threshold_m[i]
+        # SciPy's tail, to the digits of both.
+        assert found.subset_threshold_m[i] == pytest.approx(k_false * found.subset_separation_m[i], rel=1e-12)
     hurt = (np.linalg.norm(whole, axis=1) > found.hpl_m) & ~alarm
     low = stats.binomtest(int(hurt.sum()), n).proportion_ci(0.99).low
     assert low <= risk, f"{hurt.mean()} of {n}"

@@ -19,6 +19,7 @@ from navbound.run import error_extraction_faults as faults
 from navbound.run import error_extraction_risks as risks
 from navbound.run import study_error_extraction as study
 from navbound.run.error_extraction_records import Stage, Study
+from navbound.run.series_memory import gauss_markov
 
 
 @cache
@@ -153,7 +154,7 @@ def test_a_number_of_another_fault_is_not_reproducible(monkeypatch: pytest.Monke
 
 
 def test_nominal_errors_are_what_they_are_called() -> None:
-    error = faults.gauss_markov(np.random.Generator(np.random.Philox(3)), (400, 300), 0.3, 30.0)
+    error = 0.3 * gauss_markov(np.random.Generator(np.random.Philox(3)).standard_normal((400, 300)), 30.0)
     # 400 independent runs: a standard deviation is known to 1 / sqrt(800) of itself; five of those.
     for column in (0, 299):
         assert error[:, column].std() == pytest.approx(0.3, rel=5 / 800**0.5)

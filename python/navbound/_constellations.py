@@ -108,8 +108,9 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
 
     Parameters
     ----------
-    name : {"gps", "galileo", "beidou"}, str or Path
-        GPS: 24 slots of the standard positioning service's performance standard. Galileo: 24 in medium orbits (Walker 24/3/1).
+    name : {"gps", "gps-expanded", "galileo", "beidou"}, str or Path
+        GPS: 24 slots of the standard positioning service's performance standard; expanded: the 27 with its slots B1, D2 and F2 split in
+        two. Galileo: 24 in medium orbits (Walker 24/3/1).
         BeiDou-3: 24 likewise, three inclined geosynchronous, three geostationary. Join them with ``+``. Anything else is the path of an
         almanac, YUMA or SEM, or of a RINEX navigation file: the healthy satellites with a record within a day.
     near_ns : int, optional

@@ -108,8 +108,8 @@ class FaultRates:
         Which.
     gps_per_hour, galileo_per_hour : float
         Of a satellite. [1/h]
-    gps_wide, galileo_wide : float
-        Priors of a fault of the whole constellation, beside another one. [1]
+    gps_wide_per_hour, galileo_wide_per_hour : float
+        Of the whole constellation, beside another one. [1/h]
     decorrelation_s : float
         How long a fault may act before monitors with memory show it. [s]
     satellites : int
@@ -121,8 +121,8 @@ class FaultRates:
     id: str
     gps_per_hour: float
     galileo_per_hour: float
-    gps_wide: float
-    galileo_wide: float
+    gps_wide_per_hour: float
+    galileo_wide_per_hour: float
     decorrelation_s: float
     satellites: int
     marks: tuple[Mark, ...]
@@ -226,6 +226,35 @@ class RangeSigma:
     ionosphere_m: NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class Inertial:
+    """The inertial system of the study, the receiver's clock and the white parts of its ranges.
+
+    Attributes
+    ----------
+    gyro_bias_radps, gyro_walk_radprts : float
+        Bias and angular random walk. [rad/s, rad/√s]
+    accelerometer_bias_mps2, accelerometer_walk_mpsprts : float
+        Bias and velocity random walk. [m/s², m/s/√s]
+    clock_h0_s, clock_h_minus_2_per_s : float
+        Powers of the clock's white frequency noise and of its frequency walk. [s, 1/s]
+    doppler_mps, receiver_noise_m : float
+        Deviations of a range rate, and of the white part of a smoothed range. [m/s, m]
+    marks : tuple of Mark
+        How each is held.
+    """
+
+    gyro_bias_radps: float
+    gyro_walk_radprts: float
+    accelerometer_bias_mps2: float
+    accelerometer_walk_mpsprts: float
+    clock_h0_s: float
+    clock_h_minus_2_per_s: float
+    doppler_mps: float
+    receiver_noise_m: float
+    marks: tuple[Mark, ...]
+
+
 @cache
 def _tables() -> dict[str, Any]:
     return _core.surface_tables()
@@ -272,7 +301,17 @@ def carriers() -> dict[str, Carrier]:
 def model_marks() -> dict[str, tuple[Mark, ...]]:
     """How the numbers of the error models and of the inertial system are held, by service and ``inertial``."""
     models = {name: _marks(rows) for name, _, rows in _tables()["error_models"]}
-    return {**models, "inertial": _marks(_tables()["inertial_marks"])}
+    return {**models, "inertial": inertial().marks}
+
+
+def inertial() -> Inertial:
+    """The inertial system of the study and what goes with it in the filter."""
+    return Inertial(**_marked(_tables()["inertial"]))
+
+
+def multipath_times() -> dict[str, tuple[float, float]]:
+    """Shortest and longest time constant of smoothed multipath by service [s]."""
+    return {name: (ends[0], ends[1]) for name, ends in _tables()["multipath_s"]}
 
 
 def check_service(service: str) -> None:

@@ -52,11 +52,13 @@ class SatelliteRanges:
     position_ecef_m, velocity_ecef_mps : array_like, shape (n, 3)
         At transmission, in the Earth-fixed axes of reception. [m, m/s]
     range_m : array_like, shape (n,)
-        Geometric range + clock + inter-system bias + error. [m]
+        Geometric range + clock + inter-system bias + error; NaN where only the rate is known, as from carrier phase. [m]
     sigma_white_m, sigma_correlated_m, correlation_time_s : array_like, shape (n,) or ()
         Deviation of what is new each time; deviation and correlation time of what stays. [m, m, s]
     rate_mps, sigma_rate_mps : array_like, shape (n,) or ()
         Range rate; NaN where there is none. [m/s]
+    sigma_first_m : array_like, shape (n,) or (), optional
+        Deviation of what stays when the satellite is first seen; without it ``sigma_correlated_m``, a stationary process. [m]
     """
 
     time_ns: ArrayLike
@@ -69,6 +71,7 @@ class SatelliteRanges:
     correlation_time_s: ArrayLike
     rate_mps: ArrayLike = np.nan
     sigma_rate_mps: ArrayLike = np.nan
+    sigma_first_m: ArrayLike | None = None
 
     def table(self) -> tuple[NDArray[np.int64], list[tuple[str, int]], NDArray[np.float64]]:
         """Give times, satellites and numbers."""
@@ -82,6 +85,7 @@ class SatelliteRanges:
             ("range_m", self.range_m, 1),
             ("sigma_white_m", self.sigma_white_m, 1),
             ("sigma_correlated_m", self.sigma_correlated_m, 1),
+            ("sigma_first_m", self.sigma_correlated_m if self.sigma_first_m is None else self.sigma_first_m, 1),
             ("correlation_time_s", self.correlation_time_s, 1),
             ("rate_mps", self.rate_mps, 1),
             ("sigma_rate_mps", self.sigma_rate_mps, 1),
@@ -256,7 +260,7 @@ class Aiding:
         """Give the tables as the core takes them."""
         no_time = np.empty(0, dtype=np.int64)
         return {
-            "satellites": (no_time, [], np.empty((0, 12))) if self.satellites is None else self.satellites.table(),
+            "satellites": (no_time, [], np.empty((0, 13))) if self.satellites is None else self.satellites.table(),
             "fixes": (no_time, np.empty((0, 24))) if self.fixes is None else self.fixes.table(),
             "dme": (no_time, [], np.empty((0, 6))) if self.dme is None else self.dme.table(),
             "vor": (no_time, [], np.empty((0, 6))) if self.vor is None else self.vor.table(),

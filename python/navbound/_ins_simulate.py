@@ -14,7 +14,10 @@ from navbound.errors import InputError
 from navbound.scenario import Scenario, load
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from navbound.gnss import Navigation
+    from navbound.scenario.sensors import Imu
 
 
 @dataclass(frozen=True)
@@ -103,16 +106,86 @@ def simulate(
     for name, value in (("flight", flight), ("seed", chosen)):
         if not (isinstance(value, int) and 0 <= value < 2**64):
             raise InputError(name, value, domain="[0, 2^64)")
-    samples = truth_interval_s * found.sensors.rate_hz
-    # A written interval times the rate is a whole number to some 1e-12.
-    if not (0.5 <= samples < 2**63 and abs(samples - round(samples)) < 1e-6):
-        raise InputError("truth_interval_s", truth_interval_s, "s", f"whole multiples of 1/{found.sensors.rate_hz} s")
+    samples = _samples(truth_interval_s, found.sensors.rate_hz)
     prepared = _core.Sensors(found.core_json(), None if navigation is None else navigation._core)
-    tables = prepared.fly(chosen, flight, round(samples))
+    tables = prepared.fly(chosen, flight, samples)
     names = np.array([station.name for station in found.sensors.stations], dtype=object)
     for kind in ("dme", "vor"):
         tables[kind]["station"] = names[tables[kind]["station"]].tolist()
     return Sensed(**{name: _frame(columns) for name, columns in tables.items()}, scenario=found, seed=chosen, flight=flight)
+
+
+def _samples(interval_s: float, rate_hz: int) -> int:
+    """Samples of the inertial unit between rows of the truth."""
+    samples = interval_s * rate_hz
+    # A written interval times the rate is a whole number to some 1e-12.
+    if not (0.5 <= samples < 2**63 and abs(samples - round(samples)) < 1e-6):
+        raise InputError("truth_interval_s", interval_s, "s", f"whole multiples of 1/{rate_hz} s")
+    return round(samples)
+
+
+@dataclass(frozen=True)
+class Rolled:
+    """What an inertial unit on wheels delivered, and the truth: tables as in `Sensed`.
+
+    Attributes
+    ----------
+    truth : polars.DataFrame
+        From the begin.
+    imu : polars.DataFrame
+        Every sample.
+    """
+
+    truth: pl.DataFrame
+    imu: pl.DataFrame
+
+
+def roll(
+    start_ns: int, position: ArrayLike, unit: Imu, *, rate_hz: int = 10, seed: int = 0, flight: int = 0, truth_interval_s: float = 1.0
+) -> Rolled:
+    """Inertial unit of a vehicle that rolls along given positions, turning without bank.
+
+    Its way is a spline with a knot each second, so that force and rate are smooth; it follows the positions to centimetres where they run
+    straight and to decimetres where a turn begins or ends. It comes and goes straight on.
+
+    Parameters
+    ----------
+    start_ns : int
+        GPS time of the first position. [ns]
+    position : array_like, shape (n, 3)
+        Latitude, longitude, height above the ellipsoid at whole seconds, ten or more. [rad, rad, m]
+    unit : navbound.scenario.sensors.Imu
+        Errors of the unit.
+    rate_hz : int, optional
+        Samples a second, a divisor of 10^9 from 10 to 200.
+    seed, flight : int, optional
+        Choose the random streams.
+    truth_interval_s : float, optional
+        Time between rows of the truth, a whole multiple of the unit's interval. [s]
+
+    Returns
+    -------
+    Rolled
+        The same numbers for the same arguments.
+
+    Raises
+    ------
+    InputError
+        Fewer than ten positions, one that is not finite or within a degree of a pole, a vehicle that stands still, errors or a rate
+        outside their domains.
+    """
+    found = np.asarray(position, dtype=np.float64)
+    if found.ndim != 2 or found.shape[1] != 3:
+        raise InputError("position", f"shape {found.shape}", domain="shape (n, 3)")
+    if not (isinstance(rate_hz, int) and 0 <= rate_hz < 2**32):
+        raise InputError("rate_hz", rate_hz, "1/s", "divisors of 10^9 from 10 to 200")
+    for name, value in (("flight", flight), ("seed", seed)):
+        if not (isinstance(value, int) and 0 <= value < 2**64):
+            raise InputError(name, value, domain="[0, 2^64)")
+    tables = _core.ins_roll(
+        start_ns, np.ascontiguousarray(found), unit.model_dump_json(), (rate_hz, _samples(truth_interval_s, rate_hz)), (seed, flight)
+    )
+    return Rolled(_frame(tables["truth"]), _frame(tables["imu"]))
 
 
 def _frame(columns: dict[str, Any]) -> pl.DataFrame:

@@ -55,9 +55,11 @@ __all__ = [
     "geodetic",
     "geometry",
     "nominal",
+    "places",
     "read_navigation",
     "read_observations",
     "read_orbits",
+    "responses",
     "solve",
 ]
 
@@ -184,6 +186,37 @@ def directions(
     return found["az_rad"].reshape(wide), found["el_rad"].reshape(wide)
 
 
+def places(  # noqa: PLR0917 - receivers, then lines of sight
+    lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, az_rad: ArrayLike, el_rad: ArrayLike, distance_m: float
+) -> NDArray[np.float64]:
+    """Places at a distance from receivers along lines of sight.
+
+    Parameters
+    ----------
+    lat_rad, lon_rad, h_m : array_like, shape (m,)
+        Receivers, WGS-84. [rad, rad, m]
+    az_rad, el_rad : array_like, shape (m, n)
+        Lines of sight, azimuth clockwise from true north. [rad]
+    distance_m : float
+        [m]
+
+    Returns
+    -------
+    ndarray, shape (m, n, 3)
+        Earth-centred, Earth-fixed; NaN where an angle is. [m]
+
+    Raises
+    ------
+    InputError
+        A receiver that is not on the Earth, shapes that do not fit.
+    """
+    shape, (lat, lon, h) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()), h_m=(h_m, ()))
+    wide, (az, el) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()))
+    if len(shape) != 1 or len(wide) != 2 or wide[0] != shape[0]:
+        raise InputError("az_rad", f"shape {wide}", domain="shape (m, n) for m receivers")
+    return _core.places_along((lat, lon, h), az, el, distance_m).reshape(*wide, 3)
+
+
 def geometry(orbits: Orbits, lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, time_s: ArrayLike, *, mask_rad: float = 0.0) -> Sky:
     """Satellites above an elevation mask.
 
@@ -246,6 +279,38 @@ def covariance(
         status,
         reason,
     )
+
+
+def responses(
+    az_rad: ArrayLike, el_rad: ArrayLike, sigma_m: ArrayLike, constellation: Sequence[int] | NDArray[np.int64] | None = None
+) -> NDArray[np.float64]:
+    """How far a weighted least-squares position moves for a metre in each range: the rows of (H' W H)^-1 H' W.
+
+    Parameters
+    ----------
+    az_rad, el_rad : array_like, shape (..., n)
+        Satellites, azimuth clockwise from true north; both NaN for one that is not used. [rad]
+    sigma_m : array_like, shape (..., n) or ()
+        Standard deviation of each range. [m]
+    constellation : sequence of int, shape (n,), optional
+        Index of each satellite's system in :data:`CONSTELLATIONS`; without it all share one clock.
+
+    Returns
+    -------
+    ndarray, shape (..., 3, n)
+        East, north, up; 0 for a satellite that is not used, NaN everywhere where :func:`covariance` is ``not_available``. [1]
+
+    Raises
+    ------
+    InputError
+        As :func:`covariance`.
+    """
+    shape, (az, el, sigma) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()), sigma_m=(sigma_m, ()))
+    found = _core.position_responses(az, el, sigma, _systems(shape, constellation))
+    rows = found["response"].reshape(-1, shape[-1], 3)
+    solved = np.array([reason == "" for reason in found["reason"]], dtype=bool)
+    rows[solved[:, None] & np.isnan(az.reshape(-1, shape[-1]))] = 0.0
+    return np.ascontiguousarray(np.swapaxes(rows, -1, -2)).reshape(*shape[:-1], 3, shape[-1])
 
 
 def dop(az_rad: ArrayLike, el_rad: ArrayLike, constellation: Sequence[int] | NDArray[np.int64] | None = None) -> Dilution:

@@ -6,7 +6,7 @@ from navbound._ins_aiding import Aiding, BaroHeights, DmeRanges, Fixes, Satellit
 from navbound._ins_consistency import consistency
 from navbound._ins_fuse import Fused, Innovations, Reversion, Track, coarse_attitude, fuse, mechanize
 from navbound._ins_settings import Clock, FilterSettings, Imu, ImuModel, SensorNoise, Start, StartSigma, Wheels
-from navbound._ins_simulate import Sensed, simulate
+from navbound._ins_simulate import Rolled, Sensed, roll, simulate
 
 __all__ = [
     "Aiding",
@@ -20,6 +20,7 @@ __all__ = [
     "ImuModel",
     "Innovations",
     "Reversion",
+    "Rolled",
     "SatelliteRanges",
     "Sensed",
     "SensorNoise",
@@ -32,5 +33,6 @@ __all__ = [
     "consistency",
     "fuse",
     "mechanize",
+    "roll",
     "simulate",
 ]

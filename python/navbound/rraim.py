@@ -47,8 +47,9 @@ class Levels:
         Deviation in the worst direction; metres for a metre of bias in every range. [m, 1]
     covariance_enu_m2 : ndarray, shape (..., 3, 3)
         Covariance now. [m²]
-    subset_sigma_m, subset_separation_m, subset_bias_gain : ndarray, shape (..., n)
-        With each satellite away: deviation, deviation of the separation, gain of the bias. [m, m, 1]
+    subset_sigma_m, subset_separation_m, subset_bias_gain, subset_threshold_m : ndarray, shape (..., n)
+        With each satellite away: deviation, deviation of the separation, gain of the bias, and the separation above which the satellite
+        is held to be faulty, k_FA times its deviation. [m, m, 1, m]
     n_sv, n_modes : ndarray of int
         Satellites followed; modes of faults monitored.
     p_not_monitored : ndarray
@@ -71,6 +72,7 @@ class Levels:
     subset_sigma_m: NDArray[np.float64]
     subset_separation_m: NDArray[np.float64]
     subset_bias_gain: NDArray[np.float64]
+    subset_threshold_m: NDArray[np.float64]
     n_sv: NDArray[np.int64]
     n_modes: NDArray[np.int64]
     p_not_monitored: NDArray[np.float64]
@@ -191,6 +193,7 @@ def protection_levels(  # noqa: PLR0917 - satellites then, satellites now, their
         subset_sigma_m=subsets[..., 0],
         subset_separation_m=subsets[..., 1],
         subset_bias_gain=subsets[..., 2],
+        subset_threshold_m=subsets[..., 3],
         status=np.where(reason == "", "ok", "not_available"),
         reason=reason,
         multi_reason=multi,

@@ -27,19 +27,20 @@ import { verdict } from "./panel/verdict.ts";
 import { choice, el } from "./show/dom.ts";
 import { showWorld } from "./world/page.ts";
 import type { World } from "./world/records.ts";
+import { SHORT_M } from "./show/format.ts";
 import { choose, themeStore, type Choice } from "./show/theme.ts";
 
 /** The parts of the page that show one track, in order, and the columns of which one is needed to say anything. */
-const PARTS: { component: Component; host: "upper" | "charts"; needs: string[] }[] = [
+const PARTS: { component: Component; host: "upper" | "charts"; needs: string[]; aloft?: true }[] = [
     { component: map, host: "upper", needs: ["est_lat_rad"] },
     { component: performance, host: "upper", needs: ["rnp_m", "fte_m", "fte_v_m"] },
     { component: lateral, host: "charts", needs: ["fte_m"] },
-    { component: vertical, host: "charts", needs: ["fte_v_m"] },
+    { component: vertical, host: "charts", needs: ["fte_v_m"], aloft: true },
     { component: anp, host: "charts", needs: ["anp_circle_m", "anp_sphere_m"] },
     { component: alertLimit, host: "charts", needs: ["hal_m"] },
     { component: exceedance, host: "charts", needs: ["p_exceed_2rnp"] },
     { component: modes, host: "charts", needs: ["n_gated"] },
-    { component: states, host: "charts", needs: ["p_state_1"] },
+    { component: states, host: "charts", needs: ["p_state_1"], aloft: true },
 ];
 
 class Page {
@@ -96,7 +97,10 @@ class Page {
         this.current = now;
         this.selector.value = head.track;
         // A performance report is not asked for a path; without one its page does not list what a path would give.
-        const wanted = PARTS.filter((part) => (this.series === null && part.component !== modes) || part.needs.some((name) => table.has(name)));
+        // What is asked for in metres rolls: that it has no vertical path and no specification of flight needs no words.
+        const rolls = table.column("rnp_m")?.every((v) => v < SHORT_M) ?? false;
+        const explained = (part: (typeof PARTS)[number]): boolean => this.series === null && part.component !== modes && !(rolls && part.aloft);
+        const wanted = PARTS.filter((part) => explained(part) || part.needs.some((name) => table.has(name)));
         this.ends = [...wanted.map(({ component, host }) => component(this[host], now)), cursorBar(this.bar, now)];
         const worst = payload.summary.verdict.worst_accuracy;
         now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));

@@ -63,8 +63,8 @@ pub struct Answer {
     pub n_modes: usize,
     /// Probability of faults that are not.
     pub not_monitored: f64,
-    /// Each followed satellite away, with its column.
-    pub without: Vec<(usize, Without)>,
+    /// Each followed satellite away: its column, what follows, and the separation above which it is held to be faulty.
+    pub without: Vec<(usize, Without, Metres)>,
 }
 
 /// What is large and made once for a thread.
@@ -158,6 +158,7 @@ fn one(coasting: &Coasting<'_>, asked: &Asked<'_>, sky: usize, room: &mut Room) 
     if let Err(why) = room.fill(&fix, &coast, &asked.priors) {
         return Ok(Err(why));
     }
+    let biased = asked.single.biased_threshold;
     let multipliers = Multipliers::new(&asked.single, coast.len(), asked.priors.of_satellites(&coast)).map_err(at)?;
     let (n_modes, not_monitored) = room.monitored();
     Ok(Ok(Answer {
@@ -166,10 +167,10 @@ fn one(coasting: &Coasting<'_>, asked: &Asked<'_>, sky: usize, room: &mut Room) 
         major: single.major(),
         gain: single.gain(),
         accuracy: single.accuracy(bias),
-        single: single.levels(bias, Metres::new(0.0), &multipliers, asked.single.biased_threshold),
+        single: single.levels(bias, Metres::new(0.0), &multipliers, biased),
         multiple: room.levels(bias, &asked.budget),
         n_modes,
         not_monitored,
-        without: kept.iter().map(|k| k.0).zip(single.without().iter().copied()).collect(),
+        without: kept.iter().zip(single.without()).map(|(k, w)| (k.0, *w, multipliers.threshold(w, bias, biased))).collect(),
     }))
 }

@@ -1,8 +1,8 @@
 //! One sensed flight as columns: truth, inertial samples, and a table for each kind of measurement.
 
-use navbound_core::quantity::OutOfDomain;
+use navbound_core::quantity::{GpsTime, Metres, OutOfDomain};
 use navbound_core::signal::{Aiding, PhaseRange, SatelliteId, TimedAiding};
-use navbound_simulate::{Motion, Sensing, Step};
+use navbound_simulate::{Imu, Motion, SensedFlight, Sensing, Step, Trajectory};
 
 /// Names of the columns of the truth.
 pub const TRUTH: [&str; 15] = [
@@ -104,11 +104,29 @@ impl Sensed {
     /// # Errors
     /// As [`Sensing::trajectory`] and [`Sensing::flight`]; [`OutOfDomain`] for a truth at no sample.
     pub fn fly(sensing: &Sensing, seed: u64, number: u64, truth_every: u64) -> Result<Self, OutOfDomain> {
+        let trajectory = sensing.trajectory(seed, number)?;
+        Self::of(sensing.flight(&trajectory, seed, number)?, truth_every)
+    }
+
+    /// An inertial unit alone, on wheels along positions at whole seconds; truth is kept at every `truth_every`-th sample.
+    ///
+    /// # Errors
+    /// As [`Trajectory::on_wheels`] and [`SensedFlight::inertial`].
+    pub fn roll(
+        begin: GpsTime,
+        positions: &[[f64; 3]],
+        (imu, rate_hz): (&Imu, u32),
+        (seed, number): (u64, u64),
+        truth_every: u64,
+    ) -> Result<Self, OutOfDomain> {
+        let trajectory = Trajectory::on_wheels(positions)?;
+        Self::of(SensedFlight::inertial(&trajectory, begin, (imu, rate_hz), (seed, number))?, truth_every)
+    }
+
+    fn of(mut flight: SensedFlight<'_>, truth_every: u64) -> Result<Self, OutOfDomain> {
         if truth_every == 0 {
             return Err(OutOfDomain { argument: "truth_every", value: 0.0, unit: "samples", domain: "[1, inf)" });
         }
-        let trajectory = sensing.trajectory(seed, number)?;
-        let mut flight = sensing.flight(&trajectory, seed, number)?;
         let mut sensed = Self::with_room(flight.samples(), truth_every);
         sensed.truth.push(flight.begin().nanoseconds(), truth_row(flight.now()));
         let mut index = 0;
@@ -160,7 +178,22 @@ impl Sensed {
                     let phase = phases.next().map_or([f64::NAN; 2], |p| [p.range.m(), p.sigma_white.m()]);
                     let [white, slow] = [s.sigma_white.m(), s.sigma_correlated.m()];
                     let tau = s.correlation_time_s;
-                    let own = [p.x, p.y, p.z, v.x, v.y, v.z, s.range.m(), white, slow, tau, rate, sigma_rate, phase[0], phase[1]];
+                    let own = [
+                        p.x,
+                        p.y,
+                        p.z,
+                        v.x,
+                        v.y,
+                        v.z,
+                        s.range.map_or(f64::NAN, Metres::m),
+                        white,
+                        slow,
+                        tau,
+                        rate,
+                        sigma_rate,
+                        phase[0],
+                        phase[1],
+                    ];
                     self.satellites.push(time_ns, own);
                     self.satellite.push(s.satellite);
                 }

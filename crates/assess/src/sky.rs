@@ -1,6 +1,7 @@
 //! Satellite geometry at many epochs: where the satellites stand, and what covariance follows.
 
-use navbound_core::frame::{Geodetic, LatLon};
+use nalgebra::Vector3;
+use navbound_core::frame::{Geodetic, LatLon, ecef_from_geodetic, enu_from_ecef};
 use navbound_core::geometry::{Direction, Elements, LineOfSight, Observer, Orbit};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::Constellation;
@@ -65,6 +66,29 @@ pub fn directions(orbits: &[Elements], at: &Receivers<'_>) -> Result<Sky, AtInde
     Ok(sky)
 }
 
+/// Places at a distance from receivers along lines of sight, Earth-centred \[m\]: one row a receiver, one place a satellite; NaN where an
+/// angle is.
+///
+/// # Errors
+/// [`AtIndex`] for the first receiver outside its domain.
+pub fn along_sights(at: &Receivers<'_>, sky: &Sky, distance: Metres) -> Result<Vec<[f64; 3]>, AtIndex> {
+    let width = sky.az_rad.len().checked_div(at.lat_rad.len()).unwrap_or(0);
+    let mut places = Vec::with_capacity(sky.az_rad.len());
+    for index in 0..at.lat_rad.len() {
+        let point =
+            LatLon::new(Radians::new(at.lat_rad[index]), Radians::new(at.lon_rad[index])).map_err(|error| AtIndex { index, error })?;
+        let origin = ecef_from_geodetic(&Geodetic { point, height: Metres::new(at.h_m[index]) });
+        let ecef_from_enu = enu_from_ecef(&point).transpose();
+        for k in index * width..(index + 1) * width {
+            // Angles that are none make a place that is none.
+            let sight = Direction::new(Radians::new(sky.az_rad[k]), Radians::new(sky.el_rad[k]));
+            let unit = sight.map_or(Vector3::from_element(f64::NAN), |d| d.unit());
+            places.push((origin.vector() + ecef_from_enu * unit * distance.m()).into());
+        }
+    }
+    Ok(places)
+}
+
 fn row(orbits: &[Orbit], at: &Receivers<'_>, i: usize) -> Result<Vec<Direction>, OutOfDomain> {
     let point = LatLon::new(Radians::new(at.lat_rad[i]), Radians::new(at.lon_rad[i]))?;
     let receiver = Geodetic { point, height: Metres::new(at.h_m[i]) };
@@ -110,6 +134,23 @@ pub fn solve<T: Send>(sights: &Sights<'_>, solve: impl Fn(&[LineOfSight]) -> Res
 /// As [`solve`].
 pub fn covariances(sights: &Sights<'_>) -> Result<Solved<navbound_core::frame::Covariance<navbound_core::frame::Enu>>, AtIndex> {
     solve(sights, |used| wls::covariance(used.iter()))
+}
+
+/// Metres of position, east, north, up, for a metre in each range, a column each, see [`wls::responses`]; NaN for one that is not used.
+///
+/// # Errors
+/// As [`solve`].
+pub fn responses(sights: &Sights<'_>) -> Result<Solved<Vec<Vector3<f64>>>, AtIndex> {
+    let width = sights.constellation.len();
+    let mut solved = solve(sights, |used| Ok(wls::responses(used.iter())?.collect::<Vec<_>>()))?;
+    for (epoch, (_, responses)) in solved.iter_mut().enumerate() {
+        let Ok(responses) = responses else { continue };
+        let mut own = std::mem::take(responses).into_iter();
+        let none = Vector3::from_element(f64::NAN);
+        let of = |az: &f64| if az.is_nan() { none } else { own.next().unwrap_or(none) };
+        *responses = sights.az_rad[epoch * width..][..width].iter().map(of).collect();
+    }
+    Ok(solved)
 }
 
 /// Dilutions of precision, see [`wls::dilution`].

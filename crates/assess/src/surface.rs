@@ -46,7 +46,7 @@ pub struct Grid<'a> {
     pub bias_m: &'a [f64],
     /// Phase differenced in time.
     pub carrier: CarrierModel,
-    /// Rate of satellite faults \[1/h\] by constellation index, and priors of constellation faults.
+    /// Rates of satellite faults and of constellation faults \[1/h\], by constellation index.
     pub rates: ([f64; CLOCKS], [f64; CLOCKS]),
     /// How long a fault lasts \[s\] where it may have begun before: its prior is then rate times duration. Without, it must begin while
     /// coasting: rate times coasting time.
@@ -121,9 +121,9 @@ fn of_demand(
     cells: &mut Vec<Cell>,
 ) -> Result<(), OutOfDomain> {
     let seconds = grid.fault_lasts_s.unwrap_or(coasting_s);
-    let satellite = grid.rates.0.map(|per_hour| per_hour * seconds / 3600.0);
+    let during = |rates: [f64; CLOCKS]| rates.map(|per_hour| per_hour * seconds / 3600.0);
     let threshold = demand.unmonitored * demand.budget.allotted.q();
-    let priors = Priors { satellite, constellation: grid.rates.1, threshold }.check()?;
+    let priors = Priors { satellite: during(grid.rates.0), constellation: during(grid.rates.1), threshold }.check()?;
     let settings = &demand.single;
     let found = SingleFault::new(fix, coast, settings.form, settings.ordering).and_then(|single| {
         room.fill(fix, coast, &priors)?;

@@ -3,11 +3,11 @@
 use crate::error::input_error;
 use navbound_assess::dop_map::{Users, dops};
 use navbound_assess::sky::{self, Receivers, Sights, Solved};
-use navbound_core::geometry::{BEIDOU, Elements, GALILEO, GPS, Slot};
+use navbound_core::geometry::{BEIDOU, Elements, GALILEO, GPS, GPS_EXPANDED, Slot};
 use navbound_core::quantity::{Metres, Radians, Unavailable};
 use navbound_core::solution::wls;
 use navbound_path::AtIndex;
-use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -20,6 +20,7 @@ fn refused(e: AtIndex) -> PyErr {
 fn nominal_constellations(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let d = PyDict::new(py);
     d.set_item("gps", slots(py, &GPS)?)?;
+    d.set_item("gps-expanded", slots(py, &GPS_EXPANDED)?)?;
     d.set_item("galileo", slots(py, &GALILEO)?)?;
     d.set_item("beidou", slots(py, &BEIDOU)?)?;
     Ok(d)
@@ -63,6 +64,21 @@ pub fn orbit(&[a, e, i, node, perigee, anomaly, node_rate_radps]: &[f64; 7]) -> 
     Elements { semi_major: Metres::new(a), eccentricity: e, inclination, node, node_rate_radps, perigee, mean_anomaly }
 }
 
+/// Places at a distance along lines of sight, Earth-centred, one row a receiver and one place a satellite.
+#[pyfunction]
+fn places_along<'py>(
+    py: Python<'py>,
+    receiver: (PyReadonlyArray1<'_, f64>, PyReadonlyArray1<'_, f64>, PyReadonlyArray1<'_, f64>),
+    az_rad: Vec<f64>,
+    el_rad: Vec<f64>,
+    distance_m: f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let (lat_rad, lon_rad, h_m) = (receiver.0.as_slice()?, receiver.1.as_slice()?, receiver.2.as_slice()?);
+    let at = Receivers { lat_rad, lon_rad, h_m, time_s: &[] };
+    let places = sky::along_sights(&at, &sky::Sky { az_rad, el_rad }, Metres::new(distance_m)).map_err(refused)?;
+    Ok(places.into_flattened().into_pyarray(py))
+}
+
 /// Covariances of least-squares positions, nine numbers an epoch, NaN where there is none; `n_sv`; `reason`, empty where there is one.
 #[pyfunction]
 fn position_covariances<'py>(
@@ -84,6 +100,26 @@ fn position_covariances<'py>(
     d.set_item("enu_m2", matrices.into_pyarray(py))?;
     d.set_item("sigma_major_m", axes.iter().map(|a| a.0).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("sigma_minor_m", axes.iter().map(|a| a.1).collect::<Vec<_>>().into_pyarray(py))?;
+    Ok(d)
+}
+
+/// Metres of position for a metre in each range: three numbers a satellite, NaN for one that is not used; `n_sv`; `reason`.
+#[pyfunction]
+fn position_responses<'py>(
+    py: Python<'py>,
+    az_rad: PyReadonlyArray1<'_, f64>,
+    el_rad: PyReadonlyArray1<'_, f64>,
+    sigma_m: PyReadonlyArray1<'_, f64>,
+    constellation: Vec<usize>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let sights =
+        Sights { az_rad: az_rad.as_slice()?, el_rad: el_rad.as_slice()?, sigma_m: sigma_m.as_slice()?, constellation: &constellation };
+    let solved = py.detach(|| sky::responses(&sights)).map_err(refused)?;
+    let (d, (rows, _)) = shared(py, solved, 3 * constellation.len(), |all, out| {
+        out.extend(all.iter().flat_map(|s| [s.x, s.y, s.z]));
+        (f64::NAN, f64::NAN)
+    })?;
+    d.set_item("response", rows.into_pyarray(py))?;
     Ok(d)
 }
 
@@ -166,6 +202,8 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(nominal_constellations, m)?)?;
     m.add_function(wrap_pyfunction!(satellite_directions, m)?)?;
     m.add_function(wrap_pyfunction!(position_covariances, m)?)?;
+    m.add_function(wrap_pyfunction!(places_along, m)?)?;
+    m.add_function(wrap_pyfunction!(position_responses, m)?)?;
     m.add_function(wrap_pyfunction!(dilutions, m)?)?;
     m.add_function(wrap_pyfunction!(dop_map, m)?)
 }

@@ -123,8 +123,8 @@ fn timed(time_ns: i64, aiding: Aiding) -> TimedAiding {
     TimedAiding { time: GpsTime::from_nanoseconds(time_ns), aiding }
 }
 
-fn satellite(letter: char, number: u8, row: &[f64; 12]) -> PyResult<Aiding> {
-    let [x, y, z, vx, vy, vz, range, white, slow, tau, rate, sigma] = *row;
+fn satellite(letter: char, number: u8, row: &[f64; 13]) -> PyResult<Aiding> {
+    let [x, y, z, vx, vy, vz, range, white, slow, first, tau, rate, sigma] = *row;
     let constellation = u8::try_from(letter).ok().and_then(Constellation::from_letter);
     let Some(constellation) = constellation else {
         let code = f64::from(u32::from(letter));
@@ -134,9 +134,10 @@ fn satellite(letter: char, number: u8, row: &[f64; 12]) -> PyResult<Aiding> {
         satellite: SatelliteId { constellation, number },
         position: EcefPosition::from_vector(Vector3::new(x, y, z)),
         velocity_mps: Vector3::new(vx, vy, vz),
-        range: Metres::new(range),
+        range: (!range.is_nan()).then_some(Metres::new(range)),
         sigma_white: Metres::new(white),
         sigma_correlated: Metres::new(slow),
+        sigma_first: Metres::new(first),
         correlation_time_s: tau,
         rate_mps: (!rate.is_nan()).then_some((rate, sigma)),
     }))

@@ -2,12 +2,13 @@
 
 use crate::error::input_error;
 use crate::positions::Navigation;
-use crate::simulate::{epochs, read, refused};
+use crate::simulate::{epochs, read, refused, unreadable};
 use navbound_assess::fused::{Fused, MODES, Verdict};
 use navbound_assess::sensed::{BARO, CLOCK, DME, IMU, SATELLITES, Sensed, TRUTH, Table, VOR};
+use navbound_core::quantity::GpsTime;
 use navbound_core::solution::ins::Kind;
-use navbound_simulate::Sensing;
-use numpy::IntoPyArray;
+use navbound_simulate::{Imu, Sensing};
+use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -69,6 +70,27 @@ impl Sensors {
     }
 }
 
+/// An inertial unit on wheels along positions at whole seconds: tables `truth` and `imu`. The unit's errors come as JSON; `rates` are its
+/// samples a second and the samples between rows of the truth.
+#[pyfunction]
+fn ins_roll<'py>(
+    py: Python<'py>,
+    start_ns: i64,
+    position: PyReadonlyArray2<'py, f64>,
+    imu: &str,
+    rates: (u32, u64),
+    draw: (u64, u64),
+) -> PyResult<Bound<'py, PyDict>> {
+    let unit: Imu = serde_json::from_str(imu).map_err(|e| unreadable("imu", &e))?;
+    let positions = position.as_slice()?.as_chunks().0;
+    let begin = GpsTime::from_nanoseconds(start_ns);
+    let rolled = py.detach(|| Sensed::roll(begin, positions, (&unit, rates.0), draw, rates.1)).map_err(|e| input_error(e, None))?;
+    let d = PyDict::new(py);
+    d.set_item("truth", columns(py, &TRUTH, rolled.truth)?)?;
+    d.set_item("imu", columns(py, &IMU, rolled.imu)?)?;
+    Ok(d)
+}
+
 /// Of each kind of measurement: used, gated, refused, mean square, lag-one correlation, pairs behind it; and the inertial samples.
 fn verdict<'py>(py: Python<'py>, verdict: &Verdict) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
@@ -82,5 +104,6 @@ fn verdict<'py>(py: Python<'py>, verdict: &Verdict) -> PyResult<Bound<'py, PyDic
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(ins_roll, m)?)?;
     m.add_class::<Sensors>()
 }

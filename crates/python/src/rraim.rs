@@ -100,8 +100,8 @@ fn rraim_levels<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDi
         let matrix = answer.as_ref().map_or([f64::NAN; 9], |a| std::array::from_fn(|i| a.covariance.matrix()[(i / 3, i % 3)]));
         matrices.extend(matrix);
         let mut block = vec![f64::NAN; 4 * width];
-        for (column, w) in answer.iter().flat_map(|a| &a.without) {
-            let row = [w.deviation.m(), w.separation.m(), w.gain, w.separation_gain];
+        for (column, w, threshold) in answer.iter().flat_map(|a| &a.without) {
+            let row = [w.deviation.m(), w.separation.m(), w.gain, threshold.m()];
             block[4 * column..4 * column + 4].copy_from_slice(&row);
         }
         subsets.extend(block);
@@ -170,7 +170,7 @@ struct GridJob<'py> {
     bias_m: Vec<f64>,
     carrier: [f64; 4],
     rate_per_hour: [f64; 5],
-    p_const: [f64; 5],
+    wide_per_hour: [f64; 5],
     fault_lasts_s: Option<f64>,
 }
 
@@ -198,7 +198,7 @@ fn surface_cells<'py>(py: Python<'py>, job: GridJob<'py>) -> PyResult<Bound<'py,
         demands: &demands,
         bias_m: &job.bias_m,
         carrier: carrier(job.carrier),
-        rates: (job.rate_per_hour, job.p_const),
+        rates: (job.rate_per_hour, job.wide_per_hour),
         fault_lasts_s: job.fault_lasts_s,
     };
     let cells = py.detach(|| surface::cells(&grid)).map_err(refused)?;

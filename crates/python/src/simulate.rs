@@ -15,7 +15,12 @@ struct Outlook(Prepared);
 
 /// A scenario in SI units, from JSON.
 pub fn read(json: &str) -> PyResult<Scenario> {
-    serde_json::from_str(json).map_err(|e| PyValueError::new_err(format!("scenario: {e}")))
+    serde_json::from_str(json).map_err(|e| unreadable("scenario", &e))
+}
+
+/// JSON that is not what it should be.
+pub fn unreadable(what: &str, e: &serde_json::Error) -> PyErr {
+    PyValueError::new_err(format!("{what}: {e}"))
 }
 
 /// Why a scenario cannot be flown.

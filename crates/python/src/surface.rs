@@ -1,7 +1,7 @@
 //! Surface movement: the rebuilt tables with their marks.
 
 use navbound_core::quantity::Risk;
-use navbound_core::spec::gbas::{CARRIER_DUAL, CARRIER_SINGLE, CarrierModel, ERROR_MODELS, INERTIAL, MONITOR_CURVES, Mark};
+use navbound_core::spec::gbas::{CARRIER_DUAL, CARRIER_SINGLE, CarrierModel, ERROR_MODELS, INERTIAL, Inertial, MONITOR_CURVES, Mark};
 use navbound_core::spec::surface::{ALLOCATION, ERROR_BUDGET, FAULT_RATES, SUB_PHASES};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -19,6 +19,20 @@ fn carrier<'py>(py: Python<'py>, m: &CarrierModel) -> PyResult<Bound<'py, PyDict
     d.set_item("clock_mps", m.clock_mps)?;
     d.set_item("ionosphere_gradient", m.ionosphere_gradient)?;
     d.set_item("marks", marks(m.marks))?;
+    Ok(d)
+}
+
+fn inertial<'py>(py: Python<'py>, i: &Inertial) -> PyResult<Bound<'py, PyDict>> {
+    let d = PyDict::new(py);
+    d.set_item("gyro_bias_radps", i.gyro_bias_radps)?;
+    d.set_item("gyro_walk_radprts", i.gyro_walk_rad_per_root_s)?;
+    d.set_item("accelerometer_bias_mps2", i.accelerometer_bias_mps2)?;
+    d.set_item("accelerometer_walk_mpsprts", i.accelerometer_walk_mps_per_root_s)?;
+    d.set_item("clock_h0_s", i.clock_h0_s)?;
+    d.set_item("clock_h_minus_2_per_s", i.clock_h_minus_2_per_s)?;
+    d.set_item("doppler_mps", i.doppler_mps)?;
+    d.set_item("receiver_noise_m", i.receiver_noise.m())?;
+    d.set_item("marks", marks(i.marks))?;
     Ok(d)
 }
 
@@ -45,8 +59,8 @@ fn surface_tables(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         d.set_item("id", r.id)?;
         d.set_item("gps_per_hour", r.gps_per_hour)?;
         d.set_item("galileo_per_hour", r.galileo_per_hour)?;
-        d.set_item("gps_wide", r.gps_wide)?;
-        d.set_item("galileo_wide", r.galileo_wide)?;
+        d.set_item("gps_wide_per_hour", r.gps_wide_per_hour)?;
+        d.set_item("galileo_wide_per_hour", r.galileo_wide_per_hour)?;
         d.set_item("decorrelation_s", r.decorrelation_s)?;
         d.set_item("satellites", r.satellites)?;
         d.set_item("marks", marks(r.marks))?;
@@ -71,7 +85,9 @@ fn surface_tables(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     d.set_item("error_models", models)?;
     d.set_item("carrier_single", carrier(py, &CARRIER_SINGLE)?)?;
     d.set_item("carrier_dual", carrier(py, &CARRIER_DUAL)?)?;
-    d.set_item("inertial_marks", marks(INERTIAL.marks))?;
+    d.set_item("inertial", inertial(py, &INERTIAL)?)?;
+    let lasting: Vec<(&str, [f64; 2])> = ERROR_MODELS.iter().map(|m| (m.id, m.multipath_s)).collect();
+    d.set_item("multipath_s", lasting)?;
     let a = PyDict::new(py);
     a.set_item("no_fault_and_receiver", ALLOCATION.no_fault_and_receiver)?;
     a.set_item("ground", ALLOCATION.ground)?;

@@ -3,7 +3,7 @@
 
 use crate::navigator::Navigator;
 use crate::sensors::Sensors;
-use navbound_core::geometry::{BEIDOU, GALILEO, GPS, Slot};
+use navbound_core::geometry::{BEIDOU, GALILEO, GPS, GPS_EXPANDED, Slot};
 use navbound_core::quantity::OutOfDomain;
 use navbound_core::signal::Constellation;
 use serde::Deserialize;
@@ -134,6 +134,9 @@ pub struct Gusts {
 pub enum System {
     /// GPS, 24 nominal slots.
     Gps,
+    /// GPS, 27 slots, the expandable ones split.
+    #[serde(rename = "gps-expanded")]
+    GpsExpanded,
     /// Galileo, 24 nominal satellites.
     Galileo,
     /// BeiDou-3, 30 nominal satellites.
@@ -144,6 +147,7 @@ impl System {
     pub(crate) fn slots(self) -> &'static [Slot] {
         match self {
             Self::Gps => &GPS[..],
+            Self::GpsExpanded => &GPS_EXPANDED[..],
             Self::Galileo => &GALILEO[..],
             Self::Beidou => &BEIDOU[..],
         }
@@ -151,7 +155,7 @@ impl System {
 
     pub(crate) fn constellation(self) -> Constellation {
         match self {
-            Self::Gps => Constellation::Gps,
+            Self::Gps | Self::GpsExpanded => Constellation::Gps,
             Self::Galileo => Constellation::Galileo,
             Self::Beidou => Constellation::BeiDou,
         }
@@ -248,10 +252,16 @@ impl Scenario {
         // A filter claims what it works out: the scale would be ignored, and the report would name it.
         let scale = self.navigation.claimed_sigma_scale;
         rules.extend(self.filter.iter().map(|_| Rule("claimed_sigma_scale", scale, "1", scale == 1.0, "{1} with a [filter]")));
-        match rules.into_iter().find(|rule| !rule.3) {
-            Some(Rule(argument, value, unit, _, domain)) => Err(OutOfDomain { argument, value, unit, domain }),
-            None => Ok(()),
-        }
+        kept(rules)
+    }
+}
+
+/// # Errors
+/// [`OutOfDomain`] for the first rule that is broken.
+pub(crate) fn kept(rules: Vec<Rule>) -> Result<(), OutOfDomain> {
+    match rules.into_iter().find(|rule| !rule.3) {
+        Some(Rule(argument, value, unit, _, domain)) => Err(OutOfDomain { argument, value, unit, domain }),
+        None => Ok(()),
     }
 }
 

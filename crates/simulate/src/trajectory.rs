@@ -20,10 +20,14 @@ use nalgebra::{Matrix3, Vector3};
 use navbound_core::frame::{ECCENTRICITY_SQUARED, Geodetic, LatLon, SEMI_MAJOR, earth_rate_ned, gravity_of};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians};
 
-/// Time between knots \[s\].
+/// Time between knots of a flight \[s\].
 const SPACING_S: f64 = 4.0;
+/// Time between knots of a way on wheels, whose turns last some seconds \[s\].
+const WHEELS_SPACING_S: f64 = 1.0;
 /// Control points before the begin, and after the end.
 const MARGIN: usize = 3;
+/// Fewest positions of a way on wheels.
+const WHEELS_LEAST: usize = 10;
 /// Beyond this latitude longitudes change too fast for a spline in them \[rad\]: 89 degrees.
 const LATITUDE_MOST_RAD: f64 = 89.0 * PI / 180.0;
 /// Below this speed over the ground a course has no meaning \[m/s\].
@@ -68,6 +72,9 @@ pub struct Trajectory {
     /// Control points of latitude, longitude \[rad\] and height \[m\], the first `MARGIN` spacings before the begin.
     controls: [Vec<f64>; 3],
     duration_s: f64,
+    spacing_s: f64,
+    /// Whether it banks into its turns.
+    banks: bool,
 }
 
 impl Trajectory {
@@ -77,8 +84,9 @@ impl Trajectory {
     /// [`OutOfDomain`] for a path within one degree of a pole or an aircraft that does not move.
     pub fn planned(outlook: &Outlook) -> Result<Self, OutOfDomain> {
         let plan = &outlook.plan;
-        Self::through(outlook.scenario.duration_s, |time_s| {
-            let demand = plan.profile.at(time_s);
+        // Before the begin the aircraft stands still.
+        Self::through(outlook.scenario.duration_s, SPACING_S, |time_s| {
+            let demand = plan.profile.at(time_s.max(0.0));
             let point = plan.route.at(Metres::new(demand.along_m))?.point;
             Ok([point.lat().rad(), point.lon().rad(), demand.height_m])
         })
@@ -94,7 +102,8 @@ impl Trajectory {
         }
         let last = (epochs.len() - 1) as f64;
         let at = |second: f64| epochs[second as usize].truth;
-        Self::through(outlook.scenario.duration_s, |time_s| {
+        Self::through(outlook.scenario.duration_s, SPACING_S, |time_s| {
+            let time_s = time_s.max(0.0);
             // Beyond the last epoch, less than a second before the end, the flight goes straight on.
             let (second, over) = if time_s > last { (last, time_s - last) } else { (time_s.floor(), time_s - time_s.floor()) };
             let (from, to) = if second < last { (at(second), at(second + 1.0)) } else { (at(last - 1.0), at(last)) };
@@ -103,20 +112,43 @@ impl Trajectory {
         })
     }
 
-    /// From positions (latitude, longitude \[rad\], height \[m\]) as a function of time from 0 to the duration. Before the begin the
-    /// aircraft stands still, after the end it goes straight on.
-    fn through(duration_s: f64, position: impl Fn(f64) -> Result<[f64; 3], OutOfDomain>) -> Result<Self, OutOfDomain> {
-        let pieces = (duration_s / SPACING_S).ceil() as usize;
+    /// On wheels through positions (latitude, longitude \[rad\], height \[m\]) at whole seconds: it turns without bank. It comes and goes
+    /// straight on.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for fewer than ten positions or one that is not finite; as [`Trajectory::planned`].
+    pub fn on_wheels(positions: &[[f64; 3]]) -> Result<Self, OutOfDomain> {
+        let n = positions.len();
+        if n < WHEELS_LEAST {
+            return Err(OutOfDomain { argument: "position", value: n as f64, unit: "seconds", domain: "ten or more" });
+        }
+        if let Some(bad) = positions.iter().flatten().find(|x| !x.is_finite()) {
+            return Err(OutOfDomain { argument: "position", value: *bad, unit: "rad or m", domain: "finite numbers" });
+        }
+        let last = n - 1;
+        let found = Self::through(last as f64, WHEELS_SPACING_S, |time_s| {
+            let k = time_s.round().clamp(-(last as f64), last as f64) as i64;
+            let at = |k: i64| positions[k.unsigned_abs() as usize];
+            let (first, ahead) = (at(0), at(k));
+            Ok(if k >= 0 { ahead } else { core::array::from_fn(|i| first[i] - nearest_turn(ahead[i] - first[i], i)) })
+        })?;
+        Ok(Self { banks: false, ..found })
+    }
+
+    /// From positions (latitude, longitude \[rad\], height \[m\]) as a function of time up to the duration. After the end the aircraft goes
+    /// straight on.
+    fn through(duration_s: f64, spacing_s: f64, position: impl Fn(f64) -> Result<[f64; 3], OutOfDomain>) -> Result<Self, OutOfDomain> {
+        let pieces = (duration_s / spacing_s).ceil() as usize;
         let (first, last) = (position(0.0)?, position(duration_s)?);
         let count = pieces + 1 + 2 * (MARGIN + 1);
         let mut points: [Vec<f64>; 3] = core::array::from_fn(|_| Vec::with_capacity(count));
         for k in 0..count {
-            let time = (k as f64 - (MARGIN + 1) as f64) * SPACING_S;
+            let time = (k as f64 - (MARGIN + 1) as f64) * spacing_s;
             let p = if time > duration_s {
                 let back = position(2.0 * duration_s - time)?;
                 core::array::from_fn(|i| last[i] + nearest_turn(last[i] - back[i], i))
             } else {
-                position(time.max(0.0))?
+                position(time)?
             };
             for i in 0..3 {
                 let before = points[i].last().copied().unwrap_or(first[i]);
@@ -125,7 +157,8 @@ impl Trajectory {
         }
         let kept = |p: &Vec<f64>| (1..count - 1).map(|k| p[k]).collect();
         let sharpened = |p: &Vec<f64>| (1..count - 1).map(|k| p[k] - 0.25 * (p[k - 1] - 2.0 * p[k] + p[k + 1])).collect();
-        let found = Self { controls: [sharpened(&points[0]), sharpened(&points[1]), kept(&points[2])], duration_s };
+        let controls = [sharpened(&points[0]), sharpened(&points[1]), kept(&points[2])];
+        let found = Self { controls, duration_s, spacing_s, banks: true };
         found.check(pieces)?;
         Ok(found)
     }
@@ -142,7 +175,7 @@ impl Trajectory {
             }
         }
         for k in 0..pieces {
-            let v = self.cursor().at(k as f64 * SPACING_S)?.velocity_ned_mps;
+            let v = self.cursor().at(k as f64 * self.spacing_s)?.velocity_ned_mps;
             if !(v.x.hypot(v.y) >= SPEED_LEAST_MPS) {
                 return Err(OutOfDomain { argument: "ground speed", value: v.x.hypot(v.y), unit: "m/s", domain: "[0.001, inf)" });
             }
@@ -191,15 +224,14 @@ impl Piece {
         Self { index, base, powers }
     }
 
-    /// A coordinate and its first three derivatives in time.
-    fn derivatives(&self, i: usize, u: f64) -> [f64; 4] {
-        const RATE: f64 = 1.0 / SPACING_S;
+    /// A coordinate and its first three derivatives in time, `u` of a spacing after the begin; `rate` spacings a second.
+    fn derivatives(&self, i: usize, u: f64, rate: f64) -> [f64; 4] {
         let p = &self.powers[i];
         let value = p[0] + u * (p[1] + u * (p[2] + u * (p[3] + u * (p[4] + u * p[5]))));
         let first = p[1] + u * (2.0 * p[2] + u * (3.0 * p[3] + u * (4.0 * p[4] + u * 5.0 * p[5])));
         let second = 2.0 * p[2] + u * (6.0 * p[3] + u * (12.0 * p[4] + u * 20.0 * p[5]));
         let third = 6.0 * p[3] + u * (24.0 * p[4] + u * 60.0 * p[5]);
-        [self.base[i] + value, first * RATE, second * RATE * RATE, third * RATE * RATE * RATE]
+        [self.base[i] + value, first * rate, second * rate * rate, third * rate * rate * rate]
     }
 }
 
@@ -220,13 +252,14 @@ impl Cursor<'_> {
             return Err(OutOfDomain { argument: "time_s", value: time_s, unit: "s", domain: "finite times" });
         }
         let last = self.trajectory.controls[0].len() - 2 * MARGIN - 2;
-        let index = ((time_s / SPACING_S).max(0.0) as usize).min(last);
+        let rate = 1.0 / self.trajectory.spacing_s;
+        let index = ((time_s * rate).max(0.0) as usize).min(last);
         if index != self.piece.index {
             self.piece = Piece::of(self.trajectory, index);
         }
-        let u = time_s / SPACING_S - index as f64;
-        let [lat, lon, height] = [0, 1, 2].map(|i| self.piece.derivatives(i, u));
-        motion(lat, lon, height)
+        let u = time_s * rate - index as f64;
+        let [lat, lon, height] = [0, 1, 2].map(|i| self.piece.derivatives(i, u, rate));
+        motion(lat, lon, height, self.trajectory.banks)
     }
 }
 
@@ -260,16 +293,16 @@ fn velocity(sine: f64, cosine: f64, lat: &[f64; 4], lon: &[f64; 4], height: &[f6
 
 /// ```text
 /// f_n  = v' + (2 w_ie + w_en) x v - g            w_en = (lon' cos lat, -lat', -lon' sin lat)
-/// w_ib = w_nb + C_bn' (w_ie + w_en)              tan(roll) = side / g,  side = V yaw'
+/// w_ib = w_nb + C_bn' (w_ie + w_en)              tan(roll) = side / g,  side = V yaw', or no roll
 /// ```
-fn motion(lat: [f64; 4], lon: [f64; 4], height: [f64; 4]) -> Result<Motion, OutOfDomain> {
+fn motion(lat: [f64; 4], lon: [f64; 4], height: [f64; 4], banks: bool) -> Result<Motion, OutOfDomain> {
     let (sine, cosine) = lat[0].sin_cos();
     let Velocity { v, a, j } = velocity(sine, cosine, &lat, &lon, &height);
     let earth = earth_rate_ned(sine, cosine);
     let transport = Vector3::new(lon[1] * cosine, -lat[1], -lon[1] * sine);
     let gravity = Vector3::new(0.0, 0.0, gravity_of(sine * sine, height[0]));
     let force = a + (2.0 * earth + transport).cross(&v) - gravity;
-    let (ned_from_body, turning) = attitude(&v, &a, &j);
+    let (ned_from_body, turning) = attitude(&v, &a, &j, banks);
     let body_from_ned = ned_from_body.transpose();
     let longitude = if lon[0].abs() <= PI { lon[0] } else { nearest_turn(lon[0], 1) };
     Ok(Motion {
@@ -282,7 +315,7 @@ fn motion(lat: [f64; 4], lon: [f64; 4], height: [f64; 4]) -> Result<Motion, OutO
 }
 
 /// Rotation from body to local axes, and the rate of the body against them in body axes.
-fn attitude(v: &Vector3<f64>, a: &Vector3<f64>, j: &Vector3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
+fn attitude(v: &Vector3<f64>, a: &Vector3<f64>, j: &Vector3<f64>, banks: bool) -> (Matrix3<f64>, Vector3<f64>) {
     let ground2 = v.x * v.x + v.y * v.y;
     let ground = ground2.sqrt();
     let speed2 = ground2 + v.z * v.z;
@@ -291,11 +324,12 @@ fn attitude(v: &Vector3<f64>, a: &Vector3<f64>, j: &Vector3<f64>) -> (Matrix3<f6
     let side_rate = (v.x * j.y - v.y * j.x) / ground - side * ground_rate / ground;
     let yaw_rate = side / ground;
     let pitch_rate = (v.z * ground_rate - ground * a.z) / speed2;
-    let lift2 = GRAVITY * GRAVITY + side * side;
-    let roll_rate = side_rate * GRAVITY / lift2;
+    let (lean, lean_rate) = if banks { (side, side_rate) } else { (0.0, 0.0) };
+    let lift2 = GRAVITY * GRAVITY + lean * lean;
+    let roll_rate = lean_rate * GRAVITY / lift2;
     let (sy, cy) = (v.y / ground, v.x / ground);
     let (sp, cp) = (-v.z / speed2.sqrt(), ground / speed2.sqrt());
-    let (sr, cr) = (side / lift2.sqrt(), GRAVITY / lift2.sqrt());
+    let (sr, cr) = (lean / lift2.sqrt(), GRAVITY / lift2.sqrt());
     let rotation = Matrix3::new(
         cp * cy,
         sr * sp * cy - cr * sy,

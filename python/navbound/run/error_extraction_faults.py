@@ -9,6 +9,7 @@ import numpy as np
 from navbound import sbas
 from navbound.errors import InputError
 from navbound.run.error_extraction_records import FaultEntry, HeldRisk, Spread
+from navbound.run.series_memory import gauss_markov
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -69,7 +70,7 @@ def inject(*, runs: int = 100, seed: int = 2012) -> list[FaultEntry]:
     if not runs >= 20:
         raise InputError("runs", runs, "1", "[20, inf)")
     generator = np.random.Generator(np.random.Philox(seed))
-    nominal = gauss_markov(generator, (runs, ONSET + LENGTH), SIGMA_M, TAU_S)
+    nominal = SIGMA_M * gauss_markov(generator.standard_normal((runs, ONSET + LENGTH)), TAU_S)
     velocity = np.zeros((*nominal.shape, 3))
     velocity[..., 2] = SIGMA_VELOCITY_MPS * generator.standard_normal(nominal.shape)
     since = np.arange(-ONSET, LENGTH).astype(np.float64)
@@ -102,7 +103,7 @@ def held_risks(*, seed: int = 2012) -> list[HeldRisk]:
     found = []
     for tau_s, stated, half_digit in HELD:
         position = np.zeros((HELD_RUNS, HELD_LENGTH, 3))
-        position[..., 2] = gauss_markov(generator, (HELD_RUNS, HELD_LENGTH), 1.0, tau_s)
+        position[..., 2] = gauss_markov(generator.standard_normal((HELD_RUNS, HELD_LENGTH)), tau_s)
         extracted = sbas.error_extraction(times, position, np.zeros(3), risk_v=HELD_RISK)
         error, bound = np.abs(extracted.ee_position_enu_m[..., 2]), extracted.ee_noise_v_m
         shares = np.mean((error > bound)[:, HELD_LENGTH // 3 :], axis=1)
@@ -119,16 +120,6 @@ def held_risks(*, seed: int = 2012) -> list[HeldRisk]:
             )
         )
     return found
-
-
-def gauss_markov(generator: np.random.Generator, shape: tuple[int, int], sigma_m: float, tau_s: float) -> Floats:
-    """First-order errors at 1 Hz, a row a run."""
-    memory = np.exp(-1.0 / tau_s)
-    error = np.asarray(sigma_m * generator.standard_normal(shape))
-    error[:, 1:] *= np.sqrt(1.0 - memory * memory)
-    for i in range(1, shape[1]):
-        error[:, i] += memory * error[:, i - 1]
-    return error
 
 
 def _entries(fault: str, stated: tuple[float | None, ...], position: Floats, velocity: Floats) -> list[FaultEntry]:

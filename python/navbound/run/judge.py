@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 
 from navbound import __version__, rnp, tse
+from navbound._states import METRES_PER_NM
 from navbound.errors import InputError
 from navbound.methods import BoundColumn, bounds, column_of, method
 from navbound.run.directory import Run
@@ -195,6 +196,9 @@ def _with_states(epochs: pl.DataFrame, risk_accuracy: float) -> tuple[pl.DataFra
     flight technical error of every epoch is known.
     """
     if not _has_values(epochs, "fte_m") or "sigma_cross_m" not in epochs.columns:
+        return epochs, []
+    # Where metres are asked for, everything is in the tightest level's band: on the ground the levels of flight say nothing.
+    if not (10.0 * column_of(epochs, "rnp_m") >= STATE_LEVELS_NM[0] * METRES_PER_NM).any():
         return epochs, []
     classifier = rnp.StateClassifier(STATE_LEVELS_NM)
     fte, sigma = column_of(epochs, "fte_m"), column_of(epochs, "sigma_cross_m")

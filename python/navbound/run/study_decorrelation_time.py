@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound.run.record import Record
-from navbound.run.series_memory import INVERSE_E, autocorrelation, first_crossing, one_or_none, read_series
+from navbound.run.series_memory import INVERSE_E, autocorrelation, first_crossing, gauss_markov, one_or_none, read_series
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -115,16 +115,14 @@ def spectral_zero(multipath_s: float) -> float:
 
 def _simulated(generator: np.random.Generator, multipath_s: float) -> float:
     """The same from series: multipath, its rate, and two first-order filters in cascade."""
-    kept = np.exp(-1.0 / multipath_s)
-    x = generator.standard_normal(SATELLITES)
-    first, second, before = np.zeros(SATELLITES), np.zeros(SATELLITES), x
+    x = gauss_markov(generator.standard_normal((SATELLITES, SAMPLES)), multipath_s)
+    rate = np.diff(x, prepend=x[:, :1])
+    first, second = np.zeros(SATELLITES), np.zeros(SATELLITES)
     out = np.empty((SATELLITES, SAMPLES))
     weight = 1.0 - np.exp(-1.0 / FILTER_S)
     for k in range(SAMPLES):
-        x = kept * x + np.sqrt(1 - kept * kept) * generator.standard_normal(SATELLITES)
-        first = first + weight * (x - before - first)
+        first = first + weight * (rate[:, k] - first)
         second = second + weight * (first - second)
-        before = x
         out[:, k] = second
     return decorrelation(out[:, 600:], 0.0)
 

@@ -7,14 +7,14 @@ the largest is a single sample of a heavy tail.
 
 from __future__ import annotations
 
-from statistics import NormalDist
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from navbound import _core
 from navbound.errors import InputError
 from navbound.run.record import Record
-from navbound.run.series_memory import INVERSE_E, autocorrelation, first_crossing, one_or_none, read_series
+from navbound.run.series_memory import INVERSE_E, autocorrelation, first_crossing, gauss_markov, one_or_none, read_series
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,7 +33,8 @@ SAMPLES, RUN_IN = 7200, 600
 PUBLISHED_S = {30.0: (26.0, 2315.0), 100.0: (54.0, 2894.0)}
 CHUNK = 250
 FROM_ZERO = "First lag at which the autocorrelation, not counted from the mean, is 1/e."
-Z95 = NormalDist().inv_cdf(0.95)
+Z95 = float(_core.chi_factor(1, np.array([0.10]))[0])
+"""Exceeded with 5 %: on both sides together with 10 %."""
 
 
 class Smoothed(Record):
@@ -133,14 +134,7 @@ def time_constants(generator: np.random.Generator, n: int) -> Floats:
 
 def markov(generator: np.random.Generator, tau_s: Floats) -> Floats:
     """First-order noise of unit variance at 1 Hz, one row a time constant, with its run-in."""
-    kept = np.exp(-1.0 / tau_s)
-    out = np.empty((tau_s.size, SAMPLES + RUN_IN))
-    x = generator.standard_normal(tau_s.size)
-    scale = np.sqrt(1.0 - kept * kept)
-    for k in range(out.shape[1]):
-        out[:, k] = x
-        x = kept * x + scale * generator.standard_normal(tau_s.size)
-    return out
+    return gauss_markov(generator.standard_normal((SAMPLES + RUN_IN, tau_s.size)).T, tau_s)
 
 
 def smooth(series: Floats, window_s: float) -> Floats:

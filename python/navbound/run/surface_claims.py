@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 NEEDED_PHASES = ("RET", "NTW", "ATW", "TL", "SLL")
 TAXIWAYS = ("RET", "NTW")
 SPARSE_S = 1800.0
-"""Between the geometries that claim C18 was first judged with."""
+"""Between the geometries that fixed the clock drift of claim C18, which is judged over all."""
 AIDED_SKIES = 6
 TSC_CHOICE = "containment of ATW, TL and SLL"
 STRETCH = "2.2 of the monitor of GAST F"
@@ -261,8 +261,8 @@ def _c18(e: Evidence) -> Judged:
     sparse = {m.id: largest(m.id, every) for m in surface_grid.MODES}
     dense = {m.id: largest(m.id, 1) for m in surface_grid.MODES}
     words = [", ".join(f"{m} {shown(v)}" for m, v in found.items()) for found in (sparse, dense)]
-    found = f"single fault at 600 s: {words[0]} over geometries 30 min apart; {words[1]} over all"
-    return _if(all(v >= 0 for v in sparse.values()), found, "fixes a number")
+    found = f"single fault at 600 s: {words[1]} over all geometries; {words[0]} over those 30 min apart, by which the number was fixed"
+    return _if(all(v >= 0 for v in dense.values()), found, "fixes a number")
 
 
 def _c19(e: Evidence) -> Judged:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from statistics import NormalDist
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-K95 = NormalDist().inv_cdf(0.975)
+K95 = float(_core.chi_factor(1, np.array([0.05]))[0])
 """The two-sided 95 % factor behind every accuracy here."""
 CASES: tuple[str, ...] = ("A", "B")
 GPS_HALF = 9
@@ -168,6 +167,7 @@ def coasting(config: SurfaceMovement, rules: Rules, mode: Mode, case: str, sky: 
         demands.append((phase.speed_mps, rule))
     shape = sky.az_rad.shape
     gps, galileo = (gnss.CONSTELLATIONS.index(name) for name in ("gps", "galileo"))
+    wide = {} if single else {gps: rates.gps_wide_per_hour, galileo: rates.galileo_wide_per_hour}
     job = {
         "fix": rraim.fix(
             flat(sky.az_rad).ravel(),
@@ -185,7 +185,7 @@ def coasting(config: SurfaceMovement, rules: Rules, mode: Mode, case: str, sky: 
         "bias_m": list(grid.bias_m),
         "carrier": rules.carriers[mode.carrier].numbers(),
         "rate_per_hour": rraim.by_system("p_sat", {gps: rates.gps_per_hour, galileo: rates.galileo_per_hour}, 0.0),
-        "p_const": rraim.by_system("p_const", {} if single else {gps: rates.gps_wide, galileo: rates.galileo_wide}, 0.0),
+        "wide_per_hour": rraim.by_system("p_const", wide, 0.0),
         "fault_lasts_s": None,
     }
     cells = _core.surface_cells(job)

@@ -13,6 +13,7 @@ import numpy as np
 from navbound import gnss
 from navbound.errors import FormatError, InputError
 from navbound.gnss import Orbits
+from navbound.scenario import surface
 from navbound.scenario.models import GPS_EPOCH
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 SYSTEMS = ("gps", "galileo")
 TITLES = {"gps": "GPS", "galileo": "Galileo"}
+NOMINAL_WORDS = {"gps": "nominal", "gps-expanded": "nominal and expanded", "galileo": "nominal"}
 WEEK_S = 604_800.0
 DAY_NS = 86_400_000_000_000
 MOST_AGE_S = 14_400.0
@@ -125,10 +127,14 @@ def look(config: SurfaceMovement, own: Mapping[str, tuple[Orbits, str]] | None =
 
 
 def _source(system: str, name: str, start: datetime | None, duration_s: float) -> _Source:
-    if name == "nominal":
-        orbits = gnss.constellation(system)
-        return _Source(orbits, 0.0, f"{len(orbits.satellite)} nominal {TITLES[system]} satellites", dated=False)
+    shipped = surface.nominal(system, name)
+    if shipped is not None:
+        orbits = gnss.constellation(shipped)
+        return _Source(orbits, 0.0, f"{len(orbits.satellite)} {NOMINAL_WORDS[shipped]} {TITLES[system]} satellites", dated=False)
     path = Path(name)
+    if not path.exists():
+        known = ", ".join(("nominal", *surface.NOMINAL[system]))
+        raise InputError(f"geometry.{system}", name, domain=f"{known}, or the path of a file that is there")
     start_ns = None if start is None else _gps_ns(start)
     if is_rinex(path):
         return _from_navigation(system, path, start_ns, duration_s)

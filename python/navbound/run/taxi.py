@@ -14,9 +14,10 @@ from navbound.run import taxi_errors as errors
 from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
 from navbound.run.material import Material
 from navbound.run.records import EventSummary, Waypoint
+from navbound.run.series_memory import gauss_markov
 from navbound.run.surface_grid import K95
 from navbound.run.taxi_motion import move
-from navbound.run.taxi_navigation import Navigated, Navigator, look
+from navbound.run.taxi_navigation import Navigated, Navigator
 from navbound.scenario import taxi as scenarios
 
 if TYPE_CHECKING:
@@ -104,9 +105,9 @@ def _ground(taxi: str) -> _Ground:
     """From a scenario as text, worked out once a process."""
     found, asked = scenarios.Taxi.model_validate_json(taxi), limits()
     movement = move(found, asked)
-    sky = look(found, movement)
-    scenarios.check_satellites(found, sky.names)
-    return _Ground(found, asked, movement, Navigator(found, movement, asked, sky))
+    navigator = Navigator(found, movement, asked)
+    scenarios.check_satellites(found, navigator.sky.names)
+    return _Ground(found, asked, movement, navigator)
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,7 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
     n = len(movement.along_m)
     east_m, north_m = movement.per_radian_m
     budget = gbas.error_budget()
-    fte = budget.sigma_fte_m * errors.gauss_markov(errors.stream(seed, track, errors.STEERING), n, taxi.motion.steering_time_s)
+    fte = budget.sigma_fte_m * gauss_markov(errors.stream(seed, track, errors.STEERING).standard_normal(n), taxi.motion.steering_time_s)
     # The aircraft steers by its estimate; where it really is lies an nse away.
     est_lat = movement.lat_rad - fte * np.sin(movement.course_rad) / north_m
     est_lon = movement.lon_rad + fte * np.cos(movement.course_rad) / east_m

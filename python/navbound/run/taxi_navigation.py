@@ -6,14 +6,14 @@ One flight is worked out at a time: what the monitors take away depends on its e
 from __future__ import annotations
 
 from dataclasses import dataclass
-from statistics import NormalDist
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from navbound import gbas, gnss, rraim
 from navbound.run import taxi_errors as errors
-from navbound.run.surface_grid import MODES, Mode
+from navbound.run.taxi_inertial import Inertial, InertialFlight, Solved
+from navbound.run.taxi_sky import STEPS, Sky, look, mode_of, way
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,20 +23,7 @@ if TYPE_CHECKING:
     from navbound.scenario.taxi import Taxi
 
     Floats = NDArray[np.float64]
-
-
-FILTERED_EVERY_S = 20
-"""In so many seconds a satellite moves by less than 0.2 degrees."""
-
-
-@dataclass(frozen=True)
-class Sky:
-    """Satellites over the airport, one row a second; both angles NaN below the horizon [rad]."""
-
-    names: tuple[str, ...]
-    systems: NDArray[np.int64]
-    az_rad: Floats
-    el_rad: Floats
+    Angles = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True)
@@ -78,34 +65,55 @@ class Navigated:
     happened: list[Happened]
 
 
-def mode_of(taxi: Taxi) -> Mode:
-    """The processing mode of a scenario."""
-    return next(m for m in MODES if m.id == taxi.navigation.mode)
+@dataclass(frozen=True)
+class Phases:
+    """Phase while coasting, a column a satellite; NaN for one that is not followed.
+
+    Attributes
+    ----------
+    at_fix : ndarray of bool, shape (n,)
+        Which satellites the fix was made with.
+    sigma_m : ndarray, shape (coasting, n)
+        Of phase differenced since the fix (equation 20). [m]
+    error_m : ndarray, shape (steps + 1, n)
+        From the fix on, :data:`STEPS` instants a second. [m]
+    sigma_rate_mps : ndarray, shape (steps, n)
+        Of the rates it makes from instant to instant. [m/s]
+    """
+
+    at_fix: NDArray[np.bool_]
+    sigma_m: Floats
+    error_m: Floats
+    sigma_rate_mps: Floats
 
 
-def look(taxi: Taxi, movement: Movement) -> Sky:
-    """Where the nominal satellites of the mode stand."""
-    names = mode_of(taxi).systems
-    orbits = gnss.constellation(names[0])
-    for name in names[1:]:
-        orbits += gnss.constellation(name)
-    seconds = taxi.second_of_day + np.arange(len(movement.along_m))
-    az, el = gnss.directions(orbits, movement.lat_rad, movement.lon_rad, taxi.height_m, seconds)
-    up = el > 0
-    return Sky(orbits.satellite, orbits.constellation, np.where(up, az, np.nan), np.where(up, el, np.nan))
+def seen(sky: Sky, rows: int | slice, used: NDArray[np.bool_]) -> Angles:
+    """Azimuth and elevation of the satellites used, NaN for the others [rad]."""
+    return np.where(used, sky.az_rad[rows], np.nan), np.where(used, sky.el_rad[rows], np.nan)
+
+
+def moved_by(response: Floats, range_m: Floats) -> Floats:
+    """Position that range errors make, east, north, up [m]; a range that is NaN is not used; shape (..., 3)."""
+    moved: Floats = (response @ np.nan_to_num(range_m, nan=0.0)[..., None])[..., 0]
+    return moved
 
 
 class Navigator:
     """Everything that all flights of a scenario share."""
 
-    def __init__(self, taxi: Taxi, movement: Movement, limits: dict[str, SubPhase], sky: Sky) -> None:
-        self.taxi, self.movement, self.limits, self.sky = taxi, movement, limits, sky
+    def __init__(self, taxi: Taxi, movement: Movement, limits: dict[str, SubPhase]) -> None:
+        self.taxi, self.movement, self.limits = taxi, movement, limits
+        flown = way(taxi, movement)
+        self.lead, fine = flown.lead, look(taxi, flown)
+        self.approach = fine.rows(slice(None, None, STEPS))
+        self.sky: Sky = self.approach.rows(slice(flown.lead, None))
         self.mode = mode_of(taxi)
         self.shares = gbas.allocation()
         self.rates = gbas.fault_rates()[taxi.navigation.case]
         self.carrier = gbas.carriers()[self.mode.carrier]
         self.fixes = int(np.argmax(movement.coasts))
         """Seconds before coasting; the fix that is carried on is the last of them."""
+        self.inertial = None if taxi.navigation.covariance == "snapshot" else Inertial(taxi, movement, flown, fine)
 
     def fly(self, seed: int, track: int) -> Navigated:
         """Navigate one flight."""
@@ -129,8 +137,12 @@ class Navigator:
             words = f"range of {fault.satellite} begins to be wrong ({fault.kind})"
             found.happened.append(Happened("fault", int(np.ceil(fault.start_s)), end if end < n else None, words))
         withdrawn = self._withdrawn(seed, track, found)
-        self._fix(seed, track, faults, withdrawn, found)
-        self._coast(seed, track, faults, withdrawn, found)
+        flight = None if self.inertial is None else self.inertial.flight(seed, track)
+        ranges = self._range_errors(seed, track, faults, withdrawn)
+        phases = self._phase_errors(seed, track, faults, withdrawn)
+        solved = None if flight is None else flight.solve(ranges, phases.error_m, phases.sigma_rate_mps)
+        self._fix(ranges[self.lead :], solved, found)
+        self._coast(ranges, phases, flight, solved, found)
         found.happened.append(Happened("transition", self.fixes, None, "the last fix is carried on by carrier phase: no code from here"))
         return found
 
@@ -149,88 +161,121 @@ class Navigator:
                 found.happened.append(Happened("withdrawn", int(seen[0]), None, words))
         return gone
 
-    def _fix(self, seed: int, track: int, faults: Floats, withdrawn: NDArray[np.bool_], found: Navigated) -> None:
+    def _range_errors(self, seed: int, track: int, faults: Floats, withdrawn: NDArray[np.bool_]) -> Floats:
+        """Errors of corrected, smoothed ranges from the begin of the approach to the last fix; NaN for one that is not used [m]."""
+        navigation, n = self.taxi.navigation, self.lead + self.fixes
+        el, wide = self.approach.el_rad[:n], len(self.sky.names)
+        used = el >= navigation.mask_rad
+        used[self.lead :] &= ~withdrawn[: self.fixes]
+        sigma = gbas.range_sigma(np.where(used, el, np.nan), self.mode.service).sigma_m
+        found = sigma * errors.slow(seed, track, errors.CODE, wide=wide, n=n, time_s=navigation.code_time_s)
+        most = navigation.bias_m
+        found += np.array([errors.stream(seed, track, errors.BIAS, k).uniform(-most, most) for k in range(wide)])
+        found[self.lead :] += faults[: self.fixes]
+        return found
+
+    def _phase_errors(self, seed: int, track: int, faults: Floats, withdrawn: NDArray[np.bool_]) -> Phases:
+        """Errors of phase from the last fix on: two noises and a drift that together have the sigma of equation 20."""
+        navigation, sky, fix = self.taxi.navigation, self.sky, self.fixes - 1
+        steps, wide = STEPS * (len(sky.el_rad) - self.fixes), len(sky.names)
+        seconds = np.arange(1.0, steps + 1.0) / STEPS
+        # A satellite is followed through a second at whose end it is.
+        ends = fix + np.ceil(seconds).astype(np.int64)
+        at_fix = (sky.el_rad[fix] >= navigation.mask_rad) & ~withdrawn[fix]
+        el = np.where(at_fix & (sky.el_rad[ends] >= navigation.coasting_mask_rad), sky.el_rad[ends], np.nan)
+        along = np.interp(fix + seconds, np.arange(len(sky.el_rad)), self.movement.along_m)
+        speed = (along - self.movement.along_m[fix]) / seconds
+        sigma = gbas.carrier_sigma(el, speed[:, None], seconds[:, None], self.carrier)
+        stays_s = STEPS * navigation.phase_time_s
+        noise = errors.slow(seed, track, errors.PHASE, wide=wide, n=steps + 1, time_s=stays_s)
+        drift = np.array([errors.stream(seed, track, errors.DRIFT, k).standard_normal() for k in range(wide)])
+        grown = np.sqrt(np.maximum(sigma**2 - 2 * self.carrier.noise_m**2, 0.0))
+        wrong = np.stack([np.interp(fix + seconds, np.arange(len(sky.el_rad)), faults[:, k]) for k in range(wide)], axis=-1) - faults[fix]
+        start = np.where(at_fix, 0.0, np.nan)
+        error = np.vstack([start, self.carrier.noise_m * (noise[1:] - noise[0]) + grown * drift + wrong])
+        # Noise that stays for a while changes little from instant to instant.
+        fresh = self.carrier.noise_m * np.sqrt(2.0 * (1.0 - np.exp(-1.0 / stays_s)))
+        return Phases(at_fix, sigma[STEPS - 1 :: STEPS], error, STEPS * np.hypot(fresh, np.diff(np.vstack([start, grown]), axis=0)))
+
+    def _fix(self, ranges: Floats, solved: Solved | None, found: Navigated) -> None:
         """GBAS with an inertial system."""
-        navigation, sky, last = self.taxi.navigation, self.sky, self.fixes
-        used = (sky.el_rad[:last] >= navigation.mask_rad) & ~withdrawn[:last]
-        az, el = np.where(used, sky.az_rad[:last], np.nan), np.where(used, sky.el_rad[:last], np.nan)
-        claimed = self._aided(az, el, navigation.covariance)
+        sky, last = self.sky, self.fixes
+        used = ~np.isnan(ranges)
+        az, el = seen(sky, slice(last), used)
         levels = {
             name: gbas.protection_levels(
-                az, el, sky.systems, service=self.mode.service, k=self._factors(p), bias_m=navigation.bias_m, aided_covariance_m2=claimed
+                az,
+                el,
+                sky.systems,
+                service=self.mode.service,
+                k=self._factors(p),
+                bias_m=self.taxi.navigation.bias_m,
+                aided_covariance_m2=None if solved is None else solved.covariance_m2[:last],
             )
             for name, p in self.limits.items()
             if name in set(self.movement.phase[:last])
         }
-        sigma = gbas.range_sigma(el, self.mode.service).sigma_m
-        ranges = sigma * self._series(seed, track, errors.CODE, navigation.code_time_s)[:last] + self._biases(seed, track) + faults[:last]
         ok = next(iter(levels.values())).status == "ok"
-        sight = errors.Sight.of(az[ok], el[ok], sky.systems)
-        error = sight.solve(sigma[ok], ranges[ok])
-        if navigation.covariance != "snapshot":
-            own = gnss.covariance(az[ok], el[ok], sigma[ok], sky.systems).enu_m2
-            filtered = claimed if claimed is not None and navigation.covariance == "paper" else self._filtered(az, el, "paper")
-            error = errors.scaled_to(error, own, filtered[ok])
-        found.error_enu_m[:last][ok] = error
+        if solved is None:
+            response = gnss.responses(az[ok], el[ok], gbas.range_sigma(el[ok], self.mode.service).sigma_m, sky.systems)
+            found.error_enu_m[:last][ok] = moved_by(response, ranges[ok])
+        else:
+            found.error_enu_m[:last][ok] = solved.error_enu_m[:last][ok]
         self._take(found, slice(0, last), levels)
         found.hpl_multi_m[:last] = np.nan
 
-    def _coast(self, seed: int, track: int, faults: Floats, withdrawn: NDArray[np.bool_], found: Navigated) -> None:
+    def _coast(self, ranges: Floats, phases: Phases, flight: InertialFlight | None, solved: Solved | None, found: Navigated) -> None:
         """RRAIM: the last fix carried on; a satellite whose absence moves the position too far is left out."""
-        navigation, sky, first = self.taxi.navigation, self.sky, self.fixes
+        sky, first = self.sky, self.fixes
         fix = first - 1
         n = len(sky.el_rad) - first
-        seconds = np.arange(1.0, n + 1.0)
-        moved = self.movement.along_m[first:] - self.movement.along_m[fix]
-        at_fix = (sky.el_rad[fix] >= navigation.mask_rad) & ~withdrawn[fix]
-        az0, el0 = np.where(at_fix, sky.az_rad[fix], np.nan), np.where(at_fix, sky.el_rad[fix], np.nan)
-        followed = at_fix & (sky.el_rad[first:] >= navigation.coasting_mask_rad)
-        noise = self._series(seed, track, errors.PHASE, navigation.phase_time_s)
-        drift = np.array([errors.stream(seed, track, errors.DRIFT, k).standard_normal() for k in range(len(sky.names))])
-        claimed = self._aided(az0[None], el0[None], navigation.covariance)
+        then = seen(sky, fix, phases.at_fix)
+        claimed = None if solved is None else solved.covariance_m2[fix]
+        error = phases.error_m.copy()
         excluded: set[int] = set()
         begin = 0
         while begin < n:
-            el = np.where(followed[begin:], sky.el_rad[first + begin :], np.nan)
-            az = np.where(followed[begin:], sky.az_rad[first + begin :], np.nan)
-            sigma = gbas.carrier_sigma(el, (moved / seconds)[begin:, None], seconds[begin:, None], self.carrier)
-            levels = self._carried_on(az0, el0, az, el, sigma, claimed, phase=self.movement.phase[first + begin :], seconds=seconds[begin:])
-            slow = np.sqrt(np.maximum(sigma**2 - 2 * self.carrier.noise_m**2, 0.0))
-            phase = self.carrier.noise_m * (noise[first + begin :] - noise[fix]) + slow * drift + faults[first + begin :] - faults[fix]
             here = slice(first + begin, None)
+            phase = error[STEPS * (begin + 1) :: STEPS]
+            followed = ~np.isnan(phase)
+            now = seen(sky, here, followed)
+            sigma = np.where(followed, phases.sigma_m[begin:], np.nan)
+            levels = self._carried_on(then, now, sigma, claimed, phase=self.movement.phase[here], seconds=np.arange(begin + 1.0, n + 1.0))
             self._take(found, here, levels)
             carried = next(iter(levels.values()))
             ok = carried.status == "ok"
-            error, moves = self._propagate(found.error_enu_m[fix], (az0, el0), (az[ok], el[ok]), sigma[ok], phase[ok])
-            found.error_enu_m[here][ok] = error
+            change, moves = self._propagate(found.error_enu_m[fix], then, (now[0][ok], now[1][ok]), sigma[ok], phase[ok])
+            found.error_enu_m[here][ok] = found.error_enu_m[fix] + change if solved is None else solved.error_enu_m[here][ok]
             if excluded:
                 self._degrade(found, here, ok, excluded)
-            alarm = self._alarm(moves, carried.subset_separation_m[ok], carried.n_sv[ok], phase=self.movement.phase[here][ok])
+            thresholds = {name: level.subset_threshold_m[ok] for name, level in levels.items()}
+            alarm = self._alarm(moves, thresholds, self.movement.phase[here][ok])
             if alarm is None:
                 break
             epoch, number = int(np.flatnonzero(ok)[alarm[0]]), alarm[1]
             words = f"without {sky.names[number]} the position moves {alarm[2]:.2f} m, more than {alarm[3]:.2f} m: it is left out"
             found.happened.append(Happened("excluded", first + begin + epoch, None, words))
             excluded.add(number)
-            # The alarm is of this second; the position without the satellite serves from the next one on.
+            # The alarm is of this second; from the next one on serves the position that has not had the satellite since the fix.
             begin += epoch + 1
-            followed[begin:, number] = False
+            error[:, number] = np.nan
+            if flight is not None:
+                solved = flight.solve(ranges, error, phases.sigma_rate_mps)
 
-    def _carried_on(  # noqa: PLR0917 - the sky then, the sky now, and how well both are known
+    def _carried_on(
         self,
-        az0: Floats,
-        el0: Floats,
-        az: Floats,
-        el: Floats,
+        then: Angles,
+        now: Angles,
         sigma: Floats,
         claimed: Floats | None,
         *,
         phase: NDArray[np.str_],
         seconds: Floats,
     ) -> dict[str, rraim.Levels]:
-        shape = el.shape
+        shape = sigma.shape
         gps, galileo = (gnss.CONSTELLATIONS.index(name) for name in ("gps", "galileo"))
-        wide = {} if len(self.mode.systems) == 1 else {gps: self.rates.gps_wide, galileo: self.rates.galileo_wide}
+        rates, single = self.rates, len(self.mode.systems) == 1
+        wide = {} if single else {gps: rates.gps_wide_per_hour, galileo: rates.galileo_wide_per_hour}
         levels = {}
         for name in dict.fromkeys(phase.tolist()):
             limit = self.limits[name]
@@ -238,45 +283,41 @@ class Navigator:
             # The prior of the sub-phase's last second: nowhere in it is a fault likelier.
             hours = seconds[phase == name].max() / 3600.0
             levels[name] = rraim.protection_levels(
-                np.broadcast_to(az0, shape),
-                np.broadcast_to(el0, shape),
-                az,
-                el,
+                np.broadcast_to(then[0], shape),
+                np.broadcast_to(then[1], shape),
+                *now,
                 sigma,
                 self.sky.systems,
                 service=self.mode.service,
-                aided_covariance_m2=None if claimed is None else np.broadcast_to(claimed[0], (len(el), 3, 3)),
+                aided_covariance_m2=None if claimed is None else np.broadcast_to(claimed, (len(sigma), 3, 3)),
                 bias_m=self.taxi.navigation.bias_m,
                 k=self._factors(limit),
                 continuity_risk=limit.continuity_risk,
                 allotted_risk=allotted,
-                p_sat={gps: self.rates.gps_per_hour * hours, galileo: self.rates.galileo_per_hour * hours},
-                p_const=wide,
+                p_sat={gps: rates.gps_per_hour * hours, galileo: rates.galileo_per_hour * hours},
+                p_const={system: per_hour * hours for system, per_hour in wide.items()},
                 p_threshold=self.shares.unmonitored * allotted,
             )
         return levels
 
-    def _propagate(
-        self, error0: Floats, then: tuple[Floats, Floats], now: tuple[Floats, Floats], sigma: Floats, phase: Floats
-    ) -> tuple[Floats, Floats]:
-        """Error of the fix carried on, and how far the horizontal position moves without each satellite (equation 11)."""
-        sight = errors.Sight.of(*now, self.sky.systems)
-        before = errors.Sight.of(np.where(sight.used, then[0], np.nan), np.where(sight.used, then[1], np.nan), self.sky.systems)
-        turned = (sight.rows - before.rows)[..., :3] @ error0
-        change = sight.solve(sigma, phase - turned)
-        moves = np.zeros(sight.used.shape)
-        for number in np.flatnonzero(sight.used.any(axis=0)):
-            apart = change - sight.without(int(number)).solve(sigma, phase - turned)
+    def _propagate(self, error0: Floats, then: Angles, now: Angles, sigma: Floats, phase: Floats) -> tuple[Floats, Floats]:
+        """Change of the error of a fix that phase alone carries on, and how far it moves without each satellite (equation 11)."""
+        turned = (errors.line(*then) - errors.line(*now)) @ error0
+        change = moved_by(gnss.responses(*now, sigma, self.sky.systems), phase - turned)
+        moves = np.zeros(sigma.shape)
+        for number in np.flatnonzero((~np.isnan(sigma)).any(axis=0)):
+            less = np.where(np.arange(sigma.shape[1]) == number, np.nan, sigma)
+            some = np.where(np.isnan(less), np.nan, now[0]), np.where(np.isnan(less), np.nan, now[1])
+            apart = change - moved_by(gnss.responses(*some, less, self.sky.systems), np.where(np.isnan(less), np.nan, phase - turned))
             moves[:, number] = np.hypot(apart[:, 0], apart[:, 1])
-        return error0 + change, moves
+        return change, moves
 
-    def _alarm(
-        self, moves: Floats, separation_m: Floats, n_sv: NDArray[np.int64], *, phase: NDArray[np.str_]
-    ) -> tuple[int, int, float, float] | None:
-        """First epoch with a separation above its threshold k_FA d(P_ss), the satellite, the separation and the threshold."""
-        risk = np.array([self.limits[name].continuity_risk for name in phase])
-        factor = np.array([NormalDist().inv_cdf(1.0 - r / (2 * n)) for r, n in zip(risk, n_sv, strict=True)])
-        threshold = factor[:, None] * separation_m
+    @staticmethod
+    def _alarm(moves: Floats, thresholds: dict[str, Floats], phase: NDArray[np.str_]) -> tuple[int, int, float, float] | None:
+        """First epoch with a separation above its threshold, the satellite, the separation and the threshold."""
+        threshold = np.full(moves.shape, np.nan)
+        for name, of_phase in thresholds.items():
+            threshold[phase == name] = of_phase[phase == name]
         above = np.flatnonzero((moves > threshold).any(axis=1))
         if not above.size:
             return None
@@ -308,31 +349,3 @@ class Navigator:
         return gbas.factors(
             limit.integrity_risk, share=shares.no_fault_and_receiver, axes=shares.axes, receiver_fault=shares.receiver_fault
         )
-
-    def _aided(self, az: Floats, el: Floats, form: str) -> Floats | None:
-        """Claimed covariance of the fix; None for that of the ranges alone."""
-        return None if form == "snapshot" else self._filtered(az, el, "paper" if form == "paper" else "bound")
-
-    def _filtered(self, az: Floats, el: Floats, noise: Literal["paper", "bound"]) -> Floats:
-        """Of a filter that has seen this sky for a while; worked out anew every few seconds and when a satellite comes or goes."""
-        used = ~np.isnan(el)
-        anew = np.arange(len(el)) % FILTERED_EVERY_S == 0
-        anew[1:] |= (used[1:] != used[:-1]).any(axis=1)
-        lat_rad = float(self.movement.lat_rad[0])
-        # Under an empty sky there is no filter to ask, and no level that would use its covariance.
-        found = np.tile(np.eye(3), (int(anew.sum()), 1, 1))
-        seen = used[anew].any(axis=1)
-        if seen.any():
-            skies = az[anew][seen], el[anew][seen], self.sky.systems
-            found[seen] = gbas.aided_covariance(*skies, lat_rad=lat_rad, service=self.mode.service, noise=noise)
-        held: Floats = found[np.cumsum(anew) - 1]
-        return held
-
-    def _series(self, seed: int, track: int, use: int, time_s: float) -> Floats:
-        n = len(self.sky.el_rad)
-        every = [errors.gauss_markov(errors.stream(seed, track, use, k), n, time_s) for k in range(len(self.sky.names))]
-        return np.stack(every, axis=-1)
-
-    def _biases(self, seed: int, track: int) -> Floats:
-        most = self.taxi.navigation.bias_m
-        return np.array([errors.stream(seed, track, errors.BIAS, k).uniform(-most, most) for k in range(len(self.sky.names))])

@@ -75,7 +75,7 @@ class Gusts(Part):
 class Navigation(Part):
     """How the aircraft knows where it is."""
 
-    constellations: list[Literal["gps", "galileo", "beidou"]]
+    constellations: list[Literal["gps", "gps-expanded", "galileo", "beidou"]]
     mask_rad: float
     ranging_sigma_m: float
     ionosphere_sigma_m: float

@@ -54,7 +54,7 @@ class RangeParts(Part):
 class Gnss(Part):
     """A satellite receiver."""
 
-    constellations: list[Literal["gps", "galileo", "beidou"]]
+    constellations: list[Literal["gps", "gps-expanded", "galileo", "beidou"]]
     mask_rad: float
     interval_s: float
     mode: Literal["seed", "real"]

@@ -14,6 +14,8 @@ from navbound.errors import FormatError
 from navbound.scenario.part import Part
 
 SHIPPED = Path(__file__).parent / "studies" / "surface-movement.toml"
+NOMINAL = {"gps": ("gps", "gps-expanded"), "galileo": ("galileo",)}
+"""Shipped constellations that a system may be given by name; ``nominal`` is the first."""
 
 
 class Airport(Part):
@@ -124,14 +126,32 @@ def load(path: Path | None = None) -> SurfaceMovement:
         return SurfaceMovement.model_validate(table)
     except ValidationError as e:
         first = e.errors()[0]
-        field = ".".join(str(part) for part in first["loc"])
-        raise FormatError(path or SHIPPED, first["msg"], field=field) from e
+        said = "is missing" if first["type"] == "missing" else f"{first['input']!r}: {first['msg']}"
+        raise FormatError(path or SHIPPED, said, field=_place(table, first["loc"])) from e
+
+
+def _place(table: dict[str, Any], location: tuple[str | int, ...]) -> str:
+    """Where in a file something is: rows counted from one, with their name."""
+    place, at = "", table
+    for part in location:
+        at = at[part] if isinstance(at, (dict, list)) and (isinstance(part, int) or part in at) else None  # type: ignore[index,assignment]
+        if isinstance(part, int):
+            name = at.get("id") if isinstance(at, dict) else None
+            place += f" {part + 1}" + (f" ({name})" if name else "")
+        else:
+            place += f".{part}" if place else part
+    return place
 
 
 def _laid_over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     """Tables key by key; anything else replaced as a whole."""
     both = {k for k in above if isinstance(above[k], dict) and isinstance(below.get(k), dict)}
     return {**below, **above, **{k: _laid_over(below[k], above[k]) for k in both}}
+
+
+def nominal(system: str, name: str) -> str | None:
+    """Name in :func:`navbound.gnss.constellation` of a shipped constellation; None for the path of a file."""
+    return system if name == "nominal" else name if name in NOMINAL[system] else None
 
 
 def _resolve(table: dict[str, Any], folder: Path) -> None:
@@ -141,5 +161,5 @@ def _resolve(table: dict[str, Any], folder: Path) -> None:
         return
     for system in ("gps", "galileo"):
         name = geometry.get(system)
-        if isinstance(name, str) and name != "nominal":
+        if isinstance(name, str) and nominal(system, name) is None:
             geometry[system] = str(folder / name)

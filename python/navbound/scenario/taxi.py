@@ -12,6 +12,7 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 from navbound.errors import FormatError, InputError
 from navbound.scenario.models import GPS_EPOCH
 from navbound.scenario.part import Part
+from navbound.scenario.sensors import Imu
 from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
 
 FOLDER = Path(__file__).parent / "taxiing"
@@ -48,6 +49,11 @@ class Navigation(Part):
     mode: Literal["D", "F1", "F2"]
     case: Literal["A", "B"]
     covariance: Literal["snapshot", "paper", "bound"]
+    """Noise that the inertial filter believes of smoothed multipath; ``snapshot``: ranges without an inertial system."""
+    gps: Literal["gps", "gps-expanded"] = "gps"
+    """Shipped slots of GPS."""
+    settled_s: float = Field(ge=60, le=900)
+    """How long the filter has run at the threshold."""
     transition: str
     """Point of the route from which no code is used."""
     bias_m: float = Field(ge=0, le=5)
@@ -97,6 +103,7 @@ class Taxi(Part):
     """Where the coordinates come from."""
     motion: Motion
     navigation: Navigation
+    imu: Imu
     points: list[Point] = Field(min_length=3)
     faults: list[Fault] = Field(default=[])
 

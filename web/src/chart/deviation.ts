@@ -1,7 +1,7 @@
 // Lateral and vertical deviation with the bounds that belong to them.
 
 import type { Scene } from "../data/scene.ts";
-import { metres, nauticalMiles, signedMetres } from "../show/format.ts";
+import { metres, nauticalMiles, SHORT_M, signedMetres } from "../show/format.ts";
 import { methodLines } from "./methods.ts";
 import { strip, type Line, type Scale } from "./strip.ts";
 import { extent } from "./ticks.ts";
@@ -50,5 +50,5 @@ function scalesFor(lines: Line[]): Scale[] {
 
 function lengthText(v: number, line: Line): string {
     const text = line.mirror ? metres(v) : signedMetres(v);
-    return line.limit ? `${text} (${nauticalMiles(v)})` : text;
+    return line.limit && Math.abs(v) >= SHORT_M ? `${text} (${nauticalMiles(v)})` : text;
 }

@@ -3,7 +3,7 @@
 
 import type { Scene } from "../data/scene.ts";
 import { el, setValue, svg, valueOf } from "../show/dom.ts";
-import { level, metres, nauticalMiles, rnpName, signedMetres } from "../show/format.ts";
+import { level, limitName, metres, nauticalMiles, rnpName, SHORT_M, signedMetres } from "../show/format.ts";
 import { columnOf } from "./methods.ts";
 
 interface Gauge {
@@ -44,7 +44,7 @@ function lateralGauge(scene: Scene): Gauge | null {
     if (!table.has("rnp_m")) return null;
     const anp = ["anp_cross_m", "anp_circle_m"].find((c) => table.has(c)) ?? null;
     const bound = payload.summary.accuracy.find((m) => m.id === payload.summary.verdict.method);
-    const rows: Gauge["rows"] = [["rnp_m", "RNP", (v) => `${nauticalMiles(v)} · ${metres(v)}`]];
+    const rows: Gauge["rows"] = [["rnp_m", "RNP", (v) => (v < SHORT_M ? limitName(v) : `${nauticalMiles(v)} · ${metres(v)}`)]];
     if (anp !== null) rows.push([anp, `ANP 95 %, ${anp === "anp_cross_m" ? "across track" : "circle"}`, metres]);
     if (table.has("fte_m")) rows.push(["fte_m", "FTE", signedMetres]);
     if (bound !== undefined && bound.error_column === "tse_m" && table.has(columnOf(bound, false))) rows.push([columnOf(bound, false), `TSE bound ${level(bound.risk)}, ${bound.id}`, metres]);

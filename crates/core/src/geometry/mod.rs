@@ -8,6 +8,6 @@ pub mod precise;
 pub(crate) mod seasonal;
 mod sight;
 
-pub use nominal::{BEIDOU, GALILEO, GPS, Slot};
+pub use nominal::{BEIDOU, GALILEO, GPS, GPS_EXPANDED, Slot};
 pub use orbit::{Elements, Orbit};
 pub use sight::{Direction, LineOfSight, Observer};

@@ -1,8 +1,9 @@
 //! Nominal constellations, as data.
 //!
-//! - GPS: the 24 nominal slots of the GPS Standard Positioning Service performance standard (standard, from memory; the same table is in
-//!   our specification "for repeatability"). The published epoch is 1993-07-01; here the right ascensions count from Greenwich at the
-//!   reference instant, so the sky of a date is typical of GPS and not that day's.
+//! - GPS: the 24 nominal slots of the GPS Standard Positioning Service performance standard, and the 27 that come of splitting its three
+//!   expandable ones (standard; the first in our specification too, the second confirmed by an independent table). The published epoch is
+//!   1993-07-01; here the right ascensions count from Greenwich at the reference instant, so the sky of a date is typical of GPS and not
+//!   that day's.
 //! - Galileo: 24 satellites in medium orbits (Walker 24/3/1, 29599.8 km, 56 deg; standard: Galileo OS service definition; phases ours).
 //! - BeiDou-3: 24 satellites in medium orbits (Walker 24/3/1, 27906.1 km, 55 deg), three in inclined geosynchronous orbits and three
 //!   geostationary at 80, 110.5 and 140 deg E (standard: BDS open service documents; phases of the first two kinds ours).
@@ -22,6 +23,8 @@ pub struct Slot {
 
 /// GPS: 24 slots in six planes.
 pub const GPS: [Slot; 24] = gps();
+/// GPS: the 24 slots with B1, D2 and F2 each split into a fore and an aft one.
+pub const GPS_EXPANDED: [Slot; 27] = gps_expanded();
 /// Galileo: 24 satellites in three planes.
 pub const GALILEO: [Slot; 24] = galileo();
 /// BeiDou-3: 24 medium, 3 inclined geosynchronous, 3 geostationary.
@@ -38,6 +41,8 @@ const GPS_LATITUDES: [[f64; 4]; 6] = [
     [197.046, 302.596, 66.066, 333.686],
     [238.886, 345.226, 105.206, 135.346],
 ];
+/// Index of an expandable slot, and the arguments of latitude of its fore and aft halves \[deg\]: B1, D2, F2.
+const GPS_SPLIT: [(usize, [f64; 2]); 3] = [(4, [94.916, 66.356]), (13, [282.676, 257.976]), (21, [0.456, 334.016])];
 const GPS_AXIS: Metres = Metres::new(26_559_800.0);
 const GALILEO_AXIS: Metres = Metres::new(29_599_800.0);
 const MEDIUM_AXIS: Metres = Metres::new(27_906_100.0);
@@ -61,6 +66,25 @@ const fn gps() -> [Slot; 24] {
     let mut i = 0;
     while i < 24 {
         slots[i] = slot(Constellation::Gps, i, GPS_AXIS, INCLINATION, GPS_NODES[i / 4], GPS_LATITUDES[i / 4][i % 4]);
+        i += 1;
+    }
+    slots
+}
+
+const fn gps_expanded() -> [Slot; 27] {
+    let mut slots = [slot(Constellation::Gps, 0, GPS_AXIS, INCLINATION, 0.0, 0.0); 27];
+    let (mut i, mut filled, mut split) = (0, 0, 0);
+    while i < 24 {
+        let node = GPS_NODES[i / 4];
+        if split < GPS_SPLIT.len() && GPS_SPLIT[split].0 == i {
+            let [fore, aft] = GPS_SPLIT[split].1;
+            slots[filled] = slot(Constellation::Gps, filled, GPS_AXIS, INCLINATION, node, fore);
+            slots[filled + 1] = slot(Constellation::Gps, filled + 1, GPS_AXIS, INCLINATION, node, aft);
+            (filled, split) = (filled + 2, split + 1);
+        } else {
+            slots[filled] = slot(Constellation::Gps, filled, GPS_AXIS, INCLINATION, node, GPS_LATITUDES[i / 4][i % 4]);
+            filled += 1;
+        }
         i += 1;
     }
     slots
@@ -145,9 +169,27 @@ mod tests {
         assert!(over_equator(turn - 10.0) < 0.0 && over_equator(turn + 10.0) > 0.0);
     }
 
+    /// Each half of a split slot stays in its plane, within 15 degrees of the whole one and on either side of it.
+    #[test]
+    fn expanded_slots_stand_before_and_behind_those_they_replace() {
+        let place = |s: &Slot| (s.elements.node.rad().to_degrees(), s.elements.mean_anomaly.rad().to_degrees());
+        let turned = |x: f64| (x + 180.0).rem_euclid(360.0) - 180.0;
+        let kept = GPS.iter().filter(|a| GPS_EXPANDED.iter().any(|b| place(a) == place(b))).count();
+        assert_eq!(kept, 21);
+        let mut replaced = 0;
+        for (i, slot) in GPS.iter().enumerate().filter(|(_, a)| GPS_EXPANDED.iter().all(|b| place(a) != place(b))) {
+            let (node, latitude) = place(slot);
+            let near = GPS_EXPANDED.iter().map(place).filter(|p| p.0 == node).map(|p| turned(p.1 - latitude)).filter(|d| d.abs() < 18.0);
+            let [fore, aft] = near.collect::<Vec<_>>().try_into().unwrap();
+            assert!(fore > 5.0 && aft < -5.0 && fore - aft > 24.0 && fore - aft < 29.0, "slot {i}: {fore} {aft}");
+            replaced += 1;
+        }
+        assert_eq!(replaced, 3);
+    }
+
     #[test]
     fn numbers_are_unique_in_each_constellation() {
-        for slots in [&GPS[..], &GALILEO[..], &BEIDOU[..]] {
+        for slots in [&GPS[..], &GPS_EXPANDED[..], &GALILEO[..], &BEIDOU[..]] {
             for (i, slot) in slots.iter().enumerate() {
                 assert_eq!(usize::from(slot.satellite.number), i + 1);
             }

@@ -17,12 +17,14 @@ pub struct SatelliteRange {
     pub position: EcefPosition,
     /// Its velocity, likewise \[m/s\].
     pub velocity_mps: Vector3<f64>,
-    /// Geometric range + receiver clock + inter-system bias + error.
-    pub range: Metres,
+    /// Geometric range + receiver clock + inter-system bias + error; none where only its rate is known, as from carrier phase.
+    pub range: Option<Metres>,
     /// Standard deviation of the white part.
     pub sigma_white: Metres,
     /// Standard deviation of the part that is correlated in time (first-order Gauss-Markov).
     pub sigma_correlated: Metres,
+    /// Standard deviation that part has when the satellite is first seen: the one above for a stationary process.
+    pub sigma_first: Metres,
     /// Correlation time of that part \[s\].
     pub correlation_time_s: f64,
     /// Range rate from Doppler, corrected for the satellite's clock drift \[m/s\], and its standard deviation \[m/s\].

@@ -72,10 +72,10 @@ pub struct FaultRates {
     pub gps_per_hour: f64,
     /// Galileo satellite \[1/h\].
     pub galileo_per_hour: f64,
-    /// Prior of a fault of all of Galileo; used only with GPS beside it.
-    pub galileo_wide: f64,
-    /// The same of GPS; used only with Galileo beside it.
-    pub gps_wide: f64,
+    /// All of Galileo at once \[1/h\]; used only with GPS beside it.
+    pub galileo_wide_per_hour: f64,
+    /// All of GPS at once \[1/h\]; used only with Galileo beside it.
+    pub gps_wide_per_hour: f64,
     /// Time a fault may act before a monitor with memory shows it \[s\].
     pub decorrelation_s: f64,
     /// Satellites over all constellations.
@@ -176,6 +176,11 @@ const RATE_MARKS: &[Mark] = &[
         Provenance::Standard,
         "1e-4 for Galileo, 1e-8 for GPS, beside another constellation only; that Galileo's is larger is printed",
     ),
+    mark(
+        "wide_per_hour",
+        Provenance::Inferred,
+        "these priors hold for the mean fault duration of an hour, so faults begin at that rate; reproduces all 120 cells of the specification",
+    ),
     mark("satellites", Provenance::Printed, "18 over both constellations; half and half is inferred"),
     mark("decorrelation", Provenance::Printed, "100 s"),
 ];
@@ -188,8 +193,8 @@ const fn fault_rates(id: &'static str, galileo_per_hour: f64) -> FaultRates {
         id,
         gps_per_hour: 1e-5,
         galileo_per_hour,
-        galileo_wide: 1e-4,
-        gps_wide: 1e-8,
+        galileo_wide_per_hour: 1e-4,
+        gps_wide_per_hour: 1e-8,
         decorrelation_s: 100.0,
         satellites: 18,
         marks: RATE_MARKS,

@@ -30,7 +30,7 @@ use crate::flight::fly;
 use crate::navigator::Navigator;
 use crate::outlook::Outlook;
 use crate::plan::Refused;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, kept};
 use crate::trajectory::{Motion, Trajectory};
 use altimeter::Altimeter;
 use inertial::{InertialUnit, TrueIncrements};
@@ -116,26 +116,18 @@ impl Sensing {
         let (s, rate_hz) = (&self.sensors, self.sensors.rate_hz);
         let rate = f64::from(rate_hz);
         let begin = GpsTime::from_nanoseconds(self.outlook.scenario.start_ns);
-        let truth = TrueIncrements::new(trajectory, rate_hz)?;
-        let departure_m = truth.now().position.height.m();
+        let bare = SensedFlight::bare(trajectory, begin, (&s.imu, rate_hz), &s.faults, (seed, number))?;
+        let departure_m = bare.now().position.height.m();
         let every = |interval_s: f64| (interval_s * rate).round() as u64;
         let dme = s.dme.as_ref().map(|d| Interrogator::new(d, s, seed, number).map(|i| (every(d.interval_s), i))).transpose()?;
         let vor = s.vor.as_ref().map(|v| Bearings::new(v, s, seed, number).map(|b| (every(v.interval_s), b))).transpose()?;
         let receiver = |g| Receiver::new(g, &self.satellites, &s.faults, begin, seed, number);
         Ok(SensedFlight {
-            faults: &s.faults,
-            begin,
-            interval_ns: 1_000_000_000 / i64::from(rate_hz),
-            // A product of two written numbers may fall short of a whole one by its last digit.
-            samples: (trajectory.duration_s() * rate + 1e-6) as u64,
-            next: 1,
-            truth,
-            imu: InertialUnit::new(&s.imu, rate_hz, &s.faults, seed, number),
             gnss: s.gnss.as_ref().map(|g| (every(g.interval_s), receiver(g))),
             dme,
             vor,
             baro: s.baro.as_ref().map(|b| (every(b.interval_s), Altimeter::new(b, &s.faults, departure_m, 1.0 / rate, seed, number))),
-            aiding: Vec::new(),
+            ..bare
         })
     }
 }
@@ -154,6 +146,47 @@ pub struct SensedFlight<'a> {
     vor: Option<(u64, Bearings<'a>)>,
     baro: Option<(u64, Altimeter<'a>)>,
     aiding: Vec<TimedAiding>,
+}
+
+impl<'a> SensedFlight<'a> {
+    /// An inertial unit alone on a path; `unit` is it and its samples a second, `draw` the seed and the number of the flight.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for errors or a rate outside their domains, a position that leaves the Earth's latitudes.
+    pub fn inertial(
+        trajectory: &'a Trajectory,
+        begin: GpsTime,
+        (imu, rate_hz): (&Imu, u32),
+        (seed, number): (u64, u64),
+    ) -> Result<Self, OutOfDomain> {
+        kept(imu.rules(rate_hz))?;
+        Self::bare(trajectory, begin, (imu, rate_hz), &[], (seed, number))
+    }
+
+    /// Without anything that measures against the ground.
+    fn bare(
+        trajectory: &'a Trajectory,
+        begin: GpsTime,
+        (imu, rate_hz): (&Imu, u32),
+        faults: &'a [SensorFault],
+        (seed, number): (u64, u64),
+    ) -> Result<Self, OutOfDomain> {
+        Ok(Self {
+            faults,
+            begin,
+            interval_ns: 1_000_000_000 / i64::from(rate_hz),
+            // A product of two written numbers may fall short of a whole one by its last digit.
+            samples: (trajectory.duration_s() * f64::from(rate_hz) + 1e-6) as u64,
+            next: 1,
+            truth: TrueIncrements::new(trajectory, rate_hz)?,
+            imu: InertialUnit::new(imu, rate_hz, faults, seed, number),
+            gnss: None,
+            dme: None,
+            vor: None,
+            baro: None,
+            aiding: Vec::new(),
+        })
+    }
 }
 
 impl SensedFlight<'_> {

@@ -157,9 +157,10 @@ impl Instant<'_> {
             satellite: id,
             position: sent.position,
             velocity_mps: sent.velocity_mps,
-            range: Metres::new(common + slow.code_m + white_m * noise[0]),
+            range: Some(Metres::new(common + slow.code_m + white_m * noise[0])),
             sigma_white: Metres::new(white_m),
             sigma_correlated: Metres::new(slow.sigma_m),
+            sigma_first: Metres::new(slow.sigma_m),
             correlation_time_s: slow.correlation_time_s,
             rate_mps: Some((seen.rate(&sent) + self.clock[1] + fault_mps + s.rate_sigma_mps * noise[1], s.rate_sigma_mps)),
         };

@@ -242,9 +242,7 @@ impl StationKind {
 impl Sensors {
     pub(crate) fn rules(&self) -> Vec<Rule> {
         let rate = f64::from(self.rate_hz);
-        let divides = (10..=200).contains(&self.rate_hz) && 1_000_000_000_u32.is_multiple_of(self.rate_hz);
-        let mut rules = vec![Rule("rate_hz", rate, "1/s", divides, "divisors of 10^9 from 10 to 200")];
-        rules.extend(self.imu.rules());
+        let mut rules = self.imu.rules(self.rate_hz);
         rules.extend(self.gnss.iter().flat_map(|g| g.rules(rate)));
         rules.extend(self.dme.iter().flat_map(|d| d.rules(rate)));
         rules.extend(self.vor.iter().flat_map(|v| v.rules(rate)));
@@ -266,8 +264,11 @@ fn interval(interval_s: f64, rate: f64) -> Rule {
 }
 
 impl Imu {
-    fn rules(&self) -> Vec<Rule> {
+    /// Of the unit at so many samples a second.
+    pub(super) fn rules(&self, rate_hz: u32) -> Vec<Rule> {
+        let divides = (10..=200).contains(&rate_hz) && 1_000_000_000_u32.is_multiple_of(rate_hz);
         vec![
+            Rule("rate_hz", f64::from(rate_hz), "1/s", divides, "divisors of 10^9 from 10 to 200"),
             not_negative("gyro_bias_radps", self.gyro_bias_radps, "rad/s"),
             not_negative("gyro_in_run_radps", self.gyro_in_run_radps, "rad/s"),
             not_negative("gyro_noise_radprts", self.gyro_noise_radprts, "rad/√s"),

@@ -37,7 +37,7 @@ fn receiver_position(sample: &Sample) -> Vector3<f64> {
 
 /// Range less geometry and clock \[m\].
 fn residual(sample: &Sample, range: &SatelliteRange) -> f64 {
-    range.range.m() - (range.position.vector() - receiver_position(sample)).norm() - sample.clock.unwrap()[0]
+    range.range.unwrap().m() - (range.position.vector() - receiver_position(sample)).norm() - sample.clock.unwrap()[0]
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn steps_and_ramps_come_when_declared_to_the_satellite_named() {
         for (r, s) in ranges(a).iter().zip(ranges(b)) {
             let own = if r.satellite == one { expected } else { 0.0 };
             // Ranges of 3e7 m lose 4e-9 m.
-            assert!((s.range.m() - r.range.m() - own).abs() < 1e-7, "{t} {}", r.satellite);
+            assert!((s.range.unwrap().m() - r.range.unwrap().m() - own).abs() < 1e-7, "{t} {}", r.satellite);
             let drifts = if r.satellite == one && (40.0..50.0).contains(&t) { 2.0 } else { 0.0 };
             assert!((s.rate_mps.unwrap().0 - r.rate_mps.unwrap().0 - drifts).abs() < 1e-9);
         }
@@ -254,7 +254,7 @@ fn a_spoofer_draws_every_range_to_one_false_place() {
         let offset = pulled * Vector3::new(3.0 * v.x / ground, -3.0 * v.y / ground, -1.0);
         let place = receiver_position(&sample) + enu_from_ecef(&sample.step.truth.position.point).transpose() * offset;
         let squares = ranges(&sample).into_iter().map(|r| {
-            let x = r.range.m() - (r.position.vector() - place).norm() - sample.clock.unwrap()[0];
+            let x = r.range.unwrap().m() - (r.position.vector() - place).norm() - sample.clock.unwrap()[0];
             x / r.sigma_white.m()
         });
         // Noise of unit variance is all that is left: 6 sigma once in 5e8, and 90 m are 180 of them.

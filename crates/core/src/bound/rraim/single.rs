@@ -176,10 +176,9 @@ impl SingleFault {
         let b = bias.m();
         let fault_free = multipliers.factors.fault_free * self.deviation.m() + self.gain * b;
         let receiver_faulty = receiver_shift.m() + multipliers.factors.missed * self.receiver_faulty.m() + self.gain * b;
-        let room = if biased_threshold { b } else { 0.0 };
         let one = |w: &Without| {
-            let threshold = multipliers.false_alarm * w.separation.m() + w.separation_gain * room;
-            threshold + multipliers.fault * w.deviation.m() + w.gain * b
+            let threshold = multipliers.threshold(w, bias, biased_threshold);
+            threshold.m() + multipliers.fault * w.deviation.m() + w.gain * b
         };
         let satellite_faulty = self.without().iter().map(one).fold(0.0, f64::max);
         Levels {
@@ -203,6 +202,12 @@ pub struct Multipliers {
 }
 
 impl Multipliers {
+    /// Separation above which the satellite is held to be faulty: k_FA d(P_ss,i), with room for the biases' part if asked for.
+    pub fn threshold(&self, without: &Without, bias: Metres, biased: bool) -> Metres {
+        let room = if biased { bias.m() } else { 0.0 };
+        Metres::new(self.false_alarm * without.separation.m() + without.separation_gain * room)
+    }
+
     /// For a number of satellites and the sum of their fault probabilities.
     ///
     /// ```text

@@ -9,7 +9,7 @@ use super::settings::{ErrorModel, positive};
 use super::slots::{Further, Process};
 use super::state::finite;
 use super::stations::{Look, Standing};
-use crate::quantity::{GpsTime, OutOfDomain};
+use crate::quantity::{GpsTime, Metres, OutOfDomain};
 use crate::signal::{Aiding, BaroHeight, DmeRange, PositionFix, SatelliteRange, TimedAiding, VorBearing};
 use crate::special::float::hypot;
 use nalgebra::{Matrix3, Vector3};
@@ -122,6 +122,8 @@ impl Filter {
     fn note(&mut self, aiding: &Aiding) {
         let time = self.time();
         match aiding {
+            // A rate holds no position: the mode knows ranges only.
+            Aiding::Satellite(m) if m.range.is_none() => {}
             Aiding::Satellite(m) => {
                 let id = m.satellite.constellation.index() as u64 * 256 + u64::from(m.satellite.number);
                 self.modes.satellite(id, time);
@@ -133,10 +135,25 @@ impl Filter {
         }
     }
 
+    /// Range, then its rate; a clock is known from the first range on.
     fn satellite(&mut self, antenna: &Antenna, m: &SatelliteRange, time: GpsTime) -> Aided {
-        let mut range = antenna.range(m);
+        let ranged = m.range.map(|range| self.range(antenna, m, range, time));
+        if let Some(Aided::NoPlace | Aided::Refused(_)) = ranged {
+            return ranged.unwrap_or(Aided::NoPlace);
+        }
+        let Some((rate, sigma)) = m.rate_mps else { return ranged.unwrap_or(Aided::NoPlace) };
+        let Some(drift) = self.slots.find(Further::ClockDrift) else { return Aided::NoPlace };
+        // The range may have moved the velocity, much so where both are tied: after a hole.
+        let mut scalar = antenna.moving(self.state()).range_rate(m, rate, sigma);
+        self.attach(&mut scalar, drift);
+        let rated = self.use_one((Kind::RangeRate, Further::Satellite(m.satellite)), &scalar, None);
+        ranged.unwrap_or(rated)
+    }
+
+    fn range(&mut self, antenna: &Antenna, m: &SatelliteRange, measured: Metres, time: GpsTime) -> Aided {
+        let mut range = antenna.range(m, measured);
         let (clock, joint) = (self.settings.clock, &mut self.joint);
-        let Some([bias, drift]) = self.slots.ensure_clock(joint, &clock, range.innovation) else { return Aided::NoPlace };
+        let Some([bias, _]) = self.slots.ensure_clock(joint, &clock, range.innovation) else { return Aided::NoPlace };
         if let Some(jump) = self.instant.at(time) {
             self.n_clock_jumps += 1;
             let value = self.slots.value(bias) + jump;
@@ -145,12 +162,12 @@ impl Filter {
         let mut more = [None; 2];
         let first = *self.first_constellation.get_or_insert(m.satellite.constellation);
         if first != m.satellite.constellation {
-            let bias = Process { sigma: clock.inter_system_m, tau_s: f64::INFINITY };
+            let bias = Process::constant(clock.inter_system_m);
             let what = Further::InterSystem(m.satellite.constellation);
             let Some(found) = self.slots.ensure(joint, what, bias, 0.0) else { return Aided::NoPlace };
             more[0] = Some(found);
         }
-        let slow = Process { sigma: m.sigma_correlated.m(), tau_s: m.correlation_time_s };
+        let slow = Process { sigma: m.sigma_correlated.m(), first: m.sigma_first.m(), tau_s: m.correlation_time_s };
         match self.own_state(Further::Satellite(m.satellite), slow, &mut range.variance) {
             Ok(found) => more[1] = found,
             Err(outcome) => return outcome,
@@ -158,17 +175,10 @@ impl Filter {
         for place in [Some(bias), more[0], more[1]].into_iter().flatten() {
             self.attach(&mut range, place);
         }
-        let source = Further::Satellite(m.satellite);
-        let outcome = self.use_one((Kind::Range, source), &range, more[1]);
+        let outcome = self.use_one((Kind::Range, Further::Satellite(m.satellite)), &range, more[1]);
         match outcome {
             Aided::Used { .. } => self.instant.used(),
             _ => self.instant.gated(range.innovation, self.variance(&range.row, range.variance)),
-        }
-        if let Some((rate, sigma)) = m.rate_mps {
-            // The range may have moved the velocity, much so where both are tied: after a hole.
-            let mut scalar = antenna.moving(self.state()).range_rate(m, rate, sigma);
-            self.attach(&mut scalar, drift);
-            self.use_one((Kind::RangeRate, source), &scalar, None);
         }
         outcome
     }
@@ -176,7 +186,7 @@ impl Filter {
     fn dme(&mut self, antenna: &Antenna, m: &DmeRange) -> Aided {
         let p = Matrix3::from_fn(|i, j| self.joint.get(R + i, R + j));
         // The bend stays as long as the error across the line of sight does: it belongs to the station's bias, not to what is new.
-        let slow = Process { sigma: hypot(m.sigma_bias.m(), antenna.bend(m, &p)), tau_s: f64::INFINITY };
+        let slow = Process::constant(hypot(m.sigma_bias.m(), antenna.bend(m, &p)));
         self.with_own_state(Kind::Dme, antenna.slant(m), Further::Dme(m.station), slow)
     }
 
@@ -185,7 +195,7 @@ impl Filter {
             Ok(scalar) => scalar,
             Err(refusal) => return Aided::Refused(refusal),
         };
-        let slow = Process { sigma: m.sigma_bias.rad(), tau_s: f64::INFINITY };
+        let slow = Process::constant(m.sigma_bias.rad());
         self.with_own_state(Kind::Vor, scalar, Further::Vor(m.station), slow)
     }
 
@@ -194,7 +204,7 @@ impl Filter {
         let row = Row::empty().with(R + 2, 1.0);
         let variance = m.sigma_white.m() * m.sigma_white.m();
         let scalar = Scalar { innovation: m.height.m() - predicted, row, variance };
-        let slow = Process { sigma: m.sigma_bias.m(), tau_s: m.correlation_time_s };
+        let slow = Process::stationary(m.sigma_bias.m(), m.correlation_time_s);
         self.with_own_state(Kind::Baro, scalar, Further::Baro, slow)
     }
 
@@ -223,7 +233,7 @@ impl Filter {
             return Aided::Refused(refusal);
         }
         self.settle();
-        let mount = Process { sigma: wheels.mount_rad, tau_s: f64::INFINITY };
+        let mount = Process::constant(wheels.mount_rad);
         let mut outcome = Aided::NoPlace;
         for (j, what) in [(1, Further::MountHeading), (2, Further::MountPitch)] {
             let Some(place) = self.slots.ensure(&mut self.joint, what, mount, 0.0) else { return Aided::NoPlace };
@@ -346,9 +356,10 @@ impl Filter {
 }
 
 impl Kind {
-    /// Of a measurement: of a satellite its range, of a solved position the position.
+    /// Of a measurement: of a satellite its range, or its rate where it has none; of a solved position the position.
     pub const fn of(aiding: &Aiding) -> Self {
         match aiding {
+            Aiding::Satellite(m) if m.range.is_none() => Self::RangeRate,
             Aiding::Satellite(_) => Self::Range,
             Aiding::Dme(_) => Self::Dme,
             Aiding::Vor(_) => Self::Vor,

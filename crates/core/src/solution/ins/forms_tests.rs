@@ -55,9 +55,10 @@ fn sky(second: u32, errors: [f64; 8], slow: f64) -> Vec<TimedAiding> {
             satellite: SatelliteId { constellation: Constellation::Gps, number: k + 1 },
             position: EcefPosition::from_vector(own.vector() + to_ecef * unit * 2.3e7),
             velocity_mps: Vector3::zeros(),
-            range: Metres::new(2.3e7 + 3000.0 + errors[usize::from(k)]),
+            range: Some(Metres::new(2.3e7 + 3000.0 + errors[usize::from(k)])),
             sigma_white: Metres::new(1.0),
             sigma_correlated: Metres::new(slow),
+            sigma_first: Metres::new(slow),
             correlation_time_s: 1800.0,
             rate_mps: None,
         })

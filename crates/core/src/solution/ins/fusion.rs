@@ -84,7 +84,7 @@ impl Fusion {
     /// Measurements of one kind and one time; how many of them are used in a filter.
     pub fn aid(&mut self, together: &[TimedAiding]) -> usize {
         let Some(first) = together.first() else { return 0 };
-        let satellites = matches!(Kind::of(&first.aiding), Kind::Range | Kind::FixPosition);
+        let satellites = matches!(Kind::of(&first.aiding), Kind::Range | Kind::RangeRate | Kind::FixPosition);
         let mut used = 0;
         if let Some(beside) = self.beside.as_mut().filter(|_| !satellites) {
             used = aid(beside, together);

@@ -210,7 +210,7 @@ impl Filter {
         let Some((a, q)) = receiver.course(&root, held, time) else { return Aided::NoPosition };
         let mut places = [0; 3];
         for (k, place) in (0..).zip(&mut places) {
-            let unit = Process { sigma: 1.0, tau_s: f64::INFINITY };
+            let unit = Process::constant(1.0);
             let Some(found) = self.slots.ensure(&mut self.joint, Further::SolvedPosition(k), unit, 0.0) else { return Aided::NoPlace };
             *place = found;
         }
@@ -227,16 +227,16 @@ impl Filter {
 
 fn range(timed: &TimedAiding) -> Option<&SatelliteRange> {
     match &timed.aiding {
-        Aiding::Satellite(m) => Some(m),
+        Aiding::Satellite(m) if m.range.is_some() => Some(m),
         _ => None,
     }
 }
 
 fn code_rows(antenna: &Antenna, ranges: &[SatelliteRange]) -> Rows {
-    Rows::of(ranges.iter().map(|m| {
+    Rows::of(ranges.iter().filter_map(|m| {
         let (unit, distance) = antenna.towards(&m.position);
         let variance = m.sigma_white.m() * m.sigma_white.m() + m.sigma_correlated.m() * m.sigma_correlated.m();
-        Row { unit, weight: 1.0 / variance, clock: m.satellite.constellation.index(), residual: m.range.m() - distance }
+        Some(Row { unit, weight: 1.0 / variance, clock: m.satellite.constellation.index(), residual: m.range?.m() - distance })
     }))
 }
 

@@ -4,7 +4,7 @@ use super::covariance::Row;
 use super::dynamics::{PHI, R, V};
 use super::state::NavState;
 use crate::frame::{EcefPosition, Geodetic, ecef_from_geodetic, enu_from_ecef};
-use crate::quantity::OutOfDomain;
+use crate::quantity::{Metres, OutOfDomain};
 use crate::signal::{DmeRange, SatelliteRange, VorBearing};
 use crate::special::float::{atan2, hypot, sqrt};
 use core::f64::consts::{PI, TAU};
@@ -87,10 +87,10 @@ impl Antenna {
     }
 
     /// Code range: grows against the line of sight. The further states stand in the innovation and the row of the caller.
-    pub(super) fn range(&self, m: &SatelliteRange) -> Scalar {
+    pub(super) fn range(&self, m: &SatelliteRange, measured: Metres) -> Scalar {
         let (u, distance) = self.towards(&m.position);
         let variance = m.sigma_white.m() * m.sigma_white.m();
-        Scalar { innovation: m.range.m() - distance, row: self.position_row(&-u), variance }
+        Scalar { innovation: measured.m() - distance, row: self.position_row(&-u), variance }
     }
 
     /// Range rate: the change of the line of sight with position, 2e-4 m/s a metre, is left out.

@@ -32,9 +32,14 @@ pub(super) fn check(aiding: &Aiding) -> Result<(), OutOfDomain> {
 
 fn satellite(m: &SatelliteRange) -> Result<(), OutOfDomain> {
     m.position.vector().iter().try_for_each(|x| finite("position_ecef_m", *x, "m"))?;
-    finite("range_m", m.range.m(), "m")?;
-    positive("correlation_time_s", m.correlation_time_s, "s")?;
-    deviations(m.sigma_white.m(), m.sigma_correlated.m(), "m")?;
+    if let Some(range) = m.range {
+        finite("range_m", range.m(), "m")?;
+        positive("correlation_time_s", m.correlation_time_s, "s")?;
+        deviations(m.sigma_white.m(), m.sigma_correlated.m(), "m")?;
+        deviations(m.sigma_white.m(), m.sigma_first.m(), "m")?;
+    } else if m.rate_mps.is_none() {
+        return Err(OutOfDomain { argument: "range_m", value: f64::NAN, unit: "m", domain: "a range, or its rate" });
+    }
     let Some((rate, sigma)) = m.rate_mps else { return Ok(()) };
     m.velocity_mps.iter().try_for_each(|x| finite("velocity_ecef_mps", *x, "m/s"))?;
     finite("rate_mps", rate, "m/s")?;

@@ -52,7 +52,19 @@ pub(super) struct Slots {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Process {
     pub(super) sigma: f64,
+    /// Deviation at the begin: sigma where it is stationary.
+    pub(super) first: f64,
     pub(super) tau_s: f64,
+}
+
+impl Process {
+    pub(super) const fn stationary(sigma: f64, tau_s: f64) -> Self {
+        Self { sigma, first: sigma, tau_s }
+    }
+
+    pub(super) const fn constant(sigma: f64) -> Self {
+        Self::stationary(sigma, f64::INFINITY)
+    }
 }
 
 impl Slots {
@@ -107,15 +119,14 @@ impl Slots {
         self.slot[self.n] = Slot { what, value, sigma: process.sigma, tau_s: process.tau_s, seen: self.settled };
         self.n += 1;
         joint.resize(self.n);
-        joint.reset(place, process.sigma * process.sigma);
+        joint.reset(place, process.first * process.first);
         Some(place)
     }
 
     /// Places of clock and drift; a new clock starts at the value that the first range gives.
     pub(super) fn ensure_clock(&mut self, joint: &mut Joint, model: &ClockModel, first: f64) -> Option<[usize; 2]> {
-        let constant = |sigma| Process { sigma, tau_s: f64::INFINITY };
-        self.ensure(joint, Further::ClockDrift, constant(model.drift_mps), 0.0)?;
-        let clock = self.ensure(joint, Further::Clock, constant(model.bias_m), first)?;
+        self.ensure(joint, Further::ClockDrift, Process::constant(model.drift_mps), 0.0)?;
+        let clock = self.ensure(joint, Further::Clock, Process::constant(model.bias_m), first)?;
         // The second may have moved the first.
         Some([clock, self.find(Further::ClockDrift)?])
     }
@@ -188,7 +199,7 @@ mod tests {
     use super::super::dynamics::NAV;
     use super::*;
 
-    const SLOW: Process = Process { sigma: 5.0, tau_s: 100.0 };
+    const SLOW: Process = Process::stationary(5.0, 100.0);
 
     fn at(seconds: f64) -> GpsTime {
         GpsTime::default().plus_seconds(seconds)
@@ -226,12 +237,23 @@ mod tests {
     }
 
     #[test]
+    fn a_process_that_is_not_stationary_begins_as_it_says() {
+        let (mut joint, mut slots) = empty();
+        let place = slots.ensure(&mut joint, satellite(1), Process { first: 2.0, ..SLOW }, 0.0).unwrap();
+        assert_eq!(joint.get(place, place), 4.0);
+        slots.settle(&mut joint, at(100.0), &ClockModel::default(), 600.0);
+        // After one time constant e^-2 of the begin and the rest of the 25 m² of the process, to rounding.
+        let kept = (-2.0_f64).exp();
+        assert!((joint.get(place, place) - (4.0 * kept + 25.0 * (1.0 - kept))).abs() < 1e-12);
+    }
+
+    #[test]
     fn unseen_satellites_are_forgotten_and_stations_are_not() {
         let (mut joint, mut slots) = empty();
         let model = ClockModel::default();
         let seen = slots.ensure(&mut joint, satellite(1), SLOW, 0.0).unwrap();
         slots.ensure(&mut joint, satellite(2), SLOW, 0.0).unwrap();
-        slots.ensure(&mut joint, Further::Dme(4), Process { sigma: 90.0, tau_s: f64::INFINITY }, 0.0).unwrap();
+        slots.ensure(&mut joint, Further::Dme(4), Process::constant(90.0), 0.0).unwrap();
         slots.saw(seen, at(50.0));
         slots.settle(&mut joint, at(70.0), &model, 60.0);
         assert!(slots.find(satellite(1)).is_some() && slots.find(satellite(2)).is_none());
