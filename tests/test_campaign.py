@@ -44,17 +44,21 @@ def same(first: Material, second: Material) -> bool:
 
 
 @pytest.mark.usefixtures("one_by_one")
-@pytest.mark.parametrize("backend", ["processes", "dask"])
-def test_fused_flights_have_the_same_bits_whoever_flies_them(backend: str, quick: Scenario) -> None:
-    if backend == "dask":
-        pytest.importorskip("distributed", reason="SKIPPED ALOUD: Dask is not installed")
+def test_fused_flights_have_the_same_bits_from_processes(quick: Scenario) -> None:
     alone = fly.material(quick, flights=2)
-    assert same(fly.material(quick, flights=2, backend=backend, workers=scale.Workers(2)), alone)
+    assert same(fly.material(quick, flights=2, backend="processes", workers=scale.Workers(2)), alone)
     told = alone.settings["filter"]
     assert isinstance(told, dict)
     # One restart more or less would be a filter more: two flights, two filters.
     assert told["restarts"] == 0
     assert told["samples"]["done"] == 2 * 70_800
+
+
+@pytest.mark.usefixtures("one_by_one")
+def test_flights_have_the_same_bits_from_a_cluster() -> None:
+    pytest.importorskip("distributed", reason="SKIPPED ALOUD: Dask is not installed")
+    alone = fly.material("beijing-shanghai-drawn", flights=3)
+    assert same(fly.material("beijing-shanghai-drawn", flights=3, backend="dask", workers=scale.Workers(2)), alone)
 
 
 @pytest.mark.usefixtures("one_by_one")
@@ -110,16 +114,21 @@ def test_progress_of_the_comparison_counts_the_flights_of_all_cases(monkeypatch:
         study_anp_comparison.run(flights=0)
 
 
-def test_the_drawn_row_of_the_coverage_study_has_the_same_bits_from_processes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_drawn_row_of_the_coverage_study_is_kept_in_parts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(study_tse_coverage, "DRAWN_AT_ONCE", 4_000)
-    alone = study_tse_coverage.run(step_s=3600, monte_carlo=10_000)
-    shared = study_tse_coverage.run(step_s=3600, monte_carlo=10_000, backend="processes", workers=scale.Workers(2), checkpoint=tmp_path)
-    assert shared == alone
-    drawn = next(row for row in alone.rows if row.origin == "monte carlo")
+    first = study_tse_coverage.run(step_s=3600, monte_carlo=10_000, checkpoint=tmp_path)
+    drawn = next(row for row in first.rows if row.origin == "monte carlo")
     assert drawn.n_samples == 10_000
-    # Five laws and three parts of the drawn row were kept, and each part has a stream of its own.
+    # Five laws and three parts of the drawn row.
     assert len(list(tmp_path.glob("*.npz"))) == 8
-    assert study_tse_coverage.run(step_s=3600, monte_carlo=4_000, seed=2014).rows[2].accuracy != drawn.accuracy
+    told: list[tuple[int, int]] = []
+    again = study_tse_coverage.run(
+        step_s=3600, monte_carlo=10_000, checkpoint=tmp_path, progress=lambda done, total: told.append((done, total))
+    )
+    assert again == first
+    assert told == [(8, 8)]
+    # Each part has a stream of its own: the first part alone says something else.
+    assert study_tse_coverage.run(step_s=3600, monte_carlo=4_000).rows[2].accuracy != drawn.accuracy
 
 
 @pytest.mark.parametrize("name", ["surface-movement", "decorrelation-time"])
