@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -219,6 +220,45 @@ def test_what_cannot_be_meant_is_refused_by_name() -> None:
         with pytest.raises(InputError) as refusal:
             araim.protection_levels(**{**good, **change})
         assert refusal.value.argument == name
+
+
+def test_a_refusal_shows_the_number_that_was_given() -> None:
+    unit = sky(8)
+
+    def refused(**change: Any) -> InputError:
+        good: dict[str, Any] = {"unit_enu": unit, "constellation": [GPS] * 8, "sigma_int_m": 1.0, "sigma_acc_m": 1.0}
+        with pytest.raises(InputError) as refusal:
+            araim.protection_levels(**{**good, **change})
+        return refusal.value
+
+    assert refused(sigma_int_m=-0.5).value == -0.5
+    # Only constellations in use need a prior; the one refused is named by its index.
+    refusal = refused(constellation=[GALILEO] * 8, p_const=[0.0, 0.0, 1.5, 0.0, 0.0])
+    assert (refusal.argument, refusal.index, refusal.value) == ("p_const", GALILEO, 1.5)
+    refusal = refused(constellation=[GPS] * 7 + [9])
+    assert (refusal.argument, refusal.index, refusal.value) == ("constellation", 7, 9)
+    assert refused(unit_enu=np.zeros((0, 3)), constellation=[]).argument == "unit_enu"
+
+
+def test_more_decisions_than_can_be_weighed_are_said() -> None:
+    # 16 satellites of which any two fail together more often than the integrity risk: 136 decisions, and room for 72.
+    found = araim.protection_levels(sky(16), [GPS] * 16, 1.0, 1.0, p_sat=1e-3, exclusion=True)
+    assert found.status == "too_many"
+
+
+def test_only_faults_with_a_share_of_the_risk_are_excluded() -> None:
+    unit, systems = sky(16, 13), [GPS] * 8 + [GALILEO] * 8
+    residual = np.where(np.arange(16) < 8, np.random.default_rng(13).normal(0, 60, 16), 0.0)
+    # Little may be left unmonitored, so that the fault of all GPS is a mode in both cases, and its separation is the largest.
+    service = replace(araim.SERVICES["lpv-200"], unmonitored=1e-9)
+    given: dict[str, Any] = {"sigma_int_m": 1.0, "sigma_acc_m": 1.0, "p_sat": 1e-6, "service": service}
+    likely = araim.monitor(unit, systems, residual, p_const=[1e-4, 1e-9, 1e-9, 1e-9, 1e-9], **given)
+    assert likely.decision == "excluded"
+    assert likely.excluded.tolist() == [True] * 8 + [False] * 8
+    # Less likely than the integrity risk of 1e-7: more modes, so a little more false-alarm multiplier, and no share for this decision.
+    rare = araim.monitor(unit, systems, residual, p_const=[9e-8, 1e-9, 1e-9, 1e-9, 1e-9], **given)
+    assert abs(rare.worst_ratio / likely.worst_ratio - 1.0) < 0.01
+    assert rare.decision == "not_excluded"
 
 
 def test_shipped_configurations_say_where_they_come_from() -> None:

@@ -142,7 +142,7 @@ def test_every_inferred_number_carries_its_mark() -> None:
         (lambda: gbas.protection_levels(AZ, EL, [0, 1]), "constellation"),
         (lambda: gbas.protection_levels(AZ, EL, [9] * 7), "constellation"),
         (lambda: gbas.protection_levels([], []), "az_rad"),
-        (lambda: gbas.factors(0.0), "risk"),
+        (lambda: gbas.factors(0.0), "integrity_risk"),
         (lambda: gbas.factors(1e-9, receiver_fault=0.0), "receiver_fault"),
         (lambda: gbas.factors(1e-9, axes=-1), "axes"),
         (lambda: gbas.accuracy_limit(0.5), "containment_m"),
