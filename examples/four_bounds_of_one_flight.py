@@ -1,4 +1,4 @@
-"""One flight from Beijing to Shanghai, four bounds of its total system error at 95 %: how large are they, and do they hold?
+"""One flight from Beijing to Shanghai with drawn errors, four bounds of its error at 95 %: how large are they, and do they hold?
 
 Expected output:
 
@@ -12,7 +12,7 @@ import numpy as np
 
 import navbound
 
-epochs = navbound.fly("beijing-shanghai").epochs
+epochs = navbound.fly("beijing-shanghai-drawn").epochs
 error_m = np.abs(epochs["tse_m"].to_numpy())
 for method in ("tse_exact", "tse_ltem", "tse_ctem_foot", "tse_sqsm"):
     bound_m = epochs[f"{method}_m"].to_numpy()

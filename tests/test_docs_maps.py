@@ -43,7 +43,6 @@ def test_the_commands_of_the_page_make_maps(page: str, shared_data: Path, tmp_pa
         "2026-11-21T00:00": "2016-04-02T00:00",
         "day.ems": str(sbas / "prn137_2025046_17h.ems.gz"),
         "brdc.rnx": str(sbas / "gps_2025046_17h.25N"),
-        "tcp://10.0.0.1:8786": "tcp://nobody:1",
     }
     listed = commands(page)
     assert listed
@@ -51,6 +50,8 @@ def test_the_commands_of_the_page_make_maps(page: str, shared_data: Path, tmp_pa
         # The stations of dme know no time.
         seldom = [] if "dme" in words else ["--every-s", "1200"]
         coarse = ["--step-deg", "15", *seldom, "--backend", "serial", "--out", f"map-{number}", "--json"]
-        run = CliRunner().invoke(cli.app, [ours.get(word, word) for word in words] + coarse)
+        # A cluster belongs to Dask, which is not asked here.
+        at = words.index("--cluster") if "--cluster" in words else len(words)
+        run = CliRunner().invoke(cli.app, [ours.get(word, word) for word in words[:at] + words[at + 2 :]] + coarse)
         assert run.exit_code == 0, (words, run.output, run.exception)
         assert (tmp_path / f"map-{number}" / "report.html").exists()
