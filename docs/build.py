@@ -1,4 +1,4 @@
-"""Write docs/methods/index.md from METHODS: the page that lists every method. `./dev docs` writes, `--check` compares."""
+"""Write docs/methods/index.md from METHODS and PROTECTION: the page that lists every method. `./dev docs` writes, `--check` compares."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from navbound import verify
-from navbound.methods import Method, methods
+from navbound.methods import Method, ProtectionMethod, methods, protection_methods
 
 PAGE = Path(__file__).parent / "methods" / "index.md"
 
@@ -22,6 +22,15 @@ def page() -> str:
     ]
     for m in methods().values():
         lines += _entry(m)
+    lines += [
+        "# Protection levels",
+        "",
+        "They need satellites, messages or a filter, so each has a function of its own. The provenance is that of the formulas; priors, budgets",
+        "and error models carry their own.",
+        "",
+    ]
+    for p in protection_methods().values():
+        lines += _levels(p)
     lines += [
         "## Reference vectors",
         "",
@@ -50,6 +59,20 @@ def _entry(m: Method) -> list[str]:
         f"- provenance: {m.provenance}",
         f"- assumes: {m.assumes}",
         f"- promises: {kept}",
+        "",
+    ]
+
+
+def _levels(p: ProtectionMethod) -> list[str]:
+    return [
+        f"## `{p.id}`: {p.title}",
+        "",
+        f"- function: `{p.function}`",
+        f"- source: {p.source}",
+        f"- provenance: {p.provenance}",
+        f"- covers: {p.covers}",
+        f"- assumes: {p.assumes}",
+        f"- integrity: {'yes' if p.integrity else 'no, experimental'}",
         "",
     ]
 

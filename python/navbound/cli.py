@@ -231,10 +231,12 @@ def study(
 def methods(json: Json = False) -> None:
     """List every method with its source, provenance and promises."""
     from navbound.methods import methods as all_methods  # noqa: PLC0415
+    from navbound.methods import protection_methods  # noqa: PLC0415
 
-    found = list(all_methods().values())
+    found, levels = list(all_methods().values()), list(protection_methods().values())
     if json:
-        sys.stdout.write(encoder.dumps([m.__dict__ for m in found], indent=1) + "\n")
+        both = {"methods": [m.__dict__ for m in found], "protection_levels": [p.__dict__ for p in levels]}
+        sys.stdout.write(encoder.dumps(both, indent=1) + "\n")
         return
     from rich.table import Table  # noqa: PLC0415
 
@@ -243,6 +245,12 @@ def methods(json: Json = False) -> None:
         table.add_column(heading, overflow="fold")
     for m in found:
         table.add_row(m.id, m.title, m.error_column, m.source, m.provenance, m.assumes, "yes" if m.may_alert else "no")
+    out_console.print(table)
+    table = Table(title="Protection levels", show_lines=True)
+    for heading in ("id", "what", "source", "provenance", "covers", "assumes", "integrity"):
+        table.add_column(heading, overflow="fold")
+    for p in levels:
+        table.add_row(p.id, p.title, p.source, p.provenance, p.covers, p.assumes, "yes" if p.integrity else "no, experimental")
     out_console.print(table)
 
 

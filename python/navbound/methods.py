@@ -1,4 +1,4 @@
-"""The list of methods: what each is, where it comes from, and what it promises. Read from the core; nothing is listed twice."""
+"""The lists of methods and of protection levels: what each is, where it comes from, what it promises. Read from the core; nothing is listed twice."""
 
 from __future__ import annotations
 
@@ -69,6 +69,32 @@ class Method:
 
 
 @dataclass(frozen=True)
+class ProtectionMethod:
+    """One algorithm of protection levels.
+
+    Attributes
+    ----------
+    function : str
+        Where it is called; it needs satellites, messages or a filter, so it has a function of its own.
+    provenance : str
+        Of the formulas. Priors, budgets and error models carry their own, in the run record and in ``docs/methods``.
+    covers, assumes : str
+        Which faults the levels cover, and what must be true for the stated risk to be true.
+    integrity : bool
+        Whether integrity may rest on it; False for experimental levels.
+    """
+
+    id: str
+    title: str
+    function: str
+    source: str
+    provenance: Provenance
+    covers: str
+    assumes: str
+    integrity: bool
+
+
+@dataclass(frozen=True)
 class BoundColumn:
     """One method over a table: bounds [m], and per row the index of its reason, 0 where there is a bound."""
 
@@ -82,6 +108,12 @@ class BoundColumn:
 def methods() -> dict[str, Method]:
     """Every method by its id, in the order of the core's list."""
     return {m["id"]: Method(**m) for m in _core.methods()}
+
+
+@cache
+def protection_methods() -> dict[str, ProtectionMethod]:
+    """Every algorithm of protection levels by its id, in the order of the core's list."""
+    return {p["id"]: ProtectionMethod(**p) for p in _core.protection_methods()}
 
 
 def method(method_id: str) -> Method:

@@ -31,6 +31,26 @@ fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         .collect()
 }
 
+/// Every algorithm of protection levels: id, title, function, source, provenance, what it covers and assumes, whether integrity may rest on it.
+#[pyfunction]
+fn protection_methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    bound::PROTECTION
+        .iter()
+        .map(|p| {
+            let d = PyDict::new(py);
+            d.set_item("id", p.id)?;
+            d.set_item("title", p.title)?;
+            d.set_item("function", p.function)?;
+            d.set_item("source", p.source)?;
+            d.set_item("provenance", p.provenance.word())?;
+            d.set_item("covers", p.covers)?;
+            d.set_item("assumes", p.assumes)?;
+            d.set_item("integrity", p.integrity)?;
+            Ok(d)
+        })
+        .collect()
+}
+
 /// Bound, reason code and list of (invalid, words).
 type Column<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, Vec<(bool, String)>);
 
@@ -80,5 +100,6 @@ fn slice<'a>(array: &'a Option<PyReadonlyArray1<'_, f64>>) -> PyResult<Option<&'
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(methods, m)?)?;
+    m.add_function(wrap_pyfunction!(protection_methods, m)?)?;
     m.add_function(wrap_pyfunction!(bounds_of, m)?)
 }

@@ -7,6 +7,7 @@ pub mod faults;
 pub mod gbas;
 pub mod level_equation;
 mod method;
+mod protection;
 pub mod raim;
 pub mod rraim;
 pub mod sbas;
@@ -14,10 +15,23 @@ pub mod tse;
 
 pub use crate::quantity::Provenance;
 pub use method::{Bounded, Method, Promises};
+pub use protection::Protection;
 
 /// Every method, family by family. Command-line choices, report legends, the documentation page, `navbound methods` and the contract
 /// tests read this list; a method is one entry in its family's file.
 pub const METHODS: &[&[Method]] = &[tse::METHODS, anp::METHODS];
+
+/// Every algorithm of protection levels, in the order in which an aircraft meets them: en route, on approach, on the ground, experimental.
+pub const PROTECTION: &[Protection] = &[
+    raim::PROTECTION,
+    araim::single::PROTECTION,
+    araim::PROTECTION,
+    sbas::PROTECTION,
+    gbas::PROTECTION,
+    rraim::single::PROTECTION,
+    rraim::multiple::PROTECTION,
+    ee::PROTECTION,
+];
 
 /// Every method in one sequence.
 pub fn methods() -> impl Iterator<Item = &'static Method> {

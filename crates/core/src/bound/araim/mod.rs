@@ -13,6 +13,7 @@ pub mod single;
 mod subset;
 
 use super::level_equation::LevelEquation;
+use super::{Protection, Provenance};
 use crate::quantity::{Metres, Risk, Unavailable};
 use crate::special::float::{hypot, sqrt};
 use crate::special::one_sided_factor;
@@ -25,6 +26,18 @@ use subset::Sums;
 
 /// Document of every formula here; provenance *standard*.
 pub const SOURCE: &str = "Blanch et al. 2015, baseline advanced RAIM user algorithm; Working Group C, ARAIM airborne algorithm description v3.0 (standard; levels checked against MAAST for ARAIM 2)";
+
+/// What the levels are.
+pub const PROTECTION: Protection = Protection {
+    id: "araim",
+    title: "ARAIM: solution separation over satellite and constellation faults",
+    function: "navbound.araim.protection_levels",
+    source: SOURCE,
+    provenance: Provenance::Standard,
+    covers: "every fault mode likelier than the budget for unmonitored ones: satellites, constellations, several together",
+    assumes: "the priors, ranging errors and nominal biases of the integrity support are bounds; none is broadcast today, so ours are inferred",
+    integrity: true,
+};
 
 /// Protection levels of one epoch.
 #[derive(Debug, Clone, Copy, PartialEq)]

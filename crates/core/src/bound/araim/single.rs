@@ -2,6 +2,7 @@
 
 use super::modes::{self, NoModes};
 use super::{Levels, Monitor, Sight, checked, exclusion::NoLevels};
+use crate::bound::Protection;
 use crate::quantity::{Metres, OutOfDomain, Provenance, Risk, Unavailable};
 use crate::special::float::sqrt;
 use crate::special::one_sided_factor;
@@ -37,6 +38,18 @@ impl Requirement {
 
 /// Document of the form; provenance *standard*.
 pub const SOURCE: &str = "Brown and McBurney 1988, maximum solution separation, sigmas of the separations and of the subsets (standard)";
+
+/// What the levels are.
+pub const PROTECTION: Protection = Protection {
+    id: "raim-separation",
+    title: "RAIM by solution separation",
+    function: "navbound.araim.protection_levels",
+    source: SOURCE,
+    provenance: Provenance::Standard,
+    covers: "one satellite of any size of fault",
+    assumes: "errors of ranges without a fault are normal, independent and no larger than their sigmas",
+    integrity: true,
+};
 
 impl Monitor {
     /// Levels of detection by solution separation, one fault at a time.

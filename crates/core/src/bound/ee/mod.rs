@@ -14,7 +14,7 @@
 pub mod bias;
 pub mod noise;
 
-use super::{Promises, Provenance};
+use super::{Promises, Protection, Provenance};
 
 /// Where the bound comes from.
 pub const SOURCE: &str = "Vassilev and Vassileva 2012, equations 5 to 7, with the corrections of docs/methods/error-extraction.md";
@@ -28,6 +28,18 @@ pub const ASSUMES: &str =
 /// What it promises: next to nothing.
 pub const PROMISES: Promises =
     Promises { scales_with_length: false, ignores_north: true, monotone_in_risk: true, conservative: false, may_alert: false };
+
+/// What the levels are.
+pub const PROTECTION: Protection = Protection {
+    id: "error-extraction",
+    title: "Error Extraction, experimental",
+    function: "navbound.sbas.error_extraction",
+    source: SOURCE,
+    provenance: PROVENANCE,
+    covers: "nothing: it does not see alarms of the service and recovers during a slow fault",
+    assumes: ASSUMES,
+    integrity: PROMISES.may_alert,
+};
 
 /// A length \[m\] that bounds nothing with a known risk. It is not [`crate::quantity::Metres`], so no monitor can take it.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]

@@ -8,6 +8,7 @@ pub mod exclusion;
 mod tests;
 
 pub use super::araim::single::Requirement;
+use super::{Protection, Provenance};
 use crate::quantity::{Metres, Unavailable};
 use crate::solution::wls::{Normal, Row, WeightedSight, weighted_row};
 use crate::special::float::{hypot, sqrt};
@@ -21,6 +22,18 @@ pub const SOURCE: &str = "Brown and Chin 1997, threshold and protection radius b
 /// What the levels add to it; provenance *ours*.
 pub const NOISE_SOURCE: &str =
     "navbound, docs/methods/raim.md: the noise of the position is added to the published level, which leaves it out (ours)";
+
+/// What the levels are.
+pub const PROTECTION: Protection = Protection {
+    id: "raim-slope",
+    title: "RAIM by slopes of the residuals",
+    function: "navbound.raim.protection_levels",
+    source: SOURCE,
+    provenance: Provenance::Standard,
+    covers: "one satellite of any size of fault",
+    assumes: "errors of ranges without a fault are normal, independent and no larger than their sigmas; the noise of the position is added (ours)",
+    integrity: true,
+};
 
 /// Most satellites of one epoch.
 pub const MOST_SATELLITES: usize = 64;

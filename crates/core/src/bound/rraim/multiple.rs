@@ -4,9 +4,22 @@ use super::coast::{Coast, Travel};
 use super::single::Fix;
 use crate::bound::faults::{FaultModes, MOST_MODES, NoModes};
 use crate::bound::level_equation::LevelEquation;
+use crate::bound::{Protection, Provenance};
 use crate::quantity::{Metres, Risk, Unavailable};
 use crate::special::float::{hypot, sqrt};
 use crate::special::one_sided_factor;
+
+/// What the levels are.
+pub const PROTECTION: Protection = Protection {
+    id: "rraim-multiple",
+    title: "RRAIM, all faults together",
+    function: "navbound.rraim.protection_levels",
+    source: super::SOURCE,
+    provenance: Provenance::ReDerived,
+    covers: "satellite and constellation faults that begin while coasting, several together",
+    assumes: "as rraim-single; a fault of a whole constellation is as likely as its rate times the coasting time",
+    integrity: true,
+};
 
 /// Why there is no level: data, counted.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]

@@ -5,10 +5,23 @@ use crate::bound::gbas::MOST_SATELLITES;
 use crate::bound::gbas::bias::Ordering;
 use crate::bound::gbas::levels::{Factors, accuracy, receiver_shift};
 use crate::bound::gbas::snapshot::{Form, Snapshot};
+use crate::bound::{Protection, Provenance};
 use crate::frame::{Covariance, Enu};
 use crate::quantity::{Metres, OutOfDomain, Risk, Unavailable};
 use crate::special::one_sided_factor;
 use nalgebra::Vector3;
+
+/// What the levels are.
+pub const PROTECTION: Protection = Protection {
+    id: "rraim-single",
+    title: "RRAIM, one fault while coasting",
+    function: "navbound.rraim.protection_levels",
+    source: super::SOURCE,
+    provenance: Provenance::ReDerived,
+    covers: "one satellite fault that begins while coasting, on top of what GBAS covers at the fix",
+    assumes: "errors of the carrier phase differenced in time are within the model; multipliers and priors that the paper does not give are inferred",
+    integrity: true,
+};
 
 /// The fix that is carried on.
 #[derive(Debug, Clone, Copy)]

@@ -10,6 +10,7 @@ pub mod position;
 pub mod service;
 pub mod terms;
 
+use super::{Protection, Provenance};
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, ecef_from_geodetic, enu_from_ecef};
 use crate::geometry::atmosphere::klobuchar_and_latitude;
 use crate::quantity::{Metres, OutOfDomain, Radians, Unavailable};
@@ -26,6 +27,18 @@ use service::{Ranging, Service};
 /// Document of every formula here; provenance *standard*.
 pub const SOURCE: &str =
     "RTCA DO-229D, appendices A.4.4, A.4.5, J.2 (standard; protection levels checked against gLAB 6.0.0 on recorded MSAS messages)";
+
+/// What the levels are.
+pub const PROTECTION: Protection = Protection {
+    id: "sbas",
+    title: "SBAS precision approach and en route",
+    function: "navbound.sbas.protection_levels",
+    source: SOURCE,
+    provenance: Provenance::Standard,
+    covers: "what the service monitors and alarms within the time to alarm",
+    assumes: "messages are those that the service sent and are heard in time; airborne errors are within the model of the equipment class",
+    integrity: true,
+};
 
 /// Multiplier of the horizontal level in precision approach: 2Q(6.0) = 2.0e-9 (standard).
 pub const K_H_PA: f64 = 6.0;
