@@ -54,7 +54,8 @@ def main() -> None:
         rows += [(name, row) for row in group]
     wanted = [row for _, row in rows if row.met is not None]
     missed = [row.name for row in wanted if not row.met]
-    print(f"{len(wanted) - len(missed)} of {len(wanted)} goals met" + (f"; not met: {', '.join(missed)}" if missed else ""))
+    if wanted:
+        print(f"{len(wanted) - len(missed)} of {len(wanted)} goals met" + (f"; not met: {', '.join(missed)}" if missed else ""))
     if set(arguments.modules) == set(MODULES):
         write(rows)
 
