@@ -25,8 +25,8 @@ def page() -> str:
     lines += [
         "# Protection levels",
         "",
-        "They need satellites, messages or a filter, so each has a function of its own. The provenance is that of the formulas; priors, budgets",
-        "and error models carry their own.",
+        "They need satellites, messages or a filter, so each has a function of its own. The provenance is that of the formulas; priors,",
+        "budgets and error models carry their own.",
         "",
     ]
     for p in protection_methods().values():

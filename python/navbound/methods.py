@@ -1,4 +1,4 @@
-"""The lists of methods and of protection levels: what each is, where it comes from, what it promises. Read from the core; nothing is listed twice."""
+"""The lists of methods and of protection levels: what each is, its source, its promises. Read from the core; nothing is listed twice."""
 
 from __future__ import annotations
 
