@@ -11,13 +11,13 @@ import pytest
 from typer.testing import CliRunner
 
 from navbound.cli import app
-from navbound.methods import Provenance, methods, protection_methods
+from navbound.methods import ProtectionMethod, Provenance, methods, protection_methods
 
 BOUND = Path(__file__).parents[1] / "crates" / "core" / "src" / "bound"
 
 
 @pytest.mark.parametrize("entry", protection_methods().values(), ids=lambda p: p.id)
-def test_an_entry_names_a_function_and_says_everything(entry) -> None:
+def test_an_entry_names_a_function_and_says_everything(entry: ProtectionMethod) -> None:
     module, name = entry.function.rsplit(".", 1)
     assert callable(getattr(importlib.import_module(module), name))
     assert entry.provenance in get_args(Provenance)

@@ -81,7 +81,7 @@ def look(taxi: Taxi, flown: Way) -> Sky:
         orbits += gnss.constellation(name)
     whole = np.arange(len(flown.position))
     fine = np.arange(STEPS * (len(whole) - 1) + 1) / STEPS
-    place = [np.interp(fine, whole, column) for column in flown.position.T]
-    az, el = gnss.directions(orbits, *place, taxi.second_of_day - flown.lead + fine)
+    lat_rad, lon_rad, h_m = (np.interp(fine, whole, column) for column in flown.position.T)
+    az, el = gnss.directions(orbits, lat_rad, lon_rad, h_m, taxi.second_of_day - flown.lead + fine)
     up = el > 0
     return Sky(orbits.satellite, orbits.constellation, np.where(up, az, np.nan), np.where(up, el, np.nan))
