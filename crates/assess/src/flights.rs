@@ -44,9 +44,9 @@ pub const COLUMNS: [Column; 37] = [
     ("nse_u_m", |e| e.nse_enu_m[2]),
     ("hdop", |e| e.dop[0]),
     ("vdop", |e| e.dop[1]),
-    ("separation_m", |e| e.separation_m[0]),
-    ("separation_limit_m", |e| e.separation_m[1]),
-    ("innovation_memory", |e| e.memory),
+    ("separation_m", |e| e.separation_m.map_or(f64::NAN, |s| s[0])),
+    ("separation_limit_m", |e| e.separation_m.map_or(f64::NAN, |s| s[1])),
+    ("innovation_memory", |e| e.memory.unwrap_or(f64::NAN)),
     // Whole numbers and codes; a double holds them exactly.
     ("n_sv", |e| f64::from(e.n_sv)),
     ("leg", |e| f64::from(e.leg)),

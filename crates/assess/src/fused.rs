@@ -163,8 +163,8 @@ impl Watch {
             dop,
             mode: None,
             n_gated: new,
-            separation_m: [f64::NAN; 2],
-            memory: filter.innovations(Kind::Range).memory(time),
+            separation_m: None,
+            memory: Some(filter.innovations(Kind::Range).memory(time)).filter(|memory| !memory.is_nan()),
             disagree: false,
         };
         // A state of an earlier instant is no answer to where the aircraft is now; half a millisecond is rounding.
@@ -183,7 +183,7 @@ impl Watch {
         let main = filter.solution();
         let Some(beside) = filter.beside() else { return Ok(main) };
         let found = self.verdict.judge(time, &beside.difference, &beside.covariance, &beside.solution.covariance)?;
-        said.separation_m = found.map_or([f64::NAN; 2], |s| [s.distance.m(), s.limit.m()]);
+        said.separation_m = found.map(|s| [s.distance.m(), s.limit.m()]);
         if self.verdict.disagree() && filter.mode() != Mode::Gnss {
             return Ok(beside.solution);
         }

@@ -54,10 +54,10 @@ pub struct FlownEpoch {
     pub mode: Option<Mode>,
     /// Measurements that a filter threw away in the last second.
     pub n_gated: u32,
-    /// Horizontal distance between the filter with satellites and the one without, and how far they may be \[m\]; NaN without both.
-    pub separation_m: [f64; 2],
-    /// What the innovations of the ranges remember, in standard deviations; NaN without a filter or ranges.
-    pub memory: f64,
+    /// Horizontal distance between the filter with satellites and the one without, and how far they may be \[m\].
+    pub separation_m: Option<[f64; 2]>,
+    /// What the innovations of the ranges remember, in standard deviations.
+    pub memory: Option<f64>,
     /// Both filters disagree, and the one with satellites is given: nobody knows which is right.
     pub disagree: bool,
 }
@@ -78,9 +78,9 @@ pub struct Navigated {
     /// As in [`FlownEpoch`].
     pub n_gated: u32,
     /// As in [`FlownEpoch`].
-    pub separation_m: [f64; 2],
+    pub separation_m: Option<[f64; 2]>,
     /// As in [`FlownEpoch`].
-    pub memory: f64,
+    pub memory: Option<f64>,
     /// As in [`FlownEpoch`].
     pub disagree: bool,
 }
@@ -98,8 +98,8 @@ pub fn fly(outlook: &Outlook, seed: u64, number: u64) -> Result<Vec<FlownEpoch>,
         dop: instant.dop(),
         mode: None,
         n_gated: 0,
-        separation_m: [f64::NAN; 2],
-        memory: f64::NAN,
+        separation_m: None,
+        memory: None,
         disagree: false,
     };
     let navigated: Vec<_> = outlook.instants.iter().zip(&errors).map(drawn).collect();
