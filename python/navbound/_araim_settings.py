@@ -9,9 +9,12 @@ import numpy as np
 
 from navbound import _core
 from navbound._arrays import flatten
+from navbound._constellations import CONSTELLATIONS
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from navbound._constellations import Orbits
@@ -198,3 +201,22 @@ def airborne_numbers(model: str | ErrorModel) -> list[float]:
     """Four numbers that the core takes."""
     chosen = error_model(model)
     return [*map(float, chosen.noise), float(chosen.vertical_ionosphere_m)]
+
+
+def systems_of(unit_enu: ArrayLike, constellation: Sequence[int] | NDArray[np.int64]) -> NDArray[np.int64]:
+    """Constellation of every satellite of some lines of sight.
+
+    Raises
+    ------
+    InputError
+        Not one a satellite, no satellite at all, an index that is none of CONSTELLATIONS.
+    """
+    of = np.asarray(constellation, dtype=np.int64)
+    lines = np.shape(unit_enu)
+    if of.shape != lines[-2:-1]:
+        raise InputError("constellation", f"shape {of.shape}", domain=f"shape {lines[-2:-1]}, one for each satellite of unit_enu")
+    if of.size == 0:
+        raise InputError("unit_enu", f"shape {lines}", domain="shape (..., n, 3) with at least one satellite; NaN for one not used")
+    for k in np.flatnonzero((of < 0) | (of >= len(CONSTELLATIONS)))[:1]:
+        raise InputError("constellation", int(of[k]), domain=f"indices of CONSTELLATIONS, 0 to {len(CONSTELLATIONS) - 1}", index=int(k))
+    return of

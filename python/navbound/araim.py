@@ -26,6 +26,7 @@ from navbound._araim_settings import (
     overhead,
     rule_numbers,
     support_rows,
+    systems_of,
 )
 from navbound._araim_watch import Watched, watch
 from navbound._arrays import flatten
@@ -286,14 +287,7 @@ def _columns(
     p_const: Sequence[float] | None,
 ) -> tuple[tuple[int, ...], list[NDArray[np.float64]], list[int], list[float]]:
     """Shape with the satellites, flat columns, constellation of each satellite, priors of constellations."""
-    of = np.asarray(constellation, dtype=np.int64)
-    lines = np.shape(unit_enu)
-    if of.shape != lines[-2:-1]:
-        raise InputError("constellation", f"shape {of.shape}", domain=f"shape {lines[-2:-1]}, one for each satellite of unit_enu")
-    if of.size == 0:
-        raise InputError("unit_enu", f"shape {lines}", domain="shape (..., n, 3) with at least one satellite; NaN for one not used")
-    for k in np.flatnonzero((of < 0) | (of >= len(CONSTELLATIONS)))[:1]:
-        raise InputError("constellation", int(of[k]), domain=f"indices of CONSTELLATIONS, 0 to {len(CONSTELLATIONS) - 1}", index=int(k))
+    of = systems_of(unit_enu, constellation)
     bias, continuity, prior = (
         np.asarray(column)[of] if own is None else own
         for own, column in zip(given, (SUPPORT.bias_m, SUPPORT.bias_continuity_m, SUPPORT.p_sat), strict=True)

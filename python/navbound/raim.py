@@ -23,9 +23,10 @@ from navbound._araim_settings import (
     overhead,
     requirement_numbers,
     support_rows,
+    systems_of,
 )
 from navbound._arrays import flatten
-from navbound._constellations import CONSTELLATIONS, Orbits
+from navbound._constellations import Orbits
 from navbound._raim_watch import SOURCES, Watched, watch
 from navbound.errors import InputError
 
@@ -274,10 +275,7 @@ def _columns(
     unit_enu: ArrayLike, constellation: Sequence[int] | NDArray[np.int64], sigma_m: ArrayLike
 ) -> tuple[tuple[int, ...], NDArray[np.float64], NDArray[np.float64], list[int]]:
     """Shape with the satellites, flat columns, constellation of each satellite."""
-    of = np.asarray(constellation, dtype=np.int64)
-    lines = np.shape(unit_enu)
-    if of.shape != lines[-2:-1] or not 0 <= of.min(initial=0) <= of.max(initial=0) < len(CONSTELLATIONS):
-        raise InputError("constellation", f"shape {of.shape}", domain=f"shape {lines[-2:-1]}, indices of CONSTELLATIONS")
+    of = systems_of(unit_enu, constellation)
     shape, (unit, sigma) = flatten(unit_enu=(unit_enu, (3,)), sigma_m=(sigma_m, ()))
     if shape[-1:] != of.shape:
         raise InputError("unit_enu", f"{of.size} satellites", domain=f"shape (..., {shape[-1]}, 3)")
