@@ -137,10 +137,26 @@ def test_every_shipped_fault_is_flown_and_summed_up(name: str, kinds: list[str])
     if name == "beijing-shanghai-spoofed":
         # Half a metre a second: found before the 300 m are reached, though each gate lets it pass.
         assert by_kind["spoofing"].disagree_after_s < 600.0  # type: ignore[operator]
+    if name == "beijing-shanghai-imu-jump":
+        # Both filters share the unit; that they fall out without satellites is said, or that several stations contradict them.
+        assert by_kind["imu-bias-jump"].alert == "unavailable"
+        assert by_kind["imu-bias-jump"].alert_after_s < 400.0  # type: ignore[operator]
     if name == "beijing-shanghai-jammed":
         assert by_kind["interference"].disagree_after_s is None
     if "interference" in by_kind:
         assert by_kind["interference"].mode_after_s == pytest.approx(6.0, abs=2.0)
+
+
+def test_a_wrong_unit_without_a_second_filter_is_said_by_the_stations_that_contradict_it() -> None:
+    found = quick("beijing-shanghai-imu-jump", constellations=["gps"])
+    assert found.filter is not None
+    alone = found.model_copy(update={"filter": found.filter.model_copy(update={"reversion": False})})
+    said = fly.material(alone).epochs
+    contradicted = said.filter(pl.col("reason").str.starts_with("several stations contradict"))
+    assert contradicted["status"].unique().to_list() == ["not_available"]
+    # The jump is at 2700 s, the satellites come back at 3600 s.
+    second = (contradicted["time_ns"] - said["time_ns"].min()) / 1e9
+    assert 2700.0 < second.min() < 3600.0  # type: ignore[operator]
 
 
 def fault(kind: str, **more: object) -> list[dict[str, Any]]:

@@ -2,7 +2,7 @@
 
 use crate::fused::MODES;
 use navbound_core::quantity::OutOfDomain;
-use navbound_simulate::{FlownEpoch, Outlook, fly};
+use navbound_simulate::{Doubt, FlownEpoch, Outlook, fly};
 use rayon::prelude::*;
 
 /// Epochs of flights, one after the other.
@@ -53,7 +53,11 @@ pub const COLUMNS: [Column; 37] = [
     ("phase", |e| f64::from(e.phase)),
     ("n_gated", |e| f64::from(e.n_gated)),
     ("nav_mode", |e| MODES.iter().position(|m| Some(*m) == e.mode).unwrap_or(MODES.len()) as f64),
-    ("disagree", |e| f64::from(u8::from(e.disagree))),
+    ("doubt", |e| match e.doubt {
+        None => 0.0,
+        Some(Doubt::Filters) => 1.0,
+        Some(Doubt::Stations) => 2.0,
+    }),
     ("available", |e| f64::from(u8::from(e.reason.is_none()))),
 ];
 

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use navbound_core::monitor::separation;
 use navbound_core::quantity::{GpsTime, OutOfDomain, Unavailable};
 use navbound_core::solution::ins::{Fusion, Innovations, Kind, Mode, NavState, Samples, Solution};
-use navbound_simulate::{FlownEpoch, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by};
+use navbound_simulate::{Doubt, FlownEpoch, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by};
 use rayon::prelude::*;
 
 /// Flights, and what their filters say of themselves.
@@ -95,12 +95,22 @@ struct Watch {
     n_gated: u64,
     /// Seconds for which the satellites have contradicted the filter.
     contradicted_s: f64,
+    /// Measurements of stations until now, used and not; seconds for which most of them have contradicted the filter.
+    heard: [u64; 2],
+    contradicting_s: f64,
+    /// The disagreement of both filters began while satellites kept the position.
+    led_astray: bool,
     last_error: Vector3<f64>,
     verdicts: Vec<Verdict>,
 }
 
 /// Satellites that must be measured, and those that may be used of them, in a contradiction: with fewer there is no fix to believe.
 const CONTRADICTION: (u32, u32) = (5, 3);
+
+/// Stations left out at once, and for how long, until the filter and not the stations is doubted: two that are wrong independently are rarer
+/// than one inertial unit (ours). A good one is left out by chance for half a minute every two hours or so.
+const STATIONS_LEAST: u64 = 2;
+const STATIONS_AFTER_S: f64 = 30.0;
 
 /// Results are taken by the second, and every measurement is used.
 const PLAN: Plan = Plan { output_period_s: 1.0, update_period_s: 0.0, wheels: None };
@@ -119,6 +129,9 @@ impl Watch {
             n_sv: 0,
             n_gated: 0,
             contradicted_s: 0.0,
+            heard: [0; 2],
+            contradicting_s: 0.0,
+            led_astray: false,
             last_error: Vector3::zeros(),
             verdicts: Vec::new(),
         })
@@ -155,6 +168,13 @@ impl Watch {
         let n_gated = gated(filter);
         let new = (n_gated - self.n_gated) as u32;
         self.n_gated = n_gated;
+        let heard = heard(filter);
+        let [used, left_out] = [heard[0].saturating_sub(self.heard[0]), heard[1].saturating_sub(self.heard[1])];
+        // Where nothing is heard what was last heard stands.
+        if used + left_out > 0 {
+            self.contradicting_s = if left_out >= STATIONS_LEAST { self.contradicting_s + 1.0 } else { 0.0 };
+        }
+        self.heard = heard;
         let dop = if self.n_sv == 0 { [f64::NAN; 2] } else { sensing.outlook().dop(second) };
         let mut said = Navigated {
             error_enu_m: self.last_error,
@@ -165,30 +185,39 @@ impl Watch {
             n_gated: new,
             separation_m: None,
             memory: Some(filter.innovations(Kind::Range).memory(time)).filter(|memory| !memory.is_nan()),
-            disagree: false,
+            doubt: None,
         };
         // A state of an earlier instant is no answer to where the aircraft is now; half a millisecond is rounding.
         if filter.is_current() && time.seconds_since(filter.time()) < 5e-4 {
             let solution = self.given(time, &mut said)?;
             self.last_error = *navigation_error(&solution.state.position()?, &truth.position).vector();
             (said.error_enu_m, said.covariance, said.mode) = (self.last_error, Ok(solution.covariance), Some(solution.mode));
+            if solution.mode != Mode::Gnss && self.contradicting_s >= STATIONS_AFTER_S {
+                said.doubt = Some(Doubt::Stations);
+            }
         }
         Ok(said)
     }
 
     /// The solution that is given. While both filters disagree and the satellites keep the position, nobody knows which of them is right,
-    /// and that is said. When they disagree and the satellites are lost, what the main filter remembers of them is not believed either.
+    /// and that is said. When the satellites are lost after that, what the main filter remembers of them is not believed either. Filters
+    /// that fall out without satellites share the inertial unit and the stations: one of these is wrong, and neither filter is believed.
     fn given(&mut self, time: GpsTime, said: &mut Navigated) -> Result<Solution, OutOfDomain> {
         let filter = &mut self.driver.filter;
         let main = filter.solution();
         let Some(beside) = filter.beside() else { return Ok(main) };
         let found = self.verdict.judge(time, &beside.difference, &beside.covariance, &beside.solution.covariance)?;
         said.separation_m = found.map(|s| [s.distance.m(), s.limit.m()]);
-        if self.verdict.disagree() && filter.mode() != Mode::Gnss {
-            return Ok(beside.solution);
+        if !self.verdict.disagree() {
+            self.led_astray = false;
+            return Ok(main);
         }
-        said.disagree = self.verdict.disagree();
-        Ok(main)
+        let satellites = filter.mode() == Mode::Gnss;
+        self.led_astray |= satellites;
+        if satellites || !self.led_astray {
+            said.doubt = Some(Doubt::Filters);
+        }
+        Ok(if satellites { main } else { beside.solution })
     }
 
     /// What the filter says at its end.
@@ -200,6 +229,12 @@ impl Watch {
             clock_jumps: filter.clock_jumps(),
         });
     }
+}
+
+/// Measurements of stations used, and gated or left out.
+fn heard(filter: &Fusion) -> [u64; 2] {
+    let of = [Kind::Dme, Kind::Vor].map(|kind| filter.innovations(kind));
+    [of.iter().map(|i| i.n_used).sum(), of.iter().map(|i| i.n_gated).sum()]
 }
 
 fn gated(filter: &Fusion) -> u64 {

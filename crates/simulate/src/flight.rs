@@ -58,8 +58,17 @@ pub struct FlownEpoch {
     pub separation_m: Option<[f64; 2]>,
     /// What the innovations of the ranges remember, in standard deviations.
     pub memory: Option<f64>,
-    /// Both filters disagree, and the one with satellites is given: nobody knows which is right.
-    pub disagree: bool,
+    /// Why the estimate is not to be relied on though there is one.
+    pub doubt: Option<Doubt>,
+}
+
+/// A contradiction of which nobody knows which side is right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Doubt {
+    /// The filter with satellites and the one without disagree, and satellites keep the position or were lost before.
+    Filters,
+    /// Without satellites, several stations at once have been left out for a while: they or the inertial unit are wrong.
+    Stations,
 }
 
 /// What the navigation says at an instant, and how wrong it is.
@@ -82,7 +91,7 @@ pub struct Navigated {
     /// As in [`FlownEpoch`].
     pub memory: Option<f64>,
     /// As in [`FlownEpoch`].
-    pub disagree: bool,
+    pub doubt: Option<Doubt>,
 }
 
 /// A flight of a scenario with position errors drawn from the covariance of the geometry; the number chooses its random streams.
@@ -100,7 +109,7 @@ pub fn fly(outlook: &Outlook, seed: u64, number: u64) -> Result<Vec<FlownEpoch>,
         n_gated: 0,
         separation_m: None,
         memory: None,
-        disagree: false,
+        doubt: None,
     };
     let navigated: Vec<_> = outlook.instants.iter().zip(&errors).map(drawn).collect();
     fly_by(outlook, seed, number, &navigated, PathFlown::Flown)
@@ -188,7 +197,7 @@ fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, navigated: 
         n_gated: navigated.n_gated,
         separation_m: navigated.separation_m,
         memory: navigated.memory,
-        disagree: navigated.disagree,
+        doubt: navigated.doubt,
     };
     epoch.estimate(outlook, instant, &truth, navigated)?;
     Ok(epoch)

@@ -16,7 +16,7 @@ mod scenario;
 mod sensors;
 mod trajectory;
 
-pub use flight::{FlownEpoch, Navigated, fly, fly_by};
+pub use flight::{Doubt, FlownEpoch, Navigated, fly, fly_by};
 pub use navigator::{BelievedErrors, Coupling, Navigator};
 pub use outlook::Outlook;
 pub use plan::{PhaseRange, Plan, Refused};

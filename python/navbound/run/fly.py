@@ -34,10 +34,14 @@ _KEPT = {
     "coasting": "without satellites and stations: inertial navigation alone",
     "aligning": "the attitude settles after a hole in the inertial samples",
 }
-_DISAGREE = "the filters with and without satellites disagree: nobody knows which of them is right"
+_DOUBTS = (
+    "the filters with and without satellites disagree: nobody knows which of them is right",
+    "several stations contradict the filter: they or the inertial unit are wrong",
+)
+"""Why an estimate is not to be relied on, by the core's number from 1 on."""
 _WATCHED = ("separation_m", "separation_limit_m", "innovation_memory")
 """Columns of the monitors across measurements."""
-_CODES = ("nav_mode", "leg", "phase", "available", "disagree", "flight", "reason")
+_CODES = ("nav_mode", "leg", "phase", "available", "doubt", "flight", "reason")
 """Columns that become words."""
 _COUNTS = ("samples", "clock_jumps")
 """What a filter counts besides its innovations."""
@@ -143,9 +147,10 @@ def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
         words["status"] = words["status"].zip_with(pl.Series(~lesser), pl.Series(["degraded"]))
         kept = words["nav_mode"].replace_strict(_KEPT, default=None)
         words["reason"] = kept.zip_with(pl.Series(lesser), words["reason"])
-        disagree = pl.Series(columns["disagree"] == 1)
-        words["status"] = words["status"].zip_with(~disagree, pl.Series(["not_available"]))
-        words["reason"] = words["reason"].zip_with(~disagree, pl.Series([_DISAGREE]))
+        for number, why in enumerate(_DOUBTS, 1):
+            sure = pl.Series(columns["doubt"] != number)
+            words["status"] = words["status"].zip_with(sure, pl.Series(["not_available"]))
+            words["reason"] = words["reason"].zip_with(sure, pl.Series([why]))
     numbers = {name: values for name, values in columns.items() if name not in _CODES}
     table = pl.DataFrame({"track": words.pop("track"), "time_ns": numbers.pop("time_ns"), **numbers, **words})
     # A value that does not exist is null in a table.
