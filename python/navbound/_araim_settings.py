@@ -220,3 +220,9 @@ def systems_of(unit_enu: ArrayLike, constellation: Sequence[int] | NDArray[np.in
     for k in np.flatnonzero((of < 0) | (of >= len(CONSTELLATIONS)))[:1]:
         raise InputError("constellation", int(of[k]), domain=f"indices of CONSTELLATIONS, 0 to {len(CONSTELLATIONS) - 1}", index=int(k))
     return of
+
+
+def stated(configured: Service | Requirement | Support | ErrorModel) -> str:
+    """Where a configuration comes from and how it is held, the word not twice."""
+    held = f"({configured.provenance})"
+    return configured.source if configured.source.endswith(held) else f"{configured.source} {held}"

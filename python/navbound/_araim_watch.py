@@ -18,6 +18,7 @@ from navbound._araim_settings import (
     airborne_numbers,
     error_model,
     rule_numbers,
+    stated,
     support_rows,
 )
 from navbound._receivers import SYSTEMS, Navigation, Observations, with_errors
@@ -116,9 +117,9 @@ def watch(
     budgets = SERVICES[service] if isinstance(service, str) else service
     name = service if isinstance(service, str) else "the caller's"
     models = {
-        "protection levels": f"ARAIM with exclusion, {name}: {budgets.source} ({budgets.provenance})",
-        "promises of satellites": f"{support.source} ({support.provenance})",
-        "range errors": f"{chosen.source} ({chosen.provenance})",
+        "protection levels": f"ARAIM with exclusion, {name}: {stated(budgets)}",
+        "promises of satellites": stated(support),
+        "range errors": stated(chosen),
         "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange, Klobuchar",
         "exclusion": "equal shares of the integrity risk for every decision (ours)",
     }

@@ -9,7 +9,17 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
-from navbound._araim_settings import RAIM, SUPPORT, ErrorModel, Requirement, Support, airborne_numbers, requirement_numbers, support_rows
+from navbound._araim_settings import (
+    RAIM,
+    SUPPORT,
+    ErrorModel,
+    Requirement,
+    Support,
+    airborne_numbers,
+    requirement_numbers,
+    stated,
+    support_rows,
+)
 from navbound._araim_watch import checked_model, with_truth
 from navbound._receivers import Navigation, Observations
 
@@ -115,8 +125,8 @@ def watch(
         "risks": f"false alarm {requirement.false_alarm:g}, missed detection {requirement.missed_detection:g}, without a fault "
         f"{requirement.fault_free:g}: {requirement.source}; together {requirement.provenance}",
         "use": "the risks are those of en route to non-precision approach; vertical levels at them promise nothing for vertical guidance",
-        "promises of satellites": f"{support.source} ({support.provenance})",
-        "range errors": f"{chosen.source} ({chosen.provenance})",
+        "promises of satellites": stated(support),
+        "range errors": stated(chosen),
         "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange, Klobuchar",
         "satellites": f"{systems}, elevation {np.degrees(mask_rad):g} deg and more",
     }
