@@ -10,8 +10,9 @@ use crate::error::navigation_error;
 use crate::flights::Flights;
 use crate::fusion::{Driver, Plan};
 use nalgebra::Vector3;
+use navbound_core::bound::anp::circle;
 use navbound_core::monitor::separation;
-use navbound_core::quantity::{GpsTime, OutOfDomain, Unavailable};
+use navbound_core::quantity::{GpsTime, OutOfDomain, Risk, Unavailable};
 use navbound_core::solution::ins::{Fusion, Innovations, Kind, Mode, NavState, Samples, Solution};
 use navbound_simulate::{Doubt, FlownEpoch, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by};
 use rayon::prelude::*;
@@ -214,7 +215,11 @@ impl Watch {
         }
         let satellites = filter.mode() == Mode::Gnss;
         self.led_astray |= satellites;
-        if satellites || !self.led_astray {
+        // Filters that fall out without satellites and still lie within what is said anyhow need no alarm: the longer these are lost the
+        // smaller is what the two may differ by.
+        let said_anyhow = circle(&beside.solution.covariance, None, Risk::ACCURACY)?;
+        let far = found.is_some_and(|s| s.distance > said_anyhow);
+        if satellites || (!self.led_astray && far) {
             said.doubt = Some(Doubt::Filters);
         }
         Ok(if satellites { main } else { beside.solution })
