@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import polars as pl
 
 from navbound import _core
 from navbound._araim_settings import (
@@ -16,34 +14,16 @@ from navbound._araim_settings import (
     Service,
     Support,
     airborne_numbers,
-    error_model,
     rule_numbers,
     stated,
     support_rows,
 )
-from navbound._receivers import SYSTEMS, Navigation, Observations, with_errors
+from navbound._receivers import Navigation, Observations
+from navbound._watched import Watched, checked_model, range_models, watched
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-
-@dataclass(frozen=True)
-class Watched:
-    """A receiver's epochs after detection and exclusion.
-
-    Attributes
-    ----------
-    epochs : DataFrame
-        The epoch table (docs/notation.md): ``track``, ``time_ns``, ``est_*``, ``hpl_m``, ``vpl_m``, ``emt_m``, ``n_sv``, ``n_excluded``,
-        ``n_modes``, ``mode``, ``status``, ``reason``, with truth also ``truth_*`` and ``nse_*``. ``status`` is ``degraded`` after an
-        exclusion. Where a fault could not be excluded, and where nothing is left of the integrity risk, there are no levels: null.
-    models : dict of str to str
-        Every model by name, for the record of a run.
-    """
-
-    epochs: pl.DataFrame
-    models: dict[str, str]
 
 
 def watch(
@@ -82,6 +62,12 @@ def watch(
     track : str, optional
         Name of the track; by default the marker's or the file's.
 
+    Returns
+    -------
+    Watched
+        With ``hpl_m``, ``vpl_m``, ``emt_m``, ``n_sv``, ``n_excluded``, ``n_modes``. Where a fault could not be excluded, and where nothing
+        is left of the integrity risk, there are no levels.
+
     Raises
     ------
     InputError
@@ -102,49 +88,18 @@ def watch(
         decision == "not_excluded", "a fault that cannot be excluded", np.where(status == "not_monitored", status, found["reason"])
     )
     excluded = [",".join(names) for names in found.pop("excluded")]
-    epochs = pl.DataFrame(
-        {
-            "track": [track or observations.marker or observations.path.name] * observations.n_epochs,
-            "time_ns": observations.time_ns,
-            **{name: found[name] for name in ("est_lat_rad", "est_lon_rad", "est_h_m")},
-            **{name: np.where(usable, found[name], np.nan) for name in ("hpl_m", "vpl_m", "emt_m")},
-            **{name: found[name] for name in ("n_sv", "n_excluded", "n_modes")},
-            "mode": ["araim"] * observations.n_epochs,
-            "status": np.where(without, "not_available", np.where(decision == "excluded", "degraded", "ok")),
-            "reason": [f"excluded {e}" if e else w for e, w in zip(excluded, why.tolist(), strict=True)],
-        }
-    ).with_columns(pl.selectors.float().fill_nan(None), pl.col("reason").replace({"": None}))
+    columns = {
+        **{name: np.where(usable, found[name], np.nan) for name in ("hpl_m", "vpl_m", "emt_m")},
+        **{name: found[name] for name in ("n_sv", "n_excluded", "n_modes")},
+        "mode": ["araim"] * observations.n_epochs,
+        "status": np.where(without, "not_available", np.where(decision == "excluded", "degraded", "ok")),
+        "reason": [f"excluded {e}" if e else w for e, w in zip(excluded, why.tolist(), strict=True)],
+    }
     budgets = SERVICES[service] if isinstance(service, str) else service
     name = service if isinstance(service, str) else "the caller's"
     models = {
         "protection levels": f"ARAIM with exclusion, {name}: {stated(budgets)}",
-        "promises of satellites": stated(support),
-        "range errors": stated(chosen),
-        "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange, Klobuchar",
+        **range_models(support, chosen, signals),
         "exclusion": "equal shares of the integrity risk for every decision (ours)",
     }
-    return Watched(with_truth(epochs, truth_ecef_m), models)
-
-
-def checked_model(navigation: Navigation, systems: str, signals: str, model: str | ErrorModel | None, mask_rad: float) -> ErrorModel:
-    """The error model of a receiver's signals, after a look at what else was asked.
-
-    Raises
-    ------
-    InputError
-        Systems that are not there, other signals, single signals without a broadcast ionosphere, a mask outside [0, pi/2), no such model.
-    """
-    if not systems or any(s not in SYSTEMS for s in systems):
-        raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
-    if signals not in {"single", "dual"}:
-        raise InputError("signals", signals, domain="single, dual")
-    if signals == "single" and not navigation.has_ionosphere:
-        raise InputError("signals", "single", domain="dual, or a navigation file with the ionosphere of GPS")
-    if not 0 <= mask_rad < np.pi / 2:
-        raise InputError("mask_rad", mask_rad, "rad", "[0, pi/2)")
-    return error_model(f"{signals}-frequency" if model is None else model)
-
-
-def with_truth(epochs: pl.DataFrame, truth_ecef_m: ArrayLike | None) -> pl.DataFrame:
-    """Errors beside the positions, where truth is known."""
-    return epochs if truth_ecef_m is None else with_errors(epochs, truth_ecef_m)
+    return watched(observations, found, columns, models, track=track, truth_ecef_m=truth_ecef_m)

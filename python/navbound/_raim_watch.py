@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import polars as pl
 
 from navbound import _core
 from navbound._araim_settings import (
@@ -17,36 +15,16 @@ from navbound._araim_settings import (
     Support,
     airborne_numbers,
     requirement_numbers,
-    stated,
     support_rows,
 )
-from navbound._araim_watch import checked_model, with_truth
 from navbound._receivers import Navigation, Observations
+from navbound._watched import Watched, checked_model, range_models, watched
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 SOURCES: tuple[str, str] = _core.raim_sources()
 """Documents of the method: of the published level, and of the noise added to it."""
-
-
-@dataclass(frozen=True)
-class Watched:
-    """A receiver's epochs after detection and exclusion.
-
-    Attributes
-    ----------
-    epochs : DataFrame
-        The epoch table (docs/notation.md): ``track``, ``time_ns``, ``est_*``, ``hpl_m``, ``vpl_m``, ``hel_m``, ``vel_m``, ``hpl_slope_m``,
-        ``vpl_slope_m``, ``n_sv``, ``n_excluded``, ``n_redundant``, ``decision``, ``mode``, ``status``, ``reason``, with truth also
-        ``truth_*`` and ``nse_*``. ``status`` is ``degraded`` after an exclusion, ``not_available`` where a fault could not be excluded or
-        there is no position. Where a fault could not be detected or not be excluded there are no levels: null.
-    models : dict of str to str
-        Every model by name, for the record of a run.
-    """
-
-    epochs: pl.DataFrame
-    models: dict[str, str]
 
 
 def watch(
@@ -85,6 +63,12 @@ def watch(
     track : str, optional
         Name of the track; by default the marker's or the file's.
 
+    Returns
+    -------
+    Watched
+        With ``hpl_m``, ``vpl_m``, ``hel_m``, ``vel_m``, ``hpl_slope_m``, ``vpl_slope_m``, ``n_sv``, ``n_redundant``, ``n_excluded``,
+        ``decision``. Where a fault could not be detected or not be excluded there are no levels.
+
     Raises
     ------
     InputError
@@ -104,30 +88,23 @@ def watch(
         default=np.array(found.pop("reason"), dtype=np.str_),
     )
     levels = ("hpl_m", "vpl_m", "hpl_slope_m", "vpl_slope_m")
-    epochs = pl.DataFrame(
-        {
-            "track": [track or observations.marker or observations.path.name] * observations.n_epochs,
-            "time_ns": observations.time_ns,
-            **{name: found[name] for name in ("est_lat_rad", "est_lon_rad", "est_h_m")},
-            **{name: np.where(usable, found[name], np.nan) for name in levels},
-            **{name: np.where(np.isfinite(found[name]), found[name], np.nan) for name in ("hel_m", "vel_m")},
-            **{name: found[name] for name in ("n_sv", "n_redundant")},
-            "n_excluded": (decision == "excluded").astype(np.int64),
-            "decision": decision,
-            "mode": ["raim"] * observations.n_epochs,
-            "status": np.select([np.isin(decision, ["", "not_excluded"]), decision == "excluded"], ["not_available", "degraded"], "ok"),
-            "reason": reason,
-        }
-    ).with_columns(pl.selectors.float().fill_nan(None), pl.col("reason", "decision").replace({"": None}))
+    columns = {
+        **{name: np.where(usable, found[name], np.nan) for name in levels},
+        **{name: np.where(np.isfinite(found[name]), found[name], np.nan) for name in ("hel_m", "vel_m")},
+        **{name: found[name] for name in ("n_sv", "n_redundant")},
+        "n_excluded": (decision == "excluded").astype(np.int64),
+        "decision": decision,
+        "mode": ["raim"] * observations.n_epochs,
+        "status": np.select([np.isin(decision, ["", "not_excluded"]), decision == "excluded"], ["not_available", "degraded"], "ok"),
+        "reason": reason,
+    }
     models = {
         "protection levels": f"RAIM, weighted slope: {SOURCES[0]}",
         "noise in the levels": SOURCES[1],
         "risks": f"false alarm {requirement.false_alarm:g}, missed detection {requirement.missed_detection:g}, without a fault "
         f"{requirement.fault_free:g}: {requirement.source}; together {requirement.provenance}",
         "use": "the risks are those of en route to non-precision approach; vertical levels at them promise nothing for vertical guidance",
-        "promises of satellites": stated(support),
-        "range errors": stated(chosen),
-        "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange, Klobuchar",
+        **range_models(support, chosen, signals),
         "satellites": f"{systems}, elevation {np.degrees(mask_rad):g} deg and more",
     }
-    return Watched(with_truth(epochs, truth_ecef_m), models)
+    return watched(observations, found, columns, models, track=track, truth_ecef_m=truth_ecef_m)

@@ -28,9 +28,10 @@ from navbound._araim_settings import (
     support_rows,
     systems_of,
 )
-from navbound._araim_watch import Watched, watch
+from navbound._araim_watch import watch
 from navbound._arrays import flatten
 from navbound._constellations import CONSTELLATIONS, Orbits
+from navbound._watched import Watched
 from navbound.errors import InputError
 
 if TYPE_CHECKING:

@@ -33,24 +33,10 @@ WITHIN = {
 """Columns of a monitor that says how often it can detect and exclude."""
 
 
-class Watched(Protocol):
-    """A receiver's epochs after detection and exclusion."""
-
-    @property
-    def epochs(self) -> pl.DataFrame:
-        """The epoch table."""
-        ...
-
-    @property
-    def models(self) -> dict[str, str]:
-        """Every model by name."""
-        ...
-
-
 class Monitor(Protocol):
     """Observations to tested positions with levels."""
 
-    def __call__(self, observations: gnss.Observations, navigation: gnss.Navigation, *, truth_ecef_m: Any) -> Watched:
+    def __call__(self, observations: gnss.Observations, navigation: gnss.Navigation, *, truth_ecef_m: Any) -> araim.Watched:
         """Watch every epoch."""
         ...
 
@@ -103,6 +89,7 @@ def decisions(epochs: pl.DataFrame) -> list[str]:
     lost = epochs.filter(pl.col("reason") == "a fault that cannot be excluded").height
     excluded = epochs.filter(pl.col("n_excluded") > 0)
     without = epochs.filter(pl.col("hpl_m").is_null() & pl.col("est_lat_rad").is_not_null()).height - lost
+    none = epochs.filter(pl.col("est_lat_rad").is_null())
     each = excluded["reason"].value_counts(sort=True).iter_rows()
     named = ", ".join(f"{str(reason).removeprefix('excluded ')} at {count}" for reason, count in each)
     which = f" ({named})" if named else ""
@@ -110,6 +97,9 @@ def decisions(epochs: pl.DataFrame) -> list[str]:
         f"{n} epochs: a fault detected at {lost + excluded.height}, excluded at {excluded.height}{which}, not to be excluded at {lost}; a "
         f"position but no way to detect a fault at {without}."
     ]
+    if none.height:
+        why = none["reason"].fill_null("no reason given").value_counts(sort=True).head(3).iter_rows()
+        words.append(f"No position at {none.height} epochs: {'; '.join(f'{reason} at {count}' for reason, count in why)}.")
     if "hel_m" in epochs.columns:
         limits = ", ".join(f"{rnp:g}" for rnp in RNP_NM)
         shares = "; ".join(f"{what} {_within(epochs[column])}" for column, what in WITHIN.items())

@@ -1,0 +1,80 @@
+"""What the monitors on board have in common when they watch a receiver's recorded observations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import polars as pl
+
+from navbound._araim_settings import ErrorModel, Support, error_model, stated
+from navbound._receivers import SYSTEMS, Navigation, Observations, with_errors
+from navbound.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+@dataclass(frozen=True)
+class Watched:
+    """A receiver's epochs after detection and exclusion.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        The epoch table (docs/notation.md): ``track``, ``time_ns``, ``est_*``, the monitor's levels and numbers, ``mode``, ``status``,
+        ``reason``, with truth also ``truth_*`` and ``nse_*``. ``status`` is ``degraded`` after an exclusion, ``not_available`` where a
+        fault could not be excluded or there is no position. Where there are no levels they are null.
+    models : dict of str to str
+        Every model by name, for the record of a run.
+    """
+
+    epochs: pl.DataFrame
+    models: dict[str, str]
+
+
+def checked_model(navigation: Navigation, systems: str, signals: str, model: str | ErrorModel | None, mask_rad: float) -> ErrorModel:
+    """The error model of a receiver's signals, after a look at what else was asked.
+
+    Raises
+    ------
+    InputError
+        Systems that are not there, other signals, single signals without a broadcast ionosphere, a mask outside [0, pi/2), no such model.
+    """
+    if not systems or any(s not in SYSTEMS for s in systems):
+        raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
+    if signals not in {"single", "dual"}:
+        raise InputError("signals", signals, domain="single, dual")
+    if signals == "single" and not navigation.has_ionosphere:
+        raise InputError("signals", "single", domain="dual, or a navigation file with the ionosphere of GPS")
+    if not 0 <= mask_rad < np.pi / 2:
+        raise InputError("mask_rad", mask_rad, "rad", "[0, pi/2)")
+    return error_model(f"{signals}-frequency" if model is None else model)
+
+
+def watched(
+    observations: Observations,
+    found: dict[str, Any],
+    columns: dict[str, Any],
+    models: dict[str, str],
+    *,
+    track: str | None,
+    truth_ecef_m: ArrayLike | None,
+) -> Watched:
+    """The epoch table of a monitor: track, time and position, then the monitor's columns; errors beside them where truth is known."""
+    position = {name: found[name] for name in ("est_lat_rad", "est_lon_rad", "est_h_m")}
+    named = [track or observations.marker or observations.path.name] * observations.n_epochs
+    epochs = pl.DataFrame({"track": named, "time_ns": observations.time_ns, **position, **columns})
+    # A value that does not exist is null in a table.
+    epochs = epochs.with_columns(pl.selectors.float().fill_nan(None), pl.selectors.string().replace({"": None}))
+    return Watched(epochs if truth_ecef_m is None else with_errors(epochs, truth_ecef_m), models)
+
+
+def range_models(support: Support, chosen: ErrorModel, signals: str) -> dict[str, str]:
+    """What is believed of the ranges, for the record."""
+    return {
+        "promises of satellites": stated(support),
+        "range errors": stated(chosen),
+        "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange, Klobuchar",
+    }
