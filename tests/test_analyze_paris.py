@@ -60,7 +60,8 @@ def test_the_gates_are_those_of_the_reference() -> None:
     assert gates.cross_max_m == rules["gate_xtk_m"]
     assert gates.track_max_rad == math.radians(rules["gate_track_deg"])
     assert gates.altitude_max_m == rules["alt_max_ft"] * 0.3048
-    assert gates.n_min == rules["min_points"]
+    # The recording has a point a second: so many points are so many seconds.
+    assert gates.lasts_min_s == rules["min_points"]
     assert gates.span_min_m == rules["span_min_nm"] * 1852
 
 
@@ -186,3 +187,35 @@ def test_the_material_is_complete() -> None:
     assert needed <= set(m.epochs.columns)
     assert m.epochs.select(pl.col("along_m").is_between(-6 * 1852, -0.5 * 1852).all()).item()
     assert any("sigma = 5 m" in a for a in m.assumptions)
+
+
+def thinned(tmp_path: Path, every_s: int, offset_s: int, lost: str | None = None) -> Material:
+    """The recording with a point every so many seconds; of one aircraft nothing but two points on its approach, 100 s apart."""
+    rows = pl.read_csv(TRACKS).filter(pl.col("timestamp") // 1000 % every_s == offset_s)
+    if lost is not None:
+        (epochs,) = (e for (track,), e in paris().epochs.group_by("track") if str(track).startswith(lost))
+        unix_s = epochs["time_ns"].sort() // 10**9 + 315964800 - 18
+        first, last = int(unix_s[5]) * 1000, int(unix_s[5]) * 1000 + 100_000
+        rows = rows.filter((pl.col("icao24") != lost) | pl.col("timestamp").is_in([first, last]))
+    path = tmp_path / "thinned.csv"
+    rows.write_csv(path)
+    return material(path, path="auto", requirement="RNP AR 0.1", rnp_m=185.2, sigma_m=5.0)
+
+
+@pytest.mark.parametrize(("every_s", "offset_s"), [(2, 1), (3, 0), (5, 1), (10, 1)])
+def test_a_recording_with_fewer_points_has_the_same_approaches(tmp_path: Path, every_s: int, offset_s: int) -> None:
+    few = thinned(tmp_path, every_s, offset_s)
+    assert set(few.epochs["track"].unique()) == set(paris().epochs["track"].unique())
+    means = {c.path: c.mean_m for c in paris().cross_track}
+    for runway_flown in few.cross_track:
+        # A point every ten seconds of a track that wanders by 20 m: 20 m / sqrt(12 points) times a correlation of a minute at most.
+        assert abs(runway_flown.mean_m - means[runway_flown.path]) <= 1.5
+
+
+def test_a_landing_that_is_no_approach_is_named_with_the_rule_that_it_fails(tmp_path: Path) -> None:
+    track = str(paris().epochs["track"].min())
+    aircraft, runway_name = track.split(" ")[:2]
+    sparse = thinned(tmp_path, 1, 0, lost=aircraft)
+    assert track not in set(sparse.epochs["track"].unique())
+    (words,) = [a for a in sparse.assumptions if "not judged as approaches" in a]
+    assert f"{aircraft} to {runway_name} (fewer than 4 points: 2 points" in words

@@ -39,8 +39,10 @@ class Gates:
         See above.
     descending : bool
         The vertical rate must be below zero.
+    lasts_min_s : float
+        Time in view inside the gates: points times their median interval, so that a recording at 10 s has the approaches of one at 1 s.
     n_min : int
-        Points in an approach.
+        Points in an approach: below this its statistics say nothing.
     span_min_m : float
         Between its first and its last point, along the centreline.
     lands_within_m : float
@@ -56,7 +58,8 @@ class Gates:
     altitude_max_m: float = 3500 * _FT
     above_runway_m: float = 2500 * _FT
     descending: bool = True
-    n_min: int = 60
+    lasts_min_s: float = 60.0
+    n_min: int = 4
     span_min_m: float = 2.5 * _NM
     lands_within_m: float = 1.5 * _NM
     gap_max_s: float = 120.0
@@ -77,7 +80,7 @@ class Approaches:
     tracks : dict
         Name of the approach to the track it is part of.
     notes : list of str
-        Rules that could not be applied.
+        Rules that could not be applied, and passes along a centreline that are no approach, each with the rule that it fails.
     """
 
     epochs: pl.DataFrame
@@ -106,10 +109,11 @@ def find(epochs: pl.DataFrame, runways: Sequence[Runway] | None = None, gates: G
         low = points.altitude_m < gates.altitude_max_m if np.isfinite(points.altitude_m).any() else np.ones(len(points.lat_rad), dtype=bool)
         runways = near(points.lat_rad[low], points.lon_rad[low])
     gated = [_gate(points, runway, index, gates) for index, runway in enumerate(runways)]
-    found = _segments(pl.concat(gated), epochs, gates) if gated else pl.DataFrame()
+    names = [r.name for r in runways]
+    found, left_out = _segments(pl.concat(gated), epochs, gates, names) if gated else (pl.DataFrame(), [])
+    notes += left_out
     if found.is_empty():
         return Approaches(epochs.clear(), [], [], {}, notes)
-    names = [r.name for r in runways]
     found = found.with_columns(pl.col("runway").replace_strict(dict(enumerate(names)), return_dtype=pl.String).alias("runway_name"))
     approaches = _named(found)
     judged = _between(epochs, approaches, {name: runways[i] for i, name in enumerate(names)})
@@ -193,8 +197,8 @@ def _roughly(points: _Points, runway: Runway, gates: Gates) -> NDArray[np.int64]
     return np.flatnonzero(close)
 
 
-def _segments(gated: pl.DataFrame, epochs: pl.DataFrame, gates: Gates) -> pl.DataFrame:
-    """Gated points of accepted approaches, with ``segment``; of two runways at one time the one flown closer to."""
+def _segments(gated: pl.DataFrame, epochs: pl.DataFrame, gates: Gates, names: list[str]) -> tuple[pl.DataFrame, list[str]]:
+    """Gated points of accepted approaches, with ``segment``; of two runways at one time the one flown closer to. And who is left out."""
     rows = epochs.select("track", "time_ns", "status").with_row_index("row")
     points = gated.join(rows, on="row").sort("runway", "track", "time_ns")
     new = (
@@ -204,10 +208,21 @@ def _segments(gated: pl.DataFrame, epochs: pl.DataFrame, gates: Gates) -> pl.Dat
     )
     points = points.with_columns(new.fill_null(value=True).cum_sum().alias("segment"))
     span = pl.col("before_m").max() - pl.col("before_m").min()
-    accepted = points.group_by("segment").agg(
+    segments = points.group_by("segment").agg(
         n=pl.len(), span=span, nearest=pl.col("before_m").min(), off=pl.col("cross_m").abs().mean(), start=pl.col("time_ns").min(),
-        end=pl.col("time_ns").max(), track=pl.col("track").first(),
-    ).filter(pl.col("n") >= gates.n_min, pl.col("span") >= gates.span_min_m, pl.col("nearest") <= gates.lands_within_m)  # fmt: skip
+        end=pl.col("time_ns").max(), track=pl.col("track").first(), runway=pl.col("runway").first(),
+        period_s=pl.col("time_ns").diff().median() * 1e-9,
+    ).with_columns(lasts_s=pl.col("n") * pl.col("period_s"))  # fmt: skip
+    rules = {
+        f"fewer than {gates.n_min} points": pl.col("n") >= gates.n_min,
+        f"inside the gates for less than {gates.lasts_min_s:g} s": pl.col("lasts_s") >= gates.lasts_min_s,
+        f"shorter than {gates.span_min_m / _NM:g} NM": pl.col("span") >= gates.span_min_m,
+        f"ends more than {gates.lands_within_m / _NM:g} NM before the threshold": pl.col("nearest") <= gates.lands_within_m,
+    }
+    failed = pl.coalesce(pl.when(~holds.fill_null(value=False)).then(pl.lit(words)) for words, holds in rules.items())
+    segments = segments.with_columns(failed=failed)
+    accepted = segments.filter(pl.col("failed").is_null())
+    left_out = _left_out(segments.filter(pl.col("failed").is_not_null(), pl.col("span") >= _PASS_M), accepted, names)
     rival = accepted.join(accepted, on="track", suffix="_b").filter(
         pl.col("segment") != pl.col("segment_b"),
         pl.col("start") <= pl.col("end_b"),
@@ -215,7 +230,30 @@ def _segments(gated: pl.DataFrame, epochs: pl.DataFrame, gates: Gates) -> pl.Dat
         pl.col("off") > pl.col("off_b"),
     )
     accepted = accepted.join(rival, on="segment", how="anti")
-    return points.join(accepted.select("segment"), on="segment", how="semi")
+    return points.join(accepted.select("segment"), on="segment", how="semi"), left_out
+
+
+_PASS_M = 1.0 * _NM
+"""Along a centreline for this far is a pass that a reader of the result may miss among the approaches. Provenance: ours."""
+_PASSES_NAMED = 8
+
+
+def _left_out(failed: pl.DataFrame, accepted: pl.DataFrame, names: list[str]) -> list[str]:
+    """Passes that no accepted approach covers, each with the rule that it fails."""
+    covered = failed.join(accepted.select("track", "start", "end"), on="track", suffix="_of").filter(
+        pl.col("start") <= pl.col("end_of"), pl.col("start_of") <= pl.col("end")
+    )
+    lost = (
+        failed.join(covered, on="segment", how="anti").sort("track", "start").unique(["track", "start"], keep="first", maintain_order=True)
+    )
+    if lost.is_empty():
+        return []
+    shown = [
+        f"{row['track']} to {names[row['runway']]} ({row['failed']}: {row['n']} points, {row['span'] / _NM:.1f} NM)"
+        for row in lost.head(_PASSES_NAMED).iter_rows(named=True)
+    ]
+    more = f"; and {lost.height - _PASSES_NAMED} more" if lost.height > _PASSES_NAMED else ""
+    return [f"{lost.height} passes along a runway's centreline are not judged as approaches: {'; '.join(shown)}{more}."]
 
 
 def _named(found: pl.DataFrame) -> pl.DataFrame:

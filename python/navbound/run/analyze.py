@@ -156,7 +156,8 @@ def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejecte
     found = find(epochs, None if names is None else [runway(name) for name in names], gates)
     if found.epochs.is_empty():
         where = "any runway of the table" if names is None else ", ".join(names)
-        raise InputError("path", str(path), domain=f"paths that a track follows: no approach to {where} was found with {gates}")
+        passes = " ".join(["", *found.notes])
+        raise InputError("path", str(path), domain=f"paths that a track follows: no approach to {where} was found with {gates}.{passes}")
     return _on_approach(found, gates, epochs.height)
 
 
