@@ -152,7 +152,7 @@ def test_what_was_understood_is_recorded(tmp_path: Path) -> None:
     [
         ("4ca63a,1633608783000,95.0,2.5,3500,140,85,-700", "latitude: outside [-90, 90] deg", "95.0"),
         ("4ca63a,1633608783000,48.9,-200,3500,140,85,-700", "longitude: outside [-180, 360] deg", "-200"),
-        ("4ca63a,1633608783000,nan,2.5,3500,140,85,-700", "latitude: not finite", "nan"),
+        ("4ca63a,1633608783000,nan,2.5,3500,140,85,-700", "latitude: empty", "nan"),
         ("4ca63a,1633608783000,inf,2.5,3500,140,85,-700", "latitude: not finite", "inf"),
         ("4ca63a,1633608783000,48°9,2.5,3500,140,85,-700", "latitude: not a number", "48°9"),
         ("4ca63a,1633608783000,,2.5,3500,140,85,-700", "latitude: empty", "None"),
@@ -181,6 +181,41 @@ def test_a_bad_value_of_an_optional_column_costs_the_value_not_the_row(tmp_path:
     assert [(r.reason, r.first_line, r.example) for r in reading.rejected] == [
         ("groundspeed: not a number; row used without it", 12, "fast")
     ]
+
+
+@pytest.mark.parametrize("nothing", ["nan", "NaN", "-nan", "nan(ind)", ""])
+def test_an_outage_written_as_nan_is_a_row_without_levels_and_no_damage(tmp_path: Path, nothing: str) -> None:
+    rows = [f"{1633608773 + i},{nothing if i % 4 == 0 else 9.5},{nothing if i % 4 == 0 else 14.5}" for i in range(40)]
+    reading = read(write(tmp_path, table(*rows, header="unix_time,hpl_m,vpl_m")), levels=True)
+    assert reading.epochs.height == 40
+    assert reading.epochs["hpl_m"].null_count() == reading.epochs["vpl_m"].null_count() == 10
+    assert reading.rejected == []
+
+
+def test_a_row_with_three_bad_values_is_one_malformed_row(tmp_path: Path) -> None:
+    bad = [f"4ca63a,{1633608773000 + 1000 * i},48.9,2.5,high,fast,85.0,down" for i in range(3)]
+    reading = read(write(tmp_path, table(*bad, *ROWS[3:])))
+    assert reading.epochs.height == 30
+    assert [r.count for r in reading.rejected] == [3, 3, 3]
+    with pytest.raises(FormatError, match="4 of 30 rows are malformed"):
+        read(write(tmp_path, table(*bad, ROWS[3].replace("140", "fast"), *ROWS[4:])))
+
+
+def test_a_leap_second_in_text_is_an_instant_of_its_own(tmp_path: Path) -> None:
+    """IERS bulletin C 52: 2016-12-31 ended with 23:59:60."""
+    times = ["2016-12-31T23:59:59Z", "2016-12-31T23:59:60Z", "2016-12-31T23:59:60.5Z", "2017-01-01T00:00:00Z", "2017-01-01 05:29:60+05:30"]
+    reading = read(write(tmp_path, "time,lat,lon\n" + "".join(f"{t},48,2\n" for t in times[:4])))
+    assert reading.epochs["time_ns"].diff().to_list()[1:] == [1_000_000_000, 500_000_000, 500_000_000]
+    assert reading.rejected == []
+    zoned = read(write(tmp_path, f"time,lat,lon\n{times[4]},48,2\n", "zoned.csv"))
+    assert zoned.epochs["time_ns"][0] == reading.epochs["time_ns"][1]
+
+
+def test_a_sixty_first_second_where_none_was_is_no_time(tmp_path: Path) -> None:
+    rows = [f"2021-10-07T12:{m:02d}:00Z,48,2" for m in range(20)]
+    reading = read(write(tmp_path, "\n".join(["time,lat,lon", *rows, "2021-10-07T12:20:60Z,48,2"]) + "\n"))
+    (rejection,) = reading.rejected
+    assert (rejection.reason, rejection.example) == ("time: not a time", "2021-10-07T12:20:60Z")
 
 
 def test_rows_out_of_order_are_put_in_order_and_said(tmp_path: Path) -> None:

@@ -59,19 +59,47 @@ pub fn from_week(week: i64, time_of_week_ns: i64) -> Option<GpsTime> {
 
 /// GPS time of a calendar date in `scale`; `None` where there is no such date.
 pub fn from_calendar(c: Calendar, scale: Scale) -> Option<GpsTime> {
-    // Only UTC has leap seconds.
-    let (hifitime_scale, minute_ns, offset) = match scale {
-        Scale::Gps => (TimeScale::GPST, 60_000_000_000, 0),
-        Scale::BeiDou => (TimeScale::GPST, 60_000_000_000, -BEIDOU_BEHIND_NS),
-        Scale::Utc => (TimeScale::UTC, 61_000_000_000, 0),
-        Scale::Jst => (TimeScale::UTC, 61_000_000_000, JST_OFFSET_NS),
+    // Only UTC, and what is a fixed time ahead of it, has leap seconds.
+    let (hifitime_scale, minute_ns) = match scale {
+        Scale::Gps | Scale::BeiDou => (TimeScale::GPST, 60_000_000_000),
+        Scale::Utc | Scale::Jst => (TimeScale::UTC, 61_000_000_000),
     };
     let clock = c.hour < 24 && c.minute < 60 && (0..minute_ns).contains(&c.nanoseconds);
     if !((1980..=2100).contains(&c.year) && clock) {
         return None;
     }
     let minute = Epoch::maybe_from_gregorian(c.year, c.month, c.day, c.hour, c.minute, 0, 0, hifitime_scale).ok()?;
-    Some(GpsTime::from_nanoseconds(gps(minute).nanoseconds() + c.nanoseconds - offset))
+    let unix = truncated(minute.to_unix_duration());
+    match scale {
+        Scale::Gps => Some(plus(gps(minute), c.nanoseconds)),
+        Scale::BeiDou => Some(plus(gps(minute), c.nanoseconds + BEIDOU_BEHIND_NS)),
+        Scale::Utc => within_minute(unix, c.nanoseconds),
+        // The leap second comes at 09:00 there: what counts is the minute of UTC.
+        Scale::Jst => within_minute(unix - JST_OFFSET_NS, c.nanoseconds),
+    }
+}
+
+/// The instant `ns` after the start of a minute of UTC; its sixty-first second exists only where a leap second was inserted.
+fn within_minute(unix_ns: i64, ns: i64) -> Option<GpsTime> {
+    const LAST_NS: i64 = 59_000_000_000;
+    if ns < LAST_NS + 1_000_000_000 {
+        Some(plus(from_unix(unix_ns), ns))
+    } else {
+        leap_second_after(unix_ns + LAST_NS).map(|t| plus(t, ns - LAST_NS - 1_000_000_000))
+    }
+}
+
+fn plus(time: GpsTime, ns: i64) -> GpsTime {
+    GpsTime::from_nanoseconds(time.nanoseconds() + ns)
+}
+
+/// GPS time of the second that Unix time does not count, `ns` after the second before it: 23:59:60 is one second after 23:59:59. `None`
+/// where no leap second follows the one given.
+pub fn leap_second_after(unix_ns: i64) -> Option<GpsTime> {
+    const SECOND_NS: i64 = 1_000_000_000;
+    let whole = unix_ns.div_euclid(SECOND_NS) * SECOND_NS;
+    let step = from_unix(whole.checked_add(SECOND_NS)?).nanoseconds() - from_unix(whole).nanoseconds();
+    (step > SECOND_NS).then(|| plus(from_unix(unix_ns), SECOND_NS))
 }
 
 /// Calendar date of a GPS time, in GPS time; `None` outside 1980 to 2100.
@@ -145,6 +173,26 @@ mod tests {
         let next = to_calendar(time.plus_seconds(86_401.0)).unwrap();
         assert_eq!((next.year, next.month, next.day, next.nanoseconds), (2017, 1, 2, 1));
         assert_eq!(to_calendar(GpsTime::from_nanoseconds(i64::MAX)), None);
+    }
+
+    /// IERS bulletin C 52: 2016-12-31 had a second 23:59:60; 2021-12-31 had none.
+    #[test]
+    fn a_leap_second_is_an_instant_of_its_own_and_exists_only_where_there_was_one() {
+        let c = Calendar { year: 2016, month: 12, day: 31, hour: 23, minute: 59, nanoseconds: 59_500_000_000 };
+        let at = |c: Calendar| from_calendar(c, Scale::Utc).map(|t| t.nanoseconds());
+        let before = at(c).unwrap();
+        let leap = at(Calendar { nanoseconds: 60_500_000_000, ..c }).unwrap();
+        let after = at(Calendar { year: 2017, month: 1, day: 1, hour: 0, minute: 0, nanoseconds: 500_000_000 }).unwrap();
+        assert_eq!([leap - before, after - leap], [1_000_000_000; 2]);
+        assert_eq!(at(Calendar { year: 2021, nanoseconds: 60_500_000_000, ..c }), None);
+        let jst = Calendar { year: 2017, month: 1, day: 1, hour: 8, minute: 59, nanoseconds: 60_500_000_000 };
+        assert_eq!(from_calendar(jst, Scale::Jst).map(|t| t.nanoseconds()), Some(leap));
+        // Nine hours before midnight in Japan: still without the second that comes at nine.
+        let early = Calendar { hour: 8, nanoseconds: 59_500_000_000, ..jst };
+        assert_eq!(from_calendar(early, Scale::Jst).map(|t| t.nanoseconds()), Some(before));
+        assert_eq!(leap_second_after(1_483_228_799_500_000_000).map(|t| t.nanoseconds()), Some(leap));
+        assert_eq!(leap_second_after(1_483_228_798_500_000_000), None);
+        assert_eq!(leap_second_after(1_483_228_800_500_000_000), None);
     }
 
     #[test]

@@ -42,6 +42,18 @@ fn gps_from_unix_ns<'py>(py: Python<'py>, unix_ns: PyReadonlyArray1<'py, i64>) -
     Ok(times.into_pyarray(py))
 }
 
+/// GPS time [ns] of the leap second that follows each Unix time [ns], and whether there is one; 0 where there is none.
+#[pyfunction]
+fn gps_of_leap_second_ns<'py>(
+    py: Python<'py>,
+    unix_ns: PyReadonlyArray1<'py, i64>,
+) -> PyResult<(Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<bool>>)> {
+    let leap: Vec<_> = unix_ns.as_slice()?.iter().map(|t| time::leap_second_after(*t)).collect();
+    let times: Vec<i64> = leap.iter().map(|t| t.map_or(0, GpsTime::nanoseconds)).collect();
+    let exists: Vec<bool> = leap.iter().map(Option::is_some).collect();
+    Ok((times.into_pyarray(py), exists.into_pyarray(py)))
+}
+
 /// Unix time [ns] of GPS times [ns].
 #[pyfunction]
 fn unix_from_gps_ns<'py>(py: Python<'py>, time_ns: PyReadonlyArray1<'py, i64>) -> PyResult<Bound<'py, PyArray1<i64>>> {
@@ -197,6 +209,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(enu_covariance, m)?)?;
     m.add_function(wrap_pyfunction!(write_rtklib, m)?)?;
     m.add_function(wrap_pyfunction!(gps_from_unix_ns, m)?)?;
+    m.add_function(wrap_pyfunction!(gps_of_leap_second_ns, m)?)?;
     m.add_function(wrap_pyfunction!(gps_from_week_ns, m)?)?;
     m.add_function(wrap_pyfunction!(unix_from_gps_ns, m)?)?;
     m.add_function(wrap_pyfunction!(navigation_error, m)?)?;

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 _QUANTITY = {q.name: q for q in QUANTITIES + LEVEL_QUANTITIES}
 _REQUIRED = ("est_lat_rad", "est_lon_rad")
 _BAD = "__bad"
+_MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 
 
 @dataclass(frozen=True)
@@ -167,7 +168,8 @@ def _numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
     factor = UNITS[q.si][what.unit]
     if column.dtype == pl.String:
         text = column.str.strip_chars()
-        text = text.set(text == "", None)
+        # Programs write a missing number as an empty field or as nan: an outage is no damage.
+        text = text.set(text.str.contains(_MISSING), None)
         raw = text.cast(pl.Float64, strict=False)
         empty = text.is_null()
     elif column.dtype.is_numeric() or column.dtype == pl.Null:
@@ -194,9 +196,8 @@ def _count(rejections: Rejections, frame: pl.DataFrame, name: str, reason: pl.Se
     for text in reason.drop_nulls().unique(maintain_order=True):
         if text == "empty":
             continue
-        at = (reason == text).fill_null(value=False)
-        first = int(at.arg_max() or 0)
-        rejections.add(f"{name}: {text}; row used without it", int(at.sum()), frame[LINE][first], str(frame[name][first]))
+        at = frame.filter((reason == text).fill_null(value=False))
+        rejections.add_values(f"{name}: {text}; row used without it", at[LINE].to_list(), str(at[name][0]))
 
 
 def _drop(out: pl.DataFrame, frame: pl.DataFrame, reasons: list[pl.Series], names: list[str], rejections: Rejections) -> pl.DataFrame:

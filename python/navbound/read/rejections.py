@@ -9,6 +9,7 @@ from navbound.errors import FormatError
 from navbound.run.records import Rejection
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
 MAX_BAD_SHARE = 0.1
@@ -31,7 +32,9 @@ class Rejections:
     unit: str = "line"
     records: list[Rejection] = field(default_factory=list)
     malformed: int = 0
-    """Rows with something that cannot be read, as opposed to rows in which nothing stands."""
+    """Rows left out because something in them cannot be read, as opposed to rows in which nothing stands."""
+    _with_bad_values: set[int] = field(default_factory=set)
+    """Rows that stay without a value that cannot be read: a row with three bad values is one row."""
     _first_bad: tuple[int, str, str] | None = None
 
     def add(self, reason: str, count: int, first: int, example: str, *, malformed: bool = True) -> None:
@@ -46,6 +49,12 @@ class Rejections:
             if self._first_bad is None or first < self._first_bad[0]:
                 self._first_bad = (first, reason, example)
 
+    def add_values(self, reason: str, rows: Sequence[int], example: str) -> None:
+        """Count the values of an optional column that cannot be read; `rows` are the lines or records that stay without them."""
+        self.add(reason, len(rows), rows[0], example)
+        self.malformed -= len(rows)
+        self._with_bad_values.update(rows)
+
     def refuse_if_too_many(self, n_rows: int) -> None:
         """Refuse the file when more than the stated share of its rows is malformed.
 
@@ -54,14 +63,15 @@ class Rejections:
         FormatError
             Naming the first malformed line, what is wrong with it and the text found.
         """
-        if self._first_bad is None or self.malformed <= MAX_BAD_SHARE * n_rows:
+        malformed = self.malformed + len(self._with_bad_values)
+        if self._first_bad is None or malformed <= MAX_BAD_SHARE * n_rows:
             return
         first, reason, example = self._first_bad
         where = f"; first in record {first}" if self.unit != "line" else ""
         field, separator, kind = reason.partition(": ")
         raise FormatError(
             self.path,
-            f"{kind if separator else reason}: found “{example[:80]}”; {self.malformed} of {n_rows} rows are malformed, "
+            f"{kind if separator else reason}: found “{example[:80]}”; {malformed} of {n_rows} rows are malformed, "
             f"more than the {MAX_BAD_SHARE:.0%} that may be left out{where}",
             first if self.unit == "line" else None,
             field if separator else None,

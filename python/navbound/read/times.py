@@ -59,7 +59,7 @@ def gps_time(frame: pl.DataFrame, columns: list[Column], source: Source, notes: 
     else:
         unix, understood = _unix_ns(first, unit, source, notes)
         units = [f"{first.name}:{understood}"]
-        ns = _from_unix(unix)
+        ns = _from_unix(unix) if understood != "utc_text" else _with_leap_seconds(first, unix)
     empty = first.is_null() | (first.cast(pl.String).str.strip_chars() == "").fill_null(value=True)
     inside = ns.is_between(_FIRST_NS, _LAST_NS)
     reason = pl.select(
@@ -98,10 +98,25 @@ def _unix_ns(column: pl.Series, unit: str, source: Source, notes: list[str]) -> 
 def _iso(column: pl.Series) -> pl.Series:
     """ISO 8601 with a date and a time of day; without a zone it is UTC."""
     text = column.cast(pl.String).str.strip_chars().str.replace("T", " ", literal=True).str.replace("Z$", "+00:00")
+    # A sixty-first second is parsed as the one before it; `_with_leap_seconds` makes it what it is.
+    text = text.str.replace(_LEAP, "${1}:59${2}")
     zoned = pl.select(
         pl.when(text.str.contains(r"[+-]\d\d:?\d\d$")).then(text).otherwise(pl.concat_str(text, pl.lit("+00:00")))
     ).to_series()
     return zoned.str.to_datetime("%Y-%m-%d %H:%M:%S%.f%:z", time_unit="ns", strict=False).cast(pl.Int64)
+
+
+_LEAP = r"(:\d\d):60([^\d:]|$)"
+
+
+def _with_leap_seconds(column: pl.Series, unix_ns: pl.Series) -> pl.Series:
+    """GPS time of written times: 23:59:60 is an instant of its own, and no time on a day that had none."""
+    ns = _from_unix(unix_ns)
+    leap = column.cast(pl.String).str.contains(_LEAP).fill_null(value=False) & unix_ns.is_not_null()
+    if not leap.any():
+        return ns
+    time_ns, exists = _core.gps_of_leap_second_ns(np.ascontiguousarray(unix_ns.filter(leap).to_numpy(), dtype=np.int64))
+    return ns.scatter(leap.arg_true(), pl.select(pl.when(pl.Series(exists)).then(pl.Series(time_ns))).to_series())
 
 
 def _plain_numbers(column: pl.Series) -> pl.Series:
