@@ -212,3 +212,31 @@ def test_a_damaged_part_is_named(tmp_path: Path) -> None:
 def test_observations_alone_are_refused(shared_data: Path) -> None:
     with pytest.raises(InputError, match="navigation file"):
         navbound.analyze(shared_data / "sbas" / "virtual_user_2025046_17h.25O.gz", levels="NPA")
+
+
+def errors_and_levels(path: Path, *names: str) -> Path:
+    columns = {"hpe_m": [0.4, 61.0, 0.5], "vpe_m": [0.7, 0.9, -0.8], "hpl_m": [9.5, 9.5, 9.5], "vpl_m": [14.5, 14.5, 14.5]}
+    pl.DataFrame({"unix_time": [1633608773, 1633608774, 1633608775], **{n: columns[n] for n in names}}).write_csv(path)
+    return path
+
+
+def test_errors_by_size_alone_are_errors(tmp_path: Path) -> None:
+    path = errors_and_levels(tmp_path / "levels.csv", "hpe_m", "vpe_m", "hpl_m", "vpl_m")
+    run = navbound.analyze(path, levels="APV-I")
+    assert run.summary.performance is not None
+    assert run.summary.performance.truth_known
+    (level,) = run.summary.performance.levels
+    assert [counts.n_hmi for counts in level.stanford] == [1, 0]
+
+
+@pytest.mark.parametrize(("levels", "absent"), [("APV-I", "vpl_m"), ("NPA,APV-I", "vpl_m"), ("NPA", "hpl_m")])
+def test_a_level_that_is_judged_and_absent_refuses_the_file(tmp_path: Path, levels: str, absent: str) -> None:
+    held = [name for name in ("hpe_m", "vpe_m", "hpl_m", "vpl_m") if name != absent]
+    path = errors_and_levels(tmp_path / "levels.csv", *held)
+    with pytest.raises(FormatError, match=f"{absent}: no column holds it"):
+        navbound.analyze(path, levels=levels)
+
+
+def test_a_vertical_level_is_not_needed_where_no_level_has_a_vertical_limit(tmp_path: Path) -> None:
+    path = errors_and_levels(tmp_path / "levels.csv", "hpe_m", "hpl_m")
+    assert navbound.analyze(path, levels="NPA").summary.performance is not None

@@ -186,7 +186,7 @@ def test_a_bad_value_of_an_optional_column_costs_the_value_not_the_row(tmp_path:
 @pytest.mark.parametrize("nothing", ["nan", "NaN", "-nan", "nan(ind)", ""])
 def test_an_outage_written_as_nan_is_a_row_without_levels_and_no_damage(tmp_path: Path, nothing: str) -> None:
     rows = [f"{1633608773 + i},{nothing if i % 4 == 0 else 9.5},{nothing if i % 4 == 0 else 14.5}" for i in range(40)]
-    reading = read(write(tmp_path, table(*rows, header="unix_time,hpl_m,vpl_m")), levels=True)
+    reading = read(write(tmp_path, table(*rows, header="unix_time,hpl_m,vpl_m")), needs=("hpl_m", "vpl_m"))
     assert reading.epochs.height == 40
     assert reading.epochs["hpl_m"].null_count() == reading.epochs["vpl_m"].null_count() == 10
     assert reading.rejected == []

@@ -43,9 +43,10 @@ def frame_of(table: Table) -> pl.DataFrame:
     for name in ("time_ns", "hpl_m"):
         if name not in frame.columns:
             raise InputError("table", f"columns {', '.join(frame.columns[:12])}", domain=f"a table with a column {name}")
-    if "nse_e_m" not in frame.columns and "hpe_m" in frame.columns:
+    if "hpe_m" in frame.columns and ("nse_e_m" not in frame.columns or frame["nse_e_m"].is_null().all()):
+        known = pl.col("hpe_m").is_not_null()
         vertical = pl.col("vpe_m") if "vpe_m" in frame.columns else pl.lit(None, pl.Float64)
-        frame = frame.with_columns(nse_e_m=pl.col("hpe_m"), nse_n_m=pl.lit(0.0), nse_u_m=vertical)
+        frame = frame.with_columns(nse_e_m=pl.col("hpe_m"), nse_n_m=pl.when(known).then(0.0), nse_u_m=vertical)
     if not frame["time_ns"].dtype.is_integer():
         raise InputError("time_ns", f"{frame['time_ns'].dtype}", domain="whole nanoseconds")
     if frame["time_ns"].null_count():

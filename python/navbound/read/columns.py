@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
 _DEG = math.pi / 180.0
@@ -187,7 +187,11 @@ class Assignment:
     unused: list[str]
 
 
-def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path, *, levels: bool = False) -> Assignment:
+POSITION = ("est_lat_rad", "est_lon_rad")
+"""What the rows of a recorded track need beside a time."""
+
+
+def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path, *, needs: Sequence[str] = POSITION) -> Assignment:
     """Find what each column is.
 
     Parameters
@@ -198,8 +202,8 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
         Quantity, or ``time``, to ``column`` or ``column:unit``; goes before the known names.
     path : Path
         The file, for messages.
-    levels : bool
-        A table of errors and protection levels: it needs a time and ``hpl_m``, not a position.
+    needs : sequence of str
+        Quantities without which the file is refused, beside a time; other than a position they are those of errors and protection levels.
 
     Raises
     ------
@@ -209,7 +213,7 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
         A declared column that the file lacks, or no time, latitude or longitude: what is needed and the nearest names found.
     """
     names = list(names)
-    quantities = QUANTITIES + LEVEL_QUANTITIES if levels else QUANTITIES
+    quantities = QUANTITIES if tuple(needs) == POSITION else QUANTITIES + LEVEL_QUANTITIES
     own = {"time_ns", "est_lat_rad"} <= set(names)
     columns: dict[str, Column] = {}
     times: list[Column] = []
@@ -233,7 +237,7 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
     if not times:
         times = _times([n for n in names if n not in taken])
         taken |= {c.name for c in times}
-    _require(columns, times, names, path, ("hpl_m",) if levels else ("est_lat_rad", "est_lon_rad"))
+    _require(columns, times, names, path, needs)
     return Assignment(columns, times, [n for n in names if n not in taken])
 
 
@@ -291,7 +295,7 @@ def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Q
     return Column(key, name, unit.lower())
 
 
-def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, wanted: tuple[str, ...]) -> None:
+def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, wanted: Sequence[str]) -> None:
     """Refuse a table without a time or a wanted quantity, and say what comes nearest."""
     aliases = {q.name: list(q.aliases) for q in QUANTITIES + LEVEL_QUANTITIES}
     needs = {"time": ([*times], list(TIME_NAMES))}
@@ -299,13 +303,13 @@ def _require(columns: dict[str, Column], times: list[Column], names: list[str], 
     for need, (found, known) in needs.items():
         if found:
             continue
-        unit = {"time": "utc_s", "hpl_m": "m"}.get(need, "deg")
+        unit = {"time": "utc_s", "est_lat_rad": "deg", "est_lon_rad": "deg"}.get(need, "m")
         near = {n: max(difflib.SequenceMatcher(None, _plain(n)[0], a).ratio() for a in known) for n in names}
         best = sorted(names, key=lambda n: -near[n])[:5]
         raise FormatError(
             path,
             f"no column holds it (known names: {', '.join(known[:6])}, ...); the nearest of the {len(names)} found are "
-            f"{', '.join(best)}; declare it, for instance {need}={best[0]}:{unit}",
+            f"{', '.join(best)}; if one of them is it, declare it: {need}=COLUMN:{unit}",
             1,
             need,
         )

@@ -12,20 +12,19 @@ import polars as pl
 from navbound import _core
 from navbound.errors import FormatError
 from navbound.read import receivers
-from navbound.read.columns import LEVEL_QUANTITIES, QUANTITIES, UNITS, Assignment, Column, assign
+from navbound.read.columns import LEVEL_QUANTITIES, POSITION, QUANTITIES, UNITS, Assignment, Column, assign
 from navbound.read.rejections import Rejections
 from navbound.read.source import Source, load
 from navbound.read.table import LINE, Table, table
 from navbound.read.times import gps_time
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from navbound.run.records import InputFile, Rejection
 
 _QUANTITY = {q.name: q for q in QUANTITIES + LEVEL_QUANTITIES}
-_REQUIRED = ("est_lat_rad", "est_lon_rad")
 _BAD = "__bad"
 _MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 
@@ -58,7 +57,7 @@ class Reading:
     columns: dict[str, str] = field(default_factory=dict)
 
 
-def read(path: str | Path, *, columns: Mapping[str, str] | None = None, levels: bool = False) -> Reading:
+def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:
     """Read a recorded track: CSV, JSON, Parquet, an RTKLIB solution file, or the log of a receiver (each also gzipped).
 
     Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183; they need the extra ``receivers``.
@@ -69,8 +68,9 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, levels: 
         The file.
     columns : mapping of str to str, optional
         What a column is, where its name does not say: ``{"est_lat_rad": "breite:deg", "time": "zeit:utc_ms"}``.
-    levels : bool
-        A table of protection levels, whose rows need a time, not a position.
+    needs : sequence of str
+        Columns of docs/notation.md without which a table is refused. Without a position among them it is a table of protection levels,
+        whose rows need a time alone.
 
     Raises
     ------
@@ -85,11 +85,11 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, levels: 
     if source.kind in {"ubx", "sbf", "novatel", "nmea"}:
         return _log(source, source.kind)
     found = table(source)
-    mapping = assign(found.columns, columns, source.path, levels=levels)
-    return _epochs(source, found, mapping, () if levels else _REQUIRED)
+    mapping = assign(found.columns, columns, source.path, needs=needs)
+    return _epochs(source, found, mapping, [name for name in POSITION if name in needs])
 
 
-def _epochs(source: Source, found: Table, mapping: Assignment, required: tuple[str, ...]) -> Reading:
+def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequence[str]) -> Reading:
     frame, rejections, notes = found.frame, found.rejections, list[str]()
     out = pl.DataFrame({LINE: frame[LINE]})
     reasons = list[pl.Series]()

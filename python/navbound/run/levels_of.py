@@ -122,8 +122,19 @@ class Part:
     ranges: pl.DataFrame | None = None
 
 
-def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None) -> Part:
+def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, needs: Sequence[str] = ("hpl_m",)) -> Part:
     """Read a table of errors and protection levels, or of positions and protection levels with a truth.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    truth : Truth
+        Where the receiver really was.
+    columns : mapping, optional
+        What a column is, where its name does not say.
+    needs : sequence of str
+        The protection levels that are judged; a file without one of them is refused: availability would be 0 for no fault of the system.
 
     Raises
     ------
@@ -132,9 +143,10 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None) -> P
     InputError
         Several tracks in one file, or a truth without positions.
     """
-    reading = read(path, columns=columns, levels=True)
-    if "hpl_m" not in reading.epochs.columns:
-        raise FormatError(path, "no column holds a protection level", field="hpl_m")
+    reading = read(path, columns=columns, needs=needs)
+    for name in needs:
+        if name not in reading.epochs.columns:
+            raise FormatError(path, "no column holds this protection level, which the levels to be judged need", field=name)
     tracks = reading.epochs["track"].unique().sort().to_list()
     if len(tracks) > 1:
         raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")

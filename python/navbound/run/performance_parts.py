@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import polars as pl
 
 from navbound import __version__
+from navbound._kpi_levels import chosen_levels
 from navbound.errors import FormatError
 from navbound.run.levels_of import SCHEMA, Part, Service, Truth, from_observations, from_table
 from navbound.run.levels_of_monitor import from_monitor, monitor_of
@@ -77,6 +78,7 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
         options.prn,
         options.solve,
         options.protection,
+        _needs(options),
     ]
     beside = sorted(s.sha256 for s in sources.navigation + sources.messages)
     return json.dumps([given, options.stanford_esa is not None, SCHEMA.names(), beside])
@@ -84,11 +86,17 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
 
 def _compute(source: Source, sources: Files, options: Options, truth: Truth, service: Service) -> Part:
     if source in sources.tables:
-        return from_table(source.path, truth, options.columns)
+        return from_table(source.path, truth, options.columns, _needs(options))
     monitor = monitor_of(options.protection)
     if monitor is not None:
         return from_monitor(source.path, service.navigation, truth, monitor)
     return from_observations(source.path, service, truth, keep_ranges=options.stanford_esa is not None)
+
+
+def _needs(options: Options) -> list[str]:
+    """The protection levels that the levels to be judged have limits for."""
+    vertical = any(level.val_m is not None for level in chosen_levels(options.levels))
+    return ["hpl_m", "vpl_m"] if vertical else ["hpl_m"]
 
 
 def _remember(folder: Path, key: str, source: Source, part: Part) -> Stored:
