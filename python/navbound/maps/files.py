@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -38,28 +39,29 @@ class Map:
     path: Path | None = None
 
 
-def own(out: Path) -> AbstractContextManager[None]:
-    """Make the folder of a map and write in it; one that holds something else is refused with a :class:`FormatError`."""
-    return _folder.own(out, {RECORD, SUMMARY, POINTS, ARRAYS, REPORT}, "a map's")
-
-
-def write(made: Map, out: Path) -> Map:
-    """Write every record, the points as Parquet and NetCDF, and the report; a folder that holds something else is refused.
+def own(out: str | Path | None) -> AbstractContextManager[_folder.Writer | None]:
+    """Make the folder of a map before the work; none where `out` is None.
 
     Raises
     ------
     FormatError
-        The folder cannot be written, or holds files that are not a map's.
+        The folder cannot be written, holds files that are not a map's, or another job writes in it.
     """
+    return nullcontext() if out is None else _folder.own(Path(out), {RECORD, SUMMARY, POINTS, ARRAYS, REPORT}, "a map's")
+
+
+def write(made: Map, folder: _folder.Writer | None) -> Map:
+    """Write every record, the points as Parquet and NetCDF, and the report into a folder of :func:`own`; nothing where there is none."""
+    if folder is None:
+        return made
     from navbound.report.world import render  # noqa: PLC0415  (the report is only loaded when one is written)
 
-    with own(out):
-        (out / RECORD).write_text(made.record.model_dump_json(indent=1), encoding="utf-8")
-        (out / SUMMARY).write_text(made.summary.model_dump_json(indent=1), encoding="utf-8")
-        made.points.write_parquet(out / POINTS, compression="zstd")
-        (out / ARRAYS).write_bytes(netcdf.of_map(made.summary, made.points))
-        render(made, out / REPORT)
-    return Map(made.summary, made.record, made.points, out)
+    folder.text(RECORD, made.record.model_dump_json(indent=1))
+    folder.text(SUMMARY, made.summary.model_dump_json(indent=1))
+    folder.write(POINTS, lambda path: made.points.write_parquet(path, compression="zstd"))
+    folder.write(ARRAYS, lambda path: path.write_bytes(netcdf.of_map(made.summary, made.points)))
+    folder.write(REPORT, lambda path: render(made, path))
+    return Map(made.summary, made.record, made.points, folder.folder)
 
 
 def load(path: str | Path) -> Map:
@@ -68,12 +70,13 @@ def load(path: str | Path) -> Map:
     Raises
     ------
     FormatError
-        Not the folder of a map, or one of its files is damaged.
+        Not the folder of a map, a map that did not finish, or a file that is damaged or was changed.
     """
     import polars as pl  # noqa: PLC0415
     from pydantic import ValidationError  # noqa: PLC0415
 
     folder = Path(path)
+    _folder.require_whole(folder, (RECORD, SUMMARY, POINTS), "a map's")
     try:
         summary = records.MapSummary.model_validate_json((folder / SUMMARY).read_bytes())
         record = records.MapRecord.model_validate_json((folder / RECORD).read_bytes())

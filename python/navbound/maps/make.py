@@ -92,30 +92,26 @@ def make(
         tuple((one.column, one.limit) for one in asked),
         tuple(c.name for c in chosen.causes),
     )
-    if out is not None:
-        # What the folder refuses is said before the work, not after it.
-        with files.own(Path(out)):
-            pass
-    lat, lon = grid.points()
-    n_epochs = job.n_epochs()
-    tiles = [Tile(lat[s], lon[s]) for s in scale.cut(len(grid), n_epochs * chosen.user_epoch_s, n_epochs * _RESULT_BYTES)]
-    parts = scale.map_tiles(evaluate, tiles, backend=backend, checkpoint=checkpoint, progress=progress, workers=workers)
-    columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    points = pl.DataFrame({"lat_rad": lat, "lon_rad": lon} | columns)
-    summary = _summary(chosen, grid, points, asked, job)
-    record = records.MapRecord(
-        navbound_version=_core.__version__,
-        command=command,
-        created_utc=datetime.now(UTC).isoformat(timespec="seconds"),
-        kind=kind,
-        options={f.name: _option_words(getattr(job, f.name)) for f in fields(job)},
-        inputs=_inputs(job),
-        backend=backend,
-        n_tiles=len(tiles),
-        platform=platform.platform(),
-    )
-    made = files.Map(summary, record, points)
-    return made if out is None else files.write(made, Path(out))
+    with files.own(out) as folder:
+        lat, lon = grid.points()
+        n_epochs = job.n_epochs()
+        tiles = [Tile(lat[s], lon[s]) for s in scale.cut(len(grid), n_epochs * chosen.user_epoch_s, n_epochs * _RESULT_BYTES)]
+        parts = scale.map_tiles(evaluate, tiles, backend=backend, checkpoint=checkpoint, progress=progress, workers=workers)
+        columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        points = pl.DataFrame({"lat_rad": lat, "lon_rad": lon} | columns)
+        summary = _summary(chosen, grid, points, asked, job)
+        record = records.MapRecord(
+            navbound_version=_core.__version__,
+            command=command,
+            created_utc=datetime.now(UTC).isoformat(timespec="seconds"),
+            kind=kind,
+            options={f.name: _option_words(getattr(job, f.name)) for f in fields(job)},
+            inputs=_inputs(job),
+            backend=backend,
+            n_tiles=len(tiles),
+            platform=platform.platform(),
+        )
+        return files.write(files.Map(summary, record, points), folder)
 
 
 def _options(kind: Kind, options: dict[str, object]) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from navbound.errors import FormatError
+from navbound import _folder
 from navbound.report import surface
 from navbound.run.surface_records import Study as SurfaceStudy
 
@@ -14,21 +14,20 @@ if TYPE_CHECKING:
     from navbound.run.studies import Study
 
 
+RECORD, REPORT = "study.json", "report.html"
+
+
 def write(study: Study, out: Path) -> Path:
     """Write ``study.json``, and ``report.html`` for a study that has a page; say which file to look at.
 
     Raises
     ------
     FormatError
-        A folder that cannot be written.
+        A folder that cannot be written, or holds something else.
     """
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        shown = out / "study.json"
-        shown.write_text(study.model_dump_json(indent=1), encoding="utf-8")
-        if isinstance(study, SurfaceStudy):
-            shown = out / "report.html"
-            shown.write_text(surface.html(study), encoding="utf-8")
-    except OSError as e:
-        raise FormatError(out, f"cannot be written: {e.strerror}") from e
-    return shown
+    with _folder.own(out, {RECORD, REPORT}, "a study's") as folder:
+        folder.text(RECORD, study.model_dump_json(indent=1))
+        if not isinstance(study, SurfaceStudy):
+            return out / RECORD
+        folder.text(REPORT, surface.html(study))
+        return out / REPORT

@@ -65,17 +65,14 @@ def fly(
     FormatError
         A scenario file that cannot be read, or a run directory that cannot be written.
     """
-    if out is not None:
-        # Before the flights, not after them.
-        with directory.own(Path(out)):
-            pass
-    route = taxi_scenarios.route_file(scenario)
-    if route is not None:
-        return _finish(judge(taxiing.material(route, flights=flights, seed=seed, **work), settings, command), out)
-    found = scenarios.load(scenario)
-    run = judge(simulated.material(found, flights=flights, seed=seed, **work), settings, command)
-    summary = run.summary.model_copy(update={"faults": fault_summaries(found, run.epochs, run.events)})
-    return _finish(replace(run, summary=summary), out)
+    with directory.own(out) as folder:
+        route = taxi_scenarios.route_file(scenario)
+        if route is not None:
+            return directory.write(judge(taxiing.material(route, flights=flights, seed=seed, **work), settings, command), folder)
+        found = scenarios.load(scenario)
+        run = judge(simulated.material(found, flights=flights, seed=seed, **work), settings, command)
+        summary = run.summary.model_copy(update={"faults": fault_summaries(found, run.epochs, run.events)})
+        return directory.write(replace(run, summary=summary), folder)
 
 
 def analyze(
@@ -120,9 +117,10 @@ def analyze(
         named = [levels] if isinstance(levels, (str, Level)) else list(levels)
         options = performance.Options(levels=named, **reading)  # type: ignore[arg-type]
         return performance.evaluate_files(files, options, out=out, command=command, progress=progress)
-    wanted = requirement(spec, phase)
-    material = recorded.material(files, requirement=wanted.words, rnp_m=wanted.rnp_m, **reading)  # type: ignore[arg-type]
-    return _finish(judge(material, settings, command), out)
+    with directory.own(out) as folder:
+        wanted = requirement(spec, phase)
+        material = recorded.material(files, requirement=wanted.words, rnp_m=wanted.rnp_m, **reading)  # type: ignore[arg-type]
+        return directory.write(judge(material, settings, command), folder)
 
 
 def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None = None, **work: Unpack[Work]) -> Study:
@@ -154,13 +152,10 @@ def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None
         raise InputError("out", str(out), domain=f"no directory: only {', '.join([*REPORTS, *sorted(PAGES)])} have something to report")
     found = STUDIES[name](files, **work)
     if out is not None and name in REPORTS:
-        directory.write(REPORTS[name](), Path(out))
+        with directory.own(out) as folder:
+            directory.write(REPORTS[name](), folder)
     elif out is not None:
         from navbound.report import studies  # noqa: PLC0415 - the page is presentation, made only where it is asked for
 
         studies.write(found, Path(out))
     return found
-
-
-def _finish(run: Run, out: str | Path | None) -> Run:
-    return run if out is None else directory.write(run, Path(out))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from navbound import _folder
@@ -10,7 +12,6 @@ from navbound.errors import FormatError
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
-    from pathlib import Path
 
     import polars as pl
 
@@ -48,28 +49,29 @@ class Run:
         return self.path / REPORT
 
 
-def own(out: Path) -> AbstractContextManager[None]:
-    """Make a run directory and write in it; one that holds something else is refused with a :class:`FormatError`."""
-    return _folder.own(out, {RECORD, SUMMARY, EPOCHS, EVENTS, REPORT}, "a run's")
-
-
-def write(run: Run, out: Path) -> Run:
-    """Write every record and the report; a directory that holds something else is refused.
+def own(out: str | Path | None) -> AbstractContextManager[_folder.Writer | None]:
+    """Make a run directory before the work; none where `out` is None.
 
     Raises
     ------
     FormatError
-        The directory cannot be written, or holds files that are not a run's.
+        The directory cannot be written, holds files that are not a run's, or another job writes in it.
     """
+    return nullcontext() if out is None else _folder.own(Path(out), {RECORD, SUMMARY, EPOCHS, EVENTS, REPORT}, "a run's")
+
+
+def write(run: Run, folder: _folder.Writer | None) -> Run:
+    """Write every record and the report into a directory of :func:`own`; nothing where there is none."""
+    if folder is None:
+        return run
     from navbound.report import render  # noqa: PLC0415  (the report is only loaded when one is written)
 
-    with own(out):
-        (out / RECORD).write_text(run.record.model_dump_json(indent=1), encoding="utf-8")
-        (out / SUMMARY).write_text(run.summary.model_dump_json(indent=1), encoding="utf-8")
-        run.epochs.write_parquet(out / EPOCHS, compression="zstd")
-        run.events.write_parquet(out / EVENTS, compression="zstd")
-        render(run.summary, run.record, run.epochs, run.events, run.waypoints, out / REPORT)
-    return Run(run.summary, run.record, run.epochs, run.events, run.waypoints, out)
+    folder.text(RECORD, run.record.model_dump_json(indent=1))
+    folder.text(SUMMARY, run.summary.model_dump_json(indent=1))
+    folder.write(EPOCHS, lambda path: run.epochs.write_parquet(path, compression="zstd"))
+    folder.write(EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
+    folder.write(REPORT, lambda path: render(run.summary, run.record, run.epochs, run.events, run.waypoints, path))
+    return Run(run.summary, run.record, run.epochs, run.events, run.waypoints, folder.folder)
 
 
 def load(path: Path) -> Run:
@@ -78,13 +80,14 @@ def load(path: Path) -> Run:
     Raises
     ------
     FormatError
-        Not a run directory, or one of its files is damaged.
+        Not a run directory, a run that did not finish, or a file that is damaged or was changed.
     """
     import polars as pl  # noqa: PLC0415
     from pydantic import ValidationError  # noqa: PLC0415
 
     from navbound.run.records import RunRecord, Summary  # noqa: PLC0415
 
+    _folder.require_whole(path, (RECORD, SUMMARY, EPOCHS, EVENTS), "a run's")
     try:
         summary = Summary.model_validate_json((path / SUMMARY).read_bytes())
         record = RunRecord.model_validate_json((path / RECORD).read_bytes())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import platform
 import sys
 import tempfile
@@ -15,7 +14,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound import __version__, _folder, kpi
-from navbound.errors import FormatError, InputError
+from navbound.errors import InputError
 from navbound.read.source import load
 from navbound.run import directory
 from navbound.run.directory import Run
@@ -137,7 +136,8 @@ def evaluate_files(
             domain="it with observations and navigation data alone: a table holds no ranges, and ranges are not corrected by SBAS messages",
         )
     with ExitStack() as stack:
-        folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) if out is None else _own(Path(out))
+        writer = None if out is None else stack.enter_context(_folder.own(Path(out), _OWN, "a run's"))
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) if writer is None else writer.folder
         parts = finished_parts(sources, options, truth, folder / PARTS, progress)
         campaign, events = _add_all(parts, wanted, options)
         result = campaign.finish(lambda: tables_of(parts), events.append)
@@ -145,16 +145,9 @@ def evaluate_files(
             ranges = kpi.stanford_esa(lambda: ranges_of_parts(parts), campaign.levels, options.stanford_esa)
             result = kpi.with_subsets(result, ranges)
         run = _run(result, parts, events, inputs=_inputs(sources, truth, parts), options=options, command=command)
-        if out is None:
+        if writer is None:
             return Run(run.summary, run.record, pl.concat(tables_of(parts)), run.events, [])
-        return _write(run, parts, folder)
-
-
-def _own(out: Path) -> Path:
-    """Make the run directory; refuse one that holds something else."""
-    with _folder.own(out, _OWN, "a run's"):
-        (out / PARTS).mkdir(exist_ok=True)
-    return out
+        return _write(run, parts, writer)
 
 
 def _experimental(parts: list[Stored], options: Options) -> str:
@@ -282,29 +275,18 @@ def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) 
     )
 
 
-def _write(run: Run, parts: list[Stored], out: Path) -> Run:
+def _write(run: Run, parts: list[Stored], folder: _folder.Writer) -> Run:
     from navbound.report import render  # noqa: PLC0415  (the report is only loaded when one is written)
 
     epochs = pl.scan_parquet([part.table for part in parts])
-    try:
-        _whole(out / directory.EPOCHS, lambda path: epochs.sink_parquet(path, compression="zstd", maintain_order=True))
-        _whole(out / CSV, lambda path: write_csv(tables_of(parts), path, _marked(run)))
-        _whole(out / directory.EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
-        _whole(out / directory.RECORD, lambda path: path.write_text(run.record.model_dump_json(indent=1), encoding="utf-8"))
-        render(run.summary, run.record, run.epochs, run.events.clear(), [], out / directory.REPORT)
-        # Last: a directory with a summary is a finished run.
-        _whole(out / directory.SUMMARY, lambda path: path.write_text(run.summary.model_dump_json(indent=1), encoding="utf-8"))
-    except OSError as e:
-        raise FormatError(out, f"cannot be written: {e.strerror}") from e
-    return Run(run.summary, run.record, run.epochs, run.events, [], out)
+    folder.write(directory.EPOCHS, lambda path: epochs.sink_parquet(path, compression="zstd", maintain_order=True))
+    folder.write(CSV, lambda path: write_csv(tables_of(parts), path, _marked(run)))
+    folder.write(directory.EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
+    folder.text(directory.RECORD, run.record.model_dump_json(indent=1))
+    folder.write(directory.REPORT, lambda path: render(run.summary, run.record, run.epochs, run.events.clear(), [], path))
+    folder.text(directory.SUMMARY, run.summary.model_dump_json(indent=1))
+    return Run(run.summary, run.record, run.epochs, run.events, [], folder.folder)
 
 
 def _marked(run: Run) -> str:
     return run.summary.performance.experimental if run.summary.performance is not None else ""
-
-
-def _whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Write a file so that it is there whole or not at all."""
-    partial = path.parent / PARTS / f"{path.name}.partial"
-    write(partial)
-    os.replace(partial, path)
