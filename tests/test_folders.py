@@ -50,7 +50,7 @@ for last in range(100):
 def words(out: Path) -> set[str]:
     """Which job's files a reader takes; none where it refuses the folder."""
     try:
-        _folder.require_whole(out, NAMES, "a run's")
+        _folder.require_whole(out, NAMES, "a run directory")
     except FormatError:
         return set()
     return {(out / name).read_text().split(" of the ")[1] for name in NAMES}
@@ -102,7 +102,7 @@ def test_a_file_changed_after_the_job_is_found(tmp_path: Path) -> None:
     report = tmp_path / "report.html"
     report.write_bytes(report.read_bytes().replace(b"first", b"other"))
     with pytest.raises(FormatError, match="its digest differs"):
-        _folder.require_whole(tmp_path, NAMES, "a run's")
+        _folder.require_whole(tmp_path, NAMES, "a run directory")
 
 
 def test_a_run_without_a_manifest_is_no_run(tmp_path: Path) -> None:

@@ -134,7 +134,7 @@ def _alone(out: Path) -> Iterator[None]:
         os.close(descriptor)
 
 
-def require_whole(folder: Path, needed: Collection[str], whose: str) -> None:
+def require_whole(folder: Path, needed: Collection[str], what: str) -> None:
     """Refuse a folder that is not whole.
 
     Raises
@@ -147,14 +147,14 @@ def require_whole(folder: Path, needed: Collection[str], whose: str) -> None:
         files = {str(name): str(digest) for name, digest in content["files"].items()}
     except FileNotFoundError as e:
         missing = "no such folder" if not folder.is_dir() else f"no {MANIFEST}: the job that wrote here did not finish"
-        raise FormatError(folder, f"is not {whose} folder ({missing})") from e
+        raise FormatError(folder, f"is not {what} ({missing})") from e
     except OSError as e:
-        raise FormatError(folder, f"is not {whose} folder: {e.strerror or e}") from e
+        raise FormatError(folder, f"is not {what}: {e.strerror or e}") from e
     except (ValueError, KeyError, TypeError, AttributeError) as e:
         raise FormatError(folder / MANIFEST, f"is damaged: {e}") from e
     absent = sorted(set(needed) - files.keys())
     if absent:
-        raise FormatError(folder, f"is not {whose} folder: its manifest lacks {', '.join(absent)}")
+        raise FormatError(folder, f"is not {what}: its manifest lacks {', '.join(absent)}")
     for name in needed:
         try:
             found = _digest(folder / name)

@@ -76,7 +76,7 @@ def load(path: str | Path) -> Map:
     from pydantic import ValidationError  # noqa: PLC0415
 
     folder = Path(path)
-    _folder.require_whole(folder, (RECORD, SUMMARY, POINTS), "a map's")
+    _folder.require_whole(folder, (RECORD, SUMMARY, POINTS), "the folder of a map")
     try:
         summary = records.MapSummary.model_validate_json((folder / SUMMARY).read_bytes())
         record = records.MapRecord.model_validate_json((folder / RECORD).read_bytes())

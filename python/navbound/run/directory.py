@@ -87,7 +87,7 @@ def load(path: Path) -> Run:
 
     from navbound.run.records import RunRecord, Summary  # noqa: PLC0415
 
-    _folder.require_whole(path, (RECORD, SUMMARY, EPOCHS, EVENTS), "a run's")
+    _folder.require_whole(path, (RECORD, SUMMARY, EPOCHS, EVENTS), "a run directory")
     try:
         summary = Summary.model_validate_json((path / SUMMARY).read_bytes())
         record = RunRecord.model_validate_json((path / RECORD).read_bytes())
