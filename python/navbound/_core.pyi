@@ -71,6 +71,8 @@ def per_epoch_risk(risk_per_hour: float, tau_s: float, sample_period_s: float) -
 def per_hour_risk(risk_per_epoch: float, tau_s: float, sample_period_s: float) -> float: ...
 def nse_boundary(tse_m: _F, fte_m: _F) -> _F: ...
 
+def alerting_methods() -> list[str]: ...
+
 class RnpMonitor:
     def __init__(
         self, chain_s: list[float], raise_delay_s: float, clear_delay_s: float, clear_ratio: float, stale_after_s: float | None
@@ -79,20 +81,31 @@ class RnpMonitor:
     def time_to_crew_s(self) -> float: ...
     @property
     def stale_after_s(self) -> float: ...
-    def step(self, time_ns: int, accuracy_m: float, integrity_m: float, rnp_m: float, usable: bool) -> tuple[str, str, list[_EventRow]]: ...
+    def step(
+        self,
+        time_ns: int,
+        accuracy: tuple[str, float],
+        integrity: tuple[str, float],
+        fte_m: float,
+        hpl_m: float,
+        rnp_m: float,
+        usable: bool,
+    ) -> tuple[str, str, list[_EventRow], list[_EventRow]]: ...
     def tick(self, time_ns: int) -> str: ...
     def open_events(self) -> list[_EventRow]: ...
     def counters(self) -> dict[str, Any]: ...
     def run(
         self,
         time_ns: NDArray[np.int64],
-        accuracy_m: _F,
-        integrity_m: _F,
+        accuracy: tuple[str, _F],
+        integrity: tuple[str, _F],
+        fte_m: _F | None,
+        hpl_m: _F | None,
         rnp_m: _F,
         usable: NDArray[np.bool_],
         track: NDArray[np.uint32],
         n_tracks: int,
-    ) -> tuple[list[str], list[tuple[int, _EventRow]], list[dict[str, Any]], dict[str, Any]]: ...
+    ) -> tuple[list[str], list[tuple[int, _EventRow]], list[dict[str, Any]], dict[str, Any], _F]: ...
 
 class RnpStates:
     def __init__(self, boundaries_m: list[float]) -> None: ...
