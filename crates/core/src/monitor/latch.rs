@@ -167,7 +167,7 @@ impl Latch {
         let onset = moment.lost_since.unwrap_or(moment.now);
         let event = self.event.get_or_insert(Event::begin(self.kind, onset, moment.now));
         event.record(bound, limit);
-        if self.annunciated || !(moment.at_once || self.wait.is_full()) {
+        if self.annunciated || !(moment.at_once || self.wait.is_over()) {
             return Change::Nothing;
         }
         event.annunciation = moment.now;
@@ -189,7 +189,7 @@ impl Latch {
         self.event = None;
         self.annunciated = false;
         self.calm_since = None;
-        self.wait.empty();
+        self.wait.restart();
         Change::Cleared(event.ended(now))
     }
 }
