@@ -87,7 +87,7 @@ fn monitoring_begins_unavailable_and_with_the_alert_that_the_first_epoch_deserve
     assert_eq!(monitor.counters().n_unavailable, 0, "nothing was lost");
 }
 
-/// Three epochs of four, alternating, and one of three: the times of docs/methods/rnp-monitor.md. One of five never fills the wait.
+/// The times of docs/methods/rnp-monitor.md, worked out there by hand from the two lines of the wait.
 #[test]
 fn an_exceedance_that_comes_and_goes_alerts_by_its_share() {
     let first_caution = |outside: usize, of: usize| {
@@ -96,8 +96,10 @@ fn an_exceedance_that_comes_and_goes_alerts_by_its_share() {
     };
     assert_eq!(first_caution(4, 4), Some(3));
     assert_eq!(first_caution(3, 4), Some(4));
+    assert_eq!(first_caution(2, 3), Some(6));
     assert_eq!(first_caution(1, 2), Some(8));
     assert_eq!(first_caution(1, 3), Some(18));
+    assert_eq!(first_caution(1, 4), Some(84));
     assert_eq!(first_caution(1, 5), None, "a fifth is below 3 / 13");
 }
 
