@@ -341,7 +341,7 @@ fn long_random_sequences_are_judged_as_the_rules_say() {
         let mut code = 7;
         for _ in 0..120 {
             if numbers.next() % 100 < restless {
-                code = numbers.next() % 7 + 7 + if numbers.next() % 5 == 0 { 28 } else { 0 };
+                code = numbers.next() % 7 + 7 + if numbers.next().is_multiple_of(5) { 28 } else { 0 };
             }
             let step = if numbers.next() % 100 < strange { numbers.next() % 4 } else { 1 };
             let time_s = trial.records.last().map_or(0, |r| r.time_s);
