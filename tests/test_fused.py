@@ -119,8 +119,12 @@ def summary(name: str, faults: list[dict[str, Any]] | None = None) -> tuple[Run,
     ],
 )
 def test_every_shipped_fault_is_flown_and_summed_up(name: str, kinds: list[str]) -> None:
-    _, found = summary(name)
+    run, found = summary(name)
     assert [f.kind for f in found] == kinds
+    # Loss of monitoring, and any alert, ends in normal only at an epoch inside.
+    shown, outside = run.epochs["alert"], (run.epochs["tse_exact_m"] > run.epochs["rnp_m"]).fill_null(value=False)
+    assert run.epochs["track"].n_unique() == 1
+    assert not ((shown == "normal") & (shown.shift(1) != "normal") & outside).any()
     for fault in found:
         assert fault.nse_h_max_m is not None
         assert fault.words.endswith(".")

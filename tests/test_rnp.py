@@ -59,12 +59,12 @@ def test_a_table_is_judged_track_by_track() -> None:
     frame = table(
         track=["a", "b"] * 6,
         time_ns=[PERIOD_NS * (k // 2) for k in range(12)],
-        tse_exact_m=[600.0 if k % 2 else 100.0 for k in range(12)],
+        tse_exact_m=[600.0 if k % 2 and k > 1 else 100.0 for k in range(12)],
     )
     run = rnp.Monitor().run(frame)
-    assert run.alert.to_list() == ["normal"] * 7 + ["caution", "normal", "caution", "normal", "caution"]
+    assert run.alert.to_list() == ["normal"] * 9 + ["caution", "normal", "caution"]
     assert run.events.select("track", "kind", "onset_ns", "annunciation_ns", "clear_ns").rows() == [
-        ("b", "caution", 0, 3 * PERIOD_NS, None)
+        ("b", "caution", PERIOD_NS, 4 * PERIOD_NS, None)
     ]
     assert run.track_counters["a"].n_cautions == 0
     assert run.counters.n_accepted == 12
@@ -94,8 +94,8 @@ def test_a_mapping_of_arrays_is_a_table() -> None:
 def test_a_table_that_cannot_be_judged_is_refused(change: dict[str, list[object]], named: str) -> None:
     with pytest.raises(InputError, match=named):
         rnp.Monitor().run(table(**{"tse_exact_integrity_m": [1.0, 1.0]} | change))
-    with pytest.raises(InputError, match="tables with anp_m"):
-        rnp.Monitor().run(table(tse_exact_m=[1.0, 1.0]), accuracy="anp_m")
+    with pytest.raises(InputError, match="tables with anp_circle_m"):
+        rnp.Monitor().run(table(tse_exact_m=[1.0, 1.0]), accuracy="anp-circle")
 
 
 def test_steps_and_tables_agree() -> None:
@@ -107,6 +107,10 @@ def test_steps_and_tables_agree() -> None:
     steps = [monitor.step(row) for row in frame.to_dicts()]
     assert [s.alert for s in steps] == run.alert.to_list()
     ended = [e for s in steps for e in s.ended]
+    began = [e for s in steps for e in s.began]
+    assert [(e.kind, e.onset_ns, e.annunciation_ns) for e in began] == run.events.sort("annunciation_ns", maintain_order=True).select(
+        "kind", "onset_ns", "annunciation_ns"
+    ).rows()
     assert len(ended) + len(monitor.open_events) == run.events.height > 5
     assert monitor.counters == run.counters
 

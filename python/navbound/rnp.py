@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
-from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
+from navbound._extraction_gains import EXTRACTION_LABEL
 from navbound._rnp_exposure import PER_EPOCH, ExposureBasis, PerEpoch, PerHour, per_epoch_risk, per_hour_risk
 from navbound._rnp_specifications import Specification, specification, specifications
 from navbound._states import (
@@ -23,11 +23,14 @@ from navbound._states import (
     states_of_track,
 )
 from navbound.errors import InputError
+from navbound.methods import method
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
+
+    from navbound.methods import Method
 
 __all__ = [
     "PER_EPOCH",
@@ -79,18 +82,23 @@ class Event(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What one epoch changed: the alert in force, whether the epoch was judged, and events that ended."""
+    """What one epoch changed: the alert in force, whether the epoch was judged, events that ended, and events whose alert was raised.
+
+    A silence that this epoch ends is in ``began`` and in ``ended``.
+    """
 
     alert: Alert
     acceptance: Acceptance
     ended: list[Event]
+    began: list[Event]
 
 
 @dataclass(frozen=True)
 class Counters:
     """What the monitor saw and did; counts of epochs and alerts.
 
-    ``n_withdrawn`` are exceedances that ended before the crew was told. ``alerts_per_hour`` counts cautions and warnings over the time
+    ``n_withdrawn`` are exceedances that ended before an alert was raised. ``n_nan`` are usable epochs with a bound that is not a number or
+    an RNP value outside (0, inf). ``alerts_per_hour`` counts cautions and warnings over the time
     under watch: under nominal conditions it is the rate of false alerts, reported beside integrity. NaN when nothing was watched.
     """
 
@@ -111,12 +119,14 @@ class Counters:
 
 @dataclass(frozen=True)
 class MonitorRun:
-    """What the monitor found in a table.
+    """What the monitor decided in a table.
 
     Attributes
     ----------
     alert : Series of str
         The alert in force after each row: normal, caution, warning, unavailable. A dropped row shows what was in force.
+    integrity_compared_m : Series of float
+        What was compared with twice RNP in each row, null where it is not known. [m]
     events : DataFrame
         ``track``, ``kind``, ``onset_ns``, ``annunciation_ns``, ``clear_ns``, ``peak_m``, ``limit_m``, ``min_margin_m``.
     counters : Counters
@@ -126,17 +136,23 @@ class MonitorRun:
     """
 
     alert: pl.Series
+    integrity_compared_m: pl.Series
     events: pl.DataFrame
     counters: Counters
     track_counters: dict[str, Counters]
 
 
 class Monitor:
-    """The RNP monitor: caution, warning and loss of monitoring, epoch by epoch.
+    r"""The RNP monitor: caution, warning and loss of monitoring, epoch by epoch.
 
     A caution is raised when NOT (accuracy bound <= RNP) has lasted ``raise_delay_s``, a warning at once when NOT (integrity bound <=
-    2 RNP); so NaN raises and equality does not. Both end after the bound has been within ``clear_ratio`` of the limit for
-    ``clear_delay_s``. An unusable status, or silence, is ``unavailable``.
+    2 RNP); so NaN raises and equality does not. An exceedance that comes and goes adds up: what ``raise_delay_s`` outside fill,
+    ``clear_delay_s`` inside empty. Both alerts end after the bound has been within ``clear_ratio`` of the limit for ``clear_delay_s``. An
+    unusable status, or silence, is ``unavailable``, and so is everything before the first epoch. The alert falls to ``normal`` only at an
+    epoch inside both limits. ``docs/methods/rnp-monitor.md`` says what the delays promise.
+
+    The monitor takes bounds of methods that may feed an alert, by the method's id. Where there are protection levels (``hpl_m``), the
+    larger of the integrity bound and \|FTE\| + ``hpl_m`` is compared with 2 RNP.
 
     Parameters
     ----------
@@ -205,25 +221,28 @@ class Monitor:
         """The integrity risk in words, on both bases."""
         return self.integrity_basis.words(self.integrity_risk, self.sample_period_s)
 
-    def step(self, record: Mapping[str, Any], *, accuracy: str = "tse_exact_m", integrity: str = "tse_exact_integrity_m") -> Step:
-        """Judge one epoch.
+    def step(self, record: Mapping[str, Any], *, accuracy: str = "tse-exact", integrity: str | None = None) -> Step:
+        """Judge one epoch. A record that is dropped for its time counts as one sample period of silence.
 
         Parameters
         ----------
         record : mapping
-            ``time_ns``, ``rnp_m``, both bounds and, where there is one, ``status``. A bound that is None is a NaN, and alerts.
+            ``time_ns``, ``rnp_m``, both bounds under the names of their methods' columns and, where there are any, ``status``, ``fte_m``
+            and ``hpl_m``. A bound that is None is a NaN, and alerts; so is ``hpl_m`` after the first epoch that had one.
         accuracy, integrity : str
-            Keys of the two bounds.
+            Ids of the methods that made the two bounds, of those that may feed an alert; ``tse-exact`` is read from ``tse_exact_m`` and
+            ``tse_exact_integrity_m``. The integrity bound is of the same method unless another is named.
 
         Raises
         ------
         InputError
-            A missing key, or a status that is none.
+            A method that may not feed an alert, a missing key, or a status that is none.
         """
-        _refuse_experimental(accuracy, integrity)
+        first, second = _alerting("accuracy", accuracy), _alerting("integrity", integrity or accuracy)
         try:
             time_ns = int(record["time_ns"])
-            first, second, rnp_m = (math.nan if record[key] is None else float(record[key]) for key in (accuracy, integrity, "rnp_m"))
+            accuracy_m, integrity_m, rnp_m = (_number(record[key]) for key in (first.column, second.integrity_column, "rnp_m"))
+            fte_m, hpl_m = (_number(record.get(key)) for key in ("fte_m", "hpl_m"))
         except KeyError as e:
             raise InputError("record", "a mapping without it", domain=f"records with {e.args[0]}") from e
         except (TypeError, ValueError) as e:
@@ -231,11 +250,17 @@ class Monitor:
         status = record.get("status", "ok")
         if status not in USABLE + UNUSABLE:
             raise InputError("status", repr(status), domain=", ".join(USABLE + UNUSABLE))
-        alert, acceptance, ended = self._core.step(time_ns, first, second, rnp_m, status in USABLE)
-        return Step(cast("Alert", alert), cast("Acceptance", acceptance), [Event(*e) for e in ended])
+        alert, acceptance, ended, began = self._core.step(
+            time_ns, (first.id, accuracy_m), (second.id, integrity_m), fte_m, hpl_m, rnp_m, status in USABLE
+        )
+        return Step(cast("Alert", alert), cast("Acceptance", acceptance), [Event(*e) for e in ended], [Event(*e) for e in began])
 
     def tick(self, time_ns: int) -> Alert:
-        """Time passes without an epoch: the alert in force, ``unavailable`` after a silence."""
+        """Time passes without an epoch: the alert in force, ``unavailable`` after a silence.
+
+        ``time_ns`` is the arrival clock, GPS nanoseconds. The silence is measured against the time of the last epoch and, because that may
+        be wrong, also from tick to tick.
+        """
         return cast("Alert", self._core.tick(time_ns))
 
     @property
@@ -252,37 +277,43 @@ class Monitor:
         self,
         table: pl.DataFrame | Mapping[str, Any],
         *,
-        accuracy: str = "tse_exact_m",
-        integrity: str = "tse_exact_integrity_m",
+        accuracy: str = "tse-exact",
+        integrity: str | None = None,
     ) -> MonitorRun:
         """Judge a table, each track by a fresh monitor with these settings; `step`'s own state is left alone.
+
+        The rows are the arrival clock: one that is dropped for its time counts as one sample period of silence.
 
         Parameters
         ----------
         table : DataFrame or mapping of columns
-            ``time_ns``, ``rnp_m``, both bounds and, where there are any, ``status`` and ``track``. A null bound of a row whose status is
-            ``ok`` is a NaN, and alerts.
+            ``time_ns``, ``rnp_m``, both bounds under the names of their methods' columns and, where there are any, ``status``, ``track``,
+            ``fte_m`` and ``hpl_m``. A null bound of a row whose status is ``ok`` is a NaN, and alerts; so is a null ``hpl_m`` in a track
+            that has one anywhere.
         accuracy, integrity : str
-            Columns of the two bounds.
+            Ids of the methods that made the two bounds, of those that may feed an alert; ``tse-exact`` is read from ``tse_exact_m`` and
+            ``tse_exact_integrity_m``. The integrity bound is of the same method unless another is named.
 
         Raises
         ------
         InputError
-            A missing column, a null time, or a status that is none.
+            A method that may not feed an alert, a missing column, a null time, or a status that is none.
         """
-        _refuse_experimental(accuracy, integrity)
+        first, second = _alerting("accuracy", accuracy), _alerting("integrity", integrity or accuracy)
         frame = table if isinstance(table, pl.DataFrame) else pl.DataFrame(dict(table))
-        for name in ("time_ns", "rnp_m", accuracy, integrity):
+        for name in ("time_ns", "rnp_m", first.column, second.integrity_column):
             if name not in frame.columns:
                 raise InputError("table", f"columns {', '.join(frame.columns)}", domain=f"tables with {name}")
         if frame["time_ns"].null_count():
             raise InputError("time_ns", "null", domain="times", index=frame["time_ns"].is_null().arg_max())
         usable = _usable(frame)
         names, index = _tracks(frame)
-        words, rows, each, total = self._core.run(
+        words, rows, each, total, compared_m = self._core.run(
             np.ascontiguousarray(frame["time_ns"].cast(pl.Int64).to_numpy()),
-            _numbers(frame, accuracy),
-            _numbers(frame, integrity),
+            (first.id, _numbers(frame, first.column)),
+            (second.id, _numbers(frame, second.integrity_column)),
+            _numbers(frame, "fte_m") if "fte_m" in frame.columns else None,
+            _numbers(frame, "hpl_m") if "hpl_m" in frame.columns else None,
             _numbers(frame, "rnp_m"),
             usable,
             index,
@@ -290,17 +321,25 @@ class Monitor:
         )
         return MonitorRun(
             alert=pl.Series("alert", words, dtype=pl.String),
+            integrity_compared_m=pl.Series("integrity_compared_m", compared_m, nan_to_null=True),
             events=_events(names, rows),
             counters=Counters(**total),
             track_counters={name: Counters(**c) for name, c in zip(names, each, strict=True)},
         )
 
 
-def _refuse_experimental(*names: str) -> None:
-    """Columns of Error Extraction bound nothing with a known risk: nobody is alerted by them, and nobody is kept from an alert."""
-    for name in names:
-        if name.startswith(EXTRACTION_MARK):
-            raise InputError("bound", name, domain=f"bounds that may feed an alert; this one is {EXTRACTION_LABEL}")
+def _alerting(argument: str, method_id: str) -> Method:
+    """The method of a bound that the monitor takes; the core's list says which may feed an alert."""
+    allowed = _core.alerting_methods()
+    if method_id not in allowed:
+        raise InputError(
+            argument, method_id, domain=f"a method that may feed an alert, of {', '.join(allowed)}; any other bound is {EXTRACTION_LABEL}"
+        )
+    return method(method_id)
+
+
+def _number(value: float | str | None) -> float:
+    return math.nan if value is None else float(value)
 
 
 def _numbers(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:

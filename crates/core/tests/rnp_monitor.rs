@@ -1,6 +1,7 @@
 //! The RNP monitor as a state machine: tables of what it must do, and properties for any sequence.
 #![allow(clippy::unwrap_used, reason = "a helper of tests may stop at the first surprise, too")]
 
+use navbound_core::bound::{AlertBound, Alerting};
 use navbound_core::monitor::rnp::{Acceptance, Alert, Chain, Event, Kind, Monitor, Observation, Settings, Step};
 use navbound_core::quantity::{GpsTime, Metres};
 use proptest::prelude::*;
@@ -28,11 +29,15 @@ fn settings() -> Settings {
     }
 }
 
+fn exact(bound_m: f64) -> AlertBound {
+    Alerting::of("tse-exact").unwrap().claim_evaluated(Metres::new(bound_m))
+}
+
 fn at(second: i64, accuracy_m: f64, integrity_m: f64) -> Observation {
     Observation {
         time: GpsTime::from_nanoseconds(second * 1_000_000_000),
-        accuracy: Metres::new(accuracy_m),
-        integrity: Metres::new(integrity_m),
+        accuracy: exact(accuracy_m),
+        integrity: exact(integrity_m),
         rnp: Metres::new(RNP_M),
         usable: true,
     }
@@ -52,16 +57,104 @@ fn ended(step: &Step) -> Vec<Event> {
     step.ended.iter().flatten().copied().collect()
 }
 
+fn began(step: &Step) -> Vec<Kind> {
+    step.began.iter().flatten().map(|event| event.kind).collect()
+}
+
 #[test]
 fn a_caution_waits_three_seconds_and_a_shorter_exceedance_is_withdrawn() {
     use Alert::{Caution, Normal};
-    assert_eq!(alerts(&[OUTSIDE; 5]), [Normal, Normal, Normal, Caution, Caution]);
+    let mut outside = [OUTSIDE; 6];
+    outside[0] = INSIDE;
+    assert_eq!(alerts(&outside), [Normal, Normal, Normal, Normal, Caution, Caution]);
     let mut monitor = Monitor::new(settings()).unwrap();
-    for (second, bound) in (0..).zip([OUTSIDE, OUTSIDE, OUTSIDE, INSIDE, OUTSIDE, OUTSIDE, OUTSIDE]) {
+    // Outside from second 1 to 3 fills 3 s less what is seen at 3; ten seconds inside empty it.
+    for second in 0..14 {
+        let bound = if (1..3).contains(&second) { OUTSIDE } else { INSIDE };
         assert_eq!(monitor.step(&at(second, bound, 0.0)).alert, Normal, "second {second}");
     }
     assert_eq!(monitor.counters().n_withdrawn, 1);
-    assert_eq!(monitor.step(&at(7, OUTSIDE, 0.0)).alert, Caution);
+    assert_eq!(monitor.open_events().count(), 0);
+}
+
+#[test]
+fn monitoring_begins_unavailable_and_with_the_alert_that_the_first_epoch_deserves() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    assert_eq!(monitor.alert(), Alert::Unavailable);
+    assert_eq!(monitor.tick(GpsTime::from_nanoseconds(0)).alert, Alert::Unavailable);
+    let step = monitor.step(&at(0, OUTSIDE, 0.0));
+    assert_eq!((step.alert, began(&step)), (Alert::Caution, vec![Kind::Caution]));
+    assert_eq!(monitor.counters().n_unavailable, 0, "nothing was lost");
+}
+
+/// The times of docs/methods/rnp-monitor.md, worked out there by hand from the two lines of the wait.
+#[test]
+fn an_exceedance_that_comes_and_goes_alerts_by_its_share() {
+    let first_caution = |outside: usize, of: usize| {
+        let bounds: Vec<f64> = (0..600).map(|k| if k > 0 && (k - 1) % of < outside { OUTSIDE } else { INSIDE }).collect();
+        alerts(&bounds).iter().position(|a| *a == Alert::Caution).map(|k| k - 1)
+    };
+    assert_eq!(first_caution(4, 4), Some(3));
+    assert_eq!(first_caution(3, 4), Some(4));
+    assert_eq!(first_caution(2, 3), Some(6));
+    assert_eq!(first_caution(1, 2), Some(8));
+    assert_eq!(first_caution(1, 3), Some(18));
+    assert_eq!(first_caution(1, 4), Some(84));
+    assert_eq!(first_caution(1, 5), None, "a fifth is below 3 / 13");
+}
+
+#[test]
+fn a_caution_that_comes_and_goes_begins_at_its_first_epoch_outside() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    for (second, bound) in (0..).zip([INSIDE, OUTSIDE, OUTSIDE, OUTSIDE, INSIDE]) {
+        assert_eq!(monitor.step(&at(second, bound, 0.0)).alert, Alert::Normal);
+    }
+    let step = monitor.step(&at(5, 700.0, 0.0));
+    let event = step.began[0].unwrap();
+    assert_eq!((seconds(event.onset), seconds(event.annunciation), event.peak.m()), (1, 5, 700.0));
+    assert_eq!(monitor.counters().n_withdrawn, 0, "it was raised, not withdrawn");
+}
+
+#[test]
+fn loss_of_monitoring_ends_in_normal_only_inside() {
+    for (bound, deserved) in [(INSIDE, Alert::Normal), (NEAR, Alert::Normal), (OUTSIDE, Alert::Caution), (f64::NAN, Alert::Caution)] {
+        for unusable in [1, 10] {
+            let mut monitor = Monitor::new(settings()).unwrap();
+            monitor.step(&at(0, INSIDE, 0.0));
+            for second in 1..=unusable {
+                monitor.step(&Observation { usable: false, ..at(second, f64::NAN, f64::NAN) });
+            }
+            let step = monitor.step(&at(unusable + 1, bound, 0.0));
+            assert_eq!(step.alert, deserved, "{bound} after {unusable}");
+            let onset = step.began[0].map(|event| seconds(event.onset));
+            assert_eq!(onset, (deserved == Alert::Caution).then_some(1), "nothing was known to be inside since");
+        }
+    }
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(0, INSIDE, 0.0));
+    let step = monitor.step(&at(60, OUTSIDE, 0.0));
+    assert_eq!((step.alert, began(&step)), (Alert::Caution, vec![Kind::Caution, Kind::Unavailable]), "after a silence, too");
+}
+
+#[test]
+fn a_warning_ends_in_caution_while_the_accuracy_bound_is_outside() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(0, INSIDE, 0.0));
+    monitor.step(&at(1, INSIDE, 1300.0));
+    let found: Vec<_> = (2..14).map(|second| monitor.step(&at(second, if second < 12 { INSIDE } else { OUTSIDE }, 900.0)).alert).collect();
+    assert!(found[..10].iter().all(|a| *a == Alert::Warning) && found[10..].iter().all(|a| *a == Alert::Caution), "{found:?}");
+}
+
+#[test]
+fn what_is_no_limit_never_gives_normal() {
+    for rnp in [f64::INFINITY, 0.0, -500.0, f64::NAN, f64::MAX] {
+        for bound in [0.0, INSIDE, f64::INFINITY] {
+            let mut monitor = Monitor::new(settings()).unwrap();
+            monitor.step(&at(0, INSIDE, INSIDE));
+            let step = monitor.step(&Observation { rnp: Metres::new(rnp), ..at(1, bound, bound) });
+            assert_eq!(step.alert, Alert::Warning, "RNP {rnp}, bound {bound}");
+        }
+    }
 }
 
 #[test]
@@ -91,13 +184,14 @@ fn a_warning_is_raised_at_once_and_ends_after_ten_calm_seconds() {
 
 #[test]
 fn within_the_limit_but_not_calm_restarts_the_wait() {
+    // A caution at once: nothing was inside before.
     let mut bounds = vec![OUTSIDE; 4];
     bounds.extend([INSIDE; 9]);
     bounds.push(NEAR);
     bounds.extend([INSIDE; 10]);
     let found = alerts(&bounds);
     // Calm again from second 14; ten seconds of it end at 24, beyond the sequence.
-    assert!(found[3..].iter().all(|a| *a == Alert::Caution), "{found:?}");
+    assert!(found.iter().all(|a| *a == Alert::Caution), "{found:?}");
     bounds.push(INSIDE);
     assert_eq!(alerts(&bounds)[24], Alert::Normal);
 }
@@ -146,8 +240,9 @@ fn unusable_epochs_and_silence_lose_monitoring_until_the_next_usable_epoch() {
     let step = monitor.step(&at(2, INSIDE, INSIDE));
     assert_eq!((step.alert, ended(&step)[0].kind), (Alert::Normal, Kind::Unavailable));
 
-    assert_eq!(monitor.tick(GpsTime::from_nanoseconds(4_000_000_000)), Alert::Normal, "two seconds are allowed");
-    assert_eq!(monitor.tick(GpsTime::from_nanoseconds(4_000_000_001)), Alert::Unavailable);
+    assert_eq!(monitor.tick(GpsTime::from_nanoseconds(4_000_000_000)).alert, Alert::Normal, "two seconds are allowed");
+    let tick = monitor.tick(GpsTime::from_nanoseconds(4_000_000_001));
+    assert_eq!((tick.alert, tick.began.map(|event| event.kind)), (Alert::Unavailable, Some(Kind::Unavailable)));
     let event = ended(&monitor.step(&at(9, INSIDE, INSIDE)))[0];
     assert_eq!((seconds(event.onset), seconds(event.annunciation), event.clear.map(seconds)), (2, 4, Some(9)));
     assert_eq!((monitor.counters().n_gaps, monitor.counters().n_unavailable), (1, 2));
@@ -186,11 +281,61 @@ fn duplicate_and_late_epochs_are_dropped_and_counted() {
 fn late_epochs_longer_than_the_permitted_silence_are_a_clock_set_back() {
     let mut monitor = Monitor::new(settings()).unwrap();
     monitor.step(&at(1_000_000, INSIDE, INSIDE));
-    let found: Vec<_> = (0..5).map(|second| monitor.step(&at(second, INSIDE, INSIDE))).map(|s| (s.acceptance, s.alert)).collect();
+    let steps: Vec<_> = (0..5).map(|second| monitor.step(&at(second, INSIDE, INSIDE))).collect();
     use Acceptance::{Accepted, ClockSetBack, Late};
     use Alert::{Normal, Unavailable};
-    assert_eq!(found, [(Late, Normal), (Late, Normal), (Late, Normal), (ClockSetBack, Unavailable), (Accepted, Normal)]);
+    let found: Vec<_> = steps.iter().map(|s| (s.acceptance, s.alert)).collect();
+    // The third dropped epoch is the third second of silence; two are permitted.
+    assert_eq!(found, [(Late, Normal), (Late, Normal), (Late, Unavailable), (ClockSetBack, Unavailable), (Accepted, Normal)]);
     assert_eq!(monitor.counters().n_clock_set_back, 1);
+    assert_eq!(began(&steps[2]), [Kind::Unavailable]);
+    let event = ended(&steps[4])[0];
+    assert_eq!((seconds(event.onset), event.clear.map(seconds)), (0, Some(4)), "in the time of the clock that counts");
+}
+
+/// Alerts of epochs far outside at these times, after an epoch inside at `first`.
+fn outside_at(first: i64, times: impl Iterator<Item = i64>) -> (Vec<Alert>, Monitor) {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(first, INSIDE, INSIDE));
+    (times.map(|second| monitor.step(&at(second, 5000.0, 5000.0)).alert).collect(), monitor)
+}
+
+#[test]
+fn time_that_stands_or_runs_backwards_is_silence() {
+    let cases: [(&str, Vec<i64>); 4] = [
+        ("stuck", vec![5000; 3600]),
+        ("backwards", (0..1000).map(|k| 4999 - k).collect()),
+        ("set back and stuck", vec![10; 1000]),
+        ("to and fro", (0..1000).map(|k| 10 + k % 2).collect()),
+    ];
+    for (what, times) in cases {
+        let (found, monitor) = outside_at(5000, times.into_iter());
+        // Two dropped epochs are the permitted two seconds.
+        assert!(found[2..].iter().all(|a| *a == Alert::Unavailable), "{what}: {:?}", &found[..8]);
+        let open: Vec<_> = monitor.open_events().map(|e| (e.kind, seconds(e.onset), seconds(e.annunciation))).collect();
+        assert_eq!(open, [(Kind::Unavailable, 5000, 5000)], "{what}");
+    }
+}
+
+#[test]
+fn a_stamp_far_ahead_does_not_hide_a_silence_from_the_arrival_clock() {
+    let tick = |monitor: &mut Monitor, second: i64| monitor.tick(GpsTime::from_nanoseconds(second * 1_000_000_000)).alert;
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(1000, INSIDE, INSIDE));
+    let found: Vec<_> = (1..=1100).map(|second| tick(&mut monitor, second)).collect();
+    // The first tick may be the moment of arrival; two more seconds are permitted.
+    assert!(found[..3].iter().all(|a| *a == Alert::Normal) && found[3..].iter().all(|a| *a == Alert::Unavailable));
+    // An arrival clock that is itself set back has not undone the time that passed.
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(1000, INSIDE, INSIDE));
+    let found: Vec<_> = [1, 2, 3, 1, 2].map(|second| tick(&mut monitor, second)).into();
+    assert_eq!(found[4], Alert::Unavailable);
+    // Healthy epochs between ticks are never a silence, however rare the ticks are.
+    let mut monitor = Monitor::new(settings()).unwrap();
+    for second in 0..100 {
+        monitor.step(&at(second, INSIDE, INSIDE));
+        assert!(second % 30 > 0 || tick(&mut monitor, second) == Alert::Normal);
+    }
 }
 
 #[test]
@@ -229,7 +374,8 @@ proptest! {
         let mut monitor = Monitor::new(settings()).unwrap();
         let mut outside_for = 0;
         for (second, (accuracy, integrity, usable)) in (0..).zip(sequence) {
-            let alert = monitor.step(&Observation { usable, ..at(second, accuracy, integrity) }).alert;
+            let step = monitor.step(&Observation { usable, ..at(second, accuracy, integrity) });
+            let alert = step.alert;
             prop_assert!(usable || alert == Alert::Unavailable);
             if !usable {
                 outside_for = 0;
@@ -238,6 +384,10 @@ proptest! {
             outside_for = if accuracy <= RNP_M { 0 } else { outside_for + 1 };
             prop_assert!(integrity <= 2.0 * RNP_M || alert >= Alert::Warning);
             prop_assert!(outside_for < 4 || alert >= Alert::Caution);
+            for event in ended(&step) {
+                let clear = event.clear.unwrap();
+                prop_assert!(event.onset <= event.annunciation && event.annunciation <= clear && clear <= at(second, 0.0, 0.0).time);
+            }
         }
     }
 

@@ -1,12 +1,14 @@
 //! Navigation specifications, monitor, state classifier.
 
 use crate::error::input_error;
-use navbound_assess::monitor::{self as batch, Columns};
+use navbound_assess::monitor::{self as batch, Columns, Levels};
+use navbound_core::bound::{Alerting, IntegrityComparison};
 use navbound_core::monitor::exposure::HourlyExposure;
 use navbound_core::monitor::rnp::{self, Acceptance, Chain, Counters, Event, Observation, Settings};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
 use navbound_core::spec::{SPECIFICATIONS, Specification};
-use numpy::PyReadonlyArray1;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -58,8 +60,19 @@ fn per_hour_risk(risk_per_epoch: f64, tau_s: f64, sample_period_s: f64) -> PyRes
 /// Settings and state of one monitor.
 #[pyclass(module = "navbound._core")]
 struct RnpMonitor {
-    settings: Settings,
     monitor: rnp::Monitor,
+    comparison: IntegrityComparison,
+}
+
+/// The method with this id, where it may feed an alert; `KeyError` with the id otherwise.
+fn alerting(id: &str) -> PyResult<Alerting> {
+    Alerting::of(id).map_err(|_| PyKeyError::new_err(id.to_owned()))
+}
+
+/// Ids of the methods that may feed an alert.
+#[pyfunction]
+fn alerting_methods() -> Vec<&'static str> {
+    Alerting::all().map(|m| m.method().id).collect()
 }
 
 /// kind, onset_ns, annunciation_ns, clear_ns, peak_m, limit_m, min_margin_m.
@@ -118,43 +131,49 @@ impl RnpMonitor {
             stale_after_s: stale_after_s.unwrap_or_else(|| rnp::default_stale_after_s(sample_period_s)),
         };
         let monitor = rnp::Monitor::new(settings).map_err(refused)?;
-        Ok(Self { settings, monitor })
+        Ok(Self { monitor, comparison: IntegrityComparison::default() })
     }
 
     /// Time from an exceedance to the crew.
     #[getter]
     fn time_to_crew_s(&self) -> f64 {
-        self.settings.chain.total_s(self.settings.raise_delay_s)
+        let settings = self.monitor.settings();
+        settings.chain.total_s(settings.raise_delay_s)
     }
 
     #[getter]
     fn stale_after_s(&self) -> f64 {
-        self.settings.stale_after_s
+        self.monitor.settings().stale_after_s
     }
 
-    /// Judge one epoch: alert, acceptance, ended events.
+    /// Judge one epoch: alert, acceptance, ended events, begun events. Bounds come with the id of the method that made them.
+    #[allow(clippy::too_many_arguments, clippy::type_complexity)]
     fn step(
         &mut self,
         time_ns: i64,
-        accuracy_m: f64,
-        integrity_m: f64,
+        accuracy: (&str, f64),
+        integrity: (&str, f64),
+        fte_m: f64,
+        hpl_m: f64,
         rnp_m: f64,
         usable: bool,
-    ) -> (&'static str, &'static str, Vec<EventRow>) {
+    ) -> PyResult<(&'static str, &'static str, Vec<EventRow>, Vec<EventRow>)> {
+        let claimed = |(id, bound_m): (&str, f64)| alerting(id).map(|method| method.claim_evaluated(Metres::new(bound_m)));
+        let (accuracy, integrity) = (claimed(accuracy)?, claimed(integrity)?);
         let step = self.monitor.step(&Observation {
             time: GpsTime::from_nanoseconds(time_ns),
-            accuracy: Metres::new(accuracy_m),
-            integrity: Metres::new(integrity_m),
+            accuracy,
+            integrity: self.comparison.bound(integrity, Metres::new(fte_m), Metres::new(hpl_m)),
             rnp: Metres::new(rnp_m),
             usable,
         });
-        let ended = step.ended.iter().flatten().map(event_row).collect();
-        (step.alert.word(), acceptance_word(step.acceptance), ended)
+        let rows = |events: &[Option<Event>]| events.iter().flatten().map(event_row).collect();
+        Ok((step.alert.word(), acceptance_word(step.acceptance), rows(&step.ended), rows(&step.began)))
     }
 
     /// Time passes without an epoch.
     fn tick(&mut self, time_ns: i64) -> &'static str {
-        self.monitor.tick(GpsTime::from_nanoseconds(time_ns)).word()
+        self.monitor.tick(GpsTime::from_nanoseconds(time_ns)).alert.word()
     }
 
     fn open_events(&self) -> Vec<EventRow> {
@@ -165,40 +184,50 @@ impl RnpMonitor {
         counters_dict(py, self.monitor.counters())
     }
 
-    /// A fresh monitor of these settings for every track: alert words, (track, event) rows, counters of each track and of all.
-    #[allow(clippy::too_many_arguments, clippy::type_complexity)]
+    /// A fresh monitor of these settings for every track: alert words, (track, event) rows, counters of each track and of all, and what was
+    /// compared with twice RNP.
+    #[allow(clippy::too_many_arguments)]
     fn run<'py>(
         &self,
         py: Python<'py>,
         time_ns: PyReadonlyArray1<'py, i64>,
-        accuracy_m: PyReadonlyArray1<'py, f64>,
-        integrity_m: PyReadonlyArray1<'py, f64>,
+        accuracy: (String, PyReadonlyArray1<'py, f64>),
+        integrity: (String, PyReadonlyArray1<'py, f64>),
+        fte_m: Option<PyReadonlyArray1<'py, f64>>,
+        hpl_m: Option<PyReadonlyArray1<'py, f64>>,
         rnp_m: PyReadonlyArray1<'py, f64>,
         usable: PyReadonlyArray1<'py, bool>,
         track: PyReadonlyArray1<'py, u32>,
         n_tracks: usize,
-    ) -> PyResult<(Vec<&'static str>, Vec<(u32, EventRow)>, Vec<Bound<'py, PyDict>>, Bound<'py, PyDict>)> {
+    ) -> PyResult<Run<'py>> {
+        let fte_m = fte_m.as_ref().map(|a| a.as_slice()).transpose()?;
+        let hpl_m = hpl_m.as_ref().map(|a| a.as_slice()).transpose()?;
         let columns = Columns {
             time_ns: time_ns.as_slice()?,
-            accuracy_m: accuracy_m.as_slice()?,
-            integrity_m: integrity_m.as_slice()?,
+            accuracy_m: (alerting(&accuracy.0)?, accuracy.1.as_slice()?),
+            integrity_m: (alerting(&integrity.0)?, integrity.1.as_slice()?),
+            level_m: hpl_m.map(|hpl_m| Levels { fte_m, hpl_m }),
             rnp_m: rnp_m.as_slice()?,
             usable: usable.as_slice()?,
             track: track.as_slice()?,
         };
-        let settings = self.settings;
-        let found = py.detach(|| batch::run(settings, &columns, n_tracks)).map_err(refused)?;
-        let alerts = found.alert.iter().map(|a| a.word()).collect();
-        let events = found.events.iter().map(|(track, event)| (*track, event_row(event))).collect();
-        let each = found.counters.iter().map(|c| counters_dict(py, c)).collect::<PyResult<_>>()?;
-        let all = found.counters.iter().fold(Counters::default(), |sum, c| sum.merged(c));
-        Ok((alerts, events, each, counters_dict(py, &all)?))
+        let settings = *self.monitor.settings();
+        let run = py.detach(|| batch::run(settings, &columns, n_tracks)).map_err(refused)?;
+        let alerts = run.alert.iter().map(|a| a.word()).collect();
+        let events = run.events.iter().map(|(track, event)| (*track, event_row(event))).collect();
+        let each = run.counters.iter().map(|c| counters_dict(py, c)).collect::<PyResult<_>>()?;
+        let all = run.counters.iter().fold(Counters::default(), |sum, c| sum.merged(c));
+        Ok((alerts, events, each, counters_dict(py, &all)?, run.integrity_compared_m.into_pyarray(py)))
     }
 }
+
+/// Alert words, (track, event) rows, counters of each track, counters of all, compared bounds.
+type Run<'py> = (Vec<&'static str>, Vec<(u32, EventRow)>, Vec<Bound<'py, PyDict>>, Bound<'py, PyDict>, Bound<'py, PyArray1<f64>>);
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(specifications, m)?)?;
     m.add_function(wrap_pyfunction!(per_epoch_risk, m)?)?;
     m.add_function(wrap_pyfunction!(per_hour_risk, m)?)?;
+    m.add_function(wrap_pyfunction!(alerting_methods, m)?)?;
     m.add_class::<RnpMonitor>()
 }

@@ -51,7 +51,7 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
     Raises
     ------
     InputError
-        An unknown method, no epochs, or a method that may not feed an alert chosen to judge.
+        An unknown method, no epochs, or a judging method that may not feed an alert.
     """
     settings = settings or Settings()
     if material.epochs.height == 0:
@@ -59,8 +59,6 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
     epochs = _with_errors(material.epochs)
     judging = WITH_PATH if _has_values(epochs, "fte_m") else WITHOUT_PATH
     ids = list(dict.fromkeys((judging, *settings.methods)))
-    if not method(judging).may_alert:
-        raise InputError("method", judging, domain="methods that may feed an alert")
     epochs = _with_bounds(epochs, ids, judging, settings)
     epochs = _with_risks(epochs)
     epochs, events, counters = _with_alerts(epochs, judging, material.sample_period_s)
@@ -159,10 +157,11 @@ def _with_risks(epochs: pl.DataFrame) -> pl.DataFrame:
 
 
 def _with_alerts(epochs: pl.DataFrame, judging: str, sample_period_s: float) -> tuple[pl.DataFrame, pl.DataFrame, dict[str, object]]:
-    judged = method(judging)
     # A finished flight alerts nobody: the chain to the crew is a matter of the live monitor.
     monitor = rnp.Monitor(sample_period_s=sample_period_s, time_to_alert_s=math.inf)
-    result = monitor.run(epochs, accuracy=judged.column, integrity=judged.integrity_column)
+    result = monitor.run(epochs, accuracy=judging)
+    if _has_values(epochs, "hpl_m"):
+        epochs = epochs.with_columns(result.integrity_compared_m)
     described = {
         "exposure": monitor.exposure,
         "stale_after_s": monitor.stale_after_s,
@@ -182,8 +181,8 @@ def _with_points(events: pl.DataFrame, points: list[EventSummary]) -> pl.DataFra
 
 def _in_words(events: pl.DataFrame) -> pl.DataFrame:
     sentence = {
-        "caution": "accuracy bound above RNP",
-        "warning": "integrity bound above twice RNP",
+        "caution": "accuracy bound not within RNP",
+        "warning": "integrity bound not within twice RNP",
         "unavailable": "no usable epoch: loss of monitoring",
     }
     return events.with_columns(pl.col("kind").replace_strict(sentence).alias("words"))

@@ -68,10 +68,13 @@ def summarise(
     """
     risk_accuracy, risk_integrity = risks
     judged = method(judging)
+    # What the monitor compared: the larger of the bound and |FTE| + protection level, where there are levels.
+    integrity = judged.integrity_column if "integrity_compared_m" not in epochs.columns else "integrity_compared_m"
     margins = epochs.with_columns(
         (pl.col(judged.column) / pl.col("rnp_m")).alias("_ratio"),
         (pl.col("rnp_m") - pl.col(judged.column)).alias("_margin"),
-        (2 * pl.col("rnp_m") - pl.col(judged.integrity_column)).alias("_margin_integrity"),
+        (2 * pl.col("rnp_m") - pl.col(integrity)).alias("_margin_integrity"),
+        pl.col(integrity).alias("_integrity"),
     )
     coverage_kind = evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED
     accuracy = [_method_result(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
@@ -103,7 +106,8 @@ def _verdict(
     judging = judge.id
     judged = margins.get_column("_margin").drop_nulls()
     share = _mean(judged >= 0)
-    contained = _mean(margins.get_column("_margin_integrity").drop_nulls() >= 0)
+    # A judged epoch without its protection level is not contained.
+    contained = _mean(margins.filter(pl.col("_margin").is_not_null()).get_column("_margin_integrity").ge(0).fill_null(value=False))
     n_implausible = margins.get_column("status").eq("invalid_input").sum()
     inside = None if share is None or contained is None else share == 1.0 and contained == 1.0
     if inside and any(p.share_available < 1.0 for p in protection):
@@ -111,7 +115,7 @@ def _verdict(
     if inside and (n_implausible or any(p.n_misleading for p in protection)):
         inside = None
     worst = _worst(margins, "_margin", method(judging).column, 1.0)
-    worst_integrity = _worst(margins, "_margin_integrity", method(judging).integrity_column, 2.0)
+    worst_integrity = _worst(margins, "_margin_integrity", "_integrity", 2.0)
     truth_known = judge.coverage is not None
     verdict = Verdict(
         inside=inside,

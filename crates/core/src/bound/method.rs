@@ -4,6 +4,7 @@ use crate::quantity::{Metres, Provenance, Risk, Unavailable};
 use crate::solution::Epoch;
 
 /// A method: how to bound one error at one risk, where it comes from, and what it promises.
+#[derive(Debug)]
 pub struct Method {
     /// Command-line choice, column prefix and page name, e.g. `tse-exact`; its column is `tse_exact_m`.
     pub id: &'static str,

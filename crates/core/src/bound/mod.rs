@@ -2,9 +2,12 @@
 
 pub mod anp;
 pub mod araim;
+#[expect(clippy::module_inception, reason = "the stage and its result have one name")]
+mod bound;
 pub mod ee;
 pub mod faults;
 pub mod gbas;
+mod integrity;
 pub mod level_equation;
 mod method;
 mod protection;
@@ -14,6 +17,8 @@ pub mod sbas;
 pub mod tse;
 
 pub use crate::quantity::Provenance;
+pub use bound::{AlertBound, Alerting, Bound, MayNotAlert};
+pub use integrity::IntegrityComparison;
 pub use method::{Bounded, Method, Promises};
 pub use protection::Protection;
 

@@ -1,5 +1,6 @@
 //! One condition with delayed raising, hysteresis and a latched event.
 
+use super::wait::Wait;
 use crate::quantity::{GpsTime, Metres};
 
 /// What an event is about; also the alert while it lasts.
@@ -31,30 +32,78 @@ pub struct Event {
     pub kind: Kind,
     /// When the condition began.
     pub onset: GpsTime,
-    /// When the crew was told.
+    /// When the alert was raised.
     pub annunciation: GpsTime,
     /// When it ended; `None` while it lasts.
     pub clear: Option<GpsTime>,
     /// Largest bound meanwhile; NaN when no bound was a number.
     pub peak: Metres,
-    /// The limit where the margin was least.
+    /// The limit where the margin was least; NaN where no limit was a length.
     pub limit: Metres,
-    /// Least limit minus bound; NaN when no bound was a number.
+    /// Least limit minus bound; NaN when no bound or no limit was a number.
     pub min_margin: Metres,
 }
 
-/// A bound against a limit, true only when it is a length within it: NaN is outside.
+impl Event {
+    pub(super) fn begin(kind: Kind, onset: GpsTime, annunciation: GpsTime) -> Self {
+        let nothing = Metres::new(f64::NAN);
+        Self { kind, onset, annunciation, clear: None, peak: nothing, limit: nothing, min_margin: nothing }
+    }
+
+    /// The event as it ended; an alert does not end before it was raised.
+    pub(super) fn ended(self, clear: GpsTime) -> Self {
+        Self { clear: Some(clear.max(self.annunciation)), ..self }
+    }
+
+    /// The clock was set back to `since`: in the time that counts now, what began later has begun there.
+    pub(super) fn set_back(&mut self, since: GpsTime) {
+        self.onset = self.onset.min(since);
+        self.annunciation = self.annunciation.min(since);
+    }
+
+    /// `f64::max` and `min` pass over a NaN, so one lost bound does not hide the others.
+    fn record(&mut self, bound: Metres, limit: Metres) {
+        self.peak = Metres::new(self.peak.m().max(bound.m()));
+        if !is_limit(limit) {
+            return;
+        }
+        let margin_m = limit.m() - bound.m();
+        if margin_m < self.min_margin.m() || self.min_margin.m().is_nan() {
+            self.limit = limit;
+        }
+        self.min_margin = Metres::new(self.min_margin.m().min(margin_m));
+    }
+}
+
+/// A limit is a positive length. Infinity would hold any bound, so it limits nothing.
+pub(super) fn is_limit(limit: Metres) -> bool {
+    limit.m() > 0.0 && limit.m().is_finite()
+}
+
+/// A bound against a limit, true only when both are lengths: NaN is outside.
 pub(super) fn within(bound: Metres, limit: Metres) -> bool {
-    bound.m() >= 0.0 && bound.m() <= limit.m()
+    is_limit(limit) && bound.m() >= 0.0 && bound.m() <= limit.m()
+}
+
+/// The time of an epoch, and what came before it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment {
+    pub(super) now: GpsTime,
+    /// Since when nothing was known to be inside, where monitoring was lost until now.
+    pub(super) lost_since: Option<GpsTime>,
+    /// Nothing is waited for.
+    pub(super) at_once: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Latch {
     kind: Kind,
-    raise_delay_s: f64,
+    wait: Wait,
     clear_delay_s: f64,
     clear_ratio: f64,
-    /// Present from the first epoch outside.
+    /// Whether the last epoch was inside.
+    inside: bool,
+    /// Present from the first epoch outside until the wait is empty again or the alert has ended.
     event: Option<Event>,
     annunciated: bool,
     calm_since: Option<GpsTime>,
@@ -64,34 +113,41 @@ pub(super) struct Latch {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Change {
     Nothing,
-    Raised,
-    /// Outside, but back within before the crew was told.
+    Raised(Event),
+    /// Outside, but inside for long enough before the alert was raised.
     Withdrawn,
     Cleared(Event),
 }
 
 impl Latch {
     pub(super) fn new(kind: Kind, raise_delay_s: f64, clear_delay_s: f64, clear_ratio: f64) -> Self {
-        Self { kind, raise_delay_s, clear_delay_s, clear_ratio, event: None, annunciated: false, calm_since: None }
+        let wait = Wait::new(raise_delay_s, clear_delay_s);
+        Self { kind, wait, clear_delay_s, clear_ratio, inside: false, event: None, annunciated: false, calm_since: None }
     }
 
-    /// The event the crew has been told of.
+    /// The event of the alert in force.
     pub(super) fn raised(&self) -> Option<&Event> {
         self.event.as_ref().filter(|_| self.annunciated)
     }
 
-    pub(super) fn step(&mut self, now: GpsTime, bound: Metres, limit: Metres) -> Change {
-        if !within(bound, limit) {
+    /// Time passed since the last epoch; `lost` where nothing was known of the bound meanwhile.
+    pub(super) fn pass(&mut self, elapsed_ns: f64, lost: bool) {
+        self.wait.pass(elapsed_ns, self.inside && !lost);
+    }
+
+    pub(super) fn step(&mut self, moment: &Moment, bound: Metres, limit: Metres) -> Change {
+        self.inside = within(bound, limit);
+        if !self.inside {
             self.calm_since = None;
-            return self.outside(now, bound, limit);
+            return self.outside(moment, bound, limit);
         }
         match self.event {
-            None => Change::Nothing,
-            Some(_) if !self.annunciated => {
+            Some(event) if self.annunciated => self.calming(moment.now, bound, limit, event),
+            Some(_) if self.wait.is_empty() => {
                 self.event = None;
                 Change::Withdrawn
             }
-            Some(event) => self.calming(now, bound, limit, event),
+            _ => Change::Nothing,
         }
     }
 
@@ -100,35 +156,27 @@ impl Latch {
         self.calm_since = None;
     }
 
-    /// The clock was set back to `now`: an exceedance still waiting to be told waits anew.
-    pub(super) fn rebase(&mut self, now: GpsTime) {
+    pub(super) fn set_back(&mut self, since: GpsTime) {
         self.calm_since = None;
-        if let Some(event) = self.event.as_mut().filter(|_| !self.annunciated) {
-            event.onset = now;
+        if let Some(event) = self.event.as_mut() {
+            event.set_back(since);
         }
     }
 
-    fn outside(&mut self, now: GpsTime, bound: Metres, limit: Metres) -> Change {
-        let event = self.event.get_or_insert(Event {
-            kind: self.kind,
-            onset: now,
-            annunciation: now,
-            clear: None,
-            peak: Metres::new(f64::NAN),
-            limit,
-            min_margin: Metres::new(f64::NAN),
-        });
-        record(event, bound, limit);
-        if self.annunciated || !(now.seconds_since(event.onset) >= self.raise_delay_s) {
+    fn outside(&mut self, moment: &Moment, bound: Metres, limit: Metres) -> Change {
+        let onset = moment.lost_since.unwrap_or(moment.now);
+        let event = self.event.get_or_insert(Event::begin(self.kind, onset, moment.now));
+        event.record(bound, limit);
+        if self.annunciated || !(moment.at_once || self.wait.is_over()) {
             return Change::Nothing;
         }
-        event.annunciation = now;
+        event.annunciation = moment.now;
         self.annunciated = true;
-        Change::Raised
+        Change::Raised(*event)
     }
 
     fn calming(&mut self, now: GpsTime, bound: Metres, limit: Metres, mut event: Event) -> Change {
-        record(&mut event, bound, limit);
+        event.record(bound, limit);
         self.event = Some(event);
         if !within(bound, Metres::new(self.clear_ratio * limit.m())) {
             self.calm_since = None;
@@ -141,16 +189,7 @@ impl Latch {
         self.event = None;
         self.annunciated = false;
         self.calm_since = None;
-        Change::Cleared(Event { clear: Some(now), ..event })
+        self.wait.restart();
+        Change::Cleared(event.ended(now))
     }
-}
-
-/// `f64::max` and `min` pass over a NaN, so one lost bound does not hide the others.
-fn record(event: &mut Event, bound: Metres, limit: Metres) {
-    event.peak = Metres::new(event.peak.m().max(bound.m()));
-    let margin = limit.m() - bound.m();
-    if margin < event.min_margin.m() || event.min_margin.m().is_nan() {
-        event.limit = limit;
-    }
-    event.min_margin = Metres::new(event.min_margin.m().min(margin));
 }

@@ -1,6 +1,8 @@
 //! Whether to tell the crew: the RNP monitor, what its risk means over an hour, and the RNP-state classifier.
 
+mod clock;
 pub mod consistency;
+mod counters;
 pub mod exposure;
 mod latch;
 pub mod rnp;
@@ -8,3 +10,4 @@ pub mod separation;
 mod settings;
 pub mod state;
 mod state_order;
+mod wait;

@@ -1,18 +1,24 @@
 //! The RNP monitor: bounds against RNP and twice RNP, epoch by epoch, as a state machine. No clock and no heap: time comes in.
 //!
 //! ```text
-//! caution      NOT (T_accuracy  <= RNP)      for raise_delay_s      Fu 2014, section 2.7 of the specification
+//! caution      NOT (T_accuracy  <= RNP)      after the wait of `Wait`      Fu 2014, section 2.7 of the specification
 //! warning      NOT (T_integrity <= 2 RNP)    at once
-//! end of both  T <= clear_ratio * limit      held for clear_delay_s
+//! end of both  T <= clear_ratio * limit      for clear_delay_s
 //! unavailable  no usable epoch, or none for stale_after_s
+//! normal       only from an epoch inside both limits; out of any other state an epoch outside alerts at once
 //! ```
 //!
 //! NaN is not within any limit, so it raises; a bound equal to its limit does not. What was not seen never helps an alert to end: an
-//! unusable epoch or a gap restarts the wait to clear and lets the wait to raise run on.
+//! unusable epoch or a gap restarts the wait to clear and lets the wait to raise run on. Until the first epoch, monitoring is not
+//! available either.
 
-use super::latch::{Change, Latch};
+pub use super::clock::Acceptance;
+use super::clock::{Arrival, Clock};
+pub use super::counters::Counters;
+use super::latch::{Change, Latch, Moment, is_limit};
 pub use super::latch::{Event, Kind};
 pub use super::settings::{Chain, Settings, default_stale_after_s};
+use crate::bound::AlertBound;
 use crate::quantity::{GpsTime, Metres, OutOfDomain};
 
 /// What the crew sees, least severe first.
@@ -24,7 +30,7 @@ pub enum Alert {
     Caution,
     /// The integrity bound is not within twice RNP.
     Warning,
-    /// Monitoring is lost.
+    /// Monitoring is lost, or has not begun.
     Unavailable,
 }
 
@@ -41,109 +47,52 @@ impl Alert {
 }
 
 /// One epoch as the monitor sees it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Observation {
     /// Time of applicability.
     pub time: GpsTime,
     /// Bound at the accuracy risk.
-    pub accuracy: Metres,
-    /// Bound at the integrity risk.
-    pub integrity: Metres,
-    /// RNP value in force; it may change from epoch to epoch.
+    pub accuracy: AlertBound,
+    /// Bound at the integrity risk: [`crate::bound::IntegrityComparison`].
+    pub integrity: AlertBound,
+    /// RNP value in force; it may change from epoch to epoch. A value outside (0, inf) is no limit, and nothing is within it.
     pub rnp: Metres,
     /// False when the epoch's status says there is no bound: the sky's "no", or refused input.
     pub usable: bool,
 }
 
-/// Whether an epoch was judged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Acceptance {
-    /// Judged.
-    Accepted,
-    /// Dropped: the time of the epoch before it.
-    Duplicate,
-    /// Dropped: earlier than the epoch before it.
-    Late,
-    /// Not judged: late epochs have come for longer than the permitted silence, so the clock was set back and starts anew here.
-    ClockSetBack,
-}
-
-/// What a step found.
+/// What a step changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// The alert in force after it.
     pub alert: Alert,
     /// Whether the epoch was judged.
     pub acceptance: Acceptance,
+    /// Events whose alert was raised here, also where they ended here.
+    pub began: [Option<Event>; 3],
     /// Events that ended here.
     pub ended: [Option<Event>; 3],
 }
 
-/// What happened so far.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Counters {
-    /// Epochs judged.
-    pub n_accepted: u64,
-    /// Epochs dropped with the time of the one before.
-    pub n_duplicate: u64,
-    /// Epochs dropped as earlier than the one before.
-    pub n_late: u64,
-    /// Times the clock was found to be set back.
-    pub n_clock_set_back: u64,
-    /// Silences longer than the permitted one.
-    pub n_gaps: u64,
-    /// Judged epochs without a usable bound.
-    pub n_unusable: u64,
-    /// Usable epochs with a bound or RNP value that is not a number.
-    pub n_nan: u64,
-    /// Exceedances that ended before the crew was told.
-    pub n_withdrawn: u64,
-    /// Cautions raised.
-    pub n_cautions: u64,
-    /// Warnings raised.
-    pub n_warnings: u64,
-    /// Losses of monitoring.
-    pub n_unavailable: u64,
-    /// Time under watch, gaps left out \[s\].
-    pub watched_s: f64,
-}
-
-impl Counters {
-    /// Cautions and warnings per hour under watch: under nominal conditions the rate of false alerts, the other side of integrity.
-    /// NaN when nothing was watched.
-    pub fn alerts_per_hour(&self) -> f64 {
-        (self.n_cautions + self.n_warnings) as f64 / self.watched_s * 3600.0
-    }
-
-    /// Both together, e.g. of two tracks.
-    pub fn merged(&self, other: &Self) -> Self {
-        Self {
-            n_accepted: self.n_accepted + other.n_accepted,
-            n_duplicate: self.n_duplicate + other.n_duplicate,
-            n_late: self.n_late + other.n_late,
-            n_clock_set_back: self.n_clock_set_back + other.n_clock_set_back,
-            n_gaps: self.n_gaps + other.n_gaps,
-            n_unusable: self.n_unusable + other.n_unusable,
-            n_nan: self.n_nan + other.n_nan,
-            n_withdrawn: self.n_withdrawn + other.n_withdrawn,
-            n_cautions: self.n_cautions + other.n_cautions,
-            n_warnings: self.n_warnings + other.n_warnings,
-            n_unavailable: self.n_unavailable + other.n_unavailable,
-            watched_s: self.watched_s + other.watched_s,
-        }
-    }
+/// What the passing of time changed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tick {
+    /// The alert in force after it.
+    pub alert: Alert,
+    /// The loss of monitoring that was raised here.
+    pub began: Option<Event>,
 }
 
 /// The monitor of one aircraft.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Monitor {
     settings: Settings,
+    clock: Clock,
     caution: Latch,
     warning: Latch,
     loss: Option<Event>,
-    last: Option<GpsTime>,
-    /// First of an unbroken run of late epochs.
-    late_since: Option<GpsTime>,
+    /// Whether a usable epoch was judged yet.
+    begun: bool,
     counters: Counters,
 }
 
@@ -157,18 +106,23 @@ impl Monitor {
         let latch = |kind, raise_delay_s| Latch::new(kind, raise_delay_s, settings.clear_delay_s, settings.clear_ratio);
         Ok(Self {
             settings,
+            clock: Clock::new(&settings),
             caution: latch(Kind::Caution, settings.raise_delay_s),
             warning: latch(Kind::Warning, 0.0),
             loss: None,
-            last: None,
-            late_since: None,
+            begun: false,
             counters: Counters::default(),
         })
     }
 
+    /// The settings it runs with.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
     /// The alert in force.
     pub fn alert(&self) -> Alert {
-        if self.loss.is_some() {
+        if self.loss.is_some() || !self.begun {
             Alert::Unavailable
         } else if self.warning.raised().is_some() {
             Alert::Warning
@@ -190,93 +144,133 @@ impl Monitor {
     }
 
     /// Time passes without an epoch: says when monitoring is lost to silence.
-    pub fn tick(&mut self, now: GpsTime) -> Alert {
-        if let Some(last) = self.last
-            && now.seconds_since(last) > self.settings.stale_after_s
-            && self.loss.is_none()
-        {
-            let noticed = last.plus_seconds(self.settings.stale_after_s);
-            self.counters.n_gaps += 1;
-            self.lose(last, noticed);
-        }
-        self.alert()
+    ///
+    /// `now` is the arrival clock. Silence is measured against the time of the last epoch and, because that may be wrong, also from tick
+    /// to tick.
+    pub fn tick(&mut self, now: GpsTime) -> Tick {
+        self.clock.tick(now);
+        let began = self.notice_silence(now);
+        Tick { alert: self.alert(), began }
     }
 
-    /// Judge one epoch.
+    /// Judge one epoch. One that is dropped for its time counts as one sample period of silence.
     pub fn step(&mut self, seen: &Observation) -> Step {
-        let mut ended = [None; 3];
-        let acceptance = self.accept(seen.time);
-        if acceptance == Acceptance::Accepted {
-            self.counters.n_accepted += 1;
-            if seen.usable {
-                ended = self.judge(seen);
-            } else {
-                self.counters.n_unusable += 1;
-                self.lose(seen.time, seen.time);
+        match self.clock.arrive(seen.time) {
+            Arrival::First => self.accepted(seen, None),
+            Arrival::Next { since, silent } => {
+                let lost = if silent { self.lose_to_silence(since, seen.time) } else { None };
+                if !silent {
+                    self.counters.watched_s += seen.time.seconds_since(since);
+                }
+                self.pass(since, seen.time);
+                self.accepted(seen, lost)
             }
-        }
-        Step { alert: self.alert(), acceptance, ended }
-    }
-
-    fn accept(&mut self, now: GpsTime) -> Acceptance {
-        if let Some(last) = self.last {
-            if now == last {
+            Arrival::Duplicate => {
                 self.counters.n_duplicate += 1;
-                return Acceptance::Duplicate;
+                self.dropped(Acceptance::Duplicate, seen.time)
             }
-            if now < last {
-                return self.accept_late(now);
+            Arrival::Late => {
+                self.counters.n_late += 1;
+                self.dropped(Acceptance::Late, seen.time)
             }
-            let silence = now.seconds_since(last);
-            self.tick(now);
-            if silence <= self.settings.stale_after_s {
-                self.counters.watched_s += silence;
-            }
+            Arrival::SetBack { since } => self.set_back(since, seen.time),
         }
-        self.late_since = None;
-        self.last = Some(now);
-        Acceptance::Accepted
     }
 
-    fn accept_late(&mut self, now: GpsTime) -> Acceptance {
-        let since = *self.late_since.get_or_insert(now);
-        if !(now.seconds_since(since) > self.settings.stale_after_s) {
-            self.counters.n_late += 1;
-            return Acceptance::Late;
-        }
+    fn accepted(&mut self, seen: &Observation, lost: Option<Event>) -> Step {
+        self.counters.n_accepted += 1;
+        let mut step = if seen.usable {
+            self.judge(seen)
+        } else {
+            self.counters.n_unusable += 1;
+            let began = self.lose(seen.time, seen.time);
+            self.nothing(Acceptance::Accepted, began)
+        };
+        step.began[2] = step.began[2].or(lost);
+        step
+    }
+
+    fn dropped(&mut self, acceptance: Acceptance, now: GpsTime) -> Step {
+        let began = self.notice_silence(now);
+        self.nothing(acceptance, began)
+    }
+
+    /// The clock that counts began at `since` and stands at `now`; all that time nothing was judged.
+    fn set_back(&mut self, since: GpsTime, now: GpsTime) -> Step {
         self.counters.n_clock_set_back += 1;
-        self.late_since = None;
-        self.last = Some(now);
-        self.lose(since, now);
-        self.caution.rebase(now);
-        self.warning.rebase(now);
-        Acceptance::ClockSetBack
+        if let Some(loss) = self.loss.as_mut() {
+            loss.set_back(since);
+        }
+        self.caution.set_back(since);
+        self.warning.set_back(since);
+        let began = self.lose(since, now);
+        self.pass(since, now);
+        self.nothing(Acceptance::ClockSetBack, began)
     }
 
-    fn lose(&mut self, onset: GpsTime, annunciation: GpsTime) {
+    /// The waits to raise run on from `since` to `now`.
+    fn pass(&mut self, since: GpsTime, now: GpsTime) {
+        let elapsed_ns = now.nanoseconds().saturating_sub(since.nanoseconds()) as f64;
+        let lost = self.loss.is_some();
+        self.caution.pass(elapsed_ns, lost);
+        self.warning.pass(elapsed_ns, lost);
+    }
+
+    /// A step in which nothing was judged.
+    fn nothing(&self, acceptance: Acceptance, lost: Option<Event>) -> Step {
+        Step { alert: self.alert(), acceptance, began: [None, None, lost], ended: [None; 3] }
+    }
+
+    fn notice_silence(&mut self, now: GpsTime) -> Option<Event> {
+        let last = self.clock.last().filter(|_| self.clock.is_silent())?;
+        self.lose_to_silence(last, now)
+    }
+
+    fn lose_to_silence(&mut self, last: GpsTime, now: GpsTime) -> Option<Event> {
+        let lost = self.lose(last, self.clock.silence_noticed(last, now));
+        self.counters.n_gaps += u64::from(lost.is_some());
+        lost
+    }
+
+    /// Monitoring is lost, where it was not before.
+    fn lose(&mut self, onset: GpsTime, annunciation: GpsTime) -> Option<Event> {
         self.caution.forget_calm();
         self.warning.forget_calm();
         if self.loss.is_some() {
-            return;
+            return None;
         }
         self.counters.n_unavailable += 1;
-        let nothing = Metres::new(f64::NAN);
-        let event = Event { kind: Kind::Unavailable, onset, annunciation, clear: None, peak: nothing, limit: nothing, min_margin: nothing };
-        self.loss = Some(event);
+        self.loss = Some(Event::begin(Kind::Unavailable, onset, annunciation));
+        self.loss
     }
 
-    fn judge(&mut self, seen: &Observation) -> [Option<Event>; 3] {
-        let regained = self.loss.take().map(|event| Event { clear: Some(seen.time), ..event });
-        if [seen.accuracy, seen.integrity, seen.rnp].iter().any(|x| x.m().is_nan()) {
-            self.counters.n_nan += 1;
-        }
-        let caution = self.caution.step(seen.time, seen.accuracy, seen.rnp);
-        let warning = self.warning.step(seen.time, seen.integrity, Metres::new(2.0 * seen.rnp.m()));
-        self.counters.n_cautions += u64::from(caution == Change::Raised);
-        self.counters.n_warnings += u64::from(warning == Change::Raised);
+    fn judge(&mut self, seen: &Observation) -> Step {
+        let was_normal = self.alert() == Alert::Normal;
+        let lost_since = self.loss.map(|event| event.onset);
+        let regained = self.loss.take().map(|event| event.ended(seen.time));
+        self.begun = true;
+        let (accuracy, integrity) = (seen.accuracy.length(), seen.integrity.length());
+        self.counters.n_nan += u64::from(accuracy.m().is_nan() || integrity.m().is_nan() || !is_limit(seen.rnp));
+        let moment = Moment { now: seen.time, lost_since, at_once: true };
+        let warning = self.warning.step(&moment, integrity, Metres::new(2.0 * seen.rnp.m()));
+        // The alert falls to normal only at an epoch inside: where nothing else is in force, an epoch outside is a caution at once.
+        let at_once = !was_normal && self.warning.raised().is_none();
+        let caution = self.caution.step(&Moment { at_once, ..moment }, accuracy, seen.rnp);
+        let [raised_caution, raised_warning] = [raised(caution), raised(warning)];
+        self.counters.n_cautions += u64::from(raised_caution.is_some());
+        self.counters.n_warnings += u64::from(raised_warning.is_some());
         self.counters.n_withdrawn += u64::from(caution == Change::Withdrawn);
-        [cleared(caution), cleared(warning), regained]
+        Step {
+            alert: self.alert(),
+            acceptance: Acceptance::Accepted,
+            began: [raised_caution, raised_warning, None],
+            ended: [cleared(caution), cleared(warning), regained],
+        }
     }
+}
+
+fn raised(change: Change) -> Option<Event> {
+    if let Change::Raised(event) = change { Some(event) } else { None }
 }
 
 fn cleared(change: Change) -> Option<Event> {

@@ -1,0 +1,127 @@
+//! Which epochs count, by their time, and for how long none has.
+
+use super::settings::Settings;
+use crate::quantity::GpsTime;
+
+/// Whether an epoch was judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Acceptance {
+    /// Judged.
+    Accepted,
+    /// Dropped: the time of the epoch before it.
+    Duplicate,
+    /// Dropped: earlier than the epoch before it.
+    Late,
+    /// Not judged: late epochs have come for longer than the permitted silence, so the clock was set back and starts anew here.
+    ClockSetBack,
+}
+
+/// The time of the records, and the silence beside it.
+///
+/// Silence is the largest of three times since the last accepted record, each of which is short of the true one or equal to it: by the
+/// times of the records themselves, by ticks of the arrival clock, and by dropped records, each of which took one sample period to
+/// arrive. So a time stamp that is wild, stuck or runs backwards cannot hide that nothing is judged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Clock {
+    stale_after_s: f64,
+    sample_period_s: f64,
+    last: Option<GpsTime>,
+    n_dropped: u32,
+    /// Earliest of the late records since the last accepted one.
+    late_since: Option<GpsTime>,
+    newest_tick: Option<GpsTime>,
+    ticked_s: f64,
+}
+
+/// What became of the time of one record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Arrival {
+    First,
+    /// Later than the record before, which was at `since`.
+    Next {
+        since: GpsTime,
+        silent: bool,
+    },
+    Duplicate,
+    Late,
+    /// The clock that counts from here on began at `since`.
+    SetBack {
+        since: GpsTime,
+    },
+}
+
+impl Clock {
+    pub(super) fn new(settings: &Settings) -> Self {
+        Self {
+            stale_after_s: settings.stale_after_s,
+            sample_period_s: settings.chain.sample_period_s,
+            last: None,
+            n_dropped: 0,
+            late_since: None,
+            newest_tick: None,
+            ticked_s: 0.0,
+        }
+    }
+
+    /// Time of the last record that counted.
+    pub(super) fn last(&self) -> Option<GpsTime> {
+        self.last
+    }
+
+    pub(super) fn arrive(&mut self, now: GpsTime) -> Arrival {
+        let Some(last) = self.last else {
+            self.count(now);
+            return Arrival::First;
+        };
+        if now > last {
+            self.count(now);
+            return Arrival::Next { silent: now.seconds_since(last) > self.stale_after_s, since: last };
+        }
+        self.n_dropped = self.n_dropped.saturating_add(1);
+        if now == last {
+            return Arrival::Duplicate;
+        }
+        self.arrive_late(now)
+    }
+
+    /// The arrival clock shows `now`.
+    pub(super) fn tick(&mut self, now: GpsTime) {
+        if let Some(before) = self.newest_tick {
+            // An arrival clock that is set back has not undone the time that passed.
+            self.ticked_s += now.seconds_since(before).max(0.0);
+        }
+        self.newest_tick = Some(now);
+    }
+
+    /// Whether nothing was accepted for longer than is permitted.
+    pub(super) fn is_silent(&self) -> bool {
+        let Some(last) = self.last else { return false };
+        let by_records = f64::from(self.n_dropped) * self.sample_period_s;
+        let by_stamp = self.newest_tick.map_or(0.0, |now| now.seconds_since(last));
+        by_records.max(self.ticked_s).max(by_stamp) > self.stale_after_s
+    }
+
+    /// When the silence was noticed, in the time of the records. Where that stands still it is the time at which it does.
+    pub(super) fn silence_noticed(&self, last: GpsTime, now: GpsTime) -> GpsTime {
+        last.plus_seconds(self.stale_after_s).min(now.max(last))
+    }
+
+    fn arrive_late(&mut self, now: GpsTime) -> Arrival {
+        // Time that stands or runs backwards never gets away from its earliest record, so it is not followed.
+        let since = self.late_since.map_or(now, |since| since.min(now));
+        self.late_since = Some(since);
+        if !(now.seconds_since(since) > self.stale_after_s) {
+            return Arrival::Late;
+        }
+        self.count(now);
+        Arrival::SetBack { since }
+    }
+
+    fn count(&mut self, now: GpsTime) {
+        self.last = Some(now);
+        self.n_dropped = 0;
+        self.late_since = None;
+        self.newest_tick = None;
+        self.ticked_s = 0.0;
+    }
+}

@@ -1,0 +1,51 @@
+//! How long a condition must last before it is an alert, when it comes and goes.
+
+/// Time outside, less a share of the time inside: full after `raise_delay_s` outside in one piece, empty again after `clear_delay_s`
+/// inside. Once full it is over until it is empty.
+///
+/// ```text
+/// level += dt                                    while the bound is not known to be inside, at most raise_delay_s
+/// level -= dt raise_delay_s / clear_delay_s      while it is, at least 0
+/// ```
+///
+/// One state and one step, so it keeps no history. A bound that is outside for more than raise / (raise + clear) of the time fills it
+/// sooner or later; docs/methods/rnp-monitor.md has the times. In nanoseconds: sums of whole periods are then exact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Wait {
+    level_ns: f64,
+    full_ns: f64,
+    /// What a nanosecond inside takes off; infinite where nothing waits for calm.
+    drain: f64,
+    over: bool,
+}
+
+impl Wait {
+    pub(super) fn new(raise_delay_s: f64, clear_delay_s: f64) -> Self {
+        let drain = if clear_delay_s > 0.0 { raise_delay_s / clear_delay_s } else { f64::INFINITY };
+        let full_ns = raise_delay_s * 1e9;
+        Self { level_ns: 0.0, full_ns, drain, over: full_ns == 0.0 }
+    }
+
+    /// `elapsed_ns` more than zero have passed.
+    pub(super) fn pass(&mut self, elapsed_ns: f64, known_inside: bool) {
+        self.level_ns =
+            if known_inside { (self.level_ns - self.drain * elapsed_ns).max(0.0) } else { (self.level_ns + elapsed_ns).min(self.full_ns) };
+        // Between full and empty it stays as it was: the exceedance that filled it has not been made up for.
+        self.over = self.level_ns == self.full_ns || self.over && self.level_ns > 0.0;
+    }
+
+    /// Whether an epoch outside is an alert now.
+    pub(super) fn is_over(&self) -> bool {
+        self.over
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.level_ns == 0.0
+    }
+
+    /// As new.
+    pub(super) fn restart(&mut self) {
+        self.level_ns = 0.0;
+        self.over = self.full_ns == 0.0;
+    }
+}
