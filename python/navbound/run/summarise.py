@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import polars as pl
 
-from navbound import anp, evaluation
+from navbound import anp, evaluation, rnp
 from navbound.methods import column_of, method
 from navbound.run.records import (
     EventSummary,
@@ -21,6 +22,8 @@ from navbound.run.records import (
     Verdict,
     Worst,
 )
+from navbound.run.verdict import rule
+from navbound.run.verdict.belief import of_epochs
 from navbound.run.words import honesty_words, protection_words, verdict_words
 
 if TYPE_CHECKING:
@@ -70,8 +73,9 @@ def summarise(
     judged = method(judging)
     margins = epochs.with_columns(
         (pl.col(judged.column) / pl.col("rnp_m")).alias("_ratio"),
-        (pl.col("rnp_m") - pl.col(judged.column)).alias("_margin"),
-        (2 * pl.col("rnp_m") - pl.col(judged.integrity_column)).alias("_margin_integrity"),
+        # A NaN is greater than every number here: it must not pass for a margin.
+        (pl.col("rnp_m") - pl.col(judged.column)).fill_nan(None).alias("_margin"),
+        (2 * pl.col("rnp_m") - pl.col(judged.integrity_column)).fill_nan(None).alias("_margin_integrity"),
     )
     coverage_kind = evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED
     accuracy = [_method_result(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
@@ -83,6 +87,7 @@ def summarise(
         verdict=verdict,
         coverage_kind=coverage_kind,
         assumptions=material.assumptions,
+        covariance=material.covariance,
         phases=_phases(margins, judged.column, material.sample_period_s, events),
         protection=protection,
         tracks=_tracks(margins, material.labels, events),
@@ -100,34 +105,61 @@ def summarise(
 def _verdict(
     material: Material, margins: pl.DataFrame, judge: MethodResult, risks: tuple[float, float], protection: list[ProtectionSummary]
 ) -> Verdict:
-    judging = judge.id
-    judged = margins.get_column("_margin").drop_nulls()
-    share = _mean(judged >= 0)
-    contained = _mean(margins.get_column("_margin_integrity").drop_nulls() >= 0)
-    n_implausible = margins.get_column("status").eq("invalid_input").sum()
-    inside = None if share is None or contained is None else share == 1.0 and contained == 1.0
-    if inside and any(p.share_available < 1.0 for p in protection):
-        inside = False
-    if inside and (n_implausible or any(p.n_misleading for p in protection)):
-        inside = None
-    worst = _worst(margins, "_margin", method(judging).column, 1.0)
-    worst_integrity = _worst(margins, "_margin_integrity", method(judging).integrity_column, 2.0)
-    truth_known = judge.coverage is not None
+    judged = margins.filter(pl.col("status") == "ok").select("_margin", "_margin_integrity").drop_nulls()
+    status = margins.get_column("status")
+    n_missing = _missing(margins, material.sample_period_s)
+    n_epochs, n_degraded = margins.height + n_missing, int((status == "degraded").sum())
+    belief = of_epochs(margins, judge.id, risks)
+    facts = rule.TrackFacts(
+        n_epochs=n_epochs,
+        n_judged=judged.height,
+        n_outside=margins.select((pl.min_horizontal("_margin", "_margin_integrity") < 0).sum()).item(),
+        n_beyond_alert_limit=sum(p.n_epochs - round(p.share_available * p.n_epochs) for p in protection),
+        n_implausible=int(status.eq("invalid_input").sum()),
+        n_misleading=sum(p.n_misleading for p in protection),
+        belief="unchecked" if belief is None else belief.state,
+    )
+    decided = rule.of_tracks(facts)
     verdict = Verdict(
-        inside=inside,
+        id=decided,
+        inside=rule.MEANS_INSIDE[decided],
         words="",
         requirement=material.requirement,
-        method=judging,
-        share_inside=share,
-        share_contained=contained,
-        n_epochs=margins.height,
-        n_judged=judged.len(),
-        n_implausible=n_implausible,
-        worst_accuracy=worst,
-        worst_integrity=worst_integrity,
-        truth_known=truth_known,
+        method=judge.id,
+        share_inside=_mean(judged["_margin"] >= 0),
+        share_contained=_mean(judged["_margin_integrity"] >= 0),
+        n_epochs=n_epochs,
+        n_judged=judged.height,
+        n_degraded=n_degraded,
+        n_unjudged=n_epochs - judged.height - n_degraded,
+        n_missing=n_missing,
+        n_outside=facts.n_outside,
+        assumed=_assumed(material, judge.id),
+        belief=belief,
+        n_implausible=facts.n_implausible,
+        worst_accuracy=_worst(margins, "_margin", method(judge.id).column, 1.0),
+        worst_integrity=_worst(margins, "_margin_integrity", method(judge.id).integrity_column, 2.0),
+        truth_known=judge.coverage is not None,
     )
-    return verdict.model_copy(update={"words": f"{verdict_words(verdict, judge, risks)}{protection_words(protection)}"})
+    words = verdict_words(verdict, judge, risks, material.covariance)
+    return verdict.model_copy(update={"words": f"{words}{protection_words(protection)}"})
+
+
+def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "sigma_coded", "no_path"]]:
+    """What no data says and the first sentence must."""
+    assumed: list[Literal["sigma_typed", "sigma_coded", "no_path"]] = []
+    if material.covariance.id == "typed":
+        assumed.append("sigma_typed")
+    elif material.covariance.id in {"nac_p", "containment_radius"}:
+        assumed.append("sigma_coded")
+    return [*assumed, "no_path"] if method(judging).error_column == "nse_h_m" else assumed
+
+
+def _missing(epochs: pl.DataFrame, period_s: float) -> int:
+    """Epochs that the gaps of the tracks should have held: those longer than the monitor waits before it says that there is nothing."""
+    step = pl.col("time_ns").diff().over("track").cast(pl.Float64) * 1e-9
+    gaps = epochs.select(step=step).filter(pl.col("step") > rnp.Monitor(sample_period_s=period_s, time_to_alert_s=math.inf).stale_after_s)
+    return int(gaps.select(((pl.col("step") / period_s).round() - 1).sum()).item() or 0)
 
 
 def _mean(flags: pl.Series) -> float | None:
