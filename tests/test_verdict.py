@@ -7,7 +7,7 @@ import math
 import subprocess
 import sys
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import polars as pl
@@ -19,9 +19,6 @@ from navbound import InputError, evaluation, exit_status
 from navbound.run.kpi_records import Performance
 from navbound.run.records import CovarianceOrigin, Summary
 from navbound.run.verdict import rule
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 START_NS = 1_400_000_000_000_000_000
 M_PER_RAD = 6.37e6
@@ -266,7 +263,7 @@ def test_a_false_covariance_is_withdrawn(shape: str, scale: float) -> None:
 
 def test_the_probability_without_independence_is_that_of_one_draw() -> None:
     """exp(1 - m/2) bounds the mean of any series of unit errors; for one draw of square m the exact tail is exp(-m/2)."""
-    for k in (1.0, 2.0, 4.0, 5.0):
+    for k in (1.0, 2.0, 4.0, 4.7):
         found = evaluation.magnitude(np.tile([k, 0.0], (50, 1)), np.tile(np.eye(2), (50, 1, 1)))
         assert found.p_value == pytest.approx(min(1.0, math.exp(1 - k * k / 2)), rel=1e-12)
         assert found.p_value >= math.exp(-k * k / 2)
@@ -311,7 +308,7 @@ def test_the_first_sentence_says_what_the_user_typed(tmp_path: Path) -> None:
 
 def test_help_and_documentation_list_every_status() -> None:
     shown = " ".join(command("--help").stdout.split())
-    page = (__import__("pathlib").Path(__file__).parents[1] / "docs" / "report.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[1] / "docs" / "report.md").read_text(encoding="utf-8")
     for status, words in exit_status.MEANINGS.items():
         assert f"{status}: {words}" in shown
         assert f"| {status} | {words} |" in page
@@ -325,18 +322,11 @@ def test_every_verdict_has_its_status() -> None:
 def test_a_level_that_misleads_is_not_believable(tmp_path: Path) -> None:
     """One run beyond the level in an hour: 24 approaches at 2e-7 each leave 5e-6."""
     n = 3600
-    error = np.full(n, 1.0)
-    error[1000:1010] = 30.0
-    path = tmp_path / "levels.csv"
-    pl.DataFrame(
-        {
-            "time_ns": START_NS + np.arange(n) * 1_000_000_000,
-            "hpe_m": error,
-            "vpe_m": np.full(n, 1.0),
-            "hpl_m": np.full(n, 10.0),
-            "vpl_m": np.full(n, 15.0),
-        }
-    ).write_csv(path)
+    error = np.tile([1.0, 0.0], (n, 1))
+    error[1000:1010] = [30.0, 0.0]
+    path = table(tmp_path / "levels.csv", n, error_en_m=error)
+    frame = pl.read_csv(path).with_columns(hpl_m=pl.lit(10.0), vpl_m=pl.lit(15.0))
+    frame.write_csv(path)
     done = command("analyze", path, "--levels", "LPV-200", "--out", tmp_path / "run", "--json")
     summary = json.loads(done.stdout)
     assert (summary["verdict"]["id"], done.returncode) == ("not_believable", 4)

@@ -115,7 +115,7 @@ def _not_shown(verdict: Verdict) -> list[str]:
     """Why the margins alone are not enough."""
     why = []
     if verdict.n_judged < verdict.least_share * verdict.n_epochs:
-        why.append(f"At least {share(verdict.least_share)} of the epochs must be ok and judged.")
+        why.append(f"At least {level(1.0 - verdict.least_share)} of the epochs must be ok and judged.")
     if verdict.belief is not None and verdict.belief.state == "short":
         why.append("The bounds held the error less often than they claim, on too little data to decide whether they are false.")
     return why
