@@ -94,7 +94,9 @@ def material(
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
     epochs, plausibility = check(claimed.epochs, limits)
-    assumptions = [claimed.words, plausibility.words]
+    origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
+    of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
+    assumptions = [of_covariance, plausibility.words]
     if truth is not None:
         other = read(truth)
         inputs.append(other.source)
@@ -113,7 +115,7 @@ def material(
         requirement=requirement,
         sample_period_s=_period(epochs),
         assumptions=[*assumptions, *route.words, *notes],
-        covariance=_origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables),
+        covariance=origin,
         labels={track: f"{labels[of]} {track.partition(' ')[2]}".strip() for track, of in route.tracks.items()} if route.tracks else labels,
         waypoints=route.waypoints,
         inputs=inputs + route.inputs,

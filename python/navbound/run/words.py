@@ -33,6 +33,8 @@ def share(fraction: float) -> str:
     digits = 1
     while digits < 6 and (round(percent, digits) in (0.0, 100.0)):
         digits += 1
+    if round(percent, digits) in (0.0, 100.0):
+        return "below 0.000001 %" if percent < 50.0 else "above 99.999999 %"
     return f"{percent:.{digits}f} %"
 
 
@@ -69,6 +71,8 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
         parts.append(_against_truth(verdict.belief))
     elif not verdict.truth_known:
         parts.append("No truth: the covariance could not be checked.")
+    else:
+        parts.append("Truth is known at no ok epoch: the bounds of ok epochs could not be checked.")
     return " ".join(parts)
 
 
@@ -117,24 +121,24 @@ def _not_shown(verdict: Verdict) -> list[str]:
     if verdict.n_judged < verdict.least_share * verdict.n_epochs:
         why.append(f"At least {level(1.0 - verdict.least_share)} of the epochs must be ok and judged.")
     if verdict.belief is not None and verdict.belief.state == "short":
-        why.append("The bounds held the error less often than they claim, on too little data to decide whether they are false.")
+        why.append("The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false.")
     return why
 
 
 def _against_truth(belief: Belief) -> str:
     """How often each bound contained the error, with its interval and what the epochs are worth."""
     one = [
-        f"{METHOD_WORDS.get(check.method, check.method)} at {level(check.risk)} {share(check.coverage)} "
+        f"{level(check.risk)} {METHOD_WORDS.get(check.method, check.method)} {share(check.coverage)} "
         f"({share(check.coverage_low)} to {share(check.coverage_high)})"
         for check in belief.bounds
     ]
     return (
-        f"Truth is known: error within bound at ok epochs, with 95 % interval for {belief.n_effective:.2g} independent epochs: "
-        f"{', '.join(one)}."
+        f"Truth is known. Share of ok epochs with the error within the bound, and its 95 % interval as from {belief.n_effective:.2g} "
+        f"independent epochs: {', '.join(one)}."
     )
 
 
-METHOD_WORDS = {"anp-circle": "circle of the position error", "tse-exact": "total system error"}
+METHOD_WORDS = {"anp-circle": "circle", "tse-exact": "bound of the total system error"}
 
 
 def _worst(worst: Worst) -> str:
