@@ -76,7 +76,7 @@ def test_degraded_epochs_never_make_inside(tmp_path: Path) -> None:
     assert (verdict.n_epochs, verdict.n_judged, verdict.n_degraded) == (986, 29, 957)
     sentence = first_sentence(verdict.words)
     assert "not shown to be inside RNP 0.3" in sentence
-    assert "2.9 % are ok and judged, 97.1 % degraded" in verdict.words
+    assert "2.9 % are ok and judged, 97.1 % are degraded" in verdict.words
     assert "100 % of 986" not in verdict.words
 
 
@@ -88,7 +88,7 @@ def test_inside_needs_the_least_share_of_ok_epochs(tmp_path: Path, degraded: int
 def test_epochs_missing_in_a_gap_count_as_not_judged(tmp_path: Path) -> None:
     verdict = navbound.analyze(table(tmp_path / "a.csv", 400, drop=slice(100, 200))).summary.verdict
     assert (verdict.id, verdict.n_epochs, verdict.n_judged, verdict.n_missing) == ("not_shown", 400, 300, 100)
-    assert "25.0 % without a bound (100 epochs missing in gaps)" in verdict.words
+    assert "25.0 % are without a bound (100 epochs missing in gaps)" in verdict.words
 
 
 def test_a_degraded_epoch_outside_is_outside(tmp_path: Path) -> None:
@@ -189,7 +189,8 @@ def test_a_few_independent_epochs_below_the_claim_are_not_shown(tmp_path: Path) 
     (circle, _) = verdict.belief.bounds
     assert (circle.coverage, circle.coverage_low) == (0.0, 0.0)
     assert circle.coverage_high > 0.95
-    assert "as from 1 independent epochs: 95 % circle 0 % (0 % to " in verdict.words
+    assert "of the errors at ok epochs 0 % (0 % to " in verdict.words
+    assert "within the 95 % circle (95 % intervals as from 1 independent epochs)" in verdict.words
 
 
 def test_an_honest_bound_leaves_the_verdict(tmp_path: Path) -> None:
@@ -307,7 +308,13 @@ def test_the_first_sentence_says_what_the_user_typed(tmp_path: Path) -> None:
 
 
 def test_a_share_is_never_rounded_to_all_or_none() -> None:
-    assert [share(x) for x in (0.0, 1.0, 1 - 1e-4, 1 - 1e-12, 1e-12)] == ["0 %", "100 %", "99.99 %", "above 99.999999 %", "below 0.000001 %"]
+    assert [share(x) for x in (0.0, 1.0, 1 - 1e-4, 1 - 1e-12, 1e-12)] == [
+        "0 %",
+        "100 %",
+        "99.99 %",
+        "above 99.999999 %",
+        "below 0.000001 %",
+    ]
 
 
 # How a command ends.

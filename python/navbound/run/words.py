@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from navbound.evaluation import Nees, Pit
-    from navbound.run.records import Belief, CovarianceOrigin, Held, MethodResult, ProtectionSummary, Verdict, Worst
+    from navbound.run.records import Belief, BoundCheck, CovarianceOrigin, Held, MethodResult, ProtectionSummary, Verdict, Worst
     from navbound.run.verdict.rule import VerdictId
 
 METRES_PER_NM = 1852.0
@@ -104,9 +104,11 @@ def _shares(verdict: Verdict) -> str:
     """What became of all epochs."""
     if verdict.n_epochs == 0:
         return "there is no epoch"
-    judged, degraded, unjudged = (share(n / verdict.n_epochs) for n in (verdict.n_judged, verdict.n_degraded, verdict.n_unjudged))
+    if verdict.n_judged == verdict.n_epochs:
+        return f"all {verdict.n_epochs} epochs are ok and judged"
     missing = f" ({verdict.n_missing} epochs missing in gaps)" if verdict.n_missing else ""
-    return f"of {verdict.n_epochs} epochs {judged} are ok and judged, {degraded} degraded, {unjudged} without a bound{missing}"
+    kinds = {"ok and judged": verdict.n_judged, "degraded": verdict.n_degraded, f"without a bound{missing}": verdict.n_unjudged}
+    return f"of {verdict.n_epochs} epochs {', '.join(f'{share(n / verdict.n_epochs)} are {kind}' for kind, n in kinds.items())}"
 
 
 def _refuted(belief: Belief | None) -> str:
@@ -121,23 +123,31 @@ def _not_shown(verdict: Verdict) -> list[str]:
     if verdict.n_judged < verdict.least_share * verdict.n_epochs:
         why.append(f"At least {level(1.0 - verdict.least_share)} of the epochs must be ok and judged.")
     if verdict.belief is not None and verdict.belief.state == "short":
-        why.append("The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false.")
+        why.append(
+            "The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false."
+        )
     return why
 
 
 def _against_truth(belief: Belief) -> str:
     """How often each bound contained the error, with its interval and what the epochs are worth."""
+    whole = [check for check in belief.bounds if check.n_outside == 0 and check.risk < WHOLE_BELOW]
     one = [
-        f"{level(check.risk)} {METHOD_WORDS.get(check.method, check.method)} {share(check.coverage)} "
-        f"({share(check.coverage_low)} to {share(check.coverage_high)})"
+        f"{share(check.coverage)} ({share(check.coverage_low)} to {share(check.coverage_high)}) within the {_bound(check)}"
         for check in belief.bounds
+        if check not in whole
     ]
-    return (
-        f"Truth is known. Share of ok epochs with the error within the bound, and its 95 % interval as from {belief.n_effective:.2g} "
-        f"independent epochs: {', '.join(one)}."
-    )
+    parts = [f"{' and '.join(one)} (95 % intervals as from {belief.n_effective:.2g} independent epochs)"] if one else []
+    parts += [f"none is beyond the {' or the '.join(_bound(check) for check in whole)}"] if whole else []
+    return f"Truth is known: of the errors at ok epochs {'; '.join(parts)}."
 
 
+def _bound(check: BoundCheck) -> str:
+    return f"{level(check.risk)} {METHOD_WORDS.get(check.method, check.method)}"
+
+
+WHOLE_BELOW = 0.01
+"""Risk below which a bound that every error respects needs no interval: hardly an epoch was to be expected beyond it."""
 METHOD_WORDS = {"anp-circle": "circle", "tse-exact": "bound of the total system error"}
 
 

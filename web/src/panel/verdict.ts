@@ -31,7 +31,7 @@ export function verdict(host: HTMLElement, payload: Payload): void {
     const section = el("section", { class: "verdict", id: "verdict", "data-tone": toneOf(v), "aria-label": "Verdict" },
         el("p", { class: "state" }, mark, valueOf("id", v.id, state.word), el("span", { class: "requirement" }, v.requirement), v.experimental ? el("span", { class: "tag" }, "experimental") : null,
             v.n_implausible > 0 ? el("span", { class: "tag" }, valueOf("n_implausible", v.n_implausible, count(v.n_implausible)), ` of ${count(v.n_epochs)} epochs cannot be true`) : null,
-            v.n_judged < v.n_epochs ? el("span", { class: "tag" }, `${share((v.n_epochs - v.n_judged) / v.n_epochs)} of the epochs not ok or not judged`) : null),
+            v.n_judged < v.least_share * v.n_epochs ? el("span", { class: "tag" }, `${share((v.n_epochs - v.n_judged) / v.n_epochs)} of the epochs not ok or not judged`) : null),
         el("p", { class: "words" }, v.words),
         facts(payload, method?.risk),
         el("div", { class: "basis" },
@@ -67,7 +67,7 @@ function facts(payload: Payload, risk: number | undefined): HTMLElement {
 function contained(check: BoundCheck): HTMLElement {
     return el("div", { class: "fact" }, el("dt", {}, `Error within ${check.method}, claim ${level(check.risk)}`),
         el("dd", {}, valueOf(`belief.${check.method}`, check.coverage, share(check.coverage))),
-        el("dd", { class: "more" }, `95 %: ${share(check.coverage_low)} to ${share(check.coverage_high)}, as from ${plain(check.n_effective, 2)} independent epochs`));
+        el("dd", { class: "more" }, `95 %: ${share(check.coverage_low)} to ${share(check.coverage_high)}, as from ${plain(check.n_effective, check.n_effective < 10 ? 1 : 0)} independent epochs`));
 }
 
 function worst(label: string, key: string, w: Worst, payload: Payload): HTMLElement {
