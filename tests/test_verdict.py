@@ -80,6 +80,11 @@ def test_degraded_epochs_never_make_inside(tmp_path: Path) -> None:
     assert "100 % of 986" not in verdict.words
 
 
+def test_tables_of_tracks_and_phases_speak_of_ok_epochs_too(tmp_path: Path) -> None:
+    summary = navbound.analyze(table(tmp_path / "a.csv", degraded=400)).summary
+    assert [t.share_inside for t in summary.tracks] == [p.share_inside for p in summary.phases] == [None]
+
+
 @pytest.mark.parametrize(("degraded", "expected"), [(20, "inside"), (21, "not_shown")])
 def test_inside_needs_the_least_share_of_ok_epochs(tmp_path: Path, degraded: int, expected: str) -> None:
     assert navbound.analyze(table(tmp_path / "a.csv", 400, degraded=degraded)).summary.verdict.id == expected
@@ -184,7 +189,8 @@ def test_a_few_independent_epochs_below_the_claim_are_not_shown(tmp_path: Path) 
     verdict = navbound.analyze(path).summary.verdict
     assert verdict.id == "not_shown"
     assert verdict.belief is not None
-    assert (verdict.belief.state, verdict.belief.n_effective) == ("short", pytest.approx(1.0, abs=0.05))
+    assert verdict.belief.state == "short"
+    assert verdict.belief.n_effective == pytest.approx(1.0, abs=0.05)
     # The interval and the effective number stand beside the share.
     (circle, _) = verdict.belief.bounds
     assert (circle.coverage, circle.coverage_low) == (0.0, 0.0)

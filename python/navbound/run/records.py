@@ -117,6 +117,7 @@ class PhaseSummary(Record):
     n_epochs: int
     duration_s: float
     share_inside: float | None
+    """Of epochs with status ok."""
     worst_ratio: float | None
     """Largest accuracy bound over RNP."""
     p_exceed_2rnp_max: float | None
@@ -160,6 +161,7 @@ class TrackSummary(Record):
     fte_std_m: float | None
     fte_abs95_m: float | None
     share_inside: float | None
+    """Of epochs with status ok."""
     worst_ratio: float | None
     worst_margin_m: float | None
     n_cautions: int

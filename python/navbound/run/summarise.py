@@ -77,6 +77,8 @@ def summarise(
         (pl.col("rnp_m") - pl.col(judged.column)).fill_nan(None).alias("_margin"),
         (2 * pl.col("rnp_m") - pl.col(judged.integrity_column)).fill_nan(None).alias("_margin_integrity"),
     )
+    # Degraded epochs may show outside; a share inside speaks of ok epochs alone.
+    margins = margins.with_columns(pl.when(pl.col("status") == "ok").then((pl.col("_margin") >= 0).cast(pl.Float64)).alias("_inside"))
     coverage_kind = evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED
     accuracy = [_method_result(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
     protection = _protection(epochs, material.limits_held)
@@ -194,7 +196,7 @@ def _phases(margins: pl.DataFrame, bound: str, sample_period_s: float, events: p
     risk = pl.col("p_exceed_2rnp") if "p_exceed_2rnp" in margins.columns else pl.lit(None, dtype=pl.Float64)
     grouped = margins.group_by("phase", "rnp_m", maintain_order=True).agg(
         pl.len().alias("n_epochs"),
-        (pl.col("_margin") >= 0).cast(pl.Float64).mean().alias("share_inside"),
+        pl.col("_inside").mean().alias("share_inside"),
         pl.col("_ratio").max().alias("worst_ratio"),
         risk.max().alias("p_exceed_2rnp_max"),
         risk.mean().alias("p_exceed_2rnp_mean"),
@@ -246,7 +248,7 @@ def _tracks(margins: pl.DataFrame, labels: dict[str, str], events: pl.DataFrame)
         fte.mean().alias("fte_mean_m"),
         fte.std(ddof=0).alias("fte_std_m"),
         fte.abs().quantile(0.95, interpolation="nearest").alias("fte_abs95_m"),
-        (pl.col("_margin") >= 0).cast(pl.Float64).mean().alias("share_inside"),
+        pl.col("_inside").mean().alias("share_inside"),
         pl.col("_ratio").max().alias("worst_ratio"),
         pl.col("_margin").min().alias("worst_margin_m"),
     )
