@@ -276,6 +276,7 @@ def flight(n_tracks: int = 1, truth: bool = True, n: int = N) -> Fixture:
         kind="fly",
         title="Fixture flight, not a result",
         verdict=Verdict(
+            id="nothing_judged" if n < 10 else "inside",
             inside=None if n < 10 else True,
             words=(
                 "Inside RNP for 99.8 % of the flight (fixture numbers). Worst margin 246 m in the approach. "

@@ -14,7 +14,7 @@ import pytest
 from scipy.io import netcdf_file
 from typer.testing import CliRunner
 
-from navbound import cli, gnss, maps
+from navbound import cli, exit_status, gnss, maps
 from navbound.errors import FormatError, InputError
 from navbound.maps.sources import Times
 from navbound.maps.statistics import Evaluate, Tile, percentile_name
@@ -263,5 +263,5 @@ def test_the_command_writes_a_map_and_refuses_in_sentences(
         monkeypatch.setattr("sys.argv", ["navbound", "map", "dop", *wrong, "--out", str(tmp_path / "n")])
         with pytest.raises(SystemExit) as left:
             cli.main()
-        assert left.value.code == cli.USAGE
+        assert left.value.code == exit_status.USAGE
         assert "Traceback" not in capsys.readouterr().err

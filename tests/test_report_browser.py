@@ -380,5 +380,5 @@ def test_an_empty_run_shows_its_verdict(browser: Browser, tmp_path: Path) -> Non
     fixture = report_fixture.flight(n=5)
     empty = report_fixture.Fixture(fixture.summary, fixture.record, fixture.epochs.head(0), fixture.events.head(0), [])
     page = _open(browser, _write(empty, tmp_path / "report.html"))
-    assert page.locator("#verdict .state").inner_text().startswith("Unknown")
+    assert page.locator("#verdict .state").inner_text().startswith("Nothing judged")
     page.context.close()

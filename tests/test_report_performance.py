@@ -303,14 +303,14 @@ def test_no_width_scrolls_sideways(browser: Browser, report: Path, width: int) -
 
 def test_epochs_that_cannot_be_true_make_the_verdict_doubtful(browser: Browser, tmp_path: Path) -> None:
     fixture = report_fixture.flight(n=200)
-    verdict = fixture.summary.verdict.model_copy(update={"inside": None, "n_implausible": 17})
+    verdict = fixture.summary.verdict.model_copy(update={"id": "not_shown", "inside": None, "n_implausible": 17})
     summary = fixture.summary.model_copy(update={"verdict": verdict})
     page = _open(
         browser, render(summary, fixture.record, fixture.epochs, fixture.events.head(0), fixture.waypoints, tmp_path / "report.html")
     )
     box = page.locator("#verdict")
     assert box.get_attribute("data-tone") == "caution"
-    assert box.locator(".state").inner_text().startswith("Doubtful")
+    assert box.locator(".state").inner_text().startswith("Not shown")
     assert _value(page, '#verdict [data-key="n_implausible"]') == "17"
     # The sentence of the honesty stands once.
     assert page.locator("#honesty").inner_text().count("2.11") == 0

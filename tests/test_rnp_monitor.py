@@ -13,6 +13,7 @@ import pytest
 from navbound import InputError, methods, rnp
 from navbound.run import judge as judging
 from navbound.run.material import Material
+from navbound.run.records import CovarianceOrigin
 from navbound.run.settings import Settings
 from test_rnp import PERIOD_NS, table
 
@@ -237,7 +238,8 @@ def test_a_judged_run_hands_the_larger_one_to_the_monitor() -> None:
             "hpl_m": [40.0] * 20 + [950.0] * 20,
         }
     )
-    material = Material(epochs, "analyze", "levels", "RNP", 1.0, [])
+    origin = CovarianceOrigin(id="file")
+    material = Material(epochs, "analyze", "levels", "RNP", 1.0, [], origin)
     run = judging.judge(material, Settings(methods=()))
     assert run.epochs["alert"].to_list() == ["normal"] * 20 + ["warning"] * 20
     assert run.epochs["integrity_compared_m"].to_list()[20:] == [1050.0] * 20
@@ -245,10 +247,11 @@ def test_a_judged_run_hands_the_larger_one_to_the_monitor() -> None:
     verdict = run.summary.verdict
     assert verdict.inside is False
     assert verdict.share_contained == 0.5
-    without = judging.judge(Material(epochs.drop("hpl_m"), "analyze", "levels", "RNP", 1.0, []), Settings(methods=()))
+    without = judging.judge(Material(epochs.drop("hpl_m"), "analyze", "levels", "RNP", 1.0, [], origin), Settings(methods=()))
     assert set(without.epochs["alert"]) == {"normal"}
     assert "integrity_compared_m" not in without.epochs.columns
     lost = judging.judge(
-        Material(epochs.with_columns(hpl_m=pl.Series([40.0] * 39 + [None])), "analyze", "levels", "RNP", 1.0, []), Settings(methods=())
+        Material(epochs.with_columns(hpl_m=pl.Series([40.0] * 39 + [None])), "analyze", "levels", "RNP", 1.0, [], origin),
+        Settings(methods=()),
     )
     assert lost.summary.verdict.inside is False, "an epoch whose level is missing is not contained"

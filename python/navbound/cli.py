@@ -1,4 +1,4 @@
-"""The command line. Exit status: 0 done, 2 wrong use, 3 unreadable data, 70 a bug of ours."""
+"""The command line. What its exit statuses mean stands in exit_status.py."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import navbound
 from navbound import cli_map, cli_predict
 from navbound.cli_parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, err_console, out_console, work_of
 from navbound.errors import FormatError, InputError, NavboundError
+from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed, of_verdict
 from navbound.run.settings import DEFAULT_METHODS, Settings
 
 if TYPE_CHECKING:
@@ -23,10 +24,8 @@ if TYPE_CHECKING:
     from navbound.run.directory import Run
     from navbound.verify import Outcome
 
-USAGE, UNREADABLE, OUR_BUG = 2, 3, 70
-
 app = typer.Typer(
-    help="How wrong an aircraft's position may be, and when that is not good enough.",
+    help=f"How wrong an aircraft's position may be, and when that is not good enough.\n\nExit status: {listed()}.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -342,9 +341,17 @@ app.command("predict")(cli_predict.predict_command)
 
 
 def _show(run: Run, *, json: bool) -> None:
+    """Print a run and end with the status of its verdict."""
     if json:
         sys.stdout.write(run.summary.model_dump_json(indent=1) + "\n")
-        return
+    else:
+        _print(run)
+    status = of_verdict(run.summary.verdict.id)
+    if status:
+        raise typer.Exit(status)
+
+
+def _print(run: Run) -> None:
     summary = run.summary
     out_console.print(summary.title, style="bold", markup=False)
     out_console.print(summary.verdict.words, markup=False, highlight=False)

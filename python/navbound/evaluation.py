@@ -241,6 +241,95 @@ def pit(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = 
     return Pit(**_core.evaluate_pit(dimension, error, covariance, _labels(track), _count("n_bins", n_bins)))
 
 
+@dataclass(frozen=True)
+class Magnitude:
+    """Horizontal error in units of its covariance, and how many independent epochs it is worth.
+
+    Attributes
+    ----------
+    n : int
+        Epochs used.
+    n_effective : float
+        Epochs that the error's components are worth about zero, the smaller of both axes: an error that stays for a whole track is one.
+    square_mean : float
+        Mean of e' V⁻¹ e, each at most 23.03 (what a true covariance exceeds once in 100 000); 2 for a true covariance.
+    p_value : float
+        Largest probability of a mean as large for a true covariance, over every dependence between epochs.
+    """
+
+    n: int
+    n_effective: float
+    square_mean: float
+    p_value: float
+
+
+@dataclass(frozen=True)
+class Containment:
+    """How often a bound contained the error.
+
+    Attributes
+    ----------
+    coverage, coverage_low, coverage_high : float
+        Share of epochs within, and its exact binomial 95 % limits for the effective sample size.
+    p_value : float
+        Probability of as many epochs outside for a bound that keeps its risk, by a binomial law of the effective size.
+    p_value_any : float
+        The same over every dependence between epochs.
+    """
+
+    coverage: float
+    coverage_low: float
+    coverage_high: float
+    p_value: float
+    p_value_any: float
+
+
+def magnitude(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = None) -> Magnitude:
+    """Size of the horizontal error against its covariance, with a probability that needs no effective sample size.
+
+    ``p = min(1, exp(1 - m / 2))`` with the time mean m of e' V⁻¹ e: a mean of equally distributed values is in the convex order no larger
+    than one of them, so it exceeds their expected shortfall at p with probability p at most (ours, docs/methods/coverage.md).
+
+    Parameters
+    ----------
+    error_m : array_like, shape (n, 2)
+        Navigation error, east-north. [m]
+    covariance_m2 : array_like, shape (n, 2, 2)
+        Its claimed covariance. [m²]
+    track : array_like, shape (n,), optional
+        Which epochs follow each other, in order.
+
+    Raises
+    ------
+    InputError
+        Shapes that do not fit.
+    """
+    dimension, error, covariance = _vectors(error_m, covariance_m2)
+    if dimension != 2:
+        raise InputError("error_m", f"shape {np.shape(error_m)}", domain="shape (n, 2)")
+    return Magnitude(**_core.evaluate_magnitude(error, covariance, _labels(track)))
+
+
+def containment(n_outside: int, n: int, n_effective: float, risk: float) -> Containment:
+    """How often a bound contained the error, and how probable that is for a bound that keeps its risk.
+
+    Parameters
+    ----------
+    n_outside, n : int
+        Epochs with an error beyond the bound; all epochs with both.
+    n_effective : float
+        Independent epochs that they are worth, in (0, n].
+    risk : float
+        The risk the bound was asked for.
+
+    Raises
+    ------
+    InputError
+        Counts that cannot be, or a risk outside (0, 1).
+    """
+    return Containment(**_core.evaluate_containment(_count("n_outside", n_outside), _count("n", n), n_effective, risk))
+
+
 def crps(error_m: ArrayLike, sigma_m: ArrayLike) -> NDArray[np.float64]:
     """Continuous ranked probability score of a centred Gaussian: how far its law is from the error that came.
 

@@ -6,10 +6,12 @@
 mod bootstrap;
 mod correlation;
 mod honesty;
+mod refutation;
 
 pub use bootstrap::coverage_interval;
-pub use correlation::effective_size;
+pub use correlation::{effective_size, effective_size_about_zero};
 pub use honesty::{Errors, Honesty, Pit, nees, pit};
+pub use refutation::{Containment, Magnitude, containment, magnitude};
 
 use navbound_core::quantity::{OutOfDomain, Risk};
 use navbound_core::special::beta::share_limits;

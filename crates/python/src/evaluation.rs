@@ -105,10 +105,45 @@ fn effective_size<'py>(py: Python<'py>, values: PyReadonlyArray1<'py, f64>, trac
     py.detach(|| evaluation::effective_size_of(values, track)).map_err(refused)
 }
 
+/// Horizontal error in units of its covariance.
+#[pyfunction]
+fn evaluate_magnitude<'py>(
+    py: Python<'py>,
+    error_m: PyReadonlyArray1<'py, f64>,
+    covariance_m2: PyReadonlyArray1<'py, f64>,
+    track: PyReadonlyArray1<'py, u32>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (error_m, covariance_m2, track) = (error_m.as_slice()?, covariance_m2.as_slice()?, track.as_slice()?);
+    let errors = Errors { dimension: 2, error_m, covariance_m2, track };
+    let magnitude = py.detach(|| evaluation::magnitude(&errors)).map_err(refused)?;
+    let d = PyDict::new(py);
+    d.set_item("n", magnitude.n)?;
+    d.set_item("n_effective", magnitude.n_effective)?;
+    d.set_item("square_mean", magnitude.square_mean)?;
+    d.set_item("p_value", magnitude.p_value)?;
+    Ok(d)
+}
+
+/// How often a bound contained the error.
+#[pyfunction]
+fn evaluate_containment(py: Python<'_>, n_outside: usize, n: usize, n_effective: f64, risk: f64) -> PyResult<Bound<'_, PyDict>> {
+    let risk = Risk::new(risk).map_err(|e| input_error(e, None))?;
+    let containment = evaluation::containment(n_outside, n, n_effective, risk).map_err(refused)?;
+    let d = PyDict::new(py);
+    d.set_item("coverage", containment.coverage)?;
+    d.set_item("coverage_low", containment.coverage_low)?;
+    d.set_item("coverage_high", containment.coverage_high)?;
+    d.set_item("p_value", containment.p_value)?;
+    d.set_item("p_value_any", containment.p_value_any)?;
+    Ok(d)
+}
+
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(evaluate_bound, m)?)?;
     m.add_function(wrap_pyfunction!(evaluate_nees, m)?)?;
     m.add_function(wrap_pyfunction!(evaluate_pit, m)?)?;
     m.add_function(wrap_pyfunction!(bootstrap_coverage, m)?)?;
+    m.add_function(wrap_pyfunction!(evaluate_magnitude, m)?)?;
+    m.add_function(wrap_pyfunction!(evaluate_containment, m)?)?;
     m.add_function(wrap_pyfunction!(effective_size, m)?)
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import polars as pl
 
@@ -49,12 +50,17 @@ def circular_sigma(risk: float) -> float:
     return 1.0 / math.sqrt(-2.0 * math.log(risk))
 
 
+Origin = Literal["file", "file_axes", "epu", "nac_p", "containment_radius", "typed", "none"]
+"""What a covariance was made of."""
+
+
 @dataclass(frozen=True)
 class Claimed:
     """Epochs with the six columns of the covariance, and in words where it came from."""
 
     epochs: pl.DataFrame
     words: str
+    origin: Origin
 
 
 def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
@@ -79,17 +85,15 @@ def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
     if sigma_m is not None:
         if not (math.isfinite(sigma_m) and sigma_m > 0):
             raise InputError("sigma_m", sigma_m, "m", "(0, inf)")
-        return _circle(
-            epochs, pl.lit(float(sigma_m)), f"Covariance: circular with sigma = {sigma_m:g} m in each axis, as stated by the user."
-        )
+        words = f"Covariance: circular with sigma = {sigma_m:g} m in each axis, as stated by the user."
+        return _circle(epochs, pl.lit(float(sigma_m)), words, "typed")
     if {"cov_ee_m2", "cov_en_m2", "cov_nn_m2"} <= have:
-        return Claimed(_complete(epochs), "Covariance: as the file gives it.")
+        return Claimed(_complete(epochs), "Covariance: as the file gives it.", "file")
     if {"sigma_e_m", "sigma_n_m"} <= have:
         squares = {f"cov_{a}{a}_m2": pl.col(f"sigma_{a}_m") ** 2 for a in "enu" if f"sigma_{a}_m" in have}
         filled = epochs.with_columns(pl.lit(0.0).alias("cov_en_m2"), **squares)
-        return Claimed(
-            _complete(filled), "Covariance: from the file's standard deviations; axes taken as uncorrelated, which the file does not say."
-        )
+        words = "Covariance: from the file's standard deviations; axes taken as uncorrelated, which the file does not say."
+        return Claimed(_complete(filled), words, "file_axes")
     return _coded(epochs, have)
 
 
@@ -98,14 +102,14 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
     k95, k_rc = circular_sigma(0.05), circular_sigma(RC_RISK)
     coding = "(DO-260B coding from general knowledge, document not at hand)"
     if "epu_m" in have:
-        return _circle(epochs, pl.col("epu_m") * k95, f"Covariance: circular, sigma = EPU / {1 / k95:.4f} (EPU is the 95 % radius).")
+        return _circle(epochs, pl.col("epu_m") * k95, f"Covariance: circular, sigma = EPU / {1 / k95:.4f} (EPU is the 95 % radius).", "epu")
     if "nac_p" in have:
         sigma = _held("nac_p").replace_strict(NACP_EPU_M, default=None, return_dtype=pl.Float64) * k95
         words = (
             f"Covariance: circular, sigma = EPU / {1 / k95:.4f}, EPU being the upper limit that NACp stands for {coding}; an indicator "
             f"counts for {HOLD_S:g} s after it was received."
         )
-        return _circle(epochs, sigma, words)
+        return _circle(epochs, sigma, words, "nac_p")
     if have & {"rc_m", "nic"}:
         coded = _held("nic").replace_strict(NIC_RC_M, default=None, return_dtype=pl.Float64) if "nic" in have else pl.lit(None, pl.Float64)
         radius = pl.coalesce(_held("rc_m"), coded) if "rc_m" in have else coded
@@ -113,9 +117,9 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
             f"Covariance: circular, sigma = Rc / {1 / k_rc:.4f}, taking the containment radius Rc at a risk of {RC_RISK:g}, source "
             f"integrity level 3 {coding}. Rc is an integrity limit, so this sigma is a stand-in."
         )
-        return _circle(epochs, radius * k_rc, words)
+        return _circle(epochs, radius * k_rc, words, "containment_radius")
     words = "Covariance: none. The file states no accuracy and none was given (sigma_m), so nothing bounds the navigation error."
-    return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COLUMNS), words)
+    return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COLUMNS), words, "none")
 
 
 def _held(name: str) -> pl.Expr:
@@ -125,11 +129,11 @@ def _held(name: str) -> pl.Expr:
     return pl.when(fresh).then(pl.col(name).forward_fill().over("track"))
 
 
-def _circle(epochs: pl.DataFrame, sigma: pl.Expr, words: str) -> Claimed:
+def _circle(epochs: pl.DataFrame, sigma: pl.Expr, words: str, origin: Origin) -> Claimed:
     epochs = epochs.with_columns((sigma**2).alias("cov_ee_m2"))
     known = pl.col("cov_ee_m2").is_not_null()
     epochs = epochs.with_columns(pl.when(known).then(0.0).alias("cov_en_m2"), pl.col("cov_ee_m2").alias("cov_nn_m2"))
-    return Claimed(_complete(epochs.drop("cov_eu_m2", "cov_nu_m2", "cov_uu_m2", strict=False)), words)
+    return Claimed(_complete(epochs.drop("cov_eu_m2", "cov_nu_m2", "cov_uu_m2", strict=False)), words, origin)
 
 
 def _complete(epochs: pl.DataFrame) -> pl.DataFrame:

@@ -10,7 +10,7 @@ import polars as pl
 
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
-from navbound.read.covariance import COLUMNS, claim
+from navbound.read.covariance import COLUMNS, Claimed, claim
 from navbound.read.epochs import Reading, read
 from navbound.read.plausible import Limits, check
 from navbound.read.routes import Route, follow, load_route
@@ -18,7 +18,7 @@ from navbound.read.runways import runway
 from navbound.read.truth import TOLERANCE_S, join, with_error
 from navbound.run.files import sort_out
 from navbound.run.material import Material
-from navbound.run.records import Rejection, Waypoint
+from navbound.run.records import CovarianceOrigin, Rejection, Waypoint
 from navbound.run.solved import solved
 
 if TYPE_CHECKING:
@@ -94,7 +94,9 @@ def material(
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
     epochs, plausibility = check(claimed.epochs, limits)
-    assumptions = [claimed.words, plausibility.words]
+    origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
+    of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
+    assumptions = [of_covariance, plausibility.words]
     if truth is not None:
         other = read(truth)
         inputs.append(other.source)
@@ -113,6 +115,7 @@ def material(
         requirement=requirement,
         sample_period_s=_period(epochs),
         assumptions=[*assumptions, *route.words, *notes],
+        covariance=origin,
         labels={track: f"{labels[of]} {track.partition(' ')[2]}".strip() for track, of in route.tracks.items()} if route.tracks else labels,
         waypoints=route.waypoints,
         inputs=inputs + route.inputs,
@@ -131,6 +134,11 @@ def material(
             "solve": solve,
         },
     )
+
+
+def _origin(claimed: Claimed, sigma_m: float | None, *, solved_alone: bool) -> CovarianceOrigin:
+    solved_covariance = solved_alone and claimed.origin == "file"
+    return CovarianceOrigin(id="solved" if solved_covariance else claimed.origin, sigma_m=sigma_m)
 
 
 @dataclass(frozen=True)

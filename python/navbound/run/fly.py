@@ -13,7 +13,7 @@ import polars as pl
 from navbound import _core
 from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
 from navbound.run.material import Material
-from navbound.run.records import Waypoint
+from navbound.run.records import CovarianceOrigin, Waypoint
 from navbound.scenario import Scenario, find, load
 
 if TYPE_CHECKING:
@@ -93,6 +93,7 @@ def material(
         requirement="RNP by phase of flight",
         sample_period_s=1.0,
         assumptions=_assumptions(found),
+        covariance=CovarianceOrigin(id="simulated" if found.filter is None else "filter"),
         labels={track_name(i): f"Flight {i + 1}" for i in range(flights)},
         waypoints=[Waypoint(name=w.name, lat_rad=w.lat_rad, lon_rad=w.lon_rad, kind=w.kind) for w in found.waypoints],
         inputs=[] if isinstance(scenario, Scenario) else [scenario_file(find(scenario))],

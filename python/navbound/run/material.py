@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     import polars as pl
 
-    from navbound.run.records import CrossTrack, EventSummary, InputFile, Rejection, Waypoint
+    from navbound.run.records import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,8 @@ class Material:
         Track to a label a person recognises.
     events : list of EventSummary
         Points of the flight besides the monitor's alerts.
+    covariance : CovarianceOrigin
+        Where the covariance comes from.
     limits_held : dict
         Phase to how its alert limit is held ("inferred", ...), where epochs have ``hpl_m`` and ``hal_m``.
     """
@@ -47,6 +49,7 @@ class Material:
     requirement: str
     sample_period_s: float
     assumptions: list[str]
+    covariance: CovarianceOrigin
     labels: dict[str, str] = field(default_factory=dict)
     waypoints: list[Waypoint] = field(default_factory=list)
     inputs: list[InputFile] = field(default_factory=list)

@@ -23,15 +23,17 @@ from navbound.run.files import sort_out
 from navbound.run.levels_of import COVARIANCE, Truth, truth_of
 from navbound.run.levels_of_monitor import GIVEN, monitor_of
 from navbound.run.performance_parts import Stored, finished_parts, ranges_of_parts, tables_of
-from navbound.run.performance_words import performance_words
+from navbound.run.performance_words import levels_verdict, performance_words
 from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
 from navbound.run.summarise import honesty_of
+from navbound.run.verdict import rule
+from navbound.run.verdict.belief import of_level
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from navbound.run.files import Files
-    from navbound.run.kpi_records import Performance
+    from navbound.run.kpi_records import LevelResult, Performance
 
 PARTS = "parts"
 """Folder of the run directory that remembers the finished parts."""
@@ -236,15 +238,20 @@ def _honesty(parts: list[Stored]) -> tuple[Honesty | None, list[str]]:
 
 def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) -> Summary:
     names = ", ".join(found.level.id for found in result.levels)
+    decided = rule.of_levels([_facts(found, result) for found in result.levels])
     verdict = Verdict(
+        id=decided,
+        # A service level is no RNP: what its id says stands in the words.
         inside=None,
-        words=" ".join(performance_words(result)),
+        words=" ".join([*levels_verdict(decided), *performance_words(result)]),
         requirement=names,
         method="performance",
         share_inside=None,
         share_contained=None,
         n_epochs=result.n_expected,
         n_judged=result.n_solution,
+        n_unjudged=result.n_expected - result.n_solution,
+        n_missing=result.n_missing,
         n_implausible=0,
         worst_accuracy=None,
         worst_integrity=None,
@@ -272,6 +279,17 @@ def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) 
         rejected=[Rejection(**fields) for part in parts for fields in part.rejected],
         n_status={"solution": result.n_solution, "no_solution": result.n_no_solution, "missing": result.n_missing},
         performance=result,
+    )
+
+
+def _facts(found: LevelResult, result: Performance) -> rule.LevelFacts:
+    return rule.LevelFacts(
+        n_expected=found.n_expected,
+        n_solution=found.n_solution,
+        n_available=found.n_available,
+        n_misleading_events=found.n_mi_events + found.n_hazard_events,
+        p_misleading=of_level(found, result.period_s),
+        truth_known=found.truth_known,
     )
 
 

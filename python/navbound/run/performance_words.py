@@ -8,6 +8,16 @@ from navbound.run.words import length, share
 
 if TYPE_CHECKING:
     from navbound.run.kpi_records import LevelResult, Performance, Subsets
+    from navbound.run.verdict.rule import VerdictId
+
+
+def levels_verdict(verdict: VerdictId) -> list[str]:
+    """The sentence that withdraws the numbers after it; nothing where they may be used."""
+    if verdict == "not_believable":
+        return ["Not believable: errors exceed the protection level more often than its integrity risk allows."]
+    if verdict == "nothing_judged":
+        return ["Nothing judged: no epoch has a protection level."]
+    return []
 
 
 def performance_words(result: Performance) -> list[str]:

@@ -12,6 +12,8 @@ from pydantic import Field
 from navbound.run.faults import FaultSummary
 from navbound.run.kpi_records import Performance
 from navbound.run.record import Record
+from navbound.run.verdict import rule
+from navbound.run.verdict.rule import BeliefState, VerdictId
 
 
 class Worst(Record):
@@ -29,11 +31,49 @@ class Worst(Record):
     lon_rad: float
 
 
+class BoundCheck(Record):
+    """One bound against truth, over epochs with status ok."""
+
+    method: str
+    risk: float
+    n: int
+    n_outside: int
+    n_effective: float
+    """Independent epochs that they are worth: of the navigation error about zero."""
+    coverage: float
+    coverage_low: float
+    coverage_high: float
+    """Exact binomial 95 % limits for the effective number."""
+
+
+class Belief(Record):
+    """Whether truth supports the bounds that a verdict rests on."""
+
+    state: BeliefState
+    """`refuted` withdraws the verdict; `short` leaves it not shown."""
+    n_effective: float
+    square_mean: float | None
+    """Mean of e' V^-1 e of the horizontal error, each at most 23.03; 2 for a true covariance."""
+    p_value: float
+    """Largest probability of these data under true bounds, over all tests made."""
+    bounds: list[BoundCheck]
+
+
+class CovarianceOrigin(Record):
+    """Where the covariance that the bounds rest on comes from."""
+
+    id: Literal["simulated", "filter", "solved", "file", "file_axes", "epu", "nac_p", "containment_radius", "typed", "none"]
+    sigma_m: float | None = None
+    """What the user typed."""
+
+
 class Verdict(Record):
     """Inside or not, in one look."""
 
+    id: VerdictId
+    """Decided in run/verdict/rule.py alone."""
     inside: bool | None
-    """None when no epoch could be judged, or when epochs that cannot be true or errors above protection levels make the others doubtful."""
+    """What the id says of the requirement; None: nothing."""
     words: str
     """The verdict as sentences: what, how much, worst where and when, what was assumed, whether truth was known."""
     requirement: str
@@ -44,7 +84,23 @@ class Verdict(Record):
     share_contained: float | None
     """Share of judged epochs whose integrity bound is within 2 RNP."""
     n_epochs: int
+    """Expected: epochs of the table and those missing in gaps."""
     n_judged: int
+    """Epochs with status ok and a bound."""
+    n_degraded: int = 0
+    """Epochs with status degraded: they may show outside, never inside."""
+    n_unjudged: int = 0
+    """Epochs of any other kind: without position, covariance or bound, or missing."""
+    n_missing: int = 0
+    """Of those, epochs that a gap of the table should have held."""
+    n_outside: int = 0
+    """Epochs with status ok or degraded whose bound is beyond its limit."""
+    least_share: float = rule.LEAST_SHARE
+    """Least share of judged epochs for "inside"."""
+    assumed: list[Literal["sigma_typed", "sigma_coded", "no_path"]] = Field(default_factory=list)
+    """What stands in the first sentence because no data says it."""
+    belief: Belief | None = None
+    """None where no truth is known."""
     n_implausible: int
     """Epochs whose input cannot be true (a jump that cannot be flown, a negative variance)."""
     worst_accuracy: Worst | None
@@ -61,6 +117,7 @@ class PhaseSummary(Record):
     n_epochs: int
     duration_s: float
     share_inside: float | None
+    """Of epochs with status ok."""
     worst_ratio: float | None
     """Largest accuracy bound over RNP."""
     p_exceed_2rnp_max: float | None
@@ -104,6 +161,7 @@ class TrackSummary(Record):
     fte_std_m: float | None
     fte_abs95_m: float | None
     share_inside: float | None
+    """Of epochs with status ok."""
     worst_ratio: float | None
     worst_margin_m: float | None
     n_cautions: int
@@ -232,6 +290,8 @@ class Summary(Record):
     coverage_kind: str
     """Which of the two kinds of coverage every `coverage` here is (docs/methods/coverage.md)."""
     assumptions: list[str]
+    covariance: CovarianceOrigin = CovarianceOrigin(id="none")
+    """Provenance of every sigma."""
     phases: list[PhaseSummary]
     tracks: list[TrackSummary]
     accuracy: list[MethodResult]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import polars as pl
 
-from navbound import anp, evaluation
+from navbound import anp, evaluation, rnp
 from navbound.methods import column_of, method
 from navbound.run.records import (
     EventSummary,
@@ -21,6 +22,8 @@ from navbound.run.records import (
     Verdict,
     Worst,
 )
+from navbound.run.verdict import rule
+from navbound.run.verdict.belief import of_epochs
 from navbound.run.words import honesty_words, protection_words, verdict_words
 
 if TYPE_CHECKING:
@@ -72,10 +75,13 @@ def summarise(
     integrity = judged.integrity_column if "integrity_compared_m" not in epochs.columns else "integrity_compared_m"
     margins = epochs.with_columns(
         (pl.col(judged.column) / pl.col("rnp_m")).alias("_ratio"),
-        (pl.col("rnp_m") - pl.col(judged.column)).alias("_margin"),
-        (2 * pl.col("rnp_m") - pl.col(integrity)).alias("_margin_integrity"),
+        # A NaN is greater than every number here: it must not pass for a margin.
+        (pl.col("rnp_m") - pl.col(judged.column)).fill_nan(None).alias("_margin"),
+        (2 * pl.col("rnp_m") - pl.col(integrity)).fill_nan(None).alias("_margin_integrity"),
         pl.col(integrity).alias("_integrity"),
     )
+    # Degraded epochs may show outside; a share inside speaks of ok epochs alone.
+    margins = margins.with_columns(pl.when(pl.col("status") == "ok").then((pl.col("_margin") >= 0).cast(pl.Float64)).alias("_inside"))
     coverage_kind = evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED
     accuracy = [_method_result(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
     protection = _protection(epochs, material.limits_held)
@@ -86,6 +92,7 @@ def summarise(
         verdict=verdict,
         coverage_kind=coverage_kind,
         assumptions=material.assumptions,
+        covariance=material.covariance,
         phases=_phases(margins, judged.column, material.sample_period_s, events),
         protection=protection,
         tracks=_tracks(margins, material.labels, events),
@@ -103,35 +110,67 @@ def summarise(
 def _verdict(
     material: Material, margins: pl.DataFrame, judge: MethodResult, risks: tuple[float, float], protection: list[ProtectionSummary]
 ) -> Verdict:
-    judging = judge.id
-    judged = margins.get_column("_margin").drop_nulls()
-    share = _mean(judged >= 0)
-    # A judged epoch without its protection level is not contained.
-    contained = _mean(margins.filter(pl.col("_margin").is_not_null()).get_column("_margin_integrity").ge(0).fill_null(value=False))
-    n_implausible = margins.get_column("status").eq("invalid_input").sum()
-    inside = None if share is None or contained is None else share == 1.0 and contained == 1.0
-    if inside and any(p.share_available < 1.0 for p in protection):
-        inside = False
-    if inside and (n_implausible or any(p.n_misleading for p in protection)):
-        inside = None
-    worst = _worst(margins, "_margin", method(judging).column, 1.0)
-    worst_integrity = _worst(margins, "_margin_integrity", "_integrity", 2.0)
-    truth_known = judge.coverage is not None
+    judged = margins.filter(pl.col("status") == "ok").select("_margin", "_margin_integrity").drop_nulls()
+    status = margins.get_column("status")
+    n_missing = _missing(margins, material.sample_period_s)
+    n_epochs, n_degraded = margins.height + n_missing, int((status == "degraded").sum())
+    belief = of_epochs(margins, judge.id, risks)
+    facts = rule.TrackFacts(
+        n_epochs=n_epochs,
+        n_judged=judged.height,
+        n_outside=margins.select(_OUTSIDE.sum()).item(),
+        n_beyond_alert_limit=sum(p.n_epochs - round(p.share_available * p.n_epochs) for p in protection),
+        n_implausible=int(status.eq("invalid_input").sum()),
+        n_misleading=sum(p.n_misleading for p in protection),
+        belief="unchecked" if belief is None else belief.state,
+    )
+    decided = rule.of_tracks(facts)
     verdict = Verdict(
-        inside=inside,
+        id=decided,
+        inside=rule.MEANS_INSIDE[decided],
         words="",
         requirement=material.requirement,
-        method=judging,
-        share_inside=share,
-        share_contained=contained,
-        n_epochs=margins.height,
-        n_judged=judged.len(),
-        n_implausible=n_implausible,
-        worst_accuracy=worst,
-        worst_integrity=worst_integrity,
-        truth_known=truth_known,
+        method=judge.id,
+        share_inside=_mean(judged["_margin"] >= 0),
+        share_contained=_mean(judged["_margin_integrity"] >= 0),
+        n_epochs=n_epochs,
+        n_judged=judged.height,
+        n_degraded=n_degraded,
+        n_unjudged=n_epochs - judged.height - n_degraded,
+        n_missing=n_missing,
+        n_outside=facts.n_outside,
+        assumed=_assumed(material, judge.id),
+        belief=belief,
+        n_implausible=facts.n_implausible,
+        worst_accuracy=_worst(margins, "_margin", method(judge.id).column, 1.0),
+        worst_integrity=_worst(margins, "_margin_integrity", "_integrity", 2.0),
+        truth_known=judge.coverage is not None,
     )
-    return verdict.model_copy(update={"words": f"{verdict_words(verdict, judge, risks)}{protection_words(protection)}"})
+    words = verdict_words(verdict, judge, risks, material.covariance)
+    return verdict.model_copy(update={"words": f"{words}{protection_words(protection)}"})
+
+
+_OUTSIDE = (pl.min_horizontal("_margin", "_margin_integrity") < 0).fill_null(value=False) | (
+    (pl.col("status") == "ok") & pl.col("_margin").is_not_null() & pl.col("_margin_integrity").is_null()
+)
+"""Outside a limit, or an ok epoch whose protection level is missing: what the monitor compares is then within no limit."""
+
+
+def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "sigma_coded", "no_path"]]:
+    """What no data says and the first sentence must."""
+    assumed: list[Literal["sigma_typed", "sigma_coded", "no_path"]] = []
+    if material.covariance.id == "typed":
+        assumed.append("sigma_typed")
+    elif material.covariance.id in {"nac_p", "containment_radius"}:
+        assumed.append("sigma_coded")
+    return [*assumed, "no_path"] if method(judging).error_column == "nse_h_m" else assumed
+
+
+def _missing(epochs: pl.DataFrame, period_s: float) -> int:
+    """Epochs that the gaps of the tracks should have held: those longer than the monitor waits before it says that there is nothing."""
+    step = pl.col("time_ns").diff().over("track").cast(pl.Float64) * 1e-9
+    gaps = epochs.select(step=step).filter(pl.col("step") > rnp.Monitor(sample_period_s=period_s, time_to_alert_s=math.inf).stale_after_s)
+    return int(gaps.select(((pl.col("step") / period_s).round() - 1).sum()).item() or 0)
 
 
 def _mean(flags: pl.Series) -> float | None:
@@ -166,7 +205,7 @@ def _phases(margins: pl.DataFrame, bound: str, sample_period_s: float, events: p
     risk = pl.col("p_exceed_2rnp") if "p_exceed_2rnp" in margins.columns else pl.lit(None, dtype=pl.Float64)
     grouped = margins.group_by("phase", "rnp_m", maintain_order=True).agg(
         pl.len().alias("n_epochs"),
-        (pl.col("_margin") >= 0).cast(pl.Float64).mean().alias("share_inside"),
+        pl.col("_inside").mean().alias("share_inside"),
         pl.col("_ratio").max().alias("worst_ratio"),
         risk.max().alias("p_exceed_2rnp_max"),
         risk.mean().alias("p_exceed_2rnp_mean"),
@@ -218,7 +257,7 @@ def _tracks(margins: pl.DataFrame, labels: dict[str, str], events: pl.DataFrame)
         fte.mean().alias("fte_mean_m"),
         fte.std(ddof=0).alias("fte_std_m"),
         fte.abs().quantile(0.95, interpolation="nearest").alias("fte_abs95_m"),
-        (pl.col("_margin") >= 0).cast(pl.Float64).mean().alias("share_inside"),
+        pl.col("_inside").mean().alias("share_inside"),
         pl.col("_ratio").max().alias("worst_ratio"),
         pl.col("_margin").min().alias("worst_margin_m"),
     )

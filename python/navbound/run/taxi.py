@@ -13,7 +13,7 @@ from navbound import gbas
 from navbound.run import taxi_errors as errors
 from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
 from navbound.run.material import Material
-from navbound.run.records import EventSummary, Waypoint
+from navbound.run.records import CovarianceOrigin, EventSummary, Waypoint
 from navbound.run.series_memory import gauss_markov
 from navbound.run.surface_grid import K95
 from navbound.run.taxi_motion import move
@@ -79,6 +79,7 @@ def material(file: Path, *, flights: int = 1, seed: int | None = None, **work: U
         requirement="surface movement: twice RNP is the total system containment of each sub-phase (inferred)",
         sample_period_s=1.0,
         assumptions=_assumptions(found, ground.navigator, ground.asked),
+        covariance=CovarianceOrigin(id="simulated"),
         labels={track_name(i): f"Flight {i + 1}" for i in range(flights)},
         waypoints=[Waypoint(name=p.name, lat_rad=p.lat_rad, lon_rad=p.lon_rad, kind="waypoint") for p in found.points],
         inputs=[scenario_file(file)],

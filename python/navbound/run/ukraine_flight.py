@@ -13,7 +13,7 @@ import polars as pl
 from navbound import _core, dme, path
 from navbound.read import runways
 from navbound.run.material import Material
-from navbound.run.records import Waypoint
+from navbound.run.records import CovarianceOrigin, Waypoint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -129,6 +129,7 @@ def material(flown: Flight, seed: int) -> Material:
         requirement="RNP 1",
         sample_period_s=STEP_S,
         assumptions=_assumptions(),
+        covariance=CovarianceOrigin(id="simulated"),
         labels=dict(LABELS),
         waypoints=flown.waypoints,
         seed=seed,

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navbound import anp
+from navbound.run.verdict.rule import FEW_EPOCHS
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from navbound.evaluation import Nees, Pit
-    from navbound.run.records import Held, MethodResult, ProtectionSummary, Verdict, Worst
+    from navbound.run.records import Belief, BoundCheck, CovarianceOrigin, Held, MethodResult, ProtectionSummary, Verdict, Worst
+    from navbound.run.verdict.rule import VerdictId
 
 METRES_PER_NM = 1852.0
 
@@ -31,6 +33,8 @@ def share(fraction: float) -> str:
     digits = 1
     while digits < 6 and (round(percent, digits) in (0.0, 100.0)):
         digits += 1
+    if round(percent, digits) in (0.0, 100.0):
+        return "below 0.000001 %" if percent < 50.0 else "above 99.999999 %"
     return f"{percent:.{digits}f} %"
 
 
@@ -39,38 +43,112 @@ def level(risk: float) -> str:
     return f"{100 * (1 - risk):.10g} %"
 
 
-def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, float]) -> str:
+HEADLINES: dict[VerdictId, str] = {
+    "inside": "Inside",
+    "outside": "Not always inside",
+    "not_shown": "Not shown to be inside",
+    "not_believable": "Not believable",
+    "nothing_judged": "Nothing judged against",
+}
+"""The first words of each verdict."""
+
+
+def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, float], covariance: CovarianceOrigin) -> str:
     """What a navigator wants to know first, in sentences."""
-    parts = [_inside(verdict, risks)]
+    assumed = _assumed(verdict, covariance)
+    first = _first(verdict, risks)
+    parts = [f"{assumed}: {first[0].lower()}{first[1:]}" if assumed else first]
+    if verdict.id == "not_shown":
+        parts += _not_shown(verdict)
     if verdict.worst_accuracy is not None:
         parts.append(_worst(verdict.worst_accuracy))
-    if verdict.n_judged < verdict.n_epochs:
-        parts.append(
-            f"{verdict.n_epochs - verdict.n_judged} of {verdict.n_epochs} epochs could not be judged and count as loss of monitoring."
-        )
     if verdict.n_implausible:
         parts.append(
             f"{verdict.n_implausible} epochs cannot be true (see their reasons); what looks right beside them may be wrong as well."
         )
     parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
-    if verdict.truth_known and judged.coverage is not None:
-        parts.append(f"Truth is known: the {level(risks[0])} bound held the error at {share(judged.coverage)} of {judged.n} epochs.")
+    if verdict.belief is not None:
+        parts.append(_against_truth(verdict.belief))
     elif not verdict.truth_known:
-        parts.append("No truth: the honesty of the covariance could not be checked.")
+        parts.append("No truth: the covariance could not be checked.")
+    else:
+        parts.append("Truth is known at no ok epoch: the bounds of ok epochs could not be checked.")
     return " ".join(parts)
 
 
-def _inside(verdict: Verdict, risks: tuple[float, float]) -> str:
+def _assumed(verdict: Verdict, covariance: CovarianceOrigin) -> str:
+    named = {
+        "sigma_typed": "" if covariance.sigma_m is None else f"a sigma of {covariance.sigma_m:g} m in each axis, typed by the user",
+        "sigma_coded": "a sigma made of a quality indicator (NACp, NIC or Rc)",
+        "no_path": "no path (the circle of the position error is compared with RNP, without flight technical error)",
+    }
+    return f"Assuming {' and '.join(named[each] for each in verdict.assumed)}" if verdict.assumed else ""
+
+
+def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
     accuracy, integrity = (level(risk) for risk in risks)
-    if verdict.share_inside is None or verdict.share_contained is None:
-        return f"Not judged against {verdict.requirement}: no epoch has a bound."
-    words = {True: "Inside", False: "Not always inside", None: "Not shown to be inside"}[verdict.inside]
-    where = "" if verdict.n_judged == verdict.n_epochs else " where it could be judged"
+    shares = _shares(verdict)
+    if verdict.id == "nothing_judged" or verdict.share_inside is None or verdict.share_contained is None:
+        found = f" {verdict.n_outside} epochs that are not ok have a bound beyond its limit." if verdict.n_outside else ""
+        return f"{HEADLINES[verdict.id]} {verdict.requirement}: {shares}.{found}"
+    if verdict.id == "not_believable":
+        return f"{HEADLINES[verdict.id]}, margins to {verdict.requirement} mean nothing: {_refuted(verdict.belief)}; {shares}."
+    more = f", and {verdict.n_outside} epochs with status ok or degraded have a bound beyond its limit" if verdict.n_outside else ""
     return (
-        f"{words} {verdict.requirement}{where}: the {accuracy} bound is within RNP "
-        f"at {share(verdict.share_inside)} of {verdict.n_judged} judged epochs, "
-        f"the {integrity} bound within twice RNP at {share(verdict.share_contained)}."
+        f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "
+        f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; {shares}."
     )
+
+
+def _shares(verdict: Verdict) -> str:
+    """What became of all epochs."""
+    if verdict.n_epochs == 0:
+        return "there is no epoch"
+    if verdict.n_judged == verdict.n_epochs:
+        return f"all {verdict.n_epochs} epochs are ok and judged"
+    missing = f" ({verdict.n_missing} epochs missing in gaps)" if verdict.n_missing else ""
+    kinds = {"ok and judged": verdict.n_judged, "degraded": verdict.n_degraded, f"without a bound{missing}": verdict.n_unjudged}
+    return f"of {verdict.n_epochs} epochs {', '.join(f'{share(n / verdict.n_epochs)} are {kind}' for kind, n in kinds.items())}"
+
+
+def _refuted(belief: Belief | None) -> str:
+    if belief is None or belief.state != "refuted":
+        return "errors are above the protection level"
+    return f"truth contradicts the bounds (probability of these errors under true bounds at most {belief.p_value:.1g})"
+
+
+def _not_shown(verdict: Verdict) -> list[str]:
+    """Why the margins alone are not enough."""
+    why = []
+    if verdict.n_judged < verdict.least_share * verdict.n_epochs:
+        why.append(f"At least {level(1.0 - verdict.least_share)} of the epochs must be ok and judged.")
+    if verdict.belief is not None and verdict.belief.state == "short":
+        why.append(
+            "The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false."
+        )
+    return why
+
+
+def _against_truth(belief: Belief) -> str:
+    """How often each bound contained the error, with its interval and what the epochs are worth."""
+    whole = [check for check in belief.bounds if check.n_outside == 0 and check.risk < WHOLE_BELOW]
+    one = [
+        f"{share(check.coverage)} ({share(check.coverage_low)} to {share(check.coverage_high)}) within the {_bound(check)}"
+        for check in belief.bounds
+        if check not in whole
+    ]
+    parts = [f"{' and '.join(one)} (95 % intervals as from {belief.n_effective:.2g} independent epochs)"] if one else []
+    parts += [f"none is beyond the {' or the '.join(_bound(check) for check in whole)}"] if whole else []
+    return f"Truth is known: of the errors at ok epochs {'; '.join(parts)}."
+
+
+def _bound(check: BoundCheck) -> str:
+    return f"{level(check.risk)} {METHOD_WORDS.get(check.method, check.method)}"
+
+
+WHOLE_BELOW = 0.01
+"""Risk below which a bound that every error respects needs no interval: hardly an epoch was to be expected beyond it."""
+METHOD_WORDS = {"anp-circle": "circle", "tse-exact": "bound of the total system error"}
 
 
 def _worst(worst: Worst) -> str:
@@ -92,10 +170,6 @@ def protection_words(protection: list[ProtectionSummary]) -> str:
     misled = sum(p.n_misleading for p in protection)
     truth = f" At {misled} epochs the true error is above the protection level: misleading information." if misled else ""
     return f" Protection level within the alert limit ({held}) at {available} of {n} epochs.{truth}"
-
-
-FEW_EPOCHS = 10.0
-"""Effective epochs below which their number is no better known than by its own size: it comes from the same correlated data."""
 
 
 def honesty_words(nees: Nees, pit: Pit, regions: Sequence[Held] = ()) -> str:

@@ -15,7 +15,30 @@ export interface Worst {
     lon_rad: number;
 }
 
+export type VerdictId = "inside" | "outside" | "not_shown" | "not_believable" | "nothing_judged";
+
+/** One bound against truth, over epochs with status ok. */
+export interface BoundCheck {
+    method: string;
+    risk: number;
+    n: number;
+    n_outside: number;
+    n_effective: number;
+    coverage: number;
+    coverage_low: number;
+    coverage_high: number;
+}
+
+export interface Belief {
+    state: "unchecked" | "supported" | "short" | "refuted";
+    n_effective: number;
+    square_mean: number | null;
+    p_value: number;
+    bounds: BoundCheck[];
+}
+
 export interface Verdict {
+    id: VerdictId;
     inside: boolean | null;
     words: string;
     requirement: string;
@@ -24,6 +47,13 @@ export interface Verdict {
     share_contained: number | null;
     n_epochs: number;
     n_judged: number;
+    n_degraded: number;
+    n_unjudged: number;
+    n_missing: number;
+    n_outside: number;
+    least_share: number;
+    assumed: ("sigma_typed" | "sigma_coded" | "no_path")[];
+    belief: Belief | null;
     n_implausible: number;
     worst_accuracy: Worst | null;
     worst_integrity: Worst | null;
@@ -156,6 +186,7 @@ export interface Summary {
     verdict: Verdict;
     coverage_kind: string;
     assumptions: string[];
+    covariance: { id: string; sigma_m: number | null };
     phases: PhaseSummary[];
     tracks: TrackSummary[];
     accuracy: MethodResult[];

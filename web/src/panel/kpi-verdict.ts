@@ -26,12 +26,14 @@ export function kpiVerdict(host: HTMLElement, payload: Payload, record: Performa
     const tone = toneOf(record);
     const mark = svg("svg", { viewBox: "0 0 24 24", width: 26, height: 26, "aria-hidden": "true" }, svg("path", { d: STATES[tone].mark }));
     // A level that no integrity rests on earns no green.
-    const shown = tone === "inside" && record.experimental !== "" ? "unknown" : tone;
+    const { id } = payload.summary.verdict;
+    const shown = id === "not_believable" ? "warning" : tone === "inside" && record.experimental !== "" ? "unknown" : tone;
+    const withdrawn = id === "not_believable" ? "Not believable" : id === "nothing_judged" ? "Nothing judged" : null;
     // The panel itself has the colour.
     const words = headline(record);
     words.className = "words";
     host.append(el("section", { class: "verdict", id: "verdict", "data-tone": shown, "aria-label": "Verdict" },
-        el("p", { class: "state" }, mark, STATES[tone].word, el("span", { class: "requirement" }, record.levels.map((r) => r.level.id).join(", ")), record.experimental === "" ? null : el("span", { class: "tag" }, record.experimental)),
+        el("p", { class: "state" }, mark, STATES[tone].word, withdrawn === null ? null : el("span", { class: "tag" }, withdrawn), el("span", { class: "requirement" }, record.levels.map((r) => r.level.id).join(", ")), record.experimental === "" ? null : el("span", { class: "tag" }, record.experimental)),
         words, el("dl", { class: "facts" }, ...record.levels.map((r) => ofLevel(r)), accuracy(record), subsets(record)),
         el("div", { class: "basis" },
             el("div", {}, el("p", {}, el("strong", {}, "Truth "), record.truth_known ? "known: errors are seen, hazards could be counted." : "unknown: neither accuracy nor integrity could be judged.")),

@@ -1,18 +1,21 @@
 // The verdict: state and words first, then the few numbers behind it.
 
-import type { Payload, Verdict, Worst } from "../data/records.ts";
+import type { BoundCheck, Payload, Verdict, VerdictId, Worst } from "../data/records.ts";
 import { utcOf } from "../data/events.ts";
 import { about } from "../chart/methods.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
 import { asked, kpiVerdict } from "./kpi-verdict.ts";
-import { clock, count, date, level, limitName, nauticalMiles, place, share, SHORT_M, signedMetres } from "../show/format.ts";
+import { clock, count, date, level, limitName, nauticalMiles, place, plain, share, SHORT_M, signedMetres } from "../show/format.ts";
 
-const STATES = {
+type Tone = "inside" | "caution" | "warning" | "unknown";
+
+const STATES: Record<VerdictId, { word: string; mark: string }> = {
     inside: { word: "Inside", mark: "M5 13 L10 18 L19 7" },
     outside: { word: "Outside", mark: "M6 6 L18 18 M18 6 L6 18" },
-    doubtful: { word: "Doubtful", mark: "M12 4 L21 20 L3 20 Z M12 10 L12 14 M12 16.8 L12 17" },
-    unknown: { word: "Unknown", mark: "M8.5 9 A3.6 3.6 0 1 1 12 13 L12 15 M12 18.4 L12 18.6" },
-} as const;
+    not_shown: { word: "Not shown", mark: "M12 4 L21 20 L3 20 Z M12 10 L12 14 M12 16.8 L12 17" },
+    not_believable: { word: "Not believable", mark: "M6 6 L18 18 M18 6 L6 18" },
+    nothing_judged: { word: "Nothing judged", mark: "M8.5 9 A3.6 3.6 0 1 1 12 13 L12 15 M12 18.4 L12 18.6" },
+};
 
 export function verdict(host: HTMLElement, payload: Payload): void {
     const { summary } = payload;
@@ -22,16 +25,13 @@ export function verdict(host: HTMLElement, payload: Payload): void {
         return;
     }
     const v = summary.verdict;
-    const state = stateOf(v, summary.protection.reduce((n, p) => n + p.n_misleading, 0));
-    // Red is for integrity alone: an accuracy limit passed is a caution.
-    const lost = (v.worst_integrity?.margin_m ?? 0) < 0 || (v.share_contained ?? 1) < 1;
-    const tone = state === "outside" ? (lost ? "warning" : "caution") : state === "doubtful" ? "caution" : state;
+    const state = STATES[v.id];
     const method = summary.accuracy.find((m) => m.id === v.method);
-    const mark = svg("svg", { viewBox: "0 0 24 24", width: 26, height: 26, "aria-hidden": "true" }, svg("path", { d: STATES[state].mark }));
-    const section = el("section", { class: "verdict", id: "verdict", "data-tone": tone, "aria-label": "Verdict" },
-        el("p", { class: "state" }, mark, valueOf("inside", String(v.inside), STATES[state].word), el("span", { class: "requirement" }, v.requirement), v.experimental ? el("span", { class: "tag" }, "experimental") : null,
+    const mark = svg("svg", { viewBox: "0 0 24 24", width: 26, height: 26, "aria-hidden": "true" }, svg("path", { d: state.mark }));
+    const section = el("section", { class: "verdict", id: "verdict", "data-tone": toneOf(v), "aria-label": "Verdict" },
+        el("p", { class: "state" }, mark, valueOf("id", v.id, state.word), el("span", { class: "requirement" }, v.requirement), v.experimental ? el("span", { class: "tag" }, "experimental") : null,
             v.n_implausible > 0 ? el("span", { class: "tag" }, valueOf("n_implausible", v.n_implausible, count(v.n_implausible)), ` of ${count(v.n_epochs)} epochs cannot be true`) : null,
-            v.n_judged < v.n_epochs ? el("span", { class: "tag" }, `${share((v.n_epochs - v.n_judged) / v.n_epochs)} of the epochs not judged`) : null),
+            v.n_judged < v.least_share * v.n_epochs ? el("span", { class: "tag" }, `${share((v.n_epochs - v.n_judged) / v.n_epochs)} of the epochs not ok or not judged`) : null),
         el("p", { class: "words" }, v.words),
         facts(payload, method?.risk),
         el("div", { class: "basis" },
@@ -41,10 +41,13 @@ export function verdict(host: HTMLElement, payload: Payload): void {
     host.append(section);
 }
 
-/** Epochs that cannot be true and errors above protection levels make the others doubtful; without them no verdict means that nothing could be judged. */
-export function stateOf(v: Pick<Verdict, "inside" | "n_implausible">, misleading = 0): keyof typeof STATES {
-    if (v.inside === null) return v.n_implausible + misleading > 0 ? "doubtful" : "unknown";
-    return v.inside ? "inside" : "outside";
+/** Red is for integrity alone: an accuracy limit passed is a caution. A sigma that no data states earns no green. */
+export function toneOf(v: Pick<Verdict, "id" | "assumed" | "share_contained" | "worst_integrity">): Tone {
+    if (v.id === "not_believable") return "warning";
+    if (v.id === "nothing_judged") return "unknown";
+    if (v.id === "not_shown") return "caution";
+    if (v.id === "outside") return (v.worst_integrity?.margin_m ?? 0) < 0 || (v.share_contained ?? 1) < 1 ? "warning" : "caution";
+    return v.assumed.some((a) => a !== "no_path") ? "unknown" : "inside";
 }
 
 function facts(payload: Payload, risk: number | undefined): HTMLElement {
@@ -53,11 +56,18 @@ function facts(payload: Payload, risk: number | undefined): HTMLElement {
     const fact = (label: string, value: Node | string, more: string | null): HTMLElement => el("div", { class: "fact" }, el("dt", {}, label), el("dd", {}, value), more === null ? null : el("dd", { class: "more" }, more));
     const rows = [
         fact(`Bound within RNP${risk === undefined ? "" : `, ${level(risk)}`}`, valueOf("share_inside", v.share_inside, share(v.share_inside)), `of ${count(v.n_judged)} judged epochs`),
-        fact(`Bound within 2 RNP, ${level(integrity)}`, valueOf("share_contained", v.share_contained, share(v.share_contained)), `${count(v.n_epochs - v.n_judged)} of ${count(v.n_epochs)} epochs not judged`),
+        fact(`Bound within 2 RNP, ${level(integrity)}`, valueOf("share_contained", v.share_contained, share(v.share_contained)), `${count(v.n_degraded)} degraded, ${count(v.n_unjudged)} without a bound, of ${count(v.n_epochs)} epochs`),
     ];
+    for (const check of v.belief?.bounds.filter((b) => b.risk === risk) ?? []) rows.push(contained(check));
     if (v.worst_accuracy !== null) rows.push(worst("Worst margin to RNP", "worst_accuracy", v.worst_accuracy, payload));
     if (v.worst_integrity !== null) rows.push(worst("Worst margin to 2 RNP", "worst_integrity", v.worst_integrity, payload));
     return el("dl", { class: "facts" }, ...rows);
+}
+
+function contained(check: BoundCheck): HTMLElement {
+    return el("div", { class: "fact" }, el("dt", {}, `Error within ${check.method}, claim ${level(check.risk)}`),
+        el("dd", {}, valueOf(`belief.${check.method}`, check.coverage, share(check.coverage))),
+        el("dd", { class: "more" }, `95 %: ${share(check.coverage_low)} to ${share(check.coverage_high)}, as from ${plain(check.n_effective, check.n_effective < 10 ? 1 : 0)} independent epochs`));
 }
 
 function worst(label: string, key: string, w: Worst, payload: Payload): HTMLElement {

@@ -29,15 +29,28 @@ pub(super) fn by_track(track: &[u32], n: usize, keep: impl Fn(usize) -> bool, va
 /// (Gebelein 1941), so the size is never too large for a coverage, and it does not depend on how few exceedances there were.
 pub fn effective_size(series: &[Vec<f64>]) -> f64 {
     let n: usize = series.iter().map(Vec::len).sum();
+    let mean = series.iter().flatten().sum::<f64>() / n as f64;
+    size_of(series.iter().map(|s| s.iter().map(|x| x - mean).collect()).collect())
+}
+
+/// The same for series whose mean is known to be zero, as that of an error against a covariance that claims no bias.
+///
+/// A bias that stays for a whole track is then correlation and leaves the track worth one epoch, also where there is one track alone;
+/// about its own mean such a track would be worth all its epochs.
+pub fn effective_size_about_zero(series: Vec<Vec<f64>>) -> f64 {
+    size_of(series)
+}
+
+/// Of series whose mean was taken away.
+fn size_of(mut centred: Vec<Vec<f64>>) -> f64 {
+    let n: usize = centred.iter().map(Vec::len).sum();
     if n == 0 {
         return 0.0;
     }
     let size = n as f64;
-    let mean = series.iter().flatten().sum::<f64>() / size;
-    let mut centred: Vec<Vec<f64>> = series.iter().map(|s| s.iter().map(|x| x - mean).collect()).collect();
     let variance = covariance(&centred, 0) / size;
     if !(variance > 0.0) {
-        return series.len() as f64;
+        return centred.len() as f64;
     }
     let mut sum: f64 = -0.5;
     let mut block = 1.0;
@@ -116,6 +129,18 @@ mod tests {
             assert!((found / 400.0 - 1.0).abs() <= 0.01, "{length}: {found}");
         }
         assert_eq!(effective_size(&[vec![3.0; 50], vec![3.0; 20]]), 2.0);
+    }
+
+    #[test]
+    fn about_zero_a_bias_is_correlation_in_a_single_track_too() {
+        let noise = gauss_markov(5000, 0.0, 9);
+        let biased: Vec<_> = noise.iter().map(|x| 3.0 + 0.3 * x).collect();
+        assert!(effective_size(std::slice::from_ref(&biased)) > 2500.0);
+        // The bias has 1 / 1.01 of the square: the size is 1.01 where the noise adds nothing, and the changes of scale cost 1 %.
+        let found = effective_size_about_zero(vec![biased]);
+        assert!((1.0..1.1).contains(&found), "{found}");
+        let found = effective_size_about_zero(vec![noise]);
+        assert!(found > 2500.0, "{found}");
     }
 
     #[test]

@@ -59,14 +59,14 @@ pub struct Errors<'a> {
     pub track: &'a [u32],
 }
 
-type Refused = (Option<usize>, OutOfDomain);
+pub(super) type Refused = (Option<usize>, OutOfDomain);
 
 impl Errors<'_> {
-    fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.error_m.len() / self.dimension
     }
 
-    fn check(&self) -> Result<(), Refused> {
+    pub(super) fn check(&self) -> Result<(), Refused> {
         if !(2..=3).contains(&self.dimension) {
             return Err((None, OutOfDomain { argument: "dimension", value: self.dimension as f64, unit: "1", domain: "{2, 3}" }));
         }
@@ -89,7 +89,7 @@ impl Errors<'_> {
     }
 
     /// Normalised squares, NaN where there is none.
-    fn squares(&self) -> Vec<f64> {
+    pub(super) fn squares(&self) -> Vec<f64> {
         let rows = (0..self.len()).into_par_iter().with_min_len(EPOCHS_PER_TASK);
         rows.map(|row| self.square(row).unwrap_or(f64::NAN)).collect()
     }

@@ -1,0 +1,26 @@
+"""How a command ends: the one list of exit statuses, for the command line, its help and the documentation."""
+
+from __future__ import annotations
+
+DONE, USAGE, UNREADABLE, NO_VERDICT, OUR_BUG = 0, 2, 3, 4, 70
+
+MEANINGS = {
+    DONE: "done; a verdict that was reached (inside, outside, not shown) is part of the output",
+    USAGE: "wrong use",
+    UNREADABLE: "unreadable data",
+    NO_VERDICT: "no verdict: the input is not believable, or no epoch could be judged; the output is complete",
+    OUR_BUG: "a bug of navbound",
+}
+
+WITHOUT_VERDICT = frozenset({"not_believable", "nothing_judged"})
+"""Verdict ids on which nothing may be built."""
+
+
+def of_verdict(verdict_id: str) -> int:
+    """Exit status of a command that ends with a verdict (`fly`, `analyze`, `show`, also with ``--json``)."""
+    return NO_VERDICT if verdict_id in WITHOUT_VERDICT else DONE
+
+
+def listed() -> str:
+    """All statuses in one line, for the help."""
+    return "; ".join(f"{status}: {words}" for status, words in MEANINGS.items())

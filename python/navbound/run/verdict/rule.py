@@ -1,0 +1,160 @@
+"""The one place that decides a verdict: counts and facts in, an id out. It reads no table and writes no sentence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+VerdictId = Literal["inside", "outside", "not_shown", "not_believable", "nothing_judged"]
+BeliefState = Literal["unchecked", "supported", "short", "refuted"]
+
+LEAST_SHARE = 0.95
+"""Least share of all expected epochs that must be judged with status ok before "inside" may be said.
+
+RNP asks for a total system error within the RNP value during at least 95 % of the total flight time (ICAO Doc 9613); time that could not
+be judged is time that was not shown to be inside. Provenance: re-derived (docs/decisions/0020)."""
+
+REFUTED_AT = 1e-3
+"""Probability of the data under the claimed bounds at which they are taken as false (docs/methods/coverage.md). Provenance: ours."""
+
+MEANS_INSIDE: dict[VerdictId, bool | None] = {
+    "inside": True,
+    "outside": False,
+    "not_shown": None,
+    "not_believable": None,
+    "nothing_judged": None,
+}
+"""What each id says of the requirement; None: nothing."""
+
+
+@dataclass(frozen=True)
+class TrackFacts:
+    """What the verdict on judged tracks rests on, one flight or a campaign.
+
+    Attributes
+    ----------
+    n_epochs : int
+        Expected: those of the table and those missing in gaps.
+    n_judged : int
+        With status ok and a bound.
+    n_outside : int
+        With status ok or degraded and a bound beyond its limit.
+    n_beyond_alert_limit : int
+        With a protection level beyond the alert limit, or without one where one is due.
+    n_implausible : int
+        Whose input cannot be true.
+    n_misleading : int
+        Whose true error is above the protection level.
+    belief : str
+        What truth says of the bounds.
+    """
+
+    n_epochs: int
+    n_judged: int
+    n_outside: int
+    n_beyond_alert_limit: int
+    n_implausible: int
+    n_misleading: int
+    belief: BeliefState
+
+
+def of_tracks(facts: TrackFacts) -> VerdictId:
+    """Verdict on judged tracks. A false bound comes first: no margin counts beside it."""
+    if facts.belief == "refuted" or facts.n_misleading:
+        return "not_believable"
+    if facts.n_outside or facts.n_beyond_alert_limit:
+        return "outside"
+    if facts.n_judged == 0:
+        return "nothing_judged"
+    if facts.n_implausible or facts.belief == "short" or not facts.n_judged >= LEAST_SHARE * facts.n_epochs:
+        return "not_shown"
+    return "inside"
+
+
+@dataclass(frozen=True)
+class LevelFacts:
+    """What the verdict on one service level rests on.
+
+    Attributes
+    ----------
+    n_expected, n_solution, n_available : int
+        Epochs expected; with a protection level; with one within the limits.
+    n_misleading_events : int
+        Runs of epochs whose true error is above the protection level.
+    p_misleading : float or None
+        Largest probability of as many for a level that keeps its integrity risk; None where the level names none.
+    truth_known : bool
+        Errors are known.
+    """
+
+    n_expected: int
+    n_solution: int
+    n_available: int
+    n_misleading_events: int
+    p_misleading: float | None
+    truth_known: bool
+
+
+_GRAVEST: tuple[VerdictId, ...] = ("not_believable", "nothing_judged", "outside", "not_shown", "inside")
+
+
+def of_levels(levels: list[LevelFacts]) -> VerdictId:
+    """Verdict on several service levels: the gravest of theirs."""
+    each = {_of_level(level) for level in levels}
+    return next((verdict for verdict in _GRAVEST if verdict in each), "nothing_judged")
+
+
+def _of_level(facts: LevelFacts) -> VerdictId:
+    if facts.n_misleading_events and facts.p_misleading is not None and not facts.p_misleading > REFUTED_AT:
+        return "not_believable"
+    if facts.n_solution == 0:
+        return "nothing_judged"
+    if facts.n_solution - facts.n_available > (1.0 - LEAST_SHARE) * facts.n_expected:
+        return "outside"
+    if facts.n_misleading_events or not facts.truth_known or not facts.n_available >= LEAST_SHARE * facts.n_expected:
+        return "not_shown"
+    return "inside"
+
+
+@dataclass(frozen=True)
+class BeliefFacts:
+    """Bounds against truth.
+
+    Attributes
+    ----------
+    n_effective : float
+        Independent epochs.
+    p_values : list of float
+        Of every test made.
+    short : bool
+        A coverage is below its claim.
+    excluded : bool
+        The 95 % interval of a coverage lies below its claim.
+    """
+
+    n_effective: float
+    p_values: list[float]
+    short: bool
+    excluded: bool
+
+
+FEW_EPOCHS = 10.0
+"""Independent epochs below which their number is no better known than by its own size: it comes from the same correlated data."""
+
+
+def joint_probability(p_values: list[float]) -> float:
+    """Of the least of several tests, whatever their dependence (Bonferroni); a NaN counts as no evidence."""
+    return min(1.0, len(p_values) * min((p for p in p_values if p == p), default=1.0))  # noqa: PLR0124 - NaN is not itself
+
+
+def of_belief(facts: BeliefFacts) -> BeliefState:
+    """Whether truth supports the claimed bounds.
+
+    Refuted where the data are too improbable for true bounds; short where a coverage is below its claim and its interval excludes the
+    claim, or so few independent epochs stand behind it that they decide nothing.
+    """
+    if joint_probability(facts.p_values) <= REFUTED_AT:
+        return "refuted"
+    if facts.excluded or (facts.short and facts.n_effective < FEW_EPOCHS):
+        return "short"
+    return "supported"
