@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
+from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
 from navbound.read.covariance import COLUMNS, claim
@@ -87,6 +88,7 @@ def material(
     found = sort_out(names, solve=solve)
     found.require_navigation()
     readings = [read(source.path, columns=columns) for source in found.tables] + (solved(found) if found.observations else [])
+    _refuse_experimental(readings)
     inputs = [r.source for r in readings] + [source.record(None) for source in found.navigation if source not in found.observations]
     rejected = [x for r in readings for x in r.rejected]
     notes = [note for r in readings for note in r.notes]
@@ -131,6 +133,16 @@ def material(
             "solve": solve,
         },
     )
+
+
+def _refuse_experimental(readings: list[Reading]) -> None:
+    """Everything read here may reach an alert; columns of Error Extraction say in their own name that they may not."""
+    for reading in readings:
+        for name, column in reading.columns.items():
+            if column.startswith(EXTRACTION_MARK):
+                raise InputError(
+                    "columns", f"{name} from {column}", domain=f"columns that may feed an alert; {column} is {EXTRACTION_LABEL}"
+                )
 
 
 @dataclass(frozen=True)
