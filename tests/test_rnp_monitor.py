@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import polars as pl
 import pytest
 
 from navbound import InputError, methods, rnp
+from navbound.run import analyze
 from navbound.run import judge as judging
 from navbound.run.material import Material
 from navbound.run.records import CovarianceOrigin
@@ -174,6 +176,17 @@ def test_what_may_not_alert_is_refused_by_whatever_name(name: str, argument: str
     with pytest.raises(InputError, match=f"{argument} = {name}.*may feed an alert, of tse-exact"):
         monitor.step(frame.row(0, named=True), **{argument: name})
     assert monitor.counters.n_accepted == 0
+
+
+def test_an_experimental_column_reaches_no_alert_as_a_deviation(tmp_path: Path) -> None:
+    """Nor may it under a name of the epoch table, from which bounds are worked out."""
+    rows = pl.DataFrame(
+        {"time_ns": [k * PERIOD_NS for k in range(5)], "lat_deg": [50.0] * 5, "lon_deg": [8.0] * 5, "ee_noise_h_m": [0.1] * 5}
+    )
+    rows.write_csv(tmp_path / "track.csv")
+    columns = {"sigma_e_m": "ee_noise_h_m", "sigma_n_m": "ee_noise_h_m"}
+    with pytest.raises(InputError, match=r"sigma_e_m from ee_noise_h_m.*may feed an alert.*experimental, not integrity"):
+        analyze.material(tmp_path / "track.csv", requirement="RNP 0.3", rnp_m=555.6, columns=columns)
 
 
 def test_every_method_that_may_alert_feeds_the_monitor_and_no_other() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
 
 import numpy as np
@@ -328,6 +329,7 @@ class Monitor:
         )
 
 
+@cache
 def _alerting(argument: str, method_id: str) -> Method:
     """The method of a bound that the monitor takes; the core's list says which may feed an alert."""
     allowed = _core.alerting_methods()

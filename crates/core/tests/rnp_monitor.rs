@@ -250,6 +250,16 @@ fn unusable_epochs_and_silence_lose_monitoring_until_the_next_usable_epoch() {
 }
 
 #[test]
+fn an_alert_does_not_end_before_it_was_raised() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(0, INSIDE, INSIDE));
+    assert_eq!(monitor.tick(GpsTime::from_nanoseconds(3_000_000_000)).alert, Alert::Unavailable);
+    // The epoch of second 1 arrives after the silence was noticed, in second 2.
+    let event = ended(&monitor.step(&at(1, INSIDE, INSIDE)))[0];
+    assert_eq!((seconds(event.onset), seconds(event.annunciation), event.clear.map(seconds)), (0, 2, Some(2)));
+}
+
+#[test]
 fn a_gap_never_helps_an_alert_to_end_and_never_delays_one() {
     let mut monitor = Monitor::new(settings()).unwrap();
     monitor.step(&at(0, INSIDE, 1300.0));

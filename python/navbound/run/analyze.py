@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
+from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
 from navbound.read.covariance import COLUMNS, Claimed, claim
@@ -87,6 +88,7 @@ def material(
     found = sort_out(names, solve=solve)
     found.require_navigation()
     readings = [read(source.path, columns=columns) for source in found.tables] + (solved(found) if found.observations else [])
+    _refuse_experimental(readings)
     inputs = [r.source for r in readings] + [source.record(None) for source in found.navigation if source not in found.observations]
     rejected = [x for r in readings for x in r.rejected]
     notes = [note for r in readings for note in r.notes]
@@ -139,6 +141,16 @@ def material(
 def _origin(claimed: Claimed, sigma_m: float | None, *, solved_alone: bool) -> CovarianceOrigin:
     solved_covariance = solved_alone and claimed.origin == "file"
     return CovarianceOrigin(id="solved" if solved_covariance else claimed.origin, sigma_m=sigma_m)
+
+
+def _refuse_experimental(readings: list[Reading]) -> None:
+    """Everything read here may reach an alert; columns of Error Extraction say in their own name that they may not."""
+    for reading in readings:
+        for name, column in reading.columns.items():
+            if column.startswith(EXTRACTION_MARK):
+                raise InputError(
+                    "columns", f"{name} from {column}", domain=f"columns that may feed an alert; {column} is {EXTRACTION_LABEL}"
+                )
 
 
 @dataclass(frozen=True)
