@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
-import rinex_fixture
 from scipy import stats
 
+import rinex_fixture
 from navbound import araim, gnss, raim
 from navbound._monitor_fit import DISBELIEF, exact_interval, fit_of
 
@@ -153,13 +153,13 @@ def test_an_injected_fault_of_one_satellite_is_excluded(
     # 0.1 m/s from half past midnight on, or 30 m at once.
     after = np.clip(30.0 * (np.arange(240) - 60), 0.0, None)
     fault_m = np.where(after > 0, 30.0, 0.0) if kind == "step" else 0.1 * after
-    observations = faulty(day[0], tmp_path / "faulty.rnx", "G10", fault_m)
+    observations = faulty(day[0], tmp_path / "faulty.rnx", "G30", fault_m)
     watched = araim.watch(observations, navigation, truth_ecef_m=truth)
     table = watched.epochs.with_columns(fault_m=pl.Series(fault_m))
     assert (table.filter(pl.col("fault_m") == 0)["n_excluded"] == 0).all()
     large = table.filter(pl.col("fault_m") >= 25)
     assert large.height > 100
-    assert set(large["reason"]) == {"excluded G10"}
+    assert set(large["reason"]) == {"excluded G30"}
     known = table.drop_nulls("hpl_m")
     assert (np.hypot(known["nse_e_m"], known["nse_n_m"]) < known["hpl_m"]).all()
     assert (known["nse_u_m"].abs() < known["vpl_m"]).all()

@@ -84,8 +84,8 @@ class Fit:
             f"Squared residuals are {self.ratio:.2f} times what the error model states ({self.ratio_low:.2f} to {self.ratio_high:.2f} from "
             f"{self.n_effective:.0f} independent epochs; by constellation {systems}).",
             f"A fault was detected at {self.n_detected} of {self.n_epochs} epochs, {self.n_events} separate events: "
-            f"{self.p_detected_low:.2g} to {self.p_detected_high:.2g} per independent epoch; the allocation allows {self.p_false_alert:.2g} "
-            "without a fault.",
+            f"{self.p_detected_low:.2g} to {self.p_detected_high:.2g} per independent epoch; the allocation allows "
+            f"{self.p_false_alert:.2g} without a fault.",
         ]
         if not self.residuals_fit:
             words.append(f"The error model is too small for these ranges: the protection levels {DISBELIEF}.")
@@ -113,18 +113,19 @@ def fit_of(statistic: NDArray[np.float64], redundancy: NDArray[np.float64], deci
     Notes
     -----
     A detected fault is no error of the model, so its epochs are left out of the residuals; as false alerts they are too rare to matter,
-    and too many of them show in the detections. The mean is worth ``n_effective`` epochs of the file. Its interval takes the scatter of the epochs' own statistic, so it needs no
-    distribution of the residuals (ours); the interval of the detections is that of Clopper and Pearson (standard), of events that are
-    further apart than an independent epoch is long.
+    and too many of them show in the detections. The mean is worth ``n_effective`` epochs of the file. Its interval takes the scatter of
+    the epochs' own statistic, so it needs no distribution of the residuals (ours); the interval of the detections is that of Clopper and
+    Pearson (standard), of events that are further apart than an independent epoch is long.
     """
     tested = (decision != "") & (np.nansum(redundancy, axis=1) > 0.5)
-    n = int(tested.sum())
+    n, nan = int(tested.sum()), float("nan")
     if n == 0:
-        return Fit(*[float("nan")] * 3, {}, 0, 0, 0.0, 0, 0.0, 1.0, p_false_alert)
+        return Fit(nan, nan, nan, {}, 0, 0, 0.0, 0, 0.0, 1.0, p_false_alert)
     quiet = tested & (decision == "none")
     detected = np.flatnonzero((decision != "none")[tested])
     if not quiet.any():
-        return Fit(*[float("nan")] * 3, {}, n, n, 1.0, 1, *exact_interval(1, 1), p_false_alert)
+        low, high = exact_interval(1, 1)
+        return Fit(nan, nan, nan, {}, n, n, 1.0, 1, low, high, p_false_alert)
     sums, spare = statistic[quiet], redundancy[quiet]
     total, degrees = sums.sum(axis=1), spare.sum(axis=1)
     ratio = float(total.sum() / degrees.sum())
@@ -139,9 +140,7 @@ def fit_of(statistic: NDArray[np.float64], redundancy: NDArray[np.float64], deci
     n_events = min(n_events, trials)
     low, high = exact_interval(n_events, trials)
     systems = {name: float(sums[:, k].sum() / spare[:, k].sum()) for k, name in enumerate(CONSTELLATIONS) if spare[:, k].sum() > 0.5}
-    return Fit(
-        ratio, max(ratio - half, 0.0), ratio + half, systems, n, int(detected.size), n_effective, n_events, low, high, p_false_alert
-    )
+    return Fit(ratio, max(ratio - half, 0.0), ratio + half, systems, n, int(detected.size), n_effective, n_events, low, high, p_false_alert)
 
 
 def exact_interval(n_events: int, n_trials: int, risk: float = RISK) -> tuple[float, float]:

@@ -27,8 +27,8 @@ from navbound._araim_settings import (
 )
 from navbound._arrays import flatten
 from navbound._constellations import Orbits
-from navbound._raim_watch import SOURCES, watch
 from navbound._monitor_fit import Fit
+from navbound._raim_watch import SOURCES, watch
 from navbound._watched import Watched
 from navbound.errors import InputError
 

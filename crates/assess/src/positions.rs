@@ -1,8 +1,8 @@
 //! Observations and navigation messages to positions, epoch by epoch on all cores.
 
 use crate::receivers::ranges::{Records, Source, Tally, Unused, plans};
-pub use crate::receivers::signals::Signals;
 use crate::receivers::signals::Plan;
+pub use crate::receivers::signals::Signals;
 use crate::smoothing::{self, Form, Smoothed};
 use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::frame::{Covariance, ecef_from_geodetic};

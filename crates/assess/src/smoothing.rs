@@ -65,7 +65,8 @@ pub fn smooth(observations: &Observations, codes: &[Vec<usize>; SYSTEMS], form: 
     let tracks: Vec<Vec<Track>> =
         (0..SYSTEMS).map(|system| codes[system].iter().filter_map(|c| track(observations, system, *c)).collect()).collect();
     let mut states: Vec<Vec<State>> = tracks.iter().map(|t| vec![State::default(); NUMBERS * t.len()]).collect();
-    let mut found = Smoothed { noise_share: vec![1.0; observations.value.len()], value: observations.value.clone(), n_smoothed: 0, n_codes: 0 };
+    let mut found =
+        Smoothed { noise_share: vec![1.0; observations.value.len()], value: observations.value.clone(), n_smoothed: 0, n_codes: 0 };
     for epoch in 0..observations.n_epochs() {
         for k in observations.satellites(epoch) {
             let satellite = observations.satellite[k];

@@ -393,9 +393,8 @@ pub(crate) fn satellites(d: &Bound<'_, PyDict>, tally: &Tally, signals: &BTreeMa
     }
     d.set_item("unused", unused)?;
     let name = |letter: char| signals.get(&letter).copied().unwrap_or_default();
-    let rows = tally.used().map(|(satellite, message, n)| {
-        (satellite.to_string(), name(satellite.constellation.letter()), message.name(), n)
-    });
+    let rows =
+        tally.used().map(|(satellite, message, n)| (satellite.to_string(), name(satellite.constellation.letter()), message.name(), n));
     d.set_item("used", rows.collect::<Vec<_>>())
 }
 

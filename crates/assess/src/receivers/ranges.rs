@@ -8,6 +8,7 @@ use navbound_core::geometry::atmosphere::ionosphere_factor;
 use navbound_core::geometry::broadcast::{Broadcast, SatelliteState, clock_polynomial};
 use navbound_core::quantity::{GpsTime, Metres};
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};
+use navbound_core::solution::RangeError;
 use navbound_core::solution::point::Range;
 use navbound_formats::precise::{Precise, Tables};
 use navbound_formats::rinex::{Navigation, Observations};
@@ -287,7 +288,7 @@ impl Plan {
             ure_factor: if records.precise.is_some() { 1.0 } else { (e.accuracy_m / nominal_accuracy(satellite.constellation)).max(1.0) },
         };
         let left = |m: &Measured| received.noise_share.and_then(|s| s.get(m.column)).map_or(1.0, |s| f64::from(*s));
-        let noise_factor = factors.iter().zip(measured).map(|(f, m)| f * f * left(m)).sum::<f64>().sqrt();
+        let noise_factor = (factors.iter().zip(measured).map(|(f, m)| f * f * left(m)).sum::<f64>() * weakness(cn0_dbhz)).sqrt();
         let beyond = Beyond { noise_factor, code_bias: self.code_bias(satellite.constellation, first.column, factors[0]) };
         Ok((range, beyond, e.message))
     }
@@ -301,6 +302,13 @@ impl Plan {
             _ => 0.0,
         })
     }
+}
+
+/// How much the variance of code noise grows where the signal is weak, as in the weights of positions; no allowance where the receiver
+/// gives no strength.
+fn weakness(cn0_dbhz: f64) -> f64 {
+    let below_db = RangeError::CALIBRATED.reference_cn0_dbhz - cn0_dbhz;
+    if below_db > 0.0 { 10.0_f64.powf(below_db / 10.0) } else { 1.0 }
 }
 
 /// C/A less P(Y) of the GPS satellites: root mean square of their published differential code biases, which lie within 0.7 m.
