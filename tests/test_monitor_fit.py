@@ -12,6 +12,7 @@ import pytest
 from scipy import stats
 
 import rinex_fixture
+import navbound
 from navbound import araim, gnss, raim
 from navbound._monitor_fit import DISBELIEF, exact_interval, fit_of
 
@@ -130,6 +131,31 @@ def test_a_model_that_does_not_fit_the_ranges_is_marked(day: tuple[gnss.Observat
 
 
 PAIRS = {"G": ["C1C", "C1W", "C2W", "L1C", "L2W"], "E": ["C1C", "C5Q", "L1C", "L5Q"]}
+
+
+def test_the_verdict_of_a_run_says_where_the_model_does_not_fit(
+    day: tuple[gnss.Observations, gnss.Navigation, list[float]], shared_data: Path, tmp_path: Path
+) -> None:
+    """Two hours of codes without phases: as they are, and with a metre of noise that no model knows of."""
+    navigation = shared_data / "gnss" / "ESBC_2020_177" / f"{DAY}_MN.rnx.gz"
+    rng = np.random.default_rng(5)
+
+    def noisy(column: pl.DataFrame, _code: str) -> pl.DataFrame:
+        return column.with_columns(value=pl.col("value") + pl.Series(rng.normal(0.0, 1.0, column.height)))
+
+    codes = {"G": ["C1C", "C1W", "C2W"], "E": ["C1C", "C5Q"]}
+    runs = {}
+    for name, change in (("quiet", None), ("noisy", noisy)):
+        path = tmp_path / f"{name}.rnx"
+        rinex_fixture.write(day[0], path, codes, until_s=7200.0, change=change)
+        runs[name] = navbound.analyze([path, navigation], levels="LPV-200", protection="araim").summary
+    assert DISBELIEF not in runs["quiet"].verdict.words
+    assert runs["noisy"].verdict.words.startswith(f"The protection levels {DISBELIEF}")
+    for summary in runs.values():
+        words = " ".join(summary.assumptions)
+        assert "Galileo E1-E5a with FNAV" in words
+        assert "below the elevation mask at" in words
+        assert "Squared residuals are" in words
 
 
 def faulty(observations: gnss.Observations, path: Path, satellite: str, fault_m: np.ndarray) -> gnss.Observations:

@@ -177,6 +177,28 @@ def test_a_constellation_without_second_frequency_is_counted(
     assert positions.unused["no_second_range"] > 4000
 
 
+def test_a_log_of_one_frequency_leaves_no_satellite_uncounted(shared_data: Path) -> None:
+    log = shared_data / "rxlogs" / "ubx_16dB" / "16dBatt_no_interference_coldstart.ubx.gz"
+    observations, navigation = gnss.read_observations(log), gnss.read_navigation(log)
+    records = navigation.records().filter(pl.col("satellite").str.starts_with("E"))
+    assert set(records["message"]) == {"INAV"}
+    observed = sum(observations.column(system, "C1C").height for system in "GE")
+    lost = gnss.solve(observations, navigation, systems="GE", signals="dual")
+    assert lost.unused == {"no_second_range": observed}
+    one = gnss.solve(observations, navigation, systems="GE", ionosphere="none")
+    assert one.used is not None
+    assert one.used["n_ranges"].sum() + sum(n for why, n in one.unused.items() if why != "below_mask") == observed
+
+
+def test_records_of_version_4_are_of_the_message_that_heads_them(shared_data: Path) -> None:
+    path = shared_data / "gnss" / "rinex4_2023_071" / "BRD400DLR_S_20230710000_01D_MN.rnx.gz"
+    heads = [line.split()[2:4] for line in gzip.decompress(path.read_bytes()).decode().splitlines() if line.startswith("> EPH E")]
+    named = {(sv, message) for sv, message in heads}
+    table = gnss.read_navigation(path).records().filter(pl.col("satellite").str.starts_with("E"))
+    assert set(table.select("satellite", "message").iter_rows()) == named
+    assert {message for _, message in named} == {"INAV", "FNAV"}
+
+
 def test_the_precise_code_of_the_clock_is_taken_for_pairs(observations: gnss.Observations, folder: Path) -> None:
     navigation = gnss.read_navigation(folder / f"{DAY}_MN.rnx.gz")
     assert gnss.solve(observations, navigation, systems="G", signals="dual").codes["G"][0] == "C1W"
