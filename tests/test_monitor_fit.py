@@ -91,6 +91,12 @@ def test_detections_that_follow_each_other_are_one_event() -> None:
     fit = fit_of(statistic, redundancy, decision, 1e-5)
     assert 20 < fit.n_effective < 90
     assert (fit.n_detected, fit.n_events) == (40, 1)
+    assert fit.detections_fit
+    # One satellite after the other is no single fault, however close they follow.
+    decision[1000:1040] = np.resize(["G05", "G07"], 40)
+    many = fit_of(statistic, redundancy, decision, 1e-5)
+    assert many.n_events == min(40, round(many.n_effective))
+    assert not many.detections_fit
 
 
 @pytest.mark.parametrize("systems", ["G", "GE", "GEC"])

@@ -39,7 +39,7 @@ class Fit:
     n_effective : float
         Independent epochs that the tested ones are worth, by the autocorrelation of the statistic. [1]
     n_events : int
-        Detections that are further apart than one independent epoch is long. [1]
+        Detections of other satellites than the one before, or further apart than one independent epoch is long. [1]
     p_detected_low, p_detected_high : float
         Exact binomial two-sided 95 % interval of the probability of a detection in an independent epoch. [1]
     p_false_alert : float
@@ -83,7 +83,8 @@ class Fit:
         words = [
             f"Squared residuals are {self.ratio:.2f} times what the error model states ({self.ratio_low:.2f} to {self.ratio_high:.2f} from "
             f"{self.n_effective:.0f} independent epochs; by constellation {systems}).",
-            f"A fault was detected at {self.n_detected} of {self.n_epochs} epochs, {self.n_events} separate events: "
+            f"A fault was detected at {self.n_detected} of {self.n_epochs} epochs, {self.n_events} separate "
+            f"{'event' if self.n_events == 1 else 'events'}: "
             f"{self.p_detected_low:.2g} to {self.p_detected_high:.2g} per independent epoch; the allocation allows "
             f"{self.p_false_alert:.2g} without a fault.",
         ]
@@ -91,6 +92,8 @@ class Fit:
             words.append(f"The error model is too small for these ranges: the protection levels {DISBELIEF}.")
         elif not self.detections_fit:
             words.append(f"Either several satellites were in fault or the error model has no tails: the protection levels {DISBELIEF}.")
+        elif self.n_events == 1 and self.p_detected_low > self.p_false_alert:
+            words.append("The one event is no false alert by the allocation; a satellite may have been in fault.")
         elif self.ratio > 1.0:
             words.append("The error model may be too small for these ranges; so few independent epochs do not decide it.")
         elif self.ratio_high < 1.0:
@@ -106,7 +109,7 @@ def fit_of(statistic: NDArray[np.float64], redundancy: NDArray[np.float64], deci
     statistic, redundancy : ndarray, shape (n, 5)
         Weighted squared residuals and redundancies by constellation in the order of ``gnss.CONSTELLATIONS``; NaN without a position. [1]
     decision : ndarray of str, shape (n,)
-        ``none``, ``excluded``, ``not_excluded``; empty where nothing was tested.
+        ``none``, or what was excluded (``G05``), or ``not_excluded``; empty where nothing was tested.
     p_false_alert : float
         Allocated risk of a false alert of one epoch. [1]
 
@@ -115,7 +118,7 @@ def fit_of(statistic: NDArray[np.float64], redundancy: NDArray[np.float64], deci
     A detected fault is no error of the model, so its epochs are left out of the residuals; as false alerts they are too rare to matter,
     and too many of them show in the detections. The mean is worth ``n_effective`` epochs of the file. Its interval takes the scatter of
     the epochs' own statistic, so it needs no distribution of the residuals (ours); the interval of the detections is that of Clopper and
-    Pearson (standard), of events that are further apart than an independent epoch is long.
+    Pearson (standard), of events: detections of other satellites than before, or further apart than an independent epoch is long.
     """
     tested = (decision != "") & (np.nansum(redundancy, axis=1) > 0.5)
     n, nan = int(tested.sum()), float("nan")
@@ -135,7 +138,8 @@ def fit_of(statistic: NDArray[np.float64], redundancy: NDArray[np.float64], deci
     half = float("inf")
     if n_effective > 2.0:
         half = float(_student_quantile(n_effective - 1.0) * excess.std(ddof=1) / degrees.mean() / np.sqrt(n_effective))
-    apart = np.diff(detected, prepend=-n) > m / n_effective
+    names = decision[tested][detected]
+    apart = (np.diff(detected, prepend=-n) > m / n_effective) | (names != np.roll(names, 1))
     n_events, trials = int(apart.sum()), max(round(n_effective), 1)
     n_events = min(n_events, trials)
     low, high = exact_interval(n_events, trials)
