@@ -11,8 +11,8 @@ import polars as pl
 import pytest
 from scipy import stats
 
-import rinex_fixture
 import navbound
+import rinex_fixture
 from navbound import araim, gnss, raim
 from navbound._monitor_fit import DISBELIEF, exact_interval, fit_of
 

@@ -95,7 +95,7 @@ def test_inav_alone_is_used_with_the_signals_of_its_clock(observations: gnss.Obs
     monitors = araim.watch(observations, inav), raim.watch(observations, inav, systems="GE", signals="dual")
     for watched in monitors:
         assert watched.used.equals(positions.used)
-        assert watched.epochs["n_sv"].mean() > 15
+        assert watched.epochs["n_sv"].to_numpy().mean() > 15
 
 
 def test_inav_alone_serves_e5a_where_e5b_is_not_observed(without_e5b: gnss.Observations, inav: gnss.Navigation) -> None:
