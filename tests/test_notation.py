@@ -27,6 +27,8 @@ WORDS = {
     "satellite",
     "station",
     "decision",
+    "signals",
+    "message",
 }
 SUFFIXES = ("_m", "_m2", "_s", "_ns", "_rad", "_mps", "_mps2", "_radps")
 UNITLESS = ("p_", "n_")

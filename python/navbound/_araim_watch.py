@@ -19,7 +19,7 @@ from navbound._araim_settings import (
     support_rows,
 )
 from navbound._receivers import Navigation, Observations
-from navbound._watched import Watched, checked_model, range_models, watched
+from navbound._watched import Watched, checked_model, checked_smoothing, range_models, watched
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ def watch(
     support: Support = SUPPORT,
     model: str | ErrorModel | None = None,
     mask_rad: float = float(np.radians(5.0)),
+    smoothing_s: float | None = 100.0,
     truth_ecef_m: ArrayLike | None = None,
     track: str | None = None,
 ) -> Watched:
@@ -57,6 +58,9 @@ def watch(
         A name of :data:`ERROR_MODELS`; without it that of the signals.
     mask_rad : float, optional
         Lowest elevation. [rad]
+    smoothing_s : float, optional
+        Time constant of carrier smoothing, free of divergence; 100 s is that of the error models (standard). The sigma of a range grows
+        by the code noise that is left; ``None`` uses the pseudoranges as measured, with all of it. [s]
     truth_ecef_m : array_like, shape (3,) or (n_epochs, 3), optional
         True position, Earth-fixed. [m]
     track : str, optional
@@ -78,7 +82,15 @@ def watch(
     if len(numbers) != 7:
         raise InputError("service", service, domain=f"one of {', '.join(SERVICES)}, or a Service")
     found = _core.araim_watch(
-        observations._core, navigation._core, systems, signals == "dual", mask_rad, support_rows(support), airborne_numbers(chosen), numbers
+        observations._core,
+        navigation._core,
+        systems,
+        signals == "dual",
+        mask_rad,
+        support_rows(support),
+        airborne_numbers(chosen),
+        numbers,
+        checked_smoothing(smoothing_s),
     )
     status = np.array(found.pop("words"))[found.pop("outcome")]
     decision = np.array(found.pop("decision"), dtype=np.str_)
@@ -102,4 +114,6 @@ def watch(
         **range_models(support, chosen, signals),
         "exclusion": "equal shares of the integrity risk for every decision (ours)",
     }
-    return watched(observations, found, columns, models, track=track, truth_ecef_m=truth_ecef_m)
+    found["decision_words"] = np.where(decision == "excluded", np.array(excluded, dtype=np.str_), decision)
+    p_false_alert = budgets.false_alarm_v + budgets.false_alarm_h
+    return watched(observations, found, columns, models, track=track, truth_ecef_m=truth_ecef_m, p_false_alert=p_false_alert)

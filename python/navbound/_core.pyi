@@ -290,6 +290,7 @@ class Navigation:
     def orbits(self, system: int, time_ns: int) -> tuple[list[str], NDArray[np.float64], list[float]]: ...
     def records(self) -> dict[str, Any]: ...
 
+def unused_reasons() -> list[tuple[str, str]]: ...
 def solve_positions(
     observations: Observations,
     navigation: Navigation,
@@ -458,6 +459,7 @@ def araim_watch(
     support: list[tuple[float, ...]],
     airborne: list[float],
     numbers: list[float],
+    smoothing_s: float | None,
 ) -> dict[str, Any]: ...
 
 # RAIM
@@ -486,4 +488,5 @@ def raim_watch(
     support: list[tuple[float, ...]],
     airborne: list[float],
     numbers: list[float],
+    smoothing_s: float | None,
 ) -> dict[str, Any]: ...

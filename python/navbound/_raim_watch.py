@@ -18,7 +18,7 @@ from navbound._araim_settings import (
     support_rows,
 )
 from navbound._receivers import Navigation, Observations
-from navbound._watched import Watched, checked_model, range_models, watched
+from navbound._watched import Watched, checked_model, checked_smoothing, range_models, watched
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -37,6 +37,7 @@ def watch(
     support: Support = SUPPORT,
     model: str | ErrorModel | None = None,
     mask_rad: float = float(np.radians(5.0)),
+    smoothing_s: float | None = 100.0,
     truth_ecef_m: ArrayLike | None = None,
     track: str | None = None,
 ) -> Watched:
@@ -58,6 +59,9 @@ def watch(
         A name of ``araim.ERROR_MODELS``; without it that of the signals.
     mask_rad : float, optional
         Lowest elevation. [rad]
+    smoothing_s : float, optional
+        Time constant of carrier smoothing, free of divergence; 100 s is that of the error models (standard). The sigma of a range grows
+        by the code noise that is left; ``None`` uses the pseudoranges as measured, with all of it. [s]
     truth_ecef_m : array_like, shape (3,) or (n_epochs, 3), optional
         True position, Earth-fixed. [m]
     track : str, optional
@@ -77,7 +81,10 @@ def watch(
     chosen = checked_model(navigation, systems, signals, model, mask_rad)
     numbers = requirement_numbers(requirement)
     promises, airborne = support_rows(support), airborne_numbers(chosen)
-    found = _core.raim_watch(observations._core, navigation._core, systems, signals == "dual", mask_rad, promises, airborne, numbers)
+    smoothing = checked_smoothing(smoothing_s)
+    found = _core.raim_watch(
+        observations._core, navigation._core, systems, signals == "dual", mask_rad, promises, airborne, numbers, smoothing
+    )
     status = np.array(found.pop("words"))[found.pop("outcome")]
     decision = np.array(found.pop("decision"), dtype=np.str_)
     usable = np.isin(decision, ["none", "excluded"]) & (status == "ok")
@@ -107,4 +114,6 @@ def watch(
         **range_models(support, chosen, signals),
         "satellites": f"{systems}, elevation {np.degrees(mask_rad):g} deg and more",
     }
-    return watched(observations, found, columns, models, track=track, truth_ecef_m=truth_ecef_m)
+    found["decision_words"] = np.where(decision == "excluded", excluded, decision)
+    p_false_alert = requirement.false_alarm
+    return watched(observations, found, columns, models, track=track, truth_ecef_m=truth_ecef_m, p_false_alert=p_false_alert)

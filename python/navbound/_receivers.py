@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 SYSTEMS = {"G": "GPS", "E": "Galileo", "C": "BeiDou"}
 """Constellations a position can be solved from, by their letter."""
 
+UNUSED: dict[str, str] = dict(_core.unused_reasons())
+"""Why a satellite may not be in a solution: the id of tables, and its words."""
+
 
 @dataclass(frozen=True)
 class Refused:
@@ -198,7 +201,7 @@ class Positions:
         ``ground_speed_mps``, ``n_sv``, ``hdop``, ``vdop``, ``status``, ``reason``, with truth also ``truth_*`` and ``nse_*``; beyond it
         ``vel_e_mps``, ``vel_n_mps``, ``vel_u_mps``, ``n_excluded``, ``n_redundant``, ``p_residual``. Null where there is none.
     unused : dict of str to int
-        Satellite-epochs of the wanted systems that were not used, by reason; those below the mask are not among them.
+        Satellite-epochs of the wanted systems that were not used, by the id of the reason in :data:`UNUSED`.
     codes : dict of str to list of str
         Pseudoranges used, by system, in order of preference.
     models : dict of str to str
@@ -207,6 +210,9 @@ class Positions:
         The ranges of each position: ``time_ns``, ``sv``, ``az_rad``, ``el_rad``, ``sigma_m``, ``residual_m`` (measured less computed at
         the position, receiver clock included), ``shared_1_m``, ``shared_2_m``, ``shared_3_m`` (errors that all ranges share: the size
         of the ionosphere, its tilt east and north). Where it was asked for.
+    used : DataFrame, optional
+        Ranges by satellite: ``sv``, ``signals`` (``E1-E5a``), ``message`` whose orbit and clock were used, ``n_ranges``; those below the
+        mask and those excluded afterwards are among them.
     """
 
     epochs: pl.DataFrame
@@ -214,6 +220,29 @@ class Positions:
     codes: dict[str, list[str]]
     models: dict[str, str]
     ranges: pl.DataFrame | None = None
+    used: pl.DataFrame | None = None
+
+
+def used_satellites(rows: list[tuple[str, str, str, int]]) -> pl.DataFrame:
+    """Ranges by satellite: ``sv``, ``signals``, ``message``, ``n_ranges``."""
+    schema = {"sv": pl.String, "signals": pl.String, "message": pl.String, "n_ranges": pl.Int64}
+    return pl.DataFrame(rows, schema=schema, orient="row")
+
+
+def signal_words(used: pl.DataFrame) -> str:
+    """Which signals and messages the ranges of each constellation are of, with their number."""
+    system = pl.col("sv").str.slice(0, 1).alias("system")
+    kinds = used.group_by(system, "signals", "message", maintain_order=True).agg(pl.col("n_ranges").sum(), pl.len().alias("n_sv"))
+    each = [
+        f"{SYSTEMS.get(system, system)} {signals} with {message} ({n_ranges} ranges of {n_sv} satellites)"
+        for system, signals, message, n_ranges, n_sv in kinds.iter_rows()
+    ]
+    return "; ".join(each) or "none"
+
+
+def unused_words(unused: dict[str, int]) -> str:
+    """Satellite-epochs that were not used, by reason."""
+    return "; ".join(f"{UNUSED[why]} at {count}" for why, count in unused.items()) or "none"
 
 
 def file_content(path: str | Path) -> tuple[Path, bytes]:
@@ -304,7 +333,8 @@ def solve(
     systems : str, optional
         Letters of :data:`SYSTEMS`.
     signals : {"single", "dual"}, optional
-        L1, E1, B1I; or the ionosphere-free pairs L1-L2, E1-E5a, B1I-B3I.
+        L1, E1, B1I; or ionosphere-free pairs: L1-L2; E1-E5a or E1-E5b, B1I-B3I or B1I-B2I, whichever the file and its broadcast messages
+        serve more often, the same for all satellites of a constellation (docs/methods/gnss-positions.md).
     ionosphere : {"broadcast", "none"}, optional
         Model of single pseudoranges; pairs need none.
     mask_rad : float, optional
@@ -371,6 +401,7 @@ def solve(
         keep_ranges=keep_ranges,
     )
     kept = found.pop("ranges")
+    used = used_satellites(found.pop("used"))
     unused, codes, weights = found.pop("unused"), found.pop("codes"), found.pop("weights")
     share = found.pop("smoothed_share")
     name = track or observations.marker or observations.path.name
@@ -382,6 +413,7 @@ def solve(
         epochs = with_errors(epochs, truth_ecef_m)
     models = {
         "orbits and clocks": _orbit_words(orbits),
+        "signals": signal_words(used),
         "smoothing": "none" if smoothing_s is None else f"{smoothing}, {smoothing_s:g} s; {100 * share:.1f} % of the pseudoranges",
         "ionosphere": "ionosphere-free pairs" if signals == "dual" else {"broadcast": "Klobuchar, GPS message", "none": "none"}[ionosphere],
         "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",
@@ -389,7 +421,7 @@ def solve(
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
     }
     ranges = None if kept is None else _with_times(kept, observations.time_ns)
-    return Positions(epochs, unused, codes, models, ranges)
+    return Positions(epochs, unused, codes, models, ranges, used)
 
 
 def _with_times(kept: dict[str, Any], time_ns: NDArray[np.int64]) -> pl.DataFrame:

@@ -31,6 +31,7 @@ from navbound._araim_settings import (
 from navbound._araim_watch import watch
 from navbound._arrays import flatten
 from navbound._constellations import CONSTELLATIONS, Orbits
+from navbound._monitor_fit import Fit
 from navbound._watched import Watched
 from navbound.errors import InputError
 
@@ -45,6 +46,7 @@ __all__ = [
     "SERVICES",
     "SUPPORT",
     "ErrorModel",
+    "Fit",
     "Levels",
     "Monitored",
     "Requirement",

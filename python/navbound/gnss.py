@@ -18,6 +18,7 @@ from navbound._dop_map import DopMap, dop_map
 from navbound._precise import PreciseOrbits, read_orbits
 from navbound._receivers import (
     SYSTEMS,
+    UNUSED,
     Navigation,
     Observations,
     Positions,
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 __all__ = [
     "CONSTELLATIONS",
     "SYSTEMS",
+    "UNUSED",
     "Dilution",
     "DopMap",
     "Navigation",

@@ -27,6 +27,7 @@ from navbound._araim_settings import (
 )
 from navbound._arrays import flatten
 from navbound._constellations import Orbits
+from navbound._monitor_fit import Fit
 from navbound._raim_watch import SOURCES, watch
 from navbound._watched import Watched
 from navbound.errors import InputError
@@ -42,6 +43,7 @@ __all__ = [
     "SOURCES",
     "SUPPORT",
     "ErrorModel",
+    "Fit",
     "Levels",
     "Monitored",
     "Requirement",

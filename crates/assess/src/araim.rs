@@ -5,7 +5,7 @@ use crate::batch::CHUNK;
 use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::araim::exclusion::{self, Monitored, NoLevels};
 use navbound_core::bound::araim::modes::{MOST_SATELLITES, NoModes};
-use navbound_core::bound::araim::ranging::Airborne;
+use navbound_core::bound::araim::ranging::{Airborne, Beyond};
 use navbound_core::bound::araim::service::{Service, Support};
 use navbound_core::bound::araim::single::Requirement;
 use navbound_core::bound::araim::{Levels, Monitor, Sight};
@@ -237,11 +237,17 @@ pub struct Promise {
 }
 
 impl Promise {
-    /// A satellite with its range's error.
+    /// A satellite with the error of a smoothed range.
     #[inline(always)]
     pub(crate) fn sight(&self, unit: Vector3<f64>, constellation: Constellation) -> Sight {
+        self.sight_beyond(unit, constellation, &Beyond::NOTHING)
+    }
+
+    /// A satellite with the error of a range that has something beyond a smoothed one.
+    #[inline(always)]
+    pub(crate) fn sight_beyond(&self, unit: Vector3<f64>, constellation: Constellation, beyond: &Beyond) -> Sight {
         let support = &self.support[constellation.index()];
-        let local = self.airborne.variance_m2(unit.z.clamp(-1.0, 1.0).asin(), unit.z);
+        let local = self.airborne.variance_m2(unit.z.clamp(-1.0, 1.0).asin(), unit.z) + beyond.variance_m2(unit.z);
         let square = |m: Metres| m.m() * m.m();
         Sight {
             unit,

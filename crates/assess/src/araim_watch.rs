@@ -1,15 +1,19 @@
 //! ARAIM on recorded observations: every epoch's ranges tested, wrong satellites excluded, levels of what is left.
 
 use crate::araim::{Desk, Promise};
-use crate::positions::{Job, each_epoch};
+use crate::positions::{Job, Watch, each_epoch};
+use crate::receivers::ranges::{Tally, Unused};
 use navbound_core::bound::araim::Sight;
 use navbound_core::bound::araim::exclusion::{Monitored, NoLevels};
 use navbound_core::bound::araim::modes::MOST_SATELLITES;
+use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::bound::araim::service::Service;
 use navbound_core::frame::{Displacement, Geodetic};
 use navbound_core::quantity::{GpsTime, Unavailable};
 use navbound_core::signal::SatelliteId;
+use navbound_core::solution::consistency::Consistency;
 use navbound_core::solution::point::{self, Fix, MOST_RANGES, Range, sighted};
+use navbound_core::solution::wls::WeightedSight;
 use navbound_formats::rinex::{Navigation, Observations};
 
 /// One epoch.
@@ -23,6 +27,8 @@ pub struct Watched {
     pub excluded: Vec<SatelliteId>,
     /// Decision and levels.
     pub monitored: Monitored,
+    /// Residuals of all satellites against the error model, where there are enough.
+    pub consistency: Option<Consistency>,
 }
 
 /// Every epoch of a receiver's file: position by least squares without any exclusion of its own, then residuals there, tests, exclusion,
@@ -33,13 +39,13 @@ pub fn watch(
     job: &Job,
     promise: &Promise,
     service: &Service,
-) -> Vec<Result<Watched, NoLevels>> {
+) -> Watch<Result<Watched, NoLevels>> {
     each_epoch(
         observations,
         navigation,
         job,
         || Desk::new(promise.support.map(|s| s.p_const), true),
-        |desk, time, ranges| epoch(desk, time, ranges, job, promise, service),
+        |desk, time, ranges, tally| epoch(desk, time, ranges, tally, &Rules { job, promise }, service),
     )
 }
 
@@ -51,31 +57,56 @@ pub(crate) struct Taken {
     pub(crate) residuals_m: Vec<f64>,
     /// Whose they are.
     pub(crate) satellites: Vec<SatelliteId>,
+    /// The residuals against the error model for accuracy, where there are enough.
+    pub(crate) consistency: Option<Consistency>,
 }
 
-/// The position of an epoch's ranges, its lines of sight into `sights`, and its residuals.
+/// What a monitor believes of ranges.
+pub(crate) struct Rules<'a> {
+    pub(crate) job: &'a Job,
+    pub(crate) promise: &'a Promise,
+}
+
+/// The position of an epoch's ranges, its lines of sight into `sights`, and its residuals; ranges below the mask are counted.
 ///
 /// # Errors
 /// [`Unavailable`]: no position.
-pub(crate) fn taken(ranges: &[Range], time: GpsTime, job: &Job, promise: &Promise, sights: &mut Vec<Sight>) -> Result<Taken, Unavailable> {
-    let fix = point::solve(ranges, time, &job.settings)?;
+pub(crate) fn taken(
+    (ranges, beyond): (&[Range], &[Beyond]),
+    time: GpsTime,
+    rules: &Rules<'_>,
+    sights: &mut Vec<Sight>,
+    tally: &mut Tally,
+) -> Result<Taken, Unavailable> {
+    let settings = &rules.job.settings;
+    let fix = point::solve(ranges, time, settings)?;
     sights.clear();
     let (mut residuals_m, mut satellites) = (Vec::new(), Vec::new());
-    for seen in sighted(ranges, time, &job.settings, &fix.position).take(MOST_RANGES) {
+    for seen in sighted(ranges, time, settings, &fix.position).take(MOST_RANGES) {
         let satellite = ranges[seen.index].satellite;
         residuals_m.push(seen.residual.m());
         satellites.push(satellite);
-        sights.push(promise.sight(seen.unit, satellite.constellation));
+        sights.push(rules.promise.sight_beyond(seen.unit, satellite.constellation, &beyond[seen.index]));
     }
-    Ok(Taken { fix, residuals_m, satellites })
+    tally.leave(Unused::BelowMask, ranges.len() - sights.len());
+    let nominal = |s: &Sight| WeightedSight { unit: s.unit, weight: 1.0 / s.accuracy_m2, constellation: s.constellation };
+    let consistency = Consistency::of(sights.iter().map(nominal).zip(residuals_m.iter().copied())).ok();
+    Ok(Taken { fix, residuals_m, satellites, consistency })
 }
 
-fn epoch(desk: &mut Desk, time: GpsTime, ranges: &[Range], job: &Job, promise: &Promise, service: &Service) -> Result<Watched, NoLevels> {
-    let Taken { fix, residuals_m, satellites } = taken(ranges, time, job, promise, &mut desk.sights)?;
+fn epoch(
+    desk: &mut Desk,
+    time: GpsTime,
+    ranges: (&[Range], &[Beyond]),
+    tally: &mut Tally,
+    rules: &Rules<'_>,
+    service: &Service,
+) -> Result<Watched, NoLevels> {
+    let Taken { fix, residuals_m, satellites, consistency } = taken(ranges, time, rules, &mut desk.sights, tally)?;
     let monitored = desk.monitored(&residuals_m, service)?;
     let [east, north, up] = monitored.step;
     let position = fix.position.moved(&Displacement::new(east, north, up)).map_err(Unavailable::from)?;
     let out = |i: usize| i < MOST_SATELLITES && monitored.excluded >> i & 1 == 1;
     let excluded = satellites.iter().enumerate().filter(|(i, _)| out(*i)).map(|(_, s)| *s).collect();
-    Ok(Watched { position, n_sv: satellites.len(), excluded, monitored })
+    Ok(Watched { position, n_sv: satellites.len(), excluded, monitored, consistency })
 }

@@ -23,6 +23,7 @@ pub mod monitor;
 pub mod plausible;
 pub mod positions;
 pub mod raim;
+pub mod receivers;
 pub mod rraim;
 pub mod sbas;
 pub mod sensed;

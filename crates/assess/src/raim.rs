@@ -1,15 +1,18 @@
 //! RAIM of many epochs by the slope method: geometry given, users and orbits, or a receiver's file.
 
 use crate::araim::{Outcome, Outlook, Overhead, Promise, rows};
-use crate::araim_watch::taken;
-use crate::positions::{Job, each_epoch};
+use crate::araim_watch::{Rules, taken};
+use crate::positions::{Job, Watch, each_epoch};
+use crate::receivers::ranges::Tally;
 use nalgebra::Vector3;
 use navbound_core::bound::araim::Sight;
+use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::bound::raim::exclusion::Monitored;
 use navbound_core::bound::raim::{ExclusionLevels, Levels, Monitor, Requirement};
 use navbound_core::frame::{Displacement, Geodetic};
 use navbound_core::quantity::{GpsTime, OutOfDomain, Unavailable};
 use navbound_core::signal::{Constellation, SatelliteId};
+use navbound_core::solution::consistency::Consistency;
 use navbound_core::solution::point::Range;
 use navbound_core::solution::wls::WeightedSight;
 use navbound_formats::rinex::{Navigation, Observations};
@@ -195,6 +198,8 @@ pub struct Watched {
     pub excluded: Option<SatelliteId>,
     /// Decision and levels.
     pub tested: Tested,
+    /// Residuals of all satellites against the error model, where there are enough.
+    pub consistency: Option<Consistency>,
 }
 
 /// Every epoch of a receiver's file: position by least squares without any exclusion of its own, then residuals there, test, exclusion,
@@ -205,21 +210,21 @@ pub fn watch(
     job: &Job,
     promise: &Promise,
     requirement: &Requirement,
-) -> Vec<Result<Watched, Unavailable>> {
+) -> Watch<Result<Watched, Unavailable>> {
     let desk = || (Desk::new(requirement), Vec::new());
-    let each = |(desk, sights): &mut (Desk, Vec<Sight>), time: GpsTime, ranges: &[Range]| epoch(desk, sights, time, ranges, job, promise);
-    each_epoch(observations, navigation, job, desk, each)
+    let rules = Rules { job, promise };
+    each_epoch(observations, navigation, job, desk, |(desk, sights), time, ranges, tally| epoch(desk, sights, time, ranges, tally, &rules))
 }
 
 fn epoch(
     desk: &mut Desk,
     sights: &mut Vec<Sight>,
     time: GpsTime,
-    ranges: &[Range],
-    job: &Job,
-    promise: &Promise,
+    ranges: (&[Range], &[Beyond]),
+    tally: &mut Tally,
+    rules: &Rules<'_>,
 ) -> Result<Watched, Unavailable> {
-    let taken = taken(ranges, time, job, promise, sights)?;
+    let taken = taken(ranges, time, rules, sights, tally)?;
     desk.sights = sights.iter().map(weighted).collect();
     desk.columns = (0..sights.len()).collect();
     desk.residuals = taken.residuals_m;
@@ -228,5 +233,6 @@ fn epoch(
         Some(Monitored { step: [east, north, up], .. }) => taken.fix.position.moved(&Displacement::new(east, north, up))?,
         None => taken.fix.position,
     };
-    Ok(Watched { position, excluded: tested.excluded.and_then(|i| taken.satellites.get(i).copied()), tested })
+    let excluded = tested.excluded.and_then(|i| taken.satellites.get(i).copied());
+    Ok(Watched { position, excluded, tested, consistency: taken.consistency })
 }

@@ -23,6 +23,8 @@ pub enum Form {
 /// Values of a recording with its pseudoranges smoothed.
 pub struct Smoothed {
     value: Vec<f64>,
+    /// Variance of the code noise that is left of each value's.
+    noise_share: Vec<f32>,
     n_smoothed: usize,
     n_codes: usize,
 }
@@ -31,6 +33,10 @@ impl Smoothed {
     /// Values of a satellite, as [`Observations::values`].
     pub fn values(&self, observations: &Observations, satellite: usize) -> &[f64] {
         &self.value[observations.value_range(satellite)]
+    }
+    /// Variance of the code noise without memory that smoothing left of each value's, 1 for one that is as measured.
+    pub fn noise_shares(&self, observations: &Observations, satellite: usize) -> &[f32] {
+        &self.noise_share[observations.value_range(satellite)]
     }
     /// Share of the pseudoranges that an arc of phase supports; those that begin one are as measured.
     pub fn share(&self) -> f64 {
@@ -59,7 +65,8 @@ pub fn smooth(observations: &Observations, codes: &[Vec<usize>; SYSTEMS], form: 
     let tracks: Vec<Vec<Track>> =
         (0..SYSTEMS).map(|system| codes[system].iter().filter_map(|c| track(observations, system, *c)).collect()).collect();
     let mut states: Vec<Vec<State>> = tracks.iter().map(|t| vec![State::default(); NUMBERS * t.len()]).collect();
-    let mut found = Smoothed { value: observations.value.clone(), n_smoothed: 0, n_codes: 0 };
+    let mut found =
+        Smoothed { noise_share: vec![1.0; observations.value.len()], value: observations.value.clone(), n_smoothed: 0, n_codes: 0 };
     for epoch in 0..observations.n_epochs() {
         for k in observations.satellites(epoch) {
             let satellite = observations.satellite[k];
@@ -120,5 +127,6 @@ impl Smoothed {
         let smoothed = state.channel.smoothed(how, o.time[epoch], Metres::new(code), phase, lost).m();
         self.n_smoothed += usize::from(smoothed != code);
         self.value[at + track.code] = smoothed;
+        self.noise_share[at + track.code] = state.channel.noise_share() as f32;
     }
 }

@@ -2,10 +2,11 @@
 
 use crate::error::input_error;
 use crate::gnss::orbit;
-use crate::positions::{Navigation, Observations};
+use crate::positions::{Navigation, Observations, satellites};
 use navbound_assess::araim::{self, Outcome, Outlook, Promise, Row, Rule, Sights};
 use navbound_assess::araim_watch::{Watched, watch};
-use navbound_assess::positions::{Job, Signals};
+use navbound_assess::positions::{Job, Signals, Watch};
+use navbound_assess::smoothing::Form;
 use navbound_core::bound::araim::Levels;
 use navbound_core::bound::araim::exclusion::{Decision, Monitored, NoLevels};
 use navbound_core::bound::araim::ranging::Airborne;
@@ -15,10 +16,12 @@ use navbound_core::frame::{Geodetic, LatLon};
 use navbound_core::geometry::Elements;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
 use navbound_core::signal::Constellation;
+use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::solution::RangeError;
+use navbound_core::solution::consistency::Consistency;
 use navbound_core::solution::point::Settings;
 use navbound_path::AtIndex;
-use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -238,7 +241,7 @@ fn araim_monitor<'py>(
 }
 
 /// Positions that a monitor tests afterwards: nothing is excluded.
-pub(crate) fn unmonitored(navigation: &Navigation, systems: &str, dual: bool, mask_rad: f64) -> Job {
+pub(crate) fn unmonitored(navigation: &Navigation, systems: &str, dual: bool, mask_rad: f64, smoothing_s: Option<f64>) -> Job {
     let settings = Settings {
         mask: Radians::new(mask_rad),
         ionosphere: navigation.records.klobuchar_gps.filter(|_| !dual),
@@ -249,14 +252,28 @@ pub(crate) fn unmonitored(navigation: &Navigation, systems: &str, dual: bool, ma
     Job {
         systems: systems.bytes().filter_map(Constellation::from_letter).collect(),
         signals: if dual { Signals::Dual } else { Signals::Single },
-        smoothing: None,
+        smoothing: smoothing_s.map(|window| (Form::DivergenceFree, Smoothing::over(window))),
         settings,
         keep_ranges: false,
     }
 }
 
+/// What a monitor says of a file beside its epochs: satellites, smoothing, residuals against the error model (a row an epoch, a column a
+/// constellation; NaN where there are not enough).
+pub(crate) fn beside<T>(d: &Bound<'_, PyDict>, watch: &Watch<T>, consistency: impl Fn(&T) -> Option<Consistency>) -> PyResult<()> {
+    satellites(d, &watch.tally, &watch.signals)?;
+    d.set_item("smoothed_share", watch.smoothed_share)?;
+    let rows: Vec<_> = watch.epochs.iter().map(consistency).collect();
+    for (name, of) in [("statistic", (|c| c.statistic) as fn(&Consistency) -> [f64; 5]), ("redundancy", |c| c.redundancy)] {
+        let flat: Vec<f64> = rows.iter().flat_map(|c| c.as_ref().map_or([f64::NAN; 5], of)).collect();
+        d.set_item(name, flat.into_pyarray(d.py()).reshape([rows.len(), 5])?)?;
+    }
+    Ok(())
+}
+
 /// Detection and exclusion at every epoch of an observation file.
 #[pyfunction]
+#[pyo3(signature = (observations, navigation, systems, dual, mask_rad, support, airborne, numbers, smoothing_s))]
 #[expect(clippy::too_many_arguments, reason = "one for each argument of the Python function")]
 fn araim_watch<'py>(
     py: Python<'py>,
@@ -268,10 +285,12 @@ fn araim_watch<'py>(
     support: [[f64; 6]; 5],
     airborne: [f64; 4],
     numbers: [f64; 7],
+    smoothing_s: Option<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (service, promise) = (service(&numbers)?, promise(&support, airborne)?);
-    let job = unmonitored(navigation, systems, dual, mask_rad);
-    let watched = py.detach(|| watch(&observations.0, &navigation.records, &job, &promise, &service));
+    let job = unmonitored(navigation, systems, dual, mask_rad, smoothing_s);
+    let watch = py.detach(|| watch(&observations.0, &navigation.records, &job, &promise, &service));
+    let watched = &watch.epochs;
     let outcome = |w: &Result<Watched, NoLevels>| match w {
         Ok(w) => (araim::Outcome::of(&w.monitored.levels), Some(w.monitored)),
         Err(e) => (araim::refusal(*e).err().unwrap_or(araim::Outcome::Singular), None),
@@ -288,6 +307,7 @@ fn araim_watch<'py>(
         |w: &Result<Watched, NoLevels>| w.as_ref().map_or_else(|_| Vec::new(), |w| w.excluded.iter().map(ToString::to_string).collect());
     d.set_item("excluded", watched.iter().map(names).collect::<Vec<Vec<String>>>())?;
     d.set_item("reason", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;
+    beside(&d, &watch, |w| w.as_ref().ok()?.consistency)?;
     Ok(d)
 }
 

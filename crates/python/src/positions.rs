@@ -3,6 +3,7 @@
 use crate::error::{format_error, input_error};
 use crate::orbits::PreciseOrbits;
 use navbound_assess::positions::{Job, Positions, Signals, positions};
+use navbound_assess::receivers::ranges::{Tally, Unused};
 use navbound_assess::smoothing::Form;
 use navbound_core::frame::{self, EcefPosition};
 use navbound_core::geometry::broadcast::mean_elements;
@@ -378,10 +379,29 @@ fn table<'py>(py: Python<'py>, found: &Positions, weights: &str) -> PyResult<Bou
         Err(why) => why.to_string(),
     };
     d.set_item("reason", outcomes().map(reason).collect::<Vec<_>>())?;
-    d.set_item("unused", found.unused.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect::<BTreeMap<_, _>>())?;
+    satellites(&d, &found.tally, &found.signals)?;
     d.set_item("codes", found.codes.clone())?;
     d.set_item("weights", weights)?;
     Ok(d)
+}
+
+/// Satellite-epochs that were not used, by the id of the reason; ranges that were, by satellite and message; signals by constellation.
+pub(crate) fn satellites(d: &Bound<'_, PyDict>, tally: &Tally, signals: &BTreeMap<char, &'static str>) -> PyResult<()> {
+    let unused = PyDict::new(d.py());
+    for (why, n) in tally.unused() {
+        unused.set_item(why.id(), n)?;
+    }
+    d.set_item("unused", unused)?;
+    let name = |letter: char| signals.get(&letter).copied().unwrap_or_default();
+    let rows =
+        tally.used().map(|(satellite, message, n)| (satellite.to_string(), name(satellite.constellation.letter()), message.name(), n));
+    d.set_item("used", rows.collect::<Vec<_>>())
+}
+
+/// Why a satellite may not be used: ids with their words.
+#[pyfunction]
+fn unused_reasons() -> Vec<(&'static str, &'static str)> {
+    Unused::ALL.into_iter().map(|why| (why.id(), why.words())).collect()
 }
 
 fn velocity(fix: &Fix, axis: usize) -> f64 {
@@ -408,5 +428,6 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Navigation>()?;
     m.add_function(wrap_pyfunction!(raw_log, m)?)?;
     m.add_function(wrap_pyfunction!(geodetic_from_ecef, m)?)?;
+    m.add_function(wrap_pyfunction!(unused_reasons, m)?)?;
     m.add_function(wrap_pyfunction!(solve_positions, m)?)
 }

@@ -1,6 +1,6 @@
 //! RAIM by the slope method.
 
-use crate::araim::{promise, refused, requirement, systems, unmonitored, users, word};
+use crate::araim::{beside, promise, refused, requirement, systems, unmonitored, users, word};
 use crate::error::input_error;
 use crate::gnss::orbit;
 use crate::positions::{Navigation, Observations};
@@ -101,6 +101,7 @@ fn raim_predict<'py>(
 
 /// Detection and exclusion at every epoch of an observation file.
 #[pyfunction]
+#[pyo3(signature = (observations, navigation, systems, dual, mask_rad, support, airborne, numbers, smoothing_s))]
 #[expect(clippy::too_many_arguments, reason = "one for each argument of the Python function")]
 fn raim_watch<'py>(
     py: Python<'py>,
@@ -112,10 +113,12 @@ fn raim_watch<'py>(
     support: [[f64; 6]; 5],
     airborne: [f64; 4],
     numbers: [f64; 3],
+    smoothing_s: Option<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (requirement, promise) = (requirement(numbers)?, promise(&support, airborne)?);
-    let job = unmonitored(navigation, systems, dual, mask_rad);
-    let watched = py.detach(|| raim::watch(&observations.0, &navigation.records, &job, &promise, &requirement));
+    let job = unmonitored(navigation, systems, dual, mask_rad, smoothing_s);
+    let watch = py.detach(|| raim::watch(&observations.0, &navigation.records, &job, &promise, &requirement));
+    let watched = &watch.epochs;
     let d = decisions(py, &watched.iter().map(|w| w.as_ref().ok().map(|w| &w.tested)).collect::<Vec<_>>())?;
     let number = |f: fn(&Watched) -> f64| watched.iter().map(|w| w.as_ref().map_or(f64::NAN, f)).collect::<Vec<_>>().into_pyarray(py);
     d.set_item("est_lat_rad", number(|w| w.position.point.lat().rad()))?;
@@ -124,6 +127,7 @@ fn raim_watch<'py>(
     let name = |w: &Result<Watched, Unavailable>| w.as_ref().ok().and_then(|w| w.excluded).map(|s| s.to_string()).unwrap_or_default();
     d.set_item("excluded", watched.iter().map(name).collect::<Vec<String>>())?;
     d.set_item("reason", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;
+    beside(&d, &watch, |w| w.as_ref().ok()?.consistency)?;
     Ok(d)
 }
 

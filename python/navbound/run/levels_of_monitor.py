@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import polars as pl
 
 from navbound import araim, gnss, raim
+from navbound._monitor_fit import DISBELIEF
 from navbound.errors import FormatError, InputError
 from navbound.read.epochs import read
 from navbound.read.truth import join
@@ -31,6 +32,13 @@ WITHIN = {
     "hpl_slope_m": "published level, which is not used",
 }
 """Columns of a monitor that says how often it can detect and exclude."""
+
+
+OF_FILE = {"satellites used", "smoothing", "satellites not used (satellite-epochs)", "fit of the error model"}
+"""Entries of a monitor's models that are counts of one file."""
+
+CONTRADICTED = f"{DISBELIEF} (the residuals or the detections contradict the error model)"
+"""Stands beside every number of levels whose error model does not fit the ranges."""
 
 
 class Monitor(Protocol):
@@ -75,12 +83,12 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Mo
         raise FormatError(path, "holds no epoch")
     found = monitor(observations, records, truth_ecef_m=truth.ecef_m)
     notes = [f"{path.name}: {words}" for words in decisions(found.epochs)]
-    notes += [f"{name}: {words}" for name, words in found.models.items()]
+    notes += [f"{path.name}: {name}: {words}" if name in OF_FILE else f"{name}: {words}" for name, words in found.models.items()]
     epochs = found.epochs
     if truth.given is not None and truth.ecef_m is None:
         epochs, words = join(epochs, read(truth.given), truth.tolerance_s)
         notes.append(words)
-    return Part(uniform(epochs), observations.n_epochs, [], notes)
+    return Part(uniform(epochs), observations.n_epochs, [], notes, "" if found.fit.believable else CONTRADICTED)
 
 
 def decisions(epochs: pl.DataFrame) -> list[str]:

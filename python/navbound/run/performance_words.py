@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from navbound._monitor_fit import DISBELIEF
 from navbound.run.words import length, share
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ def levels_verdict(verdict: VerdictId) -> list[str]:
 
 def performance_words(result: Performance) -> list[str]:
     """What was asked: integrity first, then availability, continuity and accuracy."""
-    words = [f"The protection levels are {result.experimental}."] if result.experimental else []
+    words = [f"The protection levels {_predicate(result.experimental)}."] if result.experimental else []
     words += [_integrity(result), _availability(result), _continuity(result)]
     both = [axis.error_m for axis in result.axes]
     if both[0] is not None:
@@ -31,6 +32,10 @@ def performance_words(result: Performance) -> list[str]:
     if result.subsets is not None:
         words.append(_subsets(result.subsets))
     return words
+
+
+def _predicate(label: str) -> str:
+    return label if label.startswith(DISBELIEF) else f"are {label}"
 
 
 def _integrity(result: Performance) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import polars as pl
 
 from navbound import gnss
+from navbound._receivers import unused_words
 from navbound.errors import FormatError
 from navbound.read.epochs import Reading
 from navbound.run.records import Rejection
@@ -34,7 +35,7 @@ def _reading(source: Source, navigation: gnss.Navigation) -> Reading:
     found = gnss.solve(observations, navigation, ionosphere=ionosphere, track=source.stem)
     known = found.epochs.filter(pl.col("est_lat_rad").is_not_null()).unique("time_ns", keep="first", maintain_order=True).sort("time_ns")
     if known.is_empty():
-        raise FormatError(source.path, f"no position could be solved; satellites not used: {found.unused}")
+        raise FormatError(source.path, f"no position could be solved; satellites not used: {unused_words(found.unused)}")
     path = str(source.path)
     rejected = [
         Rejection(file=path, reason=f"no position: {reason}", count=count, first_line=None, example=f"{count} epochs")
@@ -45,6 +46,6 @@ def _reading(source: Source, navigation: gnss.Navigation) -> Reading:
         reason, example = f"{first.field}: {first.reason}, and others", first.text
         rejected.append(Rejection(file=path, reason=reason, count=observations.n_refused, first_line=first.line, example=example))
     notes = [f"{source.path.name}: {name}: {words}" for name, words in found.models.items()]
-    notes += [f"{source.path.name}: {count} satellite-epochs not used: {reason}" for reason, count in found.unused.items()]
+    notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in found.unused.items()]
     columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in found.codes.values() for c in codes)}
     return Reading(known, source.record(observations.n_epochs), rejected, notes=notes, columns=columns)

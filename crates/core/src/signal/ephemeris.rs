@@ -93,7 +93,8 @@ pub struct Ephemeris {
 impl Ephemeris {
     /// May be used for ranging on this carrier, as far as the satellite itself says.
     ///
-    /// GPS: health word 0. BeiDou: SatH1 0. Galileo: data valid and signal healthy on the carriers the message serves.
+    /// GPS: health word 0. BeiDou: SatH1 0. Galileo: data valid and signal healthy on the carriers the message serves; I/NAV does not state
+    /// the health of E5a, so that its word never forbids E5a.
     pub const fn healthy(&self, carrier: Carrier) -> bool {
         let word = self.health.word;
         match self.satellite.constellation {
@@ -116,6 +117,8 @@ impl Ephemeris {
     /// ```text
     /// GPS      L1: TGD      L2: (f1/f2)^2 TGD                    IS-GPS-200 20.3.3.3.3.2
     /// Galileo  E1: BGD(E1,E5b) of I/NAV, BGD(E1,E5a) of F/NAV; E5: (f1/f5)^2 of the same   OS SIS ICD 5.1.5
+    ///          E5a with I/NAV: BGD(E1,E5b) + ((f1/f5a)^2 - 1) BGD(E1,E5a), so that
+    ///          clock(E1,E5a) = clock(E1,E5b) + BGD(E1,E5a) - BGD(E1,E5b): both give one clock of E1       re-derived
     /// BeiDou   B1I: TGD1    B2I: TGD2    B3I: 0                  BDS-SIS-ICD-B1I 5.2.4.10
     /// ```
     pub fn group_delay(&self, carrier: Carrier) -> Option<f64> {
@@ -127,6 +130,7 @@ impl Ephemeris {
         match (self.message, carrier) {
             (Message::Lnav, Carrier::L1 | Carrier::L2) | (Message::Fnav, Carrier::L1 | Carrier::L5) => scaled(first),
             (Message::Inav, Carrier::L1 | Carrier::E5b) => scaled(second),
+            (Message::Inav, Carrier::L5) => Some(second + scaled(first)? - first),
             (Message::D1 | Message::D2, Carrier::B1I) => Some(first),
             (Message::D1 | Message::D2, Carrier::E5b) => Some(second),
             (Message::D1 | Message::D2, Carrier::B3I) => Some(0.0),

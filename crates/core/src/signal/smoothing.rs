@@ -40,6 +40,8 @@ struct Last {
     count: f64,
     /// Shortest step of the arc \[s\]: after a gap one code counts as one, however long the gap was.
     step_s: f64,
+    /// Variance of the smoothed code against that of one code, for noise without memory.
+    noise_share: f64,
 }
 
 impl Channel {
@@ -65,12 +67,23 @@ impl Channel {
             return Metres::new(code);
         }
         let carried = self.carried(how, time, phase, lost).filter(|(carried, ..)| (code - carried).abs() <= how.slip.m());
-        let (smoothed, count, step_s) = carried.map_or((code, 1.0, f64::INFINITY), |(carried, count, step_s)| {
+        let before = self.noise_share();
+        let (smoothed, count, step_s, noise_share) = carried.map_or((code, 1.0, f64::INFINITY, 1.0), |(carried, count, step_s)| {
             let weight = 1.0 / count.min(how.window_s / step_s).max(1.0);
-            (weight * code + (1.0 - weight) * carried, count, step_s)
+            let kept = 1.0 - weight;
+            (weight * code + kept * carried, count, step_s, weight * weight + kept * kept * before)
         });
-        self.last = Some(Last { time, phase, smoothed, count, step_s });
+        self.last = Some(Last { time, phase, smoothed, count, step_s, noise_share });
         Metres::new(smoothed)
+    }
+
+    /// Variance of the last smoothed code against that of one code, for code noise without memory: 1 at the beginning of an arc.
+    ///
+    /// ```text
+    /// v(k) = a^2 + (1 - a)^2 v(k-1)        a as in the filter; a / (2 - a) in the end
+    /// ```
+    pub fn noise_share(&self) -> f64 {
+        self.last.map_or(1.0, |last| last.noise_share)
     }
 
     /// The last smoothed range carried on by the phase, codes of the arc with this one, and its shortest step; `None` where an arc must
@@ -175,6 +188,21 @@ mod tests {
             // 3000 samples of 60 (6) epochs of memory: 50 (500) independent ones, a relative spread of sqrt(2/50) or less.
             assert!((variance(step) / expected - 1.0).abs() < 0.6, "{} {expected}", variance(step));
         }
+    }
+
+    #[test]
+    fn the_share_of_noise_that_is_left_is_that_of_the_filter() {
+        let mut channel = Channel::default();
+        assert_eq!(channel.noise_share(), 1.0);
+        for k in 0..2000 {
+            channel.smoothed(&HOW, at(f64::from(k)), Metres::new(0.0), Metres::new(0.0), false);
+            // Inside the window it is a plain mean of k + 1 codes.
+            assert!(k >= 60 || (channel.noise_share() * f64::from(k + 1) - 1.0).abs() < 1e-12, "{k}");
+        }
+        // The steady state of a first-order filter of weight 1/60: a / (2 - a).
+        assert!((channel.noise_share() * (2.0 * 60.0 - 1.0) - 1.0).abs() < 1e-9);
+        channel.smoothed(&HOW, at(2000.0), Metres::new(0.0), Metres::new(0.0), true);
+        assert_eq!(channel.noise_share(), 1.0);
     }
 
     #[test]

@@ -105,7 +105,8 @@ impl<'a> Block<'a> {
         // The last line is often cut by writers that leave out blanks.
         let [sent, last] = self.last_line();
         let orbit_time = nearest_week(v[11], clock_time, behind).ok_or_else(|| self.refusal("toe", "not a time of week"))?;
-        let message = kind(satellite, message, v[20]);
+        let unnamed = || self.refusal("data sources", "neither the clock of I/NAV nor that of F/NAV");
+        let message = kind(satellite, message, v[20]).ok_or_else(unnamed)?;
         if let Some((field, reason)) = orbit_refusal(v[10], v[8]) {
             return Err(self.refusal(field, reason));
         }
@@ -179,19 +180,28 @@ pub(crate) fn orbit_refusal(sqrt_a: f64, eccentricity: f64) -> Option<(&'static 
     (!(0.0..=0.9).contains(&eccentricity)).then_some(("eccentricity", "outside [0, 0.9]"))
 }
 
-/// The message a record came from. Version 3 does not say: Galileo's data sources tell (bit 1 is F/NAV), BeiDou's follow from the
-/// satellite, since D2 is what the geostationary ones send.
-fn kind(satellite: SatelliteId, message: Option<&[u8]>, sources: f64) -> Message {
-    match (satellite.constellation, message) {
+/// The message a record came from; `None` where the record does not say. Version 3 has no name: Galileo's data sources tell, BeiDou's
+/// follow from the satellite, since D2 is what the geostationary ones send.
+fn kind(satellite: SatelliteId, message: Option<&[u8]>, sources: f64) -> Option<Message> {
+    Some(match (satellite.constellation, message) {
         (_, Some(b"INAV")) => Message::Inav,
         (_, Some(b"FNAV")) => Message::Fnav,
         (_, Some(b"D1")) => Message::D1,
         (_, Some(b"D2")) => Message::D2,
-        (Constellation::Galileo, _) if small(sources) & 0b010 != 0 => Message::Fnav,
-        (Constellation::Galileo, _) => Message::Inav,
+        (Constellation::Galileo, _) => galileo(small(sources))?,
         (Constellation::BeiDou, _) if matches!(satellite.number, 1..=5 | 59..=63) => Message::D2,
         (Constellation::BeiDou, _) => Message::D1,
         _ => Message::Lnav,
+    })
+}
+
+/// Galileo's message by the data sources of RINEX 3: bits 8 and 9 say whose the clock is (E5a,E1 or E5b,E1), which is what matters; where
+/// neither or both are set, bits 0 to 2 say where the record was received (I/NAV on E1, F/NAV on E5a, I/NAV on E5b).
+const fn galileo(sources: u16) -> Option<Message> {
+    match (sources >> 8 & 0b11, sources & 0b111) {
+        (0b01, _) | (0b00 | 0b11, 0b010) => Some(Message::Fnav),
+        (0b10, _) | (0b00 | 0b11, 0b001 | 0b100 | 0b101) => Some(Message::Inav),
+        _ => None,
     }
 }
 

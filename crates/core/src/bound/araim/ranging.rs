@@ -30,6 +30,36 @@ const ZENITH_TROPOSPHERE_M: f64 = 0.12;
 /// Earth radius against the shell of the ionosphere: DO-229 A.4.4.10.4 (standard).
 const SHELL: f64 = 6378.1363 / (6378.1363 + 350.0);
 
+/// Code noise overhead of one pseudorange that nothing has smoothed \[m\]; provenance *inferred*: that of the weights of positions,
+/// docs/methods/gnss-positions.md.
+const CODE_NOISE_M: f64 = 0.13;
+
+/// What a range has beyond the smoothed range of the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beyond {
+    /// Standard deviation of the code noise without memory that smoothing has left, against one pseudorange as measured: of a pair
+    /// that nothing smoothed the root of the sum of the squares of its factors, 0 for a smoothed range.
+    pub noise_factor: f64,
+    /// Standard deviation of a constant of satellite and receiver that the broadcast clock does not cover.
+    pub code_bias: Metres,
+}
+
+impl Beyond {
+    /// Nothing: a smoothed range of the clock's own signals.
+    pub const NOTHING: Self = Self { noise_factor: 0.0, code_bias: Metres::new(0.0) };
+
+    /// Its variance \[m²\].
+    ///
+    /// ```text
+    /// sigma^2 = (0.13 m noise_factor)^2 (1/2 + 1/(2 sin^2 E)) + code_bias^2
+    /// ```
+    #[inline(always)]
+    pub fn variance_m2(&self, sin_elevation: f64) -> f64 {
+        let (noise, bias) = (CODE_NOISE_M * self.noise_factor, self.code_bias.m());
+        noise * noise * (0.5 + 0.5 / (sin_elevation * sin_elevation)) + bias * bias
+    }
+}
+
 impl Airborne {
     /// Ionosphere-free pair of L1 and L5, E1 and E5a.
     pub const DUAL_FREQUENCY: Self = Self {
@@ -78,6 +108,14 @@ mod tests {
         assert!((Airborne::DUAL_FREQUENCY.variance_m2(zenith, 1.0) - dual).abs() < 2e-5);
         let single = 0.130_167_f64.powi(2) + 0.12_f64.powi(2) + 1.5 * 1.5;
         assert!((Airborne::SINGLE_FREQUENCY.variance_m2(zenith, 1.0) - single).abs() < 2e-5);
+    }
+
+    /// By hand: at 30 deg the mapping is 1/2 + 1/(2 * 0.25) = 2.5.
+    #[test]
+    fn what_is_beyond_the_model_adds_to_it() {
+        let beyond = Beyond { noise_factor: 2.0, code_bias: Metres::new(1.0) };
+        assert!((beyond.variance_m2(0.5) - (0.26 * 0.26 * 2.5 + 1.0)).abs() < 1e-12);
+        assert_eq!(Beyond::NOTHING.variance_m2(0.5), 0.0);
     }
 
     #[test]

@@ -1,0 +1,4 @@
+//! A receiver's observations and broadcast messages to ranges: one rule for positions and for the monitors on board.
+
+pub mod ranges;
+pub mod signals;
