@@ -231,3 +231,14 @@ def test_galileo_records_are_of_the_message_whose_clock_they_have(folder: Path, 
     table = navigation.records()
     assert table["message"].to_list() == ([message] if message else [])
     assert [r.field for r in navigation.refused] == ([] if message else ["data sources"])
+
+
+def test_tabulated_clocks_need_no_fnav(observations: gnss.Observations, folder: Path, inav: gnss.Navigation) -> None:
+    """The group delays against the clock of E1 and E5a are those of I/NAV as well."""
+    whole = gnss.read_navigation(folder / f"{DAY}_MN.rnx.gz")
+    orbits = gnss.read_orbits([*folder.glob("*SP3.gz"), *folder.glob("*CLK.gz")])
+    one, other = (gnss.solve(observations, n, systems="E", signals="dual", orbits=orbits) for n in (inav, whole))
+    assert one.used is not None
+    assert kinds(one.used) <= {("E1-E5b", "INAV"), ("E1-E5a", "INAV")}
+    assert one.used["n_ranges"].sum() > 20000
+    assert one.epochs["est_lat_rad"].null_count() == other.epochs["est_lat_rad"].null_count()
