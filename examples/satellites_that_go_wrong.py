@@ -4,7 +4,7 @@ Expected output:
 
     satellite-step gate after 2 s; no alert needed; largest horizontal error 3 m
     satellite-ramp gate after 2 s; no alert needed; largest horizontal error 3 m
-    inside RNP: True
+    bound within RNP at 100 % of the ok epochs; on one flight alone: not_shown
 """
 
 import navbound
@@ -12,4 +12,5 @@ import navbound
 run = navbound.fly("beijing-shanghai-satellite-wrong")
 for fault in run.summary.faults:
     print(f"{fault.kind:14} gate after {fault.gate_after_s:.0f} s; {fault.outcome}; largest horizontal error {fault.nse_h_max_m:.0f} m")
-print(f"inside RNP: {run.summary.verdict.inside}")
+verdict = run.summary.verdict
+print(f"bound within RNP at {100 * verdict.share_inside:g} % of the ok epochs; on one flight alone: {verdict.id}")

@@ -133,6 +133,7 @@ GOOD = rule.TrackFacts(1000, 1000, 0, 0, 0, 0, "unchecked")
         ({"n_judged": 949}, "not_shown"),
         ({"n_judged": 0}, "nothing_judged"),
         ({"n_judged": 0, "n_outside": 1}, "outside"),
+        ({"n_judged": 0, "n_beyond_alert_limit": 1000}, "nothing_judged"),
         ({"n_epochs": 0, "n_judged": 0}, "nothing_judged"),
     ],
 )
@@ -196,7 +197,7 @@ def test_a_few_independent_epochs_below_the_claim_are_not_shown(tmp_path: Path) 
     assert (circle.coverage, circle.coverage_low) == (0.0, 0.0)
     assert circle.coverage_high > 0.95
     assert "of the errors at ok epochs 0 % (0 % to " in verdict.words
-    assert "within the 95 % circle (95 % intervals as from 1 independent epochs)" in verdict.words
+    assert "are within the 95 % circle (95 % intervals as from 1 independent epochs)" in verdict.words
 
 
 def test_an_honest_bound_leaves_the_verdict(tmp_path: Path) -> None:

@@ -133,7 +133,7 @@ def _against_truth(belief: Belief) -> str:
     """How often each bound contained the error, with its interval and what the epochs are worth."""
     whole = [check for check in belief.bounds if check.n_outside == 0 and check.risk < WHOLE_BELOW]
     one = [
-        f"{share(check.coverage)} ({share(check.coverage_low)} to {share(check.coverage_high)}) within the {_bound(check)}"
+        f"{share(check.coverage)} ({share(check.coverage_low)} to {share(check.coverage_high)}) are within the {_bound(check)}"
         for check in belief.bounds
         if check not in whole
     ]

@@ -62,10 +62,10 @@ def of_tracks(facts: TrackFacts) -> VerdictId:
     """Verdict on judged tracks. A false bound comes first: no margin counts beside it."""
     if facts.belief == "refuted" or facts.n_misleading:
         return "not_believable"
+    if facts.n_judged == 0 and not facts.n_outside:
+        return "nothing_judged"
     if facts.n_outside or facts.n_beyond_alert_limit:
         return "outside"
-    if facts.n_judged == 0:
-        return "nothing_judged"
     if facts.n_implausible or facts.belief == "short" or not facts.n_judged >= LEAST_SHARE * facts.n_epochs:
         return "not_shown"
     return "inside"
