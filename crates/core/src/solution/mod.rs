@@ -4,6 +4,7 @@ pub mod dme;
 mod epoch;
 pub mod extraction;
 pub mod ins;
+pub mod mixture;
 pub mod point;
 mod range_error;
 pub mod subsets;
