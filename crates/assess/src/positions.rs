@@ -1,13 +1,15 @@
 //! Observations and navigation messages to positions, epoch by epoch on all cores.
 
-use navbound_core::frame::{Covariance, ecef_from_geodetic};
+use navbound_core::frame::{EcefPosition, ecef_from_geodetic};
 use navbound_core::geometry::atmosphere::ionosphere_factor;
 use navbound_core::geometry::broadcast::{Broadcast, SatelliteState, clock_polynomial};
 use navbound_core::quantity::{GpsTime, Metres, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};
-use navbound_core::solution::Surroundings;
-use navbound_core::solution::point::{self, Fix, Range, Settings, Used};
+use navbound_core::solution::constellations::{Constellations, Treatment};
+use navbound_core::solution::declared::{Declarations, Doubt};
+use navbound_core::solution::mixture::Mixture;
+use navbound_core::solution::point::{self, Fix, Offsets, Range, Settings, Used};
 use navbound_formats::precise::{Precise, Tables};
 use navbound_formats::rinex::{Navigation, Observations};
 use rayon::prelude::*;
@@ -47,10 +49,10 @@ pub struct Job {
 /// What came of a day, or an hour.
 #[derive(Debug, Clone, Default)]
 pub struct Positions {
-    /// One outcome an epoch. Where surroundings contradict the weights the covariance is widened by what that says.
+    /// One outcome an epoch, with the covariance that is declared; what cannot be a position is none.
     pub fixes: Vec<Result<Fix, Unavailable>>,
-    /// Whether they do, by epoch.
-    pub contradicted: Vec<bool>,
+    /// What each position is doubted for, or refused for.
+    pub doubts: Vec<Option<Doubt>>,
     /// The ranges of each position, where they are kept; weights and shared errors widened as the covariance is.
     pub ranges: Vec<Vec<(SatelliteId, Used)>>,
     /// Satellite-epochs of the wanted constellations that were not used, by reason.
@@ -138,48 +140,146 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
         let codes = plans.each_ref().map(|plan| plan.iter().flat_map(|p| &p.bands).flat_map(|b| b.columns.iter().map(|c| c.0)).collect());
         smoothing::smooth(observations, &codes, form, &how)
     });
+    let source = Source { observations, smoothed: smoothed.as_ref(), records: &records, plans: &plans, job };
     let epochs: Vec<usize> = (0..observations.n_epochs()).collect();
     let task = |epochs: &[usize]| {
         let (mut ranges, mut last, mut unused) = (Vec::new(), None, [0_usize; REASONS.len()]);
-        let (mut fixes, mut kept) = (Vec::with_capacity(epochs.len()), Vec::new());
-        for epoch in epochs {
-            collect(observations, smoothed.as_ref(), &records, &plans, *epoch, &mut ranges, &mut unused);
-            let time = observations.time[*epoch];
-            let fix = if job.keep_ranges {
-                let mut used = Vec::with_capacity(ranges.len());
-                let tell = |u: Used| used.push((ranges[u.index].satellite, u));
-                let fix = point::solve_telling(&ranges, time, &job.settings, last.as_ref(), tell);
-                kept.push(used);
-                fix
-            } else {
-                point::solve_near(&ranges, time, &job.settings, last.as_ref())
-            };
-            last = fix.as_ref().ok().map(|f: &Fix| ecef_from_geodetic(&f.position)).or(last);
-            fixes.push(fix);
-        }
-        (fixes, kept, unused)
+        let solve = |epoch: &usize| {
+            source.collect(*epoch, &mut ranges, &mut unused);
+            let solved = source.solve(*epoch, &ranges, last.as_ref(), &Offsets::default());
+            last = solved.fix.as_ref().ok().map(|f: &Fix| ecef_from_geodetic(&f.position)).or(last);
+            solved
+        };
+        (epochs.iter().map(solve).collect::<Vec<_>>(), unused)
     };
     let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
     let smoothed_share = smoothed.as_ref().map(Smoothed::share);
     let mut found = Positions { codes: codes(&plans, observations), smoothed_share, ..Positions::default() };
-    for (fixes, kept, unused) in outcomes {
-        found.fixes.extend(fixes);
-        found.ranges.extend(kept);
+    let mut solved = Vec::with_capacity(epochs.len());
+    for (part, unused) in outcomes {
+        solved.extend(part);
         for (reason, n) in REASONS.iter().zip(unused).filter(|(_, n)| *n > 0) {
             *found.unused.entry(reason).or_default() += n;
         }
     }
-    // The ranges are widened by all that their position was: by its own residuals, and by its surroundings.
-    let own: Vec<f64> = found.fixes.iter().map(|f| f.as_ref().map_or(1.0, |f| f.inflation)).collect();
-    found.contradicted = widen(&observations.time, &mut found.fixes);
-    for ((used, fix), own) in found.ranges.iter_mut().zip(&found.fixes).zip(own) {
+    let left_out = source.treat(&mut solved);
+    if left_out > 0 {
+        found.unused.insert(LEFT_OUT, left_out);
+    }
+    declare(&observations.time, solved, job.keep_ranges, &mut found);
+    found
+}
+
+/// Satellites of constellations that were left out whole.
+const LEFT_OUT: &str = "its constellation left out: it contradicts itself or the others";
+
+/// What came of one epoch's ranges by themselves.
+struct Solved {
+    fix: Result<Fix, Unavailable>,
+    /// Its other readings, where the position cannot stand alone.
+    mixture: Option<Box<Mixture>>,
+    kept: Vec<(SatelliteId, Used)>,
+}
+
+/// All that an epoch is solved from.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    observations: &'a Observations,
+    smoothed: Option<&'a Smoothed>,
+    records: &'a Records<'a>,
+    plans: &'a [Option<Plan>; SYSTEMS],
+    job: &'a Job,
+}
+
+impl Source<'_> {
+    fn collect(&self, epoch: usize, ranges: &mut Vec<Range>, unused: &mut [usize; REASONS.len()]) {
+        collect(self.observations, self.smoothed, self.records, self.plans, epoch, ranges, unused);
+    }
+
+    fn solve(&self, epoch: usize, ranges: &[Range], near: Option<&EcefPosition>, offsets: &Offsets) -> Solved {
+        let mut kept = Vec::new();
+        let keep = |u: Used| {
+            if self.job.keep_ranges {
+                kept.push((ranges[u.index].satellite, u));
+            }
+        };
+        let solved = point::solve_readings(ranges, self.observations.time[epoch], &self.job.settings, near, offsets, keep);
+        match solved {
+            Ok((fix, mixture)) => Solved { fix: Ok(fix), mixture: mixture.map(Box::new), kept },
+            Err(why) => Solved { fix: Err(why), mixture: None, kept },
+        }
+    }
+
+    /// Solve again the epochs with a constellation that does not fit, without it, and those with few ranges to spare, with the offsets of
+    /// clocks that the past predicts. Constellations are followed through the file in its order; the solutions are independent.
+    fn treat(&self, solved: &mut [Solved]) -> usize {
+        let mut constellations = Constellations::default();
+        let follow = |(epoch, s): (usize, &Solved)| (epoch, constellations.follow(self.observations.time[epoch], s.fix.as_ref().ok()));
+        let treatments: Vec<(usize, Treatment)> = solved
+            .iter()
+            .enumerate()
+            .map(follow)
+            .filter(|(epoch, t)| t.leaves_out() || solved[*epoch].fix.as_ref().map_or(true, |f| f.spare < FEW))
+            .collect();
+        let again = |(epoch, treatment): &(usize, Treatment)| self.again(*epoch, treatment, &solved[*epoch]);
+        let treated: Vec<Option<(usize, Solved)>> = treatments.par_iter().map(again).collect();
+        let mut left_out = 0;
+        for ((epoch, _), treated) in treatments.iter().zip(treated) {
+            if let Some((n, better)) = treated {
+                left_out += n;
+                solved[*epoch] = better;
+            }
+        }
+        left_out
+    }
+
+    /// An epoch with its constellations treated, and how many satellites that left out; none where that leaves no position that its ranges
+    /// check, or where nothing is left out and nothing is predicted of what the epoch holds.
+    fn again(&self, epoch: usize, treatment: &Treatment, before: &Solved) -> Option<(usize, Solved)> {
+        let (mut ranges, mut unused) = (Vec::new(), [0; REASONS.len()]);
+        self.collect(epoch, &mut ranges, &mut unused);
+        let all = ranges.len();
+        ranges.retain(|r| !treatment.without[r.satellite.constellation.index()]);
+        let few = |spare: usize| spare < FEW;
+        let near = before.fix.as_ref().ok().map(|f| ecef_from_geodetic(&f.position));
+        let mut solved = self.solve(epoch, &ranges, near.as_ref(), &Offsets::default());
+        if solved.fix.as_ref().map_or(true, |f| few(f.spare)) && treatment.offsets.tie(&ranges) {
+            solved = self.solve(epoch, &ranges, near.as_ref(), &treatment.offsets);
+        } else if ranges.len() == all {
+            return None;
+        }
+        let checked = solved.fix.as_ref().is_ok_and(|f| f.spare >= 1);
+        (checked || before.fix.is_err()).then_some((all - ranges.len(), solved))
+    }
+}
+
+/// With fewer ranges to spare the offsets of clocks are taken from the past.
+const FEW: usize = 3;
+
+/// Statuses and covariances, which the receiver's past has a part in, through the file in its order.
+fn declare(times: &[GpsTime], solved: Vec<Solved>, keep: bool, found: &mut Positions) {
+    let mut declarations = Declarations::default();
+    for (time, Solved { fix, mixture, mut kept }) in times.iter().zip(solved) {
+        let own = fix.as_ref().map_or(1.0, |f| f.inflation);
+        let (fix, doubt) = match fix {
+            Ok(mut fix) => {
+                let doubt = declarations.declare(*time, &mut fix, mixture.as_deref());
+                (doubt.and_then(|d| d.refusal(&fix)).map_or(Ok(fix), Err), doubt)
+            }
+            Err(why) => (Err(why), Doubt::of(&why)),
+        };
+        // The ranges are widened by all that their position was: by its own residuals, and by its surroundings.
         let whole = fix.as_ref().map_or(1.0, |f| f.inflation);
-        for (_, u) in used {
+        for (_, u) in &mut kept {
             u.weight /= whole;
             u.shared_m *= (whole / own).sqrt();
         }
+        if keep {
+            found.ranges.push(if fix.is_ok() { kept } else { Vec::new() });
+        }
+        found.fixes.push(fix);
+        found.doubts.push(doubt);
     }
-    found
 }
 
 /// What each constellation of a job contributes.
@@ -205,21 +305,6 @@ pub fn each_epoch<D, T: Send>(
         each(desk, observations.time[epoch], ranges)
     };
     (0..observations.n_epochs()).into_par_iter().map_init(|| (desk(), Vec::new(), [0; REASONS.len()]), task).collect()
-}
-
-/// Covariances by the surroundings of each epoch's past minute, which are followed through the file in its order.
-fn widen(times: &[GpsTime], fixes: &mut [Result<Fix, Unavailable>]) -> Vec<bool> {
-    let mut surroundings = Surroundings::default();
-    let follow = |(time, fix): (&GpsTime, &mut Result<Fix, Unavailable>)| {
-        let Ok(fix) = fix else { return false };
-        let Some(factor) = surroundings.judge(*time, fix) else { return false };
-        if factor > fix.inflation {
-            fix.covariance = Covariance::claim_symmetric(fix.covariance.matrix() * (factor / fix.inflation));
-            fix.inflation = factor;
-        }
-        true
-    };
-    times.iter().zip(fixes).map(follow).collect()
 }
 
 /// Why a satellite in the file is not in the solution, before geometry is looked at.

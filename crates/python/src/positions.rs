@@ -6,10 +6,11 @@ use navbound_assess::positions::{Job, Positions, Signals, positions};
 use navbound_assess::smoothing::Form;
 use navbound_core::frame::{self, EcefPosition};
 use navbound_core::geometry::broadcast::mean_elements;
-use navbound_core::quantity::{GpsTime, OutOfDomain, Radians};
+use navbound_core::quantity::{GpsTime, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Klobuchar};
 use navbound_core::solution::RangeError;
+use navbound_core::solution::declared::Doubt;
 use navbound_core::solution::point::{Fix, Settings, Used};
 use navbound_formats::Refusal;
 use navbound_formats::packed::unpack;
@@ -363,19 +364,17 @@ fn table<'py>(py: Python<'py>, found: &Positions, weights: &str) -> PyResult<Bou
     d.set_item("n_sv", count(|f| f.n_used).into_pyarray(py))?;
     d.set_item("n_excluded", count(|f| f.n_excluded).into_pyarray(py))?;
     d.set_item("n_redundant", count(|f| f.redundancy).into_pyarray(py))?;
-    let status = |(f, contradicted): (&Result<Fix, _>, &bool)| match f {
-        Ok(fix) if fix.consistent && !contradicted => "ok",
-        Ok(_) => "degraded",
-        Err(_) => "not_available",
+    let status = |(f, doubt): (&Result<Fix, _>, &Option<Doubt>)| match (f, doubt) {
+        (Ok(_), None) => "ok",
+        (Ok(_), Some(_)) => "degraded",
+        (Err(_), _) => "not_available",
     };
-    let outcomes = || found.fixes.iter().zip(&found.contradicted);
+    let outcomes = || found.fixes.iter().zip(&found.doubts);
     d.set_item("status", outcomes().map(status).collect::<Vec<_>>())?;
-    let reason = |(f, contradicted): (&Result<Fix, navbound_core::quantity::Unavailable>, &bool)| match f {
-        Ok(fix) if fix.redundancy > 0 && !fix.consistent => "the residuals contradict the weights".to_owned(),
-        Ok(_) if *contradicted => "the ranges of the last minute contradict the weights: reflections or obstruction".to_owned(),
-        Ok(fix) if fix.redundancy == 0 => "no satellite to spare: the residuals cannot be tested".to_owned(),
-        Ok(_) => String::new(),
-        Err(why) => why.to_string(),
+    let reason = |(f, doubt): (&Result<Fix, Unavailable>, &Option<Doubt>)| match (doubt, f) {
+        (Some(doubt), _) => doubt.words().to_owned(),
+        (None, Ok(_)) => String::new(),
+        (None, Err(why)) => why.to_string(),
     };
     d.set_item("reason", outcomes().map(reason).collect::<Vec<_>>())?;
     d.set_item("unused", found.unused.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect::<BTreeMap<_, _>>())?;

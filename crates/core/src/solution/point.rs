@@ -4,6 +4,8 @@
 //! weights (Huber 1964); test of the residuals by chi-square and exclusion of the largest (Parkinson and Axelrad 1988); provenance: ours,
 //! of standard parts.
 
+use super::mixture::Mixture;
+use super::plausible;
 use super::range_error::RangeConditions;
 use super::wls::{Dilution, Normal, Row};
 use crate::frame::{Covariance, EcefPosition, Geodetic, enu_from_ecef, geodetic_from_ecef};
@@ -15,12 +17,18 @@ use crate::special::float::{asin, sin, sqrt};
 use crate::special::gamma::chi_square_tail;
 use nalgebra::{Matrix3, Vector3};
 
+#[path = "point_offsets.rs"]
+mod offsets;
+#[path = "point_readings.rs"]
+mod readings;
 #[path = "point_records.rs"]
 mod records;
 #[path = "point_residuals.rs"]
 mod residuals;
 #[path = "point_velocity.rs"]
 mod velocity;
+use offsets::Clock;
+pub use offsets::{Offset, Offsets};
 pub use records::{Fix, Range, Settings, Used};
 pub use residuals::{Sighted, sighted};
 
@@ -53,7 +61,11 @@ struct Seen {
 
 impl Seen {
     const fn counts(&self) -> bool {
-        self.weight > 0.0 && !self.excluded
+        self.weighs() && !self.excluded
+    }
+    /// Above the mask, whether or not it was excluded.
+    const fn weighs(&self) -> bool {
+        self.weight > 0.0
     }
 }
 
@@ -73,24 +85,26 @@ pub fn solve(ranges: &[Range], time: GpsTime, settings: &Settings) -> Result<Fix
 /// # Errors
 /// As [`solve`].
 pub fn solve_near(ranges: &[Range], time: GpsTime, settings: &Settings, near: Option<&EcefPosition>) -> Result<Fix, Unavailable> {
-    settled(ranges, time, settings, near, |epoch| epoch.fix())?
+    settled(ranges, time, settings, near, &Offsets::default(), |epoch| epoch.fix())?
 }
 
-/// The same, and each range of the solution is told.
+/// The same with the offsets of constellations' clocks that are known, each range of the solution for `each`, and the other readings of the
+/// ranges where the position cannot stand alone.
 ///
 /// # Errors
 /// As [`solve`].
-pub fn solve_telling(
+pub fn solve_readings(
     ranges: &[Range],
     time: GpsTime,
     settings: &Settings,
     near: Option<&EcefPosition>,
-    tell: impl FnMut(Used),
-) -> Result<Fix, Unavailable> {
-    settled(ranges, time, settings, near, |epoch| {
+    offsets: &Offsets,
+    each: impl FnMut(Used),
+) -> Result<(Fix, Option<Mixture>), Unavailable> {
+    settled(ranges, time, settings, near, offsets, |epoch| {
         let fix = epoch.fix()?;
-        epoch.used().for_each(tell);
-        Ok(fix)
+        epoch.used().for_each(each);
+        Ok((fix, epoch.mixture()))
     })?
 }
 
@@ -100,6 +114,7 @@ fn settled<T>(
     time: GpsTime,
     settings: &Settings,
     near: Option<&EcefPosition>,
+    offsets: &Offsets,
     then: impl FnOnce(&Solver<'_>) -> T,
 ) -> Result<T, Unavailable> {
     if ranges.len() > MOST_RANGES {
@@ -108,14 +123,15 @@ fn settled<T>(
     }
     let mut seen = [Seen::default(); MOST_RANGES];
     let seen = &mut seen[..ranges.len()];
+    let clock_of = offsets.clocks(ranges);
     if let Some(near) = near {
-        let mut epoch = Solver::new(ranges, seen, time, settings, *near.vector());
+        let mut epoch = Solver::new(ranges, seen, time, settings, clock_of, *near.vector());
         if epoch.settle(false) == Ok(true) && epoch.judge().consistent {
             return Ok(then(&epoch));
         }
         seen.fill(Seen::default());
     }
-    let mut epoch = Solver::new(ranges, seen, time, settings, start(ranges)?);
+    let mut epoch = Solver::new(ranges, seen, time, settings, clock_of, start(ranges, &clock_of)?);
     epoch.settle(true)?;
     epoch.settle(false)?;
     epoch.exclude()?;
@@ -132,6 +148,8 @@ struct Solver<'a> {
     at: Vector3<f64>,
     /// Where delays and weights were computed; the Earth's centre before they are.
     modelled_at: Vector3<f64>,
+    /// Which clock each constellation has.
+    clock_of: [Clock; CLOCKS],
     clocks: [f64; CLOCKS],
     /// The equation of the last step.
     normal: Normal,
@@ -158,19 +176,22 @@ struct Place {
 
 /// A first position from nothing: equal weights, no atmosphere, from the Earth's centre. A few rounds bring it within kilometres,
 /// gross errors in the ranges apart.
-fn start(ranges: &[Range]) -> Result<Vector3<f64>, Unavailable> {
-    start_from(ranges.iter().map(|r| (&r.position, r.corrected, r.satellite.constellation)))
+fn start(ranges: &[Range], clock_of: &[Clock; CLOCKS]) -> Result<Vector3<f64>, Unavailable> {
+    start_from(ranges.iter().map(|r| {
+        let clock = &clock_of[r.satellite.constellation.index()];
+        (&r.position, Metres::new(r.corrected.m() - clock.offset_m), clock.index)
+    }))
 }
 
 /// The same from satellites' positions, ranges with the satellite's clock taken out, and whose time they count in.
 pub(crate) fn start_from<'a>(
-    ranges: impl Iterator<Item = (&'a EcefPosition, Metres, Constellation)> + Clone,
+    ranges: impl Iterator<Item = (&'a EcefPosition, Metres, usize)> + Clone,
 ) -> Result<Vector3<f64>, Unavailable> {
     let mut at = Vector3::zeros();
     for _ in 0..ROUNDS {
-        let rows = ranges.clone().map(|(satellite, corrected, constellation)| {
+        let rows = ranges.clone().map(|(satellite, corrected, clock)| {
             let (way, unit) = way(satellite, &at);
-            Row { unit, weight: 1.0, clock: constellation.index(), residual: corrected.m() - way }
+            Row { unit, weight: 1.0, clock, residual: corrected.m() - way }
         });
         let normal = Normal::new(rows)?;
         let step = normal.step().ok_or(SINGULAR)?;
@@ -191,9 +212,16 @@ pub(crate) fn way(satellite: &EcefPosition, at: &Vector3<f64>) -> (f64, Vector3<
 }
 
 impl<'a> Solver<'a> {
-    fn new(ranges: &'a [Range], seen: &'a mut [Seen], time: GpsTime, settings: &'a Settings, at: Vector3<f64>) -> Self {
-        let normal = Normal::default();
-        Self { ranges, seen, time, settings, at, modelled_at: Vector3::zeros(), clocks: [0.0; CLOCKS], normal, before: None }
+    fn new(
+        ranges: &'a [Range],
+        seen: &'a mut [Seen],
+        time: GpsTime,
+        settings: &'a Settings,
+        clock_of: [Clock; CLOCKS],
+        at: Vector3<f64>,
+    ) -> Self {
+        let (modelled_at, normal) = (Vector3::zeros(), Normal::default());
+        Self { ranges, seen, time, settings, at, modelled_at, clock_of, clocks: [0.0; CLOCKS], normal, before: None }
     }
 
     /// Rounds of least squares until the position stands still, which is told; robust rounds weigh large residuals down.
@@ -238,9 +266,9 @@ impl<'a> Solver<'a> {
             if let Some(place) = &place {
                 (seen.ionosphere, seen.delay, seen.weight) = self.settings.delay_and_weight(range, &unit, place);
             }
-            let clock = range.satellite.constellation.index();
-            let residual = range.corrected.m() - way - seen.delay;
-            let mut weight = seen.weight;
+            let Clock { index: clock, offset_m, sigma_m } = self.clock_of[range.satellite.constellation.index()];
+            let residual = range.corrected.m() - way - seen.delay - offset_m;
+            let mut weight = seen.weight / (1.0 + sigma_m * sigma_m * seen.weight);
             if robust {
                 let normalised = (residual - self.clocks[clock]).abs() * sqrt(weight);
                 weight *= if normalised > HUBER { HUBER / normalised } else { 1.0 };
@@ -253,7 +281,7 @@ impl<'a> Solver<'a> {
     /// Weighted square of a residual after its clock.
     fn square(&self, seen: &Seen) -> f64 {
         let residual = seen.row.residual - self.clocks[seen.row.clock];
-        residual * residual * seen.weight
+        residual * residual * seen.row.weight
     }
 
     fn judge(&self) -> Judgement {
@@ -296,19 +324,20 @@ impl<'a> Solver<'a> {
     fn fix(&self) -> Result<Fix, Unavailable> {
         let judged = self.judge();
         let position = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
-        if !(position.height.m() > -50_000.0 && position.height.m() < 1e8) {
-            let (value, unit, domain) = (position.height.m(), "m", "(-5e4, 1e8)");
-            return Err(Unavailable::Invalid { field: "est_h_m", value, unit, domain });
-        }
+        plausible::height(&position)?;
         let covariance = self.normal.covariance()?;
         // Residuals larger than the weights say: the weights are wrong by that much at least.
         let contradicted = !judged.consistent && judged.redundancy > 0;
         let inflation = if contradicted { (judged.statistic / judged.redundancy as f64).max(1.0) } else { 1.0 };
+        let common = self.shared(covariance.matrix()) + self.offset_covariance(covariance.matrix());
         // The condition was judged with the weights; it is not judged twice.
         let unit_weights = Normal::new(self.rows().map(|r| Row { weight: 1.0, ..r }))?.inverse().ok_or(SINGULAR)?;
+        let dilution = Dilution::of(&Covariance::claim_symmetric(unit_weights));
+        plausible::dilution(&dilution)?;
         let mut clock_m = [f64::NAN; CLOCKS];
-        for s in self.seen.iter().filter(|s| s.counts()) {
-            clock_m[s.row.clock] = self.clocks[s.row.clock];
+        for (range, seen) in self.used_ranges() {
+            let constellation = range.satellite.constellation.index();
+            clock_m[constellation] = self.clocks[seen.row.clock] + self.clock_of[constellation].offset_m;
         }
         let mut excluded = [None; EXCLUDED_NAMED];
         let all = self.ranges.iter().zip(self.seen.iter()).filter(|(_, s)| s.excluded);
@@ -317,9 +346,12 @@ impl<'a> Solver<'a> {
         }
         Ok(Fix {
             position,
-            covariance: Covariance::claim_symmetric(covariance.matrix() * inflation + self.shared(covariance.matrix())),
-            dilution: Dilution::of(&Covariance::claim_symmetric(unit_weights)),
+            covariance: Covariance::claim_symmetric(covariance.matrix() * inflation + common),
+            dilution,
             clock_m,
+            offset_variance_m2: self.offset_variances(covariance.matrix()),
+            used: self.satellites(),
+            spare: self.spare(),
             velocity: self.velocity(&position),
             n_used: self.seen.iter().filter(|s| s.counts()).count(),
             n_excluded: self.seen.iter().filter(|s| s.excluded).count(),
@@ -345,6 +377,11 @@ impl<'a> Solver<'a> {
         let errors = &self.settings.errors;
         let (common, tilt) = (errors.ionosphere_common_share, errors.ionosphere_gradient_share);
         s.ionosphere * Vector3::new(common, tilt * s.row.unit.x, tilt * s.row.unit.y)
+    }
+
+    /// The errors of the atmosphere that a range has in common with the others, one standard deviation each.
+    fn common(&self, s: &Seen) -> Vector3<f64> {
+        self.shape(s)
     }
 
     fn used(&self) -> impl Iterator<Item = Used> + '_ {

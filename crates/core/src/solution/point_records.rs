@@ -57,6 +57,14 @@ pub struct Fix {
     pub dilution: Dilution,
     /// Receiver clock against each constellation's time \[m\], NaN where none of its satellites is used.
     pub clock_m: [f64; Constellation::ALL.len()],
+    /// Variance of each clock against the first that is used, by the weights; 0 for itself and for clocks that none of its ranges
+    /// determine \[m²\].
+    pub offset_variance_m2: [f64; Constellation::ALL.len()],
+    /// Satellites used, by constellation: the bit of each number.
+    pub used: [u128; Constellation::ALL.len()],
+    /// Ranges beyond the unknowns without those of constellations whose clock rests on fewer than two spare ranges of its own: as many as
+    /// check the position.
+    pub spare: usize,
     /// Velocity, east, north, up \[m/s\], and its covariance \[m²/s²\], where Doppler allows.
     pub velocity: Option<(Vector3<f64>, Matrix3<f64>)>,
     /// Satellites used.

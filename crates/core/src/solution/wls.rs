@@ -283,6 +283,20 @@ impl Normal {
         normal * (inverse.trace() + self.clock_variances(inverse))
     }
 
+    /// Variance of the difference of two clocks, from the covariance of the position; 0 where either has no ranges.
+    ///
+    /// ```text
+    /// 1/W_a + 1/W_b + (m_a - m_b)' P (m_a - m_b)
+    /// ```
+    pub(crate) fn clock_difference_variance(&self, a: usize, b: usize, position: &Matrix3<f64>) -> f64 {
+        let (first, second) = (&self.groups[a], &self.groups[b]);
+        if a == b || first.count == 0 || second.count == 0 {
+            return 0.0;
+        }
+        let d = first.mean - second.mean;
+        1.0 / first.weight + 1.0 / second.weight + d.dot(&(position * d))
+    }
+
     /// Variances of all clocks together, from the covariance of the position.
     fn clock_variances(&self, position: &Matrix3<f64>) -> f64 {
         let used = self.groups.iter().filter(|g| g.count > 0);
