@@ -2,6 +2,7 @@
 
 use navbound_core::frame::{Covariance, ecef_from_geodetic};
 use navbound_core::geometry::atmosphere::ionosphere_factor;
+use navbound_core::geometry::ionosphere::Ionosphere;
 use navbound_core::geometry::broadcast::{Broadcast, SatelliteState, clock_polynomial};
 use navbound_core::quantity::{GpsTime, Metres, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
@@ -9,7 +10,7 @@ use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF
 use navbound_core::solution::Surroundings;
 use navbound_core::solution::point::{self, Fix, Range, Settings, Used};
 use navbound_formats::precise::{Precise, Tables};
-use navbound_formats::rinex::{Navigation, Observations};
+use navbound_formats::rinex::{Dated, Navigation, Observations};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -27,6 +28,40 @@ pub enum Signals {
     Single,
     /// The ionosphere-free pair: L1 and L2, E1 and E5a, B1I and B3I.
     Dual,
+}
+
+/// Which model of the ionosphere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// The best that the files have: the GPS message, else Galileo's, else climatology.
+    Auto,
+    /// The GPS message.
+    Broadcast,
+    /// NTCM-G by Galileo's message.
+    Galileo,
+    /// NTCM-G at the long-run mean of solar activity.
+    Climatology,
+    /// None.
+    Uncorrected,
+}
+
+/// A message of the ionosphere describes days no further from it than this \[s\]: it is renewed once in six days at the least
+/// (IS-GPS-200 20.3.3.5.2.5, standard; two days are ours).
+const MESSAGE_LASTS_S: f64 = 2.0 * 86_400.0;
+
+impl Model {
+    /// The ionosphere at a time by the messages of a file; `None` where a message is wanted by name and none is near.
+    pub fn of(self, navigation: &Navigation, time: GpsTime) -> Option<Ionosphere> {
+        let broadcast = || Dated::nearest(&navigation.ionosphere_gps, time, MESSAGE_LASTS_S).and_then(Ionosphere::broadcast);
+        let galileo = || Dated::nearest(&navigation.ionosphere_galileo, time, MESSAGE_LASTS_S).and_then(Ionosphere::galileo);
+        match self {
+            Self::Auto => broadcast().or_else(galileo).or(Some(Ionosphere::Climatology)),
+            Self::Broadcast => broadcast(),
+            Self::Galileo => galileo(),
+            Self::Climatology => Some(Ionosphere::Climatology),
+            Self::Uncorrected => Some(Ionosphere::Uncorrected),
+        }
+    }
 }
 
 /// What to solve.
@@ -51,6 +86,8 @@ pub struct Positions {
     pub fixes: Vec<Result<Fix, Unavailable>>,
     /// Whether they do, by epoch.
     pub contradicted: Vec<bool>,
+    /// Single frequencies were used and no message describes the ionosphere.
+    pub undescribed: bool,
     /// The ranges of each position, where they are kept; weights and shared errors widened as the covariance is.
     pub ranges: Vec<Vec<(SatelliteId, Used)>>,
     /// Satellite-epochs of the wanted constellations that were not used, by reason.
@@ -161,7 +198,8 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
     };
     let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
     let smoothed_share = smoothed.as_ref().map(Smoothed::share);
-    let mut found = Positions { codes: codes(&plans, observations), smoothed_share, ..Positions::default() };
+    let undescribed = job.signals == Signals::Single && !job.settings.ionosphere.is_described();
+    let mut found = Positions { codes: codes(&plans, observations), smoothed_share, undescribed, ..Positions::default() };
     for (fixes, kept, unused) in outcomes {
         found.fixes.extend(fixes);
         found.ranges.extend(kept);
