@@ -37,7 +37,7 @@ def ranges(n_epochs: int, n_sv: int, seed: int = 5, shared: bool = True) -> pl.D
         "range_error_m": error,
     }
     if shared:
-        columns |= {f"shared_{k}_m": rng.normal(0.0, 1.0, n) for k in (1, 2, 3)}
+        columns |= {f"shared_{k}_m": rng.normal(0.0, 1.0, n) for k in (1, 2, 3, 4)}
     return pl.DataFrame(columns)
 
 
@@ -49,7 +49,7 @@ def solved(epoch: pl.DataFrame, used: tuple[int, ...]) -> tuple[Floats, Floats]:
     w = np.diag(part["sigma_m"].to_numpy() ** -2.0)
     gain = np.linalg.solve(h.T @ w @ h, h.T @ w)
     covariance = np.linalg.inv(h.T @ w @ h)[:3, :3]
-    for name in ("shared_1_m", "shared_2_m", "shared_3_m"):
+    for name in ("shared_1_m", "shared_2_m", "shared_3_m", "shared_4_m"):
         if name in part.columns:
             moved = (gain @ part[name].to_numpy())[:3]
             covariance = covariance + np.outer(moved, moved)

@@ -281,7 +281,7 @@ def solve_positions(
     systems: str,
     *,
     dual: bool,
-    broadcast_ionosphere: bool,
+    ionosphere: str,
     mask_rad: float,
     false_alarm: float,
     most_excluded: int,

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 SYSTEMS = {"G": "GPS", "E": "Galileo", "C": "BeiDou"}
 """Constellations a position can be solved from, by their letter."""
 
+IONOSPHERES = ("auto", "broadcast", "galileo", "climatology", "none")
+"""Models of the ionosphere that single pseudoranges can use."""
+
 
 @dataclass(frozen=True)
 class Refused:
@@ -204,9 +207,10 @@ class Positions:
     models : dict of str to str
         Every model by name, for the record of a run.
     ranges : DataFrame, optional
-        The ranges of each position: ``time_ns``, ``sv``, ``az_rad``, ``el_rad``, ``sigma_m``, ``residual_m`` (measured less computed at
-        the position, receiver clock included), ``shared_1_m``, ``shared_2_m``, ``shared_3_m`` (errors that all ranges share: the size
-        of the ionosphere, its tilt east and north). Where it was asked for.
+        The ranges of each position: ``time_ns``, ``sv``, ``az_rad``, ``el_rad``, ``sigma_m`` (of the covariance in force: a failed
+        test and contradicting surroundings have widened it), ``residual_m`` (measured less computed at the position, receiver clock
+        included), ``shared_1_m`` to ``shared_4_m`` (errors that all ranges have in common: the vertical ionosphere, its gradient east and
+        north, the zenith troposphere). Where it was asked for.
     """
 
     epochs: pl.DataFrame
@@ -280,7 +284,7 @@ def solve(
     *,
     systems: str = "GEC",
     signals: Literal["single", "dual"] = "single",
-    ionosphere: Literal["broadcast", "none"] = "broadcast",
+    ionosphere: Literal["auto", "broadcast", "galileo", "climatology", "none"] = "auto",
     mask_rad: float = float(np.radians(10.0)),
     false_alarm: float = 1e-4,
     most_excluded: int = 6,
@@ -305,8 +309,10 @@ def solve(
         Letters of :data:`SYSTEMS`.
     signals : {"single", "dual"}, optional
         L1, E1, B1I; or the ionosphere-free pairs L1-L2, E1-E5a, B1I-B3I.
-    ionosphere : {"broadcast", "none"}, optional
-        Model of single pseudoranges; pairs need none.
+    ionosphere : {"auto", "broadcast", "galileo", "climatology", "none"}, optional
+        Model of single pseudoranges; pairs need none. ``broadcast``: the GPS message. ``galileo``: NTCM-G by Galileo's message.
+        ``climatology``: NTCM-G at the long-run mean of solar activity. ``none``: no correction; its whole size is error. ``auto`` is the
+        first of the first three that the navigation files have within two days of the observations.
     mask_rad : float, optional
         Lowest elevation. [rad]
     false_alarm : float, optional
@@ -346,33 +352,35 @@ def solve(
         raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
     if signals not in {"single", "dual"}:
         raise InputError("signals", signals, domain="single, dual")
-    if ionosphere not in {"broadcast", "none"}:
-        raise InputError("ionosphere", ionosphere, domain="broadcast, none")
-    if signals == "single" and ionosphere == "broadcast" and not navigation.has_ionosphere:
-        raise InputError("ionosphere", "broadcast", domain="none, dual signals, or a navigation file with the ionosphere of GPS")
+    if ionosphere not in IONOSPHERES:
+        raise InputError("ionosphere", ionosphere, domain=", ".join(IONOSPHERES))
     if most_excluded < 0:
         raise InputError("most_excluded", most_excluded, "1", "[0, inf)")
     if smoothing not in {"hatch", "divergence-free"}:
         raise InputError("smoothing", smoothing, domain="hatch, divergence-free")
-    found = _core.solve_positions(
-        observations._core,
-        navigation._core,
-        systems,
-        dual=signals == "dual",
-        broadcast_ionosphere=ionosphere == "broadcast",
-        mask_rad=mask_rad,
-        false_alarm=false_alarm,
-        most_excluded=most_excluded,
-        range_factor=range_factor,
-        shared_factor=shared_factor,
-        precise=None if orbits is None else orbits._core,
-        smoothing_s=smoothing_s,
-        divergence_free=smoothing == "divergence-free",
-        keep_ranges=keep_ranges,
-    )
+    try:
+        found = _core.solve_positions(
+            observations._core,
+            navigation._core,
+            systems,
+            dual=signals == "dual",
+            ionosphere=ionosphere,
+            mask_rad=mask_rad,
+            false_alarm=false_alarm,
+            most_excluded=most_excluded,
+            range_factor=range_factor,
+            shared_factor=shared_factor,
+            precise=None if orbits is None else orbits._core,
+            smoothing_s=smoothing_s,
+            divergence_free=smoothing == "divergence-free",
+            keep_ranges=keep_ranges,
+        )
+    except LookupError as e:
+        domain = "auto, climatology, none, dual signals, or navigation files with that message within two days of the observations"
+        raise InputError("ionosphere", ionosphere, domain=domain) from e
     kept = found.pop("ranges")
     unused, codes, weights = found.pop("unused"), found.pop("codes"), found.pop("weights")
-    share = found.pop("smoothed_share")
+    share, model = found.pop("smoothed_share"), found.pop("ionosphere")
     name = track or observations.marker or observations.path.name
     columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **found}
     epochs = pl.DataFrame(columns).with_columns(pl.when(pl.col("reason") != "").then(pl.col("reason")).alias("reason"))
@@ -383,13 +391,23 @@ def solve(
     models = {
         "orbits and clocks": _orbit_words(orbits),
         "smoothing": "none" if smoothing_s is None else f"{smoothing}, {smoothing_s:g} s; {100 * share:.1f} % of the pseudoranges",
-        "ionosphere": "ionosphere-free pairs" if signals == "dual" else {"broadcast": "Klobuchar, GPS message", "none": "none"}[ionosphere],
+        "ionosphere": "ionosphere-free pairs" if signals == "dual" else _ionosphere_words(*model),
         "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",
         "weights": weights if weights != "scaled" else f"calibrated-2020 times {range_factor:g} (ranges), {shared_factor:g} (shared)",
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
     }
     ranges = None if kept is None else _with_times(kept, observations.time_ns)
     return Positions(epochs, unused, codes, models, ranges)
+
+
+def _ionosphere_words(name: str, activity_sfu: float) -> str:
+    """A model of the ionosphere as run records state it."""
+    return {
+        "broadcast": "Klobuchar, GPS message",
+        "galileo": f"NTCM-G, Galileo message, effective ionisation level {activity_sfu:.0f} sfu",
+        "climatology": f"climatology, no message: NTCM-G at {activity_sfu:.0f} +- 70 sfu; heights can be wrong by metres",
+        "none": "none; its whole size counts as error",
+    }[name]
 
 
 def _with_times(kept: dict[str, Any], time_ns: NDArray[np.int64]) -> pl.DataFrame:

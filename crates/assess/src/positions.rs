@@ -2,6 +2,7 @@
 
 use navbound_core::frame::{EcefPosition, ecef_from_geodetic};
 use navbound_core::geometry::atmosphere::ionosphere_factor;
+use navbound_core::geometry::ionosphere::Ionosphere;
 use navbound_core::geometry::broadcast::{Broadcast, SatelliteState, clock_polynomial};
 use navbound_core::quantity::{GpsTime, Metres, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
@@ -11,7 +12,7 @@ use navbound_core::solution::declared::{Declarations, Doubt};
 use navbound_core::solution::mixture::Mixture;
 use navbound_core::solution::point::{self, Fix, Offsets, Range, Settings, Used};
 use navbound_formats::precise::{Precise, Tables};
-use navbound_formats::rinex::{Navigation, Observations};
+use navbound_formats::rinex::{Dated, Navigation, Observations};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -29,6 +30,40 @@ pub enum Signals {
     Single,
     /// The ionosphere-free pair: L1 and L2, E1 and E5a, B1I and B3I.
     Dual,
+}
+
+/// Which model of the ionosphere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// The best that the files have: the GPS message, else Galileo's, else climatology.
+    Auto,
+    /// The GPS message.
+    Broadcast,
+    /// NTCM-G by Galileo's message.
+    Galileo,
+    /// NTCM-G at the long-run mean of solar activity.
+    Climatology,
+    /// None.
+    Uncorrected,
+}
+
+/// A message of the ionosphere describes days no further from it than this \[s\]: it is renewed once in six days at the least
+/// (IS-GPS-200 20.3.3.5.2.5, standard; two days are ours).
+const MESSAGE_LASTS_S: f64 = 2.0 * 86_400.0;
+
+impl Model {
+    /// The ionosphere at a time by the messages of a file; `None` where a message is wanted by name and none is near.
+    pub fn of(self, navigation: &Navigation, time: GpsTime) -> Option<Ionosphere> {
+        let broadcast = || Dated::nearest(&navigation.ionosphere_gps, time, MESSAGE_LASTS_S).and_then(Ionosphere::broadcast);
+        let galileo = || Dated::nearest(&navigation.ionosphere_galileo, time, MESSAGE_LASTS_S).and_then(Ionosphere::galileo);
+        match self {
+            Self::Auto => broadcast().or_else(galileo).or(Some(Ionosphere::Climatology)),
+            Self::Broadcast => broadcast(),
+            Self::Galileo => galileo(),
+            Self::Climatology => Some(Ionosphere::Climatology),
+            Self::Uncorrected => Some(Ionosphere::Uncorrected),
+        }
+    }
 }
 
 /// What to solve.
@@ -53,6 +88,8 @@ pub struct Positions {
     pub fixes: Vec<Result<Fix, Unavailable>>,
     /// What each position is doubted for, or refused for.
     pub doubts: Vec<Option<Doubt>>,
+    /// Single frequencies were used and no message describes the ionosphere.
+    pub undescribed: bool,
     /// The ranges of each position, where they are kept; weights and shared errors widened as the covariance is.
     pub ranges: Vec<Vec<(SatelliteId, Used)>>,
     /// Satellite-epochs of the wanted constellations that were not used, by reason.
@@ -154,7 +191,8 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
     };
     let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
     let smoothed_share = smoothed.as_ref().map(Smoothed::share);
-    let mut found = Positions { codes: codes(&plans, observations), smoothed_share, ..Positions::default() };
+    let undescribed = job.signals == Signals::Single && !job.settings.ionosphere.is_described();
+    let mut found = Positions { codes: codes(&plans, observations), smoothed_share, undescribed, ..Positions::default() };
     let mut solved = Vec::with_capacity(epochs.len());
     for (part, unused) in outcomes {
         solved.extend(part);
@@ -264,6 +302,7 @@ fn declare(times: &[GpsTime], solved: Vec<Solved>, keep: bool, found: &mut Posit
         let (fix, doubt) = match fix {
             Ok(mut fix) => {
                 let doubt = declarations.declare(*time, &mut fix, mixture.as_deref());
+                let doubt = doubt.or(found.undescribed.then_some(Doubt::IonosphereUndescribed));
                 (doubt.and_then(|d| d.refusal(&fix)).map_or(Ok(fix), Err), doubt)
             }
             Err(why) => (Err(why), Doubt::of(&why)),

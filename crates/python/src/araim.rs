@@ -16,6 +16,7 @@ use navbound_core::geometry::Elements;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
 use navbound_core::signal::Constellation;
 use navbound_core::solution::RangeError;
+use navbound_core::geometry::ionosphere::Ionosphere;
 use navbound_core::solution::point::Settings;
 use navbound_path::AtIndex;
 use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
@@ -241,7 +242,7 @@ fn araim_monitor<'py>(
 pub(crate) fn unmonitored(navigation: &Navigation, systems: &str, dual: bool, mask_rad: f64) -> Job {
     let settings = Settings {
         mask: Radians::new(mask_rad),
-        ionosphere: navigation.records.klobuchar_gps.filter(|_| !dual),
+        ionosphere: navigation.records.klobuchar_gps.and_then(Ionosphere::broadcast).unwrap_or(Ionosphere::Climatology),
         errors: RangeError::CALIBRATED,
         false_alarm: Risk::ACCURACY.q(),
         most_excluded: 0,

@@ -2,10 +2,11 @@
 
 use crate::error::{format_error, input_error};
 use crate::orbits::PreciseOrbits;
-use navbound_assess::positions::{Job, Positions, Signals, positions};
+use navbound_assess::positions::{Job, Model, Positions, Signals, positions};
 use navbound_assess::smoothing::Form;
 use navbound_core::frame::{self, EcefPosition};
 use navbound_core::geometry::broadcast::mean_elements;
+use navbound_core::geometry::ionosphere::{Ionosphere, MEAN_ACTIVITY_SFU};
 use navbound_core::quantity::{GpsTime, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Klobuchar};
@@ -17,6 +18,7 @@ use navbound_formats::packed::unpack;
 use navbound_formats::receiver;
 use navbound_formats::rinex::{self, Code};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::exceptions::{PyLookupError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
@@ -260,7 +262,7 @@ impl Navigation {
 
 /// Positions of every epoch as columns of the epoch table, with counts of what was not used.
 #[pyfunction]
-#[pyo3(signature = (observations, navigation, systems, *, dual, broadcast_ionosphere, mask_rad, false_alarm, most_excluded, range_factor, shared_factor, precise, smoothing_s, divergence_free, keep_ranges))]
+#[pyo3(signature = (observations, navigation, systems, *, dual, ionosphere, mask_rad, false_alarm, most_excluded, range_factor, shared_factor, precise, smoothing_s, divergence_free, keep_ranges))]
 #[expect(clippy::too_many_arguments, reason = "one setting each, named by the caller")]
 fn solve_positions<'py>(
     py: Python<'py>,
@@ -268,7 +270,7 @@ fn solve_positions<'py>(
     navigation: &Navigation,
     systems: &str,
     dual: bool,
-    broadcast_ionosphere: bool,
+    ionosphere: &str,
     mask_rad: f64,
     false_alarm: f64,
     most_excluded: usize,
@@ -287,9 +289,10 @@ fn solve_positions<'py>(
     within("range_factor", range_factor, "1", "(0, inf)", range_factor > 0.0 && range_factor.is_finite())?;
     within("shared_factor", shared_factor, "1", "[0, inf)", shared_factor >= 0.0 && shared_factor.is_finite())?;
     let errors = weights(precise).scaled(range_factor, shared_factor);
+    let model = ionosphere_model(ionosphere, observations, navigation)?;
     let settings = Settings {
         mask: Radians::new(mask_rad),
-        ionosphere: navigation.records.klobuchar_gps.filter(|_| broadcast_ionosphere),
+        ionosphere: model,
         errors,
         false_alarm,
         most_excluded,
@@ -304,8 +307,34 @@ fn solve_positions<'py>(
     let found = py.detach(|| positions(&observations.0, &navigation.records, precise.map(PreciseOrbits::tables), &job));
     let d = table(py, &found, errors.name)?;
     d.set_item("smoothed_share", found.smoothed_share)?;
+    d.set_item("ionosphere", model_name(&model))?;
     d.set_item("ranges", if keep_ranges { Some(kept_ranges(py, &found)?) } else { None })?;
     Ok(d)
+}
+
+/// The model by its name, at the middle of the observations.
+fn ionosphere_model(name: &str, observations: &Observations, navigation: &Navigation) -> PyResult<Ionosphere> {
+    let wanted = match name {
+        "auto" => Model::Auto,
+        "broadcast" => Model::Broadcast,
+        "galileo" => Model::Galileo,
+        "climatology" => Model::Climatology,
+        "none" => Model::Uncorrected,
+        _ => return Err(PyValueError::new_err(format!("ionosphere: {name}"))),
+    };
+    let middle = observations.0.time.get(observations.0.n_epochs() / 2).copied().unwrap_or_default();
+    let none = || PyLookupError::new_err(format!("no message of the ionosphere: {name}"));
+    wanted.of(&navigation.records, middle).ok_or_else(none)
+}
+
+/// Name of a model, and the solar activity that it counts on \[sfu\].
+fn model_name(model: &Ionosphere) -> (&'static str, f64) {
+    match model {
+        Ionosphere::Broadcast { .. } => ("broadcast", f64::NAN),
+        Ionosphere::Ntcm { level_sfu } => ("galileo", *level_sfu),
+        Ionosphere::Climatology => ("climatology", MEAN_ACTIVITY_SFU),
+        Ionosphere::Uncorrected => ("none", MEAN_ACTIVITY_SFU),
+    }
 }
 
 /// The ranges of every position, one row each: index of the epoch, and what the range was.
@@ -322,6 +351,7 @@ fn kept_ranges<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, P
     d.set_item("shared_1_m", column(|u| u.shared_m.x))?;
     d.set_item("shared_2_m", column(|u| u.shared_m.y))?;
     d.set_item("shared_3_m", column(|u| u.shared_m.z))?;
+    d.set_item("shared_4_m", column(|u| u.shared_m.w))?;
     Ok(d)
 }
 

@@ -39,6 +39,8 @@ pub enum Doubt {
     ExclusionUnconfirmed,
     /// Nothing excluded, and another reading of the ranges that fits as well.
     ReadingUnconfirmed,
+    /// Single frequencies, and no message describes the ionosphere.
+    IonosphereUndescribed,
     /// A height that no receiver has.
     ImplausibleHeight,
     /// A geometry that hardly determines the position.
@@ -49,13 +51,14 @@ pub enum Doubt {
 
 impl Doubt {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::ResidualsContradict,
         Self::RecentResidualsContradict,
         Self::NoRedundancy,
         Self::ClockUnchecked,
         Self::ExclusionUnconfirmed,
         Self::ReadingUnconfirmed,
+        Self::IonosphereUndescribed,
         Self::ImplausibleHeight,
         Self::ImplausibleDilution,
         Self::ImplausibleJump,
@@ -70,6 +73,7 @@ impl Doubt {
             Self::ClockUnchecked => "clock_unchecked",
             Self::ExclusionUnconfirmed => "exclusion_unconfirmed",
             Self::ReadingUnconfirmed => "reading_unconfirmed",
+            Self::IonosphereUndescribed => "ionosphere_undescribed",
             Self::ImplausibleHeight => "implausible_height",
             Self::ImplausibleDilution => "implausible_dilution",
             Self::ImplausibleJump => "implausible_jump",
@@ -85,6 +89,7 @@ impl Doubt {
             Self::ClockUnchecked => "too few satellites to spare: a second constellation checks nothing but its own clock",
             Self::ExclusionUnconfirmed => "an exclusion that the remaining ranges cannot confirm",
             Self::ReadingUnconfirmed => "too few satellites to spare: a fault of one could not be seen",
+            Self::IonosphereUndescribed => "no message describes the ionosphere: heights can be wrong by metres",
             Self::ImplausibleHeight => "the height is none that a receiver has: outside -1 to 100 km",
             Self::ImplausibleDilution => "the satellites hardly determine the position: dilution above 30",
             Self::ImplausibleJump => "the position jumps farther than a receiver moves: more than 600 m/s, and Doppler does not support it",
@@ -112,6 +117,7 @@ impl Doubt {
         match why {
             Unavailable::Invalid { field: "est_h_m", .. } => Some(Self::ImplausibleHeight),
             Unavailable::Invalid { field: "pdop", .. } => Some(Self::ImplausibleDilution),
+            Unavailable::Invalid { field: "speed_mps", .. } => Some(Self::ImplausibleJump),
             _ => None,
         }
     }

@@ -1,5 +1,6 @@
 //! Where we think we are: weighted least squares, and the record of one instant.
 
+pub mod common;
 pub mod constellations;
 pub mod declared;
 pub mod dme;

@@ -22,11 +22,11 @@ impl Solver<'_> {
         for (range, seen) in self.ranges.iter().zip(self.seen.iter()).filter(|(_, s)| s.weighs()) {
             let clock = range.satellite.constellation.index();
             let mut common_m = [0.0; COMMON];
-            for (to, from) in common_m.iter_mut().zip(self.common(seen).iter()) {
+            for (to, from) in common_m.iter_mut().zip(seen.modelled.common.iter()) {
                 *to = *from;
             }
             common_m[COMMON - CLOCKS + clock] = self.clock_of[clock].sigma_m;
-            observed[n] = Observed { unit: seen.row.unit, clock: seen.row.clock, sigma_m: 1.0 / sqrt(seen.weight), residual_m: seen.row.residual, common_m };
+            observed[n] = Observed { unit: seen.row.unit, clock: seen.row.clock, sigma_m: 1.0 / sqrt(seen.modelled.weight), residual_m: seen.row.residual, common_m };
             n += 1;
         }
         Mixture::new(&observed[..n])

@@ -3,10 +3,11 @@
 use super::EXCLUDED_NAMED;
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic};
 use crate::quantity::{Metres, Radians};
-use crate::signal::{Constellation, Klobuchar, SatelliteId};
+use crate::geometry::ionosphere::Ionosphere;
+use crate::signal::{Constellation, SatelliteId};
 use crate::solution::range_error::RangeError;
 use crate::solution::wls::Dilution;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// A pseudorange of one satellite, ready but for what depends on the receiver's position.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,8 +37,8 @@ pub struct Range {
 pub struct Settings {
     /// Lowest elevation.
     pub mask: Radians,
-    /// Broadcast ionosphere; `None` leaves the delay in the ranges.
-    pub ionosphere: Option<Klobuchar>,
+    /// What corrects the ionosphere of single frequencies.
+    pub ionosphere: Ionosphere,
     /// Weights.
     pub errors: RangeError,
     /// Risk of a false alarm of the residual test.
@@ -96,6 +97,7 @@ pub struct Used {
     pub weight: f64,
     /// Measured less computed range at the position found; what the receiver's clock makes of it is in it.
     pub residual: Metres,
-    /// Standard deviations here of the errors that all ranges share: of the ionosphere's size, of its tilt east and north \[m\].
-    pub shared_m: Vector3<f64>,
+    /// Standard deviations here of the errors that all ranges have in common: the vertical ionosphere, its gradient east and north, the
+    /// zenith troposphere \[m\].
+    pub shared_m: Vector4<f64>,
 }

@@ -7,7 +7,7 @@ use crate::geometry::LineOfSight;
 use crate::quantity::{Metres, Unavailable};
 use crate::signal::Constellation;
 use crate::special::float::sqrt;
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// The largest condition number of H'WH that still gives a covariance.
 pub const CONDITION_LIMIT: f64 = 1e12;
@@ -210,9 +210,9 @@ impl Normal {
         Ok(Self { groups, information: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz), side })
     }
 
-    /// Right sides of the rows for three other residuals each, as columns: -sum w (u - m_c) r. What is common to a clock's rows drops out.
-    pub(crate) fn sides(&self, rows: impl Iterator<Item = (Row, Vector3<f64>)>) -> Matrix3<f64> {
-        let mut sides = Matrix3::zeros();
+    /// Right sides of the rows for other residuals, as columns: -sum w (u - m_c) r. What is common to a clock's rows drops out.
+    pub(crate) fn sides<const N: usize>(&self, rows: impl Iterator<Item = (Row, SVector<f64, N>)>) -> SMatrix<f64, 3, N> {
+        let mut sides = SMatrix::zeros();
         for (row, residuals) in rows {
             sides -= (row.weight * (row.unit - self.groups[row.clock].mean)) * residuals.transpose();
         }
@@ -227,6 +227,17 @@ impl Normal {
     /// How far the position moves for one metre in a row's range, by the inverse of the information.
     pub(crate) fn response(&self, inverse: &Matrix3<f64>, row: &Row) -> Vector3<f64> {
         inverse * (row.unit - self.groups[row.clock].mean) * -row.weight
+    }
+
+    /// A row's direction less the weighted mean of its clock's rows.
+    pub(crate) fn centred(&self, row: &Row) -> Vector3<f64> {
+        row.unit - self.groups[row.clock].mean
+    }
+
+    /// What a unit of weight counts in the mean of a clock's rows; 0 for a clock without rows.
+    pub(crate) fn share(&self, clock: usize) -> f64 {
+        let group = &self.groups[clock];
+        if group.count > 0 { 1.0 / group.weight } else { 0.0 }
     }
 
     /// What a row's clock reads after a step: the weighted mean of residual and step along the line of sight.
