@@ -341,7 +341,10 @@ def solve(
     -------
     Positions
         ``status`` is ``degraded`` where the residuals contradict the weights, where the ranges of the past minute do (several satellites
-        excluded), or where none can be spared; ``not_available`` where there is no position.
+        excluded), where an exclusion cannot be confirmed or a fault could not be seen (the covariance then holds every reading of the
+        ranges), where no range checks the others, and where no message describes the ionosphere; ``not_available`` where there is no
+        position, or one that cannot be true: a height outside -1 to 100 km, a position dilution above 30, a jump
+        (docs/methods/gnss-exclusion.md).
 
     Raises
     ------

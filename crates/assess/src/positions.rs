@@ -219,6 +219,13 @@ struct Solved {
     kept: Vec<(SatelliteId, Used)>,
 }
 
+impl Solved {
+    /// Whether offsets of clocks from the past are of use.
+    fn few(&self) -> bool {
+        self.fix.as_ref().map_or(true, |f| f.spare < FEW)
+    }
+}
+
 /// All that an epoch is solved from.
 #[derive(Clone, Copy)]
 struct Source<'a> {
@@ -257,7 +264,7 @@ impl Source<'_> {
             .iter()
             .enumerate()
             .map(follow)
-            .filter(|(epoch, t)| t.leaves_out() || solved[*epoch].fix.as_ref().map_or(true, |f| f.spare < FEW))
+            .filter(|(epoch, t)| t.leaves_out() || t.offsets.several() && solved[*epoch].few())
             .collect();
         let again = |(epoch, treatment): &(usize, Treatment)| self.again(*epoch, treatment, &solved[*epoch]);
         let treated: Vec<Option<(usize, Solved)>> = treatments.par_iter().map(again).collect();
@@ -278,14 +285,10 @@ impl Source<'_> {
         self.collect(epoch, &mut ranges, &mut unused);
         let all = ranges.len();
         ranges.retain(|r| !treatment.without[r.satellite.constellation.index()]);
-        let few = |spare: usize| spare < FEW;
         let near = before.fix.as_ref().ok().map(|f| ecef_from_geodetic(&f.position));
-        let mut solved = self.solve(epoch, &ranges, near.as_ref(), &Offsets::default());
-        if solved.fix.as_ref().map_or(true, |f| few(f.spare)) && treatment.offsets.tie(&ranges) {
-            solved = self.solve(epoch, &ranges, near.as_ref(), &treatment.offsets);
-        } else if ranges.len() == all {
-            return None;
-        }
+        let without = (ranges.len() < all).then(|| self.solve(epoch, &ranges, near.as_ref(), &Offsets::default()));
+        let tied = without.as_ref().unwrap_or(before).few() && treatment.offsets.tie(&ranges);
+        let solved = if tied { self.solve(epoch, &ranges, near.as_ref(), &treatment.offsets) } else { without? };
         let checked = solved.fix.as_ref().is_ok_and(|f| f.spare >= 1);
         (checked || before.fix.is_err()).then_some((all - ranges.len(), solved))
     }

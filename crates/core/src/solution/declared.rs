@@ -3,7 +3,8 @@
 //! ```text
 //! ok       = the residuals agree with the weights, no memory of contradiction, and either three ranges to spare with nothing excluded,
 //!            or one to spare and trace P <= 2 trace V
-//! declared = V;   with other readings P, widened to reach each of weight above 1e-5;   with the memory P + f V
+//! declared = V;   with other readings P, widened to reach each of weight above 1e-5, and to hold its uncertainty where the position is ok;
+//!            with the memory P + f V
 //! ```
 //!
 //! V is the covariance of the position itself, P that over all readings of its ranges ([`Mixture`]), f the variance factor of
@@ -152,10 +153,11 @@ impl Declarations {
         let obstructed = self.obstructed(time, fix, mixture);
         let mut confirmed = fix.stands_alone();
         if let Some(mixture) = mixture {
-            let (whole, reaching) = mixture.covariance(obstructed, &own);
-            confirmed = whole.trace() <= WIDER * own.trace();
+            let declared = mixture.covariance(obstructed, &own);
+            confirmed = declared.moments.trace() <= WIDER * own.trace();
             let memory = if factor.is_some() { *fix.covariance.matrix() } else { nalgebra::Matrix3::zeros() };
-            fix.covariance = Covariance::claim_symmetric(reaching + memory);
+            let readings = if doubt(fix, factor.is_some(), confirmed).is_none() { declared.holding } else { declared.reaching };
+            fix.covariance = Covariance::claim_symmetric(readings + memory);
         }
         let velocity = fix.velocity.map(|(v, _)| v);
         if !self.movement.possible(time, &fix.position, velocity, fix.covariance.matrix()) {

@@ -10,12 +10,13 @@
 //!
 //! The first line of w is the marginal likelihood of the reading against that of no fault, by the matrix determinant lemma: a subset costs one row of a
 //! Cholesky factor, nothing is removed, and no subset is singular. Provenance: re-derived (mixture of variance-inflated ranges, Box and
-//! Tiao 1968); priors and sizes are ours, set on one drive (`docs/methods/gnss-positions.md`).
+//! Tiao 1968); priors and sizes are ours, set on one drive (`docs/methods/gnss-exclusion.md`).
 
 use super::point::MOST_RANGES;
 use crate::frame::Covariance;
 use crate::signal::Constellation;
-use crate::special::float::{exp, sqrt};
+use crate::special::float::{exp, hypot, ln, sqrt};
+use core::f64::consts::LN_2;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 const CLOCKS: usize = Constellation::ALL.len();
@@ -53,8 +54,21 @@ pub struct Observed {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mixture {
     states: [Moments; 2],
-    /// Farthest reading of weight above 1e-5 from the position, horizontal and vertical \[m²\].
+    /// How far readings of weight above 1e-5 are from the position, horizontal and vertical \[m\].
     farthest: [f64; 2],
+    /// The same with their uncertainty: beyond it each leaves a risk of 1e-5 at most.
+    reach: [f64; 2],
+}
+
+/// Covariances that a mixture gives about the position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Declared {
+    /// Of the mixture: its first two moments.
+    pub moments: Matrix3<f64>,
+    /// Widened until the circle and the interval of risk 1e-5 reach where each reading of more weight puts the receiver.
+    pub reaching: Matrix3<f64>,
+    /// Widened until they hold what each reading leaves possible at that risk.
+    pub holding: Matrix3<f64>,
 }
 
 /// Sums over readings with their weights.
@@ -103,26 +117,35 @@ impl Mixture {
         self.states[1].weight / self.states[0].weight
     }
 
-    /// Covariance about the position, and the same widened so that the circle and the interval of risk 1e-5 reach every reading of more weight.
+    /// Covariances about the position.
     ///
     /// ```text
-    /// P = sum w P_S + sum w (x_S - x)(x_S - x)'
+    /// P       = sum w P_S + sum w (x_S - x)(x_S - x)'
+    /// reach_S = |x_S - x| + z sigma_S,   w exp(-z^2 / 2) = 1e-5
     /// ```
     ///
     /// `obstructed` is the posterior probability of obstructed surroundings. `least` is the covariance of the position without any doubt
     /// about its ranges; it takes the place of the first sum where its trace is larger.
-    pub fn covariance(&self, obstructed: f64, least: &Matrix3<f64>) -> (Matrix3<f64>, Matrix3<f64>) {
+    pub fn covariance(&self, obstructed: f64, least: &Matrix3<f64>) -> Declared {
         let share = |state: &Moments, p: f64| if p > 0.0 { p / state.weight } else { 0.0 };
         let shares = [share(&self.states[0], 1.0 - obstructed), share(&self.states[1], obstructed)];
         let within = self.states[0].within * shares[0] + self.states[1].within * shares[1];
         let between = self.states[0].between * shares[0] + self.states[1].between * shares[1];
         let whole = between + if within.trace() >= least.trace() { within } else { *least };
-        let major = super::wls::horizontal_axes(&Covariance::claim_symmetric(whole)).0.m();
-        let horizontal = sqrt((self.farthest[0] / (TAIL_DEVIATE_SQUARED * major * major)).max(1.0));
-        let vertical = sqrt((self.farthest[1] / (TAIL_DEVIATE_SQUARED * whole[(2, 2)])).max(1.0));
-        let stretch = Matrix3::from_diagonal(&Vector3::new(horizontal, horizontal, vertical));
-        (whole, stretch * whole * stretch)
+        let variances = [larger_horizontal(&whole), whole[(2, 2)]];
+        let widened = |distances: &[f64; 2]| {
+            let factor = |k: usize| sqrt((distances[k] * distances[k] / (TAIL_DEVIATE_SQUARED * variances[k])).max(1.0));
+            let stretch = Matrix3::from_diagonal(&Vector3::new(factor(0), factor(0), factor(1)));
+            stretch * whole * stretch
+        };
+        Declared { moments: whole, reaching: widened(&self.farthest), holding: widened(&self.reach) }
     }
+}
+
+/// Variance along the larger axis of the horizontal ellipse.
+fn larger_horizontal(covariance: &Matrix3<f64>) -> f64 {
+    let major = super::wls::horizontal_axes(&Covariance::claim_symmetric(*covariance)).0.m();
+    major * major
 }
 
 /// Largest subset of faulty ranges among `n`; with more ranges fewer at once, so that the work stays bounded.
@@ -276,19 +299,18 @@ struct Sum {
     states: [Moments; 2],
     /// Prior weight of the reading without faults, by state.
     faultless: [f64; 2],
-    /// Farthest squares of distances, by octave of the weight where nothing is known of the surroundings.
-    tail: [[f64; 2]; OCTAVES],
+    /// Readings by octave of their weight where nothing is known of the surroundings.
+    tail: [Far; OCTAVES],
 }
 
 impl Sum {
     fn new(n: usize) -> Self {
         let faultless = FAULTY.map(|q| (0..n).fold(1.0, |none, _| none * (1.0 - q)));
-        Self { top: 0.0, states: [Moments::default(); 2], faultless, tail: [[0.0; 2]; OCTAVES] }
+        Self { top: 0.0, states: [Moments::default(); 2], faultless, tail: [Far::default(); OCTAVES] }
     }
 
     /// A reading: exponent and determinant of its likelihood, how many faults, how many sizes of faults it stands for.
     fn add(&mut self, exponent: f64, determinant: f64, faults: usize, sizes: f64, at: &Point) {
-        const LN_2: f64 = core::f64::consts::LN_2;
         let octaves = exponent / LN_2;
         if octaves > self.top {
             self.lift(octaves - self.top);
@@ -303,10 +325,11 @@ impl Sum {
         for (state, weight) in self.states.iter_mut().zip(weights) {
             state.add(weight, at);
         }
-        let d = &at.displacement;
-        let square = [d.x * d.x + d.y * d.y, d.z * d.z];
-        let slot = &mut self.tail[octave(marginal(weights))];
-        *slot = [slot[0].max(square[0]), slot[1].max(square[1])];
+        let (weight, sum) = (marginal(weights), marginal([self.states[0].weight, self.states[1].weight]));
+        // The sum only grows: a reading below the tail now is below it in the end.
+        if weight >= TAIL * sum {
+            self.tail[octave(weight)].take(&Far::of(at));
+        }
     }
 
     /// The largest weight grows by `octaves`, rounded up.
@@ -314,23 +337,52 @@ impl Sum {
         let whole = (octaves as usize).saturating_add(1);
         self.top += whole as f64;
         for state in &mut self.states {
-            state.scale(exp(-(whole as f64) * core::f64::consts::LN_2));
+            state.scale(exp(-(whole as f64) * LN_2));
         }
-        let mut lifted = [[0.0; 2]; OCTAVES];
-        for (k, slot) in self.tail.iter().enumerate() {
-            let to: &mut [f64; 2] = &mut lifted[k.saturating_add(whole).min(OCTAVES - 1)];
-            *to = [to[0].max(slot[0]), to[1].max(slot[1])];
+        let mut lifted = [Far::default(); OCTAVES];
+        for (k, far) in self.tail.iter().enumerate() {
+            lifted[k.saturating_add(whole).min(OCTAVES - 1)].take(far);
         }
         self.tail = lifted;
     }
 
     fn mixture(self) -> Option<Mixture> {
-        let least = TAIL * marginal([self.states[0].weight, self.states[1].weight]);
+        let sum = marginal([self.states[0].weight, self.states[1].weight]);
         // The last octave holds all that is lighter.
-        let heavy = octave(least).min(OCTAVES - 2);
-        let farthest = self.tail[..=heavy].iter().fold([0.0_f64; 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
+        let lightest = octave(TAIL * sum).min(OCTAVES - 2);
+        let (mut farthest, mut reach) = ([0.0_f64; 2], [0.0_f64; 2]);
+        for (k, far) in self.tail[..=lightest].iter().enumerate() {
+            // The heaviest that the octave can hold, against the tail.
+            let heavier = (exp(-(k as f64 - 1.0) * LN_2) / sum).min(1.0) / TAIL;
+            let z = sqrt(2.0 * ln(heavier.max(1.0)));
+            for axis in 0..2 {
+                farthest[axis] = farthest[axis].max(far.distance[axis]);
+                reach[axis] = reach[axis].max(far.distance[axis] + z * far.sigma[axis]);
+            }
+        }
         let usable = self.states.iter().all(|s| s.weight > 0.0 && s.weight.is_finite());
-        usable.then_some(Mixture { states: self.states, farthest })
+        usable.then_some(Mixture { states: self.states, farthest, reach })
+    }
+}
+
+/// How far readings are, horizontal and vertical \[m\].
+#[derive(Debug, Clone, Copy, Default)]
+struct Far {
+    distance: [f64; 2],
+    sigma: [f64; 2],
+}
+
+impl Far {
+    fn of(at: &Point) -> Self {
+        let d = &at.displacement;
+        let variances = [larger_horizontal(&at.covariance), at.covariance[(2, 2)]];
+        Self { distance: [hypot(d.x, d.y), d.z.abs()], sigma: variances.map(sqrt) }
+    }
+    fn take(&mut self, other: &Self) {
+        for axis in 0..2 {
+            self.distance[axis] = self.distance[axis].max(other.distance[axis]);
+            self.sigma[axis] = self.sigma[axis].max(other.sigma[axis]);
+        }
     }
 }
 

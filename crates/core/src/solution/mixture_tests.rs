@@ -62,12 +62,12 @@ fn every_reading_weighs_what_a_dense_solution_of_it_does() {
     for (n, faults, evidence, upper, farthest) in DENSE {
         let mixture = Mixture::new(&case(n, faults)).unwrap();
         assert!((mixture.evidence() / evidence - 1.0).abs() < 1e-9, "{n} {faults:?}: {}", mixture.evidence());
-        let p = mixture.covariance(0.25, &Matrix3::zeros()).0;
+        let p = mixture.covariance(0.25, &Matrix3::zeros()).moments;
         let own = [p[(0, 0)], p[(0, 1)], p[(1, 1)], p[(0, 2)], p[(1, 2)], p[(2, 2)]];
         // Ten printed digits of the largest element.
         let scale = upper.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         assert!(own.iter().zip(upper).all(|(a, b)| (a - b).abs() < 1e-8 * scale), "{n} {faults:?}: {own:?}");
-        assert!((mixture.farthest[0].sqrt() - farthest).abs() < 1e-6, "{n} {faults:?}: {}", mixture.farthest[0].sqrt());
+        assert!((mixture.farthest[0] - farthest).abs() < 1e-6, "{n} {faults:?}: {}", mixture.farthest[0]);
     }
 }
 
@@ -83,12 +83,12 @@ fn a_fault_of_one_of_five_ranges_reaches_the_position_that_it_was() {
             r.residual_m += r.unit.dot(&moved);
         }
         let mixture = Mixture::new(&ranges).unwrap();
-        let (p, wide) = mixture.covariance(OBSTRUCTED, &Matrix3::identity());
+        let Declared { moments: p, holding: wide, .. } = mixture.covariance(OBSTRUCTED, &Matrix3::identity());
         let error = Base::new(&case(5, &[])).unwrap().position - moved;
         let normalised = error.dot(&(wide.try_inverse().unwrap() * error));
         // The 1e-5 quantile of chi-square with three degrees of freedom is 25.9 (tables).
         assert!(normalised < 25.9, "{k}: {normalised}");
-        assert!(p.trace() > 4.0 * clean.covariance(OBSTRUCTED, &Matrix3::identity()).0.trace(), "{k}");
+        assert!(p.trace() > 4.0 * clean.covariance(OBSTRUCTED, &Matrix3::identity()).moments.trace(), "{k}");
     }
 }
 
@@ -104,7 +104,7 @@ fn ranges_that_are_no_numbers_or_too_few_make_no_mixture() {
 #[test]
 fn gross_faults_neither_overflow_nor_vanish() {
     let mixture = Mixture::new(&case(9, &[(0, 3e5), (5, -2e7)])).unwrap();
-    let (p, wide) = mixture.covariance(OBSTRUCTED, &Matrix3::identity());
+    let Declared { moments: p, holding: wide, .. } = mixture.covariance(OBSTRUCTED, &Matrix3::identity());
     assert!(p.iter().chain(wide.iter()).all(|v| v.is_finite()) && p.cholesky().is_some());
 }
 
@@ -117,7 +117,7 @@ proptest! {
         for r in &mut other {
             r.residual_m += clock * (1 + r.clock) as f64;
         }
-        let of = |ranges: &[Observed]| Mixture::new(ranges).unwrap().covariance(0.1, &Matrix3::zeros()).0;
+        let of = |ranges: &[Observed]| Mixture::new(ranges).unwrap().covariance(0.1, &Matrix3::zeros()).moments;
         let (a, b) = (of(&ranges), of(&other));
         // Clocks of 1e4 m take five of sixteen digits.
         prop_assert!((a - b).norm() < 1e-7 * a.norm(), "{a} {b}");
@@ -128,8 +128,9 @@ proptest! {
     fn the_covariance_is_never_below_the_least(n in 5_usize..12, fault in -200.0..200.0_f64, p in 0.0..1.0_f64) {
         let mixture = Mixture::new(&case(n, &[(1, fault)])).unwrap();
         let least = Matrix3::identity() * 2.0;
-        let (whole, wide) = mixture.covariance(p, &least);
-        prop_assert!(whole.trace() >= 6.0 - 1e-12 && wide.trace() >= whole.trace() * (1.0 - 1e-12));
-        prop_assert!(whole.cholesky().is_some() && wide.cholesky().is_some());
+        let Declared { moments, reaching, holding } = mixture.covariance(p, &least);
+        prop_assert!(moments.trace() >= 6.0 - 1e-12 && reaching.trace() >= moments.trace() * (1.0 - 1e-12));
+        prop_assert!(holding.trace() >= reaching.trace() * (1.0 - 1e-12));
+        prop_assert!(moments.cholesky().is_some() && holding.cholesky().is_some());
     }
 }

@@ -36,6 +36,11 @@ impl Clock {
 }
 
 impl Offsets {
+    /// Whether more than one clock is known.
+    pub fn several(&self) -> bool {
+        self.of.iter().flatten().count() > 1
+    }
+
     /// Whether any clock of these ranges is known from another's.
     pub fn tie(&self, ranges: &[Range]) -> bool {
         self.clocks(ranges).iter().enumerate().any(|(c, clock)| !clock.own(c) && ranges.iter().any(|r| r.satellite.constellation.index() == c))

@@ -7,6 +7,9 @@ use nalgebra::{Matrix3, Vector3};
 
 /// With this many spare ranges a test of residuals that passes leaves no other reading.
 const CONFIRMED: usize = 3;
+/// Residuals that are less probable than this hint at a fault that the test does not see, and this many spare ranges average it out.
+const SUSPECT: f64 = 0.05;
+const MANY: usize = 10;
 /// A clock that rests on fewer spare ranges than this checks nothing but itself.
 const OWN_SPARE: usize = 2;
 
@@ -14,7 +17,9 @@ impl Solver<'_> {
     /// Covariance over all readings of the ranges, where the position's own cannot stand alone: the test failed, whether or not an
     /// exclusion mended that, or few ranges are to spare.
     pub(super) fn mixture(&self) -> Option<Mixture> {
-        if self.judge().consistent && self.before.is_none() && self.spare() >= CONFIRMED {
+        let (risk, spare) = (self.judge().risk, self.spare());
+        let suspect = risk < SUSPECT && spare < MANY;
+        if risk >= self.settings.false_alarm && self.before.is_none() && spare >= CONFIRMED && !suspect {
             return None;
         }
         let mut observed = [Observed { unit: Vector3::zeros(), clock: 0, sigma_m: 1.0, residual_m: 0.0, common_m: [0.0; COMMON] }; super::MOST_RANGES];

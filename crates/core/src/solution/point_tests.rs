@@ -158,3 +158,6 @@ fn the_covariance_is_that_of_the_errors_it_assumes() {
     assert!((sum / 400.0 - 3.0).abs() < 0.49, "{}", sum / 400.0);
     assert!((16..=64).contains(&alarms), "{alarms}");
 }
+
+#[path = "point_readings_tests.rs"]
+mod readings_tests;
