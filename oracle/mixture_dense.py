@@ -52,7 +52,7 @@ def reading(case: Case, subset: tuple[int, ...], size: float) -> tuple[float, Ar
 
 
 def mixture(case: Case, obstructed: float) -> tuple[float, Array, float]:
-    """Evidence of obstructed against open surroundings, covariance about zero, farthest horizontal distance of weight above 1e-5."""
+    """Evidence of obstructed against open surroundings, covariance about zero, farthest horizontal distance of weight above 1e-7."""
     n = len(case.sigma)
     deepest = min(n - 3, 6 if n <= 9 else 3 if n <= 18 else 2)
     subsets = [s for k in range(deepest + 1) for s in combinations(range(n), k)]
@@ -66,7 +66,7 @@ def mixture(case: Case, obstructed: float) -> tuple[float, Array, float]:
     # Without a fault the four sizes are one reading.
     prior[:4] = prior[:4].sum()
     share = prior / (prior[3:].sum())
-    far = max(float(np.hypot(*r[2][:2])) for w, r in zip(share, rows, strict=True) if w > 1e-5)
+    far = max(float(np.hypot(*r[2][:2])) for w, r in zip(share, rows, strict=True) if w > 1e-7)
     return float(total[1] / total[0]), np.asarray(covariance), far
 
 

@@ -29,8 +29,13 @@ const SIZES: [f64; 4] = [8.0, 40.0, 200.0, 1000.0];
 const FAULTY: [f64; 2] = [1e-3, 0.3];
 /// Probability that the receiver is between obstacles where nothing is known.
 pub const OBSTRUCTED: f64 = 0.02;
-/// Readings below this weight are outside the smallest risk that a position's circle is meant for.
+/// The smallest risk that a position's circle is meant for.
 const TAIL: f64 = 1e-5;
+/// Readings below this weight are left out of that circle. Two decades below the risk: the probability of a fault is known to an order of
+/// magnitude, and two faults count it twice.
+const NEGLIGIBLE: f64 = 1e-7;
+/// Standard deviations of a reading that the circle holds at least.
+const LEAST_DEVIATES: f64 = 2.0;
 /// Square of the standard normal deviate that `TAIL` exceeds on two sides: 4.417².
 const TAIL_DEVIATE_SQUARED: f64 = 19.511;
 const DEEPEST: usize = 6;
@@ -54,7 +59,7 @@ pub struct Observed {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mixture {
     states: [Moments; 2],
-    /// How far readings of weight above 1e-5 are from the position, horizontal and vertical \[m\].
+    /// How far readings that are not negligible are from the position, horizontal and vertical \[m\].
     farthest: [f64; 2],
     /// The same with their uncertainty: beyond it each leaves a risk of 1e-5 at most.
     reach: [f64; 2],
@@ -65,7 +70,7 @@ pub struct Mixture {
 pub struct Declared {
     /// Of the mixture: its first two moments.
     pub moments: Matrix3<f64>,
-    /// Widened until the circle and the interval of risk 1e-5 reach where each reading of more weight puts the receiver.
+    /// Widened until the circle and the interval of risk 1e-5 reach where each reading puts the receiver, negligible ones apart.
     pub reaching: Matrix3<f64>,
     /// Widened until they hold what each reading leaves possible at that risk.
     pub holding: Matrix3<f64>,
@@ -121,7 +126,7 @@ impl Mixture {
     ///
     /// ```text
     /// P       = sum w P_S + sum w (x_S - x)(x_S - x)'
-    /// reach_S = |x_S - x| + z sigma_S,   w exp(-z^2 / 2) = 1e-5
+    /// reach_S = |x_S - x| + z sigma_S,   w exp(-z^2 / 2) = 1e-5, z at least 2
     /// ```
     ///
     /// `obstructed` is the posterior probability of obstructed surroundings. `least` is the covariance of the position without any doubt
@@ -326,8 +331,8 @@ impl Sum {
             state.add(weight, at);
         }
         let (weight, sum) = (marginal(weights), marginal([self.states[0].weight, self.states[1].weight]));
-        // The sum only grows: a reading below the tail now is below it in the end.
-        if weight >= TAIL * sum {
+        // The sum only grows: a reading that is negligible now is so in the end.
+        if weight >= NEGLIGIBLE * sum {
             self.tail[octave(weight)].take(&Far::of(at));
         }
     }
@@ -349,12 +354,12 @@ impl Sum {
     fn mixture(self) -> Option<Mixture> {
         let sum = marginal([self.states[0].weight, self.states[1].weight]);
         // The last octave holds all that is lighter.
-        let lightest = octave(TAIL * sum).min(OCTAVES - 2);
+        let lightest = octave(NEGLIGIBLE * sum).min(OCTAVES - 2);
         let (mut farthest, mut reach) = ([0.0_f64; 2], [0.0_f64; 2]);
         for (k, far) in self.tail[..=lightest].iter().enumerate() {
             // The heaviest that the octave can hold, against the tail.
             let heavier = (exp(-(k as f64 - 1.0) * LN_2) / sum).min(1.0) / TAIL;
-            let z = sqrt(2.0 * ln(heavier.max(1.0)));
+            let z = sqrt(2.0 * ln(heavier.max(1.0))).max(LEAST_DEVIATES);
             for axis in 0..2 {
                 farthest[axis] = farthest[axis].max(far.distance[axis]);
                 reach[axis] = reach[axis].max(far.distance[axis] + z * far.sigma[axis]);

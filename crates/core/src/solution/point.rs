@@ -30,6 +30,7 @@ mod residuals;
 #[path = "point_velocity.rs"]
 mod velocity;
 use offsets::Clock;
+pub(in crate::solution) use readings::CONFIRMED;
 pub use offsets::{Offset, Offsets};
 pub use records::{Fix, Range, Settings, Used};
 pub use residuals::{Sighted, sighted};

@@ -6,7 +6,7 @@ use crate::special::float::sqrt;
 use nalgebra::{Matrix3, Vector3};
 
 /// With this many spare ranges a test of residuals that passes leaves no other reading.
-const CONFIRMED: usize = 3;
+pub(in crate::solution) const CONFIRMED: usize = 4;
 /// Residuals that are less probable than this hint at a fault that the test does not see, and this many spare ranges average it out.
 const SUSPECT: f64 = 0.05;
 const MANY: usize = 10;
