@@ -290,13 +290,7 @@ fn solve_positions<'py>(
     within("shared_factor", shared_factor, "1", "[0, inf)", shared_factor >= 0.0 && shared_factor.is_finite())?;
     let errors = weights(precise).scaled(range_factor, shared_factor);
     let model = ionosphere_model(ionosphere, observations, navigation)?;
-    let settings = Settings {
-        mask: Radians::new(mask_rad),
-        ionosphere: model,
-        errors,
-        false_alarm,
-        most_excluded,
-    };
+    let settings = Settings { mask: Radians::new(mask_rad), ionosphere: model, errors, false_alarm, most_excluded };
     let job = Job {
         systems: systems.bytes().filter_map(Constellation::from_letter).collect(),
         signals: if dual { Signals::Dual } else { Signals::Single },

@@ -89,8 +89,7 @@ impl CommonErrors {
         let spread = if unknown { SPREAD_ACTIVITY_SFU * ntcm::sensitivity(ionosphere::MEAN_ACTIVITY_SFU) } else { 0.0 };
         let whole = if over.kind == Kind::Uncorrected { 1.0 } else { 0.0 };
         let vertical = root_sum([self.vertical_share * delay, self.activity_share * activity, floor, spread * delay, whole * delay]);
-        let [level, anomaly] =
-            if unknown { self.unknown_gradient_shares } else { [self.gradient_share, self.anomaly_share] };
+        let [level, anomaly] = if unknown { self.unknown_gradient_shares } else { [self.gradient_share, self.anomaly_share] };
         let north = if over.magnetic_lat.abs() < self.anomaly_rad { anomaly } else { level };
         let gradient = |share: f64| root_sum([share * delay, self.gradient_activity_share * activity, 0.0, 0.0, 0.0]);
         Sizes {

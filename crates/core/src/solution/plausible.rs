@@ -60,7 +60,13 @@ pub struct Movement {
 
 impl Movement {
     /// Take the next position; whether the receiver can have come there.
-    pub fn possible(&mut self, time: GpsTime, position: &Geodetic, velocity_enu_mps: Option<Vector3<f64>>, covariance: &Matrix3<f64>) -> bool {
+    pub fn possible(
+        &mut self,
+        time: GpsTime,
+        position: &Geodetic,
+        velocity_enu_mps: Option<Vector3<f64>>,
+        covariance: &Matrix3<f64>,
+    ) -> bool {
         let velocity_mps = velocity_enu_mps.map(|v| enu_from_ecef(&position.point).transpose() * v);
         let here = Place { time, at: ecef_from_geodetic(position), velocity_mps, sigma_m: sqrt(covariance.trace()) };
         let reached = |from: &Option<Place>| from.as_ref().is_none_or(|from| here.reachable(from));
@@ -83,9 +89,10 @@ impl Place {
         }
         let moved = self.at.vector() - from.at.vector();
         let slack = DEVIATIONS * (self.sigma_m + from.sigma_m);
-        let by_doppler = self.velocity_mps.zip(from.velocity_mps).is_some_and(|(a, b)| {
-            (moved - (a + b) * (0.5 * passed)).norm() <= slack + ACCELERATION_MPS2 * passed * passed
-        });
+        let by_doppler = self
+            .velocity_mps
+            .zip(from.velocity_mps)
+            .is_some_and(|(a, b)| (moved - (a + b) * (0.5 * passed)).norm() <= slack + ACCELERATION_MPS2 * passed * passed);
         moved.norm() <= SPEED_MPS * passed + slack || by_doppler
     }
 }

@@ -30,8 +30,8 @@ mod residuals;
 #[path = "point_velocity.rs"]
 mod velocity;
 use offsets::Clock;
-pub(in crate::solution) use readings::CONFIRMED;
 pub use offsets::{Offset, Offsets};
+pub(in crate::solution) use readings::CONFIRMED;
 pub use records::{Fix, Range, Settings, Used};
 pub use residuals::{Sighted, sighted};
 
@@ -204,9 +204,7 @@ fn start(ranges: &[Range], clock_of: &[Clock; CLOCKS]) -> Result<Vector3<f64>, U
 }
 
 /// The same from satellites' positions, ranges with the satellite's clock taken out, and whose time they count in.
-pub(crate) fn start_from<'a>(
-    ranges: impl Iterator<Item = (&'a EcefPosition, Metres, usize)> + Clone,
-) -> Result<Vector3<f64>, Unavailable> {
+pub(crate) fn start_from<'a>(ranges: impl Iterator<Item = (&'a EcefPosition, Metres, usize)> + Clone) -> Result<Vector3<f64>, Unavailable> {
     let mut at = Vector3::zeros();
     for _ in 0..ROUNDS {
         let rows = ranges.clone().map(|(satellite, corrected, clock)| {

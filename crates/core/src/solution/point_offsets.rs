@@ -43,7 +43,10 @@ impl Offsets {
 
     /// Whether any clock of these ranges is known from another's.
     pub fn tie(&self, ranges: &[Range]) -> bool {
-        self.clocks(ranges).iter().enumerate().any(|(c, clock)| !clock.own(c) && ranges.iter().any(|r| r.satellite.constellation.index() == c))
+        self.clocks(ranges)
+            .iter()
+            .enumerate()
+            .any(|(c, clock)| !clock.own(c) && ranges.iter().any(|r| r.satellite.constellation.index() == c))
     }
 
     /// Clocks for an epoch's ranges: constellations with known offsets share that of the first of them.

@@ -22,7 +22,8 @@ impl Solver<'_> {
         if risk >= self.settings.false_alarm && self.before.is_none() && spare >= CONFIRMED && !suspect {
             return None;
         }
-        let mut observed = [Observed { unit: Vector3::zeros(), clock: 0, sigma_m: 1.0, residual_m: 0.0, common_m: [0.0; COMMON] }; super::MOST_RANGES];
+        let mut observed =
+            [Observed { unit: Vector3::zeros(), clock: 0, sigma_m: 1.0, residual_m: 0.0, common_m: [0.0; COMMON] }; super::MOST_RANGES];
         let mut n = 0;
         for (range, seen) in self.ranges.iter().zip(self.seen.iter()).filter(|(_, s)| s.weighs()) {
             let clock = range.satellite.constellation.index();
@@ -31,7 +32,13 @@ impl Solver<'_> {
                 *to = *from;
             }
             common_m[COMMON - CLOCKS + clock] = self.clock_of[clock].sigma_m;
-            observed[n] = Observed { unit: seen.row.unit, clock: seen.row.clock, sigma_m: 1.0 / sqrt(seen.modelled.weight), residual_m: seen.row.residual, common_m };
+            observed[n] = Observed {
+                unit: seen.row.unit,
+                clock: seen.row.clock,
+                sigma_m: 1.0 / sqrt(seen.modelled.weight),
+                residual_m: seen.row.residual,
+                common_m,
+            };
             n += 1;
         }
         Mixture::new(&observed[..n])
