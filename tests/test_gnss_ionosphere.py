@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import importlib.util
+import itertools
 import json
 import math
 from functools import cache
@@ -128,7 +129,7 @@ def test_more_satellites_do_not_make_the_covariance_less_believable(shared_data:
     observations, navigation, truth = recording(shared_data, name)
     messages = gnss.read_navigation(navigation)
     shares = [coverage(gnss.solve(observations, messages, systems=systems, truth_ecef_m=truth).epochs) for systems in ("G", "GE", "GEC")]
-    for fewer, more in zip(shares, shares[1:], strict=False):
+    for fewer, more in itertools.pairwise(shares):
         # A day holds some ten independent ionospheres: one of them in ten is the sampling of a share.
         assert more["circle"] >= fewer["circle"] - 0.1
         assert more["height"] >= fewer["height"] - 0.1

@@ -7,7 +7,7 @@ use super::wls::{Normal, Row};
 use crate::geometry::ionosphere::{Kind, MEAN_ACTIVITY_SFU, Overhead, SPREAD_ACTIVITY_SFU};
 use crate::geometry::ntcm;
 use crate::signal::Constellation;
-use crate::special::float::{asin, sqrt};
+use crate::special::float::sqrt;
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector4};
 
 /// Vertical ionosphere, its gradient east and north, zenith troposphere.
@@ -123,9 +123,27 @@ pub(crate) fn pierce(unit: &Vector3<f64>) -> (f64, [f64; 2]) {
     let root = sqrt(1.0 - RATIO * RATIO * level_squared);
     let over = root - RATIO * unit.z;
     let sin_psi = over * sqrt(level_squared.max(0.0));
-    let arc = if sin_psi > 1e-9 { asin(sin_psi) / sin_psi } else { 1.0 };
+    let arc = arc_over_sine(sin_psi * sin_psi);
     let reach = SHELL_MM * arc * over;
     (1.0 / root, [reach * unit.x, reach * unit.y])
+}
+
+/// asin(s) / s by its series in s^2. Above the horizon s is below 0.32, and the next term below 1e-12.
+fn arc_over_sine(q: f64) -> f64 {
+    // (2n)! / (4^n n!^2 (2n + 1)), n from 10 to 1.
+    const TERMS: [f64; 10] = [
+        46_189.0 / 5_505_024.0,
+        12_155.0 / 1_245_184.0,
+        6_435.0 / 557_056.0,
+        143.0 / 10_240.0,
+        231.0 / 13_312.0,
+        63.0 / 2_816.0,
+        35.0 / 1_152.0,
+        5.0 / 112.0,
+        3.0 / 40.0,
+        1.0 / 6.0,
+    ];
+    TERMS.iter().fold(0.0, |sum, term| q * (term + sum)) + 1.0
 }
 
 /// A range as the least-squares solution leaves it.

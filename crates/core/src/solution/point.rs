@@ -119,7 +119,7 @@ fn settled<T>(
     let seen = &mut seen[..ranges.len()];
     if let Some(near) = near {
         let mut epoch = Solver::new(ranges, seen, time, settings, *near.vector());
-        if epoch.settle(false) == Ok(true) && epoch.judge().consistent {
+        if epoch.settle(false) == Ok(true) && epoch.judged().consistent {
             return Ok(then(&epoch));
         }
         seen.fill(Seen::default());
@@ -146,9 +146,12 @@ struct Solver<'a> {
     normal: Normal,
     /// Statistic and redundancy before anything was excluded.
     before: Option<(f64, usize)>,
+    /// What the residuals of the last step say; `None` until they are asked.
+    judged: Option<Judgement>,
 }
 
 /// Whether residuals agree with the weights.
+#[derive(Debug, Clone, Copy)]
 struct Judgement {
     statistic: f64,
     redundancy: usize,
@@ -212,11 +215,12 @@ pub(crate) fn way(satellite: &EcefPosition, at: &Vector3<f64>) -> (f64, Vector3<
 impl<'a> Solver<'a> {
     fn new(ranges: &'a [Range], seen: &'a mut [Seen], time: GpsTime, settings: &'a Settings, at: Vector3<f64>) -> Self {
         let normal = Normal::default();
-        Self { ranges, seen, time, settings, at, modelled_at: Vector3::zeros(), clocks: [0.0; CLOCKS], normal, before: None }
+        Self { ranges, seen, time, settings, at, modelled_at: Vector3::zeros(), clocks: [0.0; CLOCKS], normal, before: None, judged: None }
     }
 
     /// Rounds of least squares until the position stands still, which is told; robust rounds weigh large residuals down.
     fn settle(&mut self, robust: bool) -> Result<bool, Unavailable> {
+        self.judged = None;
         for round in 0..ROUNDS {
             // The first robust round has no residuals to judge by yet.
             let turn = self.look(robust && round > 0)?;
@@ -276,6 +280,12 @@ impl<'a> Solver<'a> {
         Left { row: seen.row, common: seen.modelled.common, residual: seen.row.residual - self.clocks[seen.row.clock] }
     }
 
+    fn judged(&mut self) -> Judgement {
+        let judged = self.judged.unwrap_or_else(|| self.judge());
+        self.judged = Some(judged);
+        judged
+    }
+
     fn judge(&self) -> Judgement {
         let common = InSolution::new(&self.normal, self.left());
         let plain = || self.left().map(|r| r.row.weight * r.residual * r.residual).sum();
@@ -289,7 +299,7 @@ impl<'a> Solver<'a> {
     /// Exclude the worst range until the residuals agree with the weights or no more may go.
     fn exclude(&mut self) -> Result<(), Unavailable> {
         for _ in 0..self.settings.most_excluded {
-            let judged = self.judge();
+            let judged = self.judged();
             // With one redundant range a fault is seen but not found.
             if judged.consistent || judged.redundancy < 2 {
                 return Ok(());
@@ -309,7 +319,7 @@ impl<'a> Solver<'a> {
     }
 
     fn fix(&self) -> Result<Fix, Unavailable> {
-        let judged = self.judge();
+        let judged = self.judged.unwrap_or_else(|| self.judge());
         let position = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
         if !(position.height.m() > -50_000.0 && position.height.m() < 1e8) {
             let (value, unit, domain) = (position.height.m(), "m", "(-5e4, 1e8)");
