@@ -16,6 +16,7 @@ import polars as pl
 from navbound import _core
 from navbound._arrays import flatten
 from navbound._constellations import CONSTELLATIONS, Orbits
+from navbound._signal_choice import smaller_covariance
 from navbound.errors import FormatError, InputError
 
 if TYPE_CHECKING:
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
 
 SYSTEMS = {"G": "GPS", "E": "Galileo", "C": "BeiDou"}
 """Constellations a position can be solved from, by their letter."""
+
+SIGNALS = ("auto", "single", "dual")
+"""Which pseudoranges make a range."""
 
 IONOSPHERES = ("auto", "broadcast", "galileo", "climatology", "none")
 """Models of the ionosphere that single pseudoranges can use."""
@@ -283,7 +287,7 @@ def solve(
     navigation: Navigation,
     *,
     systems: str = "GEC",
-    signals: Literal["single", "dual"] = "single",
+    signals: Literal["auto", "single", "dual"] = "single",
     ionosphere: Literal["auto", "broadcast", "galileo", "climatology", "none"] = "auto",
     mask_rad: float = float(np.radians(10.0)),
     false_alarm: float = 1e-4,
@@ -307,8 +311,9 @@ def solve(
         From :func:`read_navigation`.
     systems : str, optional
         Letters of :data:`SYSTEMS`.
-    signals : {"single", "dual"}, optional
-        L1, E1, B1I; or the ionosphere-free pairs L1-L2, E1-E5a, B1I-B3I.
+    signals : {"auto", "single", "dual"}, optional
+        L1, E1, B1I; or the ionosphere-free pairs L1-L2, E1-E5a, B1I-B3I; or of both solutions the one whose declared covariance is the
+        smaller over the whole file.
     ionosphere : {"auto", "broadcast", "galileo", "climatology", "none"}, optional
         Model of single pseudoranges; pairs need none. ``broadcast``: the GPS message. ``galileo``: NTCM-G by Galileo's message.
         ``climatology``: NTCM-G at the long-run mean of solar activity. ``none``: no correction; its whole size is error. ``auto`` is the
@@ -353,14 +358,35 @@ def solve(
     """
     if not systems or any(s not in SYSTEMS for s in systems):
         raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
-    if signals not in {"single", "dual"}:
-        raise InputError("signals", signals, domain="single, dual")
+    if signals not in SIGNALS:
+        raise InputError("signals", signals, domain=", ".join(SIGNALS))
     if ionosphere not in IONOSPHERES:
         raise InputError("ionosphere", ionosphere, domain=", ".join(IONOSPHERES))
     if most_excluded < 0:
         raise InputError("most_excluded", most_excluded, "1", "[0, inf)")
     if smoothing not in {"hatch", "divergence-free"}:
         raise InputError("smoothing", smoothing, domain="hatch, divergence-free")
+    if signals == "auto":
+        return smaller_covariance(
+            lambda kind: solve(
+                observations,
+                navigation,
+                systems=systems,
+                signals=kind,  # type: ignore[arg-type]
+                ionosphere=ionosphere,
+                mask_rad=mask_rad,
+                false_alarm=false_alarm,
+                most_excluded=most_excluded,
+                range_factor=range_factor,
+                shared_factor=shared_factor,
+                orbits=orbits,
+                smoothing_s=smoothing_s,
+                smoothing=smoothing,
+                truth_ecef_m=truth_ecef_m,
+                track=track,
+                keep_ranges=keep_ranges,
+            )
+        )
     try:
         found = _core.solve_positions(
             observations._core,
@@ -392,6 +418,7 @@ def solve(
     if truth_ecef_m is not None:
         epochs = with_errors(epochs, truth_ecef_m)
     models = {
+        "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange",
         "orbits and clocks": _orbit_words(orbits),
         "smoothing": "none" if smoothing_s is None else f"{smoothing}, {smoothing_s:g} s; {100 * share:.1f} % of the pseudoranges",
         "ionosphere": "ionosphere-free pairs" if signals == "dual" else _ionosphere_words(*model),

@@ -4,10 +4,11 @@ use crate::error::{format_error, input_error};
 use crate::orbits::PreciseOrbits;
 use navbound_assess::positions::{Job, Model, Positions, Signals, positions};
 use navbound_assess::smoothing::Form;
-use navbound_core::frame::{self, EcefPosition};
+use navbound_core::frame::{self, EcefPosition, Geodetic, LatLon};
 use navbound_core::geometry::broadcast::mean_elements;
 use navbound_core::geometry::ionosphere::{Ionosphere, MEAN_ACTIVITY_SFU};
-use navbound_core::quantity::{GpsTime, OutOfDomain, Radians, Unavailable};
+use navbound_core::geometry::{Direction, ntcm};
+use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Klobuchar};
 use navbound_core::solution::RangeError;
@@ -426,10 +427,21 @@ fn geodetic_from_ecef<'py>(py: Python<'py>, ecef_m: PyReadonlyArray2<'py, f64>) 
     rows.as_flattened().to_vec().into_pyarray(py).reshape([rows.len(), 3])
 }
 
+/// Delay on L1 by NTCM-G \[m\]: effective ionisation level \[sfu\], receiver \[rad, rad, m\], azimuth and elevation \[rad\], GPS time \[ns\].
+#[pyfunction]
+fn ntcm_delay(level_sfu: f64, place: (f64, f64, f64), sight: (f64, f64), time_ns: i64) -> PyResult<f64> {
+    let refuse = |e| input_error(e, None);
+    let point = LatLon::new(Radians::new(place.0), Radians::new(place.1)).map_err(refuse)?;
+    let direction = Direction::new(Radians::new(sight.0), Radians::new(sight.1)).map_err(refuse)?;
+    let receiver = Geodetic { point, height: Metres::new(place.2) };
+    Ok(ntcm::delay(level_sfu, &receiver, &direction, GpsTime::from_nanoseconds(time_ns)).m())
+}
+
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Observations>()?;
     m.add_class::<Navigation>()?;
     m.add_function(wrap_pyfunction!(raw_log, m)?)?;
     m.add_function(wrap_pyfunction!(geodetic_from_ecef, m)?)?;
+    m.add_function(wrap_pyfunction!(ntcm_delay, m)?)?;
     m.add_function(wrap_pyfunction!(solve_positions, m)?)
 }

@@ -3,9 +3,10 @@
 //! Source: European Commission, *NTCM-G Ionospheric Model Description*, issue 1.0 (2022), equations 2 to 34; Jakowski, Hoque, Mayer 2011.
 //! Provenance: printed (formulas and test values read through the JRC's and D. Duchet's public transcriptions of the document).
 
+use super::Direction;
 use super::seasonal::day_of_year;
 use crate::frame::Geodetic;
-use crate::quantity::GpsTime;
+use crate::quantity::{GpsTime, Metres};
 use crate::signal::Carrier;
 use crate::special::float::{asin, cos, exp, sin, sin_cos, sqrt};
 use core::f64::consts::PI;
@@ -38,6 +39,12 @@ pub fn ionisation_level([a0, a1, a2]: [f64; 3]) -> Option<f64> {
 /// Relative change of all delays for a change of the ionisation level \[1/sfu\]: k12 / (k11 + k12 Az).
 pub(crate) fn sensitivity(level_sfu: f64) -> f64 {
     ACTIVITY[1] / (ACTIVITY[0] + ACTIVITY[1] * level_sfu)
+}
+
+/// Delay on L1 by the model at an effective ionisation level \[sfu\].
+pub fn delay(level_sfu: f64, receiver: &Geodetic, direction: &Direction, time: GpsTime) -> Metres {
+    let unit = direction.unit();
+    Metres::new(Ntcm::new(level_sfu, time).slant(receiver, direction.elevation().rad(), (unit.x, unit.y)) * metres_per_tecu())
 }
 
 /// Delay on L1 of one TECU \[m\] (equation 1).

@@ -1,7 +1,7 @@
 use super::*;
 use crate::frame::{EcefPosition, LatLon, ecef_from_geodetic};
 use crate::geometry::Observer;
-use crate::quantity::{Metres, Radians};
+use crate::quantity::Radians;
 
 /// Universal time \[h\]; receiver longitude, latitude \[deg\], height \[m\]; satellite likewise; slant content \[TECU\]. Day 105.
 type Row = [f64; 8];

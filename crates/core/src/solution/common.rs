@@ -4,10 +4,10 @@
 //! test; the position is not weighted with it. Provenance: derived (least squares, Woodbury); sizes inferred, see [`CommonErrors`].
 
 use super::wls::{Normal, Row};
-use crate::geometry::ionosphere::{Kind, Overhead, SPREAD_ACTIVITY_SFU};
-use crate::geometry::{ionosphere, ntcm};
+use crate::geometry::ionosphere::{Kind, MEAN_ACTIVITY_SFU, Overhead, SPREAD_ACTIVITY_SFU};
+use crate::geometry::ntcm;
 use crate::signal::Constellation;
-use crate::special::float::{asin, sqrt};
+use crate::special::float::sqrt;
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector4};
 
 /// Vertical ionosphere, its gradient east and north, zenith troposphere.
@@ -26,8 +26,9 @@ const SHELL_MM: f64 = EARTH_MM + 0.35;
 /// s_T   = zenith_troposphere
 /// ```
 ///
-/// I is the model's vertical delay at the receiver, A the activity that the message states. Without a message the change of I for the
-/// spread of solar activity is added to `s_v`; where nothing is corrected, I itself.
+/// I is the model's vertical delay at the receiver, A the activity that the message states. Without a message I and A are those of a sun
+/// one standard deviation more active than the mean, and the change of I that this makes is added to `s_v`; where nothing is corrected, the
+/// whole of the mean I.
 ///
 /// Every number is inferred from common errors at true positions, see `docs/methods/gnss-positions.md`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,8 +47,6 @@ pub struct CommonErrors {
     pub anomaly_share: f64,
     /// Magnetic latitude below which the crests of the equatorial anomaly are near \[rad\].
     pub anomaly_rad: f64,
-    /// Gradients without a message: shares for east, and for north near the magnetic equator \[1/Mm\].
-    pub unknown_gradient_shares: [f64; 2],
     /// Least error of NTCM-G overhead \[m\].
     pub ntcm_floor_m: f64,
     /// Error of the zenith tropospheric delay \[m\].
@@ -75,7 +74,6 @@ impl CommonErrors {
         gradient_activity_share: 0.08,
         anomaly_share: 0.35,
         anomaly_rad: 35.0 * core::f64::consts::PI / 180.0,
-        unknown_gradient_shares: [0.30, 0.45],
         ntcm_floor_m: 0.5,
         zenith_troposphere_m: 0.10,
         unevenness: 0.3,
@@ -83,23 +81,23 @@ impl CommonErrors {
 
     /// Over a receiver.
     pub(crate) fn sizes(&self, over: &Overhead) -> Sizes {
-        let (delay, activity) = (over.vertical_m, over.activity_m);
         let unknown = matches!(over.kind, Kind::Climatology | Kind::Uncorrected);
+        let spread = if unknown { SPREAD_ACTIVITY_SFU * ntcm::sensitivity(MEAN_ACTIVITY_SFU) * over.vertical_m } else { 0.0 };
+        let whole = if over.kind == Kind::Uncorrected { over.vertical_m } else { 0.0 };
+        let delay = over.vertical_m + spread;
+        let activity = over.activity_m * if unknown { 1.0 + SPREAD_ACTIVITY_SFU / MEAN_ACTIVITY_SFU } else { 1.0 };
         let floor = if over.kind == Kind::Broadcast { 0.0 } else { self.ntcm_floor_m };
-        let spread = if unknown { SPREAD_ACTIVITY_SFU * ntcm::sensitivity(ionosphere::MEAN_ACTIVITY_SFU) } else { 0.0 };
-        let whole = if over.kind == Kind::Uncorrected { 1.0 } else { 0.0 };
-        let vertical = root_sum([self.vertical_share * delay, self.activity_share * activity, floor, spread * delay, whole * delay]);
-        let [level, anomaly] = if unknown { self.unknown_gradient_shares } else { [self.gradient_share, self.anomaly_share] };
-        let north = if over.magnetic_lat.abs() < self.anomaly_rad { anomaly } else { level };
-        let gradient = |share: f64| root_sum([share * delay, self.gradient_activity_share * activity, 0.0, 0.0, 0.0]);
+        let vertical = root_sum([self.vertical_share * delay, self.activity_share * activity, floor, spread, whole]);
+        let north = if over.magnetic_lat.abs() < self.anomaly_rad { self.anomaly_share } else { self.gradient_share };
+        let gradient = |share: f64| root_sum([share * delay, self.gradient_activity_share * activity]);
         Sizes {
-            sigma: self.factor * Vector4::new(vertical, gradient(level), gradient(north), self.zenith_troposphere_m),
+            sigma: self.factor * Vector4::new(vertical, gradient(self.gradient_share), gradient(north), self.zenith_troposphere_m),
             uneven_m: self.unevenness * vertical,
         }
     }
 }
 
-fn root_sum(parts: [f64; 5]) -> f64 {
+fn root_sum<const N: usize>(parts: [f64; N]) -> f64 {
     sqrt(parts.iter().map(|p| p * p).sum())
 }
 
@@ -125,9 +123,27 @@ pub(crate) fn pierce(unit: &Vector3<f64>) -> (f64, [f64; 2]) {
     let root = sqrt(1.0 - RATIO * RATIO * level_squared);
     let over = root - RATIO * unit.z;
     let sin_psi = over * sqrt(level_squared.max(0.0));
-    let arc = if sin_psi > 1e-9 { asin(sin_psi) / sin_psi } else { 1.0 };
+    let arc = arc_over_sine(sin_psi * sin_psi);
     let reach = SHELL_MM * arc * over;
     (1.0 / root, [reach * unit.x, reach * unit.y])
+}
+
+/// asin(s) / s by its series in s^2. Above the horizon s is below 0.32, and the next term below 1e-12.
+fn arc_over_sine(q: f64) -> f64 {
+    // (2n)! / (4^n n!^2 (2n + 1)), n from 10 to 1.
+    const TERMS: [f64; 10] = [
+        46_189.0 / 5_505_024.0,
+        12_155.0 / 1_245_184.0,
+        6_435.0 / 557_056.0,
+        143.0 / 10_240.0,
+        231.0 / 13_312.0,
+        63.0 / 2_816.0,
+        35.0 / 1_152.0,
+        5.0 / 112.0,
+        3.0 / 40.0,
+        1.0 / 6.0,
+    ];
+    TERMS.iter().fold(0.0, |sum, term| q * (term + sum)) + 1.0
 }
 
 /// A range as the least-squares solution leaves it.

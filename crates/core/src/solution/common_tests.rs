@@ -56,6 +56,13 @@ fn the_less_is_said_of_the_ionosphere_the_larger_its_error() {
     let (level, climate, nothing) =
         (size(Ionosphere::galileo([130.0, 0.0, 0.0]).unwrap()), size(Ionosphere::Climatology), size(Ionosphere::Uncorrected));
     assert!(climate.x > level.x && nothing.x > climate.x && climate.y > level.y && climate.z > level.z);
+    // A sun one standard deviation above the mean: I grows by 70 k12 / (k11 + 130 k12) of it, A to 200 sfu.
+    let mean = over(45.0, Ionosphere::Climatology).vertical_m;
+    let spread = mean * 70.0 * 0.13985 / (1.41808 + 130.0 * 0.13985);
+    let activity = 0.04 * 200.0;
+    let expected = [0.25 * (mean + spread), 0.10 * activity, 0.5, spread];
+    assert!((climate.x - expected.iter().map(|p| p * p).sum::<f64>().sqrt()).abs() < 1e-9);
+    assert!((climate.y - (0.20 * (mean + spread)).hypot(0.08 * activity)).abs() < 1e-9);
     // No correction: the whole of the delay is error.
     assert!(nothing.x >= over(45.0, Ionosphere::Uncorrected).vertical_m);
     let doubled = CommonErrors { factor: 2.0, ..CommonErrors::CALIBRATED }.sizes(&over(45.0, Ionosphere::Climatology));

@@ -88,6 +88,7 @@ impl Past {
 pub struct Constellations {
     used: [Option<GpsTime>; SLOTS],
     excluded: [Option<GpsTime>; SLOTS],
+    latest_exclusion: Option<GpsTime>,
     offsets: [Past; CLOCKS],
     /// Time, the reference clock, and its drift since the epoch before.
     clock: Option<(GpsTime, f64, Option<f64>)>,
@@ -95,7 +96,7 @@ pub struct Constellations {
 
 impl Default for Constellations {
     fn default() -> Self {
-        Self { used: [None; SLOTS], excluded: [None; SLOTS], offsets: [Past::default(); CLOCKS], clock: None }
+        Self { used: [None; SLOTS], excluded: [None; SLOTS], latest_exclusion: None, offsets: [Past::default(); CLOCKS], clock: None }
     }
 }
 
@@ -124,13 +125,16 @@ impl Constellations {
 
     fn note(&mut self, time: GpsTime, fix: &Fix) {
         for (c, numbers) in fix.used.iter().enumerate() {
-            for number in (0..100).filter(|n| numbers >> n & 1 == 1) {
-                self.used[100 * c + number] = Some(time);
+            let mut rest = *numbers & ((1 << 100) - 1);
+            while rest != 0 {
+                self.used[100 * c + rest.trailing_zeros() as usize] = Some(time);
+                rest &= rest - 1;
             }
         }
         for satellite in fix.excluded.iter().flatten() {
             if let Some(slot) = self.excluded.get_mut(slot(*satellite)) {
                 *slot = Some(time);
+                self.latest_exclusion = Some(time);
             }
         }
     }
@@ -138,6 +142,9 @@ impl Constellations {
     /// Most of its satellites, and more than one, were excluded within the last minute.
     fn contradicts_itself(&self, constellation: usize, time: GpsTime) -> bool {
         let recent = |then: &Option<GpsTime>| then.is_some_and(|then| (0.0..=RECENT_S).contains(&time.seconds_since(then)));
+        if !recent(&self.latest_exclusion) {
+            return false;
+        }
         let of = 100 * constellation..100 * (constellation + 1);
         let (used, excluded) = (&self.used[of.clone()], &self.excluded[of]);
         let out = excluded.iter().filter(|t| recent(t)).count();

@@ -114,7 +114,7 @@ pub fn solve_readings(
     settled(ranges, time, settings, near, offsets, |epoch| {
         let fix = epoch.fix()?;
         epoch.used().for_each(each);
-        Ok((fix, epoch.mixture()))
+        Ok((fix, epoch.mixture(&fix)))
     })?
 }
 
@@ -136,7 +136,7 @@ fn settled<T>(
     let clock_of = offsets.clocks(ranges);
     if let Some(near) = near {
         let mut epoch = Solver::new(ranges, seen, time, settings, clock_of, *near.vector());
-        if epoch.settle(false) == Ok(true) && epoch.judge().consistent {
+        if epoch.settle(false) == Ok(true) && epoch.judged().consistent {
             return Ok(then(&epoch));
         }
         seen.fill(Seen::default());
@@ -165,9 +165,12 @@ struct Solver<'a> {
     normal: Normal,
     /// Statistic and redundancy before anything was excluded.
     before: Option<(f64, usize)>,
+    /// What the residuals of the last step say; `None` until they are asked.
+    judged: Option<Judgement>,
 }
 
 /// Whether residuals agree with the weights.
+#[derive(Debug, Clone, Copy)]
 struct Judgement {
     statistic: f64,
     redundancy: usize,
@@ -239,11 +242,12 @@ impl<'a> Solver<'a> {
         at: Vector3<f64>,
     ) -> Self {
         let (modelled_at, normal) = (Vector3::zeros(), Normal::default());
-        Self { ranges, seen, time, settings, at, modelled_at, clock_of, clocks: [0.0; CLOCKS], normal, before: None }
+        Self { ranges, seen, time, settings, at, modelled_at, clock_of, clocks: [0.0; CLOCKS], normal, before: None, judged: None }
     }
 
     /// Rounds of least squares until the position stands still, which is told; robust rounds weigh large residuals down.
     fn settle(&mut self, robust: bool) -> Result<bool, Unavailable> {
+        self.judged = None;
         for round in 0..ROUNDS {
             // The first robust round has no residuals to judge by yet.
             let turn = self.look(robust && round > 0)?;
@@ -303,6 +307,12 @@ impl<'a> Solver<'a> {
         Left { row: seen.row, common: seen.modelled.common, residual: seen.row.residual - self.clocks[seen.row.clock] }
     }
 
+    fn judged(&mut self) -> Judgement {
+        let judged = self.judged.unwrap_or_else(|| self.judge());
+        self.judged = Some(judged);
+        judged
+    }
+
     fn judge(&self) -> Judgement {
         let common = InSolution::new(&self.normal, self.left());
         let plain = || self.left().map(|r| r.row.weight * r.residual * r.residual).sum();
@@ -316,7 +326,7 @@ impl<'a> Solver<'a> {
     /// Exclude the worst range until the residuals agree with the weights or no more may go.
     fn exclude(&mut self) -> Result<(), Unavailable> {
         for _ in 0..self.settings.most_excluded {
-            let judged = self.judge();
+            let judged = self.judged();
             // With one redundant range a fault is seen but not found.
             if judged.consistent || judged.redundancy < 2 {
                 return Ok(());
@@ -336,7 +346,7 @@ impl<'a> Solver<'a> {
     }
 
     fn fix(&self) -> Result<Fix, Unavailable> {
-        let judged = self.judge();
+        let judged = self.judged.unwrap_or_else(|| self.judge());
         let position = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
         plausible::height(&position)?;
         let covariance = self.normal.covariance()?;

@@ -1,6 +1,6 @@
 //! What the ranges of a solved epoch say besides its position: their other readings, and how many of them check the others.
 
-use super::{CLOCKS, Seen, Solver};
+use super::{CLOCKS, Fix, Seen, Solver};
 use crate::solution::mixture::{COMMON, Mixture, Observed};
 use crate::special::float::sqrt;
 use nalgebra::{Matrix3, Vector3};
@@ -16,8 +16,8 @@ const OWN_SPARE: usize = 2;
 impl Solver<'_> {
     /// Covariance over all readings of the ranges, where the position's own cannot stand alone: the test failed, whether or not an
     /// exclusion mended that, or few ranges are to spare.
-    pub(super) fn mixture(&self) -> Option<Mixture> {
-        let (risk, spare) = (self.judge().risk, self.spare());
+    pub(super) fn mixture(&self, fix: &Fix) -> Option<Mixture> {
+        let (risk, spare) = (fix.residual_risk, fix.spare);
         let suspect = risk < SUSPECT && spare < MANY;
         if risk >= self.settings.false_alarm && self.before.is_none() && spare >= CONFIRMED && !suspect {
             return None;

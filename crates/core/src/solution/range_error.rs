@@ -60,7 +60,7 @@ impl RangeError {
     /// The default: calibrated, see `docs/methods/gnss-positions.md`.
     pub const CALIBRATED: Self = Self {
         name: "calibrated-2020",
-        ure_m: [0.7, 3.0, 0.2, 0.6, 5.0],
+        ure_m: [0.9, 3.0, 0.2, 0.6, 5.0],
         noise_m: [0.13, 0.8, 0.13, 0.13, 0.8],
         ionosphere_share: 0.06,
         ionosphere_floor_m: 0.05,
