@@ -42,7 +42,7 @@ def ecef(lat: Floats, lon: Floats, h: Floats) -> Floats:
     return np.stack([(n + h) * np.cos(lat) * np.cos(lon), (n + h) * np.cos(lat) * np.sin(lon), (n * (1 - e2) + h) * np.sin(lat)], axis=-1)
 
 
-# The stored peer's 95 % horizontal error, and an honest covariance: mean normalised squared error near 3.
+# The stored peer's 95 % horizontal error, and a covariance that covers: three would be exact; of a day, some ten ionospheres, 1 to 4.
 @pytest.mark.parametrize("systems", ["G", "GE", "GEC"])
 def test_a_station_day_is_as_accurate_as_the_peer_and_says_how_wrong_it_is(day: Day, systems: str) -> None:
     observations, navigation, baseline = day
@@ -54,7 +54,7 @@ def test_a_station_day_is_as_accurate_as_the_peer_and_says_how_wrong_it_is(day: 
     assert h95 <= baseline[systems]["h95_m"]
     assert float(np.quantile(np.abs(error[:, 2]), 0.95)) <= baseline[systems]["v95_m"]
     nees = evaluation.nees(error, covariances(epochs))
-    assert 2.0 < nees.nees_mean < 4.5
+    assert 1.0 < nees.nees_mean < 4.0
     # Satellites above the mask as the peer counts them; it drops a few for reasons of its own.
     assert abs(float(epochs["n_sv"].to_numpy().mean()) - baseline[systems]["mean_sats"]) < 0.15
 
@@ -124,8 +124,8 @@ def test_another_station_is_solved_without_having_been_calibrated_on(shared_data
     )
     assert found.epochs["status"].is_in(["ok", "degraded"]).all()
     nees = evaluation.nees(errors(found.epochs), covariances(found.epochs))
-    # Not calibrated on: between half and twice the honest 3.
-    assert 1.5 < nees.nees_mean < 6.0
+    # One hour: a share of the errors that last longer than it.
+    assert 1.0 < nees.nees_mean < 4.0
 
 
 # Used for no number of the weights: a receiver in the open, another hour of the sun's cycle (catalogue: surveyed).
@@ -137,8 +137,8 @@ def test_a_surveyed_receiver_is_no_further_off_than_the_peer(shared_data: Path) 
     found = gnss.solve(gnss.read_observations(folder / "rover.obs.gz"), gnss.read_navigation(folder / "base.nav"), truth_ecef_m=truth)
     error = errors(found.epochs)
     assert float(np.quantile(np.hypot(error[:, 0], error[:, 1]), 0.95)) <= baseline["h95_m"]
-    # Too small by a factor below two in sigma, as the methods page says.
-    assert evaluation.nees(error, covariances(found.epochs)).nees_mean < 4 * 3.0
+    # Five minutes are one ionosphere, whose errors are covered.
+    assert 0.3 < evaluation.nees(error, covariances(found.epochs)).nees_mean < 4.0
 
 
 # Nothing was set by this drive. Without the memory of surroundings, 268 epochs were "ok" with a mean of 777.
@@ -157,7 +157,7 @@ def test_a_street_is_degraded_and_its_covariance_can_be_believed(shared_data: Pa
     assert street["status"].to_list().count("ok") < 0.05 * street.height
     reasons = street["reason"].drop_nulls().str.contains("contradict|to spare")
     assert reasons.all()
-    # Half and twice the honest 3.
+    # Half and twice three.
     assert 1.5 < evaluation.nees(errors(street), covariances(street)).nees_mean < 6.0
 
 

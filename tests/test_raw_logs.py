@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 import navbound
 from navbound import FormatError, InputError, gnss, sbas
 from navbound.cli import app
+from navbound.methods import bounds
 from navbound.read import read
 
 NS = 1_000_000_000
@@ -136,6 +137,23 @@ def test_positions_solved_from_a_log_agree_with_the_receiver_s_own(u_blox: Path,
     assert table.height > 540
     # Two single-point solutions at low signal strengths; the receiver states 1.7 m (median hAcc) for its own, filtered one.
     assert float(np.median(np.hypot(north, east))) < 5.0
+
+
+# The log holds no message of the ionosphere that is read, and its antenna stands still: the median of the receiver's own positions, which it
+# states to 1.7 m, stands for the truth.
+def test_positions_without_a_message_of_the_ionosphere_are_degraded_and_cover_their_errors(u_blox: Path) -> None:
+    found = gnss.solve(gnss.read_observations(u_blox), gnss.read_navigation(u_blox), signals="auto")
+    table = found.epochs.drop_nulls("est_lat_rad")
+    assert table.height > 500
+    assert set(table["status"]) == {"degraded"}
+    assert "climatology, no message" in found.models["ionosphere"]
+    own = read(u_blox).epochs.select(pl.col("est_lat_rad", "est_lon_rad", "est_h_m").median()).row(0)
+    north = (table["est_lat_rad"].to_numpy() - own[0]) * 6.37e6
+    east = (table["est_lon_rad"].to_numpy() - own[1]) * 6.387e6 * np.cos(own[0])
+    up = table["est_h_m"].to_numpy() - own[2]
+    circle = bounds(table, "anp-circle", 0.05).bound_m
+    assert float((np.hypot(north, east) <= circle).mean()) >= 0.93
+    assert float((np.abs(up) <= 1.96 * np.sqrt(table["cov_uu_m2"].to_numpy())).mean()) >= 0.93
 
 
 def test_older_messages_carry_sbas_and_gps_dated_to_the_second(shared_data: Path, tmp_path: Path) -> None:

@@ -291,13 +291,14 @@ class Navigation:
     def records(self) -> dict[str, Any]: ...
 
 def unused_reasons() -> list[tuple[str, str]]: ...
+def ntcm_delay(level_sfu: float, place: tuple[float, float, float], sight: tuple[float, float], time_ns: int) -> float: ...
 def solve_positions(
     observations: Observations,
     navigation: Navigation,
     systems: str,
     *,
     dual: bool,
-    broadcast_ionosphere: bool,
+    ionosphere: str,
     mask_rad: float,
     false_alarm: float,
     most_excluded: int,

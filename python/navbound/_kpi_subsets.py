@@ -25,7 +25,7 @@ MOST_SATELLITES = 24
 """2^24 subsets of one epoch are seconds of work."""
 
 _FLOATS = ("az_rad", "el_rad", "sigma_m", "range_error_m")
-_SHARED = ("shared_1_m", "shared_2_m", "shared_3_m")
+_SHARED = ("shared_1_m", "shared_2_m", "shared_3_m", "shared_4_m")
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def stanford_esa(
     ranges : DataFrame or mapping of columns, a sequence of such, or a callable that gives them again
         One row a range; rows of one epoch stand together. ``time_ns`` [ns]; ``sv``, the satellite's name; ``az_rad``, ``el_rad`` [rad];
         ``sigma_m``, its standard deviation in the solution [m]; ``range_error_m``, measured less true range, of which what is common to
-        an epoch's rows counts as the receiver's clock [m]; optionally ``shared_1_m``, ``shared_2_m``, ``shared_3_m``, standard
+        an epoch's rows counts as the receiver's clock [m]; optionally ``shared_1_m`` to ``shared_4_m``, standard
         deviations of errors that all ranges share, signed [m]. Satellites of one constellation.
     levels : sequence of Level
         Whose limits divide the diagram.
@@ -191,7 +191,7 @@ def _columns(frame: pl.DataFrame) -> dict[str, Any]:
         columns: dict[str, Any] = {
             name: np.ascontiguousarray(frame[name].cast(pl.Float64).fill_null(np.nan).to_numpy()) for name in _FLOATS
         }
-        shared: NDArray[np.float64] = np.zeros((frame.height, 3))
+        shared: NDArray[np.float64] = np.zeros((frame.height, len(_SHARED)))
         for k, name in enumerate(_SHARED):
             if name in frame.columns:
                 shared[:, k] = frame[name].cast(pl.Float64).fill_null(np.nan).to_numpy()

@@ -16,6 +16,7 @@ import polars as pl
 from navbound import _core
 from navbound._arrays import flatten
 from navbound._constellations import CONSTELLATIONS, Orbits
+from navbound._signal_choice import smaller_covariance
 from navbound.errors import FormatError, InputError
 
 if TYPE_CHECKING:
@@ -30,6 +31,12 @@ SYSTEMS = {"G": "GPS", "E": "Galileo", "C": "BeiDou"}
 
 UNUSED: dict[str, str] = dict(_core.unused_reasons())
 """Why a satellite may not be in a solution: the id of tables, and its words."""
+
+SIGNALS = ("auto", "single", "dual")
+"""Which pseudoranges make a range."""
+
+IONOSPHERES = ("auto", "broadcast", "galileo", "climatology", "none")
+"""Models of the ionosphere that single pseudoranges can use."""
 
 
 @dataclass(frozen=True)
@@ -207,9 +214,10 @@ class Positions:
     models : dict of str to str
         Every model by name, for the record of a run.
     ranges : DataFrame, optional
-        The ranges of each position: ``time_ns``, ``sv``, ``az_rad``, ``el_rad``, ``sigma_m``, ``residual_m`` (measured less computed at
-        the position, receiver clock included), ``shared_1_m``, ``shared_2_m``, ``shared_3_m`` (errors that all ranges share: the size
-        of the ionosphere, its tilt east and north). Where it was asked for.
+        The ranges of each position: ``time_ns``, ``sv``, ``az_rad``, ``el_rad``, ``sigma_m`` (of the covariance in force: a failed
+        test and contradicting surroundings have widened it), ``residual_m`` (measured less computed at the position, receiver clock
+        included), ``shared_1_m`` to ``shared_4_m`` (errors that all ranges have in common: the vertical ionosphere, its gradient east and
+        north, the zenith troposphere). Where it was asked for.
     used : DataFrame, optional
         Ranges by satellite: ``sv``, ``signals`` (``E1-E5a``), ``message`` whose orbit and clock were used, ``n_ranges``; those below the
         mask and those excluded afterwards are among them.
@@ -308,8 +316,8 @@ def solve(
     navigation: Navigation,
     *,
     systems: str = "GEC",
-    signals: Literal["single", "dual"] = "single",
-    ionosphere: Literal["broadcast", "none"] = "broadcast",
+    signals: Literal["auto", "single", "dual"] = "single",
+    ionosphere: Literal["auto", "broadcast", "galileo", "climatology", "none"] = "auto",
     mask_rad: float = float(np.radians(10.0)),
     false_alarm: float = 1e-4,
     most_excluded: int = 6,
@@ -332,11 +340,14 @@ def solve(
         From :func:`read_navigation`.
     systems : str, optional
         Letters of :data:`SYSTEMS`.
-    signals : {"single", "dual"}, optional
+    signals : {"auto", "single", "dual"}, optional
         L1, E1, B1I; or ionosphere-free pairs: L1-L2; E1-E5a or E1-E5b, B1I-B3I or B1I-B2I, whichever the file and its broadcast messages
-        serve more often, the same for all satellites of a constellation (docs/methods/gnss-positions.md).
-    ionosphere : {"broadcast", "none"}, optional
-        Model of single pseudoranges; pairs need none.
+        serve more often, the same for all satellites of a constellation (docs/methods/gnss-positions.md); or of both solutions the one whose
+        declared covariance is the smaller over the whole file.
+    ionosphere : {"auto", "broadcast", "galileo", "climatology", "none"}, optional
+        Model of single pseudoranges; pairs need none. ``broadcast``: the GPS message. ``galileo``: NTCM-G by Galileo's message.
+        ``climatology``: NTCM-G at the long-run mean of solar activity. ``none``: no correction; its whole size is error. ``auto`` is the
+        first of the first three that the navigation files have within two days of the observations.
     mask_rad : float, optional
         Lowest elevation. [rad]
     false_alarm : float, optional
@@ -365,7 +376,10 @@ def solve(
     -------
     Positions
         ``status`` is ``degraded`` where the residuals contradict the weights, where the ranges of the past minute do (several satellites
-        excluded), or where none can be spared; ``not_available`` where there is no position.
+        excluded), where an exclusion cannot be confirmed or a fault could not be seen (the covariance then holds every reading of the
+        ranges), where no range checks the others, and where no message describes the ionosphere; ``not_available`` where there is no
+        position, or one that cannot be true: a height outside -1 to 100 km, a position dilution above 30, a jump
+        (docs/methods/gnss-exclusion.md).
 
     Raises
     ------
@@ -374,36 +388,59 @@ def solve(
     """
     if not systems or any(s not in SYSTEMS for s in systems):
         raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
-    if signals not in {"single", "dual"}:
-        raise InputError("signals", signals, domain="single, dual")
-    if ionosphere not in {"broadcast", "none"}:
-        raise InputError("ionosphere", ionosphere, domain="broadcast, none")
-    if signals == "single" and ionosphere == "broadcast" and not navigation.has_ionosphere:
-        raise InputError("ionosphere", "broadcast", domain="none, dual signals, or a navigation file with the ionosphere of GPS")
+    if signals not in SIGNALS:
+        raise InputError("signals", signals, domain=", ".join(SIGNALS))
+    if ionosphere not in IONOSPHERES:
+        raise InputError("ionosphere", ionosphere, domain=", ".join(IONOSPHERES))
     if most_excluded < 0:
         raise InputError("most_excluded", most_excluded, "1", "[0, inf)")
     if smoothing not in {"hatch", "divergence-free"}:
         raise InputError("smoothing", smoothing, domain="hatch, divergence-free")
-    found = _core.solve_positions(
-        observations._core,
-        navigation._core,
-        systems,
-        dual=signals == "dual",
-        broadcast_ionosphere=ionosphere == "broadcast",
-        mask_rad=mask_rad,
-        false_alarm=false_alarm,
-        most_excluded=most_excluded,
-        range_factor=range_factor,
-        shared_factor=shared_factor,
-        precise=None if orbits is None else orbits._core,
-        smoothing_s=smoothing_s,
-        divergence_free=smoothing == "divergence-free",
-        keep_ranges=keep_ranges,
-    )
+    if signals == "auto":
+        return smaller_covariance(
+            lambda kind: solve(
+                observations,
+                navigation,
+                systems=systems,
+                signals=kind,  # type: ignore[arg-type]
+                ionosphere=ionosphere,
+                mask_rad=mask_rad,
+                false_alarm=false_alarm,
+                most_excluded=most_excluded,
+                range_factor=range_factor,
+                shared_factor=shared_factor,
+                orbits=orbits,
+                smoothing_s=smoothing_s,
+                smoothing=smoothing,
+                truth_ecef_m=truth_ecef_m,
+                track=track,
+                keep_ranges=keep_ranges,
+            )
+        )
+    try:
+        found = _core.solve_positions(
+            observations._core,
+            navigation._core,
+            systems,
+            dual=signals == "dual",
+            ionosphere=ionosphere,
+            mask_rad=mask_rad,
+            false_alarm=false_alarm,
+            most_excluded=most_excluded,
+            range_factor=range_factor,
+            shared_factor=shared_factor,
+            precise=None if orbits is None else orbits._core,
+            smoothing_s=smoothing_s,
+            divergence_free=smoothing == "divergence-free",
+            keep_ranges=keep_ranges,
+        )
+    except LookupError as e:
+        domain = "auto, climatology, none, dual signals, or navigation files with that message within two days of the observations"
+        raise InputError("ionosphere", ionosphere, domain=domain) from e
     kept = found.pop("ranges")
     used = used_satellites(found.pop("used"))
     unused, codes, weights = found.pop("unused"), found.pop("codes"), found.pop("weights")
-    share = found.pop("smoothed_share")
+    share, model = found.pop("smoothed_share"), found.pop("ionosphere")
     name = track or observations.marker or observations.path.name
     columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **found}
     epochs = pl.DataFrame(columns).with_columns(pl.when(pl.col("reason") != "").then(pl.col("reason")).alias("reason"))
@@ -415,13 +452,23 @@ def solve(
         "orbits and clocks": _orbit_words(orbits),
         "signals": signal_words(used),
         "smoothing": "none" if smoothing_s is None else f"{smoothing}, {smoothing_s:g} s; {100 * share:.1f} % of the pseudoranges",
-        "ionosphere": "ionosphere-free pairs" if signals == "dual" else {"broadcast": "Klobuchar, GPS message", "none": "none"}[ionosphere],
+        "ionosphere": "ionosphere-free pairs" if signals == "dual" else _ionosphere_words(*model),
         "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",
         "weights": weights if weights != "scaled" else f"calibrated-2020 times {range_factor:g} (ranges), {shared_factor:g} (shared)",
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
     }
     ranges = None if kept is None else _with_times(kept, observations.time_ns)
     return Positions(epochs, unused, codes, models, ranges, used)
+
+
+def _ionosphere_words(name: str, activity_sfu: float) -> str:
+    """A model of the ionosphere as run records state it."""
+    return {
+        "broadcast": "Klobuchar, GPS message",
+        "galileo": f"NTCM-G, Galileo message, effective ionisation level {activity_sfu:.0f} sfu",
+        "climatology": f"climatology, no message: NTCM-G at {activity_sfu:.0f} +- 70 sfu; heights can be wrong by metres",
+        "none": "none; its whole size counts as error",
+    }[name]
 
 
 def _with_times(kept: dict[str, Any], time_ns: NDArray[np.int64]) -> pl.DataFrame:

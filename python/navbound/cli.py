@@ -123,6 +123,23 @@ def analyze(
     solve: Annotated[
         bool, typer.Option("--solve", help="Solve positions from the raw measurements of receiver logs instead of taking the receiver's.")
     ] = False,
+    signals: Annotated[
+        str | None,
+        typer.Option(
+            help="Measurements to solve: single (L1, E1, B1I), dual (ionosphere-free pairs), or auto, the smaller declared covariance. "
+            "[default: auto; with --levels single]"
+        ),
+    ] = None,
+    systems: Annotated[
+        str | None, typer.Option(help="Constellations to solve from: letters of GEC. [default: GEC; with --levels G]")
+    ] = None,
+    ionosphere: Annotated[
+        str | None,
+        typer.Option(
+            help="Model of single signals: broadcast (GPS message), galileo (NTCM-G by Galileo's message), climatology, none, or auto, the "
+            "first of these that the navigation files have. [default: auto]"
+        ),
+    ] = None,
     protection: Annotated[
         str | None,
         typer.Option(help="With --levels: protection levels of observations from given (the files), raim, araim or araim-horizontal."),
@@ -154,6 +171,9 @@ def analyze(
                 stanford_esa=subsets,
                 experimental=experimental,
                 solve=solve,
+                signals=signals,
+                systems=systems,
+                ionosphere=ionosphere,
                 protection=protection or "given",
                 out=out,
                 progress=progress,
@@ -173,6 +193,9 @@ def analyze(
         sigma_m=sigma_m,
         columns=_mapping(column or []),
         solve=solve,
+        signals=signals,
+        systems=systems,
+        ionosphere=ionosphere,
         settings=_settings(methods),
         out=out,
         command=command_line(),

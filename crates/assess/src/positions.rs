@@ -5,14 +5,17 @@ use crate::receivers::signals::Plan;
 pub use crate::receivers::signals::Signals;
 use crate::smoothing::{self, Form, Smoothed};
 use navbound_core::bound::araim::ranging::Beyond;
-use navbound_core::frame::{Covariance, ecef_from_geodetic};
+use navbound_core::frame::{EcefPosition, ecef_from_geodetic};
+use navbound_core::geometry::ionosphere::Ionosphere;
 use navbound_core::quantity::{GpsTime, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Constellation, SatelliteId};
-use navbound_core::solution::Surroundings;
-use navbound_core::solution::point::{self, Fix, Range, Settings, Used};
+use navbound_core::solution::constellations::{Constellations, Treatment};
+use navbound_core::solution::declared::{Declarations, Doubt};
+use navbound_core::solution::mixture::Mixture;
+use navbound_core::solution::point::{self, Fix, Offsets, Range, Settings, Used};
 use navbound_formats::precise::Precise;
-use navbound_formats::rinex::{Navigation, Observations};
+use navbound_formats::rinex::{Dated, Navigation, Observations};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -20,6 +23,40 @@ use std::collections::BTreeMap;
 /// so results depend on this number (by less than 2 mm) and not on the number of threads.
 const EPOCHS_PER_TASK: usize = 32;
 const SYSTEMS: usize = Constellation::ALL.len();
+
+/// Which model of the ionosphere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// The best that the files have: the GPS message, else Galileo's, else climatology.
+    Auto,
+    /// The GPS message.
+    Broadcast,
+    /// NTCM-G by Galileo's message.
+    Galileo,
+    /// NTCM-G at the long-run mean of solar activity.
+    Climatology,
+    /// None.
+    Uncorrected,
+}
+
+/// A message of the ionosphere describes days no further from it than this \[s\]: it is renewed once in six days at the least
+/// (IS-GPS-200 20.3.3.5.2.5, standard; two days are ours).
+const MESSAGE_LASTS_S: f64 = 2.0 * 86_400.0;
+
+impl Model {
+    /// The ionosphere at a time by the messages of a file; `None` where a message is wanted by name and none is near.
+    pub fn of(self, navigation: &Navigation, time: GpsTime) -> Option<Ionosphere> {
+        let broadcast = || Dated::nearest(&navigation.ionosphere_gps, time, MESSAGE_LASTS_S).and_then(Ionosphere::broadcast);
+        let galileo = || Dated::nearest(&navigation.ionosphere_galileo, time, MESSAGE_LASTS_S).and_then(Ionosphere::galileo);
+        match self {
+            Self::Auto => broadcast().or_else(galileo).or(Some(Ionosphere::Climatology)),
+            Self::Broadcast => broadcast(),
+            Self::Galileo => galileo(),
+            Self::Climatology => Some(Ionosphere::Climatology),
+            Self::Uncorrected => Some(Ionosphere::Uncorrected),
+        }
+    }
+}
 
 /// What to solve.
 #[derive(Debug, Clone)]
@@ -39,10 +76,12 @@ pub struct Job {
 /// What came of a day, or an hour.
 #[derive(Debug, Clone, Default)]
 pub struct Positions {
-    /// One outcome an epoch. Where surroundings contradict the weights the covariance is widened by what that says.
+    /// One outcome an epoch, with the covariance that is declared; what cannot be a position is none.
     pub fixes: Vec<Result<Fix, Unavailable>>,
-    /// Whether they do, by epoch.
-    pub contradicted: Vec<bool>,
+    /// What each position is doubted for, or refused for.
+    pub doubts: Vec<Option<Doubt>>,
+    /// Single frequencies were used and no message describes the ionosphere.
+    pub undescribed: bool,
     /// The ranges of each position, where they are kept; weights and shared errors widened as the covariance is.
     pub ranges: Vec<Vec<(SatelliteId, Used)>>,
     /// Satellite-epochs of the wanted constellations that were used, and that were not.
@@ -61,48 +100,140 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
     let plans = plans(observations, &records, &job.systems, job.signals);
     let smoothed = smoothed(observations, &plans, job);
     let source = Source { observations, smoothed: smoothed.as_ref(), records: &records, plans: &plans };
+    let solver = Solver { source: &source, job };
     let epochs: Vec<usize> = (0..observations.n_epochs()).collect();
     let task = |epochs: &[usize]| {
         let (mut ranges, mut beyond, mut last, mut tally) = (Vec::new(), Vec::new(), None, Tally::default());
-        let (mut fixes, mut kept) = (Vec::with_capacity(epochs.len()), Vec::new());
-        for epoch in epochs {
+        let solve = |epoch: &usize| {
             source.collect(*epoch, &mut ranges, &mut beyond, &mut tally);
-            let time = observations.time[*epoch];
-            let fix = if job.keep_ranges {
-                let mut used = Vec::with_capacity(ranges.len());
-                let tell = |u: Used| used.push((ranges[u.index].satellite, u));
-                let fix = point::solve_telling(&ranges, time, &job.settings, last.as_ref(), tell);
-                kept.push(used);
-                fix
-            } else {
-                point::solve_near(&ranges, time, &job.settings, last.as_ref())
-            };
-            let n_low = fix.as_ref().map_or(0, |f| ranges.len().saturating_sub(f.n_used + f.n_excluded));
+            let solved = solver.solve(*epoch, &ranges, last.as_ref(), &Offsets::default());
+            let n_low = solved.fix.as_ref().map_or(0, |f| ranges.len().saturating_sub(f.n_used + f.n_excluded));
             tally.leave(Unused::BelowMask, n_low);
-            last = fix.as_ref().ok().map(|f: &Fix| ecef_from_geodetic(&f.position)).or(last);
-            fixes.push(fix);
-        }
-        (fixes, kept, tally)
+            last = solved.fix.as_ref().ok().map(|f: &Fix| ecef_from_geodetic(&f.position)).or(last);
+            solved
+        };
+        (epochs.iter().map(solve).collect::<Vec<_>>(), tally)
     };
     let outcomes: Vec<_> = epochs.par_chunks(EPOCHS_PER_TASK).map(task).collect();
     let smoothed_share = smoothed.as_ref().map(Smoothed::share);
-    let mut found = Positions { codes: codes(&plans, observations), signals: names(&plans), smoothed_share, ..Positions::default() };
-    for (fixes, kept, tally) in outcomes {
-        found.fixes.extend(fixes);
-        found.ranges.extend(kept);
+    let undescribed = job.signals == Signals::Single && !job.settings.ionosphere.is_described();
+    let (codes, signals) = (codes(&plans, observations), names(&plans));
+    let mut found = Positions { codes, signals, smoothed_share, undescribed, ..Positions::default() };
+    let mut solved = Vec::with_capacity(epochs.len());
+    for (part, tally) in outcomes {
+        solved.extend(part);
         found.tally.add(&tally);
     }
-    // The ranges are widened by all that their position was: by its own residuals, and by its surroundings.
-    let own: Vec<f64> = found.fixes.iter().map(|f| f.as_ref().map_or(1.0, |f| f.inflation)).collect();
-    found.contradicted = widen(&observations.time, &mut found.fixes);
-    for ((used, fix), own) in found.ranges.iter_mut().zip(&found.fixes).zip(own) {
+    found.tally.leave(Unused::ConstellationLeftOut, solver.treat(&mut solved));
+    declare(&observations.time, solved, job.keep_ranges, &mut found);
+    found
+}
+
+/// What came of one epoch's ranges by themselves.
+struct Solved {
+    fix: Result<Fix, Unavailable>,
+    /// Its other readings, where the position cannot stand alone.
+    mixture: Option<Box<Mixture>>,
+    kept: Vec<(SatelliteId, Used)>,
+}
+
+impl Solved {
+    /// Whether offsets of clocks from the past are of use.
+    fn few(&self) -> bool {
+        self.fix.as_ref().map_or(true, |f| f.spare < FEW)
+    }
+}
+
+/// All that an epoch is solved from.
+#[derive(Clone, Copy)]
+struct Solver<'a> {
+    source: &'a Source<'a>,
+    job: &'a Job,
+}
+
+impl Solver<'_> {
+    fn solve(&self, epoch: usize, ranges: &[Range], near: Option<&EcefPosition>, offsets: &Offsets) -> Solved {
+        let mut kept = Vec::new();
+        let keep = |u: Used| {
+            if self.job.keep_ranges {
+                kept.push((ranges[u.index].satellite, u));
+            }
+        };
+        let solved = point::solve_readings(ranges, self.source.observations.time[epoch], &self.job.settings, near, offsets, keep);
+        match solved {
+            Ok((fix, mixture)) => Solved { fix: Ok(fix), mixture: mixture.map(Box::new), kept },
+            Err(why) => Solved { fix: Err(why), mixture: None, kept },
+        }
+    }
+
+    /// Solve again the epochs with a constellation that does not fit, without it, and those with few ranges to spare, with the offsets of
+    /// clocks that the past predicts. Constellations are followed through the file in its order; the solutions are independent.
+    fn treat(&self, solved: &mut [Solved]) -> usize {
+        let mut constellations = Constellations::default();
+        let follow = |(epoch, s): (usize, &Solved)| (epoch, constellations.follow(self.source.observations.time[epoch], s.fix.as_ref().ok()));
+        let treatments: Vec<(usize, Treatment)> = solved
+            .iter()
+            .enumerate()
+            .map(follow)
+            .filter(|(epoch, t)| t.leaves_out() || t.offsets.several() && solved[*epoch].few())
+            .collect();
+        let again = |(epoch, treatment): &(usize, Treatment)| self.again(*epoch, treatment, &solved[*epoch]);
+        let treated: Vec<Option<(usize, Solved)>> = treatments.par_iter().map(again).collect();
+        let mut left_out = 0;
+        for ((epoch, _), treated) in treatments.iter().zip(treated) {
+            if let Some((n, better)) = treated {
+                left_out += n;
+                solved[*epoch] = better;
+            }
+        }
+        left_out
+    }
+
+    /// An epoch with its constellations treated, and how many satellites that left out; none where that leaves no position that its ranges
+    /// check, or where nothing is left out and nothing is predicted of what the epoch holds.
+    fn again(&self, epoch: usize, treatment: &Treatment, before: &Solved) -> Option<(usize, Solved)> {
+        let mut ranges = Vec::new();
+        // What cannot be used was counted before.
+        self.source.collect(epoch, &mut ranges, &mut Vec::new(), &mut Tally::default());
+        let all = ranges.len();
+        ranges.retain(|r| !treatment.without[r.satellite.constellation.index()]);
+        let near = before.fix.as_ref().ok().map(|f| ecef_from_geodetic(&f.position));
+        let without = (ranges.len() < all).then(|| self.solve(epoch, &ranges, near.as_ref(), &Offsets::default()));
+        let tied = without.as_ref().unwrap_or(before).few() && treatment.offsets.tie(&ranges);
+        let solved = if tied { self.solve(epoch, &ranges, near.as_ref(), &treatment.offsets) } else { without? };
+        let checked = solved.fix.as_ref().is_ok_and(|f| f.spare >= 1);
+        (checked || before.fix.is_err()).then_some((all - ranges.len(), solved))
+    }
+}
+
+/// With fewer ranges to spare the offsets of clocks are taken from the past.
+const FEW: usize = 3;
+
+/// Statuses and covariances, which the receiver's past has a part in, through the file in its order.
+fn declare(times: &[GpsTime], solved: Vec<Solved>, keep: bool, found: &mut Positions) {
+    let mut declarations = Declarations::default();
+    for (time, Solved { fix, mixture, mut kept }) in times.iter().zip(solved) {
+        let own = fix.as_ref().map_or(1.0, |f| f.inflation);
+        let (fix, doubt) = match fix {
+            Ok(mut fix) => {
+                let doubt = declarations.declare(*time, &mut fix, mixture.as_deref());
+                let doubt = doubt.or(found.undescribed.then_some(Doubt::IonosphereUndescribed));
+                (doubt.and_then(|d| d.refusal(&fix)).map_or(Ok(fix), Err), doubt)
+            }
+            Err(why) => (Err(why), Doubt::of(&why)),
+        };
+        // The ranges are widened by all that their position was: by its own residuals, and by its surroundings.
         let whole = fix.as_ref().map_or(1.0, |f| f.inflation);
-        for (_, u) in used {
+        for (_, u) in &mut kept {
             u.weight /= whole;
             u.shared_m *= (whole / own).sqrt();
         }
+        if keep {
+            found.ranges.push(if fix.is_ok() { kept } else { Vec::new() });
+        }
+        found.fixes.push(fix);
+        found.doubts.push(doubt);
     }
-    found
 }
 
 /// What a monitor made of a receiver's epochs.
@@ -161,21 +292,6 @@ fn smoothed(observations: &Observations, plans: &[Option<Plan>; SYSTEMS], job: &
 /// Signals of each constellation.
 fn names(plans: &[Option<Plan>; SYSTEMS]) -> BTreeMap<char, &'static str> {
     Constellation::ALL.into_iter().filter_map(|c| Some((c.letter(), plans[c.index()].as_ref()?.choice.name))).collect()
-}
-
-/// Covariances by the surroundings of each epoch's past minute, which are followed through the file in its order.
-fn widen(times: &[GpsTime], fixes: &mut [Result<Fix, Unavailable>]) -> Vec<bool> {
-    let mut surroundings = Surroundings::default();
-    let follow = |(time, fix): (&GpsTime, &mut Result<Fix, Unavailable>)| {
-        let Ok(fix) = fix else { return false };
-        let Some(factor) = surroundings.judge(*time, fix) else { return false };
-        if factor > fix.inflation {
-            fix.covariance = Covariance::claim_symmetric(fix.covariance.matrix() * (factor / fix.inflation));
-            fix.inflation = factor;
-        }
-        true
-    };
-    times.iter().zip(fixes).map(follow).collect()
 }
 
 pub(crate) fn earlier(time: GpsTime, seconds: f64) -> GpsTime {

@@ -14,6 +14,7 @@ use navbound_core::bound::araim::service::{Service, Support, SupportMessage};
 use navbound_core::bound::araim::single::Requirement;
 use navbound_core::frame::{Geodetic, LatLon};
 use navbound_core::geometry::Elements;
+use navbound_core::geometry::ionosphere::Ionosphere;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
 use navbound_core::signal::Constellation;
 use navbound_core::signal::smoothing::Smoothing;
@@ -244,7 +245,7 @@ fn araim_monitor<'py>(
 pub(crate) fn unmonitored(navigation: &Navigation, systems: &str, dual: bool, mask_rad: f64, smoothing_s: Option<f64>) -> Job {
     let settings = Settings {
         mask: Radians::new(mask_rad),
-        ionosphere: navigation.records.klobuchar_gps.filter(|_| !dual),
+        ionosphere: navigation.records.klobuchar_gps.and_then(Ionosphere::broadcast).unwrap_or(Ionosphere::Climatology),
         errors: RangeError::CALIBRATED,
         false_alarm: Risk::ACCURACY.q(),
         most_excluded: 0,

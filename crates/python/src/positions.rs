@@ -2,21 +2,25 @@
 
 use crate::error::{format_error, input_error};
 use crate::orbits::PreciseOrbits;
-use navbound_assess::positions::{Job, Positions, Signals, positions};
+use navbound_assess::positions::{Job, Model, Positions, Signals, positions};
 use navbound_assess::receivers::ranges::{Tally, Unused};
 use navbound_assess::smoothing::Form;
-use navbound_core::frame::{self, EcefPosition};
+use navbound_core::frame::{self, EcefPosition, Geodetic, LatLon};
 use navbound_core::geometry::broadcast::mean_elements;
-use navbound_core::quantity::{GpsTime, OutOfDomain, Radians};
+use navbound_core::geometry::ionosphere::{Ionosphere, MEAN_ACTIVITY_SFU};
+use navbound_core::geometry::{Direction, ntcm};
+use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Klobuchar};
 use navbound_core::solution::RangeError;
+use navbound_core::solution::declared::Doubt;
 use navbound_core::solution::point::{Fix, Settings, Used};
 use navbound_formats::Refusal;
 use navbound_formats::packed::unpack;
 use navbound_formats::receiver;
 use navbound_formats::rinex::{self, Code};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::exceptions::{PyLookupError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
@@ -260,7 +264,7 @@ impl Navigation {
 
 /// Positions of every epoch as columns of the epoch table, with counts of what was not used.
 #[pyfunction]
-#[pyo3(signature = (observations, navigation, systems, *, dual, broadcast_ionosphere, mask_rad, false_alarm, most_excluded, range_factor, shared_factor, precise, smoothing_s, divergence_free, keep_ranges))]
+#[pyo3(signature = (observations, navigation, systems, *, dual, ionosphere, mask_rad, false_alarm, most_excluded, range_factor, shared_factor, precise, smoothing_s, divergence_free, keep_ranges))]
 #[expect(clippy::too_many_arguments, reason = "one setting each, named by the caller")]
 fn solve_positions<'py>(
     py: Python<'py>,
@@ -268,7 +272,7 @@ fn solve_positions<'py>(
     navigation: &Navigation,
     systems: &str,
     dual: bool,
-    broadcast_ionosphere: bool,
+    ionosphere: &str,
     mask_rad: f64,
     false_alarm: f64,
     most_excluded: usize,
@@ -287,13 +291,8 @@ fn solve_positions<'py>(
     within("range_factor", range_factor, "1", "(0, inf)", range_factor > 0.0 && range_factor.is_finite())?;
     within("shared_factor", shared_factor, "1", "[0, inf)", shared_factor >= 0.0 && shared_factor.is_finite())?;
     let errors = weights(precise).scaled(range_factor, shared_factor);
-    let settings = Settings {
-        mask: Radians::new(mask_rad),
-        ionosphere: navigation.records.klobuchar_gps.filter(|_| broadcast_ionosphere),
-        errors,
-        false_alarm,
-        most_excluded,
-    };
+    let model = ionosphere_model(ionosphere, observations, navigation)?;
+    let settings = Settings { mask: Radians::new(mask_rad), ionosphere: model, errors, false_alarm, most_excluded };
     let job = Job {
         systems: systems.bytes().filter_map(Constellation::from_letter).collect(),
         signals: if dual { Signals::Dual } else { Signals::Single },
@@ -304,8 +303,34 @@ fn solve_positions<'py>(
     let found = py.detach(|| positions(&observations.0, &navigation.records, precise.map(PreciseOrbits::tables), &job));
     let d = table(py, &found, errors.name)?;
     d.set_item("smoothed_share", found.smoothed_share)?;
+    d.set_item("ionosphere", model_name(&model))?;
     d.set_item("ranges", if keep_ranges { Some(kept_ranges(py, &found)?) } else { None })?;
     Ok(d)
+}
+
+/// The model by its name, at the middle of the observations.
+fn ionosphere_model(name: &str, observations: &Observations, navigation: &Navigation) -> PyResult<Ionosphere> {
+    let wanted = match name {
+        "auto" => Model::Auto,
+        "broadcast" => Model::Broadcast,
+        "galileo" => Model::Galileo,
+        "climatology" => Model::Climatology,
+        "none" => Model::Uncorrected,
+        _ => return Err(PyValueError::new_err(format!("ionosphere: {name}"))),
+    };
+    let middle = observations.0.time.get(observations.0.n_epochs() / 2).copied().unwrap_or_default();
+    let none = || PyLookupError::new_err(format!("no message of the ionosphere: {name}"));
+    wanted.of(&navigation.records, middle).ok_or_else(none)
+}
+
+/// Name of a model, and the solar activity that it counts on \[sfu\].
+fn model_name(model: &Ionosphere) -> (&'static str, f64) {
+    match model {
+        Ionosphere::Broadcast { .. } => ("broadcast", f64::NAN),
+        Ionosphere::Ntcm { level_sfu } => ("galileo", *level_sfu),
+        Ionosphere::Climatology => ("climatology", MEAN_ACTIVITY_SFU),
+        Ionosphere::Uncorrected => ("none", MEAN_ACTIVITY_SFU),
+    }
 }
 
 /// The ranges of every position, one row each: index of the epoch, and what the range was.
@@ -322,6 +347,7 @@ fn kept_ranges<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, P
     d.set_item("shared_1_m", column(|u| u.shared_m.x))?;
     d.set_item("shared_2_m", column(|u| u.shared_m.y))?;
     d.set_item("shared_3_m", column(|u| u.shared_m.z))?;
+    d.set_item("shared_4_m", column(|u| u.shared_m.w))?;
     Ok(d)
 }
 
@@ -364,19 +390,17 @@ fn table<'py>(py: Python<'py>, found: &Positions, weights: &str) -> PyResult<Bou
     d.set_item("n_sv", count(|f| f.n_used).into_pyarray(py))?;
     d.set_item("n_excluded", count(|f| f.n_excluded).into_pyarray(py))?;
     d.set_item("n_redundant", count(|f| f.redundancy).into_pyarray(py))?;
-    let status = |(f, contradicted): (&Result<Fix, _>, &bool)| match f {
-        Ok(fix) if fix.consistent && !contradicted => "ok",
-        Ok(_) => "degraded",
-        Err(_) => "not_available",
+    let status = |(f, doubt): (&Result<Fix, _>, &Option<Doubt>)| match (f, doubt) {
+        (Ok(_), None) => "ok",
+        (Ok(_), Some(_)) => "degraded",
+        (Err(_), _) => "not_available",
     };
-    let outcomes = || found.fixes.iter().zip(&found.contradicted);
+    let outcomes = || found.fixes.iter().zip(&found.doubts);
     d.set_item("status", outcomes().map(status).collect::<Vec<_>>())?;
-    let reason = |(f, contradicted): (&Result<Fix, navbound_core::quantity::Unavailable>, &bool)| match f {
-        Ok(fix) if fix.redundancy > 0 && !fix.consistent => "the residuals contradict the weights".to_owned(),
-        Ok(_) if *contradicted => "the ranges of the last minute contradict the weights: reflections or obstruction".to_owned(),
-        Ok(fix) if fix.redundancy == 0 => "no satellite to spare: the residuals cannot be tested".to_owned(),
-        Ok(_) => String::new(),
-        Err(why) => why.to_string(),
+    let reason = |(f, doubt): (&Result<Fix, Unavailable>, &Option<Doubt>)| match (doubt, f) {
+        (Some(doubt), _) => doubt.words().to_owned(),
+        (None, Ok(_)) => String::new(),
+        (None, Err(why)) => why.to_string(),
     };
     d.set_item("reason", outcomes().map(reason).collect::<Vec<_>>())?;
     satellites(&d, &found.tally, &found.signals)?;
@@ -423,11 +447,22 @@ fn geodetic_from_ecef<'py>(py: Python<'py>, ecef_m: PyReadonlyArray2<'py, f64>) 
     rows.as_flattened().to_vec().into_pyarray(py).reshape([rows.len(), 3])
 }
 
+/// Delay on L1 by NTCM-G \[m\]: effective ionisation level \[sfu\], receiver \[rad, rad, m\], azimuth and elevation \[rad\], GPS time \[ns\].
+#[pyfunction]
+fn ntcm_delay(level_sfu: f64, place: (f64, f64, f64), sight: (f64, f64), time_ns: i64) -> PyResult<f64> {
+    let refuse = |e| input_error(e, None);
+    let point = LatLon::new(Radians::new(place.0), Radians::new(place.1)).map_err(refuse)?;
+    let direction = Direction::new(Radians::new(sight.0), Radians::new(sight.1)).map_err(refuse)?;
+    let receiver = Geodetic { point, height: Metres::new(place.2) };
+    Ok(ntcm::delay(level_sfu, &receiver, &direction, GpsTime::from_nanoseconds(time_ns)).m())
+}
+
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Observations>()?;
     m.add_class::<Navigation>()?;
     m.add_function(wrap_pyfunction!(raw_log, m)?)?;
     m.add_function(wrap_pyfunction!(geodetic_from_ecef, m)?)?;
     m.add_function(wrap_pyfunction!(unused_reasons, m)?)?;
+    m.add_function(wrap_pyfunction!(ntcm_delay, m)?)?;
     m.add_function(wrap_pyfunction!(solve_positions, m)?)
 }

@@ -43,7 +43,7 @@ impl Ranges<'_> {
     fn rows(&self) -> PyResult<Vec<RangeInError>> {
         let (az, el) = (self.az_rad.as_slice()?, self.el_rad.as_slice()?);
         let (sigma, error) = (self.sigma_m.as_slice()?, self.range_error_m.as_slice()?);
-        let shared = self.shared_m.as_slice()?.as_chunks::<3>().0;
+        let shared = self.shared_m.as_slice()?.as_chunks::<4>().0;
         if [el.len(), sigma.len(), error.len(), shared.len()].iter().any(|n| *n != az.len()) {
             return Err(PyValueError::new_err("columns of different lengths"));
         }
@@ -52,7 +52,7 @@ impl Ranges<'_> {
 }
 
 /// Row `i`, its angles azimuth and elevation.
-fn range(i: usize, [az, el]: [f64; 2], sigma: f64, error: f64, shared: [f64; 3]) -> PyResult<RangeInError> {
+fn range(i: usize, [az, el]: [f64; 2], sigma: f64, error: f64, shared: [f64; 4]) -> PyResult<RangeInError> {
     let wrong = |argument, value, domain| Err(input_error(OutOfDomain { argument, value, unit: "m", domain }, Some(i)));
     let direction = Direction::new(Radians::new(az), Radians::new(el)).map_err(|e| input_error(e, Some(i)))?;
     if !(sigma > 0.0 && sigma.is_finite()) {

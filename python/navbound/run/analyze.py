@@ -21,6 +21,7 @@ from navbound.run.files import sort_out
 from navbound.run.material import Material
 from navbound.run.records import CovarianceOrigin, Rejection, Waypoint
 from navbound.run.solved import solved
+from navbound.run.solving import Solving
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -43,6 +44,9 @@ def material(
     gates: Gates | None = None,
     limits: Limits | None = None,
     solve: bool = False,
+    signals: str | None = None,
+    systems: str | None = None,
+    ionosphere: str | None = None,
 ) -> Material:
     """Make recorded tracks ready to be judged.
 
@@ -71,6 +75,8 @@ def material(
     solve : bool
         Solve positions from the raw measurements of receivers' logs, with the orbits in their subframes and in navigation files, instead
         of taking the receivers' own.
+    signals, systems, ionosphere : str, optional
+        How measurements are solved, see :func:`navbound.gnss.solve`; ``auto``, ``GEC`` and ``auto`` where they are not named.
 
     Raises
     ------
@@ -87,7 +93,10 @@ def material(
         raise InputError("files", "nothing", domain="one file or more")
     found = sort_out(names, solve=solve)
     found.require_navigation()
-    readings = [read(source.path, columns=columns) for source in found.tables] + (solved(found) if found.observations else [])
+    solving = Solving(signals, systems, ionosphere)
+    if not found.observations:
+        solving.refuse("it together with measurements to solve: RINEX observations, or --solve with a receiver's log")
+    readings = [read(source.path, columns=columns) for source in found.tables] + (solved(found, solving) if found.observations else [])
     _refuse_experimental(readings)
     inputs = [r.source for r in readings] + [source.record(None) for source in found.navigation if source not in found.observations]
     rejected = [x for r in readings for x in r.rejected]
@@ -134,6 +143,7 @@ def material(
             "gates": asdict(gates),
             "limits": asdict(limits),
             "solve": solve,
+            "solving": solving.named,
         },
     )
 

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
@@ -15,6 +15,7 @@ from navbound import gnss, sbas
 from navbound.errors import FormatError, InputError
 from navbound.read.epochs import read
 from navbound.read.truth import join, with_error
+from navbound.run.solving import Solving
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -226,7 +227,7 @@ class Service:
         return near if self._prn is None else near.of(self._prn)
 
 
-def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges: bool = False) -> Part:
+def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges: bool = False, solving: Solving | None = None) -> Part:
     """Solve a receiver's positions: with the service's corrections and levels, or without messages with the levels of their own covariance.
 
     Raises
@@ -243,11 +244,8 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     if service.has_messages:
         epochs, notes = _corrected(observations, service, truth)
     else:
-        records = service.navigation
-        ionosphere: Literal["broadcast", "none"] = "broadcast" if records.has_ionosphere else "none"
-        positions = gnss.solve(
-            observations, records, systems="G", ionosphere=ionosphere, truth_ecef_m=truth.ecef_m, keep_ranges=keep_ranges
-        )
+        how = {"signals": "single", "systems": "G", "truth_ecef_m": truth.ecef_m, "keep_ranges": keep_ranges}
+        positions = (solving or Solving()).solve(observations, service.navigation, **how)
         epochs, notes = positions.epochs, [OWN, *(f"{name}: {words}" for name, words in positions.models.items())]
         ranges = positions.ranges
     if truth.given is not None and truth.ecef_m is None:

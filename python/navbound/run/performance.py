@@ -25,6 +25,7 @@ from navbound.run.levels_of_monitor import GIVEN, monitor_of
 from navbound.run.performance_parts import Stored, finished_parts, ranges_of_parts, tables_of
 from navbound.run.performance_words import levels_verdict, performance_words
 from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
+from navbound.run.solving import Solving
 from navbound.run.summarise import honesty_of
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import of_level
@@ -73,6 +74,8 @@ class Options:
     protection : str
         What protection levels of observations come from: ``given`` (the files), ``raim``, ``araim`` (LPV-200 budgets) or
         ``araim-horizontal``.
+    signals, systems, ionosphere : str, optional
+        How measurements without a service are solved, see :func:`navbound.gnss.solve`; ``single``, ``G`` and ``auto`` where not named.
     """
 
     levels: Sequence[str | kpi.Level]
@@ -86,6 +89,14 @@ class Options:
     experimental: str = ""
     solve: bool = False
     protection: str = GIVEN
+    signals: str | None = None
+    systems: str | None = None
+    ionosphere: str | None = None
+
+    @property
+    def solving(self) -> Solving:
+        """How measurements are solved."""
+        return Solving(self.signals, self.systems, self.ionosphere)
 
 
 def evaluate_files(
@@ -130,6 +141,8 @@ def evaluate_files(
     if monitor_of(options.protection) is not None and options.stanford_esa is not None:
         raise InputError("protection", options.protection, domain="it without subsets of satellites, which are solved without monitoring")
     sources = sort_out(names, solve=options.solve)
+    if not sources.observations or sources.messages or monitor_of(options.protection) is not None:
+        options.solving.refuse("it together with observations that neither a service nor a monitor on board solves")
     sources.require_navigation()
     if options.stanford_esa is not None and (sources.tables or sources.messages):
         raise InputError(

@@ -79,6 +79,7 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
         options.solve,
         options.protection,
         _needs(options),
+        options.solving.named,
     ]
     beside = sorted(s.sha256 for s in sources.navigation + sources.messages)
     return json.dumps([given, options.stanford_esa is not None, SCHEMA.names(), beside])
@@ -90,7 +91,7 @@ def _compute(source: Source, sources: Files, options: Options, truth: Truth, ser
     monitor = monitor_of(options.protection)
     if monitor is not None:
         return from_monitor(source.path, service.navigation, truth, monitor)
-    return from_observations(source.path, service, truth, keep_ranges=options.stanford_esa is not None)
+    return from_observations(source.path, service, truth, keep_ranges=options.stanford_esa is not None, solving=options.solving)
 
 
 def _needs(options: Options) -> list[str]:

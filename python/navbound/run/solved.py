@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import polars as pl
 
@@ -11,13 +11,14 @@ from navbound._receivers import unused_words
 from navbound.errors import FormatError
 from navbound.read.epochs import Reading
 from navbound.run.records import Rejection
+from navbound.run.solving import Solving
 
 if TYPE_CHECKING:
     from navbound.read.source import Source
     from navbound.run.files import Files
 
 
-def solved(files: Files) -> list[Reading]:
+def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
     """Solve every file of measurements with the orbits and clocks of all.
 
     Raises
@@ -26,13 +27,12 @@ def solved(files: Files) -> list[Reading]:
         A file that cannot be read, or in which no position can be solved.
     """
     navigation = gnss.read_navigation([source.path for source in files.navigation])
-    return [_reading(source, navigation) for source in files.observations]
+    return [_reading(source, navigation, solving or Solving()) for source in files.observations]
 
 
-def _reading(source: Source, navigation: gnss.Navigation) -> Reading:
+def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> Reading:
     observations = gnss.read_observations(source.path)
-    ionosphere: Literal["broadcast", "none"] = "broadcast" if navigation.has_ionosphere else "none"
-    found = gnss.solve(observations, navigation, ionosphere=ionosphere, track=source.stem)
+    found = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem)
     known = found.epochs.filter(pl.col("est_lat_rad").is_not_null()).unique("time_ns", keep="first", maintain_order=True).sort("time_ns")
     if known.is_empty():
         raise FormatError(source.path, f"no position could be solved; satellites not used: {unused_words(found.unused)}")

@@ -213,7 +213,7 @@ mod tests {
                 unit: [level * turn.sin(), level * turn.cos(), up].into(),
                 weight: 1.0,
                 error: Metres::new(if i.is_multiple_of(2) { error_m } else { -error_m }),
-                shared_m: [0.0; 3].into(),
+                shared_m: [0.0; 4].into(),
             }
         };
         (0..n).map(one).collect()

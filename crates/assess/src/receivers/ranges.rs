@@ -43,11 +43,13 @@ pub enum Unused {
     NotTabulated,
     /// Too low.
     BelowMask,
+    /// Its constellation contradicts itself or the others.
+    ConstellationLeftOut,
 }
 
 impl Unused {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::NoFirstRange,
         Self::NoSecondRange,
         Self::NoRecord,
@@ -58,6 +60,7 @@ impl Unused {
         Self::NoOrbit,
         Self::NotTabulated,
         Self::BelowMask,
+        Self::ConstellationLeftOut,
     ];
 
     /// The name in tables.
@@ -73,6 +76,7 @@ impl Unused {
             Self::NoOrbit => "no_orbit",
             Self::NotTabulated => "not_tabulated",
             Self::BelowMask => "below_mask",
+            Self::ConstellationLeftOut => "constellation_left_out",
         }
     }
 
@@ -89,6 +93,7 @@ impl Unused {
             Self::NoOrbit => "the broadcast record describes no orbit",
             Self::NotTabulated => "no precise orbit or clock around this time",
             Self::BelowMask => "below the elevation mask",
+            Self::ConstellationLeftOut => "its constellation was left out: it contradicts itself or the others",
         }
     }
 }

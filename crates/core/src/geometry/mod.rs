@@ -2,7 +2,9 @@
 
 pub mod atmosphere;
 pub mod broadcast;
+pub mod ionosphere;
 mod nominal;
+pub mod ntcm;
 mod orbit;
 pub mod precise;
 pub(crate) mod seasonal;

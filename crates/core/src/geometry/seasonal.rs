@@ -82,7 +82,7 @@ fn weather(lat_rad: f64, day: f64) -> Weather {
 }
 
 /// Day of the year, from 1. GPS time began on the 6th of January of a leap year, and every fourth year until 2100 is one.
-fn day_of_year(time: GpsTime) -> f64 {
+pub(super) fn day_of_year(time: GpsTime) -> f64 {
     let days = time.nanoseconds().div_euclid(DAY_NS) + 5;
     let in_cycle = days.rem_euclid(1461);
     let day = if in_cycle < 366 { in_cycle } else { (in_cycle - 366) % 365 };

@@ -4,23 +4,34 @@
 //! weights (Huber 1964); test of the residuals by chi-square and exclusion of the largest (Parkinson and Axelrad 1988); provenance: ours,
 //! of standard parts.
 
+use super::common::{InSolution, Left, Sizes, pierce};
+use super::mixture::Mixture;
+use super::plausible;
 use super::range_error::RangeConditions;
 use super::wls::{Dilution, Normal, Row};
 use crate::frame::{Covariance, EcefPosition, Geodetic, enu_from_ecef, geodetic_from_ecef};
-use crate::geometry::atmosphere::{klobuchar_towards, mapping_of, zenith_delay};
+use crate::geometry::atmosphere::{mapping_of, zenith_delay};
 use crate::geometry::broadcast::in_axes_of_reception;
+use crate::geometry::ionosphere::Overhead;
 use crate::quantity::{GpsTime, Metres, Unavailable};
 use crate::signal::{Constellation, SPEED_OF_LIGHT_MPS};
-use crate::special::float::{asin, sin, sqrt};
+use crate::special::float::{sin, sqrt};
 use crate::special::gamma::chi_square_tail;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector4};
 
+#[path = "point_offsets.rs"]
+mod offsets;
+#[path = "point_readings.rs"]
+mod readings;
 #[path = "point_records.rs"]
 mod records;
 #[path = "point_residuals.rs"]
 mod residuals;
 #[path = "point_velocity.rs"]
 mod velocity;
+use offsets::Clock;
+pub use offsets::{Offset, Offsets};
+pub(in crate::solution) use readings::CONFIRMED;
 pub use records::{Fix, Range, Settings, Used};
 pub use residuals::{Sighted, sighted};
 
@@ -43,18 +54,29 @@ const HUBER: f64 = 1.345;
 #[derive(Debug, Clone, Copy, Default)]
 struct Seen {
     row: Row,
-    delay: f64,
-    /// The ionospheric part of the delay.
-    ionosphere: f64,
-    /// Weight by the error model; 0 below the mask.
-    weight: f64,
+    modelled: Modelled,
     excluded: bool,
 }
 
 impl Seen {
     const fn counts(&self) -> bool {
-        self.weight > 0.0 && !self.excluded
+        self.weighs() && !self.excluded
     }
+    /// Above the mask, whether or not it was excluded.
+    const fn weighs(&self) -> bool {
+        self.modelled.weight > 0.0
+    }
+}
+
+/// What the error model says of a range.
+#[derive(Debug, Clone, Copy, Default)]
+struct Modelled {
+    /// Atmospheric delay.
+    delay: f64,
+    /// 1 / variance; 0 below the mask.
+    weight: f64,
+    /// What each error that all ranges have in common does to it, one standard deviation each.
+    common: Vector4<f64>,
 }
 
 /// The position of one epoch, from nothing but its ranges.
@@ -73,24 +95,26 @@ pub fn solve(ranges: &[Range], time: GpsTime, settings: &Settings) -> Result<Fix
 /// # Errors
 /// As [`solve`].
 pub fn solve_near(ranges: &[Range], time: GpsTime, settings: &Settings, near: Option<&EcefPosition>) -> Result<Fix, Unavailable> {
-    settled(ranges, time, settings, near, |epoch| epoch.fix())?
+    settled(ranges, time, settings, near, &Offsets::default(), |epoch| epoch.fix())?
 }
 
-/// The same, and each range of the solution is told.
+/// The same with the offsets of constellations' clocks that are known, each range of the solution for `each`, and the other readings of the
+/// ranges where the position cannot stand alone.
 ///
 /// # Errors
 /// As [`solve`].
-pub fn solve_telling(
+pub fn solve_readings(
     ranges: &[Range],
     time: GpsTime,
     settings: &Settings,
     near: Option<&EcefPosition>,
-    tell: impl FnMut(Used),
-) -> Result<Fix, Unavailable> {
-    settled(ranges, time, settings, near, |epoch| {
+    offsets: &Offsets,
+    each: impl FnMut(Used),
+) -> Result<(Fix, Option<Mixture>), Unavailable> {
+    settled(ranges, time, settings, near, offsets, |epoch| {
         let fix = epoch.fix()?;
-        epoch.used().for_each(tell);
-        Ok(fix)
+        epoch.used().for_each(each);
+        Ok((fix, epoch.mixture(&fix)))
     })?
 }
 
@@ -100,6 +124,7 @@ fn settled<T>(
     time: GpsTime,
     settings: &Settings,
     near: Option<&EcefPosition>,
+    offsets: &Offsets,
     then: impl FnOnce(&Solver<'_>) -> T,
 ) -> Result<T, Unavailable> {
     if ranges.len() > MOST_RANGES {
@@ -108,14 +133,15 @@ fn settled<T>(
     }
     let mut seen = [Seen::default(); MOST_RANGES];
     let seen = &mut seen[..ranges.len()];
+    let clock_of = offsets.clocks(ranges);
     if let Some(near) = near {
-        let mut epoch = Solver::new(ranges, seen, time, settings, *near.vector());
-        if epoch.settle(false) == Ok(true) && epoch.judge().consistent {
+        let mut epoch = Solver::new(ranges, seen, time, settings, clock_of, *near.vector());
+        if epoch.settle(false) == Ok(true) && epoch.judged().consistent {
             return Ok(then(&epoch));
         }
         seen.fill(Seen::default());
     }
-    let mut epoch = Solver::new(ranges, seen, time, settings, start(ranges)?);
+    let mut epoch = Solver::new(ranges, seen, time, settings, clock_of, start(ranges, &clock_of)?);
     epoch.settle(true)?;
     epoch.settle(false)?;
     epoch.exclude()?;
@@ -132,45 +158,61 @@ struct Solver<'a> {
     at: Vector3<f64>,
     /// Where delays and weights were computed; the Earth's centre before they are.
     modelled_at: Vector3<f64>,
+    /// Which clock each constellation has.
+    clock_of: [Clock; CLOCKS],
     clocks: [f64; CLOCKS],
     /// The equation of the last step.
     normal: Normal,
     /// Statistic and redundancy before anything was excluded.
     before: Option<(f64, usize)>,
+    /// What the residuals of the last step say; `None` until they are asked.
+    judged: Option<Judgement>,
 }
 
 /// Whether residuals agree with the weights.
+#[derive(Debug, Clone, Copy)]
 struct Judgement {
     statistic: f64,
     redundancy: usize,
     /// Risk of a larger statistic; NaN without redundancy.
     risk: f64,
     consistent: bool,
+    /// The common errors in the solution; `None` where it is singular.
+    common: Option<InSolution>,
 }
 
 /// Where the receiver is thought to be, with what all ranges share there.
 struct Place {
-    here: Geodetic,
     zenith: f64,
     sin_mask: f64,
-    time: GpsTime,
+    over: Overhead,
+    sizes: Sizes,
+}
+
+impl Place {
+    fn new(here: &Geodetic, time: GpsTime, settings: &Settings) -> Self {
+        let over = settings.ionosphere.over(here, time);
+        let sizes = settings.errors.common.sizes(&over);
+        Self { zenith: zenith_delay(here), sin_mask: sin(settings.mask.rad()), over, sizes }
+    }
 }
 
 /// A first position from nothing: equal weights, no atmosphere, from the Earth's centre. A few rounds bring it within kilometres,
 /// gross errors in the ranges apart.
-fn start(ranges: &[Range]) -> Result<Vector3<f64>, Unavailable> {
-    start_from(ranges.iter().map(|r| (&r.position, r.corrected, r.satellite.constellation)))
+fn start(ranges: &[Range], clock_of: &[Clock; CLOCKS]) -> Result<Vector3<f64>, Unavailable> {
+    start_from(ranges.iter().map(|r| {
+        let clock = &clock_of[r.satellite.constellation.index()];
+        (&r.position, Metres::new(r.corrected.m() - clock.offset_m), clock.index)
+    }))
 }
 
 /// The same from satellites' positions, ranges with the satellite's clock taken out, and whose time they count in.
-pub(crate) fn start_from<'a>(
-    ranges: impl Iterator<Item = (&'a EcefPosition, Metres, Constellation)> + Clone,
-) -> Result<Vector3<f64>, Unavailable> {
+pub(crate) fn start_from<'a>(ranges: impl Iterator<Item = (&'a EcefPosition, Metres, usize)> + Clone) -> Result<Vector3<f64>, Unavailable> {
     let mut at = Vector3::zeros();
     for _ in 0..ROUNDS {
-        let rows = ranges.clone().map(|(satellite, corrected, constellation)| {
+        let rows = ranges.clone().map(|(satellite, corrected, clock)| {
             let (way, unit) = way(satellite, &at);
-            Row { unit, weight: 1.0, clock: constellation.index(), residual: corrected.m() - way }
+            Row { unit, weight: 1.0, clock, residual: corrected.m() - way }
         });
         let normal = Normal::new(rows)?;
         let step = normal.step().ok_or(SINGULAR)?;
@@ -191,13 +233,21 @@ pub(crate) fn way(satellite: &EcefPosition, at: &Vector3<f64>) -> (f64, Vector3<
 }
 
 impl<'a> Solver<'a> {
-    fn new(ranges: &'a [Range], seen: &'a mut [Seen], time: GpsTime, settings: &'a Settings, at: Vector3<f64>) -> Self {
-        let normal = Normal::default();
-        Self { ranges, seen, time, settings, at, modelled_at: Vector3::zeros(), clocks: [0.0; CLOCKS], normal, before: None }
+    fn new(
+        ranges: &'a [Range],
+        seen: &'a mut [Seen],
+        time: GpsTime,
+        settings: &'a Settings,
+        clock_of: [Clock; CLOCKS],
+        at: Vector3<f64>,
+    ) -> Self {
+        let (modelled_at, normal) = (Vector3::zeros(), Normal::default());
+        Self { ranges, seen, time, settings, at, modelled_at, clock_of, clocks: [0.0; CLOCKS], normal, before: None, judged: None }
     }
 
     /// Rounds of least squares until the position stands still, which is told; robust rounds weigh large residuals down.
     fn settle(&mut self, robust: bool) -> Result<bool, Unavailable> {
+        self.judged = None;
         for round in 0..ROUNDS {
             // The first robust round has no residuals to judge by yet.
             let turn = self.look(robust && round > 0)?;
@@ -225,10 +275,8 @@ impl<'a> Solver<'a> {
     fn look(&mut self, robust: bool) -> Result<Matrix3<f64>, Unavailable> {
         let here = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
         let turn = enu_from_ecef(&here.point);
-        let place = ((self.at - self.modelled_at).norm() > DELAYS_MOVE).then(|| {
-            let (zenith, sin_mask) = (zenith_delay(&here), sin(self.settings.mask.rad()));
-            Place { here, zenith, sin_mask, time: self.time }
-        });
+        let moved = (self.at - self.modelled_at).norm() > DELAYS_MOVE;
+        let place = moved.then(|| Place::new(&here, self.time, self.settings));
         if place.is_some() {
             self.modelled_at = self.at;
         }
@@ -236,11 +284,11 @@ impl<'a> Solver<'a> {
             let (way, unit) = way(&range.position, &self.at);
             let unit = turn * unit;
             if let Some(place) = &place {
-                (seen.ionosphere, seen.delay, seen.weight) = self.settings.delay_and_weight(range, &unit, place);
+                seen.modelled = self.settings.model(range, &unit, place);
             }
-            let clock = range.satellite.constellation.index();
-            let residual = range.corrected.m() - way - seen.delay;
-            let mut weight = seen.weight;
+            let Clock { index: clock, offset_m, sigma_m } = self.clock_of[range.satellite.constellation.index()];
+            let residual = range.corrected.m() - way - seen.modelled.delay - offset_m;
+            let mut weight = seen.modelled.weight / (1.0 + sigma_m * sigma_m * seen.modelled.weight);
             if robust {
                 let normalised = (residual - self.clocks[clock]).abs() * sqrt(weight);
                 weight *= if normalised > HUBER { HUBER / normalised } else { 1.0 };
@@ -250,30 +298,40 @@ impl<'a> Solver<'a> {
         Ok(turn)
     }
 
-    /// Weighted square of a residual after its clock.
-    fn square(&self, seen: &Seen) -> f64 {
-        let residual = seen.row.residual - self.clocks[seen.row.clock];
-        residual * residual * seen.weight
+    /// The ranges of the solution with what it leaves of them.
+    fn left(&self) -> impl Iterator<Item = Left> + Clone + '_ {
+        self.seen.iter().filter(|s| s.counts()).map(|s| self.left_of(s))
+    }
+
+    fn left_of(&self, seen: &Seen) -> Left {
+        Left { row: seen.row, common: seen.modelled.common, residual: seen.row.residual - self.clocks[seen.row.clock] }
+    }
+
+    fn judged(&mut self) -> Judgement {
+        let judged = self.judged.unwrap_or_else(|| self.judge());
+        self.judged = Some(judged);
+        judged
     }
 
     fn judge(&self) -> Judgement {
-        let used = self.seen.iter().filter(|s| s.counts());
-        let statistic = used.clone().map(|s| self.square(s)).sum();
+        let common = InSolution::new(&self.normal, self.left());
+        let plain = || self.left().map(|r| r.row.weight * r.residual * r.residual).sum();
+        let statistic = common.as_ref().map_or_else(plain, |c| c.statistic);
         // The normal equation was refused unless there are as many ranges as unknowns.
-        let redundancy = used.count().saturating_sub(3 + self.normal.clocks());
+        let redundancy = self.left().count().saturating_sub(3 + self.normal.clocks());
         let risk = if redundancy > 0 { chi_square_tail(redundancy as f64, statistic) } else { f64::NAN };
-        Judgement { statistic, redundancy, risk, consistent: risk >= self.settings.false_alarm }
+        Judgement { statistic, redundancy, risk, consistent: risk >= self.settings.false_alarm, common }
     }
 
     /// Exclude the worst range until the residuals agree with the weights or no more may go.
     fn exclude(&mut self) -> Result<(), Unavailable> {
         for _ in 0..self.settings.most_excluded {
-            let judged = self.judge();
+            let judged = self.judged();
             // With one redundant range a fault is seen but not found.
             if judged.consistent || judged.redundancy < 2 {
                 return Ok(());
             }
-            let Some(worst) = self.worst() else { return Ok(()) };
+            let Some(worst) = judged.common.as_ref().and_then(|c| self.worst(c)) else { return Ok(()) };
             self.before = self.before.or(Some((judged.statistic, judged.redundancy)));
             self.seen[worst].excluded = true;
             self.settle(false)?;
@@ -281,34 +339,29 @@ impl<'a> Solver<'a> {
         Ok(())
     }
 
-    /// The range without which the statistic falls most: by w v^2 / (1 - leverage), exactly.
-    fn worst(&self) -> Option<usize> {
-        let inverse = self.normal.inverse()?;
-        let fall = |k: usize| {
-            let seen = &self.seen[k];
-            let rest = 1.0 - self.normal.leverage(&inverse, &seen.row);
-            // A range that nothing else checks leaves no residual to judge it by.
-            if rest > 1e-6 { self.square(seen) / rest } else { 0.0 }
-        };
+    /// The range without which the statistic falls most.
+    fn worst(&self, common: &InSolution) -> Option<usize> {
+        let fall = |k: usize| common.fall(&self.normal, &self.left_of(&self.seen[k]));
         (0..self.seen.len()).filter(|k| self.seen[*k].counts()).max_by(|a, b| fall(*a).total_cmp(&fall(*b)))
     }
 
     fn fix(&self) -> Result<Fix, Unavailable> {
-        let judged = self.judge();
+        let judged = self.judged.unwrap_or_else(|| self.judge());
         let position = geodetic_from_ecef(&EcefPosition::from_vector(self.at)).map_err(Unavailable::from)?;
-        if !(position.height.m() > -50_000.0 && position.height.m() < 1e8) {
-            let (value, unit, domain) = (position.height.m(), "m", "(-5e4, 1e8)");
-            return Err(Unavailable::Invalid { field: "est_h_m", value, unit, domain });
-        }
+        plausible::height(&position)?;
         let covariance = self.normal.covariance()?;
+        let common = judged.common.as_ref().ok_or(SINGULAR)?.covariance() + self.offset_covariance(covariance.matrix());
         // Residuals larger than the weights say: the weights are wrong by that much at least.
         let contradicted = !judged.consistent && judged.redundancy > 0;
         let inflation = if contradicted { (judged.statistic / judged.redundancy as f64).max(1.0) } else { 1.0 };
         // The condition was judged with the weights; it is not judged twice.
         let unit_weights = Normal::new(self.rows().map(|r| Row { weight: 1.0, ..r }))?.inverse().ok_or(SINGULAR)?;
+        let dilution = Dilution::of(&Covariance::claim_symmetric(unit_weights));
+        plausible::dilution(&dilution)?;
         let mut clock_m = [f64::NAN; CLOCKS];
-        for s in self.seen.iter().filter(|s| s.counts()) {
-            clock_m[s.row.clock] = self.clocks[s.row.clock];
+        for (range, seen) in self.used_ranges() {
+            let constellation = range.satellite.constellation.index();
+            clock_m[constellation] = self.clocks[seen.row.clock] + self.clock_of[constellation].offset_m;
         }
         let mut excluded = [None; EXCLUDED_NAMED];
         let all = self.ranges.iter().zip(self.seen.iter()).filter(|(_, s)| s.excluded);
@@ -317,9 +370,12 @@ impl<'a> Solver<'a> {
         }
         Ok(Fix {
             position,
-            covariance: Covariance::claim_symmetric(covariance.matrix() * inflation + self.shared(covariance.matrix())),
-            dilution: Dilution::of(&Covariance::claim_symmetric(unit_weights)),
+            covariance: Covariance::claim_symmetric(covariance.matrix() * inflation + common),
+            dilution,
             clock_m,
+            offset_variance_m2: self.offset_variances(covariance.matrix()),
+            used: self.satellites(),
+            spare: self.spare(),
             velocity: self.velocity(&position),
             n_used: self.seen.iter().filter(|s| s.counts()).count(),
             n_excluded: self.seen.iter().filter(|s| s.excluded).count(),
@@ -332,65 +388,47 @@ impl<'a> Solver<'a> {
         })
     }
 
-    /// Covariance of what the ionosphere's error has in common: a factor of all modelled delays, and a tilt from horizon to horizon in
-    /// two directions; each is what such range errors do to the position. `inverse` is that of the normal equation.
-    fn shared(&self, inverse: &Matrix3<f64>) -> Matrix3<f64> {
-        let used = self.seen.iter().filter(|s| s.counts());
-        let moved = inverse * self.normal.sides(used.map(|s| (s.row, self.shape(s))));
-        moved * moved.transpose()
-    }
-
-    /// The shared errors' sizes in a range: the same over the whole sky, or growing eastwards, or northwards.
-    fn shape(&self, s: &Seen) -> Vector3<f64> {
-        let errors = &self.settings.errors;
-        let (common, tilt) = (errors.ionosphere_common_share, errors.ionosphere_gradient_share);
-        s.ionosphere * Vector3::new(common, tilt * s.row.unit.x, tilt * s.row.unit.y)
-    }
-
     fn used(&self) -> impl Iterator<Item = Used> + '_ {
         let of = |(index, s): (usize, &Seen)| Used {
             index,
             unit: s.row.unit,
-            weight: s.weight,
+            weight: s.modelled.weight,
             residual: Metres::new(s.row.residual),
-            shared_m: self.shape(s),
+            shared_m: s.modelled.common,
         };
         self.seen.iter().enumerate().filter(|(_, s)| s.counts()).map(of)
     }
 }
 
 impl Settings {
-    /// Ionospheric delay of a range, its whole atmospheric delay, and its weight; weight 0 below the mask.
-    fn delay_and_weight(&self, range: &Range, unit: &Vector3<f64>, at: &Place) -> (f64, f64, f64) {
+    /// Delay, weight and common errors of a range seen along a unit vector; weight 0 below the mask.
+    fn model(&self, range: &Range, unit: &Vector3<f64>, at: &Place) -> Modelled {
         let sin_elevation = unit.z;
         if !(sin_elevation >= at.sin_mask) {
-            return (0.0, 0.0, 0.0);
+            return Modelled::default();
         }
-        let ionosphere = self.ionosphere.map_or(0.0, |model| {
-            let level = sqrt(unit.x * unit.x + unit.y * unit.y);
-            // Overhead every azimuth is as good.
-            let azimuth = if level > 0.0 { (unit.x / level, unit.y / level) } else { (0.0, 1.0) };
-            klobuchar_towards(&model, &at.here, asin(sin_elevation.min(1.0)), azimuth, at.time).m() * range.ionosphere_factor
-        });
+        // An ionosphere-free pair asks no model.
+        let ionosphere = if range.ionosphere_factor > 0.0 { at.over.delay(unit) * range.ionosphere_factor } else { 0.0 };
         let mapping = mapping_of(sin_elevation);
+        let (obliquity, pierced) = pierce(unit);
+        let slant = range.ionosphere_factor * obliquity;
         let conditions = RangeConditions {
             constellation: range.satellite.constellation.index(),
             sin_elevation,
             ionosphere_m: ionosphere,
-            ionosphere_mapping: range.ionosphere_factor * thin_shell(sin_elevation),
+            ionosphere_mapping: slant,
+            uneven_m: at.sizes.uneven_m,
             troposphere_mapping: mapping,
             cn0_dbhz: range.cn0_dbhz,
             noise_factor: range.noise_factor,
             ure_factor: range.ure_factor,
         };
-        (ionosphere, ionosphere + at.zenith * mapping, 1.0 / self.errors.variance(&conditions))
+        Modelled {
+            delay: ionosphere + at.zenith * mapping,
+            weight: 1.0 / self.errors.variance(&conditions),
+            common: at.sizes.column(slant, pierced, mapping),
+        }
     }
-}
-
-/// Obliquity of the ionosphere as a shell 350 km up: 1 / sqrt(1 - (R cos E / (R + h))²), DO-229 A.4.4.10.4.
-fn thin_shell(sin_elevation: f64) -> f64 {
-    const RATIO: f64 = 6378.1363 / (6378.1363 + 350.0);
-    1.0 / sqrt(1.0 - RATIO * RATIO * (1.0 - sin_elevation * sin_elevation))
 }
 
 #[cfg(test)]

@@ -2,11 +2,12 @@
 
 use super::EXCLUDED_NAMED;
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic};
+use crate::geometry::ionosphere::Ionosphere;
 use crate::quantity::{Metres, Radians};
-use crate::signal::{Constellation, Klobuchar, SatelliteId};
+use crate::signal::{Constellation, SatelliteId};
 use crate::solution::range_error::RangeError;
 use crate::solution::wls::Dilution;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector4};
 
 /// A pseudorange of one satellite, ready but for what depends on the receiver's position.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,8 +37,8 @@ pub struct Range {
 pub struct Settings {
     /// Lowest elevation.
     pub mask: Radians,
-    /// Broadcast ionosphere; `None` leaves the delay in the ranges.
-    pub ionosphere: Option<Klobuchar>,
+    /// What corrects the ionosphere of single frequencies.
+    pub ionosphere: Ionosphere,
     /// Weights.
     pub errors: RangeError,
     /// Risk of a false alarm of the residual test.
@@ -57,6 +58,14 @@ pub struct Fix {
     pub dilution: Dilution,
     /// Receiver clock against each constellation's time \[m\], NaN where none of its satellites is used.
     pub clock_m: [f64; Constellation::ALL.len()],
+    /// Variance of each clock against the first that is used, by the weights; 0 for itself and for clocks that none of its ranges
+    /// determine \[m²\].
+    pub offset_variance_m2: [f64; Constellation::ALL.len()],
+    /// Satellites used, by constellation: the bit of each number.
+    pub used: [u128; Constellation::ALL.len()],
+    /// Ranges beyond the unknowns without those of constellations whose clock rests on fewer than two spare ranges of its own: as many as
+    /// check the position.
+    pub spare: usize,
     /// Velocity, east, north, up \[m/s\], and its covariance \[m²/s²\], where Doppler allows.
     pub velocity: Option<(Vector3<f64>, Matrix3<f64>)>,
     /// Satellites used.
@@ -88,6 +97,7 @@ pub struct Used {
     pub weight: f64,
     /// Measured less computed range at the position found; what the receiver's clock makes of it is in it.
     pub residual: Metres,
-    /// Standard deviations here of the errors that all ranges share: of the ionosphere's size, of its tilt east and north \[m\].
-    pub shared_m: Vector3<f64>,
+    /// Standard deviations here of the errors that all ranges have in common: the vertical ionosphere, its gradient east and north, the
+    /// zenith troposphere \[m\].
+    pub shared_m: Vector4<f64>,
 }

@@ -1,11 +1,9 @@
 //! Ranges as a given position sees them: lines of sight and residuals, for monitors that solve again in many ways.
 
-use super::{Place, Range, Settings, way};
+use super::{Modelled, Place, Range, Settings, way};
 use crate::frame::Geodetic;
 use crate::frame::{EcefPosition, ecef_from_geodetic, enu_from_ecef};
-use crate::geometry::atmosphere::zenith_delay;
 use crate::quantity::{GpsTime, Metres};
-use crate::special::float::sin;
 use nalgebra::Vector3;
 
 /// A range seen from a position.
@@ -23,11 +21,11 @@ pub struct Sighted {
 pub fn sighted<'a>(ranges: &'a [Range], time: GpsTime, settings: &'a Settings, here: &Geodetic) -> impl Iterator<Item = Sighted> + 'a {
     let at: EcefPosition = ecef_from_geodetic(here);
     let turn = enu_from_ecef(&here.point);
-    let place = Place { here: *here, zenith: zenith_delay(here), sin_mask: sin(settings.mask.rad()), time };
+    let place = Place::new(here, time, settings);
     ranges.iter().enumerate().filter_map(move |(index, range)| {
         let (length, unit) = way(&range.position, at.vector());
         let unit = turn * unit;
-        let (_, delay, weight) = settings.delay_and_weight(range, &unit, &place);
+        let Modelled { delay, weight, .. } = settings.model(range, &unit, &place);
         let residual = range.corrected.m() - length - delay;
         (weight > 0.0).then_some(Sighted { index, unit, residual: Metres::new(residual) })
     })

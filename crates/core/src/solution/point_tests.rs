@@ -1,6 +1,7 @@
 use super::*;
 use crate::frame::{LatLon, ecef_from_geodetic};
 use crate::geometry::atmosphere::saastamoinen;
+use crate::geometry::ionosphere::Ionosphere;
 use crate::geometry::{GPS, Observer, Orbit};
 use crate::quantity::Radians;
 use crate::solution::range_error::RangeError;
@@ -13,7 +14,13 @@ fn here() -> Geodetic {
 }
 
 fn settings() -> Settings {
-    Settings { mask: Radians::degrees(10.0), ionosphere: None, errors: RangeError::CALIBRATED, false_alarm: 1e-4, most_excluded: 3 }
+    Settings {
+        mask: Radians::degrees(10.0),
+        ionosphere: Ionosphere::Uncorrected,
+        errors: RangeError::CALIBRATED,
+        false_alarm: 1e-4,
+        most_excluded: 3,
+    }
 }
 
 /// Exact ranges to the nominal constellation at an instant: geometry in axes that do not turn, air, clock.
@@ -120,8 +127,9 @@ fn ranges_that_are_no_numbers_give_no_position() {
     assert!(solve(&ranges, GpsTime::default(), &settings()).is_err());
 }
 
-/// Errors drawn as the weights say: the mean normalised squared error of 400 positions is 3 within four of its standard deviations,
-/// sqrt(6 / 400) = 0.12 each.
+/// Errors drawn as the model says, those of single ranges and those that all have in common: the mean normalised squared error of 400
+/// positions is 3 within four of its standard deviations, sqrt(6 / 400) = 0.12 each, and the residual test raises as many alarms at a
+/// risk of 0.1 as that says, within four deviations of a binomial law.
 #[test]
 fn the_covariance_is_that_of_the_errors_it_assumes() {
     let clean = full_sky();
@@ -130,26 +138,32 @@ fn the_covariance_is_that_of_the_errors_it_assumes() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
+    // Twelve uniform numbers less six: a normal law to the third moment, all that a mean square needs.
+    let mut normal = || (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
     let here = here();
-    let sigma: Vec<f64> = clean
-        .iter()
-        .map(|r| {
-            let unit = enu_from_ecef(&here.point) * way(&r.position, ecef_from_geodetic(&here).vector()).1;
-            let place = Place { here, zenith: 0.0, sin_mask: settings().mask.rad().sin(), time: GpsTime::default() };
-            1.0 / settings().delay_and_weight(r, &unit, &place).2.sqrt()
-        })
-        .collect();
-    let mut sum = 0.0;
+    let settings = Settings { most_excluded: 0, ..settings() };
+    let place = Place::new(&here, GpsTime::default(), &settings);
+    let model = |r: &Range| {
+        let unit = enu_from_ecef(&here.point) * way(&r.position, ecef_from_geodetic(&here).vector()).1;
+        settings.model(r, &unit, &place)
+    };
+    let modelled: Vec<Modelled> = clean.iter().map(model).collect();
+    let (mut sum, mut alarms) = (0.0, 0);
     for _ in 0..400 {
         let mut ranges = clean.clone();
-        for (range, sigma) in ranges.iter_mut().zip(&sigma).filter(|(_, s)| s.is_finite()) {
-            // Twelve uniform numbers less six: a normal law to the third moment, all that a mean square needs.
-            let normal: f64 = (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
-            range.corrected = Metres::new(range.corrected.m() + sigma * normal);
+        let common = Vector4::from_fn(|_, _| normal());
+        for (range, modelled) in ranges.iter_mut().zip(&modelled).filter(|(_, m)| m.weight > 0.0) {
+            let error = normal() / modelled.weight.sqrt() + modelled.common.dot(&common);
+            range.corrected = Metres::new(range.corrected.m() + error);
         }
-        let fix = solve(&ranges, GpsTime::default(), &Settings { most_excluded: 0, ..settings() }).unwrap();
+        let fix = solve(&ranges, GpsTime::default(), &settings).unwrap();
         let e = error(&fix);
         sum += e.dot(&(fix.covariance.matrix().try_inverse().unwrap() * e));
+        alarms += usize::from(fix.residual_risk < 0.1);
     }
     assert!((sum / 400.0 - 3.0).abs() < 0.49, "{}", sum / 400.0);
+    assert!((16..=64).contains(&alarms), "{alarms}");
 }
+
+#[path = "point_readings_tests.rs"]
+mod readings_tests;

@@ -23,7 +23,7 @@ impl Solver<'_> {
             let moving = in_axes_of_reception(&r.velocity_mps, r.corrected.m() / SPEED_OF_LIGHT_MPS);
             // Of a receiver at rest.
             let residual = r.rate_mps - s.row.unit.dot(&(turn * moving));
-            rows[n] = (Row { unit: s.row.unit, weight: s.weight, clock: 0, residual }, s.weight);
+            rows[n] = (Row { unit: s.row.unit, weight: s.modelled.weight, clock: 0, residual }, s.modelled.weight);
             n += 1;
         }
         let rows = &mut rows[..n];

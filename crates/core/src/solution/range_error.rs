@@ -1,17 +1,18 @@
 //! How wrong a corrected pseudorange may be: the weights of a position, and so its covariance.
 
+use super::common::CommonErrors;
 use crate::signal::Constellation;
 use crate::special::float::exp;
 
 /// Standard deviation of a single-frequency pseudorange corrected by broadcast data.
 ///
 /// ```text
-/// sigma^2 = ure_c^2 + (share * iono)^2 + (zenith_tropo * m(E))^2 + f^2 noise_c^2 (1/2 + 1/(2 sin^2 E)) * c(C/N0)
+/// sigma^2 = ure_c^2 + (share * iono)^2 + (uneven * k F)^2 + (zenith_tropo * m(E))^2 + f^2 noise_c^2 (1/2 + 1/(2 sin^2 E)) * c(C/N0)
 /// c       = 10^((reference - C/N0) / 10) where the signal is weaker than the reference, 1 elsewhere
 /// ```
 ///
-/// Errors of the ionosphere that ranges share do not enter here but the position's covariance, as `b b'`: `b` is what range errors
-/// `common share * iono`, `gradient share * iono * (east, north part of the line of sight)` do to the position.
+/// Errors of the atmosphere that all ranges have in common do not enter here but the position's covariance and the residual test, see
+/// [`CommonErrors`]; `uneven` is what they leave to single satellites, `k F` the ionosphere's carrier factor and obliquity.
 ///
 /// `f` is the noise of the combination against that of one pseudorange (1, or that of the ionosphere-free pair). The form is ours, of
 /// the terms that DO-229 appendix J and the usual engines add; how the numbers were found stands in `docs/methods/gnss-positions.md`.
@@ -25,15 +26,14 @@ pub struct RangeError {
     pub noise_m: [f64; Constellation::ALL.len()],
     /// Share of the ionospheric delay that the model leaves, from satellite to satellite.
     pub ionosphere_share: f64,
-    /// Share that it leaves of all delays together: one factor wrong for the whole sky, which more satellites do not average out.
-    pub ionosphere_common_share: f64,
-    /// Share by which the delays are wrong from one horizon to the other: a gradient of the ionosphere that the model lacks, east-west
-    /// and north-south. It moves the position whatever the number of satellites.
-    pub ionosphere_gradient_share: f64,
     /// Least error of the ionospheric model overhead \[m\].
     pub ionosphere_floor_m: f64,
     /// Error of the zenith tropospheric delay \[m\].
     pub zenith_troposphere_m: f64,
+    /// Factor on the standard deviation of an ionosphere-free pair. Inferred.
+    pub pair_factor: f64,
+    /// Errors that all ranges have in common.
+    pub common: CommonErrors,
     /// Carrier-to-noise density from which noise no longer falls \[dB-Hz\].
     pub reference_cn0_dbhz: f64,
 }
@@ -46,6 +46,8 @@ pub(super) struct RangeConditions {
     /// Modelled ionospheric delay, and its mapping from overhead; both on this range's carrier \[m\] and zero for an ionosphere-free pair.
     pub(super) ionosphere_m: f64,
     pub(super) ionosphere_mapping: f64,
+    /// What the ionosphere's common errors leave to this satellite, overhead and on L1 \[m\].
+    pub(super) uneven_m: f64,
     pub(super) troposphere_mapping: f64,
     /// NaN where the receiver gives none: no allowance is made.
     pub(super) cn0_dbhz: f64,
@@ -58,13 +60,13 @@ impl RangeError {
     /// The default: calibrated, see `docs/methods/gnss-positions.md`.
     pub const CALIBRATED: Self = Self {
         name: "calibrated-2020",
-        ure_m: [0.7, 3.0, 0.2, 0.6, 5.0],
+        ure_m: [0.9, 3.0, 0.2, 0.6, 5.0],
         noise_m: [0.13, 0.8, 0.13, 0.13, 0.8],
         ionosphere_share: 0.06,
-        ionosphere_common_share: 0.3,
-        ionosphere_gradient_share: 0.1,
         ionosphere_floor_m: 0.05,
         zenith_troposphere_m: 0.04,
+        pair_factor: 1.3,
+        common: CommonErrors::CALIBRATED,
         reference_cn0_dbhz: 40.0,
     };
 
@@ -83,10 +85,10 @@ impl RangeError {
             ure_m: self.ure_m.map(|s| s * range),
             noise_m: self.noise_m.map(|s| s * range),
             ionosphere_share: self.ionosphere_share * range,
-            ionosphere_common_share: self.ionosphere_common_share * shared,
-            ionosphere_gradient_share: self.ionosphere_gradient_share * shared,
             ionosphere_floor_m: self.ionosphere_floor_m * range,
             zenith_troposphere_m: self.zenith_troposphere_m * range,
+            pair_factor: self.pair_factor,
+            common: CommonErrors { factor: self.common.factor * shared, unevenness: self.common.unevenness * range, ..self.common },
             reference_cn0_dbhz: self.reference_cn0_dbhz,
         }
     }
@@ -101,6 +103,9 @@ impl RangeError {
         let elevation = 0.5 + 0.5 / (at.sin_elevation * at.sin_elevation);
         let weakness = self.reference_cn0_dbhz - at.cn0_dbhz;
         let weak = if weakness > 0.0 { exp(weakness * (core::f64::consts::LN_10 / 10.0)) } else { 1.0 };
-        ure * ure + share * share + floor * floor + troposphere * troposphere + noise * noise * elevation * weak
+        let uneven = at.uneven_m * at.ionosphere_mapping;
+        let pair = if at.ionosphere_mapping > 0.0 { 1.0 } else { self.pair_factor };
+        let atmosphere = share * share + floor * floor + uneven * uneven + troposphere * troposphere;
+        pair * pair * (ure * ure + atmosphere + noise * noise * elevation * weak)
     }
 }

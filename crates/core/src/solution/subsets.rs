@@ -3,6 +3,7 @@
 //! A good geometry hides a range that is wrong; among the subsets it does not. Each subset is made from the one with a satellite more by
 //! a rank-one step (Sherman and Morrison 1950), so that it costs a few dozen multiplications and no inverse. Provenance: ours, of standard parts.
 
+use super::common::COMMON;
 use super::wls::CONDITION_LIMIT;
 use crate::frame::{Covariance, Displacement, Enu};
 use crate::quantity::{Metres, Unavailable};
@@ -26,8 +27,8 @@ pub struct RangeInError {
     pub weight: f64,
     /// Measured less true range; what is common to all ranges is the clock's.
     pub error: Metres,
-    /// Standard deviations of three errors that all ranges share, each with its own sign and size here \[m\]; zero without such.
-    pub shared_m: Vector3<f64>,
+    /// Standard deviations of the errors that all ranges share, each with its own sign and size here \[m\]; zero without such.
+    pub shared_m: Vector4<f64>,
 }
 
 /// A subset's solution.
@@ -94,8 +95,9 @@ pub fn walk(ranges: &[RangeInError], least: usize, most_left_out: usize, visit: 
     Ok(walker.walked)
 }
 
-/// Position error and clock, and beside it what each of the three shared errors does.
-type Columns = SMatrix<f64, UNKNOWNS, 4>;
+/// Position error and clock, and beside it what each of the shared errors does.
+type Columns = SMatrix<f64, UNKNOWNS, { 1 + COMMON }>;
+type ColumnsOfRow = SMatrix<f64, 1, { 1 + COMMON }>;
 
 /// A subset's solution under way.
 struct Node {
@@ -152,7 +154,7 @@ impl Node {
     }
 
     fn subset(&self) -> Subset {
-        let shared = self.solved.fixed_view::<3, 3>(0, 1);
+        let shared = self.solved.fixed_view::<3, COMMON>(0, 1);
         let covariance = self.inverse.fixed_view::<3, 3>(0, 0) + shared * shared.transpose();
         Subset {
             used: self.used,
@@ -162,9 +164,9 @@ impl Node {
     }
 }
 
-fn row(range: &RangeInError) -> (Vector4<f64>, SMatrix<f64, 1, 4>) {
+fn row(range: &RangeInError) -> (Vector4<f64>, ColumnsOfRow) {
     let (u, s) = (&range.unit, &range.shared_m);
-    (Vector4::new(u.x, u.y, u.z, 1.0), SMatrix::<f64, 1, 4>::new(range.error.m(), s.x, s.y, s.z))
+    (Vector4::new(u.x, u.y, u.z, 1.0), ColumnsOfRow::new(range.error.m(), s.x, s.y, s.z, s.w))
 }
 
 /// A subset from nothing but its ranges; `None` where it determines no position.
@@ -198,7 +200,7 @@ mod tests {
             unit: towards(az, el),
             weight: 1.0 / (sigma * sigma),
             error: Metres::new(error),
-            shared_m: Vector3::new(0.3 / el.to_radians().sin(), 0.2 * az.to_radians().sin(), 0.1),
+            shared_m: Vector4::new(0.3 / el.to_radians().sin(), 0.2 * az.to_radians().sin(), 0.1, 0.04),
         };
         angles.iter().map(range).collect()
     }
@@ -274,7 +276,7 @@ mod tests {
         ) {
             use super::super::wls::{Normal, Row};
             let mut ranges = sky(&angles);
-            ranges.iter_mut().for_each(|r| r.shared_m = Vector3::zeros());
+            ranges.iter_mut().for_each(|r| r.shared_m = Vector4::zeros());
             let mut met = Vec::new();
             let Ok(_) = walk(&ranges, 4, 9, &mut |s: &Subset| met.push(*s)) else { return Ok(()) };
             for subset in met {

@@ -68,4 +68,4 @@ fn slot(satellite: SatelliteId) -> usize {
 
 #[cfg(test)]
 #[path = "surroundings_tests.rs"]
-mod tests;
+pub(super) mod tests;

@@ -9,7 +9,7 @@ fn gps(number: u8) -> SatelliteId {
 }
 
 /// A position whose residuals, before exclusion, were `factor` times what the weights say.
-fn fix(factor: f64, excluded: &[SatelliteId]) -> Fix {
+pub(in crate::solution) fn fix(factor: f64, excluded: &[SatelliteId]) -> Fix {
     let mut named = [None; EXCLUDED_NAMED];
     for (slot, satellite) in named.iter_mut().zip(excluded) {
         *slot = Some(*satellite);
@@ -20,6 +20,9 @@ fn fix(factor: f64, excluded: &[SatelliteId]) -> Fix {
         covariance: Covariance::from_upper([1.0, 0.0, 1.0, 0.0, 0.0, 1.0]),
         dilution: Dilution { east: 1.0, north: 1.0, horizontal: 1.0, vertical: 1.0, position: 1.0 },
         clock_m: [0.0; Constellation::ALL.len()],
+        offset_variance_m2: [0.0; Constellation::ALL.len()],
+        used: [0; Constellation::ALL.len()],
+        spare: 4,
         velocity: None,
         n_used: 8,
         n_excluded: excluded.len(),

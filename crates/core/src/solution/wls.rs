@@ -7,7 +7,7 @@ use crate::geometry::LineOfSight;
 use crate::quantity::{Metres, Unavailable};
 use crate::signal::Constellation;
 use crate::special::float::sqrt;
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// The largest condition number of H'WH that still gives a covariance.
 pub const CONDITION_LIMIT: f64 = 1e12;
@@ -210,9 +210,9 @@ impl Normal {
         Ok(Self { groups, information: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz), side })
     }
 
-    /// Right sides of the rows for three other residuals each, as columns: -sum w (u - m_c) r. What is common to a clock's rows drops out.
-    pub(crate) fn sides(&self, rows: impl Iterator<Item = (Row, Vector3<f64>)>) -> Matrix3<f64> {
-        let mut sides = Matrix3::zeros();
+    /// Right sides of the rows for other residuals, as columns: -sum w (u - m_c) r. What is common to a clock's rows drops out.
+    pub(crate) fn sides<const N: usize>(&self, rows: impl Iterator<Item = (Row, SVector<f64, N>)>) -> SMatrix<f64, 3, N> {
+        let mut sides = SMatrix::zeros();
         for (row, residuals) in rows {
             sides -= (row.weight * (row.unit - self.groups[row.clock].mean)) * residuals.transpose();
         }
@@ -227,6 +227,17 @@ impl Normal {
     /// How far the position moves for one metre in a row's range, by the inverse of the information.
     pub(crate) fn response(&self, inverse: &Matrix3<f64>, row: &Row) -> Vector3<f64> {
         inverse * (row.unit - self.groups[row.clock].mean) * -row.weight
+    }
+
+    /// A row's direction less the weighted mean of its clock's rows.
+    pub(crate) fn centred(&self, row: &Row) -> Vector3<f64> {
+        row.unit - self.groups[row.clock].mean
+    }
+
+    /// What a unit of weight counts in the mean of a clock's rows; 0 for a clock without rows.
+    pub(crate) fn share(&self, clock: usize) -> f64 {
+        let group = &self.groups[clock];
+        if group.count > 0 { 1.0 / group.weight } else { 0.0 }
     }
 
     /// What a row's clock reads after a step: the weighted mean of residual and step along the line of sight.
@@ -281,6 +292,20 @@ impl Normal {
         let used = self.groups.iter().filter(|g| g.count > 0);
         let normal = self.information.trace() + used.map(|g| g.weight * (1.0 + g.mean.norm_squared())).sum::<f64>();
         normal * (inverse.trace() + self.clock_variances(inverse))
+    }
+
+    /// Variance of the difference of two clocks, from the covariance of the position; 0 where either has no ranges.
+    ///
+    /// ```text
+    /// 1/W_a + 1/W_b + (m_a - m_b)' P (m_a - m_b)
+    /// ```
+    pub(crate) fn clock_difference_variance(&self, a: usize, b: usize, position: &Matrix3<f64>) -> f64 {
+        let (first, second) = (&self.groups[a], &self.groups[b]);
+        if a == b || first.count == 0 || second.count == 0 {
+            return 0.0;
+        }
+        let d = first.mean - second.mean;
+        1.0 / first.weight + 1.0 / second.weight + d.dot(&(position * d))
     }
 
     /// Variances of all clocks together, from the covariance of the position.

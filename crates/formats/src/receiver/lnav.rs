@@ -29,7 +29,7 @@ pub(super) fn parity_is_right(words: &[u32; 10]) -> bool {
 /// A subframe and when it ended.
 pub(super) struct Subframe {
     number: u32,
-    end: GpsTime,
+    pub(super) end: GpsTime,
     data: [u8; BYTES],
 }
 

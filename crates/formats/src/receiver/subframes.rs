@@ -2,7 +2,7 @@
 
 use super::bits::Bits;
 use super::{inav, lnav};
-use crate::rinex::Navigation;
+use crate::rinex::{Dated, Navigation};
 use crate::sbas::Received;
 use navbound_core::quantity::GpsTime;
 use navbound_core::signal::sbas::{BLOCK_BYTES, Block};
@@ -34,6 +34,10 @@ impl Subframes {
         let subframe = lnav::Subframe::new(words, near)?;
         if let Some((klobuchar, leap_seconds)) = subframe.ionosphere() {
             self.navigation.klobuchar_gps.get_or_insert(klobuchar);
+            let messages = &mut self.navigation.ionosphere_gps;
+            if messages.last().is_none_or(|d| d.message != klobuchar) {
+                messages.push(Dated { time: Some(subframe.end), message: klobuchar });
+            }
             self.navigation.leap_seconds.get_or_insert(leap_seconds);
         }
         let found = self.gps.entry(satellite).or_default().take(satellite, &subframe);

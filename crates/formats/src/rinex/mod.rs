@@ -13,5 +13,5 @@ mod plain;
 mod value;
 
 pub use clock::read_clocks;
-pub use navigation::{Navigation, read_navigation};
+pub use navigation::{Dated, Navigation, read_navigation};
 pub use observation::{Code, Observations, read_observations};

@@ -3,6 +3,7 @@
 use super::header::{Lines, label, version};
 use super::number::{columns, decimal, text, whole};
 use crate::refusal::{Refusal, Unreadable};
+use crate::time::Scale;
 use navbound_core::quantity::GpsTime;
 use navbound_core::signal::{Constellation, Ephemeris, GeoEphemeris, Klobuchar};
 use std::collections::BTreeMap;
@@ -23,12 +24,34 @@ pub struct Navigation {
     pub klobuchar_gps: Option<Klobuchar>,
     /// Of BeiDou.
     pub klobuchar_beidou: Option<Klobuchar>,
+    /// Every single-frequency ionosphere that a file gives for its time: GPS.
+    pub ionosphere_gps: Vec<Dated<Klobuchar>>,
+    /// Galileo: coefficients of the effective ionisation level \[sfu, sfu/deg, sfu/deg²\].
+    pub ionosphere_galileo: Vec<Dated<[f64; 3]>>,
     /// GPS time minus UTC \[s\], where the file says.
     pub leap_seconds: Option<i64>,
     /// Well-formed records of kinds that navbound does not use, by kind ("R FDMA", "G CNAV"), counted.
     pub skipped: BTreeMap<String, usize>,
     /// Records that could not be read.
     pub refused: Vec<Refusal>,
+}
+
+/// A message with its time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dated<T> {
+    /// When it was sent; of a header, which does not say, the middle of the orbits beneath it. `None` where nothing says.
+    pub time: Option<GpsTime>,
+    /// What it says.
+    pub message: T,
+}
+
+impl<T: Copy> Dated<T> {
+    /// The message nearest to an instant, among those within `most_s` \[s\] of it. One that nothing dates is as far as may be.
+    pub fn nearest(all: &[Self], to: GpsTime, most_s: f64) -> Option<T> {
+        let distance = |d: &Self| d.time.map_or(most_s, |t| t.seconds_since(to).abs());
+        let near = all.iter().filter(|d| distance(d) <= most_s);
+        near.min_by(|a, b| distance(a).total_cmp(&distance(b))).map(|d| d.message)
+    }
 }
 
 impl Navigation {
@@ -45,12 +68,27 @@ impl Navigation {
         self.geostationary.extend(other.geostationary);
         self.klobuchar_gps = self.klobuchar_gps.or(other.klobuchar_gps);
         self.klobuchar_beidou = self.klobuchar_beidou.or(other.klobuchar_beidou);
+        self.ionosphere_gps.extend(other.ionosphere_gps);
+        self.ionosphere_galileo.extend(other.ionosphere_galileo);
         self.leap_seconds = self.leap_seconds.or(other.leap_seconds);
         for (kind, n) in other.skipped {
             *self.skipped.entry(kind).or_default() += n;
         }
         self.refused.extend(other.refused);
         self.sort();
+    }
+
+    /// Date the messages of a header by the orbits beneath it.
+    pub(crate) fn date_header(&mut self) {
+        let mut times: Vec<GpsTime> = self.ephemerides.iter().map(|e| e.orbit_time).collect();
+        times.sort_unstable();
+        let middle = times.get(times.len() / 2).copied();
+        for d in self.ionosphere_gps.iter_mut().filter(|d| d.time.is_none()) {
+            d.time = middle;
+        }
+        for d in self.ionosphere_galileo.iter_mut().filter(|d| d.time.is_none()) {
+            d.time = middle;
+        }
     }
 
     pub(crate) fn sort(&mut self) {
@@ -84,6 +122,7 @@ pub fn read_navigation(bytes: &[u8]) -> Result<Navigation, Unreadable> {
     } else {
         fourth(lines, &mut navigation);
     }
+    navigation.date_header();
     navigation.sort();
     Ok(navigation)
 }
@@ -111,6 +150,7 @@ fn header(lines: &mut Lines<'_>, navigation: &mut Navigation) -> Result<(), Unre
                 let whole = |name| alpha.get(name).zip(beta.get(name)).map(|(a, b)| Klobuchar { alpha: *a, beta: *b });
                 navigation.klobuchar_gps = whole(&b"GPS"[..]);
                 navigation.klobuchar_beidou = whole(&b"BDS"[..]);
+                navigation.ionosphere_gps.extend(navigation.klobuchar_gps.map(|message| Dated { time: None, message }));
                 return Ok(());
             }
             b"ION ALPHA" => _ = alpha.insert(&b"GPS"[..], four(line, 2, number)?),
@@ -118,6 +158,10 @@ fn header(lines: &mut Lines<'_>, navigation: &mut Navigation) -> Result<(), Unre
             b"IONOSPHERIC CORR" => match (columns(line, 0, 3), columns(line, 3, 4)) {
                 (system @ (b"GPS" | b"BDS"), b"A") => _ = alpha.entry(system).or_insert(four(line, 5, number)?),
                 (system @ (b"GPS" | b"BDS"), b"B") => _ = beta.entry(system).or_insert(four(line, 5, number)?),
+                (b"GAL", _) => {
+                    let [a0, a1, a2, _] = four(line, 5, number)?;
+                    navigation.ionosphere_galileo.push(Dated { time: None, message: [a0, a1, a2] });
+                }
                 _ => navigation.skip(format!("{} ionosphere", text(line, 0, 4))),
             },
             b"LEAP SECONDS" => navigation.leap_seconds = whole(columns(line, 0, 6)),
@@ -211,6 +255,10 @@ impl Navigation {
             (Some(b"EPH"), b'S', b"SBAS") => self.take_third(block, None),
             (Some(b"ION"), b'G', b"LNAV") => self.ionosphere(block, Constellation::Gps),
             (Some(b"ION"), b'C', b"D1D2") => self.ionosphere(block, Constellation::BeiDou),
+            (Some(b"ION"), b'E', b"IFNV") => match block.numbers::<3>() {
+                Ok(message) => self.ionosphere_galileo.push(Dated { time: block.time(Scale::Gps), message }),
+                Err(refusal) => self.refused.push(refusal),
+            },
             (Some(b"EPH"), _, _) => self.skip(format!("{} {}", char::from(letter), String::from_utf8_lossy(message))),
             (Some(kind @ (b"ION" | b"STO" | b"EOP")), _, _) => {
                 self.skip(format!("{} {}", String::from_utf8_lossy(kind), char::from(letter)))
@@ -225,10 +273,15 @@ impl Navigation {
     }
 
     fn ionosphere(&mut self, block: &Block<'_>, system: Constellation) {
-        let slot = if system == Constellation::Gps { &mut self.klobuchar_gps } else { &mut self.klobuchar_beidou };
-        match block.numbers::<8>() {
-            Ok(v) => *slot = slot.or(Some(Klobuchar { alpha: [v[0], v[1], v[2], v[3]], beta: [v[4], v[5], v[6], v[7]] })),
-            Err(refusal) => self.refused.push(refusal),
+        let message = match block.numbers::<8>() {
+            Ok(v) => Klobuchar { alpha: [v[0], v[1], v[2], v[3]], beta: [v[4], v[5], v[6], v[7]] },
+            Err(refusal) => return self.refused.push(refusal),
+        };
+        if system == Constellation::Gps {
+            self.ionosphere_gps.push(Dated { time: block.time(Scale::Gps), message });
+            self.klobuchar_gps.get_or_insert(message);
+        } else {
+            self.klobuchar_beidou.get_or_insert(message);
         }
     }
 

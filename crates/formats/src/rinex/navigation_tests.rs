@@ -47,6 +47,43 @@ fn a_gps_record_arrives_whole() {
     assert_eq!((n.leap_seconds, n.refused.len()), (Some(18), 0));
 }
 
+/// Version 3: a header does not say when, the orbits beneath it do. Version 4 dates each message; the nearest serves, within the time asked.
+#[test]
+fn messages_of_the_ionosphere_are_dated() {
+    let galileo = "GAL    2.8250e+01  7.8125e-03  1.0071e-02  0.0000E+00       IONOSPHERIC CORR    \n";
+    let (first, rest) = HEADER.split_once('\n').unwrap();
+    let n = read(&format!("{first}\n{galileo}{rest}{G01}"));
+    let at = n.ephemerides[0].orbit_time;
+    assert_eq!(n.ionosphere_galileo, [Dated { time: Some(at), message: [28.25, 0.007_812_5, 0.010_071] }]);
+    assert_eq!(n.ionosphere_gps.iter().map(|d| (d.time, d.message.beta[0])).collect::<Vec<_>>(), [(Some(at), 88_064.0)]);
+    assert!(Dated::nearest(&n.ionosphere_gps, at.plus_seconds(86_400.0), 172_800.0).is_some());
+    assert!(Dated::nearest(&n.ionosphere_gps, at.plus_seconds(-200_000.0), 172_800.0).is_none());
+
+    let fourth = "     4.00           NAVIGATION DATA     M (MIXED)           RINEX VERSION / TYPE
+                                                            END OF HEADER
+> ION G12 LNAV
+    2023 03 12 00 08 54 3.259629011154e-08 7.450580596924e-09-1.788139343262e-07
+     0.000000000000e+00 1.351680000000e+05 0.000000000000e+00-2.621440000000e+05
+     1.310720000000e+05
+> ION G21 LNAV
+    2023 03 12 23 41 24 2.887099981308e-08 7.450580596924e-09-1.192092895508e-07
+     0.000000000000e+00 1.331200000000e+05 0.000000000000e+00-2.621440000000e+05
+     1.310720000000e+05
+> ION E02 IFNV
+    2023 03 12 00 11 25 1.607500000000e+02 3.710937500000e-01 9.063720703125e-03
+     0.000000000000e+00
+";
+    let n = read(fourth);
+    // 2023-03-12 is the first day of week 2253.
+    let evening = GpsTime::from_nanoseconds((2253 * 604_800 + 20 * 3600) * 1_000_000_000);
+    let alpha = |time| Dated::nearest(&n.ionosphere_gps, time, 172_800.0).map(|k| k.alpha[0]);
+    assert_eq!(alpha(evening), Some(2.887_099_981_308e-8));
+    assert_eq!(alpha(evening.plus_seconds(-18.0 * 3600.0)), Some(3.259_629_011_154e-8));
+    assert_eq!(alpha(evening.plus_seconds(4.0 * 86_400.0)), None);
+    assert_eq!(n.ionosphere_galileo[0].message, [160.75, 0.371_093_75, 9.063_720_703_125e-3]);
+    assert_eq!((n.klobuchar_gps.map(|k| k.alpha[0]), n.refused.len()), (Some(3.259_629_011_154e-8), 0));
+}
+
 #[test]
 fn beidou_records_run_on_beidou_time() {
     let n = read(&format!("{HEADER}{C01}"));

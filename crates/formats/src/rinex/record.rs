@@ -63,7 +63,7 @@ impl<'a> Block<'a> {
     }
 
     /// Time of the first line.
-    fn time(&self, scale: Scale) -> Option<GpsTime> {
+    pub(super) fn time(&self, scale: Scale) -> Option<GpsTime> {
         let line = self.first();
         let number = |from, to| whole(columns(line, from, to));
         let calendar = if self.indent == 3 {

@@ -82,7 +82,7 @@ pub fn solve(service: &Service, measured: &[Measurement<'_>], receiver: &Receive
     service.serves()?;
     let mut at = match receiver.near {
         Some(near) => *near.vector(),
-        None => start_from(measured.iter().map(|m| (&m.position, m.corrected, Constellation::Gps)))?,
+        None => start_from(measured.iter().map(|m| (&m.position, m.corrected, Constellation::Gps.index())))?,
     };
     for _ in 0..ROUNDS {
         let mut round = Round::new(service, measured, receiver, &at, sky)?;

@@ -1,0 +1,211 @@
+//! What an epoch's position is declared as: its covariance, and whether and why it is doubted. The one place that decides.
+//!
+//! ```text
+//! ok       = the residuals agree with the weights, no memory of contradiction, and either four ranges to spare with nothing excluded,
+//!            or one to spare and trace P <= 2 trace V
+//! declared = V;   with other readings P, widened to reach each that is not negligible, and to hold its uncertainty where the position is ok;
+//!            with the memory P + f V
+//! ```
+//!
+//! V is the covariance of the position itself, P that over all readings of its ranges ([`Mixture`]), f the variance factor of
+//! [`Surroundings`]. Provenance: ours.
+
+use super::Surroundings;
+use super::mixture::{Mixture, OBSTRUCTED};
+use super::plausible::Movement;
+use super::point::{CONFIRMED, Fix};
+use crate::frame::Covariance;
+use crate::quantity::{GpsTime, Unavailable};
+use crate::special::float::exp;
+
+/// What is known of the surroundings fades with this \[s\].
+const MEMORY_S: f64 = 60.0;
+/// Other readings may widen the covariance to this many times its trace in an epoch without doubt.
+const WIDER: f64 = 2.0;
+/// Ratio of the weights of obstructed and open surroundings that a range without a fault gives: (1 - 0.3) / (1 - 0.001).
+const FAULTLESS: f64 = 0.7 / 0.999;
+
+/// Why a position is not simply believed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Doubt {
+    /// Its residuals contradict the weights.
+    ResidualsContradict,
+    /// Those of the last minute do.
+    RecentResidualsContradict,
+    /// As many ranges as unknowns.
+    NoRedundancy,
+    /// The ranges to spare belong to constellations that check nothing but their own clock.
+    ClockUnchecked,
+    /// An exclusion, and another reading of the ranges that fits as well.
+    ExclusionUnconfirmed,
+    /// Nothing excluded, and another reading of the ranges that fits as well.
+    ReadingUnconfirmed,
+    /// Single frequencies, and no message describes the ionosphere.
+    IonosphereUndescribed,
+    /// A height that no receiver has.
+    ImplausibleHeight,
+    /// A geometry that hardly determines the position.
+    ImplausibleDilution,
+    /// Farther from the last position than a receiver moves.
+    ImplausibleJump,
+}
+
+impl Doubt {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::ResidualsContradict,
+        Self::RecentResidualsContradict,
+        Self::NoRedundancy,
+        Self::ClockUnchecked,
+        Self::ExclusionUnconfirmed,
+        Self::ReadingUnconfirmed,
+        Self::IonosphereUndescribed,
+        Self::ImplausibleHeight,
+        Self::ImplausibleDilution,
+        Self::ImplausibleJump,
+    ];
+
+    /// The id of tables; it never changes.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::ResidualsContradict => "residuals_contradict",
+            Self::RecentResidualsContradict => "recent_residuals_contradict",
+            Self::NoRedundancy => "no_redundancy",
+            Self::ClockUnchecked => "clock_unchecked",
+            Self::ExclusionUnconfirmed => "exclusion_unconfirmed",
+            Self::ReadingUnconfirmed => "reading_unconfirmed",
+            Self::IonosphereUndescribed => "ionosphere_undescribed",
+            Self::ImplausibleHeight => "implausible_height",
+            Self::ImplausibleDilution => "implausible_dilution",
+            Self::ImplausibleJump => "implausible_jump",
+        }
+    }
+
+    /// One English sentence, for people.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::ResidualsContradict => "the residuals contradict the weights",
+            Self::RecentResidualsContradict => "the ranges of the last minute contradict the weights: reflections or obstruction",
+            Self::NoRedundancy => "no satellite to spare: the residuals cannot be tested",
+            Self::ClockUnchecked => "too few satellites to spare: a second constellation checks nothing but its own clock",
+            Self::ExclusionUnconfirmed => "an exclusion that the remaining ranges cannot confirm",
+            Self::ReadingUnconfirmed => "too few satellites to spare: a fault of one could not be seen",
+            Self::IonosphereUndescribed => "no message describes the ionosphere: heights can be wrong by metres",
+            Self::ImplausibleHeight => "the height is none that a receiver has: outside -1 to 100 km",
+            Self::ImplausibleDilution => "the satellites hardly determine the position: dilution above 30",
+            Self::ImplausibleJump => "the position jumps farther than a receiver moves: more than 600 m/s, and Doppler does not support it",
+        }
+    }
+
+    /// Whether there is no position at all.
+    pub const fn refuses(self) -> bool {
+        matches!(self, Self::ImplausibleHeight | Self::ImplausibleDilution | Self::ImplausibleJump)
+    }
+
+    /// The refusal of a solved position, where this is one.
+    pub fn refusal(self, fix: &Fix) -> Option<Unavailable> {
+        let invalid = |field, value, unit, domain| Some(Unavailable::Invalid { field, value, unit, domain });
+        match self {
+            Self::ImplausibleHeight => invalid("est_h_m", fix.position.height.m(), "m", "[-1000, 100000]"),
+            Self::ImplausibleDilution => invalid("pdop", fix.dilution.position, "1", "(0, 30]"),
+            Self::ImplausibleJump => invalid("speed_mps", f64::INFINITY, "m/s", "[0, 600]"),
+            _ => None,
+        }
+    }
+
+    /// The doubt behind a refusal of the solution, where it is one of these.
+    pub fn of(why: &Unavailable) -> Option<Self> {
+        match why {
+            Unavailable::Invalid { field: "est_h_m", .. } => Some(Self::ImplausibleHeight),
+            Unavailable::Invalid { field: "pdop", .. } => Some(Self::ImplausibleDilution),
+            Unavailable::Invalid { field: "speed_mps", .. } => Some(Self::ImplausibleJump),
+            _ => None,
+        }
+    }
+}
+
+/// What is declared of one receiver, epoch after epoch in time. No heap.
+#[derive(Debug, Clone)]
+pub struct Declarations {
+    surroundings: Surroundings,
+    movement: Movement,
+    /// Posterior probability that the surroundings are obstructed, and when.
+    obstructed: f64,
+    last: Option<GpsTime>,
+}
+
+impl Default for Declarations {
+    fn default() -> Self {
+        Self { surroundings: Surroundings::default(), movement: Movement::default(), obstructed: OBSTRUCTED, last: None }
+    }
+}
+
+impl Declarations {
+    /// Take the next position in time, with the other readings of its ranges where it cannot stand alone. The position's covariance becomes the
+    /// declared one; what it is doubted for is returned.
+    pub fn declare(&mut self, time: GpsTime, fix: &mut Fix, mixture: Option<&Mixture>) -> Option<Doubt> {
+        let factor = self.surroundings.judge(time, fix);
+        let own = *fix.covariance.matrix();
+        if let Some(factor) = factor.filter(|f| *f > fix.inflation) {
+            fix.covariance = Covariance::claim_symmetric(own * (factor / fix.inflation));
+            fix.inflation = factor;
+        }
+        let obstructed = self.obstructed(time, fix, mixture);
+        let mut confirmed = fix.stands_alone();
+        if let Some(mixture) = mixture {
+            let declared = mixture.covariance(obstructed, &own);
+            confirmed = declared.moments.trace() <= WIDER * own.trace();
+            let memory = if factor.is_some() { *fix.covariance.matrix() } else { nalgebra::Matrix3::zeros() };
+            let readings = if doubt(fix, factor.is_some(), confirmed).is_none() { declared.holding } else { declared.reaching };
+            fix.covariance = Covariance::claim_symmetric(readings + memory);
+        }
+        let velocity = fix.velocity.map(|(v, _)| v);
+        if !self.movement.possible(time, &fix.position, velocity, fix.covariance.matrix()) {
+            return Some(Doubt::ImplausibleJump);
+        }
+        doubt(fix, factor.is_some(), confirmed)
+    }
+
+    fn obstructed(&mut self, time: GpsTime, fix: &Fix, mixture: Option<&Mixture>) -> f64 {
+        let passed = self.last.map_or(f64::INFINITY, |last| time.seconds_since(last));
+        self.last = Some(time);
+        // A clock that was set back begins anew.
+        let fading = if passed >= 0.0 { exp(-passed / MEMORY_S) } else { 0.0 };
+        let prior = OBSTRUCTED + (self.obstructed - OBSTRUCTED) * fading;
+        let faultless = || (0..fix.n_used).fold(1.0, |product, _| product * FAULTLESS);
+        let evidence = mixture.map_or_else(faultless, Mixture::evidence);
+        // The open state keeps a share, so that no evidence is for ever.
+        let odds = (prior / (1.0 - prior) * evidence).min(1e12);
+        self.obstructed = odds / (1.0 + odds);
+        self.obstructed
+    }
+}
+
+impl Fix {
+    /// The residual test passed with nothing excluded, and four ranges to spare say that it could have failed.
+    fn stands_alone(&self) -> bool {
+        self.consistent && self.n_excluded == 0 && self.spare >= CONFIRMED
+    }
+}
+
+fn doubt(fix: &Fix, contradicted: bool, confirmed: bool) -> Option<Doubt> {
+    if fix.redundancy > 0 && !fix.consistent {
+        Some(Doubt::ResidualsContradict)
+    } else if contradicted {
+        Some(Doubt::RecentResidualsContradict)
+    } else if fix.redundancy == 0 {
+        Some(Doubt::NoRedundancy)
+    } else if fix.spare == 0 {
+        Some(Doubt::ClockUnchecked)
+    } else if confirmed {
+        None
+    } else if fix.n_excluded > 0 {
+        Some(Doubt::ExclusionUnconfirmed)
+    } else {
+        Some(Doubt::ReadingUnconfirmed)
+    }
+}
+
+#[cfg(test)]
+#[path = "declared_tests.rs"]
+mod tests;
