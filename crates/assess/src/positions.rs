@@ -2,8 +2,8 @@
 
 use navbound_core::frame::{Covariance, ecef_from_geodetic};
 use navbound_core::geometry::atmosphere::ionosphere_factor;
-use navbound_core::geometry::ionosphere::Ionosphere;
 use navbound_core::geometry::broadcast::{Broadcast, SatelliteState, clock_polynomial};
+use navbound_core::geometry::ionosphere::Ionosphere;
 use navbound_core::quantity::{GpsTime, Metres, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};

@@ -5,9 +5,9 @@ use crate::orbits::PreciseOrbits;
 use navbound_assess::positions::{Job, Model, Positions, Signals, positions};
 use navbound_assess::smoothing::Form;
 use navbound_core::frame::{self, EcefPosition, Geodetic, LatLon};
-use navbound_core::geometry::{Direction, ntcm};
 use navbound_core::geometry::broadcast::mean_elements;
 use navbound_core::geometry::ionosphere::{Ionosphere, MEAN_ACTIVITY_SFU};
+use navbound_core::geometry::{Direction, ntcm};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Klobuchar};
@@ -290,13 +290,7 @@ fn solve_positions<'py>(
     within("shared_factor", shared_factor, "1", "[0, inf)", shared_factor >= 0.0 && shared_factor.is_finite())?;
     let errors = weights(precise).scaled(range_factor, shared_factor);
     let model = ionosphere_model(ionosphere, observations, navigation)?;
-    let settings = Settings {
-        mask: Radians::new(mask_rad),
-        ionosphere: model,
-        errors,
-        false_alarm,
-        most_excluded,
-    };
+    let settings = Settings { mask: Radians::new(mask_rad), ionosphere: model, errors, false_alarm, most_excluded };
     let job = Job {
         systems: systems.bytes().filter_map(Constellation::from_letter).collect(),
         signals: if dual { Signals::Dual } else { Signals::Single },

@@ -2,8 +2,8 @@
 
 use super::EXCLUDED_NAMED;
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic};
-use crate::quantity::{Metres, Radians};
 use crate::geometry::ionosphere::Ionosphere;
+use crate::quantity::{Metres, Radians};
 use crate::signal::{Constellation, SatelliteId};
 use crate::solution::range_error::RangeError;
 use crate::solution::wls::Dilution;

@@ -14,7 +14,13 @@ fn here() -> Geodetic {
 }
 
 fn settings() -> Settings {
-    Settings { mask: Radians::degrees(10.0), ionosphere: Ionosphere::Uncorrected, errors: RangeError::CALIBRATED, false_alarm: 1e-4, most_excluded: 3 }
+    Settings {
+        mask: Radians::degrees(10.0),
+        ionosphere: Ionosphere::Uncorrected,
+        errors: RangeError::CALIBRATED,
+        false_alarm: 1e-4,
+        most_excluded: 3,
+    }
 }
 
 /// Exact ranges to the nominal constellation at an instant: geometry in axes that do not turn, air, clock.
