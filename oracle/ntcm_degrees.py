@@ -22,7 +22,7 @@ def dsin(deg: float) -> float:
 
 
 def vertical_tecu(az_sfu: float, lat: float, lon: float, hours: float, day: int) -> float:
-    """Vertical electron content over a place in degrees, at an hour of universal time and a day of the year (equations 3 to 15, 27 to 31)."""
+    """Vertical electron content over a place in degrees, at an hour of universal time on a day of the year (equations 3 to 31)."""
     local = hours + lon / 15
     sun = 23.44 * dsin(0.9856 * (day - 80.7))
     chi3 = dcos(lat - sun) + 0.4

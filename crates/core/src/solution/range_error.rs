@@ -22,6 +22,8 @@ pub struct RangeError {
     pub name: &'static str,
     /// Orbit and clock, by constellation \[m\].
     pub ure_m: [f64; Constellation::ALL.len()],
+    /// Orbit and clock of an ionosphere-free pair \[m\]: what group delays and inter-signal biases leave is magnified in it. Inferred.
+    pub pair_ure_m: [f64; Constellation::ALL.len()],
     /// Receiver noise and multipath overhead, by constellation \[m\].
     pub noise_m: [f64; Constellation::ALL.len()],
     /// Share of the ionospheric delay that the model leaves, from satellite to satellite.
@@ -61,6 +63,7 @@ impl RangeError {
     pub const CALIBRATED: Self = Self {
         name: "calibrated-2020",
         ure_m: [0.9, 3.0, 0.2, 0.6, 5.0],
+        pair_ure_m: [0.9, 3.0, 0.2, 1.5, 5.0],
         noise_m: [0.13, 0.8, 0.13, 0.13, 0.8],
         ionosphere_share: 0.06,
         ionosphere_floor_m: 0.05,
@@ -73,7 +76,12 @@ impl RangeError {
     /// With tabulated orbits and clocks of satellites' mass centres. Offsets of their antennas, which are not applied, differ by a metre
     /// from one GPS satellite to the next and by decimetres among Galileo's; tracking codes differ from those of the clocks by
     /// decimetres. Ours, looked at on ESBC 2020-177 only.
-    pub const PRECISE: Self = Self { name: "mass centres, looked at on ESBC 2020", ure_m: [1.0, 3.0, 0.2, 1.0, 5.0], ..Self::CALIBRATED };
+    pub const PRECISE: Self = Self {
+        name: "mass centres, looked at on ESBC 2020",
+        ure_m: [1.0, 3.0, 0.2, 1.0, 5.0],
+        pair_ure_m: [1.0, 3.0, 0.2, 1.0, 5.0],
+        ..Self::CALIBRATED
+    };
 
     /// The same form with every standard deviation of single ranges times one factor, and that of the errors they share times another:
     /// what a calibration on other data finds.
@@ -83,6 +91,7 @@ impl RangeError {
         Self {
             name,
             ure_m: self.ure_m.map(|s| s * range),
+            pair_ure_m: self.pair_ure_m.map(|s| s * range),
             noise_m: self.noise_m.map(|s| s * range),
             ionosphere_share: self.ionosphere_share * range,
             ionosphere_floor_m: self.ionosphere_floor_m * range,
@@ -95,7 +104,8 @@ impl RangeError {
 
     /// Variance of a range \[m²\].
     pub(super) fn variance(&self, at: &RangeConditions) -> f64 {
-        let ure = self.ure_m[at.constellation] * at.ure_factor;
+        let single = at.ionosphere_mapping > 0.0;
+        let ure = if single { &self.ure_m } else { &self.pair_ure_m }[at.constellation] * at.ure_factor;
         let share = self.ionosphere_share * at.ionosphere_m;
         let floor = self.ionosphere_floor_m * at.ionosphere_mapping;
         let troposphere = self.zenith_troposphere_m * at.troposphere_mapping;
@@ -104,7 +114,7 @@ impl RangeError {
         let weakness = self.reference_cn0_dbhz - at.cn0_dbhz;
         let weak = if weakness > 0.0 { exp(weakness * (core::f64::consts::LN_10 / 10.0)) } else { 1.0 };
         let uneven = at.uneven_m * at.ionosphere_mapping;
-        let pair = if at.ionosphere_mapping > 0.0 { 1.0 } else { self.pair_factor };
+        let pair = if single { 1.0 } else { self.pair_factor };
         let atmosphere = share * share + floor * floor + uneven * uneven + troposphere * troposphere;
         pair * pair * (ure * ure + atmosphere + noise * noise * elevation * weak)
     }
