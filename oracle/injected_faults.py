@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
-from gnss_weights import recordings
 
+from gnss_weights import recordings
 from navbound import gnss
 from navbound.methods import bounds
 
@@ -41,7 +41,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Epochs with a position; those ``ok``; of these, outside their own circle of risk 1e-5 and inside that of 0.05; of all, inside both."""
+    """Epochs with a position; those ``ok``; of these, outside their circle of risk 1e-5 and inside that of 0.05; of all, inside both."""
 
     epochs: int
     ok: int
@@ -126,7 +126,7 @@ def write(path: Path, source: Open, picked: dict[int, dict[str, float]]) -> None
         second = at.second + time % 1_000_000_000 * 1e-9
         lines.append(f"> {at.year} {at.month:02d} {at.day:02d} {at.hour:02d} {at.minute:02d}{second:11.7f}  0{len(satellites):3d}\n")
         for satellite, fault in satellites.items():
-            values = [v for v in rows[time, satellite]]
+            values = list(rows[time, satellite])
             values[0] += fault
             fields = "".join(" " * 16 if v is None else f"{v:14.3f}  " for v in values)
             lines.append(f"{satellite}{fields}".rstrip() + "\n")

@@ -12,7 +12,6 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1] / "oracle"))
 
 import injected_faults as faults
-
 from navbound import gnss
 from navbound.methods import bounds
 
@@ -139,8 +138,8 @@ def test_known_offsets_give_a_position_where_two_clocks_have_too_few_ranges(stat
     two = only(station, "GE")
     times = two.sky["time_ns"].unique().sort().to_list()[300:340]
     picked = every(two, times)
-    few = dict(list((n, f) for n, f in picked[times[30]].items() if n.startswith("G"))[:3])
-    few.update(list((n, f) for n, f in picked[times[30]].items() if n.startswith("E"))[:1])
+    few = dict([(n, f) for n, f in picked[times[30]].items() if n.startswith("G")][:3])
+    few.update([(n, f) for n, f in picked[times[30]].items() if n.startswith("E")][:1])
     picked[times[30]] = few
     epoch = solved(two, picked, tmp_path / "few.rnx", "GE").epochs[30]
     # Three and one: with a clock each there are five unknowns.

@@ -1,7 +1,7 @@
 //! What an epoch's position is declared as: its covariance, and whether and why it is doubted. The one place that decides.
 //!
 //! ```text
-//! ok       = the residuals agree with the weights, no memory of contradiction, and either four ranges to spare with nothing excluded,
+//! ok       = the residuals agree with the weights, no memory of contradiction, and either three ranges to spare with nothing excluded,
 //!            or one to spare and trace P <= 2 trace V
 //! declared = V;   with other readings P, widened to reach each that is not negligible, and to hold its uncertainty where the position is ok;
 //!            with the memory P + f V
@@ -182,7 +182,7 @@ impl Declarations {
 }
 
 impl Fix {
-    /// The residual test passed with nothing excluded, and four ranges to spare say that it could have failed.
+    /// The residual test passed with nothing excluded, and three ranges to spare say that it could have failed.
     fn stands_alone(&self) -> bool {
         self.consistent && self.n_excluded == 0 && self.spare >= CONFIRMED
     }

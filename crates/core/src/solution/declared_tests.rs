@@ -25,7 +25,7 @@ fn declared(mut fix: Fix, mixture: Option<&Mixture>) -> (Option<Doubt>, Fix) {
 }
 
 #[test]
-fn a_position_that_nothing_contradicts_and_four_ranges_check_is_ok_and_unchanged() {
+fn a_position_that_nothing_contradicts_and_three_ranges_check_is_ok_and_unchanged() {
     let before = fix(1.0, &[]);
     assert_eq!(declared(before, None), (None, before));
 }

@@ -6,10 +6,10 @@ use crate::special::float::sqrt;
 use nalgebra::{Matrix3, Vector3};
 
 /// With this many spare ranges a test of residuals that passes leaves no other reading.
-pub(in crate::solution) const CONFIRMED: usize = 4;
-/// Residuals that are less probable than this hint at a fault that the test does not see, and this many spare ranges average it out.
-const SUSPECT: f64 = 0.05;
-const MANY: usize = 10;
+pub(in crate::solution) const CONFIRMED: usize = 3;
+/// Residuals whose risk is below the second number, with fewer spare ranges than the first, hint at a fault that the test does not see.
+/// Ours, with the faults of `docs/methods/gnss-exclusion.md`.
+const SUSPECT: [(usize, f64); 2] = [(4, 0.3), (10, 0.05)];
 /// A clock that rests on fewer spare ranges than this checks nothing but itself.
 const OWN_SPARE: usize = 2;
 
@@ -18,7 +18,7 @@ impl Solver<'_> {
     /// exclusion mended that, or few ranges are to spare.
     pub(super) fn mixture(&self, fix: &Fix) -> Option<Mixture> {
         let (risk, spare) = (fix.residual_risk, fix.spare);
-        let suspect = risk < SUSPECT && spare < MANY;
+        let suspect = SUSPECT.iter().any(|(few, least)| spare < *few && risk < *least);
         if risk >= self.settings.false_alarm && self.before.is_none() && spare >= CONFIRMED && !suspect {
             return None;
         }
