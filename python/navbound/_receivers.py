@@ -342,8 +342,8 @@ def solve(
         Letters of :data:`SYSTEMS`.
     signals : {"auto", "single", "dual"}, optional
         L1, E1, B1I; or ionosphere-free pairs: L1-L2; E1-E5a or E1-E5b, B1I-B3I or B1I-B2I, whichever the file and its broadcast messages
-        serve more often, the same for all satellites of a constellation (docs/methods/gnss-positions.md); or of both solutions the one whose
-        declared covariance is the smaller over the whole file.
+        serve more often, the same for all satellites of a constellation (docs/methods/gnss-positions.md); or of both solutions the one
+        whose declared covariance is the smaller over the whole file.
     ionosphere : {"auto", "broadcast", "galileo", "climatology", "none"}, optional
         Model of single pseudoranges; pairs need none. ``broadcast``: the GPS message. ``galileo``: NTCM-G by Galileo's message.
         ``climatology``: NTCM-G at the long-run mean of solar activity. ``none``: no correction; its whole size is error. ``auto`` is the
