@@ -17,7 +17,7 @@ const CRATES: [(&str, &[&str]); 6] = [
 ];
 /// Parts of the Python package from what computes to what shows; a part may import from those before it and from itself.
 const LAYERS: [&[&str]; 5] = [
-    &["_core", "errors", "_arrays", "records"],
+    &["_core", "errors", "_arrays", "records", "status"],
     &[
         "tse",
         "anp",
