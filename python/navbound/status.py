@@ -6,12 +6,16 @@ A table carries ``status`` and ``reason_id``. Its ``reason`` is a sentence for p
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, cast
+from typing import TYPE_CHECKING, Any, Literal, cast
 
+import numpy as np
 import polars as pl
 
 from navbound import _core
 from navbound.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 StatusId = Literal["ok", "degraded", "not_available", "invalid_input"]
 
@@ -71,10 +75,57 @@ def status_of(reason_id: pl.Expr) -> pl.Expr:
     return reason_id.replace_strict(table, default="ok", return_dtype=pl.String)
 
 
+def reasons_of(found: dict[str, Any], shape: tuple[int, ...]) -> tuple[NDArray[np.str_], NDArray[np.str_]]:
+    """Sentences and ids of results of the core, taken out of them."""
+    sentences, ids = (np.array(found.pop(name), dtype=np.str_).reshape(shape) for name in ("reason", "reason_id"))
+    return sentences, ids
+
+
+def statuses(reason_id: NDArray[np.str_]) -> NDArray[np.str_]:
+    """The statuses that ids make; ``ok`` where there is no reason."""
+    return _each(reason_id, {"": "ok", **{id_: entry.status for id_, entry in REASONS.items()}})
+
+
+def sentences(reason_id: NDArray[np.str_]) -> NDArray[np.str_]:
+    """The sentences of ids; empty where there is no reason."""
+    return _each(reason_id, {"": "", **{id_: entry.words for id_, entry in REASONS.items()}})
+
+
+def _each(reason_id: NDArray[np.str_], table: dict[str, str]) -> NDArray[np.str_]:
+    names, place = np.unique(reason_id, return_inverse=True)
+    return np.array([table[str(name)] for name in names], dtype=np.str_)[place].reshape(reason_id.shape)
+
+
+def availability(reason_id: NDArray[np.str_]) -> NDArray[np.str_]:
+    """The status of results that exist, or do not for a reason."""
+    return np.where(reason_id == "", "ok", "not_available")
+
+
+COLUMNS = ("status", "reason_id", "reason")
+"""What an epoch table says of each epoch."""
+
+
+def with_reason(epochs: pl.DataFrame, reason_id: pl.Series) -> pl.DataFrame:
+    """An epoch table with the status, the id and the sentence of a reason each; null where there is none."""
+    ids = epochs.with_columns(reason_id.alias("reason_id"))
+    return ids.with_columns(status_of(pl.col("reason_id")).alias("status"), words(pl.col("reason_id")).alias("reason"))
+
+
+def overridden(epochs: pl.DataFrame, reason_id: pl.Series, sentence: pl.Series | None = None) -> pl.DataFrame:
+    """An epoch table that says a new reason where there is one, in a sentence of its own or that of the list; elsewhere what it said."""
+    new = with_reason(epochs.select("status"), reason_id)
+    if sentence is not None:
+        new = new.with_columns(pl.coalesce(sentence, pl.col("reason")).alias("reason"))
+    there = reason_id.is_not_null()
+    before = with_reason_id(epochs)
+    return before.with_columns(pl.when(there).then(new[c]).otherwise(pl.col(c)).alias(c) for c in COLUMNS)
+
+
 def with_reason_id(epochs: pl.DataFrame) -> pl.DataFrame:
     """An epoch table whose ``reason_id`` exists: a sentence without an id is ``reported``."""
     given = pl.col("reason_id") if "reason_id" in epochs.columns else pl.lit(None, pl.String)
     if "reason" in epochs.columns:
         stated = pl.col("reason").is_not_null() & (pl.col("reason").str.len_chars() > 0)
         given = pl.when(stated & given.is_null()).then(pl.lit("reported")).otherwise(given)
-    return epochs.with_columns(given.alias("reason_id"))
+    sentence = [] if "reason" in epochs.columns else [pl.lit(None, pl.String).alias("reason")]
+    return epochs.with_columns(given.alias("reason_id"), *sentence)

@@ -3,7 +3,7 @@
 use navbound_core::frame::{Covariance, ecef_from_geodetic};
 use navbound_core::geometry::atmosphere::ionosphere_factor;
 use navbound_core::geometry::broadcast::{Broadcast, SatelliteState, clock_polynomial};
-use navbound_core::quantity::{GpsTime, Metres, Unavailable};
+use navbound_core::quantity::{GpsTime, Metres, Reason, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};
 use navbound_core::solution::Surroundings;
@@ -59,6 +59,19 @@ pub struct Positions {
     pub codes: BTreeMap<char, Vec<String>>,
     /// Share of the pseudoranges that the carrier smoothed, those at the beginning of an arc left out; `None` without smoothing.
     pub smoothed_share: Option<f64>,
+}
+
+impl Positions {
+    /// Why an epoch's position is not simply there; `None` for one that is.
+    pub fn reason(&self, epoch: usize) -> Option<Reason> {
+        match self.fixes.get(epoch)? {
+            Err(why) => Some(why.reason_of_solution()),
+            Ok(fix) if fix.redundancy > 0 && !fix.consistent => Some(Reason::ResidualsContradict),
+            Ok(_) if self.contradicted.get(epoch).is_some_and(|c| *c) => Some(Reason::RecentResidualsContradict),
+            Ok(fix) if fix.redundancy == 0 => Some(Reason::NoRedundancy),
+            Ok(_) => None,
+        }
+    }
 }
 
 /// One frequency of a constellation: columns of the observation table.

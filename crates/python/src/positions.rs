@@ -1,7 +1,8 @@
 //! Receivers' files and the positions solved from them.
 
-use crate::error::{format_error, input_error};
+use crate::error::{format_error, input_error, risk};
 use crate::orbits::PreciseOrbits;
+use crate::status;
 use navbound_assess::positions::{Job, Positions, Signals, positions};
 use navbound_assess::smoothing::Form;
 use navbound_core::frame::{self, EcefPosition};
@@ -282,7 +283,7 @@ fn solve_positions<'py>(
         within("smoothing_s", window, "s", "(0, 86400]", window > 0.0 && window <= 86_400.0)?;
     }
     within("mask_rad", mask_rad, "rad", "[0, pi/2)", (0.0..core::f64::consts::FRAC_PI_2).contains(&mask_rad))?;
-    within("false_alarm", false_alarm, "1", "(0, 1)", false_alarm > 0.0 && false_alarm < 1.0)?;
+    risk("false_alarm", false_alarm)?;
     within("range_factor", range_factor, "1", "(0, inf)", range_factor > 0.0 && range_factor.is_finite())?;
     within("shared_factor", shared_factor, "1", "[0, inf)", shared_factor >= 0.0 && shared_factor.is_finite())?;
     let errors = weights(precise).scaled(range_factor, shared_factor);
@@ -363,21 +364,14 @@ fn table<'py>(py: Python<'py>, found: &Positions, weights: &str) -> PyResult<Bou
     d.set_item("n_sv", count(|f| f.n_used).into_pyarray(py))?;
     d.set_item("n_excluded", count(|f| f.n_excluded).into_pyarray(py))?;
     d.set_item("n_redundant", count(|f| f.redundancy).into_pyarray(py))?;
-    let status = |(f, contradicted): (&Result<Fix, _>, &bool)| match f {
-        Ok(fix) if fix.consistent && !contradicted => "ok",
-        Ok(_) => "degraded",
-        Err(_) => "not_available",
+    let words = |(i, f): (usize, &Result<Fix, _>)| match f {
+        Ok(_) => found.reason(i).map_or_else(String::new, |r| r.words().to_owned()),
+        Err(why) => navbound_core::quantity::Unavailable::to_string(why),
     };
-    let outcomes = || found.fixes.iter().zip(&found.contradicted);
-    d.set_item("status", outcomes().map(status).collect::<Vec<_>>())?;
-    let reason = |(f, contradicted): (&Result<Fix, navbound_core::quantity::Unavailable>, &bool)| match f {
-        Ok(fix) if fix.redundancy > 0 && !fix.consistent => "the residuals contradict the weights".to_owned(),
-        Ok(_) if *contradicted => "the ranges of the last minute contradict the weights: reflections or obstruction".to_owned(),
-        Ok(fix) if fix.redundancy == 0 => "no satellite to spare: the residuals cannot be tested".to_owned(),
-        Ok(_) => String::new(),
-        Err(why) => why.to_string(),
-    };
-    d.set_item("reason", outcomes().map(reason).collect::<Vec<_>>())?;
+    let reasons: Vec<_> = (0..found.fixes.len()).map(|i| found.reason(i)).collect();
+    d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
+    d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
+    d.set_item("reason", found.fixes.iter().enumerate().map(words).collect::<Vec<_>>())?;
     d.set_item("unused", found.unused.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect::<BTreeMap<_, _>>())?;
     d.set_item("codes", found.codes.clone())?;
     d.set_item("weights", weights)?;

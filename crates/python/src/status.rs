@@ -15,6 +15,11 @@ fn reasons() -> Vec<(&'static str, &'static str, &'static str)> {
     Reason::ALL.iter().map(|r| (r.id(), r.status().id(), r.words())).collect()
 }
 
+/// The id of the status that a reason gives an epoch.
+pub fn of(reason: Option<Reason>) -> &'static str {
+    reason.map_or(Status::Ok, Reason::status).id()
+}
+
 /// The id of a reason, empty for none.
 pub fn id(reason: Option<Reason>) -> &'static str {
     reason.map_or("", Reason::id)

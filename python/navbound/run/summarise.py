@@ -22,6 +22,7 @@ from navbound.run.records import (
     Worst,
 )
 from navbound.run.words import honesty_words, protection_words, verdict_words
+from navbound.status import USABLE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -278,7 +279,7 @@ def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
         return None
     error = np.column_stack([column_of(epochs, name) for name in errors])
     upper = np.column_stack([column_of(epochs, name) for name in COVARIANCE_COLUMNS[: 6 if vertical else 3]])
-    usable = epochs.get_column("status").is_in(["ok", "degraded"]).to_numpy()
+    usable = epochs.get_column("status").is_in(USABLE).to_numpy()
     known = usable & np.isfinite(error).all(axis=1) & np.isfinite(upper).all(axis=1)
     if not known.any():
         return None

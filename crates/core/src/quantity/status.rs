@@ -139,6 +139,8 @@ reasons! {
     NoCovariance, "no_covariance", NotAvailable, "no covariance";
     /// Numbers that are no covariance.
     NotACovariance, "not_a_covariance", InvalidInput, "not a covariance";
+    /// A covariance without an inverse.
+    SingularCovariance, "singular_covariance", Ok, "the covariance is singular: the axis pierces no surface";
     /// A covariance of zeros.
     ZeroCovariance, "zero_covariance", Degraded, "covariance is zero";
     /// Navigation by DME ranges.
@@ -201,6 +203,14 @@ impl Unavailable {
             Self::TooFewSatellites { .. } => Reason::TooFewSatellites,
             Self::Singular { .. } => Reason::Singular,
             Self::Invalid { .. } => Reason::InvalidNumber,
+        }
+    }
+
+    /// The same of a solution: a number outside its domain came out of it, the input may well be right.
+    pub const fn reason_of_solution(&self) -> Reason {
+        match self.reason() {
+            Reason::InvalidNumber => Reason::NoPlausibleSolution,
+            other => other,
         }
     }
 }
