@@ -60,6 +60,7 @@ def _hazard(**more: Any) -> dict[str, Any]:
     return {**{name: value * TWO for name, value in names.items()}, **more}
 
 
+ENU_STATIONS = {"AAA": np.array([20e3, 0.0, 0.0]), "BBB": np.array([0.0, 30e3, 0.0]), "CCC": np.array([-25e3, 10e3, 0.0])}
 OFFSET = np.array([[20.0, 5.0], [10.0, -7.0]])
 OFFSET_3 = np.array([[20.0, 5.0, 3.0], [10.0, -7.0, 2.0]])
 USERS = {"lat_rad": 0.7 * TWO, "lon_rad": 0.3 * TWO, "h_m": 100.0 * TWO}
@@ -246,6 +247,41 @@ CALLS: dict[str, Call] = {
             "sigma_altitude_m": 30.0,
         },
     ),
+    "dme.best_pair": Call(
+        dme.best_pair, {"aircraft_enu_m": np.array([0.0, 0.0, 5000.0]), "sigma_altitude_m": 30.0}, {"stations_enu_m": ENU_STATIONS}
+    ),
+    "dme.pairs": Call(
+        dme.pairs, {"aircraft_enu_m": np.array([0.0, 0.0, 5000.0]), "sigma_altitude_m": 30.0}, {"stations_enu_m": ENU_STATIONS}
+    ),
+    "dme.solve": Call(
+        dme.solve,
+        {
+            "slant_m": np.array([[29e3, 45e3, 52e3]] * 2),
+            "h_m": np.full(2, 5000.0),
+            "sigma_altitude_m": 30.0,
+            "sigma_m": np.full((2, 3), 200.0),
+            "prior_lat_rad": np.full(2, 0.703),
+            "prior_lon_rad": np.full(2, 0.303),
+            "prior_within_m": 60e3,
+            "residual_risk": 1e-3,
+        },
+        {"stations": STATIONS},
+    ),
+    "dme.solve_vor": Call(
+        dme.solve_vor,
+        {
+            "slant_m": np.full(2, 30e3),
+            "bearing_rad": TWO,
+            "station_rad_m": np.array([0.7, 0.3, 100.0]),
+            "h_m": np.full(2, 5000.0),
+            "sigma_altitude_m": 30.0,
+            "sigma_bearing_rad": 0.04,
+        },
+    ),
+    "sbas.extraction_beta_from_autocorrelation": Call(
+        sbas.extraction_beta_from_autocorrelation, {"autocorrelation_m2": np.exp(-np.arange(4000) / 100.0), "rho": 0.98}
+    ),
+    "raim.factors": Call(raim.factors, {"n_redundant": np.array([1, 2])}),
     "kpi.stanford": Call(kpi.stanford, {"error_m": 3.0 * TWO, "level_m": 20.0 * TWO, "alert_limit_m": 40.0}),
     "kpi.rnp": Call(kpi.rnp, {"rnp_nm": 0.3, "tta_s": 10.0}),
     "evaluation.bound": Call(evaluation.bound, {"error_m": 3.0 * TWO, "bound_m": 20.0 * TWO, "risk": 0.05}),
@@ -301,16 +337,10 @@ WITHOUT: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "dme.best_pair",
-            "dme.pairs",
             "dme.select",
-            "dme.solve",
-            "dme.solve_vor",
             "sbas.error_extraction",
             "sbas.levels_from_terms",
-            "sbas.extraction_beta_from_autocorrelation",
             "sbas.extraction_beta_from_spectrum",
-            "raim.factors",
         ),
         "not yet sampled",
     ),

@@ -75,7 +75,7 @@ def test_the_search_sees_a_risk_in_every_form() -> None:
 
 @pytest.mark.parametrize(("name", "other"), [("risk_accuracy", 0.01), ("risk_integrity", 1e-7)])
 def test_a_changed_risk_is_stated_everywhere_and_the_default_nowhere(name: str, other: float) -> None:
-    run = judged(Settings(**{name: other})  # type: ignore[arg-type])
+    run = judged(Settings(**{name: other}))  # type: ignore[arg-type]
     places = stated({"record": run.record.model_dump(mode="json"), "summary": run.summary.model_dump(mode="json")})
     assert [where for where, value in places if says(value, DEFAULTS[name])] == []
     new = [where for where, value in places if says(value, other)]
