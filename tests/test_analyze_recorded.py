@@ -129,7 +129,7 @@ def test_a_quality_indicator_becomes_a_covariance_and_expires() -> None:
     m = material(TRACE, requirement="RNP 2", rnp_m=3704)
     words = m.assumptions[0]
     assert "NACp" in words
-    assert "general knowledge" in words
+    assert "which was not read" in words
     # NACp 10: EPU below 10 m; of a circular error 95 % lie within 2.4477 sigma (spec of the total system error, 1.5).
     usual = m.epochs["cov_ee_m2"].drop_nulls().mode()[0]
     assert abs(math.sqrt(usual) - 10 / 2.4477468306808165) < 1e-12

@@ -46,7 +46,7 @@ def test_probabilities_agree_with_nested_quadrature(sigma: tuple[float, ...], me
 
 def test_a_round_error_with_a_mean_is_non_central_chi_square() -> None:
     for distance in (0.5, 3.0, 6.0, 12.0, 40.0):
-        for risk in (0.9, 0.5, 0.05, 1e-5):
+        for risk in (0.5, 0.05, 1e-5):
             circle = anp.circle(4.0 * np.eye(2), risk, [0.6 * distance, 0.8 * distance])
             assert circle == pytest.approx(anp_scipy.rice_radius(2.0, distance, risk), rel=1e-9)
             sphere = anp.sphere(4.0 * np.eye(3), risk, [0.0, 0.6 * distance, 0.8 * distance])
@@ -54,7 +54,7 @@ def test_a_round_error_with_a_mean_is_non_central_chi_square() -> None:
 
 
 def test_a_biased_line_agrees_with_the_two_tails() -> None:
-    for bias, risk in [(0.0, 0.05), (0.3, 0.05), (-4.0, 1e-5), (50.0, 1e-9), (1e-9, 0.9), (3.0, 0.999)]:
+    for bias, risk in [(0.0, 0.05), (0.3, 0.05), (-4.0, 1e-5), (50.0, 1e-9), (1e-9, 0.5), (3.0, 0.4)]:
         found = anp.along(4.0 * np.eye(3), [0.0, 1.0, 0.0], risk, [7.0, bias, 7.0])
         assert found == pytest.approx(anp_scipy.folded_half_width(bias, 2.0, risk), rel=1e-12)
 

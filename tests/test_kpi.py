@@ -275,7 +275,8 @@ def test_levels_carry_their_provenance() -> None:
     table = kpi.levels()
     assert table["APV-I"].provenance["hal_m"] == "standard"
     assert table["CAT-I-12"].provenance["val_m"] == "printed"
-    assert all("confirm" in found.source for found in table.values())
+    assert all("Doc 9849" in found.source for found in table.values() if found.provenance["hal_m"] == "standard")
+    assert table["APV-I"].provenance["tta_s"] == "inferred"
     own = kpi.rnp(0.3, tta_s=10.0)
     assert (own.hal_m, own.provenance["hal_m"]) == (0.3 * 1852.0, "inferred")
     assert kpi.evaluate(series(100), own).levels[0].level.id == "RNP 0.3"

@@ -18,6 +18,8 @@ WORDS = {
     "phase",
     "status",
     "reason",
+    "reason_id",
+    "excluded_sv",
     "mode",
     "nav_mode",
     "alert",

@@ -52,7 +52,7 @@ def test_area_navigation_asks_for_no_containment() -> None:
     cell = rnp.specification("RNAV 5", "arrival")
     assert cell.containment_m is None
     assert cell.containment_risk is None
-    assert cell.provenance == "standard"
+    assert cell.provenance == "inferred"
 
 
 def test_a_table_is_judged_track_by_track() -> None:

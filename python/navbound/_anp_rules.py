@@ -117,7 +117,7 @@ def sphere_grubbs(covariance_enu_m2: ArrayLike, risk: ArrayLike, mean_enu_m: Arr
     Raises
     ------
     InputError
-        Not a covariance, a mean that is not finite, or a risk outside (0, 1).
+        Not a covariance, a mean that is not finite, or a risk outside [1e-300, 0.5].
     """
     mean = np.zeros(3) if mean_enu_m is None else mean_enu_m
     shape, (v, q, m) = flatten(covariance_enu_m2=(covariance_enu_m2, (3, 3)), risk=(risk, ()), mean_enu_m=(mean, (3,)))

@@ -70,7 +70,7 @@ def rectangle_scale(
 ) -> Floats:
     """Factor by which both half sizes are stretched until the error leaves the rectangle with this risk. [1].
 
-    Arguments and errors as :func:`rectangle`, and a risk inside (0, 1), shape (...).
+    Arguments and errors as :func:`rectangle`, and a risk inside [1e-300, 0.5], shape (...).
     """
     mean = np.zeros(2) if mean_cu_m is None else mean_cu_m
     shape, (v, c, u, m, q) = flatten(
@@ -131,7 +131,7 @@ def cylinder_scale(
 ) -> Floats:
     """Factor by which radius and half height are stretched until the error leaves the cylinder with this risk. [1].
 
-    Arguments and errors as :func:`cylinder`, and a risk inside (0, 1), shape (...).
+    Arguments and errors as :func:`cylinder`, and a risk inside [1e-300, 0.5], shape (...).
     """
     mean = np.zeros(3) if mean_enu_m is None else mean_enu_m
     shape, (v, r, h, m, q) = flatten(
@@ -164,7 +164,7 @@ def box_factor(covariance_enu_m2: ArrayLike, risk: ArrayLike) -> Floats:
     Raises
     ------
     InputError
-        Not a covariance, a horizontal variance of zero, or a risk outside (0, 1).
+        Not a covariance, a horizontal variance of zero, or a risk outside [1e-300, 0.5].
     """
     shape, (v, q) = flatten(covariance_enu_m2=(covariance_enu_m2, (3, 3)), risk=(risk, ()))
     return unflatten(_core.anp_box_factor(v, q), shape)

@@ -19,7 +19,7 @@ from navbound._araim_settings import (
     support_rows,
 )
 from navbound._receivers import Navigation, Observations
-from navbound._watched import Watched, checked_model, checked_smoothing, range_models, watched
+from navbound._watched import Watched, checked_model, checked_smoothing, judged, range_models, watched
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -92,20 +92,14 @@ def watch(
         numbers,
         checked_smoothing(smoothing_s),
     )
-    status = np.array(found.pop("words"))[found.pop("outcome")]
+    outcome = np.array(found.pop("words"))[found.pop("outcome")]
     decision = np.array(found.pop("decision"), dtype=np.str_)
-    usable = (status == "ok") & (decision != "not_excluded")
-    without = np.isin(decision, ["", "not_excluded"])
-    why = np.where(
-        decision == "not_excluded", "a fault that cannot be excluded", np.where(status == "not_monitored", status, found["reason"])
-    )
-    excluded = [",".join(names) for names in found.pop("excluded")]
+    usable = (outcome == "ok") & (decision != "not_excluded")
     columns = {
         **{name: np.where(usable, found[name], np.nan) for name in ("hpl_m", "vpl_m", "emt_m")},
         **{name: found[name] for name in ("n_sv", "n_excluded", "n_modes")},
         "mode": ["araim"] * observations.n_epochs,
-        "status": np.where(without, "not_available", np.where(decision == "excluded", "degraded", "ok")),
-        "reason": [f"excluded {e}" if e else w for e, w in zip(excluded, why.tolist(), strict=True)],
+        **judged(found, [",".join(names) for names in found.pop("excluded")]),
     }
     budgets = SERVICES[service] if isinstance(service, str) else service
     name = service if isinstance(service, str) else "the caller's"

@@ -13,6 +13,7 @@ import numpy as np
 from navbound import _core
 from navbound._arrays import flatten, unflatten
 from navbound.errors import InputError
+from navbound.status import availability, reasons_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -236,8 +237,8 @@ class ExtractionBias:
         The worst bias of the weighted solution itself. [m]
     n_sv : ndarray of int
         Satellites used.
-    status, reason : ndarray of str
-        ``ok`` or ``not_available``, and why.
+    status, reason, reason_id : ndarray of str
+        ``ok`` or ``not_available``; why, for people; the same as an id of ``navbound.status.REASONS``.
     """
 
     from_dop_h_m: Floats
@@ -247,6 +248,7 @@ class ExtractionBias:
     n_sv: NDArray[np.int64]
     status: NDArray[np.str_]
     reason: NDArray[np.str_]
+    reason_id: NDArray[np.str_]
 
 
 def extraction_bias(
@@ -291,10 +293,10 @@ def extraction_bias(
         raise InputError("constellation", f"{len(systems)} satellites", domain=f"one index for each of {shape[-1]} satellites")
     found = _core.ee_bias_sights((az, el, sigma), systems, float(mu_most_m), float(alpha))
     leading = shape[:-1]
-    reason = np.array(found["reason"], dtype=np.str_).reshape(leading)
+    reason, reason_id = reasons_of(found, leading)
     (from_dop_h, from_dop_v), (exact_h, exact_v) = (_columns(found[name], leading) for name in ("from_dop", "exact"))
-    status = np.where(reason == "", "ok", "not_available")
-    return ExtractionBias(from_dop_h, from_dop_v, exact_h, exact_v, found["n_sv"].reshape(leading), status, reason)
+    n_sv = found["n_sv"].reshape(leading)
+    return ExtractionBias(from_dop_h, from_dop_v, exact_h, exact_v, n_sv, availability(reason_id), reason, reason_id)
 
 
 def extraction_bias_dop(

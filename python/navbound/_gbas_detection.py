@@ -36,7 +36,7 @@ def fault_probability(n_sv: ArrayLike, rate_per_hour: ArrayLike, tau_s: float = 
 
 
 def missed_by_monitor(error_m: ArrayLike, service: Service = "D", *, stretch: float | None = None) -> NDArray[np.float64]:
-    """Probability that the ground monitors miss a range error (ICAO Annex 10 appendix B, from memory; GAST F inferred).
+    """Probability that the ground monitors miss a range error (ICAO Annex 10 appendix B, which was not read: inferred; GAST F too).
 
     Parameters
     ----------

@@ -11,6 +11,7 @@ from navbound import _core
 from navbound._arrays import flatten, unflatten
 from navbound._stations import Stations
 from navbound.errors import InputError
+from navbound.status import sentences, statuses
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,21 +21,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 VOR_SIGMA_RAD = math.radians(math.sqrt(3.5**2 + 1.0**2 + 2.7**2) / 2)
-"""Standard deviation of a VOR bearing: half of 3.5, 1.0 and 2.7 degrees (ground, air, pilotage; 95 %) together. Standard, from general
-knowledge, clause to be cited. [rad]"""
+"""Standard deviation of a VOR bearing: half of 3.5, 1.0 and 2.7 degrees (ground, air, pilotage; 95 %) together.
+Inferred: the text was not read. [rad]"""
 
 SWITCHING = (0.05, 10.0)
 """A pair replaces the one in use when it has been better by this share for this time. Ours. [1, s]"""
-
-_REASONS = ("", *_core.dme_reasons())
-_VERDICTS = (
-    "",
-    "one range contradicts the others and is left out",
-    "the residuals contradict the deviations of the ranges, and three do not tell which",
-    "the residuals contradict the deviations of the ranges, and leaving out one does not mend it",
-)
-"""What the residuals say, in the order of the core."""
-_LEFT_OUT = 1
 
 
 class Positions(NamedTuple):
@@ -42,8 +33,9 @@ class Positions(NamedTuple):
 
     ``lat_rad``, ``lon_rad`` at the altitude given [rad], ``covariance_enu_m2`` of the navigation error, shape (..., 3, 3) [m²], its
     horizontal ``drms_m`` [m], ``n_ranges`` used, ``p_residual`` the risk of residuals as large if the errors are as the weights say (NaN
-    without redundancy), ``status`` ``ok``, ``degraded`` (the residuals contradict the weights) or ``not_available``, ``reason``, and
-    ``excluded``, the station whose range is left out by its place in the table (-1: none); the position is then that of the others.
+    without redundancy), ``status`` ``ok``, ``degraded`` (the residuals contradict the weights) or ``not_available``, ``reason`` for
+    people, ``reason_id`` of ``navbound.status.REASONS`` (empty for none), and ``excluded``, the station whose range is left out by its
+    place in the table (-1: none); the position is then that of the others.
     """
 
     lat_rad: Floats
@@ -55,6 +47,7 @@ class Positions(NamedTuple):
     status: NDArray[np.str_]
     reason: NDArray[np.str_]
     excluded: NDArray[np.int64]
+    reason_id: NDArray[np.str_]
 
 
 def solve(
@@ -164,7 +157,7 @@ def solve_vor(
     lat, lon, height = (np.ascontiguousarray(station[:, k]) for k in range(3))
     found = _core.dme_solve_vor(slant, bearing, (lat, lon, height), h, sigma_bearing_rad, sigma_altitude_m)
     n = len(h)
-    return _positions(found | {"excluded": np.full(n, -1), "verdict": np.zeros(n, dtype=np.uint8)}, shape)
+    return _positions(found | {"excluded": np.full(n, -1)}, shape)
 
 
 class Sights(NamedTuple):
@@ -363,9 +356,7 @@ def _core_network(network: Stations) -> tuple[tuple[Floats, Floats, Floats], Flo
 
 
 def _positions(found: dict[str, Any], shape: tuple[int, ...]) -> Positions:
-    code, verdict = found.pop("reason"), found.pop("verdict")
-    contradicted = verdict > _LEFT_OUT
-    status = np.where(code > 0, "not_available", np.where(contradicted, "degraded", "ok"))
-    reason = np.where(code > 0, np.array(_REASONS)[code], np.array(_VERDICTS)[verdict])
+    reason_id = np.array(found.pop("reason_id"), dtype=np.str_).reshape(shape)
     numbers: dict[str, Any] = {name: unflatten(values, shape) for name, values in found.items()}
-    return Positions(**numbers, status=status.reshape(shape), reason=reason.reshape(shape))
+    status, reason = statuses(reason_id), sentences(reason_id)
+    return Positions(**numbers, status=status, reason=reason, reason_id=reason_id)

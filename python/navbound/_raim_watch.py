@@ -18,7 +18,7 @@ from navbound._araim_settings import (
     support_rows,
 )
 from navbound._receivers import Navigation, Observations
-from navbound._watched import Watched, checked_model, checked_smoothing, range_models, watched
+from navbound._watched import Watched, checked_model, checked_smoothing, judged, range_models, watched
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -85,15 +85,9 @@ def watch(
     found = _core.raim_watch(
         observations._core, navigation._core, systems, signals == "dual", mask_rad, promises, airborne, numbers, smoothing
     )
-    status = np.array(found.pop("words"))[found.pop("outcome")]
+    outcome = np.array(found.pop("words"))[found.pop("outcome")]
     decision = np.array(found.pop("decision"), dtype=np.str_)
-    usable = np.isin(decision, ["none", "excluded"]) & (status == "ok")
-    excluded = np.array(found.pop("excluded"), dtype=np.str_)
-    reason = np.select(
-        [decision == "not_excluded", decision == "excluded", (decision == "none") & (status == "not_monitored")],
-        ["a fault that cannot be excluded", np.char.add("excluded ", excluded), "a fault could not be detected"],
-        default=np.array(found.pop("reason"), dtype=np.str_),
-    )
+    usable = np.isin(decision, ["none", "excluded"]) & (outcome == "ok")
     levels = ("hpl_m", "vpl_m", "hpl_slope_m", "vpl_slope_m")
     columns = {
         **{name: np.where(usable, found[name], np.nan) for name in levels},
@@ -102,8 +96,7 @@ def watch(
         "n_excluded": (decision == "excluded").astype(np.int64),
         "decision": decision,
         "mode": ["raim"] * observations.n_epochs,
-        "status": np.select([np.isin(decision, ["", "not_excluded"]), decision == "excluded"], ["not_available", "degraded"], "ok"),
-        "reason": reason,
+        **judged(found, found.pop("excluded")),
     }
     models = {
         "protection levels": f"RAIM, weighted slope: {SOURCES[0]}",

@@ -443,7 +443,7 @@ def solve(
     share, model = found.pop("smoothed_share"), found.pop("ionosphere")
     name = track or observations.marker or observations.path.name
     columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **found}
-    epochs = pl.DataFrame(columns).with_columns(pl.when(pl.col("reason") != "").then(pl.col("reason")).alias("reason"))
+    epochs = pl.DataFrame(columns).with_columns(pl.col("reason", "reason_id").replace({"": None}))
     floats = [c for c, kind in epochs.schema.items() if kind == pl.Float64]
     epochs = epochs.with_columns(pl.col(floats).fill_nan(None))
     if truth_ecef_m is not None:

@@ -14,6 +14,7 @@ import polars as pl
 from navbound import _core
 from navbound._receivers import Navigation, read_navigation, with_errors
 from navbound.errors import InputError
+from navbound.status import REASONS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -77,11 +78,13 @@ def corrected_positions(
     found = _core.sbas_positions(service, observations._core, smoothing_s, false_alarm)
     satellites, unused, share, ignored = (found.pop(name) for name in ("satellites", "unused", "smoothed_share", "ignored"))
     if service["test_signal"]:
-        found["status"] = ["degraded" if status == "ok" else status for status in found["status"]]
+        found["reason_id"] = [id_ or "test_signal" for id_ in found["reason_id"]]
+        found["status"] = [REASONS[id_].status for id_ in found["reason_id"]]
+        found["reason"] = [sentence or REASONS[id_].words for id_, sentence in zip(found["reason_id"], found["reason"], strict=True)]
     found["mode"] = MODES[found["mode"]]
     name = track or observations.marker or observations.path.name
     epochs = pl.DataFrame({"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **found})
-    epochs = epochs.with_columns(pl.col("mode", "reason").replace({"": None}), pl.selectors.float().fill_nan(None))
+    epochs = epochs.with_columns(pl.col("mode", "reason_id", "reason").replace({"": None}), pl.selectors.float().fill_nan(None))
     if truth_ecef_m is not None:
         epochs = with_errors(epochs, truth_ecef_m)
     models = _models(service, smoothing_s, false_alarm)

@@ -101,7 +101,7 @@ class Levels:
         ``ok``, ``not_available``, or ``degraded`` for every level of a test signal.
     reason : ndarray of int
         0 where there is a level, else 1 + index into ``reasons``.
-    reasons : list of str
+    reasons, reason_ids : list of str
         Why there is no level, in words.
     test_signal : bool
         A message 0 was disregarded on request: nothing here is for navigation.
@@ -116,6 +116,7 @@ class Levels:
     status: NDArray[np.str_]
     reason: NDArray[np.uint32]
     reasons: list[str]
+    reason_ids: list[str]
     test_signal: bool
     ignored: list[tuple[int, str]]
 

@@ -159,6 +159,27 @@ class StateClassifier:
         shape, (x,) = flatten(nse_m=(nse_m, ()))
         return self._core.classes(x, _prior(prior)).reshape(shape)
 
+    def tightest(self, probability: ArrayLike, risk: float) -> list[str | None]:
+        """The tightest level that an error is beyond with at most a risk.
+
+        Parameters
+        ----------
+        probability : array_like, shape (n, len(names))
+            Of each state, as `probabilities` gives them.
+        risk : float
+            Allowed to be beyond the level. [1]
+
+        Returns
+        -------
+        list of str
+            Names; None for a row that holds a NaN.
+        """
+        table = np.asarray(probability, dtype=np.float64)
+        beyond = 1.0 - np.cumsum(table, axis=1)
+        places = np.argmax(beyond <= risk, axis=1).tolist()
+        known: list[bool] = np.asarray(~np.isnan(table).any(axis=1)).tolist()
+        return [self.names[k] if ok else None for k, ok in zip(places, known, strict=True)]
+
     def threshold_class(self, nse_m: ArrayLike) -> NDArray[np.int64]:
         """Give the first state whose boundary the error does not exceed; a NaN error is out of RNP."""
         shape, (x,) = flatten(nse_m=(nse_m, ()))

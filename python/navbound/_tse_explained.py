@@ -71,7 +71,7 @@ def rotated_frame(
     sigma_a_m, sigma_b_m : array_like, shape (...)
         Standard deviations along the two axes. [m]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -81,7 +81,7 @@ def rotated_frame(
     Raises
     ------
     InputError
-        A NaN slope, not finite, a negative deviation, or a risk outside (0, 1).
+        A NaN slope, not finite, a negative deviation, or a risk outside [1e-300, 0.5].
     """
     shape, [slope, x, y, a, b, q] = flatten(
         k=(k, ()), x0_m=(x0_m, ()), y0_m=(y0_m, ()), sigma_a_m=(sigma_a_m, ()), sigma_b_m=(sigma_b_m, ()), risk=(risk, ())
@@ -100,7 +100,7 @@ def explain(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, course_rad: Arr
     offset_en_m, covariance_en_m2, course_rad : array_like, shapes (..., 2), (..., 2, 2) and (...)
         As :func:`project`. [m, m², rad]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -110,7 +110,7 @@ def explain(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, course_rad: Arr
     Raises
     ------
     InputError
-        As :func:`project`, or a risk outside (0, 1).
+        As :func:`project`, or a risk outside [1e-300, 0.5].
     """
     shape, [p, c, chi, q] = flatten(
         offset_en_m=(offset_en_m, (2,)), covariance_en_m2=(covariance_en_m2, (2, 2)), course_rad=(course_rad, ()), risk=(risk, ())

@@ -80,7 +80,7 @@ def random_fte(
     sigma_fte_m, sigma_nse_m, sigma_pde_m : array_like, shape (...)
         Standard deviations of flight technical, navigation system and path definition error. [m]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
     correlation : array_like, shape (...)
         Correlation of flight technical and navigation system error, in [-1, 1]. [1]
 
@@ -117,7 +117,7 @@ def student_t(fte_m: ArrayLike, scale_m: ArrayLike, degrees_of_freedom: ArrayLik
     degrees_of_freedom : array_like, shape (...)
         nu, from 1 to 1e6. [1]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -143,7 +143,7 @@ def mixture(weight: ArrayLike, fte_m: ArrayLike, sigma_m: ArrayLike, risk: Array
     fte_m, sigma_m : array_like, shape (..., k)
         Mean and standard deviation of each component. [m]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -153,7 +153,7 @@ def mixture(weight: ArrayLike, fte_m: ArrayLike, sigma_m: ArrayLike, risk: Array
     Raises
     ------
     InputError
-        Not finite, a negative weight or deviation, weights that do not sum to one, or a risk outside (0, 1).
+        Not finite, a negative weight or deviation, weights that do not sum to one, or a risk outside [1e-300, 0.5].
     """
     k = np.shape(weight)[-1:]
     if k in {(), (0,)}:
@@ -233,7 +233,7 @@ def vertical(
     path_angle_rad : array_like, shape (...)
         Path angle, negative on a descent. [rad]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -243,7 +243,7 @@ def vertical(
     Raises
     ------
     InputError
-        Not finite, a vertical path, a covariance that is not symmetric or is indefinite, or a risk outside (0, 1).
+        Not finite, a vertical path, a covariance that is not symmetric or is indefinite, or a risk outside [1e-300, 0.5].
     """
     shape, [p, c, chi, gamma, q] = flatten(
         offset_enu_m=(offset_enu_m, (3,)),
@@ -322,11 +322,11 @@ def box(
     fte_v_m, sigma_v_m : array_like, shape (...)
         Error and standard deviation above it. [m]
     risk : array_like, shape (...)
-        Allowed joint risk in (0, 1). [1]
+        Allowed joint risk in [1e-300, 0.5]. [1]
     correlation : array_like, shape (...)
         Correlation of the two errors. [1]
     share : array_like, shape (...)
-        Part of the risk for the side walls, in (0, 1). [1]
+        Part of the risk for the side walls, in [1e-300, 0.5]. [1]
 
     Returns
     -------

@@ -47,7 +47,7 @@ def factors(risk: ArrayLike) -> Factors:
     Parameters
     ----------
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -57,7 +57,7 @@ def factors(risk: ArrayLike) -> Factors:
     Raises
     ------
     InputError
-        A risk outside (0, 1).
+        A risk outside [1e-300, 0.5].
     """
     shape, [q] = flatten(risk=(risk, ()))
     return Factors(*split_columns(_core.tse_factors(q), shape))
@@ -99,12 +99,12 @@ class Exact:
     Parameters
     ----------
     risk : float
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Raises
     ------
     InputError
-        A risk outside (0, 1), or not a single number.
+        A risk outside [1e-300, 0.5], or not a single number.
     """
 
     def __init__(self, risk: float) -> None:
@@ -151,7 +151,7 @@ def exact(fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Floats:
     sigma_m : array_like, shape (...)
         Standard deviation of the navigation error across the path. [m]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -161,7 +161,7 @@ def exact(fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Floats:
     Raises
     ------
     InputError
-        Not finite, a negative deviation, or a risk outside (0, 1).
+        Not finite, a negative deviation, or a risk outside [1e-300, 0.5].
     """
     if _is_single(risk):
         return _prepared(_single(risk))(fte_m, sigma_m)
@@ -214,7 +214,7 @@ def sqsm(fte_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -> Floa
     Raises
     ------
     InputError
-        As :func:`project`, or a risk outside (0, 1).
+        As :func:`project`, or a risk outside [1e-300, 0.5].
     """
     shape, [f, c, q] = flatten(fte_m=(fte_m, ()), covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ()))
     return unflatten(_core.tse_sqsm(f, c, q), shape)
@@ -230,7 +230,7 @@ def ctem(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -
     offset_en_m, covariance_en_m2 : array_like, shapes (..., 2) and (..., 2, 2)
         As :func:`project`. [m, m²]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -240,7 +240,7 @@ def ctem(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -
     Raises
     ------
     InputError
-        As :func:`project`, or a risk outside (0, 1).
+        As :func:`project`, or a risk outside [1e-300, 0.5].
     """
     shape, [p, c, q] = flatten(offset_en_m=(offset_en_m, (2,)), covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ()))
     return unflatten(_core.tse_ctem(p, c, q), shape)
@@ -256,7 +256,7 @@ def ctem_foot(fte_m: ArrayLike, course_rad: ArrayLike, covariance_en_m2: ArrayLi
     course_rad, covariance_en_m2 : array_like, shapes (...) and (..., 2, 2)
         As :func:`project`. [rad, m²]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -266,7 +266,7 @@ def ctem_foot(fte_m: ArrayLike, course_rad: ArrayLike, covariance_en_m2: ArrayLi
     Raises
     ------
     InputError
-        As :func:`project`, or a risk outside (0, 1).
+        As :func:`project`, or a risk outside [1e-300, 0.5].
     """
     shape, [f, chi, c, q] = flatten(
         fte_m=(fte_m, ()), course_rad=(course_rad, ()), covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ())
@@ -284,7 +284,7 @@ def rssm(
     sigma_fte_m, sigma_nse_m, sigma_pde_m : array_like, shape (...)
         Standard deviations of flight technical, navigation system and path definition error. [m]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
     correlation : array_like, shape (...)
         Correlation of flight technical and navigation system error, in [-1, 1]. [1]
 

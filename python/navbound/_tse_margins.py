@@ -36,7 +36,7 @@ def margin(fte_m: ArrayLike, sigma_m: ArrayLike, limit_m: ArrayLike, risk: Array
     limit_m : array_like, shape (...)
         The limit. [m]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -85,7 +85,7 @@ def fte_budget(limit_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Float
     sigma_m : array_like, shape (...)
         Standard deviation of the navigation error across the path. [m]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -95,7 +95,7 @@ def fte_budget(limit_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Float
     Raises
     ------
     InputError
-        Not finite, a negative limit or deviation, or a risk outside (0, 1).
+        Not finite, a negative limit or deviation, or a risk outside [1e-300, 0.5].
     """
     shape, [limit, s, q] = flatten(limit_m=(limit_m, ()), sigma_m=(sigma_m, ()), risk=(risk, ()))
     return unflatten(_core.tse_fte_budget(limit, s, q), shape)
@@ -111,7 +111,7 @@ def sigma_budget(limit_m: ArrayLike, fte_m: ArrayLike, risk: ArrayLike) -> Float
     fte_m : array_like, shape (...)
         Flight technical error, of either sign. [m]
     risk : array_like, shape (...)
-        Allowed risk in (0, 1). [1]
+        Allowed risk in [1e-300, 0.5]. [1]
 
     Returns
     -------
@@ -121,7 +121,7 @@ def sigma_budget(limit_m: ArrayLike, fte_m: ArrayLike, risk: ArrayLike) -> Float
     Raises
     ------
     InputError
-        Not finite, a negative limit, or a risk outside (0, 1).
+        Not finite, a negative limit, or a risk outside [1e-300, 0.5].
     """
     shape, [limit, f, q] = flatten(limit_m=(limit_m, ()), fte_m=(fte_m, ()), risk=(risk, ()))
     return unflatten(_core.tse_sigma_budget(limit, f, q), shape)

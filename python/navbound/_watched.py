@@ -12,8 +12,11 @@ from navbound._araim_settings import ErrorModel, Support, error_model, stated
 from navbound._monitor_fit import Fit, fit_of
 from navbound._receivers import SYSTEMS, Navigation, Observations, signal_words, unused_words, used_satellites, with_errors
 from navbound.errors import InputError
+from navbound.status import sentences
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
 
@@ -24,9 +27,10 @@ class Watched:
     Attributes
     ----------
     epochs : DataFrame
-        The epoch table (docs/notation.md): ``track``, ``time_ns``, ``est_*``, the monitor's levels and numbers, ``mode``, ``status``,
-        ``reason``, with truth also ``truth_*`` and ``nse_*``. ``status`` is ``degraded`` after an exclusion, ``not_available`` where a
-        fault could not be excluded or there is no position. Where there are no levels they are null.
+        The epoch table (docs/notation.md): ``track``, ``time_ns``, ``est_*``, the monitor's levels and numbers, ``mode``,
+        ``excluded_sv``, ``status``, ``reason_id``, ``reason``, with truth also ``truth_*`` and ``nse_*``. ``status`` is ``degraded`` after
+        an exclusion, ``not_available`` where a fault could not be excluded or there is no position. Where there are no levels they are
+        null.
     models : dict of str to str
         Every model by name, for the record of a run.
     unused : dict of str to int
@@ -61,6 +65,15 @@ def checked_model(navigation: Navigation, systems: str, signals: str, model: str
     if not 0 <= mask_rad < np.pi / 2:
         raise InputError("mask_rad", mask_rad, "rad", "[0, pi/2)")
     return error_model(f"{signals}-frequency" if model is None else model)
+
+
+def judged(found: dict[str, Any], excluded_sv: Sequence[str]) -> dict[str, Any]:
+    """Status, reason and excluded satellites of every epoch; the sentence names the satellites, or repeats the core's refusal."""
+    ids = np.array(found.pop("reason_id"), dtype=np.str_)
+    detail = np.char.add(np.where(np.array(excluded_sv) != "", " ", ""), np.array(excluded_sv, dtype=np.str_))
+    refusal = np.array(found.pop("refusal"), dtype=np.str_)
+    words = np.where(np.char.str_len(refusal) > 0, refusal, np.char.add(sentences(ids), detail))
+    return {"excluded_sv": excluded_sv, "status": found.pop("status"), "reason_id": ids, "reason": words}
 
 
 def watched(

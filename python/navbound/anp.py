@@ -39,6 +39,7 @@ from navbound._anp_shapes import (
 )
 from navbound._arrays import flatten, unflatten
 from navbound.errors import InputError
+from navbound.status import REASONS
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -91,7 +92,6 @@ __all__ = [
 ]
 
 _ACCURACY = 0.05
-_SINGULAR = "the covariance is singular: the axis pierces no surface"
 
 
 class Law(NamedTuple):
@@ -170,7 +170,7 @@ def circle(covariance_en_m2: ArrayLike, risk: ArrayLike, mean_en_m: ArrayLike | 
     Raises
     ------
     InputError
-        Not a covariance, a mean that is not finite, or a risk outside (0, 1).
+        Not a covariance, a mean that is not finite, or a risk outside [1e-300, 0.5].
     """
     if mean_en_m is None:
         shape, (covariance, q) = flatten(covariance_en_m2=(covariance_en_m2, (2, 2)), risk=(risk, ()))
@@ -201,7 +201,7 @@ def sphere(covariance_enu_m2: ArrayLike, risk: ArrayLike, mean_enu_m: ArrayLike 
     Raises
     ------
     InputError
-        Not a covariance, a mean that is not finite, or a risk outside (0, 1).
+        Not a covariance, a mean that is not finite, or a risk outside [1e-300, 0.5].
     """
     if mean_enu_m is None:
         shape, (covariance, q) = flatten(covariance_enu_m2=(covariance_enu_m2, (3, 3)), risk=(risk, ()))
@@ -312,7 +312,7 @@ def directional(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayL
     Raises
     ------
     InputError
-        Not a covariance, a mean that is not finite, a direction without length, or a risk outside (0, 1).
+        Not a covariance, a mean that is not finite, a direction without length, or a risk outside [1e-300, 0.5].
     """
     mean = np.zeros(3) if mean_enu_m is None else mean_enu_m
     shape, (covariance, u, q, m) = flatten(
@@ -363,7 +363,7 @@ def chi_factor(dimension: int, risk: ArrayLike) -> Floats:
     Raises
     ------
     InputError
-        Another dimension, or a risk outside (0, 1).
+        Another dimension, or a risk outside [1e-300, 0.5].
     """
     if dimension not in (1, 2, 3):
         raise InputError("dimension", dimension, "1", "{1, 2, 3}")
@@ -392,12 +392,12 @@ def ellipsoid(covariance_enu_m2: ArrayLike, risk: ArrayLike) -> Ellipsoid:
     Raises
     ------
     InputError
-        Not a covariance, or a risk outside (0, 1).
+        Not a covariance, or a risk outside [1e-300, 0.5].
     """
     shape, (covariance, q) = flatten(covariance_enu_m2=(covariance_enu_m2, (3, 3)), risk=(risk, ()))
     table = _core.anp_ellipsoid(covariance, q)
     intercepts = np.ascontiguousarray(table[:, 16:19])
-    reason = np.where(np.isnan(intercepts[:, 0]), _SINGULAR, "")
+    reason = np.where(np.isnan(intercepts[:, 0]), REASONS["singular_covariance"].words, "")
     return Ellipsoid(
         factor=table[:, 0].reshape(shape),
         semi_axes_m=table[:, 1:4].reshape(*shape, 3),
@@ -461,7 +461,7 @@ def track(covariance_enu_m2: ArrayLike, course_rad: ArrayLike, risk: ArrayLike) 
     Raises
     ------
     InputError
-        Not a covariance, a course that is not finite, or a risk outside (0, 1).
+        Not a covariance, a course that is not finite, or a risk outside [1e-300, 0.5].
     """
     _, (course,) = flatten(course_rad=(course_rad, ()))
     if not np.isfinite(course).all():

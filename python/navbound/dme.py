@@ -1,6 +1,6 @@
 """DME/DME and VOR/DME: how good a range is, what two of them determine, which pair is best, positions, selection along a flight, coverage.
 
-Constants are standard values from general knowledge, their clauses to be cited.
+Constants are values of standards whose texts were not read (inferred).
 """
 
 from __future__ import annotations

@@ -158,7 +158,7 @@ def bound(
     Raises
     ------
     InputError
-        Columns of unequal length, a risk outside (0, 1), a bound that is negative or infinite, or another kind of coverage.
+        Columns of unequal length, a risk outside [1e-300, 0.5], a bound that is negative or infinite, or another kind of coverage.
 
     Notes
     -----

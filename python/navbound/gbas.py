@@ -41,6 +41,7 @@ from navbound._gbas_models import (
     sub_phases,
 )
 from navbound.errors import InputError
+from navbound.status import availability, reasons_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -125,8 +126,8 @@ class Levels:
         Covariance used: the aided one where given. [m²]
     n_sv : ndarray of int
         Satellites used. [1]
-    status, reason : ndarray of str
-        ``ok`` or ``not_available``, and why.
+    status, reason, reason_id : ndarray of str
+        ``ok`` or ``not_available``; why, for people; the same as an id of ``navbound.status.REASONS``.
     """
 
     hpl_h0_m: NDArray[np.float64]
@@ -146,6 +147,7 @@ class Levels:
     n_sv: NDArray[np.int64]
     status: NDArray[np.str_]
     reason: NDArray[np.str_]
+    reason_id: NDArray[np.str_]
 
 
 def factors(integrity_risk: float, *, share: float = 0.25, axes: int = 1, receivers: int = 4, receiver_fault: float = 1e-5) -> Factors:
@@ -288,11 +290,11 @@ def protection_levels(
             "form": named("form", form, ("major", "norm")),
         }
     )
-    reason = np.array(found.pop("reason"), dtype=np.str_).reshape(leading)
+    reason, reason_id = reasons_of(found, leading)
     covariance = found.pop("cov_enu_m2").reshape(*leading, 3, 3)
     columns: dict[str, Any] = {name: unflatten(values, leading) for name, values in found.items()}
-    status = np.where(reason == "", "ok", "not_available")
-    return Levels(covariance_enu_m2=covariance, status=status, reason=reason, **columns)
+    status = availability(reason_id)
+    return Levels(covariance_enu_m2=covariance, status=status, reason=reason, reason_id=reason_id, **columns)
 
 
 def _sigmas(

@@ -29,6 +29,7 @@ from navbound._receivers import (
     solve,
 )
 from navbound.errors import InputError
+from navbound.status import availability, reasons_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -101,7 +102,9 @@ class PositionCovariance:
     status : ndarray of str
         ``ok`` or ``not_available``.
     reason : ndarray of str
-        Why it is not available.
+        Why it is not available, for people.
+    reason_id : ndarray of str
+        The same as an id of ``navbound.status.REASONS``; empty where it is available.
     """
 
     enu_m2: NDArray[np.float64]
@@ -110,6 +113,7 @@ class PositionCovariance:
     n_sv: NDArray[np.int64]
     status: NDArray[np.str_]
     reason: NDArray[np.str_]
+    reason_id: NDArray[np.str_]
 
     @property
     def cov_ee_m2(self) -> NDArray[np.float64]:
@@ -145,7 +149,9 @@ class Dilution:
     status : ndarray of str
         ``ok`` or ``not_available``.
     reason : ndarray of str
-        Why it is not available.
+        Why it is not available, for people.
+    reason_id : ndarray of str
+        The same as an id of ``navbound.status.REASONS``; empty where it is available.
     """
 
     edop: NDArray[np.float64]
@@ -156,6 +162,7 @@ class Dilution:
     n_sv: NDArray[np.int64]
     status: NDArray[np.str_]
     reason: NDArray[np.str_]
+    reason_id: NDArray[np.str_]
 
 
 def directions(
@@ -272,14 +279,15 @@ def covariance(
     shape, (az, el, sigma) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()), sigma_m=(sigma_m, ()))
     found = _core.position_covariances(az, el, sigma, _systems(shape, constellation))
     leading = shape[:-1]
-    status, reason = _status(found.pop("reason"), leading)
+    reason, reason_id = reasons_of(found, leading)
     return PositionCovariance(
         found["enu_m2"].reshape(*leading, 3, 3),
         found["sigma_major_m"].reshape(leading),
         found["sigma_minor_m"].reshape(leading),
         found["n_sv"].reshape(leading),
-        status,
+        availability(reason_id),
         reason,
+        reason_id,
     )
 
 
@@ -310,7 +318,7 @@ def responses(
     shape, (az, el, sigma) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()), sigma_m=(sigma_m, ()))
     found = _core.position_responses(az, el, sigma, _systems(shape, constellation))
     rows = found["response"].reshape(-1, shape[-1], 3)
-    solved = np.array([reason == "" for reason in found["reason"]], dtype=bool)
+    solved = availability(np.array(found["reason_id"], dtype=np.str_)) == "ok"
     rows[solved[:, None] & np.isnan(az.reshape(-1, shape[-1]))] = 0.0
     return np.ascontiguousarray(np.swapaxes(rows, -1, -2)).reshape(*shape[:-1], 3, shape[-1])
 
@@ -338,8 +346,9 @@ def dop(az_rad: ArrayLike, el_rad: ArrayLike, constellation: Sequence[int] | NDA
     shape, (az, el) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()))
     found = _core.dilutions(az, el, _systems(shape, constellation))
     leading = shape[:-1]
-    status, reason = _status(found.pop("reason"), leading)
-    return Dilution(status=status, reason=reason, **{name: values.reshape(leading) for name, values in found.items()})
+    reason, reason_id = reasons_of(found, leading)
+    numbers = {name: values.reshape(leading) for name, values in found.items()}
+    return Dilution(status=availability(reason_id), reason=reason, reason_id=reason_id, **numbers)
 
 
 def _systems(shape: tuple[int, ...], constellation: Sequence[int] | NDArray[np.int64] | None) -> list[int]:
@@ -349,8 +358,3 @@ def _systems(shape: tuple[int, ...], constellation: Sequence[int] | NDArray[np.i
     if systems.shape != shape[-1:] or not np.issubdtype(systems.dtype, np.integer) or systems.min() < 0:
         raise InputError("constellation", f"shape {systems.shape}", domain=f"{shape[-1]} indices of CONSTELLATIONS")
     return [int(c) for c in systems]
-
-
-def _status(reasons: list[str], shape: tuple[int, ...]) -> tuple[NDArray[np.str_], NDArray[np.str_]]:
-    reason = np.array(reasons, dtype=np.str_).reshape(shape)
-    return np.where(reason == "", "ok", "not_available"), reason

@@ -19,6 +19,7 @@ from navbound._kpi_subsets import RangeTable, StanfordEsa, SubsetOptions, n_bins
 from navbound._kpi_tables import FLOATS, Table, codes_of, frame_of, period_of
 from navbound.errors import InputError
 from navbound.run.kpi_records import Level, Performance, StanfordBins, StanfordCounts
+from navbound.status import UNUSABLE
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -46,7 +47,7 @@ WINDOW_S = 15.0
 MOST_EVENTS = 500
 """Events that a performance record lists; a campaign hands out all of them."""
 
-_NO_SOLUTION = ("not_available", "invalid_input")
+_NO_SOLUTION = UNUSABLE
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Literal, cast
 
+import polars as pl
+
 from navbound import _core
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
     import numpy as np
-    import polars as pl
     from numpy.typing import NDArray
 
 Provenance = Literal["printed", "re-derived", "standard", "ours", "inferred"]
@@ -100,8 +101,8 @@ class BoundColumn:
 
     bound_m: NDArray[np.float64]
     reason: NDArray[np.uint32]
-    reasons: list[tuple[bool, str]]
-    """(input is invalid, words), in order; reason ``k`` of a row is entry ``k - 1``."""
+    reasons: list[tuple[str, str]]
+    """(id of ``navbound.status.REASONS``, words), in order; reason ``k`` of a row is entry ``k - 1``."""
 
 
 @cache
@@ -130,6 +131,39 @@ def method(method_id: str) -> Method:
         raise InputError("method", method_id, domain=", ".join(methods())) from None
 
 
+_NSE = ("nse_e_m", "nse_n_m", "nse_u_m")
+_NEEDS = {
+    "nse_h_m": {"nse_e_m"},
+    "nse_3d_m": {"nse_e_m", "nse_u_m"},
+    "nse_along_m": {"nse_e_m", "course_rad"},
+    "nse_cross_m": {"nse_e_m", "course_rad"},
+    "tse_m": {"nse_e_m", "course_rad", "fte_m"},
+    "tse_v_m": {"nse_e_m", "course_rad", "fte_v_m", "nse_u_m", "path_angle_rad"},
+    "sigma_cross_m": {"cov_ee_m2", "cov_en_m2", "cov_nn_m2", "course_rad"},
+}
+"""Columns of errors, and those that an epoch table must have for them."""
+
+
+def with_errors(epochs: pl.DataFrame) -> pl.DataFrame:
+    """An epoch table with the errors along the axes of its path, and the deviation of the navigation error across it.
+
+    Parameters
+    ----------
+    epochs : DataFrame
+        Columns of docs/notation.md.
+
+    Returns
+    -------
+    DataFrame
+        With ``nse_h_m``, ``nse_3d_m``, ``nse_along_m``, ``nse_cross_m``, ``tse_m``, ``tse_v_m`` and ``sigma_cross_m``, where the table has
+        what they need; null where a row lacks it. [m] Provenance: ours, the projection is that of :func:`navbound.tse.project`.
+    """
+    columns = {name: column_of(epochs, name) for name in (*_COLUMNS, *_NSE) if name in epochs.columns}
+    errors = _core.errors_of(epochs.height, columns)
+    there = {name: errors[name] for name, needs in _NEEDS.items() if needs <= set(epochs.columns)}
+    return epochs.with_columns(pl.Series(name, values, nan_to_null=True) for name, values in there.items())
+
+
 def bounds(epochs: pl.DataFrame, method_id: str, risk: float) -> BoundColumn:
     """Evaluate one method over an epoch table.
 
@@ -150,7 +184,7 @@ def bounds(epochs: pl.DataFrame, method_id: str, risk: float) -> BoundColumn:
     Raises
     ------
     InputError
-        Unknown method, or a risk outside (0, 1).
+        Unknown method, or a risk outside [1e-300, 0.5].
     """
     wanted = method(method_id)
     columns = {name: column_of(epochs, name) for name in _COLUMNS if name in epochs.columns}

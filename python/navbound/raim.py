@@ -1,6 +1,7 @@
 """RAIM by least-squares residuals: one faulty satellite at a time, the weighted slope method.
 
-Brown and Chin 1997 with the weights of Walter and Enge 1995 (standard, from memory). RAIM by solution separation, and faults of several
+Brown and Chin 1997 with the weights of Walter and Enge 1995 (inferred: the text was not
+read). RAIM by solution separation, and faults of several
 satellites or constellations, are in :mod:`navbound.araim`.
 """
 
@@ -128,7 +129,7 @@ def factors(n_redundant: ArrayLike, requirement: Requirement = RAIM) -> tuple[ND
     """Threshold and missed bias of a test, by the number of redundant ranges.
 
     T² is what a chi-square variable exceeds with the risk of a false alarm; the variable of non-centrality bias² is at most T² with the
-    risk of a missed detection (Brown and Chin 1997; standard, from memory).
+    risk of a missed detection (Brown and Chin 1997; inferred, the text was not read).
 
     Parameters
     ----------
@@ -145,7 +146,7 @@ def factors(n_redundant: ArrayLike, requirement: Requirement = RAIM) -> tuple[ND
     Raises
     ------
     InputError
-        A number outside [1, 60], risks outside (0, 1).
+        A number outside [1, 60], risks outside [1e-300, 0.5].
     """
     n = np.asarray(n_redundant)
     if not np.issubdtype(n.dtype, np.integer):
@@ -185,7 +186,7 @@ def protection_levels(
     Raises
     ------
     InputError
-        Vectors that are not of length one, sigmas that are not positive, risks outside (0, 1).
+        Vectors that are not of length one, sigmas that are not positive, risks outside [1e-300, 0.5].
     """
     shape, unit, sigma, of = _columns(unit_enu, constellation, sigma_m)
     return _levels(_core.raim_levels(unit, sigma, of, requirement_numbers(requirement)), shape[:-1])

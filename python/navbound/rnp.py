@@ -11,6 +11,8 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
+from navbound import status as status_list
+from navbound._arrays import checked_risk
 from navbound._extraction_gains import EXTRACTION_LABEL
 from navbound._rnp_exposure import PER_EPOCH, ExposureBasis, PerEpoch, PerHour, per_epoch_risk, per_hour_risk
 from navbound._rnp_specifications import Specification, specification, specifications
@@ -60,9 +62,9 @@ __all__ = [
 Alert = Literal["normal", "caution", "warning", "unavailable"]
 Acceptance = Literal["accepted", "duplicate", "late", "clock_set_back"]
 
-USABLE = ("ok", "degraded")
+USABLE = status_list.USABLE
 """Words of `status` with which an epoch is judged."""
-UNUSABLE = ("not_available", "invalid_input")
+UNUSABLE = status_list.UNUSABLE
 """Words of `status` with which monitoring is lost."""
 
 
@@ -199,10 +201,8 @@ class Monitor:
     ) -> None:
         chain = (sample_period_s, sensor_latency_s, filter_s, computing_s, display_s, time_to_alert_s)
         self._core = _core.RnpMonitor(list(chain), raise_delay_s, clear_delay_s, clear_ratio, stale_after_s)
-        if not 0 < integrity_risk < 1:
-            raise InputError("integrity_risk", integrity_risk, "1", "(0, 1)")
         self.sample_period_s = sample_period_s
-        self.integrity_risk = integrity_risk
+        self.integrity_risk = checked_risk("integrity_risk", integrity_risk)
         self.integrity_basis = integrity_basis
         self.integrity_risk_per_epoch = integrity_basis.per_epoch(integrity_risk, sample_period_s)
         """The risk at which the integrity bounds given to this monitor must be evaluated."""

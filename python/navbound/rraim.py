@@ -17,6 +17,7 @@ from navbound._arrays import flatten, unflatten
 from navbound._gbas_arguments import spread, systems
 from navbound.errors import InputError
 from navbound.gbas import Factors, Form, Ordering, factors, range_sigma
+from navbound.status import availability, reasons_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -56,6 +57,8 @@ class Levels:
         Probability of faults that are not. [1]
     status, reason, multi_reason : ndarray of str
         ``ok`` or ``not_available``, and why; why there is no multi-fault level.
+    reason_id, multi_reason_id : ndarray of str
+        The same as ids of ``navbound.status.REASONS``, empty where there is a level.
     """
 
     hpl_h0_m: NDArray[np.float64]
@@ -79,6 +82,8 @@ class Levels:
     status: NDArray[np.str_]
     reason: NDArray[np.str_]
     multi_reason: NDArray[np.str_]
+    reason_id: NDArray[np.str_]
+    multi_reason_id: NDArray[np.str_]
 
     @property
     def cov_ee_m2(self) -> NDArray[np.float64]:
@@ -183,7 +188,8 @@ def protection_levels(  # noqa: PLR0917 - satellites then, satellites now, their
         "p_threshold": 0.1 * allotted_risk if p_threshold is None else p_threshold,
     }
     found = _core.rraim_levels(job)
-    reason, multi = (np.array(found.pop(name), dtype=np.str_).reshape(leading) for name in ("reason", "multi_reason"))
+    reason, reason_id = reasons_of(found, leading)
+    multi, multi_id = (np.array(found.pop(name), dtype=np.str_).reshape(leading) for name in ("multi_reason", "multi_reason_id"))
     covariance = found.pop("cov_enu_m2").reshape(*leading, 3, 3)
     subsets = found.pop("subsets").reshape(*leading, width, 4)
     counts: dict[str, Any] = {name: unflatten(np.nan_to_num(found.pop(name)).astype(np.int64), leading) for name in ("n_sv", "n_modes")}
@@ -194,9 +200,11 @@ def protection_levels(  # noqa: PLR0917 - satellites then, satellites now, their
         subset_separation_m=subsets[..., 1],
         subset_bias_gain=subsets[..., 2],
         subset_threshold_m=subsets[..., 3],
-        status=np.where(reason == "", "ok", "not_available"),
+        status=availability(reason_id),
         reason=reason,
         multi_reason=multi,
+        reason_id=reason_id,
+        multi_reason_id=multi_id,
         **counts,
         **columns,
     )

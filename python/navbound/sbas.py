@@ -202,6 +202,7 @@ def protection_levels(
         status=np.where(codes > 0, good, "not_available"),
         reason=found["reason"].reshape(shape),
         reasons=found["reasons"],
+        reason_ids=found["reason_ids"],
         test_signal=test_signal,
         ignored=found["ignored"],
     )

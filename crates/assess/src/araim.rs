@@ -11,7 +11,7 @@ use navbound_core::bound::araim::single::Requirement;
 use navbound_core::bound::araim::{Levels, Monitor, Sight};
 use navbound_core::frame::{Geodetic, ecef_from_geodetic, enu_from_ecef};
 use navbound_core::geometry::{Elements, Orbit};
-use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
+use navbound_core::quantity::{Metres, OutOfDomain, Radians, Reason, Unavailable};
 use navbound_core::signal::Constellation;
 use navbound_path::AtIndex;
 use pulp::Arch;
@@ -33,6 +33,17 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// Its entry in the list of reasons.
+    pub const fn reason(self) -> Option<Reason> {
+        match self {
+            Self::Ok => None,
+            Self::TooFewSatellites => Some(Reason::TooFewSatellites),
+            Self::Singular => Some(Reason::Singular),
+            Self::NotMonitored => Some(Reason::NotMonitored),
+            Self::TooMany => Some(Reason::TooMany),
+        }
+    }
+
     /// The words of tables.
     pub const WORDS: [&'static str; 5] = ["ok", "too_few_satellites", "singular", "not_monitored", "too_many"];
 

@@ -1,15 +1,15 @@
 //! ARAIM on recorded observations: every epoch's ranges tested, wrong satellites excluded, levels of what is left.
 
-use crate::araim::{Desk, Promise};
+use crate::araim::{Desk, Outcome, Promise};
 use crate::positions::{Job, Watch, each_epoch};
 use crate::receivers::ranges::{Tally, Unused};
 use navbound_core::bound::araim::Sight;
-use navbound_core::bound::araim::exclusion::{Monitored, NoLevels};
+use navbound_core::bound::araim::exclusion::{Decision, Monitored, NoLevels};
 use navbound_core::bound::araim::modes::MOST_SATELLITES;
 use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::bound::araim::service::Service;
 use navbound_core::frame::{Displacement, Geodetic};
-use navbound_core::quantity::{GpsTime, Unavailable};
+use navbound_core::quantity::{GpsTime, Reason, Unavailable};
 use navbound_core::signal::SatelliteId;
 use navbound_core::solution::consistency::Consistency;
 use navbound_core::solution::point::{self, Fix, MOST_RANGES, Range, sighted};
@@ -29,6 +29,18 @@ pub struct Watched {
     pub monitored: Monitored,
     /// Residuals of all satellites against the error model, where there are enough.
     pub consistency: Option<Consistency>,
+}
+
+/// Why an epoch's position, or its level, is not simply there.
+pub fn reason(watched: &Result<Watched, NoLevels>) -> Option<Reason> {
+    match watched {
+        Err(why) => Some(why.reason()),
+        Ok(watched) => match watched.monitored.decision {
+            Decision::NotExcluded => Some(Reason::FaultNotExcluded),
+            Decision::Excluded => Some(Reason::FaultExcluded),
+            Decision::Nothing => Outcome::of(&watched.monitored.levels).reason(),
+        },
+    }
 }
 
 /// Every epoch of a receiver's file: position by least squares without any exclusion of its own, then residuals there, tests, exclusion,

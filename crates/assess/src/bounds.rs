@@ -2,7 +2,7 @@
 
 use navbound_core::bound::Method;
 use navbound_core::frame::{Covariance, Displacement, Enu};
-use navbound_core::quantity::{Metres, Radians, Risk, Unavailable};
+use navbound_core::quantity::{Metres, Radians, Reason, Risk, Unavailable};
 use navbound_core::solution::Epoch;
 use rayon::prelude::*;
 
@@ -51,7 +51,7 @@ impl Columns<'_> {
         }
     }
 
-    fn covariance(&self, row: usize) -> Option<Covariance<Enu>> {
+    pub(crate) fn covariance(&self, row: usize) -> Option<Covariance<Enu>> {
         let mut upper = [0.0; 6];
         for (slot, column) in upper.iter_mut().zip(self.covariance_m2) {
             // Horizontal data have no vertical columns: an unknown variance is NaN, so that a 3-D method refuses instead of taking 0.
@@ -75,8 +75,8 @@ pub struct BoundColumn {
 /// Why a row has no bound.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refused {
-    /// The input itself is wrong (a negative variance), not merely absent.
-    pub invalid: bool,
+    /// Its entry in the list; a wrong input (a negative variance) is another one than an absent value.
+    pub reason: Reason,
     /// In words, with the number found.
     pub words: String,
 }
@@ -107,7 +107,7 @@ pub fn bounds(columns: &Columns<'_>, method: &Method, risk: Risk) -> BoundColumn
 }
 
 fn position(reasons: &mut Vec<Refused>, why: &Unavailable) -> u32 {
-    let refused = Refused { invalid: matches!(why, Unavailable::Invalid { .. }), words: why.to_string() };
+    let refused = Refused { reason: why.reason(), words: why.to_string() };
     let index = reasons.iter().position(|known| *known == refused).unwrap_or_else(|| {
         reasons.push(refused);
         reasons.len() - 1
@@ -145,7 +145,7 @@ mod tests {
         let column = bounds(&columns, &ECHO, Risk::ACCURACY);
         assert_eq!(column.bound_m[0], 3.0);
         assert_eq!(column.reason, [0, 1, 2, 1]);
-        assert!(!column.reasons[0].invalid && column.reasons[1].invalid);
+        assert_eq!(column.reasons.iter().map(|r| r.reason).collect::<Vec<_>>(), [Reason::MissingField, Reason::InvalidNumber]);
         assert!(column.bound_m[1..].iter().all(|b| b.is_nan()));
         assert!(column.reasons[1].words.contains("-2 [m]"), "{}", column.reasons[1].words);
     }

@@ -96,6 +96,11 @@ impl Flights {
         self.all().filter_map(|e| e.reason).map(|r| r.to_string()).collect()
     }
 
+    /// The ids of these reasons.
+    pub fn reason_ids(&self) -> Vec<&'static str> {
+        self.all().filter_map(|e| e.reason).map(|r| r.reason_of_solution().id()).collect()
+    }
+
     /// The epochs of the first flight.
     pub fn first_flight(&self) -> &[FlownEpoch] {
         self.epochs.first().map_or(&[], Vec::as_slice)

@@ -7,7 +7,7 @@ use crate::smoothing::{self, Form, Smoothed};
 use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::frame::{EcefPosition, ecef_from_geodetic};
 use navbound_core::geometry::ionosphere::Ionosphere;
-use navbound_core::quantity::{GpsTime, Unavailable};
+use navbound_core::quantity::{GpsTime, Reason, Unavailable};
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Constellation, SatelliteId};
 use navbound_core::solution::constellations::{Constellations, Treatment};
@@ -94,6 +94,17 @@ pub struct Positions {
     pub smoothed_share: Option<f64>,
 }
 
+impl Positions {
+    /// Why an epoch's position is not simply there; `None` for one that is.
+    pub fn reason(&self, epoch: usize) -> Option<Reason> {
+        match (self.doubts.get(epoch).copied().flatten(), self.fixes.get(epoch)?) {
+            (Some(doubt), _) => Some(doubt.reason()),
+            (None, Err(why)) => Some(why.reason_of_solution()),
+            (None, Ok(_)) => None,
+        }
+    }
+}
+
 /// Positions of every epoch, with broadcast orbits and clocks or `precise` ones; health and group delays are always those broadcast.
 pub fn positions(observations: &Observations, navigation: &Navigation, precise: Option<&Precise>, job: &Job) -> Positions {
     let records = Records::new(navigation, precise);
@@ -170,7 +181,8 @@ impl Solver<'_> {
     /// clocks that the past predicts. Constellations are followed through the file in its order; the solutions are independent.
     fn treat(&self, solved: &mut [Solved]) -> usize {
         let mut constellations = Constellations::default();
-        let follow = |(epoch, s): (usize, &Solved)| (epoch, constellations.follow(self.source.observations.time[epoch], s.fix.as_ref().ok()));
+        let follow =
+            |(epoch, s): (usize, &Solved)| (epoch, constellations.follow(self.source.observations.time[epoch], s.fix.as_ref().ok()));
         let treatments: Vec<(usize, Treatment)> = solved
             .iter()
             .enumerate()

@@ -6,11 +6,12 @@ use crate::positions::{Job, Watch, each_epoch};
 use crate::receivers::ranges::Tally;
 use nalgebra::Vector3;
 use navbound_core::bound::araim::Sight;
+use navbound_core::bound::araim::exclusion::Decision;
 use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::bound::raim::exclusion::Monitored;
 use navbound_core::bound::raim::{ExclusionLevels, Levels, Monitor, Requirement};
 use navbound_core::frame::{Displacement, Geodetic};
-use navbound_core::quantity::{GpsTime, OutOfDomain, Unavailable};
+use navbound_core::quantity::{GpsTime, OutOfDomain, Reason, Unavailable};
 use navbound_core::signal::{Constellation, SatelliteId};
 use navbound_core::solution::consistency::Consistency;
 use navbound_core::solution::point::Range;
@@ -200,6 +201,20 @@ pub struct Watched {
     pub tested: Tested,
     /// Residuals of all satellites against the error model, where there are enough.
     pub consistency: Option<Consistency>,
+}
+
+/// Why an epoch's position, or its level, is not simply there.
+pub fn reason(watched: &Result<Watched, Unavailable>) -> Option<Reason> {
+    let tested = match watched {
+        Err(why) => return Some(why.reason_of_solution()),
+        Ok(watched) => &watched.tested,
+    };
+    match tested.monitored.as_ref().map(|m| m.decision) {
+        Some(Decision::NotExcluded) => Some(Reason::FaultNotExcluded),
+        Some(Decision::Excluded) => Some(Reason::FaultExcluded),
+        Some(Decision::Nothing) if tested.outcome == Outcome::NotMonitored => Some(Reason::FaultNotDetectable),
+        Some(Decision::Nothing) | None => tested.outcome.reason(),
+    }
 }
 
 /// Every epoch of a receiver's file: position by least squares without any exclusion of its own, then residuals there, test, exclusion,

@@ -21,6 +21,7 @@ extern crate alloc;
 pub mod bound;
 pub mod frame;
 pub mod geometry;
+pub mod judge;
 pub mod monitor;
 pub mod quantity;
 pub mod signal;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The stages in the order of the flow; each may use those before it.
-const FLOW: [&str; 9] = ["quantity", "special", "frame", "signal", "geometry", "solution", "spec", "bound", "monitor"];
+const FLOW: [&str; 10] = ["quantity", "special", "frame", "signal", "geometry", "solution", "spec", "bound", "monitor", "judge"];
 /// Each crate and those of ours it may depend on.
 const CRATES: [(&str, &[&str]); 6] = [
     ("core", &[]),
@@ -17,7 +17,7 @@ const CRATES: [(&str, &[&str]); 6] = [
 ];
 /// Parts of the Python package from what computes to what shows; a part may import from those before it and from itself.
 const LAYERS: [&[&str]; 5] = [
-    &["_core", "errors", "_arrays", "records"],
+    &["_core", "errors", "_arrays", "records", "status"],
     &[
         "tse",
         "anp",

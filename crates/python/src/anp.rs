@@ -183,6 +183,15 @@ fn anp_principal_sigmas<'py>(py: Python<'py>, covariance_enu_m2: PyReadonlyArray
 #[pyfunction]
 fn chi_factor<'py>(py: Python<'py>, dimension: usize, risk: PyReadonlyArray1<'py, f64>) -> PyResult<Numbers<'py>> {
     let q = flat(&risk)?;
+    let found =
+        each(q.len(), |i| Risk::new(q[i]).and_then(|risk| chi::chi_factor(dimension, risk.q()))).map_err(|r| refused(r, SPATIAL))?;
+    Ok(found.into_pyarray(py))
+}
+
+/// What the length of a standard normal vector exceeds with a probability, anywhere in (0, 1).
+#[pyfunction]
+fn chi_quantile<'py>(py: Python<'py>, dimension: usize, risk: PyReadonlyArray1<'py, f64>) -> PyResult<Numbers<'py>> {
+    let q = flat(&risk)?;
     let found = each(q.len(), |i| chi::chi_factor(dimension, q[i])).map_err(|r| refused(r, SPATIAL))?;
     Ok(found.into_pyarray(py))
 }
@@ -347,6 +356,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(anp_ellipsoid, m)?)?;
     m.add_function(wrap_pyfunction!(anp_principal_sigmas, m)?)?;
     m.add_function(wrap_pyfunction!(chi_factor, m)?)?;
+    m.add_function(wrap_pyfunction!(chi_quantile, m)?)?;
     m.add_function(wrap_pyfunction!(anp_circle_fit, m)?)?;
     m.add_function(wrap_pyfunction!(anp_circle_geodesy, m)?)?;
     m.add_function(wrap_pyfunction!(anp_circle_fit_as_printed, m)?)?;

@@ -3,8 +3,9 @@
 use crate::error::input_error;
 use crate::gnss::orbit;
 use crate::positions::{Navigation, Observations, satellites};
+use crate::status;
 use navbound_assess::araim::{self, Outcome, Outlook, Promise, Row, Rule, Sights};
-use navbound_assess::araim_watch::{Watched, watch};
+use navbound_assess::araim_watch::{Watched, reason, watch};
 use navbound_assess::positions::{Job, Signals, Watch};
 use navbound_assess::smoothing::Form;
 use navbound_core::bound::araim::Levels;
@@ -307,7 +308,10 @@ fn araim_watch<'py>(
     let names =
         |w: &Result<Watched, NoLevels>| w.as_ref().map_or_else(|_| Vec::new(), |w| w.excluded.iter().map(ToString::to_string).collect());
     d.set_item("excluded", watched.iter().map(names).collect::<Vec<Vec<String>>>())?;
-    d.set_item("reason", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;
+    let reasons: Vec<_> = watched.iter().map(reason).collect();
+    d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
+    d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
+    d.set_item("refusal", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;
     beside(&d, &watch, |w| w.as_ref().ok()?.consistency)?;
     Ok(d)
 }

@@ -2,11 +2,12 @@
 
 use crate::batch::{rejected, table};
 use crate::error::input_error;
+use crate::status;
 use navbound_assess::ee::{self, Row, Series};
 use navbound_assess::sky::Sights;
 use navbound_core::bound::ee::noise::{self, Form, HorizontalBeta, Shape};
 use navbound_core::bound::ee::{ASSUMES, LABEL, PROMISES, PROVENANCE, SOURCE, bias};
-use navbound_core::quantity::{Metres, OutOfDomain, Risk};
+use navbound_core::quantity::{Metres, OutOfDomain, Risk, Unavailable};
 use navbound_core::solution::extraction::{self, Reset, gain};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -205,12 +206,13 @@ fn ee_bias_sights<'py>(
     let (az, el, sigma) = &sights;
     let sights = Sights { az_rad: az.as_slice()?, el_rad: el.as_slice()?, sigma_m: sigma.as_slice()?, constellation: &constellation };
     let solved = py.detach(|| ee::biases(&sights, Metres::new(mu_most_m), alpha)).map_err(|e| input_error(e.error, Some(e.index)))?;
-    let (mut from_dop, mut exact, mut n_sv, mut reason) = (vec![], vec![], vec![], vec![]);
+    let (mut from_dop, mut exact, mut n_sv, mut reason, mut ids) = (vec![], vec![], vec![], vec![], vec![]);
     for (n, found) in solved {
         let bias = found.as_ref().ok();
         from_dop.extend(bias.map_or([f64::NAN; 2], |b| b.from_dop));
         exact.extend(bias.map_or([f64::NAN; 2], |b| b.exact));
         n_sv.push(n as i64);
+        ids.push(status::id(found.as_ref().err().map(Unavailable::reason)));
         reason.push(found.err().map_or(String::new(), |e| e.to_string()));
     }
     let n = n_sv.len();
@@ -219,6 +221,7 @@ fn ee_bias_sights<'py>(
     d.set_item("exact", exact.into_pyarray(py).reshape([n, 2])?)?;
     d.set_item("n_sv", n_sv.into_pyarray(py))?;
     d.set_item("reason", reason)?;
+    d.set_item("reason_id", ids)?;
     Ok(d)
 }
 

@@ -2,6 +2,7 @@
 
 use crate::batch::{numbers, rejected, table};
 use crate::error::input_error;
+use crate::status;
 use navbound_assess::batch::rows;
 use navbound_assess::gbas::{self, Asked, Skies};
 use navbound_core::bound::gbas::aided::{Aided, Tracked};
@@ -13,7 +14,7 @@ use navbound_core::bound::gbas::offset::Offset;
 use navbound_core::bound::gbas::range::{self, RangeError};
 use navbound_core::bound::gbas::snapshot::Form;
 use navbound_core::geometry::Direction;
-use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
+use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk, Unavailable};
 use navbound_core::signal::Constellation;
 use navbound_core::spec::gbas::{CarrierModel, ERROR_MODELS, ErrorModel, INERTIAL, MONITOR_CURVES, MonitorCurve};
 use navbound_core::spec::surface::ErrorBudget;
@@ -176,9 +177,10 @@ fn gbas_levels<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDic
     };
     let found = py.detach(|| gbas::protection_levels(&skies, &asked)).map_err(refused)?;
     let mut columns = vec![Vec::with_capacity(found.len()); LEVEL_COLUMNS.len()];
-    let (mut matrices, mut n_sv, mut reasons) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut matrices, mut n_sv, mut reasons, mut ids) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (n, answer) in &found {
         n_sv.push(*n as i64);
+        ids.push(status::id(answer.as_ref().err().map(Unavailable::reason)));
         reasons.push(answer.as_ref().err().map(ToString::to_string).unwrap_or_default());
         let row = answer.as_ref().map_or([f64::NAN; LEVEL_COLUMNS.len()], level_row);
         columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
@@ -195,6 +197,7 @@ fn gbas_levels<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDic
     d.set_item("cov_enu_m2", matrices.into_pyarray(py))?;
     d.set_item("n_sv", n_sv.into_pyarray(py))?;
     d.set_item("reason", reasons)?;
+    d.set_item("reason_id", ids)?;
     Ok(d)
 }
 
@@ -242,7 +245,14 @@ fn gbas_missed_by_monitor<'py>(
 
 /// A hazard's six numbers: containment, sigma, bias, projection, risk allotted, fault probability.
 fn hazard(n: &[f64]) -> Result<Hazard, OutOfDomain> {
-    Hazard::new(Metres::new(n[0]), Metres::new(n[1]), Metres::new(n[2]), n[3], Risk::new(n[4])?, n[5])
+    Hazard::new(
+        Metres::new(n[0]),
+        Metres::new(n[1]),
+        Metres::new(n[2]),
+        n[3],
+        Risk::new(n[4]).map_err(|e| OutOfDomain { argument: "allotted_risk", ..e })?,
+        n[5],
+    )
 }
 
 /// Missed-detection limits; hazards in rows of six.

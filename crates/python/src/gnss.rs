@@ -1,6 +1,7 @@
 //! Satellite geometry.
 
 use crate::error::input_error;
+use crate::status;
 use navbound_assess::dop_map::{Users, dops};
 use navbound_assess::sky::{self, Receivers, Sights, Solved};
 use navbound_core::geometry::{BEIDOU, Elements, GALILEO, GPS, GPS_EXPANDED, Slot};
@@ -180,7 +181,7 @@ fn shared<'py, T>(
     write: impl Fn(&T, &mut Vec<f64>) -> (f64, f64),
 ) -> PyResult<(Bound<'py, PyDict>, Columns)> {
     let (mut rows, mut pairs) = (Vec::new(), Vec::new());
-    let (mut n_sv, mut reasons) = (Vec::new(), Vec::new());
+    let (mut n_sv, mut reasons, mut ids) = (Vec::new(), Vec::new(), Vec::new());
     for (n, result) in &solved {
         n_sv.push(*n as i64);
         match result {
@@ -190,11 +191,13 @@ fn shared<'py, T>(
                 pairs.push((f64::NAN, f64::NAN));
             }
         }
+        ids.push(status::id(result.as_ref().err().map(Unavailable::reason)));
         reasons.push(result.as_ref().err().map(Unavailable::to_string).unwrap_or_default());
     }
     let d = PyDict::new(py);
     d.set_item("n_sv", n_sv.into_pyarray(py))?;
     d.set_item("reason", reasons)?;
+    d.set_item("reason_id", ids)?;
     Ok((d, (rows, pairs)))
 }
 

@@ -29,6 +29,7 @@ mod sbas_fields;
 mod sbas_positions;
 mod simulate;
 mod states;
+mod status;
 mod subsets;
 mod surface;
 mod tse;
@@ -39,6 +40,7 @@ use pyo3::prelude::*;
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     methods::register(m)?;
+    status::register(m)?;
     tse::register(m)?;
     anp::register(m)?;
     araim::register(m)?;

@@ -2,7 +2,9 @@
 
 use crate::error::input_error;
 use navbound_assess::bounds::{self, Columns};
+use navbound_assess::judge;
 use navbound_core::bound;
+use navbound_core::judge::Errors;
 use navbound_core::quantity::Risk;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyError, PyValueError};
@@ -51,48 +53,103 @@ fn protection_methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         .collect()
 }
 
-/// Bound, reason code and list of (invalid, words).
-type Column<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, Vec<(bool, String)>);
+/// Bound, reason code and list of (id of the reason, words).
+type Column<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, Vec<(&'static str, String)>);
+
+/// A risk inside its domain, as it came; for settings that are checked before they are used.
+#[pyfunction]
+fn checked_risk(q: f64) -> PyResult<f64> {
+    Risk::new(q).map(Risk::q).map_err(|e| input_error(e, None))
+}
 
 /// One method over columns of the epoch table, all of length `n_epochs`; an absent column is left out of the dictionary.
 #[pyfunction]
 fn bounds_of<'py>(py: Python<'py>, method: &str, risk: f64, n_epochs: usize, columns: &Bound<'py, PyDict>) -> PyResult<Column<'py>> {
     let method = bound::method(method).ok_or_else(|| PyKeyError::new_err(method.to_owned()))?;
     let risk = Risk::new(risk).map_err(|e| input_error(e, None))?;
-    let get = |name: &str| -> PyResult<Option<PyReadonlyArray1<'py, f64>>> {
-        let Some(value) = columns.get_item(name)? else { return Ok(None) };
-        let array: PyReadonlyArray1<'py, f64> = value.extract()?;
-        if array.as_array().len() != n_epochs {
-            return Err(PyValueError::new_err(format!("{name} has {} rows, the table {n_epochs}", array.as_array().len())));
-        }
-        Ok(Some(array))
-    };
-    let course = get("course_rad")?;
-    let path_angle = get("path_angle_rad")?;
-    let fte = get("fte_m")?;
-    let fte_v = get("fte_v_m")?;
-    let rnp = get("rnp_m")?;
-    let mut covariance = Vec::with_capacity(6);
-    for name in ["cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2"] {
-        covariance.push(get(name)?);
-    }
-    let mut covariance_m2 = [None; 6];
-    for (slot, column) in covariance_m2.iter_mut().zip(&covariance) {
-        *slot = slice(column)?;
-    }
-    let table = Columns {
-        len: n_epochs,
-        course_rad: slice(&course)?,
-        path_angle_rad: slice(&path_angle)?,
-        fte_m: slice(&fte)?,
-        fte_v_m: slice(&fte_v)?,
-        rnp_m: slice(&rnp)?,
-        covariance_m2,
-    };
+    let held = Table::of(n_epochs, columns)?;
+    let table = held.columns()?;
     let column = py.detach(|| bounds::bounds(&table, method, risk));
-    let reasons = column.reasons.into_iter().map(|r| (r.invalid, r.words)).collect();
+    let reasons = column.reasons.into_iter().map(|r| (r.reason.id(), r.words)).collect();
     Ok((column.bound_m.into_pyarray(py), column.reason.into_pyarray(py), reasons))
 }
+
+/// Columns of an epoch table, kept from the collector while they are read.
+struct Table<'py> {
+    len: usize,
+    held: Vec<Option<PyReadonlyArray1<'py, f64>>>,
+}
+
+/// Columns that methods read, then those of the navigation error.
+const COLUMNS: [&str; 14] = [
+    "course_rad",
+    "path_angle_rad",
+    "fte_m",
+    "fte_v_m",
+    "rnp_m",
+    "cov_ee_m2",
+    "cov_en_m2",
+    "cov_nn_m2",
+    "cov_eu_m2",
+    "cov_nu_m2",
+    "cov_uu_m2",
+    "nse_e_m",
+    "nse_n_m",
+    "nse_u_m",
+];
+
+impl<'py> Table<'py> {
+    fn of(len: usize, columns: &Bound<'py, PyDict>) -> PyResult<Self> {
+        let held = COLUMNS.iter().map(|name| {
+            let Some(value) = columns.get_item(name)? else { return Ok(None) };
+            let array: PyReadonlyArray1<'py, f64> = value.extract()?;
+            if array.as_array().len() != len {
+                return Err(PyValueError::new_err(format!("{name} has {} rows, the table {len}", array.as_array().len())));
+            }
+            Ok(Some(array))
+        });
+        Ok(Self { len, held: held.collect::<PyResult<_>>()? })
+    }
+
+    fn slices(&self) -> PyResult<[Option<&[f64]>; 14]> {
+        let mut slices = [None; 14];
+        for (slot, column) in slices.iter_mut().zip(&self.held) {
+            *slot = slice(column)?;
+        }
+        Ok(slices)
+    }
+
+    fn columns(&self) -> PyResult<Columns<'_>> {
+        let [course_rad, path_angle_rad, fte_m, fte_v_m, rnp_m, ee, en, nn, eu, nu, uu, ..] = self.slices()?;
+        let covariance_m2 = [ee, en, nn, eu, nu, uu];
+        Ok(Columns { len: self.len, course_rad, path_angle_rad, fte_m, fte_v_m, rnp_m, covariance_m2 })
+    }
+}
+
+/// Errors of every epoch along the axes of its path: a column each, NaN where a part is unknown.
+#[pyfunction]
+fn errors_of<'py>(py: Python<'py>, n_epochs: usize, columns: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
+    let held = Table::of(n_epochs, columns)?;
+    let (table, [.., east, north, up]) = (held.columns()?, held.slices()?);
+    let errors = py.detach(|| judge::errors(&table, [east, north, up]));
+    let d = PyDict::new(py);
+    for (name, of) in ERRORS {
+        d.set_item(name, errors.iter().map(|e| of(e).unwrap_or(f64::NAN)).collect::<Vec<_>>().into_pyarray(py))?;
+    }
+    Ok(d)
+}
+
+/// One column of errors.
+type Error = (&'static str, fn(&Errors) -> Option<f64>);
+const ERRORS: [Error; 7] = [
+    ("nse_h_m", |e| e.horizontal_m),
+    ("nse_3d_m", |e| e.spatial_m),
+    ("nse_along_m", |e| e.along_m),
+    ("nse_cross_m", |e| e.cross_m),
+    ("tse_m", |e| e.tse_m),
+    ("tse_v_m", |e| e.tse_v_m),
+    ("sigma_cross_m", |e| e.sigma_cross_m),
+];
 
 fn slice<'a>(array: &'a Option<PyReadonlyArray1<'_, f64>>) -> PyResult<Option<&'a [f64]>> {
     array.as_ref().map(|a| a.as_slice().map_err(Into::into)).transpose()
@@ -101,5 +158,7 @@ fn slice<'a>(array: &'a Option<PyReadonlyArray1<'_, f64>>) -> PyResult<Option<&'
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(methods, m)?)?;
     m.add_function(wrap_pyfunction!(protection_methods, m)?)?;
+    m.add_function(wrap_pyfunction!(checked_risk, m)?)?;
+    m.add_function(wrap_pyfunction!(errors_of, m)?)?;
     m.add_function(wrap_pyfunction!(bounds_of, m)?)
 }

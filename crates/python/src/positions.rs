@@ -1,7 +1,8 @@
 //! Receivers' files and the positions solved from them.
 
-use crate::error::{format_error, input_error};
+use crate::error::{format_error, input_error, risk};
 use crate::orbits::PreciseOrbits;
+use crate::status;
 use navbound_assess::positions::{Job, Model, Positions, Signals, positions};
 use navbound_assess::receivers::ranges::{Tally, Unused};
 use navbound_assess::smoothing::Form;
@@ -13,7 +14,6 @@ use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Unavailable
 use navbound_core::signal::smoothing::Smoothing;
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Klobuchar};
 use navbound_core::solution::RangeError;
-use navbound_core::solution::declared::Doubt;
 use navbound_core::solution::point::{Fix, Settings, Used};
 use navbound_formats::Refusal;
 use navbound_formats::packed::unpack;
@@ -287,7 +287,7 @@ fn solve_positions<'py>(
         within("smoothing_s", window, "s", "(0, 86400]", window > 0.0 && window <= 86_400.0)?;
     }
     within("mask_rad", mask_rad, "rad", "[0, pi/2)", (0.0..core::f64::consts::FRAC_PI_2).contains(&mask_rad))?;
-    within("false_alarm", false_alarm, "1", "(0, 1)", false_alarm > 0.0 && false_alarm < 1.0)?;
+    risk("false_alarm", false_alarm)?;
     within("range_factor", range_factor, "1", "(0, inf)", range_factor > 0.0 && range_factor.is_finite())?;
     within("shared_factor", shared_factor, "1", "[0, inf)", shared_factor >= 0.0 && shared_factor.is_finite())?;
     let errors = weights(precise).scaled(range_factor, shared_factor);
@@ -390,19 +390,14 @@ fn table<'py>(py: Python<'py>, found: &Positions, weights: &str) -> PyResult<Bou
     d.set_item("n_sv", count(|f| f.n_used).into_pyarray(py))?;
     d.set_item("n_excluded", count(|f| f.n_excluded).into_pyarray(py))?;
     d.set_item("n_redundant", count(|f| f.redundancy).into_pyarray(py))?;
-    let status = |(f, doubt): (&Result<Fix, _>, &Option<Doubt>)| match (f, doubt) {
-        (Ok(_), None) => "ok",
-        (Ok(_), Some(_)) => "degraded",
-        (Err(_), _) => "not_available",
+    let words = |(i, f): (usize, &Result<Fix, Unavailable>)| match (f, found.doubts.get(i)) {
+        (Err(why), None | Some(None)) => why.to_string(),
+        _ => found.reason(i).map_or_else(String::new, |r| r.words().to_owned()),
     };
-    let outcomes = || found.fixes.iter().zip(&found.doubts);
-    d.set_item("status", outcomes().map(status).collect::<Vec<_>>())?;
-    let reason = |(f, doubt): (&Result<Fix, Unavailable>, &Option<Doubt>)| match (doubt, f) {
-        (Some(doubt), _) => doubt.words().to_owned(),
-        (None, Ok(_)) => String::new(),
-        (None, Err(why)) => why.to_string(),
-    };
-    d.set_item("reason", outcomes().map(reason).collect::<Vec<_>>())?;
+    let reasons: Vec<_> = (0..found.fixes.len()).map(|i| found.reason(i)).collect();
+    d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
+    d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
+    d.set_item("reason", found.fixes.iter().enumerate().map(words).collect::<Vec<_>>())?;
     satellites(&d, &found.tally, &found.signals)?;
     d.set_item("codes", found.codes.clone())?;
     d.set_item("weights", weights)?;

@@ -2,9 +2,10 @@
 
 use crate::batch::rejected;
 use crate::error::input_error;
+use crate::status;
 use navbound_assess::dme::{self, Bearings, Models, Offer, Places, Ranges};
 use navbound_core::frame::{Covariance, Enu};
-use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
+use navbound_core::quantity::{Metres, OutOfDomain, Radians, Reason, Risk};
 use navbound_core::solution::dme::{Best, Checked, Fix, NoFix, Station, Switching, Verdict};
 use numpy::{IntoPyArray, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -49,12 +50,6 @@ fn stations(points: &Points, service_m: &Numbers, bearing: &[bool]) -> PyResult<
     Ok(each.map(|((place, service), bearing)| Station { place, service, bearing: *bearing }).collect())
 }
 
-/// Why there is no position, by code from 1.
-#[pyfunction]
-fn dme_reasons() -> Vec<String> {
-    NoFix::SKY.iter().map(ToString::to_string).collect()
-}
-
 fn rows(covariance: &Covariance<Enu>) -> [f64; 9] {
     let m = covariance.matrix();
     [m.m11, m.m12, m.m13, m.m21, m.m22, m.m23, m.m31, m.m32, m.m33]
@@ -71,10 +66,7 @@ fn positions<'py>(py: Python<'py>, found: &[Result<Fix, NoFix>]) -> PyResult<Bou
     d.set_item("covariance_enu_m2", covariances.into_pyarray(py).reshape([found.len(), 3, 3])?)?;
     let used: Vec<i64> = found.iter().map(|r| r.as_ref().map_or(0, |f| f.used as i64)).collect();
     d.set_item("n_ranges", used.into_pyarray(py))?;
-    let code = |r: &Result<Fix, NoFix>| {
-        r.as_ref().err().map_or(0, |e| NoFix::SKY.iter().position(|known| known == e).map_or(u8::MAX, |k| k as u8 + 1))
-    };
-    d.set_item("reason", found.iter().map(code).collect::<Vec<u8>>().into_pyarray(py))?;
+    d.set_item("reason_id", found.iter().map(|r| status::id(r.as_ref().err().map(NoFix::reason))).collect::<Vec<_>>())?;
     Ok(d)
 }
 
@@ -86,14 +78,9 @@ fn excluded(checked: &Checked) -> i64 {
     }
 }
 
-/// Consistent, excluded, too few, undecided.
-const fn verdict(checked: &Checked) -> u8 {
-    match checked.verdict {
-        Verdict::Consistent => 0,
-        Verdict::Excluded(_) => 1,
-        Verdict::TooFew => 2,
-        Verdict::Undecided => 3,
-    }
+/// Why there is no position, or what its residuals say.
+fn reason(checked: &Result<Checked, NoFix>) -> Option<Reason> {
+    checked.as_ref().map_or_else(|e| Some(e.reason()), |c| c.verdict.reason())
 }
 
 /// Positions from slant ranges (n, m) of m stations, NaN where none was received.
@@ -130,7 +117,7 @@ fn dme_solve<'py>(
     let fixes: Vec<_> = found.iter().map(|r| r.as_ref().map(|checked| checked.fix).map_err(|e| *e)).collect();
     let d = positions(py, &fixes)?;
     d.set_item("excluded", found.iter().map(|r| r.as_ref().map_or(-1, excluded)).collect::<Vec<i64>>().into_pyarray(py))?;
-    d.set_item("verdict", found.iter().map(|r| r.as_ref().map_or(0, verdict)).collect::<Vec<u8>>().into_pyarray(py))?;
+    d.set_item("reason_id", found.iter().map(|r| status::id(reason(r))).collect::<Vec<_>>())?;
     Ok(d)
 }
 
@@ -250,7 +237,6 @@ fn models((sigma_bearing_rad, sigma_altitude_m): (f64, f64)) -> PyResult<Models>
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
-    m.add_function(wrap_pyfunction!(dme_reasons, m)?)?;
     m.add_function(wrap_pyfunction!(dme_solve, m)?)?;
     m.add_function(wrap_pyfunction!(dme_solve_vor, m)?)?;
     m.add_function(wrap_pyfunction!(dme_sights, m)?)?;

@@ -4,6 +4,7 @@ use crate::araim::{beside, promise, refused, requirement, systems, unmonitored, 
 use crate::error::input_error;
 use crate::gnss::orbit;
 use crate::positions::{Navigation, Observations};
+use crate::status;
 use navbound_assess::araim::{Outcome, Outlook};
 use navbound_assess::raim::{self, Row, Sights, Tested, Watched};
 use navbound_core::bound::raim::exclusion::Monitored;
@@ -126,7 +127,10 @@ fn raim_watch<'py>(
     d.set_item("est_h_m", number(|w| w.position.height.m()))?;
     let name = |w: &Result<Watched, Unavailable>| w.as_ref().ok().and_then(|w| w.excluded).map(|s| s.to_string()).unwrap_or_default();
     d.set_item("excluded", watched.iter().map(name).collect::<Vec<String>>())?;
-    d.set_item("reason", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;
+    let reasons: Vec<_> = watched.iter().map(raim::reason).collect();
+    d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
+    d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
+    d.set_item("refusal", watched.iter().map(|w| w.as_ref().err().map(ToString::to_string).unwrap_or_default()).collect::<Vec<_>>())?;
     beside(&d, &watch, |w| w.as_ref().ok()?.consistency)?;
     Ok(d)
 }

@@ -1,6 +1,7 @@
 //! RRAIM: protection levels of coasting phases, and the grid of the surface-movement study.
 
 use crate::gbas::{carrier, constellations, form, ordering, refusal, refused};
+use crate::status;
 use navbound_assess::gbas::Skies;
 use navbound_assess::rraim::{self, Answer, Asked, Coasting};
 use navbound_assess::surface::{self, Demand, Grid};
@@ -8,7 +9,7 @@ use navbound_core::bound::gbas::levels::Factors;
 use navbound_core::bound::rraim::modes::Priors;
 use navbound_core::bound::rraim::multiple::{Budget, NoLevel};
 use navbound_core::bound::rraim::single::Settings;
-use navbound_core::quantity::{Metres, OutOfDomain, Risk};
+use navbound_core::quantity::{Metres, OutOfDomain, Risk, Unavailable};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -93,7 +94,7 @@ fn rraim_levels<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDi
     let width = constellation.len();
     let mut columns = vec![Vec::with_capacity(found.len()); COLUMNS.len()];
     let (mut matrices, mut subsets) = (Vec::new(), Vec::new());
-    let (mut reasons, mut multi_reasons) = (Vec::new(), Vec::new());
+    let (mut reasons, mut multi_reasons, mut ids, mut multi_ids) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for answer in &found {
         let row = answer.as_ref().map_or([f64::NAN; COLUMNS.len()], level_row);
         columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
@@ -105,8 +106,10 @@ fn rraim_levels<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDi
             block[4 * column..4 * column + 4].copy_from_slice(&row);
         }
         subsets.extend(block);
+        ids.push(status::id(answer.as_ref().err().map(Unavailable::reason)));
         reasons.push(answer.as_ref().err().map(ToString::to_string).unwrap_or_default());
         let multi = answer.as_ref().ok().and_then(|a| a.multiple.err());
+        multi_ids.push(status::id(multi.as_ref().map(NoLevel::reason)));
         multi_reasons.push(multi.as_ref().map(NoLevel::to_string).unwrap_or_default());
     }
     let d = PyDict::new(py);
@@ -116,6 +119,8 @@ fn rraim_levels<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDi
     d.set_item("cov_enu_m2", matrices.into_pyarray(py))?;
     d.set_item("subsets", subsets.into_pyarray(py).reshape([found.len(), width, 4])?)?;
     d.set_item("reason", reasons)?;
+    d.set_item("reason_id", ids)?;
+    d.set_item("multi_reason_id", multi_ids)?;
     d.set_item("multi_reason", multi_reasons)?;
     Ok(d)
 }

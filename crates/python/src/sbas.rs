@@ -145,12 +145,14 @@ pub const fn mode_code(used_for: Option<Use>) -> u8 {
 
 fn answers_columns<'py>(py: Python<'py>, answers: &[Answer]) -> PyResult<Bound<'py, PyDict>> {
     let mut reasons: Vec<String> = Vec::new();
+    let mut ids = Vec::new();
     let mut reason = Vec::with_capacity(answers.len());
     for answer in answers {
         reason.push(answer.reason.map_or(0, |why| {
             let words = why.to_string();
             let at = reasons.iter().position(|known| *known == words).unwrap_or_else(|| {
                 reasons.push(words);
+                ids.push(why.reason().id());
                 reasons.len() - 1
             });
             u32::try_from(at + 1).unwrap_or(u32::MAX)
@@ -163,6 +165,7 @@ fn answers_columns<'py>(py: Python<'py>, answers: &[Answer]) -> PyResult<Bound<'
     d.set_item("n_sv", answers.iter().map(|a| a.n_sv as i64).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("mode", answers.iter().map(mode).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("reason", reason.into_pyarray(py))?;
+    d.set_item("reason_ids", ids)?;
     d.set_item("reasons", reasons)?;
     Ok(d)
 }

@@ -1,10 +1,12 @@
 //! A receiver's positions with a service's corrections.
 
-use crate::error::input_error;
+use crate::error::{input_error, risk};
 use crate::positions::Observations;
 use crate::sbas::{Service, ignored, mode_code};
-use navbound_assess::sbas::positions::{Corrected, Fix, Used, positions};
-use navbound_core::quantity::{Metres, OutOfDomain};
+use crate::status;
+use navbound_assess::sbas::positions::{self, Corrected, Fix, Used};
+use navbound_core::bound::sbas::NoLevel;
+use navbound_core::quantity::{Metres, OutOfDomain, Reason};
 use navbound_core::signal::smoothing::Smoothing;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -30,13 +32,13 @@ fn sbas_positions<'py>(
     if let Some(window) = smoothing_s {
         within("smoothing_s", window, "s", "(0, 86400]", window > 0.0 && window <= 86_400.0)?;
     }
-    within("false_alarm", false_alarm, "1", "(0, 1)", false_alarm > 0.0 && false_alarm < 1.0)?;
+    risk("false_alarm", false_alarm)?;
     let (feed, settings) = service.heard()?;
     let mask = settings.mask.rad();
     within("mask_rad", mask, "rad", "[0, pi/2]", (0.0..=core::f64::consts::FRAC_PI_2).contains(&mask))?;
     let records = &service.navigation.get().records;
     let how = smoothing_s.map(Smoothing::over);
-    let found = py.detach(|| positions(&feed, records, &observations.0, &settings, how.as_ref()));
+    let found = py.detach(|| positions::positions(&feed, records, &observations.0, &settings, how.as_ref()));
     let d = epochs(py, &found, false_alarm)?;
     d.set_item("satellites", satellites(py, &found)?)?;
     d.set_item("unused", found.unused.clone())?;
@@ -72,16 +74,14 @@ fn epochs<'py>(py: Python<'py>, found: &Corrected, false_alarm: f64) -> PyResult
     d.set_item("n_redundant", count(|f| f.solution.redundancy).into_pyarray(py))?;
     let mode = found.fixes.iter().map(|f| mode_code(f.as_ref().ok().map(|f| f.used_for))).collect::<Vec<_>>();
     d.set_item("mode", mode.into_pyarray(py))?;
-    let words = |f: &Result<Fix, _>| match f {
-        Ok(fix) if fix.solution.residual_risk < false_alarm => {
-            ("degraded", "the residuals contradict the service's error model".to_owned())
-        }
-        Ok(_) => ("ok", String::new()),
-        Err(why) => ("not_available", navbound_core::bound::sbas::NoLevel::to_string(why)),
+    let reasons: Vec<_> = found.fixes.iter().map(|f| positions::reason(f, false_alarm)).collect();
+    let words = |(f, r): (&Result<Fix, NoLevel>, &Option<Reason>)| match f {
+        Ok(_) => r.map_or_else(String::new, |r| r.words().to_owned()),
+        Err(why) => why.to_string(),
     };
-    let (status, reason): (Vec<_>, Vec<_>) = found.fixes.iter().map(words).unzip();
-    d.set_item("status", status)?;
-    d.set_item("reason", reason)?;
+    d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
+    d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
+    d.set_item("reason", found.fixes.iter().zip(&reasons).map(words).collect::<Vec<_>>())?;
     Ok(d)
 }
 

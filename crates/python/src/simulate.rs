@@ -78,6 +78,7 @@ pub fn epochs<'py>(py: Python<'py>, flights: &Flights) -> PyResult<Bound<'py, Py
     d.set_item("time_ns", flights.time_ns().into_pyarray(py))?;
     d.set_item("flight", flights.number().into_pyarray(py))?;
     d.set_item("reason", flights.reasons())?;
+    d.set_item("reason_id", flights.reason_ids())?;
     Ok(d)
 }
 

@@ -45,8 +45,9 @@ fn named(e: OutOfDomain, argument: &'static str) -> OutOfDomain {
 fn tse_factors<'py>(py: Python<'py>, risk: Numbers<'py>) -> Table<'py> {
     let q = risk.as_slice()?;
     table(py, q.len(), |i| {
-        let chi = |dimension| chi_factor(dimension, q[i]);
-        Ok([chi(1)?, special::one_sided_factor(q[i]), chi(2)?, chi(3)?])
+        let risk = Risk::new(q[i])?.q();
+        let chi = |dimension| chi_factor(dimension, risk);
+        Ok([chi(1)?, special::one_sided_factor(risk), chi(2)?, chi(3)?])
     })
 }
 

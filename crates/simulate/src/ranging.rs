@@ -7,7 +7,7 @@
 //! multipath = 0.13 + 0.53 exp(-el / 10 deg) \[m\]         airborne model
 //! ```
 //!
-//! F, m and the multipath model are those of the DO-229 family (standard, from memory: check before operational use). The zenith values
+//! F, m and the multipath model are those of the DO-229 family (inferred: the text was not read; check before operational use). The zenith values
 //! come from the scenario.
 
 use crate::scenario::Navigation;

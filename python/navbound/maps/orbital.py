@@ -92,7 +92,7 @@ class Dop(_Day):
 
     def limits(self) -> list[Limit]:
         """What is asked without a word of the caller."""
-        return [Limit("pdop", 6.0, "GPS SPS performance standard, PDOP availability (from memory, clause to be cited)", "standard")]
+        return [Limit("pdop", 6.0, "GPS SPS performance standard, PDOP availability (the text was not read)", "inferred")]
 
 
 _CAUSES = {"p_too_few": ("too_few_satellites", "singular"), "p_too_many": ("too_many",), "p_not_monitored": ("not_monitored",)}

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 WARM_UP_S = 600.0
 """From the first message of a log to the first instant of its map. A receiver that begins with the log needs the masks first and then the
-corrections to them, each of which is sent at least every five minutes (DO-229D, table of update intervals; from memory). [s]"""
+corrections to them, each of which is sent at least every five minutes (DO-229D, table of update intervals; the text was not read). [s]"""
 GAP_S = 4.0
 """Messages come every second; a receiver that misses four in a row leaves precision approach. [s]"""
 _DO_NOT_USE, _RANGING, _ALMANAC = 0, 9, 17

@@ -135,6 +135,7 @@ LEVEL_QUANTITIES: tuple[Quantity, ...] = (
     _q("vdop", "1", 0.0, 1e6, **{"1": "vdop"}),
     _q("mode", "text", 0.0, 0.0),
     _q("status", "text", 0.0, 0.0),
+    _q("reason_id", "text", 0.0, 0.0),
     _q("reason", "text", 0.0, 0.0),
 )
 """What a table of errors and protection levels may hold beyond a recorded track."""

@@ -29,17 +29,17 @@ NACP_EPU_M = {
 }
 """Navigation accuracy category for position to the upper limit of the 95 % horizontal radius [m]; 0 is "unknown".
 
-Provenance: standard (RTCA DO-260B / EUROCAE ED-102A, coding of NACp), stated from general knowledge: the document was not at hand.
+Provenance: inferred (RTCA DO-260B / EUROCAE ED-102A, coding of NACp); the document was not read.
 """
 
 NIC_RC_M = {11: 7.5, 10: 25.0, 9: 75.0, 8: 0.1 * _NM, 7: 0.2 * _NM, 6: 0.6 * _NM, 5: _NM, 4: 2 * _NM, 3: 4 * _NM, 2: 8 * _NM, 1: 20 * _NM}
 """Navigation integrity category to the containment radius [m]; 0 is "unknown". For 6 the largest of its three radii.
 
-Provenance: standard (RTCA DO-260B / EUROCAE ED-102A, coding of NIC), stated from general knowledge: the document was not at hand.
+Provenance: inferred (RTCA DO-260B / EUROCAE ED-102A, coding of NIC); the document was not read.
 """
 
 RC_RISK = 1e-7
-"""Risk taken for a containment radius: source integrity level 3. Provenance: standard, stated from general knowledge."""
+"""Risk taken for a containment radius: source integrity level 3. Provenance: inferred."""
 
 HOLD_S = 300.0
 """How long a quality indicator counts after it was received. Provenance: ours."""
@@ -100,7 +100,7 @@ def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
 def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
     """From a radius or a quality indicator."""
     k95, k_rc = circular_sigma(0.05), circular_sigma(RC_RISK)
-    coding = "(DO-260B coding from general knowledge, document not at hand)"
+    coding = "(coding of DO-260B, which was not read)"
     if "epu_m" in have:
         return _circle(epochs, pl.col("epu_m") * k95, f"Covariance: circular, sigma = EPU / {1 / k95:.4f} (EPU is the 95 % radius).", "epu")
     if "nac_p" in have:

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 import polars as pl
 
-from navbound import _core
+from navbound import _core, status
 from navbound.read.covariance import COLUMNS
 
 
@@ -43,14 +43,8 @@ class Limits:
     settle_s: float = 30.0
 
 
-_STATUS = ["ok", "degraded", "not_available", "invalid_input", "invalid_input"]
-_REASON = [
-    None,
-    "position held",
-    "position held too long",
-    "position jump that cannot be flown",
-    "not settled after a position jump",
-]
+_REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled"]
+"""What the core found, by its codes."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +85,7 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
     Returns
     -------
     epochs : DataFrame
-        With ``status`` and ``reason``; those that a solver gave before stand where nothing is implausible.
+        With ``status``, ``reason_id`` and ``reason``; those that a solver gave before stand where nothing is implausible.
     plausibility : Plausibility
         What was found.
     """
@@ -105,17 +99,14 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
         findings.append(judged["finding"])
         steps.append(judged["step_m"])
     code, step = np.concatenate(findings), np.concatenate(steps)
-    marked = epochs.with_columns(
-        pl.Series("status", [_STATUS[c] for c in range(len(_STATUS))], dtype=pl.String).gather(code),
-        pl.Series("reason", _REASON, dtype=pl.String).gather(code),
-    )
+    marked = status.with_reason(epochs, pl.Series("reason_id", _REASON_ID, dtype=pl.String).gather(code))
     if "status" in epochs.columns:
+        solved = status.with_reason_id(epochs)
         plausible = pl.col("status") == "ok"
-        given = ((pl.when(plausible).then(epochs[c]).otherwise(pl.col(c))).alias(c) for c in ("status", "reason"))
-        marked = marked.with_columns(given)
-    believed = pl.col("status").is_in(["ok", "degraded"])
+        marked = marked.with_columns(pl.when(plausible).then(solved[c]).otherwise(pl.col(c)).alias(c) for c in status.COLUMNS)
+    believed = pl.col("status").is_in(status.USABLE)
     marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COLUMNS if c in epochs.columns)
-    n = np.bincount(code, minlength=len(_STATUS))
+    n = np.bincount(code, minlength=len(_REASON_ID))
     n_steps, largest = int((step > 5000).sum()), float(step.max(initial=0.0))
     words = (
         f"Plausibility: {n[3]} position jumps that cannot be flown ({n[4]} more epochs not settled after them), {n[2]} epochs with a "

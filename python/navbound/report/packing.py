@@ -108,15 +108,15 @@ def deflate(columns: list[Packed]) -> str:
 
 def run_lengths(values: list[str | None]) -> dict[str, object]:
     """Run lengths of a text column: distinct words, then (word index, count) pairs; -1 is null."""
-    words: list[str] = []
+    distinct: list[str] = []
     runs: list[list[int]] = []
     previous: str | None = None
     for value in values:
         if runs and value == previous:
             runs[-1][1] += 1
             continue
-        if value is not None and value not in words:
-            words.append(value)
-        runs.append([-1 if value is None else words.index(value), 1])
+        if value is not None and value not in distinct:
+            distinct.append(value)
+        runs.append([-1 if value is None else distinct.index(value), 1])
         previous = value
-    return {"words": words, "runs": runs}
+    return {"words": distinct, "runs": runs}

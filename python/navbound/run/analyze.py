@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
+from navbound import status
 from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
@@ -250,20 +251,15 @@ def _covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
     # 1e-9 of the squared largest variance: the sixteen digits of a double less those the determinant loses.
     determinant = ee * nn - en**2 >= -1e-9 * pl.max_horizontal(ee, nn) ** 2
     positive = pl.all_horizontal(ee.is_finite(), nn.is_finite(), en.is_finite(), ee >= 0, nn >= 0, determinant).fill_null(value=False)
-    believed = pl.col("status").is_in(["ok", "degraded"])
+    believed = pl.col("status").is_in(status.USABLE)
     fault = (
         pl.when(~believed).then(pl.lit(None, pl.String))
-        .when(pl.any_horizontal(c.is_null() for c in (ee, nn, en))).then(pl.lit("not_available"))
-        .when(~positive).then(pl.lit("invalid_input"))
-        .when(ee + nn == 0).then(pl.lit("degraded"))
+        .when(pl.any_horizontal(c.is_null() for c in (ee, nn, en))).then(pl.lit("no_covariance"))
+        .when(~positive).then(pl.lit("not_a_covariance"))
+        .when(ee + nn == 0).then(pl.lit("zero_covariance"))
     )  # fmt: skip
-    words = {"not_available": "no covariance", "invalid_input": "not a covariance", "degraded": "covariance is zero"}
-    epochs = epochs.with_columns(fault.alias("fault"))
-    epochs = epochs.with_columns(
-        pl.coalesce("fault", "status").alias("status"),
-        pl.coalesce(pl.col("fault").replace_strict(words, return_dtype=pl.String), "reason").alias("reason"),
-    ).drop("fault")
-    return epochs.with_columns(pl.when(pl.col("status").is_in(["ok", "degraded"])).then(pl.col(c)).alias(c) for c in COLUMNS)
+    epochs = status.overridden(epochs, epochs.select(fault.alias("reason_id"))["reason_id"])
+    return epochs.with_columns(pl.when(pl.col("status").is_in(status.USABLE)).then(pl.col(c)).alias(c) for c in COLUMNS)
 
 
 def _period(epochs: pl.DataFrame) -> float:

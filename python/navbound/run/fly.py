@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polars as pl
 
-from navbound import _core
+from navbound import _core, status
 from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
 from navbound.run.material import Material
 from navbound.run.records import CovarianceOrigin, Waypoint
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Unpack
 
+    from numpy.typing import NDArray
+
     from navbound.scale import Work
 
 __all__ = ["material"]
@@ -28,20 +30,13 @@ _DRAWN_AT_ONCE = 16
 """Flights of one tile, of some hundredths of a second each."""
 _FUSED_AT_ONCE = 4
 """The same where every flight runs a filter for some seconds: enough for the cores of most machines, and the bar still moves."""
-_KEPT = {
-    "dme_dme": "without satellites: ranges to DME keep the position",
-    "vor_dme": "without satellites: a VOR and a DME keep the position",
-    "coasting": "without satellites and stations: inertial navigation alone",
-    "aligning": "the attitude settles after a hole in the inertial samples",
-}
-_DOUBTS = (
-    "the filters with and without satellites disagree: nobody knows which of them is right",
-    "several stations contradict the filter: they or the inertial unit are wrong",
-)
+_KEPT = {"dme_dme": "kept_by_dme", "vor_dme": "kept_by_vor", "coasting": "coasting", "aligning": "aligning"}
+"""What keeps the position without satellites, as a reason."""
+_DOUBTS = ("filters_disagree", "stations_contradict")
 """Why an estimate is not to be relied on, by the core's number from 1 on."""
 _WATCHED = ("separation_m", "separation_limit_m", "innovation_memory")
 """Columns of the monitors across measurements."""
-_CODES = ("nav_mode", "leg", "phase", "available", "doubt", "flight", "reason")
+_CODES = ("nav_mode", "leg", "phase", "available", "doubt", "flight", "reason", "reason_id")
 """Columns that become words."""
 _COUNTS = ("samples", "clock_jumps")
 """What a filter counts besides its innovations."""
@@ -128,34 +123,36 @@ def _opened(scenario: str) -> tuple[Scenario, _core.Outlook | _core.Sensors]:
 
 def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
     available = columns["available"] == 1
-    reasons = np.full(available.shape, None, dtype=object)
-    reasons[~available] = columns["reason"]
     names = [w.name for w in scenario.waypoints]
     legs = [f"{a}-{b}" for a, b in itertools.pairwise(names)]
     words = {
         "track": _words([track_name(i) for i in range(int(columns["flight"].max()) + 1)], columns["flight"]),
         "leg": _words(legs, columns["leg"]),
         "phase": _words([p.name for p in scenario.phases], columns["phase"]),
-        "status": _words(["not_available", "ok"], columns["available"]),
-        "reason": pl.Series(reasons.tolist(), dtype=pl.String),
+        **_reasons(columns, available, scenario),
     }
     if scenario.filter is None:
         columns = {name: values for name, values in columns.items() if name not in ("n_gated", *_WATCHED)}
     else:
         words["nav_mode"] = _words([*_core.Sensors.modes(), "stopped"], columns["nav_mode"])
-        # What keeps the position is less than it should be: usable, and said.
-        lesser = (columns["nav_mode"] != _core.Sensors.modes().index("gnss")) & available
-        words["status"] = words["status"].zip_with(pl.Series(~lesser), pl.Series(["degraded"]))
-        kept = words["nav_mode"].replace_strict(_KEPT, default=None)
-        words["reason"] = kept.zip_with(pl.Series(lesser), words["reason"])
-        for number, why in enumerate(_DOUBTS, 1):
-            sure = pl.Series(columns["doubt"] != number)
-            words["status"] = words["status"].zip_with(sure, pl.Series(["not_available"]))
-            words["reason"] = words["reason"].zip_with(sure, pl.Series([why]))
     numbers = {name: values for name, values in columns.items() if name not in _CODES}
     table = pl.DataFrame({"track": words.pop("track"), "time_ns": numbers.pop("time_ns"), **numbers, **words})
     # A value that does not exist is null in a table.
     return table.with_columns(pl.col(pl.Float64).fill_nan(None)).with_columns(pl.col("^n_(sv|gated)$").cast(pl.Int32))
+
+
+def _reasons(columns: dict[str, Any], available: NDArray[np.bool_], scenario: Scenario) -> dict[str, pl.Series]:
+    """Status, id and sentence of every epoch: no estimate, one to be trusted less without satellites, one not to be relied on."""
+    ids, refusals = (np.full(available.shape, None, dtype=object) for _ in range(2))
+    ids[~available], refusals[~available] = columns["reason_id"], columns["reason"]
+    if scenario.filter is not None:
+        for number, mode in enumerate(_core.Sensors.modes()):
+            ids[available & (columns["nav_mode"] == number)] = _KEPT.get(mode)
+        for number, doubt in enumerate(_DOUBTS, 1):
+            ids[columns["doubt"] == number] = doubt
+    epochs = status.with_reason(pl.DataFrame({"status": np.full(available.shape, "ok")}), pl.Series(ids.tolist(), dtype=pl.String))
+    sentences = pl.Series(refusals.tolist(), dtype=pl.String).zip_with(epochs["reason_id"].is_in(_DOUBTS).not_(), epochs["reason"])
+    return {**epochs.select("status", "reason_id").to_dict(), "reason": pl.select(pl.coalesce(sentences, epochs["reason"]))[:, 0]}
 
 
 def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:

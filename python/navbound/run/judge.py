@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound import __version__, rnp, tse
+from navbound import __version__, rnp, status, tse
 from navbound._states import METRES_PER_NM
 from navbound.errors import InputError
-from navbound.methods import BoundColumn, bounds, column_of, method
+from navbound.methods import BoundColumn, bounds, column_of, method, with_errors
 from navbound.run.directory import Run
 from navbound.run.records import RunRecord
 from navbound.run.settings import Settings
@@ -56,12 +56,12 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
     settings = settings or Settings()
     if material.epochs.height == 0:
         raise InputError("epochs", 0, "1", "at least one epoch")
-    epochs = _with_errors(material.epochs)
+    epochs = with_errors(material.epochs)
     judging = WITH_PATH if _has_values(epochs, "fte_m") else WITHOUT_PATH
     ids = list(dict.fromkeys((judging, *settings.methods)))
     epochs = _with_bounds(epochs, ids, judging, settings)
     epochs = _with_risks(epochs)
-    epochs, events, counters = _with_alerts(epochs, judging, material.sample_period_s)
+    epochs, events, counters = _with_alerts(epochs, judging, material.sample_period_s, settings.risk_integrity)
     events = _with_points(events, material.events)
     epochs, states = _with_states(epochs, settings.risk_accuracy)
     shown = [i for i in ids if i == judging or _has_values(epochs, method(i).column)]
@@ -88,35 +88,6 @@ def _has_values(epochs: pl.DataFrame, name: str) -> bool:
     return name in epochs.columns and bool(np.isfinite(column_of(epochs, name)).any())
 
 
-def _with_errors(epochs: pl.DataFrame) -> pl.DataFrame:
-    """The navigation error along its other axes, and the total system error, where truth is known."""
-    course = pl.col("course_rad")
-    if "nse_e_m" in epochs.columns:
-        east, north = pl.col("nse_e_m"), pl.col("nse_n_m")
-        epochs = epochs.with_columns((east.pow(2) + north.pow(2)).sqrt().alias("nse_h_m"))
-        if "nse_u_m" in epochs.columns:
-            epochs = epochs.with_columns((pl.col("nse_h_m").pow(2) + pl.col("nse_u_m").pow(2)).sqrt().alias("nse_3d_m"))
-        if "course_rad" in epochs.columns:
-            epochs = epochs.with_columns(
-                (east * course.sin() + north * course.cos()).alias("nse_along_m"),
-                (east * course.cos() - north * course.sin()).alias("nse_cross_m"),
-            )
-            if "fte_m" in epochs.columns:
-                epochs = epochs.with_columns((pl.col("fte_m") + pl.col("nse_cross_m")).alias("tse_m"))
-            if {"fte_v_m", "nse_u_m", "path_angle_rad"} <= set(epochs.columns):
-                # Above a sloping path an error along the course is an error of height (TSE specification, section 4.5).
-                slope = pl.col("path_angle_rad").tan()
-                epochs = epochs.with_columns((pl.col("fte_v_m") + pl.col("nse_u_m") - slope * pl.col("nse_along_m")).alias("tse_v_m"))
-    if {"cov_ee_m2", "cov_en_m2", "cov_nn_m2", "course_rad"} <= set(epochs.columns):
-        across = (
-            pl.col("cov_ee_m2") * course.cos().pow(2)
-            - 2 * pl.col("cov_en_m2") * course.sin() * course.cos()
-            + pl.col("cov_nn_m2") * course.sin().pow(2)
-        )
-        epochs = epochs.with_columns(across.sqrt().alias("sigma_cross_m"))
-    return epochs
-
-
 def _with_bounds(epochs: pl.DataFrame, ids: list[str], judging: str, settings: Settings) -> pl.DataFrame:
     usable = _usable(epochs)
     columns: dict[str, NDArray[np.float64]] = {}
@@ -133,14 +104,9 @@ def _with_bounds(epochs: pl.DataFrame, ids: list[str], judging: str, settings: S
 
 def _with_reasons(epochs: pl.DataFrame, judged: BoundColumn, usable: NDArray[np.bool_]) -> pl.DataFrame:
     """An epoch that cannot be judged says why, unless its reader said so already."""
-    words = pl.Series([None, *(words for _, words in judged.reasons)], dtype=pl.String)
-    status = pl.Series(["ok", *("invalid_input" if invalid else "not_available" for invalid, _ in judged.reasons)])
-    refused = pl.Series(usable & (judged.reason > 0))
-    code = judged.reason.astype(np.int64)
-    return epochs.with_columns(
-        pl.when(refused).then(status.gather(code)).otherwise(pl.col("status")).alias("status"),
-        pl.when(refused).then(words.gather(code)).otherwise(pl.col("reason")).alias("reason"),
-    )
+    code = np.where(usable, judged.reason, 0).astype(np.int64)
+    ids, sentences = (pl.Series([None, *names], dtype=pl.String) for names in ([r[k] for r in judged.reasons] for k in (0, 1)))
+    return status.overridden(epochs, ids.gather(code), sentences.gather(code))
 
 
 def _with_risks(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -156,9 +122,11 @@ def _with_risks(epochs: pl.DataFrame) -> pl.DataFrame:
     return epochs.with_columns(pl.Series(name, values, nan_to_null=True) for name, values in added.items())
 
 
-def _with_alerts(epochs: pl.DataFrame, judging: str, sample_period_s: float) -> tuple[pl.DataFrame, pl.DataFrame, dict[str, object]]:
+def _with_alerts(
+    epochs: pl.DataFrame, judging: str, sample_period_s: float, risk_integrity: float
+) -> tuple[pl.DataFrame, pl.DataFrame, dict[str, object]]:
     # A finished flight alerts nobody: the chain to the crew is a matter of the live monitor.
-    monitor = rnp.Monitor(sample_period_s=sample_period_s, time_to_alert_s=math.inf)
+    monitor = rnp.Monitor(sample_period_s=sample_period_s, time_to_alert_s=math.inf, integrity_risk=risk_integrity)
     result = monitor.run(epochs, accuracy=judging)
     if _has_values(epochs, "hpl_m"):
         epochs = epochs.with_columns(result.integrity_compared_m)
@@ -204,9 +172,7 @@ def _with_states(epochs: pl.DataFrame, risk_accuracy: float) -> tuple[pl.DataFra
     known = _usable(epochs) & np.isfinite(fte) & (sigma > 0)
     probability = np.full((epochs.height, len(classifier.names)), np.nan)
     probability[known] = classifier.probabilities(fte[known], sigma[known])
-    beyond = 1.0 - np.cumsum(probability, axis=1)
-    decided = np.argmax(beyond <= risk_accuracy, axis=1)
-    names = [classifier.names[k] if ok else None for k, ok in zip(decided.tolist(), known.tolist(), strict=True)]
+    names = classifier.tightest(probability, risk_accuracy)
     return epochs.with_columns(
         pl.Series("state", names, dtype=pl.String),
         *(pl.Series(f"p_state_{k + 1}", probability[:, k], nan_to_null=True) for k in range(len(classifier.names))),

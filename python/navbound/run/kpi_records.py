@@ -34,7 +34,7 @@ class Level(Record):
     continuity_per: Literal["15 s", "hour"] | None
     source: str
     provenance: dict[str, Provenance]
-    """Field to how it is held; `standard` means: to be confirmed against the standard before use in earnest."""
+    """Field to how it is held; `standard`: at least two public texts that the source names agree."""
 
 
 class Spread(Record):

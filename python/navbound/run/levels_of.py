@@ -35,7 +35,7 @@ SCHEMA = pl.Schema(
         **dict.fromkeys(COVARIANCE, pl.Float64),
         "n_sv": pl.Int64,
         **dict.fromkeys(("hdop", "vdop"), pl.Float64),
-        **dict.fromkeys(("mode", "status", "reason"), pl.String),
+        **dict.fromkeys(("mode", "status", "reason_id", "reason"), pl.String),
     }
 )
 """Columns of a performance run's epochs."""

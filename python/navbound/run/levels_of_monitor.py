@@ -14,6 +14,7 @@ from navbound.read.epochs import read
 from navbound.read.truth import join
 from navbound.run.levels_of import Part, uniform
 from navbound.run.words import METRES_PER_NM, share
+from navbound.status import REASONS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -94,20 +95,21 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Mo
 def decisions(epochs: pl.DataFrame) -> list[str]:
     """What the monitor decided, counted; and how often it could detect and exclude within the limits of operations, where it says so."""
     n = epochs.height
-    lost = epochs.filter(pl.col("reason") == "a fault that cannot be excluded").height
+    lost = epochs.filter(pl.col("reason_id") == "fault_not_excluded").height
     excluded = epochs.filter(pl.col("n_excluded") > 0)
     without = epochs.filter(pl.col("hpl_m").is_null() & pl.col("est_lat_rad").is_not_null()).height - lost
     none = epochs.filter(pl.col("est_lat_rad").is_null())
-    each = excluded["reason"].value_counts(sort=True).iter_rows()
-    named = ", ".join(f"{str(reason).removeprefix('excluded ')} at {count}" for reason, count in each)
+    each = excluded["excluded_sv"].value_counts(sort=True).iter_rows()
+    named = ", ".join(f"{satellites} at {count}" for satellites, count in each)
     which = f" ({named})" if named else ""
     words = [
         f"{n} epochs: a fault detected at {lost + excluded.height}, excluded at {excluded.height}{which}, not to be excluded at {lost}; a "
         f"position but no way to detect a fault at {without}."
     ]
     if none.height:
-        why = none["reason"].fill_null("no reason given").value_counts(sort=True).head(3).iter_rows()
-        words.append(f"No position at {none.height} epochs: {'; '.join(f'{reason} at {count}' for reason, count in why)}.")
+        why = none["reason_id"].value_counts(sort=True).head(3).iter_rows()
+        causes = "; ".join(f"{REASONS[id_].words if id_ else 'without a reason'} at {count}" for id_, count in why)
+        words.append(f"No position at {none.height} epochs: {causes}.")
     if "hel_m" in epochs.columns:
         limits = ", ".join(f"{rnp:g}" for rnp in RNP_NM)
         shares = "; ".join(f"{what} {_within(epochs[column])}" for column, what in WITHIN.items())

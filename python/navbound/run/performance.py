@@ -213,8 +213,8 @@ def _run(
         seed=None,
         inputs=inputs,
         methods=[],
-        risk_accuracy=0.05,
-        risk_integrity=1e-5,
+        risk_accuracy=None,
+        risk_integrity=None,
         settings={
             "levels": [found.level.id for found in result.levels],
             "truth": None if options.truth is None else str(options.truth),

@@ -323,7 +323,8 @@ class RunRecord(Record):
     seed: int | None
     inputs: list[InputFile]
     methods: list[str]
-    risk_accuracy: float
-    risk_integrity: float
+    risk_accuracy: float | None
+    risk_integrity: float | None
+    """Risks of the bounds; none in a run that forms no bound."""
     settings: dict[str, object]
     platform: str

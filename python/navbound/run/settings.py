@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from navbound._arrays import checked_risk
+
 DEFAULT_METHODS = (
     "tse-exact",
     "tse-ltem",
@@ -26,3 +28,14 @@ class Settings:
     methods: tuple[str, ...] = DEFAULT_METHODS
     risk_accuracy: float = 0.05
     risk_integrity: float = 1e-5
+
+    def __post_init__(self) -> None:
+        """Refuse what is no risk, before anything is worked out.
+
+        Raises
+        ------
+        InputError
+            A risk outside its domain.
+        """
+        checked_risk("risk_accuracy", self.risk_accuracy)
+        checked_risk("risk_integrity", self.risk_integrity)

@@ -12,6 +12,7 @@ from navbound.errors import FormatError
 from navbound.read.epochs import Reading
 from navbound.run.records import Rejection
 from navbound.run.solving import Solving
+from navbound.status import REASONS
 
 if TYPE_CHECKING:
     from navbound.read.source import Source
@@ -38,8 +39,8 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         raise FormatError(source.path, f"no position could be solved; satellites not used: {unused_words(found.unused)}")
     path = str(source.path)
     rejected = [
-        Rejection(file=path, reason=f"no position: {reason}", count=count, first_line=None, example=f"{count} epochs")
-        for reason, count in found.epochs.filter(pl.col("est_lat_rad").is_null()).group_by("reason").len().sort("reason").iter_rows()
+        Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=f"{count} epochs")
+        for id_, count in found.epochs.filter(pl.col("est_lat_rad").is_null()).group_by("reason_id").len().sort("reason_id").iter_rows()
     ]
     if observations.n_refused:
         first = observations.refused[0]

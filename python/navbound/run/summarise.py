@@ -25,6 +25,7 @@ from navbound.run.records import (
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import of_epochs
 from navbound.run.words import honesty_words, protection_words, verdict_words
+from navbound.status import USABLE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -321,7 +322,7 @@ def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
         return None
     error = np.column_stack([column_of(epochs, name) for name in errors])
     upper = np.column_stack([column_of(epochs, name) for name in COVARIANCE_COLUMNS[: 6 if vertical else 3]])
-    usable = epochs.get_column("status").is_in(["ok", "degraded"]).to_numpy()
+    usable = epochs.get_column("status").is_in(USABLE).to_numpy()
     known = usable & np.isfinite(error).all(axis=1) & np.isfinite(upper).all(axis=1)
     if not known.any():
         return None

@@ -19,6 +19,7 @@ from navbound.run.surface_grid import K95
 from navbound.run.taxi_motion import move
 from navbound.run.taxi_navigation import Navigated, Navigator
 from navbound.scenario import taxi as scenarios
+from navbound.status import USABLE
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -137,7 +138,7 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
     est_lat = movement.lat_rad - fte * np.sin(movement.course_rad) / north_m
     est_lon = movement.lon_rad + fte * np.cos(movement.course_rad) / east_m
     nse = -found.error_enu_m
-    usable = found.status != "not_available"
+    usable = np.isin(found.status.astype(np.str_), USABLE)
     phases = [asked[name] for name in movement.phase]
     numbers = {
         "est_lat_rad": np.where(usable, est_lat, np.nan),
@@ -173,6 +174,7 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
             "phase": [p.title for p in phases],
             "mode": np.where(movement.coasts, "rraim", "gbas"),
             "status": pl.Series(found.status.tolist(), dtype=pl.String),
+            "reason_id": pl.Series(found.reason_id.tolist(), dtype=pl.String),
             "reason": pl.Series(found.reason.tolist(), dtype=pl.String),
         }
     ).with_columns(pl.col(pl.Float64).fill_nan(None))

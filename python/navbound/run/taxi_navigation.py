@@ -14,6 +14,7 @@ from navbound import gbas, gnss, rraim
 from navbound.run import taxi_errors as errors
 from navbound.run.taxi_inertial import Inertial, InertialFlight, Solved
 from navbound.run.taxi_sky import STEPS, Sky, look, mode_of, way
+from navbound.status import REASONS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,7 +49,7 @@ class Navigated:
         Claimed. [m²]
     hpl_m, hpl_multi_m, accuracy_m, n_sv : ndarray
         Protection levels for one fault and for all together, accuracy (95 %), satellites. [m, m, m, 1]
-    status, reason : ndarray
+    status, reason_id, reason : ndarray
         As in the epoch table.
     happened : list of Happened
         Faults and what the monitors did.
@@ -61,6 +62,7 @@ class Navigated:
     accuracy_m: Floats
     n_sv: Floats
     status: NDArray[np.object_]
+    reason_id: NDArray[np.object_]
     reason: NDArray[np.object_]
     happened: list[Happened]
 
@@ -126,6 +128,7 @@ class Navigator:
             np.full(n, np.nan),
             np.zeros(n),
             np.full(n, "not_available", dtype=object),
+            np.full(n, None, dtype=object),
             np.full(n, None, dtype=object),
             [],
         )
@@ -335,14 +338,17 @@ class Navigator:
             found.accuracy_m[here][of] = level.accuracy_m[of]
             found.n_sv[here][of] = level.n_sv[of]
             found.status[here][of] = level.status[of]
+            found.reason_id[here][of] = [r or None for r in level.reason_id[of]]
             found.reason[here][of] = [r or None for r in level.reason[of]]
             if isinstance(level, rraim.Levels):
                 found.hpl_multi_m[here][of] = level.hpl_multi_m[of]
 
     def _degrade(self, found: Navigated, here: slice, ok: NDArray[np.bool_], excluded: set[int]) -> None:
         names = ", ".join(self.sky.names[k] for k in sorted(excluded))
-        found.status[here][ok] = "degraded"
-        found.reason[here][ok] = f"{names} left out: carrier phase disagrees"
+        excluded_by_phase = REASONS["carrier_excluded"]
+        found.status[here][ok] = excluded_by_phase.status
+        found.reason_id[here][ok] = excluded_by_phase.id
+        found.reason[here][ok] = f"{names} {excluded_by_phase.words}"
 
     def _factors(self, limit: SubPhase) -> gbas.Factors:
         shares = self.shares

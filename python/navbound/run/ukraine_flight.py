@@ -14,6 +14,7 @@ from navbound import _core, dme, path
 from navbound.read import runways
 from navbound.run.material import Material
 from navbound.run.records import CovarianceOrigin, Waypoint
+from navbound.status import USABLE, sentences, statuses
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -140,8 +141,8 @@ def material(flown: Flight, seed: int) -> Material:
 def _assumptions() -> list[str]:
     return [
         "Range deviations max(0.085 NM, 0.125 %) and 0.05 NM, pairs from 30 to 150 degrees, stations from 3 to 160 NM and up to "
-        "40 degrees: standard, clauses to be cited.",
-        f"VOR bearings with a standard deviation of {np.degrees(dme.VOR_SIGMA_RAD):.2f} degrees: standard, clause to be cited.",
+        "40 degrees: inferred, the texts were not read.",
+        f"VOR bearings with a standard deviation of {np.degrees(dme.VOR_SIGMA_RAD):.2f} degrees: inferred, the text was not read.",
         f"Altitude known to {SIGMA_ALTITUDE_M:g} m (standard deviation), common to all ranges; heights are above the ellipsoid: ours.",
         "The covariance of a VOR/DME position is linear: two deviations of a bearing at 60 NM also put it 350 m short along the radial, "
         "which the covariance does not say.",
@@ -170,9 +171,9 @@ def _solved(flown: Flight, slant_m: Floats, h_m: Floats) -> dme.Positions:
 
 
 def _table(flown: Flight, found: dme.Positions, h_m: Floats, offered: NDArray[np.bool_], track: str) -> pl.DataFrame:
-    status = np.where(offered, found.status, "not_available")
-    reason = np.where(offered, found.reason, "no station or no admissible pair")
-    usable = status != "not_available"
+    reason_id = np.where(offered, found.reason_id, "no_station_pair")
+    status, reason = statuses(reason_id), sentences(reason_id)
+    usable = np.isin(status, USABLE)
     lat, lon = (np.where(usable, solved, path_) for solved, path_ in ((found.lat_rad, flown.lat_rad), (found.lon_rad, flown.lon_rad)))
     on_path = np.column_stack((flown.lat_rad, flown.lon_rad, flown.h_m))
     nse = _core.navigation_error(np.column_stack((lat, lon, h_m)), on_path)
@@ -200,7 +201,8 @@ def _table(flown: Flight, found: dme.Positions, h_m: Floats, offered: NDArray[np
             "ground_speed_mps": np.full(len(lat), SPEED_MPS),
             "leg": np.array(legs)[flown.leg],
             "status": status,
+            "reason_id": reason_id,
             "reason": reason,
         }
     )
-    return table.with_columns(pl.col(pl.Float64).fill_nan(None), pl.col("reason").replace("", None))
+    return table.with_columns(pl.col(pl.Float64).fill_nan(None), pl.col("reason_id", "reason").replace("", None))

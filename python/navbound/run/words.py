@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from navbound import anp
+import numpy as np
+
+from navbound import _core
 from navbound.run.verdict.rule import FEW_EPOCHS
 from navbound.time import utc_text
 
@@ -184,7 +186,7 @@ def honesty_words(nees: Nees, pit: Pit, regions: Sequence[Held] = ()) -> str:
 def _judgement(nees: Nees, pit: Pit) -> str:
     factor = (nees.nees_mean / nees.dimension) ** 0.5
     outside = not nees.nees_low <= nees.nees_mean <= nees.nees_high
-    low, high = (anp.chi_factor(nees.dimension, risk) ** 2 for risk in (0.975, 0.025))
+    low, high = _core.chi_quantile(nees.dimension, np.array([0.975, 0.025])) ** 2
     if outside and nees.n_effective < FEW_EPOCHS and low <= nees.nees_mean <= high:
         return (
             ", outside. But so few say little, and where errors stay for a whole track even their number is a guess: a single epoch may "

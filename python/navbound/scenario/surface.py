@@ -80,8 +80,8 @@ class Requirement(Part):
     title: str
     containment_m: float = Field(gt=0)
     hal_m: float = Field(gt=0)
-    integrity_risk: float = Field(gt=0, lt=1)
-    continuity_risk: float = Field(gt=0, lt=1)
+    integrity_risk: float = Field(ge=1e-300, le=0.5)
+    continuity_risk: float = Field(ge=1e-300, le=0.5)
     speed_mps: float = Field(ge=0)
     exposure_s: float = Field(gt=0)
 

@@ -214,6 +214,7 @@ export interface RunRecord {
     seed: number | null;
     inputs: { path: string; sha256: string; n_bytes: number; n_rows: number | null }[];
     methods: string[];
+    /** Null, as the next, in a report of errors against protection levels: its page shows neither. */
     risk_accuracy: number;
     risk_integrity: number;
     settings: Record<string, unknown>;

@@ -8,7 +8,7 @@ use navbound_core::bound::sbas::service::{Service, ranging};
 use navbound_core::bound::sbas::{NoLevel, Sky};
 use navbound_core::frame::{EcefPosition, ecef_from_geodetic};
 use navbound_core::geometry::broadcast::clock_polynomial;
-use navbound_core::quantity::{GpsTime, Metres};
+use navbound_core::quantity::{GpsTime, Metres, Reason};
 use navbound_core::signal::sbas::Store;
 use navbound_core::signal::sbas::timeout::Use;
 use navbound_core::signal::smoothing::Smoothing;
@@ -48,6 +48,15 @@ pub struct Fix {
     pub used_for: Use,
     /// Satellites used.
     pub satellites: Vec<Used>,
+}
+
+/// Why an epoch's position is not simply there; the residuals are tested at a risk of a false alarm.
+pub fn reason(fix: &Result<Fix, NoLevel>, false_alarm: f64) -> Option<Reason> {
+    match fix {
+        Ok(fix) if fix.solution.residual_risk < false_alarm => Some(Reason::ServiceResidualsContradict),
+        Ok(_) => None,
+        Err(why) => Some(why.reason()),
+    }
 }
 
 /// What came of a recording.

@@ -12,7 +12,7 @@
 //! Specification: Blanch et al. 2015 and Working Group C's airborne algorithm description v3.0; the order of modes of equal size is that
 //! of their events (standard, checked on 17 cases of MAAST for ARAIM 2).
 
-use crate::quantity::OutOfDomain;
+use crate::quantity::{OutOfDomain, Reason};
 use crate::signal::Constellation;
 
 /// Most satellites of one solution.
@@ -64,6 +64,16 @@ pub enum NoModes {
         /// As many as there is room for.
         most: usize,
     },
+}
+
+impl NoModes {
+    /// Its entry in the list of reasons.
+    pub const fn reason(&self) -> Reason {
+        match self {
+            Self::OutOfDomain(_) => Reason::InvalidNumber,
+            Self::TooManySatellites { .. } | Self::TooManyModes | Self::TooManyDecisions { .. } => Reason::TooMany,
+        }
+    }
 }
 
 /// Which modes a method must monitor.

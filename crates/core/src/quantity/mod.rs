@@ -2,10 +2,12 @@
 
 mod provenance;
 mod refusal;
+mod status;
 mod time;
 mod unit;
 
 pub use provenance::Provenance;
-pub use refusal::{OutOfDomain, Unavailable};
+pub use refusal::{Confidence, OutOfDomain, Unavailable};
+pub use status::{Reason, Status};
 pub use time::GpsTime;
 pub use unit::{Metres, Radians, Risk};

@@ -43,8 +43,9 @@ impl Radians {
     }
 }
 
-/// An allowed risk q = 1 - P, strictly between 0 and 1. A probability near one has lost its digits before it is stored: 1 - 1e-9 as a
-/// double carries a relative error of 1e-7 in the risk.
+/// An allowed risk q = 1 - P, at most one half: a bound that more errors leave than keep bounds nothing, and a number near one is a
+/// confidence. A probability near one has lost its digits before it is stored: 1 - 1e-9 as a double carries a relative error of 1e-7 in
+/// the risk. Probabilities that may come near one (of exceedance, of a missed detection at an error) are plain numbers, not risks.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Risk(f64);
 
@@ -73,23 +74,57 @@ impl Risk {
     /// The risk that two navigation filters that are right are said to disagree, at an instant.
     pub const SEPARATION: Self = Self(1e-7);
 
-    /// A risk inside (0, 1).
+    /// The smallest risk: below it products of two tails leave the range of a double.
+    pub const LEAST: f64 = 1e-300;
+    /// The largest risk.
+    pub const MOST: f64 = 0.5;
+    /// Both as refusals say them.
+    pub const DOMAIN: &str = "[1e-300, 0.5]";
+
+    /// A risk inside its domain.
     ///
     /// # Errors
-    /// [`OutOfDomain`] unless `0 < q < 1`.
+    /// [`OutOfDomain`] unless `1e-300 <= q <= 0.5`; for a number between 0.5 and 1 the refusal asks whether a confidence was meant.
     pub fn new(q: f64) -> Result<Self, OutOfDomain> {
-        if !(q > 0.0 && q < 1.0) {
-            return Err(OutOfDomain { argument: "risk", value: q, unit: "1", domain: "(0, 1)" });
+        if !(Self::LEAST..=Self::MOST).contains(&q) {
+            return Err(OutOfDomain { argument: "risk", value: q, unit: "1", domain: Self::DOMAIN });
         }
         Ok(Self(q))
     }
     /// A risk written in the source of this crate.
     pub(crate) const fn constant(q: f64) -> Self {
-        debug_assert!(q > 0.0 && q < 1.0);
+        debug_assert!(q >= Self::LEAST && q <= Self::MOST);
         Self(q)
     }
     /// The risk as a number.
     pub const fn q(self) -> f64 {
         self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    extern crate std;
+    use std::string::ToString;
+
+    #[test]
+    fn a_risk_is_at_most_one_half_and_not_below_the_range_of_its_products() {
+        for q in [1e-300, 1e-5, 0.05, 0.5] {
+            assert_eq!(Risk::new(q).map(Risk::q), Ok(q));
+        }
+        for q in [f64::NAN, f64::INFINITY, -0.1, 0.0, 5e-324, 9.9e-301, 0.500_000_1, 0.95, 1.0, 2.0] {
+            assert!(Risk::new(q).is_err(), "{q}");
+        }
+    }
+
+    #[test]
+    fn a_confidence_in_the_place_of_a_risk_is_asked_for() {
+        let words = |q: f64| Risk::new(q).unwrap_err().to_string();
+        assert_eq!(words(0.99999), "risk = 0.99999 [1] is outside [1e-300, 0.5]: risk is 1 - confidence; did you mean 1e-05?");
+        assert!(words(0.95).ends_with("did you mean 0.05?"), "{}", words(0.95));
+        assert!(words(1.0 - 1e-7).ends_with("did you mean 1e-07?"), "{}", words(1.0 - 1e-7));
+        assert_eq!(words(1.5), "risk = 1.5 [1] is outside [1e-300, 0.5]");
+        assert_eq!(words(1.0), "risk = 1 [1] is outside [1e-300, 0.5]");
     }
 }

@@ -15,7 +15,7 @@ use super::mixture::{Mixture, OBSTRUCTED};
 use super::plausible::Movement;
 use super::point::{CONFIRMED, Fix};
 use crate::frame::Covariance;
-use crate::quantity::{GpsTime, Unavailable};
+use crate::quantity::{GpsTime, Reason, Unavailable};
 use crate::special::float::exp;
 
 /// What is known of the surroundings fades with this \[s\].
@@ -65,35 +65,19 @@ impl Doubt {
         Self::ImplausibleJump,
     ];
 
-    /// The id of tables; it never changes.
-    pub const fn id(self) -> &'static str {
+    /// Its entry in the list of reasons.
+    pub const fn reason(self) -> Reason {
         match self {
-            Self::ResidualsContradict => "residuals_contradict",
-            Self::RecentResidualsContradict => "recent_residuals_contradict",
-            Self::NoRedundancy => "no_redundancy",
-            Self::ClockUnchecked => "clock_unchecked",
-            Self::ExclusionUnconfirmed => "exclusion_unconfirmed",
-            Self::ReadingUnconfirmed => "reading_unconfirmed",
-            Self::IonosphereUndescribed => "ionosphere_undescribed",
-            Self::ImplausibleHeight => "implausible_height",
-            Self::ImplausibleDilution => "implausible_dilution",
-            Self::ImplausibleJump => "implausible_jump",
-        }
-    }
-
-    /// One English sentence, for people.
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::ResidualsContradict => "the residuals contradict the weights",
-            Self::RecentResidualsContradict => "the ranges of the last minute contradict the weights: reflections or obstruction",
-            Self::NoRedundancy => "no satellite to spare: the residuals cannot be tested",
-            Self::ClockUnchecked => "too few satellites to spare: a second constellation checks nothing but its own clock",
-            Self::ExclusionUnconfirmed => "an exclusion that the remaining ranges cannot confirm",
-            Self::ReadingUnconfirmed => "too few satellites to spare: a fault of one could not be seen",
-            Self::IonosphereUndescribed => "no message describes the ionosphere: heights can be wrong by metres",
-            Self::ImplausibleHeight => "the height is none that a receiver has: outside -1 to 100 km",
-            Self::ImplausibleDilution => "the satellites hardly determine the position: dilution above 30",
-            Self::ImplausibleJump => "the position jumps farther than a receiver moves: more than 600 m/s, and Doppler does not support it",
+            Self::ResidualsContradict => Reason::ResidualsContradict,
+            Self::RecentResidualsContradict => Reason::RecentResidualsContradict,
+            Self::NoRedundancy => Reason::NoRedundancy,
+            Self::ClockUnchecked => Reason::ClockUnchecked,
+            Self::ExclusionUnconfirmed => Reason::ExclusionUnconfirmed,
+            Self::ReadingUnconfirmed => Reason::ReadingUnconfirmed,
+            Self::IonosphereUndescribed => Reason::IonosphereUndescribed,
+            Self::ImplausibleHeight => Reason::ImplausibleHeight,
+            Self::ImplausibleDilution => Reason::ImplausibleDilution,
+            Self::ImplausibleJump => Reason::ImplausibleJump,
         }
     }
 

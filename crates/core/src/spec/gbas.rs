@@ -239,7 +239,7 @@ pub const MONITOR_D: MonitorCurve = MonitorCurve {
     stretch: 1.0,
     projection: 2.0,
     marks: &[
-        mark("curve", Provenance::Standard, "ICAO Annex 10 appendix B, from memory of the standard; not read again"),
+        mark("curve", Provenance::Inferred, "ICAO Annex 10 appendix B, which was not read"),
         mark("projection", Provenance::Printed, "2"),
     ],
 };

@@ -55,8 +55,10 @@ pub struct ServiceLevel {
     pub rest: Provenance,
 }
 
-const LIMITS: &str = "ICAO Annex 10, volume I, table of signal-in-space performance, as quoted; to be confirmed against the standard";
-const REST: &str = "ICAO Annex 10, volume I, partly from memory; to be confirmed against the standard";
+const LIMITS: &str = "ICAO Annex 10 volume I, table 3.7.2.4-1 note 2 (pages of 23/11/06, reproduced at aero.cn 2010/0718/10768_58); the same in ICAO Doc 9849, 5th edition, table 2-1 (as the claims of SBAS Lab quote it), and but for oceanic in Satellite Navigation 1 (2020), doi 10.1186/s43020-020-00010-2, table 1";
+/// LPV-200 is younger than the pages of 2006: the newer edition gives category I a range from 35 m.
+const LPV_200: &str = "ICAO Doc 9849, 5th edition, table 2-1 and 4.3.3.3 (as the claims of SBAS Lab quote it); Satellite Navigation 1 (2020), doi 10.1186/s43020-020-00010-2, table 1; FAA, WAAS and LAAS program status (GPS.gov)";
+const REST: &str = "accuracy, integrity, continuity: Satellite Navigation 1 (2020), doi 10.1186/s43020-020-00010-2, table 1; time to alert: ICAO Doc 9849, 5th edition, table 2-1 (as the claims of SBAS Lab quote it); one public text each";
 const PAPER: &str = "Vassilev and Vassileva 2012; not a value of the standard";
 
 const fn en_route(id: &'static str, title: &'static str, hal_m: f64, accuracy_m: f64, time_to_alert_s: f64) -> ServiceLevel {
@@ -73,7 +75,7 @@ const fn en_route(id: &'static str, title: &'static str, hal_m: f64, accuracy_m:
         limits_source: LIMITS,
         limits: Provenance::Standard,
         rest_source: REST,
-        rest: Provenance::Standard,
+        rest: Provenance::Inferred,
     }
 }
 
@@ -91,7 +93,7 @@ const fn approach(id: &'static str, title: &'static str, val_m: f64, accuracy_v_
         limits_source: LIMITS,
         limits: Provenance::Standard,
         rest_source: REST,
-        rest: Provenance::Standard,
+        rest: Provenance::Inferred,
     }
 }
 
@@ -102,7 +104,7 @@ pub const SERVICE_LEVELS: &[ServiceLevel] = &[
     en_route("terminal", "terminal area", 1850.0, 740.0, 15.0),
     en_route("NPA", "non-precision approach", 556.0, 220.0, 10.0),
     approach("APV-I", "approach with vertical guidance I", 50.0, 20.0, 10.0),
-    approach("LPV-200", "localizer performance with vertical guidance, 200 ft", 35.0, 4.0, 6.0),
+    ServiceLevel { limits_source: LPV_200, ..approach("LPV-200", "localizer performance with vertical guidance, 200 ft", 35.0, 4.0, 6.0) },
     approach("APV-II", "approach with vertical guidance II", 20.0, 8.0, 6.0),
     approach("CAT-I", "category I, strict end of VAL 15 to 10 m", 10.0, 4.0, 6.0),
     ServiceLevel {

@@ -40,9 +40,8 @@ pub fn specification(name: &str, phase: Phase) -> Option<&'static Specification>
 }
 
 const FU: &str = "Fu, Zhang and Li 2014, Table 1";
-const OSTROUMOV: &str =
-    "named by Ostroumov and Kuzmenko 2018; phases and values of ICAO Doc 9613, from general knowledge, clause to be cited";
-const PBN_MANUAL: &str = "ICAO Doc 9613, from general knowledge, clause to be cited";
+const OSTROUMOV: &str = "named by Ostroumov and Kuzmenko 2018; phases and values: ICAO Doc 9613, which was not read";
+const PBN_MANUAL: &str = "ICAO Doc 9613, which was not read";
 
 const fn printed(name: &'static str, phase: Phase, least_nm: f64, most_nm: f64) -> Specification {
     Specification { source: FU, provenance: Provenance::Printed, ..cell(name, phase, least_nm, most_nm, true) }
@@ -61,7 +60,7 @@ const fn cell(name: &'static str, phase: Phase, least_nm: f64, most_nm: f64, mon
         accuracy_most: Metres::nautical_miles(most_nm),
         monitored,
         source: PBN_MANUAL,
-        provenance: Provenance::Standard,
+        provenance: Provenance::Inferred,
     }
 }
 

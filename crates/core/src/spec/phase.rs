@@ -48,7 +48,7 @@ pub struct TimeToAlert {
     pub provenance: Provenance,
 }
 
-const SOURCE: &str = "ICAO Annex 10, volume I, signal-in-space performance; from general knowledge, clause to be cited";
+const SOURCE: &str = "ICAO Doc 9849, 5th edition, table 2-1 (as the claims of SBAS Lab quote it); one public text";
 
 impl Phase {
     /// The word of tables and configuration.
@@ -69,10 +69,10 @@ impl Phase {
     /// of them an intermediate, final or missed approach without vertical guidance belongs to is our reading, marked as such.
     pub const fn time_to_alert(self) -> TimeToAlert {
         let (operation, seconds, provenance) = match self {
-            Self::EnRouteOceanic | Self::EnRouteContinental => ("en route", 300.0, Provenance::Standard),
-            Self::Arrival => ("terminal", 15.0, Provenance::Standard),
-            Self::Initial => ("initial approach", 10.0, Provenance::Standard),
-            Self::Departure => ("departure", 10.0, Provenance::Standard),
+            Self::EnRouteOceanic | Self::EnRouteContinental => ("en route", 300.0, Provenance::Inferred),
+            Self::Arrival => ("terminal", 15.0, Provenance::Inferred),
+            Self::Initial => ("initial approach", 10.0, Provenance::Inferred),
+            Self::Departure => ("departure", 10.0, Provenance::Inferred),
             Self::Intermediate | Self::Final | Self::Missed => ("non-precision approach", 10.0, Provenance::Inferred),
         };
         TimeToAlert { operation, seconds, source: SOURCE, provenance }

@@ -19,7 +19,7 @@ pub(crate) fn tail_3(k: f64) -> f64 {
 /// Factor k(q): the length of a standard normal vector of this dimension exceeds it with risk q. 2.795483482915108 at 0.05 in space.
 ///
 /// # Errors
-/// [`OutOfDomain`] unless the dimension is 1, 2 or 3 and `0 < q < 1`.
+/// [`OutOfDomain`] unless the dimension is 1, 2 or 3 and `0 < q < 1`: a quantile, which has two sides. A bound takes a `Risk`.
 pub fn chi_factor(dimension: usize, q: f64) -> Result<f64, OutOfDomain> {
     if !(q > 0.0 && q < 1.0) {
         return Err(OutOfDomain { argument: "risk", value: q, unit: "1", domain: "(0, 1)" });

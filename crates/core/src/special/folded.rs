@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn the_risk_at_the_root_is_the_risk_asked_for() {
-        for q in [1e-12, 1e-9, 1e-5, 0.05, 0.3, 0.5, 0.7, 0.95, 0.999] {
+        for q in [1e-12, 1e-9, 1e-5, 0.05, 0.3, 0.5] {
             let law = FoldedQuantile::new(Risk::new(q).unwrap());
             for step in 0..400 {
                 let m = 0.02 * f64::from(step);

@@ -59,6 +59,11 @@ impl StudentT {
         }
     }
 
+    /// Risk beyond a ratio m of mean to scale and an excess u on either side: S(u) + S(u + 2 m).
+    pub(crate) fn risk(&self, ratio: f64, excess: f64) -> f64 {
+        self.tail(excess) + self.tail(excess + 2.0 * ratio)
+    }
+
     /// The excess u with S(u) + S(u + 2 m) = q, for a ratio m of mean to scale; solved in the logarithm of the bound m + u, in which
     /// a heavy tail is straight.
     pub(crate) fn excess(&self, ratio: f64, q: f64) -> f64 {

@@ -70,10 +70,10 @@ class Log:
                 self.leave_out("position or time outside its domain", row["record"], str(shown), damaged=True)
         self.rows = [row for row in self.rows if _sound(row)]
 
-    def note(self, words: str) -> None:
+    def note(self, note: str) -> None:
         """Add a note once."""
-        if words not in self.notes and len(self.notes) < _KEPT_NOTES:
-            self.notes.append(words)
+        if note not in self.notes and len(self.notes) < _KEPT_NOTES:
+            self.notes.append(note)
 
 
 _LATEST_NS = 4_000_000_000_000_000_000

@@ -8,7 +8,7 @@ use super::modes::{Book, FaultModes, MOST_SATELLITES, NoModes};
 use super::separation::Separation;
 use super::service::Service;
 use super::{Levels, Monitor, Sight, Solver, Terms};
-use crate::quantity::{Metres, Unavailable};
+use crate::quantity::{Metres, Reason, Unavailable};
 
 /// How exclusion shares the risk; provenance *ours*.
 pub const SOURCE: &str = "navbound, docs/methods/araim.md: equal shares of the integrity risk for every decision (ours)";
@@ -27,6 +27,16 @@ pub enum NoLevels {
     /// The geometry does not serve.
     #[error(transparent)]
     Geometry(#[from] Unavailable),
+}
+
+impl NoLevels {
+    /// Its entry in the list of reasons.
+    pub const fn reason(&self) -> Reason {
+        match self {
+            Self::Modes(why) => why.reason(),
+            Self::Geometry(why) => why.reason_of_solution(),
+        }
+    }
 }
 
 /// What was decided about an epoch's ranges.

@@ -28,7 +28,7 @@ impl Requirement {
     /// En route to non-precision approach: false alarm 3.33e-7 an independent sample (1e-5 an hour of 30), missed detection 0.001.
     pub const RAIM: Self = Self {
         id: "raim",
-        source: "RTCA DO-229 2.1.2.2.2 and DO-316: false alarm 3.33e-7, missed detection 1e-3 (standard, from memory); fault-free 1e-7 (inferred)",
+        source: "RTCA DO-229 2.1.2.2.2 and DO-316: false alarm 3.33e-7, missed detection 1e-3 (inferred: the text was not read); fault-free 1e-7 (inferred)",
         provenance: Provenance::Inferred,
         false_alarm: Risk::constant(3.33e-7),
         missed_detection: Risk::constant(1e-3),

@@ -27,10 +27,12 @@ pub fn fault_probability(groups: impl IntoIterator<Item = (f64, f64)>, tau_s: f6
     Ok(-exp_m1(log))
 }
 
-/// Missed detection of a range error by the ground monitors.
+/// Missed detection of a range error by the ground monitors; of an error that is no number nothing is known, not even the curve's floor.
 pub fn missed_by_monitor(curve: &MonitorCurve, error: Metres) -> f64 {
     let e = error.m().abs() / curve.stretch;
-    if e < curve.start.m() {
+    if e.is_nan() {
+        f64::NAN
+    } else if e < curve.start.m() {
         1.0
     } else if e <= curve.end.m() {
         exp((curve.slope_per_m * e + curve.offset) * core::f64::consts::LN_10)
@@ -84,9 +86,11 @@ impl Hazard {
         tail((self.containment.m() - moved) / self.sigma.m()) + tail((self.containment.m() + moved) / self.sigma.m())
     }
 
-    /// Largest missed detection that keeps the risk (equations 7 and 10).
+    /// Largest missed detection that keeps the risk (equations 7 and 10); NaN for an error that is no number.
     pub fn limit(&self, error: Metres) -> f64 {
-        (self.allotted / (self.fault * self.exceedance(error))).min(1.0)
+        let most = self.allotted / (self.fault * self.exceedance(error));
+        // `min` would turn a NaN into the largest limit of all.
+        if most > 1.0 { 1.0 } else { most }
     }
 
     /// The smallest limit over monitor's missed detection, as decades, over all range errors: not negative where the monitor suffices.

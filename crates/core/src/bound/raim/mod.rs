@@ -18,7 +18,7 @@ use crate::special::{one_sided_factor, two_sided_factor};
 use nalgebra::{Matrix3, Vector3};
 
 /// Document of the published form; provenance *standard*.
-pub const SOURCE: &str = "Brown and Chin 1997, threshold and protection radius by chi-square; weights as Walter and Enge 1995; RTCA DO-229, appendix on fault detection (standard, from memory)";
+pub const SOURCE: &str = "Brown and Chin 1997, threshold and protection radius by chi-square; weights as Walter and Enge 1995; RTCA DO-229, appendix on fault detection (inferred: the text was not read)";
 /// What the levels add to it; provenance *ours*.
 pub const NOISE_SOURCE: &str =
     "navbound, docs/methods/raim.md: the noise of the position is added to the published level, which leaves it out (ours)";
@@ -29,7 +29,7 @@ pub const PROTECTION: Protection = Protection {
     title: "RAIM by slopes of the residuals",
     function: "navbound.raim.protection_levels",
     source: SOURCE,
-    provenance: Provenance::Standard,
+    provenance: Provenance::Inferred,
     covers: "one satellite of any size of fault",
     assumes: "errors of ranges without a fault are normal, independent and no larger than their sigmas; the noise of the position is added (ours)",
     integrity: true,

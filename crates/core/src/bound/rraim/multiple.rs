@@ -5,7 +5,7 @@ use super::single::Fix;
 use crate::bound::faults::{FaultModes, MOST_MODES, NoModes};
 use crate::bound::level_equation::LevelEquation;
 use crate::bound::{Protection, Provenance};
-use crate::quantity::{Metres, Risk, Unavailable};
+use crate::quantity::{Metres, Reason, Risk, Unavailable};
 use crate::special::float::{hypot, sqrt};
 use crate::special::one_sided_factor;
 
@@ -41,6 +41,18 @@ pub enum NoLevel {
     /// The equation has no root: a number of it is not finite.
     #[error("the level equation was given a number that is not finite")]
     Equation,
+}
+
+impl NoLevel {
+    /// Its entry in the list of reasons.
+    pub const fn reason(&self) -> Reason {
+        match self {
+            Self::Geometry(why) => why.reason(),
+            Self::Modes(why) => why.reason(),
+            Self::Budget { .. } => Reason::RiskBudgetSpent,
+            Self::Equation => Reason::NoRoot,
+        }
+    }
 }
 
 /// Risks of equation 17.

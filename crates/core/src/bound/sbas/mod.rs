@@ -13,7 +13,7 @@ pub mod terms;
 use super::{Protection, Provenance};
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, ecef_from_geodetic, enu_from_ecef};
 use crate::geometry::atmosphere::klobuchar_and_latitude;
-use crate::quantity::{Metres, OutOfDomain, Radians, Unavailable};
+use crate::quantity::{Metres, OutOfDomain, Radians, Reason, Unavailable};
 use crate::signal::Constellation;
 use crate::signal::sbas::MASK_MOST;
 use crate::signal::sbas::timeout::Use;
@@ -288,14 +288,25 @@ fn broadcast_vertical(service: &Service, user: &User, unit_enu: &Vector3<f64>, e
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoLevel {
     /// Message 0 is in force.
-    #[error("the service says \"do not use\" (message 0)")]
+    #[error("{}", Reason::ServiceDoNotUse.words())]
     DoNotUse,
     /// No PRN mask is in force.
-    #[error("no PRN mask is in force")]
+    #[error("{}", Reason::NoPrnMask.words())]
     NoMask,
     /// The geometry does not serve.
     #[error(transparent)]
     Geometry(#[from] Unavailable),
+}
+
+impl NoLevel {
+    /// Its entry in the list of reasons.
+    pub const fn reason(&self) -> Reason {
+        match self {
+            Self::DoNotUse => Reason::ServiceDoNotUse,
+            Self::NoMask => Reason::NoPrnMask,
+            Self::Geometry(why) => why.reason_of_solution(),
+        }
+    }
 }
 
 impl Service {

@@ -119,7 +119,7 @@ pub fn obliquity_squared(cos_el_squared: f64) -> f64 {
 /// max((T_iono / 5)^2, (F_pp tau_vert)^2)     tau_vert = 9 m to 20, 4.5 m to 55, 6 m beyond 55 degrees of geomagnetic latitude
 /// ```
 ///
-/// RTCA DO-229D J.2.3 (standard, from memory).
+/// RTCA DO-229D J.2.3 (inferred: the text was not read).
 pub fn broadcast_ionosphere_m2(slant_m: f64, obliquity_squared: f64, magnetic_lat_rad: f64) -> f64 {
     let latitude = magnetic_lat_rad.abs().to_degrees();
     let vertical_m = if latitude <= 20.0 {

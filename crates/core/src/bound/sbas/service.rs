@@ -18,7 +18,7 @@ const SATELLITES: usize = crate::signal::sbas::MASK_MOST;
 const REGIONS: usize = 8;
 /// From this UDRE indicator on a satellite is too poor for precision approach (standard).
 const UDREI_TOO_POOR: u8 = 12;
-/// e_C of message 28 when message 10 is not in force (en route only; standard, from memory).
+/// e_C of message 28 when message 10 is not in force (en route only; inferred, the text was not read).
 const UNKNOWN_COVARIANCE_M: f64 = 8.0;
 const DAY_S: f64 = 86_400.0;
 

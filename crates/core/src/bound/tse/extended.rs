@@ -76,7 +76,8 @@ pub fn paired_overbound(deviation: Deviation, bias: Metres, risk: Risk) -> Resul
 /// *scale*; its standard deviation is scale * sqrt(nu / (nu - 2)).
 ///
 /// # Errors
-/// [`OutOfDomain`] unless 1 <= nu <= 1e6.
+/// [`OutOfDomain`] unless 1 <= nu <= 1e6, and for a risk so small that the law's tail at the bound leaves the range of a double (about
+/// 1e-260 at six degrees of freedom, 1e-150 at one).
 pub fn student_t(deviation: Deviation, nu: f64, risk: Risk) -> Result<Metres, OutOfDomain> {
     if !(1.0..=MAX_DEGREES_OF_FREEDOM).contains(&nu) {
         return Err(OutOfDomain { argument: "degrees_of_freedom", value: nu, unit: "1", domain: "[1, 1e6]" });
@@ -85,8 +86,17 @@ pub fn student_t(deviation: Deviation, nu: f64, risk: Risk) -> Result<Metres, Ou
     if scale == 0.0 {
         return Ok(Metres::new(fte));
     }
-    Ok(Metres::new(fte + StudentT::new(nu).excess(fte / scale, risk.q()) * scale))
+    let (law, ratio) = (StudentT::new(nu), fte / scale);
+    let excess = law.excess(ratio, risk.q());
+    // Where density or square leave the range the root is a number of no meaning, and shorter than the bound.
+    if !((law.risk(ratio, excess) / risk.q() - 1.0).abs() <= SAME_RISK) {
+        return Err(OutOfDomain { argument: "risk", value: risk.q(), unit: "1", domain: "risks whose Student bound a double holds" });
+    }
+    Ok(Metres::new(fte + excess * scale))
 }
+
+/// How far the risk at a bound may be from the one asked for: 1e-6 is far above its rounding, and far below what any figure here shows.
+const SAME_RISK: f64 = 1e-6;
 
 /// One hypothesis of a mixture.
 #[derive(Debug, Clone, Copy, PartialEq)]

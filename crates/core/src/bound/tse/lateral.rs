@@ -89,7 +89,7 @@ pub(super) fn root_of_variance(variance: f64) -> Metres {
 }
 
 /// Unit vectors along the course and across it to the right.
-pub(super) fn axes(course: Radians) -> Result<(Vector3<f64>, Vector3<f64>), OutOfDomain> {
+pub(crate) fn axes(course: Radians) -> Result<(Vector3<f64>, Vector3<f64>), OutOfDomain> {
     if !course.rad().is_finite() {
         return Err(OutOfDomain { argument: "course_rad", value: course.rad(), unit: "rad", domain: "(-inf, inf)" });
     }

@@ -12,6 +12,7 @@ mod vertical;
 
 pub use ellipse::{Horizontal, ctem, ctem_foot, farthest, sqsm};
 pub use extended::{Component, MAX_DEGREES_OF_FREEDOM, RandomFte, mixture, paired_overbound, rf_fte, rssm, student_t};
+pub(crate) use lateral::axes;
 pub use lateral::{
     Deviation, Gradient, Lateral, exact, exact_prepared, exceedance_risk, fte_budget, gradient, ln_exceedance_risk, ltem, project,
     sigma_budget,

@@ -1,7 +1,7 @@
 //! One range that contradicts all others: found by leaving each out in turn, or said not to be found.
 
 use super::fix::{Altitude, Fix, NoFix, Prior, Range, solve};
-use crate::quantity::Risk;
+use crate::quantity::{Reason, Risk};
 use crate::special::float::ln;
 
 /// A position and what its residuals say.
@@ -24,6 +24,18 @@ pub enum Verdict {
     TooFew,
     /// They do; leaving out one does not help, or leaving out another helps as much.
     Undecided,
+}
+
+impl Verdict {
+    /// Its entry in the list of reasons; none where nothing contradicts.
+    pub const fn reason(&self) -> Option<Reason> {
+        match self {
+            Self::Consistent => None,
+            Self::Excluded(_) => Some(Reason::RangeExcluded),
+            Self::TooFew => Some(Reason::RangesContradict),
+            Self::Undecided => Some(Reason::RangesContradictStill),
+        }
+    }
 }
 
 /// The range left out must be this much likelier the wrong one than any other, all being as likely beforehand. Ours.

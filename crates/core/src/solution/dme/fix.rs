@@ -4,7 +4,7 @@ use super::Place;
 use super::intersection::meet;
 use super::normal::{Normal, Solved};
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, ecef_from_geodetic, geodetic_from_ecef};
-use crate::quantity::{Metres, OutOfDomain, Radians};
+use crate::quantity::{Metres, OutOfDomain, Radians, Reason};
 use crate::special::float::{cos, ln, sin, sqrt};
 use crate::special::gamma::chi_square_tail;
 use nalgebra::Vector3;
@@ -69,25 +69,25 @@ impl Fix {
 #[non_exhaustive]
 pub enum NoFix {
     /// Fewer than two ranges.
-    #[error("two ranges are needed")]
+    #[error("{}", Reason::TooFewRanges.words())]
     TooFewRanges,
     /// The stations and the aircraft lie in one line.
-    #[error("the stations and the aircraft lie in one line")]
+    #[error("{}", Reason::StationsInLine.words())]
     Singular,
     /// The ranges do not meet at the altitude.
-    #[error("the ranges do not meet at the altitude")]
+    #[error("{}", Reason::RangesApart.words())]
     Apart,
     /// The position and its mirror fit alike.
-    #[error("the position and its mirror across the line of the stations fit alike")]
+    #[error("{}", Reason::Ambiguous.words())]
     Ambiguous,
     /// No solution near the prior.
-    #[error("no solution lies within the distance of the prior position")]
+    #[error("{}", Reason::FarFromPrior.words())]
     FarFromPrior,
     /// The iteration did not settle.
-    #[error("the iteration did not settle")]
+    #[error("{}", Reason::NotConverged.words())]
     NotSettled,
     /// Overhead of a VOR.
-    #[error("the aircraft is in the cone above the VOR")]
+    #[error("{}", Reason::OverheadVor.words())]
     Overhead,
     /// A number outside its domain.
     #[error(transparent)]
@@ -95,9 +95,19 @@ pub enum NoFix {
 }
 
 impl NoFix {
-    /// Every reason that lies in the sky and not in the arguments.
-    pub const SKY: [Self; 7] =
-        [Self::TooFewRanges, Self::Singular, Self::Apart, Self::Ambiguous, Self::FarFromPrior, Self::NotSettled, Self::Overhead];
+    /// Its entry in the list of reasons.
+    pub const fn reason(&self) -> Reason {
+        match self {
+            Self::TooFewRanges => Reason::TooFewRanges,
+            Self::Singular => Reason::StationsInLine,
+            Self::Apart => Reason::RangesApart,
+            Self::Ambiguous => Reason::Ambiguous,
+            Self::FarFromPrior => Reason::FarFromPrior,
+            Self::NotSettled => Reason::NotConverged,
+            Self::Overhead => Reason::OverheadVor,
+            Self::Invalid(_) => Reason::InvalidNumber,
+        }
+    }
 }
 
 /// A step below this ends the iteration (metres of equal ranges at right angles; a weak geometry magnifies rounding likewise).

@@ -32,8 +32,7 @@ pub struct RangeModel {
 }
 
 impl RangeModel {
-    /// 0.085 NM or 0.125 % of the distance, and 0.05 NM: half of 0.17 NM or 0.25 % at 95 %. Standard, from general knowledge
-    /// (seen in public excerpts), clause to be cited.
+    /// 0.085 NM or 0.125 % of the distance, and 0.05 NM: half of 0.17 NM or 0.25 % at 95 %. Inferred: values of public excerpts, the text was not read.
     pub const STANDARD: Self = Self { air_least: Metres::nautical_miles(0.085), air_share: 0.00125, signal: Metres::nautical_miles(0.05) };
 
     /// sqrt(max(air_least, air_share * slant)^2 + signal^2) \[m\].
@@ -48,7 +47,7 @@ impl RangeModel {
     }
 }
 
-/// Which pairs may be used. Standard, from general knowledge (seen in public excerpts), clause to be cited.
+/// Which pairs may be used. Inferred: values of public excerpts, the text was not read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Admission {
     /// Least angle at the aircraft between the horizontal directions to both stations; its supplement is the largest.
@@ -85,7 +84,7 @@ pub struct Horizon {
 }
 
 impl Horizon {
-    /// Four thirds of 6371 km: 1.23 NM times the root of the height in feet. Standard, from general knowledge, clause to be cited.
+    /// Four thirds of 6371 km: 1.23 NM times the root of the height in feet. inferred, the text was not read.
     pub const STANDARD: Self = Self { effective_radius: Metres::new(4.0 / 3.0 * 6_371_000.0) };
 
     /// sqrt(2 R h) of an aircraft `above` the station's ground; nothing is seen from below it \[m\].

@@ -11,7 +11,7 @@
 //! The variant without reset: the master never writes back. So neither filter ever learns from the other's measurements, a false
 //! measurement stays in its own filter, and the one without satellites is a witness against the other. The cost: V is an upper bound, not
 //! the covariance, and a filter alone is worse than one told the truth. With a reset to V/b after each fusion V would be the optimum, and
-//! whatever deceives one filter would be in both. Source: Carlson, federated square root filter, 1990 (from memory); provenance: standard
+//! whatever deceives one filter would be in both. Source: Carlson, federated square root filter, 1990 (the text was not read); provenance: inferred
 //! formulas, equal shares ours.
 
 use super::dynamics::{BA, BG, NAV, PHI, R, V};

@@ -76,7 +76,7 @@ pub struct ClockModel {
 }
 
 impl Default for ClockModel {
-    /// A temperature-compensated crystal, h0 = 2e-19 s, h-2 = 2e-20 /s (inferred: Brown and Hwang's class, from memory):
+    /// A temperature-compensated crystal, h0 = 2e-19 s, h-2 = 2e-20 /s (inferred: Brown and Hwang's class):
     /// c² h0/2 and 2 pi² c² h-2.
     fn default() -> Self {
         Self { bias_m: 1e4, drift_mps: 100.0, frequency_m2ps: 0.009, walk_m2ps3: 0.0355, inter_system_m: 100.0 }
