@@ -16,6 +16,7 @@ mod covariance;
 #[cfg(test)]
 mod covariance_tests;
 mod dynamics;
+mod entry;
 mod federated;
 mod filter;
 #[cfg(test)]
@@ -36,6 +37,7 @@ mod strapdown;
 pub use adrift::Resumption;
 pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};
+pub use entry::Refusal;
 pub use filter::{Advance, Filter, Samples, Solution, Stop};
 pub use fusion::{Beside, Fusion};
 pub use innovation::{Innovations, Kind, MEMORY_S, PAIRS_LEAST};
