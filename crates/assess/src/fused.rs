@@ -65,7 +65,7 @@ pub fn navigate(sensing: &Sensing, path: &Trajectory, seed: u64, number: u64) ->
         return Err(OutOfDomain { argument: "filter", value: 0.0, unit: "tables", domain: "a scenario with a [filter] part" });
     };
     let mut sensed = sensing.flight(path, seed, number)?;
-    let mut watch = Watch::start(&sensed, navigator, sensing, &Navigator::start_normals(seed, number))?;
+    let mut watch = Watch::start(&sensed, navigator, sensing, &navigator.start_normals(seed, number))?;
     let mut navigated = Vec::with_capacity(sensing.outlook().seconds());
     navigated.push(watch.say(sensing, 0, sensed.begin(), sensed.now())?);
     let rate = u64::from(sensing.sensors().rate_hz);

@@ -164,9 +164,13 @@ fn navigation_errors(outlook: &Outlook, seed: u64, number: u64) -> Vec<Vector3<f
     errors
 }
 
+/// Largest error that the guidance is steered by \[m\]: it flies no differently for one that is larger.
+const STEERED_MOST_M: f64 = 1e6;
+
 fn seen_error(instant: &Instant, navigated: &Navigated) -> Deviation {
     let error = &navigated.error_enu_m;
-    Deviation { right_m: right_of(instant.place.course).dot(error), up_m: error.z }
+    let bounded = |x: f64| if x.is_nan() { 0.0 } else { x.clamp(-STEERED_MOST_M, STEERED_MOST_M) };
+    Deviation { right_m: bounded(right_of(instant.place.course).dot(error)), up_m: bounded(error.z) }
 }
 
 fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, navigated: &Navigated) -> Result<FlownEpoch, OutOfDomain> {
@@ -199,9 +203,15 @@ fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, navigated: 
         memory: navigated.memory,
         doubt: navigated.doubt,
     };
-    epoch.estimate(outlook, instant, &truth, navigated)?;
+    // An estimate that belongs to no point of the path, or to none of the Earth, is none; the flight goes on.
+    if epoch.estimate(outlook, instant, &truth, navigated).is_err() {
+        (epoch.reason, epoch.mode) = (Some(DIVERGED), None);
+    }
     Ok(epoch)
 }
+
+/// Why an estimate that is too wrong is none.
+const DIVERGED: Unavailable = Unavailable::Missing { method: "the navigation filter", field: "an estimate within 5000 km of the path" };
 
 impl FlownEpoch {
     /// Adds what rests on the estimate, where there is one.
