@@ -103,6 +103,7 @@ impl Filter {
     pub(super) fn lose(&mut self, sample: &ImuIncrement) -> Advance {
         self.settle();
         self.strapdown.forget();
+        self.delay.forget_motion();
         self.aligning = true;
         for k in 0..3 {
             self.joint.reset(PHI + k, ANY_ANGLE_RAD2);

@@ -10,6 +10,7 @@ use super::settings::{ErrorModel, positive};
 use super::slots::{Further, Process};
 use super::state::finite;
 use super::stations::{Look, Standing};
+use crate::frame::ecef_from_geodetic;
 use crate::quantity::{GpsTime, Metres, OutOfDomain};
 use crate::signal::{Aiding, BaroHeight, DmeRange, PositionFix, SatelliteRange, TimedAiding, VorBearing};
 use crate::special::float::hypot;
@@ -160,7 +161,12 @@ impl Filter {
             Aiding::Dme(m) => self.dme(&antenna, m),
             Aiding::Vor(m) => self.vor(&antenna, m),
             Aiding::Baro(m) => self.baro(&antenna, m, age_s),
-            Aiding::Fix(m) => self.fix(&antenna, m),
+            Aiding::Fix(m) => {
+                let [north, east] = [0, 1].map(|k| antenna.ned_from_ecef.row(k).transpose());
+                let (variance, place) = (m.covariance.matrix(), *ecef_from_geodetic(&m.position).vector());
+                self.delay.heard(timed.time, place, variance[(0, 0)].max(variance[(1, 1)]), [north, east]);
+                self.fix(&antenna, m)
+            }
         };
         if matches!(used, Aided::Used { .. }) {
             self.note(&timed.aiding);

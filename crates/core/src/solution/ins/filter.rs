@@ -2,6 +2,7 @@
 
 use super::adrift::Adrift;
 use super::covariance::{BASE, Fade, Joint, Row, StepNoise, WIDTH};
+use super::delay::Delay;
 use super::dynamics::{BA, BG, NAV, PHI, R, V, transition};
 use super::entry::{Entry, Refusal};
 use super::innovation::{Innovations, Kind, Memory};
@@ -103,6 +104,7 @@ pub struct Filter {
     pub(super) innovations: [Innovations; Kind::ALL.len()],
     pub(super) memory: Memory,
     pub(super) entry: Entry,
+    pub(super) delay: Delay,
     /// Whose time the clock is in.
     pub(super) first_constellation: Option<Constellation>,
     pub(super) biases: [Vector3<f64>; 2],
@@ -148,6 +150,7 @@ impl Filter {
             innovations: [Innovations::default(); Kind::ALL.len()],
             memory: Memory::new(),
             entry: Entry::new(),
+            delay: Delay::new(),
             first_constellation: None,
             biases: [Vector3::zeros(); 2],
             rate: Vector3::zeros(),
@@ -182,6 +185,14 @@ impl Filter {
     /// Measurements that were not used before any gate, in the order of [`Refusal::ALL`].
     pub const fn refusals(&self) -> &[u64; Refusal::ALL.len()] {
         self.entry.counts()
+    }
+    /// Whether solved positions are of another time than their tags say.
+    pub const fn fixes_are_late(&self) -> bool {
+        self.delay.is_late()
+    }
+    /// By how much, tag minus time of the position \[s\], where the motion shows it.
+    pub fn fix_delay_s(&self) -> Option<f64> {
+        self.delay.estimate_s()
     }
     /// The further states and their values: lengths \[m\], rates \[m/s\], angles \[rad\].
     pub fn further(&self) -> impl Iterator<Item = (Further, f64)> + '_ {
@@ -297,10 +308,13 @@ impl Filter {
             velocity_mps: sample.velocity_mps - self.biases[1] * dt,
             ..*sample
         };
+        let before = *self.state().velocity_ned_mps();
         let step = match self.strapdown.step(&corrected) {
             Ok(step) => step,
             Err(refusal) => return self.stop(Stop::Place(refusal)),
         };
+        let change = self.state().velocity_ned_mps() - before;
+        self.delay.moved(sample.time, change.xy(), dt);
         self.rate = corrected.angle_rad / dt - step.c.transpose() * step.earth.earth;
         let waiting = match self.waiting {
             None => Waiting { n: 1, step },

@@ -179,6 +179,14 @@ impl Fusion {
         let second = self.beside.as_ref().filter(|_| self.settings.form == Form::Federated);
         self.main.stations_left_out().chain(second.into_iter().flat_map(Filter::stations_left_out))
     }
+    /// As [`Filter::fixes_are_late`], of the main filter.
+    pub const fn fixes_are_late(&self) -> bool {
+        self.main.fixes_are_late()
+    }
+    /// As [`Filter::fix_delay_s`], of the main filter.
+    pub fn fix_delay_s(&self) -> Option<f64> {
+        self.main.fix_delay_s()
+    }
     /// Measurements that were not used before any gate, in the order of [`Refusal::ALL`]; of both filters in the federated form.
     pub fn refusals(&self) -> [u64; Refusal::ALL.len()] {
         let second = self.beside.as_ref().filter(|_| self.settings.form == Form::Federated).map(Filter::refusals);

@@ -15,6 +15,7 @@ mod align;
 mod covariance;
 #[cfg(test)]
 mod covariance_tests;
+mod delay;
 mod dynamics;
 mod entry;
 mod federated;
