@@ -97,6 +97,9 @@ class Fused(Track):
     refusals : dict of str to int
         Measurements not used before any gate, by reason: ``repeated``, ``same_name`` (several sources under one name at an instant),
         ``out_of_range``, ``late``, ``no_place``, ``no_position``, ``stopped``.
+    fix_delay_s : float or None
+        By how much solved positions are later than their tags say, where the motion shows it: their accelerations come later than the
+        unit's. [s]
     clock_jumps : int
         How often the receiver's clock has jumped and was set anew.
     left_out : list of str
@@ -121,6 +124,7 @@ class Fused(Track):
     refused: tuple[int, str] | None
     holes: list[tuple[int, float]]
     refusals: dict[str, int]
+    fix_delay_s: float | None
     clock_jumps: int
     left_out: list[str]
     further: dict[str, float]
@@ -237,7 +241,7 @@ def fuse(
     Raises
     ------
     InputError
-        Wrong shapes, a setting outside its domain, a measured place that is none.
+        Wrong shapes, a setting outside its domain. A row of a measurement that is none is refused alone and counted in ``refusals``.
     """
     model, how = imu_model or ImuModel(), settings or FilterSettings()
     periods = (output_period_s, update_period_s)
@@ -274,6 +278,7 @@ def _fused(found: dict[str, Any]) -> Fused:
         refused=found["refused"],
         holes=found["holes"],
         refusals=dict(found["refusals"]),
+        fix_delay_s=found["fix_delay_s"],
         clock_jumps=found["clock_jumps"],
         left_out=found["left_out"],
         further=dict(found["further"]),

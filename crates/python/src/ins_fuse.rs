@@ -115,7 +115,7 @@ struct Tables<'py> {
     vor: (PyReadonlyArray1<'py, i64>, Vec<u16>, PyReadonlyArray2<'py, f64>),
     /// Time; height, white, bias, its time.
     baro: (PyReadonlyArray1<'py, i64>, PyReadonlyArray2<'py, f64>),
-    /// Time; latitude, longitude, height, nine of the covariance, velocity (NaN: none), nine of its covariance.
+    /// Time; latitude, longitude, height, nine of the covariance, velocity (NaN: none), nine of its covariance, levels (NaN: none).
     fixes: (PyReadonlyArray1<'py, i64>, PyReadonlyArray2<'py, f64>),
 }
 
@@ -163,7 +163,7 @@ fn vor(station: u16, [lat, lon, h, bearing, white, bias]: &[f64; 6]) -> Result<A
     }))
 }
 
-fn fix(row: &[f64; 24]) -> Result<Aiding, OutOfDomain> {
+fn fix(row: &[f64; 26]) -> Result<Aiding, OutOfDomain> {
     let part = |first: usize| [row[first], row[first + 1], row[first + 2]];
     let nine = |first: usize| core::array::from_fn(|k| row[first + k]);
     let velocity = part(12);
@@ -171,28 +171,38 @@ fn fix(row: &[f64; 24]) -> Result<Aiding, OutOfDomain> {
         true => None,
         false => Some((vector(velocity), Matrix3::from_row_slice(&nine(15)))),
     };
-    Ok(Aiding::Fix(PositionFix { position: geodetic(&part(0))?, covariance: Covariance::from_rows(nine(3))?, velocity_ned_mps }))
+    let level_m = Some([row[24], row[25]]).filter(|levels| levels.iter().all(|l| *l >= 0.0 && l.is_finite()));
+    let covariance = Covariance::from_rows(nine(3))?;
+    Ok(Aiding::Fix(PositionFix { position: geodetic(&part(0))?, covariance, velocity_ned_mps, level_m }))
 }
 
 impl Tables<'_> {
     /// All in the order of time; of one instant in the order satellites, fixes, DME, VOR, barometer.
-    fn aiding(&self) -> PyResult<Vec<TimedAiding>> {
-        let at = |index: usize| move |e: OutOfDomain| input_error(e, Some(index));
+    ///
+    /// A row that is no measurement at all is left out and counted: it must not cost the others.
+    fn aiding(&self) -> PyResult<(Vec<TimedAiding>, u64)> {
+        let mut unreadable = 0;
         let mut all = Vec::new();
         let (time, id, rows) = &self.satellites;
         for ((t, (letter, number)), row) in time.as_slice()?.iter().zip(id).zip(rows.as_slice()?.as_chunks().0) {
             all.push(timed(*t, satellite(*letter, *number, row)?));
         }
-        for (k, (t, row)) in self.fixes.0.as_slice()?.iter().zip(self.fixes.1.as_slice()?.as_chunks().0).enumerate() {
-            all.push(timed(*t, fix(row).map_err(at(k))?));
+        for (t, row) in self.fixes.0.as_slice()?.iter().zip(self.fixes.1.as_slice()?.as_chunks().0) {
+            match fix(row) {
+                Ok(aiding) => all.push(timed(*t, aiding)),
+                Err(_) => unreadable += 1,
+            }
         }
         let (time, station, rows) = &self.dme;
         for ((t, station), row) in time.as_slice()?.iter().zip(station).zip(rows.as_slice()?.as_chunks().0) {
             all.push(timed(*t, dme(*station, row)));
         }
         let (time, station, rows) = &self.vor;
-        for (k, ((t, station), row)) in time.as_slice()?.iter().zip(station).zip(rows.as_slice()?.as_chunks().0).enumerate() {
-            all.push(timed(*t, vor(*station, row).map_err(at(k))?));
+        for ((t, station), row) in time.as_slice()?.iter().zip(station).zip(rows.as_slice()?.as_chunks().0) {
+            match vor(*station, row) {
+                Ok(aiding) => all.push(timed(*t, aiding)),
+                Err(_) => unreadable += 1,
+            }
         }
         for (t, [height, white, bias, tau]) in self.baro.0.as_slice()?.iter().zip(self.baro.1.as_slice()?.as_chunks().0) {
             let m = BaroHeight {
@@ -204,7 +214,7 @@ impl Tables<'_> {
             all.push(timed(*t, Aiding::Baro(m)));
         }
         all.sort_by_key(|a| a.time);
-        Ok(all)
+        Ok((all, unreadable))
     }
 }
 
@@ -331,10 +341,14 @@ fn further_word(further: Further) -> String {
 /// A whole flight through the filter.
 #[pyfunction]
 fn ins_fuse<'py>(py: Python<'py>, start: Start, imu: Imu<'py>, tables: Tables<'py>, told: Told) -> PyResult<Bound<'py, PyDict>> {
-    let (state, samples, aiding) = (start.state()?, imu.samples()?, tables.aiding()?);
+    let (state, samples, (aiding, unreadable)) = (start.state()?, imu.samples()?, tables.aiding()?);
     let (settings, sigma, plan) = (told.settings()?, told.sigma(), told.plan());
     let flight = py.detach(|| fusion::run(state, &sigma, settings, &plan, samples.iter(), &aiding)).map_err(refused)?;
     let d = flight_dict(py, &flight)?;
+    let mut refusals = flight.filter.refusals();
+    refusals[Refusal::OutOfRange.index()] += unreadable;
+    d.set_item("refusals", Refusal::ALL.iter().map(|why| (why.word(), refusals[why.index()])).collect::<Vec<_>>())?;
+    d.set_item("fix_delay_s", flight.filter.fix_delay_s())?;
     d.set_item("innovations", innovations(py, &flight)?)?;
     d.set_item("reversion", reversion(py, &flight, settings.separation)?)?;
     Ok(d)
@@ -376,8 +390,6 @@ fn flight_dict<'py>(py: Python<'py>, flight: &Flight) -> PyResult<Bound<'py, PyD
     d.set_item("samples", [s.n_done, s.n_bridged, s.n_adrift, s.n_late, s.n_refused, s.n_stopped])?;
     d.set_item("stopped", flight.stopped.as_ref().map(|(t, why)| (t.nanoseconds(), stop_words(why))))?;
     d.set_item("holes", flight.holes.iter().map(|(t, since_s)| (t.nanoseconds(), *since_s)).collect::<Vec<_>>())?;
-    let refusals = flight.filter.refusals();
-    d.set_item("refusals", Refusal::ALL.iter().map(|why| (why.word(), refusals[why.index()])).collect::<Vec<_>>())?;
     d.set_item("clock_jumps", flight.filter.clock_jumps())?;
     d.set_item("left_out", flight.filter.stations_left_out().map(further_word).collect::<Vec<_>>())?;
     d.set_item("refused", flight.refused.as_ref().map(|(t, why)| (t.nanoseconds(), why.to_string())))?;

@@ -179,7 +179,7 @@ mod tests {
         let point = LatLon::new(Radians::new(lat_rad), Radians::new(0.1)).unwrap();
         let position = Geodetic { point, height: Metres::new(100.0) };
         let covariance = Covariance::from_upper([1.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
-        let aiding = Aiding::Fix(PositionFix { position, covariance, velocity_ned_mps: None });
+        let aiding = Aiding::Fix(PositionFix { position, covariance, velocity_ned_mps: None, level_m: None });
         TimedAiding { time: GpsTime::default().plus_seconds(at_s), aiding }
     }
 
