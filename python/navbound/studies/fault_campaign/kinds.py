@@ -56,7 +56,7 @@ def _axis(index: int, size: float) -> list[float]:
 
 ZERO = [0.0, 0.0, 0.0]
 STATIONS = ("VYK", "TAJ")
-SATELLITES = ("G05", "G10")
+SATELLITES = ("G01", "G06")
 ACCELERATIONS = (0.005, 0.02, 0.1, 0.5, 2.0, 10.0)
 RATES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 STEPS_M = (3.0, 10.0, 30.0, 100.0, 300.0, 3000.0)
