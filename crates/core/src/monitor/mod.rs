@@ -2,6 +2,7 @@
 
 pub mod consistency;
 pub mod exposure;
+pub mod judgement;
 mod latch;
 pub mod rnp;
 pub mod separation;

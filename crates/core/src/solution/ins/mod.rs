@@ -36,7 +36,7 @@ mod strapdown;
 pub use adrift::Resumption;
 pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};
-pub use filter::{Advance, Filter, Samples, Solution, Stop};
+pub use filter::{Advance, Filter, STATE_AGE_MOST_S, Samples, Solution, Stop};
 pub use fusion::{Beside, Fusion};
 pub use innovation::{Innovations, Kind, MEMORY_S, PAIRS_LEAST};
 pub use mode::Mode;
