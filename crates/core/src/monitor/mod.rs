@@ -2,6 +2,7 @@
 
 pub mod consistency;
 pub mod exposure;
+pub mod guard;
 pub mod judgement;
 mod latch;
 pub mod rnp;
