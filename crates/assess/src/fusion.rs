@@ -22,7 +22,7 @@ pub struct Plan {
 pub struct Moment {
     /// When.
     pub time: GpsTime,
-    /// What it says; `None` after it has stopped, and while it is adrift without a measurement.
+    /// What it says; `None` where its state was not moved to this time: after a stop, in a hole, while samples are refused.
     pub solution: Option<Solution>,
     /// The filter without satellites, where one runs.
     pub beside: Option<Beside>,
@@ -164,9 +164,8 @@ impl Driver {
         // At most one result a nanosecond; a hole is not filled with results that are late.
         let missed = (time.seconds_since(self.due) / self.plan.output_period_s.max(1e-9)).floor();
         self.due = self.due.plus_seconds((missed + 1.0) * self.plan.output_period_s).max(time.plus_seconds(1e-9));
-        let current = self.filter.is_current();
-        let solution = current.then(|| self.filter.solution());
-        Some(Moment { time, solution, beside: self.filter.beside(), n_states: self.filter.n_states() })
+        let solution = self.filter.solution(time);
+        Some(Moment { time, solution, beside: self.filter.beside(time), n_states: self.filter.n_states() })
     }
 }
 

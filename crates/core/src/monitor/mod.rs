@@ -2,6 +2,8 @@
 
 pub mod consistency;
 pub mod exposure;
+pub mod guard;
+pub mod judgement;
 mod latch;
 pub mod rnp;
 pub mod separation;

@@ -6,6 +6,7 @@ pub mod extraction;
 pub mod ins;
 pub mod point;
 mod range_error;
+pub mod snapshot;
 pub mod subsets;
 mod surroundings;
 pub mod wls;

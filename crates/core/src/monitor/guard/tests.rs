@@ -1,0 +1,1 @@
+//! Guard against a filter.
