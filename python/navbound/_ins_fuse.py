@@ -86,6 +86,16 @@ class Fused(Track):
         Estimates, body axes. [rad/s, m/s²]
     mode : list of str
         ``gnss``, ``dme_dme``, ``vor_dme``, ``coasting``, ``aligning`` (after a hole, until the tilt is known again), ``stopped``.
+    status : list of str
+        ``ok``, ``degraded``, ``not_available``: what may be done with the position. ``ok`` needs a level for a risk of 1e-5; the filter's
+        covariance alone never makes it.
+    reasons : list of list of str
+        Ids of why it is no better, as in docs/methods/fused-integrity.md; empty where it is ``ok``.
+    source : list of str
+        Where the position comes from: ``filter``, ``snapshot`` (the ranges of the instant, or the solved position, alone: without attitude)
+        or ``none``.
+    hpl_m, vpl_m : ndarray, shape (n,)
+        Protection levels of the position; NaN where there are none. [m]
     n_states : ndarray of int, shape (n,)
         States in the filter, with those of the one beside it. [1]
     samples : dict of str to int
@@ -118,6 +128,11 @@ class Fused(Track):
     gyroscope_bias_radps: NDArray[np.float64]
     accelerometer_bias_mps2: NDArray[np.float64]
     mode: list[str]
+    status: list[str]
+    reasons: list[list[str]]
+    source: list[str]
+    hpl_m: NDArray[np.float64]
+    vpl_m: NDArray[np.float64]
     n_states: NDArray[np.int64]
     samples: dict[str, int]
     stopped: tuple[int, str] | None
@@ -272,6 +287,11 @@ def _fused(found: dict[str, Any]) -> Fused:
         gyroscope_bias_radps=table[:, 21:24].copy(),
         accelerometer_bias_mps2=table[:, 24:27].copy(),
         mode=found["mode"],
+        status=found["status"],
+        reasons=found["reasons"],
+        source=found["source"],
+        hpl_m=found["hpl_m"],
+        vpl_m=found["vpl_m"],
         n_states=found["n_states"],
         samples=dict(zip(("done", "bridged", "adrift", "late", "refused", "stopped"), found["samples"], strict=True)),
         stopped=found["stopped"],

@@ -18,6 +18,7 @@ pub mod flights;
 pub mod fused;
 pub mod fusion;
 pub mod gbas;
+pub mod judged;
 pub mod kpi;
 pub mod monitor;
 pub mod plausible;

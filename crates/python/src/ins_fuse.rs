@@ -3,7 +3,9 @@
 use crate::error::input_error;
 use nalgebra::{Matrix3, Vector3};
 use navbound_assess::fusion::{self, Flight, Moment, Plan};
+use navbound_assess::judged::{Ages, StandIn};
 use navbound_core::frame::{Covariance, EcefPosition, Geodetic, LatLon};
+use navbound_core::monitor::judgement::Source;
 use navbound_core::monitor::separation::Separation;
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Risk};
 use navbound_core::signal::{
@@ -238,6 +240,8 @@ pub struct Told {
     /// Longest gap, acceleration and rate it hides.
     gap: [f64; 3],
     age_most_s: f64,
+    /// Deviations of the age of ranges and of solved positions.
+    age_sigma_s: [f64; 2],
     set_after_s: f64,
     /// Lose, gain.
     patience_s: [f64; 2],
@@ -312,6 +316,27 @@ fn numbers(solution: &Option<Solution>) -> [f64; WIDTH] {
     row
 }
 
+/// What is given: the filter's solution, or the position that stands in for it, which has no attitude and no biases; NaN for none.
+fn given(moment: &Moment) -> [f64; WIDTH] {
+    match (moment.decision.source, &moment.stand_in) {
+        (Source::Filter, _) => numbers(&moment.solution),
+        (Source::Snapshot, Some(position)) => standing_in(position),
+        _ => [f64::NAN; WIDTH],
+    }
+}
+
+fn standing_in(s: &StandIn) -> [f64; WIDTH] {
+    let mut row = [f64::NAN; WIDTH];
+    row[..3].copy_from_slice(&[s.position.point.lat().rad(), s.position.point.lon().rad(), s.position.height.m()]);
+    let c = s.covariance.matrix();
+    row[9..15].copy_from_slice(&[c[(0, 0)], c[(0, 1)], c[(1, 1)], c[(0, 2)], c[(1, 2)], c[(2, 2)]]);
+    if let Some(v) = &s.velocity {
+        row[3..6].copy_from_slice(&[v.enu_mps.y, v.enu_mps.x, -v.enu_mps.z]);
+        row[15..18].copy_from_slice(&[1, 0, 2].map(|k| v.covariance[(k, k)].sqrt()));
+    }
+    row
+}
+
 fn mode(solution: &Option<Solution>) -> &'static str {
     solution.as_ref().map_or("stopped", |s| s.mode.word())
 }
@@ -343,7 +368,8 @@ fn further_word(further: Further) -> String {
 fn ins_fuse<'py>(py: Python<'py>, start: Start, imu: Imu<'py>, tables: Tables<'py>, told: Told) -> PyResult<Bound<'py, PyDict>> {
     let (state, samples, (aiding, unreadable)) = (start.state()?, imu.samples()?, tables.aiding()?);
     let (settings, sigma, plan) = (told.settings()?, told.sigma(), told.plan());
-    let flight = py.detach(|| fusion::run(state, &sigma, settings, &plan, samples.iter(), &aiding)).map_err(refused)?;
+    let ages = Ages { range_sigma_s: told.age_sigma_s[0], fix_sigma_s: told.age_sigma_s[1] };
+    let flight = py.detach(|| fusion::run(state, &sigma, settings, &plan, ages, samples.iter(), &aiding)).map_err(refused)?;
     let d = flight_dict(py, &flight)?;
     let mut refusals = flight.filter.refusals();
     refusals[Refusal::OutOfRange.index()] += unreadable;
@@ -382,9 +408,15 @@ fn flight_dict<'py>(py: Python<'py>, flight: &Flight) -> PyResult<Bound<'py, PyD
     let d = PyDict::new(py);
     let moments = &flight.moments;
     d.set_item("time_ns", moments.iter().map(|m| m.time.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
-    let rows = moments.iter().flat_map(|m| numbers(&m.solution)).collect::<Vec<_>>().into_pyarray(py);
+    let rows = moments.iter().flat_map(given).collect::<Vec<_>>().into_pyarray(py);
     d.set_item("rows", rows.reshape([moments.len(), WIDTH])?)?;
     d.set_item("mode", moments.iter().map(|m| mode(&m.solution)).collect::<Vec<_>>())?;
+    let decisions = || moments.iter().map(|m| &m.decision);
+    d.set_item("status", decisions().map(|d| d.status.word()).collect::<Vec<_>>())?;
+    d.set_item("source", decisions().map(|d| d.source.word()).collect::<Vec<_>>())?;
+    d.set_item("reasons", decisions().map(|d| d.reasons.iter().map(|r| r.id()).collect::<Vec<_>>()).collect::<Vec<_>>())?;
+    d.set_item("hpl_m", decisions().map(|d| d.hpl_m.unwrap_or(f64::NAN)).collect::<Vec<_>>().into_pyarray(py))?;
+    d.set_item("vpl_m", decisions().map(|d| d.vpl_m.unwrap_or(f64::NAN)).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("n_states", moments.iter().map(|m| m.n_states as i64).collect::<Vec<_>>().into_pyarray(py))?;
     let s = &flight.samples;
     d.set_item("samples", [s.n_done, s.n_bridged, s.n_adrift, s.n_late, s.n_refused, s.n_stopped])?;

@@ -11,7 +11,7 @@
 //! Source: weighted least squares; provenance: standard.
 
 use super::wls::{Normal, Row, WeightedSight};
-use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, enu_from_ecef, geodetic_from_ecef};
+use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, ecef_from_geodetic, enu_from_ecef, geodetic_from_ecef};
 use crate::quantity::{GpsTime, Unavailable};
 use crate::signal::{Constellation, SatelliteId, SatelliteRange};
 use nalgebra::{Matrix3, Vector3};
@@ -94,6 +94,11 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
+    /// A position that somebody else has solved: no satellite of it is known.
+    pub fn solved(time: GpsTime, position: Geodetic, covariance: Covariance<Enu>) -> Self {
+        Self { time, position, ecef: ecef_from_geodetic(&position), covariance, n: 0, member: [None; RANGES_MOST] }
+    }
+
     /// Satellites in the position.
     pub fn members(&self) -> impl Iterator<Item = &Member> + '_ {
         self.member[..self.n].iter().flatten()
@@ -176,7 +181,10 @@ fn converge(mut at: Vector3<f64>, ranges: &Ranges) -> Result<Vector3<f64>, Unava
 }
 
 /// A rate at a position: direction and weight, and measured rate less what the satellite's own motion makes of it \[m/s\].
-pub fn rate_sights(snapshot: &Snapshot, ranges: &Ranges) -> ([WeightedSight; RANGES_MOST], [f64; RANGES_MOST], [usize; RANGES_MOST], usize) {
+pub fn rate_sights(
+    snapshot: &Snapshot,
+    ranges: &Ranges,
+) -> ([WeightedSight; RANGES_MOST], [f64; RANGES_MOST], [usize; RANGES_MOST], usize) {
     let none = WeightedSight { unit: Vector3::zeros(), weight: 0.0, constellation: Constellation::Gps };
     let (mut sights, mut residuals, mut index, mut n) = ([none; RANGES_MOST], [0.0; RANGES_MOST], [0; RANGES_MOST], 0);
     let enu = enu_from_ecef(&snapshot.position.point);

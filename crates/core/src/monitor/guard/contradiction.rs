@@ -105,6 +105,13 @@ impl Contradiction {
         again && clean && !self.still && !self.out && now.seconds_since(since) >= CLEAN_S
     }
 
+    /// Whether filter and positions have contradicted each other for this time since the last start.
+    pub fn lasts(&self, now: GpsTime, after_s: f64) -> bool {
+        let Some((raised, failed)) = self.raised.zip(self.failed) else { return false };
+        let since = self.started.map_or(raised, |s| s.max(raised));
+        self.started.is_none_or(|s| failed > s) && now.seconds_since(since) >= after_s
+    }
+
     /// A filter was started anew.
     pub fn started(&mut self, now: GpsTime) {
         self.starts.rotate_left(1);

@@ -5,6 +5,7 @@
 //! [`Guard::restart`] where one is due, [`Guard::facts`] at an epoch. Provenance: ours; methods in docs/methods/fused-integrity.md.
 
 mod contradiction;
+mod fixes;
 mod inertial;
 mod shares;
 #[cfg(test)]
@@ -193,6 +194,9 @@ impl Guard {
             Err(_) => return all,
         };
         self.note_acceleration(before.as_ref(), &looked);
+        if let Some(velocity) = &looked.velocity {
+            filter.heard_velocity(time, velocity);
+        }
         let difference = filter.against(&looked.snapshot);
         let tests = difference.filter(|_| looked.ranges_agree == RangesAgree::Yes).map(|d| self.test(&d, &looked));
         let block = filter.block(time, &ranges);
@@ -327,7 +331,7 @@ impl Guard {
             carried,
             agreement: Some(self.agreement(filter, epoch)),
             inertial: Some(self.inertial(epoch)),
-            satellite_times_hold: Some(self.late < LATE_MOST),
+            satellite_times_hold: Some(self.late < LATE_MOST && !filter.fixes_are_late()),
             gating: Some(gating),
             tuning: Some(self.shares.tuning()),
             witnesses: Some(witnesses),

@@ -7,6 +7,8 @@ use crate::special::float::exp;
 
 /// Time over which a share is taken \[s\]. Provenance: inferred.
 const WINDOW: usize = 10;
+/// Least time between two counts, a second but for jitter \[s\].
+const STEP_S: f64 = 0.95;
 /// Scalars from which the smaller share counts, and both shares. Provenance: inferred; a healthy filter rejects 2 of 21 000.
 const MANY: u64 = 20;
 const SHARE_OF_MANY: f64 = 0.2;
@@ -29,6 +31,8 @@ pub struct Shares {
     window: [[[u64; 2]; FAMILIES.len()]; WINDOW],
     next: usize,
     since: Option<GpsTime>,
+    stepped: Option<GpsTime>,
+    excess: bool,
     mean: f64,
     weight: f64,
     last: Option<GpsTime>,
@@ -39,30 +43,51 @@ impl Shares {
     /// Nothing counted yet.
     pub const fn new() -> Self {
         let none = [[0; 2]; FAMILIES.len()];
-        Self { counted: none, window: [none; WINDOW], next: 0, since: None, mean: 0.0, weight: 0.0, last: None, foreign: false }
+        Self {
+            counted: none,
+            window: [none; WINDOW],
+            next: 0,
+            since: None,
+            stepped: None,
+            excess: false,
+            mean: 0.0,
+            weight: 0.0,
+            last: None,
+            foreign: false,
+        }
     }
 
     /// A second has passed.
     pub fn second(&mut self, now: GpsTime, filter: &Fusion) -> Gating {
+        // Results may be more frequent: what was counted stands until the second is over.
+        if self.stepped.is_none_or(|t| now.seconds_since(t) >= STEP_S) {
+            self.stepped = Some(now);
+            self.count(filter);
+        }
+        if !self.excess {
+            self.since = None;
+            return Gating::Usual;
+        }
+        Gating::Excess { for_s: now.seconds_since(*self.since.get_or_insert(now)) }
+    }
+
+    fn count(&mut self, filter: &Fusion) {
         for (k, family) in FAMILIES.iter().enumerate() {
-            let of = |count: fn(&crate::solution::ins::Innovations) -> u64| family.iter().map(|kind| count(filter.innovations(*kind))).sum();
+            let of =
+                |count: fn(&crate::solution::ins::Innovations) -> u64| family.iter().map(|kind| count(filter.innovations(*kind))).sum();
             let total: [u64; 2] = [of(|i| i.n_used), of(|i| i.n_gated)];
             // A filter that started anew counts from nothing.
-            self.window[self.next][k] = [0, 1].map(|j| if total[j] >= self.counted[k][j] { total[j] - self.counted[k][j] } else { total[j] });
+            self.window[self.next][k] =
+                [0, 1].map(|j| if total[j] >= self.counted[k][j] { total[j] - self.counted[k][j] } else { total[j] });
             self.counted[k] = total;
         }
         self.next = (self.next + 1) % WINDOW;
-        let excess = (0..FAMILIES.len()).any(|k| {
+        self.excess = (0..FAMILIES.len()).any(|k| {
             let [used, gated] = [0, 1].map(|j| self.window.iter().map(|second| second[k][j]).sum::<u64>());
             let (all, gated) = (used + gated, gated as f64);
             let most = if all >= MANY { SHARE_OF_MANY } else { SHARE_OF_FEW };
             all > 0 && !(gated <= most * all as f64)
         });
-        if !excess {
-            self.since = None;
-            return Gating::Usual;
-        }
-        Gating::Excess { for_s: now.seconds_since(*self.since.get_or_insert(now)) }
     }
 
     /// The innovations of an instant, used or not, of a filter that the snapshot does not contradict.

@@ -60,6 +60,12 @@ impl Fusion {
         self.main.against(snapshot)
     }
 
+    /// A velocity by range rates, whose changes are compared with those of the unit: late ones come later.
+    pub fn heard_velocity(&mut self, time: GpsTime, v: &SnapshotVelocity) {
+        let variance = v.covariance[(0, 0)].max(v.covariance[(1, 1)]);
+        self.main.delay.velocity_heard(time, nalgebra::Vector2::new(v.enu_mps.y, v.enu_mps.x), variance);
+    }
+
     /// As [`Filter::block`], of the filter with satellites.
     pub fn block(&mut self, time: GpsTime, ranges: &Ranges) -> Option<Block> {
         self.main.block(time, ranges)
@@ -212,6 +218,11 @@ fn weighted_square(l: &mut [[f64; RANGES_MOST]; RANGES_MOST], z: &mut [f64; RANG
         z[i] /= l[i][i];
     }
     Some(z[..n].iter().map(|x| x * x).sum::<f64>()).filter(|s| s.is_finite())
+}
+
+/// Whether a measurement is made of numbers that mean something.
+pub fn is_sane(aiding: &Aiding) -> bool {
+    super::sane::check(aiding).is_ok()
 }
 
 /// Ranges that a filter may judge: those of an instant that are made of numbers that mean something.

@@ -164,7 +164,10 @@ impl Filter {
             Aiding::Fix(m) => {
                 let [north, east] = [0, 1].map(|k| antenna.ned_from_ecef.row(k).transpose());
                 let (variance, place) = (m.covariance.matrix(), *ecef_from_geodetic(&m.position).vector());
-                self.delay.heard(timed.time, place, variance[(0, 0)].max(variance[(1, 1)]), [north, east]);
+                match &m.velocity_ned_mps {
+                    Some((v, r)) => self.delay.velocity_heard(timed.time, v.xy(), r[(0, 0)].max(r[(1, 1)])),
+                    None => self.delay.heard(timed.time, place, variance[(0, 0)].max(variance[(1, 1)]), [north, east]),
+                }
                 self.fix(&antenna, m)
             }
         };

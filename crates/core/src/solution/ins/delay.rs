@@ -9,6 +9,8 @@
 //! S(tau) = sum of |a_p - a_u(tau)|^2 / s^2,   s^2 = 6 sigma^2 / h^4 + model^2         forgotten over two minutes
 //! ```
 //!
+//! Where velocities come, by Doppler, the same with their first difference, which is far less noisy.
+//!
 //! An offset, a drift or a slow error of either drops out of the second difference, so the filter's own state is not asked but for the axes.
 //! The delay is where S is least; it counts where S at no delay is larger by far more than chance makes it. Provenance: ours.
 
@@ -45,11 +47,12 @@ pub(super) struct Delay {
     /// Integrated acceleration: velocity and position on local axes, free of any correction.
     velocity: Vector2<f64>,
     position: Vector2<f64>,
-    path: [Vector2<f64>; KEPT],
+    path: [[Vector2<f64>; 2]; KEPT],
     n: usize,
     /// Of the newest of the path.
     newest: Option<GpsTime>,
     heard: [Option<Heard>; 3],
+    velocity_heard: Option<(GpsTime, Vector2<f64>, f64)>,
     pending: [Option<Difference>; 8],
     sums: [f64; LAGS],
     weight: f64,
@@ -64,9 +67,10 @@ struct Heard {
     variance: f64,
 }
 
-/// A second difference of three positions, of the last of them.
+/// A second difference of three positions or a first one of two velocities, of the last of them.
 #[derive(Debug, Clone, Copy)]
 struct Difference {
+    of_velocity: bool,
     time: GpsTime,
     apart_s: f64,
     acceleration: Vector2<f64>,
@@ -79,10 +83,11 @@ impl Delay {
         Self {
             velocity: zero,
             position: zero,
-            path: [zero; KEPT],
+            path: [[zero; 2]; KEPT],
             n: 0,
             newest: None,
             heard: [None; 3],
+            velocity_heard: None,
             pending: [None; 8],
             sums: [0.0; LAGS],
             weight: 0.0,
@@ -108,14 +113,14 @@ impl Delay {
 
     /// The unit has changed the velocity by this much, north and east \[m/s\], up to a time.
     pub(super) fn moved(&mut self, time: GpsTime, change: Vector2<f64>, dt: f64) {
-        if self.heard[0].is_none() {
+        if self.heard[0].is_none() && self.velocity_heard.is_none() {
             return;
         }
-        let before = self.position;
+        let before = [self.position, self.velocity];
         self.position += self.velocity * dt + 0.5 * dt * change;
         self.velocity += change;
         let Some(mut newest) = self.newest else {
-            (self.newest, self.path[0], self.n) = (Some(time), self.position, 1);
+            (self.newest, self.path[0], self.n) = (Some(time), [self.position, self.velocity], 1);
             return;
         };
         // A sample longer than what is kept leaves nothing to compare with.
@@ -126,7 +131,8 @@ impl Delay {
         while time.seconds_since(newest) >= STEP_S {
             newest = newest.plus_seconds(STEP_S);
             let share = (1.0 - time.seconds_since(newest) / dt).clamp(0.0, 1.0);
-            self.path[self.n % KEPT] = before + (self.position - before) * share;
+            let now = [self.position, self.velocity];
+            self.path[self.n % KEPT] = core::array::from_fn(|k| before[k] + (now[k] - before[k]) * share);
             self.n += 1;
         }
         self.newest = Some(newest);
@@ -157,7 +163,27 @@ impl Delay {
         let square = apart_s * apart_s;
         let acceleration = Vector2::new(axes[0].dot(&bend), axes[1].dot(&bend)) / square;
         let variance = (a.variance + 4.0 * b.variance + c.variance) / (square * square) + MODEL_MPS2 * MODEL_MPS2;
-        let difference = Difference { time, apart_s, acceleration, variance };
+        self.wait(Difference { of_velocity: false, time, apart_s, acceleration, variance });
+    }
+
+    /// A velocity of a time tag, north and east \[m/s\], and the variance of a component \[m²/s²\].
+    pub(super) fn velocity_heard(&mut self, time: GpsTime, velocity: Vector2<f64>, variance: f64) {
+        let Some((before, last, of_last)) = self.velocity_heard else {
+            self.velocity_heard = Some((time, velocity, variance));
+            return;
+        };
+        let apart_s = time.seconds_since(before);
+        if !(apart_s >= APART_S[0]) {
+            return;
+        }
+        self.velocity_heard = Some((time, velocity, variance));
+        if apart_s <= APART_S[1] {
+            let variance = (variance + of_last) / (apart_s * apart_s) + MODEL_MPS2 * MODEL_MPS2;
+            self.wait(Difference { of_velocity: true, time, apart_s, acceleration: (velocity - last) / apart_s, variance });
+        }
+    }
+
+    fn wait(&mut self, difference: Difference) {
         if let Some(place) = self.pending.iter_mut().find(|p| p.is_none()) {
             *place = Some(difference);
         }
@@ -168,8 +194,11 @@ impl Delay {
         for (k, square) in squares.iter_mut().enumerate() {
             let at = d.time.plus_seconds(-lag_s(k));
             let [c, b, a] = [0.0, 1.0, 2.0].map(|n| self.at(at.plus_seconds(-n * d.apart_s)));
-            let (Some(a), Some(b), Some(c)) = (a, b, c) else { return };
-            let of_unit = (c - 2.0 * b + a) / (d.apart_s * d.apart_s);
+            let of_unit = match (a, b, c, d.of_velocity) {
+                (_, Some(b), Some(c), true) => (c[1] - b[1]) / d.apart_s,
+                (Some(a), Some(b), Some(c), false) => (c[0] - 2.0 * b[0] + a[0]) / (d.apart_s * d.apart_s),
+                _ => return,
+            };
             *square = (d.acceleration - of_unit).norm_squared() / d.variance;
         }
         let keep = exp(-d.apart_s / MEMORY_S);
@@ -194,7 +223,7 @@ impl Delay {
         (0..LAGS).min_by(|a, b| self.sums[*a].total_cmp(&self.sums[*b])).map_or(0.0, lag_s)
     }
 
-    fn at(&self, time: GpsTime) -> Option<Vector2<f64>> {
+    fn at(&self, time: GpsTime) -> Option<[Vector2<f64>; 2]> {
         let back = self.newest?.seconds_since(time) / STEP_S;
         let oldest = self.n.min(KEPT) as f64 - 1.0;
         if !(back >= 0.0 && back < oldest) {
@@ -204,7 +233,7 @@ impl Delay {
         let share = back - whole;
         let place = |steps: usize| self.path[(self.n - 1 - steps) % KEPT];
         let k = whole as usize;
-        Some(place(k) * (1.0 - share) + place(k + 1) * share)
+        Some(core::array::from_fn(|j| place(k)[j] * (1.0 - share) + place(k + 1)[j] * share))
     }
 }
 

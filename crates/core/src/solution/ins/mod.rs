@@ -37,7 +37,7 @@ mod stations;
 mod strapdown;
 
 pub use adrift::Resumption;
-pub use against::{Block, Difference, judgeable};
+pub use against::{Block, Difference, is_sane, judgeable};
 pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};
 pub use entry::Refusal;
