@@ -94,6 +94,9 @@ class Fused(Track):
         Time and reason of the stop, and of the first refused sample. [ns]
     holes : list of tuple of (int, float)
         Holes too long to be bridged: time of the first sample after each, and how long before it the last state was. [ns, s]
+    refusals : dict of str to int
+        Measurements not used before any gate, by reason: ``repeated``, ``same_name`` (several sources under one name at an instant),
+        ``out_of_range``, ``late``, ``no_place``, ``no_position``, ``stopped``.
     clock_jumps : int
         How often the receiver's clock has jumped and was set anew.
     left_out : list of str
@@ -117,6 +120,7 @@ class Fused(Track):
     stopped: tuple[int, str] | None
     refused: tuple[int, str] | None
     holes: list[tuple[int, float]]
+    refusals: dict[str, int]
     clock_jumps: int
     left_out: list[str]
     further: dict[str, float]
@@ -269,6 +273,7 @@ def _fused(found: dict[str, Any]) -> Fused:
         stopped=found["stopped"],
         refused=found["refused"],
         holes=found["holes"],
+        refusals=dict(found["refusals"]),
         clock_jumps=found["clock_jumps"],
         left_out=found["left_out"],
         further=dict(found["further"]),

@@ -112,7 +112,7 @@ impl Driver {
         }
     }
 
-    pub(crate) fn sample(&mut self, sample: &ImuIncrement) {
+    pub(crate) fn sample(&mut self, sample: &ImuIncrement) -> Advance {
         let outcome = self.filter.advance(sample);
         if let (Advance::Adrift { since_s }, false) = (outcome, self.adrift) {
             self.holes.push((sample.time, since_s));
@@ -133,6 +133,7 @@ impl Driver {
         {
             self.filter.roll(wheels);
         }
+        outcome
     }
 
     /// Measurements in the order of time, as far as the plan wants them: satellites measured, and used of them.

@@ -10,8 +10,8 @@ use navbound_core::signal::{
     Aiding, BaroHeight, Constellation, DmeRange, ImuIncrement, PositionFix, SatelliteId, SatelliteRange, TimedAiding, VorBearing,
 };
 use navbound_core::solution::ins::{
-    Attitude, ClockModel, ErrorModel, Form, Further, ImuModel, Kind, NavState, Patience, Resumption, SensorNoise, Settings, Solution,
-    StartSigma, Stop, Wheels, coarse,
+    Attitude, ClockModel, ErrorModel, Form, Further, ImuModel, Kind, NavState, Patience, Refusal, Resumption, SensorNoise, Settings,
+    Solution, StartSigma, Stop, Wheels, coarse,
 };
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -376,6 +376,8 @@ fn flight_dict<'py>(py: Python<'py>, flight: &Flight) -> PyResult<Bound<'py, PyD
     d.set_item("samples", [s.n_done, s.n_bridged, s.n_adrift, s.n_late, s.n_refused, s.n_stopped])?;
     d.set_item("stopped", flight.stopped.as_ref().map(|(t, why)| (t.nanoseconds(), stop_words(why))))?;
     d.set_item("holes", flight.holes.iter().map(|(t, since_s)| (t.nanoseconds(), *since_s)).collect::<Vec<_>>())?;
+    let refusals = flight.filter.refusals();
+    d.set_item("refusals", Refusal::ALL.iter().map(|why| (why.word(), refusals[why.index()])).collect::<Vec<_>>())?;
     d.set_item("clock_jumps", flight.filter.clock_jumps())?;
     d.set_item("left_out", flight.filter.stations_left_out().map(further_word).collect::<Vec<_>>())?;
     d.set_item("refused", flight.refused.as_ref().map(|(t, why)| (t.nanoseconds(), why.to_string())))?;

@@ -3,6 +3,7 @@
 use super::adrift::Adrift;
 use super::covariance::{BASE, Fade, Joint, Row, StepNoise, WIDTH};
 use super::dynamics::{BA, BG, NAV, PHI, R, V, transition};
+use super::entry::{Entry, Refusal};
 use super::innovation::{Innovations, Kind, Memory};
 use super::jump::Instant;
 use super::measure::Scalar;
@@ -115,6 +116,7 @@ pub struct Filter {
     pub(super) modes: Modes,
     pub(super) innovations: [Innovations; Kind::ALL.len()],
     pub(super) memory: Memory,
+    pub(super) entry: Entry,
     /// Whose time the clock is in.
     pub(super) first_constellation: Option<Constellation>,
     pub(super) biases: [Vector3<f64>; 2],
@@ -159,6 +161,7 @@ impl Filter {
             modes: Modes::new(settings.patience),
             innovations: [Innovations::default(); Kind::ALL.len()],
             memory: Memory::new(),
+            entry: Entry::new(),
             first_constellation: None,
             biases: [Vector3::zeros(); 2],
             rate: Vector3::zeros(),
@@ -189,6 +192,10 @@ impl Filter {
     /// Sums of the innovations of a kind.
     pub const fn innovations(&self, kind: Kind) -> &Innovations {
         &self.innovations[kind.index()]
+    }
+    /// Measurements that were not used before any gate, in the order of [`Refusal::ALL`].
+    pub const fn refusals(&self) -> &[u64; Refusal::ALL.len()] {
+        self.entry.counts()
     }
     /// The further states and their values: lengths \[m\], rates \[m/s\], angles \[rad\].
     pub fn further(&self) -> impl Iterator<Item = (Further, f64)> + '_ {
@@ -356,20 +363,24 @@ impl Filter {
     }
 
     /// Scalars of one measurement, their errors independent, one after the other; then the state takes the correction.
-    pub(super) fn correct(&mut self, scalars: &[Scalar]) {
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a variance so small beside the filter's that the update would leave a state without one; what was used of the
+    /// scalars before it stays used.
+    pub(super) fn correct(&mut self, scalars: &[Scalar]) -> Result<(), OutOfDomain> {
         let mut x = [0.0; WIDTH];
-        for m in scalars {
-            self.joint.update(&m.row, m.innovation, m.variance, &mut x);
-        }
+        let unsound = scalars.iter().find(|m| !self.joint.update(&m.row, m.innovation, m.variance, &mut x));
         if !self.joint.is_sound(self.slots.len()) {
             self.stopped = Some(Stop::Covariance);
-            return;
+            return Ok(());
         }
         self.slots.correct(&x[BASE..]);
         let part = |first: usize| Vector3::new(x[first], x[first + 1], x[first + 2]);
         self.biases[0] += part(BG);
         self.biases[1] += part(BA);
         self.strapdown.state_mut().correct(&part(R), &part(V), &part(PHI));
+        let domain = "one beside which the variances of the states can be computed";
+        unsound.map_or(Ok(()), |m| Err(OutOfDomain { argument: "variance", value: m.variance, unit: "of the measurement", domain }))
     }
 
     /// Of when it speaks.

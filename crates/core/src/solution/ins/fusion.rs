@@ -1,6 +1,7 @@
 //! The forms behind one interface: one filter or several, and the one without satellites beside them.
 
 use super::aid::{Aided, Wheels};
+use super::entry::Refusal;
 use super::federated::{master, shared};
 use super::filter::{Advance, Filter, Samples, Solution, Stop};
 use super::innovation::{Innovations, Kind};
@@ -58,7 +59,9 @@ impl Fusion {
         // The clock has wandered since the begin: its drift is as little known as that of any receiver.
         settings.clock.drift_mps = settings.clock.drift_mps.max(ClockModel::default().drift_mps);
         let anew = Self::new(at, sigma, settings)?;
+        let entry = self.main.entry.uncounted();
         (self.main, self.receiver, self.nested) = (anew.main, anew.receiver, false);
+        self.main.entry = entry;
         Ok(())
     }
 
@@ -175,6 +178,11 @@ impl Fusion {
     pub fn stations_left_out(&self) -> impl Iterator<Item = Further> + '_ {
         let second = self.beside.as_ref().filter(|_| self.settings.form == Form::Federated);
         self.main.stations_left_out().chain(second.into_iter().flat_map(Filter::stations_left_out))
+    }
+    /// Measurements that were not used before any gate, in the order of [`Refusal::ALL`]; of both filters in the federated form.
+    pub fn refusals(&self) -> [u64; Refusal::ALL.len()] {
+        let second = self.beside.as_ref().filter(|_| self.settings.form == Form::Federated).map(Filter::refusals);
+        core::array::from_fn(|k| self.main.refusals()[k] + second.map_or(0, |counts| counts[k]))
     }
     /// Why it has stopped, if it has.
     pub const fn stopped(&self) -> Option<&Stop> {

@@ -17,6 +17,7 @@ mod covariance;
 #[cfg(test)]
 mod covariance_tests;
 mod dynamics;
+mod entry;
 mod federated;
 mod filter;
 #[cfg(test)]
@@ -38,6 +39,7 @@ pub use adrift::Resumption;
 pub use against::{Block, Difference, judgeable};
 pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};
+pub use entry::Refusal;
 pub use filter::{Advance, Filter, STATE_AGE_MOST_S, Samples, Solution, Stop};
 pub use fusion::{Beside, Fusion};
 pub use innovation::{Innovations, Kind, MEMORY_S, PAIRS_LEAST};
