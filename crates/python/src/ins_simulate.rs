@@ -5,6 +5,7 @@ use crate::positions::Navigation;
 use crate::simulate::{epochs, read, refused, unreadable};
 use navbound_assess::fused::{Fused, MODES, Verdict};
 use navbound_assess::sensed::{BARO, CLOCK, DME, IMU, SATELLITES, Sensed, TRUTH, Table, VOR};
+use navbound_core::monitor::judgement::{Reason, Source, Status};
 use navbound_core::quantity::GpsTime;
 use navbound_core::solution::ins::Kind;
 use navbound_simulate::{Imu, Sensing};
@@ -67,6 +68,14 @@ impl Sensors {
     #[staticmethod]
     fn modes() -> Vec<&'static str> {
         MODES.iter().map(|mode| mode.word()).collect()
+    }
+
+    /// Words of the codes of the columns `decided` and `source`, and ids of the bits of `reasons`.
+    #[staticmethod]
+    fn judgement() -> [Vec<&'static str>; 3] {
+        let status = [Status::NotAvailable, Status::Degraded, Status::Ok].map(Status::word);
+        let source = [Source::None, Source::Filter, Source::Snapshot].map(Source::word);
+        [status.to_vec(), source.to_vec(), Reason::ALL.map(Reason::id).to_vec()]
     }
 }
 

@@ -6,9 +6,14 @@ use crate::philox::{Sensor, Stream};
 use crate::plan::GRAVITY;
 use crate::scenario::{Rule, positive, within};
 use crate::sensors::{Imu, Sensors, staying};
+use navbound_core::bound::araim::single::Requirement;
+use navbound_core::monitor::guard;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
 use navbound_core::solution::ins::{ClockModel, ErrorModel, Form, ImuModel, SensorNoise, Settings, StartSigma};
 use serde::Deserialize;
+
+/// Standard deviation of the age of the ranges \[s\]: simulated receivers have a pulse of the second. Provenance: inferred.
+const AGE_SIGMA_S: f64 = 1e-3;
 
 /// A filter that joins the sensors.
 #[derive(Debug, Clone, Copy, Deserialize, PartialEq)]
@@ -26,7 +31,8 @@ pub struct Navigator {
     pub gate_risk: f64,
     /// Inertial samples that share a step of the covariance.
     pub samples_per_step: u32,
-    /// Time for which the satellites must contradict the filter, all but three gated, before it is started anew \[s\].
+    /// Time for which satellites that agree among each other must contradict the filter, and the inertial unit be plausible, before it is
+    /// started anew \[s\].
     pub restart_after_s: f64,
     /// How many times as far as declared the start is off: position, tilt, heading.
     #[serde(default = "as_declared")]
@@ -130,9 +136,23 @@ impl Navigator {
         }
     }
 
-    /// How wrong a filter that contradicts its satellites may be: nothing is known of position and velocity but that the ranges are linear.
-    pub fn restart_sigma(&self) -> StartSigma {
-        StartSigma { position: [Metres::new(10_000.0); 3], velocity_mps: 100.0, attitude: [Radians::new(5e-3); 3] }
+    /// What stands beside the filter: a snapshot with RAIM of en route to non-precision approach, and what is declared of the unit.
+    pub fn guard(&self, sensors: &Sensors, filter: &Settings) -> guard::Settings {
+        let envelope = sensors.envelope.map_or(guard::Envelope::NONE, |e| guard::Envelope {
+            range: [e.force_range_mps2, e.rate_range_radps],
+            most: [e.force_most_mps2, e.rate_most_radps],
+            change_mps3: e.force_change_mps3,
+            // Noise above the resolution, in both triads.
+            never_repeats: sensors.imu.gyro_noise_radprts > 0.0 && sensors.imu.accelerometer_noise_mpsprts > 0.0,
+        });
+        guard::Settings {
+            envelope,
+            requirement: Requirement::RAIM,
+            age_sigma_s: AGE_SIGMA_S,
+            gap_most_s: filter.gap_most_s,
+            age_most_s: filter.age_most_s,
+            restart_after_s: self.restart_after_s,
+        }
     }
 
     /// How wrong it is on a flight, in those standard deviations: position, velocity, misalignment.

@@ -17,6 +17,7 @@ from navbound.run.records import Waypoint
 from navbound.scenario import Scenario, find, load
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
     from typing import Unpack
 
@@ -28,20 +29,35 @@ _DRAWN_AT_ONCE = 16
 """Flights of one tile, of some hundredths of a second each."""
 _FUSED_AT_ONCE = 4
 """The same where every flight runs a filter for some seconds: enough for the cores of most machines, and the bar still moves."""
-_KEPT = {
+_WORDS = {
+    "state_stale": "the filter has no state of this time",
+    "imu_missing": "the inertial unit delivers nothing",
+    "imu_refused": "the inertial unit delivers samples that cannot be used",
+    "imu_implausible": "the inertial unit delivers what the vehicle cannot do",
+    "imu_clock": "the times of the inertial samples contradict the clock",
+    "imu_fault": "the inertial unit is wrong: the ranges of the instant alone give the position",
+    "gnss_time": "the times of the satellite measurements are out of their latency",
+    "snapshot_missing": "no snapshot of the ranges checks the filter",
+    "level_missing": "the position has a covariance and no level",
+    "satellites_inconsistent": "the ranges contradict each other and no exclusion resolves it",
+    "filter_contradicted": "the filter and the snapshot of the ranges contradict each other",
+    "contradiction_open": "the filter and the snapshot contradicted each other, and which of them was wrong is not known",
+    "filters_disagree": "the filters with and without satellites disagree: nobody knows which of them is right",
+    "stations_contradict": "several stations contradict the filter: they or the inertial unit are wrong",
+    "gating_excess": "the filter rejects too many measurements",
+    "tuning_foreign": "the innovations are larger than the declared errors",
     "dme_dme": "without satellites: ranges to DME keep the position",
     "vor_dme": "without satellites: a VOR and a DME keep the position",
     "coasting": "without satellites and stations: inertial navigation alone",
     "aligning": "the attitude settles after a hole in the inertial samples",
+    "fact_missing": "a fact that the status needs was not reported",
 }
-_DOUBTS = (
-    "the filters with and without satellites disagree: nobody knows which of them is right",
-    "several stations contradict the filter: they or the inertial unit are wrong",
-)
-"""Why an estimate is not to be relied on, by the core's number from 1 on."""
+"""A sentence for each reason of the core's judge of filtered positions."""
 _WATCHED = ("separation_m", "separation_limit_m", "innovation_memory")
 """Columns of the monitors across measurements."""
-_CODES = ("nav_mode", "leg", "phase", "available", "doubt", "flight", "reason")
+_JUDGED = ("decided", "source", "reasons", "leading")
+"""Codes of what the core decided of a filtered position."""
+_CODES = ("nav_mode", "leg", "phase", "available", "doubt", "flight", "reason", *_JUDGED)
 """Columns that become words."""
 _COUNTS = ("samples", "clock_jumps")
 """What a filter counts besides its innovations."""
@@ -139,22 +155,31 @@ def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
         "reason": pl.Series(reasons.tolist(), dtype=pl.String),
     }
     if scenario.filter is None:
-        columns = {name: values for name, values in columns.items() if name not in ("n_gated", *_WATCHED)}
+        columns = {name: values for name, values in columns.items() if name not in ("n_gated", "hpl_m", "vpl_m", *_WATCHED)}
     else:
-        words["nav_mode"] = _words([*_core.Sensors.modes(), "stopped"], columns["nav_mode"])
-        # What keeps the position is less than it should be: usable, and said.
-        lesser = (columns["nav_mode"] != _core.Sensors.modes().index("gnss")) & available
-        words["status"] = words["status"].zip_with(pl.Series(~lesser), pl.Series(["degraded"]))
-        kept = words["nav_mode"].replace_strict(_KEPT, default=None)
-        words["reason"] = kept.zip_with(pl.Series(lesser), words["reason"])
-        for number, why in enumerate(_DOUBTS, 1):
-            sure = pl.Series(columns["doubt"] != number)
-            words["status"] = words["status"].zip_with(sure, pl.Series(["not_available"]))
-            words["reason"] = words["reason"].zip_with(sure, pl.Series([why]))
+        words |= _judged(columns, words["reason"])
     numbers = {name: values for name, values in columns.items() if name not in _CODES}
     table = pl.DataFrame({"track": words.pop("track"), "time_ns": numbers.pop("time_ns"), **numbers, **words})
     # A value that does not exist is null in a table.
     return table.with_columns(pl.col(pl.Float64).fill_nan(None)).with_columns(pl.col("^n_(sv|gated)$").cast(pl.Int32))
+
+
+def _judged(columns: dict[str, Any], absent: pl.Series) -> dict[str, pl.Series]:
+    """What the core decided of every epoch: the status is its own, from nothing else; ``absent`` is why an estimate does not exist."""
+    statuses, sources, ids = _core.Sensors.judgement()
+    sentences = [_WORDS[i] for i in ids]
+    leading = columns["leading"]
+    why = _words(sentences, np.maximum(leading, 0)).zip_with(pl.Series(leading >= 0), pl.Series([None], dtype=pl.String))
+    bits = columns["reasons"].astype(np.uint32)
+    kinds, place = np.unique(bits, return_inverse=True)
+    sets = [" ".join(name for k, name in enumerate(ids) if kind >> k & 1) or None for kind in kinds.tolist()]
+    return {
+        "nav_mode": _words([*_core.Sensors.modes(), "stopped"], columns["nav_mode"]),
+        "nav_source": _words(sources, columns["source"]),
+        "nav_reasons": _words(sets, place),
+        "status": _words(statuses, columns["decided"]),
+        "reason": absent.zip_with(absent.is_not_null(), why),
+    }
 
 
 def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
@@ -185,7 +210,7 @@ def _weighted(values: np.ndarray[Any, Any], weights: np.ndarray[Any, Any]) -> fl
     return float(np.average(values[known], weights=weights[known])) if known.any() else None
 
 
-def _words(words: list[str], codes: np.ndarray[Any, Any]) -> pl.Series:
+def _words(words: Sequence[str | None], codes: np.ndarray[Any, Any]) -> pl.Series:
     return pl.Series(words, dtype=pl.String).gather(pl.Series(codes.astype(np.uint32)))
 
 

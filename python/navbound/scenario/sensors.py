@@ -38,6 +38,16 @@ class Imu(Part):
     in_run_time_s: float
 
 
+class Envelope(Part):
+    """What the inertial unit can measure and the vehicle can do."""
+
+    force_range_mps2: float
+    rate_range_radps: float
+    force_most_mps2: float
+    rate_most_radps: float
+    force_change_mps3: float
+
+
 class RangeParts(Part):
     """Errors of a code range in real mode."""
 
@@ -125,6 +135,7 @@ class Sensors(Part):
     path: Literal["planned", "flown"]
     rate_hz: int
     imu: Imu
+    envelope: Envelope | None = None
     gnss: Gnss | None = None
     dme: Dme | None = None
     vor: Vor | None = None

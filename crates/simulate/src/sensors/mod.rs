@@ -26,7 +26,7 @@ mod unit_faults;
 pub(crate) use markov::staying;
 
 pub use faults::{ReceiverFault, SensorFault, Trouble};
-pub use settings::{Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};
+pub use settings::{Baro, Coverage, Dme, Envelope, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};
 
 use crate::flight::fly;
 use crate::navigator::Navigator;

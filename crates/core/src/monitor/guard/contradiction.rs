@@ -97,12 +97,12 @@ impl Contradiction {
 
     /// Whether a filter should start anew at the snapshot: it has contradicted it since its last start, the unit has been plausible for a
     /// while, and the satellites are not the ones in doubt.
-    pub fn start_is_due(&self, now: GpsTime) -> bool {
+    pub fn start_is_due(&self, now: GpsTime, after_s: f64) -> bool {
         let Some((raised, failed)) = self.raised.zip(self.failed) else { return false };
         let since = self.started.map_or(raised, |s| s.max(raised));
         let again = self.started.is_none_or(|s| failed > s);
-        let clean = self.implausible.is_none_or(|t| now.seconds_since(t) >= CLEAN_S);
-        again && clean && !self.still && !self.out && now.seconds_since(since) >= CLEAN_S
+        let clean = self.implausible.is_none_or(|t| now.seconds_since(t) >= after_s);
+        again && clean && !self.still && !self.out && now.seconds_since(since) >= after_s
     }
 
     /// Whether filter and positions have contradicted each other for this time since the last start.
@@ -154,11 +154,11 @@ mod tests {
         for second in 0..4 {
             c.judge(at(f64::from(second)), &position(0.0, 100.0), true);
         }
-        assert!(c.is_raised() && !c.convicts_the_unit() && !c.start_is_due(at(4.0)) && c.start_is_due(at(5.0)));
+        assert!(c.is_raised() && !c.convicts_the_unit() && !c.start_is_due(at(4.0), 5.0) && c.start_is_due(at(5.0), 5.0));
         for start in [5.0, 20.0, 40.0] {
-            assert!(c.start_is_due(at(start)));
+            assert!(c.start_is_due(at(start), 5.0));
             c.started(at(start));
-            assert!(!c.start_is_due(at(start + 8.0)), "it has not contradicted yet");
+            assert!(!c.start_is_due(at(start + 8.0), 5.0), "it has not contradicted yet");
             c.judge(at(start + 8.0), &position(0.0, 50.0), true);
             assert!(c.convicts_the_unit());
         }
@@ -166,7 +166,7 @@ mod tests {
         for second in 50..2000 {
             c.judge(at(f64::from(second)), &position(0.0, 0.0), true);
         }
-        assert!(c.convicts_the_unit() && !c.start_is_due(at(2000.0)));
+        assert!(c.convicts_the_unit() && !c.start_is_due(at(2000.0), 5.0));
     }
 
     #[test]
@@ -190,10 +190,10 @@ mod tests {
     fn evidence_in_the_unit_convicts_at_once_and_a_position_without_motion_never_does() {
         let mut c = Contradiction::default();
         c.convict(at(0.0));
-        assert!(c.convicts_the_unit() && c.implausible_lately(at(1.0)) && !c.start_is_due(at(4.9)) && c.start_is_due(at(5.0)));
+        assert!(c.convicts_the_unit() && c.implausible_lately(at(1.0)) && !c.start_is_due(at(4.9), 5.0) && c.start_is_due(at(5.0), 5.0));
         let mut c = Contradiction::default();
         (0..60).for_each(|s| c.judge(at(f64::from(s)), &position(100.0, 5.0), true));
-        assert!(c.is_raised() && !c.convicts_the_unit() && !c.start_is_due(at(60.0)));
+        assert!(c.is_raised() && !c.convicts_the_unit() && !c.start_is_due(at(60.0), 5.0));
         // A square that is no number is a failure.
         let mut c = Contradiction::default();
         c.judge(at(0.0), &position(f64::NAN, 0.0), true);

@@ -22,7 +22,7 @@ use crate::bound::araim::single::Requirement;
 use crate::bound::raim;
 use crate::frame::{Covariance, Displacement, EcefPosition, Enu, ecef_from_geodetic};
 use crate::quantity::{GpsTime, OutOfDomain, Unavailable};
-use crate::signal::{ImuIncrement, SatelliteId, TimedAiding};
+use crate::signal::{ImuIncrement, SatelliteId, SatelliteRange, TimedAiding};
 use crate::solution::ins::{Advance, Difference, Fusion, Mode, Solution, judgeable};
 use crate::solution::snapshot::{RANGES_MOST, Ranges, Snapshot, SnapshotVelocity, Solver, rate_sights, velocity};
 use crate::solution::wls::{WeightedSight, horizontal_axes};
@@ -65,6 +65,8 @@ pub struct Settings {
     pub gap_most_s: f64,
     /// Oldest measurement that is used \[s\].
     pub age_most_s: f64,
+    /// Time for which the unit must be plausible and the contradiction last before the filter is started anew \[s\].
+    pub restart_after_s: f64,
 }
 
 /// The ranges of an instant, judged.
@@ -101,6 +103,7 @@ pub struct Guard {
     contradiction: Contradiction,
     shares: Shares,
     looked: Option<Looked>,
+    last: Ranges,
     tests: Option<(GpsTime, Tests)>,
     /// The last accepted sample, and whether samples came since.
     accepted: Option<GpsTime>,
@@ -135,6 +138,7 @@ impl Guard {
             contradiction: Contradiction::default(),
             shares: Shares::new(),
             looked: None,
+            last: Ranges::of(core::iter::empty()),
             tests: None,
             accepted: None,
             begin: None,
@@ -187,7 +191,7 @@ impl Guard {
         let age_s = now.seconds_since(time);
         let in_time = age_s <= self.settings.age_most_s && age_s >= -0.5;
         self.late = if in_time { 0 } else { self.late + 1 };
-        let mut ranges = judgeable(together);
+        let mut ranges = self.fresh(&judgeable(together));
         let before = self.looked.take();
         let (looked, excluded) = match self.look(time, &mut ranges) {
             Ok(found) => found,
@@ -215,6 +219,24 @@ impl Guard {
         }
         self.looked = Some(looked);
         Admitted { usable, excluded }
+    }
+
+    /// One range of each satellite, and none that is the last one again to the bit: a receiver that has stopped measures nothing.
+    fn fresh(&mut self, ranges: &Ranges) -> Ranges {
+        let before = core::mem::replace(&mut self.last, ranges.clone());
+        let repeated =
+            |m: &SatelliteRange| before.iter().any(|b| b.satellite == m.satellite && b.range == m.range && b.rate_mps == m.rate_mps);
+        let mut named = [None; RANGES_MOST];
+        let kept = ranges.iter().filter(|m| {
+            let known = named.contains(&Some(m.satellite));
+            if let (false, Some(place)) = (known, named.iter_mut().find(|n| n.is_none())) {
+                *place = Some(m.satellite);
+            }
+            !known && !repeated(m)
+        });
+        let mut all = [None; RANGES_MOST];
+        kept.zip(all.iter_mut()).for_each(|(m, place)| *place = Some(*m));
+        Ranges::of(all.iter().flatten())
     }
 
     /// Position, test and level of the ranges; the one that is left out leaves the set.
@@ -290,7 +312,7 @@ impl Guard {
     /// As [`Fusion::restart_at`].
     pub fn restart(&mut self, filter: &mut Fusion, now: GpsTime) -> Result<bool, OutOfDomain> {
         let lost = filter.stopped().is_some();
-        if !(self.contradiction.start_is_due(now) || (lost && !self.contradiction.is_raised())) {
+        if !(self.contradiction.start_is_due(now, self.settings.restart_after_s) || (lost && !self.contradiction.is_raised())) {
             return Ok(false);
         }
         let Some(looked) = self.looked.as_ref().filter(|l| l.ranges_agree == RangesAgree::Yes && l.snapshot.time == now) else {
