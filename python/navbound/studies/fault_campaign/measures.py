@@ -66,7 +66,8 @@ def measures(frame: pl.DataFrame, onset_s: float) -> dict[str, float | str]:
     before = ~after & (since >= SETTLED_S)
     raised = ~normal & np.append(False, normal[:-1])
     first = np.flatnonzero(after & ~ok)
-    told = sorted(set(frame.filter(after & ~ok)["reason"].drop_nulls().to_list()))
+    column = "nav_reasons" if "nav_reasons" in frame.columns else "reason"
+    told = sorted({reason for cell in frame.filter(after & ~ok)[column].drop_nulls().unique() for reason in str(cell).split()})
     good = after & ok & np.isfinite(error_h)
     return {
         "n_epochs": float(after.sum()),
