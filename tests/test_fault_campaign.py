@@ -117,7 +117,7 @@ def test_a_single_fault_of_each_family_is_never_ok_and_wrong() -> None:
 
 
 def test_a_diverged_flight_is_a_result_with_every_second() -> None:
-    """Accelerometers wrong by 20 g, without satellites and stations: the estimate is 5000 km from the path before four minutes have passed."""
+    """Accelerometers wrong by 20 g, without satellites and stations: the estimate is 5000 km from the path after four minutes."""
     changed, _ = study.faulty(scenario.load(study.SCENARIO), study.Tile("outage-and-accelerometer", 5, 1, 1))
     data = changed.model_dump()
     data["sensors"]["stations"] = []

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError
 from navbound.report import surface
 from navbound.run.surface_records import Study as SurfaceStudy
+from navbound.studies.fault_campaign.records import Study as CampaignStudy
+from navbound.studies.fault_campaign.table import markdown
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def write(study: Study, out: Path) -> Path:
-    """Write ``study.json``, and ``report.html`` for a study that has a page; say which file to look at.
+    """Write ``study.json``, and ``report.html`` or ``table.md`` for a study that has a page; say which file to look at.
 
     Raises
     ------
@@ -29,6 +31,9 @@ def write(study: Study, out: Path) -> Path:
         if isinstance(study, SurfaceStudy):
             shown = out / "report.html"
             shown.write_text(surface.html(study), encoding="utf-8")
+        elif isinstance(study, CampaignStudy):
+            shown = out / "table.md"
+            shown.write_text(markdown(study), encoding="utf-8")
     except OSError as e:
         raise FormatError(out, f"cannot be written: {e.strerror}") from e
     return shown

@@ -108,5 +108,5 @@ STUDIES: dict[str, _Run] = {
 REPORTS: dict[str, Callable[[], Run]] = {"ukraine-rnav": study_ukraine_rnav.fly}
 """Studies of a flight: that flight as a judged run, for a run directory with its report."""
 
-PAGES = frozenset({"surface-movement"})
+PAGES = frozenset({"fault-campaign", "surface-movement"})
 """Studies with a page of their own."""
