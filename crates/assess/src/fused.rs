@@ -11,11 +11,11 @@ use crate::flights::Flights;
 use crate::fusion::{Driver, Plan};
 use nalgebra::Vector3;
 use navbound_core::bound::anp::circle;
-use navbound_core::monitor::guard::Guard;
+use navbound_core::monitor::guard::{Admitted, Guard, Tally};
 use navbound_core::monitor::judgement::{Source, Witnesses, decide};
 use navbound_core::monitor::separation;
 use navbound_core::quantity::{GpsTime, OutOfDomain, Risk, Unavailable};
-use navbound_core::signal::{Aiding, SatelliteId, TimedAiding};
+use navbound_core::signal::{Aiding, TimedAiding};
 use navbound_core::solution::ins::{Fusion, Innovations, Kind, Mode, NavState, Samples, Solution};
 use navbound_simulate::{Doubt, FlownEpoch, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by};
 use rayon::prelude::*;
@@ -38,6 +38,8 @@ pub struct Verdict {
     pub samples: Samples,
     /// How often the receiver's clock has jumped.
     pub clock_jumps: u32,
+    /// Filter against snapshot, over the whole flight; of the last filter only.
+    pub tally: Tally,
 }
 
 impl Fused {
@@ -150,15 +152,16 @@ impl Watch {
         for together in satellites.chunk_by(|a, b| a.time == b.time) {
             let admitted = self.guard.admit(&mut self.driver.filter, due, together);
             if admitted.usable {
-                self.aid_admitted(together, admitted.excluded);
+                self.aid_admitted(together, &admitted);
             }
         }
+        self.guard.hear(&mut self.driver.filter, others);
         self.driver.aid(others);
     }
 
-    /// The ranges of an instant without the one that the others contradict.
-    fn aid_admitted(&mut self, together: &[TimedAiding], excluded: Option<SatelliteId>) {
-        let is_excluded = |t: &TimedAiding| matches!(&t.aiding, Aiding::Satellite(m) if Some(m.satellite) == excluded);
+    /// The ranges of an instant without those that the others contradict.
+    fn aid_admitted(&mut self, together: &[TimedAiding], admitted: &Admitted) {
+        let is_excluded = |t: &TimedAiding| matches!(&t.aiding, Aiding::Satellite(m) if admitted.excludes(m.satellite));
         let (out, kept): (Vec<_>, Vec<_>) = together.iter().copied().partition(is_excluded);
         out.iter().for_each(|t| self.driver.filter.reject(t));
         let [_, used] = self.driver.aid(&kept);
@@ -258,7 +261,7 @@ impl Watch {
 
     /// What the filter says at its end.
     fn close(&mut self) {
-        self.verdicts.push(self.verdict_now());
+        self.verdicts.push(Verdict { tally: *self.guard.tally(), ..self.verdict_now() });
     }
 
     fn verdict_now(&self) -> Verdict {
@@ -267,6 +270,7 @@ impl Watch {
             innovations: Kind::ALL.map(|kind| *filter.innovations(kind)),
             samples: *filter.samples(),
             clock_jumps: filter.clock_jumps(),
+            tally: Tally::default(),
         }
     }
 }

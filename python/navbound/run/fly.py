@@ -59,7 +59,9 @@ _JUDGED = ("decided", "source", "reasons", "leading")
 """Codes of what the core decided of a filtered position."""
 _CODES = ("nav_mode", "leg", "phase", "available", "doubt", "flight", "reason", *_JUDGED)
 """Columns that become words."""
-_COUNTS = ("samples", "clock_jumps")
+_TESTS = ("position_horizontal", "velocity_horizontal", "position_vertical", "velocity_vertical")
+"""Tests of the filter against the snapshot, in the order of the core."""
+_COUNTS = ("samples", "clock_jumps", "snapshot_tests")
 """What a filter counts besides its innovations."""
 
 
@@ -202,7 +204,18 @@ def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
     samples = np.sum([v["samples"] for v in verdicts], axis=0).tolist()
     words = ("done", "bridged", "adrift", "late", "refused", "stopped")
     jumps = sum(v["clock_jumps"] for v in verdicts)
-    return found | {"samples": dict(zip(words, samples, strict=True)), "clock_jumps": jumps}
+    return found | {"samples": dict(zip(words, samples, strict=True)), "clock_jumps": jumps, "snapshot_tests": _tests(verdicts)}
+
+
+def _tests(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
+    """Filter against snapshot over all flights: the mean square of each test per degree of freedom, and the largest square."""
+    n = sum(v["snapshot_tests"][0] for v in verdicts)
+    sums = np.sum([v["snapshot_tests"][2] for v in verdicts], axis=0)
+    most = np.max([v["snapshot_tests"][3] for v in verdicts], axis=0)
+    found: dict[str, Any] = {"n": n, "n_raised": sum(v["snapshot_tests"][1] for v in verdicts)}
+    for name, freedom, total, largest in zip(_TESTS, (2, 2, 1, 1), sums, most, strict=True):
+        found[name] = {"mean_square": float(total / n / freedom) if n else None, "largest": float(largest)}
+    return found
 
 
 def _weighted(values: np.ndarray[Any, Any], weights: np.ndarray[Any, Any]) -> float | None:

@@ -1,8 +1,9 @@
 //! Filter against snapshot over time: when they contradict each other, which of them is believed, and when a new start is due.
 //!
 //! The velocity test speaks first where the inertial unit is wrong: an error of acceleration is an error of velocity before it is one of
-//! position. A position that moves without motion is no inertial fault. Where both speak and the unit itself shows nothing, nobody knows; a
-//! filter that starts anew at the snapshot and contradicts it again within a minute convicts the unit.
+//! position. A position that moves without motion is no inertial fault. Where both speak and the unit itself shows nothing, nobody knows
+//! before the ground stations rule out one of both. A filter that starts anew and contradicts again proves nothing: stations that contradict
+//! a spoofer drag it off as well.
 
 use crate::quantity::GpsTime;
 
@@ -10,11 +11,9 @@ use crate::quantity::GpsTime;
 pub const AGREED_S: f64 = 30.0;
 /// Time that the unit must be plausible before a filter is started anew \[s\]. Provenance: inferred.
 const CLEAN_S: f64 = 5.0;
-/// Time within which a new contradiction after a new start convicts the unit \[s\]. Provenance: inferred.
-const CONVICTED_S: f64 = 60.0;
 /// Time without any excess after which an unexplained contradiction is closed \[s\]. Provenance: inferred.
 const OPEN_S: f64 = 600.0;
-/// New starts within [`OPEN_S`] after which the unit is out for the flight. Provenance: inferred.
+/// New starts within [`OPEN_S`] after which no further one follows on this flight. Provenance: inferred.
 const STARTS_MOST: usize = 3;
 /// The velocity's square from which it has moved too, and the time before the position's for which that counts \[s\]. Provenance: inferred.
 const MOVED: (f64, f64) = (20.0, 10.0);
@@ -63,8 +62,7 @@ impl Contradiction {
         }
         if tests.fail() {
             self.still = self.moved.is_none_or(|t| now.seconds_since(t) > MOVED.1) && (self.raised.is_none() || self.still);
-            let convicted = self.started.is_some_and(|t| now.seconds_since(t) <= CONVICTED_S);
-            self.fail(now, convicted && !self.still);
+            self.fail(now, false);
             return;
         }
         let Some(failed) = self.failed.max(self.started) else { return };
@@ -86,11 +84,16 @@ impl Contradiction {
         self.fail(now, true);
     }
 
+    /// The ground stations rule out that the inertial unit is right.
+    pub fn rule_out_the_unit(&mut self) {
+        self.unit |= self.raised.is_some() && !self.still;
+    }
+
     fn fail(&mut self, now: GpsTime, unit: bool) {
         self.raised.get_or_insert(now);
         self.failed = Some(now);
         self.unit |= unit;
-        if unit && self.starts.iter().all(|s| s.is_some_and(|t| now.seconds_since(t) <= OPEN_S)) {
+        if self.starts.iter().all(|s| s.is_some_and(|t| now.seconds_since(t) <= OPEN_S)) {
             self.out = true;
         }
     }
@@ -129,7 +132,7 @@ impl Contradiction {
     }
     /// Whether the inertial unit is the cause.
     pub const fn convicts_the_unit(&self) -> bool {
-        self.out || (self.raised.is_some() && self.unit)
+        self.raised.is_some() && self.unit
     }
     /// Whether the unit delivered what cannot be within a while.
     pub fn implausible_lately(&self, now: GpsTime) -> bool {
@@ -149,8 +152,10 @@ mod tests {
     }
 
     #[test]
-    fn a_unit_that_contradicts_again_after_a_new_start_is_convicted_and_after_three_starts_out() {
+    fn after_three_starts_there_is_no_further_one_and_only_the_stations_convict() {
         let mut c = Contradiction::default();
+        c.rule_out_the_unit();
+        assert!(!c.convicts_the_unit(), "nothing is contradicted");
         for second in 0..4 {
             c.judge(at(f64::from(second)), &position(0.0, 100.0), true);
         }
@@ -160,8 +165,9 @@ mod tests {
             c.started(at(start));
             assert!(!c.start_is_due(at(start + 8.0), 5.0), "it has not contradicted yet");
             c.judge(at(start + 8.0), &position(0.0, 50.0), true);
-            assert!(c.convicts_the_unit());
+            assert!(!c.convicts_the_unit());
         }
+        c.rule_out_the_unit();
         // Out for the flight, however long it then agrees.
         for second in 50..2000 {
             c.judge(at(f64::from(second)), &position(0.0, 0.0), true);

@@ -8,22 +8,24 @@ mod contradiction;
 mod fixes;
 mod inertial;
 mod shares;
+mod stations;
 #[cfg(test)]
 mod tests;
 
 pub use contradiction::{AGREED_S, Contradiction, Tests};
 pub use inertial::{Envelope, Plausibility};
 pub use shares::Shares;
+pub use stations::{Reading, Stations};
 
 use super::consistency::normalised_square_horizontal;
 use super::judgement::{Agreement, CarriedFacts, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Witnesses};
 use crate::bound::araim::exclusion::Decision as Exclusion;
 use crate::bound::araim::single::Requirement;
 use crate::bound::raim;
-use crate::frame::{Covariance, Displacement, EcefPosition, Enu, ecef_from_geodetic};
+use crate::frame::{Covariance, Displacement, EcefPosition, Enu, ecef_from_geodetic, enu_from_ecef};
 use crate::quantity::{GpsTime, OutOfDomain, Unavailable};
-use crate::signal::{ImuIncrement, SatelliteId, SatelliteRange, TimedAiding};
-use crate::solution::ins::{Advance, Difference, Fusion, Mode, Solution, judgeable};
+use crate::signal::{Aiding, ImuIncrement, SatelliteId, SatelliteRange, TimedAiding};
+use crate::solution::ins::{Advance, Block, Difference, Fusion, Mode, Solution, judgeable};
 use crate::solution::snapshot::{RANGES_MOST, Ranges, Snapshot, SnapshotVelocity, Solver, rate_sights, velocity};
 use crate::solution::wls::{WeightedSight, horizontal_axes};
 use crate::special::chi::chi_factor;
@@ -74,8 +76,18 @@ pub struct Settings {
 pub struct Admitted {
     /// Whether the filter may use them.
     pub usable: bool,
-    /// The one that it may not use.
-    pub excluded: Option<SatelliteId>,
+    /// Those that it may not use.
+    pub excluded: [Option<SatelliteId>; EXCLUDED_MOST],
+}
+
+/// Satellites that are left out of an instant at most.
+pub const EXCLUDED_MOST: usize = 4;
+
+impl Admitted {
+    /// Whether a satellite is left out.
+    pub fn excludes(&self, satellite: SatelliteId) -> bool {
+        self.excluded.contains(&Some(satellite))
+    }
 }
 
 /// A snapshot with what its own test says.
@@ -91,6 +103,29 @@ pub struct Looked {
     pub level_m: [f64; 2],
 }
 
+/// Sums over the tests of a flight.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tally {
+    /// Instants.
+    pub n: u64,
+    /// Sum and largest of each square, in the order of [`Tests::square`].
+    pub sum: [f64; 4],
+    /// See [`Tally::sum`].
+    pub most: [f64; 4],
+    /// Times that a contradiction was raised.
+    pub n_raised: u64,
+}
+
+impl Tally {
+    fn add(&mut self, tests: &Tests) {
+        self.n += 1;
+        for k in 0..4 {
+            self.sum[k] += tests.square[k];
+            self.most[k] = self.most[k].max(tests.square[k]);
+        }
+    }
+}
+
 /// Everything beside a filter.
 #[derive(Debug, Clone)]
 pub struct Guard {
@@ -103,6 +138,8 @@ pub struct Guard {
     contradiction: Contradiction,
     shares: Shares,
     looked: Option<Looked>,
+    stations: Stations,
+    tally: Tally,
     last: Ranges,
     tests: Option<(GpsTime, Tests)>,
     /// The last accepted sample, and whether samples came since.
@@ -138,6 +175,8 @@ impl Guard {
             contradiction: Contradiction::default(),
             shares: Shares::new(),
             looked: None,
+            stations: Stations::default(),
+            tally: Tally::default(),
             last: Ranges::of(core::iter::empty()),
             tests: None,
             accepted: None,
@@ -158,6 +197,11 @@ impl Guard {
     /// The tests of the last instant that had some.
     pub const fn tests(&self) -> Option<&(GpsTime, Tests)> {
         self.tests.as_ref()
+    }
+
+    /// Sums over the tests until now.
+    pub const fn tally(&self) -> &Tally {
+        &self.tally
     }
 
     /// An inertial sample that was due at this time: what came, if anything, and what the filter made of it.
@@ -186,7 +230,7 @@ impl Guard {
 
     /// Ranges of one instant, before the filter has them: may it use them? `now` is the time of the epoch clock.
     pub fn admit(&mut self, filter: &mut Fusion, now: GpsTime, together: &[TimedAiding]) -> Admitted {
-        let all = Admitted { usable: true, excluded: None };
+        let all = Admitted { usable: true, excluded: [None; EXCLUDED_MOST] };
         let Some(time) = together.first().map(|t| t.time) else { return all };
         let age_s = now.seconds_since(time);
         let in_time = age_s <= self.settings.age_most_s && age_s >= -0.5;
@@ -203,22 +247,31 @@ impl Guard {
         }
         let difference = filter.against(&looked.snapshot);
         let tests = difference.filter(|_| looked.ranges_agree == RangesAgree::Yes).map(|d| self.test(&d, &looked));
-        let block = filter.block(time, &ranges);
+        let mut out = [None; EXCLUDED_MOST];
+        out[0] = excluded;
+        let block = block_without(filter, time, &mut ranges, &mut out);
         let settled = !matches!(filter.mode_now(), Mode::Aligning);
         let mut usable = looked.ranges_agree != RangesAgree::No;
         if let Some(tests) = &tests {
+            let before = self.contradiction.is_raised();
             self.contradiction.judge(time, tests, settled);
+            self.tally.n_raised += u64::from(!before && self.contradiction.is_raised());
+            self.tally.add(tests);
             self.tests = Some((time, *tests));
             usable &= !tests.fail();
+            // The clock of the unit was wrong lately: what the filter has made of its samples is no riddle.
+            if tests.fail() && self.clock_wrong.is_some() {
+                self.contradiction.convict(time);
+            }
             if let Some(block) = &block {
-                usable &= chi_square_tail(block.freedom as f64, block.square) >= BLOCK_RISK;
+                usable &= passes(block);
                 if !tests.fail() {
                     self.shares.innovations(time, block);
                 }
             }
         }
         self.looked = Some(looked);
-        Admitted { usable, excluded }
+        Admitted { usable, excluded: out }
     }
 
     /// One range of each satellite, and none that is the last one again to the bit: a receiver that has stopped measures nothing.
@@ -237,6 +290,30 @@ impl Guard {
         let mut all = [None; RANGES_MOST];
         kept.zip(all.iter_mut()).for_each(|(m, place)| *place = Some(*m));
         Ranges::of(all.iter().flatten())
+    }
+
+    /// Ranges to stations of one instant: witnesses between the snapshot of the same instant and the filter without satellites.
+    pub fn hear(&mut self, filter: &mut Fusion, together: &[TimedAiding]) {
+        let Some(time) = together.first().map(|t| t.time) else { return };
+        let looked = self.looked.as_ref().filter(|l| l.snapshot.time == time && l.ranges_agree == RangesAgree::Yes);
+        let beside = filter.without_satellites(time);
+        let Some((looked, antenna, beside)) = looked.zip(beside).and_then(|(l, b)| Some((l, filter.antenna_of(&b)?, b))) else { return };
+        let ecef = enu_from_ecef(&looked.snapshot.position.point).transpose();
+        let turned = |v: &Covariance<Enu>| ecef * v.matrix() * ecef.transpose();
+        let readings = [
+            Reading { ecef: *looked.snapshot.ecef.vector(), covariance: turned(&looked.snapshot.covariance) },
+            Reading { ecef: *antenna.vector(), covariance: turned(&beside.covariance) },
+        ];
+        for timed in together {
+            if let Aiding::Dme(m) = &timed.aiding
+                && timed.time == time
+            {
+                self.stations.hear(time, m, &readings);
+            }
+        }
+        if self.stations.rule_out_the_second(time) {
+            self.contradiction.rule_out_the_unit();
+        }
     }
 
     /// Position, test and level of the ranges; the one that is left out leaves the set.
@@ -361,7 +438,7 @@ impl Guard {
     }
 
     fn inertial(&self, epoch: GpsTime) -> Inertial {
-        if self.contradiction.implausible_lately(epoch) {
+        if self.clock_wrong.is_none() && self.contradiction.implausible_lately(epoch) {
             return Inertial::Implausible;
         }
         if self.contradiction.convicts_the_unit() {
@@ -425,6 +502,33 @@ impl Guard {
         let level_m = core::array::from_fn(|k| level[k] + factor[k] * (sigma[k] - before[k]).max(0.0) + unseen);
         Some(CarriedFacts { age_s: t, level_m })
     }
+}
+
+fn passes(block: &Block) -> bool {
+    chi_square_tail(block.freedom as f64, block.square) >= BLOCK_RISK
+}
+
+/// The innovations together, without the few satellites whose absence makes them pass: a filter sees a small fault before the snapshot does.
+/// Where no few explain it nobody is left out, and the block fails.
+fn block_without(filter: &mut Fusion, time: GpsTime, ranges: &mut Ranges, out: &mut [Option<SatelliteId>; EXCLUDED_MOST]) -> Option<Block> {
+    let all = filter.block(time, ranges)?;
+    let (mut block, mut left, mut leaving) = (all, ranges.clone(), *out);
+    while !passes(&block) {
+        let Some(place) = leaving.iter_mut().find(|o| o.is_none()) else { return Some(all) };
+        let without = |filter: &mut Fusion, satellite| filter.block(time, &left.without(satellite));
+        let mut best: Option<(SatelliteId, Block)> = None;
+        for m in left.iter() {
+            let Some(found) = without(filter, m.satellite) else { continue };
+            if best.is_none_or(|(_, b)| found.square < b.square) {
+                best = Some((m.satellite, found));
+            }
+        }
+        let Some((satellite, found)) = best else { return Some(all) };
+        *place = Some(satellite);
+        (block, left) = (found, left.without(satellite));
+    }
+    (*ranges, *out) = (left, leaving);
+    Some(block)
 }
 
 /// Directions, weights and residuals of a snapshot's ranges.

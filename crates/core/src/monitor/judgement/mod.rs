@@ -114,7 +114,8 @@ pub const EXCESS_MOST_S: f64 = 10.0;
 ///
 /// ```text
 /// filter given:     HPL = |filter - snapshot| + HPL of the snapshot        |e_f| <= |d| + |e_s|
-/// snapshot given:   HPL of the snapshot; while a contradiction is open at least the bound of both readings
+/// snapshot given:   HPL of the snapshot
+/// while a contradiction is open the level of the snapshot is at least the bound of both readings
 /// ```
 ///
 /// The filter is given where its state is of the epoch, its unit is plausible and the snapshot does not contradict it; else the snapshot, where
@@ -212,7 +213,10 @@ fn level(facts: &Facts, source: Source, snapshot: Option<&SnapshotFacts>) -> (Op
     let found = match (tested, source) {
         (_, Source::None) => return (None, Some(Reason::SnapshotMissing)),
         (Some(s), Source::Snapshot) => s.level_m.map(|l| disputed(facts, l)),
-        (Some(s), Source::Filter) => s.level_m.zip(s.distance_m).map(|([h, v], [dh, dv])| [dh + h, dv + v]),
+        (Some(s), Source::Filter) => {
+            // The bound of both readings is about the snapshot, the distance leads from there to the filter.
+            s.level_m.zip(s.distance_m).map(|(l, [dh, dv])| (disputed(facts, l), [dh, dv])).map(|([h, v], [dh, dv])| [dh + h, dv + v])
+        }
         (None, Source::Filter) => {
             let carried = facts.carried.filter(|c| c.age_s >= 0.0 && c.level_m.iter().all(is_level));
             // Nothing of this instant checks the filter: the earlier levels are shown for as long as they are carried.
@@ -248,8 +252,10 @@ fn unit_is_the_cause(facts: &Facts) -> bool {
 }
 
 fn status(facts: &Facts, source: Source, reasons: Reasons, with_level: bool) -> Status {
-    let doubted = [Reason::FiltersDisagree, Reason::StationsContradict];
-    if source == Source::None || reasons.any(&doubted) {
+    // A unit that is known to be wrong explains why filters and stations fall out: all of these rest on it.
+    let explained = source == Source::Snapshot && unit_is_the_cause(facts);
+    let doubted = reasons.any(&[Reason::FiltersDisagree, Reason::StationsContradict]) && !explained;
+    if source == Source::None || doubted {
         return Status::NotAvailable;
     }
     if source == Source::Snapshot {

@@ -108,12 +108,26 @@ fn a_contradiction_is_bounded_for_both_readings_and_never_ok() {
     // The evidence is in the unit: its own level.
     let found = decide(&Facts { agreement, inertial: Some(Inertial::Implausible), ..good() });
     assert_eq!((found.status, found.hpl_m), (Status::Ok, Some(10.0)));
+    // Agreed again without a cause: the filter is given, and neither reading is dropped.
+    let open = Some(Agreement::Open { bound_m: [400.0, 20.0] });
+    let found = decide(&Facts { agreement: open, ..good() });
+    assert_eq!((found.status, found.source, found.hpl_m), (Status::Degraded, Source::Filter, Some(402.0)));
     // Nobody to turn to.
     assert_eq!(decide(&Facts { agreement, snapshot: None, ..good() }).status, Status::NotAvailable);
     for bound_m in [[f64::NAN; 2], [f64::INFINITY; 2]] {
         let found = decide(&Facts { agreement: Some(Agreement::Contradicted { bound_m }), ..good() });
         assert_eq!((found.status, found.hpl_m), (Status::Degraded, None), "{bound_m:?}");
     }
+}
+
+/// The filter without satellites has the same unit.
+#[test]
+fn filters_that_fall_out_are_explained_by_a_unit_that_is_wrong_and_by_nothing_else() {
+    let witnesses = Some(Witnesses { filters_disagree: Some(true), stations_contradict: Some(true) });
+    assert_eq!(decide(&Facts { witnesses, ..good() }).status, Status::NotAvailable);
+    assert_eq!(decide(&Facts { witnesses, ..by_snapshot() }).status, Status::Ok);
+    let missing = Some(Inertial::Missing { for_s: 20.0 });
+    assert_eq!(decide(&Facts { witnesses, inertial: missing, ..good() }).status, Status::NotAvailable);
 }
 
 #[test]
@@ -239,7 +253,8 @@ proptest! {
         if found.status == Status::Ok {
             prop_assert!(level.iter().all(Option::is_some));
             prop_assert_eq!(facts.satellite_times_hold, Some(true));
-            prop_assert_ne!(facts.witnesses.unwrap().filters_disagree, Some(true));
+            let explained = matches!(facts.inertial, Some(Inertial::Fault | Inertial::Implausible)) && found.source == Source::Snapshot;
+            prop_assert!(explained || facts.witnesses.unwrap().filters_disagree != Some(true));
             let checked = facts.snapshot.is_some_and(|s| s.ranges_agree == RangesAgree::Yes) || facts.carried.is_some_and(|c| c.age_s <= CARRIED_MOST_S);
             prop_assert!(checked);
         }
