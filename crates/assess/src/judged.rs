@@ -7,7 +7,7 @@ use navbound_core::monitor::guard::{Envelope, Guard, Settings as GuardSettings};
 use navbound_core::monitor::judgement::{Decision, Source, Witnesses, decide};
 use navbound_core::monitor::separation;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
-use navbound_core::signal::{Aiding, ImuIncrement, SatelliteId, TimedAiding};
+use navbound_core::signal::{Aiding, ImuIncrement, TimedAiding};
 use navbound_core::solution::ins::{Advance, Beside, Kind, Settings, Solution};
 use navbound_core::solution::snapshot::SnapshotVelocity;
 
@@ -71,11 +71,13 @@ impl Judged {
         Ok(Self { guard: Box::new(Guard::new(guard)?), verdict, ages, due: None, left_out: None })
     }
 
-    /// A sample and what the filter made of it; the time that it was due. A hole moves that time, a time tag that goes back does not.
+    /// A sample and what the filter made of it; the time that it was due. A hole moves that time, a time tag that goes back does not, but for
+    /// two samples in the wrong order.
     pub(crate) fn sample(&mut self, sample: &ImuIncrement, outcome: &Advance) -> GpsTime {
         let interval_s = if sample.interval_s > 0.0 && sample.interval_s < 1.0 { sample.interval_s } else { 0.0 };
         let next = self.due.map_or(sample.time, |d| d.plus_seconds(interval_s));
-        let near = sample.time.seconds_since(next).abs() <= 0.5 * interval_s;
+        let accepted = matches!(outcome, Advance::Done | Advance::Bridged { .. } | Advance::Adrift { .. });
+        let near = sample.time.seconds_since(next).abs() <= if accepted { 1.5 } else { 0.5 } * interval_s;
         let due = if near || sample.time > next { sample.time } else { next };
         self.due = Some(due);
         self.guard.sample(due, Some((sample, outcome)));
@@ -99,8 +101,7 @@ impl Judged {
     fn ranges(&mut self, driver: &mut Driver, now: GpsTime, together: &[TimedAiding]) -> Result<(), OutOfDomain> {
         let admitted = self.guard.admit(&mut driver.filter, now, together);
         if admitted.usable {
-            let of = |t: &TimedAiding, id: SatelliteId| matches!(&t.aiding, Aiding::Satellite(m) if m.satellite == id);
-            let is_excluded = |t: &TimedAiding| admitted.excluded.is_some_and(|id| of(t, id));
+            let is_excluded = |t: &TimedAiding| matches!(&t.aiding, Aiding::Satellite(m) if admitted.excluded.contains(&Some(m.satellite)));
             let (out, kept): (Vec<_>, Vec<_>) = together.iter().copied().partition(is_excluded);
             out.iter().for_each(|t| driver.filter.reject(t));
             driver.aid(&kept);

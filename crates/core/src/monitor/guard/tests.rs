@@ -1,10 +1,10 @@
 //! The covariance of the difference against draws, the risk of its test, and the unit's plausibility.
 
 use super::*;
-use crate::signal::{Aiding, Constellation};
-use crate::solution::ins::{Attitude, ErrorModel, ImuModel, NavState, Settings as FilterSettings, StartSigma};
 use crate::frame::{Geodetic, LatLon};
 use crate::quantity::{Metres, Radians};
+use crate::signal::{Aiding, Constellation};
+use crate::solution::ins::{Attitude, ErrorModel, ImuModel, NavState, Settings as FilterSettings, StartSigma};
 use nalgebra::Vector3;
 
 /// Uniform, then normal, by a generator whose period is beyond any test.
