@@ -176,7 +176,10 @@ fn converge(mut at: Vector3<f64>, ranges: &Ranges) -> Result<Vector3<f64>, Unava
 }
 
 /// A rate at a position: direction and weight, and measured rate less what the satellite's own motion makes of it \[m/s\].
-pub fn rate_sights(snapshot: &Snapshot, ranges: &Ranges) -> ([WeightedSight; RANGES_MOST], [f64; RANGES_MOST], [usize; RANGES_MOST], usize) {
+pub fn rate_sights(
+    snapshot: &Snapshot,
+    ranges: &Ranges,
+) -> ([WeightedSight; RANGES_MOST], [f64; RANGES_MOST], [usize; RANGES_MOST], usize) {
     let none = WeightedSight { unit: Vector3::zeros(), weight: 0.0, constellation: Constellation::Gps };
     let (mut sights, mut residuals, mut index, mut n) = ([none; RANGES_MOST], [0.0; RANGES_MOST], [0; RANGES_MOST], 0);
     let enu = enu_from_ecef(&snapshot.position.point);

@@ -127,7 +127,13 @@ impl Plausibility {
             for axis in 0..3 {
                 let size = now[k][axis].abs();
                 let (most, count) = (&mut self.extreme[k][axis], &mut self.clipped[k][axis]);
-                *count = if size > *most { 1 } else if size == *most { *count + 1 } else { 0 };
+                *count = if size > *most {
+                    1
+                } else if size == *most {
+                    *count + 1
+                } else {
+                    0
+                };
                 *most = most.max(size);
                 clipped |= *count >= CLIPPED && size > 0.0;
             }

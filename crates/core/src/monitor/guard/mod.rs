@@ -17,7 +17,7 @@ pub use shares::Shares;
 pub use stations::{Reading, Stations};
 
 use super::consistency::normalised_square_horizontal;
-use super::judgement::{Agreement, CarriedFacts, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Witnesses};
+use super::judgement::{Agreement, CarriedFacts, Decision, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Witnesses};
 use crate::bound::araim::exclusion::Decision as Exclusion;
 use crate::bound::araim::single::Requirement;
 use crate::bound::raim;
@@ -273,7 +273,8 @@ impl Guard {
     /// One range of each satellite, and none that is the last one again to the bit: a receiver that has stopped measures nothing.
     fn fresh(&mut self, ranges: &Ranges) -> Ranges {
         let before = core::mem::replace(&mut self.last, ranges.clone());
-        let repeated = |m: &SatelliteRange| before.iter().any(|b| b.satellite == m.satellite && b.range == m.range && b.rate_mps == m.rate_mps);
+        let repeated =
+            |m: &SatelliteRange| before.iter().any(|b| b.satellite == m.satellite && b.range == m.range && b.rate_mps == m.rate_mps);
         let mut named = [None; RANGES_MOST];
         let kept = ranges.iter().filter(|m| {
             let known = named.contains(&Some(m.satellite));
@@ -430,6 +431,19 @@ impl Guard {
             tuning: Some(self.shares.tuning()),
             witnesses: Some(witnesses),
         }
+    }
+
+    /// The covariance to state of a position: its own, and where two readings contradict each other so much more that the level is its bound
+    /// at the risk of a fault-free level.
+    ///
+    /// # Errors
+    /// As [`chi_factor`].
+    pub fn stated(&self, decision: &Decision, own: &Covariance<Enu>) -> Result<Covariance<Enu>, OutOfDomain> {
+        let Some((hpl, vpl)) = decision.hpl_m.zip(decision.vpl_m).filter(|_| decision.disputed) else { return Ok(*own) };
+        let q = self.settings.requirement.fault_free.q();
+        let [h, v] = [hpl / chi_factor(2, q)?, vpl / chi_factor(1, q)?];
+        let wide = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(h * h, h * h, v * v));
+        Ok(Covariance::claim_symmetric(own.matrix() + wide))
     }
 
     fn inertial(&self, epoch: GpsTime) -> Inertial {

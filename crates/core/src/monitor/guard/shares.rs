@@ -45,10 +45,12 @@ impl Shares {
     /// A second has passed.
     pub fn second(&mut self, now: GpsTime, filter: &Fusion) -> Gating {
         for (k, family) in FAMILIES.iter().enumerate() {
-            let of = |count: fn(&crate::solution::ins::Innovations) -> u64| family.iter().map(|kind| count(filter.innovations(*kind))).sum();
+            let of =
+                |count: fn(&crate::solution::ins::Innovations) -> u64| family.iter().map(|kind| count(filter.innovations(*kind))).sum();
             let total: [u64; 2] = [of(|i| i.n_used), of(|i| i.n_gated)];
             // A filter that started anew counts from nothing.
-            self.window[self.next][k] = [0, 1].map(|j| if total[j] >= self.counted[k][j] { total[j] - self.counted[k][j] } else { total[j] });
+            self.window[self.next][k] =
+                [0, 1].map(|j| if total[j] >= self.counted[k][j] { total[j] - self.counted[k][j] } else { total[j] });
             self.counted[k] = total;
         }
         self.next = (self.next + 1) % WINDOW;

@@ -1,10 +1,10 @@
 //! The covariance of the difference against draws, the risk of its test, and the unit's plausibility.
 
 use super::*;
-use crate::signal::{Aiding, Constellation};
-use crate::solution::ins::{Attitude, ErrorModel, ImuModel, NavState, Settings as FilterSettings, StartSigma};
 use crate::frame::{Geodetic, LatLon};
 use crate::quantity::{Metres, Radians};
+use crate::signal::{Aiding, Constellation};
+use crate::solution::ins::{Attitude, ErrorModel, ImuModel, NavState, Settings as FilterSettings, StartSigma};
 use nalgebra::Vector3;
 
 /// Uniform, then normal, by a generator whose period is beyond any test.
@@ -99,7 +99,7 @@ impl World {
 
 /// The normalised square of the difference without inflation, after some instants of use and some without.
 fn squares(used: u32, unused: u32) -> Vec<f64> {
-    (0..600)
+    (0..600_u32)
         .map(|run| {
             let mut world = World::new(0x9e37_79b9_7f4a_7c15 ^ (u64::from(run) << 20) ^ 0x1234_5678);
             (0..10).for_each(|_| {
