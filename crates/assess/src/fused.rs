@@ -229,7 +229,7 @@ impl Watch {
         }
         if let Some((position, covariance)) = position {
             self.last_error = *navigation_error(&position, &truth.position).vector();
-            (said.error_enu_m, said.covariance) = (self.last_error, Ok(covariance));
+            (said.error_enu_m, said.covariance) = (self.last_error, Ok(self.guard.stated(&decision, &covariance)?));
         }
         said.decision = Some(decision);
         Ok(said)

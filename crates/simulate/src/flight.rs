@@ -220,7 +220,7 @@ fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, navigated: 
 /// A decision about an estimate that turned out to be none.
 fn nothing(decided: Option<Decision>) -> Decision {
     let reasons = decided.map_or(Reasons::NONE, |d| d.reasons).with(Reason::StateStale);
-    Decision { status: Status::NotAvailable, reasons, source: Source::None, hpl_m: None, vpl_m: None }
+    Decision { status: Status::NotAvailable, reasons, source: Source::None, hpl_m: None, vpl_m: None, disputed: false }
 }
 
 /// Why an estimate that is too wrong is none.

@@ -18,7 +18,7 @@ pub use shares::Shares;
 pub use stations::{Reading, Stations};
 
 use super::consistency::normalised_square_horizontal;
-use super::judgement::{Agreement, CarriedFacts, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Witnesses};
+use super::judgement::{Agreement, CarriedFacts, Decision, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Witnesses};
 use crate::bound::araim::exclusion::Decision as Exclusion;
 use crate::bound::araim::single::Requirement;
 use crate::bound::raim;
@@ -435,6 +435,19 @@ impl Guard {
             tuning: Some(self.shares.tuning()),
             witnesses: Some(witnesses),
         }
+    }
+
+    /// The covariance to state of a position: its own, and where two readings contradict each other so much more that the level is its bound
+    /// at the risk of a fault-free level.
+    ///
+    /// # Errors
+    /// As [`chi_factor`].
+    pub fn stated(&self, decision: &Decision, own: &Covariance<Enu>) -> Result<Covariance<Enu>, OutOfDomain> {
+        let Some((hpl, vpl)) = decision.hpl_m.zip(decision.vpl_m).filter(|_| decision.disputed) else { return Ok(*own) };
+        let q = self.settings.requirement.fault_free.q();
+        let [h, v] = [hpl / chi_factor(2, q)?, vpl / chi_factor(1, q)?];
+        let wide = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(h * h, h * h, v * v));
+        Ok(Covariance::claim_symmetric(own.matrix() + wide))
     }
 
     fn inertial(&self, epoch: GpsTime) -> Inertial {

@@ -99,7 +99,7 @@ impl World {
 
 /// The normalised square of the difference without inflation, after some instants of use and some without.
 fn squares(used: u32, unused: u32) -> Vec<f64> {
-    (0..600)
+    (0..600_u32)
         .map(|run| {
             let mut world = World::new(0x9e37_79b9_7f4a_7c15 ^ (u64::from(run) << 20) ^ 0x1234_5678);
             (0..10).for_each(|_| {

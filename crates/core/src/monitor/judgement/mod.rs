@@ -71,6 +71,9 @@ pub struct Decision {
     pub hpl_m: Option<f64>,
     /// Vertical, likewise.
     pub vpl_m: Option<f64>,
+    /// Whether filter and satellites contradict each other, now or earlier, and nobody knows which of them was wrong: the covariance of either
+    /// is then not that of its error.
+    pub disputed: bool,
 }
 
 impl Decision {
@@ -144,7 +147,7 @@ pub fn decide(facts: &Facts) -> Decision {
     }
     let status = status(facts, source, reasons, level.is_some());
     let level = level.filter(|_| source != Source::None);
-    Decision { status, reasons, source, hpl_m: level.map(|l| l[0]), vpl_m: level.map(|l| l[1]) }
+    Decision { status, reasons, source, hpl_m: level.map(|l| l[0]), vpl_m: level.map(|l| l[1]), disputed: is_disputed(facts) }
 }
 
 fn is_of(snapshot: &SnapshotFacts, epoch: GpsTime) -> bool {
@@ -238,12 +241,17 @@ fn is_level(level_m: &f64) -> bool {
 /// While nobody knows whether filter or satellites were wrong the bound holds for both readings.
 fn disputed(facts: &Facts, level: [f64; 2]) -> [f64; 2] {
     match facts.agreement {
-        Some(Agreement::Open { bound_m } | Agreement::Contradicted { bound_m }) if !unit_is_the_cause(facts) => {
+        Some(Agreement::Open { bound_m } | Agreement::Contradicted { bound_m }) if is_disputed(facts) => {
             // A comparison that is false for NaN keeps NaN, and no level comes of it.
             core::array::from_fn(|k| if level[k] >= bound_m[k] { level[k] } else { bound_m[k] })
         }
         _ => level,
     }
+}
+
+/// Nobody knows whether the filter or the satellites were wrong.
+fn is_disputed(facts: &Facts) -> bool {
+    matches!(facts.agreement, Some(Agreement::Open { .. } | Agreement::Contradicted { .. })) && !unit_is_the_cause(facts)
 }
 
 /// The evidence against the inertial unit is in the unit, so that a contradiction says nothing against the satellites.
@@ -255,7 +263,9 @@ fn status(facts: &Facts, source: Source, reasons: Reasons, with_level: bool) -> 
     // A unit that is known to be wrong explains why filters and stations fall out: all of these rest on it.
     let explained = source == Source::Snapshot && unit_is_the_cause(facts);
     let doubted = reasons.any(&[Reason::FiltersDisagree, Reason::StationsContradict]) && !explained;
-    if source == Source::None || doubted {
+    // Two readings and no bound for both: nothing is known.
+    let unbounded = is_disputed(facts) && !with_level;
+    if source == Source::None || doubted || unbounded {
         return Status::NotAvailable;
     }
     if source == Source::Snapshot {

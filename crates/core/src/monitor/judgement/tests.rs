@@ -116,7 +116,7 @@ fn a_contradiction_is_bounded_for_both_readings_and_never_ok() {
     assert_eq!(decide(&Facts { agreement, snapshot: None, ..good() }).status, Status::NotAvailable);
     for bound_m in [[f64::NAN; 2], [f64::INFINITY; 2]] {
         let found = decide(&Facts { agreement: Some(Agreement::Contradicted { bound_m }), ..good() });
-        assert_eq!((found.status, found.hpl_m), (Status::Degraded, None), "{bound_m:?}");
+        assert_eq!((found.status, found.hpl_m), (Status::NotAvailable, None), "{bound_m:?}");
     }
 }
 
@@ -151,7 +151,7 @@ fn ids_and_numbers_of_reasons_are_each_once() {
         let only = Reasons::NONE.with(reason);
         assert_eq!(only.iter().collect::<Vec<_>>(), [reason]);
         // A reason alone is the leading one.
-        let found = Decision { status: Status::Degraded, reasons: only, source: Source::None, hpl_m: None, vpl_m: None };
+        let found = Decision { status: Status::Degraded, reasons: only, source: Source::None, hpl_m: None, vpl_m: None, disputed: false };
         assert_eq!(found.leading(), Some(reason));
     }
 }

@@ -166,7 +166,8 @@ fn the_filter_beside_the_main_one_has_no_satellites() {
     let difference = beside.covariance.horizontal().trace();
     assert!((difference - (without.horizontal() - with.horizontal()).trace()).abs() < 1e-9);
     // After a new start the main filter does not know what the other knows.
-    fusion.restart(&StartSigma::default()).unwrap();
+    let here = *fusion.state();
+    fusion.renew(here, &StartSigma::default()).unwrap();
     let after = fusion.beside(fusion.time()).unwrap().covariance.horizontal().trace();
     assert!((after - (without.horizontal().trace() + 200.0)).abs() < 1e-6, "{after}");
 }
