@@ -199,14 +199,16 @@ def study(
     name: Annotated[
         str,
         typer.Argument(
-            help="anp-comparison, decorrelation-time, error-extraction, fault-campaign, multipath-time-constants, surface-movement, tse-coverage, "
-            "ukraine-rnav"
+            help="anp-comparison, decorrelation-time, error-extraction, fault-campaign, multipath-time-constants, surface-movement, "
+            "tse-coverage, ukraine-rnav"
         ),
     ],
     files: Annotated[list[Path] | None, typer.Argument(help="Recorded data or a configuration, for a study that takes some.")] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="Directory to write, for a study of a flight (ukraine-rnav) or with a page (fault-campaign, surface-movement)."),
+        typer.Option(
+            "--out", help="Directory to write, for a study of a flight (ukraine-rnav) or with a page (fault-campaign, surface-movement)."
+        ),
     ] = None,
     backend: Backend = None,
     workers: NWorkers = None,
