@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -98,7 +99,7 @@ def test_the_interval_of_a_share_is_the_score_interval() -> None:
 
 
 def test_a_part_of_the_campaign_is_the_same_whoever_flies_it_and_goes_on_where_it_stopped(tmp_path: Path) -> None:
-    part = {"kinds": ["imu-nan", "satellite-step"], "sizes": [3], "onsets": [2], "flights": 1}
+    part: dict[str, Any] = {"kinds": ["imu-nan", "satellite-step"], "sizes": [3], "onsets": [2], "flights": 1}
     serial = study.run(**part, checkpoint=tmp_path)
     done: list[tuple[int, int]] = []
     again = study.run(**part, checkpoint=tmp_path, progress=lambda i, n: done.append((i, n)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -89,7 +90,7 @@ def flight(shared_data: Path) -> Recording:
     return Recording(imu, fixes, start, model, time_ns[used], position[used], metres)
 
 
-def _fixed(recording: Recording, **change: object) -> Recording:
+def _fixed(recording: Recording, **change: Any) -> Recording:
     return replace(recording, fixes=replace(recording.fixes, **change))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -71,7 +72,8 @@ def spoiled(seed: int, what: str) -> tuple[ins.Aiding, ins.Aiding]:
     column = np.broadcast_to(np.asarray(getattr(sky, number), dtype=float), (n,)).copy()
     column[361] = value
     rest = np.arange(n) != 361
-    return ins.Aiding(satellites=replace(sky, **{number: column})), ins.Aiding(satellites=body.some(sky, rest))
+    changed: dict[str, Any] = {number: column}
+    return ins.Aiding(satellites=replace(sky, **changed)), ins.Aiding(satellites=body.some(sky, rest))
 
 
 @pytest.mark.parametrize("what", ["fix-tiny", "fix-huge", "fix-flat", "range-huge", "range-tiny", "range-nan", "range-far"])
