@@ -187,11 +187,13 @@ def test_an_inertial_unit_that_was_lost_is_aligned_in_flight(what: str, duration
     run, found = summary("beijing-shanghai", fault("imu-trouble", duration_s=duration_s, what=what))
     end = 3000 + round(duration_s)
     lost = run.epochs[3000:end]
-    assert lost["status"].unique().to_list() == ["not_available"]
+    # The ranges of each instant alone, with less behind them for ten seconds, which is longer than most holes.
+    assert lost["nav_source"].unique().to_list() == ["snapshot"]
+    assert set(lost["status"][:10]) == {"degraded"}
+    assert set(lost["status"][10:]) <= {"ok"}
     assert lost["nav_mode"].unique().to_list() == ["stopped"]
-    assert lost["reason"].str.contains("inertial samples").all()
-    assert lost["est_lat_rad"].null_count() == lost.height
-    assert found[0].alert == "unavailable"
+    assert lost["nse_h_m"].max() < 15.0  # type: ignore[operator]
+    assert found[0].alert is None
     # The satellites of the first second after it give a position; the attitude takes some minutes at the most.
     after = run.epochs[end + 1 :]
     assert "not_available" not in after["status"].to_list()

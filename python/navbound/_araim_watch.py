@@ -108,6 +108,6 @@ def watch(
         **range_models(support, chosen, signals),
         "exclusion": "equal shares of the integrity risk for every decision (ours)",
     }
-    found["decision_words"] = np.where(decision == "excluded", np.array(excluded, dtype=np.str_), decision)
+    found["decision_words"] = np.where(decision == "excluded", columns["excluded_sv"], decision)
     p_false_alert = budgets.false_alarm_v + budgets.false_alarm_h
     return watched(observations, found, columns, models, track=track, truth_ecef_m=truth_ecef_m, p_false_alert=p_false_alert)

@@ -206,6 +206,9 @@ class Fixes:
         NaN where there is none. [m/s]
     velocity_covariance_ned_m2ps2 : array_like, shape (n, 3, 3), optional
         [m²/s²]
+    hpl_m, vpl_m : array_like, shape (n,) or (), optional
+        Protection levels of the receiver, where it has an integrity function; NaN where there is none. Without them no fused position is
+        ``ok``: a covariance bounds no fault. [m]
     """
 
     time_ns: ArrayLike
@@ -213,6 +216,8 @@ class Fixes:
     covariance_enu_m2: ArrayLike
     velocity_ned_mps: ArrayLike | None = None
     velocity_covariance_ned_m2ps2: ArrayLike | None = None
+    hpl_m: ArrayLike = np.nan
+    vpl_m: ArrayLike = np.nan
 
     def table(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Give times and numbers."""
@@ -226,6 +231,8 @@ class Fixes:
             ("covariance_enu_m2", self.covariance_enu_m2, 9),
             ("velocity_ned_mps", absent, 3),
             ("velocity_covariance_ned_m2ps2", variance, 9),
+            ("hpl_m", self.hpl_m, 1),
+            ("vpl_m", self.vpl_m, 1),
         )
 
 
@@ -261,7 +268,7 @@ class Aiding:
         no_time = np.empty(0, dtype=np.int64)
         return {
             "satellites": (no_time, [], np.empty((0, 13))) if self.satellites is None else self.satellites.table(),
-            "fixes": (no_time, np.empty((0, 24))) if self.fixes is None else self.fixes.table(),
+            "fixes": (no_time, np.empty((0, 26))) if self.fixes is None else self.fixes.table(),
             "dme": (no_time, [], np.empty((0, 6))) if self.dme is None else self.dme.table(),
             "vor": (no_time, [], np.empty((0, 6))) if self.vor is None else self.vor.table(),
             "baro": (no_time, np.empty((0, 4))) if self.baro is None else self.baro.table(),

@@ -86,6 +86,16 @@ class Fused(Track):
         Estimates, body axes. [rad/s, m/s²]
     mode : list of str
         ``gnss``, ``dme_dme``, ``vor_dme``, ``coasting``, ``aligning`` (after a hole, until the tilt is known again), ``stopped``.
+    status : list of str
+        ``ok``, ``degraded``, ``not_available``: what may be done with the position. ``ok`` needs a level for a risk of 1e-5; the filter's
+        covariance alone never makes it.
+    reasons : list of list of str
+        Ids of why it is no better, as in docs/methods/fused-integrity.md; empty where it is ``ok``.
+    source : list of str
+        Where the position comes from: ``filter``, ``snapshot`` (the ranges of the instant, or the solved position, alone: without attitude)
+        or ``none``.
+    hpl_m, vpl_m : ndarray, shape (n,)
+        Protection levels of the position; NaN where there are none. [m]
     n_states : ndarray of int, shape (n,)
         States in the filter, with those of the one beside it. [1]
     samples : dict of str to int
@@ -94,6 +104,12 @@ class Fused(Track):
         Time and reason of the stop, and of the first refused sample. [ns]
     holes : list of tuple of (int, float)
         Holes too long to be bridged: time of the first sample after each, and how long before it the last state was. [ns, s]
+    refusals : dict of str to int
+        Measurements not used before any gate, by reason: ``repeated``, ``same_name`` (several sources under one name at an instant),
+        ``out_of_range``, ``late``, ``no_place``, ``no_position``, ``stopped``.
+    fix_delay_s : float or None
+        By how much solved positions are later than their tags say, where the motion shows it: their accelerations come later than the
+        unit's. [s]
     clock_jumps : int
         How often the receiver's clock has jumped and was set anew.
     left_out : list of str
@@ -112,11 +128,18 @@ class Fused(Track):
     gyroscope_bias_radps: NDArray[np.float64]
     accelerometer_bias_mps2: NDArray[np.float64]
     mode: list[str]
+    status: list[str]
+    reasons: list[list[str]]
+    source: list[str]
+    hpl_m: NDArray[np.float64]
+    vpl_m: NDArray[np.float64]
     n_states: NDArray[np.int64]
     samples: dict[str, int]
     stopped: tuple[int, str] | None
     refused: tuple[int, str] | None
     holes: list[tuple[int, float]]
+    refusals: dict[str, int]
+    fix_delay_s: float | None
     clock_jumps: int
     left_out: list[str]
     further: dict[str, float]
@@ -233,7 +256,7 @@ def fuse(
     Raises
     ------
     InputError
-        Wrong shapes, a setting outside its domain, a measured place that is none.
+        Wrong shapes, a setting outside its domain. A row of a measurement that is none is refused alone and counted in ``refusals``.
     """
     model, how = imu_model or ImuModel(), settings or FilterSettings()
     periods = (output_period_s, update_period_s)
@@ -264,11 +287,18 @@ def _fused(found: dict[str, Any]) -> Fused:
         gyroscope_bias_radps=table[:, 21:24].copy(),
         accelerometer_bias_mps2=table[:, 24:27].copy(),
         mode=found["mode"],
+        status=found["status"],
+        reasons=found["reasons"],
+        source=found["source"],
+        hpl_m=found["hpl_m"],
+        vpl_m=found["vpl_m"],
         n_states=found["n_states"],
         samples=dict(zip(("done", "bridged", "adrift", "late", "refused", "stopped"), found["samples"], strict=True)),
         stopped=found["stopped"],
         refused=found["refused"],
         holes=found["holes"],
+        refusals=dict(found["refusals"]),
+        fix_delay_s=found["fix_delay_s"],
         clock_jumps=found["clock_jumps"],
         left_out=found["left_out"],
         further=dict(found["further"]),

@@ -107,6 +107,6 @@ def watch(
         **range_models(support, chosen, signals),
         "satellites": f"{systems}, elevation {np.degrees(mask_rad):g} deg and more",
     }
-    found["decision_words"] = np.where(decision == "excluded", excluded, decision)
+    found["decision_words"] = np.where(decision == "excluded", columns["excluded_sv"], decision)
     p_false_alert = requirement.false_alarm
     return watched(observations, found, columns, models, track=track, truth_ecef_m=truth_ecef_m, p_false_alert=p_false_alert)

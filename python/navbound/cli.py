@@ -221,14 +221,16 @@ def study(
     name: Annotated[
         str,
         typer.Argument(
-            help="anp-comparison, decorrelation-time, error-extraction, multipath-time-constants, surface-movement, tse-coverage, "
-            "ukraine-rnav"
+            help="anp-comparison, decorrelation-time, error-extraction, fault-campaign, multipath-time-constants, surface-movement, "
+            "tse-coverage, ukraine-rnav"
         ),
     ],
     files: Annotated[list[Path] | None, typer.Argument(help="Recorded data or a configuration, for a study that takes some.")] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="Directory to write, for a study of a flight (ukraine-rnav) or with a page (surface-movement)."),
+        typer.Option(
+            "--out", help="Directory to write, for a study of a flight (ukraine-rnav) or with a page (fault-campaign, surface-movement)."
+        ),
     ] = None,
     backend: Backend = None,
     workers: NWorkers = None,
@@ -238,7 +240,7 @@ def study(
 ) -> None:
     """Repeat a published evaluation and say which of its numbers come out.
 
-    Who works and what is kept can be chosen for studies that are cut into parts: anp-comparison, tse-coverage.
+    Who works and what is kept can be chosen for studies that are cut into parts: anp-comparison, fault-campaign, tse-coverage.
     """
     work = work_of(backend, workers, cluster, checkpoint)
     with Bar(name) as work["progress"]:

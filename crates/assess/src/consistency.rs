@@ -100,14 +100,14 @@ fn flight(sensing: &Sensing, seed: u64, number: u64, normals: &[f64; 9], trial: 
             driver.sample(&step.imu);
         }
         driver.aid(sensed.aiding());
-        let Some(moment) = driver.output(step.imu.time) else { continue };
-        if moment.time.seconds_since(begin) >= trial.skip_s {
-            judged.main.add(moment.solution.as_ref(), &step.truth.position)?;
-            if let Some(beside) = &moment.beside {
+        let Some(time) = driver.output_is_due(step.imu.time) else { continue };
+        if time.seconds_since(begin) >= trial.skip_s {
+            judged.main.add(driver.filter.solution(time).as_ref(), &step.truth.position)?;
+            if let Some(beside) = &driver.filter.beside(time) {
                 judged.beside.add(Some(&beside.solution), &step.truth.position)?;
-                judged.agreement.add(&mut verdict, moment.time, beside)?;
+                judged.agreement.add(&mut verdict, time, beside)?;
             }
-            judged.memory_most = judged.memory_most.max(ranges(&driver.filter).memory(moment.time).abs());
+            judged.memory_most = judged.memory_most.max(ranges(&driver.filter).memory(time).abs());
         }
     }
     let ranges = ranges(&driver.filter);

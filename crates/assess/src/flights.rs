@@ -16,7 +16,7 @@ pub struct Flights {
 pub type Column = (&'static str, fn(&FlownEpoch) -> f64);
 
 /// Every column of numbers.
-pub const COLUMNS: [Column; 37] = [
+pub const COLUMNS: [Column; 43] = [
     ("est_lat_rad", |e| e.estimate[0]),
     ("est_lon_rad", |e| e.estimate[1]),
     ("est_h_m", |e| e.estimate[2]),
@@ -47,6 +47,8 @@ pub const COLUMNS: [Column; 37] = [
     ("separation_m", |e| e.separation_m.map_or(f64::NAN, |s| s[0])),
     ("separation_limit_m", |e| e.separation_m.map_or(f64::NAN, |s| s[1])),
     ("innovation_memory", |e| e.memory.unwrap_or(f64::NAN)),
+    ("hpl_m", |e| e.decision.and_then(|d| d.hpl_m).unwrap_or(f64::NAN)),
+    ("vpl_m", |e| e.decision.and_then(|d| d.vpl_m).unwrap_or(f64::NAN)),
     // Whole numbers and codes; a double holds them exactly.
     ("n_sv", |e| f64::from(e.n_sv)),
     ("leg", |e| f64::from(e.leg)),
@@ -58,6 +60,10 @@ pub const COLUMNS: [Column; 37] = [
         Some(Doubt::Filters) => 1.0,
         Some(Doubt::Stations) => 2.0,
     }),
+    ("decided", |e| e.decision.map_or(f64::NAN, |d| f64::from(d.status as u8))),
+    ("source", |e| e.decision.map_or(f64::NAN, |d| f64::from(d.source as u8))),
+    ("reasons", |e| e.decision.map_or(0.0, |d| f64::from(d.reasons.bits()))),
+    ("leading", |e| e.decision.and_then(|d| d.leading()).map_or(-1.0, |r| f64::from(r as u8))),
     ("available", |e| f64::from(u8::from(e.reason.is_none()))),
 ];
 

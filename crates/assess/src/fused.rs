@@ -11,8 +11,11 @@ use crate::flights::Flights;
 use crate::fusion::{Driver, Plan};
 use nalgebra::Vector3;
 use navbound_core::bound::anp::circle;
+use navbound_core::monitor::guard::{Admitted, Guard, Tally};
+use navbound_core::monitor::judgement::{Source, Witnesses, decide};
 use navbound_core::monitor::separation;
 use navbound_core::quantity::{GpsTime, OutOfDomain, Risk, Unavailable};
+use navbound_core::signal::{Aiding, TimedAiding};
 use navbound_core::solution::ins::{Fusion, Innovations, Kind, Mode, NavState, Samples, Solution};
 use navbound_simulate::{Doubt, FlownEpoch, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by};
 use rayon::prelude::*;
@@ -35,6 +38,8 @@ pub struct Verdict {
     pub samples: Samples,
     /// How often the receiver's clock has jumped.
     pub clock_jumps: u32,
+    /// Filter against snapshot, over the whole flight; of the last filter only.
+    pub tally: Tally,
 }
 
 impl Fused {
@@ -65,7 +70,7 @@ pub fn navigate(sensing: &Sensing, path: &Trajectory, seed: u64, number: u64) ->
         return Err(OutOfDomain { argument: "filter", value: 0.0, unit: "tables", domain: "a scenario with a [filter] part" });
     };
     let mut sensed = sensing.flight(path, seed, number)?;
-    let mut watch = Watch::start(&sensed, navigator, sensing, &Navigator::start_normals(seed, number))?;
+    let mut watch = Watch::start(&sensed, navigator, sensing, &navigator.start_normals(seed, number))?;
     let mut navigated = Vec::with_capacity(sensing.outlook().seconds());
     navigated.push(watch.say(sensing, 0, sensed.begin(), sensed.now())?);
     let rate = u64::from(sensing.sensors().rate_hz);
@@ -74,28 +79,27 @@ pub fn navigate(sensing: &Sensing, path: &Trajectory, seed: u64, number: u64) ->
         && let Some(step) = sensed.advance()?
     {
         index += 1;
-        watch.take(&sensed, &step);
+        // Whole nanoseconds: the rate divides a second.
+        let due = GpsTime::from_nanoseconds(sensed.begin().nanoseconds() + (index * (1_000_000_000 / rate)) as i64);
+        watch.take(&sensed, &step, due);
         if index % rate == 0 {
-            navigated.push(watch.say(sensing, navigated.len(), sensed.begin().plus_seconds(navigated.len() as f64), &step.truth)?);
-            watch.reconsider()?;
+            navigated.push(watch.say(sensing, navigated.len(), due, &step.truth)?);
+            watch.reconsider(due);
         }
     }
     watch.close();
     Ok((navigated, watch.verdicts))
 }
 
-/// A filter under way, and what is counted beside it.
+/// A filter under way, what stands beside it, and what is counted.
 struct Watch {
     driver: Driver,
-    navigator: Navigator,
+    guard: Box<Guard>,
     /// Whether the filter with satellites and the one without agree.
     verdict: separation::Verdict,
-    /// Satellites measured last, and used of them.
-    n_seen: u32,
+    /// Satellites used last.
     n_sv: u32,
     n_gated: u64,
-    /// Seconds for which the satellites have contradicted the filter.
-    contradicted_s: f64,
     /// Measurements of stations until now, used and not; seconds for which most of them have contradicted the filter.
     heard: [u64; 2],
     contradicting_s: f64,
@@ -104,9 +108,6 @@ struct Watch {
     last_error: Vector3<f64>,
     verdicts: Vec<Verdict>,
 }
-
-/// Satellites that must be measured, and those that may be used of them, in a contradiction: with fewer there is no fix to believe.
-const CONTRADICTION: (u32, u32) = (5, 3);
 
 /// Stations left out at once, and for how long, until the filter and not the stations is doubted: two that are wrong independently are rarer
 /// than one inertial unit (ours). A good one is left out by chance for half a minute every two hours or so.
@@ -124,12 +125,10 @@ impl Watch {
         let filter = Fusion::new(wrong_start(truth, normals, &sigma)?, &sigma, settings)?;
         Ok(Self {
             driver: Driver::new(Box::new(filter), PLAN),
-            navigator,
+            guard: Box::new(Guard::new(navigator.guard(sensing.sensors(), &settings))?),
             verdict: separation::Verdict::new(settings.separation),
-            n_seen: 0,
             n_sv: 0,
             n_gated: 0,
-            contradicted_s: 0.0,
             heard: [0; 2],
             contradicting_s: 0.0,
             led_astray: false,
@@ -138,29 +137,45 @@ impl Watch {
         })
     }
 
-    fn take(&mut self, sensed: &SensedFlight<'_>, step: &Step) {
+    fn take(&mut self, sensed: &SensedFlight<'_>, step: &Step, due: GpsTime) {
         if step.delivered {
-            self.driver.sample(&step.imu);
+            let outcome = self.driver.sample(&step.imu);
+            self.guard.sample(due, Some((&step.imu, &outcome)));
+        } else {
+            self.guard.sample(due, None);
         }
         if sensed.received() {
-            (self.n_seen, self.n_sv) = (0, 0);
+            self.n_sv = 0;
         }
-        let [seen, used] = self.driver.aid(sensed.aiding());
-        self.n_seen += seen as u32;
+        let satellites = sensed.aiding().iter().take_while(|a| matches!(a.aiding, Aiding::Satellite(_))).count();
+        let (satellites, others) = sensed.aiding().split_at(satellites);
+        for together in satellites.chunk_by(|a, b| a.time == b.time) {
+            let admitted = self.guard.admit(&mut self.driver.filter, due, together);
+            if admitted.usable {
+                self.aid_admitted(together, &admitted);
+            }
+        }
+        self.guard.hear(&mut self.driver.filter, others);
+        self.driver.aid(others);
+    }
+
+    /// The ranges of an instant without those that the others contradict.
+    fn aid_admitted(&mut self, together: &[TimedAiding], admitted: &Admitted) {
+        let is_excluded = |t: &TimedAiding| matches!(&t.aiding, Aiding::Satellite(m) if admitted.excludes(m.satellite));
+        let (out, kept): (Vec<_>, Vec<_>) = together.iter().copied().partition(is_excluded);
+        out.iter().for_each(|t| self.driver.filter.reject(t));
+        let [_, used] = self.driver.aid(&kept);
         self.n_sv += used as u32;
     }
 
-    /// A second has passed: a filter that its satellites have contradicted for too long starts anew where it is, knowing nothing.
-    fn reconsider(&mut self) -> Result<(), OutOfDomain> {
-        let contradicted = self.n_seen >= CONTRADICTION.0 && self.n_sv <= CONTRADICTION.1;
-        self.contradicted_s = if contradicted { self.contradicted_s + 1.0 } else { 0.0 };
-        if self.contradicted_s < self.navigator.restart_after_s || self.driver.filter.stopped().is_some() {
-            return Ok(());
+    /// A second has passed: a filter that contradicts the satellites starts anew at the snapshot, where that is due.
+    fn reconsider(&mut self, now: GpsTime) {
+        let before = self.verdict_now();
+        // Where no filter can start, as beside a pole, none does.
+        if self.guard.restart(&mut self.driver.filter, now).unwrap_or(false) {
+            self.verdicts.push(before);
+            self.n_gated = gated(&self.driver.filter);
         }
-        self.close();
-        self.driver.filter.restart(&self.navigator.restart_sigma())?;
-        (self.contradicted_s, self.n_gated) = (0.0, gated(&self.driver.filter));
-        Ok(())
     }
 
     /// What the filter says, against the truth.
@@ -187,26 +202,45 @@ impl Watch {
             separation_m: None,
             memory: Some(filter.innovations(Kind::Range).memory(time)).filter(|memory| !memory.is_nan()),
             doubt: None,
+            decision: None,
         };
-        // A state of an earlier instant is no answer to where the aircraft is now; half a millisecond is rounding.
-        if filter.is_current() && time.seconds_since(filter.time()) < 5e-4 {
-            let solution = self.given(time, &mut said)?;
-            self.last_error = *navigation_error(&solution.state.position()?, &truth.position).vector();
-            (said.error_enu_m, said.covariance, said.mode) = (self.last_error, Ok(solution.covariance), Some(solution.mode));
-            if solution.mode != Mode::Gnss && self.contradicting_s >= STATIONS_AFTER_S {
-                said.doubt = Some(Doubt::Stations);
-            }
+        let given = match filter.solution(time) {
+            // Numbers that cannot be compared are those of no solution: the flight goes on and says so.
+            Some(main) => self.given(time, main, &mut said).ok(),
+            None => None,
+        };
+        said.mode = given.map(|s| s.mode);
+        let stations = given.is_some_and(|s| s.mode != Mode::Gnss) && self.contradicting_s >= STATIONS_AFTER_S;
+        let witnesses = Witnesses { filters_disagree: Some(said.doubt == Some(Doubt::Filters)), stations_contradict: Some(stations) };
+        if stations && said.doubt.is_none() {
+            said.doubt = Some(Doubt::Stations);
         }
+        let facts = self.guard.facts(&mut self.driver.filter, time, given.as_ref(), witnesses);
+        let decision = decide(&facts);
+        let snapshot = self.guard.looked().map(|l| &l.snapshot);
+        let position = match decision.source {
+            Source::Filter => given.and_then(|s| Some((s.state.position().ok()?, s.covariance))),
+            Source::Snapshot => snapshot.map(|s| (s.position, s.covariance)),
+            Source::None => None,
+        };
+        if decision.source == Source::Snapshot {
+            said.n_sv = snapshot.map_or(0, |s| s.members().count() as u32);
+            said.dop = sensing.outlook().dop(second);
+        }
+        if let Some((position, covariance)) = position {
+            self.last_error = *navigation_error(&position, &truth.position).vector();
+            (said.error_enu_m, said.covariance) = (self.last_error, Ok(self.guard.stated(&decision, &covariance)?));
+        }
+        said.decision = Some(decision);
         Ok(said)
     }
 
     /// The solution that is given. While both filters disagree and the satellites keep the position, nobody knows which of them is right,
     /// and that is said. When the satellites are lost after that, what the main filter remembers of them is not believed either. Filters
     /// that fall out without satellites share the inertial unit and the stations: one of these is wrong, and neither filter is believed.
-    fn given(&mut self, time: GpsTime, said: &mut Navigated) -> Result<Solution, OutOfDomain> {
+    fn given(&mut self, time: GpsTime, main: Solution, said: &mut Navigated) -> Result<Solution, OutOfDomain> {
         let filter = &mut self.driver.filter;
-        let main = filter.solution();
-        let Some(beside) = filter.beside() else { return Ok(main) };
+        let Some(beside) = filter.beside(time) else { return Ok(main) };
         let found = self.verdict.judge(time, &beside.difference, &beside.covariance, &beside.solution.covariance)?;
         said.separation_m = found.map(|s| [s.distance.m(), s.limit.m()]);
         if !self.verdict.disagree() {
@@ -227,12 +261,17 @@ impl Watch {
 
     /// What the filter says at its end.
     fn close(&mut self) {
+        self.verdicts.push(Verdict { tally: *self.guard.tally(), ..self.verdict_now() });
+    }
+
+    fn verdict_now(&self) -> Verdict {
         let filter = &self.driver.filter;
-        self.verdicts.push(Verdict {
+        Verdict {
             innovations: Kind::ALL.map(|kind| *filter.innovations(kind)),
             samples: *filter.samples(),
             clock_jumps: filter.clock_jumps(),
-        });
+            tally: Tally::default(),
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Whole flights through the navigation filter: inertial samples and measurements in the order of their times.
 
+use crate::judged::{Ages, Judged, StandIn};
+use navbound_core::monitor::judgement::Decision;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{ImuIncrement, TimedAiding};
 use navbound_core::solution::ins::{
@@ -22,12 +24,16 @@ pub struct Plan {
 pub struct Moment {
     /// When.
     pub time: GpsTime,
-    /// What it says; `None` after it has stopped, and while it is adrift without a measurement.
+    /// What it says; `None` where its state was not moved to this time: after a stop, in a hole, while samples are refused.
     pub solution: Option<Solution>,
     /// The filter without satellites, where one runs.
     pub beside: Option<Beside>,
     /// States in the filter.
     pub n_states: usize,
+    /// What may be done with the position, and why it is no more.
+    pub decision: Decision,
+    /// The position that is given in place of the filter's.
+    pub stand_in: Option<StandIn>,
 }
 
 /// A flight that was run.
@@ -58,6 +64,7 @@ pub fn run(
     sigma: &StartSigma,
     settings: Settings,
     plan: &Plan,
+    ages: Ages,
     imu: impl Iterator<Item = ImuIncrement>,
     aiding: &[TimedAiding],
 ) -> Result<Flight, OutOfDomain> {
@@ -70,17 +77,27 @@ pub fn run(
     }
     let filter = Box::new(Fusion::new(start, sigma, settings)?);
     let mut driver = Driver::new(filter, *plan);
+    let mut judged = Judged::new(&settings, ages)?;
     let mut moments = Vec::new();
     let mut next = aiding.partition_point(|a| a.time < start.time);
     for sample in imu {
-        driver.sample(&sample);
-        let until = next + aiding[next..].iter().take_while(|a| a.time <= sample.time).count();
-        driver.aid(&aiding[next..until]);
+        let outcome = driver.sample(&sample);
+        let now = judged.sample(&sample, &outcome);
+        let until = next + aiding[next..].iter().take_while(|a| a.time <= now).count();
+        judged.aid(&mut driver, now, &aiding[next..until])?;
         next = until;
-        moments.extend(driver.output(sample.time));
+        if let Some(time) = driver.output_is_due(now) {
+            moments.push(moment(&mut driver, &mut judged, time)?);
+        }
     }
     let samples = *driver.filter.samples();
     Ok(Flight { moments, samples, stopped: driver.stopped, holes: driver.holes, filter: driver.filter, refused: driver.refused })
+}
+
+fn moment(driver: &mut Driver, judged: &mut Judged, time: GpsTime) -> Result<Moment, OutOfDomain> {
+    let (solution, beside) = (driver.filter.solution(time), driver.filter.beside(time));
+    let (decision, stand_in) = judged.decide(driver, time, solution.as_ref(), beside.as_ref())?;
+    Ok(Moment { time, solution, beside, n_states: driver.filter.n_states(), decision, stand_in })
 }
 
 /// The filter and what it needs to be driven in the order of time.
@@ -112,7 +129,7 @@ impl Driver {
         }
     }
 
-    pub(crate) fn sample(&mut self, sample: &ImuIncrement) {
+    pub(crate) fn sample(&mut self, sample: &ImuIncrement) -> Advance {
         let outcome = self.filter.advance(sample);
         if let (Advance::Adrift { since_s }, false) = (outcome, self.adrift) {
             self.holes.push((sample.time, since_s));
@@ -133,6 +150,7 @@ impl Driver {
         {
             self.filter.roll(wheels);
         }
+        outcome
     }
 
     /// Measurements in the order of time, as far as the plan wants them: satellites measured, and used of them.
@@ -156,17 +174,15 @@ impl Driver {
         satellites
     }
 
-    /// The result, where one is due.
-    pub(crate) fn output(&mut self, time: GpsTime) -> Option<Moment> {
+    /// Whether a result is due, and of when.
+    pub(crate) fn output_is_due(&mut self, time: GpsTime) -> Option<GpsTime> {
         if time < self.due {
             return None;
         }
         // At most one result a nanosecond; a hole is not filled with results that are late.
         let missed = (time.seconds_since(self.due) / self.plan.output_period_s.max(1e-9)).floor();
         self.due = self.due.plus_seconds((missed + 1.0) * self.plan.output_period_s).max(time.plus_seconds(1e-9));
-        let current = self.filter.is_current();
-        let solution = current.then(|| self.filter.solution());
-        Some(Moment { time, solution, beside: self.filter.beside(), n_states: self.filter.n_states() })
+        Some(time)
     }
 }
 

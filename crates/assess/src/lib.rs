@@ -19,6 +19,7 @@ pub mod fused;
 pub mod fusion;
 pub mod gbas;
 pub mod judge;
+pub mod judged;
 pub mod kpi;
 pub mod monitor;
 pub mod plausible;

@@ -14,6 +14,8 @@ fn sensing(change: impl FnOnce(&mut Sensors)) -> Sensing {
     scenario.sensors = Some(sensors);
     scenario.faults.clear();
     scenario.filter = Some(Navigator {
+        start_factor: [1.0; 3],
+        unit_factor: 1.0,
         mode: BelievedErrors::Correlated,
         form: Coupling::Tight,
         reversion: true,

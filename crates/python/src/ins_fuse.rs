@@ -3,15 +3,17 @@
 use crate::error::input_error;
 use nalgebra::{Matrix3, Vector3};
 use navbound_assess::fusion::{self, Flight, Moment, Plan};
+use navbound_assess::judged::{Ages, StandIn};
 use navbound_core::frame::{Covariance, EcefPosition, Geodetic, LatLon};
+use navbound_core::monitor::judgement::Source;
 use navbound_core::monitor::separation::Separation;
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Risk};
 use navbound_core::signal::{
     Aiding, BaroHeight, Constellation, DmeRange, ImuIncrement, PositionFix, SatelliteId, SatelliteRange, TimedAiding, VorBearing,
 };
 use navbound_core::solution::ins::{
-    Attitude, ClockModel, ErrorModel, Form, Further, ImuModel, Kind, NavState, Patience, Resumption, SensorNoise, Settings, Solution,
-    StartSigma, Stop, Wheels, coarse,
+    Attitude, ClockModel, ErrorModel, Form, Further, ImuModel, Kind, NavState, Patience, Refusal, Resumption, SensorNoise, Settings,
+    Solution, StartSigma, Stop, Wheels, coarse,
 };
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -115,7 +117,7 @@ struct Tables<'py> {
     vor: (PyReadonlyArray1<'py, i64>, Vec<u16>, PyReadonlyArray2<'py, f64>),
     /// Time; height, white, bias, its time.
     baro: (PyReadonlyArray1<'py, i64>, PyReadonlyArray2<'py, f64>),
-    /// Time; latitude, longitude, height, nine of the covariance, velocity (NaN: none), nine of its covariance.
+    /// Time; latitude, longitude, height, nine of the covariance, velocity (NaN: none), nine of its covariance, levels (NaN: none).
     fixes: (PyReadonlyArray1<'py, i64>, PyReadonlyArray2<'py, f64>),
 }
 
@@ -163,7 +165,7 @@ fn vor(station: u16, [lat, lon, h, bearing, white, bias]: &[f64; 6]) -> Result<A
     }))
 }
 
-fn fix(row: &[f64; 24]) -> Result<Aiding, OutOfDomain> {
+fn fix(row: &[f64; 26]) -> Result<Aiding, OutOfDomain> {
     let part = |first: usize| [row[first], row[first + 1], row[first + 2]];
     let nine = |first: usize| core::array::from_fn(|k| row[first + k]);
     let velocity = part(12);
@@ -171,28 +173,38 @@ fn fix(row: &[f64; 24]) -> Result<Aiding, OutOfDomain> {
         true => None,
         false => Some((vector(velocity), Matrix3::from_row_slice(&nine(15)))),
     };
-    Ok(Aiding::Fix(PositionFix { position: geodetic(&part(0))?, covariance: Covariance::from_rows(nine(3))?, velocity_ned_mps }))
+    let level_m = Some([row[24], row[25]]).filter(|levels| levels.iter().all(|l| *l >= 0.0 && l.is_finite()));
+    let covariance = Covariance::from_rows(nine(3))?;
+    Ok(Aiding::Fix(PositionFix { position: geodetic(&part(0))?, covariance, velocity_ned_mps, level_m }))
 }
 
 impl Tables<'_> {
     /// All in the order of time; of one instant in the order satellites, fixes, DME, VOR, barometer.
-    fn aiding(&self) -> PyResult<Vec<TimedAiding>> {
-        let at = |index: usize| move |e: OutOfDomain| input_error(e, Some(index));
+    ///
+    /// A row that is no measurement at all is left out and counted: it must not cost the others.
+    fn aiding(&self) -> PyResult<(Vec<TimedAiding>, u64)> {
+        let mut unreadable = 0;
         let mut all = Vec::new();
         let (time, id, rows) = &self.satellites;
         for ((t, (letter, number)), row) in time.as_slice()?.iter().zip(id).zip(rows.as_slice()?.as_chunks().0) {
             all.push(timed(*t, satellite(*letter, *number, row)?));
         }
-        for (k, (t, row)) in self.fixes.0.as_slice()?.iter().zip(self.fixes.1.as_slice()?.as_chunks().0).enumerate() {
-            all.push(timed(*t, fix(row).map_err(at(k))?));
+        for (t, row) in self.fixes.0.as_slice()?.iter().zip(self.fixes.1.as_slice()?.as_chunks().0) {
+            match fix(row) {
+                Ok(aiding) => all.push(timed(*t, aiding)),
+                Err(_) => unreadable += 1,
+            }
         }
         let (time, station, rows) = &self.dme;
         for ((t, station), row) in time.as_slice()?.iter().zip(station).zip(rows.as_slice()?.as_chunks().0) {
             all.push(timed(*t, dme(*station, row)));
         }
         let (time, station, rows) = &self.vor;
-        for (k, ((t, station), row)) in time.as_slice()?.iter().zip(station).zip(rows.as_slice()?.as_chunks().0).enumerate() {
-            all.push(timed(*t, vor(*station, row).map_err(at(k))?));
+        for ((t, station), row) in time.as_slice()?.iter().zip(station).zip(rows.as_slice()?.as_chunks().0) {
+            match vor(*station, row) {
+                Ok(aiding) => all.push(timed(*t, aiding)),
+                Err(_) => unreadable += 1,
+            }
         }
         for (t, [height, white, bias, tau]) in self.baro.0.as_slice()?.iter().zip(self.baro.1.as_slice()?.as_chunks().0) {
             let m = BaroHeight {
@@ -204,7 +216,7 @@ impl Tables<'_> {
             all.push(timed(*t, Aiding::Baro(m)));
         }
         all.sort_by_key(|a| a.time);
-        Ok(all)
+        Ok((all, unreadable))
     }
 }
 
@@ -228,6 +240,8 @@ pub struct Told {
     /// Longest gap, acceleration and rate it hides.
     gap: [f64; 3],
     age_most_s: f64,
+    /// Deviations of the age of ranges and of solved positions.
+    age_sigma_s: [f64; 2],
     set_after_s: f64,
     /// Lose, gain.
     patience_s: [f64; 2],
@@ -302,6 +316,27 @@ fn numbers(solution: &Option<Solution>) -> [f64; WIDTH] {
     row
 }
 
+/// What is given: the filter's solution, or the position that stands in for it, which has no attitude and no biases; NaN for none.
+fn given(moment: &Moment) -> [f64; WIDTH] {
+    match (moment.decision.source, &moment.stand_in) {
+        (Source::Filter, _) => numbers(&moment.solution),
+        (Source::Snapshot, Some(position)) => standing_in(position),
+        _ => [f64::NAN; WIDTH],
+    }
+}
+
+fn standing_in(s: &StandIn) -> [f64; WIDTH] {
+    let mut row = [f64::NAN; WIDTH];
+    row[..3].copy_from_slice(&[s.position.point.lat().rad(), s.position.point.lon().rad(), s.position.height.m()]);
+    let c = s.covariance.matrix();
+    row[9..15].copy_from_slice(&[c[(0, 0)], c[(0, 1)], c[(1, 1)], c[(0, 2)], c[(1, 2)], c[(2, 2)]]);
+    if let Some(v) = &s.velocity {
+        row[3..6].copy_from_slice(&[v.enu_mps.y, v.enu_mps.x, -v.enu_mps.z]);
+        row[15..18].copy_from_slice(&[1, 0, 2].map(|k| v.covariance[(k, k)].sqrt()));
+    }
+    row
+}
+
 fn mode(solution: &Option<Solution>) -> &'static str {
     solution.as_ref().map_or("stopped", |s| s.mode.word())
 }
@@ -331,10 +366,15 @@ fn further_word(further: Further) -> String {
 /// A whole flight through the filter.
 #[pyfunction]
 fn ins_fuse<'py>(py: Python<'py>, start: Start, imu: Imu<'py>, tables: Tables<'py>, told: Told) -> PyResult<Bound<'py, PyDict>> {
-    let (state, samples, aiding) = (start.state()?, imu.samples()?, tables.aiding()?);
+    let (state, samples, (aiding, unreadable)) = (start.state()?, imu.samples()?, tables.aiding()?);
     let (settings, sigma, plan) = (told.settings()?, told.sigma(), told.plan());
-    let flight = py.detach(|| fusion::run(state, &sigma, settings, &plan, samples.iter(), &aiding)).map_err(refused)?;
+    let ages = Ages { range_sigma_s: told.age_sigma_s[0], fix_sigma_s: told.age_sigma_s[1] };
+    let flight = py.detach(|| fusion::run(state, &sigma, settings, &plan, ages, samples.iter(), &aiding)).map_err(refused)?;
     let d = flight_dict(py, &flight)?;
+    let mut refusals = flight.filter.refusals();
+    refusals[Refusal::OutOfRange.index()] += unreadable;
+    d.set_item("refusals", Refusal::ALL.iter().map(|why| (why.word(), refusals[why.index()])).collect::<Vec<_>>())?;
+    d.set_item("fix_delay_s", flight.filter.fix_delay_s())?;
     d.set_item("innovations", innovations(py, &flight)?)?;
     d.set_item("reversion", reversion(py, &flight, settings.separation)?)?;
     Ok(d)
@@ -368,9 +408,15 @@ fn flight_dict<'py>(py: Python<'py>, flight: &Flight) -> PyResult<Bound<'py, PyD
     let d = PyDict::new(py);
     let moments = &flight.moments;
     d.set_item("time_ns", moments.iter().map(|m| m.time.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
-    let rows = moments.iter().flat_map(|m| numbers(&m.solution)).collect::<Vec<_>>().into_pyarray(py);
+    let rows = moments.iter().flat_map(given).collect::<Vec<_>>().into_pyarray(py);
     d.set_item("rows", rows.reshape([moments.len(), WIDTH])?)?;
     d.set_item("mode", moments.iter().map(|m| mode(&m.solution)).collect::<Vec<_>>())?;
+    let decisions = || moments.iter().map(|m| &m.decision);
+    d.set_item("status", decisions().map(|d| d.status.word()).collect::<Vec<_>>())?;
+    d.set_item("source", decisions().map(|d| d.source.word()).collect::<Vec<_>>())?;
+    d.set_item("reasons", decisions().map(|d| d.reasons.iter().map(|r| r.id()).collect::<Vec<_>>()).collect::<Vec<_>>())?;
+    d.set_item("hpl_m", decisions().map(|d| d.hpl_m.unwrap_or(f64::NAN)).collect::<Vec<_>>().into_pyarray(py))?;
+    d.set_item("vpl_m", decisions().map(|d| d.vpl_m.unwrap_or(f64::NAN)).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("n_states", moments.iter().map(|m| m.n_states as i64).collect::<Vec<_>>().into_pyarray(py))?;
     let s = &flight.samples;
     d.set_item("samples", [s.n_done, s.n_bridged, s.n_adrift, s.n_late, s.n_refused, s.n_stopped])?;

@@ -5,6 +5,7 @@ use crate::positions::Navigation;
 use crate::simulate::{epochs, read, refused, unreadable};
 use navbound_assess::fused::{Fused, MODES, Verdict};
 use navbound_assess::sensed::{BARO, CLOCK, DME, IMU, SATELLITES, Sensed, TRUTH, Table, VOR};
+use navbound_core::monitor::judgement::{Reason, Source, Status};
 use navbound_core::quantity::GpsTime;
 use navbound_core::solution::ins::Kind;
 use navbound_simulate::{Imu, Sensing};
@@ -68,6 +69,14 @@ impl Sensors {
     fn modes() -> Vec<&'static str> {
         MODES.iter().map(|mode| mode.word()).collect()
     }
+
+    /// Words of the codes of the columns `decided` and `source`, and ids of the bits of `reasons`.
+    #[staticmethod]
+    fn judgement() -> [Vec<&'static str>; 3] {
+        let status = [Status::NotAvailable, Status::Degraded, Status::Ok].map(Status::word);
+        let source = [Source::None, Source::Filter, Source::Snapshot].map(Source::word);
+        [status.to_vec(), source.to_vec(), Reason::ALL.map(Reason::id).to_vec()]
+    }
 }
 
 /// An inertial unit on wheels along positions at whole seconds: tables `truth` and `imu`. The unit's errors come as JSON; `rates` are its
@@ -100,6 +109,8 @@ fn verdict<'py>(py: Python<'py>, verdict: &Verdict) -> PyResult<Bound<'py, PyDic
     let s = &verdict.samples;
     d.set_item("samples", [s.n_done, s.n_bridged, s.n_adrift, s.n_late, s.n_refused, s.n_stopped])?;
     d.set_item("clock_jumps", verdict.clock_jumps)?;
+    let t = &verdict.tally;
+    d.set_item("snapshot_tests", (t.n, t.n_raised, t.sum, t.most))?;
     Ok(d)
 }
 

@@ -22,6 +22,11 @@ use navbound_core::quantity::Metres;
 pub(crate) const STEPS: usize = 10;
 const STEP_S: f64 = 1.0 / STEPS as f64;
 
+/// Nearer to the centre of a turn than this share of its radius the path has no coordinates; an aircraft that is led there keeps these.
+const CENTRE_SHARE: f64 = 0.1;
+/// Deviation above or below the path at which the guidance climbs or descends at its most \[m\].
+const SEEN_MOST_M: f64 = 1e3;
+
 /// True deviation from the path \[m\].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Deviation {
@@ -105,7 +110,7 @@ impl<'a> Aircraft<'a> {
         let wanted = (v * v * curvature / GRAVITY).atan() - pull / GRAVITY;
         let command = wanted.clamp(-g.bank_limit_rad, g.bank_limit_rad);
         self.bank_rad += STEP_S / g.bank_lag_s * (command - self.bank_rad);
-        let path_rate = curvature * v * self.track_rad.cos() / (1.0 - curvature * self.deviation.right_m);
+        let path_rate = curvature * v * self.track_rad.cos() / (1.0 - curvature * self.deviation.right_m).max(CENTRE_SHARE);
         self.track_rad += STEP_S * (GRAVITY * self.bank_rad.tan() / v - path_rate);
         self.deviation.right_m += STEP_S * drift;
     }
@@ -113,7 +118,7 @@ impl<'a> Aircraft<'a> {
     fn step_vertical(&mut self, time_s: f64, demand: &Demand, seen_m: f64) {
         let g = self.guidance;
         let ahead = self.plan.profile.at(time_s + g.vertical_lead_s).climb_mps;
-        let command = ahead - g.vertical_gain_per_s * seen_m;
+        let command = ahead - g.vertical_gain_per_s * seen_m.clamp(-SEEN_MOST_M, SEEN_MOST_M);
         let acceleration =
             ((command - self.climb_mps) / g.path_angle_lag_s).clamp(-g.vertical_acceleration_mps2, g.vertical_acceleration_mps2);
         self.climb_mps += STEP_S * acceleration;

@@ -9,6 +9,7 @@ use crate::philox::{Sensor, Stream};
 use crate::sensors::PathFlown;
 use nalgebra::Vector3;
 use navbound_core::frame::{Covariance, Displacement, Enu, Geodetic};
+use navbound_core::monitor::judgement::{Decision, Reason, Reasons, Source, Status};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::solution::ins::Mode;
 use navbound_path::Line;
@@ -60,6 +61,8 @@ pub struct FlownEpoch {
     pub memory: Option<f64>,
     /// Why the estimate is not to be relied on though there is one.
     pub doubt: Option<Doubt>,
+    /// What became of the epoch by the judge of filtered positions; `None` without a filter.
+    pub decision: Option<Decision>,
 }
 
 /// A contradiction of which nobody knows which side is right.
@@ -92,6 +95,8 @@ pub struct Navigated {
     pub memory: Option<f64>,
     /// As in [`FlownEpoch`].
     pub doubt: Option<Doubt>,
+    /// As in [`FlownEpoch`].
+    pub decision: Option<Decision>,
 }
 
 /// A flight of a scenario with position errors drawn from the covariance of the geometry; the number chooses its random streams.
@@ -110,6 +115,7 @@ pub fn fly(outlook: &Outlook, seed: u64, number: u64) -> Result<Vec<FlownEpoch>,
         separation_m: None,
         memory: None,
         doubt: None,
+        decision: None,
     };
     let navigated: Vec<_> = outlook.instants.iter().zip(&errors).map(drawn).collect();
     fly_by(outlook, seed, number, &navigated, PathFlown::Flown)
@@ -164,9 +170,13 @@ fn navigation_errors(outlook: &Outlook, seed: u64, number: u64) -> Vec<Vector3<f
     errors
 }
 
+/// Largest error that the guidance is steered by \[m\]: it flies no differently for one that is larger.
+const STEERED_MOST_M: f64 = 1e6;
+
 fn seen_error(instant: &Instant, navigated: &Navigated) -> Deviation {
     let error = &navigated.error_enu_m;
-    Deviation { right_m: right_of(instant.place.course).dot(error), up_m: error.z }
+    let bounded = |x: f64| if x.is_nan() { 0.0 } else { x.clamp(-STEERED_MOST_M, STEERED_MOST_M) };
+    Deviation { right_m: bounded(right_of(instant.place.course).dot(error)), up_m: bounded(error.z) }
 }
 
 fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, navigated: &Navigated) -> Result<FlownEpoch, OutOfDomain> {
@@ -198,10 +208,23 @@ fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, navigated: 
         separation_m: navigated.separation_m,
         memory: navigated.memory,
         doubt: navigated.doubt,
+        decision: navigated.decision,
     };
-    epoch.estimate(outlook, instant, &truth, navigated)?;
+    // An estimate that belongs to no point of the path, or to none of the Earth, is none; the flight goes on.
+    if epoch.estimate(outlook, instant, &truth, navigated).is_err() {
+        (epoch.reason, epoch.mode, epoch.decision) = (Some(DIVERGED), None, Some(nothing(epoch.decision)));
+    }
     Ok(epoch)
 }
+
+/// A decision about an estimate that turned out to be none.
+fn nothing(decided: Option<Decision>) -> Decision {
+    let reasons = decided.map_or(Reasons::NONE, |d| d.reasons).with(Reason::StateStale);
+    Decision { status: Status::NotAvailable, reasons, source: Source::None, hpl_m: None, vpl_m: None, disputed: false }
+}
+
+/// Why an estimate that is too wrong is none.
+const DIVERGED: Unavailable = Unavailable::Missing { method: "the navigation filter", field: "an estimate within 5000 km of the path" };
 
 impl FlownEpoch {
     /// Adds what rests on the estimate, where there is one.

@@ -22,7 +22,7 @@ pub use outlook::Outlook;
 pub use plan::{PhaseRange, Plan, Refused};
 pub use scenario::{Fault, Guidance, Gusts, Navigation, Phase, ProfileSettings, Scenario, System, Turns, Waypoint};
 pub use sensors::{
-    Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeMode, RangeParts, SensedFlight, Sensing, SensorFault, Sensors, Station, StationKind,
-    Step, Trouble, Vor,
+    Baro, Coverage, Dme, Envelope, Gnss, Imu, PathFlown, RangeMode, RangeParts, ReceiverFault, SensedFlight, Sensing, SensorFault, Sensors,
+    Station, StationKind, Step, Trouble, Vor,
 };
 pub use trajectory::{Cursor, Motion, Trajectory};

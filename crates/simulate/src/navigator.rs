@@ -6,9 +6,14 @@ use crate::philox::{Sensor, Stream};
 use crate::plan::GRAVITY;
 use crate::scenario::{Rule, positive, within};
 use crate::sensors::{Imu, Sensors, staying};
+use navbound_core::bound::araim::single::Requirement;
+use navbound_core::monitor::guard;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
 use navbound_core::solution::ins::{ClockModel, ErrorModel, Form, ImuModel, SensorNoise, Settings, StartSigma};
 use serde::Deserialize;
+
+/// Standard deviation of the age of the ranges \[s\]: simulated receivers have a pulse of the second. Provenance: inferred.
+const AGE_SIGMA_S: f64 = 1e-3;
 
 /// A filter that joins the sensors.
 #[derive(Debug, Clone, Copy, Deserialize, PartialEq)]
@@ -26,14 +31,29 @@ pub struct Navigator {
     pub gate_risk: f64,
     /// Inertial samples that share a step of the covariance.
     pub samples_per_step: u32,
-    /// Time for which the satellites must contradict the filter, all but three gated, before it is started anew \[s\].
+    /// Time for which satellites that agree among each other must contradict the filter, and the inertial unit be plausible, before it is
+    /// started anew \[s\].
     pub restart_after_s: f64,
+    /// How many times as far as declared the start is off: position, tilt, heading.
+    #[serde(default = "as_declared")]
+    pub start_factor: [f64; 3],
+    /// Deviations of the inertial unit as declared to the filter over those of the `[sensors]` part.
+    #[serde(default = "one")]
+    pub unit_factor: f64,
     /// Standard deviations of the start: position north, east, down \[m\],
     pub position_sigma_m: [f64; 3],
     /// velocity of each axis \[m/s\],
     pub velocity_sigma_mps: f64,
     /// and misalignment about north, east, down \[rad\].
     pub attitude_sigma_rad: [f64; 3],
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn as_declared() -> [f64; 3] {
+    [1.0; 3]
 }
 
 /// What a filter believes of errors that stay.
@@ -66,9 +86,11 @@ impl Navigator {
             within("separation_risk", self.separation_risk, "1", 1e-15, 0.1, "[1e-15, 0.1]"),
             within("gate_risk", self.gate_risk, "1", 1e-12, 0.1, "[1e-12, 0.1]"),
             within("samples_per_step", f64::from(self.samples_per_step), "samples", 1.0, 200.0, "[1, 200]"),
+            within("unit_factor", self.unit_factor, "1", 1e-3, 1e3, "[0.001, 1000]"),
             positive("restart_after_s", self.restart_after_s, "s"),
             positive("velocity_sigma_mps", self.velocity_sigma_mps, "m/s"),
         ];
+        rules.extend(self.start_factor.map(|f| within("start_factor", f, "1", 0.0, 100.0, "[0, 100]")));
         rules.extend(self.position_sigma_m.map(|s| positive("position_sigma_m", s, "m")));
         rules.extend(self.attitude_sigma_rad.map(|s| within("attitude_sigma_rad", s, "rad", 1e-9, 0.2, "[1e-9, 0.2]")));
         rules
@@ -79,7 +101,7 @@ impl Navigator {
     /// # Errors
     /// [`OutOfDomain`] for a gate that is no risk.
     pub fn settings(&self, sensors: &Sensors) -> Result<Settings, OutOfDomain> {
-        let mut settings = Settings::of(imu_model(&sensors.imu));
+        let mut settings = Settings::of(times(imu_model(&sensors.imu), self.unit_factor));
         settings.gate = Risk::new(self.gate_risk)?;
         settings.samples_per_step = self.samples_per_step;
         settings.form = match self.form {
@@ -114,15 +136,31 @@ impl Navigator {
         }
     }
 
-    /// How wrong a filter that contradicts its satellites may be: nothing is known of position and velocity but that the ranges are linear.
-    pub fn restart_sigma(&self) -> StartSigma {
-        StartSigma { position: [Metres::new(10_000.0); 3], velocity_mps: 100.0, attitude: [Radians::new(5e-3); 3] }
+    /// What stands beside the filter: a snapshot with RAIM of en route to non-precision approach, and what is declared of the unit.
+    pub fn guard(&self, sensors: &Sensors, filter: &Settings) -> guard::Settings {
+        let envelope = sensors.envelope.map_or(guard::Envelope::NONE, |e| guard::Envelope {
+            range: [e.force_range_mps2, e.rate_range_radps],
+            most: [e.force_most_mps2, e.rate_most_radps],
+            change_mps3: e.force_change_mps3,
+            // Noise above the resolution, in both triads.
+            never_repeats: sensors.imu.gyro_noise_radprts > 0.0 && sensors.imu.accelerometer_noise_mpsprts > 0.0,
+        });
+        guard::Settings {
+            envelope,
+            requirement: Requirement::RAIM,
+            age_sigma_s: AGE_SIGMA_S,
+            gap_most_s: filter.gap_most_s,
+            age_most_s: filter.age_most_s,
+            restart_after_s: self.restart_after_s,
+        }
     }
 
     /// How wrong it is on a flight, in those standard deviations: position, velocity, misalignment.
-    pub fn start_normals(seed: u64, number: u64) -> [f64; 9] {
+    pub fn start_normals(&self, seed: u64, number: u64) -> [f64; 9] {
         let mut stream = Stream::new(seed, number, Sensor::FilterStart);
-        core::array::from_fn(|_| stream.normal())
+        let [position, tilt, heading] = self.start_factor;
+        let factors = [position, position, position, 1.0, 1.0, 1.0, tilt, tilt, heading];
+        factors.map(|factor| factor * stream.normal())
     }
 }
 
@@ -135,6 +173,12 @@ fn imu_model(imu: &Imu) -> ImuModel {
         gyroscope: noise(imu.gyro_noise_radprts, gyro, imu.gyro_in_run_radps, imu.in_run_time_s),
         accelerometer: noise(imu.accelerometer_noise_mpsprts, accelerometer, imu.accelerometer_in_run_mps2, imu.in_run_time_s),
     }
+}
+
+/// With all deviations multiplied.
+fn times(model: ImuModel, factor: f64) -> ImuModel {
+    let by = |n: SensorNoise| SensorNoise { white: n.white * factor, bias: n.bias * factor, ..n };
+    ImuModel { gyroscope: by(model.gyroscope), accelerometer: by(model.accelerometer) }
 }
 
 fn noise(white: f64, constant: f64, process: f64, time_s: f64) -> SensorNoise {

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from navbound import _folder
 from navbound.report import surface
 from navbound.run.surface_records import Study as SurfaceStudy
+from navbound.studies.fault_campaign.records import Study as CampaignStudy
+from navbound.studies.fault_campaign.table import markdown
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -14,20 +16,23 @@ if TYPE_CHECKING:
     from navbound.run.studies import Study
 
 
-RECORD, REPORT = "study.json", "report.html"
+RECORD, REPORT, TABLE = "study.json", "report.html", "table.md"
 
 
 def write(study: Study, out: Path) -> Path:
-    """Write ``study.json``, and ``report.html`` for a study that has a page; say which file to look at.
+    """Write ``study.json``, and ``report.html`` or ``table.md`` for a study that has a page; say which file to look at.
 
     Raises
     ------
     FormatError
         A folder that cannot be written, or holds something else.
     """
-    with _folder.own(out, {RECORD, REPORT}, "a study's") as folder:
+    with _folder.own(out, {RECORD, REPORT, TABLE}, "a study's") as folder:
         folder.text(RECORD, study.model_dump_json(indent=1))
-        if not isinstance(study, SurfaceStudy):
-            return out / RECORD
-        folder.text(REPORT, surface.html(study))
-        return out / REPORT
+        if isinstance(study, SurfaceStudy):
+            folder.text(REPORT, surface.html(study))
+            return out / REPORT
+        if isinstance(study, CampaignStudy):
+            folder.text(TABLE, markdown(study))
+            return out / TABLE
+        return out / RECORD

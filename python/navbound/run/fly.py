@@ -17,6 +17,7 @@ from navbound.run.records import CovarianceOrigin, Waypoint
 from navbound.scenario import Scenario, find, load
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
     from typing import Unpack
 
@@ -30,15 +31,15 @@ _DRAWN_AT_ONCE = 16
 """Flights of one tile, of some hundredths of a second each."""
 _FUSED_AT_ONCE = 4
 """The same where every flight runs a filter for some seconds: enough for the cores of most machines, and the bar still moves."""
-_KEPT = {"dme_dme": "kept_by_dme", "vor_dme": "kept_by_vor", "coasting": "coasting", "aligning": "aligning"}
-"""What keeps the position without satellites, as a reason."""
-_DOUBTS = ("filters_disagree", "stations_contradict")
-"""Why an estimate is not to be relied on, by the core's number from 1 on."""
 _WATCHED = ("separation_m", "separation_limit_m", "innovation_memory")
 """Columns of the monitors across measurements."""
-_CODES = ("nav_mode", "leg", "phase", "available", "doubt", "flight", "reason", "reason_id")
+_JUDGED = ("decided", "source", "reasons", "leading")
+"""Codes of what the core decided of a filtered position."""
+_CODES = ("nav_mode", "leg", "phase", "available", "doubt", "flight", "reason", "reason_id", *_JUDGED)
 """Columns that become words."""
-_COUNTS = ("samples", "clock_jumps")
+_TESTS = ("position_horizontal", "velocity_horizontal", "position_vertical", "velocity_vertical")
+"""Tests of the filter against the snapshot, in the order of the core."""
+_COUNTS = ("samples", "clock_jumps", "snapshot_tests")
 """What a filter counts besides its innovations."""
 
 
@@ -129,30 +130,46 @@ def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
         "track": _words([track_name(i) for i in range(int(columns["flight"].max()) + 1)], columns["flight"]),
         "leg": _words(legs, columns["leg"]),
         "phase": _words([p.name for p in scenario.phases], columns["phase"]),
-        **_reasons(columns, available, scenario),
+        **_reasons(columns, available),
     }
     if scenario.filter is None:
-        columns = {name: values for name, values in columns.items() if name not in ("n_gated", *_WATCHED)}
+        columns = {name: values for name, values in columns.items() if name not in ("n_gated", "hpl_m", "vpl_m", *_WATCHED)}
     else:
-        words["nav_mode"] = _words([*_core.Sensors.modes(), "stopped"], columns["nav_mode"])
+        words |= _judged(columns, available)
     numbers = {name: values for name, values in columns.items() if name not in _CODES}
     table = pl.DataFrame({"track": words.pop("track"), "time_ns": numbers.pop("time_ns"), **numbers, **words})
     # A value that does not exist is null in a table.
     return table.with_columns(pl.col(pl.Float64).fill_nan(None)).with_columns(pl.col("^n_(sv|gated)$").cast(pl.Int32))
 
 
-def _reasons(columns: dict[str, Any], available: NDArray[np.bool_], scenario: Scenario) -> dict[str, pl.Series]:
-    """Status, id and sentence of every epoch: no estimate, one to be trusted less without satellites, one not to be relied on."""
+def _reasons(columns: dict[str, Any], available: NDArray[np.bool_]) -> dict[str, pl.Series]:
+    """Status, id and sentence of every epoch: why there is no estimate."""
     ids, refusals = (np.full(available.shape, None, dtype=object) for _ in range(2))
     ids[~available], refusals[~available] = columns["reason_id"], columns["reason"]
-    if scenario.filter is not None:
-        for number, mode in enumerate(_core.Sensors.modes()):
-            ids[available & (columns["nav_mode"] == number)] = _KEPT.get(mode)
-        for number, doubt in enumerate(_DOUBTS, 1):
-            ids[columns["doubt"] == number] = doubt
     epochs = status.with_reason(pl.DataFrame({"status": np.full(available.shape, "ok")}), pl.Series(ids.tolist(), dtype=pl.String))
-    sentences = pl.Series(refusals.tolist(), dtype=pl.String).zip_with(epochs["reason_id"].is_in(_DOUBTS).not_(), epochs["reason"])
-    return {**epochs.select("status", "reason_id").to_dict(), "reason": pl.select(pl.coalesce(sentences, epochs["reason"]))[:, 0]}
+    sentences = pl.Series("reason", refusals.tolist(), dtype=pl.String)
+    return {**epochs.select("status", "reason_id").to_dict(), "reason": sentences}
+
+
+def _judged(columns: dict[str, Any], available: NDArray[np.bool_]) -> dict[str, pl.Series]:
+    """What the core decided of every epoch: the status is its own, from nothing else; the reason is the leading one of its set."""
+    statuses, sources, ids = _core.Sensors.judgement()
+    absent = _reasons(columns, available)
+    leading = columns["leading"]
+    led = pl.Series(leading >= 0)
+    leading_id = _words(ids, np.maximum(leading, 0))
+    reason_id = leading_id.zip_with(led, absent["reason_id"])
+    bits = columns["reasons"].astype(np.uint32)
+    kinds, place = np.unique(bits, return_inverse=True)
+    sets = [" ".join(name for k, name in enumerate(ids) if kind >> k & 1) or None for kind in kinds.tolist()]
+    return {
+        "nav_mode": _words([*_core.Sensors.modes(), "stopped"], columns["nav_mode"]),
+        "nav_source": _words(sources, columns["source"]),
+        "nav_reasons": _words(sets, place),
+        "status": _words(statuses, columns["decided"]),
+        "reason_id": reason_id,
+        "reason": pl.select(pl.coalesce(absent["reason"], status.words(reason_id)))[:, 0],
+    }
 
 
 def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
@@ -175,7 +192,18 @@ def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
     samples = np.sum([v["samples"] for v in verdicts], axis=0).tolist()
     words = ("done", "bridged", "adrift", "late", "refused", "stopped")
     jumps = sum(v["clock_jumps"] for v in verdicts)
-    return found | {"samples": dict(zip(words, samples, strict=True)), "clock_jumps": jumps}
+    return found | {"samples": dict(zip(words, samples, strict=True)), "clock_jumps": jumps, "snapshot_tests": _tests(verdicts)}
+
+
+def _tests(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
+    """Filter against snapshot over all flights: the mean square of each test per degree of freedom, and the largest square."""
+    n = sum(v["snapshot_tests"][0] for v in verdicts)
+    sums = np.sum([v["snapshot_tests"][2] for v in verdicts], axis=0)
+    most = np.max([v["snapshot_tests"][3] for v in verdicts], axis=0)
+    found: dict[str, Any] = {"n": n, "n_raised": sum(v["snapshot_tests"][1] for v in verdicts)}
+    for name, freedom, total, largest in zip(_TESTS, (2, 2, 1, 1), sums, most, strict=True):
+        found[name] = {"mean_square": float(total / n / freedom) if n else None, "largest": float(largest)}
+    return found
 
 
 def _weighted(values: np.ndarray[Any, Any], weights: np.ndarray[Any, Any]) -> float | None:
@@ -183,7 +211,7 @@ def _weighted(values: np.ndarray[Any, Any], weights: np.ndarray[Any, Any]) -> fl
     return float(np.average(values[known], weights=weights[known])) if known.any() else None
 
 
-def _words(words: list[str], codes: np.ndarray[Any, Any]) -> pl.Series:
+def _words(words: Sequence[str | None], codes: np.ndarray[Any, Any]) -> pl.Series:
     return pl.Series(words, dtype=pl.String).gather(pl.Series(codes.astype(np.uint32)))
 
 

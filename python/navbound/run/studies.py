@@ -14,6 +14,7 @@ from navbound.run import (
     study_tse_coverage,
     study_ukraine_rnav,
 )
+from navbound.studies.fault_campaign import study as fault_campaign
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -72,6 +73,11 @@ def _anp_comparison(files: Files, **work: Unpack[Work]) -> Study:
     return study_anp_comparison.run(**work)
 
 
+def _fault_campaign(files: Files, **work: Unpack[Work]) -> Study:
+    _alone(files)
+    return fault_campaign.run(**work)
+
+
 def _surface_movement(files: Files, **work: Unpack[Work]) -> Study:
     _refuse_tiles(work)
     return study_surface_movement.run(files, progress=work.get("progress"))
@@ -91,6 +97,7 @@ STUDIES: dict[str, _Run] = {
     "anp-comparison": _anp_comparison,
     "decorrelation-time": _in_one_piece(study_decorrelation_time.run),
     "error-extraction": _in_one_piece(study_error_extraction.run),
+    "fault-campaign": _fault_campaign,
     "multipath-time-constants": _in_one_piece(study_multipath_time_constants.run),
     "surface-movement": _surface_movement,
     "tse-coverage": _tse_coverage,
@@ -101,5 +108,5 @@ STUDIES: dict[str, _Run] = {
 REPORTS: dict[str, Callable[[], Run]] = {"ukraine-rnav": study_ukraine_rnav.fly}
 """Studies of a flight: that flight as a judged run, for a run directory with its report."""
 
-PAGES = frozenset({"surface-movement"})
+PAGES = frozenset({"fault-campaign", "surface-movement"})
 """Studies with a page of their own."""

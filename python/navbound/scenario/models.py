@@ -124,6 +124,10 @@ class Filter(Part):
     gate_risk: float
     samples_per_step: int
     restart_after_s: float
+    start_factor: list[float] = Field(default=[1.0, 1.0, 1.0], min_length=3, max_length=3)
+    """How many times as far as declared the start is off: position, tilt, heading."""
+    unit_factor: float = 1.0
+    """Deviations of the inertial unit as declared to the filter over those that it has."""
     position_sigma_m: list[float] = Field(min_length=3, max_length=3)
     velocity_sigma_mps: float
     attitude_sigma_rad: list[float] = Field(min_length=3, max_length=3)

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
+from navbound.scenario.faults import SensorFault
 from navbound.scenario.part import Part
 
 _GRADES = Path(__file__).parents[1] / "data" / "imu-grades.toml"
@@ -35,6 +36,16 @@ class Imu(Part):
     accelerometer_scale: float
     accelerometer_misalignment_rad: float
     in_run_time_s: float
+
+
+class Envelope(Part):
+    """What the inertial unit can measure and the vehicle can do."""
+
+    force_range_mps2: float
+    rate_range_radps: float
+    force_most_mps2: float
+    rate_most_radps: float
+    force_change_mps3: float
 
 
 class RangeParts(Part):
@@ -118,91 +129,13 @@ class Station(Part):
     height_m: float
 
 
-class SatelliteStep(Part):
-    """A satellite's ranges jump."""
-
-    kind: Literal["satellite-step"]
-    start_s: float
-    duration_s: float
-    satellite: str
-    step_m: float
-
-
-class SatelliteRamp(Part):
-    """A satellite's ranges drift away."""
-
-    kind: Literal["satellite-ramp"]
-    start_s: float
-    duration_s: float
-    satellite: str
-    rate_mps: float
-
-
-class Interference(Part):
-    """No satellite can be received."""
-
-    kind: Literal["interference"]
-    start_s: float
-    duration_s: float
-
-
-class Spoofing(Part):
-    """All satellites' signals are replaced by those of a place that moves away."""
-
-    kind: Literal["spoofing"]
-    start_s: float
-    duration_s: float
-    right_mps: float
-    up_mps: float
-
-
-class DmeBias(Part):
-    """A station's ranges are wrong by a constant."""
-
-    kind: Literal["dme-bias"]
-    start_s: float
-    duration_s: float
-    station: str
-    bias_m: float
-
-
-class ImuBiasJump(Part):
-    """Biases of the inertial unit jump, and stay."""
-
-    kind: Literal["imu-bias-jump"]
-    start_s: float
-    gyro_radps: list[float] = Field(min_length=3, max_length=3)
-    accelerometer_mps2: list[float] = Field(min_length=3, max_length=3)
-
-
-class ImuTrouble(Part):
-    """The inertial unit's samples cannot be used."""
-
-    kind: Literal["imu-trouble"]
-    start_s: float
-    duration_s: float
-    what: Literal["silent", "not-a-number", "late"]
-
-
-class BaroBlockage(Part):
-    """The static port is blocked: the altimeter stays where it was."""
-
-    kind: Literal["baro-blockage"]
-    start_s: float
-    duration_s: float
-
-
-SensorFault = Annotated[
-    SatelliteStep | SatelliteRamp | Interference | Spoofing | DmeBias | ImuBiasJump | ImuTrouble | BaroBlockage, Field(discriminator="kind")
-]
-
-
 class Sensors(Part):
     """What the aircraft carries."""
 
     path: Literal["planned", "flown"]
     rate_hz: int
     imu: Imu
+    envelope: Envelope | None = None
     gnss: Gnss | None = None
     dme: Dme | None = None
     vor: Vor | None = None

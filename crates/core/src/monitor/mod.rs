@@ -4,6 +4,8 @@ mod clock;
 pub mod consistency;
 mod counters;
 pub mod exposure;
+pub mod guard;
+pub mod judgement;
 mod latch;
 pub mod rnp;
 pub mod separation;

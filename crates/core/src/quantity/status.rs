@@ -172,6 +172,37 @@ reasons! {
     /// Stations that a filter rejects.
     StationsContradict, "stations_contradict", NotAvailable,
         "several stations contradict the filter: they or the inertial unit are wrong";
+    /// Of a filtered position.
+    StateStale, "state_stale", NotAvailable, "the filter has no state of this time";
+    /// Of a filtered position.
+    ImuMissing, "imu_missing", Degraded, "the inertial unit delivers nothing";
+    /// Of a filtered position.
+    ImuRefused, "imu_refused", Degraded, "the inertial unit delivers samples that cannot be used";
+    /// Of a filtered position.
+    ImuImplausible, "imu_implausible", Degraded, "the inertial unit delivers what the vehicle cannot do";
+    /// Of a filtered position.
+    ImuClock, "imu_clock", Degraded, "the times of the inertial samples contradict the clock";
+    /// Of a filtered position.
+    ImuFault, "imu_fault", Degraded, "the inertial unit is wrong: the ranges of the instant alone give the position";
+    /// Of a filtered position.
+    GnssTime, "gnss_time", Degraded, "the times of the satellite measurements are out of their latency";
+    /// Of a filtered position.
+    SnapshotMissing, "snapshot_missing", Degraded, "no snapshot of the ranges checks the filter";
+    /// Of a filtered position.
+    LevelMissing, "level_missing", Degraded, "the position has a covariance and no level";
+    /// Of a filtered position.
+    SatellitesInconsistent, "satellites_inconsistent", Degraded, "the ranges contradict each other and no exclusion resolves it";
+    /// Of a filtered position.
+    FilterContradicted, "filter_contradicted", Degraded, "the filter and the snapshot of the ranges contradict each other";
+    /// Of a filtered position.
+    ContradictionOpen, "contradiction_open", Degraded,
+        "the filter and the snapshot contradicted each other, and which of them was wrong is not known";
+    /// Of a filtered position.
+    GatingExcess, "gating_excess", NotAvailable, "the filter rejects too many measurements";
+    /// Of a filtered position.
+    TuningForeign, "tuning_foreign", NotAvailable, "the innovations are larger than the declared errors";
+    /// Of a filtered position.
+    FactMissing, "fact_missing", NotAvailable, "a fact that the status needs was not reported";
     /// A filter that ended.
     FilterStopped, "filter_stopped", NotAvailable, "the navigation filter has stopped";
     /// Carrier phase that disagrees.

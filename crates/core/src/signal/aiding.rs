@@ -83,6 +83,8 @@ pub struct PositionFix {
     pub covariance: Covariance<Enu>,
     /// Velocity north, east, down \[m/s\], and its variance matrix \[m²/s²\].
     pub velocity_ned_mps: Option<(Vector3<f64>, nalgebra::Matrix3<f64>)>,
+    /// Protection levels, horizontal and vertical \[m\], where its receiver brings them: a covariance bounds no fault.
+    pub level_m: Option<[f64; 2]>,
 }
 
 /// Accumulated carrier phase of a satellite, corrected as its code range is. It aids no filter here; differences over time do.

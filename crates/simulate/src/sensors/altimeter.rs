@@ -18,6 +18,8 @@ use navbound_core::signal::{Aiding, BaroHeight, TimedAiding};
 pub(crate) struct Altimeter<'a> {
     settings: &'a Baro,
     blockages: Vec<&'a SensorFault>,
+    freezes: Vec<&'a SensorFault>,
+    last: Option<BaroHeight>,
     departure_m: f64,
     temperature_k: f64,
     bias: Markov,
@@ -35,6 +37,8 @@ impl<'a> Altimeter<'a> {
         Self {
             settings,
             blockages: faults.iter().filter(|f| matches!(f, SensorFault::BaroBlockage { .. })).collect(),
+            freezes: faults.iter().filter(|f| matches!(f, SensorFault::BaroFrozen { .. })).collect(),
+            last: None,
             departure_m,
             temperature_k,
             bias: Markov::new(Stream::of_unit(seed, flight, Sensor::Baro, 1), settings.interval_s, settings.bias_time_s),
@@ -52,7 +56,7 @@ impl<'a> Altimeter<'a> {
         }
     }
 
-    pub(crate) fn measure(&mut self, time: GpsTime, out: &mut Vec<TimedAiding>) {
+    pub(crate) fn measure(&mut self, time_s: f64, time: GpsTime, out: &mut Vec<TimedAiding>) {
         let s = self.settings;
         self.bias.step();
         let climbed = self.lagged_m - self.departure_m;
@@ -65,6 +69,9 @@ impl<'a> Altimeter<'a> {
             sigma_bias: Metres::new(sigma),
             correlation_time_s,
         };
-        out.push(TimedAiding { time, aiding: Aiding::Baro(height) });
+        let frozen = self.last.filter(|_| self.freezes.iter().any(|f| f.since(time_s).is_some()));
+        let said = frozen.unwrap_or(height);
+        self.last = Some(said);
+        out.push(TimedAiding { time, aiding: Aiding::Baro(said) });
     }
 }

@@ -17,14 +17,16 @@ mod faults;
 mod inertial;
 mod markov;
 mod receiver;
+mod receiver_faults;
 mod settings;
 mod sky;
 mod stations;
+mod unit_faults;
 
 pub(crate) use markov::staying;
 
-pub use faults::{SensorFault, Trouble};
-pub use settings::{Baro, Coverage, Dme, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};
+pub use faults::{ReceiverFault, SensorFault, Trouble};
+pub use settings::{Baro, Coverage, Dme, Envelope, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};
 
 use crate::flight::fly;
 use crate::navigator::Navigator;
@@ -37,8 +39,10 @@ use inertial::{InertialUnit, TrueIncrements};
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{Ephemeris, ImuIncrement, PhaseRange, TimedAiding};
 use receiver::Receiver;
+use receiver_faults::ReceiverFaults;
 use sky::Satellite;
 use stations::{Bearings, Interrogator};
+use unit_faults::UnitFaults;
 
 /// A scenario's sensors, ready for any flight.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,7 +138,8 @@ impl Sensing {
 
 /// Sensors on a flight, each with the samples of the inertial unit between its measurements.
 pub struct SensedFlight<'a> {
-    faults: &'a [SensorFault],
+    unit_faults: UnitFaults,
+    receiver_faults: ReceiverFaults,
     begin: GpsTime,
     interval_ns: i64,
     samples: u64,
@@ -172,7 +177,8 @@ impl<'a> SensedFlight<'a> {
         (seed, number): (u64, u64),
     ) -> Result<Self, OutOfDomain> {
         Ok(Self {
-            faults,
+            unit_faults: UnitFaults::new(imu, faults, seed, number),
+            receiver_faults: ReceiverFaults::new(faults),
             begin,
             interval_ns: 1_000_000_000 / i64::from(rate_hz),
             // A product of two written numbers may fall short of a whole one by its last digit.
@@ -220,23 +226,21 @@ impl SensedFlight<'_> {
         let time = GpsTime::from_nanoseconds(self.begin.nanoseconds() + since_ns);
         let (angle, velocity, truth) = self.truth.step()?;
         let time_s = since_ns as f64 * 1e-9;
-        let mut imu = self.imu.sample(index, time, &angle, &velocity);
-        let trouble = self.faults.iter().find_map(|f| f.trouble(time_s));
-        match trouble {
-            Some(Trouble::NotANumber) => imu.angle_rad.x = f64::NAN,
-            Some(Trouble::Late) => imu.time = time.plus_seconds(-1.0),
-            Some(Trouble::Silent) | None => {}
-        }
+        let sample = self.imu.sample(index, time, &angle, &velocity);
+        let delivered = self.unit_faults.delivered(index, time_s, sample);
         self.aid(index, time_s, time, &truth)?;
-        Ok(Some(Step { imu, delivered: trouble != Some(Trouble::Silent), truth }))
+        Ok(Some(Step { imu: delivered.unwrap_or(sample), delivered: delivered.is_some(), truth }))
     }
 
     fn aid(&mut self, index: u64, time_s: f64, time: GpsTime, truth: &Motion) -> Result<(), OutOfDomain> {
         self.aiding.clear();
+        self.receiver_faults.follow(time_s, truth);
         if let Some((every, receiver)) = &mut self.gnss
             && index.is_multiple_of(*every)
         {
-            receiver.measure(time_s, truth, &mut self.aiding)?;
+            let (then_s, motion) = self.receiver_faults.measured(time_s, truth);
+            receiver.measure(then_s, &motion, &mut self.aiding)?;
+            self.receiver_faults.deliver(time_s, time, &mut self.aiding);
         }
         if let Some((every, dme)) = &mut self.dme
             && index.is_multiple_of(*every)
@@ -251,7 +255,7 @@ impl SensedFlight<'_> {
         if let Some((every, baro)) = &mut self.baro {
             baro.follow(time_s, truth.position.height.m());
             if index.is_multiple_of(*every) {
-                baro.measure(time, &mut self.aiding);
+                baro.measure(time_s, time, &mut self.aiding);
             }
         }
         Ok(())

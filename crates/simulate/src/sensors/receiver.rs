@@ -10,7 +10,7 @@
 //! satellite draws depends on no other.
 
 use super::clock::ReceiverClock;
-use super::faults::SensorFault;
+use super::faults::{SensorFault, is_of};
 use super::markov::Markov;
 use super::settings::{Gnss, RangeMode, RangeParts};
 use super::sky::{Satellite, Sent};
@@ -224,9 +224,15 @@ fn slow(parts: &RangeParts, channel: &Channel<'_>, troposphere: f64, elevation: 
 fn faulty(faults: &[SensorFault], id: SatelliteId, time_s: f64) -> [f64; 2] {
     let mut added = [0.0; 2];
     for fault in faults {
-        match (fault, fault.since(time_s).filter(|_| fault.satellite() == Some(id))) {
-            (SensorFault::SatelliteStep { step_m, .. }, Some(_)) => added[0] += step_m,
-            (SensorFault::SatelliteRamp { rate_mps, .. }, Some(since)) => {
+        let among = match fault {
+            SensorFault::SatellitesStep { satellites, .. } | SensorFault::SatellitesRamp { satellites, .. } => {
+                satellites.iter().any(|name| is_of(name, id))
+            }
+            _ => fault.satellite() == Some(id),
+        };
+        match (fault, fault.since(time_s).filter(|_| among)) {
+            (SensorFault::SatelliteStep { step_m, .. } | SensorFault::SatellitesStep { step_m, .. }, Some(_)) => added[0] += step_m,
+            (SensorFault::SatelliteRamp { rate_mps, .. } | SensorFault::SatellitesRamp { rate_mps, .. }, Some(since)) => {
                 added[0] += rate_mps * since;
                 added[1] += rate_mps;
             }
@@ -249,9 +255,11 @@ impl Seen {
         let ground = v.x.hypot(v.y);
         let (mut offset, mut drift) = (Vector3::zeros(), Vector3::zeros());
         for fault in faults {
-            if let (SensorFault::Spoofing { right_mps, up_mps, .. }, Some(since)) = (fault, fault.since(time_s)) {
+            if let (SensorFault::Spoofing { right_mps, up_mps, rates, .. }, Some(since)) = (fault, fault.since(time_s)) {
                 let pull = Vector3::new(right_mps * v.x / ground, -right_mps * v.y / ground, *up_mps);
-                drift += pull;
+                if *rates {
+                    drift += pull;
+                }
                 offset += pull * since;
             }
         }

@@ -16,6 +16,9 @@ pub struct Sensors {
     pub rate_hz: u32,
     /// Inertial unit.
     pub imu: Imu,
+    /// What unit and vehicle are declared to be capable of.
+    #[serde(default)]
+    pub envelope: Option<Envelope>,
     /// Satellite receiver.
     #[serde(default)]
     pub gnss: Option<Gnss>,
@@ -72,6 +75,22 @@ pub struct Imu {
     pub accelerometer_misalignment_rad: f64,
     /// Correlation time of the in-run biases \[s\].
     pub in_run_time_s: f64,
+}
+
+/// What the inertial unit can measure and the vehicle can do; beyond it the unit is not believed.
+#[derive(Debug, Clone, Copy, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Envelope {
+    /// Measuring range of an accelerometer \[m/s²\].
+    pub force_range_mps2: f64,
+    /// Of a gyroscope \[rad/s\].
+    pub rate_range_radps: f64,
+    /// Largest specific force of the vehicle along an axis \[m/s²\].
+    pub force_most_mps2: f64,
+    /// Largest rate \[rad/s\].
+    pub rate_most_radps: f64,
+    /// Largest change of the specific force over a tenth of a second \[m/s³\].
+    pub force_change_mps3: f64,
 }
 
 /// A satellite receiver.
@@ -243,6 +262,7 @@ impl Sensors {
     pub(crate) fn rules(&self) -> Vec<Rule> {
         let rate = f64::from(self.rate_hz);
         let mut rules = self.imu.rules(self.rate_hz);
+        rules.extend(self.envelope.iter().flat_map(Envelope::rules));
         rules.extend(self.gnss.iter().flat_map(|g| g.rules(rate)));
         rules.extend(self.dme.iter().flat_map(|d| d.rules(rate)));
         rules.extend(self.vor.iter().flat_map(|v| v.rules(rate)));
@@ -280,6 +300,18 @@ impl Imu {
             within("accelerometer_scale", self.accelerometer_scale, "1", 0.0, 0.1, "[0, 0.1]"),
             within("accelerometer_misalignment_rad", self.accelerometer_misalignment_rad, "rad", 0.0, 0.1, "[0, 0.1]"),
             positive("in_run_time_s", self.in_run_time_s, "s"),
+        ]
+    }
+}
+
+impl Envelope {
+    fn rules(&self) -> [Rule; 5] {
+        [
+            positive("force_range_mps2", self.force_range_mps2, "m/s²"),
+            positive("rate_range_radps", self.rate_range_radps, "rad/s"),
+            positive("force_most_mps2", self.force_most_mps2, "m/s²"),
+            positive("rate_most_radps", self.rate_most_radps, "rad/s"),
+            positive("force_change_mps3", self.force_change_mps3, "m/s³"),
         ]
     }
 }

@@ -84,10 +84,15 @@ impl<'a> Interrogator<'a> {
                 _ => 0.0,
             };
             let fault_m: f64 = self.faults.iter().map(wrong).sum();
+            let multiple = |f: &SensorFault| match f {
+                SensorFault::DmeBiases { factor, .. } => f.since(time_s).map(|_| *factor),
+                _ => None,
+            };
+            let bias = site.bias * self.faults.iter().find_map(multiple).unwrap_or(1.0);
             let range = DmeRange {
                 station: site.index,
                 position: site.ecef,
-                slant: Metres::new(sight.slant_m + site.bias + sigma * white + fault_m),
+                slant: Metres::new(sight.slant_m + bias + sigma * white + fault_m),
                 sigma_white: Metres::new(sigma),
                 sigma_bias: Metres::new(self.settings.bias_sigma_m),
             };

@@ -245,7 +245,7 @@ fn interference_takes_every_satellite_and_gives_them_back() {
 
 #[test]
 fn a_spoofer_draws_every_range_to_one_false_place() {
-    let rig = faulty(plain, vec![SensorFault::Spoofing { start_s: 20.0, duration_s: 30.0, right_mps: 3.0, up_mps: -1.0 }]);
+    let rig = faulty(plain, vec![SensorFault::Spoofing { start_s: 20.0, duration_s: 30.0, right_mps: 3.0, up_mps: -1.0, rates: true }]);
     for sample in fly(&rig, 0, 60) {
         let t = sample.since();
         let pulled = if (20.0..50.0).contains(&t) { t - 20.0 } else { 0.0 };

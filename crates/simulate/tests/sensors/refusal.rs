@@ -49,7 +49,7 @@ fn what_no_sensor_can_be_is_refused_by_name() {
             s.faults = vec![SensorFault::ImuBiasJump { start_s: 1.0, gyro_radps: [0.0, 2.0, 0.0], accelerometer_mps2: [0.0; 3] }];
         }),
         ("up_mps", |s| {
-            s.faults = vec![SensorFault::Spoofing { start_s: 1.0, duration_s: 1.0, right_mps: 0.0, up_mps: f64::NAN }];
+            s.faults = vec![SensorFault::Spoofing { start_s: 1.0, duration_s: 1.0, right_mps: 0.0, up_mps: f64::NAN, rates: true }];
         }),
     ];
     for (argument, change) in changes {

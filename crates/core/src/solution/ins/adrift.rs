@@ -103,13 +103,19 @@ impl Filter {
     pub(super) fn lose(&mut self, sample: &ImuIncrement) -> Advance {
         self.settle();
         self.strapdown.forget();
+        self.delay.forget_motion();
+        self.begin_adrift();
+        self.listen(sample)
+    }
+
+    /// A new filter without an attitude: it listens from the first sample on, and has its position already.
+    pub(super) fn begin_adrift(&mut self) {
         self.aligning = true;
         for k in 0..3 {
             self.joint.reset(PHI + k, ANY_ANGLE_RAD2);
         }
         let zero = Vector3::zeros();
         self.adrift = Some(Adrift { heard: self.time(), listened_s: 0.0, force: zero, rate: zero });
-        self.listen(sample)
     }
 
     /// A good sample while adrift.

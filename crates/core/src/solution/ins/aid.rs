@@ -1,7 +1,8 @@
 //! Measurements come to the filter: judged first, then used.
 
 use super::covariance::Row;
-use super::dynamics::R;
+use super::dynamics::{R, V};
+use super::entry::Refusal;
 use super::filter::Filter;
 use super::innovation::Kind;
 use super::measure::{Antenna, Scalar, body_velocity};
@@ -9,6 +10,7 @@ use super::settings::{ErrorModel, positive};
 use super::slots::{Further, Process};
 use super::state::finite;
 use super::stations::{Look, Standing};
+use crate::frame::ecef_from_geodetic;
 use crate::quantity::{GpsTime, Metres, OutOfDomain};
 use crate::signal::{Aiding, BaroHeight, DmeRange, PositionFix, SatelliteRange, TimedAiding, VorBearing};
 use crate::special::float::hypot;
@@ -36,6 +38,10 @@ pub enum Aided {
     },
     /// A number that is none, or outside its domain.
     Refused(OutOfDomain),
+    /// The same measurement again.
+    Repeated,
+    /// Another measurement of the same source and instant.
+    SameName,
     /// All places for further states are taken.
     NoPlace,
     /// The ranges of the instant determine no position (the loose form).
@@ -66,15 +72,60 @@ impl Wheels {
     }
 }
 
+/// Deviations by which the speed may be less than estimated where the vehicle is said to move.
+const KNOWN_SIGMAS: f64 = 3.0;
+
+impl Aided {
+    /// Why it was not used, where no gate was asked.
+    pub const fn refusal(&self) -> Option<Refusal> {
+        match self {
+            Self::Used { .. } | Self::Gated { .. } => None,
+            Self::Late { .. } => Some(Refusal::Late),
+            Self::Refused(_) => Some(Refusal::OutOfRange),
+            Self::Repeated => Some(Refusal::Repeated),
+            Self::SameName => Some(Refusal::SameName),
+            Self::NoPlace => Some(Refusal::NoPlace),
+            Self::NoPosition => Some(Refusal::NoPosition),
+            Self::Stopped => Some(Refusal::Stopped),
+        }
+    }
+
+    /// What the entry has said of a measurement that it did not let in.
+    const fn of(why: Refusal) -> Self {
+        match why {
+            Refusal::SameName => Self::SameName,
+            Refusal::Late => Self::Late { age_s: f64::NAN },
+            _ => Self::Repeated,
+        }
+    }
+}
+
 impl Filter {
     /// One measurement, at the time of the last sample or up to `age_most_s` before it.
     pub fn aid(&mut self, timed: &TimedAiding) -> Aided {
         let kind = Kind::of(&timed.aiding);
         let outcome = self.judge(timed);
-        if matches!(outcome, Aided::Late { .. } | Aided::Refused(_) | Aided::NoPlace | Aided::NoPosition | Aided::Stopped) {
+        if let Some(why) = outcome.refusal() {
             self.innovations[kind.index()].n_refused += 1;
+            self.entry.count(why);
         }
         outcome
+    }
+
+    /// Why measurements were not used.
+    pub(super) fn count(&mut self, outcome: &Aided, n: usize) {
+        if let Some(why) = outcome.refusal() {
+            (0..n).for_each(|_| self.entry.count(why));
+        }
+    }
+
+    /// A measurement made of sound numbers that was not heard before.
+    pub(super) fn admit(&mut self, timed: &TimedAiding) -> Result<(), Aided> {
+        super::sane::check(&timed.aiding).map_err(Aided::Refused)?;
+        let v = self.state().velocity_ned_mps();
+        let sigma = crate::special::float::sqrt(self.joint.get(V, V) + self.joint.get(V + 1, V + 1));
+        let speed_mps = hypot(v.x, v.y) - KNOWN_SIGMAS * sigma;
+        self.entry.admit(timed, speed_mps).map_err(Aided::of)
     }
 
     /// Last sample heard minus a time \[s\], where a measurement of that time may be used.
@@ -102,15 +153,23 @@ impl Filter {
             Ok(found) => found,
             Err(outcome) => return outcome,
         };
-        if let Err(refusal) = super::sane::check(&timed.aiding) {
-            return Aided::Refused(refusal);
+        if let Err(outcome) = self.admit(timed) {
+            return outcome;
         }
         let used = match &timed.aiding {
             Aiding::Satellite(m) => self.satellite(&antenna, m, timed.time),
             Aiding::Dme(m) => self.dme(&antenna, m),
             Aiding::Vor(m) => self.vor(&antenna, m),
             Aiding::Baro(m) => self.baro(&antenna, m, age_s),
-            Aiding::Fix(m) => self.fix(&antenna, m),
+            Aiding::Fix(m) => {
+                let [north, east] = [0, 1].map(|k| antenna.ned_from_ecef.row(k).transpose());
+                let (variance, place) = (m.covariance.matrix(), *ecef_from_geodetic(&m.position).vector());
+                match &m.velocity_ned_mps {
+                    Some((v, r)) => self.delay.velocity_heard(timed.time, v.xy(), r[(0, 0)].max(r[(1, 1)])),
+                    None => self.delay.heard(timed.time, place, variance[(0, 0)].max(variance[(1, 1)]), [north, east]),
+                }
+                self.fix(&antenna, m)
+            }
         };
         if matches!(used, Aided::Used { .. }) {
             self.note(&timed.aiding);
@@ -307,10 +366,12 @@ impl Filter {
             let time = self.time();
             self.slots.saw(place, time);
         }
+        if let Err(refusal) = self.correct(core::slice::from_ref(scalar)) {
+            return Aided::Refused(refusal);
+        }
         let before = self.memory.replace(kind, source, normalised);
         let time = self.time();
         self.innovations[kind.index()].used(normalised, before, time);
-        self.correct(core::slice::from_ref(scalar));
         Aided::Used { square, dimension: 1 }
     }
 
@@ -346,11 +407,13 @@ impl Filter {
         // The first axis of the caller, whatever the independent ones are called this time.
         let first = eigen.eigenvectors.row(0);
         let normalised = innovation.x / crate::special::float::sqrt((first * s * first.transpose())[(0, 0)]);
+        if let Err(refusal) = self.correct(&[scalar(0), scalar(1), scalar(2)]) {
+            return Aided::Refused(refusal);
+        }
         // Solved positions and velocities have one source each.
         let before = self.memory.replace(kind, Further::Clock, normalised);
         let time = self.time();
         self.innovations[kind.index()].used_three(square, normalised, before, time);
-        self.correct(&[scalar(0), scalar(1), scalar(2)]);
         Aided::Used { square, dimension: 3 }
     }
 }

@@ -241,9 +241,14 @@ impl Joint {
     /// u = P h',  s = h u + r,  K = u / s
     /// P <- (1 - K h) P (1 - K h)' + K r K'  =  P - (K t' + t K'),   t = u - s K / 2      for any K
     /// ```
-    pub(super) fn update(&mut self, h: &Row, innovation: f64, r: f64, x: &mut [f64; WIDTH]) {
+    pub(super) fn update(&mut self, h: &Row, innovation: f64, r: f64, x: &mut [f64; WIDTH]) -> bool {
         let u = self.times(h);
         let s = h.of(&u) + r;
+        // What rounding may take from a variance is not left of it: nothing is changed.
+        let sound = |k: usize| self.p[k][k] - u[k] * u[k] / s > 8.0 * f64::EPSILON * self.p[k][k];
+        if !(s < f64::INFINITY && innovation.is_finite() && (0..self.used).all(|k| self.p[k][k] == 0.0 || sound(k))) {
+            return false;
+        }
         let left = innovation - h.of(x);
         let n = self.used;
         let (mut gain, mut t) = ([0.0; WIDTH], [0.0; WIDTH]);
@@ -259,6 +264,7 @@ impl Joint {
                 row[j] -= a * t[j] + b * gain[j];
             }
         }
+        true
     }
 
     /// Whether every variance is positive and finite: with a symmetric matrix the first sign of trouble.

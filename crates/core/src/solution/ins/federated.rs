@@ -49,7 +49,7 @@ pub(super) fn shared(sigma: &StartSigma, settings: &Settings) -> (StartSigma, Se
 
 /// What both say together. The first alone where the sum of both covariances is not positive, which no filter that runs leaves behind.
 pub(super) fn master(first: &mut Filter, second: &mut Filter) -> Solution {
-    let (mut joined, other) = (first.solution(), second.solution());
+    let (mut joined, other) = (first.latest(), second.latest());
     let (p1, p2) = (navigation(first), navigation(second));
     let Some(both) = (p1 + p2).cholesky() else { return joined };
     // Column by column (P1 + P2)^-1 P1 is K'.
@@ -71,7 +71,7 @@ pub(super) fn master(first: &mut Filter, second: &mut Filter) -> Solution {
     joined
 }
 
-/// Covariance of the navigation states, brought up to the last sample by [`Filter::solution`].
+/// Covariance of the navigation states, brought up to the last sample by [`Filter::latest`].
 fn navigation(filter: &Filter) -> Joint {
     Joint::from_fn(|i, j| filter.joint.get(i, j))
 }

@@ -2,7 +2,9 @@
 
 use super::adrift::Adrift;
 use super::covariance::{BASE, Fade, Joint, Row, StepNoise, WIDTH};
+use super::delay::Delay;
 use super::dynamics::{BA, BG, NAV, PHI, R, V, transition};
+use super::entry::{Entry, Refusal};
 use super::innovation::{Innovations, Kind, Memory};
 use super::jump::Instant;
 use super::measure::Scalar;
@@ -17,6 +19,10 @@ use crate::quantity::{GpsTime, OutOfDomain};
 use crate::signal::{Constellation, ImuIncrement};
 use crate::special::chi::chi_factor;
 use nalgebra::{Matrix3, Quaternion, Vector3};
+
+/// Largest difference between the time of a state and the time for which a position is requested \[s\]: the rounding of time tags. At 250 m/s
+/// half a millisecond is 0.13 m. Provenance: ours.
+pub const STATE_AGE_MOST_S: f64 = 5e-4;
 
 /// What became of an inertial sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,6 +90,16 @@ pub struct Solution {
     pub mode: Mode,
 }
 
+impl Solution {
+    /// Whether position, velocity and their variances are numbers that can be right.
+    pub fn is_sound(&self) -> bool {
+        let NavState { lat, lon, h, v, .. } = &self.state;
+        let numbers = [*lat, *lon, *h, v.x, v.y, v.z];
+        let variance = |k: usize| [self.covariance.matrix()[(k, k)], self.velocity_m2ps2[(k, k)]];
+        numbers.iter().all(|x| x.is_finite()) && (0..3).flat_map(variance).all(|v| v > 0.0 && v.is_finite())
+    }
+}
+
 /// Samples that wait for a common step of the covariance.
 #[derive(Debug, Clone, Copy)]
 struct Waiting {
@@ -101,6 +117,8 @@ pub struct Filter {
     pub(super) modes: Modes,
     pub(super) innovations: [Innovations; Kind::ALL.len()],
     pub(super) memory: Memory,
+    pub(super) entry: Entry,
+    pub(super) delay: Delay,
     /// Whose time the clock is in.
     pub(super) first_constellation: Option<Constellation>,
     pub(super) biases: [Vector3<f64>; 2],
@@ -145,6 +163,8 @@ impl Filter {
             modes: Modes::new(settings.patience),
             innovations: [Innovations::default(); Kind::ALL.len()],
             memory: Memory::new(),
+            entry: Entry::new(),
+            delay: Delay::new(),
             first_constellation: None,
             biases: [Vector3::zeros(); 2],
             rate: Vector3::zeros(),
@@ -176,6 +196,18 @@ impl Filter {
     pub const fn innovations(&self, kind: Kind) -> &Innovations {
         &self.innovations[kind.index()]
     }
+    /// Measurements that were not used before any gate, in the order of [`Refusal::ALL`].
+    pub const fn refusals(&self) -> &[u64; Refusal::ALL.len()] {
+        self.entry.counts()
+    }
+    /// Whether solved positions are of another time than their tags say.
+    pub const fn fixes_are_late(&self) -> bool {
+        self.delay.is_late()
+    }
+    /// By how much, tag minus time of the position \[s\], where the motion shows it.
+    pub fn fix_delay_s(&self) -> Option<f64> {
+        self.delay.estimate_s()
+    }
     /// The further states and their values: lengths \[m\], rates \[m/s\], angles \[rad\].
     pub fn further(&self) -> impl Iterator<Item = (Further, f64)> + '_ {
         self.slots.iter()
@@ -193,8 +225,15 @@ impl Filter {
         NAV + self.slots.len()
     }
 
-    /// Everything at once, the covariance brought up to the last sample.
-    pub fn solution(&mut self) -> Solution {
+    /// Everything of this time; `None` where the state was not moved to it, the filter has stopped, or a number of it is none: a state of
+    /// another time is no answer to where the vehicle is.
+    pub fn solution(&mut self, at: GpsTime) -> Option<Solution> {
+        let now = self.is_current() && self.time().seconds_since(at).abs() <= STATE_AGE_MOST_S;
+        if now { Some(self.latest()).filter(Solution::is_sound) } else { None }
+    }
+
+    /// Everything of the last sample, the covariance brought up to it.
+    pub(super) fn latest(&mut self) -> Solution {
         self.catch_up();
         self.watch_alignment();
         let block = |first: usize| Matrix3::from_fn(|i, j| self.joint.get(first + i, first + j));
@@ -290,10 +329,13 @@ impl Filter {
             velocity_mps: sample.velocity_mps - self.biases[1] * dt,
             ..*sample
         };
+        let before = *self.state().velocity_ned_mps();
         let step = match self.strapdown.step(&corrected) {
             Ok(step) => step,
             Err(refusal) => return self.stop(Stop::Place(refusal)),
         };
+        let change = self.state().velocity_ned_mps() - before;
+        self.delay.moved(sample.time, change.xy(), dt);
         self.rate = corrected.angle_rad / dt - step.c.transpose() * step.earth.earth;
         let waiting = match self.waiting {
             None => Waiting { n: 1, step },
@@ -335,20 +377,24 @@ impl Filter {
     }
 
     /// Scalars of one measurement, their errors independent, one after the other; then the state takes the correction.
-    pub(super) fn correct(&mut self, scalars: &[Scalar]) {
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a variance so small beside the filter's that the update would leave a state without one; what was used of the
+    /// scalars before it stays used.
+    pub(super) fn correct(&mut self, scalars: &[Scalar]) -> Result<(), OutOfDomain> {
         let mut x = [0.0; WIDTH];
-        for m in scalars {
-            self.joint.update(&m.row, m.innovation, m.variance, &mut x);
-        }
+        let unsound = scalars.iter().find(|m| !self.joint.update(&m.row, m.innovation, m.variance, &mut x));
         if !self.joint.is_sound(self.slots.len()) {
             self.stopped = Some(Stop::Covariance);
-            return;
+            return Ok(());
         }
         self.slots.correct(&x[BASE..]);
         let part = |first: usize| Vector3::new(x[first], x[first + 1], x[first + 2]);
         self.biases[0] += part(BG);
         self.biases[1] += part(BA);
         self.strapdown.state_mut().correct(&part(R), &part(V), &part(PHI));
+        let domain = "one beside which the variances of the states can be computed";
+        unsound.map_or(Ok(()), |m| Err(OutOfDomain { argument: "variance", value: m.variance, unit: "of the measurement", domain }))
     }
 
     /// Of when it speaks.

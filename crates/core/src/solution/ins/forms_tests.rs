@@ -67,7 +67,7 @@ fn sky(second: u32, errors: [f64; 8], slow: f64) -> Vec<TimedAiding> {
 }
 
 fn horizontal_variance(fusion: &mut Fusion) -> f64 {
-    fusion.solution().covariance.horizontal().trace()
+    fusion.solution(fusion.time()).unwrap().covariance.horizontal().trace()
 }
 
 /// Ranges whose slow errors stay are no better after five minutes of them: the variance stays above that of the slow part, as in the
@@ -96,7 +96,7 @@ fn the_first_solved_position_is_the_true_one() {
     let mut fusion = begun(Form::Loose, 1e-4, &wide, |_| ());
     fusion.advance(&resting(1));
     assert_eq!(fusion.aid(&sky(1, [0.0; 8], 0.0)), 8);
-    let own = ecef_from_geodetic(&fusion.solution().state.position().unwrap());
+    let own = ecef_from_geodetic(&fusion.solution(fusion.time()).unwrap().state.position().unwrap());
     let left = own.minus(&ecef_from_geodetic(&place())).vector().norm();
     // The correction follows the Earth's curve and the position its tangent, (640 m)² / 2 / 6400 km = 32 mm; 1 m² against 1 km² leaves 1 mm.
     assert!(left < 0.04, "{left}");
@@ -119,7 +119,7 @@ fn ranges_that_contradict_each_other_make_no_position() {
 fn the_master_knows_as_much_as_the_start_and_both_filters_half_of_it() {
     let mut fusion = fusion(Form::Federated, |_| ());
     let whole = horizontal_variance(&mut fusion);
-    let half = fusion.beside().unwrap().solution.covariance.horizontal().trace();
+    let half = fusion.beside(fusion.time()).unwrap().solution.covariance.horizontal().trace();
     assert!((whole - 200.0).abs() < 1e-9 && (half - 400.0).abs() < 1e-9, "{whole} {half}");
 }
 
@@ -140,8 +140,8 @@ fn the_master_adds_information() {
     };
     assert_eq!(fusion.aid(&[TimedAiding { time: at(1), aiding: Aiding::Baro(height) }]), 1);
     assert_eq!(fusion.innovations(Kind::Baro).n_used, 1);
-    let second = fusion.beside().unwrap().solution;
-    let master = fusion.solution();
+    let second = fusion.beside(fusion.time()).unwrap().solution;
+    let master = fusion.solution(fusion.time()).unwrap();
     let start = 2.0 * 15.0 * 15.0;
     // 450 m² and a millionth of growth against 9 m²: 0.01 m² covers what a second of the inertial unit adds.
     let alone = 1.0 / (1.0 / start + 1.0 / 9.0);
@@ -160,13 +160,14 @@ fn the_filter_beside_the_main_one_has_no_satellites() {
         fusion.advance(&resting(second));
         fusion.aid(&sky(second, [0.0; 8], 0.0));
     }
-    let beside = fusion.beside().unwrap();
-    let (with, without) = (fusion.solution().covariance, beside.solution.covariance);
+    let beside = fusion.beside(fusion.time()).unwrap();
+    let (with, without) = (fusion.solution(fusion.time()).unwrap().covariance, beside.solution.covariance);
     assert!(with.horizontal().trace() < 0.1 * without.horizontal().trace());
     let difference = beside.covariance.horizontal().trace();
     assert!((difference - (without.horizontal() - with.horizontal()).trace()).abs() < 1e-9);
     // After a new start the main filter does not know what the other knows.
-    fusion.restart(&StartSigma::default()).unwrap();
-    let after = fusion.beside().unwrap().covariance.horizontal().trace();
+    let here = *fusion.state();
+    fusion.renew(here, &StartSigma::default()).unwrap();
+    let after = fusion.beside(fusion.time()).unwrap().covariance.horizontal().trace();
     assert!((after - (without.horizontal().trace() + 200.0)).abs() < 1e-6, "{after}");
 }

@@ -1,6 +1,7 @@
 //! The forms behind one interface: one filter or several, and the one without satellites beside them.
 
 use super::aid::{Aided, Wheels};
+use super::entry::Refusal;
 use super::federated::{master, shared};
 use super::filter::{Advance, Filter, Samples, Solution, Stop};
 use super::innovation::{Innovations, Kind};
@@ -19,9 +20,9 @@ use crate::signal::{ImuIncrement, TimedAiding};
 /// the loose form, one of both of the federated.
 #[derive(Debug, Clone)]
 pub struct Fusion {
-    settings: Settings,
-    main: Filter,
-    beside: Option<Filter>,
+    pub(super) settings: Settings,
+    pub(super) main: Filter,
+    pub(super) beside: Option<Filter>,
     receiver: Receiver,
     /// Whether everything the filter beside knows is known to the main one too.
     nested: bool,
@@ -52,16 +53,15 @@ impl Fusion {
         Ok(Self { settings, main, beside, receiver: Receiver::new(), nested: !federated })
     }
 
-    /// The filter with satellites begins anew where it is, knowing as much as these deviations say; the one beside it goes on.
-    ///
-    /// # Errors
-    /// As [`Filter::new`].
-    pub fn restart(&mut self, sigma: &StartSigma) -> Result<(), OutOfDomain> {
+    /// The filter with satellites begins anew, knowing as much as these deviations say; the one beside it goes on.
+    pub(super) fn renew(&mut self, at: NavState, sigma: &StartSigma) -> Result<(), OutOfDomain> {
         let mut settings = self.settings;
         // The clock has wandered since the begin: its drift is as little known as that of any receiver.
         settings.clock.drift_mps = settings.clock.drift_mps.max(ClockModel::default().drift_mps);
-        let anew = Self::new(*self.main.state(), sigma, settings)?;
+        let anew = Self::new(at, sigma, settings)?;
+        let entry = self.main.entry.uncounted();
         (self.main, self.receiver, self.nested) = (anew.main, anew.receiver, false);
+        self.main.entry = entry;
         Ok(())
     }
 
@@ -104,23 +104,26 @@ impl Fusion {
         self.main.roll(wheels)
     }
 
-    /// Everything at once: the main filter's, or what the master makes of both.
-    pub fn solution(&mut self) -> Solution {
+    /// Everything of this time: the main filter's, or what the master makes of both; `None` as for [`Filter::solution`].
+    pub fn solution(&mut self, at: GpsTime) -> Option<Solution> {
+        let main = self.main.solution(at)?;
         match &mut self.beside {
-            Some(beside) if self.settings.form == Form::Federated && together(&self.main, beside) => master(&mut self.main, beside),
-            _ => self.main.solution(),
+            Some(beside) if self.settings.form == Form::Federated && together(&self.main, beside) => {
+                Some(master(&mut self.main, beside)).filter(Solution::is_sound)
+            }
+            _ => Some(main),
         }
     }
 
-    /// The filter without satellites, if there is one, and both run.
+    /// The filter without satellites, if there is one, and both run and speak of this time.
     ///
     /// ```text
     /// V(difference) = V(without) - V(with)      the filter with satellites knows everything the other knows, and is optimal
     ///               = V(without) + V(with)      bound for errors without negative correlation: federated, or after a new start
     /// ```
-    pub fn beside(&mut self) -> Option<Beside> {
+    pub fn beside(&mut self, at: GpsTime) -> Option<Beside> {
         let without = self.beside.as_mut().filter(|b| together(&self.main, b))?;
-        let (with, solution) = (self.main.solution(), without.solution());
+        let (with, solution) = (self.main.solution(at)?, without.solution(at)?);
         let (a, b) = (with.state.position().ok()?, solution.state.position().ok()?);
         let difference = crate::frame::ecef_from_geodetic(&a).minus(&crate::frame::ecef_from_geodetic(&b)).to_enu(&b.point);
         let (v, w) = (with.covariance.matrix(), solution.covariance.matrix());
@@ -175,6 +178,19 @@ impl Fusion {
     pub fn stations_left_out(&self) -> impl Iterator<Item = Further> + '_ {
         let second = self.beside.as_ref().filter(|_| self.settings.form == Form::Federated);
         self.main.stations_left_out().chain(second.into_iter().flat_map(Filter::stations_left_out))
+    }
+    /// As [`Filter::fixes_are_late`], of the main filter.
+    pub const fn fixes_are_late(&self) -> bool {
+        self.main.fixes_are_late()
+    }
+    /// As [`Filter::fix_delay_s`], of the main filter.
+    pub fn fix_delay_s(&self) -> Option<f64> {
+        self.main.fix_delay_s()
+    }
+    /// Measurements that were not used before any gate, in the order of [`Refusal::ALL`]; of both filters in the federated form.
+    pub fn refusals(&self) -> [u64; Refusal::ALL.len()] {
+        let second = self.beside.as_ref().filter(|_| self.settings.form == Form::Federated).map(Filter::refusals);
+        core::array::from_fn(|k| self.main.refusals()[k] + second.map_or(0, |counts| counts[k]))
     }
     /// Why it has stopped, if it has.
     pub const fn stopped(&self) -> Option<&Stop> {

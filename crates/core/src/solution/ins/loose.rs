@@ -120,18 +120,24 @@ impl Filter {
         let (mut ranges, mut n) = ([first; MOST], 0);
         for timed in together {
             let Some(m) = range(timed) else { continue };
-            if n < MOST && super::sane::check(&timed.aiding).is_ok() {
-                ranges[n] = *m;
-                n += 1;
-            } else {
-                self.innovations[Kind::Range.index()].n_refused += 1;
+            let admitted = if n < MOST { self.admit(timed) } else { Err(Aided::NoPlace) };
+            match admitted {
+                Ok(()) => {
+                    ranges[n] = *m;
+                    n += 1;
+                }
+                Err(outcome) => {
+                    self.innovations[Kind::Range.index()].n_refused += 1;
+                    self.count(&outcome, 1);
+                }
             }
         }
         match self.solve(receiver, time, &ranges[..n]) {
             Aided::Used { .. } => n,
             Aided::Gated { .. } => 0,
-            _ => {
+            outcome => {
                 self.innovations[Kind::Range.index()].n_refused += n as u64;
+                self.count(&outcome, n);
                 0
             }
         }

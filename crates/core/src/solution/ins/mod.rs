@@ -10,12 +10,15 @@
 //! refused, and no wander angle is carried.
 
 mod adrift;
+mod against;
 mod aid;
 mod align;
 mod covariance;
 #[cfg(test)]
 mod covariance_tests;
+mod delay;
 mod dynamics;
+mod entry;
 mod federated;
 mod filter;
 #[cfg(test)]
@@ -34,9 +37,11 @@ mod stations;
 mod strapdown;
 
 pub use adrift::Resumption;
+pub use against::{Block, Difference, is_sane, judgeable};
 pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};
-pub use filter::{Advance, Filter, Samples, Solution, Stop};
+pub use entry::Refusal;
+pub use filter::{Advance, Filter, STATE_AGE_MOST_S, Samples, Solution, Stop};
 pub use fusion::{Beside, Fusion};
 pub use innovation::{Innovations, Kind, MEMORY_S, PAIRS_LEAST};
 pub use mode::Mode;

@@ -1,0 +1,208 @@
+//! Filter against snapshot over time: when they contradict each other, which of them is believed, and when a new start is due.
+//!
+//! The velocity test speaks first where the inertial unit is wrong: an error of acceleration is an error of velocity before it is one of
+//! position. A position that moves without motion is no inertial fault. Where both speak and the unit itself shows nothing, nobody knows
+//! before the ground stations rule out one of both. A filter that starts anew and contradicts again proves nothing: stations that contradict
+//! a spoofer drag it off as well.
+
+use crate::quantity::GpsTime;
+
+/// Agreement without a break after which filter and snapshot are one again \[s\]. Provenance: inferred.
+pub const AGREED_S: f64 = 30.0;
+/// Time that the unit must be plausible before a filter is started anew \[s\]. Provenance: inferred.
+const CLEAN_S: f64 = 5.0;
+/// Time without any excess after which an unexplained contradiction is closed \[s\]. Provenance: inferred.
+const OPEN_S: f64 = 600.0;
+/// New starts within [`OPEN_S`] after which no further one follows on this flight. Provenance: inferred.
+const STARTS_MOST: usize = 3;
+/// The velocity's square from which it has moved too, and the time before the position's for which that counts \[s\]. Provenance: inferred.
+const MOVED: (f64, f64) = (20.0, 10.0);
+
+/// The tests of an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tests {
+    /// Squares: position horizontal, velocity horizontal, position upwards, velocity upwards. Chi-square of 2, 2, 1, 1 degrees of freedom.
+    pub square: [f64; 4],
+    /// Which of them exceed their limits; a square that is no number does.
+    pub exceeds: [bool; 4],
+}
+
+impl Tests {
+    /// Whether any does.
+    pub fn fail(&self) -> bool {
+        self.exceeds.iter().any(|e| *e)
+    }
+    fn moved(&self) -> bool {
+        self.exceeds[1] || self.exceeds[3] || !(self.square[1] <= MOVED.0 && self.square[3] <= MOVED.0)
+    }
+}
+
+/// The state over time.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Contradiction {
+    raised: Option<GpsTime>,
+    failed: Option<GpsTime>,
+    moved: Option<GpsTime>,
+    implausible: Option<GpsTime>,
+    /// The unit is the cause.
+    unit: bool,
+    /// The position moved without motion: the satellites, or the filter's slow states.
+    still: bool,
+    open: Option<GpsTime>,
+    starts: [Option<GpsTime>; STARTS_MOST],
+    started: Option<GpsTime>,
+    out: bool,
+}
+
+impl Contradiction {
+    /// The tests of an instant, of a filter whose attitude is settled or not.
+    pub fn judge(&mut self, now: GpsTime, tests: &Tests, settled: bool) {
+        if tests.moved() {
+            self.moved = Some(now);
+        }
+        if tests.fail() {
+            self.still = self.moved.is_none_or(|t| now.seconds_since(t) > MOVED.1) && (self.raised.is_none() || self.still);
+            self.fail(now, false);
+            return;
+        }
+        let Some(failed) = self.failed.max(self.started) else { return };
+        let agreed = now.seconds_since(failed) >= AGREED_S;
+        if self.raised.is_some() && agreed && settled && !self.out {
+            // A cause that has gone leaves nothing open.
+            self.open = if self.unit { None } else { Some(now) };
+            (self.raised, self.unit, self.still) = (None, false, false);
+        }
+        if self.open.is_some() && now.seconds_since(failed) >= OPEN_S {
+            self.open = None;
+        }
+    }
+
+    /// The unit delivers what cannot be: the evidence is in the unit.
+    pub fn convict(&mut self, now: GpsTime) {
+        self.implausible = Some(now);
+        self.still = false;
+        self.fail(now, true);
+    }
+
+    /// The ground stations rule out that the inertial unit is right.
+    pub fn rule_out_the_unit(&mut self) {
+        self.unit |= self.raised.is_some() && !self.still;
+    }
+
+    fn fail(&mut self, now: GpsTime, unit: bool) {
+        self.raised.get_or_insert(now);
+        self.failed = Some(now);
+        self.unit |= unit;
+        if self.starts.iter().all(|s| s.is_some_and(|t| now.seconds_since(t) <= OPEN_S)) {
+            self.out = true;
+        }
+    }
+
+    /// Whether a filter should start anew at the snapshot: it has contradicted it since its last start, the unit has been plausible for a
+    /// while, and the satellites are not the ones in doubt.
+    pub fn start_is_due(&self, now: GpsTime, after_s: f64) -> bool {
+        let Some((raised, failed)) = self.raised.zip(self.failed) else { return false };
+        let since = self.started.map_or(raised, |s| s.max(raised));
+        let again = self.started.is_none_or(|s| failed > s);
+        let clean = self.implausible.is_none_or(|t| now.seconds_since(t) >= after_s);
+        again && clean && !self.still && !self.out && now.seconds_since(since) >= after_s
+    }
+
+    /// Whether filter and positions have contradicted each other for this time since the last start.
+    pub fn lasts(&self, now: GpsTime, after_s: f64) -> bool {
+        let Some((raised, failed)) = self.raised.zip(self.failed) else { return false };
+        let since = self.started.map_or(raised, |s| s.max(raised));
+        self.started.is_none_or(|s| failed > s) && now.seconds_since(since) >= after_s
+    }
+
+    /// A filter was started anew.
+    pub fn started(&mut self, now: GpsTime) {
+        self.starts.rotate_left(1);
+        self.starts[STARTS_MOST - 1] = Some(now);
+        self.started = Some(now);
+    }
+
+    /// Whether they contradict each other, or have not agreed for long enough since.
+    pub const fn is_raised(&self) -> bool {
+        self.raised.is_some()
+    }
+    /// Whether an earlier contradiction has no cause.
+    pub const fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+    /// Whether the inertial unit is the cause.
+    pub const fn convicts_the_unit(&self) -> bool {
+        self.raised.is_some() && self.unit
+    }
+    /// Whether the unit delivered what cannot be within a while.
+    pub fn implausible_lately(&self, now: GpsTime) -> bool {
+        self.implausible.is_some_and(|t| now.seconds_since(t) < CLEAN_S)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(second: f64) -> GpsTime {
+        GpsTime::default().plus_seconds(second)
+    }
+    fn position(square: f64, velocity: f64) -> Tests {
+        Tests { square: [square, velocity, 0.0, 0.0], exceeds: [!(square <= 42.2), !(velocity <= 42.2), false, false] }
+    }
+
+    #[test]
+    fn after_three_starts_there_is_no_further_one_and_only_the_stations_convict() {
+        let mut c = Contradiction::default();
+        c.rule_out_the_unit();
+        assert!(!c.convicts_the_unit(), "nothing is contradicted");
+        for second in 0..4 {
+            c.judge(at(f64::from(second)), &position(0.0, 100.0), true);
+        }
+        assert!(c.is_raised() && !c.convicts_the_unit() && !c.start_is_due(at(4.0), 5.0) && c.start_is_due(at(5.0), 5.0));
+        for start in [5.0, 20.0, 40.0] {
+            assert!(c.start_is_due(at(start), 5.0));
+            c.started(at(start));
+            assert!(!c.start_is_due(at(start + 8.0), 5.0), "it has not contradicted yet");
+            c.judge(at(start + 8.0), &position(0.0, 50.0), true);
+            assert!(!c.convicts_the_unit());
+        }
+        c.rule_out_the_unit();
+        // Out for the flight, however long it then agrees.
+        for second in 50..2000 {
+            c.judge(at(f64::from(second)), &position(0.0, 0.0), true);
+        }
+        assert!(c.convicts_the_unit() && !c.start_is_due(at(2000.0), 5.0));
+    }
+
+    #[test]
+    fn a_contradiction_without_a_cause_stays_open_for_ten_minutes() {
+        let mut c = Contradiction::default();
+        c.judge(at(0.0), &position(100.0, 100.0), true);
+        c.started(at(5.0));
+        (6..35).for_each(|s| c.judge(at(f64::from(s)), &position(1.0, 1.0), true));
+        assert!(c.is_raised());
+        c.judge(at(35.0), &position(1.0, 1.0), false);
+        assert!(c.is_raised(), "the attitude is not settled");
+        c.judge(at(36.0), &position(1.0, 1.0), true);
+        assert!(!c.is_raised() && c.is_open() && !c.convicts_the_unit());
+        c.judge(at(604.0), &position(1.0, 1.0), true);
+        assert!(c.is_open());
+        c.judge(at(605.0), &position(1.0, 1.0), true);
+        assert!(!c.is_open());
+    }
+
+    #[test]
+    fn evidence_in_the_unit_convicts_at_once_and_a_position_without_motion_never_does() {
+        let mut c = Contradiction::default();
+        c.convict(at(0.0));
+        assert!(c.convicts_the_unit() && c.implausible_lately(at(1.0)) && !c.start_is_due(at(4.9), 5.0) && c.start_is_due(at(5.0), 5.0));
+        let mut c = Contradiction::default();
+        (0..60).for_each(|s| c.judge(at(f64::from(s)), &position(100.0, 5.0), true));
+        assert!(c.is_raised() && !c.convicts_the_unit() && !c.start_is_due(at(60.0), 5.0));
+        // A square that is no number is a failure.
+        let mut c = Contradiction::default();
+        c.judge(at(0.0), &position(f64::NAN, 0.0), true);
+        assert!(c.is_raised());
+    }
+}

@@ -1,0 +1,125 @@
+//! Solved positions as what stands beside a filter where no ranges come: each is its own snapshot.
+//!
+//! Nothing tests a solved position: its covariance bounds no fault. It serves to contradict the filter; a level it has only where its receiver
+//! brings one. That a filter falls out with solved positions convicts nobody, neither the unit nor the receiver. Provenance: ours.
+
+use super::{Guard, Looked, Tests};
+use crate::frame::ecef_from_geodetic;
+use crate::monitor::judgement::RangesAgree;
+use crate::quantity::{GpsTime, OutOfDomain};
+use crate::signal::{Aiding, PositionFix, TimedAiding};
+use crate::solution::ins::{Block, Difference, Fusion, Mode, is_sane};
+use crate::solution::snapshot::{Snapshot, SnapshotVelocity};
+use crate::solution::wls::horizontal_axes;
+use crate::special::float::{hypot, sqrt};
+use nalgebra::{Matrix3, Vector3};
+
+/// Components of a position.
+const COMPONENTS: usize = 3;
+/// Standard deviation of the acceleration between two positions that a velocity is taken from \[m/s²\]. Provenance: ours.
+const ACCELERATION_MPS2: f64 = 3.0;
+/// Longest time between them \[s\]. Provenance: ours.
+const BETWEEN_MOST_S: f64 = 2.5;
+/// Time for which filter and positions must contradict each other before the filter starts anew, and between two starts \[s\]. Provenance:
+/// inferred.
+const START_AFTER_S: f64 = 10.0;
+
+impl Guard {
+    /// A solved position, before the filter has it: may the filter use it? `age_sigma_s` is the deviation of its age.
+    pub fn admit_fix(&mut self, filter: &mut Fusion, now: GpsTime, timed: &TimedAiding, age_sigma_s: f64) -> bool {
+        let Aiding::Fix(m) = &timed.aiding else { return true };
+        let age_s = now.seconds_since(timed.time);
+        let in_time = age_s <= self.settings.age_most_s && age_s >= -0.5;
+        self.late = if in_time { 0 } else { self.late + 1 };
+        // What the filter refuses for its numbers is no witness.
+        if !is_sane(&timed.aiding) {
+            return true;
+        }
+        let before = self.looked.take();
+        let looked = seen(timed.time, m, before.as_ref(), age_sigma_s);
+        let mut usable = true;
+        if let Some(d) = filter.against(&looked.snapshot) {
+            let settled = !matches!(filter.mode_now(), Mode::Aligning);
+            let mut tests = self.test(&d, &looked);
+            if m.velocity_ned_mps.is_none() {
+                // A difference of positions is no velocity of its own.
+                (tests.square[1], tests.square[3], tests.exceeds[1], tests.exceeds[3]) = (0.0, 0.0, false, false);
+            }
+            let tests = Tests { square: [tests.square[0], 0.0, tests.square[2], 0.0], ..tests };
+            self.contradiction.judge(timed.time, &tests, settled);
+            self.tests = Some((timed.time, tests));
+            if let Some(square) = square(&d) {
+                self.shares.innovations(timed.time, &Block { square, freedom: COMPONENTS });
+            }
+            usable = !tests.fail();
+        }
+        self.looked = Some(looked);
+        usable
+    }
+
+    /// The filter has used the measurements of the last snapshot: the levels of its position from now on.
+    pub fn note_level(&mut self, filter: &mut Fusion, now: GpsTime) {
+        let Some(looked) = self.looked.as_ref().filter(|l| l.ranges_agree == RangesAgree::Yes) else { return };
+        let Some((d, given)) = filter.against(&looked.snapshot).zip(filter.solution(now)) else { return };
+        let apart = d.position.vector();
+        let level = [hypot(apart.x, apart.y) + looked.level_m[0], apart.z.abs() + looked.level_m[1]];
+        let sigma = [horizontal_axes(&given.covariance).0.m(), sqrt(given.covariance.matrix()[(2, 2)])];
+        if level.iter().chain(&sigma).all(|x| x.is_finite()) {
+            self.level = Some((now, level, sigma));
+        }
+    }
+
+    /// Starts the filter anew at a solved position of now that it has contradicted for long enough, or after it has stopped; whether it did.
+    ///
+    /// # Errors
+    /// As [`Fusion::restart_at`].
+    pub fn restart_at_fix(&mut self, filter: &mut Fusion, now: GpsTime) -> Result<bool, OutOfDomain> {
+        let due = self.contradiction.lasts(now, START_AFTER_S);
+        let Some(looked) = self.looked.as_ref().filter(|l| l.snapshot.time == now && (due || filter.stopped().is_some())) else {
+            return Ok(false);
+        };
+        let Some(velocity) = &looked.velocity else { return Ok(false) };
+        filter.restart_at(&looked.snapshot, velocity)?;
+        self.contradiction.started(now);
+        self.shares = super::Shares::new();
+        Ok(true)
+    }
+}
+
+/// A solved position as a snapshot. Its level holds for the age that is declared.
+fn seen(time: GpsTime, m: &PositionFix, before: Option<&Looked>, age_sigma_s: f64) -> Looked {
+    let snapshot = Snapshot::solved(time, m.position, m.covariance);
+    let velocity = match &m.velocity_ned_mps {
+        Some((v, r)) => Some(SnapshotVelocity { enu_mps: Vector3::new(v.y, v.x, -v.z), covariance: enu(r) }),
+        None => before.and_then(|b| between(&b.snapshot, &snapshot)),
+    };
+    let speed = velocity.map_or(0.0, |v| hypot(v.enu_mps.x, v.enu_mps.y));
+    let (ranges_agree, [h, v]) = match m.level_m {
+        Some(level) => (RangesAgree::Yes, level),
+        None => (RangesAgree::Untestable, [f64::NAN; 2]),
+    };
+    Looked { snapshot, velocity, ranges_agree, level_m: [h + 3.0 * age_sigma_s * speed, v] }
+}
+
+/// Mean velocity between two positions, and what an acceleration meanwhile leaves of it.
+fn between(a: &Snapshot, b: &Snapshot) -> Option<SnapshotVelocity> {
+    let dt = b.time.seconds_since(a.time);
+    if !(dt > 0.0 && dt <= BETWEEN_MOST_S) {
+        return None;
+    }
+    let enu_mps = b.ecef.minus(&ecef_from_geodetic(&a.position)).to_enu(&b.position.point).vector() / dt;
+    let turned = 0.5 * ACCELERATION_MPS2 * dt;
+    let covariance = (a.covariance.matrix() + b.covariance.matrix()) / (dt * dt) + Matrix3::identity() * (turned * turned);
+    Some(SnapshotVelocity { enu_mps, covariance })
+}
+
+/// East, north, up of a matrix north, east, down.
+fn enu(ned: &Matrix3<f64>) -> Matrix3<f64> {
+    let turn = Matrix3::new(0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0);
+    turn * ned * turn.transpose()
+}
+
+fn square(d: &Difference) -> Option<f64> {
+    let x = d.position.vector();
+    Some(x.dot(&d.covariance.matrix().cholesky()?.solve(x))).filter(|s| s.is_finite())
+}

@@ -1,0 +1,116 @@
+//! The share of measurements that a filter rejects, and the size of all innovations together.
+
+use crate::monitor::judgement::{Gating, Tuning};
+use crate::quantity::GpsTime;
+use crate::solution::ins::{Block, Fusion, Kind};
+use crate::special::float::exp;
+
+/// Time over which a share is taken \[s\]. Provenance: inferred.
+const WINDOW: usize = 10;
+/// Least time between two counts, a second but for jitter \[s\].
+const STEP_S: f64 = 0.95;
+/// Scalars from which the smaller share counts, and both shares. Provenance: inferred; a healthy filter rejects 2 of 21 000.
+const MANY: u64 = 20;
+const SHARE_OF_MANY: f64 = 0.2;
+const SHARE_OF_FEW: f64 = 0.5;
+/// Time over which innovations are averaged \[s\], the mean square from which the declared errors do not explain them, and below which they
+/// do again. Provenance: inferred.
+const TUNING_S: f64 = 60.0;
+const FOREIGN: f64 = 3.0;
+const DECLARED: f64 = 1.5;
+/// Largest mean square of an instant that counts: a single instant has a culprit, whatever its size.
+const INSTANT_MOST: f64 = 10.0;
+
+/// Families of measurements that keep a position. A single station that is left out is a culprit with a name, a blocked altimeter another.
+const FAMILIES: [&[Kind]; 3] = [&[Kind::Range], &[Kind::RangeRate], &[Kind::FixPosition, Kind::FixVelocity]];
+
+/// Counts second by second.
+#[derive(Debug, Clone, Copy)]
+pub struct Shares {
+    counted: [[u64; 2]; FAMILIES.len()],
+    window: [[[u64; 2]; FAMILIES.len()]; WINDOW],
+    next: usize,
+    since: Option<GpsTime>,
+    stepped: Option<GpsTime>,
+    excess: bool,
+    mean: f64,
+    weight: f64,
+    last: Option<GpsTime>,
+    foreign: bool,
+}
+
+impl Shares {
+    /// Nothing counted yet.
+    pub const fn new() -> Self {
+        let none = [[0; 2]; FAMILIES.len()];
+        Self {
+            counted: none,
+            window: [none; WINDOW],
+            next: 0,
+            since: None,
+            stepped: None,
+            excess: false,
+            mean: 0.0,
+            weight: 0.0,
+            last: None,
+            foreign: false,
+        }
+    }
+
+    /// A second has passed.
+    pub fn second(&mut self, now: GpsTime, filter: &Fusion) -> Gating {
+        // Results may be more frequent: what was counted stands until the second is over.
+        if self.stepped.is_none_or(|t| now.seconds_since(t) >= STEP_S) {
+            self.stepped = Some(now);
+            self.count(filter);
+        }
+        if !self.excess {
+            self.since = None;
+            return Gating::Usual;
+        }
+        Gating::Excess { for_s: now.seconds_since(*self.since.get_or_insert(now)) }
+    }
+
+    fn count(&mut self, filter: &Fusion) {
+        for (k, family) in FAMILIES.iter().enumerate() {
+            let of =
+                |count: fn(&crate::solution::ins::Innovations) -> u64| family.iter().map(|kind| count(filter.innovations(*kind))).sum();
+            let total: [u64; 2] = [of(|i| i.n_used), of(|i| i.n_gated)];
+            // A filter that started anew counts from nothing.
+            self.window[self.next][k] =
+                [0, 1].map(|j| if total[j] >= self.counted[k][j] { total[j] - self.counted[k][j] } else { total[j] });
+            self.counted[k] = total;
+        }
+        self.next = (self.next + 1) % WINDOW;
+        self.excess = (0..FAMILIES.len()).any(|k| {
+            let [used, gated] = [0, 1].map(|j| self.window.iter().map(|second| second[k][j]).sum::<u64>());
+            let (all, gated) = (used + gated, gated as f64);
+            let most = if all >= MANY { SHARE_OF_MANY } else { SHARE_OF_FEW };
+            all > 0 && !(gated <= most * all as f64)
+        });
+    }
+
+    /// The innovations of an instant, used or not, of a filter that the snapshot does not contradict.
+    pub fn innovations(&mut self, now: GpsTime, block: &Block) {
+        let keep = self.last.map_or(0.0, |t| exp(-now.seconds_since(t) / TUNING_S));
+        self.last = Some(now);
+        let square = block.square / block.freedom as f64;
+        // A square that is no number is the largest.
+        self.mean = keep * self.mean + if square <= INSTANT_MOST { square } else { INSTANT_MOST };
+        self.weight = keep * self.weight + 1.0;
+    }
+
+    /// What they say. Before half a window has been heard the declared errors stand.
+    pub fn tuning(&mut self) -> Tuning {
+        let mean = self.mean / self.weight;
+        let most = if self.foreign { DECLARED } else { FOREIGN };
+        self.foreign = self.weight >= 0.5 * WINDOW as f64 && !(mean <= most);
+        if self.foreign { Tuning::Foreign } else { Tuning::AsDeclared }
+    }
+}
+
+impl Default for Shares {
+    fn default() -> Self {
+        Self::new()
+    }
+}

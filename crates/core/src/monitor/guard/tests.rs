@@ -1,0 +1,180 @@
+//! The covariance of the difference against draws, the risk of its test, and the unit's plausibility.
+
+use super::*;
+use crate::frame::{Geodetic, LatLon};
+use crate::quantity::{Metres, Radians};
+use crate::signal::{Aiding, Constellation};
+use crate::solution::ins::{Attitude, ErrorModel, ImuModel, NavState, Settings as FilterSettings, StartSigma};
+use nalgebra::Vector3;
+
+/// Uniform, then normal, by a generator whose period is beyond any test.
+struct Draw(u64);
+
+impl Draw {
+    fn uniform(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64 + 1e-17
+    }
+    fn normal(&mut self) -> f64 {
+        (-2.0 * self.uniform().ln()).sqrt() * (core::f64::consts::TAU * self.uniform()).cos()
+    }
+}
+
+/// A body at rest on a turning Earth; eight satellites that stand still, each with a slow error.
+struct World {
+    draw: Draw,
+    position: Geodetic,
+    slow: [f64; 8],
+    second: u32,
+}
+
+const SLOW_M: f64 = 3.0;
+const WHITE_M: f64 = 1.0;
+const TAU_S: f64 = 1000.0;
+
+impl World {
+    fn new(seed: u64) -> Self {
+        let point = LatLon::new(Radians::new(0.7), Radians::new(2.0)).unwrap();
+        let mut draw = Draw(seed);
+        let slow = core::array::from_fn(|_| SLOW_M * draw.normal());
+        Self { draw, position: Geodetic { point, height: Metres::new(1000.0) }, slow, second: 0 }
+    }
+
+    fn time(&self) -> GpsTime {
+        GpsTime::default().plus_seconds(f64::from(self.second))
+    }
+
+    /// The filter starts wrong by its deviations.
+    fn filter(&mut self) -> Fusion {
+        let mut settings = FilterSettings::of(ImuModel::NAVIGATION);
+        settings.errors = ErrorModel::Correlated;
+        settings.reversion = false;
+        let sigma = StartSigma { position: [Metres::new(5.0); 3], velocity_mps: 1e-6, attitude: [Radians::new(1e-9); 3] };
+        let by = Vector3::from_fn(|_, _| 5.0 * self.draw.normal());
+        let start = self.position.moved(&Displacement::<Enu>::from_vector(by)).unwrap();
+        let level = Attitude { roll: Radians::new(0.0), pitch: Radians::new(0.0), heading: Radians::new(0.0) };
+        Fusion::new(NavState::new(self.time(), &start, Vector3::zeros(), &level).unwrap(), &sigma, settings).unwrap()
+    }
+
+    fn ranges(&mut self) -> Vec<TimedAiding> {
+        let here = ecef_from_geodetic(&self.position);
+        let enu = enu_from_ecef(&self.position.point);
+        let keep = (-1.0 / TAU_S).exp();
+        (0..8u8)
+            .map(|k| {
+                let (az, el) = (f64::from(k) * 0.9, 0.3 + 0.15 * f64::from(k));
+                let unit = Vector3::new(el.cos() * az.sin(), el.cos() * az.cos(), el.sin());
+                let slow = &mut self.slow[usize::from(k)];
+                *slow = keep * *slow + (1.0 - keep * keep).sqrt() * SLOW_M * self.draw.normal();
+                let range = 2.2e7 + *slow + WHITE_M * self.draw.normal() + 40.0;
+                TimedAiding {
+                    time: GpsTime::default().plus_seconds(f64::from(self.second)),
+                    aiding: Aiding::Satellite(SatelliteRange {
+                        satellite: SatelliteId { constellation: Constellation::Gps, number: k + 1 },
+                        position: EcefPosition::from_vector(here.vector() + enu.transpose() * unit * 2.2e7),
+                        velocity_mps: Vector3::zeros(),
+                        range: Some(Metres::new(range)),
+                        sigma_white: Metres::new(WHITE_M),
+                        sigma_correlated: Metres::new(SLOW_M),
+                        sigma_first: Metres::new(SLOW_M),
+                        correlation_time_s: TAU_S,
+                        rate_mps: None,
+                    }),
+                }
+            })
+            .collect()
+    }
+
+    /// A second passes; what a unit at rest delivers.
+    fn sample(&mut self) -> ImuIncrement {
+        self.second += 1;
+        let lat = self.position.point.lat();
+        let rate = crate::frame::earth_rate_ned(lat.rad().sin(), lat.rad().cos());
+        let g = crate::frame::gravity_mps2(lat, self.position.height);
+        ImuIncrement { time: self.time(), interval_s: 1.0, angle_rad: rate, velocity_mps: Vector3::new(0.0, 0.0, -g) }
+    }
+}
+
+/// The normalised square of the difference without inflation, after some instants of use and some without.
+fn squares(used: u32, unused: u32) -> Vec<f64> {
+    (0..600_u32)
+        .map(|run| {
+            let mut world = World::new(0x9e37_79b9_7f4a_7c15 ^ (u64::from(run) << 20) ^ 0x1234_5678);
+            (0..10).for_each(|_| {
+                world.draw.uniform();
+            });
+            let mut filter = world.filter();
+            for k in 0..used + unused {
+                filter.advance(&world.sample());
+                let ranges = world.ranges();
+                if k < used {
+                    filter.aid(&ranges);
+                }
+            }
+            filter.advance(&world.sample());
+            let ranges = world.ranges();
+            let snapshot = Solver::default().position(world.time(), &judgeable(&ranges)).unwrap();
+            let d = filter.against(&snapshot).unwrap();
+            super::super::consistency::normalised_square(&d.position, &d.covariance).unwrap()
+        })
+        .collect()
+}
+
+/// 600 draws of chi-square with three degrees of freedom: the mean is 3 ± 0.1, four deviations either way. `S + P` without what both share
+/// would give 2.2 where the ranges are used, `S - P` has no root where they are not.
+#[test]
+fn the_covariance_of_the_difference_is_that_of_draws_with_ranges_used_and_unused() {
+    for (used, unused) in [(15, 0), (5, 30)] {
+        let all = squares(used, unused);
+        let mean = all.iter().sum::<f64>() / all.len() as f64;
+        assert!((mean - 3.0).abs() < 0.4, "{used} {unused}: {mean}");
+    }
+}
+
+/// The limits are those of the law: 42.2 and 38.0 are printed in the method's description to three digits.
+#[test]
+fn the_limits_are_those_of_chi_square_at_the_risk() {
+    let [two, one] = [2.0, 1.0].map(|dof| chi_square_factor(dof, TEST_RISK));
+    assert!((two - 42.2).abs() < 0.05 && (one - 38.0).abs() < 0.05, "{two} {one}");
+    // Two degrees of freedom in closed form.
+    assert!((two + 2.0 * TEST_RISK.ln()).abs() < 1e-9);
+}
+
+fn envelope() -> Envelope {
+    Envelope { range: [98.0, 7.0], most: [34.3, 1.05], change_mps3: 50.0, never_repeats: true }
+}
+
+fn sample(k: i64, force: Vector3<f64>, rate: Vector3<f64>) -> ImuIncrement {
+    ImuIncrement { time: GpsTime::from_nanoseconds(k * 10_000_000), interval_s: 0.01, angle_rad: rate * 0.01, velocity_mps: force * 0.01 }
+}
+
+/// Samples until the first that cannot be right, of a unit that is healthy for a second and then does what is given.
+fn seen_after(fault: impl Fn(i64, Vector3<f64>, Vector3<f64>) -> (Vector3<f64>, Vector3<f64>)) -> Option<i64> {
+    let mut unit = Plausibility::new(envelope());
+    let mut draw = Draw(0xdead_beef_cafe);
+    let mut noise = move |size: f64| Vector3::from_fn(|_, _| size * draw.normal());
+    for k in 0..400 {
+        let (force, rate) = (Vector3::new(0.0, 0.0, -9.8) + noise(0.01), noise(1e-4));
+        let (force, rate) = if k >= 100 { fault(k, force, rate) } else { (force, rate) };
+        if !unit.holds(&sample(k, force, rate), Some(0.1)) {
+            return Some(k - 100);
+        }
+    }
+    None
+}
+
+#[test]
+fn a_unit_is_doubted_for_what_it_delivers_and_a_healthy_one_is_not() {
+    assert_eq!(seen_after(|_, f, w| (f, w)), None);
+    assert_eq!(seen_after(|_, f, w| (f + Vector3::new(2.0, 0.0, 0.0), w)), None, "two metres a second squared are flown");
+    assert_eq!(seen_after(|_, f, w| (f + Vector3::new(49.0, 0.0, 0.0), w)), Some(0));
+    assert_eq!(seen_after(|_, f, w| (f, w + Vector3::new(0.0, 1.1, 0.0))), Some(0));
+    let still = Vector3::new(1e-5, 2e-5, 3e-5);
+    assert_eq!(seen_after(|_, f, _| (f, still)), Some(3), "four samples of the same gyroscopes");
+    assert_eq!(seen_after(|_, _, w| (Vector3::new(0.1, 0.0, -9.8), w)), Some(2), "clipped at the largest of the flight, or frozen");
+    assert_eq!(seen_after(|_, _, _| (Vector3::zeros(), Vector3::zeros())).map(|k| k <= 10), Some(true));
+    assert!(seen_after(|_, f, w| (Vector3::new(f.x, f.y, f.z.max(-2.0)), w)).is_some(), "a fifth of the weight");
+    assert_eq!(seen_after(|_, f, w| (f * f64::NAN, w)), Some(0));
+}
