@@ -384,6 +384,10 @@ impl Guard {
     /// # Errors
     /// As [`Fusion::restart_at`].
     pub fn restart(&mut self, filter: &mut Fusion, now: GpsTime) -> Result<bool, OutOfDomain> {
+        if self.contradiction.take_cleared() {
+            // The unit led the filter without satellites astray as well, and nothing is in doubt any more.
+            filter.renew_beside(now)?;
+        }
         let lost = filter.stopped().is_some();
         if !(self.contradiction.start_is_due(now, self.settings.restart_after_s) || (lost && !self.contradiction.is_raised())) {
             return Ok(false);
