@@ -20,6 +20,8 @@ WORDS = {
     "reason",
     "mode",
     "nav_mode",
+    "nav_reasons",
+    "nav_source",
     "alert",
     "state",
     "kind",

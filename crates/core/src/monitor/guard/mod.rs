@@ -458,7 +458,7 @@ impl Guard {
             return Inertial::Fault;
         }
         if let Some((first, last)) = self.clock_wrong {
-            let lasting = epoch.seconds_since(first) >= CLOCK_MOST_S && epoch.seconds_since(last) < CLOCK_MOST_S;
+            let lasting = epoch.seconds_since(first) >= CLOCK_MOST_S && epoch.seconds_since(last) < 1.0;
             return if lasting { Inertial::Fault } else { Inertial::Clock };
         }
         let Some(since) = self.accepted.or(self.begin) else { return Inertial::Plausible };
