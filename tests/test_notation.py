@@ -22,6 +22,8 @@ WORDS = {
     "excluded_sv",
     "mode",
     "nav_mode",
+    "nav_reasons",
+    "nav_source",
     "alert",
     "state",
     "kind",

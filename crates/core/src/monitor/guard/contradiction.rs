@@ -52,6 +52,8 @@ pub struct Contradiction {
     starts: [Option<GpsTime>; STARTS_MOST],
     started: Option<GpsTime>,
     out: bool,
+    /// A contradiction of which the unit was the cause has been cleared, and nobody has asked since.
+    cleared: bool,
 }
 
 impl Contradiction {
@@ -68,6 +70,7 @@ impl Contradiction {
         let Some(failed) = self.failed.max(self.started) else { return };
         let agreed = now.seconds_since(failed) >= AGREED_S;
         if self.raised.is_some() && agreed && settled && !self.out {
+            self.cleared = self.unit;
             // A cause that has gone leaves nothing open.
             self.open = if self.unit { None } else { Some(now) };
             (self.raised, self.unit, self.still) = (None, false, false);
@@ -120,6 +123,11 @@ impl Contradiction {
         self.starts.rotate_left(1);
         self.starts[STARTS_MOST - 1] = Some(now);
         self.started = Some(now);
+    }
+
+    /// Whether a contradiction of which the unit was the cause has been cleared since this was last asked.
+    pub fn take_cleared(&mut self) -> bool {
+        core::mem::take(&mut self.cleared)
     }
 
     /// Whether they contradict each other, or have not agreed for long enough since.

@@ -388,6 +388,10 @@ impl Guard {
     /// # Errors
     /// As [`Fusion::restart_at`].
     pub fn restart(&mut self, filter: &mut Fusion, now: GpsTime) -> Result<bool, OutOfDomain> {
+        if self.contradiction.take_cleared() {
+            // The unit led the filter without satellites astray as well, and nothing is in doubt any more.
+            filter.renew_beside(now)?;
+        }
         let lost = filter.stopped().is_some();
         if !(self.contradiction.start_is_due(now, self.settings.restart_after_s) || (lost && !self.contradiction.is_raised())) {
             return Ok(false);
@@ -458,7 +462,7 @@ impl Guard {
             return Inertial::Fault;
         }
         if let Some((first, last)) = self.clock_wrong {
-            let lasting = epoch.seconds_since(first) >= CLOCK_MOST_S && epoch.seconds_since(last) < CLOCK_MOST_S;
+            let lasting = epoch.seconds_since(first) >= CLOCK_MOST_S && epoch.seconds_since(last) < 1.0;
             return if lasting { Inertial::Fault } else { Inertial::Clock };
         }
         let Some(since) = self.accepted.or(self.begin) else { return Inertial::Plausible };

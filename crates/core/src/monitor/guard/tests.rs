@@ -4,7 +4,7 @@ use super::*;
 use crate::frame::{Geodetic, LatLon};
 use crate::quantity::{Metres, Radians};
 use crate::signal::{Aiding, Constellation};
-use crate::solution::ins::{Attitude, ErrorModel, ImuModel, NavState, Settings as FilterSettings, StartSigma};
+use crate::solution::ins::{Attitude, ErrorModel, ImuModel, NavState, SensorNoise, Settings as FilterSettings, StartSigma};
 use nalgebra::Vector3;
 
 /// Uniform, then normal, by a generator whose period is beyond any test.
@@ -48,7 +48,9 @@ impl World {
 
     /// The filter starts wrong by its deviations.
     fn filter(&mut self) -> Fusion {
-        let mut settings = FilterSettings::of(ImuModel::NAVIGATION);
+        // The unit of this world is perfect, and the filter knows that.
+        let perfect = SensorNoise { white: 1e-12, bias: 1e-12, bias_time_s: 3600.0 };
+        let mut settings = FilterSettings::of(ImuModel { gyroscope: perfect, accelerometer: perfect });
         settings.errors = ErrorModel::Correlated;
         settings.reversion = false;
         let sigma = StartSigma { position: [Metres::new(5.0); 3], velocity_mps: 1e-6, attitude: [Radians::new(1e-9); 3] };

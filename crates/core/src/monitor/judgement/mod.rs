@@ -281,8 +281,18 @@ fn status(facts: &Facts, source: Source, reasons: Reasons, with_level: bool) -> 
 }
 
 /// Reasons that say something of the filter and nothing of the snapshot, once the unit is known to be out.
-const OF_THE_FILTER_ALONE: [Reason; 6] =
-    [Reason::StateStale, Reason::ImuMissing, Reason::ImuRefused, Reason::ImuImplausible, Reason::ImuFault, Reason::FilterContradicted];
+///
+/// Filters and stations that fall out are among them: where the unit is not the cause the epoch is not available before this is asked.
+const OF_THE_FILTER_ALONE: [Reason; 8] = [
+    Reason::StateStale,
+    Reason::ImuMissing,
+    Reason::ImuRefused,
+    Reason::ImuImplausible,
+    Reason::ImuFault,
+    Reason::FilterContradicted,
+    Reason::FiltersDisagree,
+    Reason::StationsContradict,
+];
 
 /// Without the inertial unit the snapshot is as good as its own test, once the unit is known to be the cause.
 fn of_the_snapshot(facts: &Facts, reasons: Reasons, with_level: bool) -> Status {

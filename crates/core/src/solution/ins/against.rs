@@ -94,6 +94,29 @@ impl Fusion {
         Ok(())
     }
 
+    /// The filter without satellites begins anew where the main one is, knowing as much; not where the main one has no state of that time, or
+    /// an attitude that is not settled.
+    ///
+    /// # Errors
+    /// As [`Filter::new`].
+    pub fn renew_beside(&mut self, now: GpsTime) -> Result<(), OutOfDomain> {
+        if self.beside.is_none() || self.main.is_aligning() {
+            return Ok(());
+        }
+        let Some(s) = self.main.solution(now) else { return Ok(()) };
+        let (p, v, a) = (s.covariance.matrix(), &s.velocity_m2ps2, &s.attitude_rad2);
+        let most = (0..3).map(|k| v[(k, k)]).fold(0.0, f64::max);
+        let sigma = StartSigma {
+            position: [p[(1, 1)], p[(0, 0)], p[(2, 2)]].map(|variance| Metres::new(sqrt(variance))),
+            velocity_mps: sqrt(most),
+            attitude: [0, 1, 2].map(|k| Radians::new(sqrt(a[(k, k)]))),
+        };
+        let settings = self.main.settings;
+        self.beside = Some(Filter::new(s.state, &sigma, settings)?);
+        self.nested = false;
+        Ok(())
+    }
+
     /// What keeps the position of the main filter, the aligning included.
     pub fn mode_now(&mut self) -> Mode {
         self.main.watch_alignment();

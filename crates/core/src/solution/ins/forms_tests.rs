@@ -55,7 +55,8 @@ fn sky(second: u32, errors: [f64; 8], slow: f64) -> Vec<TimedAiding> {
             satellite: SatelliteId { constellation: Constellation::Gps, number: k + 1 },
             position: EcefPosition::from_vector(own.vector() + to_ecef * unit * 2.3e7),
             velocity_mps: Vector3::zeros(),
-            range: Some(Metres::new(2.3e7 + 3000.0 + errors[usize::from(k)])),
+            // A receiver never says the same bits twice.
+            range: Some(Metres::new(2.3e7 + 3000.0 + errors[usize::from(k)] + f64::from(second) * 1e-6)),
             sigma_white: Metres::new(1.0),
             sigma_correlated: Metres::new(slow),
             sigma_first: Metres::new(slow),

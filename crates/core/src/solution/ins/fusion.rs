@@ -25,7 +25,7 @@ pub struct Fusion {
     pub(super) beside: Option<Filter>,
     receiver: Receiver,
     /// Whether everything the filter beside knows is known to the main one too.
-    nested: bool,
+    pub(super) nested: bool,
 }
 
 /// The filter without satellites, and how far the one with them is from it.
