@@ -42,12 +42,11 @@ fn gps_from_unix_ns<'py>(py: Python<'py>, unix_ns: PyReadonlyArray1<'py, i64>) -
     Ok(times.into_pyarray(py))
 }
 
+type TimesAndWhether<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<bool>>);
+
 /// GPS time [ns] of the leap second that follows each Unix time [ns], and whether there is one; 0 where there is none.
 #[pyfunction]
-fn gps_of_leap_second_ns<'py>(
-    py: Python<'py>,
-    unix_ns: PyReadonlyArray1<'py, i64>,
-) -> PyResult<(Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<bool>>)> {
+fn gps_of_leap_second_ns<'py>(py: Python<'py>, unix_ns: PyReadonlyArray1<'py, i64>) -> PyResult<TimesAndWhether<'py>> {
     let leap: Vec<_> = unix_ns.as_slice()?.iter().map(|t| time::leap_second_after(*t)).collect();
     let times: Vec<i64> = leap.iter().map(|t| t.map_or(0, GpsTime::nanoseconds)).collect();
     let exists: Vec<bool> = leap.iter().map(Option::is_some).collect();

@@ -135,6 +135,7 @@ fn perfect() -> Imu {
 fn scenario(path: PathFlown) -> Scenario {
     let mut scenario: Scenario = serde_json::from_str(include_str!("beijing-shanghai.json")).unwrap();
     scenario.sensors = Some(Sensors {
+        envelope: None,
         path,
         rate_hz: 200,
         imu: perfect(),
