@@ -84,7 +84,7 @@ def case(n: int, faults: dict[int, float]) -> Case:
     clock = k % 2 if n > 6 else np.zeros(n, dtype=np.int64)
     if n <= 6:
         residual -= 100.0 * (k % 2)
-    return Case(unit, clock, 0.8 + 0.1 * (k % 4), residual, common)
+    return Case(unit, clock, np.asarray(0.8 + 0.1 * (k % 4), dtype=np.float64), residual, common)
 
 
 def main() -> None:

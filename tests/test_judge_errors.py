@@ -44,7 +44,7 @@ def test_an_error_along_the_course_alone_has_a_deviation_across_of_zero_at_every
     assert sigma.null_count() == 0
     # Rounding of three products leaves 1e-15 of the variance, whose root is 3e-8 of the deviation along.
     along = (table["cov_ee_m2"] + table["cov_nn_m2"]).sqrt()
-    assert float((sigma / along).max()) < 1e-7
+    assert (sigma / along).to_numpy().max() < 1e-7
     covariance = np.stack([table["cov_ee_m2"], table["cov_en_m2"], table["cov_en_m2"], table["cov_nn_m2"]], axis=-1).reshape(-1, 2, 2)
     core = tse.project(np.zeros((table.height, 2)), covariance, table["course_rad"].to_numpy()).sigma_m
     assert np.array_equal(sigma.to_numpy(), core)

@@ -66,8 +66,8 @@ def differs(a: np.ndarray[Any, Any], b: np.ndarray[Any, Any]) -> np.ndarray[Any,
     if a.shape != b.shape:
         return np.ones(a.shape, dtype=bool)
     if a.dtype.kind == "f":
-        return ~((a == b) | (np.isnan(a) & np.isnan(b)))
-    return a != b
+        return np.asarray(~((a == b) | (np.isnan(a) & np.isnan(b))))
+    return np.asarray(a != b)
 
 
 def nudged(call: Any, argument: str) -> list[dict[str, np.ndarray[Any, Any]]]:

@@ -13,6 +13,7 @@ from navbound import InputError
 from navbound.methods import bounds
 from navbound.run.judge import judge
 from navbound.run.material import Material
+from navbound.run.records import CovarianceOrigin
 from navbound.run.settings import Settings
 
 DEFAULTS = {"risk_accuracy": 0.05, "risk_integrity": 1e-5}
@@ -43,7 +44,7 @@ def epochs(n: int = 400) -> pl.DataFrame:
 
 
 def judged(settings: Settings) -> Any:
-    return judge(Material(epochs(), "analyze", "a leg", "RNP 0.3", 1.0, ["made for a test"]), settings)
+    return judge(Material(epochs(), "analyze", "a leg", "RNP 0.3", 1.0, ["made for a test"], CovarianceOrigin(id="file")), settings)
 
 
 def stated(value: object, where: str = "") -> list[tuple[str, float | str]]:

@@ -168,7 +168,7 @@ def _judged(columns: dict[str, Any], available: NDArray[np.bool_]) -> dict[str, 
         "nav_reasons": _words(sets, place),
         "status": _words(statuses, columns["decided"]),
         "reason_id": reason_id,
-        "reason": pl.select(pl.coalesce(absent["reason"], status.words(reason_id)))[:, 0],
+        "reason": pl.select(pl.coalesce(absent["reason"], status.words(pl.lit(reason_id))))[:, 0],
     }
 
 

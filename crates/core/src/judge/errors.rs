@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn an_error_along_the_course_alone_has_no_deviation_across_at_any_course() {
         for step in 0..100_000 {
-            let course = 6.283_185_307_179_586 * f64::from(step) / 100_000.0;
+            let course = core::f64::consts::TAU * f64::from(step) / 100_000.0;
             let (s, c) = sin_cos(course);
             let covariance = Covariance::from_upper([100.0 * s * s, 100.0 * s * c, 100.0 * c * c, f64::NAN, f64::NAN, f64::NAN]);
             let known = Known { course: Some(Radians::new(course)), covariance: Some(covariance), ..Known::default() };

@@ -225,7 +225,7 @@ mod tests {
         assert_eq!(entry.admit(&fix(0.0, 0.7), 0.0), Ok(()));
         (0..SOURCES).for_each(|k| {
             let source = entry.place(k as u64 + (1 << 40));
-            entry.heard[source] = Some(Heard { source: k as u64 + (1 << 40), ..entry.heard[0].unwrap_or_else(|| none()) });
+            entry.heard[source] = Some(Heard { source: k as u64 + (1 << 40), ..entry.heard[0].unwrap_or_else(none) });
         });
         assert_eq!(entry.admit(&fix(0.0, 0.7), 0.0), Ok(()));
     }
