@@ -48,7 +48,7 @@ def reading(case: Case, subset: tuple[int, ...], size: float) -> tuple[float, Ar
     theta = np.linalg.solve(normal, h.T @ weight @ case.residual)
     rest = case.residual - h @ theta
     likelihood = -0.5 * (np.linalg.slogdet(c)[1] + np.linalg.slogdet(normal)[1] + rest @ weight @ rest)
-    return float(likelihood), theta[:3], np.linalg.inv(normal)[:3, :3]
+    return float(likelihood), np.asarray(theta[:3], dtype=np.float64), np.asarray(np.linalg.inv(normal)[:3, :3], dtype=np.float64)
 
 
 def mixture(case: Case, obstructed: float) -> tuple[float, Array, float]:

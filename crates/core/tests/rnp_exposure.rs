@@ -64,7 +64,7 @@ fn exposures_outside_their_domain_are_refused() {
     {
         assert_eq!(HourlyExposure::new(tau, dt).unwrap_err().argument, argument);
     }
-    assert_eq!(HourlyExposure::new(1e6, 0.0).unwrap().per_epoch(Risk::new(0.9).unwrap()).unwrap_err().argument, "risk_per_hour");
+    assert_eq!(HourlyExposure::new(1e9, 0.0).unwrap().per_epoch(Risk::new(0.5).unwrap()).unwrap_err().argument, "risk_per_hour");
 }
 
 #[test]
