@@ -6,27 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from navbound import _core
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 Floats = "NDArray[np.float64]"
-
-
-def checked_risk(argument: str, value: float) -> float:
-    """An allowed risk, at most one half.
-
-    Raises
-    ------
-    InputError
-        Outside its domain; between 0.5 and 1 the error asks whether a confidence was meant.
-    """
-    try:
-        return _core.checked_risk(float(value))
-    except InputError as e:
-        raise InputError(argument, value, e.unit, e.domain) from None
 
 
 def flatten(**arguments: tuple[ArrayLike, tuple[int, ...]]) -> tuple[tuple[int, ...], list[NDArray[np.float64]]]:

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Literal, cast
 
-import polars as pl
-
 from navbound import _core
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
     import numpy as np
+    import polars as pl
     from numpy.typing import NDArray
 
 Provenance = Literal["printed", "re-derived", "standard", "ours", "inferred"]
@@ -158,6 +157,8 @@ def with_errors(epochs: pl.DataFrame) -> pl.DataFrame:
         With ``nse_h_m``, ``nse_3d_m``, ``nse_along_m``, ``nse_cross_m``, ``tse_m``, ``tse_v_m`` and ``sigma_cross_m``, where the table has
         what they need; null where a row lacks it. [m] Provenance: ours, the projection is that of :func:`navbound.tse.project`.
     """
+    import polars as pl  # noqa: PLC0415 - a list of methods needs no tables
+
     columns = {name: column_of(epochs, name) for name in (*_COLUMNS, *_NSE) if name in epochs.columns}
     errors = _core.errors_of(epochs.height, columns)
     there = {name: errors[name] for name, needs in _NEEDS.items() if needs <= set(epochs.columns)}

@@ -12,7 +12,6 @@ import polars as pl
 
 from navbound import _core
 from navbound import status as status_list
-from navbound._arrays import checked_risk
 from navbound._extraction_gains import EXTRACTION_LABEL
 from navbound._rnp_exposure import PER_EPOCH, ExposureBasis, PerEpoch, PerHour, per_epoch_risk, per_hour_risk
 from navbound._rnp_specifications import Specification, specification, specifications
@@ -27,6 +26,7 @@ from navbound._states import (
 )
 from navbound.errors import InputError
 from navbound.methods import method
+from navbound.risks import checked_risk
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from navbound._arrays import checked_risk
+from navbound.risks import checked_risk
 
 DEFAULT_METHODS = (
     "tse-exact",
