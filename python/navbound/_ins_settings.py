@@ -205,6 +205,9 @@ class FilterSettings:
         Longest hole that is bridged, and the deviations of acceleration and rate that it may hide. [s, m/s², rad/s]
     age_most_s : float
         Oldest measurement used, against the last sample. [s]
+    guarded : bool
+        Whether the measurements of each instant are solved by themselves and test the filter (docs/methods/fused-integrity.md). A filter
+        that nothing tests is never ``ok``.
     range_age_sigma_s, fix_age_sigma_s : float
         Standard deviation of the age of ranges and of solved positions: three of them times the speed are in every level. [s]
     set_after_s : float
@@ -224,6 +227,7 @@ class FilterSettings:
     gap_acceleration_mps2: float = 1.0
     gap_rate_radps: float = 0.1
     age_most_s: float = 0.2
+    guarded: bool = True
     range_age_sigma_s: float = 1e-3
     fix_age_sigma_s: float = 0.1
     set_after_s: float = 60.0
@@ -260,6 +264,7 @@ def told(
         "samples_per_step": how.samples_per_step,
         "gap": [how.gap_most_s, how.gap_acceleration_mps2, how.gap_rate_radps],
         "age_most_s": how.age_most_s,
+        "guarded": how.guarded,
         "age_sigma_s": [how.range_age_sigma_s, how.fix_age_sigma_s],
         "set_after_s": how.set_after_s,
         "patience_s": [how.lose_s, how.gain_s],

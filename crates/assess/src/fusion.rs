@@ -1,6 +1,6 @@
 //! Whole flights through the navigation filter: inertial samples and measurements in the order of their times.
 
-use crate::judged::{Ages, Judged, StandIn};
+use crate::judged::{Checks, Judged, StandIn};
 use navbound_core::monitor::judgement::Decision;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{ImuIncrement, TimedAiding};
@@ -64,7 +64,7 @@ pub fn run(
     sigma: &StartSigma,
     settings: Settings,
     plan: &Plan,
-    ages: Ages,
+    checks: Checks,
     imu: impl Iterator<Item = ImuIncrement>,
     aiding: &[TimedAiding],
 ) -> Result<Flight, OutOfDomain> {
@@ -77,7 +77,7 @@ pub fn run(
     }
     let filter = Box::new(Fusion::new(start, sigma, settings)?);
     let mut driver = Driver::new(filter, *plan);
-    let mut judged = Judged::new(&settings, ages)?;
+    let mut judged = Judged::new(&settings, checks)?;
     let mut moments = Vec::new();
     let mut next = aiding.partition_point(|a| a.time < start.time);
     for sample in imu {

@@ -11,19 +11,21 @@ use navbound_core::signal::{Aiding, ImuIncrement, TimedAiding};
 use navbound_core::solution::ins::{Advance, Beside, Kind, Settings, Solution};
 use navbound_core::solution::snapshot::SnapshotVelocity;
 
-/// Standard deviations of the age of satellite data \[s\]: their share of a level is three of them times the speed.
+/// What stands beside a filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ages {
-    /// Of ranges.
-    pub range_sigma_s: f64,
-    /// Of solved positions.
-    pub fix_sigma_s: f64,
+pub struct Checks {
+    /// Whether the measurements of each instant are solved by themselves and test the filter. A filter that nothing tests is never `ok`.
+    pub guarded: bool,
+    /// Standard deviation of the age of ranges \[s\]: its share of a level is three of them times the speed.
+    pub range_age_sigma_s: f64,
+    /// The same of solved positions.
+    pub fix_age_sigma_s: f64,
 }
 
-impl Default for Ages {
+impl Default for Checks {
     /// A receiver whose ranges carry its own time; positions over a serial line. Provenance: inferred.
     fn default() -> Self {
-        Self { range_sigma_s: 1e-3, fix_sigma_s: 0.1 }
+        Self { guarded: true, range_age_sigma_s: 1e-3, fix_age_sigma_s: 0.1 }
     }
 }
 
@@ -47,28 +49,28 @@ const STATIONS: (usize, f64) = (2, 30.0);
 pub(crate) struct Judged {
     guard: Box<Guard>,
     verdict: separation::Verdict,
-    ages: Ages,
+    checks: Checks,
     due: Option<GpsTime>,
     left_out: Option<GpsTime>,
 }
 
 impl Judged {
-    pub(crate) fn new(settings: &Settings, ages: Ages) -> Result<Self, OutOfDomain> {
-        if !(ages.fix_sigma_s >= 0.0 && ages.fix_sigma_s.is_finite()) {
+    pub(crate) fn new(settings: &Settings, checks: Checks) -> Result<Self, OutOfDomain> {
+        if !(checks.fix_age_sigma_s >= 0.0 && checks.fix_age_sigma_s.is_finite()) {
             let domain = "[0, inf)";
-            return Err(OutOfDomain { argument: "fix_age_sigma_s", value: ages.fix_sigma_s, unit: "s", domain });
+            return Err(OutOfDomain { argument: "fix_age_sigma_s", value: checks.fix_age_sigma_s, unit: "s", domain });
         }
         let guard = GuardSettings {
             // A recording says nothing of the range of its unit and the envelope of its vehicle.
             envelope: Envelope::NONE,
             requirement: Requirement::RAIM,
-            age_sigma_s: ages.range_sigma_s,
+            age_sigma_s: checks.range_age_sigma_s,
             gap_most_s: settings.gap_most_s,
             age_most_s: settings.age_most_s,
             restart_after_s: RESTART_AFTER_S,
         };
         let verdict = separation::Verdict::new(settings.separation);
-        Ok(Self { guard: Box::new(Guard::new(guard)?), verdict, ages, due: None, left_out: None })
+        Ok(Self { guard: Box::new(Guard::new(guard)?), verdict, checks, due: None, left_out: None })
     }
 
     /// A sample and what the filter made of it; the time that it was due. A hole moves that time, a time tag that goes back does not, but for
@@ -86,6 +88,10 @@ impl Judged {
 
     /// Measurements in the order of time.
     pub(crate) fn aid(&mut self, driver: &mut Driver, now: GpsTime, aiding: &[TimedAiding]) -> Result<(), OutOfDomain> {
+        if !self.checks.guarded {
+            driver.aid(aiding);
+            return Ok(());
+        }
         for together in aiding.chunk_by(|a, b| a.time == b.time && Kind::of(&a.aiding) == Kind::of(&b.aiding)) {
             match together[0].aiding {
                 Aiding::Satellite(ref m) if m.range.is_some() => self.ranges(driver, now, together)?,
@@ -113,7 +119,7 @@ impl Judged {
     fn fixes(&mut self, driver: &mut Driver, now: GpsTime, together: &[TimedAiding]) -> Result<(), OutOfDomain> {
         for timed in together {
             // Repeats are the filter's to count.
-            if !self.guard.admit_fix(&mut driver.filter, now, timed, self.ages.fix_sigma_s) {
+            if !self.guard.admit_fix(&mut driver.filter, now, timed, self.checks.fix_age_sigma_s) {
                 driver.filter.reject(timed);
                 self.guard.restart_at_fix(&mut driver.filter, timed.time)?;
                 continue;

@@ -3,7 +3,7 @@
 use crate::error::input_error;
 use nalgebra::{Matrix3, Vector3};
 use navbound_assess::fusion::{self, Flight, Moment, Plan};
-use navbound_assess::judged::{Ages, StandIn};
+use navbound_assess::judged::{Checks, StandIn};
 use navbound_core::frame::{Covariance, EcefPosition, Geodetic, LatLon};
 use navbound_core::monitor::judgement::Source;
 use navbound_core::monitor::separation::Separation;
@@ -240,6 +240,7 @@ pub struct Told {
     /// Longest gap, acceleration and rate it hides.
     gap: [f64; 3],
     age_most_s: f64,
+    guarded: bool,
     /// Deviations of the age of ranges and of solved positions.
     age_sigma_s: [f64; 2],
     set_after_s: f64,
@@ -368,8 +369,9 @@ fn further_word(further: Further) -> String {
 fn ins_fuse<'py>(py: Python<'py>, start: Start, imu: Imu<'py>, tables: Tables<'py>, told: Told) -> PyResult<Bound<'py, PyDict>> {
     let (state, samples, (aiding, unreadable)) = (start.state()?, imu.samples()?, tables.aiding()?);
     let (settings, sigma, plan) = (told.settings()?, told.sigma(), told.plan());
-    let ages = Ages { range_sigma_s: told.age_sigma_s[0], fix_sigma_s: told.age_sigma_s[1] };
-    let flight = py.detach(|| fusion::run(state, &sigma, settings, &plan, ages, samples.iter(), &aiding)).map_err(refused)?;
+    let [range_age_sigma_s, fix_age_sigma_s] = told.age_sigma_s;
+    let checks = Checks { guarded: told.guarded, range_age_sigma_s, fix_age_sigma_s };
+    let flight = py.detach(|| fusion::run(state, &sigma, settings, &plan, checks, samples.iter(), &aiding)).map_err(refused)?;
     let d = flight_dict(py, &flight)?;
     let mut refusals = flight.filter.refusals();
     refusals[Refusal::OutOfRange.index()] += unreadable;
