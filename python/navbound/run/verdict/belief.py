@@ -11,6 +11,7 @@ from navbound import evaluation
 from navbound.methods import column_of, method
 from navbound.run.records import Belief, BoundCheck
 from navbound.run.verdict import rule
+from navbound.status import USABLE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,12 +21,18 @@ if TYPE_CHECKING:
 CIRCLE = "anp-circle"
 """The covariance itself as a bound: every lateral bound rests on it."""
 
+RISK_UNNAMED = 1e-4
+"""Integrity risk of an hour where a level names none: a thousand times what any service level of the table allows, so that a level is never
+withdrawn for a demand that it does not make. Provenance: ours. [1]"""
+
 APPROACH_S, HOUR_S = 150.0, 3600.0
 """Exposure of an integrity risk by approach (ICAO Annex 10: any approach, 150 s taken) and by hour."""
 
 
 def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float]) -> Belief | None:
-    """Check the judging method and the circle at both risks against truth, over epochs with status ok; None where no truth is known.
+    """Check the judging method and the circle at both risks against truth; None where no truth is known.
+
+    Over epochs with status ok; where there is none, over those that are degraded: a bound that nobody vouches for may be false all the same.
 
     Parameters
     ----------
@@ -36,7 +43,8 @@ def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float]) ->
     risks : (float, float)
         Of accuracy and of integrity. [1]
     """
-    usable = epochs.filter(pl.col("status") == "ok")
+    vouched = epochs.filter(pl.col("status") == "ok")
+    usable = vouched if vouched.height else epochs.filter(pl.col("status").is_in(USABLE))
     counted = [
         (id_, risk, *_outside(usable, method(id_).integrity_column if integrity else method(id_).column, method(id_).error_column))
         for id_ in dict.fromkeys((judging, CIRCLE))
@@ -112,11 +120,13 @@ def of_level(result: LevelResult, period_s: float) -> float | None:
     """Largest probability of as many runs of misleading information for a level that keeps its integrity risk.
 
     ``p = min(1, exposures x risk / runs)`` (Markov), an exposure being an approach of 150 s or an hour with a protection level; None where
-    the level names no risk.
+    there is no misleading information. A level that names no risk is taken to allow `RISK_UNNAMED`.
     """
     level = result.level
     n_events = result.n_mi_events + result.n_hazard_events
-    if level.integrity_risk is None or n_events == 0:
+    if n_events == 0:
         return None
-    exposures = max(1.0, result.n_solution * period_s / (APPROACH_S if level.integrity_per == "approach" else HOUR_S))
-    return min(1.0, exposures * level.integrity_risk / n_events)
+    named = level.integrity_risk is not None
+    exposure_s = APPROACH_S if named and level.integrity_per == "approach" else HOUR_S
+    exposures = max(1.0, result.n_solution * period_s / exposure_s)
+    return min(1.0, exposures * (RISK_UNNAMED if level.integrity_risk is None else level.integrity_risk) / n_events)

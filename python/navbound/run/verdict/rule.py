@@ -62,7 +62,7 @@ def of_tracks(facts: TrackFacts) -> VerdictId:
     """Verdict on judged tracks. A false bound comes first: no margin counts beside it."""
     if facts.belief == "refuted" or facts.n_misleading:
         return "not_believable"
-    if facts.n_judged == 0 and not facts.n_outside:
+    if facts.n_judged == 0:
         return "nothing_judged"
     if facts.n_outside or facts.n_beyond_alert_limit:
         return "outside"
@@ -82,7 +82,7 @@ class LevelFacts:
     n_misleading_events : int
         Runs of epochs whose true error is above the protection level.
     p_misleading : float or None
-        Largest probability of as many for a level that keeps its integrity risk; None where the level names none.
+        Largest probability of as many for a level that keeps its integrity risk; None where there are none.
     truth_known : bool
         Errors are known.
     """
