@@ -104,7 +104,9 @@ class Drive:
             ins.SensorNoise(tuning.accelerometer_white, tuning.accelerometer_bias, 1000.0),
         )
         wheels = None if tuning.wheels_mps is None else ins.Wheels(sigma_mps=tuning.wheels_mps, mount_rad=0.1, period_s=0.1)
-        return ins.fuse(imu, ins.Aiding(fixes=fixes), start, imu_model=model, output_period_s=0.0, wheels=wheels)
+        # The filter by itself: a tuning that is tried may be a wrong one, and what stands beside a filter would hide it.
+        how = ins.FilterSettings(guarded=False)
+        return ins.fuse(imu, ins.Aiding(fixes=fixes), start, imu_model=model, settings=how, output_period_s=0.0, wheels=wheels)
 
     def variance(self, epochs: Flags) -> Floats:
         """Of the RTK: 2 cm for what the stated centimetre leaves out: seven printed decimals of a degree, vibration, the lever arm."""

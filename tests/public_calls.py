@@ -285,6 +285,7 @@ CALLS: dict[str, Call] = {
     "kpi.stanford": Call(kpi.stanford, {"error_m": 3.0 * TWO, "level_m": 20.0 * TWO, "alert_limit_m": 40.0}),
     "kpi.rnp": Call(kpi.rnp, {"rnp_nm": 0.3, "tta_s": 10.0}),
     "evaluation.bound": Call(evaluation.bound, {"error_m": 3.0 * TWO, "bound_m": 20.0 * TWO, "risk": 0.05}),
+    "evaluation.containment": Call(evaluation.containment, {"n_effective": 10.0, "risk": 0.05}, {"n_outside": 3, "n": 100}),
     "evaluation.crps": Call(evaluation.crps, {"error_m": 3.0 * TWO, "sigma_m": 2.0 * TWO}),
     "path.line": Call(path.line, {"lat0_rad": 0.7, "lon0_rad": 0.3, "lat1_rad": 0.71, "lon1_rad": 0.31}),
     "path.from_azimuth": Call(path.from_azimuth, {"lat_rad": 0.7, "lon_rad": 0.3, "course_rad": 0.4}),
@@ -317,7 +318,7 @@ WITHOUT: dict[str, str] = {
         "takes a table in which an absent value is NaN and counts as no level (tests of the indicators)",
     ),
     **dict.fromkeys(
-        ("evaluation.bootstrap_coverage", "evaluation.effective_size", "evaluation.nees", "evaluation.pit"),
+        ("evaluation.bootstrap_coverage", "evaluation.effective_size", "evaluation.magnitude", "evaluation.nees", "evaluation.pit"),
         "a statistic of a series, from which epochs without a value are left out and counted",
     ),
     **dict.fromkeys(

@@ -31,6 +31,12 @@ CONVERTED = {
 LONG_NUMBER = re.compile(r"-?\d*\.\d{9,}(e-?\d+)?")
 
 
+def is_a_bound(case: dict[str, object]) -> bool:
+    """Bounds take risks up to one half (docs/decisions/0014); a case beyond it is no bound that the product gives."""
+    inputs = case.get("inputs")
+    return not (isinstance(inputs, dict) and float(str(inputs.get("alpha", 0.0))) > 0.5)
+
+
 def groups(reference: dict[str, object]) -> dict[str, list[dict[str, object]]]:
     """The lists of cases, whatever else a reference file holds."""
     found = {}
@@ -75,7 +81,7 @@ def test_every_case_is_carried(name: str) -> None:
     missing = {
         group: lost
         for group, cases in found.items()
-        if (lost := [str(c.get("id", k)) for k, c in enumerate(cases, 1) if not carried(c, f"{group}-{k}", ids, text)])
+        if (lost := [str(c.get("id", k)) for k, c in enumerate(cases, 1) if is_a_bound(c) and not carried(c, f"{group}-{k}", ids, text)])
     }
     assert sum(map(len, found.values())) > 50, "the search is broken"
     assert not missing

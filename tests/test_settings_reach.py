@@ -61,6 +61,8 @@ def says(value: float | str, risk: float) -> bool:
     if isinstance(value, float):
         return value == risk
     confidence = f"{100 * (1 - risk):.10g} %"
+    # An interval of an estimate has a confidence of its own.
+    value = value.replace("95 % intervals", "intervals")
     return (
         re.search(rf"(?<![\d.e-]){re.escape(f'{risk:g}')}(?!\d)", value) is not None
         or re.search(rf"(?<![\d.]){confidence}", value) is not None

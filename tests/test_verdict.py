@@ -132,7 +132,7 @@ GOOD = rule.TrackFacts(1000, 1000, 0, 0, 0, 0, "unchecked")
         ({"n_judged": 950}, "inside"),
         ({"n_judged": 949}, "not_shown"),
         ({"n_judged": 0}, "nothing_judged"),
-        ({"n_judged": 0, "n_outside": 1}, "outside"),
+        ({"n_judged": 0, "n_outside": 1}, "nothing_judged"),
         ({"n_judged": 0, "n_beyond_alert_limit": 1000}, "nothing_judged"),
         ({"n_epochs": 0, "n_judged": 0}, "nothing_judged"),
     ],

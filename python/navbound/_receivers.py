@@ -450,7 +450,7 @@ def solve(
         epochs = with_errors(epochs, truth_ecef_m)
     models = {
         "orbits and clocks": _orbit_words(orbits),
-        "signals": signal_words(used),
+        "signals": f"{'ionosphere-free pairs' if signals == 'dual' else 'one pseudorange'}: {signal_words(used)}",
         "smoothing": "none" if smoothing_s is None else f"{smoothing}, {smoothing_s:g} s; {100 * share:.1f} % of the pseudoranges",
         "ionosphere": "ionosphere-free pairs" if signals == "dual" else _ionosphere_words(*model),
         "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",

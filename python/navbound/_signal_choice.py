@@ -50,4 +50,4 @@ def _trace(epochs: pl.DataFrame) -> NDArray[np.float64]:
 
 
 def _with_words(positions: Positions, words: str) -> Positions:
-    return replace(positions, models={**positions.models, "signals": f"{words}; {positions.models['signals']}"})
+    return replace(positions, models={**positions.models, "signals": f"{words}; {positions.models['signals'].partition(': ')[2]}"})

@@ -32,8 +32,8 @@ SECOND_NS = 1_000_000_000
 AWAY_M = 2.2e7
 """Distance of the places that stand for satellites: their directions count."""
 HOW = ins.FilterSettings(set_after_s=3600.0, guarded=False)
-"""A satellite whose ranges disagree for a while is not one that rises anew. The integrity of this position is GBAS's and RRAIM's, whose levels
-rest on the covariance of this filter alone; satellites here are stand-ins at one distance, which no snapshot of an instant describes."""
+"""A satellite whose ranges disagree for a while is not one that rises anew. The integrity of this position is that of GBAS and RRAIM, whose
+levels rest on the covariance of this filter alone; satellites here are stand-ins at one distance, which no snapshot describes."""
 KNOWN = ins.StartSigma(position_sigma_m=(10.0, 10.0, 15.0), velocity_sigma_mps=0.2, attitude_sigma_rad=(2e-4, 2e-4, 2e-3))
 """How well an aligned system knows its state some minutes before landing (ours)."""
 

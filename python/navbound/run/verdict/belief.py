@@ -32,7 +32,7 @@ APPROACH_S, HOUR_S = 150.0, 3600.0
 def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float]) -> Belief | None:
     """Check the judging method and the circle at both risks against truth; None where no truth is known.
 
-    Over epochs with status ok; where there is none, over those that are degraded: a bound that nobody vouches for may be false all the same.
+    Over epochs with status ok; where there is none, over those that are degraded: a bound that nobody vouches for may be false too.
 
     Parameters
     ----------
