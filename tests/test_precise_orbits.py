@@ -106,7 +106,7 @@ def test_precise_orbits_keep_an_honest_covariance(
     rows = [[c["ee"], c["en"], c["eu"]], [c["en"], c["nn"], c["nu"]], [c["eu"], c["nu"], c["uu"]]]
     nees = evaluation.nees(errors(found.epochs), np.moveaxis(np.array(rows), -1, 0))
     # Not calibrated: cautious by a factor of two in sigma at most, never short.
-    # Galileo alone has often few ranges to spare: the covariance then covers readings that are not true, and is larger than this quiet day needs.
+    # With few ranges to spare the covariance covers readings that are not true: larger than this quiet day needs.
     assert 0.4 < nees.nees_mean < 3.0
     assert "GRG" in found.models["orbits and clocks"]
 

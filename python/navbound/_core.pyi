@@ -93,7 +93,7 @@ class RnpMonitor:
         fte_m: float,
         hpl_m: float,
         rnp_m: float,
-        usable: bool,
+        judged: tuple[bool, bool],
     ) -> tuple[str, str, list[_EventRow], list[_EventRow]]: ...
     def tick(self, time_ns: int) -> str: ...
     def open_events(self) -> list[_EventRow]: ...
@@ -106,7 +106,7 @@ class RnpMonitor:
         fte_m: _F | None,
         hpl_m: _F | None,
         rnp_m: _F,
-        usable: NDArray[np.bool_],
+        judged: tuple[NDArray[np.bool_], NDArray[np.bool_]],
         track: NDArray[np.uint32],
         n_tracks: int,
     ) -> tuple[list[str], list[tuple[int, _EventRow]], list[dict[str, Any]], dict[str, Any], _F]: ...

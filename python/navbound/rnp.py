@@ -252,7 +252,7 @@ class Monitor:
         if status not in USABLE + UNUSABLE:
             raise InputError("status", repr(status), domain=", ".join(USABLE + UNUSABLE))
         alert, acceptance, ended, began = self._core.step(
-            time_ns, (first.id, accuracy_m), (second.id, integrity_m), fte_m, hpl_m, rnp_m, status in USABLE
+            time_ns, (first.id, accuracy_m), (second.id, integrity_m), fte_m, hpl_m, rnp_m, (status in USABLE, status == "ok")
         )
         return Step(cast("Alert", alert), cast("Acceptance", acceptance), [Event(*e) for e in ended], [Event(*e) for e in began])
 
@@ -289,7 +289,7 @@ class Monitor:
         ----------
         table : DataFrame or mapping of columns
             ``time_ns``, ``rnp_m``, both bounds under the names of their methods' columns and, where there are any, ``status``, ``track``,
-            ``fte_m`` and ``hpl_m``. A null bound of a row whose status is ``ok`` is a NaN, and alerts; so is a null ``hpl_m`` in a track
+            ``fte_m`` and ``hpl_m``. A null bound of a row whose status is ``ok`` is a NaN, and alerts; so is its null ``hpl_m`` in a track
             that has one anywhere.
         accuracy, integrity : str
             Ids of the methods that made the two bounds, of those that may feed an alert; ``tse-exact`` is read from ``tse_exact_m`` and
@@ -316,7 +316,7 @@ class Monitor:
             _numbers(frame, "fte_m") if "fte_m" in frame.columns else None,
             _numbers(frame, "hpl_m") if "hpl_m" in frame.columns else None,
             _numbers(frame, "rnp_m"),
-            usable,
+            (usable, _level_due(frame)),
             index,
             len(names),
         )
@@ -350,6 +350,13 @@ def _numbers(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:
     except pl.exceptions.InvalidOperationError as e:
         raise InputError(name, f"a column of {frame[name].dtype}", "m", "numbers") from e
     return np.ascontiguousarray(column.fill_null(math.nan).to_numpy(), dtype=np.float64)
+
+
+def _level_due(frame: pl.DataFrame) -> NDArray[np.bool_]:
+    """Rows that should have a protection level: none vouches for an epoch that is degraded, and its status says so."""
+    if "status" not in frame.columns:
+        return np.ones(frame.height, dtype=np.bool_)
+    return np.ascontiguousarray((frame["status"] == "ok").fill_null(value=False).to_numpy())
 
 
 def _usable(frame: pl.DataFrame) -> NDArray[np.bool_]:

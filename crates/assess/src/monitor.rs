@@ -30,6 +30,8 @@ pub struct Levels<'a> {
     pub fte_m: Option<&'a [f64]>,
     /// `hpl_m`.
     pub hpl_m: &'a [f64],
+    /// Whether the row should have one: its status is `ok`.
+    pub due: &'a [bool],
 }
 
 /// What the monitors of all tracks decided.
@@ -59,6 +61,7 @@ impl Columns<'_> {
             ("track", self.track.len()),
             level("fte_m", self.level_m.and_then(|l| l.fte_m)),
             level("hpl_m", self.level_m.map(|l| l.hpl_m)),
+            ("status", self.level_m.map_or(n, |l| l.due.len())),
         ] {
             if len != n {
                 return Err(OutOfDomain { argument, value: len as f64, unit: "rows", domain: "the number of times" });
@@ -67,7 +70,7 @@ impl Columns<'_> {
         Ok(())
     }
 
-    /// One comparison per track. A track with a level anywhere has a source of levels, so every usable epoch of it should have one.
+    /// One comparison per track. A track with a level anywhere has a source of levels, so every epoch of it whose status is `ok` should have one.
     fn comparisons(&self, n_tracks: usize) -> Vec<IntegrityComparison> {
         let mut comparisons = vec![IntegrityComparison::default(); n_tracks];
         for (row, hpl_m) in self.level_m.iter().flat_map(|l| l.hpl_m).enumerate() {
@@ -85,7 +88,7 @@ impl Columns<'_> {
         Observation {
             time: GpsTime::from_nanoseconds(self.time_ns[row]),
             accuracy: bound(self.accuracy_m),
-            integrity: comparison.bound(bound(self.integrity_m), fte, level),
+            integrity: comparison.bound(bound(self.integrity_m), fte, level, self.level_m.is_some_and(|l| l.due[row])),
             rnp: Metres::new(self.rnp_m[row]),
             usable: self.usable[row],
         }

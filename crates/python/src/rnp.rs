@@ -156,16 +156,16 @@ impl RnpMonitor {
         fte_m: f64,
         hpl_m: f64,
         rnp_m: f64,
-        usable: bool,
+        judged: (bool, bool),
     ) -> PyResult<(&'static str, &'static str, Vec<EventRow>, Vec<EventRow>)> {
         let claimed = |(id, bound_m): (&str, f64)| alerting(id).map(|method| method.claim_evaluated(Metres::new(bound_m)));
         let (accuracy, integrity) = (claimed(accuracy)?, claimed(integrity)?);
         let step = self.monitor.step(&Observation {
             time: GpsTime::from_nanoseconds(time_ns),
             accuracy,
-            integrity: self.comparison.bound(integrity, Metres::new(fte_m), Metres::new(hpl_m)),
+            integrity: self.comparison.bound(integrity, Metres::new(fte_m), Metres::new(hpl_m), judged.1),
             rnp: Metres::new(rnp_m),
-            usable,
+            usable: judged.0,
         });
         let rows = |events: &[Option<Event>]| events.iter().flatten().map(event_row).collect();
         Ok((step.alert.word(), acceptance_word(step.acceptance), rows(&step.ended), rows(&step.began)))
@@ -196,19 +196,20 @@ impl RnpMonitor {
         fte_m: Option<PyReadonlyArray1<'py, f64>>,
         hpl_m: Option<PyReadonlyArray1<'py, f64>>,
         rnp_m: PyReadonlyArray1<'py, f64>,
-        usable: PyReadonlyArray1<'py, bool>,
+        judged: (PyReadonlyArray1<'py, bool>, PyReadonlyArray1<'py, bool>),
         track: PyReadonlyArray1<'py, u32>,
         n_tracks: usize,
     ) -> PyResult<Run<'py>> {
         let fte_m = fte_m.as_ref().map(|a| a.as_slice()).transpose()?;
         let hpl_m = hpl_m.as_ref().map(|a| a.as_slice()).transpose()?;
+        let (usable, due) = (judged.0.as_slice()?, judged.1.as_slice()?);
         let columns = Columns {
             time_ns: time_ns.as_slice()?,
             accuracy_m: (alerting(&accuracy.0)?, accuracy.1.as_slice()?),
             integrity_m: (alerting(&integrity.0)?, integrity.1.as_slice()?),
-            level_m: hpl_m.map(|hpl_m| Levels { fte_m, hpl_m }),
+            level_m: hpl_m.map(|hpl_m| Levels { fte_m, hpl_m, due }),
             rnp_m: rnp_m.as_slice()?,
-            usable: usable.as_slice()?,
+            usable,
             track: track.as_slice()?,
         };
         let settings = *self.monitor.settings();

@@ -17,7 +17,8 @@ use crate::quantity::Metres;
 /// # A level that is missing
 /// Where levels are expected, an epoch without one has no integrity bound: NaN, which is within no limit. Otherwise the loss of a level
 /// would make the comparison better than it was. Levels are expected from the first epoch that has one; a caller who knows that the
-/// source computes levels says so before.
+/// source computes levels says so before. None is due at an epoch that is degraded: its status says that nothing vouches for it beyond its
+/// covariance, as on DME alone after satellites are lost, and the bound by the covariance is what there is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct IntegrityComparison {
     level_expected: bool,
@@ -29,11 +30,12 @@ impl IntegrityComparison {
         Self { level_expected: true }
     }
 
-    /// The integrity bound of one epoch. `fte` and `level` are NaN where they are not known; a level that is negative is not known.
-    pub fn bound(&mut self, bound: AlertBound, fte: Metres, level: Metres) -> AlertBound {
+    /// The integrity bound of one epoch. `fte` and `level` are NaN where they are not known; a level that is negative is not known. `due`:
+    /// the epoch is one that should have a level, where its track has any.
+    pub fn bound(&mut self, bound: AlertBound, fte: Metres, level: Metres, due: bool) -> AlertBound {
         let level_m = level.m();
         self.level_expected |= !level_m.is_nan();
-        if !self.level_expected {
+        if !self.level_expected || (level_m.is_nan() && !due) {
             return bound;
         }
         let with_faults_m = match bound.method().bounds {
@@ -67,7 +69,7 @@ mod tests {
     /// Length of the comparison of one epoch, levels expected.
     fn compared_m(id: &str, bound_m: f64, fte_m: f64, level_m: f64) -> f64 {
         let mut comparison = IntegrityComparison::with_levels();
-        comparison.bound(alert_bound(id, bound_m), Metres::new(fte_m), Metres::new(level_m)).length().m()
+        comparison.bound(alert_bound(id, bound_m), Metres::new(fte_m), Metres::new(level_m), true).length().m()
     }
 
     #[test]
@@ -93,9 +95,17 @@ mod tests {
     #[test]
     fn a_level_that_goes_missing_never_makes_the_comparison_better() {
         let mut comparison = IntegrityComparison::default();
-        let mut at = |level: Metres| comparison.bound(alert_bound("tse-exact", 50.0), Metres::new(10.0), level).length().m();
+        let mut at = |level: Metres| comparison.bound(alert_bound("tse-exact", 50.0), Metres::new(10.0), level, true).length().m();
         assert_eq!(at(UNKNOWN), 50.0, "no level so far");
         assert_eq!(at(Metres::new(900.0)), 910.0);
         assert!(at(UNKNOWN).is_nan());
+    }
+
+    #[test]
+    fn none_is_due_where_the_status_says_that_nothing_vouches_for_the_epoch() {
+        let mut comparison = IntegrityComparison::with_levels();
+        let mut at =
+            |level_m: f64| comparison.bound(alert_bound("tse-exact", 50.0), Metres::new(10.0), Metres::new(level_m), false).length().m();
+        assert_eq!((at(f64::NAN), at(900.0)), (50.0, 910.0));
     }
 }
