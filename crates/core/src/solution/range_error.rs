@@ -32,8 +32,9 @@ pub struct RangeError {
     pub ionosphere_floor_m: f64,
     /// Error of the zenith tropospheric delay \[m\].
     pub zenith_troposphere_m: f64,
-    /// Factor on the standard deviation of an ionosphere-free pair. Inferred.
-    pub pair_factor: f64,
+    /// Factor on the standard deviation of an ionosphere-free pair, by constellation: the second frequency of GPS is tracked without its
+    /// code by most receivers, those of 1999 to 2006 above all. Inferred.
+    pub pair_factor: [f64; Constellation::ALL.len()],
     /// Errors that all ranges have in common.
     pub common: CommonErrors,
     /// Carrier-to-noise density from which noise no longer falls \[dB-Hz\].
@@ -68,7 +69,7 @@ impl RangeError {
         ionosphere_share: 0.06,
         ionosphere_floor_m: 0.05,
         zenith_troposphere_m: 0.04,
-        pair_factor: 1.3,
+        pair_factor: [1.6, 1.3, 1.3, 1.3, 1.3],
         common: CommonErrors::CALIBRATED,
         reference_cn0_dbhz: 40.0,
     };
@@ -114,7 +115,7 @@ impl RangeError {
         let weakness = self.reference_cn0_dbhz - at.cn0_dbhz;
         let weak = if weakness > 0.0 { exp(weakness * (core::f64::consts::LN_10 / 10.0)) } else { 1.0 };
         let uneven = at.uneven_m * at.ionosphere_mapping;
-        let pair = if single { 1.0 } else { self.pair_factor };
+        let pair = if single { 1.0 } else { self.pair_factor[at.constellation] };
         let atmosphere = share * share + floor * floor + uneven * uneven + troposphere * troposphere;
         pair * pair * (ure * ure + atmosphere + noise * noise * elevation * weak)
     }
