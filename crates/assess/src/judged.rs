@@ -147,6 +147,7 @@ impl Judged {
         let witnesses = Witnesses {
             filters_disagree: beside.map(|_| self.verdict.disagree()),
             stations_contradict: Some(self.left_out.is_some_and(|since| time.seconds_since(since) >= STATIONS.1)),
+            ..Witnesses::NONE
         };
         let facts = self.guard.facts(&mut driver.filter, time, solution, witnesses);
         let decision = decide(&facts);

@@ -172,6 +172,9 @@ reasons! {
     /// Stations that a filter rejects.
     StationsContradict, "stations_contradict", NotAvailable,
         "several stations contradict the filter: they or the inertial unit are wrong";
+    /// An altimeter that cannot be right together with the satellites.
+    AltimeterContradicts, "altimeter_contradicts", Degraded,
+        "the altimeter contradicts the height by satellites: nobody knows which of them is right";
     /// Of a filtered position.
     StateStale, "state_stale", NotAvailable, "the filter has no state of this time";
     /// Of a filtered position.

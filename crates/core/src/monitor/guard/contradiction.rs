@@ -11,9 +11,11 @@ use crate::quantity::GpsTime;
 pub const AGREED_S: f64 = 30.0;
 /// Time that the unit must be plausible before a filter is started anew \[s\]. Provenance: inferred.
 const CLEAN_S: f64 = 5.0;
-/// Time without any excess after which an unexplained contradiction is closed \[s\]. Provenance: inferred.
-const OPEN_S: f64 = 600.0;
-/// New starts within [`OPEN_S`] after which no further one follows on this flight. Provenance: inferred.
+/// Time from which a contradiction was there before the unit showed a fault, so that the fault does not explain it \[s\]. Provenance: inferred.
+const BEFORE_S: f64 = 10.0;
+/// Time within which new starts are counted \[s\]. Provenance: inferred.
+const STARTS_S: f64 = 600.0;
+/// New starts within [`STARTS_S`] after which no further one follows on this flight. Provenance: inferred.
 const STARTS_MOST: usize = 3;
 /// The velocity's square from which it has moved too, and the time before the position's for which that counts \[s\]. Provenance: inferred.
 const MOVED: (f64, f64) = (20.0, 10.0);
@@ -48,7 +50,10 @@ pub struct Contradiction {
     unit: bool,
     /// The position moved without motion: the satellites, or the filter's slow states.
     still: bool,
-    open: Option<GpsTime>,
+    /// An earlier one has no cause. Time explains nothing: it stays for the flight.
+    open: bool,
+    /// It was there before the unit showed a fault.
+    before: bool,
     starts: [Option<GpsTime>; STARTS_MOST],
     started: Option<GpsTime>,
     out: bool,
@@ -72,19 +77,25 @@ impl Contradiction {
         if self.raised.is_some() && agreed && settled && !self.out {
             self.cleared = self.unit;
             // A cause that has gone leaves nothing open.
-            self.open = if self.unit { None } else { Some(now) };
+            self.open |= !self.unit || self.before;
             (self.raised, self.unit, self.still) = (None, false, false);
-        }
-        if self.open.is_some() && now.seconds_since(failed) >= OPEN_S {
-            self.open = None;
         }
     }
 
     /// The unit delivers what cannot be: the evidence is in the unit.
+    ///
+    /// A contradiction that was there for a while, or is open from earlier, is not explained by it.
     pub fn convict(&mut self, now: GpsTime) {
+        self.note_fault(now);
         self.implausible = Some(now);
         self.still = false;
         self.fail(now, true);
+    }
+
+    /// The unit has failed in whatever way: what was unexplained before stays so.
+    pub fn note_fault(&mut self, now: GpsTime) {
+        let unexplained = !self.unit && self.raised.is_some_and(|t| now.seconds_since(t) >= BEFORE_S);
+        self.before |= self.open || unexplained;
     }
 
     /// The ground stations rule out that the inertial unit is right.
@@ -96,7 +107,7 @@ impl Contradiction {
         self.raised.get_or_insert(now);
         self.failed = Some(now);
         self.unit |= unit;
-        if self.starts.iter().all(|s| s.is_some_and(|t| now.seconds_since(t) <= OPEN_S)) {
+        if self.starts.iter().all(|s| s.is_some_and(|t| now.seconds_since(t) <= STARTS_S)) {
             self.out = true;
         }
     }
@@ -136,7 +147,11 @@ impl Contradiction {
     }
     /// Whether an earlier contradiction has no cause.
     pub const fn is_open(&self) -> bool {
-        self.open.is_some()
+        self.open
+    }
+    /// Whether a contradiction was there before the unit showed a fault.
+    pub const fn was_before_the_unit(&self) -> bool {
+        self.before
     }
     /// Whether the inertial unit is the cause.
     pub const fn convicts_the_unit(&self) -> bool {
@@ -184,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_contradiction_without_a_cause_stays_open_for_ten_minutes() {
+    fn a_contradiction_without_a_cause_stays_open_and_no_later_fault_of_the_unit_explains_it() {
         let mut c = Contradiction::default();
         c.judge(at(0.0), &position(100.0, 100.0), true);
         c.started(at(5.0));
@@ -194,10 +209,16 @@ mod tests {
         assert!(c.is_raised(), "the attitude is not settled");
         c.judge(at(36.0), &position(1.0, 1.0), true);
         assert!(!c.is_raised() && c.is_open() && !c.convicts_the_unit());
-        c.judge(at(604.0), &position(1.0, 1.0), true);
-        assert!(c.is_open());
-        c.judge(at(605.0), &position(1.0, 1.0), true);
-        assert!(!c.is_open());
+        (37..4000).for_each(|s| c.judge(at(f64::from(s)), &position(1.0, 1.0), true));
+        assert!(c.is_open(), "time explains nothing");
+        assert!(!c.was_before_the_unit());
+        c.convict(at(4000.0));
+        assert!(c.was_before_the_unit() && c.is_open());
+        // Raised for ten seconds by the tests alone: a fault of the unit comes too late to be the cause.
+        let mut c = Contradiction::default();
+        (0..=10).for_each(|s| c.judge(at(f64::from(s)), &position(100.0, 100.0), true));
+        c.convict(at(10.0));
+        assert!(c.was_before_the_unit());
     }
 
     #[test]

@@ -15,16 +15,16 @@ mod tests;
 pub use contradiction::{AGREED_S, Contradiction, Tests};
 pub use inertial::{Envelope, Plausibility};
 pub use shares::Shares;
-pub use stations::{Reading, Stations};
+pub use stations::{Reading, Stations, testimony};
 
 use super::consistency::normalised_square_horizontal;
-use super::judgement::{Agreement, CarriedFacts, Decision, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Witnesses};
+use super::judgement::{Agreement, CarriedFacts, Decision, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Testimony, Witnesses};
 use crate::bound::araim::exclusion::Decision as Exclusion;
 use crate::bound::araim::single::Requirement;
 use crate::bound::raim;
 use crate::frame::{Covariance, Displacement, EcefPosition, Enu, ecef_from_geodetic, enu_from_ecef};
 use crate::quantity::{GpsTime, OutOfDomain, Unavailable};
-use crate::signal::{Aiding, ImuIncrement, SatelliteId, SatelliteRange, TimedAiding};
+use crate::signal::{Aiding, BaroHeight, ImuIncrement, SatelliteId, SatelliteRange, TimedAiding};
 use crate::solution::ins::{Advance, Block, Difference, Fusion, Mode, Solution, judgeable};
 use crate::solution::snapshot::{RANGES_MOST, Ranges, Snapshot, SnapshotVelocity, Solver, rate_sights, velocity};
 use crate::solution::wls::{WeightedSight, horizontal_axes};
@@ -42,8 +42,6 @@ pub const BLOCK_RISK: f64 = 1e-6;
 pub const DIFFERENCE_INFLATION: f64 = 1.6;
 /// See [`DIFFERENCE_INFLATION`].
 pub const DIFFERENCE_FLOOR: f64 = 0.05;
-/// Largest inertial faults that the tests may leave unseen \[m/s²\], \[rad/s\]. Provenance: the campaign in docs/methods/fused-integrity.md.
-pub const UNSEEN: (f64, f64) = (0.01, 1e-5);
 /// \[m/s²\]
 const GRAVITY: f64 = 9.8;
 /// Samples on end whose times contradict the clock of the epochs, and the time without one after which the clock is right again \[s\].
@@ -138,7 +136,10 @@ pub struct Guard {
     contradiction: Contradiction,
     shares: Shares,
     looked: Option<Looked>,
-    stations: Stations,
+    stations: Stations<2>,
+    /// Stations against the snapshot alone, and what they and the altimeter have last said of it.
+    alone: Stations<1>,
+    testimony: [Testimony; 2],
     tally: Tally,
     last: Ranges,
     tests: Option<(GpsTime, Tests)>,
@@ -176,6 +177,8 @@ impl Guard {
             shares: Shares::new(),
             looked: None,
             stations: Stations::default(),
+            alone: Stations::default(),
+            testimony: [Testimony::Silent; 2],
             tally: Tally::default(),
             last: Ranges::of(core::iter::empty()),
             tests: None,
@@ -212,6 +215,9 @@ impl Guard {
         self.off_clock = if off { self.off_clock + 1 } else { 0 };
         if self.off_clock >= CLOCK.0 {
             let first = self.clock_wrong.map_or(due, |(first, _)| first);
+            if self.clock_wrong.is_none() {
+                self.contradiction.note_fault(due);
+            }
             self.clock_wrong = Some((first, due));
         } else if self.clock_wrong.is_some_and(|(_, last)| due.seconds_since(last) >= CLOCK.1) {
             self.clock_wrong = None;
@@ -292,25 +298,34 @@ impl Guard {
         Ranges::of(all.iter().flatten())
     }
 
-    /// Ranges to stations of one instant: witnesses between the snapshot of the same instant and the filter without satellites.
+    /// Stations and altimeter of one instant: witnesses of the snapshot of the same instant, alone and against the filter without satellites.
     pub fn hear(&mut self, filter: &mut Fusion, together: &[TimedAiding]) {
         let Some(time) = together.first().map(|t| t.time) else { return };
-        let looked = self.looked.as_ref().filter(|l| l.snapshot.time == time && l.ranges_agree == RangesAgree::Yes);
-        let beside = filter.without_satellites(time);
-        let Some((looked, antenna, beside)) = looked.zip(beside).and_then(|(l, b)| Some((l, filter.antenna_of(&b)?, b))) else { return };
+        let Some(looked) = self.looked.as_ref().filter(|l| l.snapshot.time == time && l.ranges_agree != RangesAgree::No) else { return };
         let ecef = enu_from_ecef(&looked.snapshot.position.point).transpose();
         let turned = |v: &Covariance<Enu>| ecef * v.matrix() * ecef.transpose();
-        let readings = [
-            Reading { ecef: *looked.snapshot.ecef.vector(), covariance: turned(&looked.snapshot.covariance) },
-            Reading { ecef: *antenna.vector(), covariance: turned(&beside.covariance) },
-        ];
-        for timed in together {
-            if let Aiding::Dme(m) = &timed.aiding
-                && timed.time == time
-            {
-                self.stations.hear(time, m, &readings);
+        let snapshot = Reading { ecef: *looked.snapshot.ecef.vector(), covariance: turned(&looked.snapshot.covariance) };
+        let beside = filter.without_satellites(time).filter(|_| looked.ranges_agree == RangesAgree::Yes);
+        let other = beside.and_then(|b| Some(Reading { ecef: *filter.antenna_of(&b)?.vector(), covariance: turned(&b.covariance) }));
+        let of_height = |m: &BaroHeight| {
+            let apart = m.height.m() - looked.snapshot.position.height.m();
+            let [white, bias] = [m.sigma_white.m(), m.sigma_bias.m()];
+            chi_square_tail(1.0, apart * apart / (white * white + bias * bias + looked.snapshot.covariance.matrix()[(2, 2)]))
+        };
+        for timed in together.iter().filter(|t| t.time == time) {
+            match &timed.aiding {
+                Aiding::Dme(m) => {
+                    self.alone.hear(time, m, &[snapshot]);
+                    if let Some(other) = other {
+                        self.stations.hear(time, m, &[snapshot, other]);
+                    }
+                }
+                Aiding::Vor(m) => self.alone.hear_bearing(time, m, &[snapshot]),
+                Aiding::Baro(m) => self.testimony[1] = testimony(of_height(m)),
+                _ => {}
             }
         }
+        self.testimony[0] = self.testimony[0].then(self.alone.testimony(time));
         if self.stations.rule_out_the_second(time) {
             self.contradiction.rule_out_the_unit();
         }
@@ -437,7 +452,7 @@ impl Guard {
             satellite_times_hold: Some(self.late < LATE_MOST && !filter.fixes_are_late()),
             gating: Some(gating),
             tuning: Some(self.shares.tuning()),
-            witnesses: Some(witnesses),
+            witnesses: Some(Witnesses { stations: self.testimony[0], altimeter: self.testimony[1], ..witnesses }),
         }
     }
 
@@ -481,6 +496,9 @@ impl Guard {
             let beside = filter.without_satellites(epoch);
             looked.zip(beside).and_then(|(l, s)| self.bound_of(&l.snapshot, &s, &filter.antenna_of(&s)?)).unwrap_or([f64::INFINITY; 2])
         };
+        if self.contradiction.was_before_the_unit() && self.contradiction.is_raised() {
+            return Agreement::Unexplained { bound_m: bound_m() };
+        }
         if self.contradiction.is_raised() {
             return Agreement::Contradicted { bound_m: bound_m() };
         }
@@ -499,10 +517,11 @@ impl Guard {
         Some([h + chi_factor(2, q).ok()? * horizontal_axes(&other.covariance).0.m(), v + chi_factor(1, q).ok()? * sigma_v])
     }
 
-    /// The levels of the last epoch that had a snapshot, with what the filter has lost since and what an unseen inertial fault makes of it.
+    /// The levels of the last epoch that had a snapshot, with what the filter has lost since and what a fault of the unit within the declared
+    /// envelope makes of it: sample and truth are each within the envelope. Without an envelope it may make anything.
     ///
     /// ```text
-    /// HPL(t) = HPL(t0) + K (sigma(t) - sigma(t0)) + a_u t^2 / 2 + g w_u t^3 / 6
+    /// HPL(t) = HPL(t0) + K (sigma(t) - sigma(t0)) + a t^2 + g w t^3 / 3
     /// ```
     fn carry(&mut self, epoch: GpsTime, snapshot: Option<&SnapshotFacts>, given: Option<&Solution>) -> Option<CarriedFacts> {
         let given = given?;
@@ -515,8 +534,9 @@ impl Guard {
         let t = epoch.seconds_since(from);
         let q = self.settings.requirement.fault_free.q();
         let factor = [chi_factor(2, q).ok()?, chi_factor(1, q).ok()?];
-        let unseen = 0.5 * UNSEEN.0 * t * t + GRAVITY * UNSEEN.1 * t * t * t / 6.0;
-        let level_m = core::array::from_fn(|k| level[k] + factor[k] * (sigma[k] - before[k]).max(0.0) + unseen);
+        let [force, rate] = self.settings.envelope.most;
+        let fault = if t > 0.0 { force * t * t + GRAVITY * rate * t * t * t / 3.0 } else { 0.0 };
+        let level_m = core::array::from_fn(|k| level[k] + factor[k] * (sigma[k] - before[k]).max(0.0) + fault);
         Some(CarriedFacts { age_s: t, level_m })
     }
 }

@@ -7,12 +7,17 @@
 //! Q = sum_i m_i^2 / v_i,   v_i = bias^2 + f white^2 + n u_i' P u_i         m_i: mean residual of station i of n
 //! ```
 //!
+//! A snapshot alone is tested in the same way against the stations, ranges and bearings: they agree with it, or doubt it, or contradict it.
+//!
 //! `n u' P u` bounds what the position's own error makes of all residuals together: M <= n diag(M) for a covariance M of n numbers.
 //! Provenance: ours.
 
+use crate::frame::{ecef_from_geodetic, enu_from_ecef};
+use crate::monitor::judgement::Testimony;
 use crate::quantity::GpsTime;
-use crate::signal::DmeRange;
+use crate::signal::{DmeRange, VorBearing};
 use crate::special::gamma::chi_square_tail;
+use crate::special::float::{atan2, hypot};
 use nalgebra::{Matrix3, Vector3};
 
 /// Stations that are remembered.
@@ -24,6 +29,8 @@ const LEFT: f64 = WEIGHT / (2.0 - WEIGHT);
 const HEARD_LEAST: u32 = 10;
 const SILENT_S: f64 = 5.0;
 const STATIONS_LEAST: usize = 2;
+/// Marks the bearing of a station that measures ranges as well.
+const BEARING: u16 = 0x8000;
 /// Chance from which the stations agree, and below which they rule out. Provenance: inferred.
 const AGREE: f64 = 1e-3;
 const RULE_OUT: f64 = 1e-7;
@@ -38,46 +45,60 @@ pub struct Reading {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Record {
+struct Record<const N: usize> {
     station: u16,
     time: GpsTime,
     n: u32,
-    /// Mean residual of both readings, and the variance that the position makes of it.
-    mean: [f64; 2],
-    position: [f64; 2],
+    /// Mean residual of each reading, and the variance that the position makes of it.
+    mean: [f64; N],
+    position: [f64; N],
     white: f64,
     bias: f64,
 }
 
-/// The stations of a flight.
+/// The stations of a flight, as witnesses of N readings of the same instants.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Stations {
-    record: [Option<Record>; STATIONS],
+pub struct Stations<const N: usize> {
+    record: [Option<Record<N>>; STATIONS],
 }
 
-impl Stations {
-    /// A range to a station, with the antenna by the snapshot and by the filter without satellites.
-    pub fn hear(&mut self, time: GpsTime, m: &DmeRange, readings: &[Reading; 2]) {
-        let place = self.place(m.station);
-        let fresh = Record {
-            station: m.station,
-            time,
-            n: 0,
-            mean: [0.0; 2],
-            position: [0.0; 2],
-            white: m.sigma_white.m() * m.sigma_white.m(),
-            bias: m.sigma_bias.m() * m.sigma_bias.m(),
-        };
-        let known = self.record[place].filter(|r| r.station == m.station && time.seconds_since(r.time) <= SILENT_S);
+impl<const N: usize> Stations<N> {
+    /// A range to a station, with the antenna by each reading.
+    pub fn hear(&mut self, time: GpsTime, m: &DmeRange, readings: &[Reading; N]) {
+        let of = core::array::from_fn(|k| {
+            let line = m.position.vector() - readings[k].ecef;
+            let distance = line.norm();
+            let unit = line / distance;
+            (m.slant.m() - distance, unit.dot(&(readings[k].covariance * unit)))
+        });
+        self.note(time, m.station, [m.sigma_white.m(), m.sigma_bias.m()], of);
+    }
+
+    /// A bearing from a station, likewise.
+    pub fn hear_bearing(&mut self, time: GpsTime, m: &VorBearing, readings: &[Reading; N]) {
+        let turn = enu_from_ecef(&m.position.point);
+        let of = core::array::from_fn(|k| {
+            let line = turn * (readings[k].ecef - ecef_from_geodetic(&m.position).vector());
+            let distance = hypot(line.x, line.y);
+            let apart = m.bearing.rad() - atan2(line.x, line.y);
+            let across = Vector3::new(line.y, -line.x, 0.0) / distance;
+            let variance = across.dot(&(turn * readings[k].covariance * turn.transpose() * across));
+            (wrapped(apart), variance / (distance * distance))
+        });
+        self.note(time, m.station | BEARING, [m.sigma_white.rad(), m.sigma_bias.rad()], of);
+    }
+
+    /// Residual and variance of the position along it, of each reading.
+    fn note(&mut self, time: GpsTime, station: u16, [white, bias]: [f64; 2], of: [(f64, f64); N]) {
+        let place = self.place(station);
+        let fresh = Record { station, time, n: 0, mean: [0.0; N], position: [0.0; N], white: white * white, bias: bias * bias };
+        let known = self.record[place].filter(|r| r.station == station && time.seconds_since(r.time) <= SILENT_S);
         let mut record = Record { time, ..known.unwrap_or(fresh) };
         record.n = record.n.saturating_add(1);
         let weight = (1.0 / f64::from(record.n)).max(WEIGHT);
-        for (k, reading) in readings.iter().enumerate() {
-            let line = m.position.vector() - reading.ecef;
-            let distance = line.norm();
-            let unit = line / distance;
-            record.mean[k] += weight * (m.slant.m() - distance - record.mean[k]);
-            record.position[k] = unit.dot(&(reading.covariance * unit));
+        for (k, (residual, variance)) in of.into_iter().enumerate() {
+            record.mean[k] += weight * (residual - record.mean[k]);
+            record.position[k] = variance;
         }
         self.record[place] = Some(record);
     }
@@ -89,21 +110,53 @@ impl Stations {
         known.unwrap_or_else(oldest)
     }
 
-    /// Whether the stations agree with the first reading and rule out the second.
-    pub fn rule_out_the_second(&self, now: GpsTime) -> bool {
+    /// The chance of residuals as large as these where a reading is right, of at least so many stations.
+    fn chance(&self, now: GpsTime, k: usize, least: usize) -> Option<f64> {
         let heard = || self.record.iter().flatten().filter(|r| r.n >= HEARD_LEAST && now.seconds_since(r.time) <= SILENT_S);
         let n = heard().count();
-        if n < STATIONS_LEAST {
-            return false;
-        }
-        let chance = |k: usize| {
-            let square = |r: &Record| {
-                let left = (1.0 / f64::from(r.n)).max(LEFT);
-                r.mean[k] * r.mean[k] / (r.bias + r.white * left + n as f64 * r.position[k])
-            };
-            chi_square_tail(n as f64, heard().map(square).sum())
+        let square = |r: &Record<N>| {
+            let left = (1.0 / f64::from(r.n)).max(LEFT);
+            r.mean[k] * r.mean[k] / (r.bias + r.white * left + n as f64 * r.position[k])
         };
-        chance(0) >= AGREE && chance(1) < RULE_OUT
+        (n >= least).then(|| chi_square_tail(n as f64, heard().map(square).sum()))
+    }
+}
+
+impl Stations<2> {
+    /// Whether the stations agree with the first reading and rule out the second.
+    pub fn rule_out_the_second(&self, now: GpsTime) -> bool {
+        let [first, second] = [0, 1].map(|k| self.chance(now, k, STATIONS_LEAST));
+        first.is_some_and(|c| c >= AGREE) && second.is_some_and(|c| c < RULE_OUT)
+    }
+}
+
+impl Stations<1> {
+    /// What the stations say of the one reading. One station that is heard suffices to doubt.
+    pub fn testimony(&self, now: GpsTime) -> Testimony {
+        self.chance(now, 0, 1).map_or(Testimony::Silent, testimony)
+    }
+}
+
+/// What a witness says by the chance of its residual. A chance that is no number agrees with nothing.
+pub fn testimony(chance: f64) -> Testimony {
+    if chance >= AGREE {
+        Testimony::Agrees
+    } else if chance >= RULE_OUT {
+        Testimony::Doubts
+    } else {
+        Testimony::Contradicts
+    }
+}
+
+/// An angle between minus and plus half a turn.
+fn wrapped(angle: f64) -> f64 {
+    use core::f64::consts::{PI, TAU};
+    if angle > PI {
+        angle - TAU
+    } else if angle < -PI {
+        angle + TAU
+    } else {
+        angle
     }
 }
 
@@ -118,7 +171,7 @@ mod tests {
     }
 
     /// Three stations around a true antenna at the origin, thirty seconds, without noise.
-    fn heard(snapshot: Reading, other: Reading) -> Stations {
+    fn heard(snapshot: Reading, other: Reading) -> Stations<2> {
         let mut stations = Stations::default();
         for second in 0..30 {
             let time = GpsTime::default().plus_seconds(f64::from(second));

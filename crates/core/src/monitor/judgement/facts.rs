@@ -75,6 +75,37 @@ pub enum Agreement {
         /// Infinite where there is none.
         bound_m: [f64; 2],
     },
+    /// As [`Agreement::Contradicted`], and it was there before the inertial unit failed: that the unit is wrong does not explain it.
+    Unexplained {
+        /// Infinite where there is none.
+        bound_m: [f64; 2],
+    },
+}
+
+/// What a witness that shares no satellite says of the snapshot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Testimony {
+    /// Nothing: it is not heard, or does not exist on board.
+    Silent,
+    /// Its residual is within what is stated of it.
+    Agrees,
+    /// Its residual is rarer than one in a thousand.
+    Doubts,
+    /// Its residual is beyond its stated bound.
+    Contradicts,
+}
+
+impl Testimony {
+    /// What stands after a new statement: silence takes back nothing.
+    #[must_use]
+    pub fn then(self, next: Self) -> Self {
+        if next == Self::Silent { self } else { next }
+    }
+
+    /// Whether the snapshot may stand alone beside this witness.
+    pub const fn lets_stand(self) -> bool {
+        matches!(self, Self::Silent | Self::Agrees)
+    }
 }
 
 /// The state of the inertial unit.
@@ -128,6 +159,16 @@ pub struct Witnesses {
     pub filters_disagree: Option<bool>,
     /// Several stations are left out for a while.
     pub stations_contradict: Option<bool>,
+    /// Stations against the snapshot alone.
+    pub stations: Testimony,
+    /// Altimeter against the height of the snapshot.
+    pub altimeter: Testimony,
+}
+
+impl Witnesses {
+    /// None is on board.
+    pub const NONE: Self =
+        Self { filters_disagree: None, stations_contradict: None, stations: Testimony::Silent, altimeter: Testimony::Silent };
 }
 
 /// Everything that is known at an epoch. `None` means that nobody reported it, which is bad.

@@ -8,7 +8,7 @@ mod reason;
 #[cfg(test)]
 mod tests;
 
-pub use facts::{Agreement, CarriedFacts, Facts, FilterFacts, Gating, Inertial, RangesAgree, SnapshotFacts, Tuning, Witnesses};
+pub use facts::{Agreement, CarriedFacts, Facts, FilterFacts, Gating, Inertial, RangesAgree, SnapshotFacts, Testimony, Tuning, Witnesses};
 pub use reason::{Reason, Reasons};
 
 use crate::quantity::GpsTime;
@@ -79,12 +79,13 @@ pub struct Decision {
 impl Decision {
     /// The reason to name first: the one that weighs most, causes before their consequences.
     pub fn leading(&self) -> Option<Reason> {
-        const ORDER: [Reason; 21] = [
+        const ORDER: [Reason; 22] = [
             Reason::ImuFault,
             Reason::ImuImplausible,
             Reason::FilterContradicted,
             Reason::FiltersDisagree,
             Reason::StationsContradict,
+            Reason::AltimeterContradicts,
             Reason::ImuRefused,
             Reason::ImuMissing,
             Reason::ImuClock,
@@ -106,8 +107,9 @@ impl Decision {
     }
 }
 
-/// Time for which `ok` may rest on the levels of an earlier snapshot \[s\]: the time to alert en route. Provenance: inferred.
-pub const CARRIED_MOST_S: f64 = 10.0;
+/// Time for which `ok` and a level may rest on an earlier snapshot \[s\]: one and a half periods of a receiver of 1 Hz, so that one that is
+/// missing shows. Provenance: inferred.
+pub const CARRIED_MOST_S: f64 = 1.5;
 /// Time after which a unit that delivers nothing is out, and the snapshot alone is the navigation \[s\]. Provenance: inferred.
 pub const ABSENT_MOST_S: f64 = 10.0;
 /// Time for which a filter may reject most measurements before its position is not available \[s\]. Provenance: inferred.
@@ -130,8 +132,13 @@ pub fn decide(facts: &Facts) -> Decision {
     let unit_out = reasons.any(&UNIT_OUT);
     let contradicted = reasons.has(Reason::FilterContradicted);
     let standing_in = snapshot.filter(|s| s.ranges_agree != RangesAgree::No);
+    let alone = unit_out || contradicted || filter.is_none();
+    if alone && let Some(w) = &facts.witnesses {
+        reasons = reasons.with_if(!w.stations.lets_stand(), Reason::StationsContradict);
+        reasons = reasons.with_if(!w.altimeter.lets_stand(), Reason::AltimeterContradicts);
+    }
     let source = match (filter, standing_in) {
-        (Some(_), _) if !unit_out && !contradicted => Source::Filter,
+        (Some(_), _) if !alone => Source::Filter,
         (_, Some(_)) => Source::Snapshot,
         (Some(_), None) if !reasons.any(&[Reason::ImuImplausible, Reason::ImuFault]) => Source::Filter,
         _ => Source::None,
@@ -145,9 +152,13 @@ pub fn decide(facts: &Facts) -> Decision {
     if let Some(missing) = missing {
         reasons = reasons.with(missing);
     }
-    let status = status(facts, source, reasons, level.is_some());
-    let level = level.filter(|_| source != Source::None);
-    Decision { status, reasons, source, hpl_m: level.map(|l| l[0]), vpl_m: level.map(|l| l[1]), disputed: is_disputed(facts) }
+    // No level of a position that a witness contradicts.
+    let witnessed = source != Source::Snapshot || lets_the_snapshot_stand(facts);
+    let level = level.filter(|_| source != Source::None && witnessed);
+    let vertical = level.filter(|_| !reasons.has(Reason::AltimeterContradicts));
+    let bounded = if is_disputed(facts) { vertical } else { level };
+    let status = status(facts, source, reasons, bounded.is_some());
+    Decision { status, reasons, source, hpl_m: level.map(|l| l[0]), vpl_m: vertical.map(|l| l[1]), disputed: is_disputed(facts) }
 }
 
 fn is_of(snapshot: &SnapshotFacts, epoch: GpsTime) -> bool {
@@ -173,7 +184,7 @@ fn common(facts: &Facts) -> Reasons {
         None => reasons.with(Reason::FactMissing),
         Some(Agreement::Agrees | Agreement::NotCompared) => reasons,
         Some(Agreement::Open { .. }) => reasons.with(Reason::ContradictionOpen),
-        Some(Agreement::Contradicted { .. }) => reasons.with(Reason::FilterContradicted),
+        Some(Agreement::Contradicted { .. } | Agreement::Unexplained { .. }) => reasons.with(Reason::FilterContradicted),
     };
     let inconsistent = facts.snapshot.is_some_and(|s| s.ranges_agree == RangesAgree::No && is_of(&s, facts.epoch));
     reasons = reasons.with_if(inconsistent, Reason::SatellitesInconsistent);
@@ -185,8 +196,14 @@ fn common(facts: &Facts) -> Reasons {
         None => reasons.with(Reason::FactMissing),
         Some(w) => reasons
             .with_if(w.filters_disagree == Some(true), Reason::FiltersDisagree)
-            .with_if(w.stations_contradict == Some(true), Reason::StationsContradict),
+            .with_if(w.stations_contradict == Some(true), Reason::StationsContradict)
+            .with_if(w.altimeter == Testimony::Contradicts, Reason::AltimeterContradicts),
     }
+}
+
+/// Neither stations nor altimeter speak against the snapshot.
+fn lets_the_snapshot_stand(facts: &Facts) -> bool {
+    facts.witnesses.is_some_and(|w| w.stations.lets_stand() && w.altimeter.lets_stand())
 }
 
 /// Reasons of a filter whose position is given.
@@ -222,9 +239,9 @@ fn level(facts: &Facts, source: Source, snapshot: Option<&SnapshotFacts>) -> (Op
         }
         (None, Source::Filter) => {
             let carried = facts.carried.filter(|c| c.age_s >= 0.0 && c.level_m.iter().all(is_level));
-            // Nothing of this instant checks the filter: the earlier levels are shown for as long as they are carried.
-            let old = carried.is_none_or(|c| !(c.age_s <= CARRIED_MOST_S));
-            return (carried.map(|c| c.level_m), old.then_some(Reason::SnapshotMissing));
+            // Nothing of this instant checks the filter: beyond the time that the growth covers there is no level.
+            let carried = carried.filter(|c| c.age_s <= CARRIED_MOST_S);
+            return (carried.map(|c| c.level_m), carried.is_none().then_some(Reason::SnapshotMissing));
         }
         (None, Source::Snapshot) => return (None, Some(Reason::SnapshotMissing)),
     };
@@ -241,7 +258,7 @@ fn is_level(level_m: &f64) -> bool {
 /// While nobody knows whether filter or satellites were wrong the bound holds for both readings.
 fn disputed(facts: &Facts, level: [f64; 2]) -> [f64; 2] {
     match facts.agreement {
-        Some(Agreement::Open { bound_m } | Agreement::Contradicted { bound_m }) if is_disputed(facts) => {
+        Some(Agreement::Open { bound_m } | Agreement::Contradicted { bound_m } | Agreement::Unexplained { bound_m }) if is_disputed(facts) => {
             // A comparison that is false for NaN keeps NaN, and no level comes of it.
             core::array::from_fn(|k| if level[k] >= bound_m[k] { level[k] } else { bound_m[k] })
         }
@@ -251,7 +268,12 @@ fn disputed(facts: &Facts, level: [f64; 2]) -> [f64; 2] {
 
 /// Nobody knows whether the filter or the satellites were wrong.
 fn is_disputed(facts: &Facts) -> bool {
-    matches!(facts.agreement, Some(Agreement::Open { .. } | Agreement::Contradicted { .. })) && !unit_is_the_cause(facts)
+    match facts.agreement {
+        // A unit that fails now explains nothing of what was open before.
+        Some(Agreement::Open { .. } | Agreement::Unexplained { .. }) => true,
+        Some(Agreement::Contradicted { .. }) => !unit_is_the_cause(facts),
+        _ => false,
+    }
 }
 
 /// The evidence against the inertial unit is in the unit, so that a contradiction says nothing against the satellites.
@@ -263,6 +285,8 @@ fn status(facts: &Facts, source: Source, reasons: Reasons, with_level: bool) -> 
     // A unit that is known to be wrong explains why filters and stations fall out: all of these rest on it.
     let explained = source == Source::Snapshot && unit_is_the_cause(facts);
     let doubted = reasons.any(&[Reason::FiltersDisagree, Reason::StationsContradict]) && !explained;
+    // What is said against the snapshot itself no unit explains.
+    let doubted = doubted || (source == Source::Snapshot && !lets_the_snapshot_stand(facts));
     // Two readings and no bound for both: nothing is known.
     let unbounded = is_disputed(facts) && !with_level;
     if source == Source::None || doubted || unbounded {
@@ -300,7 +324,7 @@ fn of_the_snapshot(facts: &Facts, reasons: Reasons, with_level: bool) -> Status 
         Some(Inertial::Missing { for_s } | Inertial::Refused { for_s }) => for_s >= ABSENT_MOST_S,
         _ => false,
     };
-    let known = unit_is_the_cause(facts) || (absent && !reasons.has(Reason::FilterContradicted));
+    let known = !is_disputed(facts) && (unit_is_the_cause(facts) || absent);
     let others = reasons.iter().any(|r| !OF_THE_FILTER_ALONE.contains(&r));
     if known && !others && with_level { Status::Ok } else { Status::Degraded }
 }

@@ -32,7 +32,7 @@ pub enum Reason {
     ContradictionOpen,
     /// The filters with and without satellites disagree.
     FiltersDisagree,
-    /// Several stations contradict the filter.
+    /// Several stations contradict the filter, or the snapshot where it stands alone.
     StationsContradict,
     /// The filter rejects too large a share of the measurements.
     GatingExcess,
@@ -48,11 +48,13 @@ pub enum Reason {
     Aligning,
     /// A fact that the decision needs was not reported.
     FactMissing,
+    /// The altimeter contradicts the height of the snapshot.
+    AltimeterContradicts,
 }
 
 impl Reason {
     /// Every reason, in the order of its number.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::StateStale,
         Self::ImuMissing,
         Self::ImuRefused,
@@ -74,6 +76,7 @@ impl Reason {
         Self::Coasting,
         Self::Aligning,
         Self::FactMissing,
+        Self::AltimeterContradicts,
     ];
 
     /// Its entry in the list of reasons. The status of that entry is the one that it gives alone and for long; [`super::decide`] decides.
@@ -100,6 +103,7 @@ impl Reason {
             Self::Coasting => Entry::Coasting,
             Self::Aligning => Entry::Aligning,
             Self::FactMissing => Entry::FactMissing,
+            Self::AltimeterContradicts => Entry::AltimeterContradicts,
         }
     }
 
