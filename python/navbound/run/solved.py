@@ -32,8 +32,18 @@ def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
     return [_reading(source, navigation, solving or Solving()) for source in files.observations]
 
 
+def _without_epochs(source: Source, observations: gnss.Observations) -> FormatError:
+    if not observations.n_refused:
+        return FormatError(source.path, "holds no epoch of measurements")
+    first = observations.refused[0]
+    what = f"no epoch can be used: {observations.n_refused} records are refused, the first for {first.reason}: “{first.text.strip()[:80]}”"
+    return FormatError(source.path, what, first.line, first.field)
+
+
 def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> Reading:
     observations = gnss.read_observations(source.path)
+    if observations.n_epochs == 0:
+        raise _without_epochs(source, observations)
     found = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem)
     without = found.epochs.filter(pl.col("est_lat_rad").is_null())
     repeats = separate(found.epochs.filter(pl.col("est_lat_rad").is_not_null()).sort("time_ns", maintain_order=True))
