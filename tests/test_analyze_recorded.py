@@ -133,7 +133,10 @@ def test_a_quality_indicator_becomes_a_covariance_and_expires() -> None:
     # NACp 10: EPU below 10 m; of a circular error 95 % lie within 2.4477 sigma (spec of the total system error, 1.5).
     usual = m.epochs["cov_ee_m2"].drop_nulls().mode()[0]
     assert abs(math.sqrt(usual) - 10 / 2.4477468306808165) < 1e-12
-    before = m.epochs.filter(pl.col("cov_ee_m2").is_null())
+    # One time of the recording stands twice, with positions 127 m apart.
+    contradicted = m.epochs.filter(pl.col("status") == "invalid_input")
+    assert (contradicted["reason_id"].to_list(), m.left_out.height) == (["position_jump"], 1)
+    before = m.epochs.filter(pl.col("cov_ee_m2").is_null(), pl.col("status") != "invalid_input")
     assert set(before["reason"]) == {"no covariance"}
 
 

@@ -93,7 +93,7 @@ def test_inside_needs_the_least_share_of_ok_epochs(tmp_path: Path, degraded: int
 def test_epochs_missing_in_a_gap_count_as_not_judged(tmp_path: Path) -> None:
     verdict = navbound.analyze(table(tmp_path / "a.csv", 400, drop=slice(100, 200))).summary.verdict
     assert (verdict.id, verdict.n_epochs, verdict.n_judged, verdict.n_missing) == ("not_shown", 400, 300, 100)
-    assert "25.0 % are without a bound (100 epochs missing in gaps)" in verdict.words
+    assert "25.0 % are without a bound (100 epochs missing in gaps or without a usable time and position)" in verdict.words
 
 
 def test_a_degraded_epoch_outside_is_outside(tmp_path: Path) -> None:

@@ -246,10 +246,11 @@ class Monitor:
             fte_m, hpl_m = (_number(record.get(key)) for key in ("fte_m", "hpl_m"))
         except KeyError as e:
             raise InputError("record", "a mapping without it", domain=f"records with {e.args[0]}") from e
-        except (TypeError, ValueError) as e:
+        except (TypeError, ValueError, OverflowError) as e:
             raise InputError("record", repr(dict(record))[:120], domain="records of numbers") from e
+        _require_ns(time_ns)
         status = record.get("status", "ok")
-        if status not in USABLE + UNUSABLE:
+        if not isinstance(status, str) or status not in USABLE + UNUSABLE:
             raise InputError("status", repr(status), domain=", ".join(USABLE + UNUSABLE))
         alert, acceptance, ended, began = self._core.step(
             time_ns, (first.id, accuracy_m), (second.id, integrity_m), fte_m, hpl_m, rnp_m, (status in USABLE, status == "ok")
@@ -261,7 +262,13 @@ class Monitor:
 
         ``time_ns`` is the arrival clock, GPS nanoseconds. The silence is measured against the time of the last epoch and, because that may
         be wrong, also from tick to tick.
+
+        Raises
+        ------
+        InputError
+            A time that is no whole number of nanoseconds in 64 bits.
         """
+        _require_ns(time_ns)
         return cast("Alert", self._core.tick(time_ns))
 
     @property
@@ -301,7 +308,7 @@ class Monitor:
             A method that may not feed an alert, a missing column, a null time, or a status that is none.
         """
         first, second = _alerting("accuracy", accuracy), _alerting("integrity", integrity or accuracy)
-        frame = table if isinstance(table, pl.DataFrame) else pl.DataFrame(dict(table))
+        frame = _frame(table)
         for name in ("time_ns", "rnp_m", first.column, second.integrity_column):
             if name not in frame.columns:
                 raise InputError("table", f"columns {', '.join(frame.columns)}", domain=f"tables with {name}")
@@ -310,7 +317,7 @@ class Monitor:
         usable = _usable(frame)
         names, index = _tracks(frame)
         words, rows, each, total, compared_m = self._core.run(
-            np.ascontiguousarray(frame["time_ns"].cast(pl.Int64).to_numpy()),
+            _times(frame),
             (first.id, _numbers(frame, first.column)),
             (second.id, _numbers(frame, second.integrity_column)),
             _numbers(frame, "fte_m") if "fte_m" in frame.columns else None,
@@ -340,6 +347,27 @@ def _alerting(argument: str, method_id: str) -> Method:
     return method(method_id)
 
 
+def _require_ns(time_ns: int) -> None:
+    if isinstance(time_ns, bool) or not isinstance(time_ns, (int, np.integer)) or not -(2**63) <= time_ns < 2**63:
+        raise InputError("time_ns", repr(time_ns)[:80], "ns", "[-2^63, 2^63), whole")
+
+
+def _frame(table: pl.DataFrame | Mapping[str, Any]) -> pl.DataFrame:
+    if isinstance(table, pl.DataFrame):
+        return table
+    try:
+        return pl.DataFrame(dict(table))
+    except (TypeError, ValueError, OverflowError, pl.exceptions.PolarsError) as e:
+        raise InputError("table", str(e)[:120], domain="columns of numbers, all of one length") from e
+
+
+def _times(frame: pl.DataFrame) -> NDArray[np.int64]:
+    try:
+        return np.ascontiguousarray(frame["time_ns"].cast(pl.Int64).to_numpy())
+    except pl.exceptions.PolarsError as e:
+        raise InputError("time_ns", f"a column of {frame['time_ns'].dtype}", "ns", "[-2^63, 2^63), whole") from e
+
+
 def _number(value: float | str | None) -> float:
     return math.nan if value is None else float(value)
 
@@ -347,7 +375,7 @@ def _number(value: float | str | None) -> float:
 def _numbers(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:
     try:
         column = frame[name].cast(pl.Float64)
-    except pl.exceptions.InvalidOperationError as e:
+    except pl.exceptions.PolarsError as e:
         raise InputError(name, f"a column of {frame[name].dtype}", "m", "numbers") from e
     return np.ascontiguousarray(column.fill_null(math.nan).to_numpy(), dtype=np.float64)
 

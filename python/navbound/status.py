@@ -121,6 +121,41 @@ def overridden(epochs: pl.DataFrame, reason_id: pl.Series, sentence: pl.Series |
     return before.with_columns(pl.when(there).then(new[c]).otherwise(pl.col(c)).alias(c) for c in COLUMNS)
 
 
+def worse(one: pl.Expr, other: pl.Expr) -> pl.Expr:
+    """The graver of two statuses of each epoch, in the order of the core's list; null where either is none of them."""
+    place = [each.replace_strict({id_: k for k, id_ in enumerate(STATUSES)}, default=None, return_dtype=pl.Int64) for each in (one, other)]
+    return pl.when(place[0] >= place[1]).then(one).when(place[0] < place[1]).then(other)
+
+
+def recorded(epochs: pl.DataFrame) -> pl.DataFrame:
+    """An epoch table whose recorded ``status`` and ``reason_id`` are those of the list, where it has such columns.
+
+    The graver of the recorded status and that of the recorded reason counts. What the list does not know, and an empty status, is no
+    ``ok``: the epoch becomes ``not_available`` for the reason ``reported``.
+    """
+    if not {"status", "reason_id"} & set(epochs.columns):
+        return epochs
+    stated, named = (_text(c) if c in epochs.columns else pl.lit(None, pl.String) for c in COLUMNS[:2])
+    named = pl.when(named != "").then(named)
+    by_reason = (
+        pl.when(named.is_null())
+        .then(pl.lit("ok"))
+        .otherwise(named.replace_strict({id_: entry.status for id_, entry in REASONS.items()}, default=None, return_dtype=pl.String))
+    )
+    found = epochs.select(status=worse(stated if "status" in epochs.columns else pl.lit("ok"), by_reason), reason_id=named)
+    unknown = pl.col("status").is_null() | ((pl.col("status") != "ok") & pl.col("reason_id").is_null())
+    return epochs.with_columns(
+        found.select(
+            pl.col("status").fill_null(reason("reported").status),
+            pl.when(unknown).then(pl.lit("reported")).otherwise("reason_id").alias("reason_id"),
+        )
+    )
+
+
+def _text(name: str) -> pl.Expr:
+    return pl.col(name).str.strip_chars().str.to_lowercase()
+
+
 def with_reason_id(epochs: pl.DataFrame) -> pl.DataFrame:
     """An epoch table whose ``reason_id`` exists: a sentence without an id is ``reported``."""
     given = pl.col("reason_id") if "reason_id" in epochs.columns else pl.lit(None, pl.String)

@@ -278,12 +278,51 @@ fn a_gap_never_helps_an_alert_to_end_and_never_delays_one() {
 fn duplicate_and_late_epochs_are_dropped_and_counted() {
     let mut monitor = Monitor::new(settings()).unwrap();
     monitor.step(&at(10, INSIDE, INSIDE));
-    let step = monitor.step(&at(10, INSIDE, 5000.0));
+    let step = monitor.step(&at(10, INSIDE, INSIDE));
     assert_eq!((step.acceptance, step.alert), (Acceptance::Duplicate, Alert::Normal));
     let step = monitor.step(&at(9, INSIDE, 5000.0));
     assert_eq!((step.acceptance, step.alert), (Acceptance::Late, Alert::Normal));
     let counters = monitor.counters();
     assert_eq!((counters.n_accepted, counters.n_duplicate, counters.n_late), (1, 1, 1));
+}
+
+#[test]
+fn a_repeat_outside_contradicts_and_one_inside_takes_nothing_back() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(10, INSIDE, INSIDE));
+    let step = monitor.step(&at(10, INSIDE, 5000.0));
+    assert_eq!((step.acceptance, step.alert, began(&step)), (Acceptance::Duplicate, Alert::Warning, vec![Kind::Warning]));
+    assert_eq!(monitor.step(&at(10, INSIDE, INSIDE)).alert, Alert::Warning);
+
+    // Every second inside and, at the same time, outside: the caution comes after the three seconds of an exceedance in one piece.
+    let mut monitor = Monitor::new(settings()).unwrap();
+    let pairs: Vec<Alert> = (0..5).map(|s| [monitor.step(&at(s, INSIDE, 0.0)), monitor.step(&at(s, 900.0, 0.0))][1].alert).collect();
+    assert_eq!(pairs, [Alert::Normal, Alert::Normal, Alert::Normal, Alert::Caution, Alert::Caution]);
+}
+
+#[test]
+fn an_exceedance_alerts_within_its_delay_of_records_however_slowly_the_stamps_advance() {
+    for step_ns in [1, 1_000_000, 499_999_999] {
+        let mut monitor = Monitor::new(settings()).unwrap();
+        let alerts: Vec<Alert> = (0..6)
+            .map(|k: i64| {
+                let bound_m = if k == 0 { INSIDE } else { 900.0 };
+                let seen = Observation { time: GpsTime::from_nanoseconds(k * step_ns), ..at(0, bound_m, 0.0) };
+                monitor.step(&seen).alert
+            })
+            .collect();
+        // Outside from the second record on; three periods of a second later the wait is over.
+        let normal = Alert::Normal;
+        assert_eq!(alerts, [normal, normal, normal, normal, Alert::Caution, Alert::Caution], "{step_ns} ns");
+    }
+}
+
+#[test]
+fn stamps_that_crawl_never_bring_the_end_of_an_alert_nearer() {
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(0, INSIDE, 5000.0));
+    let calm = |k: i64| Observation { time: GpsTime::from_nanoseconds(k * 1_000_000), ..at(0, INSIDE, INSIDE) };
+    assert!((1..1000).all(|k| monitor.step(&calm(k)).alert == Alert::Warning));
 }
 
 /// One wild time stamp far ahead would otherwise make every later epoch late, and the monitor silent for ever.
@@ -323,7 +362,9 @@ fn time_that_stands_or_runs_backwards_is_silence() {
         // Two dropped epochs are the permitted two seconds.
         assert!(found[2..].iter().all(|a| *a == Alert::Unavailable), "{what}: {:?}", &found[..8]);
         let open: Vec<_> = monitor.open_events().map(|e| (e.kind, seconds(e.onset), seconds(e.annunciation))).collect();
-        assert_eq!(open, [(Kind::Unavailable, 5000, 5000)], "{what}");
+        // Repeats of the first time are outside and contradict it.
+        let contradicted = (what == "stuck").then_some((Kind::Warning, 5000, 5000));
+        assert_eq!(open, contradicted.into_iter().chain([(Kind::Unavailable, 5000, 5000)]).collect::<Vec<_>>(), "{what}");
     }
 }
 

@@ -98,6 +98,25 @@ impl<'a> Judge<'a> {
         !self.records[newest].usable || self.set_back.contains(&newest) || dropped > STALE_S
     }
 
+    /// Whether record `k` repeats the time of the counted record before it with a bound outside, while monitoring stood.
+    fn contradicts(&self, k: usize, caution: bool) -> bool {
+        let newest = *self.upto(k).last().unwrap();
+        let repeat = newest < k && self.records[k].time_s == self.records[newest].time_s;
+        repeat && self.records[k].usable && !self.lost_after(k) && !self.lost_before(k) && !self.records[k].inside(caution)
+    }
+
+    /// Whether monitoring was lost at some record since the newest counted one, up to dropped record `k`.
+    fn lost_before(&self, k: usize) -> bool {
+        let newest = *self.upto(k).last().unwrap();
+        (newest..k).any(|j| self.lost_after(j))
+    }
+
+    /// Whether a repeat contradicted the counted record before counted record `k`.
+    fn contradicted_before(&self, k: usize, caution: bool) -> bool {
+        let before = self.upto(k).iter().rev().nth(1);
+        before.is_some_and(|b| (b + 1..k).any(|j| self.contradicts(j, caution)))
+    }
+
     /// Whether nothing was known of the bounds between counted record `k` and the one before it.
     fn unknown_before(&self, k: usize) -> bool {
         self.set_back.contains(&k) || self.since_before(k).is_some_and(|dt| dt > STALE_S) || k > 0 && self.lost_after(k - 1)
@@ -107,7 +126,11 @@ impl<'a> Judge<'a> {
     fn gain(&self, k: usize, caution: bool) -> i64 {
         let Some(dt) = self.since_before(k) else { return 0 };
         let before = *self.upto(k).iter().rev().nth(1).unwrap();
-        if self.unknown_before(k) || !self.records[before].inside(caution) { 10 * dt } else { -3 * dt }
+        if self.unknown_before(k) || !self.records[before].inside(caution) || self.contradicted_before(k, caution) {
+            10 * dt
+        } else {
+            -3 * dt
+        }
     }
 
     /// The wait at counted record `k`: the largest sum of gains from any start, capped by what a full wait would be since any moment in
@@ -138,7 +161,7 @@ impl<'a> Judge<'a> {
             if calm_s >= CLEAR_S {
                 return true;
             }
-            if self.unknown_before(c) {
+            if self.unknown_before(c) || self.contradicted_before(c, caution) {
                 return false;
             }
             calm_s += self.since_before(c).unwrap_or(0);
@@ -149,7 +172,13 @@ impl<'a> Judge<'a> {
     /// Where the alert now in force was raised; `None` when there is none. Every counted record is asked in order, each by the whole history.
     fn raised(&self, caution: bool) -> Option<usize> {
         let (mut raised, mut cleared) = (None, None);
-        for &k in &self.counted {
+        for k in 0..self.records.len() {
+            if !self.counted.contains(&k) {
+                if raised.is_none() && self.contradicts(k, caution) && self.deserved(k, caution, cleared) {
+                    raised = Some(k);
+                }
+                continue;
+            }
             if self.set_back.contains(&k) || !self.records[k].usable {
                 continue;
             }
@@ -174,7 +203,7 @@ impl<'a> Judge<'a> {
         // The wait of a cleared alert began anew; the wait of the first record, with it.
         let waited = self.waited(k, cleared.unwrap_or(0));
         let warning = Judge::new(&self.records[..=k], &self.before[..k]).raised(false).is_some();
-        let from_normal = k > 0 && self.before[k - 1] == Alert::Normal && !self.unknown_before(k);
+        let from_normal = k > 0 && self.before[k - 1] == Alert::Normal && (!self.counted.contains(&k) || !self.unknown_before(k));
         waited || !warning && !from_normal
     }
 

@@ -121,6 +121,11 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("n_sv", "1", 0.0, 255.0, **{"1": "ns n_sats satellites"}),
     _q("track", "text", 0.0, 0.0, text="icao24 icao track_id flight_id aircraft_id"),
     _q("callsign", "text", 0.0, 0.0, text="callsign flight"),
+    _q("hpl_m", "m", 0.0, 1e9, m="hpl"),
+    _q("vpl_m", "m", 0.0, 1e9, m="vpl"),
+    _q("status", "text", 0.0, 0.0),
+    _q("reason_id", "text", 0.0, 0.0),
+    _q("reason", "text", 0.0, 0.0),
 )
 
 LEVEL_QUANTITIES: tuple[Quantity, ...] = (
@@ -129,14 +134,9 @@ LEVEL_QUANTITIES: tuple[Quantity, ...] = (
     _q("nse_u_m", "m", -1e8, 1e8, m="uerr u_err up_error_m"),
     _q("hpe_m", "m", 0.0, 1e8, m="hpe"),
     _q("vpe_m", "m", -1e8, 1e8, m="vpe"),
-    _q("hpl_m", "m", 0.0, 1e9, m="hpl"),
-    _q("vpl_m", "m", 0.0, 1e9, m="vpl"),
     _q("hdop", "1", 0.0, 1e6, **{"1": "hdop"}),
     _q("vdop", "1", 0.0, 1e6, **{"1": "vdop"}),
     _q("mode", "text", 0.0, 0.0),
-    _q("status", "text", 0.0, 0.0),
-    _q("reason_id", "text", 0.0, 0.0),
-    _q("reason", "text", 0.0, 0.0),
 )
 """What a table of errors and protection levels may hold beyond a recorded track."""
 

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound import _core
+from navbound import _core, status
 from navbound.errors import FormatError
 from navbound.read import receivers
 from navbound.read.columns import LEVEL_QUANTITIES, POSITION, QUANTITIES, UNITS, Assignment, Column, assign
 from navbound.read.rejections import Rejections
+from navbound.read.repeats import LEFT_OUT, left_out, separate
 from navbound.read.source import Source, load
 from navbound.read.table import LINE, Table, table
 from navbound.read.times import gps_time
@@ -47,6 +48,9 @@ class Reading:
         Doubts that a person should settle: a missing time zone, rows out of order, degrees that may be radians.
     columns : dict
         Quantity to the column it was read from and its unit.
+    left_out : DataFrame
+        ``track`` and ``time_ns`` of rows that were expected to hold a position and cannot be judged: without a position or a time, with a
+        refused value in one of them, or with another position at the time of an earlier row. A null time is not known.
     """
 
     epochs: pl.DataFrame
@@ -55,6 +59,7 @@ class Reading:
     unused: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     columns: dict[str, str] = field(default_factory=dict)
+    left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
 
 
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:
@@ -107,18 +112,37 @@ def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequenc
             reasons.append(reason)
         else:
             _count(rejections, frame, column.name, reason)
+    if tuple(required) == POSITION:
+        out = _reported(out, mapping, notes, source)
     _look_like_radians(out, mapping, source, notes)
     time, reason, units = gps_time(frame, mapping.times, source, notes)
     out = out.with_columns(time.alias("time_ns"))
     reasons.append(reason)
     used = [mapping.columns[n].name for n in required] + [mapping.times[0].name]
-    out = _drop(out, frame, reasons, used, rejections)
     track = pl.col("track").fill_null(source.stem) if "track" in out.columns else pl.lit(source.stem)
-    out = _in_order(out.with_columns(track.alias("track")), rejections, notes)
+    out = out.with_columns(track.alias("track"))
+    out, without = _drop(out, frame, reasons, used, rejections)
+    out, contradicting = _in_order(out, rejections, notes)
     rejections.refuse_if_too_many(found.n_rows)
     _not_empty(source, out)
     described = {c.quantity: f"{c.name}:{c.unit}" for c in mapping.columns.values()} | {"time": ", ".join(units)}
-    return Reading(out.drop(LINE), source.record(found.n_rows), rejections.records, mapping.unused, notes, described)
+    return Reading(
+        out.drop(LINE), source.record(found.n_rows), rejections.records, mapping.unused, notes, described, _left_out(without, contradicting)
+    )
+
+
+def _reported(out: pl.DataFrame, mapping: Assignment, notes: list[str], source: Source) -> pl.DataFrame:
+    """What a recorded track says of its own epochs, in words of the list; and a note on what no one reads."""
+    before, out = out, status.recorded(out)
+    if "status" in before.columns:
+        n_unknown = before.filter(~pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)).height
+        if n_unknown:
+            notes.append(
+                f"{source.path.name}: {n_unknown} epochs have a status that is none of {', '.join(status.STATUSES)}; they are not judged"
+            )
+    if mapping.unused:
+        notes.append(f"{source.path.name}: columns not used: {', '.join(mapping.unused)}")
+    return out
 
 
 def _rtklib(source: Source) -> Reading:
@@ -132,11 +156,13 @@ def _rtklib(source: Source) -> Reading:
     plain = {k: d[k] for k in ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m", "ground_speed_mps", "n_sv", "hpl_m", "vpl_m")}
     out = pl.DataFrame({LINE: d["line"]} | plain | {name: cov[:, i] for i, name in enumerate(names)})
     out = out.with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
-    out = _in_order(out, rejections, notes)
+    out, contradicting = _in_order(out, rejections, notes)
     rejections.refuse_if_too_many(d["n_rows"])
     _not_empty(source, out)
     empty = [c for c in out.columns if out[c].is_null().all()]
-    return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes)
+    without = refused.select(track=pl.lit(source.stem), time_ns=pl.lit(None, pl.Int64))
+    lost = _left_out(without, contradicting)
+    return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes, left_out=lost)
 
 
 def _log(source: Source, kind: receivers.Kind) -> Reading:
@@ -152,9 +178,16 @@ def _log(source: Source, kind: receivers.Kind) -> Reading:
         known = pl.coalesce("time_ns", gps) if "time_ns" in out.columns else gps
         out = out.with_columns(known.alias("time_ns")).drop("unix_ns")
     out = out.rename({"record": LINE}).with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
-    out = _in_order(out, rejections, log.notes)
+    out, contradicting = _in_order(out, rejections, log.notes)
     empty = [c for c in out.columns if out[c].is_null().all()]
-    return Reading(out.drop(LINE, *empty), source.record(log.n_rows), rejections.records, notes=log.notes, columns=log.columns)
+    lost = _left_out(contradicting)
+    return Reading(
+        out.drop(LINE, *empty), source.record(log.n_rows), rejections.records, notes=log.notes, columns=log.columns, left_out=lost
+    )
+
+
+def _left_out(*rows: pl.DataFrame) -> pl.DataFrame:
+    return pl.concat([left_out(each) for each in rows])
 
 
 def _not_empty(source: Source, out: pl.DataFrame) -> None:
@@ -200,8 +233,10 @@ def _count(rejections: Rejections, frame: pl.DataFrame, name: str, reason: pl.Se
         rejections.add_values(f"{name}: {text}; row used without it", at[LINE].to_list(), str(at[name][0]))
 
 
-def _drop(out: pl.DataFrame, frame: pl.DataFrame, reasons: list[pl.Series], names: list[str], rejections: Rejections) -> pl.DataFrame:
-    """Leave out rows without time, latitude or longitude, counted by the first reason."""
+def _drop(
+    out: pl.DataFrame, frame: pl.DataFrame, reasons: list[pl.Series], names: list[str], rejections: Rejections
+) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """Leave out rows without time, latitude or longitude, counted by the first reason: what stays, and what does not."""
     labelled = [
         pl.when(reason.is_not_null()).then(pl.concat_str(pl.lit(f"{name}: "), reason)) for name, reason in zip(names, reasons, strict=True)
     ]
@@ -212,11 +247,11 @@ def _drop(out: pl.DataFrame, frame: pl.DataFrame, reasons: list[pl.Series], name
         line = group[LINE][0]
         example = str(frame.filter(pl.col(LINE) == line)[name][0])
         rejections.add(str(reason), group.height, line, example, malformed=kind != "empty")
-    return out.filter(pl.col(_BAD).is_null()).drop(_BAD)
+    return out.filter(pl.col(_BAD).is_null()).drop(_BAD), bad
 
 
-def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> pl.DataFrame:
-    """One row an instant, in the order of time; a repeated instant of a track is left out and counted."""
+def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """One row an instant, in the order of time; a repeated instant of a track is left out and counted. Second: rows that contradict."""
     late = out.filter(pl.col("time_ns") < pl.col("time_ns").cum_max().over("track"))
     if not late.is_empty():
         notes.append(
@@ -224,12 +259,13 @@ def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> pl
             f"(first: {rejections.unit} {late[LINE][0]})"
         )
     out = out.sort("track", "time_ns", maintain_order=True)
-    again = (pl.col("time_ns") == pl.col("time_ns").shift(1).over("track")).fill_null(value=False)
-    repeated = out.filter(again)
-    if not repeated.is_empty():
-        track, time_ns, line = repeated.sort(LINE).select("track", "time_ns", LINE).row(0)
-        rejections.add("time repeated within a track", repeated.height, line, f"track {track}, time_ns {time_ns}", malformed=False)
-    return out.filter(~again)
+    found = separate(out)
+    kinds = {"time repeated within a track": found.identical, "time repeated within a track with another position": found.contradicting}
+    for reason, repeated in kinds.items():
+        if not repeated.is_empty():
+            track, time_ns, line = repeated.sort(LINE).select("track", "time_ns", LINE).row(0)
+            rejections.add(reason, repeated.height, line, f"track {track}, time_ns {time_ns}", malformed=False)
+    return found.epochs, found.contradicting
 
 
 def _look_like_radians(out: pl.DataFrame, mapping: Assignment, source: Source, notes: list[str]) -> None:

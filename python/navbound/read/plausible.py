@@ -102,8 +102,10 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
     marked = status.with_reason(epochs, pl.Series("reason_id", _REASON_ID, dtype=pl.String).gather(code))
     if "status" in epochs.columns:
         solved = status.with_reason_id(epochs)
-        plausible = pl.col("status") == "ok"
-        marked = marked.with_columns(pl.when(plausible).then(solved[c]).otherwise(pl.col(c)).alias(c) for c in status.COLUMNS)
+        # The graver stands; of two alike, what was said before.
+        before = solved["status"].alias("before")
+        stands = marked.select((status.worse(before, pl.col("status")) == before).alias("stands"))["stands"]
+        marked = marked.with_columns(pl.when(stands).then(solved[c]).otherwise(pl.col(c)).alias(c) for c in status.COLUMNS)
     believed = pl.col("status").is_in(status.USABLE)
     marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COLUMNS if c in epochs.columns)
     n = np.bincount(code, minlength=len(_REASON_ID))

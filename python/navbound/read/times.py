@@ -72,7 +72,7 @@ def gps_time(frame: pl.DataFrame, columns: list[Column], source: Source, notes: 
 def _unix_ns(column: pl.Series, unit: str, source: Source, notes: list[str]) -> tuple[pl.Series, str]:
     """Unix time [ns] from numbers or from text, and the unit as understood."""
     numbers = _plain_numbers(column) if unit != "utc_text" else pl.Series([None] * len(column), dtype=pl.Float64)
-    if unit == "utc_text" or (unit == "utc" and numbers.is_null().mean() > 0.5 and column.dtype == pl.String):  # type: ignore[operator]
+    if unit == "utc_text" or (unit == "utc" and column.dtype == pl.String and _mostly_text(column, numbers)):
         if not column.cast(pl.String).str.contains(r"(Z|[+-]\d\d:?\d\d)\s*$").any():
             notes.append(f"{source.path.name}: “{column.name}” has no time zone and was read as UTC")
         return _iso(column), "utc_text"
@@ -93,6 +93,12 @@ def _unix_ns(column: pl.Series, unit: str, source: Source, notes: list[str]) -> 
     numbers = numbers.set((numbers.abs() * scales[unit] > _MAX_NS).fill_null(value=False), None)
     whole = numbers.floor()
     return _ns(whole) * int(scales[unit]) + _ns((numbers - whole) * scales[unit]), unit
+
+
+def _mostly_text(column: pl.Series, numbers: pl.Series) -> bool:
+    """Whether more of what stands in the column is text than numbers; an empty field is neither."""
+    stands = (column.str.strip_chars() != "").fill_null(value=False)
+    return int((stands & numbers.is_null()).sum()) > int(numbers.is_not_null().sum())
 
 
 def _iso(column: pl.Series) -> pl.Series:

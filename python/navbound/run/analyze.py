@@ -15,6 +15,7 @@ from navbound.read.approaches import Approaches, Gates, find, statistics
 from navbound.read.covariance import COLUMNS, Claimed, claim
 from navbound.read.epochs import Reading, read
 from navbound.read.plausible import Limits, check
+from navbound.read.repeats import left_out, separate
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
 from navbound.read.truth import TOLERANCE_S, join, with_error
@@ -102,7 +103,7 @@ def material(
     inputs = [r.source for r in readings] + [source.record(None) for source in found.navigation if source not in found.observations]
     rejected = [x for r in readings for x in r.rejected]
     notes = [note for r in readings for note in r.notes]
-    epochs = _together(readings, rejected)
+    epochs, lost = _together(readings, rejected)
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
     epochs, plausibility = check(claimed.epochs, limits)
@@ -132,6 +133,7 @@ def material(
         waypoints=route.waypoints,
         inputs=inputs + route.inputs,
         rejected=rejected,
+        left_out=_on_path(lost, epochs, route.tracks),
         cross_track=route.cross_track,
         settings={
             "path": None if path is None else str(path),
@@ -226,15 +228,32 @@ def _on_approach(found: Approaches, gates: Gates, n_recorded: int) -> _Path:
     return _Path(found.epochs, words + found.notes, heading, waypoints, cross_track=found.cross_track, tracks=found.tracks)
 
 
-def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> pl.DataFrame:
-    """All files as one table; an epoch that two files hold counts once."""
+def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """All files as one table, an epoch that two files hold counts once; and the rows of all that cannot be judged."""
     epochs = pl.concat([r.epochs for r in readings], how="diagonal_relaxed").sort("track", "time_ns", maintain_order=True)
-    once = epochs.unique(["track", "time_ns"], keep="first", maintain_order=True)
-    if once.height < epochs.height:
-        count = epochs.height - once.height
-        reason = "time repeated within a track of several files"
-        rejected.append(Rejection(file=readings[-1].source.path, reason=reason, count=count, first_line=None, example=f"{count} epochs"))
-    return once
+    if "status" in epochs.columns:
+        # A file that says nothing of its epochs has nothing against them.
+        epochs = epochs.with_columns(pl.col("status").fill_null("ok"))
+    found = separate(epochs)
+    reason = "time repeated within a track of several files"
+    for words, repeated in ((reason, found.identical), (f"{reason} with another position", found.contradicting)):
+        if not repeated.is_empty():
+            example = f"{repeated.height} epochs"
+            rejected.append(Rejection(file=readings[-1].source.path, reason=words, count=repeated.height, first_line=None, example=example))
+    return found.epochs, pl.concat([*(r.left_out for r in readings), left_out(found.contradicting)])
+
+
+def _on_path(lost: pl.DataFrame, epochs: pl.DataFrame, tracks: Mapping[str, str]) -> pl.DataFrame:
+    """The rows that cannot be judged and belong to what is judged: all, or those between the ends of an approach of their track."""
+    if not tracks or lost.is_empty():
+        return lost
+    ends = epochs.group_by("track").agg(start=pl.col("time_ns").min(), end=pl.col("time_ns").max())
+    ends = ends.with_columns(pl.col("track").replace_strict(dict(tracks), default=None, return_dtype=pl.String).alias("of"))
+    timed = lost.join(ends.rename({"track": "approach"}), left_on="track", right_on="of", how="inner")
+    # Without a time nobody knows where a row belongs, and it may belong here.
+    timed = timed.filter(pl.col("time_ns").is_between("start", "end"))
+    untimed = lost.filter(pl.col("time_ns").is_null())
+    return pl.concat([left_out(timed.with_columns(pl.col("approach").alias("track"))), untimed])
 
 
 def _labels(epochs: pl.DataFrame) -> dict[str, str]:

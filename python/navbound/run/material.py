@@ -8,9 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-if TYPE_CHECKING:
-    import polars as pl
+import polars as pl
 
+from navbound.read.repeats import LEFT_OUT
+
+if TYPE_CHECKING:
     from navbound.run.records import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
 
 
@@ -39,6 +41,8 @@ class Material:
         Points of the flight besides the monitor's alerts.
     covariance : CovarianceOrigin
         Where the covariance comes from.
+    left_out : DataFrame
+        ``track`` and ``time_ns`` of recorded rows that cannot be judged and are no epochs: they are expected all the same.
     limits_held : dict
         Phase to how its alert limit is held ("inferred", ...), where epochs have ``hpl_m`` and ``hal_m``.
     """
@@ -60,3 +64,4 @@ class Material:
     settings: dict[str, object] = field(default_factory=dict)
     events: list[EventSummary] = field(default_factory=list)
     limits_held: dict[str, str] = field(default_factory=dict)
+    left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))

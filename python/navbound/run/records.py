@@ -92,7 +92,7 @@ class Verdict(Record):
     n_unjudged: int = 0
     """Epochs of any other kind: without position, covariance or bound, or missing."""
     n_missing: int = 0
-    """Of those, epochs that a gap of the table should have held."""
+    """Of those, epochs that a gap of the table should have held, and recorded rows without a usable time and position."""
     n_outside: int = 0
     """Epochs with status ok or degraded whose bound is beyond its limit."""
     least_share: float = rule.LEAST_SHARE

@@ -10,6 +10,7 @@ from navbound import gnss
 from navbound._receivers import unused_words
 from navbound.errors import FormatError
 from navbound.read.epochs import Reading
+from navbound.read.repeats import left_out, separate
 from navbound.run.records import Rejection
 from navbound.run.solving import Solving
 from navbound.status import REASONS
@@ -31,16 +32,34 @@ def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
     return [_reading(source, navigation, solving or Solving()) for source in files.observations]
 
 
+def _without_epochs(source: Source, observations: gnss.Observations) -> FormatError:
+    if not observations.n_refused:
+        return FormatError(source.path, "holds no epoch of measurements")
+    first = observations.refused[0]
+    what = f"no epoch can be used: {observations.n_refused} records are refused, the first for {first.reason}: “{first.text.strip()[:80]}”"
+    return FormatError(source.path, what, first.line, first.field)
+
+
 def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> Reading:
     observations = gnss.read_observations(source.path)
+    if observations.n_epochs == 0:
+        raise _without_epochs(source, observations)
     found = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem)
-    known = found.epochs.filter(pl.col("est_lat_rad").is_not_null()).unique("time_ns", keep="first", maintain_order=True).sort("time_ns")
+    without = found.epochs.filter(pl.col("est_lat_rad").is_null())
+    repeats = separate(found.epochs.filter(pl.col("est_lat_rad").is_not_null()).sort("time_ns", maintain_order=True))
+    known = repeats.epochs
     if known.is_empty():
         raise FormatError(source.path, f"no position could be solved; satellites not used: {unused_words(found.unused)}")
     path = str(source.path)
     rejected = [
         Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=f"{count} epochs")
-        for id_, count in found.epochs.filter(pl.col("est_lat_rad").is_null()).group_by("reason_id").len().sort("reason_id").iter_rows()
+        for id_, count in without.group_by("reason_id").len().sort("reason_id").iter_rows()
+    ]
+    kinds = {"time repeated": repeats.identical, "time repeated with another position": repeats.contradicting}
+    rejected += [
+        Rejection(file=path, reason=reason, count=rows.height, first_line=None, example=f"{rows.height} epochs")
+        for reason, rows in kinds.items()
+        if not rows.is_empty()
     ]
     if observations.n_refused:
         first = observations.refused[0]
@@ -48,5 +67,6 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         rejected.append(Rejection(file=path, reason=reason, count=observations.n_refused, first_line=first.line, example=example))
     notes = [f"{source.path.name}: {name}: {words}" for name, words in found.models.items()]
     notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in found.unused.items()]
+    lost = pl.concat([left_out(without), left_out(repeats.contradicting)])
     columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in found.codes.values() for c in codes)}
-    return Reading(known, source.record(observations.n_epochs), rejected, notes=notes, columns=columns)
+    return Reading(known, source.record(observations.n_epochs), rejected, notes=notes, columns=columns, left_out=lost)

@@ -113,7 +113,7 @@ def _verdict(
 ) -> Verdict:
     judged = margins.filter(pl.col("status") == "ok").select("_margin", "_margin_integrity").drop_nulls()
     status = margins.get_column("status")
-    n_missing = _missing(margins, material.sample_period_s)
+    n_missing = _missing(margins, material.left_out, material.sample_period_s)
     n_epochs, n_degraded = margins.height + n_missing, int((status == "degraded").sum())
     belief = of_epochs(margins, judge.id, risks)
     facts = rule.TrackFacts(
@@ -167,11 +167,16 @@ def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "s
     return [*assumed, "no_path"] if method(judging).error_column == "nse_h_m" else assumed
 
 
-def _missing(epochs: pl.DataFrame, period_s: float) -> int:
-    """Epochs that the gaps of the tracks should have held: those longer than the monitor waits before it says that there is nothing."""
+def _missing(epochs: pl.DataFrame, left_out: pl.DataFrame, period_s: float) -> int:
+    """Epochs that should have been there: recorded rows that are no epochs, and what the gaps beside them should have held.
+
+    A gap counts where it is longer than the monitor waits before it says that there is nothing. A left out row in it counts once.
+    """
+    timed = left_out.drop_nulls("time_ns").unique(["track", "time_ns"])
+    epochs = pl.concat([epochs.select("track", "time_ns"), timed]).unique().sort("track", "time_ns")
     step = pl.col("time_ns").diff().over("track").cast(pl.Float64) * 1e-9
     gaps = epochs.select(step=step).filter(pl.col("step") > rnp.Monitor(sample_period_s=period_s, time_to_alert_s=math.inf).stale_after_s)
-    return int(gaps.select(((pl.col("step") / period_s).round() - 1).sum()).item() or 0)
+    return left_out.height + int(gaps.select(((pl.col("step") / period_s).round() - 1).sum()).item() or 0)
 
 
 def _mean(flags: pl.Series) -> float | None:

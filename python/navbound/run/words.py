@@ -108,7 +108,7 @@ def _shares(verdict: Verdict) -> str:
         return "there is no epoch"
     if verdict.n_judged == verdict.n_epochs:
         return f"all {verdict.n_epochs} epochs are ok and judged"
-    missing = f" ({verdict.n_missing} epochs missing in gaps)" if verdict.n_missing else ""
+    missing = f" ({verdict.n_missing} epochs missing in gaps or without a usable time and position)" if verdict.n_missing else ""
     kinds = {"ok and judged": verdict.n_judged, "degraded": verdict.n_degraded, f"without a bound{missing}": verdict.n_unjudged}
     return f"of {verdict.n_epochs} epochs {', '.join(f'{share(n / verdict.n_epochs)} are {kind}' for kind, n in kinds.items())}"
 

@@ -50,6 +50,10 @@ pub(super) enum Arrival {
     },
 }
 
+/// Share of the sample period below which the step of a time stamp is not the time that passed. Jitter of the sampling stays above it.
+/// Provenance: ours.
+const CRAWL_SHARE: f64 = 0.5;
+
 impl Clock {
     pub(super) fn new(settings: &Settings) -> Self {
         Self {
@@ -91,6 +95,12 @@ impl Clock {
             self.ticked_s += now.seconds_since(before).max(0.0);
         }
         self.newest_tick = Some(now);
+    }
+
+    /// How long two records took to arrive \[ns\], at least, that are `stamped_ns` apart by their times. Where those crawl, it is a period.
+    pub(super) fn arrival_ns(&self, stamped_ns: f64) -> f64 {
+        let period_ns = 1e9 * self.sample_period_s;
+        if stamped_ns < CRAWL_SHARE * period_ns { period_ns } else { stamped_ns }
     }
 
     /// Whether nothing was accepted for longer than is permitted.

@@ -130,9 +130,16 @@ impl Latch {
         self.event.as_ref().filter(|_| self.annunciated)
     }
 
-    /// Time passed since the last epoch; `lost` where nothing was known of the bound meanwhile.
-    pub(super) fn pass(&mut self, elapsed_ns: f64, lost: bool) {
-        self.wait.pass(elapsed_ns, self.inside && !lost);
+    /// Time passed since the last epoch; `lost` where nothing was known of the bound meanwhile. Time outside is that of arrival, which is
+    /// never less than that of the stamps; time inside is that of the stamps.
+    pub(super) fn pass(&mut self, stamped_ns: f64, arrived_ns: f64, lost: bool) {
+        let known_inside = self.inside && !lost;
+        self.wait.pass(if known_inside { stamped_ns } else { arrived_ns }, known_inside);
+    }
+
+    /// A second record of the same time: outside it counts, inside it proves nothing.
+    pub(super) fn contradict(&mut self, moment: &Moment, bound: Metres, limit: Metres) -> Change {
+        if within(bound, limit) { Change::Nothing } else { self.step(moment, bound, limit) }
     }
 
     pub(super) fn step(&mut self, moment: &Moment, bound: Metres, limit: Metres) -> Change {

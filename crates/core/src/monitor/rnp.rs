@@ -10,7 +10,7 @@
 //!
 //! NaN is not within any limit, so it raises; a bound equal to its limit does not. What was not seen never helps an alert to end: an
 //! unusable epoch or a gap restarts the wait to clear and lets the wait to raise run on. Until the first epoch, monitoring is not
-//! available either.
+//! available either. A second record of one time counts where it is outside. Where time stamps crawl, time outside is counted in records.
 
 pub use super::clock::Acceptance;
 use super::clock::{Arrival, Clock};
@@ -167,7 +167,7 @@ impl Monitor {
             }
             Arrival::Duplicate => {
                 self.counters.n_duplicate += 1;
-                self.dropped(Acceptance::Duplicate, seen.time)
+                self.repeated(seen)
             }
             Arrival::Late => {
                 self.counters.n_late += 1;
@@ -195,6 +195,17 @@ impl Monitor {
         self.nothing(acceptance, began)
     }
 
+    /// A repeat of the last time. A bound outside contradicts one inside, and is judged; one inside takes nothing back.
+    fn repeated(&mut self, seen: &Observation) -> Step {
+        let was_normal = self.alert() == Alert::Normal;
+        let dropped = self.dropped(Acceptance::Duplicate, seen.time);
+        if !seen.usable || self.loss.is_some() {
+            return dropped;
+        }
+        let [raised_caution, raised_warning] = self.compare(seen, None, was_normal, Latch::contradict).map(raised);
+        Step { alert: self.alert(), began: [raised_caution, raised_warning, None], ..dropped }
+    }
+
     /// The clock that counts began at `since` and stands at `now`; all that time nothing was judged.
     fn set_back(&mut self, since: GpsTime, now: GpsTime) -> Step {
         self.counters.n_clock_set_back += 1;
@@ -212,8 +223,9 @@ impl Monitor {
     fn pass(&mut self, since: GpsTime, now: GpsTime) {
         let elapsed_ns = now.nanoseconds().saturating_sub(since.nanoseconds()) as f64;
         let lost = self.loss.is_some();
-        self.caution.pass(elapsed_ns, lost);
-        self.warning.pass(elapsed_ns, lost);
+        let arrived_ns = self.clock.arrival_ns(elapsed_ns);
+        self.caution.pass(elapsed_ns, arrived_ns, lost);
+        self.warning.pass(elapsed_ns, arrived_ns, lost);
     }
 
     /// A step in which nothing was judged.
@@ -249,16 +261,8 @@ impl Monitor {
         let lost_since = self.loss.map(|event| event.onset);
         let regained = self.loss.take().map(|event| event.ended(seen.time));
         self.begun = true;
-        let (accuracy, integrity) = (seen.accuracy.length(), seen.integrity.length());
-        self.counters.n_nan += u64::from(accuracy.m().is_nan() || integrity.m().is_nan() || !is_limit(seen.rnp));
-        let moment = Moment { now: seen.time, lost_since, at_once: true };
-        let warning = self.warning.step(&moment, integrity, Metres::new(2.0 * seen.rnp.m()));
-        // The alert falls to normal only at an epoch inside: where nothing else is in force, an epoch outside is a caution at once.
-        let at_once = !was_normal && self.warning.raised().is_none();
-        let caution = self.caution.step(&Moment { at_once, ..moment }, accuracy, seen.rnp);
+        let [caution, warning] = self.compare(seen, lost_since, was_normal, Latch::step);
         let [raised_caution, raised_warning] = [raised(caution), raised(warning)];
-        self.counters.n_cautions += u64::from(raised_caution.is_some());
-        self.counters.n_warnings += u64::from(raised_warning.is_some());
         self.counters.n_withdrawn += u64::from(caution == Change::Withdrawn);
         Step {
             alert: self.alert(),
@@ -267,7 +271,23 @@ impl Monitor {
             ended: [cleared(caution), cleared(warning), regained],
         }
     }
+
+    /// Both bounds against their limits: what became of the caution and of the warning.
+    fn compare(&mut self, seen: &Observation, lost_since: Option<GpsTime>, was_normal: bool, latch: Compare) -> [Change; 2] {
+        let (accuracy, integrity) = (seen.accuracy.length(), seen.integrity.length());
+        self.counters.n_nan += u64::from(accuracy.m().is_nan() || integrity.m().is_nan() || !is_limit(seen.rnp));
+        let moment = Moment { now: seen.time, lost_since, at_once: true };
+        let warning = latch(&mut self.warning, &moment, integrity, Metres::new(2.0 * seen.rnp.m()));
+        // The alert falls to normal only at an epoch inside: where nothing else is in force, an epoch outside is a caution at once.
+        let at_once = !was_normal && self.warning.raised().is_none();
+        let caution = latch(&mut self.caution, &Moment { at_once, ..moment }, accuracy, seen.rnp);
+        self.counters.n_cautions += u64::from(raised(caution).is_some());
+        self.counters.n_warnings += u64::from(raised(warning).is_some());
+        [caution, warning]
+    }
 }
+
+type Compare = fn(&mut Latch, &Moment, Metres, Metres) -> Change;
 
 fn raised(change: Change) -> Option<Event> {
     if let Change::Raised(event) = change { Some(event) } else { None }
