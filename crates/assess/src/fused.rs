@@ -211,7 +211,11 @@ impl Watch {
         };
         said.mode = given.map(|s| s.mode);
         let stations = given.is_some_and(|s| s.mode != Mode::Gnss) && self.contradicting_s >= STATIONS_AFTER_S;
-        let witnesses = Witnesses { filters_disagree: Some(said.doubt == Some(Doubt::Filters)), stations_contradict: Some(stations), ..Witnesses::NONE };
+        let witnesses = Witnesses {
+            filters_disagree: Some(said.doubt == Some(Doubt::Filters)),
+            stations_contradict: Some(stations),
+            ..Witnesses::NONE
+        };
         if stations && said.doubt.is_none() {
             said.doubt = Some(Doubt::Stations);
         }

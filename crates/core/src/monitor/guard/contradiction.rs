@@ -98,6 +98,11 @@ impl Contradiction {
         self.before |= self.open || unexplained;
     }
 
+    /// A witness has spoken against satellites that stood alone: a unit that comes back learns from them and explains nothing.
+    pub fn leave_open(&mut self) {
+        (self.open, self.before) = (true, true);
+    }
+
     /// The ground stations rule out that the inertial unit is right.
     pub fn rule_out_the_unit(&mut self) {
         self.unit |= self.raised.is_some() && !self.still;

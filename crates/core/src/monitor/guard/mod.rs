@@ -321,7 +321,7 @@ impl Guard {
                     }
                 }
                 Aiding::Vor(m) => self.alone.hear_bearing(time, m, &[snapshot]),
-                Aiding::Baro(m) => self.testimony[1] = testimony(of_height(m)),
+                Aiding::Baro(m) => self.testimony[1] = self.testimony[1].then(testimony(of_height(m))),
                 _ => {}
             }
         }
@@ -440,6 +440,11 @@ impl Guard {
             level_m: Some(l.level_m),
             distance_m: given.and_then(|s| apart(&l.snapshot, &filter.antenna_of(s)?)),
         });
+        let inertial = self.inertial(epoch);
+        let alone = inertial != Inertial::Plausible && inertial != Inertial::Clock;
+        if alone && !self.testimony.iter().all(|t| t.lets_stand()) {
+            self.contradiction.leave_open();
+        }
         let carried = self.carry(epoch, snapshot.as_ref(), given);
         let gating = self.shares.second(epoch, filter);
         Facts {
@@ -448,7 +453,7 @@ impl Guard {
             snapshot,
             carried,
             agreement: Some(self.agreement(filter, epoch)),
-            inertial: Some(self.inertial(epoch)),
+            inertial: Some(inertial),
             satellite_times_hold: Some(self.late < LATE_MOST && !filter.fixes_are_late()),
             gating: Some(gating),
             tuning: Some(self.shares.tuning()),

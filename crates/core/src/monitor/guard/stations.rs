@@ -16,8 +16,8 @@ use crate::frame::{ecef_from_geodetic, enu_from_ecef};
 use crate::monitor::judgement::Testimony;
 use crate::quantity::GpsTime;
 use crate::signal::{DmeRange, VorBearing};
-use crate::special::gamma::chi_square_tail;
 use crate::special::float::{atan2, hypot};
+use crate::special::gamma::chi_square_tail;
 use nalgebra::{Matrix3, Vector3};
 
 /// Stations that are remembered.

@@ -96,15 +96,19 @@ pub enum Testimony {
 }
 
 impl Testimony {
-    /// What stands after a new statement: silence takes back nothing.
+    /// What stands after a new statement: only agreement takes back a contradiction, neither silence nor a smaller doubt.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
-        if next == Self::Silent { self } else { next }
+        match (self, next) {
+            (before, Self::Silent) => before,
+            (Self::Contradicts, Self::Doubts) => Self::Contradicts,
+            _ => next,
+        }
     }
 
-    /// Whether the snapshot may stand alone beside this witness.
+    /// Whether the snapshot may stand alone beside this witness. A doubt of one in a thousand is usual in a flight of many instants.
     pub const fn lets_stand(self) -> bool {
-        matches!(self, Self::Silent | Self::Agrees)
+        !matches!(self, Self::Contradicts)
     }
 }
 

@@ -133,7 +133,9 @@ pub fn decide(facts: &Facts) -> Decision {
     let contradicted = reasons.has(Reason::FilterContradicted);
     let standing_in = snapshot.filter(|s| s.ranges_agree != RangesAgree::No);
     let alone = unit_out || contradicted || filter.is_none();
-    if alone && let Some(w) = &facts.witnesses {
+    // Stations and altimeter are heard against the satellites where these stand alone, or where a contradiction is open.
+    let questioned = alone || is_disputed(facts);
+    if questioned && let Some(w) = &facts.witnesses {
         reasons = reasons.with_if(!w.stations.lets_stand(), Reason::StationsContradict);
         reasons = reasons.with_if(!w.altimeter.lets_stand(), Reason::AltimeterContradicts);
     }
@@ -153,7 +155,7 @@ pub fn decide(facts: &Facts) -> Decision {
         reasons = reasons.with(missing);
     }
     // No level of a position that a witness contradicts.
-    let witnessed = source != Source::Snapshot || lets_the_snapshot_stand(facts);
+    let witnessed = !questioned || lets_the_snapshot_stand(facts);
     let level = level.filter(|_| source != Source::None && witnessed);
     let vertical = level.filter(|_| !reasons.has(Reason::AltimeterContradicts));
     let bounded = if is_disputed(facts) { vertical } else { level };
@@ -258,7 +260,9 @@ fn is_level(level_m: &f64) -> bool {
 /// While nobody knows whether filter or satellites were wrong the bound holds for both readings.
 fn disputed(facts: &Facts, level: [f64; 2]) -> [f64; 2] {
     match facts.agreement {
-        Some(Agreement::Open { bound_m } | Agreement::Contradicted { bound_m } | Agreement::Unexplained { bound_m }) if is_disputed(facts) => {
+        Some(Agreement::Open { bound_m } | Agreement::Contradicted { bound_m } | Agreement::Unexplained { bound_m })
+            if is_disputed(facts) =>
+        {
             // A comparison that is false for NaN keeps NaN, and no level comes of it.
             core::array::from_fn(|k| if level[k] >= bound_m[k] { level[k] } else { bound_m[k] })
         }
@@ -286,7 +290,8 @@ fn status(facts: &Facts, source: Source, reasons: Reasons, with_level: bool) -> 
     let explained = source == Source::Snapshot && unit_is_the_cause(facts);
     let doubted = reasons.any(&[Reason::FiltersDisagree, Reason::StationsContradict]) && !explained;
     // What is said against the snapshot itself no unit explains.
-    let doubted = doubted || (source == Source::Snapshot && !lets_the_snapshot_stand(facts));
+    let questioned = source == Source::Snapshot || is_disputed(facts);
+    let doubted = doubted || (questioned && !lets_the_snapshot_stand(facts));
     // Two readings and no bound for both: nothing is known.
     let unbounded = is_disputed(facts) && !with_level;
     if source == Source::None || doubted || unbounded {

@@ -24,7 +24,7 @@ fn good() -> Facts {
         satellite_times_hold: Some(true),
         gating: Some(Gating::Usual),
         tuning: Some(Tuning::AsDeclared),
-        witnesses: Some(Witnesses { filters_disagree: Some(false), stations_contradict: Some(false) }),
+        witnesses: Some(Witnesses { filters_disagree: Some(false), stations_contradict: Some(false), ..Witnesses::NONE }),
     }
 }
 
@@ -123,7 +123,7 @@ fn a_contradiction_is_bounded_for_both_readings_and_never_ok() {
 /// The filter without satellites has the same unit.
 #[test]
 fn filters_that_fall_out_are_explained_by_a_unit_that_is_wrong_and_by_nothing_else() {
-    let witnesses = Some(Witnesses { filters_disagree: Some(true), stations_contradict: Some(true) });
+    let witnesses = Some(Witnesses { filters_disagree: Some(true), stations_contradict: Some(true), ..Witnesses::NONE });
     assert_eq!(decide(&Facts { witnesses, ..good() }).status, Status::NotAvailable);
     assert_eq!(decide(&Facts { witnesses, ..by_snapshot() }).status, Status::Ok);
     let missing = Some(Inertial::Missing { for_s: 20.0 });
@@ -131,12 +131,36 @@ fn filters_that_fall_out_are_explained_by_a_unit_that_is_wrong_and_by_nothing_el
 }
 
 #[test]
-fn without_a_snapshot_ok_lasts_ten_seconds() {
+fn what_a_witness_says_against_the_snapshot_no_unit_explains() {
+    for spoken in [Testimony::Doubts.then(Testimony::Contradicts), Testimony::Contradicts.then(Testimony::Doubts)] {
+        for (stations, altimeter) in [(spoken, Testimony::Agrees), (Testimony::Silent, spoken)] {
+            let witnesses = Some(Witnesses { stations, altimeter, ..good().witnesses.unwrap() });
+            for facts in [by_snapshot(), Facts { inertial: Some(Inertial::Missing { for_s: 20.0 }), ..good() }] {
+                let found = decide(&Facts { witnesses, ..facts });
+                assert_eq!((found.status, found.hpl_m, found.vpl_m), (Status::NotAvailable, None, None), "{stations:?} {altimeter:?}");
+            }
+            // A unit that came back learnt from the satellites that were in question.
+            let agreement = Some(Agreement::Open { bound_m: [20.0, 20.0] });
+            assert_eq!(decide(&Facts { witnesses, agreement, ..good() }).status, Status::NotAvailable);
+        }
+    }
+    // Beside a unit and a filter that agree with the snapshot a station is outvoted; of the height nothing is claimed.
+    let of = |stations, altimeter| Facts { witnesses: Some(Witnesses { stations, altimeter, ..good().witnesses.unwrap() }), ..good() };
+    assert_eq!(decide(&of(Testimony::Contradicts, Testimony::Agrees)).status, Status::Ok);
+    let found = decide(&of(Testimony::Agrees, Testimony::Contradicts));
+    assert_eq!((found.status, found.hpl_m, found.vpl_m), (Status::Degraded, Some(12.0), None));
+    // A contradiction from before the unit failed.
+    let agreement = Some(Agreement::Unexplained { bound_m: [f64::INFINITY; 2] });
+    assert_eq!(decide(&Facts { agreement, ..by_snapshot() }).status, Status::NotAvailable);
+}
+
+#[test]
+fn without_a_snapshot_ok_and_level_last_one_and_a_half_seconds() {
     for (age_s, status) in
-        [(1.0, Status::Ok), (10.0, Status::Ok), (11.0, Status::Degraded), (-1.0, Status::Degraded), (f64::NAN, Status::Degraded)]
+        [(1.0, Status::Ok), (1.5, Status::Ok), (2.0, Status::Degraded), (-1.0, Status::Degraded), (f64::NAN, Status::Degraded)]
     {
         let found = decide(&Facts { snapshot: None, carried: Some(CarriedFacts { age_s, level_m: [14.0, 20.0] }), ..good() });
-        assert_eq!(found.status, status, "{age_s}");
+        assert_eq!((found.status, found.hpl_m.is_some()), (status, status == Status::Ok), "{age_s}");
     }
     let solved = SnapshotFacts { level_m: None, ..good().snapshot.unwrap() };
     let found = decide(&Facts { snapshot: Some(solved), ..good() });
@@ -197,7 +221,11 @@ fn agreement() -> impl Strategy<Value = Agreement> {
         1 => Just(Agreement::NotCompared),
         1 => pair().prop_map(|bound_m| Agreement::Open { bound_m }),
         1 => pair().prop_map(|bound_m| Agreement::Contradicted { bound_m }),
+        1 => pair().prop_map(|bound_m| Agreement::Unexplained { bound_m }),
     ]
+}
+fn testimony() -> impl Strategy<Value = Testimony> {
+    prop_oneof![3 => Just(Testimony::Silent), 3 => Just(Testimony::Agrees), 1 => Just(Testimony::Doubts), 1 => Just(Testimony::Contradicts)]
 }
 prop_compose! {
     fn filter()(time in time(), position in [number(), number(), number()], variance_m2 in [number(), number(), number()], mode in mode()) -> FilterFacts {
@@ -224,9 +252,10 @@ prop_compose! {
         satellite_times_hold in maybe(proptest::bool::weighted(0.8)),
         gating in maybe(prop_oneof![2 => Just(Gating::Usual), 1 => number().prop_map(|for_s| Gating::Excess { for_s })]),
         tuning in maybe(prop_oneof![3 => Just(Tuning::AsDeclared), 1 => Just(Tuning::Foreign)]),
-        witnesses in maybe((maybe(proptest::bool::weighted(0.2)), maybe(proptest::bool::weighted(0.2))).prop_map(|(a, b)| {
-            Witnesses { filters_disagree: a, stations_contradict: b }
-        })),
+        witnesses in maybe((maybe(proptest::bool::weighted(0.2)), maybe(proptest::bool::weighted(0.2)), testimony(), testimony()).prop_map(
+            |(filters_disagree, stations_contradict, stations, altimeter)| {
+                Witnesses { filters_disagree, stations_contradict, stations, altimeter }
+            })),
     ) -> Facts {
         Facts { epoch: epoch(), filter, snapshot, carried, agreement, inertial, satellite_times_hold, gating, tuning, witnesses }
     }
@@ -265,14 +294,14 @@ proptest! {
 
     /// A witness or a snapshot more may take `ok` away; it cannot give it where the filter was refused for another reason.
     #[test]
-    fn a_witness_more_never_makes_ok(facts in facts(), disagree: bool, contradict: bool) {
+    fn a_witness_more_never_makes_ok(facts in facts(), disagree: bool, contradict: bool, stations in testimony(), altimeter in testimony()) {
         let mut fewer = facts;
         if let Some(w) = &mut fewer.witnesses {
-            *w = Witnesses { filters_disagree: None, stations_contradict: None };
+            *w = Witnesses::NONE;
         }
         let mut more = fewer;
         if let Some(w) = &mut more.witnesses {
-            *w = Witnesses { filters_disagree: Some(disagree), stations_contradict: Some(contradict) };
+            *w = Witnesses { filters_disagree: Some(disagree), stations_contradict: Some(contradict), stations, altimeter };
         }
         prop_assert!(decide(&more).status <= decide(&fewer).status);
     }
