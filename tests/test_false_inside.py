@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import polars as pl
 import pytest
 
-from navbound import status
-from navbound.run import analyze
+from navbound import FormatError, InputError, gnss, ins, rnp, status
+from navbound.read.source import load
+from navbound.run import analyze, solved
 from navbound.run.directory import Run
 from navbound.run.judge import judge
+from navbound.run.solving import Solving
 
 N = 600
 START_S = 1_600_000_000.0
@@ -130,3 +134,78 @@ def test_a_recorded_protection_level_is_compared_with_twice_rnp(tmp_path: Path, 
 def test_columns_that_nobody_reads_are_named(tmp_path: Path) -> None:
     result = run(tmp_path, wind_mps=np.zeros(N))
     assert any("columns not used: wind_mps" in words for words in result.summary.assumptions)
+
+
+def test_a_flight_in_hardly_any_time_is_not_shown_to_be_inside(tmp_path: Path) -> None:
+    # 42 km in 0.6 s, 70 m each millisecond.
+    verdict = run(tmp_path, time=START_S + 1e-3 * np.arange(N)).summary.verdict
+    assert verdict.inside is None
+    assert verdict.n_implausible > 0.8 * N
+
+
+RINEX = """     3.04           OBSERVATION DATA    M                   RINEX VERSION / TYPE
+G    1 C1C                                                  SYS / # / OBS TYPES
+                                                            END OF HEADER
+> 2024 06 24 08 17 60.9900000  0  1
+G01  22000000.000
+"""
+
+
+def test_measurements_without_an_epoch_are_refused_by_the_name_of_their_file(tmp_path: Path) -> None:
+    file = tmp_path / "no_epoch.obs"
+    file.write_text(RINEX)
+    assert gnss.read_observations(file).n_epochs == 0
+    with pytest.raises(FormatError, match=r"no_epoch\.obs.*no epoch") as refusal:
+        # No navigation is needed to see it.
+        solved._reading(load(file), cast("gnss.Navigation", None), Solving())
+    assert "60.99" in str(refusal.value)
+
+
+RECORD = {"time_ns": 0, "rnp_m": 100.0, "tse_exact_m": 10.0, "tse_exact_integrity_m": 10.0}
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [{"time_ns": 10**30}, {"time_ns": math.inf}, {"tse_exact_m": 10**400}, {"rnp_m": [1.0]}, {"status": ["ok"]}, {"time_ns": None}],
+)
+def test_the_monitor_refuses_what_is_no_record(changed: dict[str, object]) -> None:
+    with pytest.raises(InputError):
+        rnp.Monitor().step(RECORD | changed)
+
+
+@pytest.mark.parametrize("time_ns", [10**30, 1.5, None, "1"])
+def test_the_monitor_refuses_a_tick_that_is_no_time(time_ns: object) -> None:
+    with pytest.raises(InputError, match="time_ns"):
+        rnp.Monitor().tick(time_ns)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"rnp_m": [1.0]},
+        {"tse_exact_m": ["ten"] * 3},
+        {"tse_exact_m": [[10.0]] * 3},
+        {"time_ns": np.full(3, 2**64 - 1, dtype=np.uint64)},
+        {"time_ns": ["a", "b", "c"]},
+        {"time_ns": [0.0, math.nan, 2e9]},
+    ],
+)
+def test_the_monitor_refuses_what_is_no_table(changed: dict[str, object]) -> None:
+    table: dict[str, object] = {"time_ns": [0, 10**9, 2 * 10**9], "rnp_m": [100.0] * 3} | {
+        name: [10.0] * 3 for name in ("tse_exact_m", "tse_exact_integrity_m")
+    }
+    with pytest.raises(InputError):
+        rnp.Monitor().run(table | changed)
+
+
+@pytest.mark.parametrize(
+    ("name", "level_m"), [("hpl_m", 0.0), ("hpl_m", 1e-9), ("hpl_m", -1.0), ("hpl_m", 2.9), ("vpl_m", 0.0), ("vpl_m", 4.9)]
+)
+def test_a_level_below_the_deviation_of_its_own_fix_is_none(name: str, level_m: float) -> None:
+    levels = {"hpl_m": np.full(3, 30.0), "vpl_m": np.full(3, 50.0)}
+    levels[name][1] = level_m
+    fixes = ins.Fixes(
+        time_ns=np.arange(3), position=np.zeros((3, 3)), covariance_enu_m2=np.tile(np.diag([4.0, 9.0, 25.0]), (3, 1, 1)), **levels
+    )
+    with pytest.raises(InputError, match=rf"{name}.*index 1|{name}\[1\]"):
+        fixes.table()

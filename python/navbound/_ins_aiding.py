@@ -208,7 +208,7 @@ class Fixes:
         [m²/s²]
     hpl_m, vpl_m : array_like, shape (n,) or (), optional
         Protection levels of the receiver, where it has an integrity function; NaN where there is none. Without them no fused position is
-        ``ok``: a covariance bounds no fault. [m]
+        ``ok``: a covariance bounds no fault. One that is not positive, or below a standard deviation of its own fix, is refused. [m]
     """
 
     time_ns: ArrayLike
@@ -225,6 +225,7 @@ class Fixes:
         n = time.size
         absent = np.full((n, 3), np.nan) if self.velocity_ned_mps is None else self.velocity_ned_mps
         variance = np.full((n, 9), np.nan) if self.velocity_covariance_ned_m2ps2 is None else self.velocity_covariance_ned_m2ps2
+        self._require_levels(n)
         return time, _joined(
             n,
             ("position", self.position, 3),
@@ -234,6 +235,28 @@ class Fixes:
             ("hpl_m", self.hpl_m, 1),
             ("vpl_m", self.vpl_m, 1),
         )
+
+    def _require_levels(self, n: int) -> None:
+        """A level bounds what one standard deviation does not: a smaller one is none, and would call any position safe."""
+        try:
+            covariance = np.broadcast_to(np.asarray(self.covariance_enu_m2, dtype=float), (n, 3, 3))
+            levels = {name: np.broadcast_to(np.asarray(getattr(self, name), dtype=float), (n,)) for name in ("hpl_m", "vpl_m")}
+        except (TypeError, ValueError):
+            # Shapes are refused by name where the columns are joined.
+            return
+        variance = {"hpl_m": np.maximum(covariance[:, 0, 0], covariance[:, 1, 1]), "vpl_m": covariance[:, 2, 2]}
+        for name, level in levels.items():
+            sigma = np.sqrt(np.fmax(variance[name], 0.0))
+            bad = (level <= 0.0) | (level < sigma)
+            if bad.any():
+                index = int(bad.argmax())
+                raise InputError(
+                    f"fixes.{name}",
+                    float(level[index]),
+                    "m",
+                    f"(0, inf), and at least the standard deviation, {sigma[index]:g} m",
+                    index=index,
+                )
 
 
 @dataclass(frozen=True)

@@ -70,8 +70,11 @@ pub struct Judged {
 ///
 /// A position is a jump when it lies further from the last different position than
 /// `(factor * reported speed + margin) * (time between them + latency) + noise`, with the larger of the two reported speeds, or the stated
-/// fastest speed where neither is reported. The time runs from the last *different* position: after 87 s without news an aircraft may
+/// fastest speed where neither is reported. The same holds from the first position of each minute, with the fastest speed reported since.
+/// The time runs from the last *different* position: after 87 s without news an aircraft may
 /// be 20 km further on, and is not jumping.
+///
+/// Provenance: ours.
 ///
 /// # Errors
 /// [`OutOfDomain`] with the index of the first position that is no place on the Earth.
@@ -79,10 +82,12 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
     let mut judged = Vec::with_capacity(reports.len());
     let mut last: Option<(Report, EcefPosition)> = None;
     let mut jumped: Option<GpsTime> = None;
+    let mut window: Option<Window> = None;
     for (index, report) in reports.iter().enumerate() {
         let here = sea_level(report).map_err(|refusal| (index, refusal))?;
         let Some((fix, from)) = last else {
             last = Some((*report, here));
+            window = Some(Window::begin(report, here));
             judged.push(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0 });
             continue;
         };
@@ -91,9 +96,14 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
         let step_m = here.minus(&from).vector().norm();
         let (mut finding, age_s) = if unchanged { (held(report, &fix, limits), elapsed) } else { (Finding::Plausible, 0.0) };
         if !unchanged {
-            if !(step_m <= reach(&fix, report, elapsed, limits)) {
+            let flown = window.as_mut().is_none_or(|w| w.reaches(report, &here, limits));
+            if !(step_m <= reach(&fix, report, elapsed, limits)) || !flown {
                 finding = Finding::Jump;
                 jumped = Some(report.time);
+            }
+            // What comes after a jump is judged from there.
+            if finding == Finding::Jump || window.is_none_or(|w| !within(report.time, w.first.time, WINDOW_S)) {
+                window = Some(Window::begin(report, here));
             }
             last = Some((*report, here));
         }
@@ -104,6 +114,33 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
         judged.push(Judged { finding, age_s, step_m });
     }
     Ok(judged)
+}
+
+/// For how long positions are judged from one position on \[s\]. Provenance: ours; several latencies, so that one of them is a small part.
+const WINDOW_S: f64 = 60.0;
+
+/// The positions of the last minute or less. From step to step each position may be as old as the latency; over a window only once, or many
+/// small steps in hardly any time would be as good as a flight.
+#[derive(Debug, Clone, Copy)]
+struct Window {
+    first: Report,
+    from: EcefPosition,
+    /// Largest speed reported since; NaN as soon as a position has none.
+    fastest_mps: f64,
+}
+
+impl Window {
+    fn begin(first: &Report, from: EcefPosition) -> Self {
+        Self { first: *first, from, fastest_mps: first.speed_mps }
+    }
+
+    /// Whether the position may have been flown to since the window began.
+    fn reaches(&mut self, to: &Report, here: &EcefPosition, limits: &Limits) -> bool {
+        self.fastest_mps = if self.fastest_mps.is_nan() || to.speed_mps.is_nan() { f64::NAN } else { self.fastest_mps.max(to.speed_mps) };
+        let fastest = Report { speed_mps: self.fastest_mps, ..*to };
+        let first = Report { speed_mps: self.fastest_mps, ..self.first };
+        here.minus(&self.from).vector().norm() <= reach(&first, &fastest, to.time.seconds_since(self.first.time), limits)
+    }
 }
 
 /// An unchanged position is held only where the aircraft says it moves; a parked one repeats itself rightly.

@@ -52,6 +52,35 @@ fn a_repeated_position_is_held_and_then_stale_and_ends_with_the_next() {
 }
 
 #[test]
+fn a_flight_in_hardly_any_time_is_a_jump_however_small_its_steps() {
+    // 70 m each millisecond: each step is within the latency of one position, all of them within that of one hundred.
+    let crawl = |k: i64| Report {
+        time: GpsTime::from_nanoseconds(1_000_000 * k),
+        lat_rad: 70.0 * k as f64 * RAD_PER_M,
+        lon_rad: 0.3,
+        speed_mps: f64::NAN,
+    };
+    let found = findings(&(0..1200).map(crawl).collect::<Vec<_>>());
+    // 400 m/s for two seconds of latency and 0.1 km of noise are 0.9 km: thirteen steps.
+    assert_eq!(found.iter().position(|f| *f == Finding::Jump), Some(13));
+    assert!(found[13..].iter().all(|f| matches!(f, Finding::Jump | Finding::Unsettled)));
+}
+
+#[test]
+fn an_aircraft_that_gathers_speed_flies_as_far_as_it_reported() {
+    // 100 to 250 m/s within a minute and back: the ends of a window alone would allow less than was flown.
+    let mut flown_m = 0.0;
+    let reports: Vec<Report> = (0..240)
+        .map(|k| {
+            let speed_mps = 100.0 + 150.0 * (1.0 - f64::from((k % 120 - 60i32).abs()) / 60.0);
+            flown_m += speed_mps;
+            Report { speed_mps, ..track(&[flown_m; 240], 0.0)[k as usize] }
+        })
+        .collect();
+    assert!(findings(&reports).iter().all(|f| *f == Finding::Plausible));
+}
+
+#[test]
 fn a_parked_aircraft_and_one_that_reports_no_speed_may_repeat_their_position() {
     for speed in [0.0, 14.0, f64::NAN] {
         assert!(findings(&track(&[5.0; 20], speed)).iter().all(|f| *f == Finding::Plausible), "{speed} m/s");
