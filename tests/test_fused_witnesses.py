@@ -96,8 +96,8 @@ def outside(epochs: pl.DataFrame) -> pl.Series:
 )
 def test_satellites_that_the_stations_contradict_are_no_navigation_whatever_the_unit_does(tmp_path: Path, faults: tuple[str, ...]) -> None:
     epochs = flown(tmp_path, *faults)
-    # Five stations of 93 m each, averaged over ten seconds, rule out what lies farther than this; nearer nobody on board sees it.
-    far = epochs.filter(pl.col("nse_h_m") > 600.0)
+    # Five stations of 93 m each rule out some 600 m; their mean over ten seconds is 200 m behind at 20 m/s. Nearer nobody on board sees it.
+    far = epochs.filter(pl.col("nse_h_m") > 800.0)
     assert far.height > 100
     assert far["status"].unique().to_list() == ["not_available"]
     assert far["hpl_m"].null_count() == far.height

@@ -42,6 +42,8 @@ pub const BLOCK_RISK: f64 = 1e-6;
 pub const DIFFERENCE_INFLATION: f64 = 1.6;
 /// See [`DIFFERENCE_INFLATION`].
 pub const DIFFERENCE_FLOOR: f64 = 0.05;
+/// Inertial faults that the growth covers where no envelope is declared \[m/s²\], \[rad/s\]. Provenance: inferred.
+const UNSEEN: [f64; 2] = [0.01, 1e-5];
 /// \[m/s²\]
 const GRAVITY: f64 = 9.8;
 /// Samples on end whose times contradict the clock of the epochs, and the time without one after which the clock is right again \[s\].
@@ -523,7 +525,7 @@ impl Guard {
     }
 
     /// The levels of the last epoch that had a snapshot, with what the filter has lost since and what a fault of the unit within the declared
-    /// envelope makes of it: sample and truth are each within the envelope. Without an envelope it may make anything.
+    /// envelope makes of it: sample and truth are each within the envelope. Without an envelope: the faults that the tests leave unseen.
     ///
     /// ```text
     /// HPL(t) = HPL(t0) + K (sigma(t) - sigma(t0)) + a t^2 + g w t^3 / 3
@@ -539,7 +541,10 @@ impl Guard {
         let t = epoch.seconds_since(from);
         let q = self.settings.requirement.fault_free.q();
         let factor = [chi_factor(2, q).ok()?, chi_factor(1, q).ok()?];
-        let [force, rate] = self.settings.envelope.most;
+        let [force, rate] = core::array::from_fn(|k| {
+            let most = self.settings.envelope.most[k];
+            if most.is_finite() { most } else { UNSEEN[k] }
+        });
         let fault = if t > 0.0 { force * t * t + GRAVITY * rate * t * t * t / 3.0 } else { 0.0 };
         let level_m = core::array::from_fn(|k| level[k] + factor[k] * (sigma[k] - before[k]).max(0.0) + fault);
         Some(CarriedFacts { age_s: t, level_m })
