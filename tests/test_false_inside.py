@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import polars as pl
@@ -22,10 +22,10 @@ START_S = 1_600_000_000.0
 RNP_M = 0.3 * 1852.0
 
 
-def columns(**changed: object) -> dict[str, object]:
+def columns(**changed: object) -> dict[str, Any]:
     """70 m/s along the meridian of 2 degrees east, with a stated standard deviation of 5 m."""
     k = np.arange(N)
-    flown: dict[str, object] = {
+    flown: dict[str, Any] = {
         "time": START_S + k,
         "lat": 48.0 + 70.0 / 111_200.0 * k,
         "lon": np.full(N, 2.0),
@@ -49,13 +49,13 @@ def test_the_track_itself_is_inside(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["lat", "time"])
 def test_rows_without_a_position_or_a_time_are_expected_and_not_judged(tmp_path: Path, name: str) -> None:
-    values = [float(v) if k < 60 else None for k, v in enumerate(columns()[name])]  # type: ignore[call-overload]
+    values = [float(v) if k < 60 else None for k, v in enumerate(columns()[name])]
     verdict = run(tmp_path, **{name: values}).summary.verdict
     assert (verdict.id, verdict.n_epochs, verdict.n_judged, verdict.n_missing) == ("not_shown", N, 60, N - 60)
 
 
 def test_a_row_without_a_position_inside_a_gap_counts_once(tmp_path: Path) -> None:
-    lat = [None if 100 <= k < 200 else float(v) for k, v in enumerate(columns()["lat"])]  # type: ignore[call-overload]
+    lat = [None if 100 <= k < 200 else float(v) for k, v in enumerate(columns()["lat"])]
     verdict = run(tmp_path, lat=lat).summary.verdict
     assert (verdict.id, verdict.n_epochs, verdict.n_missing) == ("not_shown", N, 100)
 
@@ -70,7 +70,7 @@ def test_two_positions_at_one_time_contradict_each_other(tmp_path: Path) -> None
 
 
 def test_identical_repeats_are_left_out_and_do_no_harm(tmp_path: Path) -> None:
-    twice = {name: np.repeat(values, 2) for name, values in columns().items()}  # type: ignore[call-overload]
+    twice = {name: np.repeat(values, 2) for name, values in columns().items()}
     result = run(tmp_path, **twice)
     assert (result.summary.verdict.id, result.summary.verdict.n_epochs) == ("inside", N)
     assert [(r.reason, r.count) for r in result.summary.rejected] == [("time repeated within a track", N)]

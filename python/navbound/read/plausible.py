@@ -103,8 +103,8 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
     if "status" in epochs.columns:
         solved = status.with_reason_id(epochs)
         # The graver stands; of two alike, what was said before.
-        before = solved["status"].alias("before")
-        stands = marked.select((status.worse(before, pl.col("status")) == before).alias("stands"))["stands"]
+        both = marked.select("status").with_columns(before=solved["status"])
+        stands = both.select((status.worse(pl.col("before"), pl.col("status")) == pl.col("before")).alias("stands"))["stands"]
         marked = marked.with_columns(pl.when(stands).then(solved[c]).otherwise(pl.col(c)).alias(c) for c in status.COLUMNS)
     believed = pl.col("status").is_in(status.USABLE)
     marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COLUMNS if c in epochs.columns)
