@@ -417,7 +417,7 @@ impl Settings {
             sin_elevation,
             ionosphere_m: ionosphere,
             ionosphere_mapping: slant,
-            uneven_m: at.sizes.uneven_m,
+            uneven_m: at.sizes.left_m(pierced),
             troposphere_mapping: mapping,
             cn0_dbhz: range.cn0_dbhz,
             noise_factor: range.noise_factor,
