@@ -39,6 +39,11 @@ IONOSPHERES = ("auto", "broadcast", "galileo", "climatology", "none")
 """Models of the ionosphere that single pseudoranges can use."""
 
 
+MASK_RAD = float(np.radians(5.0))
+"""Lowest elevation of satellites that positions are solved from, where none is named: that of the common engines and of the airborne
+standards (DO-229), so that positions compare with theirs. [rad]"""
+
+
 @dataclass(frozen=True)
 class Refused:
     """What a reader could not use: file, line from 1, field, why, and the text found."""
@@ -318,7 +323,7 @@ def solve(
     systems: str = "GEC",
     signals: Literal["auto", "single", "dual"] = "single",
     ionosphere: Literal["auto", "broadcast", "galileo", "climatology", "none"] = "auto",
-    mask_rad: float = float(np.radians(10.0)),
+    mask_rad: float = MASK_RAD,
     false_alarm: float = 1e-4,
     most_excluded: int = 6,
     range_factor: float = 1.0,
@@ -349,7 +354,8 @@ def solve(
         ``climatology``: NTCM-G at the long-run mean of solar activity. ``none``: no correction; its whole size is error. ``auto`` is the
         first of the first three that the navigation files have within two days of the observations.
     mask_rad : float, optional
-        Lowest elevation. [rad]
+        Lowest elevation, from 0 to below pi/2. Ranges from low satellites weigh less, by the noise, the troposphere and the ionosphere that
+        they pass (docs/methods/gnss-positions.md). [rad]
     false_alarm : float, optional
         Risk of a false alarm of the residual test, an epoch. [1]
     most_excluded : int, optional
@@ -453,6 +459,7 @@ def solve(
         "signals": f"{'ionosphere-free pairs' if signals == 'dual' else 'one pseudorange'}: {signal_words(used)}",
         "smoothing": "none" if smoothing_s is None else f"{smoothing}, {smoothing_s:g} s; {100 * share:.1f} % of the pseudoranges",
         "ionosphere": "ionosphere-free pairs" if signals == "dual" else _ionosphere_words(*model),
+        "mask": f"elevation {np.degrees(mask_rad):g} deg and more",
         "troposphere": "Saastamoinen, standard atmosphere, 50 % humidity; mapping of DO-229",
         "weights": weights if weights != "scaled" else f"calibrated-2020 times {range_factor:g} (ranges), {shared_factor:g} (shared)",
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",

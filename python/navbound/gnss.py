@@ -17,6 +17,7 @@ from navbound._constellations import CONSTELLATIONS, Orbits, constellation, nomi
 from navbound._dop_map import DopMap, dop_map
 from navbound._precise import PreciseOrbits, read_orbits
 from navbound._receivers import (
+    MASK_RAD,
     SYSTEMS,
     UNUSED,
     Navigation,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CONSTELLATIONS",
+    "MASK_RAD",
     "SYSTEMS",
     "UNUSED",
     "Dilution",

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! ok       = the residuals agree with the weights, no memory of contradiction, either three ranges to spare with nothing excluded
-//!            or one to spare and trace P <= 2 trace V, and the declared 95 % circle is within 0.05 NM
+//!            or one to spare and trace P <= 2 trace V, and the declared 95 % circle is within 0.1 NM
 //! declared = V;   with other readings P, widened to reach each that is not negligible, and to hold its uncertainty where the position is ok;
 //!            with the memory P + f V
 //! ```
@@ -23,9 +23,10 @@ use crate::special::float::exp;
 const MEMORY_S: f64 = 60.0;
 /// Other readings may widen the covariance to this many times its trace in an epoch without doubt.
 const WIDER: f64 = 2.0;
-/// Widest 95 % circle of a position without doubt \[m\]: 0.05 NM, the estimated position uncertainty of NACp 8, which is the least that
-/// 14 CFR 91.227 wants of a position that an aircraft transmits (standard). A wider circle is true and of no use.
-pub const WIDEST_CIRCLE_M: f64 = 92.6;
+/// Widest 95 % circle of a position without doubt \[m\]: 0.1 NM, the smallest accuracy that an RNP procedure names, and the estimated
+/// position uncertainty of NACp 7 (standard). A wider circle is true and of little use: readings of the ranges that nothing contradicts
+/// reach so far.
+pub const WIDEST_CIRCLE_M: f64 = 185.2;
 /// Ratio of the weights of obstructed and open surroundings that a range without a fault gives: (1 - 0.3) / (1 - 0.001).
 const FAULTLESS: f64 = 0.7 / 0.999;
 
