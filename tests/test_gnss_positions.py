@@ -69,7 +69,7 @@ def test_gps_alone_is_as_accurate_as_the_second_peer(day: Day) -> None:
 
 def test_the_mask_is_five_degrees_unless_another_is_named(day: Day) -> None:
     observations, navigation, _ = day
-    lowest = []
+    lowest: list[float] = []
     for named in ({}, {"mask_rad": np.radians(5.0)}, {"mask_rad": np.radians(10.0)}):
         found = gnss.solve(observations, navigation, systems="G", keep_ranges=True, **named)
         assert found.ranges is not None
