@@ -169,7 +169,7 @@ def table(source: Open, systems: str, epochs: int) -> None:
     total = Outcome(0, 0, 0, 0, 0.0, 0.0)
     for faults, size in kinds:
         cells = []
-        for spare in (1, 2, 3, 4):
+        for spare in range(1, 7):
             o = run(source, Cell(systems, faults, size, spare), epochs)
             cells.append(f"{o.epochs:3d} {o.ok:3d}/{o.outside} {o.inside:.2f} {o.inside_95:.2f}")
             total = replace(total, epochs=total.epochs + o.epochs, ok=total.ok + o.ok, outside=total.outside + o.outside)

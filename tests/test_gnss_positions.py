@@ -55,8 +55,28 @@ def test_a_station_day_is_as_accurate_as_the_peer_and_says_how_wrong_it_is(day: 
     assert float(np.quantile(np.abs(error[:, 2]), 0.95)) <= baseline[systems]["v95_m"]
     nees = evaluation.nees(error, covariances(epochs))
     assert 1.0 < nees.nees_mean < 4.0
-    # Satellites above the mask as the peer counts them; it drops a few for reasons of its own.
-    assert abs(float(epochs["n_sv"].to_numpy().mean()) - baseline[systems]["mean_sats"]) < 0.15
+    # Satellites above the peer's mask as it counts them; it drops a few for reasons of its own.
+    above = gnss.solve(observations, navigation, systems=systems, mask_rad=np.radians(10.0)).epochs
+    assert abs(float(above["n_sv"].to_numpy().mean()) - baseline[systems]["mean_sats"]) < 0.15
+
+
+# gLAB 6.0.0, GPS, mask 5 degrees, on the same files against the same truth: 1.90 m at 95 %.
+def test_gps_alone_is_as_accurate_as_the_second_peer(day: Day) -> None:
+    observations, navigation, baseline = day
+    error = errors(gnss.solve(observations, navigation, systems="G", truth_ecef_m=baseline["reference_ecef_m"]).epochs)
+    assert float(np.quantile(np.hypot(error[:, 0], error[:, 1]), 0.95)) <= 1.90
+
+
+def test_the_mask_is_five_degrees_unless_another_is_named(day: Day) -> None:
+    observations, navigation, _ = day
+    lowest: list[float] = []
+    for named in ({}, {"mask_rad": np.radians(5.0)}, {"mask_rad": np.radians(10.0)}):
+        found = gnss.solve(observations, navigation, systems="G", keep_ranges=True, **named)
+        assert found.ranges is not None
+        lowest.append(float(np.degrees(found.ranges["el_rad"].min())))  # type: ignore[arg-type]
+        assert found.models["mask"] == f"elevation {10 if lowest[-1] > 9 else 5} deg and more"
+    assert 5.0 <= lowest[0] == lowest[1] < 5.1
+    assert 10.0 <= lowest[2] < 10.1
 
 
 def test_methods_take_the_table_unchanged(day: Day) -> None:
@@ -155,7 +175,7 @@ def test_a_street_is_degraded_and_its_covariance_can_be_believed(shared_data: Pa
     street = epochs.filter(pl.col("nse_e_m").is_not_null())
     assert street.height > 400
     assert street["status"].to_list().count("ok") < 0.05 * street.height
-    reasons = street["reason"].drop_nulls().str.contains("contradict|to spare|cannot confirm")
+    reasons = street["reason"].drop_nulls().str.contains("contradict|to spare|cannot confirm|wider than 185.2 m")
     assert reasons.all()
     # Wide rather than narrow: the covariance holds every reading of the ranges, and errors are at most what it says.
     error = errors(street)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
-from navbound._receivers import Refused, file_content
+from navbound._receiver_files import Refused, file_content
 from navbound.errors import InputError
 
 if TYPE_CHECKING:

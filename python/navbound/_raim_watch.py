@@ -17,7 +17,7 @@ from navbound._araim_settings import (
     requirement_numbers,
     support_rows,
 )
-from navbound._receivers import Navigation, Observations
+from navbound._receiver_files import Navigation, Observations
 from navbound._watched import Watched, checked_model, checked_smoothing, judged, range_models, watched
 
 if TYPE_CHECKING:

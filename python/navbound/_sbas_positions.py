@@ -12,7 +12,8 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
-from navbound._receivers import Navigation, read_navigation, with_errors
+from navbound._receiver_files import Navigation, read_navigation
+from navbound._receivers import with_errors
 from navbound.errors import InputError
 from navbound.status import REASONS
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from navbound._receivers import Observations
+    from navbound._receiver_files import Observations
     from navbound.sbas import Messages
 
     Navigations = Navigation | str | Path | Sequence[str | Path]

@@ -10,7 +10,8 @@ import polars as pl
 
 from navbound._araim_settings import ErrorModel, Support, error_model, stated
 from navbound._monitor_fit import Fit, fit_of
-from navbound._receivers import SYSTEMS, Navigation, Observations, signal_words, unused_words, used_satellites, with_errors
+from navbound._receiver_files import Navigation, Observations
+from navbound._receivers import SYSTEMS, signal_words, unused_words, used_satellites, with_errors
 from navbound.errors import InputError
 from navbound.status import sentences
 

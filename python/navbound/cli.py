@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json as encoder
+import math
 import os
 import sys
 from pathlib import Path
@@ -140,6 +141,9 @@ def analyze(
             "first of these that the navigation files have. [default: auto]"
         ),
     ] = None,
+    mask: Annotated[
+        float | None, typer.Option(help="Lowest elevation of satellites to solve from, degrees, 0 to below 90. [default: 5]")
+    ] = None,
     protection: Annotated[
         str | None,
         typer.Option(help="With --levels: protection levels of observations from given (the files), raim, araim or araim-horizontal."),
@@ -154,6 +158,7 @@ def analyze(
     receiver's log may be all three. A run that was interrupted goes on when it is started again with the same --out.
     """
     out = out or Path("out") / files[0].name.split(".")[0]
+    mask_rad = _mask_rad(mask)
     subsets = _subsets(min_satellites, max_satellites, listed_from, asked=stanford_esa)
     if levels is not None:
         if path is not None or sigma_m is not None:
@@ -174,6 +179,7 @@ def analyze(
                 signals=signals,
                 systems=systems,
                 ionosphere=ionosphere,
+                mask_rad=mask_rad,
                 protection=protection or "given",
                 out=out,
                 progress=progress,
@@ -196,11 +202,21 @@ def analyze(
         signals=signals,
         systems=systems,
         ionosphere=ionosphere,
+        mask_rad=mask_rad,
         settings=_settings(methods),
         out=out,
         command=command_line(),
     )
     _show(run, json=json)
+
+
+def _mask_rad(mask_deg: float | None) -> float | None:
+    """The elevation mask; refused here in the unit that it was typed in."""
+    if mask_deg is None:
+        return None
+    if not 0 <= mask_deg < 90:
+        raise InputError("mask", mask_deg, "deg", "[0, 90)")
+    return math.radians(mask_deg)
 
 
 def _subsets(min_satellites: int | None, max_satellites: int | None, listed_from: float | None, *, asked: bool) -> SubsetOptions | None:

@@ -16,18 +16,8 @@ from navbound._arrays import flatten
 from navbound._constellations import CONSTELLATIONS, Orbits, constellation, nominal
 from navbound._dop_map import DopMap, dop_map
 from navbound._precise import PreciseOrbits, read_orbits
-from navbound._receivers import (
-    SYSTEMS,
-    UNUSED,
-    Navigation,
-    Observations,
-    Positions,
-    Refused,
-    geodetic,
-    read_navigation,
-    read_observations,
-    solve,
-)
+from navbound._receiver_files import Navigation, Observations, Refused, read_navigation, read_observations
+from navbound._receivers import MASK_RAD, SYSTEMS, UNUSED, Positions, geodetic, solve
 from navbound.errors import InputError
 from navbound.status import availability, reasons_of
 
@@ -38,6 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CONSTELLATIONS",
+    "MASK_RAD",
     "SYSTEMS",
     "UNUSED",
     "Dilution",

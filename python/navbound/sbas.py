@@ -29,7 +29,7 @@ from navbound._extraction_gains import (
     extraction_factor,
     extraction_gains,
 )
-from navbound._receivers import file_content
+from navbound._receiver_files import file_content
 from navbound._sbas_positions import MODES, CorrectedPositions, corrected_positions, service_of
 from navbound._sbas_records import Decoded, Levels, Messages, Refused, Satellites
 from navbound._sbas_terms import FromTerms, covariance_levels, levels_from_terms

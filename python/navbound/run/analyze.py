@@ -49,6 +49,7 @@ def material(
     signals: str | None = None,
     systems: str | None = None,
     ionosphere: str | None = None,
+    mask_rad: float | None = None,
 ) -> Material:
     """Make recorded tracks ready to be judged.
 
@@ -79,6 +80,8 @@ def material(
         of taking the receivers' own.
     signals, systems, ionosphere : str, optional
         How measurements are solved, see :func:`navbound.gnss.solve`; ``auto``, ``GEC`` and ``auto`` where they are not named.
+    mask_rad : float, optional
+        Lowest elevation of the satellites that positions are solved from; :data:`navbound.gnss.MASK_RAD` where it is not named. [rad]
 
     Raises
     ------
@@ -95,7 +98,7 @@ def material(
         raise InputError("files", "nothing", domain="one file or more")
     found = sort_out(names, solve=solve)
     found.require_navigation()
-    solving = Solving(signals, systems, ionosphere)
+    solving = Solving(signals, systems, ionosphere, mask_rad)
     if not found.observations:
         solving.refuse("it together with measurements to solve: RINEX observations, or --solve with a receiver's log")
     readings = [read(source.path, columns=columns) for source in found.tables] + (solved(found, solving) if found.observations else [])

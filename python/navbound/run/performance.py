@@ -76,6 +76,8 @@ class Options:
         ``araim-horizontal``.
     signals, systems, ionosphere : str, optional
         How measurements without a service are solved, see :func:`navbound.gnss.solve`; ``single``, ``G`` and ``auto`` where not named.
+    mask_rad : float, optional
+        Lowest elevation of the satellites that they are solved from; :data:`navbound.gnss.MASK_RAD` where it is not named. [rad]
     """
 
     levels: Sequence[str | kpi.Level]
@@ -92,11 +94,12 @@ class Options:
     signals: str | None = None
     systems: str | None = None
     ionosphere: str | None = None
+    mask_rad: float | None = None
 
     @property
     def solving(self) -> Solving:
         """How measurements are solved."""
-        return Solving(self.signals, self.systems, self.ionosphere)
+        return Solving(self.signals, self.systems, self.ionosphere, self.mask_rad)
 
 
 def evaluate_files(

@@ -24,14 +24,17 @@ class Solving:
         Letters of :data:`navbound.gnss.SYSTEMS`.
     ionosphere : str, optional
         Model of single pseudoranges: ``auto``, ``broadcast``, ``galileo``, ``climatology`` or ``none``.
+    mask_rad : float, optional
+        Lowest elevation. [rad]
     """
 
     signals: str | None = None
     systems: str | None = None
     ionosphere: str | None = None
+    mask_rad: float | None = None
 
     @property
-    def named(self) -> dict[str, str]:
+    def named(self) -> dict[str, str | float]:
         """What was named by the caller."""
         return {name: value for name, value in asdict(self).items() if value is not None}
 
@@ -48,5 +51,5 @@ class Solving:
 
     def solve(self, observations: Observations, navigation: Navigation, *, signals: str, systems: str, **more: Any) -> Positions:
         """Positions by what is named, by the defaults elsewhere."""
-        named = {"signals": signals, "systems": systems, **self.named}
-        return gnss.solve(observations, navigation, **named, **more)  # type: ignore[arg-type]
+        named: dict[str, Any] = {"signals": signals, "systems": systems, **self.named}
+        return gnss.solve(observations, navigation, **named, **more)

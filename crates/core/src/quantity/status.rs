@@ -121,6 +121,8 @@ reasons! {
     ExclusionUnconfirmed, "exclusion_unconfirmed", Degraded, "an exclusion that the remaining ranges cannot confirm";
     /// Nothing excluded, and another reading fits as well.
     ReadingUnconfirmed, "reading_unconfirmed", Degraded, "too few satellites to spare: a fault of one could not be seen";
+    /// A position that is hardly known.
+    WideCircle, "wide_circle", Degraded, "the declared 95 % circle is wider than 185.2 m (0.1 NM)";
     /// Single frequencies without a message.
     IonosphereUndescribed, "ionosphere_undescribed", Degraded, "no message describes the ionosphere: heights can be wrong by metres";
     /// A height that no receiver has.

@@ -7,7 +7,7 @@ use super::wls::{Normal, Row};
 use crate::geometry::ionosphere::{Kind, MEAN_ACTIVITY_SFU, Overhead, SPREAD_ACTIVITY_SFU};
 use crate::geometry::ntcm;
 use crate::signal::Constellation;
-use crate::special::float::sqrt;
+use crate::special::float::{hypot, sqrt};
 use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3, Vector4};
 
 /// Vertical ionosphere, its gradient east and north, zenith troposphere.
@@ -53,6 +53,8 @@ pub struct CommonErrors {
     pub zenith_troposphere_m: f64,
     /// What a plane does not describe, from satellite to satellite: share of `s_v`.
     pub unevenness: f64,
+    /// What a plane does not describe far out: share of the larger gradient, by the square of the distance to the pierce point \[1/Mm\].
+    pub curvature: f64,
 }
 
 /// Standard deviations of the common errors over a receiver at an instant.
@@ -62,6 +64,8 @@ pub(crate) struct Sizes {
     pub(crate) sigma: Vector4<f64>,
     /// What the common errors leave to single satellites, overhead \[m\].
     pub(crate) uneven_m: f64,
+    /// The same of a pierce point far out, by the square of its distance \[m/Mm²\].
+    pub(crate) curved_m: f64,
 }
 
 impl CommonErrors {
@@ -77,6 +81,7 @@ impl CommonErrors {
         ntcm_floor_m: 0.5,
         zenith_troposphere_m: 0.10,
         unevenness: 0.3,
+        curvature: 0.25,
     };
 
     /// Over a receiver.
@@ -90,9 +95,11 @@ impl CommonErrors {
         let vertical = root_sum([self.vertical_share * delay, self.activity_share * activity, floor, spread, whole]);
         let north = if over.magnetic_lat.abs() < self.anomaly_rad { self.anomaly_share } else { self.gradient_share };
         let gradient = |share: f64| root_sum([share * delay, self.gradient_activity_share * activity]);
+        let (east, north) = (gradient(self.gradient_share), gradient(north));
         Sizes {
-            sigma: self.factor * Vector4::new(vertical, gradient(self.gradient_share), gradient(north), self.zenith_troposphere_m),
+            sigma: self.factor * Vector4::new(vertical, east, north, self.zenith_troposphere_m),
             uneven_m: self.unevenness * vertical,
+            curved_m: self.curvature * east.max(north),
         }
     }
 }
@@ -102,6 +109,11 @@ fn root_sum<const N: usize>(parts: [f64; N]) -> f64 {
 }
 
 impl Sizes {
+    /// What the common errors leave to a satellite with that pierce point, overhead \[m\]: uneven everywhere, and curved far out.
+    pub(crate) fn left_m(&self, [east, north]: [f64; 2]) -> f64 {
+        hypot(self.uneven_m, self.curved_m * (east * east + north * north))
+    }
+
     /// What each common error of one standard deviation does to a range \[m\]: `sqrt(M) [kF, kF d sin a, kF d cos a, m(E)]`, from the slant
     /// factor `kF` (`k` the ionosphere of its carrier against L1, 0 for a pair), the pierce point and the mapping of the troposphere.
     pub(crate) fn column(&self, slant: f64, [east, north]: [f64; 2], troposphere_mapping: f64) -> Vector4<f64> {

@@ -50,6 +50,17 @@ fn the_sizes_follow_the_message() {
     assert!((errors.sizes(&south).sigma.z - (0.35 * south.vertical_m).hypot(0.08 * a)).abs() < 1e-12);
 }
 
+/// What a plane through the zenith leaves of a curved ionosphere grows by the square of the distance.
+#[test]
+fn what_is_left_to_a_satellite_grows_by_the_square_of_its_distance() {
+    let south = over(10.0, broadcast());
+    let sizes = CommonErrors::CALIBRATED.sizes(&south);
+    assert_eq!(sizes.left_m([0.0, 0.0]), sizes.uneven_m);
+    let curved = |d: f64| sizes.left_m([0.6 * d, 0.8 * d]).powi(2) - sizes.uneven_m.powi(2);
+    assert!((curved(1.0).sqrt() - 0.25 * sizes.sigma.z).abs() < 1e-12);
+    assert!((curved(1.4) / curved(0.7) - 16.0).abs() < 1e-9);
+}
+
 #[test]
 fn the_less_is_said_of_the_ionosphere_the_larger_its_error() {
     let size = |ionosphere| CommonErrors::CALIBRATED.sizes(&over(45.0, ionosphere)).sigma;

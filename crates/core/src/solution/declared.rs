@@ -1,8 +1,8 @@
 //! What an epoch's position is declared as: its covariance, and whether and why it is doubted. The one place that decides.
 //!
 //! ```text
-//! ok       = the residuals agree with the weights, no memory of contradiction, and either three ranges to spare with nothing excluded,
-//!            or one to spare and trace P <= 2 trace V
+//! ok       = the residuals agree with the weights, no memory of contradiction, either three ranges to spare with nothing excluded
+//!            or one to spare and trace P <= 2 trace V, and the declared 95 % circle is within 0.1 NM
 //! declared = V;   with other readings P, widened to reach each that is not negligible, and to hold its uncertainty where the position is ok;
 //!            with the memory P + f V
 //! ```
@@ -14,14 +14,19 @@ use super::Surroundings;
 use super::mixture::{Mixture, OBSTRUCTED};
 use super::plausible::Movement;
 use super::point::{CONFIRMED, Fix};
+use crate::bound::anp;
 use crate::frame::Covariance;
-use crate::quantity::{GpsTime, Reason, Unavailable};
+use crate::quantity::{GpsTime, Reason, Risk, Unavailable};
 use crate::special::float::exp;
 
 /// What is known of the surroundings fades with this \[s\].
 const MEMORY_S: f64 = 60.0;
 /// Other readings may widen the covariance to this many times its trace in an epoch without doubt.
 const WIDER: f64 = 2.0;
+/// Widest 95 % circle of a position without doubt \[m\]: 0.1 NM, the smallest accuracy that an RNP procedure names, and the estimated
+/// position uncertainty of NACp 7 (standard). A wider circle is true and of little use: readings of the ranges that nothing contradicts
+/// reach so far.
+pub const WIDEST_CIRCLE_M: f64 = 185.2;
 /// Ratio of the weights of obstructed and open surroundings that a range without a fault gives: (1 - 0.3) / (1 - 0.001).
 const FAULTLESS: f64 = 0.7 / 0.999;
 
@@ -40,6 +45,8 @@ pub enum Doubt {
     ExclusionUnconfirmed,
     /// Nothing excluded, and another reading of the ranges that fits as well.
     ReadingUnconfirmed,
+    /// A circle too wide to be of use.
+    WideCircle,
     /// Single frequencies, and no message describes the ionosphere.
     IonosphereUndescribed,
     /// A height that no receiver has.
@@ -52,13 +59,14 @@ pub enum Doubt {
 
 impl Doubt {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::ResidualsContradict,
         Self::RecentResidualsContradict,
         Self::NoRedundancy,
         Self::ClockUnchecked,
         Self::ExclusionUnconfirmed,
         Self::ReadingUnconfirmed,
+        Self::WideCircle,
         Self::IonosphereUndescribed,
         Self::ImplausibleHeight,
         Self::ImplausibleDilution,
@@ -74,6 +82,7 @@ impl Doubt {
             Self::ClockUnchecked => Reason::ClockUnchecked,
             Self::ExclusionUnconfirmed => Reason::ExclusionUnconfirmed,
             Self::ReadingUnconfirmed => Reason::ReadingUnconfirmed,
+            Self::WideCircle => Reason::WideCircle,
             Self::IonosphereUndescribed => Reason::IonosphereUndescribed,
             Self::ImplausibleHeight => Reason::ImplausibleHeight,
             Self::ImplausibleDilution => Reason::ImplausibleDilution,
@@ -147,7 +156,7 @@ impl Declarations {
         if !self.movement.possible(time, &fix.position, velocity, fix.covariance.matrix()) {
             return Some(Doubt::ImplausibleJump);
         }
-        doubt(fix, factor.is_some(), confirmed)
+        doubt(fix, factor.is_some(), confirmed).or_else(|| too_wide(fix).then_some(Doubt::WideCircle))
     }
 
     fn obstructed(&mut self, time: GpsTime, fix: &Fix, mixture: Option<&Mixture>) -> f64 {
@@ -188,6 +197,12 @@ fn doubt(fix: &Fix, contradicted: bool, confirmed: bool) -> Option<Doubt> {
     } else {
         Some(Doubt::ReadingUnconfirmed)
     }
+}
+
+/// Whether the declared circle is too wide to be of use. One that cannot be computed is.
+fn too_wide(fix: &Fix) -> bool {
+    let circle = anp::circle(&fix.covariance, None, Risk::ACCURACY);
+    !circle.is_ok_and(|radius| radius.m() <= WIDEST_CIRCLE_M)
 }
 
 #[cfg(test)]

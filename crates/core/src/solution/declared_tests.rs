@@ -39,6 +39,19 @@ fn an_exclusion_that_five_ranges_cannot_confirm_is_degraded_and_wider() {
     assert!(after.covariance.matrix().trace() > 2.0 * before.covariance.matrix().trace());
 }
 
+/// The 95 % circle of a round covariance is sqrt(-2 ln 0.05) = 2.4477 standard deviations.
+#[test]
+fn a_circle_of_more_than_a_tenth_of_a_mile_is_degraded_and_declared_as_it_is() {
+    for (sigma, expected) in [(75.6, None), (75.7, Some(Doubt::WideCircle)), (f64::NAN, Some(Doubt::WideCircle))] {
+        let v = sigma * sigma;
+        let before =
+            Fix { covariance: Covariance::claim_symmetric(nalgebra::Matrix3::from_diagonal(&Vector3::new(v, v, 1.0))), ..fix(1.0, &[]) };
+        let (doubt, after) = declared(before, None);
+        assert_eq!(doubt, expected, "{sigma}");
+        assert!(sigma.is_nan() || after.covariance == before.covariance, "{sigma}");
+    }
+}
+
 #[test]
 fn a_doubt_has_an_order() {
     let alone = |f: Fix| declared(f, None).0;

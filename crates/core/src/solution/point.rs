@@ -4,21 +4,20 @@
 //! weights (Huber 1964); test of the residuals by chi-square and exclusion of the largest (Parkinson and Axelrad 1988); provenance: ours,
 //! of standard parts.
 
-use super::common::{InSolution, Left, Sizes, pierce};
+use super::common::{InSolution, Left};
 use super::mixture::Mixture;
 use super::plausible;
-use super::range_error::RangeConditions;
 use super::wls::{Dilution, Normal, Row};
-use crate::frame::{Covariance, EcefPosition, Geodetic, enu_from_ecef, geodetic_from_ecef};
-use crate::geometry::atmosphere::{mapping_of, zenith_delay};
+use crate::frame::{Covariance, EcefPosition, enu_from_ecef, geodetic_from_ecef};
 use crate::geometry::broadcast::in_axes_of_reception;
-use crate::geometry::ionosphere::Overhead;
 use crate::quantity::{GpsTime, Metres, Unavailable};
 use crate::signal::{Constellation, SPEED_OF_LIGHT_MPS};
-use crate::special::float::{sin, sqrt};
+use crate::special::float::sqrt;
 use crate::special::gamma::chi_square_tail;
-use nalgebra::{Matrix3, Vector3, Vector4};
+use nalgebra::{Matrix3, Vector3};
 
+#[path = "point_model.rs"]
+mod model;
 #[path = "point_offsets.rs"]
 mod offsets;
 #[path = "point_readings.rs"]
@@ -29,6 +28,7 @@ mod records;
 mod residuals;
 #[path = "point_velocity.rs"]
 mod velocity;
+use model::{Modelled, Place};
 use offsets::Clock;
 pub use offsets::{Offset, Offsets};
 pub(in crate::solution) use readings::CONFIRMED;
@@ -66,17 +66,6 @@ impl Seen {
     const fn weighs(&self) -> bool {
         self.modelled.weight > 0.0
     }
-}
-
-/// What the error model says of a range.
-#[derive(Debug, Clone, Copy, Default)]
-struct Modelled {
-    /// Atmospheric delay.
-    delay: f64,
-    /// 1 / variance; 0 below the mask.
-    weight: f64,
-    /// What each error that all ranges have in common does to it, one standard deviation each.
-    common: Vector4<f64>,
 }
 
 /// The position of one epoch, from nothing but its ranges.
@@ -179,22 +168,6 @@ struct Judgement {
     consistent: bool,
     /// The common errors in the solution; `None` where it is singular.
     common: Option<InSolution>,
-}
-
-/// Where the receiver is thought to be, with what all ranges share there.
-struct Place {
-    zenith: f64,
-    sin_mask: f64,
-    over: Overhead,
-    sizes: Sizes,
-}
-
-impl Place {
-    fn new(here: &Geodetic, time: GpsTime, settings: &Settings) -> Self {
-        let over = settings.ionosphere.over(here, time);
-        let sizes = settings.errors.common.sizes(&over);
-        Self { zenith: zenith_delay(here), sin_mask: sin(settings.mask.rad()), over, sizes }
-    }
 }
 
 /// A first position from nothing: equal weights, no atmosphere, from the Earth's centre. A few rounds bring it within kilometres,
@@ -397,37 +370,6 @@ impl<'a> Solver<'a> {
             shared_m: s.modelled.common,
         };
         self.seen.iter().enumerate().filter(|(_, s)| s.counts()).map(of)
-    }
-}
-
-impl Settings {
-    /// Delay, weight and common errors of a range seen along a unit vector; weight 0 below the mask.
-    fn model(&self, range: &Range, unit: &Vector3<f64>, at: &Place) -> Modelled {
-        let sin_elevation = unit.z;
-        if !(sin_elevation >= at.sin_mask) {
-            return Modelled::default();
-        }
-        // An ionosphere-free pair asks no model.
-        let ionosphere = if range.ionosphere_factor > 0.0 { at.over.delay(unit) * range.ionosphere_factor } else { 0.0 };
-        let mapping = mapping_of(sin_elevation);
-        let (obliquity, pierced) = pierce(unit);
-        let slant = range.ionosphere_factor * obliquity;
-        let conditions = RangeConditions {
-            constellation: range.satellite.constellation.index(),
-            sin_elevation,
-            ionosphere_m: ionosphere,
-            ionosphere_mapping: slant,
-            uneven_m: at.sizes.uneven_m,
-            troposphere_mapping: mapping,
-            cn0_dbhz: range.cn0_dbhz,
-            noise_factor: range.noise_factor,
-            ure_factor: range.ure_factor,
-        };
-        Modelled {
-            delay: ionosphere + at.zenith * mapping,
-            weight: 1.0 / self.errors.variance(&conditions),
-            common: at.sizes.column(slant, pierced, mapping),
-        }
     }
 }
 

@@ -43,6 +43,17 @@ fn a_full_sky_that_agrees_has_one_reading() {
     assert_eq!((fix.spare, fix.redundancy), (fix.n_used - 4, fix.n_used - 4));
 }
 
+/// Four to spare check two faults badly: they can agree by chance. The more are to spare, the smaller the risk of the residuals must be for it.
+#[test]
+fn ranges_that_agree_are_read_in_every_way_while_few_are_to_spare() {
+    for (n, read) in [(7, true), (8, true), (9, false)] {
+        let ranges: Vec<Range> = full_sky().into_iter().take(n).collect();
+        let (fix, mixture) = readings(&ranges, &Offsets::default());
+        assert_eq!((fix.spare, fix.consistent), (n - 4, true));
+        assert_eq!(mixture.is_some(), read, "{n}: risk {}", fix.residual_risk);
+    }
+}
+
 /// The last `n` ranges counted as Galileo's, whose clock stands `offset` from that of GPS.
 fn two_systems(n: usize, offset: f64) -> Vec<Range> {
     let mut ranges = full_sky();

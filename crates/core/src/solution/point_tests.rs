@@ -1,10 +1,11 @@
 use super::*;
-use crate::frame::{LatLon, ecef_from_geodetic};
+use crate::frame::{Geodetic, LatLon, ecef_from_geodetic};
 use crate::geometry::atmosphere::saastamoinen;
 use crate::geometry::ionosphere::Ionosphere;
 use crate::geometry::{GPS, Observer, Orbit};
 use crate::quantity::Radians;
 use crate::solution::range_error::RangeError;
+use nalgebra::Vector4;
 
 const EARTH_RATE: f64 = 7.292_115_146_7e-5;
 const CLOCK: f64 = 123_456.789;

@@ -98,7 +98,12 @@ impl RangeError {
             ionosphere_floor_m: self.ionosphere_floor_m * range,
             zenith_troposphere_m: self.zenith_troposphere_m * range,
             pair_factor: self.pair_factor,
-            common: CommonErrors { factor: self.common.factor * shared, unevenness: self.common.unevenness * range, ..self.common },
+            common: CommonErrors {
+                factor: self.common.factor * shared,
+                unevenness: self.common.unevenness * range,
+                curvature: self.common.curvature * range,
+                ..self.common
+            },
             reference_cn0_dbhz: self.reference_cn0_dbhz,
         }
     }
