@@ -371,7 +371,8 @@ def _show(run: Run, *, json: bool) -> None:
         sys.stdout.write(run.summary.model_dump_json(indent=1) + "\n")
     else:
         _print(run)
-    status = of_verdict(run.summary.verdict.id)
+    verdict = run.summary.verdict
+    status = of_verdict(verdict.id, None if verdict.belief is None else verdict.belief.state)
     if status:
         raise typer.Exit(status)
 

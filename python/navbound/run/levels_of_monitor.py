@@ -13,7 +13,7 @@ from navbound.errors import FormatError, InputError
 from navbound.read.epochs import read
 from navbound.read.truth import join
 from navbound.run.levels_of import Part, uniform
-from navbound.run.words import METRES_PER_NM, share
+from navbound.run.numbers import METRES_PER_NM, share
 from navbound.status import REASONS
 
 if TYPE_CHECKING:

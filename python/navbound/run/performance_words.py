@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navbound._monitor_fit import DISBELIEF
-from navbound.run.words import length, share
+from navbound.run.numbers import length, share
 
 if TYPE_CHECKING:
     from navbound.run.kpi_records import LevelResult, Performance, Subsets
