@@ -236,7 +236,7 @@ def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> tuple[p
         epochs = epochs.with_columns(pl.col("status").fill_null("ok"))
     found = separate(epochs)
     reason = "time repeated within a track of several files"
-    for words, repeated in ((reason, found.identical), (f"{reason} with another position", found.contradicting)):
+    for words, repeated in ((reason, found.identical), (f"{reason} with another position, bound or status", found.contradicting)):
         if not repeated.is_empty():
             example = f"{repeated.height} epochs"
             rejected.append(Rejection(file=readings[-1].source.path, reason=words, count=repeated.height, first_line=None, example=example))
