@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 import navbound
 from navbound import InputError, evaluation, exit_status
 from navbound.run.kpi_records import Performance
+from navbound.run.numbers import share
 from navbound.run.records import CovarianceOrigin, Summary
 from navbound.run.verdict import rule
-from navbound.run.numbers import share
 
 START_NS = 1_400_000_000_000_000_000
 M_PER_RAD = 6.37e6

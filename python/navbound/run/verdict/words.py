@@ -47,9 +47,8 @@ def _false(bounds: list[BoundCheck], levels: list[LevelCheck]) -> list[str]:
     for each in levels:
         if each.n_above:
             axis, name = _LEVELS[each.level]
-            named.append(
-                f"the {axis} error is above {name} at {each.n_above} of {each.n} epochs (at most {each.largest_ratio:.3g} times the level)"
-            )
+            most = f"(at most {each.largest_ratio:.3g} times the level)"
+            named.append(f"the {axis} error is above {name} at {each.n_above} of {each.n} epochs {most}")
     return named
 
 
