@@ -39,7 +39,7 @@ def refuted_words(belief: Belief | None) -> str:
 def contradicted_words(belief: Belief) -> str:
     """The bounds beside the lateral ones that truth contradicts, with their figures."""
     named = "; ".join(_false(belief.beside, belief.levels))
-    return f"Truth contradicts what this run states beside the lateral bounds: {named}. A source that is false in one axis shows nothing."
+    return f"Truth contradicts what this run states beside the lateral bounds: {named}. A covariance that is false in one axis is no evidence for the others."
 
 
 def _false(bounds: list[BoundCheck], levels: list[LevelCheck]) -> list[str]:
@@ -60,7 +60,8 @@ def truth_words(verdict: Verdict) -> list[str]:
     if belief is None or not (belief.bounds or belief.beside):
         return [f"Truth is known at {verdict.n_truth} epochs, but at none that has a covariance: the bounds could not be checked."]
     lateral = _contained(belief.bounds)
-    other = _contained([check for check in belief.beside if check.method == "anp-vertical"])
+    # What truth contradicts stands in the first sentence already.
+    other = _contained([check for check in belief.beside if check.method == "anp-vertical" and not check.refuted])
     vertical = [f"Of the vertical errors {'; '.join(other)}."] if other else []
     return [f"{_known(belief)}: of the errors at these epochs {'; '.join(lateral)}.", *vertical, *_below(belief), *_levels(belief)]
 
