@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
-import rinex_fixture
 
 import navbound
+import rinex_fixture
 from navbound import InputError, gnss
 from navbound.read.truth import TOLERANCE_S
 
