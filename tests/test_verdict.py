@@ -440,3 +440,15 @@ def test_a_level_that_misleads_is_not_believable(tmp_path: Path) -> None:
     assert (summary["verdict"]["id"], done.returncode) == ("not_believable", 4)
     assert Performance.model_validate(summary["performance"]).n_mi_epochs == 10
     assert summary["verdict"]["words"].startswith("Not believable: ")
+
+
+@pytest.mark.parametrize("times", [2, 5, 20])
+def test_rows_repeated_at_other_times_are_no_further_evidence(tmp_path: Path, times: int) -> None:
+    """A receiver that stands still and repeats its last fix: as many independent errors as fixes, and no better probability."""
+    n = 200
+    error = np.repeat(white(n), times, axis=0)
+    covariance = np.tile(9.0 * np.eye(2), (n * times, 1, 1))
+    # Four standard errors of a sum over M correlations, 4 sqrt(2 (2M + 1) / N), with the M of the block.
+    tolerance = 4.0 * math.sqrt(2.0 * (2 * times + 1) / (n * times))
+    assert evaluation.magnitude(error, covariance).n_effective <= n * (1.0 + tolerance)
+    assert evaluation.nees(error, covariance).n_effective <= n * (1.0 + tolerance)

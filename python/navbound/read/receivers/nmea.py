@@ -65,15 +65,11 @@ def read(source: Source) -> Log:
 def _undated(n_fixes: int, log: Log) -> str:
     """GGA holds a time of day only: what is lacking, and what to do."""
     bad = sum(count for count, _, _, damaged in log.left_out.values() if damaged)
-    damaged = (
-        f" ({bad} sentences are damaged, among them those with the date if there are any: a wrong checksum refuses one; leave them out or mend them)"
-        if bad
-        else ""
-    )
+    damaged = f" ({bad} sentences are damaged, perhaps those with the date: a wrong checksum refuses one)" if bad else ""
     return (
-        f"{n_fixes} GGA sentences hold a time of day and no date, and no sound RMC or ZDA sentence gives one{damaged}; log RMC or ZDA beside "
-        "GGA, add one ZDA sentence of the day at the beginning ($GPZDA,hhmmss,dd,mm,yyyy,00,00*checksum), or convert the log to a table with "
-        "a time"
+        f"{n_fixes} GGA sentences hold a time of day and no date, and no sound RMC or ZDA sentence gives one{damaged}; log RMC or ZDA "
+        "beside GGA, take out or mend damaged sentences and add one ZDA sentence of the day at the beginning "
+        "($GPZDA,hhmmss,dd,mm,yyyy,00,00*checksum), or convert the log to a table with a time"
     )
 
 

@@ -39,7 +39,8 @@ def refuted_words(belief: Belief | None) -> str:
 def contradicted_words(belief: Belief) -> str:
     """The bounds beside the lateral ones that truth contradicts, with their figures."""
     named = "; ".join(_false(belief.beside, belief.levels))
-    return f"Truth contradicts what this run states beside the lateral bounds: {named}. A covariance that is false in one axis is no evidence for the others."
+    first = f"Truth contradicts what this run states beside the lateral bounds: {named}."
+    return f"{first} A covariance that is false in one axis is no evidence for the others."
 
 
 def _false(bounds: list[BoundCheck], levels: list[LevelCheck]) -> list[str]:
@@ -70,8 +71,8 @@ def _known(belief: Belief) -> str:
     if belief.n_truth == belief.n_epochs:
         return f"Truth is known at all {belief.n_epochs} checked epochs"
     return (
-        f"Truth is known at {belief.n_truth} of {belief.n_epochs} checked epochs ({share(belief.n_truth / belief.n_epochs)}), and the bounds "
-        "of the others could not be checked"
+        f"Truth is known at {belief.n_truth} of {belief.n_epochs} checked epochs ({share(belief.n_truth / belief.n_epochs)}), and the "
+        "bounds of the others could not be checked"
     )
 
 
