@@ -6,6 +6,7 @@ import gzip
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -59,7 +60,8 @@ def test_a_fixed_point_is_truth_for_solved_positions_too(folder: Path, place: st
 def test_navigation_of_another_day_is_named_with_both_dates(folder: Path, minute: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.nav"
     other.write_bytes(gzip.decompress(next(folder.parent.rglob("ESBC00DNK_R_20201770000_01D_MN.rnx.gz")).read_bytes()))
-    for more in ({}, {"levels": "NPA"}, {"levels": "NPA", "protection": "raim"}):
+    kinds: tuple[dict[str, Any], ...] = ({}, {"levels": "NPA"}, {"levels": "NPA", "protection": "raim"})
+    for more in kinds:
         with pytest.raises(InputError, match=r"ephemerides of 2020-06-2[45] to 2020-06-2[56] for observations of 2024-06-24"):
             navbound.analyze([minute, other], **more)
 

@@ -6,6 +6,7 @@ import json
 import math
 import subprocess
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import get_args
@@ -36,7 +37,7 @@ def table(
     degraded: int = 0,
     drop: slice | None = None,
     error_u_m: float | NDArray[np.float64] = 0.0,
-    added: dict[str, object] | None = None,
+    added: Mapping[str, object] | None = None,
 ) -> Path:
     """A straight track at 50 m/s with a stated sigma, its truth, and some epochs without variance (degraded)."""
     k = np.arange(n)
@@ -54,7 +55,7 @@ def table(
     }
     if error_en_m is not None:
         columns |= {"truth_lat_rad": lat, "truth_lon_rad": lon, "truth_h_m": np.full(n, 1000.0) + error_u_m}
-    frame = pl.DataFrame(columns | (added or {}))
+    frame = pl.DataFrame(columns | dict(added or {}))
     if drop is not None:
         frame = frame.filter(~pl.int_range(pl.len()).is_in(list(range(n))[drop]))
     frame.write_csv(path)

@@ -130,9 +130,9 @@ def _other_bound(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
     def first(name: str) -> pl.Expr:
         return pl.col(name).drop_nulls().first().over(key)
 
-    other = [(pl.col(name) - first(name)).abs() > SAME_BOUND * of.max().over(key) for name, of in size.items()]
-    other += [(pl.col(name) - first(name)).abs() > SAME_PLACE_M for name in ERRORS if name in epochs.columns]
-    return pl.any_horizontal(*(each.fill_null(value=False) for each in other)) if other else pl.lit(value=False)
+    differs = [(pl.col(name) - first(name)).abs() > SAME_BOUND * of.max().over(key) for name, of in size.items()]
+    differs += [(pl.col(name) - first(name)).abs() > SAME_PLACE_M for name in ERRORS if name in epochs.columns]
+    return pl.any_horizontal(*(each.fill_null(value=False) for each in differs)) if differs else pl.lit(value=False)
 
 
 def _refused(kept: pl.DataFrame, reasons: pl.DataFrame) -> pl.DataFrame:

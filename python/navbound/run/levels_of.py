@@ -113,8 +113,8 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, need
         epochs, words = with_truth(epochs, truth)
         notes.append(words)
     else:
-        epochs, words = _with_own_truth(epochs)
-        notes += [f"{path.name}: {each}" for each in words]
+        epochs, of_truth = _with_own_truth(epochs)
+        notes += [f"{path.name}: {each}" for each in of_truth]
     if reading.unused:
         notes.append(f"{path.name}: columns not used: {', '.join(reading.unused)}")
     rejected = [r.model_dump() for r in reading.rejected]

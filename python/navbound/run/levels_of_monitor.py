@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 import polars as pl
 
@@ -42,13 +43,8 @@ CONTRADICTED = f"{DISBELIEF} (the residuals or the detections contradict the err
 """Stands beside every number of levels whose error model does not fit the ranges."""
 
 
-class Monitor(Protocol):
-    """Observations to tested positions with levels."""
-
-    def __call__(self, observations: gnss.Observations, navigation: gnss.Navigation, *, truth_ecef_m: Any, **how: Any) -> araim.Watched:
-        """Watch every epoch."""
-        ...
-
+Monitor = Callable[..., "araim.Watched"]
+"""Observations, navigation and, by name, ``truth_ecef_m`` and what :func:`monitored` lets through, to tested positions with levels."""
 
 MONITORS: dict[str, Monitor] = {
     "raim": raim.watch,
