@@ -126,7 +126,7 @@ def test_errors_at_few_epochs_show_nothing_of_the_others(tmp_path: Path) -> None
     few = [0.5 if k < 20 else None for k in range(200)]
     verdict = navbound.analyze(levels(tmp_path / "a.csv", hpe=few), levels="NPA").summary.verdict
     assert verdict.id == "not_shown"
-    assert "Errors are known horizontal at 20 of 200 epochs with a protection level (10.0 %)." in verdict.words
+    assert "Errors are known: horizontal at 20 of 200 epochs with a protection level (10.0 %)." in verdict.words
 
 
 def test_sizes_of_errors_stand_in_the_epochs(tmp_path: Path) -> None:

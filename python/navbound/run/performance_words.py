@@ -65,7 +65,7 @@ def _known(result: Performance) -> str:
             words.append(f"{name} at {n} of {result.n_solution} epochs with a protection level ({share(n / result.n_solution)})")
         elif name == "horizontal" or vertical:
             unknown.append(f"The {name} was not judged: no {name} error is known.")
-    return " ".join([f"Errors are known {', '.join(words)}." if words else "", *unknown]).strip()
+    return " ".join([f"Errors are known: {', '.join(words)}." if words else "", *unknown]).strip()
 
 
 def _availability(result: Performance) -> str:
