@@ -92,8 +92,8 @@ def _below(belief: Belief) -> list[str]:
 
 
 def _levels(belief: Belief) -> list[str]:
-    held = [f"{_LEVELS[each.level][1]} at any of {each.n} epochs" for each in belief.levels if not each.n_above]
-    return [f"No error is above {' or '.join(held)}."] if held else []
+    respected = [f"{_LEVELS[each.level][1]} at any of {each.n} epochs" for each in belief.levels if not each.n_above]
+    return [f"No error is above {' or '.join(respected)}."] if respected else []
 
 
 def _figures(check: BoundCheck) -> str:
