@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from navbound import anp, araim, dme, evaluation, gbas, gnss, ins, kpi, path, raim, rnp, rraim, sbas, tse
+from navbound.scenario.sensors import Imu
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,6 +44,9 @@ ORBITS = gnss.constellation("gps")
 TIME_NS = np.arange(2) * 1_000_000_000
 
 
+UNIT_ERRORS = Imu.model_validate({name: 100.0 if name == "in_run_time_s" else 1e-5 for name in Imu.model_fields})
+
+
 def _fte(**more: Any) -> dict[str, Any]:
     return {"fte_m": 30.0 * TWO, "sigma_m": 8.5 * TWO, **more}
 
@@ -53,6 +57,11 @@ def _plane(**more: Any) -> dict[str, Any]:
 
 def _space(**more: Any) -> dict[str, Any]:
     return {"covariance_enu_m2": ENU, **more}
+
+
+def _indicators(**columns: Any) -> Any:
+    """The indicators of a table, a level with both axes."""
+    return kpi.evaluate({"time_ns": TIME_NS, **columns}, "LPV-200")
 
 
 def _hazard(**more: Any) -> dict[str, Any]:
@@ -287,6 +296,56 @@ CALLS: dict[str, Call] = {
     "evaluation.bound": Call(evaluation.bound, {"error_m": 3.0 * TWO, "bound_m": 20.0 * TWO, "risk": 0.05}),
     "evaluation.containment": Call(evaluation.containment, {"n_effective": 10.0, "risk": 0.05}, {"n_outside": 3, "n": 100}),
     "evaluation.crps": Call(evaluation.crps, {"error_m": 3.0 * TWO, "sigma_m": 2.0 * TWO}),
+    "evaluation.bootstrap_coverage": Call(
+        evaluation.bootstrap_coverage, {"error_m": 3.0 * TWO, "bound_m": 3.3 * TWO[::-1]}, {"track": [0, 1], "n_replicates": 100}
+    ),
+    "evaluation.effective_size": Call(evaluation.effective_size, {"values": np.array([1.0, -0.4, 0.7, 0.2, -0.9, 0.3])}),
+    "evaluation.magnitude": Call(evaluation.magnitude, {"error_m": np.array([[5.0, 1.0], [2.0, -3.0]]), "covariance_m2": EN}),
+    "evaluation.nees": Call(evaluation.nees, {"error_m": np.array([[5.0, 1.0], [2.0, -3.0]]), "covariance_m2": EN}),
+    "evaluation.pit": Call(evaluation.pit, {"error_m": np.array([[5.0, 1.0], [2.0, -3.0]]), "covariance_m2": EN}),
+    "ins.coarse_attitude": Call(
+        ins.coarse_attitude, {"force_mps2": np.array([0.1, 0.2, -9.8]), "velocity_ned_mps": np.array([3.0, 4.0, 0.1])}
+    ),
+    "ins.roll": Call(
+        ins.roll,
+        {"position": np.column_stack([0.7 + 1e-6 * np.arange(12), np.full(12, 0.3), np.full(12, 100.0)]), "truth_interval_s": 1.0},
+        {"start_ns": 0, "unit": UNIT_ERRORS},
+    ),
+    "dme.select": Call(
+        dme.select,
+        {
+            **{"lat_rad": np.array([0.703, 0.7032]), "lon_rad": np.array([0.3, 0.3001]), "h_m": 5000.0 * TWO, "course_rad": 0.3 * TWO},
+            **{"sigma_altitude_m": 30.0, "sigma_bearing_rad": 0.04},
+        },
+        {"time_ns": TIME_NS, "stations": STATIONS},
+    ),
+    "sbas.error_extraction": Call(
+        sbas.error_extraction,
+        {
+            **{"position_enu_m": np.array([[0.1, 0.2, 0.3], [0.4, 0.1, 0.2]]), "velocity_enu_mps": np.array([[0.1, 0.2, 0.1]] * 2)},
+            **{"bias_h_m": TWO, "bias_v_m": 2.0 * TWO, "rho": 0.98, "weight": 0.5, "beta": 1.2, "risk_h": 1e-9, "risk_v": 5e-8},
+            **{"period_s": 1.0, "gap_most_s": 3.0},
+        },
+        {"time_ns": TIME_NS, "window": 2},
+    ),
+    "sbas.levels_from_terms": Call(
+        sbas.levels_from_terms,
+        {
+            **{"az_rad": AZ[0], "el_rad": EL[0], "x_pp": np.full(7, 0.4), "y_pp": np.full(7, 0.3), "delta_udre": 1.1, "fast_mps2": 1e-4},
+            **{"fast_age_s": 6.0, "latency_s": 1.0, "e_rrc_m": 0.1, "e_ltc_m": 0.2, "e_er_m": 0.1, "iono_step_m": 0.1},
+            **{"iono_interval_s": 60.0, "iono_ramp_mps": 1e-4, "iono_age_s": 100.0, "noise_m": 0.36, "divergence_m": 0.1},
+        },
+        {"udrei": np.full(7, 5), "givei": np.full((7, 4), 6)},
+    ),
+    "sbas.extraction_beta_from_spectrum": Call(
+        sbas.extraction_beta_from_spectrum,
+        {
+            **{"frequency_hz": np.linspace(0.0, 0.5, 200), "density_m2_per_hz": 1.0 / (0.01 + np.linspace(0.0, 0.5, 200) ** 2)},
+            **{"rho": 0.98, "period_s": 1.0},
+        },
+    ),
+    "kpi.evaluate": Call(_indicators, {"hpl_m": 20.0 * TWO, "vpl_m": 25.0 * TWO, "nse_e_m": 3.0 * TWO}),
+    "kpi.continuity": Call(kpi.continuity, {"available": np.array([1.0, 1.0, 0.0, 1.0])}, {"n_window_epochs": 2}),
     "path.line": Call(path.line, {"lat0_rad": 0.7, "lon0_rad": 0.3, "lat1_rad": 0.71, "lon1_rad": 0.31}),
     "path.from_azimuth": Call(path.from_azimuth, {"lat_rad": 0.7, "lon_rad": 0.3, "course_rad": 0.4}),
     "path.route": Call(path.route, {"lat_rad": np.array([0.7, 0.71]), "lon_rad": np.array([0.3, 0.31])}),
@@ -310,16 +369,12 @@ WITHOUT: dict[str, str] = {
         "its numbers come from files; its settings are checked in the tests of its module",
     ),
     **dict.fromkeys(
-        ("ins.fuse", "ins.mechanize", "ins.simulate", "ins.consistency", "ins.roll", "ins.coarse_attitude"),
+        ("ins.fuse", "ins.mechanize", "ins.simulate", "ins.consistency"),
         "a stream of samples: what is refused is counted (tests of the filter)",
     ),
     **dict.fromkeys(
-        ("kpi.evaluate", "kpi.stanford_esa", "kpi.with_subsets", "kpi.continuity", "kpi.level", "kpi.levels"),
-        "takes a table in which an absent value is NaN and counts as no level (tests of the indicators)",
-    ),
-    **dict.fromkeys(
-        ("evaluation.bootstrap_coverage", "evaluation.effective_size", "evaluation.magnitude", "evaluation.nees", "evaluation.pit"),
-        "a statistic of a series, from which epochs without a value are left out and counted",
+        ("kpi.stanford_esa", "kpi.with_subsets", "kpi.level", "kpi.levels"),
+        "takes or gives records, or a name; its tables are those of kpi.evaluate",
     ),
     **dict.fromkeys(
         (
@@ -335,15 +390,6 @@ WITHOUT: dict[str, str] = {
             "rnp.specifications",
         ),
         "a table without arguments",
-    ),
-    **dict.fromkeys(
-        (
-            "dme.select",
-            "sbas.error_extraction",
-            "sbas.levels_from_terms",
-            "sbas.extraction_beta_from_spectrum",
-        ),
-        "not yet sampled",
     ),
 }
 """Public functions without a sample, with the reason."""

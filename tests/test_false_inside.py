@@ -76,6 +76,36 @@ def test_identical_repeats_are_left_out_and_do_no_harm(tmp_path: Path) -> None:
     assert [(r.reason, r.count) for r in result.summary.rejected] == [("time repeated within a track", N)]
 
 
+@pytest.mark.parametrize(
+    ("name", "first", "second"),
+    [("sigma_e_m", 1.0, 400.0), ("sigma_e_m", 400.0, 1.0), ("hpl_m", 20.0, 3000.0), ("vpl_m", 20.0, 30.0), ("h_m", 1000.0, 1200.0)],
+)
+def test_two_bounds_of_one_position_contradict_each_other(tmp_path: Path, name: str, first: float, second: float) -> None:
+    """Each time twice at the same place, with a bound that is harmless and one that is not: the order of the rows decides nothing."""
+    twice: dict[str, object] = {key: np.repeat(values, 2) for key, values in columns().items()}
+    result = run(tmp_path, **twice | {name: np.tile([first, second], N)})
+    verdict = result.summary.verdict
+    assert (verdict.inside, verdict.n_judged, verdict.n_implausible) == (None, 0, N)
+    assert set(result.epochs["reason_id"]) == {"position_jump" if name == "h_m" else "invalid_number"}
+    reason = "time repeated within a track with another position, bound or status"
+    assert [(r.reason, r.count) for r in result.summary.rejected] == [(reason, N)]
+
+
+def test_the_same_bound_in_other_digits_is_the_same(tmp_path: Path) -> None:
+    twice: dict[str, object] = {key: np.repeat(values, 2) for key, values in columns().items()}
+    result = run(tmp_path, **twice | {"sigma_e_m": np.tile([1.0, 1.004], N)})
+    assert result.summary.verdict.id == "inside"
+    assert [(r.reason, r.count) for r in result.summary.rejected] == [("time repeated within a track", N)]
+
+
+@pytest.mark.parametrize("order", [("ok", "degraded"), ("degraded", "ok")])
+def test_of_two_statuses_the_graver_counts(tmp_path: Path, order: tuple[str, str]) -> None:
+    twice: dict[str, object] = {key: np.repeat(values, 2) for key, values in columns().items()}
+    result = run(tmp_path, **twice | {"status": list(order) * N})
+    assert set(result.epochs["status"]) == {"degraded"}
+    assert (result.summary.verdict.id, result.summary.verdict.n_degraded) == ("nothing_judged", N)
+
+
 def test_a_clock_that_stands_still_is_not_shown_to_be_inside(tmp_path: Path) -> None:
     time = START_S + np.minimum(np.arange(N), 99)
     verdict = run(tmp_path, time=time).summary.verdict

@@ -13,7 +13,7 @@ from navbound import InputError, gbas
 from navbound.status import USABLE
 from public_calls import CALLS, MODULES, WITHOUT
 
-MOST_WITHOUT = 44
+MOST_WITHOUT = 31
 """Functions without a sample; may only shrink."""
 
 
@@ -106,6 +106,7 @@ _SERIES = "a statistic of a series: epochs without an error or a bound are left 
 ALLOWED = {
     ("evaluation.bound", "error_m"): _SERIES,
     ("evaluation.bound", "bound_m"): _SERIES,
+    **{(name, argument): _SERIES for name in ("evaluation.magnitude", "evaluation.nees") for argument in ("error_m", "covariance_m2")},
     ("dme.solve", "slant_m"): "a range that is NaN was not received: the position is that of the others, whose number is in the result",
 }
 """Finite results that stand although an argument is no number, with the reason."""
@@ -128,7 +129,11 @@ def test_an_infinite_error_or_deviation_makes_no_finite_result(name: str, argume
 
 
 _CURVE = "the curve of the ground monitors is constant for large errors: its value is the limit"
-INFINITE = {("gbas.missed_by_monitor", "error_m"): _CURVE, ("gbas.missed_detection_limit", "error_m"): _CURVE}
+INFINITE = {
+    **{(name, argument): _SERIES for name in ("evaluation.magnitude", "evaluation.nees") for argument in ("error_m", "covariance_m2")},
+    ("gbas.missed_by_monitor", "error_m"): _CURVE,
+    ("gbas.missed_detection_limit", "error_m"): _CURVE,
+}
 """Finite results that stand although an error is infinite, with the reason."""
 
 

@@ -203,8 +203,15 @@ def test_nmea_midnight_ellipse_and_gbs(tmp_path: Path) -> None:
 def test_positions_that_nothing_dates_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "undated.nmea"
     path.write_bytes(sentence("GPGGA,000000.00,4715.0,N,00600.0,E,1,12,0.9,100.0,M,40.0,M,,") * 3)
-    with pytest.raises(FormatError, match="no row"):
+    with pytest.raises(FormatError, match=r"3 GGA sentences hold a time of day and no date.*add one ZDA sentence"):
         read(path)
+    dated = b"$GPRMC,000000.00,A,4715.0,N,00600.0,E,0.0,,311223,,,A*00\r\n"
+    path.write_bytes(dated + path.read_bytes())
+    with pytest.raises(FormatError, match=r"1 sentences are damaged.*a wrong checksum refuses one"):
+        read(path)
+    # What the sentence advises works.
+    path.write_bytes(sentence("GPZDA,000000.00,31,12,2023,00,00") + path.read_bytes().removeprefix(dated))
+    assert read(path).epochs.height == 1
 
 
 # --- all ------------------------------------------------------------------------------------------------------------------------------

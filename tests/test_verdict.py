@@ -6,8 +6,10 @@ import json
 import math
 import subprocess
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import polars as pl
@@ -17,9 +19,9 @@ from numpy.typing import NDArray
 import navbound
 from navbound import InputError, evaluation, exit_status
 from navbound.run.kpi_records import Performance
+from navbound.run.numbers import share
 from navbound.run.records import CovarianceOrigin, Summary
 from navbound.run.verdict import rule
-from navbound.run.words import share
 
 START_NS = 1_400_000_000_000_000_000
 M_PER_RAD = 6.37e6
@@ -34,6 +36,8 @@ def table(
     error_en_m: NDArray[np.float64] | None = None,
     degraded: int = 0,
     drop: slice | None = None,
+    error_u_m: float | NDArray[np.float64] = 0.0,
+    added: Mapping[str, object] | None = None,
 ) -> Path:
     """A straight track at 50 m/s with a stated sigma, its truth, and some epochs without variance (degraded)."""
     k = np.arange(n)
@@ -50,8 +54,8 @@ def table(
         "sigma_n_m": sigma,
     }
     if error_en_m is not None:
-        columns |= {"truth_lat_rad": lat, "truth_lon_rad": lon, "truth_h_m": np.full(n, 1000.0)}
-    frame = pl.DataFrame(columns)
+        columns |= {"truth_lat_rad": lat, "truth_lon_rad": lon, "truth_h_m": np.full(n, 1000.0) + error_u_m}
+    frame = pl.DataFrame(columns | dict(added or {}))
     if drop is not None:
         frame = frame.filter(~pl.int_range(pl.len()).is_in(list(range(n))[drop]))
     frame.write_csv(path)
@@ -121,6 +125,8 @@ GOOD = rule.TrackFacts(1000, 1000, 0, 0, 0, 0, "unchecked")
         ({}, "inside"),
         ({"belief": "supported"}, "inside"),
         ({"belief": "short"}, "not_shown"),
+        ({"belief": "contradicted"}, "not_shown"),
+        ({"belief": "contradicted", "n_outside": 1}, "outside"),
         ({"belief": "refuted"}, "not_believable"),
         ({"belief": "refuted", "n_outside": 3}, "not_believable"),
         ({"belief": "refuted", "n_judged": 0}, "not_believable"),
@@ -196,7 +202,7 @@ def test_a_few_independent_epochs_below_the_claim_are_not_shown(tmp_path: Path) 
     (circle, _) = verdict.belief.bounds
     assert (circle.coverage, circle.coverage_low) == (0.0, 0.0)
     assert circle.coverage_high > 0.95
-    assert "of the errors at ok epochs 0 % (0 % to " in verdict.words
+    assert "of the errors at these epochs 0 % (0 % to " in verdict.words
     assert "are within the 95 % circle (95 % intervals as from 1 independent epochs)" in verdict.words
 
 
@@ -207,6 +213,86 @@ def test_an_honest_bound_leaves_the_verdict(tmp_path: Path) -> None:
     assert verdict.belief is not None
     assert verdict.belief.state == "supported"
     assert command("show", tmp_path / "nothing").returncode == exit_status.UNREADABLE
+
+
+def white(n: int, sigma_m: float = 3.0, seed: int = 20261122) -> NDArray[np.float64]:
+    return sigma_m * np.random.default_rng(seed).standard_normal((n, 2))
+
+
+def test_truth_that_contradicts_the_vertical_bound_is_no_support(tmp_path: Path) -> None:
+    """Heights of truth above sea level, 45 m off at a vertical sigma of 0.5 m: the plane is right and the run states a false bound."""
+    path = table(tmp_path / "a.csv", 400, error_en_m=white(400), error_u_m=-45.0, added={"sigma_u_m": np.full(400, 0.5)})
+    done = command("analyze", path, "--out", tmp_path / "run")
+    verdict = Summary.model_validate_json((tmp_path / "run" / "summary.json").read_bytes()).verdict
+    assert verdict.belief is not None
+    assert (verdict.id, verdict.inside, verdict.belief.state, done.returncode) == ("not_shown", None, "contradicted", 4)
+    assert "the 95 % vertical interval contains 0 % (0 % to " in verdict.words
+    assert "the 99.999 % sphere contains 0 % (0 % to " in verdict.words
+    assert "of 400 errors" in verdict.words
+    # The first screen is the terminal's: before what was assumed.
+    assert "vertical interval contains 0 %" in done.stdout.split("Assumed and found")[0].replace("\n", " ")
+    assert command("show", tmp_path / "run").returncode == 4
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_true_vertical_leaves_the_verdict(tmp_path: Path, seed: int) -> None:
+    up = 5.0 * np.random.default_rng(900 + seed).standard_normal(400)
+    path = table(tmp_path / "a.csv", 400, error_en_m=white(400, seed=seed), error_u_m=up, added={"sigma_u_m": np.full(400, 5.0)})
+    verdict = navbound.analyze(path).summary.verdict
+    assert verdict.belief is not None
+    assert (verdict.id, verdict.belief.state) == ("inside", "supported")
+    assert {check.method for check in verdict.belief.beside} == {"anp-vertical", "anp-sphere"}
+
+
+def test_a_false_lateral_bound_names_the_vertical_beside_it(tmp_path: Path) -> None:
+    path = table(tmp_path / "a.csv", 400, error_en_m=white(400, 30.0), error_u_m=-45.0, added={"sigma_u_m": np.full(400, 0.5)})
+    verdict = navbound.analyze(path).summary.verdict
+    assert verdict.id == "not_believable"
+    withdrawn = verdict.words.split("all 400 epochs are ok")[0]
+    assert "the 95 % circle contains" in withdrawn
+    assert "vertical interval contains 0 %" in withdrawn
+
+
+def test_an_error_above_the_recorded_level_withdraws_the_verdict(tmp_path: Path) -> None:
+    """The lateral verdict compares with the protection level; one epoch above it is misleading information."""
+    error = np.clip(white(400), -7.0, 7.0)
+    error[200] = [11.0, 0.0]
+    levels = {"hpl_m": np.full(400, 10.5), "vpl_m": np.full(400, 30.0)}
+    verdict = navbound.analyze(table(tmp_path / "a.csv", 400, error_en_m=error, added=levels)).summary.verdict
+    assert verdict.id == "not_believable"
+    assert "the horizontal error is above HPL at 1 of 400 epochs (at most 1.05 times the level)" in verdict.words
+    high = {"hpl_m": np.full(400, 60.0), "vpl_m": np.full(400, 30.0)}
+    verdict = navbound.analyze(table(tmp_path / "b.csv", 400, error_en_m=error, added=high)).summary.verdict
+    assert verdict.id == "inside"
+    assert "No error is above HPL at any of 400 epochs or VPL at any of 400 epochs." in verdict.words
+
+
+def test_an_error_above_the_recorded_vertical_level_is_no_support(tmp_path: Path) -> None:
+    up = np.zeros(400)
+    up[7] = 31.0
+    levels = {"hpl_m": np.full(400, 60.0), "vpl_m": np.full(400, 30.0)}
+    verdict = navbound.analyze(table(tmp_path / "a.csv", 400, error_en_m=white(400), error_u_m=up, added=levels)).summary.verdict
+    assert verdict.belief is not None
+    assert (verdict.id, verdict.belief.state) == ("not_shown", "contradicted")
+    assert "the vertical error is above VPL at 1 of 400 epochs" in verdict.words
+
+
+def test_the_share_of_truth_stands_in_the_verdict(tmp_path: Path) -> None:
+    path = table(tmp_path / "a.csv", 1200, error_en_m=white(1200))
+    known = pl.int_range(pl.len()) < 20
+    frame = pl.read_csv(path).with_columns(pl.when(known).then(pl.col(name)).alias(name) for name in ("truth_lat_rad", "truth_lon_rad"))
+    frame.write_csv(path)
+    words = navbound.analyze(path).summary.verdict.words
+    assert "Truth is known at 20 of 1200 checked epochs (1.7 %), and the bounds of the others could not be checked" in words
+
+
+def test_truth_without_a_covariance_is_truth(tmp_path: Path) -> None:
+    path = table(tmp_path / "a.csv", 300, error_en_m=white(300))
+    pl.read_csv(path).drop("sigma_e_m", "sigma_n_m").write_csv(path)
+    verdict = navbound.analyze(path).summary.verdict
+    assert (verdict.id, verdict.truth_known) == ("nothing_judged", True)
+    assert "No truth" not in verdict.words
+    assert "Truth is known at 300 epochs, but at none that has a covariance" in verdict.words
 
 
 # The test behind it.
@@ -338,6 +424,8 @@ def test_help_and_documentation_list_every_status() -> None:
 def test_every_verdict_has_its_status() -> None:
     found = {verdict: exit_status.of_verdict(verdict) for verdict in rule.MEANS_INSIDE}
     assert found == {"inside": 0, "outside": 0, "not_shown": 0, "not_believable": 4, "nothing_judged": 4}
+    of_belief = {state: exit_status.of_verdict("not_shown", state) for state in get_args(rule.BeliefState)}
+    assert of_belief == {"unchecked": 0, "supported": 0, "short": 0, "contradicted": 4, "refuted": 4}
 
 
 def test_a_level_that_misleads_is_not_believable(tmp_path: Path) -> None:
@@ -353,3 +441,15 @@ def test_a_level_that_misleads_is_not_believable(tmp_path: Path) -> None:
     assert (summary["verdict"]["id"], done.returncode) == ("not_believable", 4)
     assert Performance.model_validate(summary["performance"]).n_mi_epochs == 10
     assert summary["verdict"]["words"].startswith("Not believable: ")
+
+
+@pytest.mark.parametrize("times", [2, 5, 20])
+def test_rows_repeated_at_other_times_are_no_further_evidence(tmp_path: Path, times: int) -> None:
+    """A receiver that stands still and repeats its last fix: as many independent errors as fixes, and no better probability."""
+    n = 200
+    error = np.repeat(white(n), times, axis=0)
+    covariance = np.tile(9.0 * np.eye(2), (n * times, 1, 1))
+    # Four standard errors of a sum over M correlations, 4 sqrt(2 (2M + 1) / N), with the M of the block.
+    tolerance = 4.0 * math.sqrt(2.0 * (2 * times + 1) / (n * times))
+    assert evaluation.magnitude(error, covariance).n_effective <= n * (1.0 + tolerance)
+    assert evaluation.nees(error, covariance).n_effective <= n * (1.0 + tolerance)

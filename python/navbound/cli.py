@@ -7,7 +7,7 @@ import math
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -89,9 +89,9 @@ def analyze(
     ] = None,
     spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3', 'RNP AR 0.1' or 'RNP APCH'.")] = "RNP 0.3",
     truth: Annotated[
-        str | None, typer.Option(help="A file with true positions, joined by time; with --levels also X,Y,Z (Earth-fixed, metres).")
+        str | None, typer.Option(help="A file with true positions, joined by time; or X,Y,Z of a fixed point (Earth-fixed, metres).")
     ] = None,
-    truth_tolerance_s: Annotated[float, typer.Option(help="How far apart in time a truth epoch may be.")] = 0.1,
+    truth_tolerance_s: Annotated[float | None, typer.Option(help="How far apart in time a truth epoch may be. [default: 0.01]")] = None,
     sigma_m: Annotated[
         float | None, typer.Option(help="Stated standard deviation of the position per axis, where the file has no covariance.")
     ] = None,
@@ -159,6 +159,7 @@ def analyze(
     """
     out = out or Path("out") / files[0].name.split(".")[0]
     mask_rad = _mask_rad(mask)
+    tolerance: dict[str, Any] = {} if truth_tolerance_s is None else {"truth_tolerance_s": truth_tolerance_s}
     subsets = _subsets(min_satellites, max_satellites, listed_from, asked=stanford_esa)
     if levels is not None:
         if path is not None or sigma_m is not None:
@@ -168,7 +169,7 @@ def analyze(
                 files,
                 levels=levels,
                 truth=truth,
-                truth_tolerance_s=truth_tolerance_s,
+                **tolerance,
                 columns=_mapping(column or []),
                 prn=prn,
                 period_s=period_s,
@@ -195,7 +196,7 @@ def analyze(
         path=path,
         spec=spec,
         truth=truth,
-        truth_tolerance_s=truth_tolerance_s,
+        **tolerance,
         sigma_m=sigma_m,
         columns=_mapping(column or []),
         solve=solve,
@@ -387,7 +388,8 @@ def _show(run: Run, *, json: bool) -> None:
         sys.stdout.write(run.summary.model_dump_json(indent=1) + "\n")
     else:
         _print(run)
-    status = of_verdict(run.summary.verdict.id)
+    verdict = run.summary.verdict
+    status = of_verdict(verdict.id, None if verdict.belief is None else verdict.belief.state)
     if status:
         raise typer.Exit(status)
 

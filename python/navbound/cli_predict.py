@@ -88,7 +88,7 @@ def _times(date: str | None, hours: float, every_s: float) -> Times:
 
 def _show(found: Prediction) -> None:
     from navbound import gnss  # noqa: PLC0415
-    from navbound.run.words import length, share  # noqa: PLC0415
+    from navbound.run.numbers import length, share  # noqa: PLC0415
 
     out = out_console
     span = "from the reference instant of the orbits" if found.times.start_utc is None else f"from {found.times.start_utc} UTC"
@@ -132,7 +132,7 @@ def _lasting(seconds: float) -> str:
 
 
 def _words(hole: Hole) -> str:
-    from navbound.run.words import length  # noqa: PLC0415
+    from navbound.run.numbers import length  # noqa: PLC0415
 
     if hole.start_utc is None or hole.end_utc is None:
         when = f"+{_clock(hole.start_s)} to +{_clock(hole.end_s)}"

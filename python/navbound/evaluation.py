@@ -367,7 +367,7 @@ def crps(error_m: ArrayLike, sigma_m: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(sigma * (z * inside + 2.0 * density - 1.0 / math.sqrt(math.pi)))
 
 
-def effective_size(values: ArrayLike, track: ArrayLike | None = None) -> float:
+def effective_size(values: ArrayLike, track: ArrayLike | None = None, *, about_zero: bool = False) -> float:
     """Epochs the mean of a correlated series is worth, ``n / (1 + 2 sum rho)``, pooled over tracks; NaN left out.
 
     Parameters
@@ -376,9 +376,11 @@ def effective_size(values: ArrayLike, track: ArrayLike | None = None) -> float:
         The series.
     track : array_like, shape (n,), optional
         Which values follow each other, in order.
+    about_zero : bool
+        The mean is known to be zero, as that of an error whose covariance claims no bias: a bias that stays is then correlation.
     """
     (column,) = _columns(values=values)
-    return _core.effective_size(column, _labels(track))
+    return _core.effective_size(column, _labels(track), about_zero)
 
 
 def _columns(**arguments: ArrayLike) -> list[NDArray[np.float64]]:

@@ -8,7 +8,7 @@ MEANINGS = {
     DONE: "done; a verdict that was reached (inside, outside, not shown) is part of the output",
     USAGE: "wrong use",
     UNREADABLE: "unreadable data",
-    NO_VERDICT: "no verdict: the input is not believable, or no epoch could be judged; the output is complete",
+    NO_VERDICT: "no verdict: truth contradicts a bound of the run, or no epoch could be judged; the output is complete",
     OUR_BUG: "a bug of navbound",
 }
 
@@ -16,9 +16,13 @@ WITHOUT_VERDICT = frozenset({"not_believable", "nothing_judged"})
 """Verdict ids on which nothing may be built."""
 
 
-def of_verdict(verdict_id: str) -> int:
+CONTRADICTED = frozenset({"refuted", "contradicted"})
+"""Beliefs of a run of whose bounds truth contradicts one, of whatever axis (docs/decisions/0029)."""
+
+
+def of_verdict(verdict_id: str, belief: str | None = None) -> int:
     """Exit status of a command that ends with a verdict (`fly`, `analyze`, `show`, also with ``--json``)."""
-    return NO_VERDICT if verdict_id in WITHOUT_VERDICT else DONE
+    return NO_VERDICT if verdict_id in WITHOUT_VERDICT or belief in CONTRADICTED else DONE
 
 
 def listed() -> str:

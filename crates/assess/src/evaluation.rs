@@ -142,13 +142,14 @@ pub fn bound(error_m: &[f64], bound_m: &[f64], risk: Risk, track: &[u32]) -> Res
     Ok(sums.score(risk, effective_size(&series), median(&mut bounds)))
 }
 
-/// Effective sample size of a column, NaN left out, see [`effective_size`].
+/// Effective sample size of a column, NaN left out, see [`effective_size`] and [`effective_size_about_zero`].
 ///
 /// # Errors
 /// [`OutOfDomain`] for a track column of another length.
-pub fn effective_size_of(values: &[f64], track: &[u32]) -> Result<f64, (Option<usize>, OutOfDomain)> {
+pub fn effective_size_of(values: &[f64], track: &[u32], about_zero: bool) -> Result<f64, (Option<usize>, OutOfDomain)> {
     track_length(track, values.len())?;
-    Ok(effective_size(&correlation::by_track(track, values.len(), |row| !values[row].is_nan(), |row| values[row])))
+    let series = correlation::by_track(track, values.len(), |row| !values[row].is_nan(), |row| values[row]);
+    Ok(if about_zero { effective_size_about_zero(series) } else { effective_size(&series) })
 }
 
 /// The middle value, or the mean of the two; NaN of none.

@@ -98,6 +98,14 @@ fn velocities_give_the_speed_over_the_ground() {
     assert!((one(&text).ground_speed_mps[0] - 5.0).abs() < 1e-12);
 }
 
+/// Programs that write a table of floats give every count decimals.
+#[test]
+fn a_count_may_be_written_as_a_whole_float() {
+    let text = DEGREES.replace("   5  20 ", "   5.0000000  20.0000000 ");
+    let (s, whole) = (read(&text).unwrap(), read(DEGREES).unwrap());
+    assert_eq!((s.refused.len(), s.quality, s.n_sv), (0, whole.quality, whole.n_sv));
+}
+
 #[test]
 fn bad_rows_are_refused_one_by_one() {
     let good = DEGREES.lines().last().unwrap();
@@ -112,6 +120,7 @@ fn bad_rows_are_refused_one_by_one() {
         (good.replace("06:04:30.000", "06:04:-3.000"), "time", "not a time"),
         (good.replace("   3.0000", "  -3.0000"), "standard deviation", "below zero"),
         (good.replace("  20 ", "  2O "), "ns", "not a count"),
+        (good.replace("  20 ", "  20.5 "), "ns", "not a count"),
         (good.replace("   0.00    0.0", ""), "row", "number of fields"),
     ] {
         let s = read(&format!("{DEGREES}{bad}\n")).unwrap();

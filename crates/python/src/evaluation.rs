@@ -100,9 +100,14 @@ fn bootstrap_coverage<'py>(
 
 /// Epochs a correlated series is worth.
 #[pyfunction]
-fn effective_size<'py>(py: Python<'py>, values: PyReadonlyArray1<'py, f64>, track: PyReadonlyArray1<'py, u32>) -> PyResult<f64> {
+fn effective_size<'py>(
+    py: Python<'py>,
+    values: PyReadonlyArray1<'py, f64>,
+    track: PyReadonlyArray1<'py, u32>,
+    about_zero: bool,
+) -> PyResult<f64> {
     let (values, track) = (values.as_slice()?, track.as_slice()?);
-    py.detach(|| evaluation::effective_size_of(values, track)).map_err(refused)
+    py.detach(|| evaluation::effective_size_of(values, track, about_zero)).map_err(refused)
 }
 
 /// Horizontal error in units of its covariance.

@@ -88,7 +88,9 @@ def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
         words = f"Covariance: circular with sigma = {sigma_m:g} m in each axis, as stated by the user."
         return _circle(epochs, pl.lit(float(sigma_m)), words, "typed")
     if {"cov_ee_m2", "cov_en_m2", "cov_nn_m2"} <= have:
-        return Claimed(_complete(epochs), "Covariance: as the file gives it.", "file")
+        alone = "cov_uu_m2" in have and not {"cov_eu_m2", "cov_nu_m2"} <= have
+        more = " The vertical axis is taken as uncorrelated, which the file does not say." if alone else ""
+        return Claimed(_complete(epochs), f"Covariance: as the file gives it.{more}", "file")
     if {"sigma_e_m", "sigma_n_m"} <= have:
         squares = {f"cov_{a}{a}_m2": pl.col(f"sigma_{a}_m") ** 2 for a in "enu" if f"sigma_{a}_m" in have}
         filled = epochs.with_columns(pl.lit(0.0).alias("cov_en_m2"), **squares)
@@ -137,5 +139,13 @@ def _circle(epochs: pl.DataFrame, sigma: pl.Expr, words: str, origin: Origin) ->
 
 
 def _complete(epochs: pl.DataFrame) -> pl.DataFrame:
-    """All six columns; the vertical ones null where nothing is known of them."""
-    return epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COLUMNS if c not in epochs.columns)
+    """All six columns; the vertical ones null where nothing is known of them.
+
+    A vertical variance whose correlations the file does not state claims a vertical interval all the same, so they are taken as zero.
+    """
+    missing = [c for c in COLUMNS if c not in epochs.columns]
+    vertical = pl.col("cov_uu_m2").is_not_null() if "cov_uu_m2" in epochs.columns else pl.lit(value=False)
+    correlation = {"cov_eu_m2", "cov_nu_m2"}
+    return epochs.with_columns(
+        (pl.when(vertical).then(pl.lit(0.0)) if c in correlation else pl.lit(None, pl.Float64)).alias(c) for c in missing
+    )

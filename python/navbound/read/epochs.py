@@ -50,7 +50,7 @@ class Reading:
         Quantity to the column it was read from and its unit.
     left_out : DataFrame
         ``track`` and ``time_ns`` of rows that were expected to hold a position and cannot be judged: without a position or a time, with a
-        refused value in one of them, or with another position at the time of an earlier row. A null time is not known.
+        refused value in one of them, or with another position, bound or status at the time of another row. A null time is not known.
     """
 
     epochs: pl.DataFrame
@@ -260,7 +260,8 @@ def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> tu
         )
     out = out.sort("track", "time_ns", maintain_order=True)
     found = separate(out)
-    kinds = {"time repeated within a track": found.identical, "time repeated within a track with another position": found.contradicting}
+    reason = "time repeated within a track"
+    kinds = {reason: found.identical, f"{reason} with another position, bound or status": found.contradicting}
     for reason, repeated in kinds.items():
         if not repeated.is_empty():
             track, time_ns, line = repeated.sort(LINE).select("track", "time_ns", LINE).row(0)

@@ -1,20 +1,84 @@
-"""Where the aircraft really was: a second recording joined by time, and the navigation error that follows."""
+"""Where the aircraft really was: a fixed point, or a second recording joined by time; and the navigation error that follows."""
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
 
-from navbound import _core
+from navbound import _core, gnss
 from navbound.errors import InputError
+from navbound.read.epochs import read
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
     from navbound.read.epochs import Reading
 
 TOLERANCE_S = 0.01
 """How far apart in time an estimate and its truth may lie. At 70 m/s a hundredth of a second is 0.7 m."""
+
+
+@dataclass(frozen=True)
+class Truth:
+    """Where the receiver really was: a fixed point, or a recording.
+
+    Attributes
+    ----------
+    given : str or None
+        As it was given.
+    ecef_m : ndarray, shape (3,), or None
+        A fixed point, Earth-fixed. [m]
+    tolerance_s : float
+        How far apart in time an estimate and its recorded truth may lie. [s]
+    """
+
+    given: str | None
+    ecef_m: NDArray[np.float64] | None
+    tolerance_s: float
+
+
+def truth_of(given: str | Path | None, tolerance_s: float) -> Truth:
+    """Read ``X,Y,Z`` (Earth-fixed, metres), or take a file's name.
+
+    Raises
+    ------
+    InputError
+        Three numbers that are no place near the Earth's surface.
+    """
+    if given is None:
+        return Truth(None, None, tolerance_s)
+    text = str(given)
+    number = r"\s*[-+]?\d+(?:\.\d*)?\s*"
+    if re.fullmatch(f"{number},{number},{number}", text) is None:
+        return Truth(text, None, tolerance_s)
+    point = np.array([float(part) for part in text.split(",")])
+    if not 6.3e6 < float(np.linalg.norm(point)) < 6.5e6:
+        raise InputError("truth", text, "m", "X,Y,Z of a point within 100 km of the Earth's surface, or a file")
+    return Truth(text, point, tolerance_s)
+
+
+def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str]:
+    """Form the navigation error against a truth that was named; and words about it.
+
+    Raises
+    ------
+    InputError
+        Epochs without positions; a recording as in :func:`join`.
+    """
+    if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
+        raise InputError("truth", truth.given, domain="no truth: the table holds no positions to compare with it")
+    if truth.ecef_m is None:
+        return join(epochs, read(str(truth.given)), truth.tolerance_s)
+    place = gnss.geodetic(truth.ecef_m)
+    names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m")
+    fixed = epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True))
+    return with_error(fixed), f"Truth: the fixed point {truth.given} m, Earth-fixed."
 
 
 def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S) -> tuple[pl.DataFrame, str]:

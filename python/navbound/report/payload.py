@@ -26,10 +26,10 @@ _NUMBERS = (
     *("path_lat_rad", "path_lon_rad", "path_h_m", "course_rad", "along_m", "ground_speed_mps", "rnp_m"),
     *("fte_m", "fte_v_m", "tse_m", "tse_v_m", "sigma_cross_m"),
     *("nse_e_m", "nse_n_m", "nse_u_m", "nse_along_m", "nse_cross_m", "nse_h_m", "nse_3d_m"),
-    *("hpl_m", "hpl_multi_m", "hal_m"),
+    *("hpl_m", "vpl_m", "hpl_multi_m", "hal_m", "integrity_compared_m"),
     *("p_exceed_rnp", "p_exceed_2rnp", "n_sv", "n_gated", "hdop", "vdop"),
 )
-_WORDS = ("leg", "phase", "status", "reason", "alert", "state", "nav_mode")
+_WORDS = ("leg", "phase", "status", "reason", "alert", "state", "nav_mode", "nav_source", "nav_reasons")
 
 
 @dataclass(frozen=True)

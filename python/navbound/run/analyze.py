@@ -18,7 +18,7 @@ from navbound.read.plausible import Limits, check
 from navbound.read.repeats import left_out, separate
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
-from navbound.read.truth import TOLERANCE_S, join, with_error
+from navbound.read.truth import TOLERANCE_S, join, truth_of, with_error, with_truth
 from navbound.run.files import sort_out
 from navbound.run.material import Material
 from navbound.run.records import CovarianceOrigin, Rejection, Waypoint
@@ -65,8 +65,8 @@ def material(
     path : str or path, optional
         ``LFPG/08R``, or several separated by commas: approaches to these runways. ``auto``: every landing, on the runway it lands
         on. A TOML or CSV file: a route. Without it there is no flight technical error, and only the navigation system is judged.
-    truth : path, optional
-        Recording of the true positions, in a form as `files`.
+    truth : str or path, optional
+        Recording of the true positions, in a form as `files`; or ``X,Y,Z`` of a receiver that does not move (Earth-fixed, metres).
     truth_tolerance_s : float
         How far apart in time an estimate and its truth may lie. [s]
     sigma_m : float, optional
@@ -113,7 +113,11 @@ def material(
     origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
     assumptions = [of_covariance, plausibility.words]
-    if truth is not None:
+    named = truth_of(truth, truth_tolerance_s)
+    if named.ecef_m is not None:
+        epochs, words = with_truth(epochs, named)
+        assumptions.append(words)
+    elif truth is not None:
         other = read(truth)
         inputs.append(other.source)
         rejected += other.rejected
@@ -239,7 +243,7 @@ def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> tuple[p
         epochs = epochs.with_columns(pl.col("status").fill_null("ok"))
     found = separate(epochs)
     reason = "time repeated within a track of several files"
-    for words, repeated in ((reason, found.identical), (f"{reason} with another position", found.contradicting)):
+    for words, repeated in ((reason, found.identical), (f"{reason} with another position, bound or status", found.contradicting)):
         if not repeated.is_empty():
             example = f"{repeated.height} epochs"
             rejected.append(Rejection(file=readings[-1].source.path, reason=words, count=repeated.height, first_line=None, example=example))

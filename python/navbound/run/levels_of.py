@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,15 +13,12 @@ import polars as pl
 from navbound import gnss, sbas
 from navbound.errors import FormatError, InputError
 from navbound.read.epochs import read
-from navbound.read.truth import join, with_error
-from navbound.run.solving import Solving
+from navbound.read.truth import Truth, with_error, with_truth
+from navbound.run.solving import Solving, require_same_time
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
-    from navbound.read.epochs import Reading
 
 COVARIANCE = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
 
@@ -54,45 +50,6 @@ OWN = (
     "position's own covariance, a bound of errors that are as the weights say and of no fault. Experimental, not integrity."
 )
 """Stands beside every number of a run on observations alone."""
-
-
-@dataclass(frozen=True)
-class Truth:
-    """Where the receiver really was: a fixed point, or a recording.
-
-    Attributes
-    ----------
-    given : str or None
-        As it was given.
-    ecef_m : ndarray, shape (3,), or None
-        A fixed point, Earth-fixed. [m]
-    tolerance_s : float
-        How far apart in time an estimate and its recorded truth may lie. [s]
-    """
-
-    given: str | None
-    ecef_m: NDArray[np.float64] | None
-    tolerance_s: float
-
-
-def truth_of(given: str | Path | None, tolerance_s: float) -> Truth:
-    """Read ``X,Y,Z`` (Earth-fixed, metres), or take a file's name.
-
-    Raises
-    ------
-    InputError
-        Three numbers that are no place near the Earth's surface.
-    """
-    if given is None:
-        return Truth(None, None, tolerance_s)
-    text = str(given)
-    number = r"\s*[-+]?\d+(?:\.\d*)?\s*"
-    if re.fullmatch(f"{number},{number},{number}", text) is None:
-        return Truth(text, None, tolerance_s)
-    point = np.array([float(part) for part in text.split(",")])
-    if not 6.3e6 < float(np.linalg.norm(point)) < 6.5e6:
-        raise InputError("truth", text, "m", "X,Y,Z of a point within 100 km of the Earth's surface, or a file")
-    return Truth(text, point, tolerance_s)
 
 
 @dataclass(frozen=True)
@@ -153,25 +110,30 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, need
         raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")
     epochs, notes = reading.epochs, list(reading.notes)
     if truth.given is not None:
-        epochs, words = _with_truth(epochs, reading, truth)
+        epochs, words = with_truth(epochs, truth)
         notes.append(words)
-    elif {"truth_lat_rad", "truth_lon_rad", "est_lat_rad", "est_lon_rad"} <= set(epochs.columns) and "nse_e_m" not in epochs.columns:
-        epochs = with_error(epochs)
+    else:
+        epochs, of_truth = _with_own_truth(epochs)
+        notes += [f"{path.name}: {each}" for each in of_truth]
+    if reading.unused:
+        notes.append(f"{path.name}: columns not used: {', '.join(reading.unused)}")
     rejected = [r.model_dump() for r in reading.rejected]
     # Columns of Error Extraction say in their own name what they are.
     of_extraction = any(reading.columns.get(name, "").startswith("ee_") for name in ("hpl_m", "vpl_m"))
     return Part(uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
 
 
-def _with_truth(epochs: pl.DataFrame, reading: Reading, truth: Truth) -> tuple[pl.DataFrame, str]:
-    if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
-        raise InputError("truth", truth.given, domain=f"no truth: {reading.source.path} holds no positions to compare with it")
-    if truth.ecef_m is None:
-        return join(epochs, read(str(truth.given)), truth.tolerance_s)
-    place = gnss.geodetic(truth.ecef_m)
-    names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m")
-    fixed = epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True))
-    return with_error(fixed), f"Truth: the fixed point {truth.given} m, Earth-fixed."
+def _with_own_truth(epochs: pl.DataFrame) -> tuple[pl.DataFrame, list[str]]:
+    """Errors from the table's own true positions, where it states no errors; and what became of such columns."""
+    have = {name for name in epochs.columns if epochs[name].null_count() < epochs.height}
+    if not {"truth_lat_rad", "truth_lon_rad"} <= have:
+        return epochs, []
+    errors = sorted(have & {"nse_e_m", "hpe_m"})
+    if errors:
+        return epochs, [f"truth_lat_rad and truth_lon_rad are not used: the errors are those that the table states ({', '.join(errors)})."]
+    if not {"est_lat_rad", "est_lon_rad"} <= have:
+        return epochs, ["truth_lat_rad and truth_lon_rad are not used: the table holds no estimated positions to compare with them."]
+    return with_error(epochs), ["Truth: from the file itself."]
 
 
 class Service:
@@ -240,6 +202,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     observations = gnss.read_observations(path)
     if not observations.n_epochs:
         raise FormatError(path, "holds no epoch")
+    require_same_time(observations, service.navigation)
     ranges = None
     if service.has_messages:
         epochs, notes = _corrected(observations, service, truth)
@@ -249,7 +212,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
         epochs, notes = positions.epochs, [OWN, *(f"{name}: {words}" for name, words in positions.models.items())]
         ranges = positions.ranges
     if truth.given is not None and truth.ecef_m is None:
-        epochs, words = join(epochs, read(truth.given), truth.tolerance_s)
+        epochs, words = with_truth(epochs, truth)
         notes.append(words)
     if service.has_messages:
         return Part(uniform(epochs), observations.n_epochs, [], notes)
@@ -284,7 +247,12 @@ def _range_errors(ranges: pl.DataFrame, epochs: pl.DataFrame) -> pl.DataFrame:
 
 
 def uniform(epochs: pl.DataFrame) -> pl.DataFrame:
-    """Every column of the schema, absent ones null, in the order of time."""
-    return epochs.select(
+    """Every column of the schema, absent ones null, in the order of time; sizes of the errors from their components."""
+    filled = epochs.select(
         (pl.col(name) if name in epochs.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in SCHEMA.items()
+    )
+    horizontal = (pl.col("nse_e_m") ** 2 + pl.col("nse_n_m") ** 2).sqrt()
+    # Components stand above a size that is stated beside them: they are what the indicators take.
+    return filled.with_columns(
+        hpe_m=pl.coalesce(horizontal, "hpe_m"), vpe_m=pl.coalesce(pl.col("nse_u_m").abs(), pl.col("vpe_m").abs())
     ).sort("time_ns", maintain_order=True)

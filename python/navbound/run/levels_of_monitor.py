@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 import polars as pl
 
 from navbound import araim, gnss, raim
 from navbound._monitor_fit import DISBELIEF
 from navbound.errors import FormatError, InputError
-from navbound.read.epochs import read
-from navbound.read.truth import join
+from navbound.read.truth import with_truth
 from navbound.run.levels_of import Part, uniform
-from navbound.run.words import METRES_PER_NM, share
+from navbound.run.numbers import METRES_PER_NM, share
+from navbound.run.solving import Solving, require_same_time
 from navbound.status import REASONS
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from navbound.run.levels_of import Truth
+    from navbound.read.truth import Truth
 
 GIVEN = "given"
 """Protection levels of the files: a table's, those of an augmentation service's messages."""
@@ -42,13 +43,8 @@ CONTRADICTED = f"{DISBELIEF} (the residuals or the detections contradict the err
 """Stands beside every number of levels whose error model does not fit the ranges."""
 
 
-class Monitor(Protocol):
-    """Observations to tested positions with levels."""
-
-    def __call__(self, observations: gnss.Observations, navigation: gnss.Navigation, *, truth_ecef_m: Any) -> araim.Watched:
-        """Watch every epoch."""
-        ...
-
+Monitor = Callable[..., "araim.Watched"]
+"""Observations, navigation and, by name, ``truth_ecef_m`` and what :func:`monitored` lets through, to tested positions with levels."""
 
 MONITORS: dict[str, Monitor] = {
     "raim": raim.watch,
@@ -71,8 +67,24 @@ def monitor_of(protection: str) -> Monitor | None:
     return MONITORS.get(protection)
 
 
-def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Monitor) -> Part:
-    """Positions, tests and levels of every epoch of an observation file.
+def monitored(solving: Solving) -> dict[str, str]:
+    """What a monitor on board takes of the options of solving.
+
+    Raises
+    ------
+    InputError
+        What no monitor has: a model of the ionosphere other than the broadcast one, signals chosen epoch by epoch.
+    """
+    if solving.ionosphere is not None:
+        domain = "none with --protection: single signals take the broadcast message, --signals dual needs no model"
+        raise InputError("ionosphere", solving.ionosphere, domain=domain)
+    if solving.signals == "auto":
+        raise InputError("signals", "auto", domain="single or dual with --protection: the error model of a level is that of one kind")
+    return solving.named
+
+
+def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Monitor, solving: Solving | None = None) -> Part:
+    """Positions, tests and levels of every epoch of an observation file; signals and systems that are not named are the monitor's own.
 
     Raises
     ------
@@ -82,12 +94,13 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Mo
     observations = gnss.read_observations(path)
     if not observations.n_epochs:
         raise FormatError(path, "holds no epoch")
-    found = monitor(observations, records, truth_ecef_m=truth.ecef_m)
+    require_same_time(observations, records)
+    found = monitor(observations, records, truth_ecef_m=truth.ecef_m, **monitored(solving or Solving()))
     notes = [f"{path.name}: {words}" for words in decisions(found.epochs)]
     notes += [f"{path.name}: {name}: {words}" if name in OF_FILE else f"{name}: {words}" for name, words in found.models.items()]
     epochs = found.epochs
     if truth.given is not None and truth.ecef_m is None:
-        epochs, words = join(epochs, read(truth.given), truth.tolerance_s)
+        epochs, words = with_truth(epochs, truth)
         notes.append(words)
     return Part(uniform(epochs), observations.n_epochs, [], notes, "" if found.fit.believable else CONTRADICTED)
 

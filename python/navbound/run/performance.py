@@ -16,12 +16,13 @@ import polars as pl
 from navbound import __version__, _folder, kpi
 from navbound.errors import InputError
 from navbound.read.source import load
+from navbound.read.truth import TOLERANCE_S, Truth, truth_of
 from navbound.run import directory
 from navbound.run.directory import Run
 from navbound.run.field_csv import write_csv
 from navbound.run.files import sort_out
-from navbound.run.levels_of import COVARIANCE, Truth, truth_of
-from navbound.run.levels_of_monitor import GIVEN, monitor_of
+from navbound.run.levels_of import COVARIANCE
+from navbound.run.levels_of_monitor import GIVEN, monitor_of, monitored
 from navbound.run.performance_parts import Stored, finished_parts, ranges_of_parts, tables_of
 from navbound.run.performance_words import levels_verdict, performance_words
 from navbound.run.records import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
@@ -75,14 +76,15 @@ class Options:
         What protection levels of observations come from: ``given`` (the files), ``raim``, ``araim`` (LPV-200 budgets) or
         ``araim-horizontal``.
     signals, systems, ionosphere : str, optional
-        How measurements without a service are solved, see :func:`navbound.gnss.solve`; ``single``, ``G`` and ``auto`` where not named.
+        How measurements without a service are solved, see :func:`navbound.gnss.solve`; ``single``, ``G`` and ``auto`` where not named. A
+        monitor on board takes signals and systems; its own are those of :func:`navbound.raim.watch` and :func:`navbound.araim.watch`.
     mask_rad : float, optional
         Lowest elevation of the satellites that they are solved from; :data:`navbound.gnss.MASK_RAD` where it is not named. [rad]
     """
 
     levels: Sequence[str | kpi.Level]
     truth: str | Path | None = None
-    truth_tolerance_s: float = 0.1
+    truth_tolerance_s: float = TOLERANCE_S
     columns: Mapping[str, str] | None = None
     prn: int | None = None
     period_s: float | None = None
@@ -144,8 +146,10 @@ def evaluate_files(
     if monitor_of(options.protection) is not None and options.stanford_esa is not None:
         raise InputError("protection", options.protection, domain="it without subsets of satellites, which are solved without monitoring")
     sources = sort_out(names, solve=options.solve)
-    if not sources.observations or sources.messages or monitor_of(options.protection) is not None:
-        options.solving.refuse("it together with observations that neither a service nor a monitor on board solves")
+    if monitor_of(options.protection) is not None:
+        monitored(options.solving)
+    if not sources.observations or sources.messages:
+        options.solving.refuse("it together with observations that no service corrects")
     sources.require_navigation()
     if options.stanford_esa is not None and (sources.tables or sources.messages):
         raise InputError(
@@ -305,8 +309,15 @@ def _facts(found: LevelResult, result: Performance) -> rule.LevelFacts:
         n_available=found.n_available,
         n_misleading_events=found.n_mi_events + found.n_hazard_events,
         p_misleading=of_level(found, result.period_s),
-        truth_known=found.truth_known,
+        truth_known=_errors_known(found, result),
     )
+
+
+def _errors_known(found: LevelResult, result: Performance) -> bool:
+    """Whether the errors are known in every axis that the level limits, at enough epochs with a protection level to speak of all."""
+    axes = result.axes[: 1 if found.level.val_m is None else 2]
+    n = [0 if axis.error_m is None else axis.error_m.n for axis in axes]
+    return found.truth_known and min(n) >= rule.LEAST_SHARE * found.n_solution
 
 
 def _write(run: Run, parts: list[Stored], folder: _folder.Writer) -> Run:

@@ -13,13 +13,14 @@ import polars as pl
 from navbound import __version__
 from navbound._kpi_levels import chosen_levels
 from navbound.errors import FormatError
-from navbound.run.levels_of import SCHEMA, Part, Service, Truth, from_observations, from_table
+from navbound.run.levels_of import SCHEMA, Part, Service, from_observations, from_table
 from navbound.run.levels_of_monitor import from_monitor, monitor_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from navbound.read.source import Source
+    from navbound.read.truth import Truth
     from navbound.run.files import Files
     from navbound.run.performance import Options
 
@@ -90,7 +91,7 @@ def _compute(source: Source, sources: Files, options: Options, truth: Truth, ser
         return from_table(source.path, truth, options.columns, _needs(options))
     monitor = monitor_of(options.protection)
     if monitor is not None:
-        return from_monitor(source.path, service.navigation, truth, monitor)
+        return from_monitor(source.path, service.navigation, truth, monitor, options.solving)
     return from_observations(source.path, service, truth, keep_ranges=options.stanford_esa is not None, solving=options.solving)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navbound._monitor_fit import DISBELIEF
-from navbound.run.words import length, share
+from navbound.run.numbers import length, share
 
 if TYPE_CHECKING:
     from navbound.run.kpi_records import LevelResult, Performance, Subsets
@@ -47,13 +47,25 @@ def _integrity(result: Performance) -> str:
         for found in result.levels
         if found.n_hazard_epochs
     ]
+    known = _known(result)
     if hazards:
-        return f"Hazardously misleading information: {', '.join(hazards)}."
-    error = result.axes[0].error_m
-    compared = f"of {0 if error is None else error.n} epochs with a protection level and a true error"
+        return f"Hazardously misleading information: {', '.join(hazards)}. {known}"
     if result.n_mi_epochs:
-        return f"No hazard, but misleading information at {result.n_mi_epochs} {compared}."
-    return f"No misleading information at any {compared}."
+        return f"No hazard, but misleading information at {result.n_mi_epochs} epochs. {known}"
+    return f"No misleading information at any epoch whose error is known. {known}"
+
+
+def _known(result: Performance) -> str:
+    """At how many epochs with a protection level the error is known, an axis each; and what could not be judged."""
+    vertical = any(found.level.val_m is not None for found in result.levels)
+    words, unknown = [], []
+    for axis, name in zip(result.axes, ("horizontal", "vertical"), strict=True):
+        n = 0 if axis.error_m is None else axis.error_m.n
+        if n:
+            words.append(f"{name} at {n} of {result.n_solution} epochs with a protection level ({share(n / result.n_solution)})")
+        elif name == "horizontal" or vertical:
+            unknown.append(f"The {name} was not judged: no {name} error is known.")
+    return " ".join([f"Errors are known: {', '.join(words)}." if words else "", *unknown]).strip()
 
 
 def _availability(result: Performance) -> str:

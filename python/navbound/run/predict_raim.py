@@ -13,8 +13,8 @@ from navbound.errors import InputError
 from navbound.maps.sources import NS, Satellites, satellites
 from navbound.read.routes import load_route
 from navbound.read.runways import runway
+from navbound.run.numbers import METRES_PER_NM
 from navbound.run.predict_records import Hole, PredictedLimit, PredictedLine, PredictedPlace, PredictedTimes, Prediction
-from navbound.run.words import METRES_PER_NM
 from navbound.time import utc_text
 
 if TYPE_CHECKING:

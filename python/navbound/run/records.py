@@ -44,19 +44,41 @@ class BoundCheck(Record):
     coverage_low: float
     coverage_high: float
     """Exact binomial 95 % limits for the effective number."""
+    refuted: bool = False
+    """Below its claim, and the errors beyond the bounds of its method are too improbable for true ones."""
+
+
+class LevelCheck(Record):
+    """A protection level against truth, over epochs with status ok or degraded."""
+
+    level: Literal["hpl_m", "vpl_m"]
+    n: int
+    n_above: int
+    """Epochs whose error is above the level: misleading information."""
+    largest_ratio: float
+    """Largest error over its level."""
 
 
 class Belief(Record):
-    """Whether truth supports the bounds that a verdict rests on."""
+    """Whether truth supports the bounds that a run states."""
 
     state: BeliefState
-    """`refuted` withdraws the verdict; `short` leaves it not shown."""
+    """`refuted` withdraws the verdict; `contradicted` (a bound beside the lateral ones is false) and `short` leave it not shown."""
+    n_epochs: int = 0
+    """Epochs that are checked where truth is known: those with status ok, or the degraded ones where none is ok."""
+    n_truth: int = 0
+    """Of those, epochs with a true horizontal error."""
     n_effective: float
     square_mean: float | None
     """Mean of e' V^-1 e of the horizontal error, each at most 23.03; 2 for a true covariance."""
     p_value: float
-    """Largest probability of these data under true bounds, over all tests made."""
+    """Largest probability of these data under true bounds, over all tests of `bounds`."""
     bounds: list[BoundCheck]
+    """Those that the lateral verdict rests on."""
+    beside: list[BoundCheck] = Field(default_factory=list)
+    """Every other bound that the run states: vertical, spatial, along the axes of the path."""
+    levels: list[LevelCheck] = Field(default_factory=list)
+    """Protection levels that the epochs carry."""
 
 
 class CovarianceOrigin(Record):
@@ -100,7 +122,9 @@ class Verdict(Record):
     assumed: list[Literal["sigma_typed", "sigma_coded", "no_path"]] = Field(default_factory=list)
     """What stands in the first sentence because no data says it."""
     belief: Belief | None = None
-    """None where no truth is known."""
+    """None where no epoch has both a bound or level and a true error."""
+    n_truth: int = 0
+    """Epochs of any status whose true position is known."""
     n_implausible: int
     """Epochs whose input cannot be true (a jump that cannot be flown, a negative variance)."""
     worst_accuracy: Worst | None

@@ -12,7 +12,7 @@ from navbound.errors import FormatError
 from navbound.read.epochs import Reading
 from navbound.read.repeats import left_out, separate
 from navbound.run.records import Rejection
-from navbound.run.solving import Solving
+from navbound.run.solving import Solving, require_same_time
 from navbound.status import REASONS
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     observations = gnss.read_observations(source.path)
     if observations.n_epochs == 0:
         raise _without_epochs(source, observations)
+    require_same_time(observations, navigation)
     found = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem)
     without = found.epochs.filter(pl.col("est_lat_rad").is_null())
     repeats = separate(found.epochs.filter(pl.col("est_lat_rad").is_not_null()).sort("time_ns", maintain_order=True))
@@ -55,7 +56,7 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=f"{count} epochs")
         for id_, count in without.group_by("reason_id").len().sort("reason_id").iter_rows()
     ]
-    kinds = {"time repeated": repeats.identical, "time repeated with another position": repeats.contradicting}
+    kinds = {"time repeated": repeats.identical, "time repeated with another position, bound or status": repeats.contradicting}
     rejected += [
         Rejection(file=path, reason=reason, count=rows.height, first_line=None, example=f"{rows.height} epochs")
         for reason, rows in kinds.items()

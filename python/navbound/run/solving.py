@@ -7,9 +7,38 @@ from typing import TYPE_CHECKING, Any
 
 from navbound import gnss
 from navbound.errors import InputError
+from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from navbound.gnss import Navigation, Observations, Positions
+
+
+LONGEST_NS = 86_400_000_000_000
+"""Further from every broadcast record than a day there is no orbit: the longest fit interval is 26 h about its middle. Provenance: ours."""
+
+
+def require_same_time(observations: Observations, navigation: Navigation) -> None:
+    """Refuse broadcast messages of another time than the measurements.
+
+    Raises
+    ------
+    InputError
+        Naming both dates: no record lies within `LONGEST_NS` of the measurements.
+    """
+    if not navigation.n_ephemerides or not observations.n_epochs:
+        return
+    first, last = int(observations.time_ns.min()), int(observations.time_ns.max())
+    times = navigation.records()["orbit_time_ns"].drop_nulls()
+    if times.is_empty() or not times.filter(times.is_between(first - LONGEST_NS, last + LONGEST_NS)).is_empty():
+        return
+    of, wanted = _dates(int(times.min()), int(times.max())), _dates(first, last)  # type: ignore[arg-type]
+    what = f"ephemerides of {of} for observations of {wanted}"
+    raise InputError("files", what, domain=f"navigation files of the time of {observations.path.name}")
+
+
+def _dates(first_ns: int, last_ns: int) -> str:
+    first, last = (utc_text(t)[:10] for t in (first_ns, last_ns))
+    return first if first == last else f"{first} to {last}"
 
 
 @dataclass(frozen=True)

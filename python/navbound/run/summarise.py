@@ -86,7 +86,7 @@ def summarise(
     coverage_kind = evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED
     accuracy = [_method_result(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
     protection = _protection(epochs, material.limits_held)
-    verdict = _verdict(material, margins, accuracy[0], risks, protection)
+    verdict = _verdict(material, margins, accuracy, risks, protection)
     return Summary(
         kind=material.kind,
         title=material.title,
@@ -109,20 +109,22 @@ def summarise(
 
 
 def _verdict(
-    material: Material, margins: pl.DataFrame, judge: MethodResult, risks: tuple[float, float], protection: list[ProtectionSummary]
+    material: Material, margins: pl.DataFrame, stated: list[MethodResult], risks: tuple[float, float], protection: list[ProtectionSummary]
 ) -> Verdict:
+    judge = stated[0]
     judged = margins.filter(pl.col("status") == "ok").select("_margin", "_margin_integrity").drop_nulls()
     status = margins.get_column("status")
     n_missing = _missing(margins, material.left_out, material.sample_period_s)
     n_epochs, n_degraded = margins.height + n_missing, int((status == "degraded").sum())
-    belief = of_epochs(margins, judge.id, risks)
+    belief = of_epochs(margins, judge.id, risks, [each.id for each in stated])
+    n_truth = int(np.isfinite(column_of(margins, "nse_h_m")).sum()) if "nse_h_m" in margins.columns else 0
     facts = rule.TrackFacts(
         n_epochs=n_epochs,
         n_judged=judged.height,
         n_outside=margins.select(_OUTSIDE.sum()).item(),
         n_beyond_alert_limit=sum(p.n_epochs - round(p.share_available * p.n_epochs) for p in protection),
         n_implausible=int(status.eq("invalid_input").sum()),
-        n_misleading=sum(p.n_misleading for p in protection),
+        n_misleading=sum(check.n_above for check in belief.levels if check.level == "hpl_m") if belief is not None else 0,
         belief="unchecked" if belief is None else belief.state,
     )
     decided = rule.of_tracks(facts)
@@ -145,7 +147,8 @@ def _verdict(
         n_implausible=facts.n_implausible,
         worst_accuracy=_worst(margins, "_margin", method(judge.id).column, 1.0),
         worst_integrity=_worst(margins, "_margin_integrity", "_integrity", 2.0),
-        truth_known=judge.coverage is not None,
+        truth_known=n_truth > 0,
+        n_truth=n_truth,
     )
     words = verdict_words(verdict, judge, risks, material.covariance)
     return verdict.model_copy(update={"words": f"{words}{protection_words(protection)}"})
@@ -240,7 +243,8 @@ def _protection(epochs: pl.DataFrame, held: dict[str, str]) -> list[ProtectionSu
         return pl.col(name).max() if name in epochs.columns else pl.lit(None, dtype=pl.Float64)
 
     truth = "nse_h_m" in epochs.columns
-    misleading = (pl.col("nse_h_m") > pl.col("hpl_m")).sum() if truth else pl.lit(0)
+    usable = pl.col("status").is_in(USABLE)
+    misleading = (usable & (pl.col("nse_h_m") > pl.col("hpl_m"))).sum() if truth else pl.lit(0)
     grouped = epochs.group_by("phase", "hal_m", maintain_order=True).agg(
         pl.len().alias("n_epochs"),
         most("hpl_m").alias("hpl_max_m"),

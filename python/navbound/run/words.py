@@ -7,43 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound.run.numbers import length, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS
+from navbound.run.verdict.words import contradicted_words, refuted_words, truth_words
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from navbound.evaluation import Nees, Pit
-    from navbound.run.records import Belief, BoundCheck, CovarianceOrigin, Held, MethodResult, ProtectionSummary, Verdict, Worst
+    from navbound.run.records import CovarianceOrigin, Held, MethodResult, ProtectionSummary, Verdict, Worst
     from navbound.run.verdict.rule import VerdictId
-
-METRES_PER_NM = 1852.0
-
-
-def length(metres: float) -> str:
-    """A length with three significant digits; nautical miles from half a mile up."""
-    if abs(metres) >= 0.5 * METRES_PER_NM:
-        return f"{metres / METRES_PER_NM:.3g} NM"
-    return f"{metres:.3g} m" if abs(metres) < 100 else f"{metres:.0f} m"
-
-
-def share(fraction: float) -> str:
-    """A share that never rounds up to all or down to none."""
-    percent = 100 * fraction
-    if fraction in (0.0, 1.0):
-        return f"{percent:.0f} %"
-    digits = 1
-    while digits < 6 and (round(percent, digits) in (0.0, 100.0)):
-        digits += 1
-    if round(percent, digits) in (0.0, 100.0):
-        return "below 0.000001 %" if percent < 50.0 else "above 99.999999 %"
-    return f"{percent:.{digits}f} %"
-
-
-def level(risk: float) -> str:
-    """A probability level: 0.05 is 95 %, 1e-5 is 99.999 %."""
-    return f"{100 * (1 - risk):.10g} %"
-
 
 HEADLINES: dict[VerdictId, str] = {
     "inside": "Inside",
@@ -69,12 +43,7 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
             f"{verdict.n_implausible} epochs cannot be true (see their reasons); what looks right beside them may be wrong as well."
         )
     parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
-    if verdict.belief is not None:
-        parts.append(_against_truth(verdict.belief))
-    elif not verdict.truth_known:
-        parts.append("No truth: the covariance could not be checked.")
-    else:
-        parts.append("Truth is known at no ok epoch: the bounds of ok epochs could not be checked.")
+    parts += truth_words(verdict)
     return " ".join(parts)
 
 
@@ -94,7 +63,7 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
         found = f" {verdict.n_outside} epochs that are not ok have a bound beyond its limit." if verdict.n_outside else ""
         return f"{HEADLINES[verdict.id]} {verdict.requirement}: {shares}.{found}"
     if verdict.id == "not_believable":
-        return f"{HEADLINES[verdict.id]}, margins to {verdict.requirement} mean nothing: {_refuted(verdict.belief)}; {shares}."
+        return f"{HEADLINES[verdict.id]}, margins to {verdict.requirement} mean nothing: {refuted_words(verdict.belief)}; {shares}."
     more = f", and {verdict.n_outside} epochs with status ok or degraded have a bound beyond its limit" if verdict.n_outside else ""
     return (
         f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "
@@ -113,12 +82,6 @@ def _shares(verdict: Verdict) -> str:
     return f"of {verdict.n_epochs} epochs {', '.join(f'{share(n / verdict.n_epochs)} are {kind}' for kind, n in kinds.items())}"
 
 
-def _refuted(belief: Belief | None) -> str:
-    if belief is None or belief.state != "refuted":
-        return "errors are above the protection level"
-    return f"truth contradicts the bounds (probability of these errors under true bounds at most {belief.p_value:.1g})"
-
-
 def _not_shown(verdict: Verdict) -> list[str]:
     """Why the margins alone are not enough."""
     why = []
@@ -128,29 +91,9 @@ def _not_shown(verdict: Verdict) -> list[str]:
         why.append(
             "The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false."
         )
+    if verdict.belief is not None and verdict.belief.state == "contradicted":
+        why.append(contradicted_words(verdict.belief))
     return why
-
-
-def _against_truth(belief: Belief) -> str:
-    """How often each bound contained the error, with its interval and what the epochs are worth."""
-    whole = [check for check in belief.bounds if check.n_outside == 0 and check.risk < WHOLE_BELOW]
-    one = [
-        f"{share(check.coverage)} ({share(check.coverage_low)} to {share(check.coverage_high)}) are within the {_bound(check)}"
-        for check in belief.bounds
-        if check not in whole
-    ]
-    parts = [f"{' and '.join(one)} (95 % intervals as from {belief.n_effective:.2g} independent epochs)"] if one else []
-    parts += [f"none is beyond the {' or the '.join(_bound(check) for check in whole)}"] if whole else []
-    return f"Truth is known: of the errors at ok epochs {'; '.join(parts)}."
-
-
-def _bound(check: BoundCheck) -> str:
-    return f"{level(check.risk)} {METHOD_WORDS.get(check.method, check.method)}"
-
-
-WHOLE_BELOW = 0.01
-"""Risk below which a bound that every error respects needs no interval: hardly an epoch was to be expected beyond it."""
-METHOD_WORDS = {"anp-circle": "circle", "tse-exact": "bound of the total system error"}
 
 
 def _worst(worst: Worst) -> str:

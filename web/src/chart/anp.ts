@@ -18,6 +18,8 @@ export function anp(host: HTMLElement, scene: Scene): () => void {
     const lines: Line[] = [];
     if (nse !== undefined) lines.push({ key: "nse_h_m", label: "NSE horizontal (truth)", values: nse, colour: "ink", width: 1, front: 1, about: "Length of the horizontal navigation system error" });
     lines.push(...bounds);
+    const hpl = scene.table.column("hpl_m");
+    if (hpl !== undefined) lines.push({ key: "hpl_m", label: "HPL", values: hpl, colour: "m2", width: 1.2, dash: [5, 3], about: "Horizontal protection level that the epochs carry" });
     if (rnp !== undefined) lines.push({ key: "rnp_m", label: "RNP", values: rnp, colour: "limit", width: 1.5, limit: true, about: "Required navigation performance by phase" });
     const note = `Bounds of the navigation system error. ${nse === undefined ? "No truth: the error itself is unknown." : "The error is seen because truth is known."}`;
     return strip(host, scene, { id: "anp", title: "Actual navigation performance", note, unit: "m", lines, scales: rnp === undefined ? ["data"] : ["data", "compressed", "limits"], show: (v) => metres(v), height: 250 });

@@ -17,6 +17,8 @@ export function lateral(host: HTMLElement, scene: Scene): () => void {
     const tse = table.column("tse_m");
     if (tse !== undefined) lines.push({ key: "tse_m", label: "TSE (truth)", values: tse, colour: "m5", width: 1, front: 1, about: "Total system error: true position minus desired path, positive right" });
     lines.push(...bounds);
+    const compared = table.column("integrity_compared_m");
+    if (compared !== undefined) lines.push({ key: "integrity_compared_m", label: "Compared with 2 RNP", endLabel: "compared", values: compared, colour: "warning", width: 1.2, dash: [2, 2], mirror: true, front: 1, about: "What the monitor compares with twice RNP: the larger of the integrity bound and |FTE| + HPL" });
     const rnp = table.column("rnp_m");
     if (rnp !== undefined) {
         lines.push({ key: "rnp_m", label: "RNP", values: rnp, colour: "limit", width: 1.5, mirror: true, limit: true, about: "Required navigation performance, the 95 % limit" });

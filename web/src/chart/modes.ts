@@ -17,6 +17,8 @@ const MODES: Record<string, { words: string; hue: Colour }> = {
     aligning: { words: "INS aligning", hue: "caution" },
     stopped: { words: "no navigation", hue: "warning" },
 };
+/** Which position an epoch gives. */
+const SOURCES: Record<string, string> = { filter: "the filter", snapshot: "the ranges of the instant alone", none: "none" };
 const BAND = 0.2;
 
 export function modes(host: HTMLElement, scene: Scene): () => void {
@@ -31,7 +33,11 @@ export function modes(host: HTMLElement, scene: Scene): () => void {
     return strip(host, scene, {
         id: "modes", title: "Navigation source", unit: "", scales: ["data"], range: [-BAND * most, 1.05 * most], height: 150, draw: (u) => band(u, words, most),
         note: `What keeps the position: ${present.join(", ")}. Beneath, the mode second by second; a mode is left 5 s after it was last possible and entered after 10 s without a break.`,
-        lines, show: (v) => plain(v, 0), words: [{ key: "nav_mode", label: "Mode", text: (w) => (w === null ? "none" : MODES[w]?.words ?? w) }],
+        lines, show: (v) => plain(v, 0), words: [
+            { key: "nav_mode", label: "Mode", text: (w) => (w === null ? "none" : MODES[w]?.words ?? w) },
+            ...(scene.table.wordColumn("nav_source") === undefined ? [] : [{ key: "nav_source", label: "Position of", text: (w: string | null) => (w === null ? "none" : SOURCES[w] ?? w) }]),
+            ...(scene.table.wordColumn("nav_reasons") === undefined ? [] : [{ key: "nav_reasons", label: "Not ok because of", text: (w: string | null) => (w === null || w === "" ? "nothing" : w.replaceAll(" ", ", ")) }]),
+        ],
     });
 }
 

@@ -27,14 +27,30 @@ export interface BoundCheck {
     coverage: number;
     coverage_low: number;
     coverage_high: number;
+    /** Below its claim, and the errors beyond the bounds of its method are too improbable for true ones. */
+    refuted: boolean;
+}
+
+/** A protection level against truth, over epochs with status ok or degraded. */
+export interface LevelCheck {
+    level: "hpl_m" | "vpl_m";
+    n: number;
+    n_above: number;
+    largest_ratio: number;
 }
 
 export interface Belief {
-    state: "unchecked" | "supported" | "short" | "refuted";
+    state: "unchecked" | "supported" | "short" | "contradicted" | "refuted";
+    /** Epochs checked where truth is known, and those of them with a true horizontal error. */
+    n_epochs: number;
+    n_truth: number;
     n_effective: number;
     square_mean: number | null;
     p_value: number;
+    /** Those that the lateral verdict rests on, and every other that the run states. */
     bounds: BoundCheck[];
+    beside: BoundCheck[];
+    levels: LevelCheck[];
 }
 
 export interface Verdict {
@@ -54,6 +70,7 @@ export interface Verdict {
     least_share: number;
     assumed: ("sigma_typed" | "sigma_coded" | "no_path")[];
     belief: Belief | null;
+    n_truth: number;
     n_implausible: number;
     worst_accuracy: Worst | null;
     worst_integrity: Worst | null;

@@ -25,10 +25,10 @@ export function kpiVerdict(host: HTMLElement, payload: Payload, record: Performa
     const { assumptions } = payload.summary;
     const tone = toneOf(record);
     const mark = svg("svg", { viewBox: "0 0 24 24", width: 26, height: 26, "aria-hidden": "true" }, svg("path", { d: STATES[tone].mark }));
-    // A level that no integrity rests on earns no green.
+    // A level that no integrity rests on, or of which too little was seen, earns no green.
     const { id } = payload.summary.verdict;
-    const shown = id === "not_believable" ? "warning" : tone === "inside" && record.experimental !== "" ? "unknown" : tone;
-    const withdrawn = id === "not_believable" ? "Not believable" : id === "nothing_judged" ? "Nothing judged" : null;
+    const shown = id === "not_believable" ? "warning" : tone === "inside" && (record.experimental !== "" || id === "not_shown") ? "unknown" : tone;
+    const withdrawn = id === "not_believable" ? "Not believable" : id === "nothing_judged" ? "Nothing judged" : id === "not_shown" ? "Not shown" : null;
     // The panel itself has the colour.
     const words = headline(record);
     words.className = "words";
@@ -36,8 +36,13 @@ export function kpiVerdict(host: HTMLElement, payload: Payload, record: Performa
         el("p", { class: "state" }, mark, STATES[tone].word, withdrawn === null ? null : el("span", { class: "tag" }, withdrawn), el("span", { class: "requirement" }, record.levels.map((r) => r.level.id).join(", ")), record.experimental === "" ? null : el("span", { class: "tag" }, record.experimental)),
         words, el("dl", { class: "facts" }, ...record.levels.map((r) => ofLevel(r)), accuracy(record), subsets(record)),
         el("div", { class: "basis" },
-            el("div", {}, el("p", {}, el("strong", {}, "Truth "), record.truth_known ? "known: errors are seen, hazards could be counted." : "unknown: neither accuracy nor integrity could be judged.")),
+            el("div", {}, el("p", {}, el("strong", {}, "Truth "), record.truth_known ? knownAt(record) : "unknown: neither accuracy nor integrity could be judged.")),
             assumptions.length > 0 ? el("div", { class: "assumed" }, el("strong", {}, "Assumed"), el("ul", {}, ...assumptions.map((a) => el("li", {}, a)))) : null)));
+}
+
+function knownAt(record: Performance): string {
+    const of = (axis: "h" | "v"): string => `${count(record.axes.find((a) => a.axis === axis)?.error_m?.n ?? 0)} ${axis === "h" ? "horizontal" : "vertical"}`;
+    return `known: ${of("h")} and ${of("v")} errors at ${count(record.n_solution)} epochs with a protection level.`;
 }
 
 function fact(label: string, value: Node | string, ...more: (string | null)[]): HTMLElement {

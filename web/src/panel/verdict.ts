@@ -1,6 +1,6 @@
 // The verdict: state and words first, then the few numbers behind it.
 
-import type { BoundCheck, Payload, Verdict, VerdictId, Worst } from "../data/records.ts";
+import type { Belief, BoundCheck, Payload, Verdict, VerdictId, Worst } from "../data/records.ts";
 import { utcOf } from "../data/events.ts";
 import { about } from "../chart/methods.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
@@ -33,10 +33,11 @@ export function verdict(host: HTMLElement, payload: Payload): void {
             v.n_implausible > 0 ? el("span", { class: "tag" }, valueOf("n_implausible", v.n_implausible, count(v.n_implausible)), ` of ${count(v.n_epochs)} epochs cannot be true`) : null,
             v.n_judged < v.least_share * v.n_epochs ? el("span", { class: "tag" }, `${share((v.n_epochs - v.n_judged) / v.n_epochs)} of the epochs not ok or not judged`) : null),
         el("p", { class: "words" }, v.words),
+        contradictions(v.belief),
         facts(payload, method?.risk),
         el("div", { class: "basis" },
             el("div", {}, el("p", {}, el("strong", {}, "Judged by "), method === undefined ? v.method : `${method.id}: ${about(method)}.`),
-                el("p", {}, el("strong", {}, "Truth "), v.truth_known ? "known: errors are seen, bounds could be checked." : "unknown: bounds could not be checked against errors.")),
+                el("p", {}, el("strong", {}, "Truth "), truth(v))),
             summary.assumptions.length > 0 ? el("div", { class: "assumed" }, el("strong", {}, "Assumed"), el("ul", {}, ...summary.assumptions.map((a) => el("li", {}, a)))) : null));
     host.append(section);
 }
@@ -62,6 +63,24 @@ function facts(payload: Payload, risk: number | undefined): HTMLElement {
     if (v.worst_accuracy !== null) rows.push(worst("Worst margin to RNP", "worst_accuracy", v.worst_accuracy, payload));
     if (v.worst_integrity !== null) rows.push(worst("Worst margin to 2 RNP", "worst_integrity", v.worst_integrity, payload));
     return el("dl", { class: "facts" }, ...rows);
+}
+
+/** What truth contradicts, as tags that no reader of the first screen misses. */
+function contradictions(belief: Belief | null): HTMLElement | null {
+    const bounds = [...(belief?.bounds ?? []), ...(belief?.beside ?? [])].filter((c) => c.refuted);
+    const levels = (belief?.levels ?? []).filter((c) => c.n_above > 0);
+    if (bounds.length + levels.length === 0) return null;
+    const tags = [
+        ...bounds.map((c) => el("span", { class: "tag" }, `${c.method}, ${level(c.risk)}: contains `, valueOf(`refuted.${c.method}.${c.risk}`, c.coverage, share(c.coverage)))),
+        ...levels.map((c) => el("span", { class: "tag" }, `error above ${c.level === "hpl_m" ? "HPL" : "VPL"} at `, valueOf(`above.${c.level}`, c.n_above, count(c.n_above)), ` of ${count(c.n)} epochs`)),
+    ];
+    return el("p", { class: "state contradicted" }, "Truth contradicts ", ...tags);
+}
+
+function truth(v: Verdict): string {
+    if (!v.truth_known) return "unknown: bounds could not be checked against errors.";
+    if (v.belief === null) return `known at ${count(v.n_truth)} epochs, none of which has a bound to check.`;
+    return `known at ${count(v.belief.n_truth)} of ${count(v.belief.n_epochs)} checked epochs${v.belief.n_epochs > 0 ? ` (${share(v.belief.n_truth / v.belief.n_epochs)})` : ""}.`;
 }
 
 function contained(check: BoundCheck): HTMLElement {

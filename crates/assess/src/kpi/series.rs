@@ -167,20 +167,21 @@ impl Series {
     /// n_effective = v / (v_b / n_b)       v variance of an epoch, v_b variance of the bucket means, n_b buckets they are worth
     /// ```
     ///
-    /// `n_b` follows from the autocorrelation of the bucket means. Of the indicator "available" where it is both 0 and 1, otherwise of the
-    /// protection levels (the smaller of the two sizes): an indicator that never changes says nothing about its own correlation.
+    /// `n_b` follows from the autocorrelation of the bucket means. The smallest of the sizes of the errors, of the protection levels, and of
+    /// the indicator "available" where it is both 0 and 1. An indicator that hardly changes says nothing about its own correlation; that of
+    /// what it is made of is never too small (Gebelein, as for the coverage of a bound: [`effective_size`]).
     pub fn n_effective(&self, level: usize, share: f64) -> f64 {
         let means = |f: &dyn Fn(&Bucket) -> f64| self.buckets.values().map(f).filter(|v| !v.is_nan()).collect::<Vec<_>>();
         let n: u64 = self.buckets.values().map(|b| b.n_expected).sum();
-        if share * (1.0 - share) > 0.0 {
-            let available = means(&|b| b.n_available[level] as f64 / b.n_expected as f64);
-            return worth(share * (1.0 - share), available, n);
-        }
         let size = |place: usize| {
             let all = self.buckets.values().fold(Moments::default(), |sum, b| sum.merged(&b.size[place]));
             if all.n == 0 { f64::INFINITY } else { worth(all.variance(), means(&|b| b.size[place].mean()), all.n) }
         };
-        let least = size(HPL).min(size(VPL));
+        let mut least = (0..4).map(size).fold(f64::INFINITY, f64::min);
+        if share * (1.0 - share) > 0.0 {
+            let available = means(&|b| b.n_available[level] as f64 / b.n_expected as f64);
+            least = least.min(worth(share * (1.0 - share), available, n));
+        }
         if least.is_finite() { least } else { 1.0 }
     }
 }

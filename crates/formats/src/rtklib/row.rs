@@ -103,7 +103,10 @@ fn level<'a>(text: &'a str, field: &'static str) -> Result<f64, Fault<'a>> {
 }
 
 fn count<'a>(text: &'a str, field: &'static str) -> Result<u32, Fault<'a>> {
-    text.parse().map_err(|_| Fault { field, reason: "not a count", text })
+    // Programs that write every column as a float write a count as `1.0000000`.
+    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
+    let none = fraction.bytes().all(|b| b == b'0');
+    if none { whole.parse().ok() } else { None }.ok_or(Fault { field, reason: "not a count", text })
 }
 
 /// The covariance of the file's own axes, from its signed roots.

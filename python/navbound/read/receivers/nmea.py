@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from datetime import UTC, date, datetime, time, timedelta
 from typing import TYPE_CHECKING, Any
 
+from navbound.errors import FormatError
 from navbound.read.receivers.log import Log, diagonal, messages, package
 
 if TYPE_CHECKING:
@@ -50,8 +51,7 @@ def read(source: Source) -> Log:
                 dates.append((record, day, of_day))
     if fixes and not dates:
         log.n_rows = len(fixes)
-        log.leave_out("no RMC or ZDA gives a date", fixes[0].record, "GGA holds a time of day only")
-        return log
+        raise FormatError(source.path, _undated(len(fixes), log), fixes[0].record, "date")
     place = 0
     for fix in fixes:
         # The nearest dated sentence before or after, by its number in the log.
@@ -60,6 +60,17 @@ def read(source: Source) -> Log:
         _row(fix, dates[place], log)
     log.n_rows += len(log.rows)
     return log
+
+
+def _undated(n_fixes: int, log: Log) -> str:
+    """GGA holds a time of day only: what is lacking, and what to do."""
+    bad = sum(count for count, _, _, damaged in log.left_out.values() if damaged)
+    damaged = f" ({bad} sentences are damaged, perhaps those with the date: a wrong checksum refuses one)" if bad else ""
+    return (
+        f"{n_fixes} GGA sentences hold a time of day and no date, and no sound RMC or ZDA sentence gives one{damaged}; log RMC or ZDA "
+        "beside GGA, take out or mend damaged sentences and add one ZDA sentence of the day at the beginning "
+        "($GPZDA,hhmmss,dd,mm,yyyy,00,00*checksum), or convert the log to a table with a time"
+    )
 
 
 def _day(sentence: Any) -> date | None:

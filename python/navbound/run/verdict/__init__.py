@@ -1,1 +1,1 @@
-"""The verdict of a run: the rule that decides it, and the check of its bounds against truth. Its words are at the edge (run/words.py)."""
+"""The verdict of a run: the rule that decides it, the check of its bounds against truth, and its words (with run/words.py)."""

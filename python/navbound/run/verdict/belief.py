@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import polars as pl
 
 from navbound import evaluation
 from navbound.methods import column_of, method
-from navbound.run.records import Belief, BoundCheck
+from navbound.run.records import Belief, BoundCheck, LevelCheck
 from navbound.run.verdict import rule
 from navbound.status import USABLE
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from numpy.typing import NDArray
 
+    from navbound.methods import Method
     from navbound.run.kpi_records import LevelResult
 
 CIRCLE = "anp-circle"
 """The covariance itself as a bound: every lateral bound rests on it."""
+
+LEVELS: tuple[tuple[Literal["hpl_m", "vpl_m"], str], ...] = (("hpl_m", "nse_h_m"), ("vpl_m", "nse_u_m"))
+"""Protection levels and the errors that they bound."""
+
+COMPONENTS = {"nse_h_m": ("nse_e_m", "nse_n_m"), "nse_3d_m": ("nse_e_m", "nse_n_m", "nse_u_m")}
+"""Signed components of errors that are a length. A length is never negative, so that its correlation about zero says nothing."""
+
+MOST_RATIO = 1e9
+"""Largest error over level that is stated: a level of zero has no finite one."""
 
 RISK_UNNAMED = 1e-4
 """Integrity risk of an hour where a level names none: a thousand times what any service level of the table allows, so that a level is never
@@ -29,10 +42,19 @@ APPROACH_S, HOUR_S = 150.0, 3600.0
 """Exposure of an integrity risk by approach (ICAO Annex 10: any approach, 150 s taken) and by hour."""
 
 
-def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float]) -> Belief | None:
-    """Check the judging method and the circle at both risks against truth; None where no truth is known.
+@dataclass(frozen=True)
+class _Tested:
+    """One bound at one risk, with the probabilities of its tests."""
 
-    Over epochs with status ok; where there is none, over those that are degraded: a bound that nobody vouches for may be false too.
+    check: BoundCheck
+    p_values: list[float]
+
+
+def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float], stated: Sequence[str] = ()) -> Belief | None:
+    """Check every bound and protection level that the run states against truth; None where no truth is known.
+
+    The lateral verdict rests on the judging method and on the circle; the other stated methods stand beside them. Over epochs with status
+    ok; where there is none, over those that are degraded: a bound that nobody vouches for may be false too.
 
     Parameters
     ----------
@@ -42,53 +64,103 @@ def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float]) ->
         Id of the method that judges.
     risks : (float, float)
         Of accuracy and of integrity. [1]
+    stated : sequence of str
+        Ids of all methods whose bounds the run states. Exhibits of a misprint claim nothing and are left out.
     """
     vouched = epochs.filter(pl.col("status") == "ok")
     usable = vouched if vouched.height else epochs.filter(pl.col("status").is_in(USABLE))
-    counted = [
-        (id_, risk, *_outside(usable, method(id_).integrity_column if integrity else method(id_).column, method(id_).error_column))
-        for id_ in dict.fromkeys((judging, CIRCLE))
-        for risk, integrity in zip(risks, (False, True), strict=True)
-    ]
-    counted = [each for each in counted if each[3] > 0]
-    if not counted:
-        return None
+    levels = [check for check in (_level(epochs, *names) for names in LEVELS) if check is not None]
     size = _magnitude(usable)
-    n_known, n_independent, square_mean, p_size = (
-        (0, 1.0, None, None) if size is None else (size.n, size.n_effective, size.square_mean, size.p_value)
-    )
-    # The error of the navigation system alone scatters: how long it stays decides for every bound.
-    share = n_independent / n_known if n_known else 0.0
-    checks, p_values = [], [] if p_size is None else [p_size]
-    for id_, risk, n_outside, n in counted:
-        n_effective = min(float(n), max(1.0, share * n))
-        contained = evaluation.containment(n_outside, n, n_effective, risk)
-        p_values += [contained.p_value, contained.p_value_any]
-        checks.append(
-            BoundCheck(
-                method=id_,
-                risk=risk,
-                n=n,
-                n_outside=n_outside,
-                n_effective=n_effective,
-                coverage=contained.coverage,
-                coverage_low=contained.coverage_low,
-                coverage_high=contained.coverage_high,
-            )
-        )
+    carrying = list(dict.fromkeys((judging, CIRCLE)))
+    bounds = _tested(usable, carrying, risks, lambda _: 0.0 if size is None or not size.n else size.n_effective / size.n)
+    if not bounds and not levels:
+        return None
+    others = [id_ for id_ in dict.fromkeys(stated) if id_ not in carrying and method(id_).may_alert]
+    beside = _tested(usable, others, risks, lambda id_: _independent(usable, method(id_)))
+    p_values = [] if size is None or not bounds else [size.p_value]
+    p_values += [p for tested in bounds for p in tested.p_values]
+    p_beside = [p for tested in beside for p in tested.p_values]
+    checks = [tested.check for tested in bounds]
     facts = rule.BeliefFacts(
-        n_effective=min(check.n_effective for check in checks),
+        n_effective=min((check.n_effective for check in checks), default=1.0),
         p_values=p_values,
         short=any(check.coverage < 1.0 - check.risk for check in checks),
         excluded=any(check.coverage_high < 1.0 - check.risk for check in checks),
+        p_values_beside=p_beside,
+        n_above_vertical_level=sum(check.n_above for check in levels if check.level == "vpl_m"),
     )
     return Belief(
         state=rule.of_belief(facts),
+        n_epochs=usable.height,
+        n_truth=int(np.isfinite(column_of(usable, "nse_h_m")).sum()) if "nse_h_m" in usable.columns else 0,
         n_effective=facts.n_effective,
-        square_mean=square_mean,
+        square_mean=None if size is None else size.square_mean,
         p_value=rule.joint_probability(p_values),
-        bounds=checks,
+        bounds=_marked(bounds, len(p_values)),
+        beside=_marked(beside, len(p_beside)),
+        levels=levels,
     )
+
+
+def _tested(epochs: pl.DataFrame, ids: Sequence[str], risks: tuple[float, float], independent: Callable[[str], float]) -> list[_Tested]:
+    """Every method at both risks that has a bound and a true error somewhere; ``independent``: share of its epochs that is independent."""
+    tested = []
+    for id_ in ids:
+        columns = (method(id_).column, method(id_).integrity_column)
+        counted = [_outside(epochs, column, method(id_).error_column) for column in columns]
+        share = independent(id_) if any(n for _, n in counted) else 0.0
+        for risk, (n_outside, n) in zip(risks, counted, strict=True):
+            if n:
+                tested.append(_test(id_, risk, n_outside, n, share))
+    return tested
+
+
+def _test(id_: str, risk: float, n_outside: int, n: int, share: float) -> _Tested:
+    n_effective = min(float(n), max(1.0, share * n))
+    contained = evaluation.containment(n_outside, n, n_effective, risk)
+    check = BoundCheck(
+        method=id_,
+        risk=risk,
+        n=n,
+        n_outside=n_outside,
+        n_effective=n_effective,
+        coverage=contained.coverage,
+        coverage_low=contained.coverage_low,
+        coverage_high=contained.coverage_high,
+    )
+    return _Tested(check, [contained.p_value, contained.p_value_any])
+
+
+def _marked(tested: Sequence[_Tested], n_tests: int) -> list[BoundCheck]:
+    """Which bounds are false. A method has one sigma for all its risks: where one of its bounds is refuted, so is each below its claim."""
+    false = {each.check.method for each in tested if rule.is_refuted(each.p_values, n_tests)}
+    checks = [each.check for each in tested]
+    return [c.model_copy(update={"refuted": c.method in false and c.coverage < 1.0 - c.risk}) for c in checks]
+
+
+def _independent(epochs: pl.DataFrame, of: Method) -> float:
+    """Share of the epochs that is independent: the least of the error's components in units of the bound, about zero."""
+    bound = column_of(epochs, of.column)
+    track = epochs.get_column("track").rle_id().cast(pl.Int64).to_numpy()
+    shares = []
+    for name in COMPONENTS.get(of.error_column, (of.error_column,)):
+        scaled = column_of(epochs, name) / np.where(bound > 0.0, bound, np.nan)
+        known = np.isfinite(scaled)
+        if known.any():
+            shares.append(evaluation.effective_size(scaled[known], track[known], about_zero=True) / known.sum())
+    return min(shares, default=0.0)
+
+
+def _level(epochs: pl.DataFrame, level: Literal["hpl_m", "vpl_m"], error: str) -> LevelCheck | None:
+    """A protection level against truth; None where no epoch has both."""
+    if not {level, error} <= set(epochs.columns):
+        return None
+    both = epochs.filter(pl.col("status").is_in(USABLE)).select(level=pl.col(level), size=pl.col(error).abs()).drop_nulls().drop_nans()
+    if both.is_empty():
+        return None
+    ratio = both.select(pl.when(pl.col("size") == 0.0).then(0.0).otherwise(pl.col("size") / pl.col("level")).max()).item()
+    n_above = int(both.select((pl.col("size") > pl.col("level")).sum()).item())
+    return LevelCheck(level=level, n=both.height, n_above=n_above, largest_ratio=float(min(ratio, MOST_RATIO)))
 
 
 def _outside(epochs: pl.DataFrame, bound: str, error: str) -> tuple[int, int]:

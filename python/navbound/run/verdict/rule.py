@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 VerdictId = Literal["inside", "outside", "not_shown", "not_believable", "nothing_judged"]
-BeliefState = Literal["unchecked", "supported", "short", "refuted"]
+BeliefState = Literal["unchecked", "supported", "short", "contradicted", "refuted"]
 
 LEAST_SHARE = 0.95
 """Least share of all expected epochs that must be judged with status ok before "inside" may be said.
@@ -44,7 +44,7 @@ class TrackFacts:
     n_implausible : int
         Whose input cannot be true.
     n_misleading : int
-        Whose true error is above the protection level.
+        Whose true horizontal error is above the horizontal protection level.
     belief : str
         What truth says of the bounds.
     """
@@ -66,9 +66,13 @@ def of_tracks(facts: TrackFacts) -> VerdictId:
         return "nothing_judged"
     if facts.n_outside or facts.n_beyond_alert_limit:
         return "outside"
-    if facts.n_implausible or facts.belief == "short" or not facts.n_judged >= LEAST_SHARE * facts.n_epochs:
+    if facts.n_implausible or facts.belief in UNSUPPORTED or not facts.n_judged >= LEAST_SHARE * facts.n_epochs:
         return "not_shown"
     return "inside"
+
+
+UNSUPPORTED: frozenset[BeliefState] = frozenset({"short", "contradicted"})
+"""Beliefs beside which margins show nothing: too few errors within the bounds, or a false bound beside the lateral ones."""
 
 
 @dataclass(frozen=True)
@@ -125,17 +129,23 @@ class BeliefFacts:
     n_effective : float
         Independent epochs.
     p_values : list of float
-        Of every test made.
+        Of every test of the bounds that the lateral verdict rests on.
     short : bool
-        A coverage is below its claim.
+        A coverage of these is below its claim.
     excluded : bool
-        The 95 % interval of a coverage lies below its claim.
+        The 95 % interval of a coverage of these lies below its claim.
+    p_values_beside : list of float
+        Of every test of the other bounds that the run states: vertical, spatial, along the axes of the path.
+    n_above_vertical_level : int
+        Epochs whose vertical error is above the vertical protection level.
     """
 
     n_effective: float
     p_values: list[float]
     short: bool
     excluded: bool
+    p_values_beside: list[float] = field(default_factory=list)
+    n_above_vertical_level: int = 0
 
 
 FEW_EPOCHS = 10.0
@@ -147,14 +157,23 @@ def joint_probability(p_values: list[float]) -> float:
     return min(1.0, len(p_values) * min((p for p in p_values if p == p), default=1.0))  # noqa: PLR0124 - NaN is not itself
 
 
+def is_refuted(p_values: list[float], n_tests: int) -> bool:
+    """Whether these tests, of ``n_tests`` made together, refute what they test."""
+    known = [p for p in p_values if p == p]  # noqa: PLR0124 - NaN is not itself
+    return bool(known) and n_tests * min(known) <= REFUTED_AT
+
+
 def of_belief(facts: BeliefFacts) -> BeliefState:
     """Whether truth supports the claimed bounds.
 
-    Refuted where the data are too improbable for true bounds; short where a coverage is below its claim and its interval excludes the
-    claim, or so few independent epochs stand behind it that they decide nothing.
+    Refuted where the data are too improbable for true bounds of those that the lateral verdict rests on; contradicted where they are too
+    improbable for another bound that the run states (docs/decisions/0029); short where a coverage is below its claim and its interval
+    excludes the claim, or so few independent epochs stand behind it that they decide nothing.
     """
-    if joint_probability(facts.p_values) <= REFUTED_AT:
+    if is_refuted(facts.p_values, len(facts.p_values)):
         return "refuted"
+    if facts.n_above_vertical_level or is_refuted(facts.p_values_beside, len(facts.p_values_beside)):
+        return "contradicted"
     if facts.excluded or (facts.short and facts.n_effective < FEW_EPOCHS):
         return "short"
     return "supported"

@@ -1,0 +1,104 @@
+"""What truth says of the bounds that a run states, in sentences."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from navbound.methods import method
+from navbound.run.numbers import level, share
+
+if TYPE_CHECKING:
+    from navbound.run.records import Belief, BoundCheck, LevelCheck, Verdict
+
+WHOLE_BELOW = 0.01
+"""Risk below which a bound that every error respects needs no interval: hardly an epoch was to be expected beyond it."""
+
+_NAMES = {
+    "anp-circle": "circle",
+    "tse-exact": "bound of the total system error",
+    "anp-vertical": "vertical interval",
+    "anp-sphere": "sphere",
+    "anp-along": "interval along the course",
+    "anp-cross": "interval across the course",
+    "tse-vertical": "vertical bound of the total system error",
+}
+_LEVELS = {"hpl_m": ("horizontal", "HPL"), "vpl_m": ("vertical", "VPL")}
+
+
+def refuted_words(belief: Belief | None) -> str:
+    """Every bound and level that truth contradicts, with its figures; the reason that withdraws the verdict first."""
+    if belief is None:
+        return "errors are above the protection level"
+    named = _false(belief.bounds + belief.beside, belief.levels)
+    if belief.state != "refuted":
+        return "; ".join(named) or "errors are above the protection level"
+    low = f"probability of these errors under true lateral bounds at most {belief.p_value:.1g}"
+    return f"truth contradicts the bounds ({low}){': ' if named else ''}{'; '.join(named)}"
+
+
+def contradicted_words(belief: Belief) -> str:
+    """The bounds beside the lateral ones that truth contradicts, with their figures."""
+    named = "; ".join(_false(belief.beside, belief.levels))
+    first = f"Truth contradicts what this run states beside the lateral bounds: {named}."
+    return f"{first} A covariance that is false in one axis is no evidence for the others."
+
+
+def _false(bounds: list[BoundCheck], levels: list[LevelCheck]) -> list[str]:
+    named = [f"the {_bound(check)} contains {_figures(check)} of {check.n} errors" for check in bounds if check.refuted]
+    for each in levels:
+        if each.n_above:
+            axis, name = _LEVELS[each.level]
+            most = f"(at most {each.largest_ratio:.3g} times the level)"
+            named.append(f"the {axis} error is above {name} at {each.n_above} of {each.n} epochs {most}")
+    return named
+
+
+def truth_words(verdict: Verdict) -> list[str]:
+    """How far truth is known, and how often each bound contained the error, with its interval and what the epochs are worth."""
+    belief = verdict.belief
+    if not verdict.truth_known:
+        return ["No truth: the covariance could not be checked."]
+    if belief is None or not (belief.bounds or belief.beside):
+        return [f"Truth is known at {verdict.n_truth} epochs, but at none that has a covariance: the bounds could not be checked."]
+    lateral = _contained(belief.bounds)
+    # What truth contradicts stands in the first sentence already.
+    other = _contained([check for check in belief.beside if check.method == "anp-vertical" and not check.refuted])
+    vertical = [f"Of the vertical errors {'; '.join(other)}."] if other else []
+    return [f"{_known(belief)}: of the errors at these epochs {'; '.join(lateral)}.", *vertical, *_below(belief), *_levels(belief)]
+
+
+def _known(belief: Belief) -> str:
+    if belief.n_truth == belief.n_epochs:
+        return f"Truth is known at all {belief.n_epochs} checked epochs"
+    return (
+        f"Truth is known at {belief.n_truth} of {belief.n_epochs} checked epochs ({share(belief.n_truth / belief.n_epochs)}), and the "
+        "bounds of the others could not be checked"
+    )
+
+
+def _contained(bounds: list[BoundCheck]) -> list[str]:
+    whole = [check for check in bounds if check.n_outside == 0 and check.risk < WHOLE_BELOW]
+    one = [f"{_figures(check)} are within the {_bound(check)}" for check in bounds if check not in whole]
+    n_effective = min((check.n_effective for check in bounds), default=0.0)
+    parts = [f"{' and '.join(one)} (95 % intervals as from {n_effective:.2g} independent epochs)"] if one else []
+    return parts + ([f"none is beyond the {' or the '.join(_bound(check) for check in whole)}"] if whole else [])
+
+
+def _below(belief: Belief) -> list[str]:
+    """Bounds beside the lateral ones whose coverage lies below the claim with its whole interval, and that are not refuted by name."""
+    low = [check for check in belief.beside if check.coverage_high < 1.0 - check.risk and not check.refuted]
+    each = "; ".join(f"the {_bound(check)} contains {_figures(check)}" for check in low)
+    return [f"Below its claim, though not beyond doubt: {each}."] if low else []
+
+
+def _levels(belief: Belief) -> list[str]:
+    respected = [f"{_LEVELS[each.level][1]} at any of {each.n} epochs" for each in belief.levels if not each.n_above]
+    return [f"No error is above {' or '.join(respected)}."] if respected else []
+
+
+def _figures(check: BoundCheck) -> str:
+    return f"{share(check.coverage)} ({share(check.coverage_low)} to {share(check.coverage_high)})"
+
+
+def _bound(check: BoundCheck) -> str:
+    return f"{level(check.risk)} {_NAMES.get(check.method, method(check.method).title)}"
