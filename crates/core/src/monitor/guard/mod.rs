@@ -5,6 +5,7 @@
 //! [`Guard::restart`] where one is due, [`Guard::facts`] at an epoch. Provenance: ours; methods in docs/methods/fused-integrity.md.
 
 mod contradiction;
+mod course;
 mod fixes;
 mod inertial;
 mod shares;
@@ -18,7 +19,11 @@ pub use shares::Shares;
 pub use stations::{Reading, Stations, testimony};
 
 use super::consistency::normalised_square_horizontal;
-use super::judgement::{Agreement, CarriedFacts, Decision, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Testimony, Witnesses};
+use course::Course;
+
+use super::judgement::{
+    Agreement, CarriedFacts, Decision, Facts, FilterFacts, Inertial, RangesAgree, Reason, SnapshotFacts, Source, Testimony, Witnesses,
+};
 use crate::bound::araim::exclusion::Decision as Exclusion;
 use crate::bound::araim::single::Requirement;
 use crate::bound::raim;
@@ -51,6 +56,8 @@ const GRAVITY: f64 = 9.8;
 const CLOCK: (u32, f64) = (2, 60.0);
 /// Time for which a clock may be wrong before the unit is out \[s\]. Provenance: inferred.
 const CLOCK_MOST_S: f64 = 10.0;
+/// Risk of the bounds that are called accuracy, of 95 %.
+const ACCURACY_RISK: f64 = 0.05;
 /// Instants of ranges on end with times outside the declared latency. Provenance: inferred.
 const LATE_MOST: u32 = 3;
 
@@ -142,6 +149,8 @@ pub struct Guard {
     /// Stations against the snapshot alone, and what they and the altimeter have last said of it.
     alone: Stations<1>,
     testimony: [Testimony; 2],
+    /// The way of the satellites by their own rates.
+    course: Option<Course>,
     tally: Tally,
     last: Ranges,
     tests: Option<(GpsTime, Tests)>,
@@ -181,6 +190,7 @@ impl Guard {
             stations: Stations::default(),
             alone: Stations::default(),
             testimony: [Testimony::Silent; 2],
+            course: None,
             tally: Tally::default(),
             last: Ranges::of(core::iter::empty()),
             tests: None,
@@ -245,7 +255,7 @@ impl Guard {
         self.late = if in_time { 0 } else { self.late + 1 };
         let mut ranges = self.fresh(&judgeable(together));
         let before = self.looked.take();
-        let (looked, excluded) = match self.look(time, &mut ranges) {
+        let (mut looked, excluded) = match self.look(time, &mut ranges) {
             Ok(found) => found,
             Err(_) => return all,
         };
@@ -278,8 +288,30 @@ impl Guard {
                 }
             }
         }
+        self.follow(before.as_ref(), &mut looked, true);
         self.looked = Some(looked);
         Admitted { usable, excluded: out }
+    }
+
+    /// Satellites beside which nothing stands are heard against their own rates since something did.
+    fn follow(&mut self, before: Option<&Looked>, now: &mut Looked, measured: bool) {
+        let compared = self.tests.is_some_and(|(time, tests)| time == now.snapshot.time && !tests.fail());
+        let trusted = compared && !self.contradiction.is_raised() && !self.contradiction.is_open();
+        let Some(course) = self.course.filter(|_| !trusted) else {
+            self.course = (now.ranges_agree != RangesAgree::No).then(|| Course::at(now));
+            return;
+        };
+        // Where nothing leads here the next position begins anew.
+        self.course = before.and_then(|b| course.led(b, now, measured));
+        let Some(led) = self.course.filter(|_| now.ranges_agree != RangesAgree::No) else { return };
+        let (apart_m, [h, v]) = led.apart(now);
+        if !(h <= self.limit[0] && v <= self.limit[2]) {
+            self.contradiction.leave_open();
+        }
+        (0..2).for_each(|k| now.level_m[k] += apart_m[k]);
+        if !measured {
+            self.course = Some(Course::at(now));
+        }
     }
 
     /// One range of each satellite, and none that is the last one again to the bit: a receiver that has stopped measures nothing.
@@ -463,15 +495,23 @@ impl Guard {
         }
     }
 
-    /// The covariance to state of a position: its own, and where two readings contradict each other so much more that the level is its bound
-    /// at the risk of a fault-free level.
+    /// The covariance to state of a position: its own, and more
+    ///
+    /// - where two readings contradict each other: so much that its 95 % bounds are the level. The distance of the other reading is no scatter:
+    ///   where that one is right the error is as large all the time;
+    /// - where nothing checks the filter any more: the last level at the risk of a fault-free level, for what the tests had left unseen by then
+    ///   is still in the filter.
     ///
     /// # Errors
     /// As [`chi_factor`].
     pub fn stated(&self, decision: &Decision, own: &Covariance<Enu>) -> Result<Covariance<Enu>, OutOfDomain> {
-        let Some((hpl, vpl)) = decision.hpl_m.zip(decision.vpl_m).filter(|_| decision.disputed) else { return Ok(*own) };
-        let q = self.settings.requirement.fault_free.q();
-        let [h, v] = [hpl / chi_factor(2, q)?, vpl / chi_factor(1, q)?];
+        let unchecked = decision.source == Source::Filter && decision.reasons.has(Reason::SnapshotMissing);
+        let (level, risk) = match (decision.disputed, decision.hpl_m.zip(decision.vpl_m), &self.level) {
+            (true, Some((hpl, vpl)), _) => ([hpl, vpl], ACCURACY_RISK),
+            (false, _, Some((_, level, _))) if unchecked => (*level, self.settings.requirement.fault_free.q()),
+            _ => return Ok(*own),
+        };
+        let [h, v] = [level[0] / chi_factor(2, risk)?, level[1] / chi_factor(1, risk)?];
         let wide = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(h * h, h * h, v * v));
         Ok(Covariance::claim_symmetric(own.matrix() + wide))
     }
