@@ -64,7 +64,6 @@ class Recording:
         return since
 
 
-
 @dataclass(frozen=True)
 class Kind:
     """A kind of fault in a recording: ``change`` takes the recording, the size and the onset [s]."""
@@ -288,10 +287,7 @@ KINDS = (
     Kind("imu-swapped-axes", "inertial", "s", DURATIONS_S, _samples(_swap)),
     Kind("imu-repeated", "inertial", "s", DURATIONS_S, _doubled),
     Kind("imu-reversed", "inertial", "s", DURATIONS_S, _reversed),
-    *(
-        Kind(f"accelerometer-{name}-step", "inertial", "m/s²", FORCES, _step(gyroscope=False, axis=k))
-        for k, name in enumerate("xyz")
-    ),
+    *(Kind(f"accelerometer-{name}-step", "inertial", "m/s²", FORCES, _step(gyroscope=False, axis=k)) for k, name in enumerate("xyz")),
     *(Kind(f"gyroscope-{name}-step", "inertial", "rad/s", RATES, _step(gyroscope=True, axis=k)) for k, name in enumerate("xyz")),
     Kind("accelerometer-ramp", "inertial", "m/s³", (1e-4, 1e-3, 1e-2, 0.1, 0.3, 1.0), _step(gyroscope=False, axis=0, ramp=True)),
     Kind("gyroscope-ramp", "inertial", "rad/s²", (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1), _step(gyroscope=True, axis=2, ramp=True)),

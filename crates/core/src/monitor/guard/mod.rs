@@ -28,7 +28,7 @@ use crate::bound::araim::exclusion::Decision as Exclusion;
 use crate::bound::araim::single::Requirement;
 use crate::bound::raim;
 use crate::frame::{Covariance, Displacement, EcefPosition, Enu, ecef_from_geodetic, enu_from_ecef};
-use crate::quantity::{GpsTime, OutOfDomain, Unavailable};
+use crate::quantity::{GpsTime, OutOfDomain, Risk, Unavailable};
 use crate::signal::{Aiding, BaroHeight, ImuIncrement, SatelliteId, SatelliteRange, TimedAiding};
 use crate::solution::ins::{Advance, Block, Difference, Fusion, Mode, Solution, judgeable};
 use crate::solution::snapshot::{RANGES_MOST, Ranges, Snapshot, SnapshotVelocity, Solver, rate_sights, velocity};
@@ -56,8 +56,6 @@ const GRAVITY: f64 = 9.8;
 const CLOCK: (u32, f64) = (2, 60.0);
 /// Time for which a clock may be wrong before the unit is out \[s\]. Provenance: inferred.
 const CLOCK_MOST_S: f64 = 10.0;
-/// Risk of the bounds that are called accuracy, of 95 %.
-const ACCURACY_RISK: f64 = 0.05;
 /// Instants of ranges on end with times outside the declared latency. Provenance: inferred.
 const LATE_MOST: u32 = 3;
 
@@ -507,7 +505,7 @@ impl Guard {
     pub fn stated(&self, decision: &Decision, own: &Covariance<Enu>) -> Result<Covariance<Enu>, OutOfDomain> {
         let unchecked = decision.source == Source::Filter && decision.reasons.has(Reason::SnapshotMissing);
         let (level, risk) = match (decision.disputed, decision.hpl_m.zip(decision.vpl_m), &self.level) {
-            (true, Some((hpl, vpl)), _) => ([hpl, vpl], ACCURACY_RISK),
+            (true, Some((hpl, vpl)), _) => ([hpl, vpl], Risk::ACCURACY.q()),
             (false, _, Some((_, level, _))) if unchecked => (*level, self.settings.requirement.fault_free.q()),
             _ => return Ok(*own),
         };
