@@ -112,6 +112,17 @@ def test_the_unit_silent_and_the_satellites_right_is_ok_by_the_snapshot(tmp_path
     assert not outside(alone).any()
 
 
+@pytest.mark.parametrize("right_mps", [1.0, 3.0, 30.0])
+def test_satellites_alone_that_move_without_their_rates_are_inside_their_level_until_they_are_contradicted(
+    tmp_path: Path, right_mps: float
+) -> None:
+    epochs = flown(tmp_path, SILENT, spoofing(250.0, right_mps) + "\nrates = false", duration_s=900.0)
+    alone = epochs.filter(pl.col("second") >= 215)
+    assert not outside(alone.filter(pl.col("status") == "ok")).any()
+    # 6.5 deviations of two positions of some 2 m, and a second.
+    assert "ok" not in alone.filter(pl.col("nse_h_m") > 25.0 + right_mps)["status"].to_list()
+
+
 @pytest.mark.parametrize("up_mps", [-1.0, 2.0])
 def test_a_height_that_the_satellites_were_led_off_is_never_ok_again(tmp_path: Path, up_mps: float) -> None:
     epochs = flown(tmp_path, spoofing(200.0, 0.0, up_mps))

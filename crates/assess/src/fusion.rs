@@ -95,8 +95,8 @@ pub fn run(
 }
 
 fn moment(driver: &mut Driver, judged: &mut Judged, time: GpsTime) -> Result<Moment, OutOfDomain> {
-    let (solution, beside) = (driver.filter.solution(time), driver.filter.beside(time));
-    let (decision, stand_in) = judged.decide(driver, time, solution.as_ref(), beside.as_ref())?;
+    let (mut solution, beside) = (driver.filter.solution(time), driver.filter.beside(time));
+    let (decision, stand_in) = judged.decide(driver, time, &mut solution, beside.as_ref())?;
     Ok(Moment { time, solution, beside, n_states: driver.filter.n_states(), decision, stand_in })
 }
 

@@ -97,6 +97,7 @@ impl Judged {
                 Aiding::Satellite(ref m) if m.range.is_some() => self.ranges(driver, now, together)?,
                 Aiding::Fix(_) => self.fixes(driver, now, together)?,
                 _ => {
+                    self.guard.hear(&mut driver.filter, together);
                     driver.aid(together);
                 }
             }
@@ -131,12 +132,13 @@ impl Judged {
         Ok(())
     }
 
-    /// The status of a result, and the position that is given in place of the filter's where that is so.
+    /// The status of a result, and the position that is given in place of the filter's where that is so. The covariance of either is then the
+    /// one to state.
     pub(crate) fn decide(
         &mut self,
         driver: &mut Driver,
         time: GpsTime,
-        solution: Option<&Solution>,
+        solution: &mut Option<Solution>,
         beside: Option<&Beside>,
     ) -> Result<(Decision, Option<StandIn>), OutOfDomain> {
         if let Some(b) = beside {
@@ -149,12 +151,16 @@ impl Judged {
             stations_contradict: Some(self.left_out.is_some_and(|since| time.seconds_since(since) >= STATIONS.1)),
             ..Witnesses::NONE
         };
-        let facts = self.guard.facts(&mut driver.filter, time, solution, witnesses);
+        let facts = self.guard.facts(&mut driver.filter, time, solution.as_ref(), witnesses);
         let decision = decide(&facts);
-        let stand_in = self.guard.looked().filter(|_| decision.source == Source::Snapshot).map(|l| {
+        let mut stand_in = self.guard.looked().filter(|_| decision.source == Source::Snapshot).map(|l| {
             let (position, covariance) = (l.snapshot.position, l.snapshot.covariance);
             StandIn { position, covariance, velocity: l.velocity }
         });
+        let given = solution.as_mut().map(|s| &mut s.covariance).filter(|_| decision.source == Source::Filter);
+        if let Some(covariance) = stand_in.as_mut().map(|s| &mut s.covariance).or(given) {
+            *covariance = self.guard.stated(&decision, covariance)?;
+        }
         Ok((decision, stand_in))
     }
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,51 +38,105 @@ COUNTS = (
 """Columns of counts; with them come ``delay_s``, ``error_most_m`` and ``reasons``."""
 
 
-def levels(frame: pl.DataFrame) -> tuple[Floats, Floats]:
-    """The bounds that the position promises, horizontal and vertical [m]: its levels, or where it has none those of its covariance."""
-    ee, en, nn, uu = (column_of(frame, f"cov_{axis}_m2") for axis in ("ee", "en", "nn", "uu"))
-    known = np.isfinite(ee) & np.isfinite(uu) & (ee * nn - en * en > 0) & (uu > 0)
-    horizontal, vertical = np.full(ee.shape, np.nan), np.full(ee.shape, np.nan)
+@dataclass(frozen=True)
+class Outcome:
+    """What the navigation said at each epoch, and how wrong it was.
+
+    Attributes
+    ----------
+    since_s : ndarray, shape (n,)
+        Time since the begin. [s]
+    period_s : float
+        Of the epochs. [s]
+    ok : ndarray of bool, shape (n,)
+        The status is ``ok``.
+    error_h_m, error_u_m : ndarray, shape (n,)
+        Horizontal error and size of the vertical one. [m]
+    horizontal_m, vertical_m : ndarray, shape (n,)
+        The bounds that the position promises. [m]
+    reasons : list of str, length n
+        Ids of reasons, with blanks between.
+    """
+
+    since_s: Floats
+    period_s: float
+    ok: Flags
+    error_h_m: Floats
+    error_u_m: Floats
+    horizontal_m: Floats
+    vertical_m: Floats
+    reasons: list[str]
+
+    @property
+    def wrong(self) -> Flags:
+        """Not known to be inside the bounds: an error that is not known is outside."""
+        wrong: Flags = ~((self.error_h_m <= self.horizontal_m) & (self.error_u_m <= self.vertical_m))
+        return wrong
+
+    def counted(self, onset_s: float, judged: Flags | None = None) -> dict[str, float | str]:
+        """Counts of the status; those of alerts are nought. Epochs outside ``judged`` are not counted."""
+        judged = np.ones(self.ok.size, dtype=bool) if judged is None else judged
+        after = judged & (self.since_s >= onset_s)
+        before = judged & (self.since_s < onset_s) & (self.since_s >= SETTLED_S)
+        left, good = np.flatnonzero(after & ~self.ok), after & self.ok & np.isfinite(self.error_h_m)
+        counts: dict[str, float | str] = dict.fromkeys(COUNTS, 0.0)
+        return counts | {
+            "n_epochs": float(after.sum()),
+            "n_ok": float((after & self.ok).sum()),
+            "n_ok_wrong": float((after & self.ok & self.wrong).sum()),
+            "healthy_s": float(before.sum()) * self.period_s,
+            "healthy_not_ok_s": float((before & ~self.ok).sum()) * self.period_s,
+            "delay_s": float(self.since_s[left[0]] - onset_s) if left.size else float("nan"),
+            "error_most_m": float(self.error_h_m[good].max()) if good.any() else 0.0,
+            "reasons": "|".join(sorted({reason for k in left for reason in self.reasons[k].split()})),
+        }
+
+
+def promised(covariance_m2: Floats, hpl_m: Floats, vpl_m: Floats) -> tuple[Floats, Floats]:
+    """The bounds that positions promise, horizontal and vertical [m]: their levels, or where there are none those of their covariance.
+
+    Covariances east, north, up, shape (n, 3, 3) [m²]; NaN where there is neither.
+    """
+    plane, up = covariance_m2[:, :2, :2], covariance_m2[:, 2, 2]
+    known = np.isfinite(plane).all((1, 2)) & np.isfinite(up) & (plane[:, 0, 0] * plane[:, 1, 1] - plane[:, 0, 1] ** 2 > 0) & (up > 0)
+    horizontal, vertical = np.full(up.shape, np.nan), np.full(up.shape, np.nan)
     if known.any():
-        pairs = np.moveaxis(np.array([[ee, en], [en, nn]]), 2, 0)[known]
-        horizontal[known] = anp.circle(pairs, RISK)
-        vertical[known] = float(anp.chi_factor(1, RISK)) * np.sqrt(uu[known])
-    for name, values in (("hpl_m", horizontal), ("vpl_m", vertical)):
-        if name in frame.columns:
-            own = column_of(frame, name)
-            values[np.isfinite(own)] = own[np.isfinite(own)]
-    return horizontal, vertical
+        horizontal[known] = anp.circle(plane[known], RISK)
+        vertical[known] = float(anp.chi_factor(1, RISK)) * np.sqrt(up[known])
+    return np.where(np.isfinite(hpl_m), hpl_m, horizontal), np.where(np.isfinite(vpl_m), vpl_m, vertical)
+
+
+def _outcome(frame: pl.DataFrame) -> Outcome:
+    """An outcome of the judged epochs of a flight, a second apart."""
+    ee, en, nn, uu = (column_of(frame, f"cov_{axis}_m2") for axis in ("ee", "en", "nn", "uu"))
+    zero, missing = np.zeros(ee.shape), np.full(ee.shape, np.nan)
+    covariance = np.moveaxis(np.array([[ee, en, zero], [en, nn, zero], [zero, zero, uu]]), 2, 0)
+    horizontal, vertical = promised(covariance, *(column_of(frame, c) if c in frame.columns else missing for c in ("hpl_m", "vpl_m")))
+    column = "nav_reasons" if "nav_reasons" in frame.columns else "reason"
+    return Outcome(
+        since_s=(frame["time_ns"].to_numpy() - int(frame["time_ns"][0])) * 1e-9,
+        period_s=1.0,
+        ok=frame["status"].to_numpy() == "ok",
+        error_h_m=column_of(frame, "nse_h_m"),
+        error_u_m=np.abs(column_of(frame, "nse_u_m")),
+        horizontal_m=horizontal,
+        vertical_m=vertical,
+        reasons=[str(cell or "") for cell in frame[column]],
+    )
 
 
 def measures(frame: pl.DataFrame, onset_s: float) -> dict[str, float | str]:
     """Counts of one judged flight whose fault begins at a time after its begin [s]."""
-    since = (frame["time_ns"].to_numpy() - int(frame["time_ns"][0])) * 1e-9
-    after = since >= onset_s
-    ok, normal = frame["status"].to_numpy() == "ok", frame["alert"].to_numpy() == "normal"
-    horizontal, vertical = levels(frame)
-    error_h, error_u = column_of(frame, "nse_h_m"), np.abs(column_of(frame, "nse_u_m"))
-    # An error that is not known to be inside is outside.
-    wrong = ~((error_h <= horizontal) & (error_u <= vertical))
+    outcome = _outcome(frame)
+    since, normal = outcome.since_s, frame["alert"].to_numpy() == "normal"
     late = _lasting(np.abs(column_of(frame, "tse_m")) > column_of(frame, "rnp_m"), since) > TIME_TO_ALERT_S
-    before = ~after & (since >= SETTLED_S)
+    after, before = since >= onset_s, (since < onset_s) & (since >= SETTLED_S)
     raised = ~normal & np.append(False, normal[:-1])
-    first = np.flatnonzero(after & ~ok)
-    column = "nav_reasons" if "nav_reasons" in frame.columns else "reason"
-    told = sorted({reason for cell in frame.filter(after & ~ok)[column].drop_nulls().unique() for reason in str(cell).split()})
-    good = after & ok & np.isfinite(error_h)
-    return {
-        "n_epochs": float(after.sum()),
-        "n_ok": float((after & ok).sum()),
-        "n_ok_wrong": float((after & ok & wrong).sum()),
+    return outcome.counted(onset_s) | {
         "n_normal": float((after & normal).sum()),
-        "n_normal_wrong": float((after & normal & wrong).sum()),
+        "n_normal_wrong": float((after & normal & outcome.wrong).sum()),
         "n_late": float((after & normal & late).sum()),
-        "healthy_s": float(before.sum()),
         "n_false_alerts": float((before & raised).sum()),
-        "healthy_not_ok_s": float((before & ~ok).sum()),
-        "delay_s": float(since[first[0]] - onset_s) if first.size else float("nan"),
-        "error_most_m": float(error_h[good].max()) if good.any() else 0.0,
-        "reasons": "|".join(told),
     }
 
 

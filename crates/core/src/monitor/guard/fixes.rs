@@ -36,7 +36,7 @@ impl Guard {
             return true;
         }
         let before = self.looked.take();
-        let looked = seen(timed.time, m, before.as_ref(), age_sigma_s);
+        let mut looked = seen(timed.time, m, before.as_ref(), age_sigma_s);
         let mut usable = true;
         if let Some(d) = filter.against(&looked.snapshot) {
             let settled = !matches!(filter.mode_now(), Mode::Aligning);
@@ -53,6 +53,7 @@ impl Guard {
             }
             usable = !tests.fail();
         }
+        self.follow(before.as_ref(), &mut looked, m.velocity_ned_mps.is_some());
         self.looked = Some(looked);
         usable
     }

@@ -5,6 +5,7 @@
 //! [`Guard::restart`] where one is due, [`Guard::facts`] at an epoch. Provenance: ours; methods in docs/methods/fused-integrity.md.
 
 mod contradiction;
+mod course;
 mod fixes;
 mod inertial;
 mod shares;
@@ -18,12 +19,16 @@ pub use shares::Shares;
 pub use stations::{Reading, Stations, testimony};
 
 use super::consistency::normalised_square_horizontal;
-use super::judgement::{Agreement, CarriedFacts, Decision, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Testimony, Witnesses};
+use course::Course;
+
+use super::judgement::{
+    Agreement, CarriedFacts, Decision, Facts, FilterFacts, Inertial, RangesAgree, Reason, SnapshotFacts, Source, Testimony, Witnesses,
+};
 use crate::bound::araim::exclusion::Decision as Exclusion;
 use crate::bound::araim::single::Requirement;
 use crate::bound::raim;
 use crate::frame::{Covariance, Displacement, EcefPosition, Enu, ecef_from_geodetic, enu_from_ecef};
-use crate::quantity::{GpsTime, OutOfDomain, Unavailable};
+use crate::quantity::{GpsTime, OutOfDomain, Risk, Unavailable};
 use crate::signal::{Aiding, BaroHeight, ImuIncrement, SatelliteId, SatelliteRange, TimedAiding};
 use crate::solution::ins::{Advance, Block, Difference, Fusion, Mode, Solution, judgeable};
 use crate::solution::snapshot::{RANGES_MOST, Ranges, Snapshot, SnapshotVelocity, Solver, rate_sights, velocity};
@@ -142,6 +147,8 @@ pub struct Guard {
     /// Stations against the snapshot alone, and what they and the altimeter have last said of it.
     alone: Stations<1>,
     testimony: [Testimony; 2],
+    /// The way of the satellites by their own rates.
+    course: Option<Course>,
     tally: Tally,
     last: Ranges,
     tests: Option<(GpsTime, Tests)>,
@@ -181,6 +188,7 @@ impl Guard {
             stations: Stations::default(),
             alone: Stations::default(),
             testimony: [Testimony::Silent; 2],
+            course: None,
             tally: Tally::default(),
             last: Ranges::of(core::iter::empty()),
             tests: None,
@@ -245,7 +253,7 @@ impl Guard {
         self.late = if in_time { 0 } else { self.late + 1 };
         let mut ranges = self.fresh(&judgeable(together));
         let before = self.looked.take();
-        let (looked, excluded) = match self.look(time, &mut ranges) {
+        let (mut looked, excluded) = match self.look(time, &mut ranges) {
             Ok(found) => found,
             Err(_) => return all,
         };
@@ -278,8 +286,30 @@ impl Guard {
                 }
             }
         }
+        self.follow(before.as_ref(), &mut looked, true);
         self.looked = Some(looked);
         Admitted { usable, excluded: out }
+    }
+
+    /// Satellites beside which nothing stands are heard against their own rates since something did.
+    fn follow(&mut self, before: Option<&Looked>, now: &mut Looked, measured: bool) {
+        let compared = self.tests.is_some_and(|(time, tests)| time == now.snapshot.time && !tests.fail());
+        let trusted = compared && !self.contradiction.is_raised() && !self.contradiction.is_open();
+        let Some(course) = self.course.filter(|_| !trusted) else {
+            self.course = (now.ranges_agree != RangesAgree::No).then(|| Course::at(now));
+            return;
+        };
+        // Where nothing leads here the next position begins anew.
+        self.course = before.and_then(|b| course.led(b, now, measured));
+        let Some(led) = self.course.filter(|_| now.ranges_agree != RangesAgree::No) else { return };
+        let (apart_m, [h, v]) = led.apart(now);
+        if !(h <= self.limit[0] && v <= self.limit[2]) {
+            self.contradiction.leave_open();
+        }
+        (0..2).for_each(|k| now.level_m[k] += apart_m[k]);
+        if !measured {
+            self.course = Some(Course::at(now));
+        }
     }
 
     /// One range of each satellite, and none that is the last one again to the bit: a receiver that has stopped measures nothing.
@@ -463,15 +493,23 @@ impl Guard {
         }
     }
 
-    /// The covariance to state of a position: its own, and where two readings contradict each other so much more that the level is its bound
-    /// at the risk of a fault-free level.
+    /// The covariance to state of a position: its own, and more
+    ///
+    /// - where two readings contradict each other: so much that its 95 % bounds are the level. The distance of the other reading is no scatter:
+    ///   where that one is right the error is as large all the time;
+    /// - where nothing checks the filter any more: the last level at the risk of a fault-free level, for what the tests had left unseen by then
+    ///   is still in the filter.
     ///
     /// # Errors
     /// As [`chi_factor`].
     pub fn stated(&self, decision: &Decision, own: &Covariance<Enu>) -> Result<Covariance<Enu>, OutOfDomain> {
-        let Some((hpl, vpl)) = decision.hpl_m.zip(decision.vpl_m).filter(|_| decision.disputed) else { return Ok(*own) };
-        let q = self.settings.requirement.fault_free.q();
-        let [h, v] = [hpl / chi_factor(2, q)?, vpl / chi_factor(1, q)?];
+        let unchecked = decision.source == Source::Filter && decision.reasons.has(Reason::SnapshotMissing);
+        let (level, risk) = match (decision.disputed, decision.hpl_m.zip(decision.vpl_m), &self.level) {
+            (true, Some((hpl, vpl)), _) => ([hpl, vpl], Risk::ACCURACY.q()),
+            (false, _, Some((_, level, _))) if unchecked => (*level, self.settings.requirement.fault_free.q()),
+            _ => return Ok(*own),
+        };
+        let [h, v] = [level[0] / chi_factor(2, risk)?, level[1] / chi_factor(1, risk)?];
         let wide = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(h * h, h * h, v * v));
         Ok(Covariance::claim_symmetric(own.matrix() + wide))
     }
