@@ -136,6 +136,9 @@ reasons! {
     ServiceDoNotUse, "service_do_not_use", NotAvailable, "the service says \"do not use\" (message 0)";
     /// No PRN mask of an augmentation service.
     NoPrnMask, "no_prn_mask", NotAvailable, "no PRN mask is in force";
+    /// Silence of an augmentation service's signal.
+    MessageLoss, "message_loss", NotAvailable,
+        "four seconds without a message took the UDRE indicators: satellites wait for new ones";
     /// A signal that transmits message 0 as a test.
     TestSignal, "test_signal", Degraded, "a test signal: its levels promise nothing";
     /// The faults without a monitor are likelier than what is allotted.
