@@ -10,11 +10,12 @@ use navbound_core::frame::{Covariance, Enu, Geodetic, LatLon};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians};
 use navbound_core::signal::sbas::timeout::Use;
 use navbound_core::signal::sbas::{BLOCK_BYTES, Block, Obedience, decode};
-use navbound_formats::sbas::{Received, Tag, read};
+use navbound_formats::sbas::{Preambles, Received, Tag, read};
 use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::collections::BTreeMap;
 
 /// A log: time_ns of the end of each message, prn, data (n, 32), format, tag, refused lines as (line, field, reason, text).
 #[pyfunction]
@@ -34,6 +35,8 @@ fn sbas_read<'py>(py: Python<'py>, content: &[u8], path: &str, tag: Option<&str>
     d.set_item("data", data.into_pyarray(py).reshape([n, BLOCK_BYTES])?)?;
     d.set_item("format", log.format.name())?;
     d.set_item("tag", if log.tag == Tag::End { "end" } else { "start" })?;
+    let late = |p: &Preambles| (p.prn, p.late_s());
+    d.set_item("late_s", Preambles::of(&log.messages).iter().map(late).collect::<BTreeMap<_, _>>())?;
     d.set_item("refused", log.refused.into_iter().map(|r| (r.line, r.field, r.reason, r.text)).collect::<Vec<_>>())?;
     Ok(d)
 }

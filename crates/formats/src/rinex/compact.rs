@@ -182,7 +182,7 @@ fn epoch(
         }
     }
     if let Some(time) = head.time {
-        o.end_epoch(time, head.flag == 1, head.clock_offset_s);
+        o.end_epoch(time, head.flag == 1, head.clock_offset_s, lines.number);
     }
     Ok(())
 }
