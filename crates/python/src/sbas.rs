@@ -131,6 +131,22 @@ fn sbas_levels<'py>(py: Python<'py>, service: Service<'py>, places: Places<'py>)
     Ok(d)
 }
 
+/// PRNs whose UDRE indicator is in force at instants in the order of time: in precision approach, and en route.
+#[pyfunction]
+fn sbas_indicators<'py>(
+    py: Python<'py>,
+    message_time_ns: PyReadonlyArray1<'py, i64>,
+    data: PyReadonlyArray2<'py, u8>,
+    time_ns: PyReadonlyArray1<'py, i64>,
+) -> PyResult<[Vec<Vec<u8>>; 2]> {
+    let ends = message_time_ns.as_slice()?;
+    let received = |(block, end): (Block, &i64)| Received { end: GpsTime::from_nanoseconds(*end), prn: 0, block };
+    let feed = Feed::new(&blocks(&data)?.into_iter().zip(ends).map(received).collect::<Vec<_>>());
+    let at: Vec<GpsTime> = time_ns.as_slice()?.iter().map(|t| GpsTime::from_nanoseconds(*t)).collect();
+    let of = |used_for| sbas::indicators(&feed, used_for, Obedience::Obey, &at);
+    Ok(py.detach(|| [Use::PrecisionApproach, Use::EnRoute].map(of)))
+}
+
 /// Messages that changed nothing: time, why.
 pub fn ignored(py: Python<'_>, feed: &Feed, settings: &Settings) -> Vec<(i64, String)> {
     let found = py.detach(|| sbas::ignored(feed, settings.obedience));
@@ -312,6 +328,7 @@ fn terms_columns<'py>(py: Python<'py>, found: &FromTerms) -> PyResult<Bound<'py,
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(sbas_read, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_decode, m)?)?;
+    m.add_function(wrap_pyfunction!(sbas_indicators, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_levels, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_satellites, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_covariance_levels, m)?)?;

@@ -148,6 +148,12 @@ TIME_NAMES: dict[str, str] = {
 }  # fmt: skip
 """Known names of time columns to the way they are written."""
 
+POSITION_TIME = "position_time_ns"
+"""When a position was valid, GPS time [ns]; the row's own time is that of the report."""
+
+POSITION_TIME_NAMES = ("position_time_ns", "last_position", "lastposupdate", "time_position", "position_time", "lastposition")
+"""Columns that say when a row's position was valid, where its time is that of the report."""
+
 
 OPENSKY_STATES: dict[str, tuple[str, str]] = {
     "est_h_m": ("geoaltitude", "m"),
@@ -240,6 +246,15 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
         taken |= {c.name for c in times}
     _require(columns, times, names, path, needs)
     return Assignment(columns, times, [n for n in names if n not in taken])
+
+
+def position_time(unused: list[str]) -> Column | None:
+    """The column that says when positions were valid, taken out of those that nobody uses; None where there is none."""
+    for name in unused:
+        if _plain(name)[0] in POSITION_TIME_NAMES:
+            unused.remove(name)
+            return Column("time", name, "gps_ns" if _plain(name)[0].endswith("_ns") else "utc")
+    return None
 
 
 def _plain(name: str) -> tuple[str, str | None]:

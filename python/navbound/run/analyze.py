@@ -12,6 +12,7 @@ from navbound import status
 from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
+from navbound.read.columns import POSITION_TIME
 from navbound.read.covariance import COLUMNS, Claimed, claim
 from navbound.read.epochs import Reading, read
 from navbound.read.plausible import Limits, check
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
     from navbound.run.records import CrossTrack, InputFile
 
-_AUXILIARY = ("callsign", "nac_p", "nic", "rc_m", "epu_m", "sigma_e_m", "sigma_n_m", "sigma_u_m")
+_AUXILIARY = ("callsign", "nac_p", "nic", "rc_m", "epu_m", "sigma_e_m", "sigma_n_m", "sigma_u_m", POSITION_TIME)
 
 
 def material(

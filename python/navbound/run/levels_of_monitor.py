@@ -11,6 +11,7 @@ from navbound import araim, gnss, raim
 from navbound._monitor_fit import DISBELIEF
 from navbound.errors import FormatError, InputError
 from navbound.read.epochs import read
+from navbound.read.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.truth import join
 from navbound.run.levels_of import Part, uniform
 from navbound.run.words import METRES_PER_NM, share
@@ -81,15 +82,19 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Mo
     """
     observations = gnss.read_observations(path)
     if not observations.n_epochs:
-        raise FormatError(path, "holds no epoch")
+        raise without_epochs(observations)
     found = monitor(observations, records, truth_ecef_m=truth.ecef_m)
     notes = [f"{path.name}: {words}" for words in decisions(found.epochs)]
     notes += [f"{path.name}: {name}: {words}" if name in OF_FILE else f"{name}: {words}" for name, words in found.models.items()]
+    refused = [*of_observations(observations), *of_navigation(records)]
+    notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", records.skipped)]
     epochs = found.epochs
     if truth.given is not None and truth.ecef_m is None:
-        epochs, words = join(epochs, read(truth.given), truth.tolerance_s)
+        other = read(truth.given)
+        epochs, words = join(epochs, other, truth.tolerance_s)
         notes.append(words)
-    return Part(uniform(epochs), observations.n_epochs, [], notes, "" if found.fit.believable else CONTRADICTED)
+        refused += other.rejected
+    return Part(uniform(epochs), observations.n_epochs, [one.model_dump() for one in refused], notes, "" if found.fit.believable else CONTRADICTED)
 
 
 def decisions(epochs: pl.DataFrame) -> list[str]:

@@ -289,10 +289,20 @@ def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) 
         states=[],
         events=[],
         cross_track=[],
-        rejected=[Rejection(**fields) for part in parts for fields in part.rejected],
+        rejected=_rejected(parts),
         n_status={"solution": result.n_solution, "no_solution": result.n_no_solution, "missing": result.n_missing},
         performance=result,
     )
+
+
+def _rejected(parts: list[Stored]) -> list[Rejection]:
+    """Of all parts; what they have in common, navigation data and messages, once."""
+    found: list[Rejection] = []
+    for fields in (fields for part in parts for fields in part.rejected):
+        one = Rejection(**fields)
+        if one not in found:
+            found.append(one)
+    return found
 
 
 def _facts(found: LevelResult, result: Performance) -> rule.LevelFacts:

@@ -168,7 +168,8 @@ def _from_navigation(system: str, path: Path, start_ns: int | None, duration_s: 
         raise InputError(f"geometry.{system}", str(path), domain=f"a file with healthy satellites of {gnss.CONSTELLATIONS[index]}")
     if navigation.nearest_age_s(system, middle_ns) > duration_s / 2 + MOST_AGE_S:
         raise InputError("geometry.start", start_ns, "ns", f"a day that {path.name} has broadcast orbits of")
-    return _Source(orbits, -duration_s / 2, f"{len(orbits.satellite)} {TITLES[system]} satellites of {path.name}", dated=True)
+    refused = f" ({len(navigation.refused)} records refused)" if navigation.refused else ""
+    return _Source(orbits, -duration_s / 2, f"{len(orbits.satellite)} {TITLES[system]} satellites of {path.name}{refused}", dated=True)
 
 
 def _gps_ns(start: datetime) -> int:

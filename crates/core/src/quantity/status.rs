@@ -149,6 +149,9 @@ reasons! {
     PositionHeld, "position_held", Degraded, "position held";
     /// A receiver repeats its last position for too long.
     PositionStale, "position_stale", NotAvailable, "position held too long";
+    /// A step that only an old position explains.
+    PositionLate, "position_late", Degraded,
+        "a step that can be flown only if the position before was older than a held one may be";
     /// A step that no aircraft flies.
     PositionJump, "position_jump", InvalidInput, "position jump that cannot be flown";
     /// Shortly after such a step.
