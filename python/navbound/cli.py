@@ -79,7 +79,7 @@ def analyze(
         list[Path],
         typer.Argument(
             help="Tables (CSV, Parquet, JSON), RTKLIB .pos files, receiver logs (UBX, SBF, NMEA, NovAtel), RINEX observations with "
-            "navigation files; plain or gzip."
+            "navigation files; plain, gzip, compress (.Z) or zip."
         ),
     ],
     path: Annotated[

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import gzip
 import hashlib
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from navbound import _core
 from navbound.errors import FormatError
-from navbound.read import receivers
+from navbound.read import foreign, receivers
 from navbound.run.records import InputFile
 
 Kind = Literal["csv", "json", "parquet", "rtklib", "ubx", "sbf", "novatel", "nmea"]
+
+
+PACKED = (b"\x1f\x8b", b"\x1f\x9d", b"PK\x03\x04", b"PK\x05\x06", b"BZh", b"\xfd7zXZ")
+"""Beginnings of packed files: those that are unpacked, and those that are named."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +47,7 @@ class Source:
             return "parquet"
         start = self.content[:4096].removeprefix(b"\xef\xbb\xbf").lstrip()
         if start.startswith((b"{", b"[")):
-            return "json"
+            return receivers.kind(_behind_banner(self.content)) or "json"
         if start.startswith(b"%"):
             return "rtklib"
         return receivers.kind(self.content) or "csv"
@@ -77,13 +80,25 @@ class Source:
         return InputFile(path=str(self.path), sha256=self.sha256, n_bytes=self.n_bytes, n_rows=n_rows)
 
 
+def _behind_banner(content: bytes) -> bytes:
+    """What follows the lines of JSON at the beginning, which a program writes that passes a receiver's log on."""
+    at = 0
+    while (line := content[at : at + 4096].lstrip()).startswith(b"{"):
+        end = content.find(b"\n", at + 1)
+        # An object over several lines is no banner.
+        if end < 0 or not content[at:end].rstrip().endswith(b"}"):
+            return b""
+        at = end + 1
+    return b"" if line.startswith((b"[", b"]", b"}", b'"')) else content[at:]
+
+
 def load(path: str | Path) -> Source:
-    """Read a file, unpacking gzip.
+    """Read a file, unpacking gzip, compress (``.Z``) and zip.
 
     Raises
     ------
     FormatError
-        No such file, not a file, empty, or a gzip file that is damaged or cut short.
+        No such file, not a file, empty, a packed file that is damaged, cut short or of several files, or a kind that is known and not read.
     """
     path = Path(path)
     try:
@@ -92,12 +107,10 @@ def load(path: str | Path) -> Source:
         raise FormatError(path, "no such file") from e
     except OSError as e:
         raise FormatError(path, f"cannot be read: {e.strerror}") from e
-    content = stored
-    if stored.startswith(b"\x1f\x8b"):
-        try:
-            content = gzip.decompress(stored)
-        except (EOFError, zlib.error, gzip.BadGzipFile) as e:
-            raise FormatError(path, f"damaged gzip file: {e}") from e
+    content = _core.unpack(stored, str(path)) if stored.startswith(PACKED) else stored
     if not content.strip():
         raise FormatError(path, "the file is empty")
+    other = foreign.kind(content)
+    if other is not None:
+        raise FormatError(path, other)
     return Source(path, content, hashlib.sha256(stored).hexdigest(), len(stored))

@@ -88,5 +88,5 @@ def _kind(source: Source) -> str:
         if first[20:21] == b"O":
             return "observations"
         return "messages" if first[20:21] in {b"B", b"H"} and b"NAV" not in first[20:40] else "navigation"
-    name = source.path.name.lower().removesuffix(".gz")
+    name = source.path.name.lower().removesuffix(".gz").removesuffix(".z").removesuffix(".zip")
     return "messages" if name.endswith((".ems", ".sbs")) else "tables"
