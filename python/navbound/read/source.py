@@ -19,6 +19,9 @@ PACKED = (b"\x1f\x8b", b"\x1f\x9d", b"PK\x03\x04", b"PK\x05\x06", b"BZh", b"\xfd
 """Beginnings of packed files: those that are unpacked, and those that are named."""
 
 
+_LOOK_AT = 1 << 16
+
+
 @dataclass(frozen=True)
 class Source:
     """A file read into memory.
@@ -33,12 +36,15 @@ class Source:
         Digest of the file as it lies on the disk.
     n_bytes : int
         Its size on the disk.
+    open_end : bool
+        A text whose last line has no end.
     """
 
     path: Path
     content: bytes
     sha256: str
     n_bytes: int
+    open_end: bool = False
 
     @property
     def kind(self) -> Kind:
@@ -56,6 +62,20 @@ class Source:
     def stem(self) -> str:
         """The name without its endings."""
         return self.path.name.split(".")[0] or self.path.name
+
+    def refuse_unknown(self) -> None:
+        """Refuse content that is neither text nor of a kind that is known.
+
+        Raises
+        ------
+        FormatError
+            With the first bytes, or the first that are no text.
+        """
+        start = self.content[:_LOOK_AT]
+        # A raw log may hold no message with a position, and no sign of one in its first bytes.
+        if self.kind == "csv" and _core.raw_log(self.content, str(self.path)) is None:
+            # Cut within a character it would be no text, so not at its end.
+            Source(self.path, start[: start.rfind(b"\n") + 1] or start, self.sha256, self.n_bytes).text()
 
     def text(self) -> str:
         """Content as text.

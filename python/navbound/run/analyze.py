@@ -103,7 +103,7 @@ def material(
     _refuse_experimental(readings)
     inputs = [r.source for r in readings] + [source.record(None) for source in found.navigation if source not in found.observations]
     rejected = [x for r in readings for x in r.rejected]
-    notes = [note for r in readings for note in r.notes]
+    notes = found.cut_words() + [note for r in readings for note in r.notes]
     epochs, lost = _together(readings, rejected)
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)

@@ -159,6 +159,7 @@ def evaluate_files(
         if options.stanford_esa is not None:
             ranges = kpi.stanford_esa(lambda: ranges_of_parts(parts), campaign.levels, options.stanford_esa)
             result = kpi.with_subsets(result, ranges)
+        result = result.model_copy(update={"notes": [*result.notes, *sources.cut_words()]})
         run = _run(result, parts, events, inputs=_inputs(sources, truth, parts), options=options, command=command)
         if writer is None:
             return Run(run.summary, run.record, pl.concat(tables_of(parts)), run.events, [])
