@@ -282,4 +282,5 @@ def test_damage_is_refused_or_counted(name: str, damage: Callable[[bytes, Kind],
         pytest.skip("SKIPPED ALOUD: a number changed inside a Parquet page cannot be seen")
     assert found in {"refused", "counted", "same"}, words
     if found == "same":
-        assert damage.__name__ in BENIGN
+        # To JSON every line end is a blank.
+        assert damage.__name__ in BENIGN | ({"old_line_ends"} if kind.name == "a.json" else set())

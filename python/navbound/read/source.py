@@ -72,8 +72,7 @@ class Source:
             With the first bytes, or the first that are no text.
         """
         start = self.content[:_LOOK_AT]
-        # A raw log may hold no message with a position, and no sign of one in its first bytes.
-        if self.kind == "csv" and _core.raw_log(self.content, str(self.path)) is None:
+        if self.kind == "csv":
             # Cut within a character it would be no text, so not at its end.
             Source(self.path, start[: start.rfind(b"\n") + 1] or start, self.sha256, self.n_bytes).text()
 

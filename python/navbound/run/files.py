@@ -78,10 +78,12 @@ def sort_out(paths: Sequence[str | Path], *, solve: bool = False) -> Files:
     files = Files()
     for path in paths:
         source = load(path)
-        source.refuse_unknown()
+        kinds = (_raw(source) if solve else None) or [_kind(source)]
+        if kinds == ["tables"]:
+            source.refuse_unknown()
         open_end = not source.content.endswith((b"\n", b"\r", b"\x1a")) and source.content[:200].isascii()
         kept = Source(source.path, b"", source.sha256, source.n_bytes, open_end)
-        for kind in (_raw(source) if solve else None) or [_kind(source)]:
+        for kind in kinds:
             getattr(files, kind).append(kept)
     if solve and not files.observations:
         raise InputError("solve", "True", domain="it together with a file of raw measurements (RINEX, UBX RXM-RAWX, SBF MeasEpoch)")
