@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import gzip
 import io
+import subprocess
+import sys
 from dataclasses import dataclass
 from functools import cache
+from json import loads
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -284,3 +287,48 @@ def test_damage_is_refused_or_counted(name: str, damage: Callable[[bytes, Kind],
     if found == "same":
         # To JSON every line end is a blank.
         assert damage.__name__ in BENIGN | ({"old_line_ends"} if kind.name == "a.json" else set())
+
+
+@pytest.fixture(scope="module")
+def damaged_run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """Observations, navigation data and messages, each damaged; from the command line to its folder."""
+    if not DATA.is_dir():
+        pytest.skip(f"SKIPPED ALOUD: no real data at {DATA}")
+    folder = tmp_path_factory.mktemp("damaged")
+    ranges, records, log = observations().decode(), navigation().decode(), ems().decode()
+    head, *epochs = ranges.split("\n>")
+    sv, values = epochs[20].splitlines()[1][:3], epochs[20].splitlines()[1][3:]
+    epochs[20] = epochs[20].replace(sv + values, sv + "9999999999.999" + values[14:])
+    epochs[40], epochs[60] = epochs[60], epochs[40]
+    (folder / "a.rnx").write_text("\n>".join([head, *epochs]))
+    first = records.index("\nG") + 1
+    (folder / "a.nav").write_text(records[:first] + "G99" + records[first + 3 :])
+    flipped = log.splitlines()
+    flipped[500] = flipped[500][:60] + ("0" if flipped[500][60] != "0" else "1") + flipped[500][61:]
+    (folder / "a.ems").write_text("\n".join(flipped) + "\n")
+    arguments = [str(folder / name) for name in ("a.rnx", "a.nav", "a.ems")] + ["--levels", "APV-I", "--out", str(folder / "run")]
+    done = subprocess.run([sys.executable, "-m", "navbound", "analyze", *arguments], capture_output=True, text=True, check=False)
+    assert done.returncode in {0, 4}, done.stderr
+    return folder / "run", done.stdout
+
+
+LOSSES = {
+    "no pseudorange of a receiver: beyond 1e9 m": ("a.rnx", 1),
+    "the time runs backwards against the epochs around it": ("a.rnx", 2),
+    "not a satellite number": ("a.nav", 1),
+    "parity": ("a.ems", 1),
+}
+
+
+@pytest.mark.parametrize("loss", LOSSES)
+def test_every_loss_reaches_summary_terminal_and_report(damaged_run: tuple[Path, str], loss: str) -> None:
+    folder, terminal = damaged_run
+    name, count = LOSSES[loss]
+    rejected = loads((folder / "summary.json").read_text())["rejected"]
+    own = [r for r in rejected if loss in r["reason"]]
+    assert [(Path(r["file"]).name, r["count"]) for r in own] == [(name, count)], rejected
+    assert own[0]["first_line"] > 0
+    said = next(line for line in terminal.replace("\n    ", " ").splitlines() if loss in line)
+    assert said.strip().startswith(f"{count} x ")
+    assert name in terminal
+    assert loss in (folder / "report.html").read_text()
