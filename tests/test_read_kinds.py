@@ -10,13 +10,13 @@ import zipfile
 from typing import TYPE_CHECKING
 
 import pytest
-from packing import compress
 
 from navbound import _core
 from navbound.errors import FormatError
 from navbound.read import foreign
 from navbound.read.epochs import read
 from navbound.read.source import load
+from packing import compress
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,7 +31,9 @@ def zipped(*files: tuple[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> byt
     return made.getvalue()
 
 
-@pytest.mark.parametrize("packed", [compress(TRACK.encode()), zipped(("a.csv", TRACK.encode())), zipped(("a.csv", TRACK.encode()), method=0)])
+@pytest.mark.parametrize(
+    "packed", [compress(TRACK.encode()), zipped(("a.csv", TRACK.encode())), zipped(("a.csv", TRACK.encode()), method=0)]
+)
 def test_a_packed_table_is_the_table(tmp_path: Path, packed: bytes) -> None:
     (tmp_path / "plain.csv").write_text(TRACK)
     (tmp_path / "packed").write_bytes(packed)
@@ -146,7 +148,9 @@ def test_a_log_behind_a_banner_of_json_is_the_log(tmp_path: Path) -> None:
     (behind := tmp_path / "plain.json").write_bytes(banner + sentences(NMEA))
     assert read(behind).epochs.drop("track").equals(read(plain).epochs.drop("track"))
     # JSON that merely holds such text stays JSON.
-    (rows := tmp_path / "rows.jsonl").write_text('{"latitude": 50.0, "longitude": 10.0, "timestamp": 1700000000, "raw": "$GPGGA,1*00"}\n' * 3)
+    (rows := tmp_path / "rows.jsonl").write_text(
+        '{"latitude": 50.0, "longitude": 10.0, "timestamp": 1700000000, "raw": "$GPGGA,1*00"}\n' * 3
+    )
     assert load(rows).kind == "json"
 
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from navbound import _core, sbas
 from conftest import SHARED
+from navbound import _core, sbas
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 WEEK_NS = 2353 * 604_800 * 1_000_000_000
 NS = 1_000_000_000
-USER = {"lat_rad": 0.6169, "lon_rad": 2.4352, "h_m": 100.0}
+USER: dict[str, Any] = {"lat_rad": 0.6169, "lon_rad": 2.4352, "h_m": 100.0}
 """Near Tokyo, in the middle of the service."""
 REFERENCE = SHARED / "reference" / "ref-dfmc.json"
 

@@ -268,7 +268,8 @@ def read_observations(path: str | Path) -> Observations:
     Parameters
     ----------
     path : str or Path
-        RINEX 2.10 to 4.0x, plain or compact (Hatanaka); u-blox RXM-RAWX or RXM-RAW; Septentrio MeasEpoch. Plain, or packed by gzip, compress or zip.
+        RINEX 2.10 to 4.0x, plain or compact (Hatanaka); u-blox RXM-RAWX or RXM-RAW; Septentrio MeasEpoch. Plain, or packed by gzip,
+        compress or zip.
 
     Returns
     -------

@@ -65,7 +65,8 @@ class Reading:
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:
     """Read a recorded track: CSV, JSON, Parquet, an RTKLIB solution file, or the log of a receiver.
 
-    Each may be packed by gzip, compress (``.Z``) or zip. Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183; they need the extra ``receivers``.
+    Each may be packed by gzip, compress (``.Z``) or zip. Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183; they need the
+    extra ``receivers``.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ def kind(content: bytes) -> str | None:
         return RTCM3
     if _stream(start, b"\xa0\xa2", _sirf):
         return SIRF
-    return TSIP if _TSIP.search(start[:_LONGEST * _FRAMES]) else None
+    return TSIP if _TSIP.search(start[: _LONGEST * _FRAMES]) else None
 
 
 def _stream(start: bytes, sync: bytes, frame_end: Callable[[bytes, int], int]) -> bool:

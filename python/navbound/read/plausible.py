@@ -106,12 +106,17 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
     speed = pl.col("ground_speed_mps") if "ground_speed_mps" in epochs.columns else pl.lit(None, pl.Float64)
     fixed = pl.col(POSITION_TIME) if POSITION_TIME in epochs.columns else pl.lit(None, pl.Int64)
     columns = epochs.select(
-        "track", "time_ns", fixed.fill_null(_UNDATED).alias("fixed_ns"), "est_lat_rad", "est_lon_rad", speed.fill_null(np.nan).alias("speed")
+        "track",
+        "time_ns",
+        fixed.fill_null(_UNDATED).alias("fixed_ns"),
+        "est_lat_rad",
+        "est_lon_rad",
+        speed.fill_null(np.nan).alias("speed"),
     )
     judged = []
     for group in columns.partition_by("track", maintain_order=True):
-        each = [np.ascontiguousarray(group[c].to_numpy()) for c in columns.columns[1:]]
-        judged.append(_core.plausible(*each, asdict(limits)))
+        time, valid, lat, lon, reported = (np.ascontiguousarray(group[c].to_numpy()) for c in columns.columns[1:])
+        judged.append(_core.plausible(time, valid, lat, lon, reported, asdict(limits)))
     code, step, fast = (np.concatenate([found[name] for found in judged]) for name in ("finding", "step_m", "too_fast_mps"))
     marked = status.with_reason(epochs, pl.Series("reason_id", _REASON_ID, dtype=pl.String).gather(code))
     if "status" in epochs.columns:
@@ -137,5 +142,5 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
         )
     if n_dated:
         words += f" {n_dated} of {columns.height} rows say when their position was valid; between those, steps are judged by that time."
-    counts = (int(k) for k in n[1:])
-    return marked, Plausibility(*counts, n_fast, fastest, n_steps, largest, words)
+    held, stale, jump, unsettled, late = (int(k) for k in n[1:])
+    return marked, Plausibility(held, stale, jump, unsettled, late, n_fast, fastest, n_steps, largest, words)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError
 from navbound.run.records import Rejection
@@ -12,23 +12,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
-    from navbound.gnss import Navigation, Observations
+    from navbound import gnss, sbas
+
+    Refused = gnss.Refused | sbas.Refused
 
 _VARYING = re.compile(r"0x[0-9a-fA-F]+|'[^']*'|\"[^\"]*\"|\d+")
 """Parts of a reason that differ from line to line."""
-
-
-class Refused(Protocol):
-    """One thing that a reader could not use."""
-
-    @property
-    def line(self) -> int: ...
-    @property
-    def field(self) -> str: ...
-    @property
-    def reason(self) -> str: ...
-    @property
-    def text(self) -> str: ...
 
 
 def rejections(path: str | Path, refused: Iterable[Refused], count: int | None = None) -> list[Rejection]:
@@ -64,18 +53,18 @@ def _of_kind(path: str | Path, alike: list[Refused]) -> Rejection:
     return Rejection(file=str(path), reason=reason, count=len(alike), first_line=first.line or None, example=example)
 
 
-def of_navigation(navigation: Navigation) -> list[Rejection]:
+def of_navigation(navigation: gnss.Navigation) -> list[Rejection]:
     """Records of navigation files that were refused, each with its own file."""
     paths = dict.fromkeys(one.path for one in navigation.refused)
     return [found for path in paths for found in rejections(path, [one for one in navigation.refused if one.path == path])]
 
 
-def of_observations(observations: Observations) -> list[Rejection]:
+def of_observations(observations: gnss.Observations) -> list[Rejection]:
     """What an observation file or a raw log held that was refused."""
     return rejections(observations.path, observations.refused, observations.n_refused)
 
 
-def without_epochs(observations: Observations) -> FormatError:
+def without_epochs(observations: gnss.Observations) -> FormatError:
     """Why a file of measurements gives none, naming the first thing that was refused."""
     if not observations.n_refused:
         return FormatError(observations.path, "holds no epoch of measurements")

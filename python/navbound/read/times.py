@@ -79,7 +79,7 @@ def _unix_ns(column: pl.Series, unit: str, source: Source, notes: list[str]) -> 
     scales = {"utc_s": 1e9, "utc_ms": 1e6, "utc_us": 1e3, "utc_ns": 1.0}
     size = numbers.abs().median()
     size = float(size) if isinstance(size, (int, float)) else 0.0
-    since_start = _since_start(column, numbers, size * scales.get(unit, 0.0))
+    since_start = _since_start(numbers, size * scales.get(unit, 0.0))
     if unit == "utc":
         unit = next((u for u, low in (("utc_ns", 1e17), ("utc_us", 1e14), ("utc_ms", 1e11), ("utc_s", 1e8)) if size >= low), "")
         if not unit and not since_start:
@@ -104,7 +104,7 @@ _FIRST_UNIX_S = 315_964_800
 """Unix time of 1980-01-06, the beginning of GPS time."""
 
 
-def _since_start(column: pl.Series, numbers: pl.Series, declared_ns: float) -> str:
+def _since_start(numbers: pl.Series, declared_ns: float) -> str:
     """Why numbers are the time since a computer started and no date; empty where they may be dates."""
     known = numbers.drop_nulls()
     step = known.diff().abs().median() if known.len() > 1 else None

@@ -53,7 +53,10 @@ class Files:
     def cut_words(self) -> list[str]:
         """Text files of records that end within a line, as files do that were cut."""
         every = {source.path: source for source in self.observations + self.navigation + self.messages if source.open_end}
-        return [f"{path.name}: the last line has no end, as in a file that was cut; what may have stood after it is not known." for path in every]
+        return [
+            f"{path.name}: the last line has no end, as in a file that was cut; what may have stood after it is not known."
+            for path in every
+        ]
 
 
 def sort_out(paths: Sequence[str | Path], *, solve: bool = False) -> Files:

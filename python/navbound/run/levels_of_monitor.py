@@ -9,7 +9,7 @@ import polars as pl
 
 from navbound import araim, gnss, raim
 from navbound._monitor_fit import DISBELIEF
-from navbound.errors import FormatError, InputError
+from navbound.errors import InputError
 from navbound.read.epochs import read
 from navbound.read.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.truth import join
@@ -94,7 +94,9 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Mo
         epochs, words = join(epochs, other, truth.tolerance_s)
         notes.append(words)
         refused += other.rejected
-    return Part(uniform(epochs), observations.n_epochs, [one.model_dump() for one in refused], notes, "" if found.fit.believable else CONTRADICTED)
+    return Part(
+        uniform(epochs), observations.n_epochs, [one.model_dump() for one in refused], notes, "" if found.fit.believable else CONTRADICTED
+    )
 
 
 def decisions(epochs: pl.DataFrame) -> list[str]:
