@@ -192,7 +192,8 @@ def read_observations(path: str | Path) -> Observations:
     Parameters
     ----------
     path : str or Path
-        RINEX 2.10 to 4.0x, plain or compact (Hatanaka); u-blox RXM-RAWX or RXM-RAW; Septentrio MeasEpoch. Packed by gzip or not.
+        RINEX 2.10 to 4.0x, plain or compact (Hatanaka); u-blox RXM-RAWX or RXM-RAW; Septentrio MeasEpoch. Plain, or packed by gzip,
+        compress or zip.
 
     Returns
     -------
@@ -216,7 +217,7 @@ def read_navigation(paths: str | Path | Sequence[str | Path]) -> Navigation:
     ----------
     paths : str, Path, or sequence of them
         RINEX 2.10 to 4.0x; logs of u-blox (RXM-SFRBX, RXM-SFRB) or Septentrio (GPSRawCA, GALRawINAV) receivers, of which GPS LNAV and
-        Galileo I/NAV are taken. Packed by gzip or not; several files are merged.
+        Galileo I/NAV are taken. Plain, or packed by gzip, compress or zip; several files are merged.
 
     Returns
     -------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
@@ -46,6 +46,9 @@ class Messages:
         What the log's own times were taken to mean; ``time_ns`` is the end in both cases.
     refused : list of Refused
         Lines that are no good message.
+    late_s : dict of int to int or None
+        How late ``time_ns`` is by each sender's preambles, which follow a GPS second that six divides: 0, 1 or -1; None where too few
+        messages agree. Nothing is moved. [s]
     """
 
     time_ns: NDArray[np.int64]
@@ -54,11 +57,25 @@ class Messages:
     format: str
     tag: Literal["end", "start"]
     refused: list[Refused]
+    late_s: dict[int, int | None] = field(default_factory=dict)
 
     def of(self, prn: int) -> Messages:
         """The messages of one geostationary satellite."""
         own = self.prn == prn
-        return Messages(self.time_ns[own], self.prn[own], self.data[own], self.format, self.tag, self.refused)
+        late = {sender: s for sender, s in self.late_s.items() if sender == prn}
+        return replace(self, time_ns=self.time_ns[own], prn=self.prn[own], data=self.data[own], late_s=late)
+
+    def tag_words(self) -> list[str]:
+        """What the preambles say against the times; empty where they agree or say nothing."""
+        late = [str(sender) for sender, s in self.late_s.items() if s == 1]
+        early = [str(sender) for sender, s in self.late_s.items() if s == -1]
+        stated = f"the log's times are taken for the {self.tag} of each message"
+        words = []
+        if late:
+            words.append(f"by the preambles the messages of PRN {', '.join(late)} ended one second before the times used; {stated}.")
+        if early:
+            words.append(f"by the preambles the messages of PRN {', '.join(early)} ended one second after the times used; {stated}.")
+        return words
 
 
 @dataclass(frozen=True)

@@ -80,7 +80,7 @@ def analyze(
         list[Path],
         typer.Argument(
             help="Tables (CSV, Parquet, JSON), RTKLIB .pos files, receiver logs (UBX, SBF, NMEA, NovAtel), RINEX observations with "
-            "navigation files; plain or gzip."
+            "navigation files; plain, gzip, compress (.Z) or zip."
         ),
     ],
     path: Annotated[
@@ -403,10 +403,10 @@ def _print(run: Run) -> None:
         out_console.print(f"  - {assumption}", markup=False, highlight=False)
     rejected = sum(r.count for r in summary.rejected)
     if rejected:
-        out_console.print(f"{rejected} rows were not used:", markup=False)
+        out_console.print(f"{rejected} rows or records were not used:", markup=False)
         for r in summary.rejected:
-            where = "" if r.first_line is None else f" (first: line {r.first_line}: {r.example})"
-            out_console.print(f"  {r.count} x {r.reason}{where}", markup=False, highlight=False)
+            where = "" if r.first_line is None else f", first in line {r.first_line}: {r.example}"
+            out_console.print(f"  {r.count} x {r.reason} ({Path(r.file).name}{where})", markup=False, highlight=False)
     if summary.tracks:
         cautions, warnings = (sum(getattr(t, n) for t in summary.tracks) for n in ("n_cautions", "n_warnings"))
         unavailable = sum(t.n_unavailable for t in summary.tracks)

@@ -81,7 +81,7 @@ _MASK_RAD = 0.08726646259971647
 
 
 def read(path: str | Path, *, tag: Literal["end", "start"] | None = None) -> Messages:
-    """Read a log of SBAS messages: EMS text, RTKLIB ``.sbs``, RINEX-B or a receiver's raw log, plain or packed by gzip.
+    """Read a log of SBAS messages: EMS text, RTKLIB ``.sbs``, RINEX-B or a receiver's raw log, plain or packed (gzip, compress, zip).
 
     Parameters
     ----------

@@ -17,6 +17,8 @@ pub struct Limits {
     pub speed_margin_mps: f64,
     /// How much older than its time stamp a position may be \[s\].
     pub latency_s: f64,
+    /// The same where the recording says when a position was valid \[s\]: what such times are wrong by.
+    pub fix_latency_s: f64,
     /// Distance that is never called a jump \[m\]: the noise of a position.
     pub noise_m: f64,
     /// Reported speed from which an unchanged position counts as held \[m/s\].
@@ -32,6 +34,8 @@ pub struct Limits {
 pub struct Report {
     /// When.
     pub time: GpsTime,
+    /// When the position was valid, where the recording says so.
+    pub fixed: Option<GpsTime>,
     /// Latitude \[rad\].
     pub lat_rad: f64,
     /// Longitude \[rad\].
@@ -49,6 +53,8 @@ pub enum Finding {
     Held,
     /// The same, too old.
     Stale,
+    /// Reachable only from a position that was older than a stale one.
+    Late,
     /// Not reachable from the position before.
     Jump,
     /// Within the settling time after a jump.
@@ -64,13 +70,16 @@ pub struct Judged {
     pub age_s: f64,
     /// Distance from the last different position \[m\].
     pub step_m: f64,
+    /// Speed of a step that is faster than the aircraft's own, the noise taken off \[m/s\]; 0 for every other.
+    pub too_fast_mps: f64,
 }
 
 /// Judge the reports of one track, in the order of time.
 ///
 /// A position is a jump when it lies further from the last different position than
 /// `(factor * reported speed + margin) * (time between them + latency) + noise`, with the larger of the two reported speeds, or the stated
-/// fastest speed where neither is reported. The same holds from the first position of each minute, with the fastest speed reported since.
+/// fastest speed where neither is reported. Where the recording says when both positions were valid, that is the time between them, and the
+/// latency is that of such times; elsewhere a position that is reachable only with more latency than makes a held one stale is late. The same holds from the first position of each minute, with the fastest speed reported since.
 /// The time runs from the last *different* position: after 87 s without news an aircraft may
 /// be 20 km further on, and is not jumping.
 ///
@@ -88,18 +97,25 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
         let Some((fix, from)) = last else {
             last = Some((*report, here));
             window = Some(Window::begin(report, here));
-            judged.push(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0 });
+            judged.push(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0 });
             continue;
         };
         let elapsed = report.time.seconds_since(fix.time);
         let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
         let step_m = here.minus(&from).vector().norm();
+        let mut too_fast_mps = 0.0;
         let (mut finding, age_s) = if unchanged { (held(report, &fix, limits), elapsed) } else { (Finding::Plausible, 0.0) };
         if !unchanged {
             let flown = window.as_mut().is_none_or(|w| w.reaches(report, &here, limits));
-            if !(step_m <= reach(&fix, report, elapsed, limits)) || !flown {
+            let between = Between::new(&fix, report, limits);
+            if !(step_m <= between.reach_m(between.latency_s, limits)) || !flown {
                 finding = Finding::Jump;
                 jumped = Some(report.time);
+            } else if !between.dated && !(step_m <= between.reach_m(limits.stale_after_s, limits)) {
+                finding = Finding::Late;
+            }
+            if step_m > between.reach_m(0.0, limits) && between.elapsed_s > 0.0 {
+                too_fast_mps = (step_m - limits.noise_m) / between.elapsed_s;
             }
             // What comes after a jump is judged from there.
             if finding == Finding::Jump || window.is_none_or(|w| !within(report.time, w.first.time, WINDOW_S)) {
@@ -108,10 +124,10 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
             last = Some((*report, here));
         }
         let settling = jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
-        if settling && matches!(finding, Finding::Plausible | Finding::Held) {
+        if settling && matches!(finding, Finding::Plausible | Finding::Held | Finding::Late) {
             finding = Finding::Unsettled;
         }
-        judged.push(Judged { finding, age_s, step_m });
+        judged.push(Judged { finding, age_s, step_m, too_fast_mps });
     }
     Ok(judged)
 }
@@ -139,7 +155,8 @@ impl Window {
         self.fastest_mps = if self.fastest_mps.is_nan() || to.speed_mps.is_nan() { f64::NAN } else { self.fastest_mps.max(to.speed_mps) };
         let fastest = Report { speed_mps: self.fastest_mps, ..*to };
         let first = Report { speed_mps: self.fastest_mps, ..self.first };
-        here.minus(&self.from).vector().norm() <= reach(&first, &fastest, to.time.seconds_since(self.first.time), limits)
+        let between = Between::new(&first, &fastest, limits);
+        here.minus(&self.from).vector().norm() <= between.reach_m(between.latency_s, limits)
     }
 }
 
@@ -157,16 +174,37 @@ fn within(now: GpsTime, earlier: GpsTime, limit_s: f64) -> bool {
     now.nanoseconds() - earlier.nanoseconds() <= (limit_s * 1e9) as i64
 }
 
-/// How far an aircraft may be from its last position \[m\].
-fn reach(from: &Report, to: &Report, elapsed_s: f64, limits: &Limits) -> f64 {
-    // f64::max prefers a number to a NaN.
-    let reported = from.speed_mps.max(to.speed_mps);
-    let speed = if reported.is_nan() {
-        limits.max_speed_mps
-    } else {
-        (limits.speed_factor * reported + limits.speed_margin_mps).min(limits.max_speed_mps)
-    };
-    speed * (elapsed_s + limits.latency_s) + limits.noise_m
+/// What lies between two reports.
+struct Between {
+    /// Time between the positions \[s\].
+    elapsed_s: f64,
+    /// How much longer the aircraft may have flown \[s\].
+    latency_s: f64,
+    /// The recording says when both positions were valid.
+    dated: bool,
+    speed_mps: f64,
+}
+
+impl Between {
+    fn new(from: &Report, to: &Report, limits: &Limits) -> Self {
+        // f64::max prefers a number to a NaN.
+        let reported = from.speed_mps.max(to.speed_mps);
+        let speed_mps = if reported.is_nan() {
+            limits.max_speed_mps
+        } else {
+            (limits.speed_factor * reported + limits.speed_margin_mps).min(limits.max_speed_mps)
+        };
+        match from.fixed.zip(to.fixed) {
+            // An older position may arrive after a newer one.
+            Some((a, b)) => Self { elapsed_s: b.seconds_since(a).abs(), latency_s: limits.fix_latency_s, dated: true, speed_mps },
+            None => Self { elapsed_s: to.time.seconds_since(from.time), latency_s: limits.latency_s, dated: false, speed_mps },
+        }
+    }
+
+    /// How far an aircraft may be from its last position \[m\].
+    fn reach_m(&self, latency_s: f64, limits: &Limits) -> f64 {
+        self.speed_mps * (self.elapsed_s + latency_s) + limits.noise_m
+    }
 }
 
 fn sea_level(report: &Report) -> Result<EcefPosition, OutOfDomain> {

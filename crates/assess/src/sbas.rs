@@ -12,16 +12,14 @@ use navbound_core::bound::sbas::{self, Levels, NoLevel, Seen, Sky, User};
 use navbound_core::frame::{Covariance, Enu, Geodetic};
 use navbound_core::geometry::broadcast::Broadcast;
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians, Unavailable};
-use navbound_core::signal::sbas::timeout::Use;
-use navbound_core::signal::sbas::{Ignored, Message, Obedience, Store, decode};
+use navbound_core::signal::sbas::timeout::{Use, WAY_NS};
+use navbound_core::signal::sbas::{Correction, Ignored, Message, Obedience, Store, decode};
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Klobuchar, SatelliteId};
 use navbound_core::solution::wls::{self, WeightedSight};
 use navbound_formats::rinex::Navigation;
 use navbound_formats::sbas::Received;
 use rayon::prelude::*;
 
-/// A message can be used this long after its end: the signal's way from the geostationary satellite \[ns\].
-const WAY_NS: i64 = 120_000_000;
 /// Fewest users and epochs that a task gets: below, replaying the messages costs more than the second core saves.
 const LEAST_TASK: usize = 256;
 
@@ -302,7 +300,7 @@ fn answer(result: Result<Levels, NoLevel>, sky: &Sky) -> Answer {
         }
         Err(reason) => {
             let n_sv = match reason {
-                NoLevel::Geometry(_) => sky.len(),
+                NoLevel::Geometry(_) | NoLevel::MessageLoss => sky.len(),
                 NoLevel::DoNotUse | NoLevel::NoMask => 0,
             };
             Answer { hpl_m: f64::NAN, vpl_m: f64::NAN, n_sv, used_for: None, reason: Some(reason) }
@@ -315,6 +313,20 @@ pub fn ignored(feed: &Feed, obedience: Obedience) -> Vec<(GpsTime, Ignored)> {
     let mut listener = Listener::new(feed, obedience, None);
     listener.listen(GpsTime::from_nanoseconds(i64::MAX));
     listener.ignored
+}
+
+/// Satellites whose UDRE indicator is in force at instants in the order of time, whatever it says and whatever else is missing.
+pub fn indicators(feed: &Feed, used_for: Use, obedience: Obedience, at: &[GpsTime]) -> Vec<Vec<u8>> {
+    let mut listener = Listener::new(feed, obedience, None);
+    let mut each = Vec::with_capacity(at.len());
+    for now in at {
+        listener.listen(*now);
+        let store = &listener.store;
+        let without = [Correction::NotInMask, Correction::MessageLoss, Correction::NoUdre];
+        let lacks = |prn: u8| store.satellite(prn, used_for, *now).err().is_some_and(|why| without.contains(&why));
+        each.push(store.prns(used_for, *now).iter().copied().filter(|prn| !lacks(*prn)).collect());
+    }
+    each
 }
 
 /// HPL and VPL \[m\] of a covariance by the multipliers of precision approach.

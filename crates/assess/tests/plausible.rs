@@ -10,6 +10,7 @@ const LIMITS: Limits = Limits {
     speed_factor: 1.25,
     speed_margin_mps: 25.0,
     latency_s: 2.0,
+    fix_latency_s: 1.0,
     noise_m: 100.0,
     moving_mps: 15.0,
     stale_after_s: 2.0,
@@ -23,6 +24,7 @@ const RAD_PER_M: f64 = 1.0 / 6_335_439.0;
 fn track(positions_m: &[f64], speed_mps: f64) -> Vec<Report> {
     let report = |(i, m): (usize, &f64)| Report {
         time: GpsTime::from_nanoseconds(1_000_000_000 * i as i64),
+        fixed: None,
         lat_rad: m * RAD_PER_M,
         lon_rad: 0.3,
         speed_mps,
@@ -56,6 +58,7 @@ fn a_flight_in_hardly_any_time_is_a_jump_however_small_its_steps() {
     // 70 m each millisecond: each step is within the latency of one position, all of them within that of one hundred.
     let crawl = |k: i64| Report {
         time: GpsTime::from_nanoseconds(1_000_000 * k),
+        fixed: None,
         lat_rad: 70.0 * k as f64 * RAD_PER_M,
         lon_rad: 0.3,
         speed_mps: f64::NAN,
@@ -127,4 +130,32 @@ fn no_place_on_the_earth_is_refused_with_its_index() {
     let mut reports = track(&[0.0, 1.0, 2.0], 100.0);
     reports[2].lat_rad = f64::NAN;
     assert_eq!(judge(&reports, &LIMITS).unwrap_err().0, 2);
+}
+
+#[test]
+fn a_step_is_judged_by_the_time_of_its_position_where_that_is_known() {
+    // Rows of one second; the positions were valid 25 s apart, or one second apart.
+    let at = |row: i64, fixed: Option<i64>, m: f64| Report {
+        time: GpsTime::from_nanoseconds(1_000_000_000 * row),
+        fixed: fixed.map(|s| GpsTime::from_nanoseconds(1_000_000_000 * s)),
+        lat_rad: m * RAD_PER_M,
+        lon_rad: 0.3,
+        speed_mps: 200.0,
+    };
+    let wide = Limits { latency_s: 10.0, ..LIMITS };
+    let second = |a: Report, b: Report| judge(&[a, b], &wide).unwrap()[1];
+    // 5 km in 25 s is flown, though the rows are a second apart and even ten seconds of latency do not reach it.
+    assert_eq!(second(at(30, Some(5), 0.0), at(31, Some(30), 5000.0)).finding, Finding::Plausible);
+    assert_eq!(second(at(30, None, 0.0), at(31, None, 5000.0)).finding, Finding::Jump);
+    // 2.9 km in a second is not, where both positions are dated; undated it can be lateness, which is said.
+    assert_eq!(second(at(30, Some(30), 0.0), at(31, Some(31), 2900.0)).finding, Finding::Jump);
+    let undated = second(at(30, None, 0.0), at(31, None, 2900.0));
+    assert_eq!(undated.finding, Finding::Late);
+    // 100 m of noise off, in one second.
+    assert!((undated.too_fast_mps - 2800.0).abs() < 1e-3, "{}", undated.too_fast_mps);
+    // One position dated and one not: the rows' times count.
+    assert_eq!(second(at(30, Some(5), 0.0), at(31, None, 5000.0)).finding, Finding::Jump);
+    // An ordinary step says nothing.
+    let ordinary = second(at(30, None, 0.0), at(31, None, 200.0));
+    assert_eq!((ordinary.finding, ordinary.too_fast_mps), (Finding::Plausible, 0.0));
 }

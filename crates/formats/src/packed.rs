@@ -1,4 +1,7 @@
-//! Files as they are kept: plain, or packed by gzip (RFC 1952).
+//! Files as they are kept: plain, or packed by gzip (RFC 1952), Unix compress (`.Z`) or zip.
+
+mod compress;
+mod zip;
 
 use crate::refusal::Unreadable;
 use flate2::bufread::MultiGzDecoder;
@@ -11,12 +14,17 @@ const LARGEST: u64 = 4 << 30;
 /// The plain bytes of a file.
 ///
 /// # Errors
-/// [`Unreadable`] for a damaged gzip stream, one of more than 4 GiB, or another packing (compress `.Z`, zip, bzip2, xz), which is named.
+/// [`Unreadable`] for a damaged stream, one of more than 4 GiB, an archive of several files, or another packing (bzip2, xz), which is named.
 pub fn unpack(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Unreadable> {
     match bytes {
         [0x1f, 0x8b, ..] => gunzip(bytes).map(Cow::Owned),
-        [0x1f, 0x9d, ..] => Err(other("compress (.Z)")),
-        [b'P', b'K', 3, 4, ..] => Err(other("zip")),
+        [0x1f, 0x9d, stream @ ..] => {
+            let damaged = |e| Unreadable::whole(format!("the compress (.Z) stream is damaged: {e}"));
+            compress::unpack(stream, LARGEST).map(Cow::Owned).map_err(damaged)
+        }
+        [b'P', b'K', 3, 4, ..] | [b'P', b'K', 5, 6, ..] => {
+            zip::unpack(bytes, LARGEST).map(Cow::Owned).map_err(|e| Unreadable::whole(format!("the zip archive cannot be read: {e}")))
+        }
         [b'B', b'Z', b'h', ..] => Err(other("bzip2")),
         [0xfd, b'7', b'z', b'X', b'Z', ..] => Err(other("xz")),
         _ => Ok(Cow::Borrowed(bytes)),
@@ -69,6 +77,6 @@ mod tests {
 
     #[test]
     fn other_packings_are_named() {
-        assert!(unpack(&[0x1f, 0x9d, 0x90]).unwrap_err().reason.contains(".Z"));
+        assert!(unpack(b"BZh9").unwrap_err().reason.contains("bzip2"));
     }
 }

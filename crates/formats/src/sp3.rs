@@ -125,7 +125,7 @@ fn position(line: &[u8], number: usize, now: Option<GpsTime>, p: &mut Precise) {
 fn satellite(field: &[u8]) -> Option<SatelliteId> {
     let letter = *field.first()?;
     let constellation = if letter == b' ' { Constellation::Gps } else { Constellation::from_letter(letter)? };
-    let number = whole(columns(field, 1, 3)).and_then(|n| u8::try_from(n).ok()).filter(|n| (1..=99).contains(n))?;
+    let number = whole(columns(field, 1, 3)).and_then(|n| u8::try_from(n).ok()).filter(|n| constellation.numbers().contains(n))?;
     Some(SatelliteId { constellation, number })
 }
 

@@ -136,11 +136,13 @@ fn navigation_error<'py>(
     rows(py, &errors)
 }
 
-/// Judge the reports of one track: finding (0 plausible, 1 held, 2 stale, 3 jump, 4 unsettled), age [s], step [m].
+/// Judge the reports of one track, `fixed_ns` the least number where nothing says when a position was valid: finding (0 plausible, 1 held,
+/// 2 stale, 3 jump, 4 unsettled, 5 late), age [s], step [m], speed of a step that is too fast [m/s].
 #[pyfunction]
 fn plausible<'py>(
     py: Python<'py>,
     time_ns: PyReadonlyArray1<'py, i64>,
+    fixed_ns: PyReadonlyArray1<'py, i64>,
     lat_rad: PyReadonlyArray1<'py, f64>,
     lon_rad: PyReadonlyArray1<'py, f64>,
     ground_speed_mps: PyReadonlyArray1<'py, f64>,
@@ -158,6 +160,7 @@ fn plausible<'py>(
         speed_factor: limit("speed_factor")?,
         speed_margin_mps: limit("speed_margin_mps")?,
         latency_s: limit("latency_s")?,
+        fix_latency_s: limit("fix_latency_s")?,
         noise_m: limit("noise_m")?,
         moving_mps: limit("moving_mps")?,
         stale_after_s: limit("stale_after_s")?,
@@ -169,7 +172,14 @@ fn plausible<'py>(
         .zip(lat)
         .zip(lon)
         .zip(speed)
-        .map(|(((t, lat), lon), speed)| Report { time: GpsTime::from_nanoseconds(*t), lat_rad: *lat, lon_rad: *lon, speed_mps: *speed })
+        .zip(fixed_ns.as_slice()?)
+        .map(|((((t, lat), lon), speed), fixed)| Report {
+            time: GpsTime::from_nanoseconds(*t),
+            fixed: (*fixed != i64::MIN).then(|| GpsTime::from_nanoseconds(*fixed)),
+            lat_rad: *lat,
+            lon_rad: *lon,
+            speed_mps: *speed,
+        })
         .collect();
     let judged = judge(&reports, &limits).map_err(|(index, e)| input_error(e, Some(index)))?;
     let code = |finding| match finding {
@@ -178,6 +188,7 @@ fn plausible<'py>(
         Finding::Stale => 2,
         Finding::Jump => 3,
         Finding::Unsettled => 4,
+        Finding::Late => 5,
     };
     let codes: Vec<u8> = judged.iter().map(|j| code(j.finding)).collect();
     let ages: Vec<f64> = judged.iter().map(|j| j.age_s).collect();
@@ -186,6 +197,7 @@ fn plausible<'py>(
     d.set_item("finding", codes.into_pyarray(py))?;
     d.set_item("age_s", ages.into_pyarray(py))?;
     d.set_item("step_m", steps.into_pyarray(py))?;
+    d.set_item("too_fast_mps", judged.iter().map(|j| j.too_fast_mps).collect::<Vec<_>>().into_pyarray(py))?;
     Ok(d)
 }
 

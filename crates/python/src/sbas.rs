@@ -10,11 +10,12 @@ use navbound_core::frame::{Covariance, Enu, Geodetic, LatLon};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians};
 use navbound_core::signal::sbas::timeout::Use;
 use navbound_core::signal::sbas::{BLOCK_BYTES, Block, Obedience, decode};
-use navbound_formats::sbas::{Received, Tag, read};
+use navbound_formats::sbas::{Preambles, Received, Tag, read};
 use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::collections::BTreeMap;
 
 /// A log: time_ns of the end of each message, prn, data (n, 32), format, tag, refused lines as (line, field, reason, text).
 #[pyfunction]
@@ -34,6 +35,8 @@ fn sbas_read<'py>(py: Python<'py>, content: &[u8], path: &str, tag: Option<&str>
     d.set_item("data", data.into_pyarray(py).reshape([n, BLOCK_BYTES])?)?;
     d.set_item("format", log.format.name())?;
     d.set_item("tag", if log.tag == Tag::End { "end" } else { "start" })?;
+    let late = |p: &Preambles| (p.prn, p.late_s());
+    d.set_item("late_s", Preambles::of(&log.messages).iter().map(late).collect::<BTreeMap<_, _>>())?;
     d.set_item("refused", log.refused.into_iter().map(|r| (r.line, r.field, r.reason, r.text)).collect::<Vec<_>>())?;
     Ok(d)
 }
@@ -126,6 +129,22 @@ fn sbas_levels<'py>(py: Python<'py>, service: Service<'py>, places: Places<'py>)
     let d = answers_columns(py, &answers)?;
     d.set_item("ignored", ignored(py, &feed, &settings))?;
     Ok(d)
+}
+
+/// PRNs whose UDRE indicator is in force at instants in the order of time: in precision approach, and en route.
+#[pyfunction]
+fn sbas_indicators<'py>(
+    py: Python<'py>,
+    message_time_ns: PyReadonlyArray1<'py, i64>,
+    data: PyReadonlyArray2<'py, u8>,
+    time_ns: PyReadonlyArray1<'py, i64>,
+) -> PyResult<[Vec<Vec<u8>>; 2]> {
+    let ends = message_time_ns.as_slice()?;
+    let received = |(block, end): (Block, &i64)| Received { end: GpsTime::from_nanoseconds(*end), prn: 0, block };
+    let feed = Feed::new(&blocks(&data)?.into_iter().zip(ends).map(received).collect::<Vec<_>>());
+    let at: Vec<GpsTime> = time_ns.as_slice()?.iter().map(|t| GpsTime::from_nanoseconds(*t)).collect();
+    let of = |used_for| sbas::indicators(&feed, used_for, Obedience::Obey, &at);
+    Ok(py.detach(|| [Use::PrecisionApproach, Use::EnRoute].map(of)))
 }
 
 /// Messages that changed nothing: time, why.
@@ -309,6 +328,7 @@ fn terms_columns<'py>(py: Python<'py>, found: &FromTerms) -> PyResult<Bound<'py,
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(sbas_read, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_decode, m)?)?;
+    m.add_function(wrap_pyfunction!(sbas_indicators, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_levels, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_satellites, m)?)?;
     m.add_function(wrap_pyfunction!(sbas_covariance_levels, m)?)?;

@@ -176,6 +176,7 @@ def _log_words(heard: sbas.Messages) -> str:
             ]
         )
         + "."
+        + "".join(f" {words[0].upper()}{words[1:]}" for words in heard.tag_words())
     )
 
 

@@ -145,8 +145,15 @@ TIME_NAMES: dict[str, str] = {
     "gps_week": "gps_week", "week": "gps_week", "gps_tow": "gps_tow_s", "gps_tow_s": "gps_tow_s", "tow_s": "gps_tow_s", "tow": "gps_tow_s",
     "timestamp": "utc", "time": "utc", "utc": "utc", "datetime": "utc", "time_utc": "utc", "utc_time": "utc",
     "unix_time": "utc_s", "unix_time_s": "utc_s", "time_s": "utc_s", "timestamp_ms": "utc_ms", "time_ms": "utc_ms",
+    "time_utc_usec": "utc_us", "utc_us": "utc_us", "timestamp_us": "utc_us", "time_us": "utc_us", "timeus": "utc_us",
 }  # fmt: skip
 """Known names of time columns to the way they are written."""
+
+POSITION_TIME = "position_time_ns"
+"""When a position was valid, GPS time [ns]; the row's own time is that of the report."""
+
+POSITION_TIME_NAMES = ("position_time_ns", "last_position", "lastposupdate", "time_position", "position_time", "lastposition")
+"""Columns that say when a row's position was valid, where its time is that of the report."""
 
 
 OPENSKY_STATES: dict[str, tuple[str, str]] = {
@@ -240,6 +247,15 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
         taken |= {c.name for c in times}
     _require(columns, times, names, path, needs)
     return Assignment(columns, times, [n for n in names if n not in taken])
+
+
+def position_time(unused: list[str]) -> Column | None:
+    """The column that says when positions were valid, taken out of those that nobody uses; None where there is none."""
+    for name in unused:
+        if _plain(name)[0] in POSITION_TIME_NAMES:
+            unused.remove(name)
+            return Column("time", name, "gps_ns" if _plain(name)[0].endswith("_ns") else "utc")
+    return None
 
 
 def _plain(name: str) -> tuple[str, str | None]:

@@ -12,7 +12,7 @@ import polars as pl
 from navbound import _core, status
 from navbound.errors import FormatError
 from navbound.read import receivers
-from navbound.read.columns import LEVEL_QUANTITIES, POSITION, QUANTITIES, UNITS, Assignment, Column, assign
+from navbound.read.columns import LEVEL_QUANTITIES, POSITION, POSITION_TIME, QUANTITIES, UNITS, Assignment, Column, assign, position_time
 from navbound.read.rejections import Rejections
 from navbound.read.repeats import LEFT_OUT, left_out, separate
 from navbound.read.source import Source, load
@@ -63,9 +63,10 @@ class Reading:
 
 
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:
-    """Read a recorded track: CSV, JSON, Parquet, an RTKLIB solution file, or the log of a receiver (each also gzipped).
+    """Read a recorded track: CSV, JSON, Parquet, an RTKLIB solution file, or the log of a receiver.
 
-    Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183; they need the extra ``receivers``.
+    Each may be packed by gzip, compress (``.Z``) or zip. Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183; they need the
+    extra ``receivers``.
 
     Parameters
     ----------
@@ -112,12 +113,14 @@ def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequenc
             reasons.append(reason)
         else:
             _count(rejections, frame, column.name, reason)
+    dated = position_time(mapping.unused)
     if tuple(required) == POSITION:
         out = _reported(out, mapping, notes, source)
     _look_like_radians(out, mapping, source, notes)
     time, reason, units = gps_time(frame, mapping.times, source, notes)
     out = out.with_columns(time.alias("time_ns"))
     reasons.append(reason)
+    out = _positions_dated(out, frame, dated, source, (rejections, notes))
     used = [mapping.columns[n].name for n in required] + [mapping.times[0].name]
     track = pl.col("track").fill_null(source.stem) if "track" in out.columns else pl.lit(source.stem)
     out = out.with_columns(track.alias("track"))
@@ -129,6 +132,33 @@ def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequenc
     return Reading(
         out.drop(LINE), source.record(found.n_rows), rejections.records, mapping.unused, notes, described, _left_out(without, contradicting)
     )
+
+
+_AHEAD_NS = 1_000_000_000
+"""How much later than its row a position may be said to be: both may be rounded."""
+
+
+def _positions_dated(
+    out: pl.DataFrame, frame: pl.DataFrame, column: Column | None, source: Source, told: tuple[Rejections, list[str]]
+) -> pl.DataFrame:
+    """When each position was valid, where a column says so; a time that is none, or later than its row, is counted and not used."""
+    dtype = None if column is None else frame.schema[column.name]
+    if column is None or dtype is None or dtype.is_nested() or dtype in (pl.Binary, pl.Object):
+        return out
+    rejections, notes = told
+    try:
+        valid, reason, _ = gps_time(frame, [column], source, notes)
+    except FormatError as e:
+        notes.append(f"{source.path.name}: “{column.name}” is not used: {e.message}")
+        return out
+    late = (valid > out["time_ns"] + _AHEAD_NS).fill_null(value=False)
+    reason = pl.select(pl.when(late).then(pl.lit("later than its row")).otherwise(reason)).to_series()
+    for text in reason.drop_nulls().filter(reason.drop_nulls() != "empty").unique(maintain_order=True):
+        at = frame.filter((reason == text).fill_null(value=False))
+        # Without it the row's own time serves: that makes no row malformed.
+        words = f"{column.name}: {text}; row used without it"
+        rejections.add(words, at.height, at[LINE][0], str(at[column.name][0]), malformed=False)
+    return out.with_columns(pl.select(pl.when(reason.is_null()).then(valid)).to_series().alias(POSITION_TIME))
 
 
 def _reported(out: pl.DataFrame, mapping: Assignment, notes: list[str], source: Source) -> pl.DataFrame:

@@ -8,6 +8,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
+from navbound.read.columns import POSITION_TIME
 from navbound.read.covariance import COLUMNS
 
 
@@ -23,6 +24,8 @@ class Limits:
         Allowed over a reported speed: rounding, acceleration.
     latency_s : float
         How much older than its time stamp a position may be.
+    fix_latency_s : float
+        The same where the recording says when a position was valid: what such times are wrong by.
     noise_m : float
         A distance that is never called a jump.
     moving_mps : float
@@ -37,13 +40,16 @@ class Limits:
     speed_factor: float = 1.25
     speed_margin_mps: float = 25.0
     latency_s: float = 10.0
+    fix_latency_s: float = 1.0
     noise_m: float = 100.0
     moving_mps: float = 15.0
     stale_after_s: float = 2.0
     settle_s: float = 30.0
 
 
-_REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled"]
+_UNDATED = -(2**63)
+
+_REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled", "position_late"]
 """What the core found, by its codes."""
 
 
@@ -53,8 +59,12 @@ class Plausibility:
 
     Attributes
     ----------
-    n_held, n_stale, n_jump, n_unsettled : int
+    n_held, n_stale, n_jump, n_unsettled, n_late : int
         Epochs by finding.
+    n_fast : int
+        Steps faster than the aircraft's own speed allows in the time between the positions.
+    fastest_mps : float
+        The fastest of these.
     n_steps_5km : int
         Steps between successive epochs of more than 5 km.
     largest_step_m : float
@@ -67,6 +77,9 @@ class Plausibility:
     n_stale: int
     n_jump: int
     n_unsettled: int
+    n_late: int
+    n_fast: int
+    fastest_mps: float
     n_steps_5km: int
     largest_step_m: float
     words: str
@@ -91,14 +104,20 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
     """
     limits = limits or Limits()
     speed = pl.col("ground_speed_mps") if "ground_speed_mps" in epochs.columns else pl.lit(None, pl.Float64)
-    columns = epochs.select("track", "time_ns", "est_lat_rad", "est_lon_rad", speed.fill_null(np.nan).alias("speed"))
-    findings, steps = list[np.ndarray[tuple[int], np.dtype[np.uint8]]](), list[np.ndarray[tuple[int], np.dtype[np.float64]]]()
+    fixed = pl.col(POSITION_TIME) if POSITION_TIME in epochs.columns else pl.lit(None, pl.Int64)
+    columns = epochs.select(
+        "track",
+        "time_ns",
+        fixed.fill_null(_UNDATED).alias("fixed_ns"),
+        "est_lat_rad",
+        "est_lon_rad",
+        speed.fill_null(np.nan).alias("speed"),
+    )
+    judged = []
     for group in columns.partition_by("track", maintain_order=True):
-        time, lat, lon, reported = (np.ascontiguousarray(group[c].to_numpy()) for c in columns.columns[1:])
-        judged = _core.plausible(time, lat, lon, reported, asdict(limits))
-        findings.append(judged["finding"])
-        steps.append(judged["step_m"])
-    code, step = np.concatenate(findings), np.concatenate(steps)
+        time, valid, lat, lon, reported = (np.ascontiguousarray(group[c].to_numpy()) for c in columns.columns[1:])
+        judged.append(_core.plausible(time, valid, lat, lon, reported, asdict(limits)))
+    code, step, fast = (np.concatenate([found[name] for found in judged]) for name in ("finding", "step_m", "too_fast_mps"))
     marked = status.with_reason(epochs, pl.Series("reason_id", _REASON_ID, dtype=pl.String).gather(code))
     if "status" in epochs.columns:
         solved = status.with_reason_id(epochs)
@@ -115,4 +134,13 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
         f"position held for more than {limits.stale_after_s:g} s, {n[1]} with one held shorter; {n_steps} steps of more than 5 km "
         f"between successive epochs, the largest {largest / 1e3:.1f} km."
     )
-    return marked, Plausibility(int(n[1]), int(n[2]), int(n[3]), int(n[4]), n_steps, largest, words)
+    n_fast, fastest, n_dated = int((fast > 0).sum()), float(fast.max(initial=0.0)), int((columns["fixed_ns"] != _UNDATED).sum())
+    if n_fast:
+        words += (
+            f" {n_fast} steps are faster than the aircraft's own speed in the time between the positions, the fastest {fastest:.0f} m/s; "
+            f"{n[5]} of them need a position that was older than {limits.stale_after_s:g} s and are marked."
+        )
+    if n_dated:
+        words += f" {n_dated} of {columns.height} rows say when their position was valid; between those, steps are judged by that time."
+    held, stale, jump, unsettled, late = (int(k) for k in n[1:])
+    return marked, Plausibility(held, stale, jump, unsettled, late, n_fast, fastest, n_steps, largest, words)

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-import gzip
 import hashlib
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from navbound import _core
 from navbound.errors import FormatError
-from navbound.read import receivers
+from navbound.read import foreign, receivers
 from navbound.run.records import InputFile
 
 Kind = Literal["csv", "json", "parquet", "rtklib", "ubx", "sbf", "novatel", "nmea"]
+
+
+PACKED = (b"\x1f\x8b", b"\x1f\x9d", b"PK\x03\x04", b"PK\x05\x06", b"BZh", b"\xfd7zXZ")
+"""Beginnings of packed files: those that are unpacked, and those that are named."""
+
+
+_LOOK_AT = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -30,12 +36,15 @@ class Source:
         Digest of the file as it lies on the disk.
     n_bytes : int
         Its size on the disk.
+    open_end : bool
+        A text whose last line has no end.
     """
 
     path: Path
     content: bytes
     sha256: str
     n_bytes: int
+    open_end: bool = False
 
     @property
     def kind(self) -> Kind:
@@ -44,7 +53,7 @@ class Source:
             return "parquet"
         start = self.content[:4096].removeprefix(b"\xef\xbb\xbf").lstrip()
         if start.startswith((b"{", b"[")):
-            return "json"
+            return receivers.kind(_behind_banner(self.content)) or "json"
         if start.startswith(b"%"):
             return "rtklib"
         return receivers.kind(self.content) or "csv"
@@ -53,6 +62,19 @@ class Source:
     def stem(self) -> str:
         """The name without its endings."""
         return self.path.name.split(".")[0] or self.path.name
+
+    def refuse_unknown(self) -> None:
+        """Refuse content that is neither text nor of a kind that is known.
+
+        Raises
+        ------
+        FormatError
+            With the first bytes, or the first that are no text.
+        """
+        start = self.content[:_LOOK_AT]
+        if self.kind == "csv":
+            # Cut within a character it would be no text, so not at its end.
+            Source(self.path, start[: start.rfind(b"\n") + 1] or start, self.sha256, self.n_bytes).text()
 
     def text(self) -> str:
         """Content as text.
@@ -77,13 +99,25 @@ class Source:
         return InputFile(path=str(self.path), sha256=self.sha256, n_bytes=self.n_bytes, n_rows=n_rows)
 
 
+def _behind_banner(content: bytes) -> bytes:
+    """What follows the lines of JSON at the beginning, which a program writes that passes a receiver's log on."""
+    at = 0
+    while (line := content[at : at + 4096].lstrip()).startswith(b"{"):
+        end = content.find(b"\n", at + 1)
+        # An object over several lines is no banner.
+        if end < 0 or not content[at:end].rstrip().endswith(b"}"):
+            return b""
+        at = end + 1
+    return b"" if line.startswith((b"[", b"]", b"}", b'"')) else content[at:]
+
+
 def load(path: str | Path) -> Source:
-    """Read a file, unpacking gzip.
+    """Read a file, unpacking gzip, compress (``.Z``) and zip.
 
     Raises
     ------
     FormatError
-        No such file, not a file, empty, or a gzip file that is damaged or cut short.
+        No such file, not a file, empty, a packed file that is damaged, cut short or of several files, or a kind that is known and not read.
     """
     path = Path(path)
     try:
@@ -92,12 +126,10 @@ def load(path: str | Path) -> Source:
         raise FormatError(path, "no such file") from e
     except OSError as e:
         raise FormatError(path, f"cannot be read: {e.strerror}") from e
-    content = stored
-    if stored.startswith(b"\x1f\x8b"):
-        try:
-            content = gzip.decompress(stored)
-        except (EOFError, zlib.error, gzip.BadGzipFile) as e:
-            raise FormatError(path, f"damaged gzip file: {e}") from e
+    content = _core.unpack(stored, str(path)) if stored.startswith(PACKED) else stored
     if not content.strip():
         raise FormatError(path, "the file is empty")
+    other = foreign.kind(content)
+    if other is not None:
+        raise FormatError(path, other)
     return Source(path, content, hashlib.sha256(stored).hexdigest(), len(stored))

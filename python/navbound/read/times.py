@@ -77,22 +77,50 @@ def _unix_ns(column: pl.Series, unit: str, source: Source, notes: list[str]) -> 
             notes.append(f"{source.path.name}: “{column.name}” has no time zone and was read as UTC")
         return _iso(column), "utc_text"
     scales = {"utc_s": 1e9, "utc_ms": 1e6, "utc_us": 1e3, "utc_ns": 1.0}
+    size = numbers.abs().median()
+    size = float(size) if isinstance(size, (int, float)) else 0.0
+    since_start = _since_start(numbers, size * scales.get(unit, 0.0))
     if unit == "utc":
-        size = numbers.abs().median()
-        size = float(size) if isinstance(size, (int, float)) else 0.0
         unit = next((u for u, low in (("utc_ns", 1e17), ("utc_us", 1e14), ("utc_ms", 1e11), ("utc_s", 1e8)) if size >= low), "")
-        if not unit:
+        if not unit and not since_start:
             raise FormatError(
                 source.path,
                 f"the values (median {size:g}) are not Unix times; declare the unit, e.g. time={column.name}:gps_s",
                 field=column.name,
             )
+    if since_start:
+        raise FormatError(source.path, since_start, field=column.name)
     if unit == "utc_ns" and column.dtype != pl.Float64:
         return column.cast(pl.Int64, strict=False), unit
     # Nanoseconds of 2026 have 19 digits, a double 16: whole units stay whole in integers, fractions to 0.2 us.
     numbers = numbers.set((numbers.abs() * scales[unit] > _MAX_NS).fill_null(value=False), None)
     whole = numbers.floor()
     return _ns(whole) * int(scales[unit]) + _ns((numbers - whole) * scales[unit]), unit
+
+
+_LONGEST_STEP = 1800.0
+"""Seconds between two rows of a track beyond which numbers are not read as Unix seconds. Provenance: ours."""
+_FIRST_UNIX_S = 315_964_800
+"""Unix time of 1980-01-06, the beginning of GPS time."""
+
+
+def _since_start(numbers: pl.Series, declared_ns: float) -> str:
+    """Why numbers are the time since a computer started and no date; empty where they may be dates."""
+    known = numbers.drop_nulls()
+    step = known.diff().abs().median() if known.len() > 1 else None
+    if not isinstance(step, (int, float)) or not step > 0:
+        return ""
+    size = float(known.abs().max())  # type: ignore[arg-type]
+    undated = 0 < declared_ns < _FIRST_UNIX_S * 1e9
+    # Numbers of less than 1e11 could only be seconds, and those of a track are not half an hour apart.
+    micro = not declared_ns and size < 1e11 and step > _LONGEST_STEP
+    if not (undated or micro):
+        return ""
+    unit = "microseconds" if step > _LONGEST_STEP else "milliseconds" if step > 5 else "units"
+    return (
+        f"the values (largest {size:g}, median step {step:g}) are {unit} since the computer or receiver started, not dates: "
+        f"another column must hold the time (for instance of GPS, declared as time=COLUMN:utc_us), or add the instant of the start"
+    )
 
 
 def _mostly_text(column: pl.Series, numbers: pl.Series) -> bool:

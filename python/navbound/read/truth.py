@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.read.epochs import Reading
+    from navbound.run.records import Rejection
 
 TOLERANCE_S = 0.01
 """How far apart in time an estimate and its truth may lie. At 70 m/s a hundredth of a second is 0.7 m."""
@@ -63,8 +64,8 @@ def truth_of(given: str | Path | None, tolerance_s: float) -> Truth:
     return Truth(text, point, tolerance_s)
 
 
-def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str]:
-    """Form the navigation error against a truth that was named; and words about it.
+def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, list[Rejection]]:
+    """Form the navigation error against a truth that was named; words about it, and what its file held that was refused.
 
     Raises
     ------
@@ -74,11 +75,12 @@ def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str]:
     if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
         raise InputError("truth", truth.given, domain="no truth: the table holds no positions to compare with it")
     if truth.ecef_m is None:
-        return join(epochs, read(str(truth.given)), truth.tolerance_s)
+        other = read(str(truth.given))
+        return *join(epochs, other, truth.tolerance_s), other.rejected
     place = gnss.geodetic(truth.ecef_m)
     names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m")
     fixed = epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True))
-    return with_error(fixed), f"Truth: the fixed point {truth.given} m, Earth-fixed."
+    return with_error(fixed), f"Truth: the fixed point {truth.given} m, Earth-fixed.", []
 
 
 def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S) -> tuple[pl.DataFrame, str]:

@@ -12,6 +12,7 @@ from navbound import status
 from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
+from navbound.read.columns import POSITION_TIME
 from navbound.read.covariance import COLUMNS, Claimed, claim
 from navbound.read.epochs import Reading, read
 from navbound.read.plausible import Limits, check
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
     from navbound.run.records import CrossTrack, InputFile
 
-_AUXILIARY = ("callsign", "nac_p", "nic", "rc_m", "epu_m", "sigma_e_m", "sigma_n_m", "sigma_u_m")
+_AUXILIARY = ("callsign", "nac_p", "nic", "rc_m", "epu_m", "sigma_e_m", "sigma_n_m", "sigma_u_m", POSITION_TIME)
 
 
 def material(
@@ -105,7 +106,7 @@ def material(
     _refuse_experimental(readings)
     inputs = [r.source for r in readings] + [source.record(None) for source in found.navigation if source not in found.observations]
     rejected = [x for r in readings for x in r.rejected]
-    notes = [note for r in readings for note in r.notes]
+    notes = found.cut_words() + [note for r in readings for note in r.notes]
     epochs, lost = _together(readings, rejected)
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
@@ -115,7 +116,7 @@ def material(
     assumptions = [of_covariance, plausibility.words]
     named = truth_of(truth, truth_tolerance_s)
     if named.ecef_m is not None:
-        epochs, words = with_truth(epochs, named)
+        epochs, words, _ = with_truth(epochs, named)
         assumptions.append(words)
     elif truth is not None:
         other = read(truth)

@@ -40,9 +40,23 @@ class Files:
             Naming the file and what is lacking.
         """
         if self.observations and not self.navigation:
-            raise InputError("files", f"{self.observations[0].path}", domain="observations together with a RINEX navigation file")
+            domain = "observations together with a RINEX navigation file" + self._taken_for_tables()
+            raise InputError("files", f"{self.observations[0].path}", domain=domain)
         if not self.observations and (self.navigation or self.messages):
-            raise InputError("files", f"{(self.navigation + self.messages)[0].path}", domain="them together with RINEX observations")
+            domain = "them together with RINEX observations" + self._taken_for_tables()
+            raise InputError("files", f"{(self.navigation + self.messages)[0].path}", domain=domain)
+
+    def _taken_for_tables(self) -> str:
+        names = ", ".join(str(source.path) for source in self.tables)
+        return f" (taken for tables of positions: {names})" if names else ""
+
+    def cut_words(self) -> list[str]:
+        """Text files of records that end within a line, as files do that were cut."""
+        every = {source.path: source for source in self.observations + self.navigation + self.messages if source.open_end}
+        return [
+            f"{path.name}: the last line has no end, as in a file that was cut; what may have stood after it is not known."
+            for path in every
+        ]
 
 
 def sort_out(paths: Sequence[str | Path], *, solve: bool = False) -> Files:
@@ -67,8 +81,12 @@ def sort_out(paths: Sequence[str | Path], *, solve: bool = False) -> Files:
     files = Files()
     for path in paths:
         source = load(path)
-        kept = Source(source.path, b"", source.sha256, source.n_bytes)
-        for kind in (_raw(source) if solve else None) or [_kind(source)]:
+        kinds = (_raw(source) if solve else None) or [_kind(source)]
+        if kinds == ["tables"]:
+            source.refuse_unknown()
+        open_end = not source.content.endswith((b"\n", b"\r", b"\x1a")) and source.content[:200].isascii()
+        kept = Source(source.path, b"", source.sha256, source.n_bytes, open_end)
+        for kind in kinds:
             getattr(files, kind).append(kept)
     if solve and not files.observations:
         raise InputError("solve", "True", domain="it together with a file of raw measurements (RINEX, UBX RXM-RAWX, SBF MeasEpoch)")
@@ -88,5 +106,5 @@ def _kind(source: Source) -> str:
         if first[20:21] == b"O":
             return "observations"
         return "messages" if first[20:21] in {b"B", b"H"} and b"NAV" not in first[20:40] else "navigation"
-    name = source.path.name.lower().removesuffix(".gz")
+    name = source.path.name.lower().removesuffix(".gz").removesuffix(".z").removesuffix(".zip")
     return "messages" if name.endswith((".ems", ".sbs")) else "tables"

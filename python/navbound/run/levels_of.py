@@ -13,11 +13,14 @@ import polars as pl
 from navbound import gnss, sbas
 from navbound.errors import FormatError, InputError
 from navbound.read.epochs import read
+from navbound.read.refusals import of_navigation, of_observations, rejections, skipped_words, without_epochs
 from navbound.read.truth import Truth, with_error, with_truth
 from navbound.run.solving import Solving, require_same_time
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from navbound.run.records import Rejection
 
 
 COVARIANCE = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
@@ -108,16 +111,17 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, need
     tracks = reading.epochs["track"].unique().sort().to_list()
     if len(tracks) > 1:
         raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")
-    epochs, notes = reading.epochs, list(reading.notes)
+    epochs, notes, refused = reading.epochs, list(reading.notes), list(reading.rejected)
     if truth.given is not None:
-        epochs, words = with_truth(epochs, truth)
+        epochs, words, of_truth = with_truth(epochs, truth)
         notes.append(words)
+        refused += of_truth
     else:
-        epochs, of_truth = _with_own_truth(epochs)
-        notes += [f"{path.name}: {each}" for each in of_truth]
+        epochs, own = _with_own_truth(epochs)
+        notes += [f"{path.name}: {each}" for each in own]
     if reading.unused:
         notes.append(f"{path.name}: columns not used: {', '.join(reading.unused)}")
-    rejected = [r.model_dump() for r in reading.rejected]
+    rejected = [one.model_dump() for one in refused]
     # Columns of Error Extraction say in their own name what they are.
     of_extraction = any(reading.columns.get(name, "").startswith("ee_") for name in ("hpl_m", "vpl_m"))
     return Part(uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
@@ -160,10 +164,23 @@ class Service:
         """Broadcast messages of all files."""
         return gnss.read_navigation(list(self._navigation))
 
+    def rejected(self) -> list[Rejection]:
+        """What was refused of the navigation files and of the logs."""
+        of_logs = [one for path, log in zip(self._logs, self._each, strict=True) for one in rejections(path, log.refused)]
+        return [*of_navigation(self.navigation), *of_logs]
+
+    def words(self) -> list[str]:
+        """What the preambles say against the times of the logs."""
+        return [f"{path.name}: {words}" for path, log in zip(self._logs, self._each, strict=True) for words in log.tag_words()]
+
+    @cached_property
+    def _each(self) -> list[sbas.Messages]:
+        return [sbas.read(log) for log in self._logs]
+
     @cached_property
     def _messages(self) -> sbas.Messages:
         """Those of all logs in the order of time."""
-        logs = [sbas.read(log) for log in self._logs]
+        logs = self._each
         time_ns, sender, data = (np.concatenate([getattr(m, name) for m in logs]) for name in ("time_ns", "prn", "data"))
         order = np.argsort(time_ns, kind="stable")
         refused = [r for m in logs for r in m.refused]
@@ -201,7 +218,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     """
     observations = gnss.read_observations(path)
     if not observations.n_epochs:
-        raise FormatError(path, "holds no epoch")
+        raise without_epochs(observations)
     require_same_time(observations, service.navigation)
     ranges = None
     if service.has_messages:
@@ -211,20 +228,24 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
         positions = (solving or Solving()).solve(observations, service.navigation, **how)
         epochs, notes = positions.epochs, [OWN, *(f"{name}: {words}" for name, words in positions.models.items())]
         ranges = positions.ranges
+    refused = [*of_observations(observations), *service.rejected()]
+    notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", service.navigation.skipped)]
     if truth.given is not None and truth.ecef_m is None:
-        epochs, words = with_truth(epochs, truth)
+        epochs, words, of_truth = with_truth(epochs, truth)
+        refused += of_truth
         notes.append(words)
+    rejected = [one.model_dump() for one in refused]
     if service.has_messages:
-        return Part(uniform(epochs), observations.n_epochs, [], notes)
+        return Part(uniform(epochs), observations.n_epochs, rejected, notes)
     errors = None if ranges is None else _range_errors(ranges, epochs)
-    return Part(uniform(_of_own(epochs)), observations.n_epochs, [], notes, sbas.EXTRACTION_LABEL, errors)
+    return Part(uniform(_of_own(epochs)), observations.n_epochs, rejected, notes, sbas.EXTRACTION_LABEL, errors)
 
 
 def _corrected(observations: gnss.Observations, service: Service, truth: Truth) -> tuple[pl.DataFrame, list[str]]:
     """Positions with the corrections of the SBAS service and the protection levels of those solutions; words about them."""
     messages = service.messages(int(observations.time_ns[0]), int(observations.time_ns[-1]))
     positions = sbas.solve(observations, service.navigation, messages, truth_ecef_m=truth.ecef_m)
-    notes = [SAME, *(f"{name}: {words}" for name, words in positions.models.items())]
+    notes = [SAME, *service.words(), *(f"{name}: {words}" for name, words in positions.models.items())]
     # Without counts: the same words of many files stand once.
     notes.extend(f"Satellites left out where: {why}." for why in positions.unused)
     return positions.epochs, notes

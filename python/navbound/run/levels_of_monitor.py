@@ -10,7 +10,8 @@ import polars as pl
 
 from navbound import araim, gnss, raim
 from navbound._monitor_fit import DISBELIEF
-from navbound.errors import FormatError, InputError
+from navbound.errors import InputError
+from navbound.read.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.truth import with_truth
 from navbound.run.levels_of import Part, uniform
 from navbound.run.numbers import METRES_PER_NM, share
@@ -93,16 +94,21 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Mo
     """
     observations = gnss.read_observations(path)
     if not observations.n_epochs:
-        raise FormatError(path, "holds no epoch")
+        raise without_epochs(observations)
     require_same_time(observations, records)
     found = monitor(observations, records, truth_ecef_m=truth.ecef_m, **monitored(solving or Solving()))
     notes = [f"{path.name}: {words}" for words in decisions(found.epochs)]
     notes += [f"{path.name}: {name}: {words}" if name in OF_FILE else f"{name}: {words}" for name, words in found.models.items()]
+    refused = [*of_observations(observations), *of_navigation(records)]
+    notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", records.skipped)]
     epochs = found.epochs
     if truth.given is not None and truth.ecef_m is None:
-        epochs, words = with_truth(epochs, truth)
+        epochs, words, of_truth = with_truth(epochs, truth)
+        refused += of_truth
         notes.append(words)
-    return Part(uniform(epochs), observations.n_epochs, [], notes, "" if found.fit.believable else CONTRADICTED)
+    return Part(
+        uniform(epochs), observations.n_epochs, [one.model_dump() for one in refused], notes, "" if found.fit.believable else CONTRADICTED
+    )
 
 
 def decisions(epochs: pl.DataFrame) -> list[str]:

@@ -166,6 +166,7 @@ def evaluate_files(
         if options.stanford_esa is not None:
             ranges = kpi.stanford_esa(lambda: ranges_of_parts(parts), campaign.levels, options.stanford_esa)
             result = kpi.with_subsets(result, ranges)
+        result = result.model_copy(update={"notes": [*result.notes, *sources.cut_words()]})
         run = _run(result, parts, events, inputs=_inputs(sources, truth, parts), options=options, command=command)
         if writer is None:
             return Run(run.summary, run.record, pl.concat(tables_of(parts)), run.events, [])
@@ -296,10 +297,20 @@ def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) 
         states=[],
         events=[],
         cross_track=[],
-        rejected=[Rejection(**fields) for part in parts for fields in part.rejected],
+        rejected=_rejected(parts),
         n_status={"solution": result.n_solution, "no_solution": result.n_no_solution, "missing": result.n_missing},
         performance=result,
     )
+
+
+def _rejected(parts: list[Stored]) -> list[Rejection]:
+    """Of all parts; what they have in common, navigation data and messages, once."""
+    found: list[Rejection] = []
+    for fields in (fields for part in parts for fields in part.rejected):
+        one = Rejection(**fields)
+        if one not in found:
+            found.append(one)
+    return found
 
 
 def _facts(found: LevelResult, result: Performance) -> rule.LevelFacts:

@@ -10,6 +10,7 @@ from navbound import gnss
 from navbound._receivers import unused_words
 from navbound.errors import FormatError
 from navbound.read.epochs import Reading
+from navbound.read.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.repeats import left_out, separate
 from navbound.run.records import Rejection
 from navbound.run.solving import Solving, require_same_time
@@ -29,21 +30,17 @@ def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
         A file that cannot be read, or in which no position can be solved.
     """
     navigation = gnss.read_navigation([source.path for source in files.navigation])
-    return [_reading(source, navigation, solving or Solving()) for source in files.observations]
-
-
-def _without_epochs(source: Source, observations: gnss.Observations) -> FormatError:
-    if not observations.n_refused:
-        return FormatError(source.path, "holds no epoch of measurements")
-    first = observations.refused[0]
-    what = f"no epoch can be used: {observations.n_refused} records are refused, the first for {first.reason}: “{first.text.strip()[:80]}”"
-    return FormatError(source.path, what, first.line, first.field)
+    readings = [_reading(source, navigation, solving or Solving()) for source in files.observations]
+    if readings:
+        readings[0].rejected.extend(of_navigation(navigation))
+        readings[0].notes.extend(skipped_words(", ".join(path.name for path in navigation.paths), navigation.skipped))
+    return readings
 
 
 def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> Reading:
     observations = gnss.read_observations(source.path)
     if observations.n_epochs == 0:
-        raise _without_epochs(source, observations)
+        raise without_epochs(observations)
     require_same_time(observations, navigation)
     found = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem)
     without = found.epochs.filter(pl.col("est_lat_rad").is_null())
@@ -62,11 +59,9 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         for reason, rows in kinds.items()
         if not rows.is_empty()
     ]
-    if observations.n_refused:
-        first = observations.refused[0]
-        reason, example = f"{first.field}: {first.reason}, and others", first.text
-        rejected.append(Rejection(file=path, reason=reason, count=observations.n_refused, first_line=first.line, example=example))
+    rejected += of_observations(observations)
     notes = [f"{source.path.name}: {name}: {words}" for name, words in found.models.items()]
+    notes += skipped_words(source.path.name, observations.skipped)
     notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in found.unused.items()]
     lost = pl.concat([left_out(without), left_out(repeats.contradicting)])
     columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in found.codes.values() for c in codes)}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -10,9 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from navbound import gnss
+from navbound import _core, gnss
 from navbound.errors import FormatError, InputError
 from navbound.gnss import Orbits
+from navbound.read.source import PACKED
 from navbound.scenario import surface
 from navbound.scenario.models import GPS_EPOCH
 
@@ -168,7 +168,8 @@ def _from_navigation(system: str, path: Path, start_ns: int | None, duration_s: 
         raise InputError(f"geometry.{system}", str(path), domain=f"a file with healthy satellites of {gnss.CONSTELLATIONS[index]}")
     if navigation.nearest_age_s(system, middle_ns) > duration_s / 2 + MOST_AGE_S:
         raise InputError("geometry.start", start_ns, "ns", f"a day that {path.name} has broadcast orbits of")
-    return _Source(orbits, -duration_s / 2, f"{len(orbits.satellite)} {TITLES[system]} satellites of {path.name}", dated=True)
+    refused = f" ({len(navigation.refused)} records refused)" if navigation.refused else ""
+    return _Source(orbits, -duration_s / 2, f"{len(orbits.satellite)} {TITLES[system]} satellites of {path.name}{refused}", dated=True)
 
 
 def _gps_ns(start: datetime) -> int:
@@ -184,10 +185,6 @@ def is_rinex(path: Path) -> bool:
             head = file.read(4096)
     except OSError as e:
         raise FormatError(path, e.strerror or str(e)) from e
-    if head[:2] == b"\x1f\x8b":
-        try:
-            with gzip.open(path) as file:
-                head = file.read(4096)
-        except (OSError, EOFError) as e:
-            raise FormatError(path, f"damaged gzip: {e}") from e
+    if head.startswith(PACKED):
+        head = _core.unpack(path.read_bytes(), str(path))[:4096]
     return b"RINEX VERSION" in head[:200]

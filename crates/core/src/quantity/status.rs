@@ -138,6 +138,9 @@ reasons! {
     ServiceDoNotUse, "service_do_not_use", NotAvailable, "the service says \"do not use\" (message 0)";
     /// No PRN mask of an augmentation service.
     NoPrnMask, "no_prn_mask", NotAvailable, "no PRN mask is in force";
+    /// Silence of an augmentation service's signal.
+    MessageLoss, "message_loss", NotAvailable,
+        "four seconds without a message took the UDRE indicators: satellites wait for new ones";
     /// A signal that transmits message 0 as a test.
     TestSignal, "test_signal", Degraded, "a test signal: its levels promise nothing";
     /// The faults without a monitor are likelier than what is allotted.
@@ -148,6 +151,9 @@ reasons! {
     PositionHeld, "position_held", Degraded, "position held";
     /// A receiver repeats its last position for too long.
     PositionStale, "position_stale", NotAvailable, "position held too long";
+    /// A step that only an old position explains.
+    PositionLate, "position_late", Degraded,
+        "a step that can be flown only if the position before was older than a held one may be";
     /// A step that no aircraft flies.
     PositionJump, "position_jump", InvalidInput, "position jump that cannot be flown";
     /// Shortly after such a step.

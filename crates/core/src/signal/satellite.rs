@@ -42,6 +42,15 @@ impl Constellation {
             _ => None,
         }
     }
+    /// Numbers that its satellites can have: what its interface document and RINEX leave room for (standard).
+    pub const fn numbers(self) -> core::ops::RangeInclusive<u8> {
+        match self {
+            Self::Gps | Self::BeiDou => 1..=63,
+            Self::Glonass => 1..=32,
+            Self::Galileo => 1..=36,
+            Self::Sbas => 20..=58,
+        }
+    }
     /// The constellation of a letter of RINEX 3.
     pub const fn from_letter(letter: u8) -> Option<Self> {
         match letter {

@@ -26,7 +26,8 @@ pub(super) struct Measurement {
 /// What is collected of a log.
 #[derive(Default)]
 pub(super) struct Table {
-    epochs: Vec<(GpsTime, Vec<Measurement>)>,
+    /// With the number of their frame.
+    epochs: Vec<(GpsTime, Vec<Measurement>, usize)>,
     /// Time locked at the last epoch \[ms\], by satellite and signal.
     locked_ms: BTreeMap<(SatelliteId, [u8; 2]), u32>,
     /// Frame in hand: number and first byte.
@@ -51,7 +52,7 @@ impl Table {
         if locked_ms == 0 || before.is_some_and(|b| locked_ms < b) { LOST } else { 0 }
     }
     pub(super) fn epoch(&mut self, time: GpsTime, measurements: Vec<Measurement>) {
-        self.epochs.push((time, measurements));
+        self.epochs.push((time, measurements, self.frame.0));
     }
     /// Time of the last epoch.
     pub(super) fn time(&self) -> Option<GpsTime> {
@@ -67,7 +68,7 @@ impl Table {
         for (codes, own) in o.codes.iter_mut().zip(&signals) {
             *codes = own.iter().flat_map(|[band, attribute]| b"CLDS".map(|kind| [kind, *band, *attribute])).collect();
         }
-        for (time, measurements) in &self.epochs {
+        for (time, measurements, frame) in &self.epochs {
             let mut satellites: Vec<SatelliteId> = measurements.iter().map(|m| m.satellite).collect();
             satellites.sort_unstable();
             satellites.dedup();
@@ -82,8 +83,9 @@ impl Table {
                     }
                 }
             }
-            o.end_epoch(*time, false, f64::NAN);
+            o.end_epoch(*time, false, f64::NAN, *frame);
         }
+        o.believe();
         o
     }
 }

@@ -98,13 +98,20 @@ struct State {
 pub(super) fn read(mut lines: Lines<'_>, kind: Kind, heading: &Heading, o: &mut Observations) {
     let tracks = vec![Track::default(); Constellation::ALL.len() * 100];
     let mut state = State { epoch: Vec::new(), clock: Arc::default(), tracks, count: 1, since: 1 };
+    // Lines without a beginning: their number, and the first of them.
+    let (mut waiting, mut since) = (0_usize, 0_usize);
     while let Some(line) = lines.next() {
         let starts = line.first() == Some(&if kind == Kind::First { b'&' } else { b'>' });
         if starts {
+            lost(&mut waiting, since, o);
             state.epoch.clear();
             state.since = state.count;
         } else if state.epoch.is_empty() {
             // Lost, or never begun: wait for a fresh start.
+            if waiting == 0 {
+                since = lines.number;
+            }
+            waiting += usize::from(!line.trim_ascii().is_empty());
             continue;
         }
         if line.trim_ascii().is_empty() && lines.rest().is_empty() {
@@ -128,6 +135,15 @@ pub(super) fn read(mut lines: Lines<'_>, kind: Kind, heading: &Heading, o: &mut 
             o.abandon_epoch();
             state.epoch.clear();
         }
+    }
+    lost(&mut waiting, since, o);
+}
+
+/// Count lines that belong to no epoch whose beginning was read.
+fn lost(waiting: &mut usize, since: usize, o: &mut Observations) {
+    if *waiting > 0 {
+        o.refuse(since, "epoch", &format!("{waiting} lines before a fresh start, which nothing explains"), b"");
+        *waiting = 0;
     }
 }
 
@@ -182,7 +198,7 @@ fn epoch(
         }
     }
     if let Some(time) = head.time {
-        o.end_epoch(time, head.flag == 1, head.clock_offset_s);
+        o.end_epoch(time, head.flag == 1, head.clock_offset_s, lines.number);
     }
     Ok(())
 }

@@ -174,7 +174,9 @@ pub(super) fn satellite(field: &[u8], default: Constellation) -> Result<navbound
     let constellation = if letter == b' ' { Some(default) } else { Constellation::from_letter(letter) };
     let number = whole(columns(field, 1, 3)).and_then(|n| u8::try_from(n).ok()).filter(|n| (1..=99).contains(n));
     match (constellation, number) {
-        (Some(constellation), Some(number)) => Ok(navbound_core::signal::SatelliteId { constellation, number }),
+        (Some(constellation), Some(number)) if constellation.numbers().contains(&number) => {
+            Ok(navbound_core::signal::SatelliteId { constellation, number })
+        }
         (None, Some(_)) if matches!(letter, b'J' | b'I') => Err(letter),
         _ => Err(b'?'),
     }

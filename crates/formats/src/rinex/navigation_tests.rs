@@ -193,3 +193,11 @@ proptest! {
         let _ = read_navigation(&[HEADER.replace("3.02", "4.00").as_bytes(), b"> EPH G01 LNAV\n", &tail].concat());
     }
 }
+
+#[test]
+fn a_number_that_no_satellite_has_is_refused() {
+    for (name, stands) in [("G01", true), ("G63", true), ("G64", false), ("G99", false), ("G00", false)] {
+        let n = read(&format!("{HEADER}{}", G01.replace("G01", name)));
+        assert_eq!((n.ephemerides.len(), n.refused.len()), (usize::from(stands), usize::from(!stands)), "{name}");
+    }
+}

@@ -3,6 +3,7 @@
 use super::header::{Lines, label};
 use super::number::text;
 use super::{compact, heading, plain};
+use crate::order::most_rising;
 use crate::refusal::{Refusal, Unreadable};
 use navbound_core::quantity::GpsTime;
 use navbound_core::signal::{Constellation, SatelliteId};
@@ -11,6 +12,12 @@ use std::ops::Range;
 
 /// Refusals kept in full; the others are counted.
 const REFUSALS_KEPT: usize = 1000;
+/// Largest pseudorange of a receiver \[m\]: light needs more than three seconds for it. Satellites are at most a seventh of a second away, and
+/// no receiver's clock that measures is that wrong. Provenance: ours.
+const LONGEST_RANGE_M: f64 = 1e9;
+const BACKWARDS: &str = "the time runs backwards against the epochs around it";
+const REPEATED: &str = "the epoch stands twice";
+const CONTRADICTED: &str = "epochs of one time contradict each other";
 const SYSTEMS: usize = Constellation::ALL.len();
 
 /// A code of RINEX 3: kind (C, L, D, S), band, attribute.
@@ -57,6 +64,8 @@ pub struct Observations {
     last_satellite: Vec<usize>,
     /// First value of each satellite.
     first_value: Vec<usize>,
+    /// Line, or frame of a log, in which each epoch ends.
+    line: Vec<usize>,
 }
 
 /// Read an observation file, plain text or compact (see [`crate::packed::unpack`] for packed ones).
@@ -129,8 +138,9 @@ impl Observations {
         self.value.push(value);
         self.indicator.push(indicator);
     }
-    pub(crate) fn end_epoch(&mut self, time: GpsTime, interrupted: bool, clock_offset_s: f64) {
+    pub(crate) fn end_epoch(&mut self, time: GpsTime, interrupted: bool, clock_offset_s: f64, line: usize) {
         self.time.push(time);
+        self.line.push(line);
         self.interrupted.push(interrupted);
         self.clock_offset_s.push(clock_offset_s);
         self.last_satellite.push(self.satellite.len());
@@ -159,6 +169,67 @@ impl Observations {
         self.indicator.reserve(values);
     }
 
+    /// Drop what no receiver measures: epochs out of the order of time, pseudoranges that are none. Each is counted in `refused`.
+    pub(crate) fn believe(&mut self) {
+        self.drop_backward_epochs();
+        let mut epoch = 0;
+        for k in 0..self.satellite.len() {
+            while self.last_satellite.get(epoch).is_some_and(|last| *last <= k) {
+                epoch += 1;
+            }
+            let line = self.line.get(epoch).copied().unwrap_or(0);
+            let (system, first) = (self.satellite[k].constellation.index(), self.first_value[k]);
+            for c in 0..self.value_range(k).len().min(self.codes[system].len()) {
+                let (code, value) = (self.codes[system][c], self.value[first + c]);
+                if code[0] == b'C' && value.abs() > LONGEST_RANGE_M {
+                    let name = String::from_utf8_lossy(&code).into_owned();
+                    self.refuse(line, &name, "no pseudorange of a receiver: beyond 1e9 m", format!("{value:.3}").as_bytes());
+                    self.value[first + c] = f64::NAN;
+                }
+            }
+        }
+    }
+
+    /// Keep the most epochs whose times increase: one that runs ahead is at fault itself, not all those after it.
+    fn drop_backward_epochs(&mut self) {
+        if self.time.is_sorted_by(|a, b| a < b) {
+            return;
+        }
+        let mut wrong = vec![Some(BACKWARDS); self.time.len()];
+        let in_order = most_rising(&self.time, false);
+        for alike in in_order.chunk_by(|a, b| self.time[*a] == self.time[*b]) {
+            let contradicted = alike.iter().any(|k| !self.repeats(alike[0], *k));
+            alike.iter().for_each(|k| wrong[*k] = Some(if contradicted { CONTRADICTED } else { REPEATED }));
+            if !contradicted {
+                wrong[alike[0]] = None;
+            }
+        }
+        let mut o = Self::default();
+        for epoch in 0..self.time.len() {
+            if let Some(reason) = wrong[epoch] {
+                self.refuse(self.line[epoch], "epoch", reason, format!("epoch {}", epoch + 1).as_bytes());
+                continue;
+            }
+            for k in self.satellites(epoch) {
+                o.begin_satellite(self.satellite[k]);
+                for v in self.value_range(k) {
+                    o.push(self.value[v], self.indicator[v]);
+                }
+            }
+            o.end_epoch(self.time[epoch], self.interrupted[epoch], self.clock_offset_s[epoch], self.line[epoch]);
+        }
+        (self.time, self.line, self.interrupted, self.clock_offset_s) = (o.time, o.line, o.interrupted, o.clock_offset_s);
+        (self.satellite, self.value, self.indicator) = (o.satellite, o.value, o.indicator);
+        (self.last_satellite, self.first_value) = (o.last_satellite, o.first_value);
+    }
+
+    /// Whether two epochs hold the same satellites with the same values.
+    fn repeats(&self, one: usize, other: usize) -> bool {
+        let satellites = |epoch| self.satellite[self.satellites(epoch)].iter();
+        let values = |epoch| self.satellites(epoch).flat_map(|k| self.values(k)).map(|v| v.to_bits());
+        one == other || (satellites(one).eq(satellites(other)) && values(one).eq(values(other)))
+    }
+
     /// Zero stands for "absent" among ranges, phases and strengths; scale factors of the header are taken out.
     fn finish(&mut self, heading: &heading::Heading) {
         let zero_is_absent: [Vec<bool>; SYSTEMS] = std::array::from_fn(|i| self.codes[i].iter().map(|c| c[0] != b'D').collect());
@@ -178,6 +249,7 @@ impl Observations {
                 }
             }
         }
+        self.believe();
     }
 }
 

@@ -156,8 +156,8 @@ fn a_difference_without_a_start_is_refused_not_guessed() {
     assert!(o.values(3)[0].is_nan());
     // Damage of the epoch line loses what follows until a fresh start, and says so.
     let o = read(&COMPACT.replace("                    4\n", "                    x\n"));
-    assert_eq!((o.n_epochs(), o.n_refused), (1, 1));
-    assert!(o.refused[0].reason.contains("fresh start"));
+    assert_eq!((o.n_epochs(), o.n_refused), (1, 2));
+    assert!(o.refused.iter().all(|r| r.reason.contains("fresh start")), "{:?}", o.refused);
 }
 
 proptest! {
@@ -171,4 +171,38 @@ proptest! {
         let _ = read_observations(&file[..cut.min(file.len())]);
         let _ = read_observations(&[file, &tail].concat());
     }
+}
+
+/// Epochs of one satellite at seconds of a minute.
+fn seconds(of: &[u32]) -> String {
+    let header = V3.split_inclusive("END OF HEADER\n").next().unwrap_or_default().to_owned();
+    of.iter().fold(header, |text, s| {
+        text + &format!("> 2019  4 28 12 44 {s:2}.0000000  0  1\nG02  21600712.022   113512506.8763        445.146          27.000\n")
+    })
+}
+
+#[test]
+fn an_epoch_out_of_the_order_of_time_is_refused_alone_with_its_line() {
+    for (of, reason) in [(&[10, 11, 55, 12, 13][..], "backwards"), (&[10, 11, 2, 12, 13], "backwards"), (&[10, 11, 11, 12], "twice")] {
+        let o = read(&seconds(of));
+        assert_eq!((o.n_epochs(), o.n_refused), (of.len() - 1, 1), "{of:?}");
+        assert!(o.time.is_sorted_by(|a, b| a < b));
+        // Nine lines of header, two an epoch.
+        assert_eq!(o.refused[0].line, 9 + 2 * 3, "{:?}", o.refused);
+        assert!(o.refused[0].reason.contains(reason), "{:?}", o.refused);
+        assert_eq!(o.satellites(o.n_epochs() - 1).len(), 1);
+    }
+    let other = seconds(&[10, 11, 11, 12]).replacen("21600712.022", "21600999.022", 2).replacen("21600999.022", "21600712.022", 1);
+    let o = read(&other);
+    assert_eq!((o.n_epochs(), o.n_refused), (2, 2), "which of the two is right, nobody knows");
+    assert!(o.refused.iter().all(|r| r.reason.contains("contradict")));
+}
+
+#[test]
+fn a_range_that_no_receiver_measures_and_a_number_that_no_satellite_has_are_refused() {
+    let o = read(&V3.replace("  21600712.022   ", "9999999999.999   ").replace("G19", "G99"));
+    assert!(o.values(0)[0].is_nan() && o.values(0)[1] == 113_512_506.876, "the phase stays");
+    let found: Vec<_> = o.refused.iter().map(|r| (r.field.as_str(), r.line)).collect();
+    assert!(found.contains(&("satellite", 14)) && found.iter().any(|(field, _)| *field == "C1C"), "{found:?}");
+    assert_eq!((o.n_refused, o.satellites(0).len()), (2, 2));
 }

@@ -129,7 +129,7 @@ fn epoch<'a>(lines: &mut Lines<'a>, head: &Head, heading: &Heading, o: &mut Obse
         }
     }
     if let Some(time) = head.time {
-        o.end_epoch(time, head.flag == 1, head.clock_offset_s);
+        o.end_epoch(time, head.flag == 1, head.clock_offset_s, lines.number);
     }
     lines.next()
 }
@@ -233,6 +233,6 @@ fn second_epoch(lines: &mut Lines<'_>, head: &Head, satellites: &[Result<Satelli
         }
     }
     if let Some(time) = head.time {
-        o.end_epoch(time, head.flag == 1, head.clock_offset_s);
+        o.end_epoch(time, head.flag == 1, head.clock_offset_s, lines.number);
     }
 }

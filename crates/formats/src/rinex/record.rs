@@ -57,7 +57,7 @@ impl<'a> Block<'a> {
             Some(constellation) => (constellation, columns(first, 0, 2)),
             None => (Constellation::from_letter(*first.first()?)?, columns(first, 1, 3)),
         };
-        let number = u8::try_from(whole(number)?).ok().filter(|n| (1..=99).contains(n))?;
+        let number = u8::try_from(whole(number)?).ok().filter(|n| constellation.numbers().contains(n))?;
         // Version 2 numbers augmentation satellites by PRN less 100 as well.
         Some(SatelliteId { constellation, number })
     }

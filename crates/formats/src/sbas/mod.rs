@@ -5,11 +5,13 @@
 
 mod line;
 
+use crate::order::most_rising;
 use crate::packed::unpack;
 use crate::receiver;
 use crate::refusal::{Refusal, Unreadable};
 use navbound_core::quantity::GpsTime;
 use navbound_core::signal::sbas::Block;
+use std::collections::BTreeSet;
 
 /// The instant that a log writes beside a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,6 +69,8 @@ pub struct Log {
     pub messages: Vec<Received>,
     /// Lines that are no good message, each with its reason.
     pub refused: Vec<Refusal>,
+    /// Line of each message, while the log is read.
+    line: Vec<usize>,
 }
 
 /// Read a log, its format recognised by its first line with content.
@@ -90,13 +94,14 @@ pub fn read(bytes: &[u8], tag: Option<Tag>) -> Result<Log, Unreadable> {
             return Err(Unreadable::whole("state whether the times of this RINEX-B file are the start or the end of a message"));
         }
     };
-    let mut log = Log { format, tag, messages: Vec::new(), refused: Vec::new() };
+    let mut log = Log { format, tag, messages: Vec::new(), refused: Vec::new(), line: Vec::new() };
     match format {
         Format::Ems => lines(&text, &mut log, line::ems),
         Format::Rtklib => lines(&text, &mut log, line::rtklib),
         Format::RinexB => records(&text, &mut log),
         Format::Receiver => frames(&plain, &mut log)?,
     }
+    log.drop_backward();
     Ok(log)
 }
 
@@ -157,6 +162,31 @@ fn records(text: &str, log: &mut Log) {
 }
 
 impl Log {
+    /// Refuse messages that no receiver heard in this order: a wrong date would make an old correction a new one.
+    fn drop_backward(&mut self) {
+        let senders: BTreeSet<u8> = self.messages.iter().map(|m| m.prn).collect();
+        let mut stands = vec![true; self.line.len()];
+        for prn in senders {
+            let own: Vec<usize> = (0..self.line.len()).filter(|k| self.messages[*k].prn == prn).collect();
+            let ends: Vec<GpsTime> = own.iter().map(|k| self.messages[*k].end).collect();
+            if !ends.is_sorted() {
+                own.iter().for_each(|k| stands[*k] = false);
+                most_rising(&ends, false).into_iter().for_each(|k| stands[own[k]] = true);
+            }
+        }
+        for (line, message) in self.line.iter().zip(&self.messages).zip(&stands).filter_map(|(m, stands)| (!stands).then_some(m)) {
+            let text = format!("PRN {}, message type {}", message.prn, message.block.message_type());
+            let reason = "the time runs backwards against the messages around it".to_owned();
+            self.refused.push(Refusal { line: *line, field: "time".to_owned(), reason, text });
+        }
+        if !self.line.is_empty() {
+            let mut kept = stands.iter();
+            self.messages.retain(|_| kept.next().is_none_or(|stands| *stands));
+        }
+        self.refused.sort_by_key(|r| r.line);
+        self.line.clear();
+    }
+
     fn take(&mut self, number: usize, text: &str, parsed: Result<Received, line::Fault>) {
         match parsed {
             Ok(mut message) => {
@@ -164,6 +194,7 @@ impl Log {
                     message.end = GpsTime::from_nanoseconds(message.end.nanoseconds() + 1_000_000_000);
                 }
                 self.messages.push(message);
+                self.line.push(number);
             }
             Err(fault) => self.refused.push(Refusal {
                 line: number,
@@ -172,6 +203,49 @@ impl Log {
                 text: text.chars().take(80).collect(),
             }),
         }
+    }
+}
+
+/// What the preambles say of the times of one satellite's messages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Preambles {
+    /// PRN of the sender.
+    pub prn: u8,
+    /// Messages by how late their time is by the preamble, modulo three seconds: right, one second late, one second early.
+    pub count: [usize; 3],
+}
+
+/// Share of a satellite's messages that must agree before the preambles are believed, and their least number. Provenance: ours; in whole
+/// logs all agree.
+const AGREE: f64 = 0.9;
+const LEAST: usize = 10;
+
+impl Preambles {
+    /// Of each sender. On L1 the first of the three preambles begins with a GPS second that six divides (standard), so that a message with
+    /// the preamble p ends in a second s with (s - p) mod 3 = 1.
+    pub fn of(messages: &[Received]) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for m in messages {
+            let at = all.iter().position(|s| s.prn == m.prn).unwrap_or_else(|| {
+                all.push(Self { prn: m.prn, count: [0; 3] });
+                all.len() - 1
+            });
+            let phase = match m.block.bytes().first() {
+                Some(0x9a) => 1,
+                Some(0xc6) => 2,
+                _ => 0,
+            };
+            let late = (m.end.nanoseconds().div_euclid(1_000_000_000) - phase - 1).rem_euclid(3);
+            all[at].count[late as usize] += 1;
+        }
+        all
+    }
+
+    /// How late the times are \[s\]: 0, 1 or -1; none where too few messages agree.
+    pub fn late_s(&self) -> Option<i64> {
+        let total: usize = self.count.iter().sum();
+        let (which, most) = self.count.iter().enumerate().max_by_key(|(_, n)| **n)?;
+        (total >= LEAST && *most as f64 >= AGREE * total as f64).then_some([0, 1, -1][which])
     }
 }
 

@@ -1,4 +1,5 @@
 use super::*;
+use navbound_core::signal::sbas::BLOCK_BYTES;
 use proptest::prelude::*;
 use std::io::Write;
 
@@ -49,6 +50,26 @@ fn damaged_lines_are_counted_with_their_reason() {
 }
 
 #[test]
+fn preambles_tell_the_second_that_a_tag_means() {
+    // Preambles in turn from a second that six divides; each message ends one second after it began.
+    let message = |s: i64, shift: i64| {
+        let mut bytes = [0_u8; BLOCK_BYTES];
+        bytes[0] = [0x53, 0x9a, 0xc6][(s % 3) as usize];
+        Received { end: GpsTime::from_nanoseconds((s + 1 + shift) * 1_000_000_000), prn: 137, block: Block::with_parity(bytes).unwrap() }
+    };
+    for (shift, late) in [(0, 0), (1, 1), (-1, -1)] {
+        let log: Vec<_> = (600..660).map(|s| message(s, shift)).collect();
+        assert_eq!(Preambles::of(&log)[0].late_s(), Some(late));
+    }
+    let mixed: Vec<_> = (600..660).map(|s| message(s, s / 6 % 2)).collect();
+    assert_eq!(Preambles::of(&mixed)[0].late_s(), None);
+    assert_eq!(Preambles::of(&[message(600, 1)])[0].late_s(), None, "one message proves nothing");
+    // The recorded line above is tagged one second late.
+    let recorded = read(EMS.as_bytes(), None).unwrap();
+    assert_eq!(Preambles::of(&recorded.messages)[0].count, [0, 1, 0]);
+}
+
+#[test]
 fn gzip_is_unpacked_and_what_is_no_log_is_refused() {
     let mut gz = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
     gz.write_all(EMS.as_bytes()).unwrap();
@@ -72,4 +93,16 @@ proptest! {
         let lines = String::from_utf8_lossy(&text).lines().filter(|l| !l.trim().is_empty() && !l.trim().starts_with(['#', '*', '%'])).count();
         prop_assert_eq!(log.messages.len() + log.refused.len(), lines);
     }
+}
+
+#[test]
+fn a_message_whose_time_runs_backwards_is_refused_and_the_others_stand() {
+    let at = |s: u32| EMS.replace("17 00 01", &format!("17 00 {s:02}"));
+    for wrong in [59, 2] {
+        let text: String = [10, 11, wrong, 12, 13].map(at).concat();
+        let log = read(text.as_bytes(), None).unwrap();
+        assert_eq!(log.messages.len(), 4);
+        assert_eq!((log.refused[0].line, log.refused[0].field.as_str()), (3, "time"));
+    }
+    assert!(read([at(10), at(10)].concat().as_bytes(), None).unwrap().refused.is_empty(), "two receivers hear one message");
 }

@@ -119,7 +119,7 @@ def messages(
     """
     stream, damaged = BytesIO(content), list[str]()
     reader = open_reader(stream, lambda e: damaged.append(str(e)))
-    record, at = 0, -1
+    record, at, in_messages = 0, -1, 0
     while True:
         record += 1
         try:
@@ -138,8 +138,16 @@ def messages(
             log.leave_out("damaged message", record, what, damaged=True)
         damaged.clear()
         if message is None:
+            _note_passed_over(log, len(content) - in_messages, len(content))
             return
+        in_messages += len(message[0] or b"")
         yield record, message
+
+
+def _note_passed_over(log: Log, n_bytes: int, of: int) -> None:
+    """A message whose first or last bytes are lost leaves nothing but bytes that nobody takes."""
+    if n_bytes > 0:
+        log.notes.append(f"{log.path.name}: {n_bytes} of {of} bytes belong to no message that is read (text, other protocols, or damage)")
 
 
 def diagonal(e_m: float, n_m: float, u_m: float) -> dict[str, float]:

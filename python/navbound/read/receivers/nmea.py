@@ -6,10 +6,14 @@ Source: NMEA 0183 version 4 as receivers' manuals give it, standard. GGA has no 
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, time, timedelta
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from navbound import _core
 from navbound.errors import FormatError
 from navbound.read.receivers.log import Log, diagonal, messages, package
 
@@ -86,6 +90,8 @@ def _day(sentence: Any) -> date | None:
 def _row(fix: _Fix, dated: tuple[int, date, time], log: Log) -> None:
     gga = fix.gga
     of_day, quality = _field(gga, "time"), _field(gga, "quality")
+    leap = _leap_second(gga)
+    of_day = leap or of_day
     numbers = [_number(gga, name) for name in ("lat", "lon", "alt")]
     if not quality or not isinstance(of_day, time) or numbers[0] is None or numbers[1] is None:
         log.n_rows += 1
@@ -103,19 +109,38 @@ def _row(fix: _Fix, dated: tuple[int, date, time], log: Log) -> None:
     }
     row = {
         "record": fix.record,
-        "unix_ns": _unix_ns(of_day, dated[1], dated[2]),
         "est_lat_rad": math.radians(numbers[0]),
         "est_lon_rad": math.radians(numbers[1]),
         "est_h_m": height,
         "n_sv": None if n_sv is None else int(n_sv),
         "hdop": _number(gga, "HDOP"),
     }
-    log.rows.append(row | _covariance(fix, log))
+    unix_ns = _unix_ns(of_day, dated[1], dated[2])
+    when = {"unix_ns": unix_ns}
+    if leap is not None:
+        time_ns, exists = _core.gps_of_leap_second_ns(np.array([unix_ns], dtype=np.int64))
+        if not exists[0]:
+            log.n_rows += 1
+            log.leave_out("second 60 on a day that had none", fix.record, str(gga.payload[0]), damaged=True)
+            return
+        when = {"time_ns": int(time_ns[0])}
+    log.rows.append(row | when | _covariance(fix, log))
 
 
 def _field(sentence: Any, name: str) -> Any:
     """Field of a sentence; None where the sentence ends before it."""
     return getattr(sentence, name, None)
+
+
+_SECOND_60 = re.compile(r"(\d\d)(\d\d)60(?:\.(\d{1,6})\d*)?")
+
+
+def _leap_second(sentence: Any) -> time | None:
+    """The time of day one second before a written second 60, which no time of day holds; None for every other."""
+    written = _SECOND_60.fullmatch(str(sentence.payload[0])) if getattr(sentence, "payload", None) else None
+    if written is None or int(written[1]) > 23 or int(written[2]) > 59:
+        return None
+    return time(int(written[1]), int(written[2]), 59, int((written[3] or "0").ljust(6, "0")))
 
 
 def _number(sentence: Any, name: str) -> float | None:

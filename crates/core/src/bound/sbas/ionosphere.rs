@@ -356,6 +356,24 @@ mod tests {
     }
 
     #[test]
+    fn a_mask_point_without_data_inside_a_full_large_cell_gives_no_ionosphere() {
+        // All corners of the cell of ten degrees have values; the mask alone chooses the cell of five.
+        let mut grid = world(|_, _| 3.0);
+        for (lat, lon) in [(35, 135), (35, 140)] {
+            set(&mut grid, lat, lon, Point::NotMonitored);
+        }
+        let inside = at(33.0, 137.0);
+        assert_eq!(grid.vertical(inside), None);
+        set(&mut grid, 35, 135, Point::Absent);
+        set(&mut grid, 35, 140, Point::Absent);
+        assert_eq!(grid.vertical(inside).unwrap().delay_m, 3.0, "outside the mask they leave the large cell");
+        // A single silent point on its own side.
+        set(&mut grid, 35, 135, Point::NotMonitored);
+        set(&mut grid, 35, 140, Point::Value(3.0, 6.0));
+        assert_eq!(grid.vertical(at(34.5, 135.5)), None);
+    }
+
+    #[test]
     fn an_empty_grid_and_a_place_off_the_earth_give_nothing() {
         assert_eq!(Grid::default().vertical(at(35.0, 135.0)), None);
         assert_eq!(world(|_, _| 1.0).vertical(at(f64::NAN, 0.0)), None);

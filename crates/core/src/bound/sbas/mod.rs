@@ -293,6 +293,9 @@ pub enum NoLevel {
     /// No PRN mask is in force.
     #[error("{}", Reason::NoPrnMask.words())]
     NoMask,
+    /// The satellites do not serve after four seconds without a message.
+    #[error("{}", Reason::MessageLoss.words())]
+    MessageLoss,
     /// The geometry does not serve.
     #[error(transparent)]
     Geometry(#[from] Unavailable),
@@ -304,6 +307,7 @@ impl NoLevel {
         match self {
             Self::DoNotUse => Reason::ServiceDoNotUse,
             Self::NoMask => Reason::NoPrnMask,
+            Self::MessageLoss => Reason::MessageLoss,
             Self::Geometry(why) => why.reason_of_solution(),
         }
     }
@@ -320,6 +324,12 @@ impl Service {
         }
         if self.masked { Ok(()) } else { Err(NoLevel::NoMask) }
     }
+
+    /// Why satellites do not serve: the silence that took some, before the geometry of those that are left.
+    fn without(&self, why: NoLevel) -> NoLevel {
+        let few = matches!(why, NoLevel::Geometry(Unavailable::TooFewSatellites { .. } | Unavailable::Singular { .. }));
+        if self.lost && few { NoLevel::MessageLoss } else { why }
+    }
 }
 
 /// Levels at a place; `sky` holds the satellites used afterwards.
@@ -330,5 +340,6 @@ impl Service {
 pub fn at(service: &Service, user: &User, sky: &mut Sky) -> Result<Levels, NoLevel> {
     service.serves()?;
     sky.look(service, user);
-    Ok(levels(&sky.covariance()?, service.used_for))
+    let covariance = sky.covariance().map_err(|why| service.without(why.into()))?;
+    Ok(levels(&covariance, service.used_for))
 }

@@ -80,6 +80,10 @@ pub struct Solution {
 /// [`NoLevel`]: the service does not serve, the geometry does not, or ranges are no ranges of a receiver near the Earth.
 pub fn solve(service: &Service, measured: &[Measurement<'_>], receiver: &Receiver, sky: &mut Sky) -> Result<Solution, NoLevel> {
     service.serves()?;
+    converge(service, measured, receiver, sky).map_err(|why| service.without(why))
+}
+
+fn converge(service: &Service, measured: &[Measurement<'_>], receiver: &Receiver, sky: &mut Sky) -> Result<Solution, NoLevel> {
     let mut at = match receiver.near {
         Some(near) => *near.vector(),
         None => start_from(measured.iter().map(|m| (&m.position, m.corrected, Constellation::Gps.index())))?,

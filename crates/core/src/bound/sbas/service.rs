@@ -94,6 +94,8 @@ pub struct Service {
     pub stopped: bool,
     /// A PRN mask is in force.
     pub masked: bool,
+    /// Satellites are missing because four seconds passed without a message.
+    pub lost: bool,
 }
 
 /// Positions \[m\] and velocities \[m/s\], ECEF, axis by axis.
@@ -174,6 +176,7 @@ impl Service {
             regions: [None; REGIONS],
             stopped: false,
             masked: false,
+            lost: false,
         }
     }
 
@@ -185,13 +188,17 @@ impl Service {
         self.regions = [None; REGIONS];
         self.stopped = store.stopped(now);
         let prns = store.prns(self.used_for, now);
+        self.lost = false;
         self.masked = !prns.is_empty() && !self.stopped;
         if !self.masked {
             return;
         }
-        let served = prns.iter().filter_map(|prn| ranging(store, *prn, self.used_for, now, &orbit).ok());
-        for (slot, satellite) in self.satellites.iter_mut().zip(served) {
-            *slot = Some(satellite);
+        let mut free = self.satellites.iter_mut();
+        for prn in prns {
+            match ranging(store, *prn, self.used_for, now, &orbit) {
+                Ok(satellite) => free.next().map_or((), |slot| *slot = Some(satellite)),
+                Err(why) => self.lost |= why == Unserved::Correction(Correction::MessageLoss),
+            }
         }
         self.orbits.take(&self.satellites);
         // Message 28 replaces 27: a service sends one of them.

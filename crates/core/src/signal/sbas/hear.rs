@@ -7,7 +7,7 @@ use super::long_term::LongTermHalf;
 use super::mask::PrnMask;
 use super::region::{Covariances, ServiceRegions};
 use super::store::{Obedience, REGION_MESSAGES, Received, Slot, Store, slot_of};
-use super::{FastDegradation, Message};
+use super::{FastDegradation, Message, timeout};
 use crate::quantity::GpsTime;
 
 /// Why a message changed nothing. Counted, never an error.
@@ -30,6 +30,7 @@ impl Store {
     /// # Errors
     /// [`Ignored`] when it changed nothing, which happens after every start and every change of a mask.
     pub fn receive(&mut self, at: GpsTime, message: &Message) -> Result<(), Ignored> {
+        self.end_silence(at);
         if let Message::DoNotUse(content) = message {
             return self.do_not_use(at, content.as_ref());
         }
@@ -60,11 +61,19 @@ impl Store {
         Ok(())
     }
 
+    /// Whatever a message says, it ends a silence.
+    fn end_silence(&mut self, at: GpsTime) {
+        let gap = self.heard.map(|before| at.nanoseconds().saturating_sub(before.nanoseconds()));
+        if gap.is_some_and(|ns| ns > timeout::SILENCE_NS) {
+            self.resumed = Some(at);
+        }
+        self.heard = self.heard.max(Some(at));
+    }
+
     fn do_not_use(&mut self, at: GpsTime, content: Option<&Fast>) -> Result<(), Ignored> {
         match self.obedience {
             Obedience::Obey => {
-                *self = Self::new(Obedience::Obey);
-                self.stopped = Some(at);
+                *self = Self { stopped: Some(at), heard: self.heard, resumed: self.resumed, ..Self::new(Obedience::Obey) };
                 Ok(())
             }
             Obedience::UseTestSignal => content.map_or(Ok(()), |fast| self.fast(at, fast)),

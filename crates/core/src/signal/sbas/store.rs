@@ -89,6 +89,9 @@ pub enum Correction {
     /// Not in the mask in force.
     #[error("not in the PRN mask")]
     NotInMask,
+    /// Its indicator is from before a silence of the whole signal.
+    #[error("UDRE lost: four seconds without a message")]
+    MessageLoss,
     /// No indicator in force.
     #[error("UDRE too old or never sent")]
     NoUdre,
@@ -105,6 +108,10 @@ pub enum Correction {
 pub struct Store {
     pub(super) obedience: Obedience,
     pub(super) stopped: Option<GpsTime>,
+    /// End of the last valid message of any type.
+    pub(super) heard: Option<GpsTime>,
+    /// End of the first message after the last silence: indicators from before it are lost to an approach.
+    pub(super) resumed: Option<GpsTime>,
     /// Newest first.
     pub(super) masks: [Option<Received<PrnMask>>; 2],
     /// Issue of the mask that corrections use.
@@ -127,6 +134,8 @@ impl Store {
         Self {
             obedience,
             stopped: None,
+            heard: None,
+            resumed: None,
             masks: [None; 2],
             active: None,
             slots: [Slot::default(); SLOTS],
@@ -144,6 +153,15 @@ impl Store {
     /// Whether message 0 forbids any use now.
     pub fn stopped(&self, now: GpsTime) -> bool {
         self.stopped.is_some_and(|since| within(since, now, timeout::DO_NOT_USE_S))
+    }
+    /// Whether no valid message was heard for so long that an approach has no indicator left.
+    pub fn silent(&self, now: GpsTime) -> bool {
+        let since = |end: GpsTime| now.nanoseconds().saturating_sub(end.nanoseconds());
+        self.heard.is_some_and(|end| since(end) >= timeout::SILENCE_NS + timeout::WAY_NS)
+    }
+    /// Whether silence took an indicator that ended at `at` from this use.
+    fn lost(&self, used_for: Use, at: GpsTime, now: GpsTime) -> bool {
+        used_for == Use::PrecisionApproach && (self.silent(now) || self.resumed.is_some_and(|since| at < since))
     }
     /// Degradation parameters in force.
     pub fn degradation(&self, used_for: Use, now: GpsTime) -> Option<&Degradation> {
@@ -185,7 +203,10 @@ impl Store {
         }
         let slot = slot_of(prn).and_then(|i| self.slots.get(i)).ok_or(Correction::NotInMask)?;
         let alive = |o: timeout::TimeOut, at| o.alive(used_for, at, now);
-        let (udrei, udre_applies, _) = slot.udre.filter(|(_, _, at)| alive(timeout::UDRE, *at)).ok_or(Correction::NoUdre)?;
+        let (udrei, udre_applies, sent) = slot.udre.filter(|(_, _, at)| alive(timeout::UDRE, *at)).ok_or(Correction::NoUdre)?;
+        if self.lost(used_for, sent, now) {
+            return Err(Correction::MessageLoss);
+        }
         let ageing = slot.ageing.filter(|r| alive(timeout::FAST_DEGRADATION, r.at)).map(|r| r.value);
         // Without message 7 the shortest time-out is the only safe one.
         let indicator = ageing.map_or(timeout::FAST.len() - 1, |(indicator, _)| usize::from(indicator));

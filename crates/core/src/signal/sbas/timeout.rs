@@ -56,6 +56,11 @@ pub const GRID: TimeOut = TimeOut(600, 600);
 pub const REGIONS: TimeOut = TimeOut(86_400, 86_400);
 /// Clock-ephemeris covariance, message 28.
 pub const COVARIANCE: TimeOut = TimeOut(240, 360);
+/// A message can be used this long after its end: the signal's way from the geostationary satellite \[ns\].
+pub const WAY_NS: i64 = 120_000_000;
+/// Without any valid message for this long every UDRE indicator is too old for LNAV/VNAV, LP and LPV \[ns\] (DO-229D 2.1.1.4.9;
+/// standard, as a public program's source quotes it). En route nothing follows from silence alone.
+pub const SILENCE_NS: i64 = 4_000_000_000;
 /// A satellite that sent message 0 is left alone this long \[s\].
 pub const DO_NOT_USE_S: u32 = 60;
 /// A range rate is dropped this many of its own intervals after the correction it starts from.

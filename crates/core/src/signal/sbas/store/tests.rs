@@ -59,16 +59,61 @@ fn a_satellite_is_served_by_its_own_parts() {
 
 #[test]
 fn parts_grow_too_old_at_the_standards_ages() {
-    let store = served();
     for (used_for, last) in [(Use::PrecisionApproach, 15), (Use::EnRoute, 21)] {
+        let store = heard_until(last);
         assert!(store.satellite(1, used_for, second(last)).is_ok());
         assert_eq!(store.satellite(1, used_for, second(last + 1)), Err(Correction::NoUdre));
     }
     let mut kept = served();
-    for at in (6..700).step_by(6) {
-        kept.receive(second(at), &fast(0, 2, 8, 5)).unwrap();
+    for at in 4..700 {
+        kept.receive(second(at), &if at % 6 == 0 { fast(0, 2, 8, 5) } else { Message::Null }).unwrap();
     }
     assert_eq!(kept.satellite(1, Use::PrecisionApproach, second(699)), Err(Correction::NotInMask), "the mask is 600 s old");
+}
+
+/// A store that serves PRN 1 and hears a message of no content each second from 4 to `last`.
+fn heard_until(last: i64) -> Store {
+    let mut store = served();
+    for at in 4..=last {
+        store.receive(second(at), &Message::Null).unwrap();
+    }
+    store
+}
+
+#[test]
+fn four_seconds_without_a_message_end_the_indicators_of_an_approach_only() {
+    let (store, after) = (heard_until(5), |ns: i64| GpsTime::from_nanoseconds(5_000_000_000 + ns));
+    for (now, lost) in [(after(4_119_999_999), false), (after(4_120_000_000), true)] {
+        let expected = if lost { Err(Correction::MessageLoss) } else { Ok(5) };
+        assert_eq!(store.satellite(1, Use::PrecisionApproach, now).map(|s| s.udrei), expected);
+        assert_eq!(store.silent(now), lost);
+        assert_eq!(store.satellite(1, Use::EnRoute, now).map(|s| s.udrei), Ok(5));
+    }
+}
+
+#[test]
+fn three_lost_messages_change_nothing_and_after_four_each_satellite_waits_for_an_indicator_of_its_own() {
+    for (next, lost) in [(9, false), (10, true)] {
+        let mut store = heard_until(5);
+        // Any message ends the silence, an unknown one too; the old indicators stay lost.
+        assert_eq!(store.receive(second(next), &Message::Unknown(33)), Err(Ignored::Unknown(33)));
+        let expected = if lost { Err(Correction::MessageLoss) } else { Ok(5) };
+        assert_eq!(store.satellite(1, Use::PrecisionApproach, second(next + 1)).map(|s| s.udrei), expected);
+        assert_eq!(store.satellite(1, Use::EnRoute, second(next + 1)).map(|s| s.udrei), Ok(5));
+        assert!(!store.silent(second(next + 1)));
+        store.receive(second(next + 1), &fast(1, 2, 8, 6)).unwrap();
+        assert_eq!(store.satellite(1, Use::PrecisionApproach, second(next + 2)).map(|s| s.udrei), Ok(6));
+    }
+}
+
+#[test]
+fn message_6_revives_a_correction_that_it_names() {
+    let six = |iodf: u32| Draft::new(6).set(14, 2, iodf).set(22, 4, 7).message();
+    let mut store = heard_until(5);
+    store.receive(second(10), &six(1)).unwrap();
+    assert_eq!(store.satellite(1, Use::PrecisionApproach, second(11)), Err(Correction::MessageLoss), "of another issue");
+    store.receive(second(11), &six(0)).unwrap();
+    assert_eq!(store.satellite(1, Use::PrecisionApproach, second(12)).map(|s| s.udrei), Ok(7));
 }
 
 #[test]
@@ -101,8 +146,8 @@ fn message_6_counts_for_the_corrections_it_names_and_in_an_alert_for_all() {
 #[test]
 fn a_rate_never_spans_a_time_without_monitoring() {
     let mut store = served();
-    store.receive(second(9), &fast(1, 2, 16, 5)).unwrap();
-    assert_eq!(store.satellite(1, Use::PrecisionApproach, second(10)).unwrap().earlier.unwrap().correction_m, 1.0);
+    store.receive(second(7), &fast(1, 2, 16, 5)).unwrap();
+    assert_eq!(store.satellite(1, Use::PrecisionApproach, second(8)).unwrap().earlier.unwrap().correction_m, 1.0);
     store.receive(second(15), &fast(2, 2, 0x7FF, 14)).unwrap();
     store.receive(second(21), &fast(0, 2, 16, 5)).unwrap();
     assert_eq!(store.satellite(1, Use::PrecisionApproach, second(22)).unwrap().earlier, None);

@@ -1,0 +1,99 @@
+"""Four seconds without a message, and what the preambles say of a log's times; recorded messages with some taken out."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from conftest import SHARED
+from navbound import _core, sbas
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+WEEK_NS = 2353 * 604_800 * 1_000_000_000
+NS = 1_000_000_000
+USER: dict[str, Any] = {"lat_rad": 0.6169, "lon_rad": 2.4352, "h_m": 100.0}
+"""Near Tokyo, in the middle of the service."""
+REFERENCE = SHARED / "reference" / "ref-dfmc.json"
+
+
+@pytest.fixture(scope="module")
+def folder(shared_data: Path) -> Path:
+    return shared_data / "sbas"
+
+
+@pytest.fixture(scope="module")
+def log(folder: Path) -> sbas.Messages:
+    return sbas.read(folder / "more" / "prn137_2025046_17h.ems.gz")
+
+
+def without(messages: sbas.Messages, first_tow: int, last_tow: int) -> sbas.Messages:
+    """The messages that do not end in the stated seconds."""
+    tow = (messages.time_ns - WEEK_NS) // NS
+    kept = (tow < first_tow) | (tow > last_tow)
+    return replace(messages, time_ns=messages.time_ns[kept], prn=messages.prn[kept], data=messages.data[kept])
+
+
+def seconds(first: int, last: int) -> NDArray[np.int64]:
+    return WEEK_NS + np.arange(first, last + 1, dtype=np.int64) * NS
+
+
+def cases() -> list[dict[str, Any]]:
+    if not REFERENCE.is_file():
+        pytest.skip(f"SKIPPED ALOUD: no reference series at {REFERENCE}")
+    return list(json.loads(REFERENCE.read_text(encoding="utf-8"))["l1_loss"])
+
+
+@pytest.mark.parametrize("which", [0, 1, 2])
+def test_the_indicators_in_force_are_those_of_the_reference_series(log: sbas.Messages, which: int) -> None:
+    """Columns of the series: messages 2 to 4 in approach and en route, 1 where an indicator of that message is in force."""
+    case = cases()[which]
+    lost = without(log, *case["missing_messages_end_tow"])
+    rows = np.array(case["rows"])
+    found = _core.sbas_indicators(lost.time_ns, lost.data, WEEK_NS + rows[:, 0] * NS)
+    mask = next(d.fields["prn"] for d in sbas.decode(log) if d.type == 1)
+    for k, use in enumerate(found):
+        for message in range(3):
+            # Thirteen satellites of the mask a message.
+            own = mask[13 * message : 13 * message + 13]
+            in_force = [int(any(prn in at for prn in own)) for at in use]
+            assert in_force == rows[:, 1 + 2 * message + k].tolist(), (k, 2 + message)
+
+
+def test_the_level_is_gone_for_the_silence_and_its_reason_is_said(log: sbas.Messages, folder: Path) -> None:
+    navigation = folder / "gps_2025046_17h_rinex3.nav"
+    instants = seconds(581_000, 581_030)
+    mode = {n: sbas.protection_levels(without(log, 581_003, 581_002 + n), navigation, instants, **USER, mode="pa") for n in (0, 3, 4)}
+    assert (mode[0].mode == "pa").all()
+    assert (mode[3].mode == "pa").all()
+    # The last message heard ended at 581002: at 581007 nobody has an indicator, whatever came at 581006.
+    out = np.flatnonzero(mode[4].mode != "pa")
+    assert out[0] == 7
+    assert (np.diff(out) == 1).all()
+    ids = {mode[4].reason_ids[mode[4].reason[k] - 1] for k in out}
+    assert ids == {"message_loss"}
+    assert (mode[4].status[out] == "not_available").all()
+    # En route silence takes nothing.
+    assert (sbas.protection_levels(without(log, 581_003, 581_006), navigation, instants, **USER, mode="npa").mode == "npa").all()
+
+
+def test_preambles_say_which_second_a_log_means(folder: Path) -> None:
+    late = sbas.read(folder / "msas137_2025046_17h.ems")
+    assert late.late_s == {137: 1}
+    assert "ended one second before" in late.tag_words()[0]
+    for name in ("more/prn137_2025046_17h.ems.gz", "more/egnos_2012299.ems", "046r_sbas.txt.gz"):
+        right = sbas.read(folder / name)
+        assert right.late_s
+        assert set(right.late_s.values()) == {0}, name
+        assert right.tag_words() == []
+    # The same log declared as tagged at the start ends a second later than it is.
+    stated = sbas.read(folder / "more" / "prn137_2025046_17h.ems.gz", tag="start")
+    assert stated.late_s == {137: 1}
+    assert stated.of(137).late_s == {137: 1}
