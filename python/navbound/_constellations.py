@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound.errors import FormatError, InputError
 
@@ -103,6 +104,7 @@ class Orbits:
         return np.ascontiguousarray(np.stack(columns, axis=-1))
 
 
+@checked
 def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bool = False) -> Orbits:
     """Nominal constellation as data that ships with navbound, or an almanac of GPS.
 
@@ -191,6 +193,7 @@ def _broadcast(content: bytes, path: Path, near_ns: int | None) -> Orbits:
     return Orbits(tuple(names), of, axis, eccentricity, inclination, node, perigee, anomaly, node_rate, reference)
 
 
+@checked
 def nominal(
     semi_major_m: ArrayLike,
     inclination_rad: ArrayLike,

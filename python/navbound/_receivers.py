@@ -14,7 +14,8 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
-from navbound._arrays import flatten
+from navbound._arguments import checked
+from navbound._arrays import flatten, shown
 from navbound._constellations import CONSTELLATIONS, Orbits
 from navbound._signal_choice import smaller_covariance
 from navbound.errors import FormatError, InputError
@@ -262,6 +263,7 @@ def file_content(path: str | Path) -> tuple[Path, bytes]:
         raise FormatError(place, e.strerror or str(e)) from e
 
 
+@checked
 def read_observations(path: str | Path) -> Observations:
     """Read a RINEX observation file, or the raw measurements in a receiver's log.
 
@@ -285,6 +287,7 @@ def read_observations(path: str | Path) -> Observations:
     return Observations(_core.Observations(content, str(place)), place)
 
 
+@checked
 def read_navigation(paths: str | Path | Sequence[str | Path]) -> Navigation:
     """Read RINEX navigation files, or the subframes in receivers' logs.
 
@@ -311,6 +314,7 @@ def read_navigation(paths: str | Path | Sequence[str | Path]) -> Navigation:
     return Navigation(_core.Navigation([(content, str(place)) for place, content in files]), [place for place, _ in files])
 
 
+@checked
 def solve(
     observations: Observations,
     navigation: Navigation,
@@ -388,6 +392,10 @@ def solve(
     """
     if not systems or any(s not in SYSTEMS for s in systems):
         raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
+    from navbound._precise import PreciseOrbits as Precise  # noqa: PLC0415 - that module reads files by this one
+
+    if orbits is not None and not isinstance(orbits, Precise):
+        raise InputError("orbits", shown(orbits), domain="an object of class PreciseOrbits or None")
     if signals not in SIGNALS:
         raise InputError("signals", signals, domain=", ".join(SIGNALS))
     if ionosphere not in IONOSPHERES:
@@ -499,6 +507,7 @@ def with_errors(epochs: pl.DataFrame, truth_ecef_m: ArrayLike) -> pl.DataFrame:
     return epochs.hstack(pl.DataFrame({name: values[:, k] for k, name in enumerate(names)}).with_columns(pl.all().fill_nan(None)))
 
 
+@checked
 def geodetic(ecef_m: ArrayLike) -> NDArray[np.float64]:
     """Latitude, longitude and height of Earth-fixed positions, WGS-84.
 

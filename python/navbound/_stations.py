@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from navbound._arguments import checked
 from navbound.errors import FormatError, InputError
 
 if TYPE_CHECKING:
@@ -166,6 +167,7 @@ def stations() -> Stations:
     return _parse(name, text, unique=False)
 
 
+@checked
 def read_stations(file: str | Path) -> Stations:
     """Read a table of stations: CSV, plain or gzip, with a heading; lines that begin with ``#`` are comments.
 

@@ -38,6 +38,25 @@ class InputError(NavboundError, ValueError):
         return type(self), (self.argument, self.value, self.unit, self.domain, self.index)
 
 
+class InternalError(NavboundError, RuntimeError):
+    """A bug in navbound: an invariant of its own does not hold. Neither the arguments nor the data are at fault.
+
+    Attributes
+    ----------
+    where : str
+        The public function, or the command.
+    """
+
+    def __init__(self, where: str, cause: object) -> None:
+        self.where = where
+        self.cause = str(cause)
+        super().__init__(f"{where}: this is a bug in navbound, please report it: {cause}")
+
+    def __reduce__(self) -> tuple[type[InternalError], tuple[object, ...]]:
+        """From its parts, as that of :class:`InputError`."""
+        return type(self), (self.where, self.cause)
+
+
 class FormatError(NavboundError, ValueError):
     """Data that cannot be read.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound.errors import InputError
 from navbound.tse import exceedance_risk
@@ -128,6 +129,7 @@ class Pit:
     high: float
 
 
+@checked
 def bound(
     error_m: ArrayLike,
     bound_m: ArrayLike,
@@ -172,6 +174,7 @@ def bound(
     return BoundScore(**_core.evaluate_bound(error, limit, risk, _labels(track)), risk=risk, coverage_kind=coverage_kind)
 
 
+@checked
 def bootstrap_coverage(
     error_m: ArrayLike, bound_m: ArrayLike, track: ArrayLike, *, n_replicates: int = 2000, seed: int = 0
 ) -> tuple[float, float]:
@@ -201,6 +204,7 @@ def bootstrap_coverage(
     return _core.bootstrap_coverage(error, limit, _labels(track), _count("n_replicates", n_replicates), seed)
 
 
+@checked
 def nees(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = None) -> Nees:
     """Mean of e' V⁻¹ e with chi-square limits for the effective sample size.
 
@@ -222,6 +226,7 @@ def nees(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None =
     return Nees(**_core.evaluate_nees(dimension, error, covariance, _labels(track)))
 
 
+@checked
 def pit(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = None, *, n_bins: int = 20) -> Pit:
     """Histogram of the probability integral transform of e' V⁻¹ e, with its band.
 
@@ -284,6 +289,7 @@ class Containment:
     p_value_any: float
 
 
+@checked
 def magnitude(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = None) -> Magnitude:
     """Size of the horizontal error against its covariance, with a probability that needs no effective sample size.
 
@@ -310,6 +316,7 @@ def magnitude(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | N
     return Magnitude(**_core.evaluate_magnitude(error, covariance, _labels(track)))
 
 
+@checked
 def containment(n_outside: int, n: int, n_effective: float, risk: float) -> Containment:
     """How often a bound contained the error, and how probable that is for a bound that keeps its risk.
 
@@ -330,6 +337,7 @@ def containment(n_outside: int, n: int, n_effective: float, risk: float) -> Cont
     return Containment(**_core.evaluate_containment(_count("n_outside", n_outside), _count("n", n), n_effective, risk))
 
 
+@checked
 def crps(error_m: ArrayLike, sigma_m: ArrayLike) -> NDArray[np.float64]:
     """Continuous ranked probability score of a centred Gaussian: how far its law is from the error that came.
 
@@ -367,6 +375,7 @@ def crps(error_m: ArrayLike, sigma_m: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(sigma * (z * inside + 2.0 * density - 1.0 / math.sqrt(math.pi)))
 
 
+@checked
 def effective_size(values: ArrayLike, track: ArrayLike | None = None) -> float:
     """Epochs the mean of a correlated series is worth, ``n / (1 + 2 sum rho)``, pooled over tracks; NaN left out.
 
