@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import navbound
-from navbound import InputError, InternalError, NavboundError, _core, anp, gnss, kpi, maps, raim, tse
+from navbound import InputError, InternalError, NavboundError, _core, anp, gnss, maps, raim, tse
 from navbound._arguments import checked
 from navbound._arrays import MOST_BYTES, flatten
 from public_calls import CALLS, MODULES
@@ -224,4 +224,4 @@ def test_annotations_that_are_words_are_checked_as_such() -> None:
     with pytest.raises(InputError, match="one of"):
         raim.watch(signals="triple")  # type: ignore[call-arg, arg-type]
     with pytest.raises(InputError, match="text"):
-        kpi.rnp(0.3, 10.0, **{next(iter(set(inspect.signature(kpi.rnp).parameters) - {"rnp_nm", "tta_s"}), "name"): 7})
+        gnss.nominal(2.656e7, 0.96, 0.0, 0.0, system=7)  # type: ignore[arg-type]
