@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import polars as pl
 
-from navbound import _core
+from navbound import _core, _packed
 from navbound._arguments import checked
 from navbound._arrays import flatten, shown
 from navbound._constellations import CONSTELLATIONS, Orbits
 from navbound._signal_choice import smaller_covariance
-from navbound.errors import FormatError, InputError
+from navbound.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -255,12 +255,8 @@ def unused_words(unused: dict[str, int]) -> str:
 
 
 def file_content(path: str | Path) -> tuple[Path, bytes]:
-    """Path and bytes of a file, or a refusal."""
-    place = Path(path)
-    try:
-        return place, place.read_bytes()
-    except OSError as e:
-        raise FormatError(place, e.strerror or str(e)) from e
+    """Path and plain bytes of a file, or a refusal."""
+    return Path(path), _packed.read(path)
 
 
 @checked

@@ -420,6 +420,8 @@ def main() -> None:
         _die(str(e), UNREADABLE)
     except (InputError, NavboundError) as e:
         _die(str(e), USAGE)
+    except MemoryError:
+        _die("the data need more memory than there is", UNREADABLE)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (Exception, _core.PanicException) as e:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import gzip
 import hashlib
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from navbound import _packed
 from navbound.errors import FormatError
 from navbound.read import receivers
 from navbound.run.records import InputFile
@@ -83,7 +82,7 @@ def load(path: str | Path) -> Source:
     Raises
     ------
     FormatError
-        No such file, not a file, empty, or a gzip file that is damaged or cut short.
+        No such file, not a file, empty, or packed and damaged, cut short or above the limit of :mod:`navbound._packed`.
     """
     path = Path(path)
     try:
@@ -92,12 +91,7 @@ def load(path: str | Path) -> Source:
         raise FormatError(path, "no such file") from e
     except OSError as e:
         raise FormatError(path, f"cannot be read: {e.strerror}") from e
-    content = stored
-    if stored.startswith(b"\x1f\x8b"):
-        try:
-            content = gzip.decompress(stored)
-        except (EOFError, zlib.error, gzip.BadGzipFile) as e:
-            raise FormatError(path, f"damaged gzip file: {e}") from e
+    content = _packed.plain(path, stored)
     if not content.strip():
         raise FormatError(path, "the file is empty")
     return Source(path, content, hashlib.sha256(stored).hexdigest(), len(stored))
