@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from navbound import _packed
-from navbound.errors import FormatError
+from navbound.errors import FormatError, visible
 from navbound.read import receivers
 from navbound.run.records import InputFile
 
@@ -51,7 +51,7 @@ class Source:
     @property
     def stem(self) -> str:
         """The name without its endings."""
-        return self.path.name.split(".")[0] or self.path.name
+        return visible(self.path.name.split(".")[0] or self.path.name)
 
     def text(self) -> str:
         """Content as text.
