@@ -191,7 +191,7 @@ def test_a_job_that_was_killed_goes_on(tmp_path: Path) -> None:
     assert same(found, [tiles_fixture.numbers(t) for t in range(60)])
 
 
-def resaved(file: Path, change: Callable[[dict[str, np.ndarray[Any, Any]]], None]) -> None:
+def resaved(file: Path, change: Callable[[dict[str, np.ndarray[Any, Any]]], object]) -> None:
     """Write a tile anew, as a hand that knows the format would, with something changed in it."""
     with np.load(file) as archive:
         columns = dict(archive)
@@ -220,7 +220,7 @@ def test_a_tile_whose_content_was_changed_is_worked_off_again(tmp_path: Path, ha
         file.write_bytes(content)
     else:
         content[len(content) // 2] ^= 1
-        file.write_bytes({"byte": content, "short": content[:30], "empty": b""}[harm])
+        file.write_bytes(content[: {"byte": len(content), "short": 30, "empty": 0}[harm]])
     assert same(scale.map_tiles(tiles_fixture.numbers, TILES, checkpoint=kept), [tiles_fixture.numbers(t) for t in TILES])
 
 

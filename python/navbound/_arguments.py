@@ -22,7 +22,7 @@ from navbound.errors import InputError, InternalError
 
 P = ParamSpec("P")
 R = TypeVar("R")
-Check = Callable[[str, Any], None]
+Check = Callable[[str, Any], object]
 """Refuses a value of a named argument by an `InputError`."""
 
 _INTEGERS = range(-(2**63), 2**63)
@@ -44,7 +44,7 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     def checks() -> dict[str, Check]:
         # Not when the module is loaded: names of classes below the function are not known yet.
         annotations = inspect.get_annotations(function)
-        return {name: c for name in names if (c := _check(annotations.get(name), function.__globals__)) is not None}  # type: ignore[attr-defined]
+        return {name: c for name in names if (c := _check(annotations.get(name), function.__globals__)) is not None}
 
     @functools.wraps(function)
     def checking(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -75,7 +75,8 @@ def _check(annotation: object, known: Mapping[str, Any]) -> Check | None:
         refusals = []
         for check in understood:
             try:
-                return check(name, value)
+                check(name, value)
+                return
             except InputError as e:
                 refusals.append(e)
         raise InputError(name, shown(value), domain=" or ".join(dict.fromkeys(e.domain for e in refusals)))
@@ -115,7 +116,7 @@ def _resolved(meaning: Any) -> Check | None:
         return _one_of(typing.get_args(meaning))
     if isinstance(meaning, types.UnionType):
         meaning = typing.get_args(meaning)
-    classes = tuple(typing.get_origin(c) or c for c in (meaning if isinstance(meaning, tuple) else (meaning,)))
+    classes: tuple[Any, ...] = tuple(typing.get_origin(c) or c for c in (meaning if isinstance(meaning, tuple) else (meaning,)))
     if not all(isinstance(c, type) for c in classes):
         return None
     return _kind(" or ".join(f"an object of class {c.__name__}" for c in classes), lambda value: isinstance(value, classes))
