@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import navbound
-from navbound import InputError, InternalError, NavboundError, _core, anp, gnss, maps, raim, tse
+from navbound import InputError, InternalError, NavboundError, _core, anp, gnss, ins, maps, raim, tse
 from navbound._arguments import checked
 from navbound._arrays import MOST_BYTES, flatten
 from public_calls import CALLS, MODULES
@@ -225,3 +225,34 @@ def test_annotations_that_are_words_are_checked_as_such() -> None:
         raim.watch(signals="triple")  # type: ignore[call-arg, arg-type]
     with pytest.raises(InputError, match="text"):
         gnss.nominal(2.656e7, 0.96, 0.0, 0.0, system=7)  # type: ignore[arg-type]
+
+
+NO_TIMES: dict[str, Any] = {
+    "not a number": [0.0, np.nan],
+    "infinite": [0.0, np.inf],
+    "beyond 2^63": [0, 2**64],
+    "beyond 2^63, as doubles": [0.0, 2.0**63],
+    "unsigned beyond 2^63": np.array([0, 2**63], dtype=np.uint64),
+    "half a nanosecond": [0.0, 0.5],
+    "text": ["a", "b"],
+    "dates": np.array(["2026-01-01", "2026-01-02"], dtype="datetime64[ns]"),
+    "400 digits": [10**400, 1],
+    "rows of different lengths": [[1], [1, 2]],
+    "nothing": None,
+    "an object": object(),
+}
+
+THREE = np.zeros((2, 3))
+TIMED: dict[str, Callable[[Any], Any]] = {
+    "Imu": lambda t: ins.Imu(t, THREE, THREE).columns(),
+    "BaroHeights": lambda t: ins.BaroHeights(t, np.zeros(2), np.ones(2), np.ones(2), np.ones(2)).table(),
+}
+
+
+@pytest.mark.parametrize("what", NO_TIMES)
+@pytest.mark.parametrize("record", TIMED)
+def test_what_is_no_time_is_refused(record: str, what: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        TIMED[record](NO_TIMES[what])
+    assert refusal.value.argument == "time_ns"
+    TIMED[record]([0.0, 1e9])

@@ -12,13 +12,16 @@ import inspect
 import types
 import typing
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
 
 from navbound import _core
 from navbound._arrays import numbers, shown
 from navbound.errors import InputError, InternalError
+
+if TYPE_CHECKING:
+    pass
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -153,6 +156,16 @@ def _whole_numbers(name: str, value: Any) -> None:
         raise InputError(name, shown(value), domain="whole numbers of at most 63 bits")
 
 
+def _labels(name: str, value: Any) -> None:
+    """One label an epoch, texts or numbers."""
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError) as e:
+        raise InputError(name, shown(value), domain="labels, shape (n,)") from e
+    if array.ndim != 1 or array.dtype.kind not in "biufUSO":
+        raise InputError(name, shown(value), domain="labels, shape (n,)")
+
+
 def _mapping_of_numbers(name: str, value: Any) -> None:
     if not isinstance(value, Mapping):
         raise InputError(name, shown(value), domain="a mapping")
@@ -175,6 +188,7 @@ _NAMED: dict[str, Check] = {
     "bool": _kind("True or False", lambda value: isinstance(value, bool | np.bool_)),
     "str": _kind("text", lambda value: isinstance(value, str)),
     "ArrayLike": numbers,
+    "Labels": _labels,
 }
 
 _OF_NUMBERS: dict[tuple[str, str], Check] = {

@@ -29,6 +29,8 @@ def numbers(name: str, value: object, expected: str = "numbers") -> NDArray[np.g
         Text, times, complex numbers, masked entries (whose values would be taken for good ones), integers that no double holds, lists of
         different lengths, other objects, more than :data:`MOST_AXES` axes, or more than :data:`MOST_BYTES`.
     """
+    if type(value) is float:
+        return np.asarray(value)
     if value is None:
         raise InputError(name, None, domain=expected)
     if isinstance(value, np.ma.MaskedArray) and np.ma.getmaskarray(value).any():
@@ -45,6 +47,26 @@ def numbers(name: str, value: object, expected: str = "numbers") -> NDArray[np.g
         raise InputError(name, f"{array.ndim} axes", domain=f"an array of at most {MOST_AXES} axes")
     _require_room(name, array.size * 8)
     return array
+
+
+def whole_numbers(name: str, value: object, expected: str = "whole numbers") -> NDArray[np.int64]:
+    """See a named argument as whole numbers of 63 bits: times in nanoseconds, indices.
+
+    Raises
+    ------
+    InputError
+        As :func:`numbers`; or numbers with a fraction, or that are no numbers (they would become others without a word), or too large.
+    """
+    array = numbers(name, value, expected)
+    if array.size and array.dtype.kind != "b":
+        limit = 2.0**63 if array.dtype.kind == "f" else 2**63 - 1
+        if array.dtype.kind == "f" and not (
+            np.isfinite(array).all() and (array == np.floor(array)).all() and (np.abs(array) < limit).all()
+        ):
+            raise InputError(name, shown(value), domain=f"{expected} of at most 63 bits")
+        if array.dtype.kind == "u" and int(array.max()) > limit:
+            raise InputError(name, shown(value), domain=f"{expected} of at most 63 bits")
+    return np.ascontiguousarray(array.astype(np.int64)).reshape(array.shape)
 
 
 def _require_room(name: str, needed: int) -> None:

@@ -17,6 +17,8 @@ from navbound.tse import exceedance_risk
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from navbound._arguments import Labels
+
 CONDITIONAL = (
     "Conditional coverage: the estimate is given and the true position scatters about it, as every bound of the total system error "
     "assumes; an exact bound covers 1 - risk of the epochs."
@@ -134,7 +136,7 @@ def bound(
     error_m: ArrayLike,
     bound_m: ArrayLike,
     risk: float,
-    track: ArrayLike | None = None,
+    track: Labels | None = None,
     *,
     coverage_kind: str = REPEATED,
 ) -> BoundScore:
@@ -176,7 +178,7 @@ def bound(
 
 @checked
 def bootstrap_coverage(
-    error_m: ArrayLike, bound_m: ArrayLike, track: ArrayLike, *, n_replicates: int = 2000, seed: int = 0
+    error_m: ArrayLike, bound_m: ArrayLike, track: Labels, *, n_replicates: int = 2000, seed: int = 0
 ) -> tuple[float, float]:
     """Resample whole tracks for a 95 % interval of the coverage (cluster bootstrap).
 
@@ -205,7 +207,7 @@ def bootstrap_coverage(
 
 
 @checked
-def nees(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = None) -> Nees:
+def nees(error_m: ArrayLike, covariance_m2: ArrayLike, track: Labels | None = None) -> Nees:
     """Mean of e' V⁻¹ e with chi-square limits for the effective sample size.
 
     Parameters
@@ -227,7 +229,7 @@ def nees(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None =
 
 
 @checked
-def pit(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = None, *, n_bins: int = 20) -> Pit:
+def pit(error_m: ArrayLike, covariance_m2: ArrayLike, track: Labels | None = None, *, n_bins: int = 20) -> Pit:
     """Histogram of the probability integral transform of e' V⁻¹ e, with its band.
 
     Parameters
@@ -290,7 +292,7 @@ class Containment:
 
 
 @checked
-def magnitude(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = None) -> Magnitude:
+def magnitude(error_m: ArrayLike, covariance_m2: ArrayLike, track: Labels | None = None) -> Magnitude:
     """Size of the horizontal error against its covariance, with a probability that needs no effective sample size.
 
     ``p = min(1, exp(1 - m / 2))`` with the time mean m of e' V⁻¹ e: a mean of equally distributed values is in the convex order no larger
@@ -376,7 +378,7 @@ def crps(error_m: ArrayLike, sigma_m: ArrayLike) -> NDArray[np.float64]:
 
 
 @checked
-def effective_size(values: ArrayLike, track: ArrayLike | None = None) -> float:
+def effective_size(values: ArrayLike, track: Labels | None = None) -> float:
     """Epochs the mean of a correlated series is worth, ``n / (1 + 2 sum rho)``, pooled over tracks; NaN left out.
 
     Parameters
@@ -410,7 +412,7 @@ def _vectors(error_m: ArrayLike, covariance_m2: ArrayLike) -> tuple[int, NDArray
     return dimension, error.ravel(), covariance.ravel()
 
 
-def _labels(track: ArrayLike | None) -> NDArray[np.uint32]:
+def _labels(track: Labels | None) -> NDArray[np.uint32]:
     if track is None:
         return np.zeros(0, dtype=np.uint32)
     labels = np.asarray(track)
