@@ -21,7 +21,9 @@ from navbound._arrays import numbers, shown
 from navbound.errors import InputError, InternalError
 
 if TYPE_CHECKING:
-    pass
+    from numpy.typing import ArrayLike
+
+    Labels = ArrayLike
 
 P = ParamSpec("P")
 R = TypeVar("R")
