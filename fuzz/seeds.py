@@ -1,4 +1,5 @@
-"""Write a corpus of small seeds for every fuzz target: the texts that the readers' own tests hold, and frames made here.
+"""Write a corpus of small seeds for every fuzz target: the texts that the readers' own tests hold, frames made here, and beginnings of
+real files where the shared data are there.
 
 python3 fuzz/seeds.py    (writes fuzz/corpus/<target>/; nothing of it is committed)
 """
@@ -107,9 +108,39 @@ def corpus() -> dict[str, list[bytes]]:
     return found
 
 
+REAL = {
+    "observations": ("*.[0-9][0-9]o", "*.[0-9][0-9]d", "*_MO.rnx", "*_MO.crx"),
+    "navigation": ("*.[0-9][0-9]n", "*_MN.rnx", "*_GN.rnx"),
+    "orbits": ("*.sp3", "*.SP3"),
+    "clocks": ("*.clk", "*.CLK"),
+    "almanac": ("*.al3", "*.alm"),
+    "rtklib": ("*.pos",),
+    "sbas": ("*.ems", "*.sbs"),
+    "packed": ("*.gz",),
+}
+"""What real files of a target are called."""
+LONGEST, MOST = 4096, 6
+"""Bytes of a real file that make a seed, and real seeds of a target: the corpus stays small. [B, 1]"""
+
+
+def real(folder: Path) -> dict[str, list[bytes]]:
+    """Beginnings of real files, whole lines of those that are text; unpacked unless packing is what is read."""
+    found: dict[str, list[bytes]] = {}
+    for target, patterns in REAL.items():
+        endings = patterns if target == "packed" else [p + tail for p in patterns for tail in ("", ".gz")]
+        for path in sorted({p for ending in endings for p in folder.rglob(ending)})[:MOST]:
+            opened = gzip.open if path.suffix == ".gz" and target != "packed" else open
+            with opened(path, "rb") as file:
+                start = file.read(LONGEST)
+            found.setdefault(target, []).append(start if target == "packed" else start[: start.rfind(b"\n") + 1] or start)
+    return found
+
+
 def main() -> None:
     """Write them."""
-    for target, seeds in corpus().items():
+    from_files = real(HERE.parents[1] / "shared" / "data")
+    for target, own in corpus().items():
+        seeds = own + from_files.get(target, [])
         folder = HERE / "corpus" / target
         folder.mkdir(parents=True, exist_ok=True)
         for k, seed in enumerate(seeds):

@@ -1,12 +1,11 @@
-"""Recorded drives and flights as `navbound.ins.fuse` takes them, with a declared level. ``python tests/recordings.py`` runs the fault campaign on them.
+"""Recorded drives and flights as `navbound.ins.fuse` takes them, with a declared level.
 
-Levels are declared by the kind of receiver: 1 m of RTK, 20 m of a single frequency. Nothing of the filter was chosen here; noise, axes and
-delay of the car and of the aircraft are those of `drive_fixture` and of the filter's tests, of the highway typical figures of a phone's unit.
+``python tests/recordings.py`` runs the fault campaign on them. Levels are declared by the kind of receiver: 1 m of RTK, 20 m of a single
+frequency. Nothing of the filter was chosen here; noise, axes and delay of the car and of the aircraft are those of `drive_fixture` and of
+the tests of the filter, of the highway typical figures of a phone's unit.
 """
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 from scipy.io import loadmat

@@ -199,8 +199,8 @@ def test_rates_alone_hold_what_ranges_have_found() -> None:
     sigma = np.sqrt(fused.covariance_enu_m2[:, 0, 0])
     alone = ins.fuse(still.imu, ins.Aiding(satellites=body.some(mixed, ranged)), still.start)
     free = np.sqrt(alone.covariance_enu_m2[:, 0, 0])
-    # From where nothing checks the position any more: what the tests had left unseen is stated from then on. Ninety seconds of white rates of
-    # 5 mm/s add less than a decimetre; without them the unit's own errors add metres.
+    # From where nothing checks the position any more: what the tests had left unseen is stated from then on. Ninety seconds of white rates
+    # of 5 mm/s add less than a decimetre; without them the unit's own errors add metres.
     assert sigma[119] - sigma[33] < 0.1
     assert free[119] - free[33] > 1.0
     # The mode knows positions only: rates hold none.

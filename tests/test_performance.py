@@ -211,6 +211,24 @@ def test_a_damaged_part_is_named(tmp_path: Path) -> None:
         navbound.analyze(files, levels="NPA", out=out)
 
 
+@pytest.mark.parametrize("harm", ["level", "count", "digests"])
+def test_a_part_whose_content_was_changed_is_not_taken(tmp_path: Path, harm: str) -> None:
+    (file,) = days(tmp_path, 1)
+    navbound.analyze(file, levels="NPA", period_s=1.0, out=tmp_path / "run")
+    (table,) = (tmp_path / "run" / PARTS).glob("*.parquet")
+    (record,) = (tmp_path / "run" / PARTS).glob("*.json")
+    kept = json.loads(record.read_text())
+    if harm == "level":
+        pl.read_parquet(table).with_columns(hpl_m=pl.col("hpl_m") * 0.5).write_parquet(table)
+    elif harm == "count":
+        kept["facts"]["n_epochs"] += 1
+    else:
+        del kept["facts"]["digests"]
+    record.write_text(json.dumps(kept))
+    with pytest.raises(FormatError, match=r"is not what was kept.*to compute this part again"):
+        navbound.analyze(file, levels="NPA", period_s=1.0, out=tmp_path / "run")
+
+
 def test_observations_alone_are_refused(shared_data: Path) -> None:
     with pytest.raises(InputError, match="navigation file"):
         navbound.analyze(shared_data / "sbas" / "virtual_user_2025046_17h.25O.gz", levels="NPA")

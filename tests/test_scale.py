@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -189,6 +189,39 @@ def test_a_job_that_was_killed_goes_on(tmp_path: Path) -> None:
     assert told[0] == (finished, 60)
     assert told[-1] == (60, 60)
     assert same(found, [tiles_fixture.numbers(t) for t in range(60)])
+
+
+def resaved(file: Path, change: Callable[[dict[str, np.ndarray[Any, Any]]], object]) -> None:
+    """Write a tile anew, as a hand that knows the format would, with something changed in it."""
+    with np.load(file) as archive:
+        columns = dict(archive)
+    change(columns)
+    with file.open("wb") as content:
+        np.savez(content, **columns)
+
+
+@pytest.mark.parametrize("harm", ["value", "column", "compression", "byte", "short", "empty", "huge"])
+def test_a_tile_whose_content_was_changed_is_worked_off_again(tmp_path: Path, harm: str) -> None:
+    kept = tmp_path / "kept"
+    scale.map_tiles(tiles_fixture.numbers, TILES, checkpoint=kept)
+    file = next(kept.glob("tile-000002-*.npz"))
+    content = bytearray(file.read_bytes())
+    name = next(iter(tiles_fixture.numbers(TILES[2])))
+    if harm == "value":
+        resaved(file, lambda columns: columns.update({name: columns[name] + 1}))
+    elif harm == "column":
+        resaved(file, lambda columns: columns.pop(name))
+    elif harm == "compression":
+        content[8:10] = content[content.index(b"PK\x01\x02") + 10 : content.index(b"PK\x01\x02") + 12] = (99).to_bytes(2, "little")
+        file.write_bytes(content)
+    elif harm == "huge":
+        at = content.index(b"(")
+        content[at : at + 4] = b"(9e9"
+        file.write_bytes(content)
+    else:
+        content[len(content) // 2] ^= 1
+        file.write_bytes(content[: {"byte": len(content), "short": 30, "empty": 0}[harm]])
+    assert same(scale.map_tiles(tiles_fixture.numbers, TILES, checkpoint=kept), [tiles_fixture.numbers(t) for t in TILES])
 
 
 def test_tiles_of_another_job_and_damaged_ones_are_not_taken(tmp_path: Path) -> None:

@@ -10,12 +10,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navbound._core import __version__
-from navbound.errors import FormatError, InputError, NavboundError
+from navbound.errors import FormatError, InputError, InternalError, NavboundError
 
 if TYPE_CHECKING:
     from navbound.run.commands import analyze, fly, study
 
-__all__ = ["FormatError", "InputError", "NavboundError", "__version__", "analyze", "fly", "study"]
+__all__ = ["FormatError", "InputError", "InternalError", "NavboundError", "__version__", "analyze", "fly", "study"]
 
 
 def __getattr__(name: str) -> object:

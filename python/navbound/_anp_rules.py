@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound.errors import InputError
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+@checked
 def circle_fit(covariance_en_m2: ArrayLike, risk: ArrayLike = 0.05) -> Floats:
     """95 % circle by the published cubic, corrected: up to 0.87 % short, holding 94.743 % at worst.
 
@@ -42,6 +44,7 @@ def circle_fit(covariance_en_m2: ArrayLike, risk: ArrayLike = 0.05) -> Floats:
     return unflatten(_core.anp_circle_fit(v, q), shape)
 
 
+@checked
 def circle_geodesy(covariance_en_m2: ArrayLike, risk: ArrayLike = 0.05) -> Floats:
     """95 % circle by geodesy's cubic: from 0.0042 sigma_major short to 0.0034 long, holding 94.946 % at worst.
 
@@ -68,6 +71,7 @@ def circle_geodesy(covariance_en_m2: ArrayLike, risk: ArrayLike = 0.05) -> Float
     return unflatten(_core.anp_circle_geodesy(v, q), shape)
 
 
+@checked
 def circle_fit_as_printed(covariance_en_m2: ArrayLike, risk: ArrayLike = 0.05) -> Floats:
     """95 % circle by the published cubic as printed: an exhibit, 2.9 times too long at an axis ratio of two.
 
@@ -94,6 +98,7 @@ def circle_fit_as_printed(covariance_en_m2: ArrayLike, risk: ArrayLike = 0.05) -
     return unflatten(_core.anp_circle_fit_as_printed(v, q), shape)
 
 
+@checked
 def sphere_grubbs(covariance_enu_m2: ArrayLike, risk: ArrayLike, mean_enu_m: ArrayLike | None = None) -> Floats:
     """Sphere by Grubbs' use of Wilson and Hilferty's approximation, corrected.
 
@@ -124,6 +129,7 @@ def sphere_grubbs(covariance_enu_m2: ArrayLike, risk: ArrayLike, mean_enu_m: Arr
     return unflatten(_core.anp_sphere_grubbs(v, m, q), shape)
 
 
+@checked
 def sphere_grubbs_as_printed(covariance_enu_m2: ArrayLike, risk: ArrayLike = 0.05) -> Floats:
     """95 % sphere by eq. 17 of Dai et al. 2022 as printed: an exhibit, 17.5 to 34.1 % too long.
 
@@ -168,6 +174,7 @@ def _sigmas(covariance_enu_m2: ArrayLike) -> Floats:
     return _core.anp_principal_sigmas(v).reshape(*shape, 3)
 
 
+@checked
 def cep(covariance_en_m2: ArrayLike) -> Floats:
     """Circular error probable (50 %) by the rule ``0.589 (sigma_1 + sigma_2)``.
 
@@ -192,6 +199,7 @@ def cep(covariance_en_m2: ArrayLike) -> Floats:
     return np.asarray(0.589 * (major + minor), dtype=np.float64)
 
 
+@checked
 def two_drms(covariance_en_m2: ArrayLike) -> Floats:
     """95 % circle by the rule ``2 sqrt(sigma_1^2 + sigma_2^2)``.
 
@@ -216,6 +224,7 @@ def two_drms(covariance_en_m2: ArrayLike) -> Floats:
     return np.asarray(2.0 * np.hypot(major, minor), dtype=np.float64)
 
 
+@checked
 def circle_major(covariance_en_m2: ArrayLike) -> Floats:
     """95 % circle by the rule ``2.4477 sigma_1``.
 
@@ -240,6 +249,7 @@ def circle_major(covariance_en_m2: ArrayLike) -> Floats:
     return np.asarray(_core.chi_factor(2, np.array([0.05]))[0] * major, dtype=np.float64)
 
 
+@checked
 def sep_sum(covariance_enu_m2: ArrayLike) -> Floats:
     """Spherical error probable (50 %) by the rule ``0.513 (sigma_1 + sigma_2 + sigma_3)``.
 
@@ -264,6 +274,7 @@ def sep_sum(covariance_enu_m2: ArrayLike) -> Floats:
     return np.asarray(0.513 * sigmas.sum(axis=-1), dtype=np.float64)
 
 
+@checked
 def sphere_rms(covariance_enu_m2: ArrayLike) -> Floats:
     """95 % sphere by the rule ``2.7955 sqrt(T/3)``, T the sum of the variances.
 
@@ -288,6 +299,7 @@ def sphere_rms(covariance_enu_m2: ArrayLike) -> Floats:
     return np.asarray(_core.chi_factor(3, np.array([0.05]))[0] * np.sqrt((sigmas**2).mean(axis=-1)), dtype=np.float64)
 
 
+@checked
 def sphere_mean_sigma(covariance_enu_m2: ArrayLike) -> Floats:
     """95 % sphere by the rule ``2.7955 mean(sigma)``.
 
@@ -312,6 +324,7 @@ def sphere_mean_sigma(covariance_enu_m2: ArrayLike) -> Floats:
     return np.asarray(_core.chi_factor(3, np.array([0.05]))[0] * sigmas.mean(axis=-1), dtype=np.float64)
 
 
+@checked
 def sphere_major(covariance_enu_m2: ArrayLike) -> Floats:
     """95 % sphere by the rule ``2.7955 sigma_1``.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ class Sides(NamedTuple):
     outside: Floats
 
 
+@checked
 def rectangle(covariance_cu_m2: ArrayLike, half_cross_m: ArrayLike, half_up_m: ArrayLike, mean_cu_m: ArrayLike | None = None) -> Sides:
     """Probability of a rectangle (the cross-section of a tunnel), and of what is outside it.
 
@@ -54,6 +56,7 @@ def rectangle(covariance_cu_m2: ArrayLike, half_cross_m: ArrayLike, half_up_m: A
     return Sides(table[:, 0].reshape(shape), table[:, 1].reshape(shape))
 
 
+@checked
 def rectangle_risk(
     covariance_cu_m2: ArrayLike, half_cross_m: ArrayLike, half_up_m: ArrayLike, mean_cu_m: ArrayLike | None = None
 ) -> Floats:
@@ -61,6 +64,7 @@ def rectangle_risk(
     return rectangle(covariance_cu_m2, half_cross_m, half_up_m, mean_cu_m).outside
 
 
+@checked
 def rectangle_scale(
     covariance_cu_m2: ArrayLike,
     half_cross_m: ArrayLike,
@@ -83,6 +87,7 @@ def rectangle_scale(
     return unflatten(_core.anp_rectangle_scale(v, m, c, u, q), shape)
 
 
+@checked
 def cylinder(covariance_enu_m2: ArrayLike, radius_m: ArrayLike, half_height_m: ArrayLike, mean_enu_m: ArrayLike | None = None) -> Sides:
     """Probability of a cylinder around the estimate, and of what is outside it.
 
@@ -115,6 +120,7 @@ def cylinder(covariance_enu_m2: ArrayLike, radius_m: ArrayLike, half_height_m: A
     return Sides(table[:, 0].reshape(shape), table[:, 1].reshape(shape))
 
 
+@checked
 def cylinder_risk(
     covariance_enu_m2: ArrayLike, radius_m: ArrayLike, half_height_m: ArrayLike, mean_enu_m: ArrayLike | None = None
 ) -> Floats:
@@ -122,6 +128,7 @@ def cylinder_risk(
     return cylinder(covariance_enu_m2, radius_m, half_height_m, mean_enu_m).outside
 
 
+@checked
 def cylinder_scale(
     covariance_enu_m2: ArrayLike,
     radius_m: ArrayLike,
@@ -144,6 +151,7 @@ def cylinder_scale(
     return unflatten(_core.anp_cylinder_scale(v, m, r, h, q), shape)
 
 
+@checked
 def box_factor(covariance_enu_m2: ArrayLike, risk: ArrayLike) -> Floats:
     """Factor k of the box ``|e_i| <= k sigma_i`` that a zero-mean error leaves with this risk, solved. [1].
 
@@ -170,6 +178,7 @@ def box_factor(covariance_enu_m2: ArrayLike, risk: ArrayLike) -> Floats:
     return unflatten(_core.anp_box_factor(v, q), shape)
 
 
+@checked
 def box(covariance_enu_m2: ArrayLike, risk: ArrayLike) -> Floats:
     """Half-sizes east, north, up of the simultaneous box: :func:`box_factor` times each sigma, shape (..., 3). [m]."""
     factor = box_factor(covariance_enu_m2, risk)

@@ -18,6 +18,7 @@ from navbound._araim_settings import (
     stated,
     support_rows,
 )
+from navbound._arguments import checked
 from navbound._receiver_files import Navigation, Observations
 from navbound._watched import Watched, checked_model, checked_smoothing, judged, range_models, watched
 from navbound.errors import InputError
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
+@checked
 def watch(
     observations: Observations,
     navigation: Navigation,

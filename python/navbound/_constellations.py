@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from navbound import _core
+from navbound import _core, _packed
+from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound.errors import FormatError, InputError
 
@@ -103,6 +102,7 @@ class Orbits:
         return np.ascontiguousarray(np.stack(columns, axis=-1))
 
 
+@checked
 def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bool = False) -> Orbits:
     """Nominal constellation as data that ships with navbound, or an almanac of GPS.
 
@@ -140,10 +140,7 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
         path = Path(name)
         if not path.exists():
             raise InputError("name", str(name), domain=f"one of {', '.join(shipped)}, or the path of an almanac")
-        try:
-            content = path.read_bytes()
-        except OSError as e:
-            raise FormatError(path, e.strerror or str(e)) from e
+        content = _packed.read(path)
         if _is_navigation(content):
             return _broadcast(content, path, near_ns)
         found = _core.read_almanac(content, str(path), near_ns)
@@ -156,12 +153,8 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
 
 
 def _is_navigation(content: bytes) -> bool:
-    """Whether a file, packed or not, begins like a RINEX one."""
-    head = content[:4096]
-    if head[:2] == b"\x1f\x8b":
-        with contextlib.suppress(zlib.error):
-            head = zlib.decompressobj(wbits=31).decompress(head, 4096)
-    return b"RINEX VERSION" in head.split(b"\n", 1)[0]
+    """Whether a file begins like a RINEX one."""
+    return b"RINEX VERSION" in content[:4096].split(b"\n", 1)[0]
 
 
 def _broadcast(content: bytes, path: Path, near_ns: int | None) -> Orbits:
@@ -191,6 +184,7 @@ def _broadcast(content: bytes, path: Path, near_ns: int | None) -> Orbits:
     return Orbits(tuple(names), of, axis, eccentricity, inclination, node, perigee, anomaly, node_rate, reference)
 
 
+@checked
 def nominal(
     semi_major_m: ArrayLike,
     inclination_rad: ArrayLike,

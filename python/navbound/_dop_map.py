@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten
+from navbound._constellations import Orbits
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-    from navbound._constellations import Orbits
 
 
 class DopMap(NamedTuple):
@@ -29,6 +29,7 @@ class DopMap(NamedTuple):
     n_sv: NDArray[np.uint16]
 
 
+@checked
 def dop_map(
     orbits: Orbits, lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, time_s: ArrayLike, *, mask_rad: float = float(np.radians(5.0))
 ) -> DopMap:

@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK, extraction_gains, whole
 from navbound.errors import InputError
@@ -108,6 +109,7 @@ class ErrorExtraction:
         return pl.DataFrame(axes | lengths).with_columns(pl.all().fill_nan(None)).with_columns(pl.Series("n_ee_age", self.n_ee_age))
 
 
+@checked
 def error_extraction(
     time_ns: ArrayLike,
     position_enu_m: ArrayLike,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound.errors import InputError
 from navbound.status import availability, reasons_of
@@ -72,6 +73,7 @@ class ExtractionGains:
     n_settle_1_percent: Floats
 
 
+@checked
 def extraction_gains(rho: ArrayLike, period_s: ArrayLike = 1.0) -> ExtractionGains:
     """Gains of the filter.
 
@@ -111,6 +113,7 @@ class ExtractionBeta:
     tau_s: Floats
 
 
+@checked
 def extraction_beta(tau_s: ArrayLike, *, rho: ArrayLike = 0.98, period_s: ArrayLike = 1.0) -> ExtractionBeta:
     """Beta for an error that forgets in ``tau_s``: it has no upper bound, but grows as the root of tau.
 
@@ -134,6 +137,7 @@ def extraction_beta(tau_s: ArrayLike, *, rho: ArrayLike = 0.98, period_s: ArrayL
     return ExtractionBeta(beta, ratio, unflatten(taus, shape))
 
 
+@checked
 def extraction_beta_from_autocorrelation(autocorrelation_m2: ArrayLike, *, rho: float = 0.98) -> float:
     """Beta from the measured autocorrelation of the position error.
 
@@ -155,6 +159,7 @@ def extraction_beta_from_autocorrelation(autocorrelation_m2: ArrayLike, *, rho: 
     return _core.ee_beta_autocorrelation(float(rho), values)
 
 
+@checked
 def extraction_beta_from_spectrum(
     frequency_hz: ArrayLike, density_m2_per_hz: ArrayLike, *, rho: float = 0.98, period_s: float = 1.0
 ) -> float:
@@ -205,6 +210,7 @@ class ExtractionFactor:
     risk_as_printed: float
 
 
+@checked
 def extraction_factor(risk: float, *, window: int = 50, weight: float = 0.5) -> ExtractionFactor:
     """The multiplier of the noise part (Vassilev 2012, equation 5; re-derived).
 
@@ -251,6 +257,7 @@ class ExtractionBias:
     reason_id: NDArray[np.str_]
 
 
+@checked
 def extraction_bias(
     az_rad: ArrayLike,
     el_rad: ArrayLike,
@@ -299,6 +306,7 @@ def extraction_bias(
     return ExtractionBias(from_dop_h, from_dop_v, exact_h, exact_v, n_sv, availability(reason_id), reason, reason_id)
 
 
+@checked
 def extraction_bias_dop(
     hdop: ArrayLike, vdop: ArrayLike, n_sv: ArrayLike, *, mu_most_m: float = MU_MOST_M, alpha: float = ALPHA
 ) -> tuple[Floats, Floats]:

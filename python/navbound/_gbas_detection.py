@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
-from navbound._gbas_models import check_service, monitor_curves
+from navbound._gbas_models import Service, check_service, monitor_curves
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from navbound._gbas_models import Service
 
-
+@checked
 def fault_probability(n_sv: ArrayLike, rate_per_hour: ArrayLike, tau_s: float = 100.0) -> float:
     """Probability of a satellite fault that monitors with memory do not yet show (navi.673 equation 9).
 
@@ -35,6 +35,7 @@ def fault_probability(n_sv: ArrayLike, rate_per_hour: ArrayLike, tau_s: float = 
     return _core.gbas_fault_probability(list(zip(n.tolist(), rate.tolist(), strict=True)), tau_s)
 
 
+@checked
 def missed_by_monitor(error_m: ArrayLike, service: Service = "D", *, stretch: float | None = None) -> NDArray[np.float64]:
     """Probability that the ground monitors miss a range error (ICAO Annex 10 appendix B, which was not read: inferred; GAST F too).
 
@@ -57,6 +58,7 @@ def missed_by_monitor(error_m: ArrayLike, service: Service = "D", *, stretch: fl
     return unflatten(_core.gbas_missed_by_monitor(service, _stretch(service, stretch), error), shape)
 
 
+@checked
 def missed_detection_limit(
     error_m: ArrayLike,
     *,
@@ -95,6 +97,7 @@ def missed_detection_limit(
     return unflatten(_core.gbas_missed_detection_limit(error, np.ascontiguousarray(np.stack(rows, axis=-1))), shape)
 
 
+@checked
 def monitor_margin(
     *,
     service: Service,

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound._gbas_arguments import named, systems, width_of
-from navbound._gbas_models import check_service
+from navbound._gbas_models import Service, check_service
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -17,11 +18,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from navbound._gbas_models import Service
 
 NoiseForm = Literal["paper", "bound"]
 
 
+@checked
 def aided_covariance(
     az_rad: ArrayLike,
     el_rad: ArrayLike,
@@ -76,6 +77,7 @@ def aided_covariance(
     return _core.gbas_aided_covariance(job).reshape(*shape[:-1], 3, 3)
 
 
+@checked
 def offset_variances(
     true_constant_s: float, *, noise: NoiseForm = "bound", shortest_s: float = 54.0, longest_s: float = 2894.0, n: int = 901
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

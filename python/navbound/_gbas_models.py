@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound.errors import InputError
 
@@ -320,6 +321,7 @@ def check_service(service: str) -> None:
         raise InputError("service", service, domain="D, F")
 
 
+@checked
 def range_sigma(el_rad: ArrayLike, service: Service = "D") -> RangeSigma:
     """Error model of a smoothed, corrected range (navi.673 equations 18 and 19, rebuilt).
 
@@ -348,6 +350,7 @@ def range_sigma(el_rad: ArrayLike, service: Service = "D") -> RangeSigma:
     return RangeSigma(*(unflatten(np.ascontiguousarray(out[:, k]), shape) for k in range(6)))
 
 
+@checked
 def carrier_sigma(el_rad: ArrayLike, speed_mps: ArrayLike, coasting_s: ArrayLike, carrier: Carrier) -> NDArray[np.float64]:
     """Standard deviation of phase differenced over a coasting time (navi.673 equation 20, rebuilt).
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from navbound._arrays import numbers, whole_numbers
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -19,14 +20,14 @@ if TYPE_CHECKING:
 def rows(name: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """Give a contiguous float64 array of exactly this shape, numbers broadcast along the first axis."""
     try:
-        array = np.asarray(value, dtype=np.float64)
+        array = np.asarray(numbers(name, value), dtype=np.float64)
         return np.ascontiguousarray(np.broadcast_to(array, shape))
     except (TypeError, ValueError) as e:
         raise InputError(name, f"shape {np.shape(value)}", domain=f"numbers of shape {shape}") from e
 
 
 def _times(time_ns: ArrayLike) -> NDArray[np.int64]:
-    time = np.ascontiguousarray(np.asarray(time_ns, dtype=np.int64))
+    time = whole_numbers("time_ns", time_ns, "whole nanoseconds")
     if time.ndim != 1:
         raise InputError("time_ns", f"shape {time.shape}", domain="shape (n,)")
     return time
@@ -35,7 +36,7 @@ def _times(time_ns: ArrayLike) -> NDArray[np.int64]:
 def _joined(n: int, *columns: tuple[str, ArrayLike, int]) -> NDArray[np.float64]:
     """Join columns of given widths to one table of n rows."""
     return np.ascontiguousarray(
-        np.concatenate([rows(name, np.reshape(value, (-1, width)), (n, width)) for name, value, width in columns], 1)
+        np.concatenate([rows(name, np.reshape(numbers(name, value), (-1, width)), (n, width)) for name, value, width in columns], 1)
     )
 
 
@@ -129,7 +130,7 @@ class DmeRanges:
 
 
 def _stations(station: ArrayLike, n: int) -> list[int]:
-    array = np.asarray(station)
+    array = whole_numbers("station", station)
     if array.shape != (n,) or (n and not (array.min() >= 0 and array.max() <= 65535)):
         raise InputError("station", f"shape {array.shape}", domain=f"{n} numbers from 0 to 65535")
     return [int(k) for k in array]

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import polars as pl
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._ins_settings import FilterSettings, ImuModel, StartSigma, told
 from navbound.errors import InputError
 from navbound.scenario import Scenario, load
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SCORE = (
     "n_epochs",
@@ -44,6 +42,7 @@ REVERSION = (
 """Only with a filter without satellites beside the main one."""
 
 
+@checked
 def consistency(
     scenario: str | Path | Scenario,
     flights: int = 50,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._ins_aiding import Aiding, rows
 from navbound._ins_settings import FilterSettings, Imu, ImuModel, Start, Wheels, told
 
@@ -156,6 +157,7 @@ def _start(start: Start) -> dict[str, object]:
     }
 
 
+@checked
 def coarse_attitude(force_mps2: ArrayLike, velocity_ned_mps: ArrayLike) -> tuple[float, float, float]:
     """Roll and pitch from the mean specific force at rest, heading from the course over the ground afterwards.
 
@@ -183,6 +185,7 @@ def coarse_attitude(force_mps2: ArrayLike, velocity_ned_mps: ArrayLike) -> tuple
     return roll, pitch, heading
 
 
+@checked
 def mechanize(imu: Imu, start: Start) -> Track:
     """Pure inertial navigation: strapdown mechanization in north, east, down with two-sample coning and sculling.
 
@@ -212,6 +215,7 @@ def mechanize(imu: Imu, start: Start) -> Track:
     return Track(time, table[:, :3].copy(), table[:, 3:6].copy(), table[:, 6:9].copy())
 
 
+@checked
 def fuse(
     imu: Imu,
     aiding: Aiding,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from navbound._arrays import whole_numbers
 from navbound._ins_aiding import rows
 from navbound.errors import InputError
 
@@ -88,7 +89,7 @@ class Imu:
 
     def columns(self) -> dict[str, NDArray[np.int64] | NDArray[np.float64]]:
         """Give contiguous columns of one length."""
-        time = np.ascontiguousarray(np.asarray(self.time_ns, dtype=np.int64))
+        time = whole_numbers("time_ns", self.time_ns, "whole nanoseconds")
         if time.ndim != 1 or time.size == 0:
             raise InputError("time_ns", f"shape {time.shape}", domain="shape (n,), at least one sample")
         if self.interval_s is None:

@@ -10,14 +10,14 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound.errors import InputError
+from navbound.gnss import Navigation
 from navbound.scenario import Scenario, load
+from navbound.scenario.sensors import Imu
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from navbound.gnss import Navigation
-    from navbound.scenario.sensors import Imu
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,7 @@ class Sensed:
     flight: int
 
 
+@checked
 def simulate(
     scenario: str | Path | Scenario,
     flight: int = 0,
@@ -140,6 +141,7 @@ class Rolled:
     imu: pl.DataFrame
 
 
+@checked
 def roll(
     start_ns: int, position: ArrayLike, unit: Imu, *, rate_hz: int = 10, seed: int = 0, flight: int = 0, truth_interval_s: float = 1.0
 ) -> Rolled:

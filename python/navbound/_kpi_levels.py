@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from navbound import _kpi_records
+from navbound._arguments import checked
 from navbound.errors import InputError
 from navbound.run.kpi_records import Level
 
@@ -18,6 +19,7 @@ def levels() -> dict[str, Level]:
     return {found.id: found for found in _kpi_records.table_of_levels()}
 
 
+@checked
 def level(wanted: str | Level) -> Level:
     """A level by its name, or the RNP value as horizontal limit where the name is ``RNP 0.3`` or the like.
 
@@ -39,6 +41,7 @@ def level(wanted: str | Level) -> Level:
     return found.model_copy(update={"source": source, "provenance": {"hal_m": "inferred", "tta_s": "inferred"}})
 
 
+@checked
 def rnp(rnp_nm: float, *, tta_s: float, containment: int = 1) -> Level:
     """A level whose horizontal limit is an RNP value. That the limit is the RNP value is inferred, and marked so.
 

@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, _kpi_records
+from navbound._arguments import checked
 from navbound.errors import InputError
 from navbound.run.kpi_records import Level, Performance, StanfordBins, StanfordCounts, SubsetFound, Subsets
 
@@ -73,6 +74,7 @@ def n_bins(bin_m: float, limit_m: float) -> int:
     return round(limit_m / bin_m)
 
 
+@checked
 def stanford_esa(
     ranges: RangeTable | Sequence[RangeTable] | Callable[[], Iterable[RangeTable]],
     levels: Sequence[Level],
@@ -141,6 +143,7 @@ def stanford_esa(
     return StanfordEsa(subsets, _kpi_records.stanford_bins(found["bins"], bin_m, limit_m, variant="stanford-esa"))
 
 
+@checked
 def with_subsets(result: Performance, found: StanfordEsa) -> Performance:
     """The indicators with the subsets beside them."""
     notes = []

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._receiver_files import Refused, file_content
 from navbound.errors import InputError
 
@@ -86,6 +87,7 @@ class PreciseOrbits:
         return found["ecef_m"].reshape(wide), found["velocity_mps"].reshape(wide), found["clock_s"].reshape(times.shape)
 
 
+@checked
 def read_orbits(paths: str | Path | Sequence[str | Path]) -> PreciseOrbits:
     """Read orbits and clocks of an analysis centre.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound._stations import Stations
 from navbound.errors import InputError
@@ -50,6 +51,7 @@ class Positions(NamedTuple):
     reason_id: NDArray[np.str_]
 
 
+@checked
 def solve(
     slant_m: ArrayLike,
     stations: Stations | Mapping[str, ArrayLike],
@@ -116,6 +118,7 @@ def solve(
     return _positions(found, shape)
 
 
+@checked
 def solve_vor(
     slant_m: ArrayLike,
     bearing_rad: ArrayLike,
@@ -173,6 +176,7 @@ class Sights(NamedTuple):
     usable: NDArray[np.bool_]
 
 
+@checked
 def sights(lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, stations: Stations | Mapping[str, ArrayLike]) -> Sights:
     """Slant ranges, elevations and bearings from every station, and which of them may be used.
 
@@ -213,6 +217,7 @@ class Selection(NamedTuple):
     vor_en_m2: Floats
 
 
+@checked
 def select(
     time_ns: ArrayLike,
     lat_rad: ArrayLike,
@@ -286,6 +291,7 @@ class Coverage(NamedTuple):
     nse_limit_m: float
 
 
+@checked
 def coverage(
     lat_rad: ArrayLike,
     lon_rad: ArrayLike,

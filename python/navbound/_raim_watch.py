@@ -17,6 +17,7 @@ from navbound._araim_settings import (
     requirement_numbers,
     support_rows,
 )
+from navbound._arguments import checked
 from navbound._receiver_files import Navigation, Observations
 from navbound._watched import Watched, checked_model, checked_smoothing, judged, range_models, watched
 
@@ -27,6 +28,7 @@ SOURCES: tuple[str, str] = _core.raim_sources()
 """Documents of the method: of the published level, and of the noise added to it."""
 
 
+@checked
 def watch(
     observations: Observations,
     navigation: Navigation,

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound import _core
+from navbound import _core, _packed
+from navbound._arguments import checked
 from navbound._constellations import CONSTELLATIONS, Orbits
-from navbound.errors import FormatError, InputError
+from navbound.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -178,14 +179,11 @@ def _system_index(system: str) -> int:
 
 
 def file_content(path: str | Path) -> tuple[Path, bytes]:
-    """Path and bytes of a file, or a refusal."""
-    place = Path(path)
-    try:
-        return place, place.read_bytes()
-    except OSError as e:
-        raise FormatError(place, e.strerror or str(e)) from e
+    """Path and plain bytes of a file, or a refusal."""
+    return Path(path), _packed.read(path)
 
 
+@checked
 def read_observations(path: str | Path) -> Observations:
     """Read a RINEX observation file, or the raw measurements in a receiver's log.
 
@@ -210,6 +208,7 @@ def read_observations(path: str | Path) -> Observations:
     return Observations(_core.Observations(content, str(place)), place)
 
 
+@checked
 def read_navigation(paths: str | Path | Sequence[str | Path]) -> Navigation:
     """Read RINEX navigation files, or the subframes in receivers' logs.
 

@@ -13,7 +13,8 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
-from navbound._arrays import flatten
+from navbound._arguments import checked
+from navbound._arrays import flatten, shown
 from navbound._signal_choice import smaller_covariance
 from navbound.errors import InputError
 
@@ -97,6 +98,7 @@ def unused_words(unused: dict[str, int]) -> str:
     return "; ".join(f"{UNUSED[why]} at {count}" for why, count in unused.items()) or "none"
 
 
+@checked
 def solve(
     observations: Observations,
     navigation: Navigation,
@@ -175,6 +177,10 @@ def solve(
     """
     if not systems or any(s not in SYSTEMS for s in systems):
         raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
+    from navbound._precise import PreciseOrbits as Precise  # noqa: PLC0415 - that module reads files by this one
+
+    if orbits is not None and not isinstance(orbits, Precise):
+        raise InputError("orbits", shown(orbits), domain="an object of class PreciseOrbits or None")
     if signals not in SIGNALS:
         raise InputError("signals", signals, domain=", ".join(SIGNALS))
     if ionosphere not in IONOSPHERES:
@@ -287,6 +293,7 @@ def with_errors(epochs: pl.DataFrame, truth_ecef_m: ArrayLike) -> pl.DataFrame:
     return epochs.hstack(pl.DataFrame({name: values[:, k] for k, name in enumerate(names)}).with_columns(pl.all().fill_nan(None)))
 
 
+@checked
 def geodetic(ecef_m: ArrayLike) -> NDArray[np.float64]:
     """Latitude, longitude and height of Earth-fixed positions, WGS-84.
 

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from navbound import _core
+from navbound._arguments import checked
 
 
+@checked
 def per_epoch_risk(risk_per_hour: float, tau_s: float, sample_period_s: float = 0.0) -> float:
     """Risk per epoch whose hour carries a risk: what the bounds must be evaluated at.
 
@@ -36,6 +38,7 @@ def per_epoch_risk(risk_per_hour: float, tau_s: float, sample_period_s: float = 
     return _core.per_epoch_risk(risk_per_hour, tau_s, sample_period_s)
 
 
+@checked
 def per_hour_risk(risk_per_epoch: float, tau_s: float, sample_period_s: float = 0.0) -> float:
     """Risk to be outside at least once in an hour; the inverse of `per_epoch_risk`, with the same arguments."""
     return _core.per_hour_risk(risk_per_epoch, tau_s, sample_period_s)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound.errors import InputError
 
 
@@ -59,6 +60,7 @@ def specifications() -> list[Specification]:
     return cells
 
 
+@checked
 def specification(name: str, phase: str, accuracy_m: float | None = None) -> Specification:
     """One cell of the table of navigation specifications.
 

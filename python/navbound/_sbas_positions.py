@@ -5,7 +5,9 @@ RTCA DO-229D, appendices A.4.4, A.4.5 and J.2 (standard); what was checked again
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,15 +20,13 @@ from navbound.errors import InputError
 from navbound.status import REASONS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
     from numpy.typing import ArrayLike
 
     from navbound._receiver_files import Observations
     from navbound.sbas import Messages
 
-    Navigations = Navigation | str | Path | Sequence[str | Path]
+Navigations = Navigation | str | Path | Sequence[str | Path]
+"""Navigation data: read already, or files."""
 
 MODES = np.array(["", "pa", "npa"])
 """What a level is for, by the code that the core gives it."""

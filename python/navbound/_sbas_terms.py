@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound.errors import InputError
 
@@ -58,6 +59,7 @@ class FromTerms:
     vpl_m: float
 
 
+@checked
 def covariance_levels(covariance_m2: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """HPL = 6.0 d_major and VPL = 5.33 d_U of covariances of the position (DO-229D J.2, precision approach; standard).
 
@@ -83,6 +85,7 @@ def covariance_levels(covariance_m2: ArrayLike) -> tuple[NDArray[np.float64], ND
     return unflatten(found["hpl_m"], shape), unflatten(found["vpl_m"], shape)
 
 
+@checked
 def levels_from_terms(
     *,
     az_rad: ArrayLike,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound.errors import InputError
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 METRES_PER_NM = 1852.0
 
 
+@checked
 def nse_boundary(tse_m: ArrayLike, fte_m: ArrayLike) -> NDArray[np.float64]:
     """Navigation error (95 %) left of a total system error after the flight technical error, ``sqrt(tse² - fte²)``.
 
@@ -317,6 +319,7 @@ class StateOfErrors:
     paper_state: NDArray[np.int64]
 
 
+@checked
 def state_of_error(
     levels_nm: Sequence[float],
     nse_m: ArrayLike,
@@ -348,6 +351,7 @@ def state_of_error(
     )
 
 
+@checked
 def state_of_errors(
     levels_nm: Sequence[float],
     lateral_m: ArrayLike,
@@ -370,6 +374,7 @@ def state_of_errors(
     )
 
 
+@checked
 def states_of_track(
     levels_nm: Sequence[float],
     nse_m: ArrayLike,

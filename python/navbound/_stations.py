@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from navbound import _packed
+from navbound._arguments import checked
 from navbound.errors import FormatError, InputError
 
 if TYPE_CHECKING:
@@ -166,6 +168,7 @@ def stations() -> Stations:
     return _parse(name, text, unique=False)
 
 
+@checked
 def read_stations(file: str | Path) -> Stations:
     """Read a table of stations: CSV, plain or gzip, with a heading; lines that begin with ``#`` are comments.
 
@@ -183,11 +186,8 @@ def read_stations(file: str | Path) -> Stations:
     """
     path = Path(file)
     try:
-        data = path.read_bytes()
-        text = (gzip.decompress(data) if data[:2] == b"\x1f\x8b" else data).decode("utf-8-sig")
-    except OSError as e:
-        raise FormatError(path, f"cannot be read: {e.strerror or e}") from e
-    except (EOFError, UnicodeDecodeError) as e:
+        text = _packed.read(path).decode("utf-8-sig")
+    except UnicodeDecodeError as e:
         raise FormatError(path, f"is no text: {e}") from e
     return _parse(path, text, unique=True)
 

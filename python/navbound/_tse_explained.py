@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, split_columns, unflatten
 from navbound._tse_lateral import ctem, ctem_foot, exact, exceedance_risk, factors, ltem, project, sqsm
 
@@ -55,6 +56,7 @@ class Explanation(NamedTuple):
     ctem_foot_m: Floats
 
 
+@checked
 def rotated_frame(
     k: ArrayLike, x0_m: ArrayLike, y0_m: ArrayLike, sigma_a_m: ArrayLike, sigma_b_m: ArrayLike, *, risk: ArrayLike
 ) -> Rotated:
@@ -92,6 +94,7 @@ def rotated_frame(
     return Rotated(fte, sigma, unflatten(factors(q).two_sided, shape), *bounds, *risks)
 
 
+@checked
 def explain(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, course_rad: ArrayLike, risk: ArrayLike) -> Explanation:
     """Everything behind a lateral bound: projection, axes, factor and each method's result.
 
@@ -122,6 +125,7 @@ def explain(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, course_rad: Arr
     return Explanation(*(unflatten(column, shape) for column in columns))
 
 
+@checked
 def ltem_as_printed(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -> Floats:
     """LTEM exactly as printed (F-39, slope cot phi, factors 1.96 and 4.41): an exhibit of errata E2, E3 and E13, not a bound.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, split_columns, unflatten
 from navbound.errors import InputError
 
@@ -59,6 +60,7 @@ class Box(NamedTuple):
     """Risk beyond floor and ceiling. [1]"""
 
 
+@checked
 def random_fte(
     mean_fte_m: ArrayLike,
     sigma_fte_m: ArrayLike,
@@ -105,6 +107,7 @@ def random_fte(
     return RandomFte(*split_columns(_core.tse_random_fte(np.column_stack(flat[:5]), flat[5]), shape))
 
 
+@checked
 def student_t(fte_m: ArrayLike, scale_m: ArrayLike, degrees_of_freedom: ArrayLike, risk: ArrayLike) -> Floats:
     """Exact bound where the navigation error follows Student's law.
 
@@ -133,6 +136,7 @@ def student_t(fte_m: ArrayLike, scale_m: ArrayLike, degrees_of_freedom: ArrayLik
     return unflatten(_core.tse_student_t(f, s, nu, q), shape)
 
 
+@checked
 def mixture(weight: ArrayLike, fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Floats:
     """Exact bound of a mixture of normal errors: mode switching, faulty and fault-free hypotheses.
 
@@ -162,6 +166,7 @@ def mixture(weight: ArrayLike, fte_m: ArrayLike, sigma_m: ArrayLike, risk: Array
     return unflatten(_core.tse_mixture(w, f, s, q), shape)
 
 
+@checked
 def paired_overbound(fte_m: ArrayLike, sigma_m: ArrayLike, bias_m: ArrayLike, risk: ArrayLike) -> Floats:
     """Exact bound where the navigation error lies between two normal laws shifted by a bias either way: bias + exact.
 
@@ -186,6 +191,7 @@ def paired_overbound(fte_m: ArrayLike, sigma_m: ArrayLike, bias_m: ArrayLike, ri
     return unflatten(_core.tse_paired_overbound(f, s, b, q), shape)
 
 
+@checked
 def rf_fte(fte_m: ArrayLike, along_m: ArrayLike, sigma_along_m: ArrayLike, radius_m: ArrayLike) -> Floats:
     """Flight technical error on a curved (RF) leg with the bias of its curvature: ``|fte| + (sigma_along^2 + along^2) / (2 R)``.
 
@@ -214,6 +220,7 @@ def rf_fte(fte_m: ArrayLike, along_m: ArrayLike, sigma_along_m: ArrayLike, radiu
     return unflatten(_core.tse_rf_fte(f, a, s, r), shape)
 
 
+@checked
 def vertical(
     offset_enu_m: ArrayLike, covariance_enu_m2: ArrayLike, course_rad: ArrayLike, path_angle_rad: ArrayLike, risk: ArrayLike
 ) -> Vertical:
@@ -255,6 +262,7 @@ def vertical(
     return Vertical(*split_columns(_core.tse_vertical(p, c, chi, gamma, q), shape))
 
 
+@checked
 def box_risk(
     fte_m: ArrayLike,
     sigma_m: ArrayLike,
@@ -301,6 +309,7 @@ def box_risk(
     return Box(*split_columns(_core.tse_box_risk(np.column_stack(flat[:5]), np.column_stack(flat[5:])), shape))
 
 
+@checked
 def box(
     fte_m: ArrayLike,
     sigma_m: ArrayLike,

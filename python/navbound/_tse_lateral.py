@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, split_columns, unflatten
 from navbound.errors import InputError
 
@@ -41,6 +42,7 @@ class Projection(NamedTuple):
     """Standard deviation of the navigation error across the path. [m]"""
 
 
+@checked
 def factors(risk: ArrayLike) -> Factors:
     """Factors of a risk in one, two and three dimensions.
 
@@ -63,6 +65,7 @@ def factors(risk: ArrayLike) -> Factors:
     return Factors(*split_columns(_core.tse_factors(q), shape))
 
 
+@checked
 def project(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, course_rad: ArrayLike) -> Projection:
     """Project the horizontal situation onto the line across the path.
 
@@ -138,6 +141,7 @@ class Exact:
 _prepared = lru_cache(maxsize=32)(Exact)
 
 
+@checked
 def exact(fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Floats:
     """Exact bound of the total system error (F-7, F-11 in one dimension).
 
@@ -169,6 +173,7 @@ def exact(fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Floats:
     return unflatten(_core.tse_exact(f, s, q), shape)
 
 
+@checked
 def ltem(fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Floats:
     """Bound by the line tangent to the error ellipse: ``|fte| + K sigma`` (F-37 with the sign that E13 restores).
 
@@ -196,6 +201,7 @@ def ltem(fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Floats:
     return unflatten(_core.tse_ltem(f, s, q), shape)
 
 
+@checked
 def sqsm(fte_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -> Floats:
     """Scalar sum with the largest horizontal deviation: ``|fte| + K max(sigma_a, sigma_b)`` (F-20).
 
@@ -220,6 +226,7 @@ def sqsm(fte_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -> Floa
     return unflatten(_core.tse_sqsm(f, c, q), shape)
 
 
+@checked
 def ctem(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -> Floats:
     """Bound by the circle tangent to the error ellipse: its farthest point from the expected point (F-22 to F-32, solved another way).
 
@@ -246,6 +253,7 @@ def ctem(offset_en_m: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -
     return unflatten(_core.tse_ctem(p, c, q), shape)
 
 
+@checked
 def ctem_foot(fte_m: ArrayLike, course_rad: ArrayLike, covariance_en_m2: ArrayLike, risk: ArrayLike) -> Floats:
     """CTEM from the closest point of the path, so that the offset along it does not count.
 
@@ -274,6 +282,7 @@ def ctem_foot(fte_m: ArrayLike, course_rad: ArrayLike, covariance_en_m2: ArrayLi
     return unflatten(_core.tse_ctem_foot(f, chi, c, q), shape)
 
 
+@checked
 def rssm(
     sigma_fte_m: ArrayLike, sigma_nse_m: ArrayLike, sigma_pde_m: ArrayLike, risk: ArrayLike, *, correlation: ArrayLike = 0.0
 ) -> Floats:
@@ -308,6 +317,7 @@ def rssm(
     return unflatten(_core.tse_rssm(np.column_stack([np.zeros_like(f), f, n, p, rho]), q), shape)
 
 
+@checked
 def exceedance_risk(fte_m: ArrayLike, sigma_m: ArrayLike, limit_m: ArrayLike) -> Floats:
     """Risk that the total system error exceeds a limit: ``Q((limit - fte)/sigma) + Q((limit + fte)/sigma)``. An alert needs no root.
 
@@ -332,6 +342,7 @@ def exceedance_risk(fte_m: ArrayLike, sigma_m: ArrayLike, limit_m: ArrayLike) ->
     return unflatten(np.ascontiguousarray(_core.tse_exceedance(f, s, limit)[:, 0]), shape)
 
 
+@checked
 def log_exceedance_risk(fte_m: ArrayLike, sigma_m: ArrayLike, limit_m: ArrayLike) -> Floats:
     """Natural logarithm of :func:`exceedance_risk`, finite where the risk itself underflows; -inf only where sigma is zero.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, split_columns, unflatten
 from navbound._tse_lateral import exact
 from navbound.errors import InputError
@@ -26,6 +27,7 @@ class Gradient(NamedTuple):
     """dT / d sigma. [1]"""
 
 
+@checked
 def margin(fte_m: ArrayLike, sigma_m: ArrayLike, limit_m: ArrayLike, risk: ArrayLike) -> Floats:
     """Limit minus exact bound; negative means the bound is beyond the limit.
 
@@ -48,11 +50,12 @@ def margin(fte_m: ArrayLike, sigma_m: ArrayLike, limit_m: ArrayLike, risk: Array
     InputError
         As :func:`exact`, or a limit that is not finite or is negative.
     """
-    _, [limit] = flatten(limit_m=(limit_m, ()))
+    shape, [limit, fte, sigma, q] = flatten(limit_m=(limit_m, ()), fte_m=(fte_m, ()), sigma_m=(sigma_m, ()), risk=(risk, ()))
     _refuse_unless("limit_m", limit, (limit >= 0) & np.isfinite(limit), "[0, inf)")
-    return np.asarray(np.asarray(limit_m, dtype=np.float64) - exact(fte_m, sigma_m, risk))
+    return unflatten(limit - exact(fte, sigma, q), shape)
 
 
+@checked
 def gradient(fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Gradient:
     """Gradient of the exact bound by its two inputs, in closed form from the implicit function.
 
@@ -75,6 +78,7 @@ def gradient(fte_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Gradient:
     return Gradient(*split_columns(_core.tse_gradient(f, s, q), shape))
 
 
+@checked
 def fte_budget(limit_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Floats:
     """Largest flight technical error whose exact bound is within a limit.
 
@@ -101,6 +105,7 @@ def fte_budget(limit_m: ArrayLike, sigma_m: ArrayLike, risk: ArrayLike) -> Float
     return unflatten(_core.tse_fte_budget(limit, s, q), shape)
 
 
+@checked
 def sigma_budget(limit_m: ArrayLike, fte_m: ArrayLike, risk: ArrayLike) -> Floats:
     """Largest standard deviation whose exact bound is within a limit at this flight technical error.
 

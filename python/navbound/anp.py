@@ -37,6 +37,7 @@ from navbound._anp_shapes import (
     rectangle_risk,
     rectangle_scale,
 )
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound.errors import InputError
 from navbound.status import REASONS
@@ -148,6 +149,7 @@ class Ellipsoid(NamedTuple):
     reason: NDArray[np.str_]
 
 
+@checked
 def circle(covariance_en_m2: ArrayLike, risk: ArrayLike, mean_en_m: ArrayLike | None = None) -> Floats:
     """Radius of the circle around the estimate that the horizontal error leaves with this risk, exact.
 
@@ -179,6 +181,7 @@ def circle(covariance_en_m2: ArrayLike, risk: ArrayLike, mean_en_m: ArrayLike | 
     return unflatten(_core.anp_circle(covariance, mean, q), shape)
 
 
+@checked
 def sphere(covariance_enu_m2: ArrayLike, risk: ArrayLike, mean_enu_m: ArrayLike | None = None) -> Floats:
     """Radius of the sphere around the estimate that the error leaves with this risk, exact.
 
@@ -210,6 +213,7 @@ def sphere(covariance_enu_m2: ArrayLike, risk: ArrayLike, mean_enu_m: ArrayLike 
     return unflatten(_core.anp_sphere(covariance, mean, q), shape)
 
 
+@checked
 def circle_law(covariance_en_m2: ArrayLike, radius_m: ArrayLike, mean_en_m: ArrayLike | None = None) -> Law:
     """Probability of a horizontal error shorter and longer than a radius, and the density there.
 
@@ -242,6 +246,7 @@ def circle_law(covariance_en_m2: ArrayLike, radius_m: ArrayLike, mean_en_m: Arra
     return _law(_core.anp_circle_law(covariance, mean, radius), shape)
 
 
+@checked
 def sphere_law(covariance_enu_m2: ArrayLike, radius_m: ArrayLike, mean_enu_m: ArrayLike | None = None) -> Law:
     """Probability of an error shorter and longer than a radius, and the density there.
 
@@ -278,16 +283,19 @@ def _law(table: Floats, shape: tuple[int, ...]) -> Law:
     return Law(*(unflatten(np.ascontiguousarray(column), shape) for column in table.T))
 
 
+@checked
 def circle_risk(covariance_en_m2: ArrayLike, radius_m: ArrayLike, mean_en_m: ArrayLike | None = None) -> Floats:
     """Risk that the horizontal error is longer than a radius: ``circle_law(...).outside``, same arguments and errors. [1]."""
     return circle_law(covariance_en_m2, radius_m, mean_en_m).outside
 
 
+@checked
 def sphere_risk(covariance_enu_m2: ArrayLike, radius_m: ArrayLike, mean_enu_m: ArrayLike | None = None) -> Floats:
     """Risk that the error is longer than a radius: ``sphere_law(...).outside``, same arguments and errors. [1]."""
     return sphere_law(covariance_enu_m2, radius_m, mean_enu_m).outside
 
 
+@checked
 def directional(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike, mean_enu_m: ArrayLike | None = None) -> Directional:
     """Error along a direction: its mean, its deviation, and the half-width it leaves with this risk, exact.
 
@@ -322,11 +330,13 @@ def directional(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayL
     return Directional(*(unflatten(np.ascontiguousarray(column), shape) for column in table.T))
 
 
+@checked
 def along(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike, mean_enu_m: ArrayLike | None = None) -> Floats:
     """Half-width that the error along a direction leaves with this risk: ``directional(...).half_width_m``. [m]."""
     return directional(covariance_enu_m2, direction, risk, mean_enu_m).half_width_m
 
 
+@checked
 def marginal(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike) -> Floats:
     """Half-width of one direction alone, zero mean: ``k1 sqrt(u'Vu)``, what "95 % vertical" means in standards. [m].
 
@@ -335,16 +345,19 @@ def marginal(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike
     return directional(covariance_enu_m2, direction, risk).half_width_m
 
 
+@checked
 def epu(covariance_en_m2: ArrayLike, mean_en_m: ArrayLike | None = None) -> Floats:
     """Estimated position uncertainty: the 95 % circle, ``circle(..., risk=0.05)``. [m]."""
     return circle(covariance_en_m2, _ACCURACY, mean_en_m)
 
 
+@checked
 def vepu(covariance_enu_m2: ArrayLike, mean_enu_m: ArrayLike | None = None) -> Floats:
     """Vertical estimated position uncertainty: the 95 % vertical half-width. [m]."""
     return along(covariance_enu_m2, [0.0, 0.0, 1.0], _ACCURACY, mean_enu_m)
 
 
+@checked
 def chi_factor(dimension: int, risk: ArrayLike) -> Floats:
     """Factor that the length of a standard normal vector exceeds with this risk. [1].
 
@@ -371,6 +384,7 @@ def chi_factor(dimension: int, risk: ArrayLike) -> Floats:
     return unflatten(_core.chi_factor(int(dimension), q), shape)
 
 
+@checked
 def ellipsoid(covariance_enu_m2: ArrayLike, risk: ArrayLike) -> Ellipsoid:
     """Ellipsoid of constant density that the error leaves with this risk.
 
@@ -409,6 +423,7 @@ def ellipsoid(covariance_enu_m2: ArrayLike, risk: ArrayLike) -> Ellipsoid:
     )
 
 
+@checked
 def volume_over_sphere(covariance_enu_m2: ArrayLike, risk: ArrayLike) -> Floats:
     """Volume of the ellipsoid over that of the exact sphere of the same risk; never above one. [1].
 
@@ -419,6 +434,7 @@ def volume_over_sphere(covariance_enu_m2: ArrayLike, risk: ArrayLike) -> Floats:
         return np.asarray(ellipsoid(covariance_enu_m2, risk).volume_m3 / (4.0 / 3.0 * np.pi * radius**3), dtype=np.float64)
 
 
+@checked
 def support(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike) -> Floats:
     """Half-size of the ellipsoid's bounding box along a direction, ``k3 sqrt(u'Vu)``. [m].
 
@@ -427,6 +443,7 @@ def support(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike)
     return _extents(covariance_enu_m2, direction, risk)[0]
 
 
+@checked
 def intercept(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike) -> Floats:
     """Where a direction pierces the ellipsoid, ``k3 / sqrt(u'V^-1 u)``, never more than the support. [m].
 
@@ -441,6 +458,7 @@ def _extents(covariance_enu_m2: ArrayLike, direction: ArrayLike, risk: ArrayLike
     return table[:, 0].reshape(shape), table[:, 1].reshape(shape)
 
 
+@checked
 def track(covariance_enu_m2: ArrayLike, course_rad: ArrayLike, risk: ArrayLike) -> TrackExtents:
     """Half-extents of the ellipsoid along a course, to its right, and up. [m].
 

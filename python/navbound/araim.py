@@ -29,6 +29,7 @@ from navbound._araim_settings import (
     systems_of,
 )
 from navbound._araim_watch import watch
+from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound._constellations import CONSTELLATIONS, Orbits
 from navbound._monitor_fit import Fit
@@ -128,6 +129,7 @@ class Monitored:
     step_enu_m: NDArray[np.float64]
 
 
+@checked
 def protection_levels(
     unit_enu: ArrayLike,
     constellation: Sequence[int] | NDArray[np.int64],
@@ -183,6 +185,7 @@ def protection_levels(
     return _levels(found, shape[:-1])
 
 
+@checked
 def monitor(
     unit_enu: ArrayLike,
     constellation: Sequence[int] | NDArray[np.int64],
@@ -235,6 +238,7 @@ def monitor(
     return Monitored(_levels(found, leading), decision, excluded, ratio, step)
 
 
+@checked
 def predict(
     orbits: Orbits,
     lat_rad: ArrayLike,

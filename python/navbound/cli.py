@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 import navbound
-from navbound import cli_map, cli_predict
+from navbound import _core, cli_map, cli_predict
 from navbound.cli_parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, err_console, out_console, work_of
-from navbound.errors import FormatError, InputError, NavboundError
+from navbound.errors import FormatError, InputError, InternalError, NavboundError
 from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed, of_verdict
 from navbound.run.settings import DEFAULT_METHODS, Settings
 
@@ -430,13 +430,19 @@ def main() -> None:
         sys.exit(130)
     except KeyboardInterrupt:
         sys.exit(130)
+    except InternalError as e:
+        if os.environ.get("NAVBOUND_TRACEBACK"):
+            raise
+        _die(f"{e} (set NAVBOUND_TRACEBACK=1 for the traceback)", OUR_BUG)
     except FormatError as e:
         _die(str(e), UNREADABLE)
     except (InputError, NavboundError) as e:
         _die(str(e), USAGE)
+    except MemoryError:
+        _die("the data need more memory than there is", UNREADABLE)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except Exception as e:
+    except (Exception, _core.PanicException) as e:
         if hasattr(e, "format_message"):  # a usage error of the command-line parser
             _die(e.format_message(), USAGE)
         if os.environ.get("NAVBOUND_TRACEBACK"):

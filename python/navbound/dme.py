@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound._radionav import (
     SWITCHING,
@@ -60,6 +61,7 @@ __all__ = [
 ]
 
 
+@checked
 def range_sigma(slant_m: ArrayLike) -> NDArray[np.float64]:
     """Give the standard deviation of a DME range: the larger of 0.085 NM and 0.125 % in the air, with 0.05 NM of the signal.
 
@@ -82,6 +84,7 @@ def range_sigma(slant_m: ArrayLike) -> NDArray[np.float64]:
     return unflatten(_core.dme_range_sigma(slant), shape)
 
 
+@checked
 def icao_two_sigma(slant_1_m: ArrayLike, slant_2_m: ArrayLike, inclusion_rad: ArrayLike) -> NDArray[np.float64]:
     """``2 sqrt(sigma_1² + sigma_2²) / sin(inclusion)``, the figure printed for a pair.
 
@@ -141,6 +144,7 @@ class Pair:
     admissible: bool
 
 
+@checked
 def pairs(
     aircraft_enu_m: ArrayLike,
     stations_enu_m: Mapping[str, ArrayLike],
@@ -167,12 +171,10 @@ def pairs(
         Coordinates that are not finite, or a station straight below the aircraft.
     """
     names = sorted(stations_enu_m)
-    _, (aircraft,) = flatten(aircraft_enu_m=(aircraft_enu_m, (3,)))
-    if len(aircraft) != 1:
-        raise InputError("aircraft_enu_m", f"shape {np.shape(aircraft_enu_m)}", domain="shape (3,)")
-    places = [flatten(**{f"stations_enu_m[{name}]": (stations_enu_m[name], (3,))})[1][0].ravel().tolist() for name in names]
+    aircraft = _one_place("aircraft_enu_m", aircraft_enu_m)
+    places = [_one_place(f"stations_enu_m[{name}]", stations_enu_m[name]) for name in names]
     found = []
-    for row in _core.dme_pairs(aircraft[0].tolist(), places, sigma_altitude_m, course_rad):
+    for row in _core.dme_pairs(aircraft, places, sigma_altitude_m, course_rad):
         first, second = row.pop("stations")
         covariance = row.pop("covariance_en_m2")
         for key in ("slant_m", "sigma_m", "elevation_rad"):
@@ -182,6 +184,7 @@ def pairs(
     return found
 
 
+@checked
 def pair(
     aircraft_enu_m: ArrayLike,
     first_enu_m: ArrayLike,
@@ -195,6 +198,7 @@ def pair(
     return pairs(aircraft_enu_m, both, sigma_altitude_m=sigma_altitude_m, course_rad=course_rad)[0]
 
 
+@checked
 def best_pair(
     aircraft_enu_m: ArrayLike,
     stations_enu_m: Mapping[str, ArrayLike],
@@ -228,6 +232,14 @@ class VorDme(NamedTuple):
     available: NDArray[np.bool_]
 
 
+def _one_place(name: str, place: ArrayLike) -> list[float]:
+    _, (places,) = flatten(**{name: (place, (3,))})
+    if len(places) != 1:
+        raise InputError(name, f"shape {np.shape(place)}", domain="shape (3,)")
+    return [float(x) for x in places[0]]
+
+
+@checked
 def vor_dme(ground_m: ArrayLike, slant_m: ArrayLike, sigma_vor_rad: ArrayLike, sigma_dme_m: ArrayLike) -> VorDme:
     """Give the standard deviations of a VOR/DME position: ``sigma_dme slant/ground`` along and ``ground sigma_vor`` across the radial.
 

@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound.errors import InputError
 from navbound.tse import exceedance_risk
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    from navbound._arguments import Labels
 
 CONDITIONAL = (
     "Conditional coverage: the estimate is given and the true position scatters about it, as every bound of the total system error "
@@ -128,11 +131,12 @@ class Pit:
     high: float
 
 
+@checked
 def bound(
     error_m: ArrayLike,
     bound_m: ArrayLike,
     risk: float,
-    track: ArrayLike | None = None,
+    track: Labels | None = None,
     *,
     coverage_kind: str = REPEATED,
 ) -> BoundScore:
@@ -172,8 +176,9 @@ def bound(
     return BoundScore(**_core.evaluate_bound(error, limit, risk, _labels(track)), risk=risk, coverage_kind=coverage_kind)
 
 
+@checked
 def bootstrap_coverage(
-    error_m: ArrayLike, bound_m: ArrayLike, track: ArrayLike, *, n_replicates: int = 2000, seed: int = 0
+    error_m: ArrayLike, bound_m: ArrayLike, track: Labels, *, n_replicates: int = 2000, seed: int = 0
 ) -> tuple[float, float]:
     """Resample whole tracks for a 95 % interval of the coverage (cluster bootstrap).
 
@@ -201,7 +206,8 @@ def bootstrap_coverage(
     return _core.bootstrap_coverage(error, limit, _labels(track), _count("n_replicates", n_replicates), seed)
 
 
-def nees(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = None) -> Nees:
+@checked
+def nees(error_m: ArrayLike, covariance_m2: ArrayLike, track: Labels | None = None) -> Nees:
     """Mean of e' V⁻¹ e with chi-square limits for the effective sample size.
 
     Parameters
@@ -222,7 +228,8 @@ def nees(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None =
     return Nees(**_core.evaluate_nees(dimension, error, covariance, _labels(track)))
 
 
-def pit(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = None, *, n_bins: int = 20) -> Pit:
+@checked
+def pit(error_m: ArrayLike, covariance_m2: ArrayLike, track: Labels | None = None, *, n_bins: int = 20) -> Pit:
     """Histogram of the probability integral transform of e' V⁻¹ e, with its band.
 
     Parameters
@@ -284,7 +291,8 @@ class Containment:
     p_value_any: float
 
 
-def magnitude(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | None = None) -> Magnitude:
+@checked
+def magnitude(error_m: ArrayLike, covariance_m2: ArrayLike, track: Labels | None = None) -> Magnitude:
     """Size of the horizontal error against its covariance, with a probability that needs no effective sample size.
 
     ``p = min(1, exp(1 - m / 2))`` with the time mean m of e' V⁻¹ e: a mean of equally distributed values is in the convex order no larger
@@ -310,6 +318,7 @@ def magnitude(error_m: ArrayLike, covariance_m2: ArrayLike, track: ArrayLike | N
     return Magnitude(**_core.evaluate_magnitude(error, covariance, _labels(track)))
 
 
+@checked
 def containment(n_outside: int, n: int, n_effective: float, risk: float) -> Containment:
     """How often a bound contained the error, and how probable that is for a bound that keeps its risk.
 
@@ -330,6 +339,7 @@ def containment(n_outside: int, n: int, n_effective: float, risk: float) -> Cont
     return Containment(**_core.evaluate_containment(_count("n_outside", n_outside), _count("n", n), n_effective, risk))
 
 
+@checked
 def crps(error_m: ArrayLike, sigma_m: ArrayLike) -> NDArray[np.float64]:
     """Continuous ranked probability score of a centred Gaussian: how far its law is from the error that came.
 
@@ -367,7 +377,8 @@ def crps(error_m: ArrayLike, sigma_m: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(sigma * (z * inside + 2.0 * density - 1.0 / math.sqrt(math.pi)))
 
 
-def effective_size(values: ArrayLike, track: ArrayLike | None = None, *, about_zero: bool = False) -> float:
+@checked
+def effective_size(values: ArrayLike, track: Labels | None = None, *, about_zero: bool = False) -> float:
     """Epochs the mean of a correlated series is worth, ``n / (1 + 2 sum rho)``, pooled over tracks; NaN left out.
 
     Parameters
@@ -403,7 +414,7 @@ def _vectors(error_m: ArrayLike, covariance_m2: ArrayLike) -> tuple[int, NDArray
     return dimension, error.ravel(), covariance.ravel()
 
 
-def _labels(track: ArrayLike | None) -> NDArray[np.uint32]:
+def _labels(track: Labels | None) -> NDArray[np.uint32]:
     if track is None:
         return np.zeros(0, dtype=np.uint32)
     labels = np.asarray(track)

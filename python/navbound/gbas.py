@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound._gbas_arguments import named, spread, systems, width_of
 from navbound._gbas_detection import fault_probability, missed_by_monitor, missed_detection_limit, monitor_margin
@@ -150,6 +151,7 @@ class Levels:
     reason_id: NDArray[np.str_]
 
 
+@checked
 def factors(integrity_risk: float, *, share: float = 0.25, axes: int = 1, receivers: int = 4, receiver_fault: float = 1e-5) -> Factors:
     """Multipliers from an integrity risk (RTCA DO-245A; standard): 6.54 and 4.06 for 1.25e-9.
 
@@ -177,6 +179,7 @@ def factors(integrity_risk: float, *, share: float = 0.25, axes: int = 1, receiv
     return Factors(*_core.gbas_factors(integrity_risk, share, axes, receivers, receiver_fault))
 
 
+@checked
 def accuracy_limit(containment_m: float, budget: ErrorBudget | None = None) -> float:
     """Accuracy (95 %) that a containment leaves to navigation: 1.96 sqrt((TSC/4.8916)² - FTE² - PDE²) [m].
 
@@ -196,6 +199,7 @@ def accuracy_limit(containment_m: float, budget: ErrorBudget | None = None) -> f
     return _core.gbas_accuracy_limit(containment_m, b.containment_risk, b.sigma_fte_m, b.sigma_pde_m)
 
 
+@checked
 def bias_gain(east_north: ArrayLike, ordering: Ordering = "exact") -> float:
     """Largest position, in metres, for biases of at most a metre in every range (navi.673 equation 6).
 
@@ -217,6 +221,7 @@ def bias_gain(east_north: ArrayLike, ordering: Ordering = "exact") -> float:
     return _core.gbas_bias_gain(rows, named("ordering", ordering, ("exact", "rss", "sum")))
 
 
+@checked
 def protection_levels(
     az_rad: ArrayLike,
     el_rad: ArrayLike,

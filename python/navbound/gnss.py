@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound._constellations import CONSTELLATIONS, Orbits, constellation, nominal
 from navbound._dop_map import DopMap, dop_map
@@ -156,6 +157,7 @@ class Dilution:
     reason_id: NDArray[np.str_]
 
 
+@checked
 def directions(
     orbits: Orbits, lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, time_s: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -186,6 +188,7 @@ def directions(
     return found["az_rad"].reshape(wide), found["el_rad"].reshape(wide)
 
 
+@checked
 def places(  # noqa: PLR0917 - receivers, then lines of sight
     lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, az_rad: ArrayLike, el_rad: ArrayLike, distance_m: float
 ) -> NDArray[np.float64]:
@@ -217,6 +220,7 @@ def places(  # noqa: PLR0917 - receivers, then lines of sight
     return _core.places_along((lat, lon, h), az, el, distance_m).reshape(*wide, 3)
 
 
+@checked
 def geometry(orbits: Orbits, lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, time_s: ArrayLike, *, mask_rad: float = 0.0) -> Sky:
     """Satellites above an elevation mask.
 
@@ -243,6 +247,7 @@ def geometry(orbits: Orbits, lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayL
     return Sky(np.where(visible, az, np.nan), np.where(visible, el, np.nan), visible, visible.sum(axis=-1))
 
 
+@checked
 def covariance(
     az_rad: ArrayLike, el_rad: ArrayLike, sigma_m: ArrayLike, constellation: Sequence[int] | NDArray[np.int64] | None = None
 ) -> PositionCovariance:
@@ -282,6 +287,7 @@ def covariance(
     )
 
 
+@checked
 def responses(
     az_rad: ArrayLike, el_rad: ArrayLike, sigma_m: ArrayLike, constellation: Sequence[int] | NDArray[np.int64] | None = None
 ) -> NDArray[np.float64]:
@@ -314,6 +320,7 @@ def responses(
     return np.ascontiguousarray(np.swapaxes(rows, -1, -2)).reshape(*shape[:-1], 3, shape[-1])
 
 
+@checked
 def dop(az_rad: ArrayLike, el_rad: ArrayLike, constellation: Sequence[int] | NDArray[np.int64] | None = None) -> Dilution:
     """Dilutions of precision, one clock for each constellation.
 

@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, _kpi_records
+from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound._kpi_levels import chosen_levels, level, levels, rnp
 from navbound._kpi_subsets import RangeTable, StanfordEsa, SubsetOptions, n_bins, stanford_esa, with_subsets
@@ -80,6 +81,7 @@ class Continuity:
     risk: float
 
 
+@checked
 def continuity(available: ArrayLike | str, n_window_epochs: int) -> Continuity:
     """Continuity of a pattern of available epochs by the sliding window; the look-ahead is cut at the end of the data.
 
@@ -109,6 +111,7 @@ def continuity(available: ArrayLike | str, n_window_epochs: int) -> Continuity:
     return Continuity(n_available, n_at_risk, n_events, n_at_risk / n_available if n_available else float("nan"))
 
 
+@checked
 def stanford(
     error_m: ArrayLike, level_m: ArrayLike, alert_limit_m: float, *, axis: str = "v", bin_m: float = 0.1, limit_m: float = 50.0
 ) -> Stanford:
@@ -146,6 +149,7 @@ def stanford(
     return Stanford(counts, bins)
 
 
+@checked
 def evaluate(
     table: Table | Sequence[Table],
     levels: str | Level | Sequence[str | Level],

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound.errors import InputError
 
@@ -131,6 +132,7 @@ class Path:
         return Places(leg=leg, **{name: values.reshape(shape) for name, values in found.items()})
 
 
+@checked
 def line(lat0_rad: float, lon0_rad: float, lat1_rad: float, lon1_rad: float) -> Path:
     """Infinite geodesic through two points, from the first towards the second.
 
@@ -147,6 +149,7 @@ def line(lat0_rad: float, lon0_rad: float, lat1_rad: float, lon1_rad: float) -> 
     return Path(_core.Path.line(lat0_rad, lon0_rad, lat1_rad, lon1_rad))
 
 
+@checked
 def from_azimuth(lat_rad: float, lon_rad: float, course_rad: float) -> Path:
     """Infinite geodesic from a point in a direction.
 
@@ -165,6 +168,7 @@ def from_azimuth(lat_rad: float, lon_rad: float, course_rad: float) -> Path:
     return Path(_core.Path.from_azimuth(lat_rad, lon_rad, course_rad))
 
 
+@checked
 def route(lat_rad: ArrayLike, lon_rad: ArrayLike, radius_m: ArrayLike = 0.0) -> Path:
     """Geodesic legs between waypoints with a fly-by turn at each waypoint between.
 

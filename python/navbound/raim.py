@@ -26,6 +26,7 @@ from navbound._araim_settings import (
     support_rows,
     systems_of,
 )
+from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound._constellations import Orbits
 from navbound._monitor_fit import Fit
@@ -125,6 +126,7 @@ class Monitored:
     step_enu_m: NDArray[np.float64]
 
 
+@checked
 def factors(n_redundant: ArrayLike, requirement: Requirement = RAIM) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Threshold and missed bias of a test, by the number of redundant ranges.
 
@@ -155,6 +157,7 @@ def factors(n_redundant: ArrayLike, requirement: Requirement = RAIM) -> tuple[ND
     return pairs[:, 0].reshape(n.shape), pairs[:, 1].reshape(n.shape)
 
 
+@checked
 def protection_levels(
     unit_enu: ArrayLike,
     constellation: Sequence[int] | NDArray[np.int64],
@@ -192,6 +195,7 @@ def protection_levels(
     return _levels(_core.raim_levels(unit, sigma, of, requirement_numbers(requirement)), shape[:-1])
 
 
+@checked
 def monitor(
     unit_enu: ArrayLike,
     constellation: Sequence[int] | NDArray[np.int64],
@@ -229,6 +233,7 @@ def monitor(
     return Monitored(_levels(found, leading), decision, excluded, ratio, step)
 
 
+@checked
 def predict(
     orbits: Orbits,
     lat_rad: ArrayLike,

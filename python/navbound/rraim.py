@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound._gbas_arguments import spread, systems
+from navbound._gbas_models import Service
 from navbound.errors import InputError
 from navbound.gbas import Factors, Form, Ordering, factors, range_sigma
 from navbound.status import availability, reasons_of
@@ -24,7 +26,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from navbound._gbas_models import Service
 
 __all__ = ["Levels", "protection_levels"]
 
@@ -101,6 +102,7 @@ class Levels:
         return self.covariance_enu_m2[..., 1, 1]
 
 
+@checked
 def protection_levels(  # noqa: PLR0917 - satellites then, satellites now, their phases, their systems
     az_rad: ArrayLike,
     el_rad: ArrayLike,

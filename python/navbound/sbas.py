@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 from navbound._arrays import flatten, unflatten
 from navbound._error_extraction import ErrorExtraction, error_extraction
 from navbound._extraction_gains import (
@@ -30,16 +31,21 @@ from navbound._extraction_gains import (
     extraction_gains,
 )
 from navbound._receiver_files import file_content
-from navbound._sbas_positions import MODES, CorrectedPositions, corrected_positions, service_of
+from navbound._sbas_positions import (
+    MODES,
+    CorrectedPositions,
+    Navigations,
+    corrected_positions,
+    service_of,
+)
 from navbound._sbas_records import Decoded, Levels, Messages, Refused, Satellites
 from navbound._sbas_terms import FromTerms, covariance_levels, levels_from_terms
 from navbound.errors import InputError
+from navbound.gnss import Observations
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from navbound._sbas_positions import Navigations
-    from navbound.gnss import Observations
 
 __all__ = [
     "ALPHA",
@@ -80,6 +86,7 @@ _MASK_RAD = 0.08726646259971647
 """5 degrees: the standard's mask."""
 
 
+@checked
 def read(path: str | Path, *, tag: Literal["end", "start"] | None = None) -> Messages:
     """Read a log of SBAS messages: EMS text, RTKLIB ``.sbs``, RINEX-B or a receiver's raw log, plain or packed (gzip, compress, zip).
 
@@ -112,6 +119,7 @@ def read(path: str | Path, *, tag: Literal["end", "start"] | None = None) -> Mes
     return Messages(refused=refused, **found)
 
 
+@checked
 def decode(messages: Messages) -> list[Decoded]:
     """Say what messages contain (DO-229D, appendix A).
 
@@ -137,6 +145,7 @@ def decode(messages: Messages) -> list[Decoded]:
     ]
 
 
+@checked
 def protection_levels(
     messages: Messages,
     navigation: Navigations,
@@ -208,6 +217,7 @@ def protection_levels(
     )
 
 
+@checked
 def satellites(
     messages: Messages,
     navigation: Navigations,
@@ -257,6 +267,7 @@ def _places(
     return shape, {"time_ns": times, "lat_rad": lat, "lon_rad": lon, "h_m": h}
 
 
+@checked
 def solve(
     observations: Observations,
     navigation: Navigations,

@@ -7,11 +7,13 @@ from datetime import UTC, datetime
 import numpy as np
 
 from navbound import _core
+from navbound._arguments import checked
 
 GPS_EPOCH_UNIX_NS = 315_964_800_000_000_000
 """Unix time of 1980-01-06 00:00:00 UTC."""
 
 
+@checked
 def utc_text(time_ns: int) -> str:
     """Date and time of day in UTC, to the second.
 
@@ -24,6 +26,7 @@ def utc_text(time_ns: int) -> str:
     return datetime.fromtimestamp(unix_ns // 1_000_000_000, tz=UTC).strftime("%Y-%m-%d %H:%M:%S")
 
 
+@checked
 def utc_offset_s(time_ns: int) -> int:
     """GPS time minus UTC at an instant of GPS time: the leap seconds so far. [s].
 
@@ -36,6 +39,7 @@ def utc_offset_s(time_ns: int) -> int:
     return round((time_ns + GPS_EPOCH_UNIX_NS - unix_ns) * 1e-9)
 
 
+@checked
 def gps_ns(when: datetime) -> int:
     """GPS time of an instant of UTC, to the microsecond. [ns].
 

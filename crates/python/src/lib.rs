@@ -39,6 +39,8 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    // What a panic becomes; the Python package turns it into its own class, which says that it is our bug.
+    m.add("PanicException", m.py().get_type::<pyo3::panic::PanicException>())?;
     methods::register(m)?;
     status::register(m)?;
     tse::register(m)?;

@@ -22,7 +22,7 @@ use navbound_formats::rinex::{self, Code};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyLookupError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 
 /// One observation file, read.
@@ -168,13 +168,6 @@ const ELEMENTS: [Element; 22] = [
     ("group_delay_second_s", |e| e.group_delay_s[1]),
     ("fit_interval_s", |e| e.fit_interval_s),
 ];
-
-/// The plain bytes of a file that gzip, compress or zip packed.
-#[pyfunction(name = "unpack")]
-fn unpacked<'py>(py: Python<'py>, content: &[u8], path: &str) -> PyResult<Bound<'py, PyBytes>> {
-    let plain = py.detach(|| unpack(content)).map_err(|e| format_error(path, &e))?;
-    Ok(PyBytes::new(py, &plain))
-}
 
 /// What a raw log holds: epochs of measurements, orbits from subframes, SBAS messages; None for any other file.
 #[pyfunction]
@@ -463,7 +456,6 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Observations>()?;
     m.add_class::<Navigation>()?;
     m.add_function(wrap_pyfunction!(raw_log, m)?)?;
-    m.add_function(wrap_pyfunction!(unpacked, m)?)?;
     m.add_function(wrap_pyfunction!(geodetic_from_ecef, m)?)?;
     m.add_function(wrap_pyfunction!(unused_reasons, m)?)?;
     m.add_function(wrap_pyfunction!(ntcm_delay, m)?)?;

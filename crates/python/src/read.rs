@@ -6,10 +6,12 @@ use navbound_assess::error::navigation_errors;
 use navbound_assess::plausible::{Finding, Limits, Report, judge};
 use navbound_core::frame::{Covariance, Ecef, LatLon};
 use navbound_core::quantity::{GpsTime, OutOfDomain, Radians};
+use navbound_formats::packed::{Limit, unpack_within};
 use navbound_formats::{rtklib, time};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
+use std::borrow::Cow;
 
 /// Columns of an RTKLIB solution file, and the rows not used as (line, field, reason, text).
 #[pyfunction]
@@ -33,6 +35,15 @@ fn read_rtklib<'py>(py: Python<'py>, text: &str, path: &str) -> PyResult<Bound<'
     let refused: Vec<_> = s.refused.into_iter().map(|r| (r.line, r.field, r.reason, r.text)).collect();
     d.set_item("refused", refused)?;
     Ok(d)
+}
+
+/// The plain bytes of a packed file, at most so many in all and per packed byte; None of one that is plain.
+#[pyfunction]
+fn unpack<'py>(py: Python<'py>, content: &[u8], path: &str, total: u64, ratio: u64) -> PyResult<Option<Bound<'py, PyBytes>>> {
+    match py.detach(|| unpack_within(content, Limit { total, ratio })).map_err(|e| format_error(path, &e))? {
+        Cow::Borrowed(_) => Ok(None),
+        Cow::Owned(plain) => Ok(Some(PyBytes::new(py, &plain))),
+    }
 }
 
 /// GPS time [ns] of Unix times [ns].
@@ -216,6 +227,7 @@ fn rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bou
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(unpack, m)?)?;
     m.add_function(wrap_pyfunction!(read_rtklib, m)?)?;
     m.add_function(wrap_pyfunction!(enu_covariance, m)?)?;
     m.add_function(wrap_pyfunction!(write_rtklib, m)?)?;

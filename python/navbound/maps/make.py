@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, scale
+from navbound._arguments import checked
 from navbound.errors import InputError
 from navbound.maps import files, records
 from navbound.maps.grid import Grid
@@ -33,6 +34,7 @@ _RESULT_BYTES = 80.0
 """A number of every column for a user and an instant, and its sorted copy. [B]"""
 
 
+@checked
 def make(
     kind: str,
     *,

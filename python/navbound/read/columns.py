@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import math
 import re
 from dataclasses import dataclass
@@ -167,6 +168,12 @@ OPENSKY_STATES: dict[str, tuple[str, str]] = {
 some of which mean something else elsewhere."""
 
 
+_LONGEST_NAME = 80
+"""Longer names are compared with nothing: likeness takes quadratic time. [1]"""
+_MOST_COMPARED = 1000
+"""Columns whose names are compared with the known ones. [1]"""
+
+
 @dataclass(frozen=True)
 class Column:
     """A column of the file, what it holds, and how it is written."""
@@ -258,10 +265,17 @@ def position_time(unused: list[str]) -> Column | None:
     return None
 
 
+@functools.lru_cache(maxsize=1024)
 def _plain(name: str) -> tuple[str, str | None]:
     """``Latitude (deg)`` to ``latitude`` and ``deg``."""
-    match = re.fullmatch(r"\s*(.*?)\s*[(\[]\s*([^)\]]*?)\s*[)\]]\s*", name)
-    stem, unit = (match[1], match[2].lower()) if match else (name, None)
+    stem, unit = name.strip(), None
+    if stem.endswith((")", "]")):
+        # By searches and no pattern: one with several runs of blanks takes quadratic time.
+        inside = stem[:-1]
+        last_closed = max(inside.rfind(")"), inside.rfind("]"))
+        opened = [at for bracket in "([" if (at := inside.find(bracket, last_closed + 1)) >= 0]
+        if opened:
+            stem, unit = inside[: min(opened)], inside[min(opened) + 1 :].strip().lower()
     return re.sub(r"[\s\-.]+", "_", stem.strip().lower()), unit
 
 
@@ -295,7 +309,8 @@ def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Q
     if not separator or name not in names:
         name, unit = (value, "") if value in names or not separator else (name, unit)
     if name not in names:
-        near = ", ".join(difflib.get_close_matches(name, names, 3, 0.5)) or ", ".join(names[:12])
+        short = [n for n in names if len(n) <= _LONGEST_NAME]
+        near = ", ".join(difflib.get_close_matches(name[:_LONGEST_NAME], short, 3, 0.5)) or ", ".join(short[:12])
         raise FormatError(path, f"there is no column “{name}”; found: {near}", 1, key)
     if key in {"time", "time_ns"}:
         unit = unit or TIME_NAMES.get(_plain(name)[0], "utc" if key == "time" else "gps_ns")
@@ -321,8 +336,9 @@ def _require(columns: dict[str, Column], times: list[Column], names: list[str], 
         if found:
             continue
         unit = {"time": "utc_s", "est_lat_rad": "deg", "est_lon_rad": "deg"}.get(need, "m")
-        near = {n: max(difflib.SequenceMatcher(None, _plain(n)[0], a).ratio() for a in known) for n in names}
-        best = sorted(names, key=lambda n: -near[n])[:5]
+        short = [n for n in names if len(n) <= _LONGEST_NAME][:_MOST_COMPARED]
+        near = {n: max(difflib.SequenceMatcher(None, _plain(n)[0], a).ratio() for a in known) for n in short}
+        best = sorted(short, key=lambda n: -near[n])[:5]
         raise FormatError(
             path,
             f"no column holds it (known names: {', '.join(known[:6])}, ...); the nearest of the {len(names)} found are "

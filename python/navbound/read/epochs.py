@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
-from navbound.errors import FormatError
+from navbound.errors import UNSEEN, FormatError
 from navbound.read import receivers
 from navbound.read.columns import LEVEL_QUANTITIES, POSITION, POSITION_TIME, QUANTITIES, UNITS, Assignment, Column, assign, position_time
 from navbound.read.rejections import Rejections
@@ -105,7 +105,7 @@ def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequenc
             raise FormatError(source.path, f"holds {dtype}, where a number or a text is needed", field=column.name)
     for name, column in mapping.columns.items():
         if _QUANTITY[name].si == "text":
-            out = out.with_columns(frame[column.name].cast(pl.String).str.strip_chars().alias(name))
+            out = out.with_columns(frame[column.name].cast(pl.String).str.replace_all(UNSEEN, "").str.strip_chars().alias(name))
             continue
         values, reason = _numbers(frame[column.name], column)
         out = out.with_columns(values.alias(name))

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from navbound import _core
-from navbound.errors import FormatError
+from navbound import _packed
+from navbound.errors import FormatError, visible
 from navbound.read import foreign, receivers
 from navbound.run.records import InputFile
 
@@ -61,7 +61,7 @@ class Source:
     @property
     def stem(self) -> str:
         """The name without its endings."""
-        return self.path.name.split(".")[0] or self.path.name
+        return visible(self.path.name.split(".")[0] or self.path.name)
 
     def refuse_unknown(self) -> None:
         """Refuse content that is neither text nor of a kind that is known.
@@ -117,7 +117,8 @@ def load(path: str | Path) -> Source:
     Raises
     ------
     FormatError
-        No such file, not a file, empty, a packed file that is damaged, cut short or of several files, or a kind that is known and not read.
+        No such file, not a file, empty, packed and damaged, cut short, of several files or above the limit of :mod:`navbound._packed`, or a
+        kind that is known and not read.
     """
     path = Path(path)
     try:
@@ -126,7 +127,7 @@ def load(path: str | Path) -> Source:
         raise FormatError(path, "no such file") from e
     except OSError as e:
         raise FormatError(path, f"cannot be read: {e.strerror}") from e
-    content = _core.unpack(stored, str(path)) if stored.startswith(PACKED) else stored
+    content = _packed.plain(path, stored)
     if not content.strip():
         raise FormatError(path, "the file is empty")
     other = foreign.kind(content)

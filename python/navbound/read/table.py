@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import polars as pl
 
+from navbound import _packed
 from navbound.errors import FormatError
 from navbound.read.rejections import Rejections
 
@@ -102,6 +103,10 @@ def _names(source: Source, header: str, separator: str) -> list[str]:
 
 def _parquet(source: Source) -> Table:
     try:
+        stated = pl.scan_parquet(io.BytesIO(source.content))
+        n_rows, n_columns = stated.select(pl.len()).collect().item(), len(stated.collect_schema())
+        # Eight bytes a field: a column of one value packs to nothing.
+        _packed.require_room(source.path, len(source.content), 8 * n_rows * n_columns)
         frame = pl.read_parquet(io.BytesIO(source.content))
     except (pl.exceptions.PolarsError, OSError) as e:
         raise FormatError(source.path, f"damaged Parquet file: {str(e).splitlines()[0]}") from e

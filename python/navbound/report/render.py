@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import json
 from importlib.resources import files
 from pathlib import Path
@@ -69,12 +71,14 @@ def write_page(title: str, words: str, page: payload.Page, target: Path) -> Path
 def _html(title: str, words: str, page: payload.Page) -> str:
     web = files("navbound").joinpath("_web")
     template = files("navbound").joinpath("report/template.html.j2").read_text(encoding="utf-8")
+    script = web.joinpath("report.js").read_text(encoding="utf-8")
     environment = Environment(autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True, trim_blocks=True, lstrip_blocks=True)
     return environment.from_string(template).render(
         title=title,
         words=words,
         css=Markup(web.joinpath("report.css").read_text(encoding="utf-8")),
-        script=Markup(web.joinpath("report.js").read_text(encoding="utf-8")),
+        script=Markup(script),
+        script_hash=f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}",
         data=Markup(script_safe(page.data)),
         tracks=page.tracks,
     )

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from navbound import scenario as scenarios
+from navbound._arguments import checked
 from navbound.errors import InputError
 from navbound.run import analyze as recorded
 from navbound.run import directory, performance
@@ -16,6 +17,7 @@ from navbound.run.faults import fault_summaries
 from navbound.run.judge import judge
 from navbound.run.kpi_records import Level
 from navbound.run.requirement import requirement
+from navbound.run.settings import Settings
 from navbound.run.studies import PAGES, REPORTS, STUDIES
 from navbound.scenario import taxi as taxi_scenarios
 
@@ -24,11 +26,11 @@ if TYPE_CHECKING:
     from typing import Unpack
 
     from navbound.run.directory import Run
-    from navbound.run.settings import Settings
     from navbound.run.studies import Study
     from navbound.scale import Work
 
 
+@checked
 def fly(
     scenario: str | Path = "beijing-shanghai",
     *,
@@ -75,6 +77,7 @@ def fly(
         return directory.write(replace(run, summary=summary), folder)
 
 
+@checked
 def analyze(
     files: str | Path | Sequence[str | Path],
     *,
@@ -123,6 +126,7 @@ def analyze(
         return directory.write(judge(material, settings, command), folder)
 
 
+@checked
 def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None = None, **work: Unpack[Work]) -> Study:
     """Run a study by its name.
 

@@ -50,9 +50,14 @@ def columns() -> list[pl.Expr]:
     ]
 
 
+def _no_formula() -> pl.Expr:
+    """Texts that a spreadsheet would work out are led in by an apostrophe, as it writes a text itself; numbers stay."""
+    return pl.selectors.string().str.replace(r"^(\s*[=+\-@])", "'${1}")
+
+
 def write_csv(tables: Iterable[pl.DataFrame], path: Path, experimental: str = "") -> None:
     """Write tables that follow each other as one file, one in memory at a time; experimental levels are marked in their names."""
     marked = {name: f"{name} [{experimental}]" for name in _OF_LEVELS} if experimental else {}
     with path.open("wb") as file:
         for index, table in enumerate(tables):
-            table.select(columns()).rename(marked).write_csv(file, include_header=index == 0)
+            table.select(columns()).with_columns(_no_formula()).rename(marked).write_csv(file, include_header=index == 0)

@@ -36,6 +36,7 @@ class Stored:
     rejected: list[dict[str, Any]]
     notes: list[str]
     experimental: str
+    digests: dict[str, str]
     source: Source
 
 
@@ -118,8 +119,9 @@ def _remember(folder: Path, key: str, source: Source, part: Part) -> Stored:
             partial.replace(_ranges_of(table))
         part.epochs.write_parquet(partial := table.with_suffix(".partial"), compression="zstd")
         partial.replace(table)
+        facts["digests"] = {path.name: _digest(path) for path in (table, _ranges_of(table)) if path.is_file()}
         partial = record.with_suffix(".partial")
-        partial.write_text(json.dumps(facts), encoding="utf-8")
+        partial.write_text(json.dumps({"facts": facts, "sha256": _digest_of(facts)}), encoding="utf-8")
         partial.replace(record)
     except OSError as e:
         raise FormatError(folder, f"cannot be written: {e.strerror}") from e
@@ -131,9 +133,29 @@ def _remembered(folder: Path, key: str, source: Source) -> Stored | None:
     if not (record.is_file() and table.is_file()):
         return None
     try:
-        return Stored(table=table, source=source, **json.loads(record.read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError) as e:
+        kept = json.loads(record.read_text(encoding="utf-8"))
+        facts, digest = kept["facts"], kept["sha256"]
+        if _digest_of(facts) != digest:
+            raise FormatError(record, "is not what was kept: its digest differs; delete it to compute this part again")
+        for name, expected in facts["digests"].items():
+            if _digest(folder / name) != expected:
+                raise FormatError(
+                    folder / name, f"is not what was kept: its digest differs; delete {record.name} to compute this part again"
+                )
+        return Stored(table=table, source=source, **facts)
+    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError) as e:
+        if isinstance(e, FormatError):
+            raise
         raise FormatError(record, f"is damaged ({e}); delete it to compute this part again") from e
+
+
+def _digest_of(facts: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as content:
+        return hashlib.file_digest(content, "sha256").hexdigest()
 
 
 def _ranges_of(table: Path) -> Path:

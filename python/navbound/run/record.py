@@ -2,10 +2,30 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, model_validator
+
+from navbound.errors import visible
 
 
 class Record(BaseModel):
-    """Immutable, with no field that is not declared."""
+    """Immutable, with no field that is not declared; every text in it is fit to be shown."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _visible(cls, fields: Any) -> Any:
+        return _shown(fields)
+
+
+def _shown(value: Any) -> Any:
+    """Texts without what is not seen, in lists and mappings too; the rest as it is."""
+    if isinstance(value, str):
+        return visible(value)
+    if isinstance(value, dict):
+        return {_shown(key): _shown(part) for key, part in value.items()}
+    if type(value) in {list, tuple}:
+        return type(value)(_shown(part) for part in value)
+    return value

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from navbound import _core, gnss
+from navbound import _packed, gnss
 from navbound.errors import FormatError, InputError
 from navbound.gnss import Orbits
 from navbound.read.source import PACKED
@@ -179,12 +179,12 @@ def _gps_ns(start: datetime) -> int:
 
 
 def is_rinex(path: Path) -> bool:
-    """Whether a file, plain or gzip, is RINEX."""
+    """Whether a file, plain or packed, is RINEX."""
     try:
         with path.open("rb") as file:
             head = file.read(4096)
     except OSError as e:
         raise FormatError(path, e.strerror or str(e)) from e
     if head.startswith(PACKED):
-        head = _core.unpack(path.read_bytes(), str(path))[:4096]
+        head = _packed.read(path)[:4096]
     return b"RINEX VERSION" in head[:200]

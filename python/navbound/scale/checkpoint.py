@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import pickle
 import zipfile
 from pathlib import Path
@@ -14,7 +15,12 @@ from navbound import _core
 from navbound.errors import FormatError
 
 if TYPE_CHECKING:
+    from typing import BinaryIO
+
     from numpy.typing import NDArray
+
+_DIGEST_BYTES = 64
+"""SHA-256 in hexadecimal. [B]"""
 
 
 class Nothing:
@@ -28,7 +34,10 @@ class Nothing:
 
 
 class Folder:
-    """One file a tile. Its name holds a digest of version, function and tile, so that no job takes the tile of another."""
+    """One file a tile; its last 64 bytes (the comment of the archive) hold the digest of all before them, so that no changed tile is taken.
+
+    Its name holds a digest of version, function and tile, so that no job takes the tile of another.
+    """
 
     def __init__(self, path: str | Path, function: object) -> None:
         self.path = Path(path)
@@ -44,12 +53,16 @@ class Folder:
         return self.path / f"tile-{index:06d}-{digest}.npz"
 
     def load(self, index: int, tile: object) -> dict[str, NDArray[np.generic]] | None:
-        """A tile's result; None where there is none, or none that can be read whole."""
+        """A tile's result; None where there is none, or none that is what was kept: it is worked off again."""
         file = self.file(index, tile)
         try:
-            with file.open("rb") as content, np.load(content, allow_pickle=False) as columns:
-                return {name: columns[name] for name in columns.files}
-        except (OSError, ValueError, EOFError, zipfile.BadZipFile):
+            with file.open("rb") as content:
+                # Only what this class wrote is taken apart: whatever else lies there has no way to fail.
+                if _stated(content) != _digest(content):
+                    return None
+                with np.load(content, allow_pickle=False) as columns:
+                    return {name: columns[name] for name in columns.files}
+        except OSError:
             return None
 
     def store(self, index: int, tile: object, result: dict[str, NDArray[np.generic]]) -> None:
@@ -59,11 +72,36 @@ class Folder:
         try:
             # Not savez: the keyword names it needs clash with a column called "file".
             with zipfile.ZipFile(partial, "w") as archive:
+                archive.comment = b"0" * _DIGEST_BYTES
                 for name, values in result.items():
                     with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
                         np.lib.format.write_array(member, np.asarray(values), allow_pickle=False)
+            with partial.open("r+b") as content:
+                digest = _digest(content)
+                content.seek(-_DIGEST_BYTES, os.SEEK_END)
+                content.write(digest)
             partial.replace(file)
         except OSError as e:
             # Half a tile on a full disk is of no use, and in the way.
             partial.unlink(missing_ok=True)
             raise FormatError(self.path, f"cannot keep tile {index}: {e.strerror}") from e
+
+
+def _stated(content: BinaryIO) -> bytes:
+    """The digest at the end of a tile; of a file that has no room for one, nothing."""
+    if content.seek(0, os.SEEK_END) < _DIGEST_BYTES:
+        return b""
+    content.seek(-_DIGEST_BYTES, os.SEEK_END)
+    return content.read()
+
+
+def _digest(content: BinaryIO) -> bytes:
+    """The digest of what stands before it; the file is left at its start."""
+    left = max(content.seek(0, os.SEEK_END) - _DIGEST_BYTES, 0)
+    content.seek(0)
+    digest = hashlib.sha256()
+    while left and (piece := content.read(min(left, 1 << 20))):
+        digest.update(piece)
+        left -= len(piece)
+    content.seek(0)
+    return digest.hexdigest().encode()

@@ -68,10 +68,12 @@ impl StudentT {
     /// a heavy tail is straight.
     pub(crate) fn excess(&self, ratio: f64, q: f64) -> f64 {
         let risk = |bound: f64| self.tail(bound - ratio) + self.tail(bound + ratio);
-        let (mut low, mut high) = (1.0 + ratio, 1.0 + ratio);
-        while risk(high) > q {
-            high = ratio + 2.0 * (high - ratio);
+        // The step is kept by itself: beside a ratio above 2^53 it is lost, and a bound that stays where it is has no end.
+        let (mut low, mut step) = (1.0 + ratio, 1.0);
+        while risk(ratio + step) > q {
+            step *= 2.0;
         }
+        let high = ratio + step;
         while risk(low) <= q {
             low *= 0.5;
         }
@@ -102,6 +104,14 @@ mod tests {
             let root = sqrt(2.0 + t * t);
             let two = 1.0 / (root * (root + t));
             assert!((StudentT::new(2.0).tail(t) / two - 1.0).abs() <= 2e-14, "nu 2, t {t}");
+        }
+    }
+
+    #[test]
+    fn a_root_beside_any_ratio_ends() {
+        for ratio in [2f64.powi(52), 2f64.powi(53) + 2.0, 1e100, 1e300, f64::MAX, f64::INFINITY] {
+            // Any number will do: what matters is that it comes, and the caller checks its risk.
+            let _ = StudentT::new(6.0).excess(ratio, 1e-5);
         }
     }
 

@@ -1,4 +1,4 @@
-"""The fault campaign on recorded drives and flights: the faults are put into the recorded samples and positions, and `ins.fuse` runs on them.
+"""The fault campaign on recorded drives and flights: faults in the recorded samples and positions, and `ins.fuse` on them.
 
 There is no path, so no alert: what is counted is the status. A recording that has no level of its own gets a declared one; a fault of the
 receiver is then a fault of that level too.
@@ -55,7 +55,7 @@ class Recording:
 
     @property
     def metres(self) -> Floats:
-        """Metres for a unit of latitude, longitude and height on a sphere: 0.4 % of an error, not of a position. [m/rad, m/rad, 1]"""
+        """Lengths of a unit of latitude, longitude and height on a sphere: 0.4 % of an error, not of a position. [m/rad, m/rad, 1]."""
         return np.array([6.37e6, 6.37e6 * np.cos(self.truth[0, 0]), 1.0])
 
     def since_s(self, time_ns: object) -> Floats:
@@ -175,8 +175,9 @@ def _noise(r: Recording, size: float, onset_s: float) -> Recording:
     """White noise of a multiple of what the filter declares."""
     since, angle, velocity, interval = _arrays(r)
     draw = np.random.default_rng(0)
-    for values, noise in ((angle, r.model.gyroscope), (velocity, r.model.accelerometer)):
-        values += draw.normal(size=values.shape) * (size * noise.white * np.sqrt(interval) * (since >= onset_s))[:, None]
+    factor = size * np.sqrt(interval) * (since >= onset_s)
+    angle += draw.normal(size=angle.shape) * (r.model.gyroscope.white * factor)[:, None]
+    velocity += draw.normal(size=velocity.shape) * (r.model.accelerometer.white * factor)[:, None]
     return _unit(r, angle_rad=angle, velocity_mps=velocity)
 
 

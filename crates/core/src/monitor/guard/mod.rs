@@ -596,23 +596,19 @@ fn passes(block: &Block) -> bool {
 /// The innovations together, without the few satellites whose absence makes them pass: a filter sees a small fault before the snapshot does.
 /// Where no few explain it nobody is left out, and the block fails.
 fn block_without(filter: &mut Fusion, time: GpsTime, ranges: &mut Ranges, out: &mut [Option<SatelliteId>; EXCLUDED_MOST]) -> Option<Block> {
-    let all = filter.block(time, ranges)?;
-    let (mut block, mut left, mut leaving) = (all, ranges.clone(), *out);
+    let mut together = filter.together(time, ranges)?;
+    let all = together.block()?;
+    let (mut block, mut leaving) = (all, *out);
     while !passes(&block) {
         let Some(place) = leaving.iter_mut().find(|o| o.is_none()) else { return Some(all) };
-        let without = |filter: &mut Fusion, satellite| filter.block(time, &left.without(satellite));
-        let mut best: Option<(SatelliteId, Block)> = None;
-        for m in left.iter() {
-            let Some(found) = without(filter, m.satellite) else { continue };
-            if best.is_none_or(|(_, b)| found.square < b.square) {
-                best = Some((m.satellite, found));
-            }
-        }
-        let Some((satellite, found)) = best else { return Some(all) };
-        *place = Some(satellite);
-        (block, left) = (found, left.without(satellite));
+        let Some(k) = together.most_at_fault() else { return Some(all) };
+        *place = ranges.iter().nth(k).map(|m| m.satellite);
+        together.leave_out(k);
+        let Some(left) = together.block() else { return Some(all) };
+        block = left;
     }
-    (*ranges, *out) = (left, leaving);
+    *ranges = Ranges::of(ranges.iter().filter(|m| !leaving.contains(&Some(m.satellite))));
+    *out = leaving;
     Some(block)
 }
 

@@ -18,6 +18,7 @@ use super::mode::Mode;
 use super::settings::StartSigma;
 use super::slots::Further;
 use super::state::NavState;
+use super::together::Together;
 use crate::frame::{Covariance, Displacement, EcefPosition, Enu, enu_from_ecef};
 use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians};
 use crate::signal::{Aiding, SatelliteRange, TimedAiding};
@@ -38,16 +39,6 @@ pub struct Difference {
     pub velocity_m2ps2: Matrix3<f64>,
 }
 
-/// All innovations of an instant together: their weighted square is chi-square with as many degrees of freedom as there are ranges less one,
-/// the common clock being free.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Block {
-    /// The weighted square.
-    pub square: f64,
-    /// Ranges less one.
-    pub freedom: usize,
-}
-
 /// Variance that frees the clock common to all ranges \[m²\]: a jump of any size is none of the position's.
 const CLOCK_FREE_M2: f64 = 1e10;
 
@@ -66,9 +57,9 @@ impl Fusion {
         self.main.delay.velocity_heard(time, nalgebra::Vector2::new(v.enu_mps.y, v.enu_mps.x), variance);
     }
 
-    /// As [`Filter::block`], of the filter with satellites.
-    pub fn block(&mut self, time: GpsTime, ranges: &Ranges) -> Option<Block> {
-        self.main.block(time, ranges)
+    /// As [`Filter::together`], of the filter with satellites.
+    pub fn together(&mut self, time: GpsTime, ranges: &Ranges) -> Option<Together> {
+        self.main.together(time, ranges)
     }
 
     /// The filter begins anew at a snapshot, its attitude by weight and course as after a hole; the one without satellites goes on.
@@ -172,11 +163,7 @@ impl Filter {
     }
 
     /// The innovations of all ranges of an instant together, before any is judged alone; `None` where there is nothing to judge by.
-    ///
-    /// ```text
-    /// Q = gamma' (H P H' + V)^-1 gamma
-    /// ```
-    pub fn block(&mut self, time: GpsTime, ranges: &Ranges) -> Option<Block> {
+    pub fn together(&mut self, time: GpsTime, ranges: &Ranges) -> Option<Together> {
         let (antenna, _) = self.ready(time).ok()?;
         let clock = self.slots.find(Further::Clock)?;
         let n = ranges.len();
@@ -198,8 +185,7 @@ impl Filter {
             }
             sigma[k][k] += scalar.variance;
         }
-        let square = weighted_square(&mut sigma, &mut gamma, n)?;
-        Some(Block { square, freedom: n.checked_sub(1).filter(|f| *f > 0)? })
+        Together::of(sigma, gamma, n)
     }
 
     /// Variance that a range shares with range `j` of the instant through states that the filter does not have yet.
@@ -223,24 +209,6 @@ impl Filter {
 fn products(rows: &[Row; 3], carried: &[[f64; WIDTH]; 3]) -> Matrix3<f64> {
     let p = Matrix3::from_fn(|i, j| rows[i].of(&carried[j]));
     (p + p.transpose()) * 0.5
-}
-
-/// |z|² with L z = gamma and L L' the matrix whose lower half is given; `None` where it is not positive.
-fn weighted_square(l: &mut [[f64; RANGES_MOST]; RANGES_MOST], z: &mut [f64; RANGES_MOST], n: usize) -> Option<f64> {
-    for i in 0..n {
-        for j in 0..i {
-            let known: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
-            l[i][j] = (l[i][j] - known) / l[j][j];
-            z[i] -= l[i][j] * z[j];
-        }
-        let left = l[i][i] - l[i][..i].iter().map(|x| x * x).sum::<f64>();
-        if !(left > 0.0) {
-            return None;
-        }
-        l[i][i] = crate::special::float::sqrt(left);
-        z[i] /= l[i][i];
-    }
-    Some(z[..n].iter().map(|x| x * x).sum::<f64>()).filter(|s| s.is_finite())
 }
 
 /// Whether a measurement is made of numbers that mean something.

@@ -35,9 +35,10 @@ mod slots;
 mod state;
 mod stations;
 mod strapdown;
+mod together;
 
 pub use adrift::Resumption;
-pub use against::{Block, Difference, is_sane, judgeable};
+pub use against::{Difference, is_sane, judgeable};
 pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};
 pub use entry::Refusal;
@@ -49,3 +50,4 @@ pub use settings::{ClockModel, ErrorModel, Form, GATE, ImuModel, Patience, Senso
 pub use slots::Further;
 pub use state::{Attitude, LATITUDE_MOST_RAD, NavState};
 pub use strapdown::{PROVENANCE, SOURCE, Strapdown};
+pub use together::{Block, Together};

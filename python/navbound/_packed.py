@@ -1,0 +1,89 @@
+"""Files as they are kept, unpacked within a limit: one door for every reader, so that no compressed file ends the process.
+
+``NAVBOUND_UNPACKED_BYTES`` and ``NAVBOUND_UNPACKED_RATIO`` set the limit: plain bytes in all, and plain bytes per packed byte above 64 MiB.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from navbound import _core
+from navbound.errors import FormatError, InputError
+
+MOST_BYTES = 4 << 30
+"""Plain bytes that a file may unpack to: fifty times the largest daily file. [B]"""
+MOST_RATIO = 200
+"""Plain bytes per packed byte: logs and tables pack to a third, repeated rows to a fiftieth, a bomb to a thousandth. [1]"""
+ALWAYS_BYTES = 64 << 20
+"""What is unpacked whatever its ratio. [B]"""
+
+
+def limit() -> tuple[int, int]:
+    """Plain bytes in all and per packed byte, as the environment sets them. [B, 1].
+
+    Raises
+    ------
+    InputError
+        A setting that is no positive whole number.
+    """
+    return _setting("NAVBOUND_UNPACKED_BYTES", MOST_BYTES), _setting("NAVBOUND_UNPACKED_RATIO", MOST_RATIO)
+
+
+def read(path: str | Path) -> bytes:
+    """Bytes of a file, unpacked.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be read, or as :func:`plain`.
+    """
+    place = Path(path)
+    try:
+        stored = place.read_bytes()
+    except OSError as e:
+        raise FormatError(place, e.strerror or str(e)) from e
+    return plain(place, stored)
+
+
+def plain(path: str | Path, stored: bytes) -> bytes:
+    """Unpack what may be packed.
+
+    Raises
+    ------
+    FormatError
+        A damaged stream, one that unpacks to more than the limit, or a packing that is not read, which is named.
+    """
+    unpacked = _core.unpack(stored, str(path), *limit())
+    return stored if unpacked is None else unpacked
+
+
+def require_room(path: str | Path, packed: int, unpacked: int) -> None:
+    """Refuse what says of itself that it unpacks to more than the limit.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, for the message.
+    packed, unpacked : int
+        Its size on the disk and in memory. [B]
+
+    Raises
+    ------
+    FormatError
+        Above the limit.
+    """
+    total, ratio = limit()
+    most = min(total, max(ratio * packed, ALWAYS_BYTES))
+    if unpacked > most:
+        sizes = f"its {packed / 1e6:.1f} MB unpack to {unpacked / 1e6:.0f} MB, more than the {most / 1e6:.0f} MB that are allowed"
+        raise FormatError(path, f"{sizes} (NAVBOUND_UNPACKED_BYTES, NAVBOUND_UNPACKED_RATIO)")
+
+
+def _setting(name: str, default: int) -> int:
+    text = os.environ.get(name)
+    if text is None:
+        return default
+    if not (text.isascii() and text.isdigit() and len(text) < 19 and int(text) > 0):
+        raise InputError(name, text[:60], domain="a positive whole number")
+    return int(text)
