@@ -45,7 +45,7 @@ def test_a_packed_table_is_the_table(tmp_path: Path, packed: bytes) -> None:
 def test_compress_is_unpacked_as_gzip_unpacks_it(tmp_path: Path, clear_every: int | None) -> None:
     plain = bytes(random.Random(1).choices(b"0123456789 .", k=200_000))
     packed = compress(plain, clear_every=clear_every)
-    assert _core.unpack(packed, "made here") == plain
+    assert _core.unpack(packed, "made here", 1 << 20, 200) == plain
     if (gzip := shutil.which("gzip")) is None:
         pytest.skip("SKIPPED ALOUD: no gzip to check the encoder with")
     (tmp_path / "made.Z").write_bytes(packed)

@@ -68,7 +68,7 @@ def monitor_of(protection: str) -> Monitor | None:
     return MONITORS.get(protection)
 
 
-def monitored(solving: Solving) -> dict[str, str]:
+def monitored(solving: Solving) -> dict[str, str | float]:
     """What a monitor on board takes of the options of solving.
 
     Raises

@@ -215,7 +215,7 @@ def _moved(r: Recording, east_m: Floats) -> Recording:
 
 
 def _fix_step(r: Recording, size: float, onset_s: float) -> Recording:
-    return _moved(r, size * (r.since_s(r.fixes.time_ns) >= onset_s))
+    return _moved(r, np.where(r.since_s(r.fixes.time_ns) >= onset_s, size, 0.0))
 
 
 def _fix_ramp(r: Recording, size: float, onset_s: float) -> Recording:
@@ -224,7 +224,7 @@ def _fix_ramp(r: Recording, size: float, onset_s: float) -> Recording:
 
 def _every_second_fix(r: Recording, size: float, onset_s: float) -> Recording:
     since = r.since_s(r.fixes.time_ns)
-    return _moved(r, size * ((since >= onset_s) & (np.arange(since.size) % 2 == 0)))
+    return _moved(r, np.where((since >= onset_s) & (np.arange(since.size) % 2 == 0), size, 0.0))
 
 
 def _fix_late(r: Recording, size: float, onset_s: float) -> Recording:
