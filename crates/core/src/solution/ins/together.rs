@@ -110,41 +110,49 @@ fn inverted(l: &mut [[f64; RANGES_MOST]; RANGES_MOST], n: usize) -> Option<[[f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{DMatrix, DVector};
 
     /// Ranges that share a clock of 100 m and have 2 to 4 m of their own.
-    fn covariance(n: usize) -> DMatrix<f64> {
-        DMatrix::from_fn(n, n, |i, j| {
-            let shared = 1e4 + 0.5 * ((i * j) as f64).cos().abs().min(1.0);
-            shared + if i == j { 4.0 + (i % 3) as f64 * 6.0 } else { 0.0 }
-        })
+    fn covariance(i: usize, j: usize) -> f64 {
+        let shared = 1e4 + 0.5 * ((i * j) as f64).cos().abs();
+        shared + if i == j { 4.0 + (i % 3) as f64 * 6.0 } else { 0.0 }
     }
 
-    fn together(v: &DMatrix<f64>, gamma: &DVector<f64>) -> Together {
+    fn together(innovation: &[f64]) -> Together {
+        let n = innovation.len();
+        let sigma = core::array::from_fn(|i| core::array::from_fn(|j| if i < n && j <= i { covariance(i, j) } else { 0.0 }));
+        let gamma = core::array::from_fn(|k| innovation.get(k).copied().unwrap_or(0.0));
+        Together::of(sigma, gamma, n).unwrap()
+    }
+
+    /// gamma' V^-1 gamma by elimination.
+    fn square(mut v: Vec<Vec<f64>>, gamma: &[f64]) -> f64 {
         let n = gamma.len();
-        let mut sigma = [[0.0; RANGES_MOST]; RANGES_MOST];
-        let mut innovation = [0.0; RANGES_MOST];
+        let mut x = gamma.to_vec();
         for i in 0..n {
-            innovation[i] = gamma[i];
-            (0..=i).for_each(|j| sigma[i][j] = v[(i, j)]);
+            for k in i + 1..n {
+                let factor = v[k][i] / v[i][i];
+                (i..n).for_each(|j| v[k][j] -= factor * v[i][j]);
+                x[k] -= factor * x[i];
+            }
         }
-        Together::of(sigma, innovation, n).unwrap()
+        for i in (0..n).rev() {
+            let known: f64 = (i + 1..n).map(|j| v[i][j] * x[j]).sum();
+            x[i] = (x[i] - known) / v[i][i];
+        }
+        dot(&x, gamma)
     }
 
     #[test]
     fn the_square_of_what_is_left_is_that_of_its_own_covariance() {
-        let n = 9;
-        let v = covariance(n);
-        let gamma = DVector::from_fn(n, |i, _| 50.0 + [0.5, -1.0, 12.0, 2.0, -0.3, 1.0, -9.0, 0.0, 1.5][i]);
-        let mut all = together(&v, &gamma);
-        let mut left: Vec<usize> = (0..n).collect();
+        let gamma = [0.5, -1.0, 12.0, 2.0, -0.3, 1.0, -9.0, 0.0, 1.5].map(|x| 50.0 + x);
+        let mut all = together(&gamma);
+        let mut left: Vec<usize> = (0..gamma.len()).collect();
         for out in [2, 6, 0] {
             all.leave_out(out);
             left.retain(|k| *k != out);
-            let part = v.select_rows(&left).select_columns(&left);
-            let rest = DVector::from_iterator(left.len(), left.iter().map(|k| gamma[*k]));
-            let expected = (rest.transpose() * part.try_inverse().unwrap() * &rest)[0];
-            let block = all.block().unwrap();
+            let part = left.iter().map(|i| left.iter().map(|j| covariance(*i, *j)).collect()).collect();
+            let rest: Vec<f64> = left.iter().map(|k| gamma[*k]).collect();
+            let (block, expected) = (all.block().unwrap(), square(part, &rest));
             assert!((block.square / expected - 1.0).abs() < 1e-9, "{} {expected}", block.square);
             assert_eq!(block.freedom, left.len() - 1);
         }
@@ -155,23 +163,19 @@ mod tests {
 
     #[test]
     fn the_one_most_at_fault_is_the_one_that_was_moved() {
-        let v = covariance(8);
         for moved in 0..8 {
-            let gamma = DVector::from_fn(8, |i, _| if i == moved { 90.0 } else { 50.0 + 0.1 * i as f64 });
-            assert_eq!(together(&v, &gamma).most_at_fault(), Some(moved));
+            let gamma: Vec<f64> = (0..8_u8).map(|i| if usize::from(i) == moved { 90.0 } else { 50.0 + 0.1 * f64::from(i) }).collect();
+            assert_eq!(together(&gamma).most_at_fault(), Some(moved));
         }
     }
 
     #[test]
     fn a_covariance_that_is_none_gives_nothing_and_one_range_alone_has_no_square() {
-        let sigma = [[0.0; RANGES_MOST]; RANGES_MOST];
-        assert!(Together::of(sigma, [1.0; RANGES_MOST], 3).is_none());
-        let one = DMatrix::from_element(1, 1, 4.0);
-        assert!(together(&one, &DVector::from_element(1, 3.0)).block().is_none());
-        let mut nan = covariance(2);
-        nan[(1, 0)] = f64::NAN;
-        let mut sigma = [[0.0; RANGES_MOST]; RANGES_MOST];
-        (0..2).for_each(|i| (0..=i).for_each(|j| sigma[i][j] = nan[(i, j)]));
-        assert!(Together::of(sigma, [1.0; RANGES_MOST], 2).is_none());
+        let zero = [[0.0; RANGES_MOST]; RANGES_MOST];
+        assert!(Together::of(zero, [1.0; RANGES_MOST], 3).is_none());
+        assert!(together(&[3.0]).block().is_none());
+        let mut unknown = zero;
+        (unknown[0][0], unknown[1][0], unknown[1][1]) = (4.0, f64::NAN, 4.0);
+        assert!(Together::of(unknown, [1.0; RANGES_MOST], 2).is_none());
     }
 }
