@@ -135,8 +135,8 @@ def _kind(expected: str, good: Callable[[Any], bool]) -> Check:
     return check
 
 
-def _one_of(words: tuple[Any, ...]) -> Check:
-    return _kind(f"one of {', '.join(map(str, words))}", lambda value: isinstance(value, str | int) and value in words)
+def _one_of(allowed: tuple[Any, ...]) -> Check:
+    return _kind(f"one of {', '.join(map(str, allowed))}", lambda value: isinstance(value, str | int) and value in allowed)
 
 
 def _number(name: str, value: Any) -> None:

@@ -14,15 +14,15 @@ import polars as pl
 
 from navbound import _core
 from navbound._arguments import checked
-from navbound._arrays import flatten, shown
+from navbound._arrays import flatten
+from navbound._precise import PreciseOrbits
+from navbound._receiver_files import Navigation, Observations
 from navbound._signal_choice import smaller_covariance
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from navbound._precise import PreciseOrbits
-    from navbound._receiver_files import Navigation, Observations
 
 SYSTEMS = {"G": "GPS", "E": "Galileo", "C": "BeiDou"}
 """Constellations a position can be solved from, by their letter."""
@@ -177,10 +177,6 @@ def solve(
     """
     if not systems or any(s not in SYSTEMS for s in systems):
         raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
-    from navbound._precise import PreciseOrbits as Precise  # noqa: PLC0415 - that module reads files by this one
-
-    if orbits is not None and not isinstance(orbits, Precise):
-        raise InputError("orbits", shown(orbits), domain="an object of class PreciseOrbits or None")
     if signals not in SIGNALS:
         raise InputError("signals", signals, domain=", ".join(SIGNALS))
     if ionosphere not in IONOSPHERES:

@@ -420,7 +420,11 @@ def _labels(track: Labels | None) -> NDArray[np.uint32]:
     labels = np.asarray(track)
     if labels.ndim != 1:
         raise InputError("track", f"shape {labels.shape}", domain="shape (n,)")
-    return np.ascontiguousarray(np.unique(labels, return_inverse=True)[1], dtype=np.uint32)
+    try:
+        places = np.unique(labels, return_inverse=True)[1]
+    except TypeError as e:
+        raise InputError("track", "labels of several kinds", domain="numbers, or texts") from e
+    return np.ascontiguousarray(places, dtype=np.uint32)
 
 
 def _count(name: str, value: int) -> int:
