@@ -7,6 +7,7 @@ import importlib.util
 import itertools
 import json
 import math
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -18,6 +19,7 @@ import pytest
 
 import navbound
 from navbound import InputError, _core, gnss
+from navbound._signal_choice import smaller_covariance
 from navbound.methods import bounds
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -247,3 +249,30 @@ def test_the_model_is_that_of_an_independent_transcription(transcription: Module
         )
         # Both lose some digits where an arc sine is steep.
         assert ours == pytest.approx(transcription.delay_m(level, (lat, lon), (azimuth, elevation), hours, day), rel=1e-9, abs=1e-12)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """As much of positions as the choice looks at."""
+
+    epochs: pl.DataFrame
+    models: dict[str, str]
+
+
+def solution(status: str, variance_m2: float) -> Solution:
+    axes = {f"cov_{axis}_m2": [variance_m2] * 10 for axis in ("ee", "nn", "uu")}
+    return Solution(pl.DataFrame({"status": [status] * 10, **axes}), {"signals": "kind: words"})
+
+
+@pytest.mark.parametrize(
+    ("single", "dual", "taken"),
+    [
+        (solution("degraded", 1.0), solution("ok", 2.0), "ionosphere-free pairs"),
+        (solution("ok", 1.0), solution("ok", 2.0), "one pseudorange"),
+        (solution("degraded", 1.0), solution("degraded", 2.0), "one pseudorange"),
+        (solution("ok", 2.0), solution("ok", 1.0), "ionosphere-free pairs"),
+    ],
+)
+def test_positions_that_nobody_vouches_for_are_not_taken_for_their_covariance(single: Solution, dual: Solution, taken: str) -> None:
+    found = smaller_covariance({"single": single, "dual": dual}.__getitem__)  # type: ignore[arg-type]
+    assert found.models["signals"].startswith(taken)

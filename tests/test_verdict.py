@@ -453,3 +453,39 @@ def test_rows_repeated_at_other_times_are_no_further_evidence(tmp_path: Path, ti
     tolerance = 4.0 * math.sqrt(2.0 * (2 * times + 1) / (n * times))
     assert evaluation.magnitude(error, covariance).n_effective <= n * (1.0 + tolerance)
     assert evaluation.nees(error, covariance).n_effective <= n * (1.0 + tolerance)
+
+
+def test_one_ok_epoch_with_a_known_error_beyond_twice_rnp_is_never_inside() -> None:
+    assert rule.of_tracks(GOOD) == "inside"
+    assert rule.of_tracks(replace(GOOD, n_known_beyond=1)) == "not_believable"
+
+
+def test_improbable_errors_are_no_support_before_they_refute() -> None:
+    facts = rule.BeliefFacts(n_effective=100.0, p_values=[0.004, 0.5], short=True, excluded=False)
+    assert rule.of_belief(facts) == "short"
+    assert rule.of_belief(replace(facts, p_values=[0.1, 0.5])) == "supported"
+    # More coverage than claimed is no doubt of a bound.
+    assert rule.of_belief(replace(facts, short=False)) == "supported"
+
+
+def _cruise(tmp_path: Path, wild: dict[int, float]) -> Path:
+    """A straight flight of 20 minutes at 50 m/s, a row a second, without speeds; some rows further north by metres."""
+    lines = ["time_ns,lat_deg,lon_deg,h_m,sigma_n_m,sigma_e_m,sigma_u_m"]
+    for k in range(1200):
+        north_m = 50.0 * k + wild.get(k, 0.0)
+        lines.append(f"{1_300_000_000_000_000_000 + k * 1_000_000_000},{49.0 + north_m / 111_200.0:.9f},2.0,3000.0,2,2,3")
+    path = tmp_path / "cruise.csv"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def test_a_track_without_speeds_is_judged_by_its_own(tmp_path: Path) -> None:
+    quiet = navbound.analyze(_cruise(tmp_path, {}))
+    assert quiet.summary.verdict.id == "inside"
+    assert set(quiet.epochs["status"]) == {"ok"}
+    # Half a minute elsewhere: latency of ten seconds at 50 m/s with factor and margin is less than 2.5 km.
+    away = navbound.analyze(_cruise(tmp_path, dict.fromkeys(range(600, 630), 2500.0)))
+    assert "ok" not in set(away.epochs["status"][600:630])
+    # There and back at every second row: no aircraft.
+    shaken = navbound.analyze(_cruise(tmp_path, dict.fromkeys(range(1, 1200, 2), 850.0)))
+    assert shaken.summary.verdict.id != "inside"

@@ -20,6 +20,10 @@ LEAST_SHARE = 0.95
 Ours."""
 
 
+OK_SHARE = 0.5
+"""Pairs that are ok at this share of the epochs are taken before one pseudorange that is not. Ours."""
+
+
 def smaller_covariance(solve: Callable[[str], Positions]) -> Positions:
     """The solution of the whole file whose declared covariance is the smaller; its models say which, and what it was compared with.
 
@@ -38,6 +42,10 @@ def smaller_covariance(solve: Callable[[str], Positions]) -> Positions:
     if not both.any() or both.sum() < LEAST_SHARE * solved[0].sum():
         words = f"one pseudorange; ionosphere-free pairs give {int(solved[1].sum())} of its {int(solved[0].sum())} positions"
         return _with_words(single if solved[0].any() else dual, words if solved[0].any() else "ionosphere-free pairs; no other position")
+    usable = [float(np.mean(p.epochs["status"].to_numpy()[both] == "ok")) for p in (single, dual)]
+    if usable[0] < OK_SHARE <= usable[1]:
+        # A smaller covariance of positions that nobody vouches for is no better solution.
+        return _with_words(dual, f"ionosphere-free pairs: ok at {usable[1]:.0%} of the epochs against {usable[0]:.0%} of one pseudorange")
     sigma = [float(np.sqrt(np.median(t[both]))) for t in traces]
     if sigma[1] < sigma[0]:
         return _with_words(dual, f"ionosphere-free pairs: median sigma {sigma[1]:.2f} m against {sigma[0]:.2f} m of one pseudorange")

@@ -79,7 +79,9 @@ pub struct Judged {
 /// A position is a jump when it lies further from the last different position than
 /// `(factor * reported speed + margin) * (time between them + latency) + noise`, with the larger of the two reported speeds, or the stated
 /// fastest speed where neither is reported. Where the recording says when both positions were valid, that is the time between them, and the
-/// latency is that of such times; elsewhere a position that is reachable only with more latency than makes a held one stale is late. The same holds from the first position of each minute, with the fastest speed reported since.
+/// latency is that of such times; elsewhere a position that is reachable only with more latency than makes a held one stale is late. The same
+/// holds from the first position of each minute, with the fastest speed reported since. A track that reports no speed is judged by its own:
+/// the fastest speed is then that of 95 % of its steps, with factor and margin, and a step that needs any latency makes its position late.
 /// The time runs from the last *different* position: after 87 s without news an aircraft may
 /// be 20 km further on, and is not jumping.
 ///
@@ -88,6 +90,8 @@ pub struct Judged {
 /// # Errors
 /// [`OutOfDomain`] with the index of the first position that is no place on the Earth.
 pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize, OutOfDomain)> {
+    let silent = reports.iter().all(|r| r.speed_mps.is_nan());
+    let limits = &if silent { Limits { max_speed_mps: own_speed(reports, limits)?, ..*limits } } else { *limits };
     let mut judged = Vec::with_capacity(reports.len());
     let mut last: Option<(Report, EcefPosition)> = None;
     let mut jumped: Option<GpsTime> = None;
@@ -111,7 +115,7 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
             if !(step_m <= between.reach_m(between.latency_s, limits)) || !flown {
                 finding = Finding::Jump;
                 jumped = Some(report.time);
-            } else if !between.dated && !(step_m <= between.reach_m(limits.stale_after_s, limits)) {
+            } else if !between.dated && !(step_m <= between.reach_m(if silent { 0.0 } else { limits.stale_after_s }, limits)) {
                 finding = Finding::Late;
             }
             if step_m > between.reach_m(0.0, limits) && between.elapsed_s > 0.0 {
@@ -130,6 +134,38 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
         judged.push(Judged { finding, age_s, step_m, too_fast_mps });
     }
     Ok(judged)
+}
+
+/// Share of the steps of a track that reports no speed whose speed is its own. Provenance: ours: one that jumps at more of its steps than one in
+/// twenty is late at each of them.
+const OWN_SHARE: f64 = 0.95;
+/// Steps from which a track has a speed of its own. Provenance: ours.
+const OWN_STEPS: usize = 20;
+
+/// The fastest speed of a track that reports none \[m/s\]: of its own steps of a second or more, the noise taken off, and never above the limit.
+fn own_speed(reports: &[Report], limits: &Limits) -> Result<f64, (usize, OutOfDomain)> {
+    let mut speeds = Vec::new();
+    let mut from: Option<(GpsTime, EcefPosition)> = None;
+    for (index, report) in reports.iter().enumerate() {
+        let here = sea_level(report).map_err(|refusal| (index, refusal))?;
+        let Some((time, before)) = from else {
+            from = Some((report.time, here));
+            continue;
+        };
+        let elapsed = report.time.seconds_since(time);
+        if elapsed >= 1.0 {
+            speeds.push(here.minus(&before).vector().norm() / elapsed);
+            from = Some((report.time, here));
+        } else if elapsed < 0.0 {
+            from = Some((report.time, here));
+        }
+    }
+    if speeds.len() < OWN_STEPS {
+        return Ok(limits.max_speed_mps);
+    }
+    speeds.sort_by(f64::total_cmp);
+    let own = speeds[((speeds.len() - 1) as f64 * OWN_SHARE) as usize];
+    Ok((limits.speed_factor * own + limits.speed_margin_mps).min(limits.max_speed_mps))
 }
 
 /// For how long positions are judged from one position on \[s\]. Provenance: ours; several latencies, so that one of them is a small part.

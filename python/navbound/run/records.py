@@ -117,6 +117,8 @@ class Verdict(Record):
     """Of those, epochs that a gap of the table should have held, and recorded rows without a usable time and position."""
     n_outside: int = 0
     """Epochs with status ok or degraded whose bound is beyond its limit."""
+    n_known_beyond: int = 0
+    """Epochs with status ok, a bound within its limit and a known error beyond twice RNP."""
     least_share: float = rule.LEAST_SHARE
     """Least share of judged epochs for "inside"."""
     assumed: list[Literal["sigma_typed", "sigma_coded", "no_path"]] = Field(default_factory=list)

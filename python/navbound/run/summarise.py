@@ -126,6 +126,7 @@ def _verdict(
         n_implausible=int(status.eq("invalid_input").sum()),
         n_misleading=sum(check.n_above for check in belief.levels if check.level == "hpl_m") if belief is not None else 0,
         belief="unchecked" if belief is None else belief.state,
+        n_known_beyond=margins.select(_KNOWN_BEYOND.sum()).item() if "nse_h_m" in margins.columns else 0,
     )
     decided = rule.of_tracks(facts)
     verdict = Verdict(
@@ -142,6 +143,7 @@ def _verdict(
         n_unjudged=n_epochs - judged.height - n_degraded,
         n_missing=n_missing,
         n_outside=facts.n_outside,
+        n_known_beyond=facts.n_known_beyond,
         assumed=_assumed(material, judge.id),
         belief=belief,
         n_implausible=facts.n_implausible,
@@ -158,6 +160,12 @@ _OUTSIDE = (pl.min_horizontal("_margin", "_margin_integrity") < 0).fill_null(val
     (pl.col("status") == "ok") & pl.col("_margin").is_not_null() & pl.col("_margin_integrity").is_null()
 )
 """Outside a limit, or an ok epoch whose protection level is missing: what the monitor compares is then within no limit."""
+
+
+_KNOWN_BEYOND = (
+    (pl.col("status") == "ok") & (pl.col("_margin") >= 0) & (pl.col("nse_h_m") > 2.0 * pl.col("rnp_m")) & pl.col("nse_h_m").is_finite()
+).fill_null(value=False)
+"""An ok epoch within its limit whose known navigation error alone is beyond twice RNP: no share of epochs makes that good."""
 
 
 def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "sigma_coded", "no_path"]]:

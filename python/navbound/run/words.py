@@ -63,7 +63,11 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
         found = f" {verdict.n_outside} epochs that are not ok have a bound beyond its limit." if verdict.n_outside else ""
         return f"{HEADLINES[verdict.id]} {verdict.requirement}: {shares}.{found}"
     if verdict.id == "not_believable":
-        return f"{HEADLINES[verdict.id]}, margins to {verdict.requirement} mean nothing: {refuted_words(verdict.belief)}; {shares}."
+        n = verdict.n_known_beyond
+        beyond = f"at {n} ok epochs the known error is beyond twice RNP though the bound is within it" if n else ""
+        false = refuted_words(verdict.belief) if verdict.belief is not None and (not n or verdict.belief.state == "refuted") else ""
+        why = "; ".join(each for each in (beyond, false) if each) or refuted_words(verdict.belief)
+        return f"{HEADLINES[verdict.id]}, margins to {verdict.requirement} mean nothing: {why}; {shares}."
     more = f", and {verdict.n_outside} epochs with status ok or degraded have a bound beyond its limit" if verdict.n_outside else ""
     return (
         f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "

@@ -67,6 +67,7 @@ export interface Verdict {
     n_unjudged: number;
     n_missing: number;
     n_outside: number;
+    n_known_beyond: number;
     least_share: number;
     assumed: ("sigma_typed" | "sigma_coded" | "no_path")[];
     belief: Belief | null;

@@ -17,6 +17,9 @@ be judged is time that was not shown to be inside. Provenance: re-derived (docs/
 REFUTED_AT = 1e-3
 """Probability of the data under the claimed bounds at which they are taken as false (docs/methods/coverage.md). Provenance: ours."""
 
+DOUBTED_AT = 0.05
+"""The same at which they are not supported either. Provenance: ours."""
+
 MEANS_INSIDE: dict[VerdictId, bool | None] = {
     "inside": True,
     "outside": False,
@@ -47,6 +50,8 @@ class TrackFacts:
         Whose true horizontal error is above the horizontal protection level.
     belief : str
         What truth says of the bounds.
+    n_known_beyond : int
+        With status ok, a bound within its limit and a true error beyond twice RNP, which no epoch may have unnoticed.
     """
 
     n_epochs: int
@@ -56,11 +61,12 @@ class TrackFacts:
     n_implausible: int
     n_misleading: int
     belief: BeliefState
+    n_known_beyond: int = 0
 
 
 def of_tracks(facts: TrackFacts) -> VerdictId:
     """Verdict on judged tracks. A false bound comes first: no margin counts beside it."""
-    if facts.belief == "refuted" or facts.n_misleading:
+    if facts.belief == "refuted" or facts.n_misleading or facts.n_known_beyond:
         return "not_believable"
     if facts.n_judged == 0:
         return "nothing_judged"
@@ -168,12 +174,14 @@ def of_belief(facts: BeliefFacts) -> BeliefState:
 
     Refuted where the data are too improbable for true bounds of those that the lateral verdict rests on; contradicted where they are too
     improbable for another bound that the run states (docs/decisions/0029); short where a coverage is below its claim and its interval
-    excludes the claim, or so few independent epochs stand behind it that they decide nothing.
+    excludes the claim, or so few independent epochs stand behind it that they decide nothing, or where the data are improbable though not
+    enough to refute.
     """
     if is_refuted(facts.p_values, len(facts.p_values)):
         return "refuted"
     if facts.n_above_vertical_level or is_refuted(facts.p_values_beside, len(facts.p_values_beside)):
         return "contradicted"
-    if facts.excluded or (facts.short and facts.n_effective < FEW_EPOCHS):
+    doubted = facts.short and joint_probability(facts.p_values) <= DOUBTED_AT
+    if facts.excluded or doubted or (facts.short and facts.n_effective < FEW_EPOCHS):
         return "short"
     return "supported"

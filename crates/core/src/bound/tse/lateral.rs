@@ -30,7 +30,8 @@ impl Deviation {
         if !(sigma.m() >= 0.0 && sigma.m().is_finite()) {
             return Err(OutOfDomain { argument: "sigma_m", value: sigma.m(), unit: "m", domain: "[0, inf)" });
         }
-        Ok(Self { fte: fte.m(), sigma: sigma.m() })
+        // A zero with a sign would make a quotient of the wrong one.
+        Ok(Self { fte: fte.m(), sigma: sigma.m().abs() })
     }
     /// The mean, signed: positive right of the path, or above it.
     pub const fn fte(&self) -> Metres {
