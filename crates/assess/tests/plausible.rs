@@ -97,13 +97,25 @@ fn a_jump_is_what_lies_beyond_the_reach() {
     assert_eq!(findings(&track(&[0.0, 551.0], 100.0))[1], Finding::Jump);
 }
 
-/// 400 m/s * (1 + 2) s + 100 m = 1300 m, whatever a falsified speed says.
+/// 400 m/s * (1 + 2) s + 100 m = 1300 m, whatever a falsified speed says. Without any speed, what needs latency (beyond 500 m) is late.
 #[test]
 fn without_a_speed_or_with_an_absurd_one_the_fastest_aircraft_is_the_measure() {
-    for speed in [f64::NAN, 5000.0] {
-        assert_eq!(findings(&track(&[0.0, 1299.0], speed))[1], Finding::Plausible);
+    for (speed, within) in [(f64::NAN, Finding::Late), (5000.0, Finding::Plausible)] {
+        assert_eq!(findings(&track(&[0.0, 499.0], speed))[1], Finding::Plausible);
+        assert_eq!(findings(&track(&[0.0, 1299.0], speed))[1], within);
         assert_eq!(findings(&track(&[0.0, 1301.0], speed))[1], Finding::Jump);
     }
+}
+
+/// Own speed 50 m/s: (1.25 * 50 + 25) m/s * (1 + 2) s + 100 m = 362.5 m, of which 187.5 m need no latency.
+#[test]
+fn a_track_that_reports_no_speed_is_judged_by_its_own() {
+    let flown = |step_m: f64| {
+        let mut positions: Vec<f64> = (0..100).map(|k| 50.0 * f64::from(k)).collect();
+        positions.push(positions[99] + step_m);
+        findings(&track(&positions, f64::NAN))[100]
+    };
+    assert_eq!([187.0, 188.0, 362.0, 363.0].map(flown), [Finding::Plausible, Finding::Late, Finding::Late, Finding::Jump]);
 }
 
 #[test]
