@@ -14,10 +14,11 @@ use super::Surroundings;
 use super::mixture::{Mixture, OBSTRUCTED};
 use super::plausible::Movement;
 use super::point::{CONFIRMED, Fix};
-use crate::bound::anp;
+use super::wls::horizontal_axes;
 use crate::frame::Covariance;
 use crate::quantity::{GpsTime, Reason, Risk, Unavailable};
 use crate::special::float::exp;
+use crate::special::radius::RadiusLaw;
 
 /// What is known of the surroundings fades with this \[s\].
 const MEMORY_S: f64 = 60.0;
@@ -199,10 +200,16 @@ fn doubt(fix: &Fix, contradicted: bool, confirmed: bool) -> Option<Doubt> {
     }
 }
 
-/// Whether the declared circle is too wide to be of use. One that cannot be computed is.
+/// Whether the declared circle is too wide to be of use: the risk beyond its widest radius is above that of accuracy. One that cannot be
+/// computed is.
 fn too_wide(fix: &Fix) -> bool {
-    let circle = anp::circle(&fix.covariance, None, Risk::ACCURACY);
-    !circle.is_ok_and(|radius| radius.m() <= WIDEST_CIRCLE_M)
+    let (larger, smaller) = horizontal_axes(&fix.covariance);
+    let (larger, smaller) = (larger.m(), smaller.m().min(larger.m()));
+    let variances = [larger * larger, smaller * smaller, 0.0];
+    if !variances.iter().all(|v| v.is_finite()) {
+        return true;
+    }
+    !(RadiusLaw::new(variances, [0.0; 3]).at(WIDEST_CIRCLE_M).outside <= Risk::ACCURACY.q())
 }
 
 #[cfg(test)]
