@@ -7,6 +7,9 @@ the tests of the filter, of the highway typical figures of a phone's unit.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 from scipy.io import loadmat
 
@@ -44,19 +47,30 @@ def drive(level_m: float = 1.0) -> Recording:
     return Recording(imu, fixes, start, model, gps_ns(car.time_s[used]), car.position[used])
 
 
-def flight(level_m: float = 20.0) -> Recording:
-    """The small aircraft: its receiver is the only truth."""
+@dataclass(frozen=True)
+class Aircraft:
+    """The small aircraft from its take-off run on: levelled at rest a minute before, heading from the course.
+
+    ``data`` is what the file holds, ``after`` the samples from the start until ``until_s``.
+    """
+
+    data: Any
+    after: np.ndarray
+    recording: Recording
+
+
+def aircraft(until_s: float = np.inf, level_m: float = np.nan) -> Aircraft:
+    """Deviations of a single-frequency receiver, wide enough for errors that stay from second to second (ours)."""
     data = loadmat(FOLDER.parent / "umn_thor_75" / "thor_flight75.mat", squeeze_me=True, struct_as_record=False)["flight_data"]
     time_s, interval = data.time, float(np.median(np.diff(data.time)))
     force, rate = np.column_stack([data.ax, data.ay, data.az]), np.column_stack([data.p, data.q, data.r])
     position = np.column_stack([np.radians(data.lat), np.radians(data.lon), data.alt])
     velocity = np.column_stack([data.vn, data.ve, data.vd])
-    time_ns = np.round(time_s * 1e9).astype(np.int64)
+    time_ns = _ns(time_s)
     received = np.append(False, np.diff(data.GPS_TOW) > 0) & (data.satVisible >= 4)
     rest = (time_s > 142) & (time_s < 156)
     begin = int(np.flatnonzero(received & (np.hypot(data.vn, data.ve) > 10) & (time_s > 195))[0])
-    # Until it stands again.
-    after = (np.arange(time_s.size) > begin) & (time_s < 560)
+    after = (np.arange(time_s.size) > begin) & (time_s < until_s)
     start = ins.Start(
         int(time_ns[begin]),
         tuple(position[begin]),
@@ -64,6 +78,7 @@ def flight(level_m: float = 20.0) -> Recording:
         ins.coarse_attitude(force[rest].mean(0), velocity[begin]),
         position_sigma_m=(3.0, 3.0, 5.0),
         velocity_sigma_mps=0.5,
+        # It has pitched up since it stood.
         attitude_sigma_rad=(np.radians(10), np.radians(10), np.radians(15)),
     )
     used = received & after
@@ -72,7 +87,12 @@ def flight(level_m: float = 20.0) -> Recording:
     imu = ins.Imu(time_ns[after], (rate - rate[rest].mean(0))[after] * interval, force[after] * interval, interval)
     model = ins.ImuModel(ins.SensorNoise(5e-3, 5e-3, 1000.0), ins.SensorNoise(0.1, 0.5, 300.0))
     fixes = ins.Fixes(time_ns[used], position[used], covariance, velocity[used], moving, hpl_m=level_m, vpl_m=3 * level_m)
-    return Recording(imu, fixes, start, model, time_ns[used], position[used])
+    return Aircraft(data, after, Recording(imu, fixes, start, model, time_ns[used], position[used]))
+
+
+def flight(level_m: float = 20.0) -> Recording:
+    """The small aircraft until it stands again: its receiver is the only truth."""
+    return aircraft(560.0, level_m).recording
 
 
 def highway(level_m: float = 20.0) -> Recording:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.io import loadmat
 
 from drive_fixture import END_S, FOLDER, FOLDS, PARTS, WHOLE, Drive, likeliest
 from navbound import ins
+from recordings import aircraft
 
 
 @pytest.fixture(scope="module")
@@ -73,39 +73,14 @@ def test_the_car_with_its_receiver_follows_it(drive: Drive) -> None:
 
 def test_the_small_aircraft_is_solved_and_its_attitude_is_that_of_its_own_navigator(shared_data: Path) -> None:
     """From the take-off run on: levelled at rest a minute before, heading from the course. No independent truth exists."""
-    path = shared_data / "gnss_imu" / "umn_thor_75" / "thor_flight75.mat"
-    data = loadmat(path, squeeze_me=True, struct_as_record=False)["flight_data"]
-    time_s, interval = data.time, float(np.median(np.diff(data.time)))
-    force, rate = np.column_stack([data.ax, data.ay, data.az]), np.column_stack([data.p, data.q, data.r])
-    position = np.column_stack([np.radians(data.lat), np.radians(data.lon), data.alt])
-    velocity = np.column_stack([data.vn, data.ve, data.vd])
-    time_ns = np.round(time_s * 1e9).astype(np.int64)
-    received = np.append(False, np.diff(data.GPS_TOW) > 0) & (data.satVisible >= 4)
-    rest = (time_s > 142) & (time_s < 156)
-    begin = int(np.flatnonzero(received & (np.hypot(data.vn, data.ve) > 10) & (time_s > 195))[0])
-    after = np.arange(time_s.size) > begin
-    start = ins.Start(
-        int(time_ns[begin]),
-        tuple(position[begin]),
-        tuple(velocity[begin]),
-        ins.coarse_attitude(force[rest].mean(0), velocity[begin]),
-        position_sigma_m=(3.0, 3.0, 5.0),
-        velocity_sigma_mps=0.5,
-        # It has pitched up since it stood.
-        attitude_sigma_rad=(np.radians(10), np.radians(10), np.radians(15)),
-    )
-    used = received & after
-    n = int(used.sum())
-    # Deviations of a single-frequency receiver, wide enough for errors that stay from second to second (ours).
-    covariance, moving = np.tile(np.diag([4.0, 4.0, 16.0]), (n, 1, 1)), np.tile(0.25 * np.eye(3), (n, 1, 1))
-    fixes = ins.Fixes(time_ns[used], position[used], covariance, velocity[used], moving)
-    imu = ins.Imu(time_ns[after], (rate - rate[rest].mean(0))[after] * interval, force[after] * interval, interval)
-    model = ins.ImuModel(ins.SensorNoise(5e-3, 5e-3, 1000.0), ins.SensorNoise(0.1, 0.5, 300.0))
-    fused = ins.fuse(imu, ins.Aiding(fixes=fixes), start, imu_model=model, output_period_s=0.0)
+    assert shared_data.exists()
+    small = aircraft()
+    data, after, recording = small.data, small.after, small.recording
+    fused = ins.fuse(recording.imu, ins.Aiding(fixes=recording.fixes), recording.start, imu_model=recording.model, output_period_s=0.0)
     assert fused.samples == {"done": int(after.sum()), "bridged": 0, "adrift": 0, "late": 0, "refused": 0, "stopped": 0}
     assert fused.innovations["fix_position"].n_gated == 0
     # In the air, a minute after the start, where the on-board navigator is valid.
-    fly = (time_s[after] > 260) & (time_s[after] < 540) & (data.navValid[after] == 0)
+    fly = (data.time[after] > 260) & (data.time[after] < 540) & (data.navValid[after] == 0)
     own = np.column_stack([data.phi, data.theta, data.psi])[after]
     apart = (fused.attitude_rad - own + np.pi) % (2 * np.pi) - np.pi
     roll, pitch, heading = np.degrees(np.sqrt(np.mean(apart[fly] ** 2, 0)))
@@ -113,7 +88,6 @@ def test_the_small_aircraft_is_solved_and_its_attitude_is_that_of_its_own_naviga
     assert roll < 1.5
     assert pitch < 1.5
     assert heading < 3.2
-    metres = np.array([6.37e6, 6.37e6 * np.cos(position[begin, 0]), 1.0])
-    between = (fused.position - np.column_stack([data.navlat, data.navlon, data.navalt])[after])[fly] * metres
+    between = (fused.position - np.column_stack([data.navlat, data.navlon, data.navalt])[after])[fly] * recording.metres
     # The on-board solution is 0.41 m (median) from its receiver; ours is the same receiver's.
     assert np.sqrt(np.mean(np.sum(between[:, :2] ** 2, 1))) < 1.0
