@@ -14,7 +14,7 @@ from navbound.errors import InputError
 from navbound.run import fly
 from navbound.run.studies import STUDIES
 from navbound.scenario import faults
-from navbound.studies.fault_campaign import measures, records, study
+from navbound.studies.fault_campaign import healthy, measures, records, study
 from navbound.studies.fault_campaign.kinds import KINDS, ONSETS_S, Kind
 from navbound.studies.fault_campaign.table import markdown
 
@@ -139,3 +139,19 @@ def test_unknown_parts_are_refused_by_name() -> None:
         study.run(kinds=["nothing"])
     with pytest.raises(InputError, match="onsets"):
         study.run(kinds=["imu-nan"], onsets=[9])
+
+
+def test_healthy_flights_are_counted_whole_and_are_the_same_whoever_flies_them(tmp_path: Path) -> None:
+    """Five flights of 900 s, of which 870 s count."""
+    first = healthy.run(hours=1.25, seed=5, checkpoint=tmp_path)
+    assert first == healthy.run(hours=1.25, seed=5, backend="processes")
+    assert first.flights == 5
+    assert first.healthy.hours == pytest.approx(5 * 870 / 3600)
+    assert first.n_ok + round(first.healthy.not_ok_share * 5 * 870) >= 5 * 870
+    assert first.n_ok_wrong == first.healthy.false_alerts == 0
+
+
+@pytest.mark.parametrize("hours", [0.0, float("nan"), 2e5])
+def test_hours_without_a_meaning_are_refused(hours: float) -> None:
+    with pytest.raises(InputError, match="hours"):
+        healthy.run(hours=hours)

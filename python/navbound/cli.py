@@ -238,7 +238,8 @@ def study(
     name: Annotated[
         str,
         typer.Argument(
-            help="anp-comparison, decorrelation-time, error-extraction, fault-campaign, multipath-time-constants, surface-movement, "
+            help="anp-comparison, decorrelation-time, error-extraction, fault-campaign, healthy-flights, "
+            "multipath-time-constants, surface-movement, "
             "tse-coverage, ukraine-rnav"
         ),
     ],
@@ -257,7 +258,8 @@ def study(
 ) -> None:
     """Repeat a published evaluation and say which of its numbers come out.
 
-    Who works and what is kept can be chosen for studies that are cut into parts: anp-comparison, fault-campaign, tse-coverage.
+    Who works and what is kept can be chosen for studies that are cut into parts: anp-comparison, fault-campaign, healthy-flights,
+    tse-coverage.
     """
     work = work_of(backend, workers, cluster, checkpoint)
     with Bar(name) as work["progress"]:

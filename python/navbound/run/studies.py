@@ -14,6 +14,7 @@ from navbound.run import (
     study_tse_coverage,
     study_ukraine_rnav,
 )
+from navbound.studies.fault_campaign import healthy as healthy_flights
 from navbound.studies.fault_campaign import study as fault_campaign
 
 if TYPE_CHECKING:
@@ -78,6 +79,11 @@ def _fault_campaign(files: Files, **work: Unpack[Work]) -> Study:
     return fault_campaign.run(**work)
 
 
+def _healthy_flights(files: Files, **work: Unpack[Work]) -> Study:
+    _alone(files)
+    return healthy_flights.run(**work)
+
+
 def _surface_movement(files: Files, **work: Unpack[Work]) -> Study:
     _refuse_tiles(work)
     return study_surface_movement.run(files, progress=work.get("progress"))
@@ -98,6 +104,7 @@ STUDIES: dict[str, _Run] = {
     "decorrelation-time": _in_one_piece(study_decorrelation_time.run),
     "error-extraction": _in_one_piece(study_error_extraction.run),
     "fault-campaign": _fault_campaign,
+    "healthy-flights": _healthy_flights,
     "multipath-time-constants": _in_one_piece(study_multipath_time_constants.run),
     "surface-movement": _surface_movement,
     "tse-coverage": _tse_coverage,

@@ -83,6 +83,24 @@ class Study(Record):
         return render(self)
 
 
+class HealthyStudy(Record):
+    """Many flights without a fault."""
+
+    flights: int
+    seed: int
+    healthy: Healthy
+    n_ok: int
+    n_ok_wrong: int
+    """Epochs called ``ok`` with an error outside the 1e-5 bound."""
+    n_late: int
+
+    def table(self) -> RenderableType:
+        """Lay the sums out for a terminal."""
+        from navbound.studies.fault_campaign.table import render_healthy  # noqa: PLC0415 - rich is a matter of the terminal
+
+        return render_healthy(self)
+
+
 def wilson(failures: int, n: int) -> tuple[float, float]:
     """95 % interval of a share by Wilson's score: it does not collapse where none or all fail. Provenance: standard (Wilson 1927)."""
     if n == 0:
@@ -123,7 +141,8 @@ def _row(key: tuple[str, str, str, float], frame: pl.DataFrame) -> Row:
     )
 
 
-def _healthy(frame: pl.DataFrame) -> Healthy:
+def healthy(frame: pl.DataFrame) -> Healthy:
+    """The sums over healthy flights, a row of counts each."""
     hours, alerts = float(frame["healthy_s"].sum()) / 3600, int(frame["n_false_alerts"].sum())
     # Upper 97.5 % limit of a Poisson mean by Wilson and Hilferty's cube; -ln 0.025 for none. Provenance: standard.
     n = alerts + 1
@@ -151,7 +170,7 @@ def summed(tiles: list[tuple[tuple[str, str, str, float], pl.DataFrame]], *, fli
         n_tiles=n_tiles,
         n_runs=whole.height,
         rows=[_row(key, parts[key]) for key in faulty],
-        healthy=_healthy(pl.concat([parts[key] for key in keys if key[1] == "none"])),
+        healthy=healthy(pl.concat([parts[key] for key in keys if key[1] == "none"])),
         single=_share(of_single, "n_ok_wrong", "n_ok"),
         single_epochs_ok=int(of_single["n_ok"].sum()) if of_single.height else 0,
     )

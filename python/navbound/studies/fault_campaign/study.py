@@ -57,16 +57,22 @@ class Runs:
 
     def __call__(self, tile: Tile) -> dict[str, NDArray[np.generic]]:
         """Fly and judge the flights of a tile."""
-        scenario, onset_s = faulty(_opened(self.scenario), tile)
-        epochs = judge(fly.material(scenario, flights=tile.flights, seed=self.seed), Settings(methods=())).epochs
-        rows = [measures(frame, onset_s) for _, frame in epochs.group_by("track", maintain_order=True)]
+        scenario, onset_s = faulty(opened(self.scenario), tile)
+        rows = [measures(frame, onset_s) for frame in flown(scenario, tile.flights, self.seed)]
         numbers = {name: np.array([row[name] for row in rows], dtype=float) for name in (*COUNTS, "delay_s", "error_most_m")}
         return numbers | {"reasons": np.array([str(row["reasons"])[:_REASON_LENGTH] for row in rows], dtype=f"U{_REASON_LENGTH}")}
 
 
 @lru_cache(maxsize=1)
-def _opened(scenario: str) -> Scenario:
+def opened(scenario: str) -> Scenario:
+    """A scenario from its text, once in a process."""
     return Scenario.model_validate_json(scenario)
+
+
+def flown(scenario: Scenario, flights: int, seed: int) -> list[pl.DataFrame]:
+    """The judged epochs of each flight."""
+    epochs = judge(fly.material(scenario, flights=flights, seed=seed), Settings(methods=())).epochs
+    return [frame for _, frame in epochs.group_by("track", maintain_order=True)]
 
 
 def faulty(scenario: Scenario, tile: Tile) -> tuple[Scenario, float]:

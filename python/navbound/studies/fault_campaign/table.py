@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from navbound.studies.fault_campaign.records import Row, Share, Study
+    from navbound.studies.fault_campaign.records import Healthy, HealthyStudy, Row, Share, Study
 
 HEADINGS = (
     "fault",
@@ -54,9 +54,26 @@ def words(study: Study) -> list[str]:
         f"{study.n_runs} runs, {study.flights} flights for each kind, size and time.",
         f"Single faults: {s.epochs:.2g} of {study.single_epochs_ok} epochs called ok had an error outside the 1e-5 bound, in "
         f"{100 * s.runs:.1f} % of the runs (95 %: {100 * s.runs_low:.1f} to {100 * s.runs_high:.1f} %); the goal is 1e-4 of the epochs.",
-        f"Healthy: {h.false_alerts} false alerts in {h.hours:.1f} h, at most {h.false_alerts_per_hour_high:.2g} an hour at 95 %; "
-        f"{100 * h.not_ok_share:.2f} % of the epochs not ok.",
+        _words_of_healthy(h),
     ]
+
+
+def _words_of_healthy(h: Healthy) -> str:
+    return (
+        f"Healthy: {h.false_alerts} false alerts in {h.hours:.1f} h, at most {h.false_alerts_per_hour_high:.2g} an hour at 95 %; "
+        f"{100 * h.not_ok_share:.2g} % of the epochs not ok."
+    )
+
+
+def render_healthy(study: HealthyStudy) -> RenderableType:
+    """Lay healthy flights out for a terminal."""
+    from rich.console import Group  # noqa: PLC0415
+
+    return Group(
+        f"{study.flights} flights without a fault, seeds from {study.seed}.",
+        _words_of_healthy(study.healthy),
+        f"{study.n_ok_wrong} of {study.n_ok} epochs called ok had an error outside the 1e-5 bound; {study.n_late} epochs of late alerts.",
+    )
 
 
 def render(study: Study) -> RenderableType:
