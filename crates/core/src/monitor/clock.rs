@@ -2,6 +2,7 @@
 
 use super::settings::Settings;
 use crate::quantity::GpsTime;
+use crate::quantity::encoding::{BadBytes, Decoder, Encoder};
 
 /// Whether an epoch was judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,6 +115,32 @@ impl Clock {
     /// When the silence was noticed, in the time of the records. Where that stands still it is the time at which it does.
     pub(super) fn silence_noticed(&self, last: GpsTime, now: GpsTime) -> GpsTime {
         last.plus_seconds(self.stale_after_s).min(now.max(last))
+    }
+
+    pub(super) fn write<const N: usize>(&self, to: &mut Encoder<N>) {
+        to.time_or_none(self.last);
+        to.u32(self.n_dropped);
+        to.time_or_none(self.late_since);
+        to.time_or_none(self.newest_tick);
+        to.f64(self.ticked_s);
+    }
+
+    pub(super) fn read(from: &mut Decoder<'_>, settings: &Settings) -> Result<Self, BadBytes> {
+        let clock = Self {
+            last: from.time_or_none("last")?,
+            n_dropped: from.u32()?,
+            late_since: from.time_or_none("late_since")?,
+            newest_tick: from.time_or_none("newest_tick")?,
+            ticked_s: from.f64()?,
+            ..Self::new(settings)
+        };
+        // Records can be dropped only for the time of one before them; a late one is earlier than that.
+        let dropped = clock.n_dropped == 0 || clock.last.is_some();
+        let late = clock.late_since.is_none_or(|since| clock.n_dropped > 0 && clock.last.is_some_and(|last| since < last));
+        if !(dropped && late && clock.ticked_s >= 0.0 && clock.ticked_s.is_finite()) {
+            return Err(BadBytes::Value("clock"));
+        }
+        Ok(clock)
     }
 
     fn arrive_late(&mut self, now: GpsTime) -> Arrival {

@@ -1,6 +1,7 @@
 //! One condition with delayed raising, hysteresis and a latched event.
 
 use super::wait::Wait;
+use crate::quantity::encoding::{BadBytes, Decoder, Encoder};
 use crate::quantity::{GpsTime, Metres};
 
 /// What an event is about; also the alert while it lasts.
@@ -53,6 +54,30 @@ impl Event {
     /// The event as it ended; an alert does not end before it was raised.
     pub(super) fn ended(self, clear: GpsTime) -> Self {
         Self { clear: Some(clear.max(self.annunciation)), ..self }
+    }
+
+    /// Bytes of an event that lasts, or of none.
+    pub(super) const BYTES: usize = 1 + 2 * 8 + 3 * 8;
+
+    /// An event that lasts, or none; its kind is that of who has it.
+    pub(super) fn write<const N: usize>(event: Option<&Self>, to: &mut Encoder<N>) {
+        to.flag(event.is_some());
+        let none = Self::begin(Kind::Unavailable, GpsTime::default(), GpsTime::default());
+        let event = event.unwrap_or(&none);
+        to.time(event.onset);
+        to.time(event.annunciation);
+        [event.peak, event.limit, event.min_margin].into_iter().for_each(|length| to.metres(length));
+    }
+
+    pub(super) fn read(from: &mut Decoder<'_>, kind: Kind) -> Result<Option<Self>, BadBytes> {
+        let present = from.flag("event")?;
+        let (onset, annunciation) = (from.time()?, from.time()?);
+        let event =
+            Self { kind, onset, annunciation, clear: None, peak: from.metres()?, limit: from.metres()?, min_margin: from.metres()? };
+        if event.onset > event.annunciation || !(event.limit.m().is_nan() || is_limit(event.limit)) {
+            return Err(BadBytes::Value("event"));
+        }
+        Ok(present.then_some(event))
     }
 
     /// The clock was set back to `since`: in the time that counts now, what began later has begun there.
@@ -168,6 +193,34 @@ impl Latch {
         if let Some(event) = self.event.as_mut() {
             event.set_back(since);
         }
+    }
+
+    /// Bytes of a latch.
+    pub(super) const BYTES: usize = 9 + 1 + Event::BYTES + 1 + 9;
+
+    pub(super) fn write<const N: usize>(&self, to: &mut Encoder<N>) {
+        self.wait.write(to);
+        to.flag(self.inside);
+        Event::write(self.event.as_ref(), to);
+        to.flag(self.annunciated);
+        to.time_or_none(self.calm_since);
+    }
+
+    /// Into a latch as new, which has the settings.
+    pub(super) fn read(self, from: &mut Decoder<'_>) -> Result<Self, BadBytes> {
+        let latch = Self {
+            wait: self.wait.read(from)?,
+            inside: from.flag("inside")?,
+            event: Event::read(from, self.kind)?,
+            annunciated: from.flag("annunciated")?,
+            calm_since: from.time_or_none("calm_since")?,
+            ..self
+        };
+        // An alert has its event, and only an alert waits for calm, inside.
+        if (latch.annunciated && latch.event.is_none()) || (latch.calm_since.is_some() && !(latch.annunciated && latch.inside)) {
+            return Err(BadBytes::Value("latch"));
+        }
+        Ok(latch)
     }
 
     fn outside(&mut self, moment: &Moment, bound: Metres, limit: Metres) -> Change {

@@ -10,6 +10,7 @@ mod latch;
 pub mod rnp;
 pub mod separation;
 mod settings;
+mod snapshot;
 pub mod state;
 mod state_order;
 mod wait;

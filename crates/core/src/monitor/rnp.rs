@@ -86,14 +86,14 @@ pub struct Tick {
 /// The monitor of one aircraft.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Monitor {
-    settings: Settings,
-    clock: Clock,
-    caution: Latch,
-    warning: Latch,
-    loss: Option<Event>,
+    pub(super) settings: Settings,
+    pub(super) clock: Clock,
+    pub(super) caution: Latch,
+    pub(super) warning: Latch,
+    pub(super) loss: Option<Event>,
     /// Whether a usable epoch was judged yet.
-    begun: bool,
-    counters: Counters,
+    pub(super) begun: bool,
+    pub(super) counters: Counters,
 }
 
 impl Monitor {

@@ -1,5 +1,7 @@
 //! How long a condition must last before it is an alert, when it comes and goes.
 
+use crate::quantity::encoding::{BadBytes, Decoder, Encoder};
+
 /// Time outside, less a share of the time inside: full after `raise_delay_s` outside in one piece, empty again after `clear_delay_s`
 /// inside. Once full it is over until it is empty.
 ///
@@ -41,6 +43,22 @@ impl Wait {
 
     pub(super) fn is_empty(&self) -> bool {
         self.level_ns == 0.0
+    }
+
+    pub(super) fn write<const N: usize>(&self, to: &mut Encoder<N>) {
+        to.f64(self.level_ns);
+        to.flag(self.over);
+    }
+
+    /// Into a wait as new, which has the times.
+    pub(super) fn read(self, from: &mut Decoder<'_>) -> Result<Self, BadBytes> {
+        let wait = Self { level_ns: from.f64()?, over: from.flag("wait")?, ..self };
+        // A full one is over, an empty one is not, and one that is both because nothing is waited for is over.
+        let right = if wait.level_ns == wait.full_ns { wait.over } else { wait.level_ns > 0.0 || !wait.over };
+        if !(right && (0.0..=wait.full_ns).contains(&wait.level_ns)) {
+            return Err(BadBytes::Value("wait"));
+        }
+        Ok(wait)
     }
 
     /// As new.

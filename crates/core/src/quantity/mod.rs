@@ -1,5 +1,6 @@
 //! Quantities: a number whose unit is its type, and the refusals that carry them.
 
+pub mod encoding;
 mod provenance;
 mod refusal;
 mod status;
