@@ -1,5 +1,7 @@
-//! The last stage: what is said of an epoch. Today the errors along the axes of the path; bounds, risks and states come from the stages before.
+//! The last stage: everything that is decided about an epoch. [`Judge::step`] is the one step of tables and of streams.
 
 mod errors;
+mod step;
 
 pub use errors::{Errors, Known};
+pub use step::{Evaluated, Judge, Judged, Sample, Settings};

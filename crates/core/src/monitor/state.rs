@@ -260,6 +260,20 @@ impl StateTable {
         Ok(self.slices(inside, |b| tail((b - away) / s) + tail((b + away) / s)))
     }
 
+    /// The tightest level that an error is beyond with at most a risk, as an index; the number of levels where there is none.
+    pub fn tightest(&self, probability: &PerState, risk: Risk) -> u8 {
+        let mut within = 0.0;
+        let mut place = 0;
+        for share in &probability[..self.n_levels] {
+            within += share;
+            if 1.0 - within <= risk.q() {
+                return place;
+            }
+            place += 1;
+        }
+        place
+    }
+
     /// Probabilities of the states from `n` residuals of known zero mean whose squares sum to `sum_of_squares`: where the 95 % navigation
     /// error lies, given what was seen.
     ///
