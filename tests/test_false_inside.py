@@ -239,3 +239,65 @@ def test_a_level_below_the_deviation_of_its_own_fix_is_none(name: str, level_m: 
     )
     with pytest.raises(InputError, match=rf"{name}.*index 1|{name}\[1\]"):
         fixes.table()
+
+
+# What follows needs neither status nor truth to be wrong: a receiver that repeats itself, and columns that speak against the position.
+
+
+@pytest.mark.parametrize("frozen_from", [0, 100])
+def test_a_receiver_that_repeats_its_last_fix_is_stale(tmp_path: Path, frozen_from: int) -> None:
+    k = np.minimum(np.arange(2 * N), frozen_from)
+    table = {"time": START_S + np.arange(2 * N), "lat": 48.0 + 70.0 / 111_200.0 * k, "lon": 2.0, "sde": 5.0, "sdn": 5.0}
+    file = tmp_path / "frozen.csv"
+    pl.DataFrame(table).write_csv(file)
+    result = judge(analyze.material(file, requirement="RNP 0.3", rnp_m=RNP_M))
+    # Stale after 2 s: two repeats are not yet.
+    first = frozen_from + 3
+    assert result.summary.verdict.id == "not_shown"
+    assert result.summary.verdict.n_judged == first
+    assert set(result.epochs[first:]["reason_id"]) == {"position_stale"}
+    assert f"{2 * N - first} epochs with a position held for more than 2 s" in " ".join(result.summary.assumptions)
+
+
+def test_a_receiver_at_a_fixed_truth_may_repeat_its_position(tmp_path: Path) -> None:
+    # 48 degrees north, 2 degrees east, 100 m.
+    place = "4273180.024,149222.735,4716950.645"
+    file = tmp_path / "standing.csv"
+    pl.DataFrame({"time": START_S + np.arange(N), "lat": [48.0] * N, "lon": 2.0, "h_m": 100.0, "sde": 5.0, "sdn": 5.0}).write_csv(file)
+    material = analyze.material(file, requirement="RNP 0.3", rnp_m=RNP_M, truth=place)
+    assert material.epochs["reason_id"].null_count() == N
+
+
+VELOCITY = [
+    ("vel_n_mps", "vel_e_mps", 1.0),
+    ("vn_mps", "ve_mps", 1.0),
+    ("velocity_north", "velocity_east", 1.0),
+    ("vel_n_m_s", "vel_e_m_s", 1.0),
+    ("vn (kt)", "ve (kt)", 1852.0 / 3600.0),
+]
+
+
+@pytest.mark.parametrize(("north", "east", "unit_mps"), VELOCITY)
+def test_velocities_are_the_speed_of_a_track_that_has_no_other(tmp_path: Path, north: str, east: str, unit_mps: float) -> None:
+    # A stop of five minutes in which the velocities are those of flight: held, as by a speed over the ground.
+    k = np.arange(N)
+    lat = 48.0 + 70.0 / 111_200.0 * np.where(k < 300, k, 300)
+    velocity = {north: np.full(N, 56.0 / unit_mps), east: np.full(N, -42.0 / unit_mps)}
+    result = run(tmp_path, lat=lat, **velocity)
+    assert np.allclose(result.epochs["ground_speed_mps"].to_numpy(), 70.0)
+    assert result.epochs["reason_id"][301] == "position_held"
+    assert result.epochs["reason_id"][303] == "position_stale"
+
+
+def test_one_wild_speed_lets_no_step_pass(tmp_path: Path) -> None:
+    # 2 km aside within a second, at the epoch that reports 200 m/s.
+    k = np.arange(N)
+    lon = 2.0 + np.where(k < 300, 0.0, 2000.0 / 74_500.0)
+    speed = np.full(N, 70.0)
+    route = "name,lat_deg,lon_deg\nA,47.9,2.0\nB,49.0,2.0\n"
+    (tmp_path / "route.csv").write_text(route)
+    for wild in (70.0, 200.0):
+        speed[300] = wild
+        result = run(tmp_path, lon=lon, speed_mps=speed)
+        assert result.epochs["reason_id"][300] == "position_jump"
+        assert ("1 reported speeds are beyond" in " ".join(result.summary.assumptions)) == (wild == 200.0)

@@ -94,7 +94,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
     _q("altitude_m", "m", -2e3, 1e5, m="alt_m", ft="altitude altitude_ft alt_baro pressure_altitude"),
     _q("ground_track_rad", "rad", -2 * math.pi, 2 * math.pi, deg="track track_deg ground_track true_track cog"),
-    _q("ground_speed_mps", "mps", 0.0, 2e4, kt="groundspeed ground_speed gs ground_speed_kt velocity_kt sog", mps="speed_mps"),
+    _q("ground_speed_mps", "mps", 0.0, 2e4, kt="groundspeed ground_speed gs ground_speed_kt velocity_kt sog", mps="speed_mps vel_m_s"),
+    _q("vel_n_mps", "mps", -2e4, 2e4, mps="vel_n_m_s vn_mps vn_m_s vn velocity_n velocity_north vel_north north_velocity v_north"),
+    _q("vel_e_mps", "mps", -2e4, 2e4, mps="vel_e_m_s ve_mps ve_m_s ve velocity_e velocity_east vel_east east_velocity v_east"),
     _q(
         "vertical_rate_mps",
         "mps",

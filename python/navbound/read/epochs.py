@@ -114,6 +114,7 @@ def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequenc
         else:
             _count(rejections, frame, column.name, reason)
     dated = position_time(mapping.unused)
+    out = _with_speed(out)
     if tuple(required) == POSITION:
         out = _reported(out, mapping, notes, source)
     _look_like_radians(out, mapping, source, notes)
@@ -159,6 +160,15 @@ def _positions_dated(
         words = f"{column.name}: {text}; row used without it"
         rejections.add(words, at.height, at[LINE][0], str(at[column.name][0]), malformed=False)
     return out.with_columns(pl.select(pl.when(reason.is_null()).then(valid)).to_series().alias(POSITION_TIME))
+
+
+def _with_speed(out: pl.DataFrame) -> pl.DataFrame:
+    """The speed over the ground, of the velocities north and east where no column or no value states it."""
+    if not {"vel_n_mps", "vel_e_mps"} <= set(out.columns):
+        return out
+    of_velocity = (pl.col("vel_n_mps") ** 2 + pl.col("vel_e_mps") ** 2).sqrt()
+    stated = [pl.col("ground_speed_mps")] if "ground_speed_mps" in out.columns else []
+    return out.with_columns(pl.coalesce(*stated, of_velocity).alias("ground_speed_mps")).drop("vel_n_mps", "vel_e_mps")
 
 
 def _reported(out: pl.DataFrame, mapping: Assignment, notes: list[str], source: Source) -> pl.DataFrame:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+import math
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -110,11 +111,12 @@ def material(
     epochs, lost = _together(readings, rejected)
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
-    epochs, plausibility = check(claimed.epochs, limits)
+    named = truth_of(truth, truth_tolerance_s)
+    # A fixed truth says that the receiver stands: its position may repeat.
+    epochs, plausibility = check(claimed.epochs, limits if named.ecef_m is None else replace(limits, moving_mps=math.inf))
     origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
     assumptions = [of_covariance, plausibility.words]
-    named = truth_of(truth, truth_tolerance_s)
     if named.ecef_m is not None:
         epochs, words, _ = with_truth(epochs, named)
         assumptions.append(words)
