@@ -301,3 +301,76 @@ def test_one_wild_speed_lets_no_step_pass(tmp_path: Path) -> None:
         result = run(tmp_path, lon=lon, speed_mps=speed)
         assert result.epochs["reason_id"][300] == "position_jump"
         assert ("1 reported speeds are beyond" in " ".join(result.summary.assumptions)) == (wild == 200.0)
+
+
+@pytest.mark.parametrize("name", ["nse_e_m", "east_error_m", "nse_h_m", "hpe", "tse_m", "tse", "fte_m", "fte"])
+def test_an_error_that_the_table_states_itself_is_weighed(tmp_path: Path, name: str) -> None:
+    """5 km at one epoch: beyond RNP, whatever the covariance says."""
+    stated = np.where(np.arange(N) == 7, 5000.0, 10.0)
+    result = run(tmp_path, **{name: stated})
+    verdict = result.summary.verdict
+    assert (verdict.id, verdict.inside, verdict.n_stated_beyond) == ("not_shown", None, 1)
+    assert "The recording itself states an error beyond RNP at 1 epochs." in verdict.words
+    assert result.epochs["stated_error_m"].max() == 5000.0
+    assert run(tmp_path, **{name: np.full(N, 10.0)}).summary.verdict.id == "inside"
+
+
+@pytest.mark.parametrize(
+    ("written", "is_alert"), [("warning", True), ("Caution", True), ("1", True), ("normal", False), ("0", False), ("", False)]
+)
+def test_an_alert_that_the_table_states_itself_is_weighed(tmp_path: Path, written: str, is_alert: bool) -> None:
+    verdict = run(tmp_path, alert=np.where(np.arange(N) < 3, written, "normal")).summary.verdict
+    assert (verdict.id, verdict.n_stated_alert) == (("not_shown", 3) if is_alert else ("inside", 0))
+    assert ("states an alert at 3 epochs" in verdict.words) == is_alert
+
+
+def test_the_alert_of_a_transponder_is_no_alert_of_navigation(tmp_path: Path) -> None:
+    verdict = run(tmp_path, alert=["true"] * N, spi=["false"] * N).summary.verdict
+    assert (verdict.id, verdict.n_stated_alert) == ("inside", 0)
+
+
+@pytest.mark.parametrize("empty", [math.nan, None])
+def test_a_column_of_levels_that_holds_none_is_no_level(tmp_path: Path, empty: float | None) -> None:
+    verdict = run(tmp_path, hpl_m=[empty] * N).summary.verdict
+    assert (verdict.id, verdict.n_without_level) == ("not_shown", N)
+    assert "A column of horizontal protection levels holds none" in verdict.words
+
+
+def test_epochs_that_are_an_hour_apart_say_so(tmp_path: Path) -> None:
+    hours = np.datetime_as_string(np.datetime64("2024-06-24T00:00:00") + np.arange(N) * np.timedelta64(1, "h"))
+    verdict = run(tmp_path, time=hours).summary.verdict
+    assert (verdict.n_long_steps, verdict.longest_step_s) == (N - 1, 3600.0)
+    assert f"{N - 1} steps are longer than a position takes to become stale, the longest 3600 s." in verdict.words
+    beside = run(tmp_path).summary.verdict
+    assert (beside.n_long_steps, beside.longest_step_s) == (0, 1.0)
+    assert "Between epochs" not in beside.words
+
+
+def with_truth(**changed: object) -> dict[str, object]:
+    """The track with a truth 1 m to the east at every epoch."""
+    flown = columns()
+    return {"truth_lat_deg": flown["lat"], "truth_lon_deg": flown["lon"] + 1.0 / 74_500.0} | changed
+
+
+def test_truth_at_few_epochs_supports_these_alone(tmp_path: Path) -> None:
+    for n, state in ((N, "supported"), (570, "supported"), (569, "partial"), (96, "partial")):
+        known: dict[str, object] = {
+            key: [float(v) if k < n else None for k, v in enumerate(cast("Any", values))] for key, values in with_truth().items()
+        }
+        verdict = run(tmp_path, **known).summary.verdict
+        assert verdict.belief is not None
+        assert (verdict.id, verdict.n_truth, verdict.belief.state) == ("inside", n, state)
+    assert "Truth is known at 96 of 600 checked epochs (16.0 %), less than the least share" in verdict.words
+
+
+def test_a_truth_that_jumps_is_none(tmp_path: Path) -> None:
+    """50 km aside for a second: the two steps, and what has not settled after them."""
+    truth = with_truth()
+    lon = np.array(truth["truth_lon_deg"])
+    lon[300] += 0.7
+    result = run(tmp_path, **truth | {"truth_lon_deg": lon})
+    # 30 s after the jump back, which comes a second after the jump.
+    assert result.summary.verdict.n_truth == N - 32
+    assert result.epochs["nse_h_m"][300:332].null_count() == 32
+    assert "32 true positions cannot have been reached" in " ".join(result.summary.assumptions)
+    assert result.epochs["nse_h_m"].max() < 2.0  # type: ignore[operator]

@@ -85,8 +85,8 @@ pub struct Judged {
 /// holds from the first position of each minute, with the fastest speed reported since. A track that reports no speed is judged by its own:
 /// the fastest speed is then that of 95 % of its steps, with factor and margin, and a step that needs any latency makes its position late.
 /// The time runs from the last *different* position: after 87 s without news an aircraft may
-/// be 20 km further on, and is not jumping. A reported speed counts up to `factor * m + margin`, m being the median of the speeds reported
-/// around it.
+/// be 20 km further on, and is not jumping. A reported speed above `factor * m + margin`, m being the median of the speeds reported
+/// around it, is not believed, and m counts in its place.
 ///
 /// An unchanged position is held, and stale in time, where the aircraft says that it moves. Where it says nothing of its speed, a position
 /// whose bits repeat for longer than the stale time is stale: measurements have noise, and nobody vouches that the aircraft stands.
@@ -98,15 +98,15 @@ pub struct Judged {
 pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize, OutOfDomain)> {
     let silent = reports.iter().all(|r| r.speed_mps.is_nan());
     let limits = &if silent { Limits { max_speed_mps: own_speed(reports, limits)?, ..*limits } } else { *limits };
-    let allowed = allowed_speeds(reports, limits);
+    let usual = usual_speeds(reports);
     let mut judged = Vec::with_capacity(reports.len());
     let mut last: Option<(Report, EcefPosition)> = None;
     let mut jumped: Option<GpsTime> = None;
     let mut window: Option<Window> = None;
-    for (index, (reported, most_mps)) in reports.iter().zip(allowed).enumerate() {
+    for (index, (reported, usual_mps)) in reports.iter().zip(usual).enumerate() {
         let here = sea_level(reported).map_err(|refusal| (index, refusal))?;
-        let speed_doubted = reported.speed_mps > most_mps;
-        let report = &if speed_doubted { Report { speed_mps: most_mps, ..*reported } } else { *reported };
+        let speed_doubted = reported.speed_mps > limits.speed_factor * usual_mps + limits.speed_margin_mps;
+        let report = &if speed_doubted { Report { speed_mps: usual_mps, ..*reported } } else { *reported };
         let Some((fix, from)) = last else {
             last = Some((*report, here));
             window = Some(Window::begin(report, here));
@@ -180,18 +180,18 @@ fn own_speed(reports: &[Report], limits: &Limits) -> Result<f64, (usize, OutOfDo
 /// Speeds to either side that a reported speed is compared with. Provenance: ours: four wild ones in a row do not carry their median.
 const SPEEDS_BESIDE: usize = 4;
 
-/// Up to which speed each report is believed \[m/s\]: `factor * median + margin` of the speeds around it; infinite where none is reported.
-fn allowed_speeds(reports: &[Report], limits: &Limits) -> Vec<f64> {
+/// The median of the speeds reported around each report \[m/s\]; NaN where it reports none.
+fn usual_speeds(reports: &[Report]) -> Vec<f64> {
     let known: Vec<usize> = (0..reports.len()).filter(|k| !reports[*k].speed_mps.is_nan()).collect();
-    let mut allowed = vec![f64::INFINITY; reports.len()];
+    let mut usual = vec![f64::NAN; reports.len()];
     for (at, index) in known.iter().enumerate() {
         let around = &known[at.saturating_sub(SPEEDS_BESIDE)..(at + SPEEDS_BESIDE + 1).min(known.len())];
         let mut speeds: Vec<f64> = around.iter().map(|k| reports[*k].speed_mps).collect();
         speeds.sort_by(f64::total_cmp);
         // Of an even number the lower: of two that contradict each other the smaller reach.
-        allowed[*index] = limits.speed_factor * speeds[(speeds.len() - 1) / 2] + limits.speed_margin_mps;
+        usual[*index] = speeds[(speeds.len() - 1) / 2];
     }
-    allowed
+    usual
 }
 
 /// For how long positions are judged from one position on \[s\]. Provenance: ours; several latencies, so that one of them is a small part.

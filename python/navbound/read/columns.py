@@ -143,6 +143,20 @@ LEVEL_QUANTITIES: tuple[Quantity, ...] = (
 )
 """What a table of errors and protection levels may hold beyond a recorded track."""
 
+STATED_QUANTITIES: tuple[Quantity, ...] = (
+    *(q for q in LEVEL_QUANTITIES if q.name in {"nse_e_m", "nse_n_m"}),
+    _q("nse_h_m", "m", 0.0, 1e8, m="hpe_m hpe horizontal_error_m"),
+    _q("nse_cross_m", "m", -1e8, 1e8),
+    _q("nse_along_m", "m", -1e8, 1e8),
+    _q("tse_m", "m", -1e8, 1e8, m="tse"),
+    _q("fte_m", "m", -1e8, 1e8, m="fte"),
+    _q("alert", "text", 0.0, 0.0),
+)
+"""What a recorded track may state against its own positions. It bounds nothing; the verdict weighs it."""
+
+TRANSPONDER = frozenset({"squawk", "spi"})
+"""Columns beside which `alert` is the transponder's: a change of its code."""
+
 TIME_NAMES: dict[str, str] = {
     "time_ns": "gps_ns", "gps_time_ns": "gps_ns", "gps_time_s": "gps_s", "gps_s": "gps_s",
     "gps_week": "gps_week", "week": "gps_week", "gps_tow": "gps_tow_s", "gps_tow_s": "gps_tow_s", "tow_s": "gps_tow_s", "tow": "gps_tow_s",
@@ -230,7 +244,7 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
         A declared column that the file lacks, or no time, latitude or longitude: what is needed and the nearest names found.
     """
     names = list(names)
-    quantities = QUANTITIES if tuple(needs) == POSITION else QUANTITIES + LEVEL_QUANTITIES
+    quantities = QUANTITIES + (STATED_QUANTITIES if tuple(needs) == POSITION else LEVEL_QUANTITIES)
     own = {"time_ns", "est_lat_rad"} <= set(names)
     columns: dict[str, Column] = {}
     times: list[Column] = []
@@ -241,6 +255,8 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
         else:
             columns[key] = column
     taken = {c.name for c in [*columns.values(), *times]}
+    if {_plain(name)[0] for name in names} & TRANSPONDER:
+        quantities = tuple(q for q in quantities if q.name != "alert")
     if {name for name, _ in OPENSKY_STATES.values()} <= set(names):
         states = {key: Column(key, name, unit) for key, (name, unit) in OPENSKY_STATES.items() if name not in taken}
         columns = states | columns

@@ -11,8 +11,19 @@ import polars as pl
 
 from navbound import _core, status
 from navbound.errors import UNSEEN, FormatError
-from navbound.read import receivers
-from navbound.read.columns import LEVEL_QUANTITIES, POSITION, POSITION_TIME, QUANTITIES, UNITS, Assignment, Column, assign, position_time
+from navbound.read import receivers, stated
+from navbound.read.columns import (
+    LEVEL_QUANTITIES,
+    POSITION,
+    POSITION_TIME,
+    QUANTITIES,
+    STATED_QUANTITIES,
+    UNITS,
+    Assignment,
+    Column,
+    assign,
+    position_time,
+)
 from navbound.read.rejections import Rejections
 from navbound.read.repeats import LEFT_OUT, left_out, separate
 from navbound.read.source import Source, load
@@ -25,7 +36,7 @@ if TYPE_CHECKING:
 
     from navbound.run.records import InputFile, Rejection
 
-_QUANTITY = {q.name: q for q in QUANTITIES + LEVEL_QUANTITIES}
+_QUANTITY = {q.name: q for q in STATED_QUANTITIES + QUANTITIES + LEVEL_QUANTITIES}
 _BAD = "__bad"
 _MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 
@@ -173,7 +184,7 @@ def _with_speed(out: pl.DataFrame) -> pl.DataFrame:
 
 def _reported(out: pl.DataFrame, mapping: Assignment, notes: list[str], source: Source) -> pl.DataFrame:
     """What a recorded track says of its own epochs, in words of the list; and a note on what no one reads."""
-    before, out = out, status.recorded(out)
+    before, out = out, status.recorded(stated.against_itself(out))
     if "status" in before.columns:
         n_unknown = before.filter(~pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)).height
         if n_unknown:

@@ -127,8 +127,8 @@ def material(
         epochs, words = join(epochs, other, truth_tolerance_s)
         assumptions.append(words)
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
-        epochs = with_error(epochs)
-        assumptions.append("Truth: from the file itself.")
+        epochs, words = with_error(epochs)
+        assumptions.append(f"Truth: from the file itself.{words}")
     route = _follow(path, epochs, gates, rejected)
     epochs = _covariance_status(route.epochs).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
     return Material(
