@@ -11,6 +11,7 @@ import polars as pl
 import pytest
 
 from navbound import FormatError, InputError, gnss, ins, rnp, status
+from navbound.read import read
 from navbound.read.source import load
 from navbound.run import analyze, solved
 from navbound.run.directory import Run
@@ -374,3 +375,62 @@ def test_a_truth_that_jumps_is_none(tmp_path: Path) -> None:
     assert result.epochs["nse_h_m"][300:332].null_count() == 32
     assert "32 true positions cannot have been reached" in " ".join(result.summary.assumptions)
     assert result.epochs["nse_h_m"].max() < 2.0  # type: ignore[operator]
+
+
+def test_a_track_of_letters_is_who_flies(tmp_path: Path) -> None:
+    """`track` is the direction in degrees where it holds numbers, and the flight's name where it holds words."""
+    named = run(tmp_path, track=["DLH4AB"] * N)
+    assert set(named.epochs["track"]) == {"DLH4AB"}
+    assert not named.summary.rejected
+    directed = run(tmp_path, track=np.zeros(N))
+    assert set(directed.epochs["track"]) == {"track"}
+    # One word among numbers is a bad number, not a name.
+    mixed = run(tmp_path, track=["0.0"] * (N - 1) + ["north"])
+    assert [(r.reason, r.count) for r in mixed.summary.rejected] == [("track: not a number; row used without it", 1)]
+
+
+def sentence(body: str) -> str:
+    return f"${body}*{_xor(body):02X}"
+
+
+def _xor(body: str) -> int:
+    value = 0
+    for byte in body.encode():
+        value ^= byte
+    return value
+
+
+def nmea() -> list[str]:
+    """A minute along the meridian: GGA and RMC of each second."""
+    lines = []
+    for k in range(60):
+        place = f"48{0.04 * k:07.4f},N,00200.0000,E"
+        lines += [
+            sentence(f"GPRMC,1200{k:02d}.00,A,{place},136.1,0.0,240624,,,A"),
+            sentence(f"GPGGA,1200{k:02d}.00,{place},1,08,1.0,100.0,M,47.0,M,,"),
+        ]
+    return lines
+
+
+def test_the_sentences_of_a_telephone_are_a_log(tmp_path: Path) -> None:
+    pytest.importorskip("pynmeagps")
+    plain, logged = tmp_path / "plain.nmea", tmp_path / "logged.nmea"
+    plain.write_text("".join(f"{line}\r\n" for line in nmea()))
+    logged.write_text("".join(f"NMEA,{line},{1_719_230_400_000 + k}\n" for k, line in enumerate(nmea())))
+    assert load(logged).kind == "nmea"
+    readings = [read(file) for file in (plain, logged)]
+    assert [r.epochs.height for r in readings] == [60, 60]
+    assert readings[1].epochs.drop("track").equals(readings[0].epochs.drop("track"))
+    assert not readings[1].rejected
+
+
+@pytest.mark.parametrize("instead", ["+", "", " "])
+def test_a_sentence_that_lost_the_mark_of_its_checksum_is_counted(tmp_path: Path, instead: str) -> None:
+    pytest.importorskip("pynmeagps")
+    lines = nmea()
+    lines[41] = lines[41].replace("*", instead)
+    file = tmp_path / "damaged.nmea"
+    file.write_text("".join(f"{line}\r\n" for line in lines))
+    reading = read(file)
+    assert reading.epochs.height == 59
+    assert [(r.reason, r.count) for r in reading.rejected] == [("damaged message", 1)]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Container, Iterable, Mapping, Sequence
     from pathlib import Path
 
 _DEG = math.pi / 180.0
@@ -222,7 +222,14 @@ POSITION = ("est_lat_rad", "est_lon_rad")
 """What the rows of a recorded track need beside a time."""
 
 
-def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path, *, needs: Sequence[str] = POSITION) -> Assignment:
+def assign(
+    names: Iterable[str],
+    declared: Mapping[str, str] | None,
+    path: Path,
+    *,
+    needs: Sequence[str] = POSITION,
+    words: Container[str] = (),
+) -> Assignment:
     """Find what each column is.
 
     Parameters
@@ -235,6 +242,8 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
         The file, for messages.
     needs : sequence of str
         Quantities without which the file is refused, beside a time; other than a position they are those of errors and protection levels.
+    words : container of str
+        Columns that hold words and no number: one named `track` is then a flight's name, not its direction.
 
     Raises
     ------
@@ -245,7 +254,7 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
     """
     names = list(names)
     quantities = QUANTITIES + (STATED_QUANTITIES if tuple(needs) == POSITION else LEVEL_QUANTITIES)
-    own = {"time_ns", "est_lat_rad"} <= set(names)
+    own = {"time_ns", "est_lat_rad"} <= set(names) or any(_plain(name)[0] == "track" and name in words for name in names)
     columns: dict[str, Column] = {}
     times: list[Column] = []
     for key, value in (declared or {}).items():
@@ -298,7 +307,7 @@ def _plain(name: str) -> tuple[str, str | None]:
 
 
 def _known(quantity: Quantity, names: list[str], *, own: bool) -> Column | None:
-    """Find the first known name, in the order of the aliases; in our own epoch table `track` is who flies, not whither."""
+    """Find the first known name, in the order of the aliases; ``own``: `track` is who flies, not whither, as in our own epoch table."""
     plain = {_plain(name)[0]: name for name in reversed(names)}
     if own and quantity.name in {"track", "ground_track_rad"}:
         plain = {k: v for k, v in plain.items() if (k == "track") == (quantity.name == "track")}

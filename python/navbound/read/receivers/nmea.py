@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 _HALF_DAY_S = 43_200
 
+_WITH_ARRIVAL = re.compile(rb"^(?:NMEA,)?(\$[^\r\n*]*\*[0-9A-Fa-f]{2}),\d+(?=\r?$)", re.MULTILINE)
+"""A sentence as the loggers of telephones write it: a word before it, the time of arrival behind its checksum."""
+
 
 @dataclass
 class _Fix:
@@ -39,9 +42,12 @@ def read(source: Source) -> Log:
     log = Log(source.path, "GGA")
     settings = {"quitonerror": pynmeagps.ERR_LOG}
     fixes, dates, last = list[_Fix](), list[tuple[int, date, time]](), None
-    for record, (_, sentence) in messages(
-        lambda s, handler: pynmeagps.NMEAReader(s, errorhandler=handler, **settings), source.content, log
-    ):
+    content = _WITH_ARRIVAL.sub(rb"\1", source.content)
+    for record, (raw, sentence) in messages(lambda s, handler: pynmeagps.NMEAReader(s, errorhandler=handler, **settings), content, log):
+        if sentence is None:
+            # A sentence whose checksum has lost its mark is refused by nobody and read by nobody.
+            log.leave_out("damaged message", record, raw[:60].decode("ascii", "replace").strip(), damaged=True)
+            continue
         name = getattr(sentence, "msgID", "")
         if name == "GGA":
             last = _Fix(record, sentence)
