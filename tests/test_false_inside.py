@@ -361,7 +361,10 @@ def test_truth_at_few_epochs_supports_these_alone(tmp_path: Path) -> None:
         verdict = run(tmp_path, **known).summary.verdict
         assert verdict.belief is not None
         assert (verdict.id, verdict.n_truth, verdict.belief.state) == ("inside", n, state)
-    assert "Truth is known at 96 of 600 checked epochs (16.0 %), less than the least share" in verdict.words
+    assert (
+        "Truth is known at 96 of 600 checked epochs (16.0 %), and the bounds of the others could not be checked, which are too many"
+        in verdict.words
+    )
 
 
 def test_a_truth_that_jumps_is_none(tmp_path: Path) -> None:

@@ -228,7 +228,7 @@ def assign(
     path: Path,
     *,
     needs: Sequence[str] = POSITION,
-    words: Container[str] = (),
+    texts: Container[str] = (),
 ) -> Assignment:
     """Find what each column is.
 
@@ -242,7 +242,7 @@ def assign(
         The file, for messages.
     needs : sequence of str
         Quantities without which the file is refused, beside a time; other than a position they are those of errors and protection levels.
-    words : container of str
+    texts : container of str
         Columns that hold words and no number: one named `track` is then a flight's name, not its direction.
 
     Raises
@@ -254,7 +254,7 @@ def assign(
     """
     names = list(names)
     quantities = QUANTITIES + (STATED_QUANTITIES if tuple(needs) == POSITION else LEVEL_QUANTITIES)
-    own = {"time_ns", "est_lat_rad"} <= set(names) or any(_plain(name)[0] == "track" and name in words for name in names)
+    own = {"time_ns", "est_lat_rad"} <= set(names) or any(_plain(name)[0] == "track" and name in texts for name in names)
     columns: dict[str, Column] = {}
     times: list[Column] = []
     for key, value in (declared or {}).items():

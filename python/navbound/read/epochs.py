@@ -102,14 +102,14 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: S
     if source.kind in {"ubx", "sbf", "novatel", "nmea"}:
         return _log(source, source.kind)
     found = table(source)
-    mapping = assign(found.columns, columns, source.path, needs=needs, words=_words(found.frame))
+    mapping = assign(found.columns, columns, source.path, needs=needs, texts=_texts(found.frame))
     return _epochs(source, found, mapping, [name for name in POSITION if name in needs])
 
 
-def _words(frame: pl.DataFrame) -> set[str]:
+def _texts(frame: pl.DataFrame) -> set[str]:
     """Columns of text of which something is written and nothing is a number."""
-    texts = [name for name, dtype in frame.schema.items() if dtype == pl.String and name != LINE]
-    written = {name: frame[name].str.strip_chars().set(frame[name].str.strip_chars().str.contains(_MISSING), None) for name in texts}
+    strings = [name for name, dtype in frame.schema.items() if dtype == pl.String and name != LINE]
+    written = {name: frame[name].str.strip_chars().set(frame[name].str.strip_chars().str.contains(_MISSING), None) for name in strings}
     return {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
 
 

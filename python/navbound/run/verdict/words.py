@@ -74,9 +74,9 @@ def truth_words(verdict: Verdict) -> list[str]:
 def _known(belief: Belief) -> str:
     if belief.n_truth == belief.n_epochs:
         return f"Truth is known at all {belief.n_epochs} checked epochs"
-    less = f"less than the least share of {share(LEAST_SHARE)}, " if belief.state == "partial" else ""
+    less = f", which are too many to call the bounds supported (least share {share(LEAST_SHARE)})" if belief.state == "partial" else ""
     known = f"{belief.n_truth} of {belief.n_epochs} checked epochs ({share(belief.n_truth / belief.n_epochs)})"
-    return f"Truth is known at {known}, {less}and the bounds of the others could not be checked"
+    return f"Truth is known at {known}, and the bounds of the others could not be checked{less}"
 
 
 def _contained(bounds: list[BoundCheck]) -> list[str]:
