@@ -184,7 +184,7 @@ impl Watch {
         let [used, left_out] = [heard[0].saturating_sub(self.heard[0]), heard[1].saturating_sub(self.heard[1])];
         // Where nothing is heard what was last heard stands.
         if used + left_out > 0 {
-            self.stations.hear(time, used, left_out, filter.mode() == Mode::Gnss);
+            self.stations.hear(time, 1.0, [used, left_out], filter.mode() == Mode::Gnss);
         }
         self.heard = heard;
         let dop = if self.n_sv == 0 { [f64::NAN; 2] } else { sensing.outlook().dop(second) };

@@ -148,7 +148,7 @@ impl Judged {
         let agree = used.saturating_sub(self.heard);
         self.heard = used;
         let left_out = driver.filter.stations_left_out().count() as u64;
-        self.stations.hear(time, agree, left_out, driver.filter.mode() == Mode::Gnss);
+        self.stations.hear(time, 0.0, [agree, left_out], driver.filter.mode() == Mode::Gnss);
         let witnesses = Witnesses {
             filters_disagree: beside.map(|_| self.verdict.disagree()),
             stations_contradict: Some(self.stations.doubts(time)),

@@ -15,13 +15,13 @@ pub(crate) struct Doubting {
 }
 
 impl Doubting {
-    /// What is heard at a time: stations that agree, stations that are left out, and whether satellites keep the position.
+    /// What was heard until a time, from `over_s` before it on: stations that agree, stations that are left out, and whether satellites keep the position.
     ///
     /// Once the filter is doubted only as many stations that agree, or satellites, take that back. Silence does not, nor does the last station
     /// in range: a filter that was led off is as far off when it hears no more.
-    pub(crate) fn hear(&mut self, now: GpsTime, agree: u64, left_out: u64, satellites: bool) {
+    pub(crate) fn hear(&mut self, now: GpsTime, over_s: f64, [agree, left_out]: [u64; 2], satellites: bool) {
         if left_out >= LEAST {
-            self.since.get_or_insert(now);
+            self.since.get_or_insert(now.plus_seconds(-over_s));
         } else if !self.doubts(now) || agree >= LEAST || (satellites && agree + left_out > 0) {
             self.since = None;
         }
@@ -43,7 +43,7 @@ mod tests {
 
     fn doubted() -> Doubting {
         let mut stations = Doubting::default();
-        (0..=30).for_each(|k| stations.hear(second(k), 0, 2, false));
+        (0..=30).for_each(|k| stations.hear(second(k), 0.0, [0, 2], false));
         stations
     }
 
@@ -52,7 +52,7 @@ mod tests {
         assert!(!doubted().doubts(second(29)));
         assert!(doubted().doubts(second(30)));
         let mut stations = Doubting::default();
-        (0..=60).for_each(|k| stations.hear(second(k), 3, 1, false));
+        (0..=60).for_each(|k| stations.hear(second(k), 0.0, [3, 1], false));
         assert!(!stations.doubts(second(60)));
     }
 
@@ -60,7 +60,7 @@ mod tests {
     fn neither_silence_nor_the_last_station_takes_a_doubt_back() {
         for (agree, left_out) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let mut stations = doubted();
-            (31..600).for_each(|k| stations.hear(second(k), agree, left_out, false));
+            (31..600).for_each(|k| stations.hear(second(k), 0.0, [agree, left_out], false));
             assert!(stations.doubts(second(600)), "{agree} agree, {left_out} left out");
         }
     }
@@ -69,7 +69,7 @@ mod tests {
     fn stations_that_agree_and_satellites_take_it_back() {
         for (agree, left_out, satellites) in [(2, 0, false), (3, 1, false), (1, 0, true)] {
             let mut stations = doubted();
-            stations.hear(second(31), agree, left_out, satellites);
+            stations.hear(second(31), 0.0, [agree, left_out], satellites);
             assert!(!stations.doubts(second(31)));
         }
     }
@@ -77,9 +77,9 @@ mod tests {
     #[test]
     fn before_they_doubt_one_hearing_clears_them() {
         let mut stations = Doubting::default();
-        (0..=20).for_each(|k| stations.hear(second(k), 0, 2, false));
-        stations.hear(second(21), 1, 0, false);
-        (22..=40).for_each(|k| stations.hear(second(k), 0, 2, false));
+        (0..=20).for_each(|k| stations.hear(second(k), 0.0, [0, 2], false));
+        stations.hear(second(21), 0.0, [1, 0], false);
+        (22..=40).for_each(|k| stations.hear(second(k), 0.0, [0, 2], false));
         assert!(!stations.doubts(second(40)));
     }
 }
