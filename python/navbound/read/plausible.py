@@ -90,11 +90,11 @@ class Plausibility:
 
 def impossible(rows: pl.DataFrame, lat: str, lon: str) -> pl.Series:
     """Whether each position of one track, in the order of time, cannot have been reached, or follows a jump that has not settled."""
-    time, place = rows["time_ns"].to_numpy(), [np.ascontiguousarray(rows[name].to_numpy()) for name in (lat, lon)]
+    time, lat_rad, lon_rad = (np.ascontiguousarray(rows[name].to_numpy()) for name in ("time_ns", lat, lon))
     undated, silent = np.full(rows.height, _UNDATED), np.full(rows.height, np.nan)
     # A true position may stand still.
     limits = asdict(Limits(moving_mps=np.inf))
-    code = _core.plausible(np.ascontiguousarray(time), undated, *place, silent, limits)["finding"]
+    code = _core.plausible(time, undated, lat_rad, lon_rad, silent, limits)["finding"]
     wrong = [_REASON_ID.index(id_) for id_ in ("position_jump", "position_not_settled", "position_late")]
     return pl.Series(np.isin(code, wrong))
 
