@@ -248,7 +248,7 @@ def test_without_a_path_only_the_navigation_system_is_judged(tmp_path: Path) -> 
 
 def test_a_covariance_that_is_none_is_not_believed(tmp_path: Path) -> None:
     rows = ["gps_time_s,lat_deg,lon_deg,cov_ee_m2,cov_en_m2,cov_nn_m2"]
-    rows += [f"{1.3e9 + i},48,2,{cov}" for i, cov in enumerate(["4,1,9", "4,7,9", "0,0,0", ",,"])]
+    rows += [f"{1.3e9 + i},{48 + 5e-4 * i},2,{cov}" for i, cov in enumerate(["4,1,9", "4,7,9", "0,0,0", ",,"])]
     (tmp_path / "cov.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     epochs = material(tmp_path / "cov.csv", requirement="RNP 1", rnp_m=1852).epochs
     assert epochs["status"].to_list() == ["ok", "invalid_input", "degraded", "not_available"]

@@ -11,6 +11,7 @@ import polars as pl
 import pytest
 
 from navbound import FormatError, InputError, gnss, ins, rnp, status
+from navbound.read import read
 from navbound.read.source import load
 from navbound.run import analyze, solved
 from navbound.run.directory import Run
@@ -239,3 +240,200 @@ def test_a_level_below_the_deviation_of_its_own_fix_is_none(name: str, level_m: 
     )
     with pytest.raises(InputError, match=rf"{name}.*index 1|{name}\[1\]"):
         fixes.table()
+
+
+# What follows needs neither status nor truth to be wrong: a receiver that repeats itself, and columns that speak against the position.
+
+
+@pytest.mark.parametrize("frozen_from", [0, 100])
+def test_a_receiver_that_repeats_its_last_fix_is_stale(tmp_path: Path, frozen_from: int) -> None:
+    k = np.minimum(np.arange(2 * N), frozen_from)
+    table = {"time": START_S + np.arange(2 * N), "lat": 48.0 + 70.0 / 111_200.0 * k, "lon": 2.0, "sde": 5.0, "sdn": 5.0}
+    file = tmp_path / "frozen.csv"
+    pl.DataFrame(table).write_csv(file)
+    result = judge(analyze.material(file, requirement="RNP 0.3", rnp_m=RNP_M))
+    # Stale after 2 s: two repeats are not yet.
+    first = frozen_from + 3
+    assert result.summary.verdict.id == "not_shown"
+    assert result.summary.verdict.n_judged == first
+    assert set(result.epochs[first:]["reason_id"]) == {"position_stale"}
+    assert f"{2 * N - first} epochs with a position held for more than 2 s" in " ".join(result.summary.assumptions)
+
+
+def test_a_receiver_at_a_fixed_truth_may_repeat_its_position(tmp_path: Path) -> None:
+    # 48 degrees north, 2 degrees east, 100 m.
+    place = "4273180.024,149222.735,4716950.645"
+    file = tmp_path / "standing.csv"
+    pl.DataFrame({"time": START_S + np.arange(N), "lat": [48.0] * N, "lon": 2.0, "h_m": 100.0, "sde": 5.0, "sdn": 5.0}).write_csv(file)
+    material = analyze.material(file, requirement="RNP 0.3", rnp_m=RNP_M, truth=place)
+    assert material.epochs["reason_id"].null_count() == N
+
+
+VELOCITY = [
+    ("vel_n_mps", "vel_e_mps", 1.0),
+    ("vn_mps", "ve_mps", 1.0),
+    ("velocity_north", "velocity_east", 1.0),
+    ("vel_n_m_s", "vel_e_m_s", 1.0),
+    ("vn (kt)", "ve (kt)", 1852.0 / 3600.0),
+]
+
+
+@pytest.mark.parametrize(("north", "east", "unit_mps"), VELOCITY)
+def test_velocities_are_the_speed_of_a_track_that_has_no_other(tmp_path: Path, north: str, east: str, unit_mps: float) -> None:
+    # A stop of five minutes in which the velocities are those of flight: held, as by a speed over the ground.
+    k = np.arange(N)
+    lat = 48.0 + 70.0 / 111_200.0 * np.where(k < 300, k, 300)
+    velocity = {north: np.full(N, 56.0 / unit_mps), east: np.full(N, -42.0 / unit_mps)}
+    result = run(tmp_path, lat=lat, **velocity)
+    assert np.allclose(result.epochs["ground_speed_mps"].to_numpy(), 70.0)
+    assert result.epochs["reason_id"][301] == "position_held"
+    assert result.epochs["reason_id"][303] == "position_stale"
+
+
+def test_one_wild_speed_lets_no_step_pass(tmp_path: Path) -> None:
+    # 2 km aside within a second, at the epoch that reports 200 m/s.
+    k = np.arange(N)
+    lon = 2.0 + np.where(k < 300, 0.0, 2000.0 / 74_500.0)
+    speed = np.full(N, 70.0)
+    route = "name,lat_deg,lon_deg\nA,47.9,2.0\nB,49.0,2.0\n"
+    (tmp_path / "route.csv").write_text(route)
+    for wild in (70.0, 200.0):
+        speed[300] = wild
+        result = run(tmp_path, lon=lon, speed_mps=speed)
+        assert result.epochs["reason_id"][300] == "position_jump"
+        assert ("1 reported speeds are beyond" in " ".join(result.summary.assumptions)) == (wild == 200.0)
+
+
+@pytest.mark.parametrize("name", ["nse_e_m", "east_error_m", "nse_h_m", "hpe", "tse_m", "tse", "fte_m", "fte"])
+def test_an_error_that_the_table_states_itself_is_weighed(tmp_path: Path, name: str) -> None:
+    """5 km at one epoch: beyond RNP, whatever the covariance says."""
+    stated = np.where(np.arange(N) == 7, 5000.0, 10.0)
+    result = run(tmp_path, **{name: stated})
+    verdict = result.summary.verdict
+    assert (verdict.id, verdict.inside, verdict.n_stated_beyond) == ("not_shown", None, 1)
+    assert "The recording itself states an error beyond RNP at 1 epochs." in verdict.words
+    assert result.epochs["stated_error_m"].max() == 5000.0
+    assert run(tmp_path, **{name: np.full(N, 10.0)}).summary.verdict.id == "inside"
+
+
+@pytest.mark.parametrize(
+    ("written", "is_alert"), [("warning", True), ("Caution", True), ("1", True), ("normal", False), ("0", False), ("", False)]
+)
+def test_an_alert_that_the_table_states_itself_is_weighed(tmp_path: Path, written: str, is_alert: bool) -> None:
+    verdict = run(tmp_path, alert=np.where(np.arange(N) < 3, written, "normal")).summary.verdict
+    assert (verdict.id, verdict.n_stated_alert) == (("not_shown", 3) if is_alert else ("inside", 0))
+    assert ("states an alert at 3 epochs" in verdict.words) == is_alert
+
+
+def test_the_alert_of_a_transponder_is_no_alert_of_navigation(tmp_path: Path) -> None:
+    verdict = run(tmp_path, alert=["true"] * N, spi=["false"] * N).summary.verdict
+    assert (verdict.id, verdict.n_stated_alert) == ("inside", 0)
+
+
+@pytest.mark.parametrize("empty", [math.nan, None])
+def test_a_column_of_levels_that_holds_none_is_no_level(tmp_path: Path, empty: float | None) -> None:
+    verdict = run(tmp_path, hpl_m=[empty] * N).summary.verdict
+    assert (verdict.id, verdict.n_without_level) == ("not_shown", N)
+    assert "A column of horizontal protection levels holds none" in verdict.words
+
+
+def test_epochs_that_are_an_hour_apart_say_so(tmp_path: Path) -> None:
+    hours = np.datetime_as_string(np.datetime64("2024-06-24T00:00:00") + np.arange(N) * np.timedelta64(1, "h"))
+    verdict = run(tmp_path, time=hours).summary.verdict
+    assert (verdict.n_long_steps, verdict.longest_step_s) == (N - 1, 3600.0)
+    assert f"{N - 1} steps are longer than a position takes to become stale, the longest 3600 s." in verdict.words
+    beside = run(tmp_path).summary.verdict
+    assert (beside.n_long_steps, beside.longest_step_s) == (0, 1.0)
+    assert "Between epochs" not in beside.words
+
+
+def with_truth(**changed: object) -> dict[str, object]:
+    """The track with a truth 1 m to the east at every epoch."""
+    flown = columns()
+    return {"truth_lat_deg": flown["lat"], "truth_lon_deg": flown["lon"] + 1.0 / 74_500.0} | changed
+
+
+def test_truth_at_few_epochs_supports_these_alone(tmp_path: Path) -> None:
+    for n, state in ((N, "supported"), (570, "supported"), (569, "partial"), (96, "partial")):
+        known: dict[str, object] = {
+            key: [float(v) if k < n else None for k, v in enumerate(cast("Any", values))] for key, values in with_truth().items()
+        }
+        verdict = run(tmp_path, **known).summary.verdict
+        assert verdict.belief is not None
+        assert (verdict.id, verdict.n_truth, verdict.belief.state) == ("inside", n, state)
+    assert (
+        "Truth is known at 96 of 600 checked epochs (16.0 %), and the bounds of the others could not be checked, which are too many"
+        in verdict.words
+    )
+
+
+def test_a_truth_that_jumps_is_none(tmp_path: Path) -> None:
+    """50 km aside for a second: the two steps, and what has not settled after them."""
+    truth = with_truth()
+    lon = np.array(truth["truth_lon_deg"])
+    lon[300] += 0.7
+    result = run(tmp_path, **truth | {"truth_lon_deg": lon})
+    # 30 s after the jump back, which comes a second after the jump.
+    assert result.summary.verdict.n_truth == N - 32
+    assert result.epochs["nse_h_m"][300:332].null_count() == 32
+    assert "32 true positions cannot have been reached" in " ".join(result.summary.assumptions)
+    assert result.epochs["nse_h_m"].max() < 2.0  # type: ignore[operator]
+
+
+def test_a_track_of_letters_is_who_flies(tmp_path: Path) -> None:
+    """`track` is the direction in degrees where it holds numbers, and the flight's name where it holds words."""
+    named = run(tmp_path, track=["DLH4AB"] * N)
+    assert set(named.epochs["track"]) == {"DLH4AB"}
+    assert not named.summary.rejected
+    directed = run(tmp_path, track=np.zeros(N))
+    assert set(directed.epochs["track"]) == {"track"}
+    # One word among numbers is a bad number, not a name.
+    mixed = run(tmp_path, track=["0.0"] * (N - 1) + ["north"])
+    assert [(r.reason, r.count) for r in mixed.summary.rejected] == [("track: not a number; row used without it", 1)]
+
+
+def sentence(body: str) -> str:
+    return f"${body}*{_xor(body):02X}"
+
+
+def _xor(body: str) -> int:
+    value = 0
+    for byte in body.encode():
+        value ^= byte
+    return value
+
+
+def nmea() -> list[str]:
+    """A minute along the meridian: GGA and RMC of each second."""
+    lines = []
+    for k in range(60):
+        place = f"48{0.04 * k:07.4f},N,00200.0000,E"
+        lines += [
+            sentence(f"GPRMC,1200{k:02d}.00,A,{place},136.1,0.0,240624,,,A"),
+            sentence(f"GPGGA,1200{k:02d}.00,{place},1,08,1.0,100.0,M,47.0,M,,"),
+        ]
+    return lines
+
+
+def test_the_sentences_of_a_telephone_are_a_log(tmp_path: Path) -> None:
+    pytest.importorskip("pynmeagps")
+    plain, logged = tmp_path / "plain.nmea", tmp_path / "logged.nmea"
+    plain.write_text("".join(f"{line}\r\n" for line in nmea()))
+    logged.write_text("".join(f"NMEA,{line},{1_719_230_400_000 + k}\n" for k, line in enumerate(nmea())))
+    assert load(logged).kind == "nmea"
+    readings = [read(file) for file in (plain, logged)]
+    assert [r.epochs.height for r in readings] == [60, 60]
+    assert readings[1].epochs.drop("track").equals(readings[0].epochs.drop("track"))
+    assert not readings[1].rejected
+
+
+@pytest.mark.parametrize("instead", ["+", "", " "])
+def test_a_sentence_that_lost_the_mark_of_its_checksum_is_counted(tmp_path: Path, instead: str) -> None:
+    pytest.importorskip("pynmeagps")
+    lines = nmea()
+    lines[41] = lines[41].replace("*", instead)
+    file = tmp_path / "damaged.nmea"
+    file.write_text("".join(f"{line}\r\n" for line in lines))
+    reading = read(file)
+    assert reading.epochs.height == 59
+    assert [(r.reason, r.count) for r in reading.rejected] == [("damaged message", 1)]

@@ -8,6 +8,12 @@ import polars as pl
 import pytest
 
 import navbound
+from navbound.run import fly
+from navbound.run.judge import judge
+from navbound.run.settings import Settings
+from navbound.scenario import load
+from navbound.studies.fault_campaign import study
+from navbound.studies.fault_campaign.kinds import KINDS
 
 SCENARIO = """
 base = "beijing-shanghai"
@@ -148,3 +154,15 @@ def test_without_a_snapshot_nothing_is_ok_and_no_level_is_published(tmp_path: Pa
     assert "ok" not in lost["status"].to_list()
     assert lost["hpl_m"].null_count() == lost.height
     assert not outside(epochs).any()
+
+
+def test_a_filter_that_stations_contradicted_is_not_believed_when_they_fall_silent() -> None:
+    """Satellites out, an accelerometer wrong by 0.1 m/s²: the stations contradict the filter, and then the aircraft leaves their range."""
+    kind = next(kind for kind in KINDS if kind.id == "outage-and-accelerometer")
+    scenario, _ = study.faulty(load(study.SCENARIO), study.Tile(kind.id, kind.sizes.index(0.1), 3, 3))
+    epochs = judge(fly.material(scenario, flights=3, seed=None), Settings(methods=())).epochs
+    astray = epochs.filter(pl.col("nse_h_m") > 2.0 * pl.col("rnp_m"))
+    # The case is one: it was contradicted, and far off.
+    assert astray.filter(pl.col("nav_reasons").str.contains("stations_contradict")).height > 100
+    assert "normal" not in astray["alert"].to_list()
+    assert set(astray["status"]) == {"not_available"}

@@ -25,6 +25,7 @@ WORDS = {
     "nav_reasons",
     "nav_source",
     "alert",
+    "stated_alert",
     "state",
     "kind",
     "words",

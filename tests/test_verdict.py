@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 import navbound
 from navbound import InputError, evaluation, exit_status
+from navbound.run import analyze as recorded
+from navbound.run.judge import judge
 from navbound.run.kpi_records import Performance
 from navbound.run.numbers import share
 from navbound.run.records import CovarianceOrigin, Summary
@@ -234,6 +236,31 @@ def test_truth_that_contradicts_the_vertical_bound_is_no_support(tmp_path: Path)
     assert command("show", tmp_path / "run").returncode == 4
 
 
+@pytest.mark.parametrize(
+    ("added", "rnp_m", "expected"),
+    [
+        # Nothing is judged; every epoch is outside; an ok epoch is known to be beyond twice RNP.
+        ({"status": ["degraded"] * 400}, 555.6, "nothing_judged"),
+        ({}, 5.0, "outside"),
+        ({"beyond": True}, 8.0, "not_believable"),
+    ],
+)
+def test_every_verdict_names_every_bound_that_truth_contradicts(
+    tmp_path: Path, added: Mapping[str, object], rnp_m: float, expected: str
+) -> None:
+    """Heights 45 m off at a vertical sigma of 0.5 m: interval and sphere are false whatever becomes of the plane."""
+    error = white(400)
+    columns: dict[str, object] = {name: values for name, values in added.items() if name != "beyond"}
+    if "beyond" in added:
+        error[7] = 20.0, 0.0
+    path = table(tmp_path / "a.csv", 400, error_en_m=error, error_u_m=-45.0, added=columns | {"sigma_u_m": np.full(400, 0.5)})
+    verdict = judge(recorded.material(path, requirement="RNP", rnp_m=rnp_m)).summary.verdict
+    assert verdict.id == expected
+    assert verdict.words.count("the 95 % vertical interval contains 0 % (0 % to ") == 1
+    assert verdict.words.count("the 95 % sphere contains ") == 1
+    assert verdict.words.count("the 99.999 % sphere contains ") == 1
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_true_vertical_leaves_the_verdict(tmp_path: Path, seed: int) -> None:
     up = 5.0 * np.random.default_rng(900 + seed).standard_normal(400)
@@ -425,7 +452,7 @@ def test_every_verdict_has_its_status() -> None:
     found = {verdict: exit_status.of_verdict(verdict) for verdict in rule.MEANS_INSIDE}
     assert found == {"inside": 0, "outside": 0, "not_shown": 0, "not_believable": 4, "nothing_judged": 4}
     of_belief = {state: exit_status.of_verdict("not_shown", state) for state in get_args(rule.BeliefState)}
-    assert of_belief == {"unchecked": 0, "supported": 0, "short": 0, "contradicted": 4, "refuted": 4}
+    assert of_belief == {"unchecked": 0, "supported": 0, "partial": 0, "short": 0, "contradicted": 4, "refuted": 4}
 
 
 def test_a_level_that_misleads_is_not_believable(tmp_path: Path) -> None:

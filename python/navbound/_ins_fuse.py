@@ -100,7 +100,8 @@ class Fused(Track):
     n_states : ndarray of int, shape (n,)
         States in the filter, with those of the one beside it. [1]
     samples : dict of str to int
-        Inertial samples done, bridged, adrift (heard only, after a hole), late, refused, stopped.
+        Inertial samples done, bridged, adrift (heard only, after a hole), late, refused, stopped; since the last new start of the filter
+        (docs/methods/fused-integrity.md).
     stopped, refused : tuple of (int, str), or None
         Time and reason of the stop, and of the first refused sample. [ns]
     holes : list of tuple of (int, float)
@@ -118,7 +119,7 @@ class Fused(Track):
     further : dict of str to float
         Further states at the end, by name.
     innovations : dict of str to Innovations
-        By kind of measurement.
+        By kind of measurement, since the filter's last new start.
     reversion : Reversion or None
         The filter without satellites, where one runs beside the main one.
     """

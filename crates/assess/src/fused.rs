@@ -9,6 +9,7 @@ use crate::consistency::{attitude, wrong_start};
 use crate::error::navigation_error;
 use crate::flights::Flights;
 use crate::fusion::{Driver, Plan};
+use crate::stations::Doubting;
 use nalgebra::Vector3;
 use navbound_core::bound::anp::circle;
 use navbound_core::monitor::guard::{Admitted, Guard, Tally};
@@ -100,19 +101,14 @@ struct Watch {
     /// Satellites used last.
     n_sv: u32,
     n_gated: u64,
-    /// Measurements of stations until now, used and not; seconds for which most of them have contradicted the filter.
+    /// Measurements of stations until now, used and not; whether they doubt the filter.
     heard: [u64; 2],
-    contradicting_s: f64,
+    stations: Doubting,
     /// The disagreement of both filters began while satellites kept the position.
     led_astray: bool,
     last_error: Vector3<f64>,
     verdicts: Vec<Verdict>,
 }
-
-/// Stations left out at once, and for how long, until the filter and not the stations is doubted: two that are wrong independently are rarer
-/// than one inertial unit (ours). A good one is left out by chance for half a minute every two hours or so.
-const STATIONS_LEAST: u64 = 2;
-const STATIONS_AFTER_S: f64 = 30.0;
 
 /// Results are taken by the second, and every measurement is used.
 const PLAN: Plan = Plan { output_period_s: 1.0, update_period_s: 0.0, wheels: None };
@@ -130,7 +126,7 @@ impl Watch {
             n_sv: 0,
             n_gated: 0,
             heard: [0; 2],
-            contradicting_s: 0.0,
+            stations: Doubting::default(),
             led_astray: false,
             last_error: Vector3::zeros(),
             verdicts: Vec::new(),
@@ -188,7 +184,7 @@ impl Watch {
         let [used, left_out] = [heard[0].saturating_sub(self.heard[0]), heard[1].saturating_sub(self.heard[1])];
         // Where nothing is heard what was last heard stands.
         if used + left_out > 0 {
-            self.contradicting_s = if left_out >= STATIONS_LEAST { self.contradicting_s + 1.0 } else { 0.0 };
+            self.stations.hear(time, 1.0, [used, left_out], filter.mode() == Mode::Gnss);
         }
         self.heard = heard;
         let dop = if self.n_sv == 0 { [f64::NAN; 2] } else { sensing.outlook().dop(second) };
@@ -210,7 +206,7 @@ impl Watch {
             None => None,
         };
         said.mode = given.map(|s| s.mode);
-        let stations = given.is_some_and(|s| s.mode != Mode::Gnss) && self.contradicting_s >= STATIONS_AFTER_S;
+        let stations = given.is_some_and(|s| s.mode != Mode::Gnss) && self.stations.doubts(time);
         let witnesses = Witnesses {
             filters_disagree: Some(said.doubt == Some(Doubt::Filters)),
             stations_contradict: Some(stations),

@@ -91,7 +91,9 @@ pub fn run(
         }
     }
     let samples = *driver.filter.samples();
-    Ok(Flight { moments, samples, stopped: driver.stopped, holes: driver.holes, filter: driver.filter, refused: driver.refused })
+    // A filter that was started anew listens for its attitude first; no sample is missing then.
+    let holes = driver.holes.into_iter().filter(|(_, since_s)| *since_s > settings.gap_most_s).collect();
+    Ok(Flight { moments, samples, stopped: driver.stopped, holes, filter: driver.filter, refused: driver.refused })
 }
 
 fn moment(driver: &mut Driver, judged: &mut Judged, time: GpsTime) -> Result<Moment, OutOfDomain> {

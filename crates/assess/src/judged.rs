@@ -1,6 +1,7 @@
 //! A recorded flight under the judge: what stands beside the filter, and the status of each result.
 
 use crate::fusion::Driver;
+use crate::stations::Doubting;
 use navbound_core::bound::araim::single::Requirement;
 use navbound_core::frame::{Covariance, Enu, Geodetic};
 use navbound_core::monitor::guard::{Envelope, Guard, Settings as GuardSettings};
@@ -8,7 +9,7 @@ use navbound_core::monitor::judgement::{Decision, Source, Witnesses, decide};
 use navbound_core::monitor::separation;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{Aiding, ImuIncrement, TimedAiding};
-use navbound_core::solution::ins::{Advance, Beside, Kind, Settings, Solution};
+use navbound_core::solution::ins::{Advance, Beside, Kind, Mode, Settings, Solution};
 use navbound_core::solution::snapshot::SnapshotVelocity;
 
 /// What stands beside a filter.
@@ -42,8 +43,6 @@ pub struct StandIn {
 
 /// Time for which the unit must be plausible before a filter is started anew at a snapshot \[s\]. Provenance: inferred.
 const RESTART_AFTER_S: f64 = 5.0;
-/// Stations left out at once, and for how long, until the filter and not the stations is doubted, as on simulated flights.
-const STATIONS: (usize, f64) = (2, 30.0);
 
 /// What stands beside the filter of a recorded flight.
 pub(crate) struct Judged {
@@ -51,7 +50,8 @@ pub(crate) struct Judged {
     verdict: separation::Verdict,
     checks: Checks,
     due: Option<GpsTime>,
-    left_out: Option<GpsTime>,
+    heard: u64,
+    stations: Doubting,
 }
 
 impl Judged {
@@ -70,7 +70,7 @@ impl Judged {
             restart_after_s: RESTART_AFTER_S,
         };
         let verdict = separation::Verdict::new(settings.separation);
-        Ok(Self { guard: Box::new(Guard::new(guard)?), verdict, checks, due: None, left_out: None })
+        Ok(Self { guard: Box::new(Guard::new(guard)?), verdict, checks, due: None, heard: 0, stations: Doubting::default() })
     }
 
     /// A sample and what the filter made of it; the time that it was due. A hole moves that time, a time tag that goes back does not, but for
@@ -144,11 +144,14 @@ impl Judged {
         if let Some(b) = beside {
             self.verdict.judge(time, &b.difference, &b.covariance, &b.solution.covariance)?;
         }
-        let left_out = driver.filter.stations_left_out().count() >= STATIONS.0;
-        self.left_out = if left_out { Some(*self.left_out.get_or_insert(time)) } else { None };
+        let used = [Kind::Dme, Kind::Vor].map(|kind| driver.filter.innovations(kind).n_used).iter().sum::<u64>();
+        let agree = used.saturating_sub(self.heard);
+        self.heard = used;
+        let left_out = driver.filter.stations_left_out().count() as u64;
+        self.stations.hear(time, 0.0, [agree, left_out], driver.filter.mode() == Mode::Gnss);
         let witnesses = Witnesses {
             filters_disagree: beside.map(|_| self.verdict.disagree()),
-            stations_contradict: Some(self.left_out.is_some_and(|since| time.seconds_since(since) >= STATIONS.1)),
+            stations_contradict: Some(self.stations.doubts(time)),
             ..Witnesses::NONE
         };
         let facts = self.guard.facts(&mut driver.filter, time, solution.as_ref(), witnesses);

@@ -32,5 +32,6 @@ pub mod sensed;
 pub mod sky;
 pub mod smoothing;
 pub mod states;
+mod stations;
 pub mod surface;
 pub mod tse;

@@ -1,6 +1,6 @@
 //! Can the recorded positions have been flown? Held and jumping positions, before any bound is believed.
 //!
-//! A position report says nothing about its own honesty: a decoder repeats the last position when none arrives, and a falsified
+//! A position report says nothing about its own honesty: a decoder or a receiver repeats the last position when none arrives, and a falsified
 //! receiver jumps. Both leave a track that no bound of the navigation error covers, so they are found here, first.
 
 use navbound_core::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic};
@@ -21,7 +21,7 @@ pub struct Limits {
     pub fix_latency_s: f64,
     /// Distance that is never called a jump \[m\]: the noise of a position.
     pub noise_m: f64,
-    /// Reported speed from which an unchanged position counts as held \[m/s\].
+    /// Reported speed from which an unchanged position counts as held \[m/s\]; infinite for a receiver that is known to stand.
     pub moving_mps: f64,
     /// Age from which a held position is no longer a position \[s\].
     pub stale_after_s: f64,
@@ -72,6 +72,8 @@ pub struct Judged {
     pub step_m: f64,
     /// Speed of a step that is faster than the aircraft's own, the noise taken off \[m/s\]; 0 for every other.
     pub too_fast_mps: f64,
+    /// The reported speed is beyond what those beside it allow, and was not used.
+    pub speed_doubted: bool,
 }
 
 /// Judge the reports of one track, in the order of time.
@@ -83,7 +85,11 @@ pub struct Judged {
 /// holds from the first position of each minute, with the fastest speed reported since. A track that reports no speed is judged by its own:
 /// the fastest speed is then that of 95 % of its steps, with factor and margin, and a step that needs any latency makes its position late.
 /// The time runs from the last *different* position: after 87 s without news an aircraft may
-/// be 20 km further on, and is not jumping.
+/// be 20 km further on, and is not jumping. A reported speed above `factor * m + margin`, m being the median of the speeds reported
+/// around it, is not believed, and m counts in its place.
+///
+/// An unchanged position is held, and stale in time, where the aircraft says that it moves. Where it says nothing of its speed, a position
+/// whose bits repeat for longer than the stale time is stale: measurements have noise, and nobody vouches that the aircraft stands.
 ///
 /// Provenance: ours.
 ///
@@ -92,16 +98,19 @@ pub struct Judged {
 pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize, OutOfDomain)> {
     let silent = reports.iter().all(|r| r.speed_mps.is_nan());
     let limits = &if silent { Limits { max_speed_mps: own_speed(reports, limits)?, ..*limits } } else { *limits };
+    let usual = usual_speeds(reports);
     let mut judged = Vec::with_capacity(reports.len());
     let mut last: Option<(Report, EcefPosition)> = None;
     let mut jumped: Option<GpsTime> = None;
     let mut window: Option<Window> = None;
-    for (index, report) in reports.iter().enumerate() {
-        let here = sea_level(report).map_err(|refusal| (index, refusal))?;
+    for (index, (reported, usual_mps)) in reports.iter().zip(usual).enumerate() {
+        let here = sea_level(reported).map_err(|refusal| (index, refusal))?;
+        let speed_doubted = reported.speed_mps > limits.speed_factor * usual_mps + limits.speed_margin_mps;
+        let report = &if speed_doubted { Report { speed_mps: usual_mps, ..*reported } } else { *reported };
         let Some((fix, from)) = last else {
             last = Some((*report, here));
             window = Some(Window::begin(report, here));
-            judged.push(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0 });
+            judged.push(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0, speed_doubted });
             continue;
         };
         let elapsed = report.time.seconds_since(fix.time);
@@ -131,7 +140,7 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
         if settling && matches!(finding, Finding::Plausible | Finding::Held | Finding::Late) {
             finding = Finding::Unsettled;
         }
-        judged.push(Judged { finding, age_s, step_m, too_fast_mps });
+        judged.push(Judged { finding, age_s, step_m, too_fast_mps, speed_doubted });
     }
     Ok(judged)
 }
@@ -168,6 +177,23 @@ fn own_speed(reports: &[Report], limits: &Limits) -> Result<f64, (usize, OutOfDo
     Ok((limits.speed_factor * own + limits.speed_margin_mps).min(limits.max_speed_mps))
 }
 
+/// Speeds to either side that a reported speed is compared with. Provenance: ours: four wild ones in a row do not carry their median.
+const SPEEDS_BESIDE: usize = 4;
+
+/// The median of the speeds reported around each report \[m/s\]; NaN where it reports none.
+fn usual_speeds(reports: &[Report]) -> Vec<f64> {
+    let known: Vec<usize> = (0..reports.len()).filter(|k| !reports[*k].speed_mps.is_nan()).collect();
+    let mut usual = vec![f64::NAN; reports.len()];
+    for (at, index) in known.iter().enumerate() {
+        let around = &known[at.saturating_sub(SPEEDS_BESIDE)..(at + SPEEDS_BESIDE + 1).min(known.len())];
+        let mut speeds: Vec<f64> = around.iter().map(|k| reports[*k].speed_mps).collect();
+        speeds.sort_by(f64::total_cmp);
+        // Of an even number the lower: of two that contradict each other the smaller reach.
+        usual[*index] = speeds[(speeds.len() - 1) / 2];
+    }
+    usual
+}
+
 /// For how long positions are judged from one position on \[s\]. Provenance: ours; several latencies, so that one of them is a small part.
 const WINDOW_S: f64 = 60.0;
 
@@ -196,12 +222,16 @@ impl Window {
     }
 }
 
-/// An unchanged position is held only where the aircraft says it moves; a parked one repeats itself rightly.
+/// An unchanged position is held where the aircraft says it moves; a parked one repeats itself rightly. Where no speed is reported a repeat may
+/// be a slow one's rounded position, until it lasts.
 fn held(report: &Report, since: &Report, limits: &Limits) -> Finding {
-    if !(report.speed_mps > limits.moving_mps) {
-        return Finding::Plausible;
+    let silent = report.speed_mps.is_nan();
+    let may_move = if silent { limits.moving_mps.is_finite() } else { report.speed_mps > limits.moving_mps };
+    match (may_move, within(report.time, since.time, limits.stale_after_s)) {
+        (true, false) => Finding::Stale,
+        (true, true) if !silent => Finding::Held,
+        _ => Finding::Plausible,
     }
-    if within(report.time, since.time, limits.stale_after_s) { Finding::Held } else { Finding::Stale }
 }
 
 /// Whether no more than `limit_s` has passed; in whole nanoseconds, since 30 s as 3e10 * 1e-9 is more than 30.

@@ -84,9 +84,72 @@ fn an_aircraft_that_gathers_speed_flies_as_far_as_it_reported() {
 }
 
 #[test]
-fn a_parked_aircraft_and_one_that_reports_no_speed_may_repeat_their_position() {
-    for speed in [0.0, 14.0, f64::NAN] {
+fn a_parked_aircraft_may_repeat_its_position() {
+    for speed in [0.0, 14.0] {
         assert!(findings(&track(&[5.0; 20], speed)).iter().all(|f| *f == Finding::Plausible), "{speed} m/s");
+    }
+}
+
+/// Twenty minutes of the last fix, from the begin and in flight; up to the stale time a slow one's position may round to the same.
+#[test]
+fn without_a_speed_a_position_that_repeats_its_bits_is_stale_in_time() {
+    let found = findings(&track(&[5.0; 1200], f64::NAN));
+    assert!(found[..=2].iter().all(|f| *f == Finding::Plausible), "{:?}", &found[..4]);
+    assert!(found[3..].iter().all(|f| *f == Finding::Stale));
+    let positions: Vec<f64> = (0..1300).map(|k| 70.0 * f64::from(k.min(100))).collect();
+    let found = findings(&track(&positions, f64::NAN));
+    assert!(found[..=102].iter().all(|f| *f == Finding::Plausible));
+    assert!(found[103..].iter().all(|f| *f == Finding::Stale));
+}
+
+#[test]
+fn a_receiver_that_is_known_to_stand_may_repeat_its_position() {
+    let standing = Limits { moving_mps: f64::INFINITY, ..LIMITS };
+    let found = judge(&track(&[5.0; 1200], f64::NAN), &standing).unwrap();
+    assert!(found.iter().all(|j| j.finding == Finding::Plausible));
+}
+
+#[test]
+fn where_the_speed_ends_with_the_fix_a_repeat_is_stale_too() {
+    let mut reports = track(&[0.0, 70.0, 140.0, 140.0, 140.0, 140.0, 140.0], 70.0);
+    reports[3..].iter_mut().for_each(|r| r.speed_mps = f64::NAN);
+    assert_eq!(findings(&reports)[5..], [Finding::Stale, Finding::Stale]);
+}
+
+/// 70 m/s, and one step of 500 m: (1.25 * 70 + 25) m/s * (1 + 2) s + 100 m = 437.5 m. With the 200 m/s of one epoch it would be 925 m.
+#[test]
+fn one_wild_speed_lets_no_step_pass() {
+    let flown: Vec<f64> = (0..100).map(|k| 70.0 * f64::from(k) + if k < 50 { 0.0 } else { 430.0 }).collect();
+    for wild in [0, 1, 4] {
+        let mut reports = track(&flown, 70.0);
+        reports[50..50 + wild].iter_mut().for_each(|r| r.speed_mps = 200.0);
+        let found = judge(&reports, &LIMITS).unwrap();
+        assert_eq!(found[50].finding, Finding::Jump, "{wild} wild");
+        assert_eq!(found.iter().filter(|j| j.speed_doubted).count(), wild);
+    }
+}
+
+#[test]
+fn a_speed_that_grows_is_believed() {
+    // 0 to 80 m/s in 40 s, seen each second and each ten seconds.
+    for every in [1, 10] {
+        let (mut flown_m, mut positions) = (0.0, Vec::new());
+        let mut speeds = Vec::new();
+        for k in 0..=80 {
+            let speed: f64 = 2.0 * f64::from(k.min(40));
+            flown_m += speed;
+            if k % every == 0 {
+                positions.push(flown_m);
+                speeds.push(speed);
+            }
+        }
+        let mut reports = track(&positions, 0.0);
+        for (k, (report, speed)) in reports.iter_mut().zip(speeds).enumerate() {
+            report.speed_mps = speed;
+            report.time = GpsTime::from_nanoseconds(1_000_000_000 * i64::from(every) * k as i64);
+        }
+        let found = judge(&reports, &LIMITS).unwrap();
+        assert!(found.iter().all(|j| j.finding == Finding::Plausible && !j.speed_doubted), "every {every} s");
     }
 }
 

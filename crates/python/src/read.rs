@@ -148,7 +148,8 @@ fn navigation_error<'py>(
 }
 
 /// Judge the reports of one track, `fixed_ns` the least number where nothing says when a position was valid: finding (0 plausible, 1 held,
-/// 2 stale, 3 jump, 4 unsettled, 5 late), age [s], step [m], speed of a step that is too fast [m/s].
+/// 2 stale, 3 jump, 4 unsettled, 5 late), age [s], step [m], speed of a step that is too fast [m/s], whether
+/// the reported speed was not believed.
 #[pyfunction]
 fn plausible<'py>(
     py: Python<'py>,
@@ -209,6 +210,7 @@ fn plausible<'py>(
     d.set_item("age_s", ages.into_pyarray(py))?;
     d.set_item("step_m", steps.into_pyarray(py))?;
     d.set_item("too_fast_mps", judged.iter().map(|j| j.too_fast_mps).collect::<Vec<_>>().into_pyarray(py))?;
+    d.set_item("speed_doubted", judged.iter().map(|j| j.speed_doubted).collect::<Vec<_>>().into_pyarray(py))?;
     Ok(d)
 }
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from navbound.errors import FormatError, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Container, Iterable, Mapping, Sequence
     from pathlib import Path
 
 _DEG = math.pi / 180.0
@@ -94,7 +94,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
     _q("altitude_m", "m", -2e3, 1e5, m="alt_m", ft="altitude altitude_ft alt_baro pressure_altitude"),
     _q("ground_track_rad", "rad", -2 * math.pi, 2 * math.pi, deg="track track_deg ground_track true_track cog"),
-    _q("ground_speed_mps", "mps", 0.0, 2e4, kt="groundspeed ground_speed gs ground_speed_kt velocity_kt sog", mps="speed_mps"),
+    _q("ground_speed_mps", "mps", 0.0, 2e4, kt="groundspeed ground_speed gs ground_speed_kt velocity_kt sog", mps="speed_mps vel_m_s"),
+    _q("vel_n_mps", "mps", -2e4, 2e4, mps="vel_n_m_s vn_mps vn_m_s vn velocity_n velocity_north vel_north north_velocity v_north"),
+    _q("vel_e_mps", "mps", -2e4, 2e4, mps="vel_e_m_s ve_mps ve_m_s ve velocity_e velocity_east vel_east east_velocity v_east"),
     _q(
         "vertical_rate_mps",
         "mps",
@@ -140,6 +142,20 @@ LEVEL_QUANTITIES: tuple[Quantity, ...] = (
     _q("mode", "text", 0.0, 0.0),
 )
 """What a table of errors and protection levels may hold beyond a recorded track."""
+
+STATED_QUANTITIES: tuple[Quantity, ...] = (
+    *(q for q in LEVEL_QUANTITIES if q.name in {"nse_e_m", "nse_n_m"}),
+    _q("nse_h_m", "m", 0.0, 1e8, m="hpe_m hpe horizontal_error_m"),
+    _q("nse_cross_m", "m", -1e8, 1e8),
+    _q("nse_along_m", "m", -1e8, 1e8),
+    _q("tse_m", "m", -1e8, 1e8, m="tse"),
+    _q("fte_m", "m", -1e8, 1e8, m="fte"),
+    _q("alert", "text", 0.0, 0.0),
+)
+"""What a recorded track may state against its own positions. It bounds nothing; the verdict weighs it."""
+
+TRANSPONDER = frozenset({"squawk", "spi"})
+"""Columns beside which `alert` is the transponder's: a change of its code."""
 
 TIME_NAMES: dict[str, str] = {
     "time_ns": "gps_ns", "gps_time_ns": "gps_ns", "gps_time_s": "gps_s", "gps_s": "gps_s",
@@ -206,7 +222,14 @@ POSITION = ("est_lat_rad", "est_lon_rad")
 """What the rows of a recorded track need beside a time."""
 
 
-def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path, *, needs: Sequence[str] = POSITION) -> Assignment:
+def assign(
+    names: Iterable[str],
+    declared: Mapping[str, str] | None,
+    path: Path,
+    *,
+    needs: Sequence[str] = POSITION,
+    texts: Container[str] = (),
+) -> Assignment:
     """Find what each column is.
 
     Parameters
@@ -219,6 +242,8 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
         The file, for messages.
     needs : sequence of str
         Quantities without which the file is refused, beside a time; other than a position they are those of errors and protection levels.
+    texts : container of str
+        Columns that hold words and no number: one named `track` is then a flight's name, not its direction.
 
     Raises
     ------
@@ -228,8 +253,8 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
         A declared column that the file lacks, or no time, latitude or longitude: what is needed and the nearest names found.
     """
     names = list(names)
-    quantities = QUANTITIES if tuple(needs) == POSITION else QUANTITIES + LEVEL_QUANTITIES
-    own = {"time_ns", "est_lat_rad"} <= set(names)
+    quantities = QUANTITIES + (STATED_QUANTITIES if tuple(needs) == POSITION else LEVEL_QUANTITIES)
+    own = {"time_ns", "est_lat_rad"} <= set(names) or any(_plain(name)[0] == "track" and name in texts for name in names)
     columns: dict[str, Column] = {}
     times: list[Column] = []
     for key, value in (declared or {}).items():
@@ -239,6 +264,8 @@ def assign(names: Iterable[str], declared: Mapping[str, str] | None, path: Path,
         else:
             columns[key] = column
     taken = {c.name for c in [*columns.values(), *times]}
+    if {_plain(name)[0] for name in names} & TRANSPONDER:
+        quantities = tuple(q for q in quantities if q.name != "alert")
     if {name for name, _ in OPENSKY_STATES.values()} <= set(names):
         states = {key: Column(key, name, unit) for key, (name, unit) in OPENSKY_STATES.items() if name not in taken}
         columns = states | columns
@@ -280,7 +307,7 @@ def _plain(name: str) -> tuple[str, str | None]:
 
 
 def _known(quantity: Quantity, names: list[str], *, own: bool) -> Column | None:
-    """Find the first known name, in the order of the aliases; in our own epoch table `track` is who flies, not whither."""
+    """Find the first known name, in the order of the aliases; ``own``: `track` is who flies, not whither, as in our own epoch table."""
     plain = {_plain(name)[0]: name for name in reversed(names)}
     if own and quantity.name in {"track", "ground_track_rad"}:
         plain = {k: v for k, v in plain.items() if (k == "track") == (quantity.name == "track")}

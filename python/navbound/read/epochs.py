@@ -11,8 +11,19 @@ import polars as pl
 
 from navbound import _core, status
 from navbound.errors import UNSEEN, FormatError
-from navbound.read import receivers
-from navbound.read.columns import LEVEL_QUANTITIES, POSITION, POSITION_TIME, QUANTITIES, UNITS, Assignment, Column, assign, position_time
+from navbound.read import receivers, stated
+from navbound.read.columns import (
+    LEVEL_QUANTITIES,
+    POSITION,
+    POSITION_TIME,
+    QUANTITIES,
+    STATED_QUANTITIES,
+    UNITS,
+    Assignment,
+    Column,
+    assign,
+    position_time,
+)
 from navbound.read.rejections import Rejections
 from navbound.read.repeats import LEFT_OUT, left_out, separate
 from navbound.read.source import Source, load
@@ -25,7 +36,7 @@ if TYPE_CHECKING:
 
     from navbound.run.records import InputFile, Rejection
 
-_QUANTITY = {q.name: q for q in QUANTITIES + LEVEL_QUANTITIES}
+_QUANTITY = {q.name: q for q in STATED_QUANTITIES + QUANTITIES + LEVEL_QUANTITIES}
 _BAD = "__bad"
 _MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 
@@ -91,8 +102,15 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: S
     if source.kind in {"ubx", "sbf", "novatel", "nmea"}:
         return _log(source, source.kind)
     found = table(source)
-    mapping = assign(found.columns, columns, source.path, needs=needs)
+    mapping = assign(found.columns, columns, source.path, needs=needs, texts=_texts(found.frame))
     return _epochs(source, found, mapping, [name for name in POSITION if name in needs])
+
+
+def _texts(frame: pl.DataFrame) -> set[str]:
+    """Columns of text of which something is written and nothing is a number."""
+    strings = [name for name, dtype in frame.schema.items() if dtype == pl.String and name != LINE]
+    written = {name: frame[name].str.strip_chars().set(frame[name].str.strip_chars().str.contains(_MISSING), None) for name in strings}
+    return {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
 
 
 def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequence[str]) -> Reading:
@@ -114,6 +132,7 @@ def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequenc
         else:
             _count(rejections, frame, column.name, reason)
     dated = position_time(mapping.unused)
+    out = _with_speed(out)
     if tuple(required) == POSITION:
         out = _reported(out, mapping, notes, source)
     _look_like_radians(out, mapping, source, notes)
@@ -161,9 +180,18 @@ def _positions_dated(
     return out.with_columns(pl.select(pl.when(reason.is_null()).then(valid)).to_series().alias(POSITION_TIME))
 
 
+def _with_speed(out: pl.DataFrame) -> pl.DataFrame:
+    """The speed over the ground, of the velocities north and east where no column or no value states it."""
+    if not {"vel_n_mps", "vel_e_mps"} <= set(out.columns):
+        return out
+    of_velocity = (pl.col("vel_n_mps") ** 2 + pl.col("vel_e_mps") ** 2).sqrt()
+    stated = [pl.col("ground_speed_mps")] if "ground_speed_mps" in out.columns else []
+    return out.with_columns(pl.coalesce(*stated, of_velocity).alias("ground_speed_mps")).drop("vel_n_mps", "vel_e_mps")
+
+
 def _reported(out: pl.DataFrame, mapping: Assignment, notes: list[str], source: Source) -> pl.DataFrame:
     """What a recorded track says of its own epochs, in words of the list; and a note on what no one reads."""
-    before, out = out, status.recorded(out)
+    before, out = out, status.recorded(stated.against_itself(out))
     if "status" in before.columns:
         n_unknown = before.filter(~pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)).height
         if n_unknown:

@@ -29,7 +29,7 @@ class Limits:
     noise_m : float
         A distance that is never called a jump.
     moving_mps : float
-        Reported speed from which an unchanged position counts as held.
+        Reported speed from which an unchanged position counts as held; infinite for a receiver that is known to stand.
     stale_after_s : float
         Age from which a held position is no position.
     settle_s : float
@@ -65,6 +65,8 @@ class Plausibility:
         Steps faster than the aircraft's own speed allows in the time between the positions.
     fastest_mps : float
         The fastest of these.
+    n_speed_doubted : int
+        Reported speeds beyond what those beside them allow.
     n_steps_5km : int
         Steps between successive epochs of more than 5 km.
     largest_step_m : float
@@ -80,9 +82,21 @@ class Plausibility:
     n_late: int
     n_fast: int
     fastest_mps: float
+    n_speed_doubted: int
     n_steps_5km: int
     largest_step_m: float
     words: str
+
+
+def impossible(rows: pl.DataFrame, lat: str, lon: str) -> pl.Series:
+    """Whether each position of one track, in the order of time, cannot have been reached, or follows a jump that has not settled."""
+    time, lat_rad, lon_rad = (np.ascontiguousarray(rows[name].to_numpy()) for name in ("time_ns", lat, lon))
+    undated, silent = np.full(rows.height, _UNDATED), np.full(rows.height, np.nan)
+    # A true position may stand still.
+    limits = asdict(Limits(moving_mps=np.inf))
+    code = _core.plausible(time, undated, lat_rad, lon_rad, silent, limits)["finding"]
+    wrong = [_REASON_ID.index(id_) for id_ in ("position_jump", "position_not_settled", "position_late")]
+    return pl.Series(np.isin(code, wrong))
 
 
 def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFrame, Plausibility]:
@@ -117,7 +131,8 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
     for group in columns.partition_by("track", maintain_order=True):
         time, valid, lat, lon, reported = (np.ascontiguousarray(group[c].to_numpy()) for c in columns.columns[1:])
         judged.append(_core.plausible(time, valid, lat, lon, reported, asdict(limits)))
-    code, step, fast = (np.concatenate([found[name] for found in judged]) for name in ("finding", "step_m", "too_fast_mps"))
+    names = ("finding", "step_m", "too_fast_mps", "speed_doubted")
+    code, step, fast, doubted = (np.concatenate([found[name] for found in judged]) for name in names)
     marked = status.with_reason(epochs, pl.Series("reason_id", _REASON_ID, dtype=pl.String).gather(code))
     if "status" in epochs.columns:
         solved = status.with_reason_id(epochs)
@@ -140,7 +155,10 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
             f" {n_fast} steps are faster than the aircraft's own speed in the time between the positions, the fastest {fastest:.0f} m/s; "
             f"{n[5]} of them need a position that was older than {limits.stale_after_s:g} s and are marked."
         )
+    n_doubted = int(doubted.sum())
+    if n_doubted:
+        words += f" {n_doubted} reported speeds are beyond what the speeds beside them allow, and were not used."
     if n_dated:
         words += f" {n_dated} of {columns.height} rows say when their position was valid; between those, steps are judged by that time."
     held, stale, jump, unsettled, late = (int(k) for k in n[1:])
-    return marked, Plausibility(held, stale, jump, unsettled, late, n_fast, fastest, n_steps, largest, words)
+    return marked, Plausibility(held, stale, jump, unsettled, late, n_fast, fastest, n_doubted, n_steps, largest, words)

@@ -22,7 +22,7 @@ SAME_BOUND = 0.01
 BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic", "hpl_m", "vpl_m", "hpe_m", "vpe_m")
 """What a row states of its accuracy or its bound, beside its covariance."""
 
-ERRORS = ("nse_e_m", "nse_n_m", "nse_u_m")
+ERRORS = ("nse_e_m", "nse_n_m", "nse_u_m", "stated_error_m")
 """What a row states of its error. Two of one time are one as two positions are."""
 
 COVARIANCE = {

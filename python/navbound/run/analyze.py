@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+import math
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -110,11 +111,12 @@ def material(
     epochs, lost = _together(readings, rejected)
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
-    epochs, plausibility = check(claimed.epochs, limits)
+    named = truth_of(truth, truth_tolerance_s)
+    # A fixed truth says that the receiver stands: its position may repeat.
+    epochs, plausibility = check(claimed.epochs, limits if named.ecef_m is None else replace(limits, moving_mps=math.inf))
     origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
     assumptions = [of_covariance, plausibility.words]
-    named = truth_of(truth, truth_tolerance_s)
     if named.ecef_m is not None:
         epochs, words, _ = with_truth(epochs, named)
         assumptions.append(words)
@@ -125,8 +127,8 @@ def material(
         epochs, words = join(epochs, other, truth_tolerance_s)
         assumptions.append(words)
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
-        epochs = with_error(epochs)
-        assumptions.append("Truth: from the file itself.")
+        epochs, words = with_error(epochs)
+        assumptions.append(f"Truth: from the file itself.{words}")
     route = _follow(path, epochs, gates, rejected)
     epochs = _covariance_status(route.epochs).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
     return Material(

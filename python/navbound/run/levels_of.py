@@ -137,7 +137,8 @@ def _with_own_truth(epochs: pl.DataFrame) -> tuple[pl.DataFrame, list[str]]:
         return epochs, [f"truth_lat_rad and truth_lon_rad are not used: the errors are those that the table states ({', '.join(errors)})."]
     if not {"est_lat_rad", "est_lon_rad"} <= have:
         return epochs, ["truth_lat_rad and truth_lon_rad are not used: the table holds no estimated positions to compare with them."]
-    return with_error(epochs), ["Truth: from the file itself."]
+    epochs, words = with_error(epochs)
+    return epochs, [f"Truth: from the file itself.{words}"]
 
 
 class Service:

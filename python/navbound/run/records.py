@@ -63,7 +63,8 @@ class Belief(Record):
     """Whether truth supports the bounds that a run states."""
 
     state: BeliefState
-    """`refuted` withdraws the verdict; `contradicted` (a bound beside the lateral ones is false) and `short` leave it not shown."""
+    """`partial`: truth supports the bounds at less than the least share of the epochs. `refuted` withdraws the verdict; `contradicted` (a
+    bound beside the lateral ones is false) and `short` leave it not shown."""
     n_epochs: int = 0
     """Epochs that are checked where truth is known: those with status ok, or the degraded ones where none is ok."""
     n_truth: int = 0
@@ -119,6 +120,16 @@ class Verdict(Record):
     """Epochs with status ok or degraded whose bound is beyond its limit."""
     n_known_beyond: int = 0
     """Epochs with status ok, a bound within its limit and a known error beyond twice RNP."""
+    n_stated_beyond: int = 0
+    """Epochs with status ok or degraded where the recording itself states an error beyond RNP."""
+    n_stated_alert: int = 0
+    """The same where it states an alert."""
+    n_without_level: int = 0
+    """Judged epochs of tracks with a column of horizontal protection levels that holds none."""
+    n_long_steps: int = 0
+    """Steps between successive epochs of a track that are longer than a position takes to become stale."""
+    longest_step_s: float | None = None
+    """The longest of all steps between successive epochs; None where no track has two."""
     least_share: float = rule.LEAST_SHARE
     """Least share of judged epochs for "inside"."""
     assumed: list[Literal["sigma_typed", "sigma_coded", "no_path"]] = Field(default_factory=list)

@@ -10,6 +10,8 @@ import polars as pl
 
 from navbound import anp, evaluation, rnp
 from navbound.methods import column_of, method
+from navbound.read.plausible import Limits
+from navbound.read.stated import ALERT, ERROR
 from navbound.run.records import (
     EventSummary,
     Held,
@@ -118,6 +120,8 @@ def _verdict(
     n_epochs, n_degraded = margins.height + n_missing, int((status == "degraded").sum())
     belief = of_epochs(margins, judge.id, risks, [each.id for each in stated])
     n_truth = int(np.isfinite(column_of(margins, "nse_h_m")).sum()) if "nse_h_m" in margins.columns else 0
+    against, n_without_level = _against(margins), _without_level(margins)
+    longest_step_s, n_long_steps = _steps(margins)
     facts = rule.TrackFacts(
         n_epochs=n_epochs,
         n_judged=judged.height,
@@ -127,6 +131,8 @@ def _verdict(
         n_misleading=sum(check.n_above for check in belief.levels if check.level == "hpl_m") if belief is not None else 0,
         belief="unchecked" if belief is None else belief.state,
         n_known_beyond=margins.select(_KNOWN_BEYOND.sum()).item() if "nse_h_m" in margins.columns else 0,
+        n_stated_against=against["either"],
+        n_without_level=n_without_level,
     )
     decided = rule.of_tracks(facts)
     verdict = Verdict(
@@ -144,6 +150,11 @@ def _verdict(
         n_missing=n_missing,
         n_outside=facts.n_outside,
         n_known_beyond=facts.n_known_beyond,
+        n_stated_beyond=against["beyond"],
+        n_stated_alert=against["alert"],
+        n_without_level=n_without_level,
+        n_long_steps=n_long_steps,
+        longest_step_s=longest_step_s,
         assumed=_assumed(material, judge.id),
         belief=belief,
         n_implausible=facts.n_implausible,
@@ -166,6 +177,32 @@ _KNOWN_BEYOND = (
     (pl.col("status") == "ok") & (pl.col("_margin") >= 0) & (pl.col("nse_h_m") > 2.0 * pl.col("rnp_m")) & pl.col("nse_h_m").is_finite()
 ).fill_null(value=False)
 """An ok epoch within its limit whose known navigation error alone is beyond twice RNP: no share of epochs makes that good."""
+
+
+def _against(margins: pl.DataFrame) -> dict[str, int]:
+    """Epochs with status ok or degraded where the recording itself states an error beyond RNP, an alert, or either."""
+    usable, never = pl.col("status").is_in(USABLE), pl.lit(value=False)
+    beyond = usable & (pl.col(ERROR) > pl.col("rnp_m")) if ERROR in margins.columns else never
+    alert = usable & pl.col(ALERT).is_not_null() if ALERT in margins.columns else never
+    beyond, alert = beyond.fill_null(value=False), alert.fill_null(value=False)
+    counts = margins.select(usable.alias("_usable"), beyond=beyond, alert=alert, either=beyond | alert)
+    return {name: int(counts[name].sum()) for name in ("beyond", "alert", "either")}
+
+
+def _without_level(margins: pl.DataFrame) -> int:
+    """Judged epochs of tracks whose column of horizontal protection levels holds none: no column of nothing may stand for a level."""
+    if "hpl_m" not in margins.columns:
+        return 0
+    none = pl.col("hpl_m").is_finite().fill_null(value=False).any().over("track").not_()
+    return int(margins.select((none & (pl.col("status") == "ok") & pl.col("_margin").is_not_null()).sum()).item())
+
+
+def _steps(margins: pl.DataFrame) -> tuple[float | None, int]:
+    """The longest step between successive epochs of a track [s], and how many are longer than a position takes to become stale."""
+    steps = margins.select((pl.col("time_ns").diff().over("track").cast(pl.Float64) * 1e-9).alias("step")).drop_nulls()["step"]
+    if steps.is_empty():
+        return None, 0
+    return float(steps.max()), int((steps > Limits().stale_after_s).sum())  # type: ignore[arg-type]
 
 
 def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "sigma_coded", "no_path"]]:

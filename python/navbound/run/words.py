@@ -42,6 +42,12 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
         parts.append(
             f"{verdict.n_implausible} epochs cannot be true (see their reasons); what looks right beside them may be wrong as well."
         )
+    parts += _contradicted(verdict)
+    if verdict.n_long_steps and verdict.longest_step_s is not None:
+        parts.append(
+            f"Between epochs nothing is known: {verdict.n_long_steps} steps are longer than a position takes to become stale, "
+            f"the longest {verdict.longest_step_s:.6g} s."
+        )
     parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
     parts += truth_words(verdict)
     return " ".join(parts)
@@ -96,8 +102,27 @@ def _not_shown(verdict: Verdict) -> list[str]:
             "The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false."
         )
     if verdict.belief is not None and verdict.belief.state == "contradicted":
-        why.append(contradicted_words(verdict.belief))
+        why += contradicted_words(verdict.belief)
+    if verdict.n_stated_beyond:
+        why.append(f"The recording itself states an error beyond RNP at {verdict.n_stated_beyond} epochs.")
+    if verdict.n_stated_alert:
+        why.append(f"The recording itself states an alert at {verdict.n_stated_alert} epochs.")
+    if verdict.n_without_level:
+        why.append(
+            f"A column of horizontal protection levels holds none in the tracks of {verdict.n_without_level} judged epochs: their "
+            "integrity was compared without a level."
+        )
     return why
+
+
+def _contradicted(verdict: Verdict) -> list[str]:
+    """What truth contradicts, where no earlier sentence of the verdict names it."""
+    belief = verdict.belief
+    if belief is None or (verdict.id == "not_shown" and belief.state == "contradicted"):
+        return []
+    # A verdict withdrawn by a false bound names all of them first.
+    named_first = verdict.id == "not_believable" and (belief.state == "refuted" or not verdict.n_known_beyond)
+    return [] if named_first else contradicted_words(belief)
 
 
 def _worst(worst: Worst) -> str:

@@ -40,7 +40,7 @@ export interface LevelCheck {
 }
 
 export interface Belief {
-    state: "unchecked" | "supported" | "short" | "contradicted" | "refuted";
+    state: "unchecked" | "supported" | "partial" | "short" | "contradicted" | "refuted";
     /** Epochs checked where truth is known, and those of them with a true horizontal error. */
     n_epochs: number;
     n_truth: number;
@@ -68,6 +68,11 @@ export interface Verdict {
     n_missing: number;
     n_outside: number;
     n_known_beyond: number;
+    n_stated_beyond: number;
+    n_stated_alert: number;
+    n_without_level: number;
+    n_long_steps: number;
+    longest_step_s: number | null;
     least_share: number;
     assumed: ("sigma_typed" | "sigma_coded" | "no_path")[];
     belief: Belief | null;

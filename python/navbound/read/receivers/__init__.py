@@ -32,7 +32,7 @@ _FRAMES: dict[Kind, re.Pattern[bytes]] = {
     "ubx": re.compile(rb"\xb5\x62[\x01-\x29][\x00-\x92]"),
     "sbf": re.compile(rb"\$@..[\x00-\xff][\x0f-\xff].[\x00-\x1f]", re.DOTALL),
     "novatel": re.compile(rb"\xaa\x44\x12\x1c|#[A-Z]+A,(COM|USB|FILE|ICOM)"),
-    "nmea": re.compile(rb"\$[A-Z]{2}[A-Z]{3},[^\r\n]*\*[0-9A-F]{2}\r?\n"),
+    "nmea": re.compile(rb"\$[A-Z]{2}[A-Z]{3},[^\r\n]*\*[0-9A-F]{2}(,\d+)?\r?\n"),
 }
 """Beginnings of any message: the file is a log, whatever it holds."""
 

@@ -22,6 +22,11 @@ if TYPE_CHECKING:
 
 _HALF_DAY_S = 43_200
 
+_WITH_ARRIVAL = re.compile(rb"^(?:NMEA,)?(\$[^\r\n*]*\*[0-9A-Fa-f]{2}),\d+(?=\r?$)", re.MULTILINE)
+"""A sentence as the loggers of telephones write it: a word before it, the time of arrival behind its checksum."""
+_CHECKED = re.compile(rb"\*[0-9A-Fa-f]{2}\s*$")
+"""The end of a sentence with its checksum."""
+
 
 @dataclass
 class _Fix:
@@ -39,9 +44,11 @@ def read(source: Source) -> Log:
     log = Log(source.path, "GGA")
     settings = {"quitonerror": pynmeagps.ERR_LOG}
     fixes, dates, last = list[_Fix](), list[tuple[int, date, time]](), None
-    for record, (_, sentence) in messages(
-        lambda s, handler: pynmeagps.NMEAReader(s, errorhandler=handler, **settings), source.content, log
-    ):
+    content = _WITH_ARRIVAL.sub(rb"\1", source.content)
+    for record, (raw, sentence) in messages(lambda s, handler: pynmeagps.NMEAReader(s, errorhandler=handler, **settings), content, log):
+        if sentence is None and _CHECKED.search(raw) is None:
+            # The decoder gives nothing for what it does not know, and for a sentence whose checksum has lost its mark.
+            log.leave_out("damaged message", record, raw[:60].decode("ascii", "replace").strip(), damaged=True)
         name = getattr(sentence, "msgID", "")
         if name == "GGA":
             last = _Fix(record, sentence)

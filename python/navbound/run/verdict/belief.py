@@ -81,6 +81,7 @@ def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float], st
     p_values += [p for tested in bounds for p in tested.p_values]
     p_beside = [p for tested in beside for p in tested.p_values]
     checks = [tested.check for tested in bounds]
+    n_truth = int(np.isfinite(column_of(usable, "nse_h_m")).sum()) if "nse_h_m" in usable.columns else 0
     facts = rule.BeliefFacts(
         n_effective=min((check.n_effective for check in checks), default=1.0),
         p_values=p_values,
@@ -88,11 +89,12 @@ def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float], st
         excluded=any(check.coverage_high < 1.0 - check.risk for check in checks),
         p_values_beside=p_beside,
         n_above_vertical_level=sum(check.n_above for check in levels if check.level == "vpl_m"),
+        truth_share=n_truth / max(usable.height, 1),
     )
     return Belief(
         state=rule.of_belief(facts),
         n_epochs=usable.height,
-        n_truth=int(np.isfinite(column_of(usable, "nse_h_m")).sum()) if "nse_h_m" in usable.columns else 0,
+        n_truth=n_truth,
         n_effective=facts.n_effective,
         square_mean=None if size is None else size.square_mean,
         p_value=rule.joint_probability(p_values),

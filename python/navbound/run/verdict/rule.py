@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 VerdictId = Literal["inside", "outside", "not_shown", "not_believable", "nothing_judged"]
-BeliefState = Literal["unchecked", "supported", "short", "contradicted", "refuted"]
+BeliefState = Literal["unchecked", "supported", "partial", "short", "contradicted", "refuted"]
 
 LEAST_SHARE = 0.95
 """Least share of all expected epochs that must be judged with status ok before "inside" may be said.
@@ -52,6 +52,10 @@ class TrackFacts:
         What truth says of the bounds.
     n_known_beyond : int
         With status ok, a bound within its limit and a true error beyond twice RNP, which no epoch may have unnoticed.
+    n_stated_against : int
+        With status ok or degraded, where the recording itself states an error beyond RNP or an alert.
+    n_without_level : int
+        Judged, of tracks with a column of horizontal protection levels that holds none.
     """
 
     n_epochs: int
@@ -62,6 +66,8 @@ class TrackFacts:
     n_misleading: int
     belief: BeliefState
     n_known_beyond: int = 0
+    n_stated_against: int = 0
+    n_without_level: int = 0
 
 
 def of_tracks(facts: TrackFacts) -> VerdictId:
@@ -72,7 +78,8 @@ def of_tracks(facts: TrackFacts) -> VerdictId:
         return "nothing_judged"
     if facts.n_outside or facts.n_beyond_alert_limit:
         return "outside"
-    if facts.n_implausible or facts.belief in UNSUPPORTED or not facts.n_judged >= LEAST_SHARE * facts.n_epochs:
+    doubts = facts.n_implausible + facts.n_stated_against + facts.n_without_level
+    if doubts or facts.belief in UNSUPPORTED or not facts.n_judged >= LEAST_SHARE * facts.n_epochs:
         return "not_shown"
     return "inside"
 
@@ -144,6 +151,8 @@ class BeliefFacts:
         Of every test of the other bounds that the run states: vertical, spatial, along the axes of the path.
     n_above_vertical_level : int
         Epochs whose vertical error is above the vertical protection level.
+    truth_share : float
+        Share of the checked epochs whose truth is known.
     """
 
     n_effective: float
@@ -152,6 +161,7 @@ class BeliefFacts:
     excluded: bool
     p_values_beside: list[float] = field(default_factory=list)
     n_above_vertical_level: int = 0
+    truth_share: float = 1.0
 
 
 FEW_EPOCHS = 10.0
@@ -175,7 +185,7 @@ def of_belief(facts: BeliefFacts) -> BeliefState:
     Refuted where the data are too improbable for true bounds of those that the lateral verdict rests on; contradicted where they are too
     improbable for another bound that the run states (docs/decisions/0029); short where a coverage is below its claim and its interval
     excludes the claim, or so few independent epochs stand behind it that they decide nothing, or where the data are improbable though not
-    enough to refute.
+    enough to refute. Truth that is known at less than the least share of judged epochs supports the bounds of these epochs alone: partial.
     """
     if is_refuted(facts.p_values, len(facts.p_values)):
         return "refuted"
@@ -184,4 +194,4 @@ def of_belief(facts: BeliefFacts) -> BeliefState:
     doubted = facts.short and joint_probability(facts.p_values) <= DOUBTED_AT
     if facts.excluded or doubted or (facts.short and facts.n_effective < FEW_EPOCHS):
         return "short"
-    return "supported"
+    return "supported" if facts.truth_share >= LEAST_SHARE else "partial"

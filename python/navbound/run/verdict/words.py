@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from navbound.methods import method
 from navbound.run.numbers import level, share
+from navbound.run.verdict.rule import LEAST_SHARE
 
 if TYPE_CHECKING:
     from navbound.run.records import Belief, BoundCheck, LevelCheck, Verdict
@@ -36,11 +37,14 @@ def refuted_words(belief: Belief | None) -> str:
     return f"truth contradicts the bounds ({low}){': ' if named else ''}{'; '.join(named)}"
 
 
-def contradicted_words(belief: Belief) -> str:
-    """The bounds beside the lateral ones that truth contradicts, with their figures."""
-    named = "; ".join(_false(belief.beside, belief.levels))
-    first = f"Truth contradicts what this run states beside the lateral bounds: {named}."
-    return f"{first} A covariance that is false in one axis is no evidence for the others."
+def contradicted_words(belief: Belief) -> list[str]:
+    """Every bound and level that truth contradicts, with its figures; the lateral ones first."""
+    lateral, beside = _false(belief.bounds, []), _false(belief.beside, belief.levels)
+    words = [f"Truth contradicts the lateral bounds: {'; '.join(lateral)}."] if lateral else []
+    if beside:
+        words.append(f"Truth contradicts what this run states beside the lateral bounds: {'; '.join(beside)}.")
+        words.append("A covariance that is false in one axis is no evidence for the others.")
+    return words
 
 
 def _false(bounds: list[BoundCheck], levels: list[LevelCheck]) -> list[str]:
@@ -70,10 +74,9 @@ def truth_words(verdict: Verdict) -> list[str]:
 def _known(belief: Belief) -> str:
     if belief.n_truth == belief.n_epochs:
         return f"Truth is known at all {belief.n_epochs} checked epochs"
-    return (
-        f"Truth is known at {belief.n_truth} of {belief.n_epochs} checked epochs ({share(belief.n_truth / belief.n_epochs)}), and the "
-        "bounds of the others could not be checked"
-    )
+    less = f", which are too many to call the bounds supported (least share {share(LEAST_SHARE)})" if belief.state == "partial" else ""
+    known = f"{belief.n_truth} of {belief.n_epochs} checked epochs ({share(belief.n_truth / belief.n_epochs)})"
+    return f"Truth is known at {known}, and the bounds of the others could not be checked{less}"
 
 
 def _contained(bounds: list[BoundCheck]) -> list[str]:
