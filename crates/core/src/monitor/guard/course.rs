@@ -8,6 +8,7 @@
 //! far as the change before them. It says nothing of satellites whose rates agree with the motion that they pretend. Provenance: ours.
 
 use super::Looked;
+use super::motion::{ACCELERATION_MPS2, STEP_MOST_S};
 use crate::frame::{Covariance, Displacement, EcefPosition, Enu, enu_from_ecef};
 use crate::monitor::consistency::normalised_square_horizontal;
 use crate::quantity::GpsTime;
@@ -16,10 +17,6 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Standard deviation of the change of acceleration within a step \[m/s³\]. Provenance: inferred.
 const JERK_MPS3: f64 = 3.0;
-/// Standard deviation of the acceleration after a position without a velocity of its own \[m/s²\]. Provenance: inferred.
-const ACCELERATION_MPS2: f64 = 3.0;
-/// Longest step \[s\]. Provenance: inferred.
-const STEP_MOST_S: f64 = 2.5;
 
 /// The way since the last position that a unit or a filter has agreed with.
 #[derive(Debug, Clone, Copy)]

@@ -3,6 +3,7 @@
 //! Nothing tests a solved position: its covariance bounds no fault. It serves to contradict the filter; a level it has only where its receiver
 //! brings one. That a filter falls out with solved positions convicts nobody, neither the unit nor the receiver. Provenance: ours.
 
+use super::motion::{ACCELERATION_MPS2, STEP_MOST_S};
 use super::{Guard, Looked, Tests};
 use crate::frame::ecef_from_geodetic;
 use crate::monitor::judgement::RangesAgree;
@@ -16,10 +17,6 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Components of a position.
 const COMPONENTS: usize = 3;
-/// Standard deviation of the acceleration between two positions that a velocity is taken from \[m/s²\]. Provenance: ours.
-const ACCELERATION_MPS2: f64 = 3.0;
-/// Longest time between them \[s\]. Provenance: ours.
-const BETWEEN_MOST_S: f64 = 2.5;
 /// Time for which filter and positions must contradict each other before the filter starts anew, and between two starts \[s\]. Provenance:
 /// inferred.
 const START_AFTER_S: f64 = 10.0;
@@ -105,7 +102,7 @@ fn seen(time: GpsTime, m: &PositionFix, before: Option<&Looked>, age_sigma_s: f6
 /// Mean velocity between two positions, and what an acceleration meanwhile leaves of it.
 fn between(a: &Snapshot, b: &Snapshot) -> Option<SnapshotVelocity> {
     let dt = b.time.seconds_since(a.time);
-    if !(dt > 0.0 && dt <= BETWEEN_MOST_S) {
+    if !(dt > 0.0 && dt <= STEP_MOST_S) {
         return None;
     }
     let enu_mps = b.ecef.minus(&ecef_from_geodetic(&a.position)).to_enu(&b.position.point).vector() / dt;

@@ -8,34 +8,33 @@ mod contradiction;
 mod course;
 mod fixes;
 mod inertial;
+mod level;
+mod look;
+mod motion;
+mod records;
 mod shares;
 mod stations;
 #[cfg(test)]
 mod tests;
+mod witnesses;
 
 pub use contradiction::{AGREED_S, Contradiction, Tests};
 pub use inertial::{Envelope, Plausibility};
+pub use records::{Admitted, EXCLUDED_MOST, Looked, Settings, Tally};
 pub use shares::Shares;
 pub use stations::{Reading, Stations, testimony};
 
 use super::consistency::normalised_square_horizontal;
-use course::Course;
-
-use super::judgement::{
-    Agreement, CarriedFacts, Decision, Facts, FilterFacts, Inertial, RangesAgree, Reason, SnapshotFacts, Source, Testimony, Witnesses,
-};
-use crate::bound::araim::exclusion::Decision as Exclusion;
-use crate::bound::araim::single::Requirement;
+use super::judgement::{Agreement, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Testimony, Witnesses};
 use crate::bound::raim;
-use crate::frame::{Covariance, Displacement, EcefPosition, Enu, ecef_from_geodetic, enu_from_ecef};
-use crate::quantity::{GpsTime, OutOfDomain, Risk, Unavailable};
-use crate::signal::{Aiding, BaroHeight, ImuIncrement, SatelliteId, SatelliteRange, TimedAiding};
+use crate::frame::{Covariance, Displacement, Enu};
+use crate::quantity::{GpsTime, OutOfDomain};
+use crate::signal::{ImuIncrement, SatelliteId, TimedAiding};
 use crate::solution::ins::{Advance, Block, Difference, Fusion, Mode, Solution, judgeable};
-use crate::solution::snapshot::{RANGES_MOST, Ranges, Snapshot, SnapshotVelocity, Solver, rate_sights, velocity};
-use crate::solution::wls::{WeightedSight, horizontal_axes};
-use crate::special::chi::chi_factor;
-use crate::special::float::{hypot, sqrt};
+use crate::solution::snapshot::{Ranges, Solver};
 use crate::special::gamma::{chi_square_factor, chi_square_tail};
+use course::Course;
+use level::apart;
 
 /// Risk of a false contradiction of one test at one instant: 1e-5 an hour over four tests and 3600 seconds. Provenance: re-derived, of the
 /// false alarm rate of en route to non-precision approach.
@@ -47,10 +46,6 @@ pub const BLOCK_RISK: f64 = 1e-6;
 pub const DIFFERENCE_INFLATION: f64 = 1.6;
 /// See [`DIFFERENCE_INFLATION`].
 pub const DIFFERENCE_FLOOR: f64 = 0.05;
-/// Inertial faults that the growth covers where no envelope is declared \[m/s²\], \[rad/s\]. Provenance: inferred.
-const UNSEEN: [f64; 2] = [0.01, 1e-5];
-/// \[m/s²\]
-const GRAVITY: f64 = 9.8;
 /// Samples on end whose times contradict the clock of the epochs, and the time without one after which the clock is right again \[s\].
 /// Provenance: inferred.
 const CLOCK: (u32, f64) = (2, 60.0);
@@ -58,78 +53,6 @@ const CLOCK: (u32, f64) = (2, 60.0);
 const CLOCK_MOST_S: f64 = 10.0;
 /// Instants of ranges on end with times outside the declared latency. Provenance: inferred.
 const LATE_MOST: u32 = 3;
-
-/// How a guard is set.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Of the inertial unit and the vehicle.
-    pub envelope: Envelope,
-    /// Of the snapshot's test and level.
-    pub requirement: Requirement,
-    /// Standard deviation of the age of the satellite data \[s\]: its share of the level is three of them times the speed.
-    pub age_sigma_s: f64,
-    /// Hole in the inertial samples from which the unit is missing \[s\].
-    pub gap_most_s: f64,
-    /// Oldest measurement that is used \[s\].
-    pub age_most_s: f64,
-    /// Time for which the unit must be plausible and the contradiction last before the filter is started anew \[s\].
-    pub restart_after_s: f64,
-}
-
-/// The ranges of an instant, judged.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Admitted {
-    /// Whether the filter may use them.
-    pub usable: bool,
-    /// Those that it may not use.
-    pub excluded: [Option<SatelliteId>; EXCLUDED_MOST],
-}
-
-/// Satellites that are left out of an instant at most.
-pub const EXCLUDED_MOST: usize = 4;
-
-impl Admitted {
-    /// Whether a satellite is left out.
-    pub fn excludes(&self, satellite: SatelliteId) -> bool {
-        self.excluded.contains(&Some(satellite))
-    }
-}
-
-/// A snapshot with what its own test says.
-#[derive(Debug, Clone)]
-pub struct Looked {
-    /// The position.
-    pub snapshot: Snapshot,
-    /// The velocity, where the rates determine one and agree.
-    pub velocity: Option<SnapshotVelocity>,
-    /// Whether the ranges agree.
-    pub ranges_agree: RangesAgree,
-    /// Levels, horizontal and vertical \[m\].
-    pub level_m: [f64; 2],
-}
-
-/// Sums over the tests of a flight.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Tally {
-    /// Instants.
-    pub n: u64,
-    /// Sum and largest of each square, in the order of [`Tests::square`].
-    pub sum: [f64; 4],
-    /// See [`Tally::sum`].
-    pub most: [f64; 4],
-    /// Times that a contradiction was raised.
-    pub n_raised: u64,
-}
-
-impl Tally {
-    fn add(&mut self, tests: &Tests) {
-        self.n += 1;
-        for k in 0..4 {
-            self.sum[k] += tests.square[k];
-            self.most[k] = self.most[k].max(tests.square[k]);
-        }
-    }
-}
 
 /// Everything beside a filter.
 #[derive(Debug, Clone)]
@@ -312,107 +235,6 @@ impl Guard {
         }
     }
 
-    /// One range of each satellite, and none that is the last one again to the bit: a receiver that has stopped measures nothing.
-    fn fresh(&mut self, ranges: &Ranges) -> Ranges {
-        let before = core::mem::replace(&mut self.last, ranges.clone());
-        let repeated =
-            |m: &SatelliteRange| before.iter().any(|b| b.satellite == m.satellite && b.range == m.range && b.rate_mps == m.rate_mps);
-        let mut named = [None; RANGES_MOST];
-        let kept = ranges.iter().filter(|m| {
-            let known = named.contains(&Some(m.satellite));
-            if let (false, Some(place)) = (known, named.iter_mut().find(|n| n.is_none())) {
-                *place = Some(m.satellite);
-            }
-            !known && !repeated(m)
-        });
-        let mut all = [None; RANGES_MOST];
-        kept.zip(all.iter_mut()).for_each(|(m, place)| *place = Some(*m));
-        Ranges::of(all.iter().flatten())
-    }
-
-    /// Stations and altimeter of one instant: witnesses of the snapshot of the same instant, alone and against the filter without satellites.
-    pub fn hear(&mut self, filter: &mut Fusion, together: &[TimedAiding]) {
-        let Some(time) = together.first().map(|t| t.time) else { return };
-        let Some(looked) = self.looked.as_ref().filter(|l| l.snapshot.time == time && l.ranges_agree != RangesAgree::No) else { return };
-        let ecef = enu_from_ecef(&looked.snapshot.position.point).transpose();
-        let turned = |v: &Covariance<Enu>| ecef * v.matrix() * ecef.transpose();
-        let snapshot = Reading { ecef: *looked.snapshot.ecef.vector(), covariance: turned(&looked.snapshot.covariance) };
-        let beside = filter.without_satellites(time).filter(|_| looked.ranges_agree == RangesAgree::Yes);
-        let other = beside.and_then(|b| Some(Reading { ecef: *filter.antenna_of(&b)?.vector(), covariance: turned(&b.covariance) }));
-        let of_height = |m: &BaroHeight| {
-            let apart = m.height.m() - looked.snapshot.position.height.m();
-            let [white, bias] = [m.sigma_white.m(), m.sigma_bias.m()];
-            chi_square_tail(1.0, apart * apart / (white * white + bias * bias + looked.snapshot.covariance.matrix()[(2, 2)]))
-        };
-        for timed in together.iter().filter(|t| t.time == time) {
-            match &timed.aiding {
-                Aiding::Dme(m) => {
-                    self.alone.hear(time, m, &[snapshot]);
-                    if let Some(other) = other {
-                        self.stations.hear(time, m, &[snapshot, other]);
-                    }
-                }
-                Aiding::Vor(m) => self.alone.hear_bearing(time, m, &[snapshot]),
-                Aiding::Baro(m) => self.testimony[1] = self.testimony[1].then(testimony(of_height(m))),
-                _ => {}
-            }
-        }
-        self.testimony[0] = self.testimony[0].then(self.alone.testimony(time));
-        if self.stations.rule_out_the_second(time) {
-            self.contradiction.rule_out_the_unit();
-        }
-    }
-
-    /// Position, test and level of the ranges; the one that is left out leaves the set.
-    fn look(&mut self, time: GpsTime, ranges: &mut Ranges) -> Result<(Looked, Option<SatelliteId>), Unavailable> {
-        let mut snapshot = self.solver.position(time, ranges)?;
-        let (sights, residuals, n) = sights(&snapshot);
-        let monitored = self.raim.monitored(&sights[..n], &residuals[..n])?;
-        let (mut level_m, mut excluded) = ([monitored.levels.hpl.m(), monitored.levels.vpl.m()], None);
-        let ranges_agree = match monitored.decision {
-            Exclusion::Nothing if monitored.levels.redundancy > 0 => RangesAgree::Yes,
-            Exclusion::Nothing => RangesAgree::Untestable,
-            Exclusion::Excluded => {
-                excluded = monitored.excluded.and_then(|k| snapshot.members().nth(k)).map(|m| m.satellite);
-                RangesAgree::Yes
-            }
-            Exclusion::NotExcluded => RangesAgree::No,
-        };
-        if let Some(satellite) = excluded {
-            *ranges = ranges.without(satellite);
-            snapshot = self.solver.position(time, ranges)?;
-        }
-        let velocity = self.velocity(&snapshot, ranges);
-        let speed = velocity.map_or(0.0, |v| hypot(v.enu_mps.x, v.enu_mps.y));
-        level_m[0] += 3.0 * self.settings.age_sigma_s * speed;
-        Ok((Looked { snapshot, velocity, ranges_agree, level_m }, excluded))
-    }
-
-    /// The velocity by rates that agree, one left out at most.
-    fn velocity(&mut self, snapshot: &Snapshot, ranges: &Ranges) -> Option<SnapshotVelocity> {
-        let (mut sights, mut residuals, _, mut n) = rate_sights(snapshot, ranges);
-        let monitored = self.rates.monitored(&sights[..n], &residuals[..n]).ok()?;
-        match (monitored.decision, monitored.excluded) {
-            (Exclusion::Nothing, _) => {}
-            (Exclusion::Excluded, Some(k)) => {
-                sights.copy_within(k + 1..n, k);
-                residuals.copy_within(k + 1..n, k);
-                n -= 1;
-            }
-            _ => return None,
-        }
-        velocity(&sights[..n], &residuals[..n])
-    }
-
-    fn note_acceleration(&mut self, before: Option<&Looked>, now: &Looked) {
-        let between = |b: &Looked| {
-            let dt = now.snapshot.time.seconds_since(b.snapshot.time);
-            let change = (now.velocity?.enu_mps - b.velocity?.enu_mps).norm();
-            (dt > 0.0 && dt <= 1.5).then(|| change / dt)
-        };
-        self.acceleration_mps2 = before.and_then(between);
-    }
-
     /// The squares of an instant against their limits.
     fn test(&self, d: &Difference, looked: &Looked) -> Tests {
         let s = looked.snapshot.covariance.matrix();
@@ -493,27 +315,6 @@ impl Guard {
         }
     }
 
-    /// The covariance to state of a position: its own, and more
-    ///
-    /// - where two readings contradict each other: so much that its 95 % bounds are the level. The distance of the other reading is no scatter:
-    ///   where that one is right the error is as large all the time;
-    /// - where nothing checks the filter any more: the last level at the risk of a fault-free level, for what the tests had left unseen by then
-    ///   is still in the filter.
-    ///
-    /// # Errors
-    /// As [`chi_factor`].
-    pub fn stated(&self, decision: &Decision, own: &Covariance<Enu>) -> Result<Covariance<Enu>, OutOfDomain> {
-        let unchecked = decision.source == Source::Filter && decision.reasons.has(Reason::SnapshotMissing);
-        let (level, risk) = match (decision.disputed, decision.hpl_m.zip(decision.vpl_m), &self.level) {
-            (true, Some((hpl, vpl)), _) => ([hpl, vpl], Risk::ACCURACY.q()),
-            (false, _, Some((_, level, _))) if unchecked => (*level, self.settings.requirement.fault_free.q()),
-            _ => return Ok(*own),
-        };
-        let [h, v] = [level[0] / chi_factor(2, risk)?, level[1] / chi_factor(1, risk)?];
-        let wide = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(h * h, h * h, v * v));
-        Ok(Covariance::claim_symmetric(own.matrix() + wide))
-    }
-
     fn inertial(&self, epoch: GpsTime) -> Inertial {
         if self.clock_wrong.is_none() && self.contradiction.implausible_lately(epoch) {
             return Inertial::Implausible;
@@ -553,40 +354,6 @@ impl Guard {
         let compared = self.tests.is_some_and(|(time, _)| time == epoch);
         if compared { Agreement::Agrees } else { Agreement::NotCompared }
     }
-
-    /// Distance to another solution and its own bound for the risk of a fault-free level.
-    fn bound_of(&self, snapshot: &Snapshot, other: &Solution, antenna: &EcefPosition) -> Option<[f64; 2]> {
-        let [h, v] = apart(snapshot, antenna)?;
-        let q = self.settings.requirement.fault_free.q();
-        let sigma_v = sqrt(other.covariance.matrix()[(2, 2)]);
-        Some([h + chi_factor(2, q).ok()? * horizontal_axes(&other.covariance).0.m(), v + chi_factor(1, q).ok()? * sigma_v])
-    }
-
-    /// The levels of the last epoch that had a snapshot, with what the filter has lost since and what a fault of the unit within the declared
-    /// envelope makes of it: sample and truth are each within the envelope. Without an envelope: the faults that the tests leave unseen.
-    ///
-    /// ```text
-    /// HPL(t) = HPL(t0) + K (sigma(t) - sigma(t0)) + a t^2 + g w t^3 / 3
-    /// ```
-    fn carry(&mut self, epoch: GpsTime, snapshot: Option<&SnapshotFacts>, given: Option<&Solution>) -> Option<CarriedFacts> {
-        let given = given?;
-        let sigma = [horizontal_axes(&given.covariance).0.m(), sqrt(given.covariance.matrix()[(2, 2)])];
-        let tested = snapshot.filter(|s| s.time == epoch && s.ranges_agree == RangesAgree::Yes);
-        if let Some(([h, v], [dh, dv])) = tested.and_then(|s| s.level_m.zip(s.distance_m)) {
-            self.level = Some((epoch, [h + dh, v + dv], sigma));
-        }
-        let (from, level, before) = self.level?;
-        let t = epoch.seconds_since(from);
-        let q = self.settings.requirement.fault_free.q();
-        let factor = [chi_factor(2, q).ok()?, chi_factor(1, q).ok()?];
-        let [force, rate] = core::array::from_fn(|k| {
-            let most = self.settings.envelope.most[k];
-            if most.is_finite() { most } else { UNSEEN[k] }
-        });
-        let fault = if t > 0.0 { force * t * t + GRAVITY * rate * t * t * t / 3.0 } else { 0.0 };
-        let level_m = core::array::from_fn(|k| level[k] + factor[k] * (sigma[k] - before[k]).max(0.0) + fault);
-        Some(CarriedFacts { age_s: t, level_m })
-    }
 }
 
 fn passes(block: &Block) -> bool {
@@ -610,22 +377,4 @@ fn block_without(filter: &mut Fusion, time: GpsTime, ranges: &mut Ranges, out: &
     *ranges = Ranges::of(ranges.iter().filter(|m| !leaving.contains(&Some(m.satellite))));
     *out = leaving;
     Some(block)
-}
-
-/// Directions, weights and residuals of a snapshot's ranges.
-fn sights(snapshot: &Snapshot) -> ([WeightedSight; RANGES_MOST], [f64; RANGES_MOST], usize) {
-    let none = WeightedSight { unit: nalgebra::Vector3::zeros(), weight: 0.0, constellation: crate::signal::Constellation::Gps };
-    let (mut sights, mut residuals, mut n) = ([none; RANGES_MOST], [0.0; RANGES_MOST], 0);
-    for member in snapshot.members() {
-        (sights[n], residuals[n]) = (member.sight, member.residual_m);
-        n += 1;
-    }
-    (sights, residuals, n)
-}
-
-/// Distance between a snapshot and another position of the antenna, horizontal and vertical \[m\].
-fn apart(snapshot: &Snapshot, antenna: &EcefPosition) -> Option<[f64; 2]> {
-    let d = antenna.minus(&ecef_from_geodetic(&snapshot.position)).to_enu(&snapshot.position.point);
-    let found = [hypot(d.vector().x, d.vector().y), d.vector().z.abs()];
-    found.iter().all(|x| x.is_finite()).then_some(found)
 }

@@ -1,9 +1,9 @@
 //! The covariance of the difference against draws, the risk of its test, and the unit's plausibility.
 
 use super::*;
-use crate::frame::{Geodetic, LatLon};
+use crate::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic, enu_from_ecef};
 use crate::quantity::{Metres, Radians};
-use crate::signal::{Aiding, Constellation};
+use crate::signal::{Aiding, Constellation, SatelliteRange};
 use crate::solution::ins::{Attitude, ErrorModel, ImuModel, NavState, SensorNoise, Settings as FilterSettings, StartSigma};
 use nalgebra::Vector3;
 

@@ -1,0 +1,80 @@
+//! Levels of the filter: from the last snapshot on, of two readings that contradict each other, and the covariance to state with them.
+
+use super::Guard;
+use crate::frame::{Covariance, EcefPosition, Enu, ecef_from_geodetic};
+use crate::monitor::judgement::{CarriedFacts, Decision, RangesAgree, Reason, SnapshotFacts, Source};
+use crate::quantity::{GpsTime, OutOfDomain, Risk};
+use crate::solution::ins::Solution;
+use crate::solution::snapshot::Snapshot;
+use crate::solution::wls::horizontal_axes;
+use crate::special::chi::chi_factor;
+use crate::special::float::{hypot, sqrt};
+
+/// Inertial faults that the growth covers where no envelope is declared \[m/s²\], \[rad/s\]. Provenance: inferred.
+const UNSEEN: [f64; 2] = [0.01, 1e-5];
+/// \[m/s²\]
+const GRAVITY: f64 = 9.8;
+
+impl Guard {
+    /// The covariance to state of a position: its own, and more
+    ///
+    /// - where two readings contradict each other: so much that its 95 % bounds are the level. The distance of the other reading is no scatter:
+    ///   where that one is right the error is as large all the time;
+    /// - where nothing checks the filter any more: the last level at the risk of a fault-free level, for what the tests had left unseen by then
+    ///   is still in the filter.
+    ///
+    /// # Errors
+    /// As [`chi_factor`].
+    pub fn stated(&self, decision: &Decision, own: &Covariance<Enu>) -> Result<Covariance<Enu>, OutOfDomain> {
+        let unchecked = decision.source == Source::Filter && decision.reasons.has(Reason::SnapshotMissing);
+        let (level, risk) = match (decision.disputed, decision.hpl_m.zip(decision.vpl_m), &self.level) {
+            (true, Some((hpl, vpl)), _) => ([hpl, vpl], Risk::ACCURACY.q()),
+            (false, _, Some((_, level, _))) if unchecked => (*level, self.settings.requirement.fault_free.q()),
+            _ => return Ok(*own),
+        };
+        let [h, v] = [level[0] / chi_factor(2, risk)?, level[1] / chi_factor(1, risk)?];
+        let wide = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(h * h, h * h, v * v));
+        Ok(Covariance::claim_symmetric(own.matrix() + wide))
+    }
+
+    /// Distance to another solution and its own bound for the risk of a fault-free level.
+    pub(super) fn bound_of(&self, snapshot: &Snapshot, other: &Solution, antenna: &EcefPosition) -> Option<[f64; 2]> {
+        let [h, v] = apart(snapshot, antenna)?;
+        let q = self.settings.requirement.fault_free.q();
+        let sigma_v = sqrt(other.covariance.matrix()[(2, 2)]);
+        Some([h + chi_factor(2, q).ok()? * horizontal_axes(&other.covariance).0.m(), v + chi_factor(1, q).ok()? * sigma_v])
+    }
+
+    /// The levels of the last epoch that had a snapshot, with what the filter has lost since and what a fault of the unit within the declared
+    /// envelope makes of it: sample and truth are each within the envelope. Without an envelope: the faults that the tests leave unseen.
+    ///
+    /// ```text
+    /// HPL(t) = HPL(t0) + K (sigma(t) - sigma(t0)) + a t^2 + g w t^3 / 3
+    /// ```
+    pub(super) fn carry(&mut self, epoch: GpsTime, snapshot: Option<&SnapshotFacts>, given: Option<&Solution>) -> Option<CarriedFacts> {
+        let given = given?;
+        let sigma = [horizontal_axes(&given.covariance).0.m(), sqrt(given.covariance.matrix()[(2, 2)])];
+        let tested = snapshot.filter(|s| s.time == epoch && s.ranges_agree == RangesAgree::Yes);
+        if let Some(([h, v], [dh, dv])) = tested.and_then(|s| s.level_m.zip(s.distance_m)) {
+            self.level = Some((epoch, [h + dh, v + dv], sigma));
+        }
+        let (from, level, before) = self.level?;
+        let t = epoch.seconds_since(from);
+        let q = self.settings.requirement.fault_free.q();
+        let factor = [chi_factor(2, q).ok()?, chi_factor(1, q).ok()?];
+        let [force, rate] = core::array::from_fn(|k| {
+            let most = self.settings.envelope.most[k];
+            if most.is_finite() { most } else { UNSEEN[k] }
+        });
+        let fault = if t > 0.0 { force * t * t + GRAVITY * rate * t * t * t / 3.0 } else { 0.0 };
+        let level_m = core::array::from_fn(|k| level[k] + factor[k] * (sigma[k] - before[k]).max(0.0) + fault);
+        Some(CarriedFacts { age_s: t, level_m })
+    }
+}
+
+/// Distance between a snapshot and another position of the antenna, horizontal and vertical \[m\].
+pub(super) fn apart(snapshot: &Snapshot, antenna: &EcefPosition) -> Option<[f64; 2]> {
+    let d = antenna.minus(&ecef_from_geodetic(&snapshot.position)).to_enu(&snapshot.position.point);
+    let found = [hypot(d.vector().x, d.vector().y), d.vector().z.abs()];
+    found.iter().all(|x| x.is_finite()).then_some(found)
+}
