@@ -90,19 +90,99 @@ pub struct Judged {
 /// # Errors
 /// [`OutOfDomain`] with the index of the first position that is no place on the Earth.
 pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize, OutOfDomain)> {
-    let silent = reports.iter().all(|r| r.speed_mps.is_nan());
-    let limits = &if silent { Limits { max_speed_mps: own_speed(reports, limits)?, ..*limits } } else { *limits };
-    let mut judged = Vec::with_capacity(reports.len());
-    let mut last: Option<(Report, EcefPosition)> = None;
-    let mut jumped: Option<GpsTime> = None;
-    let mut window: Option<Window> = None;
-    for (index, report) in reports.iter().enumerate() {
-        let here = sea_level(report).map_err(|refusal| (index, refusal))?;
-        let Some((fix, from)) = last else {
-            last = Some((*report, here));
-            window = Some(Window::begin(report, here));
-            judged.push(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0 });
-            continue;
+    let mut survey = Survey::default();
+    survey.see(reports)?;
+    Track::new(survey, limits).judge(reports)
+}
+
+/// What must be known of all reports of a track before the first is judged: whether it reports a speed, and the speeds of its own steps.
+#[derive(Debug, Clone, Default)]
+pub struct Survey {
+    reports_speed: bool,
+    steps_mps: Vec<f64>,
+    from: Option<(GpsTime, EcefPosition)>,
+}
+
+impl Survey {
+    /// Of a track that reports a speed somewhere: nothing else must be known.
+    #[must_use]
+    pub fn of_reported_speed() -> Self {
+        Self { reports_speed: true, ..Self::default() }
+    }
+
+    /// See the next reports.
+    ///
+    /// # Errors
+    /// As [`judge`].
+    pub fn see(&mut self, reports: &[Report]) -> Result<(), (usize, OutOfDomain)> {
+        self.reports_speed |= !reports.iter().all(|r| r.speed_mps.is_nan());
+        if self.reports_speed {
+            self.steps_mps = Vec::new();
+            return Ok(());
+        }
+        for (index, report) in reports.iter().enumerate() {
+            let here = sea_level(report).map_err(|refusal| (index, refusal))?;
+            let Some((time, before)) = self.from else {
+                self.from = Some((report.time, here));
+                continue;
+            };
+            let elapsed = report.time.seconds_since(time);
+            if elapsed >= 1.0 {
+                self.steps_mps.push(here.minus(&before).vector().norm() / elapsed);
+                self.from = Some((report.time, here));
+            } else if elapsed < 0.0 {
+                self.from = Some((report.time, here));
+            }
+        }
+        Ok(())
+    }
+
+    /// The fastest speed of a track that reports none \[m/s\]: of its own steps of a second or more, the noise taken off, and never above
+    /// the limit.
+    fn own_speed(mut self, limits: &Limits) -> f64 {
+        if self.steps_mps.len() < OWN_STEPS {
+            return limits.max_speed_mps;
+        }
+        self.steps_mps.sort_unstable_by(f64::total_cmp);
+        let own = self.steps_mps[((self.steps_mps.len() - 1) as f64 * OWN_SHARE) as usize];
+        (limits.speed_factor * own + limits.speed_margin_mps).min(limits.max_speed_mps)
+    }
+}
+
+/// The judge of one track, which takes its reports in pieces of any length.
+#[derive(Debug, Clone)]
+pub struct Track {
+    limits: Limits,
+    silent: bool,
+    last: Option<(Report, EcefPosition)>,
+    jumped: Option<GpsTime>,
+    window: Option<Window>,
+}
+
+impl Track {
+    /// Of a track of which every report was seen.
+    #[must_use]
+    pub fn new(survey: Survey, limits: &Limits) -> Self {
+        let silent = !survey.reports_speed;
+        let limits = if silent { Limits { max_speed_mps: survey.own_speed(limits), ..*limits } } else { *limits };
+        Self { limits, silent, last: None, jumped: None, window: None }
+    }
+
+    /// Judge the next reports.
+    ///
+    /// # Errors
+    /// As [`judge`], with the index among these.
+    pub fn judge(&mut self, reports: &[Report]) -> Result<Vec<Judged>, (usize, OutOfDomain)> {
+        reports.iter().enumerate().map(|(index, report)| self.step(report).map_err(|refusal| (index, refusal))).collect()
+    }
+
+    fn step(&mut self, report: &Report) -> Result<Judged, OutOfDomain> {
+        let limits = &self.limits;
+        let here = sea_level(report)?;
+        let Some((fix, from)) = self.last else {
+            self.last = Some((*report, here));
+            self.window = Some(Window::begin(report, here));
+            return Ok(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0 });
         };
         let elapsed = report.time.seconds_since(fix.time);
         let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
@@ -110,30 +190,29 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
         let mut too_fast_mps = 0.0;
         let (mut finding, age_s) = if unchanged { (held(report, &fix, limits), elapsed) } else { (Finding::Plausible, 0.0) };
         if !unchanged {
-            let flown = window.as_mut().is_none_or(|w| w.reaches(report, &here, limits));
+            let flown = self.window.as_mut().is_none_or(|w| w.reaches(report, &here, limits));
             let between = Between::new(&fix, report, limits);
             if !(step_m <= between.reach_m(between.latency_s, limits)) || !flown {
                 finding = Finding::Jump;
-                jumped = Some(report.time);
-            } else if !between.dated && !(step_m <= between.reach_m(if silent { 0.0 } else { limits.stale_after_s }, limits)) {
+                self.jumped = Some(report.time);
+            } else if !between.dated && !(step_m <= between.reach_m(if self.silent { 0.0 } else { limits.stale_after_s }, limits)) {
                 finding = Finding::Late;
             }
             if step_m > between.reach_m(0.0, limits) && between.elapsed_s > 0.0 {
                 too_fast_mps = (step_m - limits.noise_m) / between.elapsed_s;
             }
             // What comes after a jump is judged from there.
-            if finding == Finding::Jump || window.is_none_or(|w| !within(report.time, w.first.time, WINDOW_S)) {
-                window = Some(Window::begin(report, here));
+            if finding == Finding::Jump || self.window.is_none_or(|w| !within(report.time, w.first.time, WINDOW_S)) {
+                self.window = Some(Window::begin(report, here));
             }
-            last = Some((*report, here));
+            self.last = Some((*report, here));
         }
-        let settling = jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
+        let settling = self.jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
         if settling && matches!(finding, Finding::Plausible | Finding::Held | Finding::Late) {
             finding = Finding::Unsettled;
         }
-        judged.push(Judged { finding, age_s, step_m, too_fast_mps });
+        Ok(Judged { finding, age_s, step_m, too_fast_mps })
     }
-    Ok(judged)
 }
 
 /// Share of the steps of a track that reports no speed whose speed is its own. Provenance: ours: one that jumps at more of its steps than one in
@@ -141,32 +220,6 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
 const OWN_SHARE: f64 = 0.95;
 /// Steps from which a track has a speed of its own. Provenance: ours.
 const OWN_STEPS: usize = 20;
-
-/// The fastest speed of a track that reports none \[m/s\]: of its own steps of a second or more, the noise taken off, and never above the limit.
-fn own_speed(reports: &[Report], limits: &Limits) -> Result<f64, (usize, OutOfDomain)> {
-    let mut speeds = Vec::new();
-    let mut from: Option<(GpsTime, EcefPosition)> = None;
-    for (index, report) in reports.iter().enumerate() {
-        let here = sea_level(report).map_err(|refusal| (index, refusal))?;
-        let Some((time, before)) = from else {
-            from = Some((report.time, here));
-            continue;
-        };
-        let elapsed = report.time.seconds_since(time);
-        if elapsed >= 1.0 {
-            speeds.push(here.minus(&before).vector().norm() / elapsed);
-            from = Some((report.time, here));
-        } else if elapsed < 0.0 {
-            from = Some((report.time, here));
-        }
-    }
-    if speeds.len() < OWN_STEPS {
-        return Ok(limits.max_speed_mps);
-    }
-    speeds.sort_by(f64::total_cmp);
-    let own = speeds[((speeds.len() - 1) as f64 * OWN_SHARE) as usize];
-    Ok((limits.speed_factor * own + limits.speed_margin_mps).min(limits.max_speed_mps))
-}
 
 /// For how long positions are judged from one position on \[s\]. Provenance: ours; several latencies, so that one of them is a small part.
 const WINDOW_S: f64 = 60.0;
