@@ -140,9 +140,22 @@ class Values:
     def _understood(self, columns: list[Column], facts: list[TimeFacts]) -> str:
         return understand(TimeFacts.together(facts), columns, self._dtypes[columns[0].name], self._path, self.notes)
 
+    @staticmethod
+    def keys(part: pl.DataFrame) -> pl.DataFrame:
+        """What :meth:`when` needs of a part."""
+        return part.select(name for name in part.columns if name == "track" or name.startswith(_RAW))
+
+    def when(self, part: pl.DataFrame) -> pl.DataFrame:
+        """Track and time of rows that have one; nothing is counted."""
+        time, _ = converted(_written(part), self._mapping.times, self._unit)
+        return part.select(self._track(part), time.alias("time_ns")).drop_nulls("time_ns")
+
+    def _track(self, part: pl.DataFrame) -> pl.Expr:
+        return (pl.col("track").fill_null(self._stem) if "track" in part.columns else pl.lit(self._stem)).alias("track")
+
     def timed(self, part: pl.DataFrame) -> tuple[pl.DataFrame, pl.DataFrame]:
         """Rows with GPS time and track that may be epochs; and track and time of those that may not, which are counted."""
-        raw = part.select(pl.selectors.starts_with(_RAW).name.map(lambda name: name.removeprefix(_RAW)))
+        raw = _written(part)
         time, reason = converted(raw, self._mapping.times, self._unit)
         name = self._mapping.times[0].name
         timeless = raw.select(pl.when(reason.is_not_null()).then(pl.concat_str(pl.lit(f"{name}: "), reason))).to_series()
@@ -152,8 +165,7 @@ class Values:
             pl.when(pl.col(_BAD).is_null()).then(_text(raw[name], timeless.is_not_null())).otherwise(pl.col(_EXAMPLE)).alias(_EXAMPLE),
         )
         out = self._positions_dated(out, raw).drop(pl.selectors.starts_with(_RAW))
-        track = pl.col("track").fill_null(self._stem) if "track" in out.columns else pl.lit(self._stem)
-        out = out.with_columns(track.alias("track"))
+        out = out.with_columns(self._track(out))
         without = out.filter(pl.col(_BAD).is_not_null())
         for (reason_text,), group in without.group_by(_BAD, maintain_order=True):
             kind = "quiet" if str(reason_text).endswith(": empty") else "row"
@@ -248,6 +260,12 @@ def _reasons(frame: pl.DataFrame, against: list[tuple[str, pl.Series]]) -> list[
         )
         bad, example = both[_BAD], both[_EXAMPLE]
     return [bad.alias(_BAD), example.alias(_EXAMPLE)]
+
+
+def _written(part: pl.DataFrame) -> pl.DataFrame:
+    """Columns of times as they stand in the file."""
+    names = [name for name in part.columns if name.startswith(_RAW)]
+    return part.select(pl.col(name).alias(name.removeprefix(_RAW)) for name in names)
 
 
 def _text(raw: pl.Series, where: pl.Series) -> pl.Series:
