@@ -13,6 +13,8 @@ from navbound.read.columns import POSITION_TIME
 from navbound.read.covariance import COLUMNS
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import NDArray
 
     _Int, _Float = NDArray[np.int64], NDArray[np.float64]
@@ -116,12 +118,12 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
 class Checker:
     """The same for a table that comes in pieces, each the continuation of the one before.
 
-    A track that goes on in a later piece must have been seen whole before the first of its pieces is checked (:meth:`see`): one that
-    reports no speed is judged by the speed of all its steps.
+    A track that goes on in a later piece must have been seen whole before the first of its pieces is checked (:meth:`see`), or be one of
+    those that are known to report a speed somewhere (`reporting`): one that reports none is judged by the speed of all its steps.
     """
 
-    def __init__(self, limits: Limits) -> None:
-        self._limits = limits
+    def __init__(self, limits: Limits, reporting: Collection[str] = ()) -> None:
+        self._limits, self._reporting = limits, reporting
         self._tracks: dict[str, _core.PlausibleTrack] = {}
         self._n = np.zeros(len(_REASON_ID), dtype=np.int64)
         self._n_steps = self._n_fast = self._n_dated = self._n_rows = 0
@@ -149,7 +151,10 @@ class Checker:
         return _marked(epochs, code)
 
     def _track(self, group: pl.DataFrame) -> _core.PlausibleTrack:
-        return self._tracks.setdefault(group["track"][0], _core.PlausibleTrack(asdict(self._limits), reports_speed=False))
+        name = group["track"][0]
+        if name not in self._tracks:
+            self._tracks[name] = _core.PlausibleTrack(asdict(self._limits), reports_speed=name in self._reporting)
+        return self._tracks[name]
 
     def _count(self, code: NDArray[np.uint8], step: NDArray[np.float64], fast: NDArray[np.float64], columns: pl.DataFrame) -> None:
         self._n += np.bincount(code, minlength=len(_REASON_ID))
@@ -209,4 +214,7 @@ def _marked(epochs: pl.DataFrame, code: NDArray[np.uint8]) -> pl.DataFrame:
         stands = both.select((status.worse(pl.col("before"), pl.col("status")) == pl.col("before")).alias("stands"))["stands"]
         marked = marked.with_columns(pl.when(stands).then(solved[c]).otherwise(pl.col(c)).alias(c) for c in status.COLUMNS)
     believed = pl.col("status").is_in(status.USABLE)
-    return marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COLUMNS if c in epochs.columns)
+    marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COLUMNS if c in epochs.columns)
+    # One order of columns, whether the recording had a status or not.
+    said = ("reason_id", "status", "reason")
+    return marked.select(pl.exclude(*said), *said)

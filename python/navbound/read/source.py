@@ -140,11 +140,11 @@ LARGE_BYTES = 64 << 20
 """Size from which a text table is read in pieces. [B] Provenance: ours; below it the whole takes less memory than the programs that read it."""
 
 
-def is_large_text(path: str | Path, large_bytes: int = LARGE_BYTES) -> bool:
+def is_text_table(path: str | Path, least_bytes: int = 0) -> bool:
     """Whether this is a plain text table of at least this size, told from its beginning."""
     path = Path(path)
     try:
-        if path.stat().st_size < large_bytes:
+        if path.stat().st_size < least_bytes:
             return False
         with path.open("rb") as file:
             start = file.read(1 << 20)

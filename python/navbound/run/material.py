@@ -13,6 +13,7 @@ import polars as pl
 from navbound.read.repeats import LEFT_OUT
 
 if TYPE_CHECKING:
+    from navbound.read.pieces import Frames
     from navbound.run.records import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
 
 
@@ -22,8 +23,8 @@ class Material:
 
     Attributes
     ----------
-    epochs : DataFrame
-        Columns of docs/notation.md: at least ``track``, ``time_ns``, ``est_lat_rad``, ``est_lon_rad``, ``course_rad``, ``fte_m``,
+    epochs : DataFrame or Frames
+        In memory, or in pieces on the disk. Columns of docs/notation.md: at least ``track``, ``time_ns``, ``est_lat_rad``, ``est_lon_rad``, ``course_rad``, ``fte_m``,
         ``rnp_m``, ``cov_ee_m2``, ``cov_en_m2``, ``cov_nn_m2``, ``status``; with truth also ``nse_e_m``, ``nse_n_m``, ``nse_u_m``.
     kind : {"fly", "analyze"}
         Which command made it.
@@ -43,11 +44,13 @@ class Material:
         Where the covariance comes from.
     left_out : DataFrame
         ``track`` and ``time_ns`` of recorded rows that cannot be judged and are no epochs: they are expected all the same.
+    with_levels : set of str
+        Tracks with a protection level anywhere, where the epochs are in pieces.
     limits_held : dict
         Phase to how its alert limit is held ("inferred", ...), where epochs have ``hpl_m`` and ``hal_m``.
     """
 
-    epochs: pl.DataFrame
+    epochs: pl.DataFrame | Frames
     kind: Literal["fly", "analyze"]
     title: str
     requirement: str
@@ -65,3 +68,4 @@ class Material:
     events: list[EventSummary] = field(default_factory=list)
     limits_held: dict[str, str] = field(default_factory=dict)
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
+    with_levels: frozenset[str] = frozenset()

@@ -60,4 +60,3 @@ class Chunks:
                 self.source = Source(path, b"", digest.hexdigest(), file.tell())
         except OSError as e:
             raise FormatError(path, f"cannot be read: {e.strerror}") from e
-

@@ -73,3 +73,7 @@ class Pieces:
         """Every piece that has rows."""
         pieces = (self.piece(index) for index in range(len(self)))
         return (piece for piece in pieces if not piece.is_empty())
+
+    def close(self) -> None:
+        """Give the disk back."""
+        self._spool.close()

@@ -70,14 +70,14 @@ class PiecedReading:
         self.rejections.refuse_if_too_many(self.n_rows)
         self.left_out = pl.concat([self.left_out, *contradicting])
 
-    def spread(self) -> Iterator[tuple[str, pl.DataFrame]]:
-        """Every part of a track that stands in several pieces and reports no speed, with its track, in order."""
+    def spread(self) -> Iterator[pl.DataFrame]:
+        """Every part of each track that stands in several pieces and reports no speed, in order."""
         spans = {track: span for track, span in self.pieces.spread().items() if track not in self.with_speed}
         for index in sorted({k for low, high in spans.values() for k in range(low, high + 1)}):
             piece = self.pieces.piece(index)
-            rows = pl.DataFrame() if piece.is_empty() else one_row_a_time(piece.filter(pl.col("track").is_in(list(spans))), Tally()).epochs
-            for part in rows.partition_by("track", maintain_order=True) if not rows.is_empty() else []:
-                yield part["track"][0], part
+            rows = piece if piece.is_empty() else piece.filter(pl.col("track").is_in(list(spans)))
+            if not rows.is_empty():
+                yield from one_row_a_time(rows, Tally()).epochs.partition_by("track", maintain_order=True)
 
 
 def read_pieces(path: str | Path, *, columns: Mapping[str, str] | None = None, piece_rows: int = PIECE_ROWS) -> PiecedReading:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import io
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import polars as pl
+from polars.io.plugins import register_io_source
 
 from navbound.errors import FormatError
 
@@ -68,11 +69,13 @@ class Frames:
         self.schema = pl.Schema()
         self._spool = Spool()
         self._places = list[dict[str, tuple[int, int]]]()
+        self._tracks = list[tuple[str, str]]()
 
     def put(self, piece: pl.DataFrame) -> None:
         """Put the next piece away, all with the same columns."""
         self.schema = self.schema or piece.schema
         self._places.append({name: self._spool.put(piece.select(name)) for name in self.schema})
+        self._tracks.append((piece["track"][0], piece["track"][-1]))
         self.height += piece.height
 
     @property
@@ -88,6 +91,28 @@ class Frames:
         """Some columns of every piece, in order."""
         for places in self._places:
             yield pl.concat([self._spool.get(places[name]) for name in names], how="horizontal")
+
+    def track(self, name: str) -> Iterator[pl.DataFrame]:
+        """The rows of one track, of a table in the order of tracks."""
+        for places, (first, last) in zip(self._places, self._tracks, strict=True):
+            if first <= name <= last:
+                piece = pl.concat([self._spool.get(place) for place in places.values()], how="horizontal")
+                yield piece.filter(pl.col("track") == name)
+
+    def first(self, name: str) -> object:
+        """The first value of a column."""
+        return self._spool.get(self._places[0][name])[name][0]
+
+    def write_parquet(self, path: str | Path, compression: Literal["zstd"]) -> None:
+        """Write one file, a row group for each piece."""
+
+        def pieces(
+            with_columns: list[str] | None, predicate: pl.Expr | None, n_rows: int | None, batch_size: int | None
+        ) -> Iterator[pl.DataFrame]:
+            # All columns and rows are asked for: nothing stands between the pieces and the file.
+            yield from self
+
+        register_io_source(pieces, schema=self.schema).sink_parquet(path, compression=compression, engine="streaming")
 
     def numbers(self, name: str) -> NDArray[np.float64]:
         """The numbers of a column that are finite, in order."""
