@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.read.pieces import Frames
-    from navbound.run.records import RunRecord, Summary, TrackSummary, Waypoint
+    from navbound.run.records import RunRecord, Summary, TrackSummary, Waypoint, Worst
 
 BUDGET_BYTES = 1_800_000
 """Records and embedded tracks as text; with the page's own parts (about 0.15 MB) the file stays below 2 MB."""
@@ -107,7 +107,7 @@ def _worst_tracks(summary: Summary, epochs: pl.DataFrame | Frames, room_bytes: i
     words: list[str] = []
     columns = _columns(summary, epochs)
     for track in _worst_first(summary.tracks):
-        frame, more = _track(epochs, track)
+        frame, more = _track(epochs, track, summary.verdict.worst_accuracy)
         if frame.height == 0:
             continue
         head, block = _pack_track(track.track, frame, columns)
@@ -120,19 +120,22 @@ def _worst_tracks(summary: Summary, epochs: pl.DataFrame | Frames, room_bytes: i
     return heads, blocks, words
 
 
-def _track(epochs: pl.DataFrame | Frames, track: TrackSummary) -> tuple[pl.DataFrame, list[str]]:
+def _track(epochs: pl.DataFrame | Frames, track: TrackSummary, worst: Worst | None) -> tuple[pl.DataFrame, list[str]]:
     """The epochs of one track, of one that is too long those around the worst; and words on that."""
     # One track at a time: the table of a campaign is not copied whole.
-    parts = iter([epochs.filter(pl.col("track") == track.track)] if isinstance(epochs, pl.DataFrame) else epochs.track(track.track))
+    parts = [epochs.filter(pl.col("track") == track.track)] if isinstance(epochs, pl.DataFrame) else epochs.track(track.track)
     if track.n_epochs <= MOST_ROWS:
         return pl.concat(parts, rechunk=False), []
-    kept, words = pl.DataFrame(), f"The charts show {MOST_ROWS} of the {track.n_epochs} epochs of track {track.label}"
+    at = worst.time_ns if worst is not None and worst.track == track.track else track.start_ns
+    kept = None
     for part in parts:
-        with_worst = "rnp_m" in part.columns
-        kept = pl.concat([kept, part]) if kept.width else part
-        kept = kept.tail(MOST_ROWS)
-        del with_worst
-    return kept, [f"{words}: the last ones."]
+        kept = part if kept is None else pl.concat([kept, part])
+        # The first half of the room is for what lies before the worst epoch.
+        n_before = int((kept["time_ns"] < at).sum())
+        kept = kept.slice(max(0, min(n_before, kept.height) - MOST_ROWS // 2), MOST_ROWS)
+    assert kept is not None
+    words = f"The charts show {kept.height} of the {track.n_epochs} epochs of track {track.label}, those around its worst."
+    return kept, [words]
 
 
 def _finite(value: Any) -> Any:

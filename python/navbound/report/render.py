@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     import polars as pl
 
     from navbound.read.pieces import Frames
-
     from navbound.run.records import RunRecord, Summary, Waypoint
 
 _NEEDED = ("track", "time_ns")
@@ -27,7 +26,7 @@ _NEEDED = ("track", "time_ns")
 
 def render(
     summary: Summary, record: RunRecord, epochs: pl.DataFrame | Frames, events: pl.DataFrame, waypoints: list[Waypoint], out: Path
-) -> Path:  # noqa: PLR0917 - the parts of a run, in the order of its files
+) -> Path:
     """Write the report of one run as a single HTML file that needs no network.
 
     Parameters

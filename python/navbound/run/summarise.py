@@ -105,8 +105,10 @@ def with_margins(epochs: pl.DataFrame, judged: Method) -> pl.DataFrame:
     """Judged epochs with what the bounds of the judging method leave of the limits."""
     # What the monitor compared: the larger of the bound and |FTE| + protection level, where there are levels.
     integrity = judged.integrity_column if "integrity_compared_m" not in epochs.columns else "integrity_compared_m"
+    # By numbers: the engine divides by a column that is one value by its reciprocal, which is not the same in the last bit.
+    ratio = column_of(epochs, judged.column) / column_of(epochs, "rnp_m")
     margins = epochs.with_columns(
-        (pl.col(judged.column) / pl.col("rnp_m")).alias("_ratio"),
+        pl.Series("_ratio", ratio, nan_to_null=True),
         # A NaN is greater than every number here: it must not pass for a margin.
         (pl.col("rnp_m") - pl.col(judged.column)).fill_nan(None).alias("_margin"),
         (2 * pl.col("rnp_m") - pl.col(integrity)).fill_nan(None).alias("_margin_integrity"),

@@ -33,7 +33,8 @@ _SAMPLES = 128
 @dataclass
 class PiecedReading:
     """One file read in pieces; the attributes of :class:`navbound.read.Reading`, of which `left_out` and `rejected` are whole after
-    :meth:`epochs`."""
+    :meth:`epochs`.
+    """
 
     source: InputFile
     unused: list[str]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import tempfile
+import weakref
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -24,6 +25,7 @@ class Spool:
 
     def __init__(self) -> None:
         self._file = tempfile.TemporaryFile(prefix="navbound-")  # noqa: SIM115 - it lives as long as the spool
+        weakref.finalize(self, self._file.close)
 
     def put(self, frame: pl.DataFrame) -> tuple[int, int]:
         """Write a frame; its place.
