@@ -7,6 +7,7 @@ import random
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import polars as pl
 import pytest
@@ -21,12 +22,12 @@ START_S = 1_483_228_700
 """100 s before 2017-01-01, which a leap second preceded."""
 
 
-def row(k: int, track: str, **more: object) -> dict[str, object]:
+def row(k: int, track: str, **more: object) -> dict[str, Any]:
     """An aircraft flies north at 70 m/s."""
     return {"timestamp": START_S + k, "icao24": track, "latitude": f"{48 + 70 * k / 6.371e6 * 57.29578:.7f}", "longitude": 2.5} | more
 
 
-def as_text(rows: list[dict[str, object]]) -> str:
+def as_text(rows: list[dict[str, Any]]) -> str:
     return "\n".join([",".join(rows[0]), *(",".join(map(str, r.values())) for r in rows)]) + "\n"
 
 
@@ -87,7 +88,7 @@ TABLES = {"damaged": damaged, "silent": silent, "leap": leap, "dated": dated}
 
 
 def in_pieces(file: Path, out: Path, piece_rows: int | None) -> Run:
-    more = {} if piece_rows is None else {"piece_rows": piece_rows}
+    more: dict[str, Any] = {} if piece_rows is None else {"piece_rows": piece_rows}
     return navbound.analyze(file, spec="RNP 0.1" if "silent" not in file.name else "RNP AR 0.1", out=out, **more)
 
 
@@ -145,8 +146,9 @@ def test_the_tables_have_what_they_are_to_show(tmp_path: Path) -> None:
 
 
 def refused(file: Path, piece_rows: int | None) -> str:
+    more: dict[str, Any] = {} if piece_rows is None else {"piece_rows": piece_rows}
     with pytest.raises(NavboundError) as error:
-        navbound.analyze(file, **({} if piece_rows is None else {"piece_rows": piece_rows}))
+        navbound.analyze(file, **more)
     return str(error.value)
 
 
@@ -215,8 +217,9 @@ def large(file: Path, n_bytes: int) -> None:
         out.write("timestamp,icao24,callsign,latitude,longitude,geoaltitude,groundspeed,track,nac_p\n")
         while out.tell() < n_bytes:
             south, n = rng.uniform(30, 50), n + 1
+            place = f"{4 + rng.random():.7f}"
             out.writelines(
-                f"{START_S + k},{n:06x},TST{n:04d},{south + 1.2e-3 * k:.6f},{4 + 1e-7 * rng.random():.7f},{31000 + k % 70}.0,259.18,0.00,{8 + k % 3}\n"
+                f"{START_S + k},{n:06x},TST{n:04d},{south + 1.2e-3 * k:.6f},{place},{31000 + k % 70}.0,259.18,0.00,{8 + k % 3}\n"
                 for k in range(7200)
             )
 

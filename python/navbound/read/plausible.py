@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    _Int, _Float = NDArray[np.int64], NDArray[np.float64]
-    _Reports = tuple[_Int, _Int, _Float, _Float, _Float]
+    _Reports = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import polars as pl
 from navbound import status
 from navbound.errors import UNSEEN, FormatError
 from navbound.read.columns import LEVEL_QUANTITIES, POSITION, POSITION_TIME, QUANTITIES, UNITS, Assignment, Column, position_time
-from navbound.read.rejections import Tally
+from navbound.read.rejections import Kind, Tally
 from navbound.read.repeats import Repeats, left_out, separate
 from navbound.read.table import LINE
 from navbound.read.times import TimeFacts, converted, understand, units
@@ -168,7 +168,7 @@ class Values:
         out = out.with_columns(self._track(out))
         without = out.filter(pl.col(_BAD).is_not_null())
         for (reason_text,), group in without.group_by(_BAD, maintain_order=True):
-            kind = "quiet" if str(reason_text).endswith(": empty") else "row"
+            kind: Kind = "quiet" if str(reason_text).endswith(": empty") else "row"
             self.tally.add(REQUIRED, str(reason_text), group.height, group[LINE][0], str(group[_EXAMPLE][0]), kind=kind)
         return out.filter(pl.col(_BAD).is_null()).drop(_BAD, _EXAMPLE), left_out(without)
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _NEEDED = ("track", "time_ns")
 
 
-def render(
+def render(  # noqa: PLR0917 - the parts of a run, in the order of its files
     summary: Summary, record: RunRecord, epochs: pl.DataFrame | Frames, events: pl.DataFrame, waypoints: list[Waypoint], out: Path
 ) -> Path:
     """Write the report of one run as a single HTML file that needs no network.

@@ -103,7 +103,7 @@ def material(
     if not names:
         raise InputError("files", "nothing", domain="one file or more")
     solving = Solving(signals, systems, ionosphere, mask_rad)
-    settings = {
+    settings: dict[str, object] = {
         "path": None if path is None else str(path),
         "rnp_m": rnp_m,
         "truth": None if truth is None else str(truth),
@@ -117,7 +117,9 @@ def material(
         table = Path(names[0])
         if is_text_table(table, LARGE_BYTES if piece_rows is None else 0) and not states_truth(table, columns):
             solving.refuse(_TO_SOLVE)
-            return _in_pieces(in_pieces(table, columns, sigma_m, limits, rnp_m, piece_rows or PIECE_ROWS), context)
+            return _in_pieces(
+                in_pieces(table, columns, sigma_m=sigma_m, limits=limits, rnp_m=rnp_m, piece_rows=piece_rows or PIECE_ROWS), context
+            )
     found = sort_out(names, solve=solve)
     found.require_navigation()
     if not found.observations:
@@ -198,7 +200,8 @@ def _in_pieces(recorded: InPieces, context: _Context) -> Material:
     reading = recorded.reading
     _refuse_experimental([reading])
     return Material(
-        epochs=recorded.epochs,
+        epochs=pl.DataFrame(schema=recorded.epochs.schema),
+        frames=recorded.epochs,
         kind="analyze",
         title=f"Recorded tracks: {Path(reading.source.path).name}",
         requirement=context.requirement,

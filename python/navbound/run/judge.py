@@ -16,7 +16,6 @@ from navbound import __version__, rnp, status, tse
 from navbound._states import METRES_PER_NM
 from navbound.errors import InputError
 from navbound.methods import BoundColumn, bounds, column_of, method, with_errors
-from navbound.read.pieces import Frames
 from navbound.run import pieces
 from navbound.run.directory import Run
 from navbound.run.records import RunRecord
@@ -26,6 +25,7 @@ from navbound.run.summarise import summarise
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from navbound.read.pieces import Frames
     from navbound.run.material import Material
     from navbound.run.records import EventSummary
 
@@ -56,10 +56,10 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
         An unknown method, no epochs, or a judging method that may not feed an alert.
     """
     settings = settings or Settings()
+    if material.frames is not None:
+        return _judge_pieces(material, material.frames, settings, command)
     if material.epochs.height == 0:
         raise InputError("epochs", 0, "1", "at least one epoch")
-    if isinstance(material.epochs, Frames):
-        return _judge_pieces(material, material.epochs, settings, command)
     epochs = with_errors(material.epochs)
     judging = WITH_PATH if _has_values(epochs, "fte_m") else WITHOUT_PATH
     ids = list(dict.fromkeys((judging, *settings.methods)))

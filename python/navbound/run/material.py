@@ -23,8 +23,8 @@ class Material:
 
     Attributes
     ----------
-    epochs : DataFrame or Frames
-        In memory, or in pieces on the disk. Columns of docs/notation.md: at least ``track``, ``time_ns``, ``est_lat_rad``, ``est_lon_rad``, ``course_rad``, ``fte_m``,
+    epochs : DataFrame
+        Columns of docs/notation.md: at least ``track``, ``time_ns``, ``est_lat_rad``, ``est_lon_rad``, ``course_rad``, ``fte_m``,
         ``rnp_m``, ``cov_ee_m2``, ``cov_en_m2``, ``cov_nn_m2``, ``status``; with truth also ``nse_e_m``, ``nse_n_m``, ``nse_u_m``.
     kind : {"fly", "analyze"}
         Which command made it.
@@ -44,13 +44,15 @@ class Material:
         Where the covariance comes from.
     left_out : DataFrame
         ``track`` and ``time_ns`` of recorded rows that cannot be judged and are no epochs: they are expected all the same.
+    frames : Frames, optional
+        The epochs of a table that is too large for memory, in pieces on the disk; `epochs` is then without rows.
     with_levels : set of str
         Tracks with a protection level anywhere, where the epochs are in pieces.
     limits_held : dict
         Phase to how its alert limit is held ("inferred", ...), where epochs have ``hpl_m`` and ``hal_m``.
     """
 
-    epochs: pl.DataFrame | Frames
+    epochs: pl.DataFrame
     kind: Literal["fly", "analyze"]
     title: str
     requirement: str
@@ -68,4 +70,5 @@ class Material:
     events: list[EventSummary] = field(default_factory=list)
     limits_held: dict[str, str] = field(default_factory=dict)
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
+    frames: Frames | None = None
     with_levels: frozenset[str] = frozenset()

@@ -37,7 +37,7 @@ class Pieces:
         self._spans: dict[str, tuple[int, int]] = {}
 
     def _keys(self, rows: pl.DataFrame) -> NDArray[np.complex128]:
-        """Numbers in the order of track and time: complex ones are compared by their parts. Times may become equal, and never change order."""
+        """Numbers in the order of track and time: complex ones are compared by their parts. Close times may become one."""
         rank = rows["track"].replace_strict(self._rank["track"], self._rank["rank"], return_dtype=pl.Int64).to_numpy()
         keys = np.empty(rows.height, dtype=np.complex128)
         keys.real, keys.imag = rank, rows["time_ns"].to_numpy()

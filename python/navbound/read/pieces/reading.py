@@ -32,8 +32,16 @@ _SAMPLES = 128
 
 @dataclass
 class PiecedReading:
-    """One file read in pieces; the attributes of :class:`navbound.read.Reading`, of which `left_out` and `rejected` are whole after
-    :meth:`epochs`.
+    """One file read in pieces, with the attributes of :class:`navbound.read.Reading`.
+
+    Of these `left_out` and `rejected` are whole after :meth:`epochs`.
+
+    Attributes
+    ----------
+    names : list of str
+        Tracks, in order.
+    with_levels, with_speed : set of str
+        Tracks with a protection level, or a reported speed, anywhere.
     """
 
     source: InputFile
@@ -42,7 +50,6 @@ class PiecedReading:
     columns: dict[str, str]
     left_out: pl.DataFrame
     names: list[str]
-    """Tracks, in order."""
     with_levels: set[str]
     with_speed: set[str]
     pieces: Pieces
@@ -112,9 +119,10 @@ class _FirstPass:
         self.chunks = Chunks(path, min(CHUNK_BYTES, 64 * _SAMPLES * stride))
         self.path, self.stride, self.n_rows = path, stride, 0
         self.parts, self.places = Spool(), list[tuple[int, int]]()
-        self.sample, self.names = list[pl.DataFrame](), set[str]()
+        self.sample, self.names = list[pl.DataFrame](), set[str | None]()
         self.rejections = Rejections(path)
-        self._columns, self._layout = columns, None
+        self._columns = columns
+        self._layout: Layout | None = None
         self._bad: tuple[str, int, int, str] | None = None
 
     def take(self, lines: pl.DataFrame) -> None:
@@ -122,7 +130,7 @@ class _FirstPass:
         if lines.is_empty():
             return
         if self._layout is None:
-            self._layout: Layout | None = layout_of(self.path, lines)
+            self._layout = layout_of(self.path, lines)
             self.mapping: Assignment = assign([name for name in self._layout.names if name], self._columns, self.path)
             self.values = Values(self.path, self.chunks.source.stem, self.mapping, list(POSITION))
             lines = lines[1:]

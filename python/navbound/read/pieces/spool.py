@@ -6,7 +6,7 @@ import io
 import tempfile
 import weakref
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import polars as pl
@@ -101,16 +101,14 @@ class Frames:
                 piece = pl.concat([self._spool.get(place) for place in places.values()], how="horizontal")
                 yield piece.filter(pl.col("track") == name)
 
-    def first(self, name: str) -> object:
+    def first(self, name: str) -> Any:
         """The first value of a column."""
         return self._spool.get(self._places[0][name])[name][0]
 
     def write_parquet(self, path: str | Path, compression: Literal["zstd"]) -> None:
         """Write one file, a row group for each piece."""
 
-        def pieces(
-            with_columns: list[str] | None, predicate: pl.Expr | None, n_rows: int | None, batch_size: int | None
-        ) -> Iterator[pl.DataFrame]:
+        def pieces(*_: object) -> Iterator[pl.DataFrame]:
             # All columns and rows are asked for: nothing stands between the pieces and the file.
             yield from self
 

@@ -80,7 +80,7 @@ class InPieces:
 
 
 def in_pieces(
-    path: Path, columns: Mapping[str, str] | None, sigma_m: float | None, limits: Limits, rnp_m: float, piece_rows: int
+    path: Path, columns: Mapping[str, str] | None, *, sigma_m: float | None, limits: Limits, rnp_m: float, piece_rows: int
 ) -> InPieces:
     """Read a text table in pieces of about so many rows and make its epochs ready to be judged.
 
@@ -139,6 +139,8 @@ class _Labels:
 
     def usual(self) -> dict[str, str]:
         """Of several that are as frequent the first of the alphabet."""
-        return {
-            track: min(found, key=lambda name: (-found[name], name)) or track if found else track for track, found in self._counts.items()
-        }
+        return {track: _most(found) or track for track, found in self._counts.items()}
+
+
+def _most(counts: Counter[str]) -> str | None:
+    return min(counts, key=lambda name: (-counts[name], name)) if counts else None

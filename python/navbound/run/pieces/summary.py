@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import polars as pl
 
@@ -25,7 +25,7 @@ from navbound.run.summarise import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from navbound.read.pieces import Frames
     from navbound.run.material import Material
@@ -44,11 +44,11 @@ class _Group:
     start_ns: int = 2**63 - 1
     end_ns: int = -(2**63)
 
-    def add(self, n: int, n_ok: int, n_inside: float, ratio: float | None, margin_m: float | None, times_ns: tuple[int, int]) -> None:
-        self.n, self.n_ok, self.n_inside = self.n + n, self.n_ok + n_ok, self.n_inside + round(n_inside)
-        self.worst_ratio = max((r for r in (self.worst_ratio, ratio) if r is not None), default=None)
-        self.worst_margin_m = min((m for m in (self.worst_margin_m, margin_m) if m is not None), default=None)
-        self.start_ns, self.end_ns = min(self.start_ns, times_ns[0]), max(self.end_ns, times_ns[1])
+    def add(self, other: _Group) -> None:
+        self.n, self.n_ok, self.n_inside = self.n + other.n, self.n_ok + other.n_ok, self.n_inside + other.n_inside
+        self.worst_ratio = max((r for r in (self.worst_ratio, other.worst_ratio) if r is not None), default=None)
+        self.worst_margin_m = min((m for m in (self.worst_margin_m, other.worst_margin_m) if m is not None), default=None)
+        self.start_ns, self.end_ns = min(self.start_ns, other.start_ns), max(self.end_ns, other.end_ns)
 
     @property
     def share_inside(self) -> float | None:
@@ -85,26 +85,26 @@ class _Sums:
             if worst is not None and (before is None or worst.margin_m < before.margin_m):
                 self.worst[k] = worst
         for (phase, limit), group in _groups(margins, ["phase", "rnp_m"]):
-            self.phases.setdefault((phase, limit), _Group()).add(*group)
+            self.phases.setdefault((phase, limit), _Group()).add(group)
         for (track,), group in _groups(margins, ["track"]):
-            self.tracks.setdefault(track, _Group()).add(*group)
+            self.tracks.setdefault(track, _Group()).add(group)
         at = self._onsets.join(margins.select("track", "time_ns", "phase", "rnp_m"), on=["track", "time_ns"])
         self.alerts.update({(p, limit, kind): n for p, limit, kind, n in at.group_by("phase", "rnp_m", "kind").len().iter_rows()})
 
 
-def _groups(margins: pl.DataFrame, by: list[str]) -> list[tuple[tuple, tuple]]:
+def _groups(margins: pl.DataFrame, by: list[str]) -> Iterator[tuple[tuple[Any, ...], _Group]]:
     inside = pl.col("_inside")
     grouped = margins.group_by(by, maintain_order=True).agg(
         pl.len().alias("n"),
         inside.count().alias("n_ok"),
-        inside.sum().alias("n_inside"),
-        pl.col("_ratio").max().alias("ratio"),
-        pl.col("_margin").min().alias("margin"),
-        pl.col("time_ns").min().alias("start"),
-        pl.col("time_ns").max().alias("end"),
+        inside.sum().cast(pl.Int64).alias("n_inside"),
+        pl.col("_ratio").max().alias("worst_ratio"),
+        pl.col("_margin").min().alias("worst_margin_m"),
+        pl.col("time_ns").min().alias("start_ns"),
+        pl.col("time_ns").max().alias("end_ns"),
     )
-    k = len(by)
-    return [(row[:k], (*row[k : k + 5], row[k + 5 :])) for row in grouped.iter_rows()]
+    for row in grouped.iter_rows(named=True):
+        yield tuple(row.pop(name) for name in by), _Group(**row)
 
 
 def summary(material: Material, epochs: Frames, events: pl.DataFrame, ids: Sequence[str], risks: tuple[float, float]) -> Summary:
