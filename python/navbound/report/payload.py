@@ -96,8 +96,8 @@ def _records(
     }
 
 
-MOST_ROWS = 500_000
-"""Epochs of one track that are embedded: six days at one a second. [1]"""
+MOST_ROWS = 200_000
+"""Epochs of one track that are embedded: two days at one a second. [1]"""
 
 
 def _worst_tracks(summary: Summary, epochs: pl.DataFrame | Frames, room_bytes: int) -> tuple[list[dict[str, object]], list[str], list[str]]:
@@ -106,8 +106,9 @@ def _worst_tracks(summary: Summary, epochs: pl.DataFrame | Frames, room_bytes: i
     blocks: list[str] = []
     words: list[str] = []
     columns = _columns(summary, epochs)
+    drawn = ["time_ns", *columns, *(name for name in _WORDS if name in epochs.columns)]
     for track in _worst_first(summary.tracks):
-        frame, more = _track(epochs, track, summary.verdict.worst_accuracy)
+        frame, more = _track(epochs, track, summary.verdict.worst_accuracy, drawn)
         if frame.height == 0:
             continue
         head, block = _pack_track(track.track, frame, columns)
@@ -120,10 +121,10 @@ def _worst_tracks(summary: Summary, epochs: pl.DataFrame | Frames, room_bytes: i
     return heads, blocks, words
 
 
-def _track(epochs: pl.DataFrame | Frames, track: TrackSummary, worst: Worst | None) -> tuple[pl.DataFrame, list[str]]:
+def _track(epochs: pl.DataFrame | Frames, track: TrackSummary, worst: Worst | None, columns: list[str]) -> tuple[pl.DataFrame, list[str]]:
     """The epochs of one track, of one that is too long those around the worst; and words on that."""
     # One track at a time: the table of a campaign is not copied whole.
-    parts = [epochs.filter(pl.col("track") == track.track)] if isinstance(epochs, pl.DataFrame) else epochs.track(track.track)
+    parts = [epochs.filter(pl.col("track") == track.track)] if isinstance(epochs, pl.DataFrame) else epochs.track(track.track, columns)
     if track.n_epochs <= MOST_ROWS:
         return pl.concat(parts, rechunk=False), []
     at = worst.time_ns if worst is not None and worst.track == track.track else track.start_ns

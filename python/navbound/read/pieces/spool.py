@@ -94,12 +94,12 @@ class Frames:
         for places in self._places:
             yield pl.concat([self._spool.get(places[name]) for name in names], how="horizontal")
 
-    def track(self, name: str) -> Iterator[pl.DataFrame]:
-        """The rows of one track, of a table in the order of tracks."""
+    def track(self, name: str, columns: Sequence[str]) -> Iterator[pl.DataFrame]:
+        """Some columns of the rows of one track, of a table in the order of tracks."""
         for places, (first, last) in zip(self._places, self._tracks, strict=True):
             if first <= name <= last:
-                piece = pl.concat([self._spool.get(place) for place in places.values()], how="horizontal")
-                yield piece.filter(pl.col("track") == name)
+                of_track = self._spool.get(places["track"])["track"] == name
+                yield pl.concat([self._spool.get(places[column]).filter(of_track) for column in columns], how="horizontal")
 
     def first(self, name: str) -> Any:
         """The first value of a column."""
