@@ -195,6 +195,18 @@ def test_a_line_without_an_end_is_refused(tmp_path: Path, monkeypatch: pytest.Mo
         navbound.analyze(file, piece_rows=7)
 
 
+def test_a_table_beyond_the_memory_is_refused_before_it_is_taken_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "large.csv"
+    file.write_text(as_text(GOOD))
+    n_bytes = file.stat().st_size
+    monkeypatch.setattr("navbound.read.memory.free_bytes", lambda: 7 * n_bytes)
+    navbound.analyze(file)
+    monkeypatch.setattr("navbound.read.memory.free_bytes", lambda: 7 * n_bytes - 1)
+    with pytest.raises(FormatError, match=r"large.csv: .* MB of text take about .* read in pieces"):
+        navbound.analyze(file, truth="4200000,170000,4780000")
+    navbound.analyze(file, piece_rows=7)
+
+
 def test_a_track_too_long_for_the_page_is_shown_around_its_worst(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(payload, "MOST_ROWS", 20)
     file = tmp_path / "long.csv"

@@ -12,6 +12,7 @@ import polars as pl
 
 from navbound import _packed
 from navbound.errors import FormatError
+from navbound.read.memory import require_free
 from navbound.read.rejections import Rejections
 
 if TYPE_CHECKING:
@@ -63,6 +64,7 @@ def table(source: Source) -> Table:
 
 def _csv(source: Source) -> Table:
     """Text lines with a separator; lines with another number of fields than the header are left out and counted."""
+    require_free(source)
     lines = lines_of(source.text(), 1)
     if lines.is_empty():
         raise FormatError(source.path, "nothing but comments")
