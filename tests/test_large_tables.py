@@ -43,7 +43,13 @@ def damaged() -> str:
             level = 300 + k % 50 if track == "a1" and k % 3 else ""
             sign = f"AF{n}{k // 300}" if k % 5 else ""
             rows.append(row(k, track, groundspeed=speed, nac_p=nac_p, hpl=level, callsign=sign))
-    for k, change in {30: {"latitude": 55.0}, 90: {"latitude": "x"}, 100: {"groundspeed": "fast"}, 110: {"longitude": ""}}.items():
+    changes: dict[int, dict[str, Any]] = {
+        30: {"latitude": 55.0},
+        90: {"latitude": "x"},
+        100: {"groundspeed": "fast"},
+        110: {"longitude": ""},
+    }
+    for k, change in changes.items():
         rows[k] |= change
     for k in (140, 141):
         rows[k] |= {"timestamp": ""}
@@ -205,6 +211,15 @@ def test_a_table_beyond_the_memory_is_refused_before_it_is_taken_apart(tmp_path:
     with pytest.raises(FormatError, match=r"large.csv: .* MB of text take about .* read in pieces"):
         navbound.analyze(file, truth="4200000,170000,4780000")
     navbound.analyze(file, piece_rows=7)
+
+
+def test_a_full_disk_for_the_pieces_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.TemporaryFile", lambda **_: Path("/dev/full").open("w+b", buffering=0))  # noqa: SIM115 - the spool closes it
+    file = tmp_path / "full.csv"
+    file.write_text(as_text(GOOD))
+    with pytest.raises(FormatError, match=r"cannot hold the pieces of a large table: No space left"):
+        navbound.analyze(file, piece_rows=7, out=tmp_path / "out")
+    assert list((tmp_path / "out").iterdir()) == []
 
 
 def test_a_track_too_long_for_the_page_is_shown_around_its_worst(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -34,6 +34,7 @@ def require_free(source: Source) -> None:
     """
     needed, free = AT_ONCE * len(source.content), free_bytes()
     if free is not None and needed > free:
-        sizes = f"its {len(source.content) / 1e6:.0f} MB of text take about {needed / 1e6:.0f} MB of memory, of which {free / 1e6:.0f} MB are free"
+        text_mb, needed_mb, free_mb = (n / 1e6 for n in (len(source.content), needed, free))
+        sizes = f"its {text_mb:.0f} MB of text take about {needed_mb:.0f} MB of memory, of which {free_mb:.0f} MB are free"
         less = "a plain CSV that is judged alone, without a path and a truth, is read in pieces and takes less"
         raise FormatError(source.path, f"{sizes}: cut it by track or by day; {less}")

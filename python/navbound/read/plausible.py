@@ -13,8 +13,6 @@ from navbound.read.columns import POSITION_TIME
 from navbound.read.covariance import COLUMNS
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
-
     from numpy.typing import NDArray
 
     _Reports = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
@@ -117,12 +115,12 @@ def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFr
 class Checker:
     """The same for a table that comes in pieces, each the continuation of the one before.
 
-    A track that goes on in a later piece must have been seen whole before the first of its pieces is checked (:meth:`see`), or be one of
-    those that are known to report a speed somewhere (`reporting`): one that reports none is judged by the speed of all its steps.
+    A track that goes on in a later piece must have been seen before the first of its pieces is checked (:meth:`see`), whole or as far as
+    its first reported speed: one that reports none is judged by the speed of all its steps.
     """
 
-    def __init__(self, limits: Limits, reporting: Collection[str] = ()) -> None:
-        self._limits, self._reporting = limits, reporting
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
         self._tracks: dict[str, _core.PlausibleTrack] = {}
         self._n = np.zeros(len(_REASON_ID), dtype=np.int64)
         self._n_steps = self._n_fast = self._n_dated = self._n_rows = 0
@@ -152,7 +150,7 @@ class Checker:
     def _track(self, group: pl.DataFrame) -> _core.PlausibleTrack:
         name = group["track"][0]
         if name not in self._tracks:
-            self._tracks[name] = _core.PlausibleTrack(asdict(self._limits), reports_speed=name in self._reporting)
+            self._tracks[name] = _core.PlausibleTrack(asdict(self._limits), reports_speed=False)
         return self._tracks[name]
 
     def _count(self, code: NDArray[np.uint8], step: NDArray[np.float64], fast: NDArray[np.float64], columns: pl.DataFrame) -> None:

@@ -40,8 +40,8 @@ class PiecedReading:
     ----------
     names : list of str
         Tracks, in order.
-    with_levels, with_speed : set of str
-        Tracks with a protection level, or a reported speed, anywhere.
+    with_levels : set of str
+        Tracks with a protection level anywhere.
     """
 
     source: InputFile
@@ -51,7 +51,6 @@ class PiecedReading:
     left_out: pl.DataFrame
     names: list[str]
     with_levels: set[str]
-    with_speed: set[str]
     pieces: Pieces
     rejections: Rejections
     n_rows: int
@@ -79,13 +78,16 @@ class PiecedReading:
         self.left_out = pl.concat([self.left_out, *contradicting])
 
     def spread(self) -> Iterator[pl.DataFrame]:
-        """Every part of each track that stands in several pieces and reports no speed, in order."""
-        spans = {track: span for track, span in self.pieces.spread().items() if track not in self.with_speed}
+        """Parts of each track that stands in several pieces, in order, as far as its first part with a reported speed."""
+        spans = self.pieces.spread()
         for index in sorted({k for low, high in spans.values() for k in range(low, high + 1)}):
-            piece = self.pieces.piece(index)
-            rows = piece if piece.is_empty() else piece.filter(pl.col("track").is_in(list(spans)))
-            if not rows.is_empty():
-                yield from one_row_a_time(rows, Tally()).epochs.partition_by("track", maintain_order=True)
+            names = [track for track, (low, high) in spans.items() if low <= index <= high]
+            rows = self.pieces.piece(index) if names else pl.DataFrame()
+            rows = rows if rows.is_empty() else rows.filter(pl.col("track").is_in(names))
+            for part in [] if rows.is_empty() else one_row_a_time(rows, Tally()).epochs.partition_by("track", maintain_order=True):
+                yield part
+                if "ground_speed_mps" in part.columns and part["ground_speed_mps"].is_not_null().any():
+                    del spans[part["track"][0]]
 
 
 def read_pieces(path: str | Path, *, columns: Mapping[str, str] | None = None, piece_rows: int = PIECE_ROWS) -> PiecedReading:
@@ -165,7 +167,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
     names = sorted({source.stem if name is None else name for name in first.names})
     pieces = Pieces(names, values.when(pl.concat(first.sample)), every)
     late, without = Late(), [pl.DataFrame(schema=LEFT_OUT)]
-    with_levels, with_speed, n = set[str](), set[str](), 0
+    with_levels, n = set[str](), 0
     for place in first.places:
         out, lost = values.timed(first.parts.get(place))
         without.append(lost)
@@ -175,7 +177,6 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         pieces.put(out)
         n += out.height
         with_levels |= _with(out, "hpl_m")
-        with_speed |= _with(out, "ground_speed_mps")
     first.parts.close()
     values.tally.into(first.rejections)
     values.notes.extend(late.words(source.path, "line"))
@@ -190,7 +191,6 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         left_out=pl.concat(without),
         names=[name for name in names if pieces.has(name)],
         with_levels=with_levels,
-        with_speed=with_speed,
         pieces=pieces,
         rejections=first.rejections,
         n_rows=first.n_rows,

@@ -90,7 +90,7 @@ def in_pieces(
         As :func:`navbound.run.analyze.material`.
     """
     reading = read_pieces(path, columns=columns, piece_rows=piece_rows)
-    checker, claims, epochs = Checker(limits, reading.with_speed), Claims(sigma_m), Frames()
+    checker, claims, epochs = Checker(limits), Claims(sigma_m), Frames()
     steps, labels = _Steps(reading.n_rows), _Labels(reading.names)
     for part in reading.spread():
         checker.see(part)
