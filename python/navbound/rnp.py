@@ -49,6 +49,7 @@ __all__ = [
     "StateOfError",
     "StateOfErrors",
     "Step",
+    "TrackMonitors",
     "nse_boundary",
     "per_epoch_risk",
     "per_hour_risk",
@@ -307,16 +308,58 @@ class Monitor:
         InputError
             A method that may not feed an alert, a missing column, a null time, or a status that is none.
         """
-        first, second = _alerting("accuracy", accuracy), _alerting("integrity", integrity or accuracy)
         frame = _frame(table)
+        names, index = _tracks(frame)
+        with_levels = np.zeros(len(names), dtype=np.bool_)
+        if "hpl_m" in frame.columns:
+            with_levels[index[~np.isnan(_numbers(frame, "hpl_m"))]] = True
+        tracks = self.tracks(dict(zip(names, with_levels.tolist(), strict=True)), accuracy=accuracy, integrity=integrity)
+        alert, compared_m = tracks.judge(frame)
+        events, total, each = tracks.decided()
+        return MonitorRun(alert, compared_m, events, total, each)
+
+    def tracks(self, with_levels: Mapping[str, bool], *, accuracy: str = "tse-exact", integrity: str | None = None) -> TrackMonitors:
+        """Fresh monitors with these settings, one for each track, for a table that comes in pieces.
+
+        Parameters
+        ----------
+        with_levels : mapping of str to bool
+            Every track, and whether it has a protection level (``hpl_m``) anywhere.
+        accuracy, integrity : str
+            As in :meth:`run`.
+
+        Raises
+        ------
+        InputError
+            A method that may not feed an alert.
+        """
+        methods = (_alerting("accuracy", accuracy), _alerting("integrity", integrity or accuracy))
+        return TrackMonitors(self._core.tracks(list(with_levels.values())), tuple(with_levels), methods)
+
+
+class TrackMonitors:
+    """One monitor for each track; made by :meth:`Monitor.tracks`. The pieces of a table of any length give what the whole gives at once."""
+
+    def __init__(self, monitors: _core.RnpMonitors, names: tuple[str, ...], methods: tuple[Method, Method]) -> None:
+        self._core, self._names, self._methods = monitors, names, methods
+        self._index = pl.DataFrame({"track": names, "index": range(len(names))}, schema={"track": pl.String, "index": pl.UInt32})
+
+    def judge(self, frame: pl.DataFrame) -> tuple[pl.Series, pl.Series]:
+        """Judge the next rows: ``alert`` and ``integrity_compared_m`` of :class:`MonitorRun`.
+
+        Raises
+        ------
+        InputError
+            As :meth:`Monitor.run`; a track that was not named.
+        """
+        first, second = self._methods
         for name in ("time_ns", "rnp_m", first.column, second.integrity_column):
             if name not in frame.columns:
                 raise InputError("table", f"columns {', '.join(frame.columns)}", domain=f"tables with {name}")
         if frame["time_ns"].null_count():
             raise InputError("time_ns", "null", domain="times", index=frame["time_ns"].is_null().arg_max())
         usable = _usable(frame)
-        names, index = _tracks(frame)
-        words, rows, each, total, compared_m = self._core.run(
+        words, compared_m = self._core.judge(
             _times(frame),
             (first.id, _numbers(frame, first.column)),
             (second.id, _numbers(frame, second.integrity_column)),
@@ -324,16 +367,23 @@ class Monitor:
             _numbers(frame, "hpl_m") if "hpl_m" in frame.columns else None,
             _numbers(frame, "rnp_m"),
             (usable, _level_due(frame)),
-            index,
-            len(names),
+            self._of(frame),
         )
-        return MonitorRun(
-            alert=pl.Series("alert", words, dtype=pl.String),
-            integrity_compared_m=pl.Series("integrity_compared_m", compared_m, nan_to_null=True),
-            events=_events(names, rows),
-            counters=Counters(**total),
-            track_counters={name: Counters(**c) for name, c in zip(names, each, strict=True)},
-        )
+        return pl.Series("alert", words, dtype=pl.String), pl.Series("integrity_compared_m", compared_m, nan_to_null=True)
+
+    def _of(self, frame: pl.DataFrame) -> NDArray[np.uint32]:
+        if "track" not in frame.columns:
+            return np.zeros(frame.height, dtype=np.uint32)
+        track = frame["track"].cast(pl.String).fill_null("")
+        index = track.replace_strict(self._index["track"], self._index["index"], default=None, return_dtype=pl.UInt32)
+        if index.null_count():
+            raise InputError("track", track.filter(index.is_null())[0], domain="tracks that were named before the first piece")
+        return np.ascontiguousarray(index.to_numpy())
+
+    def decided(self) -> tuple[pl.DataFrame, Counters, dict[str, Counters]]:
+        """Events, counters of all tracks together and of each, of the rows so far."""
+        rows, each, total = self._core.decided()
+        return _events(list(self._names), rows), Counters(**total), {n: Counters(**c) for n, c in zip(self._names, each, strict=True)}
 
 
 @cache

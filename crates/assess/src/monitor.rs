@@ -70,15 +70,15 @@ impl Columns<'_> {
         Ok(())
     }
 
-    /// One comparison per track. A track with a level anywhere has a source of levels, so every epoch of it whose status is `ok` should have one.
-    fn comparisons(&self, n_tracks: usize) -> Vec<IntegrityComparison> {
-        let mut comparisons = vec![IntegrityComparison::default(); n_tracks];
+    /// Tracks with a level anywhere: they have a source of levels, so every epoch of them whose status is `ok` should have one.
+    fn with_levels(&self, n_tracks: usize) -> Vec<bool> {
+        let mut with_levels = vec![false; n_tracks];
         for (row, hpl_m) in self.level_m.iter().flat_map(|l| l.hpl_m).enumerate() {
-            if let Some(comparison) = comparisons.get_mut(self.track[row] as usize).filter(|_| !hpl_m.is_nan()) {
-                *comparison = IntegrityComparison::with_levels();
+            if let Some(has) = with_levels.get_mut(self.track[row] as usize) {
+                *has |= !hpl_m.is_nan();
             }
         }
-        comparisons
+        with_levels
     }
 
     fn observation(&self, row: usize, comparison: &mut IntegrityComparison) -> Observation {
@@ -95,33 +95,81 @@ impl Columns<'_> {
     }
 }
 
-/// Run one monitor per track over the rows, in their order. The rows are the arrival clock: one that is dropped for its time counts as one
-/// sample period of silence.
+/// What the monitors decided in some rows.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    /// What was compared with twice RNP in each row: [`IntegrityComparison`].
+    pub integrity_compared_m: Vec<f64>,
+    /// The alert in force after each row.
+    pub alert: Vec<Alert>,
+}
+
+/// One monitor per track, which take their rows in pieces of any length. The rows are the arrival clock: one that is dropped for its time
+/// counts as one sample period of silence.
+#[derive(Debug, Clone)]
+pub struct Monitors {
+    tracks: Vec<(Monitor, IntegrityComparison)>,
+    events: Vec<(u32, Event)>,
+}
+
+impl Monitors {
+    /// One monitor for each entry, which says whether its track has a protection level anywhere.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for settings that cannot be.
+    pub fn new(settings: Settings, with_levels: &[bool]) -> Result<Self, OutOfDomain> {
+        let monitor = Monitor::new(settings)?;
+        let comparison = |has: &bool| if *has { IntegrityComparison::with_levels() } else { IntegrityComparison::default() };
+        Ok(Self { tracks: with_levels.iter().map(|has| (monitor.clone(), comparison(has))).collect(), events: Vec::new() })
+    }
+
+    /// Judge the next rows.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for columns of unequal length and the index of a track that is none.
+    pub fn judge(&mut self, columns: &Columns<'_>) -> Result<Piece, OutOfDomain> {
+        columns.checked()?;
+        let n = columns.time_ns.len();
+        let mut piece = Piece { integrity_compared_m: Vec::with_capacity(n), alert: Vec::with_capacity(n) };
+        for row in 0..n {
+            let track = columns.track[row];
+            let Some((monitor, comparison)) = self.tracks.get_mut(track as usize) else {
+                return Err(OutOfDomain { argument: "track", value: f64::from(track), unit: "1", domain: "[0, n_tracks)" });
+            };
+            let seen = columns.observation(row, comparison);
+            let step = monitor.step(&seen);
+            piece.integrity_compared_m.push(seen.integrity.length().m());
+            self.events.extend(step.ended.iter().flatten().map(|event| (track, *event)));
+            piece.alert.push(step.alert);
+        }
+        Ok(piece)
+    }
+
+    /// Events so far and those that last, and their tracks, by track and then by annunciation.
+    #[must_use]
+    pub fn events(&self) -> Vec<(u32, Event)> {
+        let mut events = self.events.clone();
+        for (track, (monitor, _)) in (0..).zip(&self.tracks) {
+            events.extend(monitor.open_events().map(|event| (track, *event)));
+        }
+        events.sort_by_key(|(track, event)| (*track, event.annunciation, event.onset));
+        events
+    }
+
+    /// Counters of each track.
+    #[must_use]
+    pub fn counters(&self) -> Vec<Counters> {
+        self.tracks.iter().map(|(monitor, _)| *monitor.counters()).collect()
+    }
+}
+
+/// Run one monitor per track over all rows, in their order: [`Monitors`] in one piece.
 ///
 /// # Errors
 /// [`OutOfDomain`] for settings that cannot be, columns of unequal length and a track index outside `n_tracks`.
 pub fn run(settings: Settings, columns: &Columns<'_>, n_tracks: usize) -> Result<MonitorRun, OutOfDomain> {
     columns.checked()?;
-    let n = columns.time_ns.len();
-    let mut monitors = vec![Monitor::new(settings)?; n_tracks];
-    let mut comparisons = columns.comparisons(n_tracks);
-    let mut events: Vec<(u32, Event)> = Vec::new();
-    let mut alert = Vec::with_capacity(n);
-    let mut integrity_compared_m = Vec::with_capacity(n);
-    for row in 0..n {
-        let track = columns.track[row];
-        let (Some(monitor), Some(comparison)) = (monitors.get_mut(track as usize), comparisons.get_mut(track as usize)) else {
-            return Err(OutOfDomain { argument: "track", value: f64::from(track), unit: "1", domain: "[0, n_tracks)" });
-        };
-        let seen = columns.observation(row, comparison);
-        let step = monitor.step(&seen);
-        integrity_compared_m.push(seen.integrity.length().m());
-        events.extend(step.ended.iter().flatten().map(|event| (track, *event)));
-        alert.push(step.alert);
-    }
-    for (track, monitor) in (0..).zip(&monitors) {
-        events.extend(monitor.open_events().map(|event| (track, *event)));
-    }
-    events.sort_by_key(|(track, event)| (*track, event.annunciation, event.onset));
-    Ok(MonitorRun { integrity_compared_m, alert, events, counters: monitors.iter().map(|m| *m.counters()).collect() })
+    let mut monitors = Monitors::new(settings, &columns.with_levels(n_tracks))?;
+    let Piece { integrity_compared_m, alert } = monitors.judge(columns)?;
+    Ok(MonitorRun { integrity_compared_m, alert, events: monitors.events(), counters: monitors.counters() })
 }

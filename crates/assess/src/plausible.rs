@@ -96,22 +96,126 @@ pub struct Judged {
 /// # Errors
 /// [`OutOfDomain`] with the index of the first position that is no place on the Earth.
 pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize, OutOfDomain)> {
-    let silent = reports.iter().all(|r| r.speed_mps.is_nan());
-    let limits = &if silent { Limits { max_speed_mps: own_speed(reports, limits)?, ..*limits } } else { *limits };
-    let usual = usual_speeds(reports);
-    let mut judged = Vec::with_capacity(reports.len());
-    let mut last: Option<(Report, EcefPosition)> = None;
-    let mut jumped: Option<GpsTime> = None;
-    let mut window: Option<Window> = None;
-    for (index, (reported, usual_mps)) in reports.iter().zip(usual).enumerate() {
-        let here = sea_level(reported).map_err(|refusal| (index, refusal))?;
-        let speed_doubted = reported.speed_mps > limits.speed_factor * usual_mps + limits.speed_margin_mps;
-        let report = &if speed_doubted { Report { speed_mps: usual_mps, ..*reported } } else { *reported };
-        let Some((fix, from)) = last else {
-            last = Some((*report, here));
-            window = Some(Window::begin(report, here));
-            judged.push(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0, speed_doubted });
-            continue;
+    let mut survey = Survey::default();
+    survey.see(reports)?;
+    Track::new(survey, limits).judge(reports, &[])
+}
+
+/// What must be known of all reports of a track before the first is judged: whether it reports a speed, and the speeds of its own steps.
+#[derive(Debug, Clone, Default)]
+pub struct Survey {
+    reports_speed: bool,
+    steps_mps: Vec<f64>,
+    from: Option<(GpsTime, EcefPosition)>,
+}
+
+impl Survey {
+    /// Of a track that reports a speed somewhere: nothing else must be known.
+    #[must_use]
+    pub fn of_reported_speed() -> Self {
+        Self { reports_speed: true, ..Self::default() }
+    }
+
+    /// See the next reports.
+    ///
+    /// # Errors
+    /// As [`judge`].
+    pub fn see(&mut self, reports: &[Report]) -> Result<(), (usize, OutOfDomain)> {
+        self.reports_speed |= !reports.iter().all(|r| r.speed_mps.is_nan());
+        if self.reports_speed {
+            self.steps_mps = Vec::new();
+            return Ok(());
+        }
+        for (index, report) in reports.iter().enumerate() {
+            let here = sea_level(report).map_err(|refusal| (index, refusal))?;
+            let Some((time, before)) = self.from else {
+                self.from = Some((report.time, here));
+                continue;
+            };
+            let elapsed = report.time.seconds_since(time);
+            if elapsed >= 1.0 {
+                self.steps_mps.push(here.minus(&before).vector().norm() / elapsed);
+                self.from = Some((report.time, here));
+            } else if elapsed < 0.0 {
+                self.from = Some((report.time, here));
+            }
+        }
+        Ok(())
+    }
+
+    /// The fastest speed of a track that reports none \[m/s\]: of its own steps of a second or more, the noise taken off, and never above
+    /// the limit.
+    fn own_speed(mut self, limits: &Limits) -> f64 {
+        if self.steps_mps.len() < OWN_STEPS {
+            return limits.max_speed_mps;
+        }
+        self.steps_mps.sort_unstable_by(f64::total_cmp);
+        let own = self.steps_mps[((self.steps_mps.len() - 1) as f64 * OWN_SHARE) as usize];
+        (limits.speed_factor * own + limits.speed_margin_mps).min(limits.max_speed_mps)
+    }
+}
+
+/// The judge of one track, which takes its reports in pieces of any length.
+#[derive(Debug, Clone)]
+pub struct Track {
+    limits: Limits,
+    silent: bool,
+    last: Option<(Report, EcefPosition)>,
+    jumped: Option<GpsTime>,
+    window: Option<Window>,
+    /// Speeds of the reports before \[m/s\]; NaN where none was reported.
+    before_mps: [f64; SPEEDS_BESIDE],
+}
+
+/// Reports to either side whose speeds a reported speed is compared with. Provenance: ours: four wild ones in a row do not carry their median.
+pub const SPEEDS_BESIDE: usize = 4;
+
+impl Track {
+    /// Of a track of which every report was seen.
+    #[must_use]
+    pub fn new(survey: Survey, limits: &Limits) -> Self {
+        let silent = !survey.reports_speed;
+        let limits = if silent { Limits { max_speed_mps: survey.own_speed(limits), ..*limits } } else { *limits };
+        Self { limits, silent, last: None, jumped: None, window: None, before_mps: [f64::NAN; SPEEDS_BESIDE] }
+    }
+
+    /// Judge the next reports; `after_mps` are the speeds of the [`SPEEDS_BESIDE`] reports after them, as far as there are any.
+    ///
+    /// # Errors
+    /// As [`judge`], with the index among these.
+    pub fn judge(&mut self, reports: &[Report], after_mps: &[f64]) -> Result<Vec<Judged>, (usize, OutOfDomain)> {
+        let mut judged = Vec::with_capacity(reports.len());
+        for (index, reported) in reports.iter().enumerate() {
+            let later = reports[index + 1..].iter().map(|r| r.speed_mps).chain(after_mps.iter().copied());
+            let usual_mps = self.usual_speed(reported.speed_mps, later.take(SPEEDS_BESIDE));
+            let doubted = reported.speed_mps > self.limits.speed_factor * usual_mps + self.limits.speed_margin_mps;
+            let report = &if doubted { Report { speed_mps: usual_mps, ..*reported } } else { *reported };
+            judged.push(self.step(report, doubted).map_err(|refusal| (index, refusal))?);
+            self.before_mps.rotate_left(1);
+            self.before_mps[SPEEDS_BESIDE - 1] = reported.speed_mps;
+        }
+        Ok(judged)
+    }
+
+    /// The median of the speeds reported around a report \[m/s\]; NaN where it reports none.
+    fn usual_speed(&self, own_mps: f64, later_mps: impl Iterator<Item = f64>) -> f64 {
+        if own_mps.is_nan() {
+            return f64::NAN;
+        }
+        let around = self.before_mps.iter().copied().chain([own_mps]).chain(later_mps);
+        let mut speeds: Vec<f64> = around.filter(|speed| !speed.is_nan()).collect();
+        speeds.sort_unstable_by(f64::total_cmp);
+        // Of an even number the lower: of two that contradict each other the smaller reach.
+        speeds[(speeds.len() - 1) / 2]
+    }
+
+    fn step(&mut self, report: &Report, speed_doubted: bool) -> Result<Judged, OutOfDomain> {
+        let limits = &self.limits;
+        let here = sea_level(report)?;
+        let Some((fix, from)) = self.last else {
+            self.last = Some((*report, here));
+            self.window = Some(Window::begin(report, here));
+            return Ok(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0, speed_doubted });
         };
         let elapsed = report.time.seconds_since(fix.time);
         let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
@@ -119,30 +223,29 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
         let mut too_fast_mps = 0.0;
         let (mut finding, age_s) = if unchanged { (held(report, &fix, limits), elapsed) } else { (Finding::Plausible, 0.0) };
         if !unchanged {
-            let flown = window.as_mut().is_none_or(|w| w.reaches(report, &here, limits));
+            let flown = self.window.as_mut().is_none_or(|w| w.reaches(report, &here, limits));
             let between = Between::new(&fix, report, limits);
             if !(step_m <= between.reach_m(between.latency_s, limits)) || !flown {
                 finding = Finding::Jump;
-                jumped = Some(report.time);
-            } else if !between.dated && !(step_m <= between.reach_m(if silent { 0.0 } else { limits.stale_after_s }, limits)) {
+                self.jumped = Some(report.time);
+            } else if !between.dated && !(step_m <= between.reach_m(if self.silent { 0.0 } else { limits.stale_after_s }, limits)) {
                 finding = Finding::Late;
             }
             if step_m > between.reach_m(0.0, limits) && between.elapsed_s > 0.0 {
                 too_fast_mps = (step_m - limits.noise_m) / between.elapsed_s;
             }
             // What comes after a jump is judged from there.
-            if finding == Finding::Jump || window.is_none_or(|w| !within(report.time, w.first.time, WINDOW_S)) {
-                window = Some(Window::begin(report, here));
+            if finding == Finding::Jump || self.window.is_none_or(|w| !within(report.time, w.first.time, WINDOW_S)) {
+                self.window = Some(Window::begin(report, here));
             }
-            last = Some((*report, here));
+            self.last = Some((*report, here));
         }
-        let settling = jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
+        let settling = self.jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
         if settling && matches!(finding, Finding::Plausible | Finding::Held | Finding::Late) {
             finding = Finding::Unsettled;
         }
-        judged.push(Judged { finding, age_s, step_m, too_fast_mps, speed_doubted });
+        Ok(Judged { finding, age_s, step_m, too_fast_mps, speed_doubted })
     }
-    Ok(judged)
 }
 
 /// Share of the steps of a track that reports no speed whose speed is its own. Provenance: ours: one that jumps at more of its steps than one in
@@ -150,49 +253,6 @@ pub fn judge(reports: &[Report], limits: &Limits) -> Result<Vec<Judged>, (usize,
 const OWN_SHARE: f64 = 0.95;
 /// Steps from which a track has a speed of its own. Provenance: ours.
 const OWN_STEPS: usize = 20;
-
-/// The fastest speed of a track that reports none \[m/s\]: of its own steps of a second or more, the noise taken off, and never above the limit.
-fn own_speed(reports: &[Report], limits: &Limits) -> Result<f64, (usize, OutOfDomain)> {
-    let mut speeds = Vec::new();
-    let mut from: Option<(GpsTime, EcefPosition)> = None;
-    for (index, report) in reports.iter().enumerate() {
-        let here = sea_level(report).map_err(|refusal| (index, refusal))?;
-        let Some((time, before)) = from else {
-            from = Some((report.time, here));
-            continue;
-        };
-        let elapsed = report.time.seconds_since(time);
-        if elapsed >= 1.0 {
-            speeds.push(here.minus(&before).vector().norm() / elapsed);
-            from = Some((report.time, here));
-        } else if elapsed < 0.0 {
-            from = Some((report.time, here));
-        }
-    }
-    if speeds.len() < OWN_STEPS {
-        return Ok(limits.max_speed_mps);
-    }
-    speeds.sort_by(f64::total_cmp);
-    let own = speeds[((speeds.len() - 1) as f64 * OWN_SHARE) as usize];
-    Ok((limits.speed_factor * own + limits.speed_margin_mps).min(limits.max_speed_mps))
-}
-
-/// Speeds to either side that a reported speed is compared with. Provenance: ours: four wild ones in a row do not carry their median.
-const SPEEDS_BESIDE: usize = 4;
-
-/// The median of the speeds reported around each report \[m/s\]; NaN where it reports none.
-fn usual_speeds(reports: &[Report]) -> Vec<f64> {
-    let known: Vec<usize> = (0..reports.len()).filter(|k| !reports[*k].speed_mps.is_nan()).collect();
-    let mut usual = vec![f64::NAN; reports.len()];
-    for (at, index) in known.iter().enumerate() {
-        let around = &known[at.saturating_sub(SPEEDS_BESIDE)..(at + SPEEDS_BESIDE + 1).min(known.len())];
-        let mut speeds: Vec<f64> = around.iter().map(|k| reports[*k].speed_mps).collect();
-        speeds.sort_by(f64::total_cmp);
-        // Of an even number the lower: of two that contradict each other the smaller reach.
-        usual[*index] = speeds[(speeds.len() - 1) / 2];
-    }
-    usual
-}
 
 /// For how long positions are judged from one position on \[s\]. Provenance: ours; several latencies, so that one of them is a small part.
 const WINDOW_S: f64 = 60.0;

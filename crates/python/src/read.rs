@@ -3,7 +3,7 @@
 use crate::error::{format_error, input_error};
 use nalgebra::Matrix3;
 use navbound_assess::error::navigation_errors;
-use navbound_assess::plausible::{Finding, Limits, Report, judge};
+use navbound_assess::plausible::{Finding, Limits, Report, SPEEDS_BESIDE, Survey, Track};
 use navbound_core::frame::{Covariance, Ecef, LatLon};
 use navbound_core::quantity::{GpsTime, OutOfDomain, Radians};
 use navbound_formats::packed::{Limit, unpack_within};
@@ -147,19 +147,7 @@ fn navigation_error<'py>(
     rows(py, &errors)
 }
 
-/// Judge the reports of one track, `fixed_ns` the least number where nothing says when a position was valid: finding (0 plausible, 1 held,
-/// 2 stale, 3 jump, 4 unsettled, 5 late), age [s], step [m], speed of a step that is too fast [m/s], whether
-/// the reported speed was not believed.
-#[pyfunction]
-fn plausible<'py>(
-    py: Python<'py>,
-    time_ns: PyReadonlyArray1<'py, i64>,
-    fixed_ns: PyReadonlyArray1<'py, i64>,
-    lat_rad: PyReadonlyArray1<'py, f64>,
-    lon_rad: PyReadonlyArray1<'py, f64>,
-    ground_speed_mps: PyReadonlyArray1<'py, f64>,
-    limits: &Bound<'py, PyDict>,
-) -> PyResult<Bound<'py, PyDict>> {
+fn limits_of(limits: &Bound<'_, PyDict>) -> PyResult<Limits> {
     let limit = |name: &'static str| -> PyResult<f64> {
         let value: f64 = limits.as_any().get_item(name)?.extract()?;
         if !(value >= 0.0) {
@@ -167,7 +155,7 @@ fn plausible<'py>(
         }
         Ok(value)
     };
-    let limits = Limits {
+    Ok(Limits {
         max_speed_mps: limit("max_speed_mps")?,
         speed_factor: limit("speed_factor")?,
         speed_margin_mps: limit("speed_margin_mps")?,
@@ -177,14 +165,22 @@ fn plausible<'py>(
         moving_mps: limit("moving_mps")?,
         stale_after_s: limit("stale_after_s")?,
         settle_s: limit("settle_s")?,
-    };
-    let (t, lat, lon, speed) = (time_ns.as_slice()?, lat_rad.as_slice()?, lon_rad.as_slice()?, ground_speed_mps.as_slice()?);
-    let reports: Vec<Report> = t
-        .iter()
-        .zip(lat)
-        .zip(lon)
-        .zip(speed)
-        .zip(fixed_ns.as_slice()?)
+    })
+}
+
+/// Columns of reports: time, when the position was valid (the least number where nothing says so), latitude, longitude, speed.
+type Reports<'py> = (
+    PyReadonlyArray1<'py, i64>,
+    PyReadonlyArray1<'py, i64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+);
+
+fn reports_of((time_ns, fixed_ns, lat_rad, lon_rad, speed): &Reports<'_>) -> PyResult<Vec<Report>> {
+    let (t, lat, lon, speed) = (time_ns.as_slice()?, lat_rad.as_slice()?, lon_rad.as_slice()?, speed.as_slice()?);
+    let rows = t.iter().zip(lat).zip(lon).zip(speed).zip(fixed_ns.as_slice()?);
+    Ok(rows
         .map(|((((t, lat), lon), speed), fixed)| Report {
             time: GpsTime::from_nanoseconds(*t),
             fixed: (*fixed != i64::MIN).then(|| GpsTime::from_nanoseconds(*fixed)),
@@ -192,26 +188,49 @@ fn plausible<'py>(
             lon_rad: *lon,
             speed_mps: *speed,
         })
-        .collect();
-    let judged = judge(&reports, &limits).map_err(|(index, e)| input_error(e, Some(index)))?;
-    let code = |finding| match finding {
-        Finding::Plausible => 0_u8,
-        Finding::Held => 1,
-        Finding::Stale => 2,
-        Finding::Jump => 3,
-        Finding::Unsettled => 4,
-        Finding::Late => 5,
-    };
-    let codes: Vec<u8> = judged.iter().map(|j| code(j.finding)).collect();
-    let ages: Vec<f64> = judged.iter().map(|j| j.age_s).collect();
-    let steps: Vec<f64> = judged.iter().map(|j| j.step_m).collect();
-    let d = PyDict::new(py);
-    d.set_item("finding", codes.into_pyarray(py))?;
-    d.set_item("age_s", ages.into_pyarray(py))?;
-    d.set_item("step_m", steps.into_pyarray(py))?;
-    d.set_item("too_fast_mps", judged.iter().map(|j| j.too_fast_mps).collect::<Vec<_>>().into_pyarray(py))?;
-    d.set_item("speed_doubted", judged.iter().map(|j| j.speed_doubted).collect::<Vec<_>>().into_pyarray(py))?;
-    Ok(d)
+        .collect())
+}
+
+/// The judge of one track, which sees all its reports and then judges them, both in pieces of any length.
+#[pyclass(module = "navbound._core")]
+struct PlausibleTrack {
+    limits: Limits,
+    survey: Survey,
+    track: Option<Track>,
+}
+
+#[pymethods]
+impl PlausibleTrack {
+    #[new]
+    fn new(limits: &Bound<'_, PyDict>, reports_speed: bool) -> PyResult<Self> {
+        let survey = if reports_speed { Survey::of_reported_speed() } else { Survey::default() };
+        Ok(Self { limits: limits_of(limits)?, survey, track: None })
+    }
+
+    fn see(&mut self, reports: Reports<'_>) -> PyResult<()> {
+        self.survey.see(&reports_of(&reports)?).map_err(|(index, e)| input_error(e, Some(index)))
+    }
+
+    /// Finding (0 plausible, 1 held, 2 stale, 3 jump, 4 unsettled, 5 late), step [m], speed of a step that is too fast [m/s].
+    /// Whether the reported speed was not believed. `after_mps` are speeds of the reports after these, as many as [`SPEEDS_BESIDE`].
+    fn judge<'py>(&mut self, py: Python<'py>, reports: Reports<'py>, after_mps: Vec<f64>) -> PyResult<Bound<'py, PyDict>> {
+        let track = self.track.get_or_insert_with(|| Track::new(std::mem::take(&mut self.survey), &self.limits));
+        let judged = track.judge(&reports_of(&reports)?, &after_mps).map_err(|(index, e)| input_error(e, Some(index)))?;
+        let code = |finding| match finding {
+            Finding::Plausible => 0_u8,
+            Finding::Held => 1,
+            Finding::Stale => 2,
+            Finding::Jump => 3,
+            Finding::Unsettled => 4,
+            Finding::Late => 5,
+        };
+        let d = PyDict::new(py);
+        d.set_item("finding", judged.iter().map(|j| code(j.finding)).collect::<Vec<_>>().into_pyarray(py))?;
+        d.set_item("step_m", judged.iter().map(|j| j.step_m).collect::<Vec<_>>().into_pyarray(py))?;
+        d.set_item("too_fast_mps", judged.iter().map(|j| j.too_fast_mps).collect::<Vec<_>>().into_pyarray(py))?;
+        d.set_item("speed_doubted", judged.iter().map(|j| j.speed_doubted).collect::<Vec<_>>().into_pyarray(py))?;
+        Ok(d)
+    }
 }
 
 fn triples<'a>(array: &'a PyReadonlyArray2<'_, f64>) -> PyResult<&'a [[f64; 3]]> {
@@ -238,5 +257,6 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(gps_from_week_ns, m)?)?;
     m.add_function(wrap_pyfunction!(unix_from_gps_ns, m)?)?;
     m.add_function(wrap_pyfunction!(navigation_error, m)?)?;
-    m.add_function(wrap_pyfunction!(plausible, m)?)
+    m.add("SPEEDS_BESIDE", SPEEDS_BESIDE)?;
+    m.add_class::<PlausibleTrack>()
 }

@@ -184,11 +184,24 @@ impl RnpMonitor {
         counters_dict(py, self.monitor.counters())
     }
 
-    /// A fresh monitor of these settings for every track: alert words, (track, event) rows, counters of each track and of all, and what was
-    /// compared with twice RNP.
+    /// Monitors of these settings, one for each entry, which says whether its track has a protection level anywhere.
+    fn tracks(&self, with_levels: Vec<bool>) -> PyResult<RnpMonitors> {
+        Ok(RnpMonitors { monitors: batch::Monitors::new(*self.monitor.settings(), &with_levels).map_err(refused)? })
+    }
+}
+
+/// One monitor per track, which take their rows in pieces of any length.
+#[pyclass(module = "navbound._core")]
+struct RnpMonitors {
+    monitors: batch::Monitors,
+}
+
+#[pymethods]
+impl RnpMonitors {
+    /// Judge the next rows; bounds are ids with columns, the bools of a row are: usable, should have a level.
     #[allow(clippy::too_many_arguments)]
-    fn run<'py>(
-        &self,
+    fn judge<'py>(
+        &mut self,
         py: Python<'py>,
         time_ns: PyReadonlyArray1<'py, i64>,
         accuracy: (String, PyReadonlyArray1<'py, f64>),
@@ -198,8 +211,7 @@ impl RnpMonitor {
         rnp_m: PyReadonlyArray1<'py, f64>,
         judged: (PyReadonlyArray1<'py, bool>, PyReadonlyArray1<'py, bool>),
         track: PyReadonlyArray1<'py, u32>,
-        n_tracks: usize,
-    ) -> PyResult<Run<'py>> {
+    ) -> PyResult<(Vec<&'static str>, Bound<'py, PyArray1<f64>>)> {
         let fte_m = fte_m.as_ref().map(|a| a.as_slice()).transpose()?;
         let hpl_m = hpl_m.as_ref().map(|a| a.as_slice()).transpose()?;
         let (usable, due) = (judged.0.as_slice()?, judged.1.as_slice()?);
@@ -212,23 +224,27 @@ impl RnpMonitor {
             usable,
             track: track.as_slice()?,
         };
-        let settings = *self.monitor.settings();
-        let run = py.detach(|| batch::run(settings, &columns, n_tracks)).map_err(refused)?;
-        let alerts = run.alert.iter().map(|a| a.word()).collect();
-        let events = run.events.iter().map(|(track, event)| (*track, event_row(event))).collect();
-        let each = run.counters.iter().map(|c| counters_dict(py, c)).collect::<PyResult<_>>()?;
-        let all = run.counters.iter().fold(Counters::default(), |sum, c| sum.merged(c));
-        Ok((alerts, events, each, counters_dict(py, &all)?, run.integrity_compared_m.into_pyarray(py)))
+        let piece = py.detach(|| self.monitors.judge(&columns)).map_err(refused)?;
+        Ok((piece.alert.iter().map(|a| a.word()).collect(), piece.integrity_compared_m.into_pyarray(py)))
+    }
+
+    /// Events with the index of their track, counters of each track, and of all together.
+    fn decided<'py>(&self, py: Python<'py>) -> PyResult<Decided<'py>> {
+        let events = self.monitors.events().iter().map(|(track, event)| (*track, event_row(event))).collect();
+        let counters = self.monitors.counters();
+        let each = counters.iter().map(|c| counters_dict(py, c)).collect::<PyResult<_>>()?;
+        let all = counters.iter().fold(Counters::default(), |sum, c| sum.merged(c));
+        Ok((events, each, counters_dict(py, &all)?))
     }
 }
 
-/// Alert words, (track, event) rows, counters of each track, counters of all, compared bounds.
-type Run<'py> = (Vec<&'static str>, Vec<(u32, EventRow)>, Vec<Bound<'py, PyDict>>, Bound<'py, PyDict>, Bound<'py, PyArray1<f64>>);
+type Decided<'py> = (Vec<(u32, EventRow)>, Vec<Bound<'py, PyDict>>, Bound<'py, PyDict>);
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(specifications, m)?)?;
     m.add_function(wrap_pyfunction!(per_epoch_risk, m)?)?;
     m.add_function(wrap_pyfunction!(per_hour_risk, m)?)?;
     m.add_function(wrap_pyfunction!(alerting_methods, m)?)?;
-    m.add_class::<RnpMonitor>()
+    m.add_class::<RnpMonitor>()?;
+    m.add_class::<RnpMonitors>()
 }

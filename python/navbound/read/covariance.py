@@ -99,6 +99,28 @@ def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
     return _coded(epochs, have)
 
 
+class Claims:
+    """The same for a table that comes in pieces, each the continuation of the one before."""
+
+    def __init__(self, sigma_m: float | None) -> None:
+        self._sigma_m = sigma_m
+        self._before: pl.DataFrame | None = None
+
+    def claim(self, epochs: pl.DataFrame) -> Claimed:
+        """The next piece, as :func:`claim`."""
+        before = self._before.filter(pl.col("track") == epochs["track"][0]) if self._before is not None else epochs.clear()
+        # A status that only some pieces have says nothing here.
+        joined = pl.concat([before, epochs], how="diagonal") if before.height else epochs
+        claimed = claim(joined.select(epochs.columns), self._sigma_m)
+        last = joined.filter(pl.col("track") == joined["track"][-1])
+        rows = [last.filter(pl.col(name).is_not_null()).tail(1) for name in _INDICATORS if name in last.columns]
+        self._before = pl.concat([last.clear(), *rows]).unique("time_ns").sort("time_ns")
+        return Claimed(claimed.epochs[before.height :], claimed.words, claimed.origin)
+
+
+_INDICATORS = ("nac_p", "nic", "rc_m")
+
+
 def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
     """From a radius or a quality indicator."""
     k95, k_rc = circular_sigma(0.05), circular_sigma(RC_RISK)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from navbound.errors import FormatError
 from navbound.run.records import Rejection
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
 MAX_BAD_SHARE = 0.1
@@ -33,7 +32,7 @@ class Rejections:
     records: list[Rejection] = field(default_factory=list)
     malformed: int = 0
     """Rows left out because something in them cannot be read, as opposed to rows in which nothing stands."""
-    _with_bad_values: set[int] = field(default_factory=set)
+    n_with_bad_values: int = 0
     """Rows that stay without a value that cannot be read: a row with three bad values is one row."""
     _first_bad: tuple[int, str, str] | None = None
 
@@ -49,11 +48,10 @@ class Rejections:
             if self._first_bad is None or first < self._first_bad[0]:
                 self._first_bad = (first, reason, example)
 
-    def add_values(self, reason: str, rows: Sequence[int], example: str) -> None:
-        """Count the values of an optional column that cannot be read; `rows` are the lines or records that stay without them."""
-        self.add(reason, len(rows), rows[0], example)
-        self.malformed -= len(rows)
-        self._with_bad_values.update(rows)
+    def add_values(self, reason: str, count: int, first: int, example: str) -> None:
+        """Count the values of an optional column that cannot be read. Their rows count once, in `n_with_bad_values`."""
+        self.add(reason, count, first, example)
+        self.malformed -= count
 
     def refuse_if_too_many(self, n_rows: int) -> None:
         """Refuse the file when more than the stated share of its rows is malformed.
@@ -63,7 +61,7 @@ class Rejections:
         FormatError
             Naming the first malformed line, what is wrong with it and the text found.
         """
-        malformed = self.malformed + len(self._with_bad_values)
+        malformed = self.malformed + self.n_with_bad_values
         if self._first_bad is None or malformed <= MAX_BAD_SHARE * n_rows:
             return
         first, reason, example = self._first_bad
@@ -76,3 +74,46 @@ class Rejections:
             first if self.unit == "line" else None,
             field if separator else None,
         )
+
+
+@dataclass
+class Tally:
+    """The same while a file comes in pieces.
+
+    What pieces count for one reason is counted together, in the order of `place` and then of appearance.
+    """
+
+    n_with_bad_values: int = 0
+    _counted: dict[tuple[int, str], _Counted] = field(default_factory=dict)
+
+    def add(self, place: int, reason: str, count: int, first: int, example: str, *, kind: Kind = "row") -> None:
+        """Count as :meth:`Rejections.add`: rows that are malformed, rows in which nothing is malformed, or values."""
+        if count == 0:
+            return
+        before = self._counted.get((place, reason))
+        if before is None:
+            self._counted[place, reason] = _Counted(count, first, example, kind)
+            return
+        before.count += count
+        if first < before.first:
+            before.first, before.example = first, example
+
+    def into(self, rejections: Rejections) -> None:
+        """Hand over what was counted, once."""
+        rejections.n_with_bad_values += self.n_with_bad_values
+        for (_, reason), of in sorted(self._counted.items(), key=lambda entry: entry[0][0]):
+            if of.kind == "value":
+                rejections.add_values(reason, of.count, of.first, of.example)
+            else:
+                rejections.add(reason, of.count, of.first, of.example, malformed=of.kind == "row")
+
+
+Kind = Literal["row", "quiet", "value"]
+
+
+@dataclass
+class _Counted:
+    count: int
+    first: int
+    example: str
+    kind: Kind

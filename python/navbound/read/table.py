@@ -12,9 +12,12 @@ import polars as pl
 
 from navbound import _packed
 from navbound.errors import FormatError
+from navbound.read.memory import require_free
 from navbound.read.rejections import Rejections
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from navbound.read.source import Source
 
 LINE = "__line"
@@ -61,43 +64,92 @@ def table(source: Source) -> Table:
 
 def _csv(source: Source) -> Table:
     """Text lines with a separator; lines with another number of fields than the header are left out and counted."""
-    lines = pl.DataFrame({"text": source.text().split("\n")}).with_columns(pl.col("text").str.strip_chars_end("\r"))
-    lines = lines.with_columns(pl.int_range(1, pl.len() + 1).alias(LINE))
-    lines = lines.filter(pl.col("text").str.strip_chars() != "", ~pl.col("text").str.starts_with("#"))
+    require_free(source)
+    lines = lines_of(source.text(), 1)
     if lines.is_empty():
         raise FormatError(source.path, "nothing but comments")
+    layout = layout_of(source.path, lines)
+    rows = rows_of(source.path, layout, lines[1:])
+    rejections = Rejections(source.path)
+    if rows.bad is not None:
+        rejections.add(*rows.bad)
+    return Table(rows.frame, rejections, rows.n_rows)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What the first line of a text table says of the others."""
+
+    header: str
+    separator: str
+    names: list[str]
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Some rows of a text table: those of as many fields as the header, and of the others reason, count, line and text of the first."""
+
+    frame: pl.DataFrame
+    n_rows: int
+    bad: tuple[str, int, int, str] | None
+
+
+def lines_of(text: str, first_line: int) -> pl.DataFrame:
+    """Lines that are neither empty nor remarks, with their numbers; `first_line` is that of the first."""
+    lines = pl.DataFrame({"text": text.split("\n")}, schema={"text": pl.String}).with_columns(pl.col("text").str.strip_chars_end("\r"))
+    lines = lines.with_columns(pl.int_range(first_line, first_line + pl.len()).alias(LINE))
+    return lines.filter(pl.col("text").str.strip_chars() != "", ~pl.col("text").str.starts_with("#"))
+
+
+def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
+    """Separator and names of the first of these lines.
+
+    Raises
+    ------
+    FormatError
+        A name that stands twice.
+    """
     header = str(lines["text"][0])
     separator = max(",;\t", key=header.count)
+    return Layout(header, separator, _names(path, header, separator))
+
+
+def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
+    """Take lines below the header apart.
+
+    Raises
+    ------
+    FormatError
+        Lines that do not make as many rows.
+    """
     # Separators within quotation marks do not count; a quotation mark that is left over opens a field that does not end.
     bare = pl.col("text").str.replace_all(r'"[^"]*"', "")
-    counted = lines[1:].with_columns(n=bare.str.count_matches(separator, literal=True) + 1, open=bare.str.contains('"', literal=True))
-    names = _names(source, header, separator)
-    n_fields = len(names)
+    counted = lines.with_columns(n=bare.str.count_matches(layout.separator, literal=True) + 1, open=bare.str.contains('"', literal=True))
+    n_fields = len(layout.names)
     good = counted.filter(pl.col("n") == n_fields, ~pl.col("open"))
-    rejections = Rejections(source.path)
     bad = counted.filter((pl.col("n") != n_fields) | pl.col("open"))
+    refused = None
     if not bad.is_empty():
         text, line, n, _ = bad.row(0)
-        rejections.add(f"a row with another number of fields than the header's {n_fields} (first: {n})", bad.height, line, text)
-    body = "\n".join([header, *good["text"].to_list()]).encode()
+        refused = (f"a row with another number of fields than the header's {n_fields} (first: {n})", bad.height, line, text)
+    body = "\n".join([layout.header, *good["text"].to_list()]).encode()
+    schema = dict.fromkeys(map(str, range(n_fields)), pl.String)
     try:
-        frame = pl.read_csv(
-            io.BytesIO(body), separator=separator, has_header=False, skip_rows=1, schema=dict.fromkeys(map(str, range(n_fields)), pl.String)
-        )
+        frame = pl.read_csv(io.BytesIO(body), separator=layout.separator, has_header=False, skip_rows=1, schema=schema)
     except pl.exceptions.PolarsError as e:
-        raise FormatError(source.path, f"not a table: {e}") from e
+        raise FormatError(path, f"not a table: {e}") from e
     if frame.height != good.height:
-        raise FormatError(source.path, f"not a table: {good.height} lines make {frame.height} rows")
-    named = {str(i): name for i, name in enumerate(names) if name}
-    return Table(frame.select(named.keys()).rename(named).with_columns(good[LINE]), rejections, counted.height)
+        raise FormatError(path, f"not a table: {good.height} lines make {frame.height} rows")
+    named = {str(i): name for i, name in enumerate(layout.names) if name}
+    return Rows(frame.select(named.keys()).rename(named).with_columns(good[LINE]), counted.height, refused)
 
 
-def _names(source: Source, header: str, separator: str) -> list[str]:
+def _names(path: Path, header: str, separator: str) -> list[str]:
     names = [n.strip().strip('"') for n in header.split(separator)]
     # Unnamed columns (a data frame's index, a separator at the end of the line) may be many: nothing can ask for them.
     repeated = [name for name, n in Counter(names).items() if n > 1 and name]
     if repeated:
-        raise FormatError(source.path, f"the column “{repeated[0]}” is named twice", 1)
+        raise FormatError(path, f"the column “{repeated[0]}” is named twice", 1)
     return names
 
 

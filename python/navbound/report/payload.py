@@ -16,7 +16,10 @@ from navbound.report import packing
 from navbound.time import GPS_EPOCH_UNIX_NS, utc_offset_s
 
 if TYPE_CHECKING:
-    from navbound.run.records import RunRecord, Summary, TrackSummary, Waypoint
+    from numpy.typing import NDArray
+
+    from navbound.read.pieces import Frames
+    from navbound.run.records import RunRecord, Summary, TrackSummary, Waypoint, Worst
 
 BUDGET_BYTES = 1_800_000
 """Records and embedded tracks as text; with the page's own parts (about 0.15 MB) the file stays below 2 MB."""
@@ -43,7 +46,7 @@ class Page:
 def build(  # noqa: PLR0917 - as render
     summary: Summary,
     record: RunRecord,
-    epochs: pl.DataFrame,
+    epochs: pl.DataFrame | Frames,
     events: pl.DataFrame,
     waypoints: list[Waypoint],
     budget_bytes: int = BUDGET_BYTES,
@@ -54,7 +57,7 @@ def build(  # noqa: PLR0917 - as render
     ----------
     summary, record : Summary, RunRecord
         Records of the run.
-    epochs : DataFrame
+    epochs : DataFrame or Frames
         The epoch table; columns that are absent are not shown.
     events : DataFrame
         Columns of docs/notation.md; when it has no rows, the events of ``summary``.
@@ -70,11 +73,14 @@ def build(  # noqa: PLR0917 - as render
     """
     data = _finite(_records(summary, record, epochs, events, waypoints))
     room = budget_bytes - len(json.dumps(data, separators=(",", ":")))
-    heads, blocks = _worst_tracks(summary, epochs, room)
+    heads, blocks, words = _worst_tracks(summary, epochs, room)
+    data["summary"]["assumptions"] += words
     return Page(data=data | {"tracks": heads}, tracks=blocks)
 
 
-def _records(summary: Summary, record: RunRecord, epochs: pl.DataFrame, events: pl.DataFrame, waypoints: list[Waypoint]) -> dict[str, Any]:
+def _records(
+    summary: Summary, record: RunRecord, epochs: pl.DataFrame | Frames, events: pl.DataFrame, waypoints: list[Waypoint]
+) -> dict[str, Any]:
     """Everything but the columns of the tracks."""
     records = summary.model_dump(mode="json")
     if events.height:
@@ -90,14 +96,19 @@ def _records(summary: Summary, record: RunRecord, epochs: pl.DataFrame, events: 
     }
 
 
-def _worst_tracks(summary: Summary, epochs: pl.DataFrame, room_bytes: int) -> tuple[list[dict[str, object]], list[str]]:
-    """Heads and blocks of the worst track and of those after it that fit."""
+MOST_ROWS = 200_000
+"""Epochs of one track that are embedded: two days at one a second. [1]"""
+
+
+def _worst_tracks(summary: Summary, epochs: pl.DataFrame | Frames, room_bytes: int) -> tuple[list[dict[str, object]], list[str], list[str]]:
+    """Heads and blocks of the worst track and of those after it that fit, and words on what they do not show."""
     heads: list[dict[str, object]] = []
     blocks: list[str] = []
+    words: list[str] = []
     columns = _columns(summary, epochs)
+    drawn = ["time_ns", *columns, *(name for name in _WORDS if name in epochs.columns)]
     for track in _worst_first(summary.tracks):
-        # One track at a time: the table of a campaign is not copied whole.
-        frame = epochs.filter(pl.col("track") == track.track) if epochs.height else epochs
+        frame, more = _track(epochs, track, summary.verdict.worst_accuracy, drawn)
         if frame.height == 0:
             continue
         head, block = _pack_track(track.track, frame, columns)
@@ -106,7 +117,26 @@ def _worst_tracks(summary: Summary, epochs: pl.DataFrame, room_bytes: int) -> tu
             break
         heads.append(head | {"block": len(blocks)})
         blocks.append(block)
-    return heads, blocks
+        words += more
+    return heads, blocks, words
+
+
+def _track(epochs: pl.DataFrame | Frames, track: TrackSummary, worst: Worst | None, columns: list[str]) -> tuple[pl.DataFrame, list[str]]:
+    """The epochs of one track, of one that is too long those around the worst; and words on that."""
+    # One track at a time: the table of a campaign is not copied whole.
+    parts = [epochs.filter(pl.col("track") == track.track)] if isinstance(epochs, pl.DataFrame) else epochs.track(track.track, columns)
+    if track.n_epochs <= MOST_ROWS:
+        return pl.concat(parts, rechunk=False), []
+    at = worst.time_ns if worst is not None and worst.track == track.track else track.start_ns
+    kept = None
+    for part in parts:
+        kept = part if kept is None else pl.concat([kept, part])
+        # The first half of the room is for what lies before the worst epoch.
+        n_before = int((kept["time_ns"] < at).sum())
+        kept = kept.slice(max(0, min(n_before, kept.height) - MOST_ROWS // 2), MOST_ROWS)
+    assert kept is not None
+    words = f"The charts show {kept.height} of the {track.n_epochs} epochs of track {track.label}, those around its worst."
+    return kept, [words]
 
 
 def _finite(value: Any) -> Any:
@@ -123,7 +153,7 @@ def _worst_first(tracks: list[TrackSummary]) -> list[TrackSummary]:
     return sorted(tracks, key=lambda t: (-t.n_warnings, -t.n_cautions, -(t.worst_ratio if t.worst_ratio is not None else -math.inf)))
 
 
-def _columns(summary: Summary, epochs: pl.DataFrame) -> list[str]:
+def _columns(summary: Summary, epochs: pl.DataFrame | Frames) -> list[str]:
     """Numeric columns worth embedding: the fixed ones, each method's bound, each state's probability."""
     methods = [m.id.replace("-", "_") + "_m" for m in summary.accuracy] + [
         m.id.replace("-", "_") + "_integrity_m" for m in summary.integrity
@@ -154,27 +184,44 @@ def _pack_track(track: str, frame: pl.DataFrame, columns: list[str]) -> tuple[di
     return head, packing.deflate(packed)
 
 
-def _first_time_ns(summary: Summary, epochs: pl.DataFrame) -> int:
+def _first_time_ns(summary: Summary, epochs: pl.DataFrame | Frames) -> int:
     if epochs.height:
-        return int(epochs["time_ns"][0])
+        return int(epochs["time_ns"][0] if isinstance(epochs, pl.DataFrame) else epochs.first("time_ns"))
     return summary.tracks[0].start_ns if summary.tracks else 0
 
 
-def _region(epochs: pl.DataFrame, waypoints: list[Waypoint]) -> tuple[float, float, float, float]:
+def _region(epochs: pl.DataFrame | Frames, waypoints: list[Waypoint]) -> tuple[float, float, float, float]:
     """South, west, north, east of everything drawn with room around it, in degrees; longitudes around the first point."""
-    lat = [w.lat_rad for w in waypoints]
-    lon = [w.lon_rad for w in waypoints]
-    if {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns) and epochs.height:
-        lat += epochs["est_lat_rad"].drop_nulls().drop_nans().to_list()
-        lon += epochs["est_lon_rad"].drop_nulls().drop_nans().to_list()
-    if not lat or not lon:
+    # In place: a column of a large table is there once.
+    lat_deg = _places(epochs, "est_lat_rad", [w.lat_rad for w in waypoints])
+    if not len(lat_deg):
         return (-90.0, -180.0, 90.0, 180.0)
-    lat_deg = np.degrees(lat)
-    centre = math.degrees(lon[0])
-    lon_deg = centre + (np.degrees(lon) - centre + 180.0) % 360.0 - 180.0
-    room = max(2.0, 0.6 * float(max(np.ptp(lat_deg), np.ptp(lon_deg))))
-    wide = room / max(0.2, math.cos(math.radians(float(lat_deg.mean()))))
-    return (float(lat_deg.min()) - room, float(lon_deg.min()) - wide, float(lat_deg.max()) + room, float(lon_deg.max()) + wide)
+    np.degrees(lat_deg, out=lat_deg)
+    south, north, middle = float(lat_deg.min()), float(lat_deg.max()), float(lat_deg.mean())
+    del lat_deg
+    lon_deg = _places(epochs, "est_lon_rad", [w.lon_rad for w in waypoints])
+    if not len(lon_deg):
+        return (-90.0, -180.0, 90.0, 180.0)
+    np.degrees(lon_deg, out=lon_deg)
+    centre = float(lon_deg[0])
+    lon_deg -= centre
+    lon_deg += 180.0
+    lon_deg %= 360.0
+    lon_deg += centre
+    lon_deg -= 180.0
+    west, east = float(lon_deg.min()), float(lon_deg.max())
+    room = max(2.0, 0.6 * max(north - south, east - west))
+    wide = room / max(0.2, math.cos(math.radians(middle)))
+    return (south - room, west - wide, north + room, east + wide)
+
+
+def _places(epochs: pl.DataFrame | Frames, name: str, first: list[float]) -> NDArray[np.float64]:
+    """One coordinate of everything drawn, in an array of its own. [rad]."""
+    if not epochs.height or not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
+        return np.array(first, dtype=np.float64)
+    if isinstance(epochs, pl.DataFrame):
+        return np.concatenate([first, epochs[name].drop_nulls().drop_nans().to_numpy()])
+    return np.concatenate([first, epochs.numbers(name)]) if first else epochs.numbers(name)
 
 
 @cache

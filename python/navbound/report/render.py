@@ -18,12 +18,15 @@ from navbound.report import payload
 if TYPE_CHECKING:
     import polars as pl
 
+    from navbound.read.pieces import Frames
     from navbound.run.records import RunRecord, Summary, Waypoint
 
 _NEEDED = ("track", "time_ns")
 
 
-def render(summary: Summary, record: RunRecord, epochs: pl.DataFrame, events: pl.DataFrame, waypoints: list[Waypoint], out: Path) -> Path:  # noqa: PLR0917 - the parts of a run, in the order of its files
+def render(  # noqa: PLR0917 - the parts of a run, in the order of its files
+    summary: Summary, record: RunRecord, epochs: pl.DataFrame | Frames, events: pl.DataFrame, waypoints: list[Waypoint], out: Path
+) -> Path:
     """Write the report of one run as a single HTML file that needs no network.
 
     Parameters
@@ -32,7 +35,7 @@ def render(summary: Summary, record: RunRecord, epochs: pl.DataFrame, events: pl
         What the run found (summary.json).
     record : RunRecord
         What it takes to do it again (run.json).
-    epochs : DataFrame
+    epochs : DataFrame or Frames
         The epoch table of docs/notation.md; each chart appears when its columns do.
     events : DataFrame
         Alerts and points of the flight.

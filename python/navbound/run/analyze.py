@@ -9,20 +9,21 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
-from navbound import status
 from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
-from navbound.read.columns import POSITION_TIME
-from navbound.read.covariance import COLUMNS, Claimed, claim
+from navbound.read.covariance import Claimed, claim
 from navbound.read.epochs import Reading, read
+from navbound.read.pieces import PIECE_ROWS
 from navbound.read.plausible import Limits, check
 from navbound.read.repeats import left_out, separate
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
+from navbound.read.source import LARGE_BYTES, is_text_table
 from navbound.read.truth import TOLERANCE_S, join, truth_of, with_error, with_truth
 from navbound.run.files import sort_out
 from navbound.run.material import Material
+from navbound.run.pieces import AUXILIARY, covariance_status, in_pieces, states_truth, without_path
 from navbound.run.records import CovarianceOrigin, Rejection, Waypoint
 from navbound.run.solved import solved
 from navbound.run.solving import Solving
@@ -30,9 +31,9 @@ from navbound.run.solving import Solving
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from navbound.read.pieces import PiecedReading
+    from navbound.run.pieces import InPieces
     from navbound.run.records import CrossTrack, InputFile
-
-_AUXILIARY = ("callsign", "nac_p", "nic", "rc_m", "epu_m", "sigma_e_m", "sigma_n_m", "sigma_u_m", POSITION_TIME)
 
 
 def material(
@@ -52,6 +53,7 @@ def material(
     systems: str | None = None,
     ionosphere: str | None = None,
     mask_rad: float | None = None,
+    piece_rows: int | None = None,
 ) -> Material:
     """Make recorded tracks ready to be judged.
 
@@ -84,6 +86,9 @@ def material(
         How measurements are solved, see :func:`navbound.gnss.solve`; ``auto``, ``GEC`` and ``auto`` where they are not named.
     mask_rad : float, optional
         Lowest elevation of the satellites that positions are solved from; :data:`navbound.gnss.MASK_RAD` where it is not named. [rad]
+    piece_rows : int, optional
+        Read the one text table in pieces of about so many rows, whatever its size. Without it a table of 64 MiB or more is read so where
+        it has neither path nor truth. Results are the same.
 
     Raises
     ------
@@ -98,11 +103,28 @@ def material(
     names = [files] if isinstance(files, str) or not hasattr(files, "__iter__") else list(files)
     if not names:
         raise InputError("files", "nothing", domain="one file or more")
+    solving = Solving(signals, systems, ionosphere, mask_rad)
+    settings: dict[str, object] = {
+        "path": None if path is None else str(path),
+        "rnp_m": rnp_m,
+        "truth": None if truth is None else str(truth),
+        "truth_tolerance_s": truth_tolerance_s,
+        "sigma_m": sigma_m,
+    }
+    context = _Context(requirement, settings, sigma_m, gates, limits, solve, solving)
+    if piece_rows is not None and (len(names) > 1 or path is not None or truth is not None or solve):
+        raise InputError("piece_rows", piece_rows, domain="it with one text table, without path, truth and solve")
+    if len(names) == 1 and path is None and truth is None and not solve:
+        table = Path(names[0])
+        if is_text_table(table, LARGE_BYTES if piece_rows is None else 0) and not states_truth(table, columns):
+            solving.refuse(_TO_SOLVE)
+            return _in_pieces(
+                in_pieces(table, columns, sigma_m=sigma_m, limits=limits, rnp_m=rnp_m, piece_rows=piece_rows or PIECE_ROWS), context
+            )
     found = sort_out(names, solve=solve)
     found.require_navigation()
-    solving = Solving(signals, systems, ionosphere, mask_rad)
     if not found.observations:
-        solving.refuse("it together with measurements to solve: RINEX observations, or --solve with a receiver's log")
+        solving.refuse(_TO_SOLVE)
     readings = [read(source.path, columns=columns) for source in found.tables] + (solved(found, solving) if found.observations else [])
     _refuse_experimental(readings)
     inputs = [r.source for r in readings] + [source.record(None) for source in found.navigation if source not in found.observations]
@@ -130,9 +152,9 @@ def material(
         epochs, words = with_error(epochs)
         assumptions.append(f"Truth: from the file itself.{words}")
     route = _follow(path, epochs, gates, rejected)
-    epochs = _covariance_status(route.epochs).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
+    epochs = covariance_status(route.epochs).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
     return Material(
-        epochs=epochs.drop(_AUXILIARY, strict=False),
+        epochs=epochs.drop(AUXILIARY, strict=False),
         kind="analyze",
         title=route.heading if path is not None else f"{route.heading}: {', '.join(Path(str(n)).name for n in names)}",
         requirement=requirement,
@@ -145,19 +167,55 @@ def material(
         rejected=rejected,
         left_out=_on_path(lost, epochs, route.tracks),
         cross_track=route.cross_track,
-        settings={
-            "path": None if path is None else str(path),
-            "rnp_m": rnp_m,
-            "truth": None if truth is None else str(truth),
-            "truth_tolerance_s": truth_tolerance_s,
-            "sigma_m": sigma_m,
+        settings=context.settings_with(readings),
+    )
+
+
+@dataclass(frozen=True)
+class _Context:
+    """What the caller says of a recording beside its files."""
+
+    requirement: str
+    settings: dict[str, object]
+    sigma_m: float | None
+    gates: Gates
+    limits: Limits
+    solve: bool
+    solving: Solving
+
+    def settings_with(self, readings: Sequence[Reading | PiecedReading]) -> dict[str, object]:
+        return self.settings | {
             "columns": {r.source.path: r.columns for r in readings},
             "columns_not_used": {r.source.path: r.unused for r in readings},
-            "gates": asdict(gates),
-            "limits": asdict(limits),
-            "solve": solve,
-            "solving": solving.named,
-        },
+            "gates": asdict(self.gates),
+            "limits": asdict(self.limits),
+            "solve": self.solve,
+            "solving": self.solving.named,
+        }
+
+
+_TO_SOLVE = "it together with measurements to solve: RINEX observations, or --solve with a receiver's log"
+
+
+def _in_pieces(recorded: InPieces, context: _Context) -> Material:
+    """The same of a table that is in pieces on the disk: without a path and a truth."""
+    reading = recorded.reading
+    _refuse_experimental([reading])
+    return Material(
+        epochs=pl.DataFrame(schema=recorded.epochs.schema),
+        frames=recorded.epochs,
+        kind="analyze",
+        title=f"Recorded tracks: {Path(reading.source.path).name}",
+        requirement=context.requirement,
+        sample_period_s=recorded.period_s,
+        assumptions=[recorded.claimed.words, recorded.plausibility.words, _NO_PATH, *reading.notes],
+        covariance=_origin(recorded.claimed, context.sigma_m, solved_alone=False),
+        labels=recorded.labels,
+        inputs=[reading.source],
+        rejected=reading.rejected,
+        left_out=reading.left_out,
+        settings=context.settings_with([reading]),
+        with_levels=frozenset(reading.with_levels),
     )
 
 
@@ -166,7 +224,7 @@ def _origin(claimed: Claimed, sigma_m: float | None, *, solved_alone: bool) -> C
     return CovarianceOrigin(id="solved" if solved_covariance else claimed.origin, sigma_m=sigma_m)
 
 
-def _refuse_experimental(readings: list[Reading]) -> None:
+def _refuse_experimental(readings: Sequence[Reading | PiecedReading]) -> None:
     """Everything read here may reach an alert; columns of Error Extraction say in their own name that they may not."""
     for reading in readings:
         for name, column in reading.columns.items():
@@ -191,8 +249,7 @@ class _Path:
 
 def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejected: list[Rejection]) -> _Path:
     if path is None:
-        words = "Path: none given, so there is no flight technical error; only the navigation system is judged."
-        return _Path(_without_path(epochs), [words], "Recorded tracks")
+        return _Path(without_path(epochs), [_NO_PATH], "Recorded tracks")
     if Path(path).suffix.lower() in {".toml", ".csv"}:
         return _on_route(load_route(path), epochs, rejected)
     names = None if str(path) == "auto" else [name.strip() for name in str(path).split(",")]
@@ -204,9 +261,7 @@ def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejecte
     return _on_approach(found, gates, epochs.height)
 
 
-def _without_path(epochs: pl.DataFrame) -> pl.DataFrame:
-    absent = (pl.lit(None, pl.Float64).alias(c) for c in ("course_rad", "fte_m"))
-    return epochs.with_columns(*absent, pl.lit("recorded track").alias("phase"))
+_NO_PATH = "Path: none given, so there is no flight technical error; only the navigation system is judged."
 
 
 def _on_route(route: Route, epochs: pl.DataFrame, rejected: list[Rejection]) -> _Path:
@@ -272,23 +327,6 @@ def _labels(epochs: pl.DataFrame) -> dict[str, str]:
         return {track: track for track in epochs["track"].unique(maintain_order=True)}
     usual = epochs.group_by("track", maintain_order=True).agg(pl.col("callsign").drop_nulls().mode().sort().first())
     return {track: str(callsign or track) for track, callsign in usual.iter_rows()}
-
-
-def _covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
-    """Status of epochs whose position may be believed, but not the covariance. Written so that a NaN is on the bad side."""
-    ee, nn, en = pl.col("cov_ee_m2"), pl.col("cov_nn_m2"), pl.col("cov_en_m2")
-    # 1e-9 of the squared largest variance: the sixteen digits of a double less those the determinant loses.
-    determinant = ee * nn - en**2 >= -1e-9 * pl.max_horizontal(ee, nn) ** 2
-    positive = pl.all_horizontal(ee.is_finite(), nn.is_finite(), en.is_finite(), ee >= 0, nn >= 0, determinant).fill_null(value=False)
-    believed = pl.col("status").is_in(status.USABLE)
-    fault = (
-        pl.when(~believed).then(pl.lit(None, pl.String))
-        .when(pl.any_horizontal(c.is_null() for c in (ee, nn, en))).then(pl.lit("no_covariance"))
-        .when(~positive).then(pl.lit("not_a_covariance"))
-        .when(ee + nn == 0).then(pl.lit("zero_covariance"))
-    )  # fmt: skip
-    epochs = status.overridden(epochs, epochs.select(fault.alias("reason_id"))["reason_id"])
-    return epochs.with_columns(pl.when(pl.col("status").is_in(status.USABLE)).then(pl.col(c)).alias(c) for c in COLUMNS)
 
 
 def _period(epochs: pl.DataFrame) -> float:

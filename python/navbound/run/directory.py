@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     import polars as pl
 
+    from navbound.read.pieces import Frames
     from navbound.run.records import RunRecord, Summary, Waypoint
 
 RECORD = "run.json"
@@ -26,14 +27,21 @@ REPORT = "report.html"
 
 @dataclass(frozen=True)
 class Run:
-    """A finished run: its records, its epoch table and, once written, where it lies."""
+    """A finished run: its records, its epoch table and, once written, where it lies. A large table is in pieces on the disk."""
 
     summary: Summary
     record: RunRecord
-    epochs: pl.DataFrame
+    table: pl.DataFrame | Frames
     events: pl.DataFrame
     waypoints: list[Waypoint]
     path: Path | None = None
+
+    @property
+    def epochs(self) -> pl.DataFrame:
+        """The epoch table, in memory."""
+        from navbound.read.pieces import Frames  # noqa: PLC0415
+
+        return self.table.frame() if isinstance(self.table, Frames) else self.table
 
     @property
     def report(self) -> Path:
@@ -68,10 +76,10 @@ def write(run: Run, folder: _folder.Writer | None) -> Run:
 
     folder.text(RECORD, run.record.model_dump_json(indent=1))
     folder.text(SUMMARY, run.summary.model_dump_json(indent=1))
-    folder.write(EPOCHS, lambda path: run.epochs.write_parquet(path, compression="zstd"))
+    folder.write(EPOCHS, lambda path: run.table.write_parquet(path, compression="zstd"))
     folder.write(EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
-    folder.write(REPORT, lambda path: render(run.summary, run.record, run.epochs, run.events, run.waypoints, path))
-    return Run(run.summary, run.record, run.epochs, run.events, run.waypoints, folder.folder)
+    folder.write(REPORT, lambda path: render(run.summary, run.record, run.table, run.events, run.waypoints, path))
+    return Run(run.summary, run.record, run.table, run.events, run.waypoints, folder.folder)
 
 
 def load(path: Path) -> Run:

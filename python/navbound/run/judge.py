@@ -16,6 +16,7 @@ from navbound import __version__, rnp, status, tse
 from navbound._states import METRES_PER_NM
 from navbound.errors import InputError
 from navbound.methods import BoundColumn, bounds, column_of, method, with_errors
+from navbound.run import pieces
 from navbound.run.directory import Run
 from navbound.run.records import RunRecord
 from navbound.run.settings import Settings
@@ -24,6 +25,7 @@ from navbound.run.summarise import summarise
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from navbound.read.pieces import Frames
     from navbound.run.material import Material
     from navbound.run.records import EventSummary
 
@@ -54,6 +56,8 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
         An unknown method, no epochs, or a judging method that may not feed an alert.
     """
     settings = settings or Settings()
+    if material.frames is not None:
+        return _judge_pieces(material, material.frames, settings, command)
     if material.epochs.height == 0:
         raise InputError("epochs", 0, "1", "at least one epoch")
     epochs = with_errors(material.epochs)
@@ -67,7 +71,28 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
     shown = [i for i in ids if i == judging or _has_values(epochs, method(i).column)]
     risks = (settings.risk_accuracy, settings.risk_integrity)
     summary = summarise(material, epochs, events, ids=shown, judging=judging, states=states, risks=risks)
-    record = RunRecord(
+    return Run(summary, _record(material, settings, shown, counters, command), epochs, events, material.waypoints)
+
+
+def _judge_pieces(material: Material, epochs: Frames, settings: Settings, command: str) -> Run:
+    """The same of a table in pieces on the disk, which has neither path nor truth."""
+    ids = list(dict.fromkeys((WITHOUT_PATH, *settings.methods)))
+    monitor = _monitor(material.sample_period_s, settings.risk_integrity)
+    monitors = monitor.tracks({track: track in material.with_levels for track in material.labels}, accuracy=WITHOUT_PATH)
+
+    def bounded(piece: pl.DataFrame) -> pl.DataFrame:
+        return _with_bounds(with_errors(piece), ids, WITHOUT_PATH, settings)
+
+    judged = pieces.judged(epochs, bounded, monitors, with_levels=bool(material.with_levels))
+    events, total, _ = monitors.decided()
+    events = _in_words(events)
+    summary = pieces.summary(material, judged, events, ids, (settings.risk_accuracy, settings.risk_integrity))
+    shown = [result.id for result in summary.accuracy]
+    return Run(summary, _record(material, settings, shown, _counters(monitor, total), command), judged, events, material.waypoints)
+
+
+def _record(material: Material, settings: Settings, shown: list[str], counters: dict[str, object], command: str) -> RunRecord:
+    return RunRecord(
         navbound_version=__version__,
         command=command,
         created_utc=datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
@@ -81,7 +106,6 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
         settings=material.settings | {"monitor": counters},
         platform=f"Python {platform.python_version()}, {sys.platform} {platform.machine()}",
     )
-    return Run(summary, record, epochs, events, material.waypoints)
 
 
 def _has_values(epochs: pl.DataFrame, name: str) -> bool:
@@ -125,18 +149,25 @@ def _with_risks(epochs: pl.DataFrame) -> pl.DataFrame:
 def _with_alerts(
     epochs: pl.DataFrame, judging: str, sample_period_s: float, risk_integrity: float
 ) -> tuple[pl.DataFrame, pl.DataFrame, dict[str, object]]:
-    # A finished flight alerts nobody: the chain to the crew is a matter of the live monitor.
-    monitor = rnp.Monitor(sample_period_s=sample_period_s, time_to_alert_s=math.inf, integrity_risk=risk_integrity)
+    monitor = _monitor(sample_period_s, risk_integrity)
     result = monitor.run(epochs, accuracy=judging)
     if _has_values(epochs, "hpl_m"):
         epochs = epochs.with_columns(result.integrity_compared_m)
-    described = {
+    return epochs.with_columns(result.alert.alias("alert")), _in_words(result.events), _counters(monitor, result.counters)
+
+
+def _monitor(sample_period_s: float, risk_integrity: float) -> rnp.Monitor:
+    # A finished flight alerts nobody: the chain to the crew is a matter of the live monitor.
+    return rnp.Monitor(sample_period_s=sample_period_s, time_to_alert_s=math.inf, integrity_risk=risk_integrity)
+
+
+def _counters(monitor: rnp.Monitor, counters: rnp.Counters) -> dict[str, object]:
+    return {
         "exposure": monitor.exposure,
         "stale_after_s": monitor.stale_after_s,
         "time_to_crew_s": monitor.time_to_crew_s,
-        **asdict(result.counters),
+        **asdict(counters),
     }
-    return epochs.with_columns(result.alert.alias("alert")), _in_words(result.events), described
 
 
 def _with_points(events: pl.DataFrame, points: list[EventSummary]) -> pl.DataFrame:

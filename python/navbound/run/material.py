@@ -13,6 +13,7 @@ import polars as pl
 from navbound.read.repeats import LEFT_OUT
 
 if TYPE_CHECKING:
+    from navbound.read.pieces import Frames
     from navbound.run.records import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
 
 
@@ -43,6 +44,10 @@ class Material:
         Where the covariance comes from.
     left_out : DataFrame
         ``track`` and ``time_ns`` of recorded rows that cannot be judged and are no epochs: they are expected all the same.
+    frames : Frames, optional
+        The epochs of a table that is too large for memory, in pieces on the disk; `epochs` is then without rows.
+    with_levels : set of str
+        Tracks with a protection level anywhere, where the epochs are in pieces.
     limits_held : dict
         Phase to how its alert limit is held ("inferred", ...), where epochs have ``hpl_m`` and ``hal_m``.
     """
@@ -65,3 +70,5 @@ class Material:
     events: list[EventSummary] = field(default_factory=list)
     limits_held: dict[str, str] = field(default_factory=dict)
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
+    frames: Frames | None = None
+    with_levels: frozenset[str] = frozenset()

@@ -184,7 +184,7 @@ def _judged(seed: int) -> tuple[scene.Flight, Run, rnp.StateClassifier]:
     twin = judge(replace(material, epochs=pair, labels={AUTHORS: label}))
     epochs = pl.concat([judged.epochs, _with_posteriors(twin.epochs, classifier)])
     tracks = [*judged.summary.tracks, *twin.summary.tracks]
-    return flown, replace(judged, epochs=epochs, summary=judged.summary.model_copy(update={"tracks": tracks})), classifier
+    return flown, replace(judged, table=epochs, summary=judged.summary.model_copy(update={"tracks": tracks})), classifier
 
 
 def _with_posteriors(epochs: pl.DataFrame, classifier: rnp.StateClassifier) -> pl.DataFrame:

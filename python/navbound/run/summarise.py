@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -10,9 +11,9 @@ import polars as pl
 
 from navbound import anp, evaluation, rnp
 from navbound.methods import column_of, method
-from navbound.read.plausible import Limits
-from navbound.read.stated import ALERT, ERROR
+from navbound.run.doubts import Doubts, tracks_with_levels
 from navbound.run.records import (
+    Belief,
     EventSummary,
     Held,
     Honesty,
@@ -32,6 +33,7 @@ from navbound.status import USABLE
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from navbound.methods import Method
     from navbound.run.material import Material
 
 LISTED_EVENTS = 500
@@ -74,21 +76,11 @@ def summarise(
     """
     risk_accuracy, risk_integrity = risks
     judged = method(judging)
-    # What the monitor compared: the larger of the bound and |FTE| + protection level, where there are levels.
-    integrity = judged.integrity_column if "integrity_compared_m" not in epochs.columns else "integrity_compared_m"
-    margins = epochs.with_columns(
-        (pl.col(judged.column) / pl.col("rnp_m")).alias("_ratio"),
-        # A NaN is greater than every number here: it must not pass for a margin.
-        (pl.col("rnp_m") - pl.col(judged.column)).fill_nan(None).alias("_margin"),
-        (2 * pl.col("rnp_m") - pl.col(integrity)).fill_nan(None).alias("_margin_integrity"),
-        pl.col(integrity).alias("_integrity"),
-    )
-    # Degraded epochs may show outside; a share inside speaks of ok epochs alone.
-    margins = margins.with_columns(pl.when(pl.col("status") == "ok").then((pl.col("_margin") >= 0).cast(pl.Float64)).alias("_inside"))
+    margins = with_margins(epochs, judged)
     coverage_kind = evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED
     accuracy = [_method_result(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
     protection = _protection(epochs, material.limits_held)
-    verdict = _verdict(material, margins, accuracy, risks, protection)
+    verdict = verdict_of(material, _facts(material, margins, accuracy, risks), accuracy, risks, protection)
     return Summary(
         kind=material.kind,
         title=material.title,
@@ -103,36 +95,121 @@ def summarise(
         integrity=[_method_result(epochs, i, risk_integrity, coverage_kind, integrity=True) for i in ids],
         honesty=honesty_of(epochs),
         states=states,
-        events=[EventSummary(**row) for row in events.head(LISTED_EVENTS).iter_rows(named=True)],
+        events=listed(events),
         cross_track=material.cross_track,
         rejected=material.rejected,
-        n_status=dict(epochs.get_column("status").value_counts().sort("status").iter_rows()),
+        n_status=by_status(epochs),
     )
 
 
-def _verdict(
-    material: Material, margins: pl.DataFrame, stated: list[MethodResult], risks: tuple[float, float], protection: list[ProtectionSummary]
-) -> Verdict:
+def with_margins(epochs: pl.DataFrame, judged: Method) -> pl.DataFrame:
+    """Judged epochs with what the bounds of the judging method leave of the limits."""
+    # What the monitor compared: the larger of the bound and |FTE| + protection level, where there are levels.
+    integrity = judged.integrity_column if "integrity_compared_m" not in epochs.columns else "integrity_compared_m"
+    # By numbers: the engine divides by a column that is one value by its reciprocal, which is not the same in the last bit.
+    ratio = column_of(epochs, judged.column) / column_of(epochs, "rnp_m")
+    margins = epochs.with_columns(
+        pl.Series("_ratio", ratio, nan_to_null=True),
+        # A NaN is greater than every number here: it must not pass for a margin.
+        (pl.col("rnp_m") - pl.col(judged.column)).fill_nan(None).alias("_margin"),
+        (2 * pl.col("rnp_m") - pl.col(integrity)).fill_nan(None).alias("_margin_integrity"),
+        pl.col(integrity).alias("_integrity"),
+    )
+    # Degraded epochs may show outside; a share inside speaks of ok epochs alone.
+    return margins.with_columns(pl.when(pl.col("status") == "ok").then((pl.col("_margin") >= 0).cast(pl.Float64)).alias("_inside"))
+
+
+def listed(events: pl.DataFrame) -> list[EventSummary]:
+    """The events of summary.json."""
+    return [EventSummary(**row) for row in events.head(LISTED_EVENTS).iter_rows(named=True)]
+
+
+@dataclass(frozen=True)
+class VerdictFacts:
+    """What the verdict says and rests on, of every epoch.
+
+    Attributes
+    ----------
+    n_recorded, n_missing : int
+        Epochs that are there, and that should have been.
+    n_judged, n_inside, n_contained : int
+        With status ok and both margins; of these within RNP, and within twice RNP.
+    n_status : dict
+        Epochs by status.
+    worst : (Worst or None, Worst or None)
+        Epochs of the least margin, of accuracy and of integrity.
+    doubts : Doubts
+        What the recording says against itself.
+    """
+
+    n_recorded: int
+    n_missing: int
+    n_judged: int
+    n_inside: int
+    n_contained: int
+    n_outside: int
+    n_status: dict[str, int]
+    worst: tuple[Worst | None, Worst | None]
+    doubts: Doubts
+    belief: Belief | None = None
+    n_known_beyond: int = 0
+    n_truth: int = 0
+
+
+def _facts(material: Material, margins: pl.DataFrame, stated: list[MethodResult], risks: tuple[float, float]) -> VerdictFacts:
     judge = stated[0]
-    judged = margins.filter(pl.col("status") == "ok").select("_margin", "_margin_integrity").drop_nulls()
-    status = margins.get_column("status")
-    n_missing = _missing(margins, material.left_out, material.sample_period_s)
-    n_epochs, n_degraded = margins.height + n_missing, int((status == "degraded").sum())
-    belief = of_epochs(margins, judge.id, risks, [each.id for each in stated])
-    n_truth = int(np.isfinite(column_of(margins, "nse_h_m")).sum()) if "nse_h_m" in margins.columns else 0
-    against, n_without_level = _against(margins), _without_level(margins)
-    longest_step_s, n_long_steps = _steps(margins)
+    judged = judged_margins(margins)
+    truth = "nse_h_m" in margins.columns
+    doubts = Doubts(tracks_with_levels(margins))
+    doubts.see(margins)
+    return VerdictFacts(
+        n_recorded=margins.height,
+        n_missing=_missing(margins, material.left_out, material.sample_period_s),
+        n_judged=judged.height,
+        n_inside=int((judged["_margin"] >= 0).sum()),
+        n_contained=int((judged["_margin_integrity"] >= 0).sum()),
+        n_outside=margins.select(OUTSIDE.sum()).item(),
+        n_status=by_status(margins),
+        worst=worst_of(margins, judge.id),
+        doubts=doubts,
+        belief=of_epochs(margins, judge.id, risks, [each.id for each in stated]),
+        n_known_beyond=margins.select(_KNOWN_BEYOND.sum()).item() if truth else 0,
+        n_truth=int(np.isfinite(column_of(margins, "nse_h_m")).sum()) if truth else 0,
+    )
+
+
+def judged_margins(margins: pl.DataFrame) -> pl.DataFrame:
+    """Both margins of the epochs that are judged."""
+    return margins.filter(pl.col("status") == "ok").select("_margin", "_margin_integrity").drop_nulls()
+
+
+def by_status(epochs: pl.DataFrame) -> dict[str, int]:
+    """Epochs by status."""
+    return dict(epochs.get_column("status").value_counts().sort("status").iter_rows())
+
+
+def worst_of(margins: pl.DataFrame, judging: str) -> tuple[Worst | None, Worst | None]:
+    """Epochs of the least margin, of accuracy and of integrity."""
+    return _worst(margins, "_margin", method(judging).column, 1.0), _worst(margins, "_margin_integrity", "_integrity", 2.0)
+
+
+def verdict_of(
+    material: Material, found: VerdictFacts, stated: list[MethodResult], risks: tuple[float, float], protection: list[ProtectionSummary]
+) -> Verdict:
+    """The verdict and its words."""
+    judge, belief = stated[0], found.belief
+    n_epochs, n_degraded = found.n_recorded + found.n_missing, found.n_status.get("degraded", 0)
     facts = rule.TrackFacts(
         n_epochs=n_epochs,
-        n_judged=judged.height,
-        n_outside=margins.select(_OUTSIDE.sum()).item(),
+        n_judged=found.n_judged,
+        n_outside=found.n_outside,
         n_beyond_alert_limit=sum(p.n_epochs - round(p.share_available * p.n_epochs) for p in protection),
-        n_implausible=int(status.eq("invalid_input").sum()),
+        n_implausible=found.n_status.get("invalid_input", 0),
         n_misleading=sum(check.n_above for check in belief.levels if check.level == "hpl_m") if belief is not None else 0,
         belief="unchecked" if belief is None else belief.state,
-        n_known_beyond=margins.select(_KNOWN_BEYOND.sum()).item() if "nse_h_m" in margins.columns else 0,
-        n_stated_against=against["either"],
-        n_without_level=n_without_level,
+        n_known_beyond=found.n_known_beyond,
+        n_stated_against=found.doubts.n_stated_against,
+        n_without_level=found.doubts.n_without_level,
     )
     decided = rule.of_tracks(facts)
     verdict = Verdict(
@@ -141,33 +218,33 @@ def _verdict(
         words="",
         requirement=material.requirement,
         method=judge.id,
-        share_inside=_mean(judged["_margin"] >= 0),
-        share_contained=_mean(judged["_margin_integrity"] >= 0),
+        share_inside=found.n_inside / found.n_judged if found.n_judged else None,
+        share_contained=found.n_contained / found.n_judged if found.n_judged else None,
         n_epochs=n_epochs,
-        n_judged=judged.height,
+        n_judged=found.n_judged,
         n_degraded=n_degraded,
-        n_unjudged=n_epochs - judged.height - n_degraded,
-        n_missing=n_missing,
+        n_unjudged=n_epochs - found.n_judged - n_degraded,
+        n_missing=found.n_missing,
         n_outside=facts.n_outside,
         n_known_beyond=facts.n_known_beyond,
-        n_stated_beyond=against["beyond"],
-        n_stated_alert=against["alert"],
-        n_without_level=n_without_level,
-        n_long_steps=n_long_steps,
-        longest_step_s=longest_step_s,
+        n_stated_beyond=found.doubts.n_stated_beyond,
+        n_stated_alert=found.doubts.n_stated_alert,
+        n_without_level=found.doubts.n_without_level,
+        n_long_steps=found.doubts.n_long_steps,
+        longest_step_s=found.doubts.longest_step_s,
         assumed=_assumed(material, judge.id),
         belief=belief,
         n_implausible=facts.n_implausible,
-        worst_accuracy=_worst(margins, "_margin", method(judge.id).column, 1.0),
-        worst_integrity=_worst(margins, "_margin_integrity", "_integrity", 2.0),
-        truth_known=n_truth > 0,
-        n_truth=n_truth,
+        worst_accuracy=found.worst[0],
+        worst_integrity=found.worst[1],
+        truth_known=found.n_truth > 0,
+        n_truth=found.n_truth,
     )
     words = verdict_words(verdict, judge, risks, material.covariance)
     return verdict.model_copy(update={"words": f"{words}{protection_words(protection)}"})
 
 
-_OUTSIDE = (pl.min_horizontal("_margin", "_margin_integrity") < 0).fill_null(value=False) | (
+OUTSIDE = (pl.min_horizontal("_margin", "_margin_integrity") < 0).fill_null(value=False) | (
     (pl.col("status") == "ok") & pl.col("_margin").is_not_null() & pl.col("_margin_integrity").is_null()
 )
 """Outside a limit, or an ok epoch whose protection level is missing: what the monitor compares is then within no limit."""
@@ -177,32 +254,6 @@ _KNOWN_BEYOND = (
     (pl.col("status") == "ok") & (pl.col("_margin") >= 0) & (pl.col("nse_h_m") > 2.0 * pl.col("rnp_m")) & pl.col("nse_h_m").is_finite()
 ).fill_null(value=False)
 """An ok epoch within its limit whose known navigation error alone is beyond twice RNP: no share of epochs makes that good."""
-
-
-def _against(margins: pl.DataFrame) -> dict[str, int]:
-    """Epochs with status ok or degraded where the recording itself states an error beyond RNP, an alert, or either."""
-    usable, never = pl.col("status").is_in(USABLE), pl.lit(value=False)
-    beyond = usable & (pl.col(ERROR) > pl.col("rnp_m")) if ERROR in margins.columns else never
-    alert = usable & pl.col(ALERT).is_not_null() if ALERT in margins.columns else never
-    beyond, alert = beyond.fill_null(value=False), alert.fill_null(value=False)
-    counts = margins.select(usable.alias("_usable"), beyond=beyond, alert=alert, either=beyond | alert)
-    return {name: int(counts[name].sum()) for name in ("beyond", "alert", "either")}
-
-
-def _without_level(margins: pl.DataFrame) -> int:
-    """Judged epochs of tracks whose column of horizontal protection levels holds none: no column of nothing may stand for a level."""
-    if "hpl_m" not in margins.columns:
-        return 0
-    none = pl.col("hpl_m").is_finite().fill_null(value=False).any().over("track").not_()
-    return int(margins.select((none & (pl.col("status") == "ok") & pl.col("_margin").is_not_null()).sum()).item())
-
-
-def _steps(margins: pl.DataFrame) -> tuple[float | None, int]:
-    """The longest step between successive epochs of a track [s], and how many are longer than a position takes to become stale."""
-    steps = margins.select((pl.col("time_ns").diff().over("track").cast(pl.Float64) * 1e-9).alias("step")).drop_nulls()["step"]
-    if steps.is_empty():
-        return None, 0
-    return float(steps.max()), int((steps > Limits().stale_after_s).sum())  # type: ignore[arg-type]
 
 
 def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "sigma_coded", "no_path"]]:
@@ -216,19 +267,45 @@ def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "s
 
 
 def _missing(epochs: pl.DataFrame, left_out: pl.DataFrame, period_s: float) -> int:
+    gaps = Gaps(left_out, period_s)
+    gaps.see(epochs)
+    return gaps.n_missing()
+
+
+class Gaps:
     """Epochs that should have been there: recorded rows that are no epochs, and what the gaps beside them should have held.
 
-    A gap counts where it is longer than the monitor waits before it says that there is nothing. A left out row in it counts once.
+    A gap counts where it is longer than the monitor waits before it says that there is nothing. A left out row in it counts once. Epochs
+    come in the order of track and time, in pieces of any length.
     """
-    timed = left_out.drop_nulls("time_ns").unique(["track", "time_ns"])
-    epochs = pl.concat([epochs.select("track", "time_ns"), timed]).unique().sort("track", "time_ns")
-    step = pl.col("time_ns").diff().over("track").cast(pl.Float64) * 1e-9
-    gaps = epochs.select(step=step).filter(pl.col("step") > rnp.Monitor(sample_period_s=period_s, time_to_alert_s=math.inf).stale_after_s)
-    return left_out.height + int(gaps.select(((pl.col("step") / period_s).round() - 1).sum()).item() or 0)
 
+    def __init__(self, left_out: pl.DataFrame, period_s: float) -> None:
+        self._n_left_out, self._period_s, self._n = left_out.height, period_s, 0
+        self._rest = left_out.drop_nulls("time_ns").unique().sort("track", "time_ns")
+        self._last = self._rest.clear()
+        self._longest_s = rnp.Monitor(sample_period_s=period_s, time_to_alert_s=math.inf).stale_after_s
 
-def _mean(flags: pl.Series) -> float | None:
-    return None if flags.len() == 0 else float(flags.cast(pl.Float64).mean())  # type: ignore[arg-type]
+    def see(self, epochs: pl.DataFrame) -> None:
+        """The next epochs."""
+        track, time_ns = epochs["track"][-1], epochs["time_ns"][-1]
+        due = (pl.col("track") < track) | ((pl.col("track") == track) & (pl.col("time_ns") <= time_ns))
+        before = self._rest.filter(due)
+        self._rest = self._rest.filter(~due)
+        self._count(pl.concat([epochs.select("track", "time_ns"), before]))
+
+    def _count(self, rows: pl.DataFrame) -> None:
+        rows = pl.concat([self._last, rows.unique().sort("track", "time_ns")])
+        step = pl.col("time_ns").diff().over("track").cast(pl.Float64) * 1e-9
+        gaps = rows.select(step=step).filter(pl.col("step") > self._longest_s)
+        self._n += int(gaps.select(((pl.col("step") / self._period_s).round() - 1).sum()).item() or 0)
+        self._last = rows.tail(1)
+
+    def n_missing(self) -> int:
+        """Of all epochs, once."""
+        if not self._rest.is_empty():
+            self._count(self._rest)
+            self._rest = self._rest.clear()
+        return self._n_left_out + self._n
 
 
 def _worst(margins: pl.DataFrame, margin: str, bound: str, factor: float) -> Worst | None:
@@ -334,10 +411,9 @@ def _codes(epochs: pl.DataFrame) -> NDArray[np.int64]:
     return epochs.get_column("track").rle_id().cast(pl.Int64).to_numpy()
 
 
-def _method_result(epochs: pl.DataFrame, method_id: str, risk: float, coverage_kind: str, *, integrity: bool) -> MethodResult:
+def method_result(method_id: str, risk: float, known: NDArray[np.float64], scored: dict[str, float | None] | None = None) -> MethodResult:
+    """A method at one risk: what it is, and its bounds where there are any."""
     m = method(method_id)
-    bound = column_of(epochs, m.integrity_column if integrity else m.column)
-    known = np.isfinite(bound)
     described = {
         "id": m.id,
         "title": m.title,
@@ -347,11 +423,21 @@ def _method_result(epochs: pl.DataFrame, method_id: str, risk: float, coverage_k
         "error_column": m.error_column,
         "may_alert": m.may_alert,
         "risk": risk,
-        "n": int(known.sum()),
-        "mean_m": float(bound[known].mean()) if known.any() else None,
-        "max_m": float(bound[known].max()) if known.any() else None,
+        "n": len(known),
+        "mean_m": float(known.mean()) if len(known) else None,
+        "max_m": float(known.max()) if len(known) else None,
     }
-    scored: dict[str, float | None] = dict.fromkeys(("coverage", "coverage_low", "coverage_high", "n_effective", "winkler_m", "pinball_m"))
+    return MethodResult.model_validate(described | (scored or dict.fromkeys(_SCORES)))
+
+
+_SCORES = ("coverage", "coverage_low", "coverage_high", "n_effective", "winkler_m", "pinball_m")
+
+
+def _method_result(epochs: pl.DataFrame, method_id: str, risk: float, coverage_kind: str, *, integrity: bool) -> MethodResult:
+    m = method(method_id)
+    bound = column_of(epochs, m.integrity_column if integrity else m.column)
+    known = np.isfinite(bound)
+    scored: dict[str, float | None] = dict.fromkeys(_SCORES)
     if m.error_column in epochs.columns:
         error = np.abs(column_of(epochs, m.error_column))
         both = known & np.isfinite(error)
@@ -365,7 +451,7 @@ def _method_result(epochs: pl.DataFrame, method_id: str, risk: float, coverage_k
                 "winkler_m": score.winkler_m,
                 "pinball_m": score.pinball_m,
             }
-    return MethodResult.model_validate(described | scored)
+    return method_result(method_id, risk, bound[known], scored)
 
 
 def honesty_of(epochs: pl.DataFrame) -> Honesty | None:

@@ -1,0 +1,203 @@
+"""A text table of any size to pieces of the epoch table. The largest thing in memory is its column of times."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from navbound.errors import FormatError
+from navbound.read.columns import POSITION, assign
+from navbound.read.pieces.chunks import CHUNK_BYTES, Chunks
+from navbound.read.pieces.order import Pieces
+from navbound.read.pieces.spool import Spool
+from navbound.read.rejections import Rejections, Tally
+from navbound.read.repeats import LEFT_OUT, left_out
+from navbound.read.table import LINE, Layout, layout_of, rows_of
+from navbound.read.values import Late, Values, one_row_a_time, texts
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from navbound.read.columns import Assignment
+    from navbound.run.records import InputFile, Rejection
+
+PIECE_ROWS = 1 << 17
+"""Rows that are worked on at a time."""
+_SAMPLES = 128
+"""Rows of the sample for each piece: pieces differ in size by a tenth or so. Provenance: ours."""
+
+
+@dataclass
+class PiecedReading:
+    """One file read in pieces, with the attributes of :class:`navbound.read.Reading`.
+
+    Of these `left_out` and `rejected` are whole after :meth:`epochs`.
+
+    Attributes
+    ----------
+    names : list of str
+        Tracks, in order.
+    with_levels : set of str
+        Tracks with a protection level anywhere.
+    """
+
+    source: InputFile
+    unused: list[str]
+    notes: list[str]
+    columns: dict[str, str]
+    left_out: pl.DataFrame
+    names: list[str]
+    with_levels: set[str]
+    pieces: Pieces
+    rejections: Rejections
+    n_rows: int
+
+    @property
+    def rejected(self) -> list[Rejection]:
+        """What was left out."""
+        return self.rejections.records
+
+    def epochs(self) -> Iterator[pl.DataFrame]:
+        """One row a time, in the order of track and time; repeated rows are counted when the last piece was taken, so once.
+
+        Raises
+        ------
+        FormatError
+            More malformed rows than may be.
+        """
+        tally, contradicting = Tally(), list[pl.DataFrame]()
+        for piece in self.pieces:
+            found = one_row_a_time(piece, tally)
+            contradicting.append(left_out(found.contradicting))
+            yield found.epochs.drop(LINE)
+        tally.into(self.rejections)
+        self.rejections.refuse_if_too_many(self.n_rows)
+        self.left_out = pl.concat([self.left_out, *contradicting])
+
+    def spread(self) -> Iterator[pl.DataFrame]:
+        """Parts of each track that stands in several pieces, in order, as far as its first part with a reported speed."""
+        spans = self.pieces.spread()
+        for index in sorted({k for low, high in spans.values() for k in range(low, high + 1)}):
+            names = [track for track, (low, high) in spans.items() if low <= index <= high]
+            rows = self.pieces.piece(index) if names else pl.DataFrame()
+            rows = rows if rows.is_empty() else rows.filter(pl.col("track").is_in(names))
+            for part in [] if rows.is_empty() else one_row_a_time(rows, Tally()).epochs.partition_by("track", maintain_order=True):
+                yield part
+                if "ground_speed_mps" in part.columns and part["ground_speed_mps"].is_not_null().any():
+                    del spans[part["track"][0]]
+
+
+def read_pieces(path: str | Path, *, columns: Mapping[str, str] | None = None, piece_rows: int = PIECE_ROWS) -> PiecedReading:
+    """Read a recorded track from a text table of any size.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    columns : mapping of str to str, optional
+        As :func:`navbound.read.read`.
+    piece_rows : int
+        About how many rows are worked on at a time.
+
+    Raises
+    ------
+    FormatError, InputError
+        As :func:`navbound.read.read`.
+    """
+    first = _FirstPass(Path(path), columns, max(1, piece_rows // _SAMPLES))
+    for lines in first.chunks:
+        first.take(lines)
+    return _second_pass(first, max(1, piece_rows // first.stride))
+
+
+class _FirstPass:
+    """Rows in SI, with their times as they are written."""
+
+    def __init__(self, path: Path, columns: Mapping[str, str] | None, stride: int) -> None:
+        # Short chunks for short pieces, so that what depends on a chunk is seen to depend on nothing.
+        self.chunks = Chunks(path, min(CHUNK_BYTES, 64 * _SAMPLES * stride))
+        self.path, self.stride, self.n_rows = path, stride, 0
+        self.parts, self.places = Spool(), list[tuple[int, int]]()
+        self.sample, self.names = list[pl.DataFrame](), set[str | None]()
+        self.rejections = Rejections(path)
+        self._columns = columns
+        self._layout: Layout | None = None
+        self._bad: tuple[str, int, int, str] | None = None
+
+    def take(self, lines: pl.DataFrame) -> None:
+        """The next lines of the file."""
+        if lines.is_empty():
+            return
+        if self._layout is None:
+            self._layout = layout_of(self.path, lines)
+            words = texts(rows_of(self.path, self._layout, lines[1:]).frame)
+            self.mapping: Assignment = assign([name for name in self._layout.names if name], self._columns, self.path, texts=words)
+            self.values = Values(self.path, self.chunks.source.stem, self.mapping, list(POSITION))
+            lines = lines[1:]
+        rows = rows_of(self.path, self._layout, lines)
+        self.n_rows += rows.n_rows
+        if rows.bad is not None:
+            before = self._bad or (rows.bad[0], 0, *rows.bad[2:])
+            self._bad = (before[0], before[1] + rows.bad[1], *before[2:])
+        if rows.frame.is_empty():
+            return
+        part = self.values.take(rows.frame)
+        self.places.append(self.parts.put(part))
+        self.sample.append(self.values.keys(part.gather_every(self.stride)))
+        self.names |= set(part["track"].unique()) if "track" in part.columns else {None}
+
+    def checked(self) -> None:
+        """Refuse a file without rows, or with too many that are none."""
+        if self._layout is None:
+            raise FormatError(self.path, "nothing but comments")
+        if self.n_rows == 0:
+            raise FormatError(self.path, "no rows below the header")
+        if self._bad is not None:
+            self.rejections.add(*self._bad)
+        self.rejections.refuse_if_too_many(self.n_rows)
+
+
+def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
+    """Rows with their times, distributed to pieces."""
+    first.checked()
+    values, source = first.values, first.chunks.source
+    values.understand()
+    names = sorted({source.stem if name is None else name for name in first.names})
+    pieces = Pieces(names, values.when(pl.concat(first.sample)), every)
+    late, without = Late(), [pl.DataFrame(schema=LEFT_OUT)]
+    with_levels, n = set[str](), 0
+    for place in first.places:
+        out, lost = values.timed(first.parts.get(place))
+        without.append(lost)
+        late.see(out)
+        if out.is_empty():
+            continue
+        pieces.put(out)
+        n += out.height
+        with_levels |= _with(out, "hpl_m")
+    first.parts.close()
+    values.tally.into(first.rejections)
+    values.notes.extend(late.words(source.path, "line"))
+    if n == 0:
+        first.rejections.refuse_if_too_many(first.n_rows)
+        raise FormatError(source.path, "no row holds a time, a latitude and a longitude")
+    return PiecedReading(
+        source=source.record(first.n_rows),
+        unused=first.mapping.unused,
+        notes=values.notes,
+        columns=values.described(),
+        left_out=pl.concat(without),
+        names=[name for name in names if pieces.has(name)],
+        with_levels=with_levels,
+        pieces=pieces,
+        rejections=first.rejections,
+        n_rows=first.n_rows,
+    )
+
+
+def _with(rows: pl.DataFrame, name: str) -> set[str]:
+    """Tracks with a value in a column."""
+    return set(rows.filter(pl.col(name).is_not_null())["track"].unique()) if name in rows.columns else set()

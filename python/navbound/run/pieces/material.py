@@ -1,0 +1,162 @@
+"""Recorded rows to epochs that are ready to be judged, piece by piece."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import polars as pl
+
+from navbound import _core, status
+from navbound.read.columns import POSITION_TIME, assign
+from navbound.read.covariance import COLUMNS, Claimed, Claims
+from navbound.read.pieces import Frames, PiecedReading, read_pieces
+from navbound.read.pieces.chunks import Chunks
+from navbound.read.plausible import Checker, Limits, Plausibility
+from navbound.read.table import layout_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+AUXILIARY = ("callsign", "nac_p", "nic", "rc_m", "epu_m", "sigma_e_m", "sigma_n_m", "sigma_u_m", POSITION_TIME)
+"""Columns that no later stage reads."""
+
+
+def states_truth(path: Path, columns: Mapping[str, str] | None) -> bool:
+    """Whether a text table has columns of the true position, told from its header."""
+    for lines in Chunks(path):
+        if not lines.is_empty():
+            names = [name for name in layout_of(path, lines).names if name]
+            return {"truth_lat_rad", "truth_lon_rad"} <= set(assign(names, columns, path).columns)
+    return False
+
+
+def without_path(epochs: pl.DataFrame) -> pl.DataFrame:
+    """Epochs of which nobody says where they should have been."""
+    absent = (pl.lit(None, pl.Float64).alias(c) for c in ("course_rad", "fte_m"))
+    return epochs.with_columns(*absent, pl.lit("recorded track").alias("phase"))
+
+
+def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
+    """Status of epochs whose position may be believed, but not the covariance. Written so that a NaN is on the bad side."""
+    ee, nn, en = pl.col("cov_ee_m2"), pl.col("cov_nn_m2"), pl.col("cov_en_m2")
+    # 1e-9 of the squared largest variance: the sixteen digits of a double less those the determinant loses.
+    determinant = ee * nn - en**2 >= -1e-9 * pl.max_horizontal(ee, nn) ** 2
+    positive = pl.all_horizontal(ee.is_finite(), nn.is_finite(), en.is_finite(), ee >= 0, nn >= 0, determinant).fill_null(value=False)
+    believed = pl.col("status").is_in(status.USABLE)
+    fault = (
+        pl.when(~believed).then(pl.lit(None, pl.String))
+        .when(pl.any_horizontal(c.is_null() for c in (ee, nn, en))).then(pl.lit("no_covariance"))
+        .when(~positive).then(pl.lit("not_a_covariance"))
+        .when(ee + nn == 0).then(pl.lit("zero_covariance"))
+    )  # fmt: skip
+    epochs = status.overridden(epochs, epochs.select(fault.alias("reason_id"))["reason_id"])
+    return epochs.with_columns(pl.when(pl.col("status").is_in(status.USABLE)).then(pl.col(c)).alias(c) for c in COLUMNS)
+
+
+@dataclass(frozen=True)
+class InPieces:
+    """A table read in pieces, and what was learnt on the way.
+
+    Attributes
+    ----------
+    claimed : Claimed
+        Where the covariance comes from; its epochs are those of the last piece.
+    labels : dict
+        Track to the callsign it mostly has, or to its own name.
+    period_s : float
+        Usual time between epochs of a track; 1 s where no track has two. [s]
+    """
+
+    reading: PiecedReading
+    epochs: Frames
+    claimed: Claimed
+    plausibility: Plausibility
+    labels: dict[str, str]
+    period_s: float
+
+
+def in_pieces(
+    path: Path, columns: Mapping[str, str] | None, *, sigma_m: float | None, limits: Limits, rnp_m: float, piece_rows: int
+) -> InPieces:
+    """Read a text table in pieces of about so many rows and make its epochs ready to be judged.
+
+    Raises
+    ------
+    FormatError, InputError
+        As :func:`navbound.run.analyze.material`.
+    """
+    reading = read_pieces(path, columns=columns, piece_rows=piece_rows)
+    checker, claims, epochs = Checker(limits), Claims(sigma_m), Frames()
+    steps, labels = _Steps(reading.n_rows), _Labels(reading.names)
+    for part in reading.spread():
+        checker.see(part)
+    for piece, after in _with_the_next(reading.epochs(), _core.SPEEDS_BESIDE):
+        labels.see(piece)
+        claimed = claims.claim(piece)
+        ready = covariance_status(without_path(checker.check(claimed.epochs, after))).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
+        steps.see(ready)
+        epochs.put(ready.drop(AUXILIARY, strict=False))
+    reading.pieces.close()
+    return InPieces(reading, epochs, claimed, checker.plausibility(), labels.usual(), steps.median_s())
+
+
+def _with_the_next(pieces: Iterator[pl.DataFrame], n: int) -> Iterator[tuple[pl.DataFrame, pl.DataFrame]]:
+    """Each piece with the ``n`` rows after it, as far as there are any."""
+    waiting: deque[pl.DataFrame] = deque()
+    for piece in pieces:
+        waiting.append(piece)
+        while waiting and sum(later.height for later in list(waiting)[1:]) >= n:
+            yield _first_with_rest(waiting, n)
+    while waiting:
+        yield _first_with_rest(waiting, n)
+
+
+def _first_with_rest(waiting: deque[pl.DataFrame], n: int) -> tuple[pl.DataFrame, pl.DataFrame]:
+    first = waiting.popleft()
+    return first, pl.concat([first.clear(), *(later.head(n) for later in waiting)], how="diagonal_relaxed").head(n)
+
+
+class _Steps:
+    """Times between the epochs of each track."""
+
+    def __init__(self, most: int) -> None:
+        self._steps, self._n = np.empty(most, dtype=np.int64), 0
+        self._last: tuple[str, int] | None = None
+
+    def see(self, epochs: pl.DataFrame) -> None:
+        track, time_ns = epochs["track"], epochs["time_ns"]
+        steps = epochs.select(pl.col("time_ns").diff().over("track"))["time_ns"].drop_nulls().to_numpy()
+        if self._last is not None and self._last[0] == track[0]:
+            steps = np.concatenate([[time_ns[0] - self._last[1]], steps])
+        self._steps[self._n : self._n + len(steps)] = steps
+        self._n += len(steps)
+        self._last = (track[-1], time_ns[-1])
+
+    def median_s(self) -> float:
+        step = float(np.median(self._steps[: self._n], overwrite_input=True)) * 1e-9 if self._n else 0.0
+        return step if step > 0 else 1.0
+
+
+class _Labels:
+    """How often each track has each callsign."""
+
+    def __init__(self, names: list[str]) -> None:
+        self._counts: dict[str, Counter[str]] = {name: Counter() for name in names}
+
+    def see(self, epochs: pl.DataFrame) -> None:
+        if "callsign" in epochs.columns:
+            counted = epochs.drop_nulls("callsign").group_by("track", "callsign").len()
+            for track, callsign, n in counted.iter_rows():
+                self._counts[track][callsign] += n
+
+    def usual(self) -> dict[str, str]:
+        """Of several that are as frequent the first of the alphabet."""
+        return {track: _most(found) or track for track, found in self._counts.items()}
+
+
+def _most(counts: Counter[str]) -> str | None:
+    return min(counts, key=lambda name: (-counts[name], name)) if counts else None
