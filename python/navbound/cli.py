@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 import navbound
-from navbound import _core, cli_map, cli_predict
+from navbound import _core, cli_map, cli_predict, cli_procedures
 from navbound.cli_parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, err_console, out_console, work_of
 from navbound.errors import FormatError, InputError, InternalError, NavboundError
 from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed, of_verdict
@@ -380,6 +380,7 @@ def show(
 
 app.command("map")(cli_map.map_command)
 app.command("predict")(cli_predict.predict_command)
+app.add_typer(cli_procedures.app, name="procedures")
 
 
 def _show(run: Run, *, json: bool) -> None:

@@ -19,7 +19,7 @@ NAUTICAL_MILE_M = 1852.0
 
 STATES = {
     "full": "defined by its fixes",
-    "inferred_start": "begin inferred from the leg before or from the coded length (INFERRED)",
+    "inferred_start": "begin INFERRED",
     "open_end": "no defined end",
     "holding": "inbound leg of a hold",
     "point": "a point, no path",
@@ -38,9 +38,9 @@ STATES = {
 ORIGINS = {
     "coded": "coded",
     "selected": "line selected",
-    "default": "default of the specification (standard)",
+    "default": "default (standard)",
     "not_coded": "not coded: not judged",
-    "contradicted": "contradicts its lines of minima: not judged",
+    "contradicted": "not a published line: not judged",
 }
 """Where the RNP of a leg comes from, by the origin's id."""
 

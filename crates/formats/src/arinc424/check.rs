@@ -161,9 +161,11 @@ impl Database {
             if residuals.centre_moved.m() > CENTRE_MOVED_M || (start - end).abs() > UNEVEN_M {
                 add(Contradiction::Centre, start, end);
             }
-            let radius = leg.radius().map_or(f64::NAN, |r| r.m());
-            if let Some(published) = coded.radius_m.filter(|r| (r - start).abs().max((r - end).abs()) > RADIUS_M) {
-                add(Contradiction::Radius, published, radius);
+            if let Some(published) = coded.radius_m {
+                let further = if (published - start).abs() > (published - end).abs() { start } else { end };
+                if (published - further).abs() > RADIUS_M {
+                    add(Contradiction::Radius, published, further);
+                }
             }
             if let Some(Extent::Metres(published)) = coded.extent
                 && (published - leg.length.m()).abs() > LENGTH_M
