@@ -18,6 +18,7 @@ from navbound.errors import FormatError, InputError
 
 if TYPE_CHECKING:
     from navbound.procedures import Database, Procedure
+    from navbound.run.procedure import Flown
 
 app = typer.Typer(help="Published procedures of a navigation database (ARINC 424).", no_args_is_help=True, rich_markup_mode=None)
 File = Annotated[Path, typer.Argument(help="Navigation database: ARINC 424, 132 characters a line, plain or gzip.")]
@@ -114,6 +115,19 @@ def check_command(
         counted = ", ".join(f"{n} {kind}" for kind, n in sorted(others.items()))
         out_console.print(f"Remarks: {counted}" + ("." if remarks else " (--remarks lists them)."), markup=False, highlight=False)
     _say(database)
+
+
+def flown(name: str | None, database: Path | None, line: str | None, *, defaults: bool, missed: bool) -> Flown | None:
+    """The procedure that `navbound analyze` judges against; options that would do nothing without it are refused."""
+    from navbound.run.procedure import Flown  # noqa: PLC0415
+
+    if name is None:
+        if database is not None or line is not None or defaults or missed:
+            raise InputError("procedure", "none", domain="it together with --database, --line, --defaults and --missed")
+        return None
+    if database is None:
+        raise InputError("database", "none", domain="a navigation database (ARINC 424) together with --procedure")
+    return Flown(database, name, line, defaults, missed)
 
 
 def _read(file: Path) -> Database:

@@ -203,6 +203,8 @@ struct Columns {
     along_leg_m: Vec<f64>,
     cross_m: Vec<f64>,
     course_rad: Vec<f64>,
+    foot_lat_rad: Vec<f64>,
+    foot_lon_rad: Vec<f64>,
 }
 
 impl Columns {
@@ -212,6 +214,8 @@ impl Columns {
         self.along_leg_m.push(foot.map_or(f64::NAN, |f| f.foot.along.m()));
         self.cross_m.push(foot.map_or(f64::NAN, |f| f.foot.cross.m()));
         self.course_rad.push(foot.map_or(f64::NAN, |f| f.foot.course.rad()));
+        self.foot_lat_rad.push(foot.map_or(f64::NAN, |f| f.foot.point.lat().rad()));
+        self.foot_lon_rad.push(foot.map_or(f64::NAN, |f| f.foot.point.lon().rad()));
     }
     fn dict(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let d = PyDict::new(py);
@@ -220,6 +224,8 @@ impl Columns {
         d.set_item("along_leg_m", self.along_leg_m.into_pyarray(py))?;
         d.set_item("cross_m", self.cross_m.into_pyarray(py))?;
         d.set_item("course_rad", self.course_rad.into_pyarray(py))?;
+        d.set_item("foot_lat_rad", self.foot_lat_rad.into_pyarray(py))?;
+        d.set_item("foot_lon_rad", self.foot_lon_rad.into_pyarray(py))?;
         Ok(d)
     }
 }

@@ -140,6 +140,8 @@ class LegFeet:
         Distance beside the leg, positive right. [m]
     course_rad : ndarray
         Course of the leg at the foot, in [0, 2 pi). [rad]
+    foot_lat_rad, foot_lon_rad : ndarray
+        The foot. [rad]
     """
 
     leg: NDArray[np.int64]
@@ -147,6 +149,8 @@ class LegFeet:
     along_leg_m: NDArray[np.float64]
     cross_m: NDArray[np.float64]
     course_rad: NDArray[np.float64]
+    foot_lat_rad: NDArray[np.float64]
+    foot_lon_rad: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
