@@ -242,11 +242,11 @@ def test_positions_on_a_leg_without_rnp_are_counted_and_not_judged(shared_data: 
 
 
 def test_a_name_that_is_not_there_is_refused_with_those_that_are() -> None:
-    with pytest.raises(InputError, match="airport = KXXX.*KDEN"):
+    with pytest.raises(InputError, match=r"airport = KXXX.*KDEN"):
         path.procedure(SAMPLE, "KXXX", "H26-Z")
-    with pytest.raises(InputError, match="procedure = H26-X.*H26-Z"):
+    with pytest.raises(InputError, match=r"procedure = H26-X.*H26-Z"):
         path.procedure(SAMPLE, "KDEN", "H26-X")
-    with pytest.raises(InputError, match="transition = JIBAT.*CAPTJ, FUZZZ"):
+    with pytest.raises(InputError, match=r"transition = JIBAT.*CAPTJ, FUZZZ"):
         path.procedure(SAMPLE, "KDEN", "H26-Z", "JIBAT")
     with pytest.raises(InputError, match="line = RNP much"):
         path.procedure(SAMPLE, "KDEN", "H26-Z", "FUZZZ", line="RNP much")

@@ -184,8 +184,7 @@ class ProcedurePath:
         time_s: NDArray[np.float64],
         lat_rad: NDArray[np.float64],
         lon_rad: NDArray[np.float64],
-        rnp_m: list[float],
-        fly_over: list[bool],
+        legs: list[tuple[float, bool]],
         limits: tuple[float, float, float, float, float, float],
     ) -> dict[str, Any]: ...
     def at(self, leg: int, along_m: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]: ...

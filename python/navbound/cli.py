@@ -88,8 +88,11 @@ def analyze(
         typer.Option(help="Where the aircraft should be: a runway (LFPG/08R), auto (the runway each aircraft lands on), or a route file."),
     ] = None,
     procedure: Annotated[
-        str | None, typer.Option(help="Instead of --path: AIRPORT/PROCEDURE[:TRANSITION] of --database, such as KDEN/H26-Z:FUZZZ; "
-            "each leg has its own RNP, and --spec has no part in it.")
+        str | None,
+        typer.Option(
+            help="Instead of --path: AIRPORT/PROCEDURE[:TRANSITION] of --database, such as KDEN/H26-Z:FUZZZ; "
+            "each leg has its own RNP, and --spec has no part in it."
+        ),
     ] = None,
     database: Annotated[Path | None, typer.Option(help="With --procedure: navigation database of ARINC 424.")] = None,
     line: Annotated[str | None, typer.Option(help="With --procedure: line of minima that is flown, such as 'RNP 0.3'.")] = None,

@@ -117,19 +117,22 @@ impl NavigationDatabase {
     /// Contradictions in the published data.
     fn contradictions<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let findings = py.detach(|| self.0.contradictions());
-        findings.iter().map(|f| {
-            let d = PyDict::new(py);
-            d.set_item("line", f.line)?;
-            d.set_item("airport", f.airport.as_str())?;
-            d.set_item("procedure", f.procedure.as_str())?;
-            d.set_item("transition", f.transition.as_str())?;
-            d.set_item("sequence", f.sequence)?;
-            d.set_item("kind", f.kind.id())?;
-            d.set_item("remark", f.kind.is_remark())?;
-            d.set_item("published", f.published)?;
-            d.set_item("expected", f.expected)?;
-            Ok(d)
-        }).collect()
+        findings
+            .iter()
+            .map(|f| {
+                let d = PyDict::new(py);
+                d.set_item("line", f.line)?;
+                d.set_item("airport", f.airport.as_str())?;
+                d.set_item("procedure", f.procedure.as_str())?;
+                d.set_item("transition", f.transition.as_str())?;
+                d.set_item("sequence", f.sequence)?;
+                d.set_item("kind", f.kind.id())?;
+                d.set_item("remark", f.kind.is_remark())?;
+                d.set_item("published", f.published)?;
+                d.set_item("expected", f.expected)?;
+                Ok(d)
+            })
+            .collect()
     }
 
     /// Elevation of an airport and of the threshold of one of its runways [m]; None where the file has none.
@@ -258,21 +261,21 @@ impl ProcedurePath {
         columns.dict(py)
     }
 
-    /// Feet of a flight's positions on its active legs, with a status each.
-    #[pyo3(signature = (time_s, lat_rad, lon_rad, rnp_m, fly_over, limits))]
+    /// Feet of a flight's positions on its active legs, with a status each; `legs` are RNP and whether the fix is flown over.
+    #[pyo3(signature = (time_s, lat_rad, lon_rad, legs, limits))]
     fn follow<'py>(
         &self,
         py: Python<'py>,
         time_s: PyReadonlyArray1<'py, f64>,
         lat_rad: PyReadonlyArray1<'py, f64>,
         lon_rad: PyReadonlyArray1<'py, f64>,
-        rnp_m: Vec<f64>,
-        fly_over: Vec<bool>,
+        legs: Vec<(f64, bool)>,
         limits: [f64; 6],
     ) -> PyResult<Bound<'py, PyDict>> {
         let [sigma_along_m, gap_s, nearer_s, established_s, established_rad, bank_rad] = limits;
         let limits = Limits { sigma_along_m, gap_s, nearer_s, established_s, established_rad, bank_rad };
         let (time, lat, lon) = (time_s.as_slice()?, lat_rad.as_slice()?, lon_rad.as_slice()?);
+        let (rnp_m, fly_over): (Vec<f64>, Vec<bool>) = legs.into_iter().unzip();
         let follow = Follow::new(&self.0, &rnp_m, &fly_over, limits).map_err(refused)?;
         let followed = py.detach(|| follow.all(time, lat, lon)).map_err(refused_at)?;
         let mut columns = Columns::default();

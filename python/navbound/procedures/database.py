@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from navbound import _core
@@ -93,7 +94,11 @@ class Database:
     def __init__(self, core: _core.NavigationDatabase, file: str) -> None:
         self._core = core
         self.file = file
-        self.entries = tuple(_entry(row) for row in core.procedures())
+
+    @cached_property
+    def entries(self) -> tuple[Entry, ...]:
+        """Procedures in the order of the file."""
+        return tuple(_entry(row) for row in self._core.procedures())
 
     @property
     def header(self) -> list[str]:
@@ -127,7 +132,8 @@ class Database:
         if self.n_refused:
             first = self.refused[0]
             words.append(
-                f"{self.n_refused} of {self.n_lines} lines refused; the first is line {first.line}: {first.field} {first.reason} ({first.text!r})."
+                f"{self.n_refused} of {self.n_lines} lines refused; the first is line {first.line}: "
+                f"{first.field} {first.reason} ({first.text!r})."
             )
         if self._core.n_unattributed:
             words.append(f"{self._core.n_unattributed} refused lines name no route: a procedure of this file may lack a leg.")
@@ -166,7 +172,9 @@ class Database:
         routes = _routes(entry, transition)
         for k in routes:
             for number in entry.routes[k].refused:
-                raise FormatError(self.file, f"{airport} {procedure}: this line is refused, so the route is not whole", number, self._why(number))
+                raise FormatError(
+                    self.file, f"{airport} {procedure}: this line is refused, so the route is not whole", number, self._why(number)
+                )
         selected_m = None if line is None else self._selected(index, entry, routes, line)
         rows, path = self._core.path(index, routes, missed, selected_m, defaults)
         return Procedure(
@@ -184,7 +192,7 @@ class Database:
         )
 
     def threshold_elevation_m(self, airport: str, runway: str) -> float | None:
-        """Elevation of a runway's threshold, such as ``RW26``. [m]"""
+        """Elevation of a runway's threshold, such as ``RW26`` [m]."""
         return self._core.elevations(airport, runway)[1]
 
     def _why(self, number: int) -> str | None:
@@ -203,7 +211,7 @@ class Database:
         return named[0]
 
     def _selected(self, index: int, entry: Entry, routes: list[int], line: str) -> float:
-        """RNP of the selected line: a published one, or one that the final approach codes. [m]"""
+        """RNP of the selected line: a published one, or one that the final approach codes [m]."""
         selected_m = _rnp_m(line)
         rows, _ = self._core.path(index, routes, False, None, False)
         coded = [row["rnp_coded_m"] for row in rows if row["part"] == "final" and row["rnp_coded_m"] is not None]

@@ -67,14 +67,12 @@ def _rnp(m: float) -> str:
 
 def _course(published: float, expected: float) -> str:
     off = abs((published - expected + math.pi) % math.tau - math.pi)
-    return (
-        f"coded course {math.degrees(published):.1f}° true, the fixes give {math.degrees(expected):.1f}°: {math.degrees(off):.1f}° apart"
-    )
+    return f"coded course {math.degrees(published):.1f}° true, the fixes give {math.degrees(expected):.1f}°: {math.degrees(off):.1f}° apart"
 
 
 _WORDS: dict[str, Callable[[float, float], str]] = {
     "centre": lambda p, e: (
-        f"the fixes are {p:.1f} m and {e:.1f} m from the published centre: no circle, and the centre moves by at least {abs(p - e) / 2:.1f} m"
+        f"the fixes are {p:.1f} m and {e:.1f} m from the published centre: no circle; it moves by at least {abs(p - e) / 2:.1f} m"
     ),
     "radius": lambda p, e: f"coded radius {p / NM:.3f} NM, the fixes give {e / NM:.3f} NM: {abs(p - e):.1f} m apart",
     "course": _course,

@@ -145,7 +145,8 @@ class Flight:
     @property
     def words(self) -> list[str]:
         """The answers to whether the flight was inside, without a bound of the total error."""
-        a = f"Recorded positions: inside RNP at {self.n_inside} of {self.n}, inside twice RNP at {self.n_inside_twice} of {self.n}; {self.verdict}."
+        counts = f"inside RNP at {self.n_inside} of {self.n}, inside twice RNP at {self.n_inside_twice} of {self.n}"
+        a = f"Recorded positions: {counts}; {self.verdict}."
         if self.n == 0:
             return [a]
         c = f"What the data can decide: {self.n} positions are worth {self.n_effective:.1f} independent ones"
@@ -196,7 +197,7 @@ def results(procedure: Procedure, followed: Followed, time_s: NDArray[np.float64
     names, counts = np.unique(followed.status, return_counts=True)
     return Flight(
         followed=followed,
-        legs=tuple(_leg(procedure, k, followed, time_s, inside, twice) for k in present),
+        legs=tuple(_leg(procedure, k, followed, time_s, (inside, twice)) for k in present),
         n_status=dict(zip(names.tolist(), counts.tolist(), strict=True)),
         first_time_s=float(time_s[judged][0]) if judged.any() else math.nan,
         n=n,
@@ -213,8 +214,7 @@ def _leg(
     index: int,
     followed: Followed,
     time_s: NDArray[np.float64],
-    inside: NDArray[np.bool_],
-    twice: NDArray[np.bool_],
+    within: tuple[NDArray[np.bool_], NDArray[np.bool_]],
 ) -> LegResult:
     leg = procedure.legs[index]
     here = followed.leg == index
@@ -235,8 +235,8 @@ def _leg(
         rms_m=float(np.sqrt(np.mean(cross**2))) if cross.size else math.nan,
         p95_m=float(np.quantile(np.abs(cross), 0.95, method="higher")) if cross.size else math.nan,
         max_abs_m=float(np.abs(cross[worst])) if cross.size else math.nan,
-        n_inside=int((on & inside).sum()),
-        n_inside_twice=int((on & twice).sum()),
+        n_inside=int((on & within[0]).sum()),
+        n_inside_twice=int((on & within[1]).sum()),
         worst_time_s=float(time[worst]) if cross.size else math.nan,
         worst_along_m=float(along[worst]) if cross.size else math.nan,
     )

@@ -210,7 +210,7 @@ class Procedure:
 
     @property
     def n_without_rnp(self) -> int:
-        """Legs with a path and without an RNP: they are not judged. [1]"""
+        """Legs with a path and without an RNP: they are not judged [1]."""
         return sum(1 for x in self.legs if x.has_path and not np.isfinite(x.rnp_m))
 
     def nearest(self, lat_rad: ArrayLike, lon_rad: ArrayLike) -> LegFeet:
@@ -253,7 +253,6 @@ class Procedure:
 
         used = limits or Limits()
         shape, (time, lat, lon) = flatten(time_s=(time_s, ()), lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()))
-        rnp = [x.rnp_m for x in self.legs]
-        row = self.core.follow(time, lat, lon, rnp, [x.fly_over for x in self.legs], used.values)
+        row = self.core.follow(time, lat, lon, [(x.rnp_m, x.fly_over) for x in self.legs], used.values)
         status = np.array(row.pop("status"), dtype=np.str_).reshape(shape)
         return Followed(status=status, **{name: values.reshape(shape) for name, values in row.items()})

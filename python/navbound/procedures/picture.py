@@ -113,9 +113,7 @@ def _mark(leg: Leg, plan: object) -> Mark:
     east, north = plan(np.array([leg.lat_rad]), np.array([leg.lon_rad]))  # type: ignore[operator]
     along = leg.begin_m + (leg.length_m if leg.has_path and leg.state != "holding" else 0.0)
     altitude = leg.altitude_m[0]
-    return Mark(
-        leg.fix, float(east[0]), float(north[0]), along, math.nan if altitude is None else altitude, altitude_words(leg)
-    )
+    return Mark(leg.fix, float(east[0]), float(north[0]), along, math.nan if altitude is None else altitude, altitude_words(leg))
 
 
 def altitude_words(leg: Leg) -> str:

@@ -16,7 +16,21 @@ if TYPE_CHECKING:
     from navbound.procedures.legs import Leg, Procedure
     from navbound.procedures.picture import Picture
 
-HEADINGS = ("seq", "fix", "leg", "part", "RNP, NM", "RNP from", "length, NM", "radius, NM", "altitude, ft", "angle", "speed, kt", "remark", "line")
+HEADINGS = (
+    "seq",
+    "fix",
+    "leg",
+    "part",
+    "RNP, NM",
+    "RNP from",
+    "length, NM",
+    "radius, NM",
+    "altitude, ft",
+    "angle",
+    "speed, kt",
+    "remark",
+    "line",
+)
 WIDTH, HEIGHT, EDGE = 1040.0, 620.0, 60.0
 PROFILE_HEIGHT = 260.0
 FOOT_M = 0.3048
@@ -27,7 +41,7 @@ def cells(leg: Leg) -> tuple[str, ...]:
     end = "-" if not math.isfinite(leg.length_m) else f"{leg.length_m / NAUTICAL_MILE_M:.2f}"
     coded = "" if leg.rnp_coded_m is None or not leg.rnp_differs else f" (field {leg.rnp_coded_m / NAUTICAL_MILE_M:.3g})"
     rnp = f"{leg.rnp_m / NAUTICAL_MILE_M:.3g}" if math.isfinite(leg.rnp_m) else "-"
-    speed = "" if leg.speed_kt is None else f"{ {'-': '≤ ', '+': '≥ '}.get(leg.speed_description, '')}{leg.speed_kt:g}"
+    speed = "" if leg.speed_kt is None else f"{ {'-': '≤ ', '+': '≥ '}.get(leg.speed_description, '') }{leg.speed_kt:g}"
     return (
         f"{leg.sequence:03d}",
         leg.fix or "-",
@@ -53,12 +67,16 @@ def notes(procedure: Procedure, findings: list[Finding]) -> list[str]:
         words.append(f"Lines of minima: {names}" + (f"; selected: {procedure.line}." if procedure.line else "; none selected."))
     n = procedure.n_without_rnp
     if n:
-        words.append(f"!{n} of {sum(x.has_path for x in procedure.legs)} legs with a path have no RNP and are not judged; select a line or allow defaults.")
+        words.append(
+            f"!{n} of {sum(x.has_path for x in procedure.legs)} legs with a path have no RNP and are not judged; "
+            "select a line or allow defaults."
+        )
     differing = [x for x in procedure.legs if x.rnp_differs]
     words += [
-        f"!Leg to {x.fix}: the field has RNP {x.rnp_coded_m / NAUTICAL_MILE_M:.3g}, {ORIGINS[x.rnp_origin]}" +
-        (f" RNP {x.rnp_m / NAUTICAL_MILE_M:.3g}." if math.isfinite(x.rnp_m) else ".")
-        for x in differing if x.rnp_coded_m is not None
+        f"!Leg to {x.fix}: the field has RNP {x.rnp_coded_m / NAUTICAL_MILE_M:.3g}, {ORIGINS[x.rnp_origin]}"
+        + (f" RNP {x.rnp_m / NAUTICAL_MILE_M:.3g}." if math.isfinite(x.rnp_m) else ".")
+        for x in differing
+        if x.rnp_coded_m is not None
     ]
     words += [f"!Line {f.line}, leg {f.sequence}: {f.words}." for f in findings]
     return words + [f"!{note}" for note in procedure.notes]

@@ -162,7 +162,7 @@ def with_answers(run: Run) -> Run:
 
 
 def _flights(followed: Followed, time_s: NDArray[np.float64]) -> list[tuple[int, int]]:
-    """First and last judged position of each flight along the procedure: one ends where the aircraft leaves the path, or after a long gap."""
+    """First and last judged position of each flight: one ends where the aircraft leaves the path, or after a long gap."""
     ok = np.flatnonzero(followed.status == "ok")
     if not ok.size:
         return []
@@ -196,8 +196,8 @@ def _path_words(procedure: Procedure) -> str:
         f"{x.fix or '-'} {x.terminator} {rnp_words(x.rnp_m)} ({x.rnp_origin.replace('_', ' ')})" for x in procedure.legs if x.has_path
     )
     return (
-        f"Path: procedure {procedure.name} of {procedure.file}: {legs}. Established is within the RNP and 30° of the course for 10 s; turns "
-        "are flown by with 18° of bank (INFERRED)."
+        f"Path: procedure {procedure.name} of {procedure.file}: {legs}. Established is within the RNP and 30° of the course for 10 s; "
+        "turns are flown by with 18° of bank (INFERRED)."
     )
 
 
@@ -217,8 +217,9 @@ def _words(track: str, time_ns: int, flight: Flight) -> list[str]:
 def _leg_words(leg: LegResult, time_ns: int) -> str:
     share = f" = {leg.max_abs_m / leg.rnp_m:.3f} RNP" if np.isfinite(leg.rnp_m) else ""
     turns = f"; {leg.n_transition} in turns" if leg.n_transition else ""
+    inside = f"inside RNP {leg.n_inside}, inside twice RNP {leg.n_inside_twice}{turns}"
     return (
         f"Leg {leg.fix or leg.terminator} ({leg.terminator}, {rnp_words(leg.rnp_m)}, {leg.length_m / 1852:.2f} NM): {leg.n} positions in "
         f"{leg.duration_s:.0f} s, mean {leg.mean_m:+.2f} m, RMS {leg.rms_m:.2f} m, 95 % {leg.p95_m:.2f} m, largest {leg.max_abs_m:.2f} m"
-        f"{share} at {utc_text(time_ns + round(leg.worst_time_s * 1e9))}; inside RNP {leg.n_inside}, inside twice RNP {leg.n_inside_twice}{turns}."
+        f"{share} at {utc_text(time_ns + round(leg.worst_time_s * 1e9))}; {inside}."
     )

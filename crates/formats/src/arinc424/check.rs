@@ -115,16 +115,7 @@ struct At<'a> {
 impl At<'_> {
     fn finding(self, line: usize, sequence: Option<i32>, kind: Contradiction, published: f64, expected: f64) -> Finding {
         let name = &self.procedure.name;
-        Finding {
-            line,
-            airport: name.airport,
-            procedure: name.ident,
-            transition: self.transition,
-            sequence,
-            kind,
-            published,
-            expected,
-        }
+        Finding { line, airport: name.airport, procedure: name.ident, transition: self.transition, sequence, kind, published, expected }
     }
 }
 

@@ -78,7 +78,8 @@ impl Database {
         }
         let definitions: Vec<Definition> = legs.iter().map(|l| self.definition(procedure, &l.leg)).collect();
         // A definition with a number that is not finite cannot come from digits; it would be a leg without geometry.
-        let path = ProcedurePath::new(&definitions).or_else(|_| ProcedurePath::new(&vec![Definition::Without(State::Impossible); legs.len()]));
+        let path =
+            ProcedurePath::new(&definitions).or_else(|_| ProcedurePath::new(&vec![Definition::Without(State::Impossible); legs.len()]));
         PathOfProcedure { path: path.unwrap_or_default(), legs }
     }
 
@@ -104,11 +105,7 @@ impl Database {
             "TF" => Definition::Track(fix()?),
             "DF" => Definition::Direct(fix()?),
             "CF" => Definition::CourseTo(fix()?, course()?, miles),
-            "RF" => Definition::Circle {
-                to: fix()?,
-                centre: self.place(procedure, &leg.centre, State::NoCentre)?,
-                right: right(leg)?,
-            },
+            "RF" => Definition::Circle { to: fix()?, centre: self.place(procedure, &leg.centre, State::NoCentre)?, right: right(leg)? },
             "AF" => Definition::DmeArc {
                 to: fix()?,
                 navaid: navaid()?,

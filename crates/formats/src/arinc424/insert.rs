@@ -62,7 +62,11 @@ impl Database {
                 return Ok(());
             }
             first.ambiguous = true;
-            return Err(Fault { field: "identifier", reason: "a second fix of this name has another position", text: key.ident.to_string() });
+            return Err(Fault {
+                field: "identifier",
+                reason: "a second fix of this name has another position",
+                text: key.ident.to_string(),
+            });
         }
         self.fixes.insert(key, Fix { line, place, variation_rad, ambiguous: false });
         Ok(())
@@ -141,7 +145,8 @@ impl Database {
         if !matches!(r.byte(27), b'0' | b'1') {
             let height = r.metres("orthometric height", (41, 46), 10.0)?;
             let first = self.path_points.last_mut().filter(|p| p.airport == airport && p.approach == approach);
-            let first = first.ok_or(Fault { field: "approach", reason: "continuation without its path point", text: approach.to_string() })?;
+            let first =
+                first.ok_or(Fault { field: "approach", reason: "continuation without its path point", text: approach.to_string() })?;
             (first.orthometric_height_m, first.continuation_line) = (height, Some(line));
             return Ok(());
         }
@@ -260,8 +265,29 @@ fn terminator(r: Record<'_>) -> Result<Text<2>, Fault> {
     let text: Text<2> = r.text(48);
     let known = matches!(
         text.as_str(),
-        "" | "IF" | "TF" | "RF" | "CF" | "DF" | "AF" | "CA" | "CD" | "CI" | "CR" | "FA" | "FC" | "FD" | "FM" | "HA" | "HF" | "HM"
-            | "PI" | "VA" | "VD" | "VI" | "VM" | "VR"
+        "" | "IF"
+            | "TF"
+            | "RF"
+            | "CF"
+            | "DF"
+            | "AF"
+            | "CA"
+            | "CD"
+            | "CI"
+            | "CR"
+            | "FA"
+            | "FC"
+            | "FD"
+            | "FM"
+            | "HA"
+            | "HF"
+            | "HM"
+            | "PI"
+            | "VA"
+            | "VD"
+            | "VI"
+            | "VM"
+            | "VR"
     );
     if known { Ok(text) } else { Err(Fault { field: "path terminator", reason: "none of the 23 of ARINC 424", text: text.to_string() }) }
 }

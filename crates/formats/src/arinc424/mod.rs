@@ -160,12 +160,7 @@ impl Database {
         self.n_refused += 1;
         self.mark_route(number, record);
         if self.refused.len() < KEPT_REFUSALS {
-            self.refused.push(Refusal {
-                line: number,
-                field: fault.field.to_owned(),
-                reason: fault.reason.to_owned(),
-                text: fault.text,
-            });
+            self.refused.push(Refusal { line: number, field: fault.field.to_owned(), reason: fault.reason.to_owned(), text: fault.text });
         }
     }
 

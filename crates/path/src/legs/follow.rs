@@ -5,7 +5,7 @@
 //! approach are no exceedance. The numbers of [`Limits`] are INFERRED.
 
 use super::{LegFoot, PathLeg, ProcedurePath, State};
-use crate::earth::{half_turn, inverse};
+use crate::earth::{MEAN_RADIUS_M, half_turn};
 use crate::refusal::{At, AtIndex};
 use core::f64::consts::FRAC_PI_2;
 use navbound_core::frame::LatLon;
@@ -216,6 +216,11 @@ impl<'a> Follow<'a> {
         let mut active = active;
         let mut foot = legs[active.leg].project_near(&fix.place, near(active.furthest_m))?;
         while let Some(next) = legs.iter().skip(active.leg + 1).find(|leg| leg.has_path()) {
+            // Within the noise of its own leg no other is nearer.
+            if side(&legs[active.leg], &foot) <= slack && inside(&legs[active.leg], &foot) {
+                active.nearer_since = None;
+                break;
+            }
             let other = next.project(&fix.place)?;
             let passed = foot.foot.along.m() > legs[active.leg].length.m() + slack;
             let nearer = inside(next, &other) && side(next, &other) < side(&legs[active.leg], &foot);
@@ -334,9 +339,11 @@ fn side(leg: &PathLeg, foot: &LegFoot) -> f64 {
     foot.foot.cross.m().hypot(leg.beyond(foot.foot.along.m()))
 }
 
+/// Track and speed between two positions in the plane of their middle: what they are compared with is degrees wide.
 fn motion(from: &LatLon, to: &LatLon, dt_s: f64) -> (f64, f64) {
-    let between = inverse(from, to);
-    (between.departure.rad(), between.distance.m() / dt_s)
+    let north = to.lat().rad() - from.lat().rad();
+    let east = half_turn(to.lon().rad() - from.lon().rad()) * (0.5 * (to.lat().rad() + from.lat().rad())).cos();
+    (east.atan2(north), MEAN_RADIUS_M * east.hypot(north) / dt_s)
 }
 
 impl ProcedurePath {

@@ -9,7 +9,7 @@ mod build;
 mod follow;
 
 pub use arc::Residuals;
-pub use follow::{Followed, Follow, Limits, Tracked};
+pub use follow::{Follow, Followed, Limits, Tracked};
 
 use crate::line::Line;
 use crate::turn::Arc;
