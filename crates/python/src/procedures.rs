@@ -281,7 +281,8 @@ impl ProcedurePath {
         let mut columns = Columns::default();
         followed.iter().for_each(|f| columns.push(f.foot));
         let d = columns.dict(py)?;
-        d.set_item("status", followed.iter().map(|f| f.status.id()).collect::<Vec<_>>())?;
+        let status: Vec<u8> = followed.iter().map(|f| f.status as u8).collect();
+        d.set_item("status", status.into_pyarray(py))?;
         Ok(d)
     }
 

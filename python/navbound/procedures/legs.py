@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from navbound.procedures.flight import Limits
 
 NAUTICAL_MILE_M = 1852.0
+_STATUS = np.array(_core.procedure_words()[1])
+"""Statuses of positions by their number in the core."""
 
 STATES = {
     "full": "defined by its fixes",
@@ -254,5 +256,5 @@ class Procedure:
         used = limits or Limits()
         shape, (time, lat, lon) = flatten(time_s=(time_s, ()), lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()))
         row = self.core.follow(time, lat, lon, [(x.rnp_m, x.fly_over) for x in self.legs], used.values)
-        status = np.array(row.pop("status"), dtype=np.str_).reshape(shape)
+        status = _STATUS[row.pop("status")].reshape(shape)
         return Followed(status=status, **{name: values.reshape(shape) for name, values in row.items()})

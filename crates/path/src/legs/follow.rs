@@ -68,7 +68,7 @@ pub enum Tracked {
 }
 
 impl Tracked {
-    /// All of them.
+    /// All of them, in the order of their numbers.
     pub const ALL: [Self; 7] =
         [Self::Ok, Self::Transition, Self::Holding, Self::Outside, Self::NotEstablished, Self::OffPath, Self::Missing];
     /// Stable id.
@@ -108,8 +108,9 @@ struct Fix {
 pub struct Follow<'a> {
     path: &'a ProcedurePath,
     rnp_m: &'a [f64],
-    fly_over: &'a [bool],
     limits: Limits,
+    /// Track change at the end of each leg that a fly-by turn joins to the next \[rad\].
+    changes: Vec<Option<f64>>,
     active: Option<Active>,
     last: Option<(f64, LatLon)>,
     aligned_since: Option<f64>,
@@ -137,7 +138,9 @@ impl<'a> Follow<'a> {
                 return Err(OutOfDomain { argument, value: found as f64, unit: "items", domain: "one item a leg" });
             }
         }
-        Ok(Self { path, rnp_m, fly_over, limits, active: None, last: None, aligned_since: None, established: false })
+        let joints = path.legs().windows(2).zip(fly_over);
+        let changes = joints.map(|(pair, over)| if *over { None } else { track_change(&pair[0], &pair[1]) }).collect();
+        Ok(Self { path, rnp_m, limits, changes, active: None, last: None, aligned_since: None, established: false })
     }
 
     /// All positions of a flight; both angles NaN is a missing one. Once the flight is established, the positions of the interval that
@@ -286,23 +289,17 @@ impl<'a> Follow<'a> {
 
     /// Whether a position lies in the nominal turn at either end of a straight leg.
     fn turning(&self, leg: &PathLeg, along: f64, speed_mps: f64) -> bool {
-        let legs = self.path.legs();
-        let before = leg.index.checked_sub(1).and_then(|i| self.anticipation(&legs[i], leg, speed_mps));
-        let after = legs.get(leg.index + 1).and_then(|next| self.anticipation(leg, next, speed_mps));
+        let before = leg.index.checked_sub(1).and_then(|i| self.anticipation(i, speed_mps));
+        let after = self.anticipation(leg.index, speed_mps);
         let half = 0.5 * leg.length.m();
         before.is_some_and(|d| along < d.min(half)) || after.is_some_and(|d| along > leg.length.m() - d.min(half))
     }
 
-    /// Distance before and behind a fly-by fix in which the turn is flown: R tan(|d|/2) with R = V^2 / (g tan bank).
-    fn anticipation(&self, before: &PathLeg, after: &PathLeg, speed_mps: f64) -> Option<f64> {
-        let straight = before.radius().is_none() && after.radius().is_none() && before.length.m().is_finite();
-        if !(straight && before.has_path() && after.has_path() && !self.fly_over[before.index]) {
-            return None;
-        }
-        let (arrive, depart) = (before.at(before.length).ok()?, after.at(Metres::new(0.0)).ok()?);
-        let change = half_turn(depart.course.rad() - arrive.course.rad()).abs();
+    /// Distance before and behind the end of a leg in which a fly-by turn is flown: R tan(|d|/2) with R = V^2 / (g tan bank).
+    fn anticipation(&self, leg: usize, speed_mps: f64) -> Option<f64> {
+        let change = self.changes.get(leg).copied().flatten()?;
         let radius = speed_mps * speed_mps / (GRAVITY_MPS2 * self.limits.bank_rad.tan());
-        (change > STRAIGHT_RAD).then(|| radius * (0.5 * change).tan())
+        Some(radius * (0.5 * change).tan())
     }
 
     fn lose(&mut self) {
@@ -324,6 +321,17 @@ impl<'a> Follow<'a> {
         }
         Ok(true)
     }
+}
+
+/// Track change from one straight leg to the next; None where there is nothing to turn.
+fn track_change(before: &PathLeg, after: &PathLeg) -> Option<f64> {
+    let straight = before.radius().is_none() && after.radius().is_none() && before.length.m().is_finite();
+    if !(straight && before.has_path() && after.has_path()) {
+        return None;
+    }
+    let (arrive, depart) = (before.at(before.length).ok()?, after.at(Metres::new(0.0)).ok()?);
+    let change = half_turn(depart.course.rad() - arrive.course.rad()).abs();
+    (change > STRAIGHT_RAD).then_some(change)
 }
 
 fn near(along: f64) -> Option<f64> {
