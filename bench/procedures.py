@@ -42,8 +42,8 @@ def measure() -> list[Row]:
         lat, lon = at["lat_rad"] + 2e-6, at["lon_rad"]
         per[name] = seconds(lambda lat=lat, lon=lon: flown.follow(time_s, lat, lon)) / N  # type: ignore[misc]
         rows.append(Row(f"procedures, follow on {name}", per[name], N, "one position 13 m beside: active leg, foot and status"))
-    corners = [x for x in flown.legs if x.lat_rad is not None]
-    route = path.route([x.lat_rad for x in corners], [x.lon_rad for x in corners])
+    corners = np.array([(x.lat_rad, x.lon_rad) for x in flown.legs], dtype=np.float64)
+    route = path.route(corners[:, 0], corners[:, 1])
     at = flown.core.at(3, np.linspace(10.0, flown.legs[3].length_m - 10.0, N))
     rows.append(Row("procedures, existing route", seconds(lambda: route.project(at["lat_rad"], at["lon_rad"])) / N, N, "to compare with"))
     return rows

@@ -1,4 +1,5 @@
-"""Our readers against independent ones, value by value on real files: arinc424, georinex, hatanaka and sidereon of the group `oracle` (./dev peers).
+"""Our readers against independent ones of the group `oracle` (./dev peers), value by value on real files: arinc424, georinex, hatanaka,
+sidereon.
 
 Skipped aloud where the group or the files are absent. docs/methods/formats.md says where they differ and who is right.
 """

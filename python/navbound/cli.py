@@ -175,6 +175,7 @@ def analyze(
     tolerance: dict[str, Any] = {} if truth_tolerance_s is None else {"truth_tolerance_s": truth_tolerance_s}
     subsets = _subsets(min_satellites, max_satellites, listed_from, asked=stanford_esa)
     flown = cli_procedures.flown(procedure, database, line, defaults=defaults, missed=missed)
+    against: dict[str, Any] = {} if flown is None else {"procedure": flown}
     if levels is not None:
         if flown is not None:
             raise InputError("procedure", procedure, domain="it without --levels, which judges no track")
@@ -210,7 +211,7 @@ def analyze(
     run = navbound.analyze(
         files,
         path=path,
-        **({} if flown is None else {"procedure": flown}),
+        **against,
         spec=spec,
         truth=truth,
         **tolerance,

@@ -69,7 +69,7 @@ def show_command(
     database = _read(file)
     airport, ident, transition = parts(name)
     procedure = database.procedure(airport, ident, transition, missed=missed, line=line, defaults=defaults)
-    lines = {x.line for x in (*procedure.legs, *procedure.levels)}
+    lines = {x.line for x in procedure.legs} | {x.line for x in procedure.levels}
     findings = [f for f in database.contradictions(airport) if f.procedure == ident and f.line in lines]
     if out is not None:
         _write(out, drawn.page(procedure, findings))

@@ -124,7 +124,7 @@ class Leg:
 def leg(row: dict[str, Any]) -> Leg:
     """A leg from the core's row."""
     names = {f.name for f in fields(Leg)}
-    plain = {name: tuple(value) if isinstance(value, list) else value for name, value in row.items() if name in names}
+    plain: dict[str, Any] = {name: tuple(value) if isinstance(value, list) else value for name, value in row.items() if name in names}
     return Leg(**plain)
 
 
