@@ -7,7 +7,7 @@ threshold.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from os import PathLike
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -197,7 +197,7 @@ def route(lat_rad: ArrayLike, lon_rad: ArrayLike, radius_m: ArrayLike = 0.0) -> 
 
 @checked
 def procedure(
-    file: str | PathLike[str],
+    file: str | FilePath,
     airport: str,
     procedure: str,
     transition: str | None = None,

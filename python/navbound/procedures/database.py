@@ -5,16 +5,13 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from navbound import _core
 from navbound._arguments import checked
 from navbound.errors import FormatError, InputError
 from navbound.procedures.findings import Finding, finding
 from navbound.procedures.legs import NAUTICAL_MILE_M, LevelOfService, Procedure, leg
-
-if TYPE_CHECKING:
-    from os import PathLike
 
 LISTED = 12
 """Names that a refusal lists; the file has all."""
@@ -223,7 +220,7 @@ class Database:
 
 
 @checked
-def read(file: str | PathLike[str]) -> Database:
+def read(file: str | Path) -> Database:
     """Read a navigation database of ARINC 424, plain or packed by gzip; its text is not kept.
 
     Parameters
