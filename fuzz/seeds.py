@@ -92,6 +92,7 @@ def corpus() -> dict[str, list[bytes]]:
     # Every second record also behind the header of version 4, which titles each.
     fourth = [navigation["HEADER"].replace("3.02", "4.00", 1) + "> EPH G01 LNAV\n" + text for text in records]
     plain = {
+        "arinc424": [(HERE.parent / "tests" / "procedures" / "KDEN_H26-Z.txt").read_text(encoding="ascii")],
         "observations": list(observation.values()),
         "navigation": [*third, *fourth, *records],
         "almanac": list(almanac.values()),
@@ -117,6 +118,7 @@ REAL = {
     "rtklib": ("*.pos",),
     "sbas": ("*.ems", "*.sbs"),
     "packed": ("*.gz",),
+    "arinc424": ("K???.txt",),
 }
 """What real files of a target are called."""
 LONGEST, MOST = 4096, 6

@@ -361,6 +361,7 @@ WITHOUT: dict[str, str] = {
             "sbas.read",
             "sbas.decode",
             "dme.read_stations",
+            "path.procedure",
         ),
         "reads a file: damaged numbers are tested with the formats",
     ),

@@ -1,4 +1,5 @@
-"""Our readers against independent ones, value by value on real files: georinex, hatanaka and sidereon of the group `oracle` (./dev peers).
+"""Our readers against independent ones of the group `oracle` (./dev peers), value by value on real files: arinc424, georinex, hatanaka,
+sidereon.
 
 Skipped aloud where the group or the files are absent. docs/methods/formats.md says where they differ and who is right.
 """
@@ -15,7 +16,7 @@ import polars as pl
 import pytest
 
 import araim_peer
-from navbound import araim, gnss, sbas
+from navbound import araim, gnss, procedures, sbas
 
 NS = 1_000_000_000
 WEEK_NS = 604_800 * NS
@@ -209,3 +210,67 @@ def test_advanced_raim_is_that_of_sidereon_where_faults_are_counted_alike() -> N
         # Horizontally it stays larger by up to 0.3 %, for a reason its interface does not show (no level of an axis); that ours solve the
         # equation is shown by vectors/araim.toml. Twice what was seen.
         assert 0.0 <= theirs.hpl_m - alike.hpl_m < 0.006 * alike.hpl_m
+
+
+LEG_FIELDS = {
+    "fix": "Fix Identifier",
+    "fix_region": "ICAO Code (2)",
+    "fix_section": "Section Code (2)",
+    "description": "Waypoint Description Code",
+    "turn": "Turn Direction",
+    "terminator": "Path and Termination",
+    "navaid": "Recommended Navaid",
+    "course_field": "Magnetic Course",
+    "distance_field": "Route / Holding Distance or Time",
+    "altitude_description": "Altitude Description",
+    "transition_altitude": "Transition Altitude",
+    "speed_description": "Speed Limit Description",
+    "centre_fix": "Center Fix or TAA Procedure Turn Indicator",
+}
+"""Text of a leg by the names of both readers."""
+
+
+def _whole(text: str, parts: float, unit: float) -> float | None:
+    """A field of digits in SI units, decoded here and not by either reader."""
+    return int(text) / parts * unit if text.strip() else None
+
+
+def _numbers(fields: dict[str, str]) -> dict[str, float | None]:
+    rnp = fields["RNP"]
+    return {
+        "sequence": int(fields["Sequence Number"]),
+        "rnp_coded_m": int(rnp[:2]) * 10 ** -int(rnp[2]) * 1852.0 if rnp.strip() else None,
+        "radius_coded_m": _whole(fields["Arc Radius"], 1000, 1852.0),
+        "theta_rad": _whole(fields["Theta"], 10, np.pi / 180),
+        "rho_m": _whole(fields["Rho"], 10, 1852.0),
+        "vertical_angle_rad": _whole(fields["Vertical Angle"], 100, np.pi / 180),
+        "speed_kt": _whole(fields["Speed Limit"], 1, 1.0),
+    }
+
+
+@pytest.mark.parametrize("name", ["KDEN", "KMSP", "KDTW", "KAUS", "KBLV", "KAPF"])
+def test_every_leg_of_a_navigation_database_is_that_of_arinc424(shared_data: Path, name: str) -> None:
+    record = peer("arinc424.record").Record
+    file = shared_data / "procedures" / f"{name}.txt"
+    theirs: dict[int, dict[str, str]] = {}
+    for number, line in enumerate(file.read_text(encoding="ascii").splitlines(), 1):
+        one = record()
+        if one.read(line) and one.ident in {"PD", "PE", "PF"} and one.primary():
+            theirs[number] = {field.name: field.value for field in one.fields}
+    base = procedures.read(file)
+    ours = {
+        leg["line"]: leg
+        for index, entry in enumerate(base.entries)
+        for k in range(len(entry.routes))
+        for leg in base._core.path(index, [k], True, None, False)[0]
+    }
+    assert ours.keys() == theirs.keys()
+    assert len(ours) > 100
+    for number, fields in theirs.items():
+        leg = ours[number]
+        texts = {ours_name: fields[their_name].rstrip() for ours_name, their_name in LEG_FIELDS.items()}
+        assert {key: leg[key] for key in texts} == texts, number
+        assert [text.rstrip() for text in (fields["Altitude"], fields["Altitude (2)"])] == [*leg["altitude_fields"]], number
+        for key, value in _numbers(fields).items():
+            # The same digits by another order of operations: the last of sixteen.
+            assert leg[key] == (None if value is None else pytest.approx(value, rel=1e-14)), (number, key)

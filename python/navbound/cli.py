@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 import navbound
-from navbound import _core, cli_map, cli_predict
+from navbound import _core, cli_map, cli_predict, cli_procedures
 from navbound.cli_parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, err_console, out_console, work_of
 from navbound.errors import FormatError, InputError, InternalError, NavboundError
 from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed, of_verdict
@@ -87,6 +87,19 @@ def analyze(
         str | None,
         typer.Option(help="Where the aircraft should be: a runway (LFPG/08R), auto (the runway each aircraft lands on), or a route file."),
     ] = None,
+    procedure: Annotated[
+        str | None,
+        typer.Option(
+            help="Instead of --path: AIRPORT/PROCEDURE[:TRANSITION] of --database, such as KDEN/H26-Z:FUZZZ; "
+            "each leg has its own RNP, and --spec has no part in it."
+        ),
+    ] = None,
+    database: Annotated[Path | None, typer.Option(help="With --procedure: navigation database of ARINC 424.")] = None,
+    line: Annotated[str | None, typer.Option(help="With --procedure: line of minima that is flown, such as 'RNP 0.3'.")] = None,
+    defaults: Annotated[
+        bool, typer.Option("--defaults", help="With --procedure: legs without a coded RNP take the default of the specification.")
+    ] = False,
+    missed: Annotated[bool, typer.Option("--missed", help="With --procedure: with the missed approach.")] = False,
     spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3', 'RNP AR 0.1' or 'RNP APCH'.")] = "RNP 0.3",
     truth: Annotated[
         str | None, typer.Option(help="A file with true positions, joined by time; or X,Y,Z of a fixed point (Earth-fixed, metres).")
@@ -161,7 +174,11 @@ def analyze(
     mask_rad = _mask_rad(mask)
     tolerance: dict[str, Any] = {} if truth_tolerance_s is None else {"truth_tolerance_s": truth_tolerance_s}
     subsets = _subsets(min_satellites, max_satellites, listed_from, asked=stanford_esa)
+    flown = cli_procedures.flown(procedure, database, line, defaults=defaults, missed=missed)
+    against: dict[str, Any] = {} if flown is None else {"procedure": flown}
     if levels is not None:
+        if flown is not None:
+            raise InputError("procedure", procedure, domain="it without --levels, which judges no track")
         if path is not None or sigma_m is not None:
             raise InputError("levels", levels, domain="it without --path and --sigma-m, which judge a track")
         with Bar("files") as progress:
@@ -194,6 +211,7 @@ def analyze(
     run = navbound.analyze(
         files,
         path=path,
+        **against,
         spec=spec,
         truth=truth,
         **tolerance,
@@ -382,6 +400,7 @@ def show(
 
 app.command("map")(cli_map.map_command)
 app.command("predict")(cli_predict.predict_command)
+app.add_typer(cli_procedures.app, name="procedures")
 
 
 def _show(run: Run, *, json: bool) -> None:

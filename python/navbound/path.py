@@ -7,6 +7,7 @@ threshold.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +20,9 @@ from navbound.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Feet", "Path", "Places", "from_azimuth", "line", "route"]
+    from navbound.procedures import Procedure
+
+__all__ = ["Feet", "Path", "Places", "from_azimuth", "line", "procedure", "route"]
 
 _NO_LEG = np.uint32(0xFFFFFFFF)
 
@@ -190,3 +193,54 @@ def route(lat_rad: ArrayLike, lon_rad: ArrayLike, radius_m: ArrayLike = 0.0) -> 
     if len(shape) != 1:
         raise InputError("lat_rad", f"shape {shape}", domain="shape (n,)")
     return Path(_core.Path.route(lat, lon, radius))
+
+
+@checked
+def procedure(
+    file: str | FilePath,
+    airport: str,
+    procedure: str,
+    transition: str | None = None,
+    *,
+    missed: bool = False,
+    line: str | None = None,
+    defaults: bool = False,
+) -> Procedure:
+    """Legs of a published procedure with their geometry and the RNP of each (ARINC 424-18; standard).
+
+    Geometry comes from the fixes. Every other published number is a check, except where a course defines the leg. A leg without a
+    path keeps its place with a state that says why.
+
+    Parameters
+    ----------
+    file : str or path
+        Navigation database of ARINC 424, plain or packed by gzip.
+    airport, procedure : str
+        As the file names them: ``KDEN``, ``H26-Z``.
+    transition : str, optional
+        Transition flown; several of a departure or an arrival are joined by ``+``. Without it only the common or final part.
+    missed : bool
+        Whether the missed approach belongs to the path.
+    line : str, optional
+        Line of minima that is flown, such as ``RNP 0.3``: the RNP of the final approach. Without it the coded one counts, and a final
+        approach whose coded RNP is no published line has none.
+    defaults : bool
+        Whether a leg without a coded RNP takes the default of its specification (1.0 NM, final approach 0.3 NM; standard). Without it
+        such a leg has no RNP.
+
+    Returns
+    -------
+    Procedure
+        Legs in the order flown; :meth:`~navbound.procedures.Procedure.nearest` and :meth:`~navbound.procedures.Procedure.follow` give
+        along and cross track distances. [m]
+
+    Raises
+    ------
+    FormatError
+        A file that is not of this kind, or a refused line in a route that is needed, with its number.
+    InputError
+        An airport, procedure, transition or line of minima that the file does not have; what it has is named.
+    """
+    from navbound import procedures  # noqa: PLC0415
+
+    return procedures.read(file).procedure(airport, procedure, transition, missed=missed, line=line, defaults=defaults)

@@ -32,6 +32,7 @@ const LAYERS: [&[&str]; 5] = [
         "dme",
         "kpi",
         "path",
+        "procedures",
         "time",
         "methods",
         "evaluation",

@@ -1,6 +1,7 @@
 //! Bytes to navigation records. Errors carry line, field and the text found; the caller knows the file.
 
 pub mod almanac;
+pub mod arinc424;
 mod order;
 pub mod packed;
 pub mod precise;

@@ -5,6 +5,7 @@
 
 mod batch;
 mod earth;
+pub mod legs;
 mod line;
 mod refusal;
 mod route;

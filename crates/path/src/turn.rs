@@ -16,14 +16,14 @@ const STRAIGHT_RAD: f64 = 1e-7;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Arc {
-    centre: LatLon,
-    radius: Metres,
+    pub(crate) centre: LatLon,
+    pub(crate) radius: Metres,
     /// Azimuth from the centre to the begin of the arc.
-    start: Radians,
+    pub(crate) start: Radians,
     /// Turned angle, positive.
-    angle: Radians,
+    pub(crate) angle: Radians,
     /// +1 right, -1 left.
-    sense: f64,
+    pub(crate) sense: f64,
 }
 
 /// A turn joined to its legs.

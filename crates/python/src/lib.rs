@@ -19,6 +19,7 @@ mod methods;
 mod orbits;
 mod path;
 mod positions;
+mod procedures;
 mod radionav;
 mod raim;
 mod read;
@@ -65,6 +66,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     orbits::register(m)?;
     path::register(m)?;
     positions::register(m)?;
+    procedures::register(m)?;
     simulate::register(m)?;
     ins_simulate::register(m)?;
     subsets::register(m)?;

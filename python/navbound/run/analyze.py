@@ -16,7 +16,7 @@ from navbound.read.covariance import Claimed, claim
 from navbound.read.epochs import Reading, read
 from navbound.read.pieces import PIECE_ROWS
 from navbound.read.plausible import Limits, check
-from navbound.read.repeats import left_out, separate
+from navbound.read.repeats import LEFT_OUT, left_out, separate
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
 from navbound.read.source import LARGE_BYTES, is_text_table
@@ -24,6 +24,7 @@ from navbound.read.truth import TOLERANCE_S, join, truth_of, with_error, with_tr
 from navbound.run.files import sort_out
 from navbound.run.material import Material
 from navbound.run.pieces import AUXILIARY, covariance_status, in_pieces, states_truth, without_path
+from navbound.run.procedure import Flown, on_procedure
 from navbound.run.records import CovarianceOrigin, Rejection, Waypoint
 from navbound.run.solved import solved
 from navbound.run.solving import Solving
@@ -42,6 +43,7 @@ def material(
     requirement: str,
     rnp_m: float,
     path: str | Path | None = None,
+    procedure: Flown | None = None,
     truth: str | Path | None = None,
     truth_tolerance_s: float = TOLERANCE_S,
     sigma_m: float | None = None,
@@ -69,6 +71,8 @@ def material(
     path : str or path, optional
         ``LFPG/08R``, or several separated by commas: approaches to these runways. ``auto``: every landing, on the runway it lands
         on. A TOML or CSV file: a route. Without it there is no flight technical error, and only the navigation system is judged.
+    procedure : Flown, optional
+        Instead of `path`: a published procedure, whose legs have their own RNP; `requirement` and `rnp_m` then have no part in it.
     truth : str or path, optional
         Recording of the true positions, in a form as `files`; or ``X,Y,Z`` of a receiver that does not move (Earth-fixed, metres).
     truth_tolerance_s : float
@@ -99,6 +103,8 @@ def material(
     """
     if not 0 < rnp_m < float("inf"):
         raise InputError("rnp_m", rnp_m, "m", "(0, inf)")
+    if procedure is not None and path is not None:
+        raise InputError("path", str(path), domain="none beside a procedure")
     gates, limits = gates or Gates(), limits or Limits()
     names = [files] if isinstance(files, str) or not hasattr(files, "__iter__") else list(files)
     if not names:
@@ -106,15 +112,17 @@ def material(
     solving = Solving(signals, systems, ionosphere, mask_rad)
     settings: dict[str, object] = {
         "path": None if path is None else str(path),
-        "rnp_m": rnp_m,
+        **({} if procedure is None else {"procedure": procedure.settings}),
+        "rnp_m": rnp_m if procedure is None else None,
         "truth": None if truth is None else str(truth),
         "truth_tolerance_s": truth_tolerance_s,
         "sigma_m": sigma_m,
     }
     context = _Context(requirement, settings, sigma_m, gates, limits, solve, solving)
-    if piece_rows is not None and (len(names) > 1 or path is not None or truth is not None or solve):
-        raise InputError("piece_rows", piece_rows, domain="it with one text table, without path, truth and solve")
-    if len(names) == 1 and path is None and truth is None and not solve:
+    alone = len(names) == 1 and path is None and procedure is None and truth is None and not solve
+    if piece_rows is not None and not alone:
+        raise InputError("piece_rows", piece_rows, domain="it with one text table, without path, procedure, truth and solve")
+    if alone:
         table = Path(names[0])
         if is_text_table(table, LARGE_BYTES if piece_rows is None else 0) and not states_truth(table, columns):
             solving.refuse(_TO_SOLVE)
@@ -151,12 +159,16 @@ def material(
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
         epochs, words = with_error(epochs)
         assumptions.append(f"Truth: from the file itself.{words}")
-    route = _follow(path, epochs, gates, rejected)
-    epochs = covariance_status(route.epochs).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
+    route = _follow(path, epochs, gates, rejected) if procedure is None else on_procedure(epochs, procedure)
+    epochs = covariance_status(route.epochs)
+    if procedure is None:
+        epochs = epochs.with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
+    else:
+        requirement = f"RNP by leg of {procedure.name}"
     return Material(
         epochs=epochs.drop(AUXILIARY, strict=False),
         kind="analyze",
-        title=route.heading if path is not None else f"{route.heading}: {', '.join(Path(str(n)).name for n in names)}",
+        title=route.heading if (path or procedure) is not None else f"{route.heading}: {', '.join(Path(str(n)).name for n in names)}",
         requirement=requirement,
         sample_period_s=_period(epochs),
         assumptions=[*assumptions, *route.words, *notes],
@@ -165,7 +177,7 @@ def material(
         waypoints=route.waypoints,
         inputs=inputs + route.inputs,
         rejected=rejected,
-        left_out=_on_path(lost, epochs, route.tracks),
+        left_out=pl.concat([_on_path(lost, epochs, route.tracks), route.left_out]),
         cross_track=route.cross_track,
         settings=context.settings_with(readings),
     )
@@ -245,6 +257,7 @@ class _Path:
     inputs: list[InputFile] = field(default_factory=list)
     cross_track: list[CrossTrack] = field(default_factory=list)
     tracks: dict[str, str] = field(default_factory=dict)
+    left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
 
 
 def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejected: list[Rejection]) -> _Path:

@@ -16,6 +16,7 @@ from navbound.run import taxi as taxiing
 from navbound.run.faults import fault_summaries
 from navbound.run.judge import judge
 from navbound.run.kpi_records import Level
+from navbound.run.procedure import with_answers
 from navbound.run.requirement import requirement
 from navbound.run.settings import Settings
 from navbound.run.studies import PAGES, REPORTS, STUDIES
@@ -123,7 +124,8 @@ def analyze(
     with directory.own(out) as folder:
         wanted = requirement(spec, phase)
         material = recorded.material(files, requirement=wanted.words, rnp_m=wanted.rnp_m, **reading)  # type: ignore[arg-type]
-        return directory.write(judge(material, settings, command), folder)
+        run = judge(material, settings, command)
+        return directory.write(with_answers(run) if reading.get("procedure") is not None else run, folder)
 
 
 @checked
