@@ -172,7 +172,8 @@ fn translate(constellation: Constellation, [kind, band]: [u8; 2]) -> Code {
 pub(super) fn satellite(field: &[u8], default: Constellation) -> Result<navbound_core::signal::SatelliteId, u8> {
     let letter = field.first().copied().unwrap_or(b'?');
     let constellation = if letter == b' ' { Some(default) } else { Constellation::from_letter(letter) };
-    let number = whole(columns(field, 1, 3)).and_then(|n| u8::try_from(n).ok()).filter(|n| (1..=99).contains(n));
+    // Of a name of which the line holds two columns the last digit is lost.
+    let number = whole(field.get(1..3).unwrap_or_default()).and_then(|n| u8::try_from(n).ok()).filter(|n| (1..=99).contains(n));
     match (constellation, number) {
         (Some(constellation), Some(number)) if constellation.numbers().contains(&number) => {
             Ok(navbound_core::signal::SatelliteId { constellation, number })

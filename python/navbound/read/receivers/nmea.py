@@ -5,7 +5,9 @@ Source: NMEA 0183 version 4 as receivers' manuals give it, standard. GGA has no 
 
 from __future__ import annotations
 
+import functools
 import math
+import operator
 import re
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, time, timedelta
@@ -39,9 +41,12 @@ def read(source: Source) -> Log:
     log = Log(source.path, "GGA")
     settings = {"quitonerror": pynmeagps.ERR_LOG}
     fixes, dates, last = list[_Fix](), list[tuple[int, date, time]](), None
-    for record, (_, sentence) in messages(
+    for record, (raw, sentence) in messages(
         lambda s, handler: pynmeagps.NMEAReader(s, errorhandler=handler, **settings), source.content, log
     ):
+        # The decoder passes over what it has no name for, and over a sentence with a byte that is no letter: only the first is whole.
+        if sentence is None and not _whole(raw):
+            log.leave_out("damaged message", record, repr(raw[:60]), damaged=True)
         name = getattr(sentence, "msgID", "")
         if name == "GGA":
             last = _Fix(record, sentence)
@@ -64,6 +69,12 @@ def read(source: Source) -> Log:
         _row(fix, dates[place], log)
     log.n_rows += len(log.rows)
     return log
+
+
+def _whole(raw: bytes) -> bool:
+    """Whether the check sum of a sentence is right."""
+    body, star, stated = raw.strip().removeprefix(b"$").partition(b"*")
+    return bool(star) and stated.upper() == b"%02X" % functools.reduce(operator.xor, body, 0)
 
 
 def _undated(n_fixes: int, log: Log) -> str:
