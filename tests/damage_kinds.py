@@ -76,9 +76,11 @@ def _ends(path: Path) -> Counter[str]:
 def navigation(path: Path) -> Result:
     n = gnss.read_navigation(path)
     stated = Counter(r.reason for r in n.refused) + Counter({f"skipped {k}": v for k, v in n.skipped.items()})
-    repeated = pl.int_range(pl.len()).over("satellite", "orbit_time_ns", "message").alias("n")
     stated += _ends(path)
-    return cells(n.records().with_columns(repeated), ["satellite", "orbit_time_ns", "message", "n"]), stated
+    # One satellite's records of one time, for a file may hold several, are one list of each number.
+    key = ["satellite", "orbit_time_ns", "message"]
+    records = n.records().with_columns(pl.exclude(key).cast(pl.String)).group_by(key, maintain_order=True).agg(pl.all().sort().str.join(" "))
+    return cells(records, key), stated
 
 
 def orbits(path: Path) -> Result:
