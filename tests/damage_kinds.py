@@ -77,10 +77,7 @@ def navigation(path: Path) -> Result:
     n = gnss.read_navigation(path)
     stated = Counter(r.reason for r in n.refused) + Counter({f"skipped {k}": v for k, v in n.skipped.items()})
     stated += _ends(path)
-    # One satellite's records of one time, for a file may hold several, are one list of each number.
-    key = ["satellite", "orbit_time_ns", "message"]
-    records = n.records().with_columns(pl.exclude(key).cast(pl.String)).group_by(key, maintain_order=True).agg(pl.all().sort().str.join(" "))
-    return cells(records, key), stated
+    return cells(n.records(), ["satellite", "orbit_time_ns", "clock_time_ns", "message"]), stated
 
 
 def orbits(path: Path) -> Result:
@@ -170,6 +167,16 @@ def epochs(name: str, n: int, mark: bytes) -> Callable[[], bytes]:
     return make
 
 
+def fourth(name: str, n: int) -> Callable[[], bytes]:
+    """The head of a navigation file of version 4 and its first records of orbits."""
+
+    def make() -> bytes:
+        head, *records = _bytes(name).split(b"\n> ")
+        return b"\n> ".join([head, *[r for r in records if r.startswith(b"EPH")][:n]]) + b"\n"
+
+    return make
+
+
 def columns(name: str, n: int) -> Callable[[], bytes]:
     """The first rows of a JSON file of columns."""
 
@@ -216,6 +223,7 @@ class Kind:
 CSV = "sbas/msas2025046_pl_1hz.csv"
 USER = "sbas/virtual_user_2025046_17h.25O.gz"
 NAV = "sbas/gps_2025046_17h_rinex3.nav"
+VILL = "gnss/VILL_2018_170_nav/VILL00ESP_R_20181700000_01D_MN.rnx.gz"
 EMS = "sbas/more/prn137_2025046_17h.ems.gz"
 KIRUNA = "aircraft/calibration/kiruna.json.gz"
 KINDS: dict[str, Kind] = {
@@ -235,9 +243,9 @@ KINDS: dict[str, Kind] = {
     "RINEX 3 observations": Kind(epochs(USER, 25, b">"), "a.rnx", observations),
     "RINEX 2 observations": Kind(head("gnss/ARLM_2015_200/arlm200x.15o", 16_000, b" 15  7"), "a.15o", observations),
     "RINEX 3 compact": Kind(head("gnss/ESBC_2020_177/ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz", 40_000, b" {12,}"), "a.crx", observations),
-    "RINEX 3 navigation": Kind(head(NAV, 12_000, b"G"), "a.nav", navigation),
+    "RINEX 3 navigation": Kind(head(VILL, 16_000, b"[A-Z]"), "a.nav", navigation),
     "RINEX 2 navigation": Kind(head("gnss/igs_2010_182/brdc1820.10n", 12_000, b"[ 0-9][0-9] 10 "), "a.10n", navigation),
-    "RINEX 4 navigation": Kind(head("gnss/rinex4_2023_071/BRD400DLR_S_20230710000_01D_MN.rnx.gz", 16_000, b">"), "b.rnx", navigation),
+    "RINEX 4 navigation": Kind(fourth("gnss/rinex4_2023_071/BRD400DLR_S_20230710000_01D_MN.rnx.gz", 40), "b.rnx", navigation),
     "SP3": Kind(epochs("gnss/igs_2010_182/igs15904.sp3", 12, b"\\* "), "a.sp3", orbits),
     "almanac, YUMA": Kind(head("gnss/almanacs/20160331.alm", 20_000), "a.alm", almanac),
     "almanac, SEM": Kind(head("gnss/almanacs/current.al3", 20_000), "a.al3", almanac),
