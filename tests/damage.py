@@ -132,10 +132,14 @@ class Bench:
             return ("counted" if counted else "same"), ""
         if self.kind.protection == "file":
             return "WRONG", f"{len(lost)} lost, {len(changed)} changed, {len(new)} new behind a check sum of the whole"
-        if self.kind.protection == "record":
+        if self.kind.protection == "parity" and d.words == "swapped":
+            return ("counted" if counted else "data"), ""
+        if self.kind.protection in {"record", "parity"}:
             if changed or new:
                 return "WRONG", f"changed {_some(changed)}, new {_some(new)} behind check sums"
-            return ("counted", "") if counted else ("SILENT", f"lost {_some(lost)}")
+            # Between two frames a log may end.
+            whole = d.words == "cut" and self.content[d.begin : d.begin + 2] in {b"$@", b"\xb5b", b"\xaa\x44"}
+            return ("data" if whole else "counted", "") if counted or whole else ("SILENT", f"lost {_some(lost)}")
         return self._unprotected(d, (lost, changed, new), counted=counted)
 
     def _unprotected(self, d: Damage, cells: tuple[set[object], set[object], set[object]], *, counted: bool) -> tuple[str, str]:
@@ -147,6 +151,10 @@ class Bench:
         allowed: set[object] = set()
         for line in range(first, min(last + 2, len(self.lines))):
             each = self.influence(line)
+            while each is not None and not each and line > 0:
+                # A line that may be left out, as what it states is assumed without it, belongs to the record of those before it.
+                line -= 1  # noqa: PLW2901
+                each = self.influence(line)
             if each is None:
                 return "declared otherwise", "the head was changed"
             allowed |= each

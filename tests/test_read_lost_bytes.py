@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import struct
 from pathlib import Path
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 from conftest import SHARED
-from navbound import FormatError, gnss
+from navbound import FormatError, gnss, sbas
 from navbound.read import read
 from navbound.scale.checkpoint import Folder
 from test_read_receivers_damaged import BESTPOS, GGA, PVT, RMC, nmea, novatel, ubx
@@ -99,6 +100,13 @@ def test_no_number_is_made_of_what_a_cut_line_leaves(tmp_path: Path, keep: int, 
     assert o.n_refused == n_refused
 
 
+@pytest.mark.parametrize("name", [" C\xb1C", " C C", "xC1C", "  1C"])
+def test_what_is_no_name_of_an_observation_is_refused(tmp_path: Path, name: str) -> None:
+    wrong = OBSERVATIONS.replace(" C1C", name, 1).encode("latin-1")
+    with pytest.raises(FormatError, match="is not the name of an observation"):
+        gnss.read_observations(put(tmp_path, "a.rnx", wrong))
+
+
 def test_a_satellite_name_of_two_columns_has_lost_its_digit(tmp_path: Path) -> None:
     at = OBSERVATIONS.index("G30") + 2
     o = gnss.read_observations(put(tmp_path, "a.rnx", OBSERVATIONS[:at].encode()))
@@ -161,6 +169,19 @@ def test_an_epoch_of_a_compact_file_with_a_line_too_many_is_left_out(tmp_path: P
     o = gnss.read_observations(put(tmp_path, "a.crx", wrong.encode()))
     assert o.n_epochs == 0
     assert o.n_refused > 0
+
+
+def test_two_messages_of_one_satellite_in_one_second_are_none(tmp_path: Path) -> None:
+    if not DATA.is_dir():
+        pytest.skip(f"SKIPPED ALOUD: no real data at {DATA}")
+    lines = gzip.decompress((DATA / "sbas" / "more" / "prn137_2025046_17h.ems.gz").read_bytes()).decode().splitlines()[:40]
+    assert len(sbas.read(put(tmp_path, "a.ems", "\n".join([*lines, lines[-1]]).encode())).time_ns) == 41
+    first, second = lines[20].split(), lines[21].split()
+    lines[21] = " ".join([*first[:7], *second[7:]])
+    log = sbas.read(put(tmp_path, "a.ems", "\n".join(lines).encode()))
+    assert [(r.line, r.reason) for r in log.refused] == [
+        (n, "another message of this satellite has the same time; neither is taken") for n in (21, 22)
+    ]
 
 
 def test_an_almanac_with_an_angle_of_many_turns_is_refused(tmp_path: Path) -> None:
