@@ -89,10 +89,10 @@ def orbits(path: Path) -> Result:
     for satellite in p.satellites:
         ecef, _, clock = p.states(satellite, times)
         for t, position, c in zip(times, ecef, clock, strict=True):
-            # To a millimetre and a picosecond: a polynomial goes through its nodes no more exactly when others of them change.
-            found |= {((satellite, int(t)), f"{axis}"): round(v, 3) for axis, v in zip("xyz", position.tolist(), strict=True) if v == v}
+            # A satellite's table is one record: its polynomial goes through the neighbours of an epoch too.
+            found |= {((satellite,), f"{axis} at {t}"): round(v, 3) for axis, v in zip("xyz", position.tolist(), strict=True) if v == v}
             if c == c:
-                found[(satellite, int(t)), "clock"] = round(float(c), 12)
+                found[(satellite,), f"clock at {t}"] = round(float(c), 12)
     stated = Counter(r.reason for r in p.refused) + Counter({f"skipped {k}": v for k, v in p.skipped.items()})
     stated[f"positions {p.n_positions}, clocks {p.n_clocks}"] = 1
     return found, stated
