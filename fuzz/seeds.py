@@ -92,7 +92,9 @@ def repeated(found: dict[str, list[bytes]]) -> list[bytes]:
 TABLE = b"timestamp,latitude,longitude,altitude (ft),groundspeed,track,hpl_m\n" + b"".join(
     b"%d,%.5f,10.0,%d,97.2,0,12.5\n" % (1_700_000_000 + k, 50 + k / 2000, 300 + k) for k in range(12)
 )
-ISO = b"time;lat (deg);lon [rad];status\n2016-12-31T23:59:59Z;1;0.5;ok\n2016-12-31T23:59:60Z;1.0001;0.5;ok\n2017-01-01 00:00:00+00:00;nan;;\n"
+ISO = (
+    b"time;lat (deg);lon [rad];status\n2016-12-31T23:59:59Z;1;0.5;ok\n2016-12-31T23:59:60Z;1.0001;0.5;ok\n2017-01-01 00:00:00+00:00;nan;;\n"
+)
 RECORDS = b'[{"time_ns": 1300000000000000000, "est_lat_rad": 0.5, "est_lon_rad": 1}, {"time_ns": null, "est_lat_rad": "x"}]'
 TRACE = b'{"icao": "abc", "timestamp": 1.7e9, "trace": [[0.5, 50, 10, "ground", 97, 0, 0, null, {"nic": 8, "rc": 186}, "adsb", 100]]}'
 BY_ROW = b'{"timestamp": {"0": 1700000000, "1": 1700000001}, "latitude": {"0": 50, "1": 50.0005}, "longitude": {"0": 1, "1": 2}}'
@@ -105,7 +107,10 @@ def python_corpus() -> dict[str, list[bytes]]:
     return {
         "table": [TABLE, TABLE.replace(b",", b"\t"), ISO, b"gps_week,tow,lat,lon\n2200,1.5,1,2\n2200,604800,1,2\n2201,0,1,2\n"],
         "json": [RECORDS, TRACE, BY_ROW],
-        "columns": [b"time,Latitude (deg),lon [rad],x\ntime=time:gps_s\nest_h_m=x:ft", b"t,breite,y\ntime=t:utc_ms\nest_lat_rad=breite:deg"],
+        "columns": [
+            b"time,Latitude (deg),lon [rad],x\ntime=time:gps_s\nest_h_m=x:ft",
+            b"t,breite,y\ntime=t:utc_ms\nest_lat_rad=breite:deg",
+        ],
         "toml": [b'base = "beijing-shanghai"\nduration_s = 6000\n', *(path.read_bytes()[:LONGEST] for path in shipped)],
         "checkpoint": [b"\0\0\1", bytes(range(30))],
         "manifest": [b'{"files": {"a.json": "%s"}}' % empty.encode(), b'{"files": {"a.json": null}}', b'{"files": []}'],

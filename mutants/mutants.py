@@ -30,7 +30,7 @@ import tree_sitter_rust
 ROOT = Path(__file__).parents[1]
 SCOPE = ("crates/core/src/bound/**", "crates/core/src/monitor/**", "crates/core/src/judge/**", "crates/assess/src/judge*.rs")
 PARSER = tree_sitter.Parser(tree_sitter.Language(tree_sitter_rust.language()))
-SWITCH = '''
+SWITCH = """
 /// Which mutant is active.
 #[allow(missing_docs)]
 pub mod mutant {
@@ -51,7 +51,7 @@ pub mod mutant {
         *ACTIVE == n
     }
 }
-'''
+"""
 
 
 @dataclass(frozen=True)
@@ -213,9 +213,19 @@ def written(mutants: list[Mutant], copy: Path) -> dict[int, str]:
 
 def built(copy: Path, packages: list[str], target: Path) -> tuple[list[Path], set[int], str]:
     """Test programs; or the mutants that do not compile."""
-    command = ["cargo", "test", "--no-run", "--message-format=json", "--offline", "--config", "profile.dev.package.navbound-core.opt-level=1"]
+    command = [
+        "cargo",
+        "test",
+        "--no-run",
+        "--message-format=json",
+        "--offline",
+        "--config",
+        "profile.dev.package.navbound-core.opt-level=1",
+    ]
     command += [a for p in packages for a in ("-p", p)]
-    done = subprocess.run(command, cwd=copy, capture_output=True, text=True, check=False, env=os.environ | {"CARGO_TARGET_DIR": str(target)})
+    done = subprocess.run(
+        command, cwd=copy, capture_output=True, text=True, check=False, env=os.environ | {"CARGO_TARGET_DIR": str(target)}
+    )
     programs, wrong, words = [], set(), ""
     for line in done.stdout.splitlines():
         message = json.loads(line)
@@ -288,7 +298,9 @@ def judged(stay: list[Mutant], programs: list[Path], copy: Path, work: Path, n_a
     killed, survivors = 0, []
     for m in stay:
         tests = sorted(reach.get(m.number, []), key=lambda t: t[0])
-        dead = next((test for took, program, test in tests if run(program, test, folder, {"MUTANT": str(m.number)}, 60 + 10 * took) != 0), None)
+        dead = next(
+            (test for took, program, test in tests if run(program, test, folder, {"MUTANT": str(m.number)}, 60 + 10 * took) != 0), None
+        )
         killed += dead is not None
         print(f"{'killed' if dead else 'SURVIVES' if tests else 'UNREACHED'} {m.name}" + (f" ({dead})" if dead else ""), flush=True)
         if dead is None:
@@ -305,7 +317,12 @@ def run(program: Path, test: str, folder: Path, variables: dict[str, str], secon
     environment = os.environ | variables | {"CARGO_MANIFEST_DIR": str(folder), "PROPTEST_CASES": "64"}
     try:
         done = subprocess.run(
-            [program, "--exact", test, "--test-threads", "1", "-q"], cwd=folder, env=environment, capture_output=True, timeout=seconds, check=False
+            [program, "--exact", test, "--test-threads", "1", "-q"],
+            cwd=folder,
+            env=environment,
+            capture_output=True,
+            timeout=seconds,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         return -1

@@ -47,7 +47,7 @@ class Damage:
     end: int
 
 
-def damage(random: np.random.Generator, content: bytes, *, binary: bool) -> Damage:
+def damage(random: np.random.Generator, content: bytes, *, binary: bool) -> Damage:  # noqa: PLR0911
     """One random damage."""
     n = len(content)
     at = int(random.integers(0, n))
@@ -120,7 +120,7 @@ class Bench:
         lost, changed, new = differing(self.clean[0], found)
         return frozenset(lost | changed | new)
 
-    def verdict(self, d: Damage) -> tuple[str, str]:
+    def verdict(self, d: Damage) -> tuple[str, str]:  # noqa: PLR0911
         """What became of a damaged file, and the words."""
         try:
             found, stated = self.read(d.content)
@@ -161,7 +161,7 @@ class Bench:
         # A line belongs to its whole record: what it states may be what is assumed without it.
         keys = {key for key, _ in allowed}  # type: ignore[misc]
         outside = {cell for cell in changed if cell[0] not in keys}  # type: ignore[index]
-        if outside and not d.words == "cut":
+        if outside and d.words != "cut":
             return "WRONG", f"changed {_some(outside)}, which belong to other lines"
         n_records = len({key for key, _ in new} - keys)  # type: ignore[misc]
         if n_records > len(keys) + 2 * (last - first + 2):
@@ -188,7 +188,7 @@ def _worker(connection: Connection, folder: Path) -> None:
             if name not in benches:
                 benches[name] = Bench(KINDS[name], folder)
             answer = benches[name].verdict(d) if d is not None else ("ready", "")
-        except Exception as e:  # noqa: BLE001
+        except Exception as e:
             answer = ("CRASH", f"{type(e).__name__}: {e}")
         if resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 > MEMORY_BYTES:
             answer = ("MEMORY", "more than 2 GB")

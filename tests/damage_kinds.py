@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import io
+import math
 import re
 import zipfile
 from collections import Counter
@@ -11,7 +12,6 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import polars as pl
@@ -58,7 +58,7 @@ def observations(path: Path) -> Result:
             column = o.column(system, code)
             keys = zip(column["time_ns"], column["satellite"], strict=True)
             rows = zip(keys, column["value"], column["loss_of_lock"], strict=True)
-            found |= {((*key, code), "value"): value for key, value, _ in rows if value is not None and value == value}
+            found |= {((*key, code), "value"): value for key, value, _ in rows if value is not None and not math.isnan(value)}
     stated = Counter(r.reason for r in o.refused) + Counter({f"skipped {k}": v for k, v in o.skipped.items()})
     stated[f"refused {o.n_refused}"] = 1
     stated += _ends(path)
@@ -90,8 +90,10 @@ def orbits(path: Path) -> Result:
         ecef, _, clock = p.states(satellite, times)
         for t, position, c in zip(times, ecef, clock, strict=True):
             # A satellite's table is one record: its polynomial goes through the neighbours of an epoch too.
-            found |= {((satellite,), f"{axis} at {t}"): round(v, 3) for axis, v in zip("xyz", position.tolist(), strict=True) if v == v}
-            if c == c:
+            found |= {
+                ((satellite,), f"{axis} at {t}"): round(v, 3) for axis, v in zip("xyz", position.tolist(), strict=True) if not math.isnan(v)
+            }
+            if not math.isnan(c):
                 found[(satellite,), f"clock at {t}"] = round(float(c), 12)
     stated = Counter(r.reason for r in p.refused) + Counter({f"skipped {k}": v for k, v in p.skipped.items()})
     stated[f"positions {p.n_positions}, clocks {p.n_clocks}"] = 1
@@ -208,8 +210,8 @@ def zipped(content: bytes) -> bytes:
 class Kind:
     """A kind of file.
 
-    `protection`: ``none`` (every line is data), ``record`` (each record has a check sum: what is read was written), ``parity`` (a sum that does
-    not see bytes change places), ``file`` (the whole has one). `beside`: files that are read with it, undamaged.
+    `protection`: ``none`` (every line is data), ``record`` (each record has a check sum: what is read was written), ``parity`` (a sum that
+    does not see bytes change places), ``file`` (the whole has one). `beside`: files that are read with it, undamaged.
     """
 
     make: Callable[[], bytes]

@@ -54,7 +54,17 @@ def test_every_second_of_a_day_counts_once(tmp_path: Path, name: str) -> None:
     n = len(lines)
     assert n == DAY + (name == "over a leap second")
     (tmp_path / "levels.csv").write_text("\n".join([f"{head},nse_e_m,nse_n_m,nse_u_m,hpl_m,vpl_m", *lines]) + "\n")
-    command = [sys.executable, "-m", "navbound", "analyze", str(tmp_path / "levels.csv"), "--levels", "APV-I", "--out", str(tmp_path / "run")]
+    command = [
+        sys.executable,
+        "-m",
+        "navbound",
+        "analyze",
+        str(tmp_path / "levels.csv"),
+        "--levels",
+        "APV-I",
+        "--out",
+        str(tmp_path / "run"),
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode in {0, 4}, done.stderr
     found = json.loads((tmp_path / "run" / "summary.json").read_text())["performance"]

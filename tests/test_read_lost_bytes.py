@@ -66,7 +66,7 @@ def test_novatel_bytes_outside_frames_are_stated(tmp_path: Path) -> None:
     assert any(f"{len(frame)} of {2 * len(frame)} bytes belong to no message" in note for note in notes)
 
 
-SOLUTIONS = """%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)  sdne(m)  sdeu(m)  sdun(m) age(s)  ratio
+SOLUTIONS = """%  GPST                  latitude(deg) longitude(deg)  height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) sdeu(m) sdun(m) age(s) ratio
 2023/07/11 06:04:54.000   35.165360851  136.881409530    41.3947   1  19   0.0045   0.0045   0.0097   0.0027   0.0012  -0.0030   0.03    4.7
 """
 
@@ -157,8 +157,7 @@ def test_two_positions_of_one_satellite_in_one_epoch_are_none(tmp_path: Path) ->
 def test_an_epoch_of_a_compact_file_with_a_line_too_many_is_left_out(tmp_path: Path) -> None:
     head = (
         "3.0                 COMPACT RINEX FORMAT                    CRINEX VERS   / TYPE\n"
-        "RNX2CRX ver.4.0.7                       24-Jun-20 00:00     CRINEX PROG / DATE  \n"
-        + OBSERVATIONS.split("> 2025")[0]
+        "RNX2CRX ver.4.0.7                       24-Jun-20 00:00     CRINEX PROG / DATE  \n" + OBSERVATIONS.split("> 2025", maxsplit=1)[0]
     )
     epoch = "> 2025 02 15 17 00  0.0000000  0  2      G20G30\n\n"
     lines = ["3&22709399626 3&119338700415\n", "3&24707953631 3&129841172643\n"]
