@@ -1,10 +1,11 @@
 """Write a corpus of small seeds for every fuzz target: the texts that the readers' own tests hold, frames made here, and beginnings of
 real files where the shared data are there.
 
-python3 fuzz/seeds.py    (writes fuzz/corpus/<target>/; nothing of it is committed)
+python3 fuzz/seeds.py    (writes fuzz/corpus/<target>/; nothing of it is committed: what is kept of our own stands in fuzz/kept)
 """
 
 import gzip
+import hashlib
 import re
 import struct
 from pathlib import Path
@@ -82,6 +83,40 @@ def receivers() -> list[bytes]:
     ]
 
 
+def repeated(found: dict[str, list[bytes]]) -> list[bytes]:
+    """A text for every reader, cut in a beginning and a piece; the generator takes lengths from the end of its input."""
+    kinds = ("observations", "navigation", "clocks", "orbits", "almanac", "sbas", "receivers", "packed", "rtklib")
+    return [bytes([k]) + seed[:500] for k, kind in enumerate(kinds) for seed in found[kind][:2]]
+
+
+TABLE = b"timestamp,latitude,longitude,altitude (ft),groundspeed,track,hpl_m\n" + b"".join(
+    b"%d,%.5f,10.0,%d,97.2,0,12.5\n" % (1_700_000_000 + k, 50 + k / 2000, 300 + k) for k in range(12)
+)
+ISO = (
+    b"time;lat (deg);lon [rad];status\n2016-12-31T23:59:59Z;1;0.5;ok\n2016-12-31T23:59:60Z;1.0001;0.5;ok\n2017-01-01 00:00:00+00:00;nan;;\n"
+)
+RECORDS = b'[{"time_ns": 1300000000000000000, "est_lat_rad": 0.5, "est_lon_rad": 1}, {"time_ns": null, "est_lat_rad": "x"}]'
+TRACE = b'{"icao": "abc", "timestamp": 1.7e9, "trace": [[0.5, 50, 10, "ground", 97, 0, 0, null, {"nic": 8, "rc": 186}, "adsb", 100]]}'
+BY_ROW = b'{"timestamp": {"0": 1700000000, "1": 1700000001}, "latitude": {"0": 50, "1": 50.0005}, "longitude": {"0": 1, "1": 2}}'
+
+
+def python_corpus() -> dict[str, list[bytes]]:
+    """Seeds of the targets in `readers.py`."""
+    shipped = sorted((HERE.parent / "python" / "navbound" / "scenario").rglob("*.toml"))
+    empty = hashlib.sha256(b"{}").hexdigest()
+    return {
+        "table": [TABLE, TABLE.replace(b",", b"\t"), ISO, b"gps_week,tow,lat,lon\n2200,1.5,1,2\n2200,604800,1,2\n2201,0,1,2\n"],
+        "json": [RECORDS, TRACE, BY_ROW],
+        "columns": [
+            b"time,Latitude (deg),lon [rad],x\ntime=time:gps_s\nest_h_m=x:ft",
+            b"t,breite,y\ntime=t:utc_ms\nest_lat_rad=breite:deg",
+        ],
+        "toml": [b'base = "beijing-shanghai"\nduration_s = 6000\n', *(path.read_bytes()[:LONGEST] for path in shipped)],
+        "checkpoint": [b"\0\0\1", bytes(range(30))],
+        "manifest": [b'{"files": {"a.json": "%s"}}' % empty.encode(), b'{"files": {"a.json": null}}', b'{"files": []}'],
+    }
+
+
 def corpus() -> dict[str, list[bytes]]:
     """Seeds of every target."""
     observation, navigation = texts("src/rinex/observation_tests.rs"), texts("src/rinex/navigation_tests.rs")
@@ -105,8 +140,9 @@ def corpus() -> dict[str, list[bytes]]:
     found["packed"] = [gzip.compress(text, mtime=0) for text in (found["sbas"][0], b"", bytes(5000))] + [b"\x1f\x9d", b"PK\x03\x04"]
     found["receivers"] = receivers()
     found["solutions"] = [bytes(range(256)), struct.pack("<q10d", 10**18, 0.5, 1.0, 100.0, 4.0, 1.0, 4.0, 0.5, 0.5, 9.0, 0.0)]
+    found["repeated"] = repeated(found)
     found["smoothing"] = [struct.pack("<d" + "q3dB" * 3, 100.0, *(v for k in range(3) for v in (k * 10**9, 2e7 + k, 2e7, 2e7, 0)))]
-    return found
+    return found | python_corpus()
 
 
 REAL = {
@@ -119,6 +155,8 @@ REAL = {
     "sbas": ("*.ems", "*.sbs"),
     "packed": ("*.gz",),
     "arinc424": ("K???.txt",),
+    "table": ("*.csv",),
+    "json": ("*.json",),
 }
 """What real files of a target are called."""
 LONGEST, MOST = 4096, 6

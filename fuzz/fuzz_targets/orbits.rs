@@ -3,9 +3,10 @@
 
 use libfuzzer_sys::fuzz_target;
 use navbound_formats::sp3::read;
+use navbound_fuzz::within_budget;
 
 fuzz_target!(|bytes: &[u8]| {
-    let Ok(mut p) = read(bytes) else { return };
+    let Ok(mut p) = within_budget(bytes, read) else { return };
     p.merge(p.clone());
     let tables = p.tables();
     for (satellite, nodes) in &p.orbits {

@@ -3,7 +3,8 @@
 
 use libfuzzer_sys::fuzz_target;
 use navbound_formats::packed::unpack;
+use navbound_fuzz::within_budget;
 
 fuzz_target!(|bytes: &[u8]| {
-    let _ = unpack(bytes);
+    let _ = within_budget(bytes, |bytes| unpack(bytes).map(|plain| plain.len()));
 });

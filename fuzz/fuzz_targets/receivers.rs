@@ -5,6 +5,7 @@ use libfuzzer_sys::fuzz_target;
 use navbound_core::geometry::broadcast::state;
 use navbound_core::signal::sbas::crc24q;
 use navbound_formats::receiver::{is_raw, read};
+use navbound_fuzz::within_budget;
 
 const UBX: [[u8; 2]; 4] = [[0x02, 0x15], [0x02, 0x13], [0x02, 0x10], [0x02, 0x11]];
 const SBF: [u16; 4] = [4027, 4020, 4017, 4023];
@@ -12,7 +13,7 @@ const SBF: [u16; 4] = [4027, 4020, 4017, 4023];
 fuzz_target!(|bytes: &[u8]| {
     let Some((form, rest)) = bytes.split_first() else { return };
     let log = if *form == b'r' { rest.to_vec() } else { frames(rest) };
-    let found = read(&log);
+    let found = within_budget(&log, read);
     assert_eq!(found.is_ok(), is_raw(&log));
     let Ok(r) = found else { return };
     let o = &r.observations;

@@ -112,6 +112,17 @@ fn entry(n: &Numbers, line: usize) -> Result<Entry, Unreadable> {
     if !(2450.0..=31_622.0).contains(&n.sqrt_a) {
         return refuse("sqrt(A)", n.sqrt_a, "[2450, 31622] sqrt(m)");
     }
+    for (field, angle) in
+        [("inclination", n.inclination), ("node", n.node), ("argument of perigee", n.perigee), ("mean anomaly", n.mean_anomaly)]
+    {
+        // A turn and what rounding adds.
+        if !(angle.abs() <= 6.3) {
+            return refuse(field, angle, "[-6.3, 6.3] rad");
+        }
+    }
+    if !(n.node_rate.abs() <= 1e-6) {
+        return refuse("rate of right ascension", n.node_rate, "[-1e-6, 1e-6] rad/s");
+    }
     Ok(Entry {
         // The checks above bound it.
         satellite: SatelliteId { constellation: Constellation::Gps, number: n.prn as u8 },

@@ -106,3 +106,20 @@ impl Tables<'_> {
         state(orbit, clock, self.longest_clock_gap_s, time)
     }
 }
+
+/// Add a record of a file; false where the last one of the same instant is another. Nothing tells which of two is right: that one goes too.
+pub(crate) fn put<N: PartialEq>(nodes: &mut Vec<N>, node: N, time: impl Fn(&N) -> GpsTime) -> bool {
+    match nodes.last() {
+        Some(last) if time(last) == time(&node) => {
+            let same = *last == node;
+            if !same {
+                nodes.pop();
+            }
+            same
+        }
+        _ => {
+            nodes.push(node);
+            true
+        }
+    }
+}

@@ -3,10 +3,10 @@
 //! Source: B. Remondi, "Extending the National Geodetic Survey standard GPS orbit formats" (a), S. Hilla, "The extended standard
 //! product 3 orbit format" (c, 2010; d, 2016); provenance: standard.
 
-use crate::precise::Precise;
+use crate::precise::{Precise, put};
 use crate::refusal::{Refusal, Unreadable};
 use crate::rinex::header::Lines;
-use crate::rinex::number::{Field, columns, decimal, seconds_ns, text, whole};
+use crate::rinex::number::{Field, columns, fixed, seconds_ns, text, whole};
 use crate::time::{Calendar, Scale, from_calendar};
 use nalgebra::Vector3;
 use navbound_core::frame::EcefPosition;
@@ -100,7 +100,7 @@ fn position(line: &[u8], number: usize, now: Option<GpsTime>, p: &mut Precise) {
     let Some(satellite) = satellite(columns(line, 1, 4)) else { return unknown(line, number, p) };
     let mut km = [0.0; 3];
     for (k, value) in km.iter_mut().enumerate() {
-        match decimal(columns(line, 4 + 14 * k, 18 + 14 * k)) {
+        match fixed(line, 4 + 14 * k, 18 + 14 * k) {
             Field::Number(v) => *value = v,
             _ => return refuse(p, number, "position", "not three numbers", line),
         }
@@ -110,11 +110,18 @@ fn position(line: &[u8], number: usize, now: Option<GpsTime>, p: &mut Precise) {
         if !(position.norm() < FARTHEST) {
             return refuse(p, number, "position", "farther than 100 000 km", line);
         }
-        p.orbits.entry(satellite).or_default().push(OrbitNode { time, position: EcefPosition::from_vector(position) });
+        let node = OrbitNode { time, position: EcefPosition::from_vector(position) };
+        if !put(p.orbits.entry(satellite).or_default(), node, |n| n.time) {
+            // The clocks beside two positions are no better than these.
+            p.orbit_clocks.entry(satellite).or_default().retain(|n| n.time != time);
+            return refuse(p, number, "satellite", "a second and other position in one epoch; neither is taken", line);
+        }
     }
-    match decimal(columns(line, 46, 60)) {
+    match fixed(line, 46, 60) {
         Field::Number(us) if us.abs() < NO_CLOCK_US => {
-            p.orbit_clocks.entry(satellite).or_default().push(ClockNode { time, bias_s: us * 1e-6 });
+            if !put(p.orbit_clocks.entry(satellite).or_default(), ClockNode { time, bias_s: us * 1e-6 }, |n| n.time) {
+                refuse(p, number, "clock", "a second and other clock in one epoch; neither is taken", line);
+            }
         }
         Field::Bad => refuse(p, number, "clock", "not a number", line),
         _ => {}

@@ -118,7 +118,8 @@ def _rtklib(source: Source) -> Reading:
     rejections.refuse_if_too_many(d["n_rows"])
     _not_empty(source, out)
     empty = [c for c in out.columns if out[c].is_null().all()]
-    without = refused.select(track=pl.lit(source.stem), time_ns=pl.lit(None, pl.Int64))
+    # A selection of constants alone has one row of them even where no row was refused.
+    without = refused.with_columns(track=pl.lit(source.stem), time_ns=pl.lit(None, pl.Int64)).select("track", "time_ns")
     lost = _left_out(without, contradicting)
     return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes, left_out=lost)
 

@@ -37,6 +37,8 @@ pub(super) struct Found<'a> {
     pub(super) at: usize,
     /// Its number, from 1.
     pub(super) number: usize,
+    /// Its bytes, where it is whole.
+    pub(super) length: usize,
     pub(super) frame: Result<Frame<'a>, &'static str>,
 }
 
@@ -74,7 +76,7 @@ impl<'a> Iterator for Frames<'a> {
             self.number += 1;
             // Behind a damaged frame the next one may begin anywhere.
             self.at = at + if frame.is_ok() { length } else { 2 };
-            return Some(Found { at, number: self.number, frame });
+            return Some(Found { at, number: self.number, length: if frame.is_ok() { length } else { 0 }, frame });
         }
         self.at = self.bytes.len();
         None

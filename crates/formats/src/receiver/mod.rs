@@ -42,8 +42,10 @@ pub fn is_raw(bytes: &[u8]) -> bool {
 /// stand.
 pub fn read(bytes: &[u8]) -> Result<Recording, Unreadable> {
     let (mut table, mut subframes, mut n_raw) = (Table::default(), Subframes::default(), 0_usize);
+    let mut outside = bytes.len();
     for found in Frames::new(bytes) {
         table.begin_frame(found.number, found.at);
+        outside -= found.length;
         match found.frame {
             Ok(frame) => {
                 n_raw += usize::from(frame.is_raw());
@@ -60,6 +62,7 @@ pub fn read(bytes: &[u8]) -> Result<Recording, Unreadable> {
             "no frame with raw data: RXM-RAWX, RXM-SFRBX, RXM-RAW, RXM-SFRB, MeasEpoch, GEORawL1, GPSRawCA or GALRawINAV",
         ));
     }
+    table.outside(outside);
     let (navigation, messages) = subframes.finish();
     Ok(Recording { observations: table.finish(), navigation, messages })
 }

@@ -46,6 +46,12 @@ impl Table {
     pub(super) fn skip(&mut self, kind: &str) {
         self.notes.skip(kind, 1);
     }
+    /// Bytes of the log that belong to no frame: of one whose first bytes are lost nothing else is left.
+    pub(super) fn outside(&mut self, n_bytes: usize) {
+        if n_bytes > 0 {
+            self.notes.skip("bytes outside frames: text, other protocols, or damage", n_bytes);
+        }
+    }
     /// A shorter time of lock than at the epoch before, or none, means that the count of cycles began anew.
     pub(super) fn lost(&mut self, satellite: SatelliteId, signal: [u8; 2], locked_ms: u32) -> u8 {
         let before = self.locked_ms.insert((satellite, signal), locked_ms);

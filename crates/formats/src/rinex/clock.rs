@@ -4,8 +4,8 @@
 
 use super::header::{Lines, label};
 use super::heading::satellite;
-use super::number::{Field, columns, decimal, seconds_ns, text, whole};
-use crate::precise::Precise;
+use super::number::{Field, columns, fixed, seconds_ns, text, whole};
+use crate::precise::{Precise, put};
 use crate::refusal::{Refusal, Unreadable};
 use crate::time::{Calendar, Scale, from_calendar};
 use navbound_core::geometry::precise::ClockNode;
@@ -31,13 +31,13 @@ pub fn read_clocks(bytes: &[u8]) -> Result<Precise, Unreadable> {
     while let Some(line) = lines.next() {
         match columns(line, 0, 3) {
             b"AS " => match record(line, scale) {
-                Ok(Some((satellite, node))) => p.clocks.entry(satellite).or_default().push(node),
-                Ok(None) => p.skip("J or I clock"),
-                Err((field, reason)) => {
-                    let refusal =
-                        Refusal { line: lines.number, field: field.to_owned(), reason: reason.to_owned(), text: text(line, 0, 80) };
-                    p.refused.push(refusal);
+                Ok(Some((satellite, node))) => {
+                    if !put(p.clocks.entry(satellite).or_default(), node, |n| n.time) {
+                        refuse(&mut p, lines.number, ("clock", "a second and other clock of one instant; neither is taken"), line);
+                    }
                 }
+                Ok(None) => p.skip("J or I clock"),
+                Err(why) => refuse(&mut p, lines.number, why, line),
             },
             kind @ (b"AR " | b"CR " | b"DR " | b"MS ") => p.skip(&text(kind, 0, 2)),
             // A continuation line of more than two values begins with blanks.
@@ -46,6 +46,10 @@ pub fn read_clocks(bytes: &[u8]) -> Result<Precise, Unreadable> {
     }
     p.sort();
     Ok(p)
+}
+
+fn refuse(p: &mut Precise, number: usize, (field, reason): (&str, &str), line: &[u8]) {
+    p.refused.push(Refusal { line: number, field: field.to_owned(), reason: reason.to_owned(), text: text(line, 0, 80) });
 }
 
 fn header(lines: &mut Lines<'_>, wide: bool, p: &mut Precise) -> Result<Scale, Unreadable> {
@@ -84,7 +88,7 @@ fn record(line: &[u8], scale: Scale) -> Result<Found, (&'static str, &'static st
         Err(_) => return Err(("satellite", "not a satellite of a known system")),
     };
     let time = time(line.get(shift..).unwrap_or_default(), scale).ok_or(("epoch", "not a date"))?;
-    match decimal(columns(line, 40 + shift, 59 + shift)) {
+    match fixed(line, 40 + shift, 59 + shift) {
         Field::Number(bias_s) if bias_s.abs() < 1.0 => Ok(Some((satellite, ClockNode { time, bias_s }))),
         _ => Err(("clock bias", "not a number of seconds below 1")),
     }

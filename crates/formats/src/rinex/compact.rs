@@ -10,6 +10,8 @@ use super::plain::{Head, event, unread};
 use super::value::indicators;
 use navbound_core::signal::{Constellation, SatelliteId};
 
+/// Why the last epoch of a file that was cut is lost; it says nothing against the one before.
+const ENDS: &str = "the file ends within an epoch";
 /// Highest order of difference.
 const ORDER: usize = 9;
 
@@ -100,6 +102,8 @@ pub(super) fn read(mut lines: Lines<'_>, kind: Kind, heading: &Heading, o: &mut 
     let mut state = State { epoch: Vec::new(), clock: Arc::default(), tracks, count: 1, since: 1 };
     // Lines without a beginning: their number, and the first of them.
     let (mut waiting, mut since) = (0_usize, 0_usize);
+    // Whether the epoch before this line ended right before it.
+    let mut follows = false;
     while let Some(line) = lines.next() {
         let starts = line.first() == Some(&if kind == Kind::First { b'&' } else { b'>' });
         if starts {
@@ -122,6 +126,7 @@ pub(super) fn read(mut lines: Lines<'_>, kind: Kind, heading: &Heading, o: &mut 
             state.epoch[0] = b' ';
         }
         let head = if kind == Kind::First { Head::second(&state.epoch, heading.time) } else { Head::third(&state.epoch, heading.time) };
+        let n_before = o.n_epochs();
         let outcome = head.and_then(|mut head| {
             if head.observes() {
                 epoch(&mut lines, kind, &mut head, &mut state, heading, o)
@@ -134,7 +139,13 @@ pub(super) fn read(mut lines: Lines<'_>, kind: Kind, heading: &Heading, o: &mut 
             o.refuse(lines.number, "epoch", &format!("{reason}; everything up to the next fresh start is lost"), &state.epoch);
             o.abandon_epoch();
             state.epoch.clear();
+            if follows && reason != ENDS {
+                // With a line too many or too few in it, its satellites have each other's numbers.
+                o.take_back_epoch();
+                o.refuse(lines.number, "epoch", "what follows is no epoch, so the one before it was left out as well", b"");
+            }
         }
+        follows = o.n_epochs() > n_before;
     }
     lost(&mut waiting, since, o);
 }
@@ -172,7 +183,7 @@ fn epoch(
     o: &mut Observations,
 ) -> Result<(), &'static str> {
     let (first, unit) = if kind == Kind::First { (32, 1e9) } else { (41, 1e12) };
-    let clock = lines.next().ok_or("the file ends within an epoch")?.trim_ascii();
+    let clock = lines.next().ok_or(ENDS)?.trim_ascii();
     head.clock_offset_s = f64::NAN;
     if clock.is_empty() {
         state.clock.alive = false;
@@ -182,7 +193,7 @@ fn epoch(
     state.count += 1;
     for k in 0..head.count {
         let name = columns(&state.epoch, first + 3 * k, first + 3 * k + 3);
-        let line = lines.next().ok_or("the file ends within an epoch")?;
+        let line = lines.next().ok_or(ENDS)?;
         match satellite(name, heading.system) {
             Ok(satellite) => {
                 let track = &mut state.tracks[satellite.constellation.index() * 100 + usize::from(satellite.number)];

@@ -113,15 +113,23 @@ fn codes(line: &[u8], o: &mut Observations, draft: &mut Draft) -> Result<(), Str
     }
     let Some(constellation) = Constellation::from_letter(draft.system) else { return Ok(()) };
     for name in columns(line, 6, 58).chunks(4) {
-        let [b' ', kind, band, attribute] = *name else { continue };
-        if kind == b' ' {
+        if name.trim_ascii().is_empty() {
             continue;
+        }
+        // A name that is passed over would give its values to the next.
+        let [b' ', kind, band, attribute] = *name else { return Err(not_a_code(name)) };
+        if ![kind, band, attribute].iter().all(u8::is_ascii_alphanumeric) {
+            return Err(not_a_code(name));
         }
         // Version 3.02 alone called BeiDou's B1I band 1; before and after it is band 2 (RINEX 3.03, section 9.2).
         let b1i = o.version < 3.03 && constellation == Constellation::BeiDou && band == b'1';
         o.codes[constellation.index()].push([kind, if b1i { b'2' } else { band }, attribute]);
     }
     Ok(())
+}
+
+fn not_a_code(name: &[u8]) -> String {
+    format!("'{}' is not the name of an observation", String::from_utf8_lossy(name.trim_ascii()))
 }
 
 fn factor(line: &[u8], draft: &mut Draft) -> Result<(), String> {
@@ -172,7 +180,8 @@ fn translate(constellation: Constellation, [kind, band]: [u8; 2]) -> Code {
 pub(super) fn satellite(field: &[u8], default: Constellation) -> Result<navbound_core::signal::SatelliteId, u8> {
     let letter = field.first().copied().unwrap_or(b'?');
     let constellation = if letter == b' ' { Some(default) } else { Constellation::from_letter(letter) };
-    let number = whole(columns(field, 1, 3)).and_then(|n| u8::try_from(n).ok()).filter(|n| (1..=99).contains(n));
+    // Of a name of which the line holds two columns the last digit is lost.
+    let number = whole(field.get(1..3).unwrap_or_default()).and_then(|n| u8::try_from(n).ok()).filter(|n| (1..=99).contains(n));
     match (constellation, number) {
         (Some(constellation), Some(number)) if constellation.numbers().contains(&number) => {
             Ok(navbound_core::signal::SatelliteId { constellation, number })

@@ -27,6 +27,14 @@ pub(crate) fn columns(line: &[u8], from: usize, to: usize) -> &[u8] {
     line.get(from.min(line.len())..to.min(line.len())).unwrap_or_default()
 }
 
+/// The number in columns `from..to`; one within which the line ends has lost its last digits and is none.
+pub(crate) fn fixed(line: &[u8], from: usize, to: usize) -> Field {
+    match decimal(columns(line, from, to)) {
+        Field::Number(_) if line.len() < to => Field::Bad,
+        field => field,
+    }
+}
+
 /// Columns as text without blanks at the ends, foreign characters replaced.
 pub(crate) fn text(line: &[u8], from: usize, to: usize) -> String {
     String::from_utf8_lossy(columns(line, from, to).trim_ascii()).into_owned()

@@ -145,6 +145,15 @@ impl Observations {
         self.clock_offset_s.push(clock_offset_s);
         self.last_satellite.push(self.satellite.len());
     }
+    /// Forget the last epoch that ended: what follows shows that its lines were not its own.
+    pub(super) fn take_back_epoch(&mut self) {
+        self.time.pop();
+        self.line.pop();
+        self.interrupted.pop();
+        self.clock_offset_s.pop();
+        self.last_satellite.pop();
+        self.abandon_epoch();
+    }
     /// Forget the satellites of an epoch that did not end.
     pub(super) fn abandon_epoch(&mut self) {
         let keep = self.last_satellite.last().copied().unwrap_or(0);

@@ -149,6 +149,11 @@ fn fields(mut rest: &[u8], n: usize, number: usize, o: &mut Observations) {
             // The last of a line whose indicators, or all of it, were cut off: what is missing is blank.
             let mut whole = [b' '; 16];
             whole[..rest.len()].copy_from_slice(rest);
+            // A number within whose columns the line ends has lost its last digits.
+            if rest.len() < 14 && !rest.trim_ascii().is_empty() {
+                o.refuse(number, &format!("observation {}", k + 1), "the line ends within the number", rest);
+                whole = [b' '; 16];
+            }
             self::field(&whole, k, number, o);
             rest = &[];
             continue;

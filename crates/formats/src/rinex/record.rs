@@ -1,6 +1,6 @@
 //! One navigation record: its lines to an ephemeris.
 
-use super::super::number::{columns, decimal, seconds_ns, text, whole};
+use super::super::number::{Field, columns, fixed, seconds_ns, text, whole};
 use super::nearest_week;
 use crate::refusal::Refusal;
 use crate::time::{Calendar, Scale, from_calendar};
@@ -40,15 +40,19 @@ impl<'a> Block<'a> {
                 return Err(self.refusal("record", "the record ends early"));
             };
             let from = self.indent + 19 * column;
-            let field = columns(line, from, from + 19);
-            *value = decimal(field).or_zero().ok_or_else(|| Refusal {
-                line: self.number + row,
-                field: format!("number {}", k + 1),
-                reason: "not a number".to_owned(),
-                text: String::from_utf8_lossy(field).into_owned(),
-            })?;
+            let field = fixed(line, from, from + 19);
+            *value = field.or_zero().ok_or_else(|| self.not_a_number(row, k, columns(line, from, from + 19)))?;
         }
         Ok(values)
+    }
+
+    fn not_a_number(&self, row: usize, k: usize, field: &[u8]) -> Refusal {
+        Refusal {
+            line: self.number + row,
+            field: format!("number {}", k + 1),
+            reason: "not a number".to_owned(),
+            text: String::from_utf8_lossy(field).into_owned(),
+        }
     }
 
     fn satellite(&self, system: Option<Constellation>) -> Option<SatelliteId> {
@@ -103,7 +107,7 @@ impl<'a> Block<'a> {
         let clock_time = self.time(scale).ok_or_else(|| self.refusal("epoch", "not a date"))?;
         let v = self.numbers::<27>()?;
         // The last line is often cut by writers that leave out blanks.
-        let [sent, last] = self.last_line();
+        let [sent, last] = self.last_line()?;
         let orbit_time = nearest_week(v[11], clock_time, behind).ok_or_else(|| self.refusal("toe", "not a time of week"))?;
         let unnamed = || self.refusal("data sources", "neither the clock of I/NAV nor that of F/NAV");
         let message = kind(satellite, message, v[20]).ok_or_else(unnamed)?;
@@ -143,12 +147,18 @@ impl<'a> Block<'a> {
     }
 
     /// Time of transmission and the number after it, where the record has them.
-    fn last_line(&self) -> [Option<f64>; 2] {
+    fn last_line(&self) -> Result<[Option<f64>; 2], Refusal> {
         let line = self.lines.get(7).copied().unwrap_or_default();
-        [0, 1].map(|k| match decimal(columns(line, self.indent + 19 * k, self.indent + 19 * k + 19)) {
-            super::super::number::Field::Number(v) => Some(v),
-            _ => None,
-        })
+        let mut values = [None; 2];
+        for (k, value) in values.iter_mut().enumerate() {
+            let from = self.indent + 19 * k;
+            *value = match fixed(line, from, from + 19) {
+                Field::Number(v) => Some(v),
+                Field::Blank => None,
+                Field::Bad => return Err(self.not_a_number(7, 27 + k, columns(line, from, from + 19))),
+            };
+        }
+        Ok(values)
     }
 
     /// A geostationary record: kilometres in the file. `second`: satellite numbers of version 2.

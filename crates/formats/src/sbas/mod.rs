@@ -11,7 +11,7 @@ use crate::receiver;
 use crate::refusal::{Refusal, Unreadable};
 use navbound_core::quantity::GpsTime;
 use navbound_core::signal::sbas::Block;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The instant that a log writes beside a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -162,7 +162,8 @@ fn records(text: &str, log: &mut Log) {
 }
 
 impl Log {
-    /// Refuse messages that no receiver heard in this order: a wrong date would make an old correction a new one.
+    /// Refuse messages that no receiver heard in this order: a wrong date would make an old correction a new one. A satellite sends one
+    /// message a second: of two of one second nobody knows which is dated wrongly.
     fn drop_backward(&mut self) {
         let senders: BTreeSet<u8> = self.messages.iter().map(|m| m.prn).collect();
         let mut stands = vec![true; self.line.len()];
@@ -174,10 +175,18 @@ impl Log {
                 most_rising(&ends, false).into_iter().for_each(|k| stands[own[k]] = true);
             }
         }
-        for (line, message) in self.line.iter().zip(&self.messages).zip(&stands).filter_map(|(m, stands)| (!stands).then_some(m)) {
+        let in_order = stands.clone();
+        for k in self.doubted(&stands) {
+            stands[k] = false;
+        }
+        for (k, (line, message)) in self.line.iter().zip(&self.messages).enumerate().filter(|(k, _)| !stands[*k]) {
             let text = format!("PRN {}, message type {}", message.prn, message.block.message_type());
-            let reason = "the time runs backwards against the messages around it".to_owned();
-            self.refused.push(Refusal { line: *line, field: "time".to_owned(), reason, text });
+            let reason = if in_order[k] {
+                "another message of this satellite has the same time; neither is taken"
+            } else {
+                "the time runs backwards against the messages around it"
+            };
+            self.refused.push(Refusal { line: *line, field: "time".to_owned(), reason: reason.to_owned(), text });
         }
         if !self.line.is_empty() {
             let mut kept = stands.iter();
@@ -185,6 +194,19 @@ impl Log {
         }
         self.refused.sort_by_key(|r| r.line);
         self.line.clear();
+    }
+
+    /// Messages, of those that stand, that share sender and second with another one.
+    fn doubted(&self, stands: &[bool]) -> Vec<usize> {
+        let mut at: BTreeMap<(u8, GpsTime), Vec<usize>> = BTreeMap::new();
+        if self.line.is_empty() {
+            return Vec::new();
+        }
+        for (k, m) in self.messages.iter().enumerate().filter(|(k, _)| stands.get(*k) == Some(&true)) {
+            at.entry((m.prn, m.end)).or_default().push(k);
+        }
+        let differ = |several: &Vec<usize>| several.iter().any(|k| self.messages[*k].block != self.messages[several[0]].block);
+        at.into_values().filter(differ).flatten().collect()
     }
 
     fn take(&mut self, number: usize, text: &str, parsed: Result<Received, line::Fault>) {

@@ -138,13 +138,13 @@ def messages(
             log.leave_out("damaged message", record, what, damaged=True)
         damaged.clear()
         if message is None:
-            _note_passed_over(log, len(content) - in_messages, len(content))
+            note_passed_over(log, len(content) - in_messages, len(content))
             return
         in_messages += len(message[0] or b"")
         yield record, message
 
 
-def _note_passed_over(log: Log, n_bytes: int, of: int) -> None:
+def note_passed_over(log: Log, n_bytes: int, of: int) -> None:
     """A message whose first or last bytes are lost leaves nothing but bytes that nobody takes."""
     if n_bytes > 0:
         log.notes.append(f"{log.path.name}: {n_bytes} of {of} bytes belong to no message that is read (text, other protocols, or damage)")

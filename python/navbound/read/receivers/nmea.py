@@ -5,7 +5,9 @@ Source: NMEA 0183 version 4 as receivers' manuals give it, standard. GGA has no 
 
 from __future__ import annotations
 
+import functools
 import math
+import operator
 import re
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, time, timedelta
@@ -24,8 +26,6 @@ _HALF_DAY_S = 43_200
 
 _WITH_ARRIVAL = re.compile(rb"^(?:NMEA,)?(\$[^\r\n*]*\*[0-9A-Fa-f]{2}),\d+(?=\r?$)", re.MULTILINE)
 """A sentence as the loggers of telephones write it: a word before it, the time of arrival behind its checksum."""
-_CHECKED = re.compile(rb"\*[0-9A-Fa-f]{2}\s*$")
-"""The end of a sentence with its checksum."""
 
 
 @dataclass
@@ -46,9 +46,9 @@ def read(source: Source) -> Log:
     fixes, dates, last = list[_Fix](), list[tuple[int, date, time]](), None
     content = _WITH_ARRIVAL.sub(rb"\1", source.content)
     for record, (raw, sentence) in messages(lambda s, handler: pynmeagps.NMEAReader(s, errorhandler=handler, **settings), content, log):
-        if sentence is None and _CHECKED.search(raw) is None:
-            # The decoder gives nothing for what it does not know, and for a sentence whose checksum has lost its mark.
-            log.leave_out("damaged message", record, raw[:60].decode("ascii", "replace").strip(), damaged=True)
+        # The decoder passes over what it has no name for, and over a sentence with a byte that is no letter: only the first is whole.
+        if sentence is None and not _whole(raw):
+            log.leave_out("damaged message", record, repr(raw[:60]), damaged=True)
         name = getattr(sentence, "msgID", "")
         if name == "GGA":
             last = _Fix(record, sentence)
@@ -71,6 +71,12 @@ def read(source: Source) -> Log:
         _row(fix, dates[place], log)
     log.n_rows += len(log.rows)
     return log
+
+
+def _whole(raw: bytes) -> bool:
+    """Whether the check sum of a sentence is right."""
+    body, star, stated = raw.strip().removeprefix(b"$").partition(b"*")
+    return bool(star) and stated.upper() == b"%02X" % functools.reduce(operator.xor, body, 0)
 
 
 def _undated(n_fixes: int, log: Log) -> str:

@@ -14,7 +14,7 @@ import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from navbound.read.receivers.log import Log, diagonal
+from navbound.read.receivers.log import Log, diagonal, note_passed_over
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,17 +57,19 @@ def read(source: Source) -> Log:
 
 def _frames(content: bytes, log: Log) -> Iterator[tuple[int, _Position]]:
     """Positions whose check sum is right, with the number of their frame; frames whose is wrong are counted."""
-    at, record = 0, 0
+    at, record, in_frames = 0, 0, 0
     while (begin := _BEGIN.search(content, at)) is not None:
         record += 1
         end, body = _ascii(content, begin.start()) if content[begin.start()] == ord("#") else _binary(content, begin.start())
         at = begin.end() if end is None else end
+        in_frames += 0 if end is None else end - begin.start()
         if end is None:
             log.leave_out("damaged message", record, f"frame at byte {begin.start()}: cut short or its check sum wrong", damaged=True)
         elif isinstance(body, _Position):
             yield record, body
         elif body is not None:
             log.leave_out("damaged message", record, f"frame at byte {begin.start()}: {body}", damaged=True)
+    note_passed_over(log, len(content) - in_frames, len(content))
 
 
 def _crc(frame: bytes) -> int:

@@ -11,6 +11,8 @@ from datetime import UTC, datetime
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from navbound.read.receivers.log import COVARIANCE, Log, messages, package
 
 if TYPE_CHECKING:
@@ -30,7 +32,10 @@ def read(source: Source) -> Log:
     log = Log(source.path, "NAV-PVT")
     epoch: dict[str, Any] = {}
     for record, (raw, _) in messages(lambda stream, handler: _reader(pyubx2, stream, handler), source.content, log):
-        name = _WANTED.get(bytes(raw[2:4])) if raw is not None else None
+        if not _whole(raw):
+            log.leave_out("damaged message", record, f"class and identifier {raw[2:4].hex(' ')}: wrong check sum", damaged=True)
+            continue
+        name = _WANTED.get(raw[2:4])
         if name is None:
             continue
         if name == "gps":
@@ -57,9 +62,15 @@ def read(source: Source) -> Log:
 
 
 def _reader(pyubx2: Any, stream: io.BytesIO, handler: Any) -> Any:
-    """Frames with a right check sum, not yet taken apart: most are not wanted."""
+    """Frames, not yet taken apart: most are not wanted. Their check sums are not looked at either."""
     settings = {"protfilter": pyubx2.UBX_PROTOCOL, "parsing": pyubx2.PARSE_NONE, "quitonerror": pyubx2.ERR_LOG, "errorhandler": handler}
     return pyubx2.UBXReader(stream, **settings)
+
+
+def _whole(raw: bytes) -> bool:
+    """Whether the two sums at the end of a frame are right: of its bytes, and of the sums up to each."""
+    body = np.frombuffer(raw[2:-2], dtype=np.uint8).astype(np.int64)
+    return bytes([int(body.sum()) & 0xFF, int((body * np.arange(body.size, 0, -1)).sum()) & 0xFF]) == raw[-2:]
 
 
 def _finish(epoch: dict[str, Any], log: Log) -> None:
