@@ -30,7 +30,7 @@ from pathlib import Path
 
 import numpy as np
 
-from damage_kinds import BESIDE, KINDS, Cells, Kind, Result
+from damage_kinds import BESIDE, KINDS, Cell, Cells, Kind, Result
 from navbound.errors import FormatError, InputError
 
 HANG_S, MEMORY_BYTES = 10.0, 2 << 30
@@ -80,7 +80,7 @@ def damage(random: np.random.Generator, content: bytes, *, binary: bool) -> Dama
     return Damage(kind, content[:at] + made + content[end:], at, end)
 
 
-def differing(clean: Cells, found: Cells) -> tuple[set[object], set[object], set[object]]:
+def differing(clean: Cells, found: Cells) -> tuple[set[Cell], set[Cell], set[Cell]]:
     """Cells that are lost, changed, and new."""
     lost = {k for k in clean if k not in found}
     changed = {k for k, v in clean.items() if k in found and found[k] != v}
@@ -109,7 +109,7 @@ class Bench:
         return int(np.searchsorted(self.lines, at, side="right")) - 1
 
     @cache  # noqa: B019
-    def influence(self, line: int) -> frozenset[object] | None:
+    def influence(self, line: int) -> frozenset[Cell] | None:
         """Cells that change where a line is left out; None where everything may: a head without which nothing is read."""
         begin = self.lines[line]
         end = self.lines[line + 1] if line + 1 < len(self.lines) else len(self.content)
@@ -142,13 +142,13 @@ class Bench:
             return ("data" if whole else "counted", "") if counted or whole else ("SILENT", f"lost {_some(lost)}")
         return self._unprotected(d, (lost, changed, new), counted=counted)
 
-    def _unprotected(self, d: Damage, cells: tuple[set[object], set[object], set[object]], *, counted: bool) -> tuple[str, str]:
+    def _unprotected(self, d: Damage, cells: tuple[set[Cell], set[Cell], set[Cell]], *, counted: bool) -> tuple[str, str]:
         lost, changed, new = cells
         first, last = self.line_at(d.begin), self.line_at(max(d.begin, d.end - 1))
         if d.words == "cut":
             # What stands before the cut line is whole; the cut line itself is seen by its missing end.
             last = first
-        allowed: set[object] = set()
+        allowed: set[Cell] = set()
         for line in range(first, min(last + 2, len(self.lines))):
             each = self.influence(line)
             while each is not None and not each and line > 0:
@@ -159,11 +159,11 @@ class Bench:
                 return "declared otherwise", "the head was changed"
             allowed |= each
         # A line belongs to its whole record: what it states may be what is assumed without it.
-        keys = {key for key, _ in allowed}  # type: ignore[misc]
-        outside = {cell for cell in changed if cell[0] not in keys}  # type: ignore[index]
+        keys = {key for key, _ in allowed}
+        outside = {cell for cell in changed if cell[0] not in keys}
         if outside and d.words != "cut":
             return "WRONG", f"changed {_some(outside)}, which belong to other lines"
-        n_records = len({key for key, _ in new} - keys)  # type: ignore[misc]
+        n_records = len({key for key, _ in new} - keys)
         if n_records > len(keys) + 2 * (last - first + 2):
             return "WRONG", f"{n_records} new records {_some(new)} of {last - first + 1} lines"
         if counted:
@@ -176,7 +176,7 @@ class Bench:
         return ("data", "") if not lost - allowed else ("SILENT", f"lost {_some(lost - allowed)}, which belong to other lines")
 
 
-def _some(cells: set[object]) -> str:
+def _some(cells: set[Cell]) -> str:
     return f"{len(cells)} ({', '.join(map(str, sorted(map(str, cells))[:2]))})"
 
 

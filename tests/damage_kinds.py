@@ -24,7 +24,8 @@ from navbound.run.files import sort_out
 from navbound.run.performance import Options, evaluate_files
 
 DATA = SHARED / "data"
-Cells = dict[tuple[Hashable, str], Hashable]
+Cell = tuple[Hashable, str]
+Cells = dict[Cell, Hashable]
 """Key of a record (satellite, time) and name of a number, to the number."""
 Result = tuple[Cells, Counter[str]]
 """Numbers, and what is stated of losses."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -34,7 +34,7 @@ def written_over_a_leap_second() -> Iterator[str]:
         yield f"{noon + timedelta(seconds=k):%Y-%m-%dT%H:%M:%SZ}"
 
 
-SERIES = {
+SERIES: dict[str, tuple[str, Callable[[], Iterator[str]]]] = {
     "plain": ("week,tow", lambda: written_in_weeks(100_000)),
     "over a week's end": ("week,tow", lambda: written_in_weeks(604_800 - HALF)),
     "over a leap second": ("time", written_over_a_leap_second),

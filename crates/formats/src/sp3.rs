@@ -119,7 +119,8 @@ fn position(line: &[u8], number: usize, now: Option<GpsTime>, p: &mut Precise) {
     }
     match fixed(line, 46, 60) {
         Field::Number(us) if us.abs() < NO_CLOCK_US => {
-            if !put(p.orbit_clocks.entry(satellite).or_default(), ClockNode { time, bias_s: us * 1e-6 }, |n| n.time) {
+            let node = ClockNode { time, bias_s: us * 1e-6 };
+            if !put(p.orbit_clocks.entry(satellite).or_default(), node, |n| n.time) {
                 refuse(p, number, "clock", "a second and other clock in one epoch; neither is taken", line);
             }
         }

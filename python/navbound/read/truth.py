@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.read.epochs import Reading
-    from navbound.run.records import Rejection
 
 TOLERANCE_S = 0.01
 """How far apart in time an estimate and its truth may lie. At 70 m/s a hundredth of a second is 0.7 m."""
@@ -65,8 +64,8 @@ def truth_of(given: str | Path | None, tolerance_s: float) -> Truth:
     return Truth(text, point, tolerance_s)
 
 
-def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, list[Rejection]]:
-    """Form the navigation error against a truth that was named; words about it, and what its file held that was refused.
+def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, Reading | None]:
+    """Form the navigation error against a truth that was named; words about it, and what was read of its file.
 
     Raises
     ------
@@ -77,11 +76,11 @@ def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, l
         raise InputError("truth", truth.given, domain="no truth: the table holds no positions to compare with it")
     if truth.ecef_m is None:
         other = read(str(truth.given))
-        return *join(epochs, other, truth.tolerance_s), other.rejected
+        return *join(epochs, other, truth.tolerance_s), other
     place = gnss.geodetic(truth.ecef_m)
     names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m")
     fixed = epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True))
-    return with_error(fixed)[0], f"Truth: the fixed point {truth.given} m, Earth-fixed.", []
+    return with_error(fixed)[0], f"Truth: the fixed point {truth.given} m, Earth-fixed.", None
 
 
 def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S) -> tuple[pl.DataFrame, str]:

@@ -20,7 +20,7 @@ from navbound.read.repeats import LEFT_OUT, left_out, separate
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
 from navbound.read.source import LARGE_BYTES, is_text_table
-from navbound.read.truth import TOLERANCE_S, join, truth_of, with_error, with_truth
+from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
 from navbound.run.files import sort_out
 from navbound.run.material import Material
 from navbound.run.pieces import AUXILIARY, covariance_status, in_pieces, states_truth, without_path
@@ -122,13 +122,10 @@ def material(
     alone = len(names) == 1 and path is None and procedure is None and truth is None and not solve
     if piece_rows is not None and not alone:
         raise InputError("piece_rows", piece_rows, domain="it with one text table, without path, procedure, truth and solve")
-    if alone:
-        table = Path(names[0])
-        if is_text_table(table, LARGE_BYTES if piece_rows is None else 0) and not states_truth(table, columns):
-            solving.refuse(_TO_SOLVE)
-            return _in_pieces(
-                in_pieces(table, columns, sigma_m=sigma_m, limits=limits, rnp_m=rnp_m, piece_rows=piece_rows or PIECE_ROWS), context
-            )
+    if alone and _is_large(Path(names[0]), columns, piece_rows):
+        solving.refuse(_TO_SOLVE)
+        piece_rows = piece_rows or PIECE_ROWS
+        return _in_pieces(in_pieces(Path(names[0]), columns, sigma_m=sigma_m, limits=limits, rnp_m=rnp_m, piece_rows=piece_rows), context)
     found = sort_out(names, solve=solve)
     found.require_navigation()
     if not found.observations:
@@ -147,14 +144,10 @@ def material(
     origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
     assumptions = [of_covariance, plausibility.words]
-    if named.ecef_m is not None:
-        epochs, words, _ = with_truth(epochs, named)
-        assumptions.append(words)
-    elif truth is not None:
-        other = read(truth)
-        inputs.append(other.source)
-        rejected += other.rejected
-        epochs, words = join(epochs, other, truth_tolerance_s)
+    if truth is not None:
+        epochs, words, other = with_truth(epochs, named)
+        inputs += [] if other is None else [other.source]
+        rejected += [] if other is None else other.rejected
         assumptions.append(words)
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
         epochs, words = with_error(epochs)
@@ -204,6 +197,11 @@ class _Context:
             "solve": self.solve,
             "solving": self.solving.named,
         }
+
+
+def _is_large(table: Path, columns: Mapping[str, str] | None, piece_rows: int | None) -> bool:
+    """Whether a file is a text table that is read in pieces: a large one, or any where pieces are requested; a truth needs whole series."""
+    return is_text_table(table, LARGE_BYTES if piece_rows is None else 0) and not states_truth(table, columns)
 
 
 _TO_SOLVE = "it together with measurements to solve: RINEX observations, or --solve with a receiver's log"

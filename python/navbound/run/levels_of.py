@@ -113,9 +113,9 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, need
         raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")
     epochs, notes, refused = reading.epochs, list(reading.notes), list(reading.rejected)
     if truth.given is not None:
-        epochs, words, of_truth = with_truth(epochs, truth)
+        epochs, words, other = with_truth(epochs, truth)
         notes.append(words)
-        refused += of_truth
+        refused += [] if other is None else other.rejected
     else:
         epochs, own = _with_own_truth(epochs)
         notes += [f"{path.name}: {each}" for each in own]
@@ -232,8 +232,8 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     refused = [*of_observations(observations), *service.rejected()]
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", service.navigation.skipped)]
     if truth.given is not None and truth.ecef_m is None:
-        epochs, words, of_truth = with_truth(epochs, truth)
-        refused += of_truth
+        epochs, words, other = with_truth(epochs, truth)
+        refused += [] if other is None else other.rejected
         notes.append(words)
     rejected = [one.model_dump() for one in refused]
     if service.has_messages:

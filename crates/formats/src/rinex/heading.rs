@@ -118,7 +118,8 @@ fn codes(line: &[u8], o: &mut Observations, draft: &mut Draft) -> Result<(), Str
         }
         // A name that is passed over would give its values to the next.
         let [b' ', kind, band, attribute] = *name else { return Err(not_a_code(name)) };
-        if ![kind, band, attribute].iter().all(u8::is_ascii_alphanumeric) {
+        // The attribute may be blank (RINEX 3.04, section 5.1; the channel number `X1` has none).
+        if ![kind, band].iter().all(u8::is_ascii_alphanumeric) || !(attribute.is_ascii_alphanumeric() || attribute == b' ') {
             return Err(not_a_code(name));
         }
         // Version 3.02 alone called BeiDou's B1I band 1; before and after it is band 2 (RINEX 3.03, section 9.2).
