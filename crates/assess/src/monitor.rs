@@ -120,7 +120,7 @@ impl Monitors {
     pub fn new(settings: Settings, with_levels: &[bool]) -> Result<Self, OutOfDomain> {
         let monitor = Monitor::new(settings)?;
         let comparison = |has: &bool| if *has { IntegrityComparison::with_levels() } else { IntegrityComparison::default() };
-        Ok(Self { tracks: with_levels.iter().map(|has| (monitor.clone(), comparison(has))).collect(), events: Vec::new() })
+        Ok(Self { tracks: with_levels.iter().map(|has| (monitor, comparison(has))).collect(), events: Vec::new() })
     }
 
     /// Judge the next rows.
