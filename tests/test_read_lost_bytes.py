@@ -67,7 +67,7 @@ def test_novatel_bytes_outside_frames_are_stated(tmp_path: Path) -> None:
 
 
 SOLUTIONS = """%  GPST                  latitude(deg) longitude(deg)  height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) sdeu(m) sdun(m) age(s)
-2023/07/11 06:04:54.000   35.165360851  136.881409530    41.3947   1  19   0.0045   0.0045   0.0097   0.0027   0.0012  -0.0030   0.03    4.7
+2023/07/11 06:04:54.000   35.165360851  136.881409530    41.3947   1  19   0.0045   0.0045   0.0097   0.0027   0.0012  -0.0030   0.03
 """
 
 

@@ -82,8 +82,8 @@ def show_command(
     for leg in procedure.legs:
         table.add_row(*drawn.cells(leg))
     out_console.print(table)
-    for words in drawn.notes(procedure, findings):
-        out_console.print(words.removeprefix("!"), markup=False, highlight=False)
+    for note in drawn.notes(procedure, findings):
+        out_console.print(note.text, markup=False, highlight=False)
     if out is not None:
         out_console.print(f"Page: {out.resolve()}", markup=False, highlight=False, soft_wrap=True)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from jinja2 import Environment, StrictUndefined
 
@@ -59,27 +59,36 @@ def cells(leg: Leg) -> tuple[str, ...]:
     )
 
 
-def notes(procedure: Procedure, findings: list[Finding]) -> list[str]:
-    """What a reader must know beside the table; one that begins with ! is a warning."""
-    words = []
+class Note(NamedTuple):
+    """A sentence beside the table."""
+
+    text: str
+    is_warning: bool
+
+
+def notes(procedure: Procedure, findings: list[Finding]) -> list[Note]:
+    """What a reader must know beside the table."""
+    notes = []
     if procedure.levels:
         names = ", ".join(f"RNP {x.rnp_m / NAUTICAL_MILE_M:.3g}" for x in procedure.levels)
-        words.append(f"Lines of minima: {names}" + (f"; selected: {procedure.line}." if procedure.line else "; none selected."))
+        selected = f"; selected: {procedure.line}." if procedure.line else "; none selected."
+        notes.append(Note(f"Lines of minima: {names}{selected}", is_warning=False))
+    warnings = []
     n = procedure.n_without_rnp
     if n:
-        words.append(
-            f"!{n} of {sum(x.has_path for x in procedure.legs)} legs with a path have no RNP and are not judged; "
+        warnings = [
+            f"{n} of {sum(x.has_path for x in procedure.legs)} legs with a path have no RNP and are not judged; "
             "select a line or allow defaults."
-        )
+        ]
     differing = [x for x in procedure.legs if x.rnp_differs]
-    words += [
-        f"!Leg to {x.fix}: the field has RNP {x.rnp_coded_m / NAUTICAL_MILE_M:.3g}, {ORIGINS[x.rnp_origin]}"
+    warnings += [
+        f"Leg to {x.fix}: the field has RNP {x.rnp_coded_m / NAUTICAL_MILE_M:.3g}, {ORIGINS[x.rnp_origin]}"
         + (f" RNP {x.rnp_m / NAUTICAL_MILE_M:.3g}." if math.isfinite(x.rnp_m) else ".")
         for x in differing
         if x.rnp_coded_m is not None
     ]
-    words += [f"!Line {f.line}, leg {f.sequence}: {f.words}." for f in findings]
-    return words + [f"!{note}" for note in procedure.notes]
+    warnings += [f"Line {f.line}, leg {f.sequence}: {f.words}." for f in findings]
+    return notes + [Note(text, is_warning=True) for text in (*warnings, *procedure.notes)]
 
 
 def page(procedure: Procedure, findings: list[Finding]) -> str:
