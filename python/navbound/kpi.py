@@ -364,7 +364,7 @@ class Campaign:
         if self._n_shared:
             notes.append(
                 f"{self._n_shared} rows share an epoch of the grid, one every {self.period_s:g} s, with another: of each epoch the "
-                "worst row counts (an error beyond the limits or above the level first, then one without a level, then the largest error over level)."
+                "worst row counts (an error beyond the limits or above the level first, then one without a level, then the largest ratio)."
             )
         if self.period_s > self.window_s:
             notes.append(f"Sampled every {self.period_s:g} s: the {self.window_s:g} s continuity window is one epoch and not meaningful.")

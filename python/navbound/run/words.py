@@ -9,7 +9,7 @@ import numpy as np
 from navbound import _core
 from navbound.run.numbers import length, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS
-from navbound.run.verdict.words import contradicted_words, refuted_words, truth_words
+from navbound.run.verdict.words import COPIED, contradicted_words, refuted_words, truth_words
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
@@ -101,6 +101,8 @@ def _not_shown(verdict: Verdict) -> list[str]:
         why.append(
             "The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false."
         )
+    if verdict.belief is not None and verdict.belief.state == "copied":
+        why.append(COPIED)
     if verdict.belief is not None and verdict.belief.state == "contradicted":
         why += contradicted_words(verdict.belief)
     if verdict.n_stated_beyond:

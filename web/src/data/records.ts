@@ -40,7 +40,7 @@ export interface LevelCheck {
 }
 
 export interface Belief {
-    state: "unchecked" | "supported" | "partial" | "short" | "contradicted" | "refuted";
+    state: "unchecked" | "supported" | "partial" | "few" | "copied" | "short" | "contradicted" | "refuted";
     /** Epochs checked where truth is known, and those of them with a true horizontal error. */
     n_epochs: number;
     n_truth: number;
