@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import anp, evaluation, rnp
+from navbound._rnp_exposure import LONGEST_STEP_S
 from navbound.methods import column_of, method
 from navbound.run.doubts import Doubts, tracks_with_levels
 from navbound.run.records import (
@@ -283,7 +284,7 @@ class Gaps:
         self._n_left_out, self._period_s, self._n = left_out.height, period_s, 0
         self._rest = left_out.drop_nulls("time_ns").unique().sort("track", "time_ns")
         self._last = self._rest.clear()
-        self._longest_s = rnp.Monitor(sample_period_s=period_s, time_to_alert_s=math.inf).stale_after_s
+        self._longest_s = rnp.Monitor(sample_period_s=min(period_s, LONGEST_STEP_S), time_to_alert_s=math.inf).stale_after_s
 
     def see(self, epochs: pl.DataFrame) -> None:
         """The next epochs."""
