@@ -125,6 +125,8 @@ class Verdict(Record):
     """Epochs with status ok or degraded where the recording itself states an error beyond RNP."""
     n_stated_alert: int = 0
     """The same where it states an alert."""
+    n_stated_worse: int = 0
+    """The same where it states a 95 % radius that is larger than its covariance allows."""
     n_without_level: int = 0
     """Judged epochs of tracks with a column of horizontal protection levels that holds none."""
     n_long_steps: int = 0

@@ -109,6 +109,10 @@ def _not_shown(verdict: Verdict) -> list[str]:
         why.append(f"The recording itself states an error beyond RNP at {verdict.n_stated_beyond} epochs.")
     if verdict.n_stated_alert:
         why.append(f"The recording itself states an alert at {verdict.n_stated_alert} epochs.")
+    if verdict.n_stated_worse:
+        why.append(
+            f"The recording itself states a 95 % radius (EPU) at {verdict.n_stated_worse} epochs that is larger than the covariance allows."
+        )
     if verdict.n_without_level:
         why.append(
             f"A column of horizontal protection levels holds none in the tracks of {verdict.n_without_level} judged epochs: their "

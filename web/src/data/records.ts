@@ -70,6 +70,7 @@ export interface Verdict {
     n_known_beyond: number;
     n_stated_beyond: number;
     n_stated_alert: number;
+    n_stated_worse: number;
     n_without_level: number;
     n_long_steps: number;
     longest_step_s: number | null;
