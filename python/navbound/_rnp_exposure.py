@@ -8,7 +8,6 @@ from typing import Protocol
 from navbound import _core
 from navbound._arguments import checked
 
-
 LONGEST_STEP_S = 3600.0
 """Longest time between epochs that an hour's risk can be shared over: of a longer one each epoch carries the risk of its own hour. [s]"""
 

@@ -11,7 +11,8 @@ WORSE = "stated_worse_m"
 """The 95 % radius (EPU) that a row states, where it is larger than the covariance of the row allows by any definition [m]."""
 
 TWO_DRMS = 2.0
-"""Times the root of the two variances: no ellipse has a 95 % circle as large (1.96 for a line, 1.73 for a circle). [1] Provenance: standard."""
+"""Times the root of the sum of both variances: no ellipse has a 95 % circle as large
+(1.96 for a line, 1.73 for a circle). [1] Provenance: standard."""
 
 _LENGTHS = ("nse_h_m", "nse_cross_m", "nse_along_m", "tse_m", "fte_m")
 _NO_ALERT = ("", "normal", "none", "no", "ok", "off", "false", "0", "0.0", "nan", "null")

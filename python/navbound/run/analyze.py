@@ -279,8 +279,8 @@ def _gates_words(gates: Gates) -> str:
     descending = ", descending" if gates.descending else ""
     return (
         f"an approach is at least {gates.span_min_m / 1852:.3g} NM and {gates.n_min} points between {gates.before_min_m / 1852:.3g} and "
-        f"{gates.before_max_m / 1852:.3g} NM before a threshold, within {gates.cross_max_m:.0f} m of the extended centreline, and comes within "
-        f"{gates.lands_within_m / 1852:.3g} NM of the threshold{descending}"
+        f"{gates.before_max_m / 1852:.3g} NM before a threshold, within {gates.cross_max_m:.0f} m of the extended centreline, "
+        f"and comes within {gates.lands_within_m / 1852:.3g} NM of the threshold{descending}"
     )
 
 

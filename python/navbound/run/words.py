@@ -77,8 +77,17 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
     more = f", and {verdict.n_outside} epochs with status ok or degraded have a bound beyond its limit" if verdict.n_outside else ""
     return (
         f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "
-        f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; {shares}."
+        f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; "
+        f"{shares}{_thin(verdict)}."
     )
+
+
+def _thin(verdict: Verdict) -> str:
+    """That a verdict rests on fewer epochs than may be called evidence."""
+    if not 0 < verdict.n_judged < FEW_EPOCHS:
+        return ""
+    step = "" if verdict.longest_step_s is None else f", up to {verdict.longest_step_s:.6g} s apart"
+    return f"; this is thin evidence, of only {verdict.n_judged} judged epoch{'' if verdict.n_judged == 1 else 's'}{step}"
 
 
 def _shares(verdict: Verdict) -> str:
