@@ -354,7 +354,7 @@ def with_truth(**changed: object) -> dict[str, object]:
 
 
 def test_truth_at_few_epochs_supports_these_alone(tmp_path: Path) -> None:
-    for n, state in ((N, "supported"), (570, "supported"), (569, "partial"), (96, "partial")):
+    for n, state in ((N, "few"), (570, "few"), (569, "partial"), (96, "partial")):
         known: dict[str, object] = {
             key: [float(v) if k < n else None for k, v in enumerate(cast("Any", values))] for key, values in with_truth().items()
         }

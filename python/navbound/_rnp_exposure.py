@@ -8,6 +8,9 @@ from typing import Protocol
 from navbound import _core
 from navbound._arguments import checked
 
+LONGEST_STEP_S = 3600.0
+"""Longest time between epochs that an hour's risk can be shared over: of a longer one each epoch carries the risk of its own hour. [s]"""
+
 
 @checked
 def per_epoch_risk(risk_per_hour: float, tau_s: float, sample_period_s: float = 0.0) -> float:

@@ -16,6 +16,7 @@ from navbound import _core, _kpi_records
 from navbound._arguments import checked
 from navbound._arrays import flatten
 from navbound._kpi_levels import chosen_levels, level, levels, rnp
+from navbound._kpi_slots import Slots
 from navbound._kpi_subsets import RangeTable, StanfordEsa, SubsetOptions, n_bins, stanford_esa, with_subsets
 from navbound._kpi_tables import FLOATS, Table, codes_of, frame_of, period_of
 from navbound.errors import InputError
@@ -258,6 +259,8 @@ class Campaign:
         self._reasons: dict[str, int] = {}
         self._gravest = pl.DataFrame(schema=_kpi_records.EVENT_SCHEMA)
         self._n_bad_levels = 0
+        self._n_shared = 0
+        self._slots = Slots(int(times[0]), max(1, round(1e9 * self.period_s)), self.levels)
         self._core = _core.KpiCampaign(
             {
                 "origin_ns": int(times[0]),
@@ -284,8 +287,12 @@ class Campaign:
             A missing column, times that fall, a number outside its domain.
         """
         columns, n_bad = self._columns(frame_of(table))
+        self._slots.require_later(columns)
+        one_each = self._slots.worst(columns)
         self._n_bad_levels += n_bad
-        return self._keep(self._core.add(columns))
+        kept = self._keep(self._core.add(one_each))
+        self._n_shared += len(columns["time_ns"]) - len(one_each["time_ns"])
+        return kept
 
     def finish(self, tables: Callable[[], Iterable[Table]], events: Callable[[pl.DataFrame], None] | None = None) -> Performance:
         """Select the percentiles and make the record.
@@ -322,7 +329,8 @@ class Campaign:
             first_ns=found["span_ns"][0],
             last_ns=found["span_ns"][1],
             exclude_missing=self._exclude_missing,
-            **{name: found[name] for name in ("n_expected", "n_missing", "n_no_solution", "n_solution", "n_repeated", "n_mi_epochs")},
+            **{name: found[name] for name in ("n_expected", "n_missing", "n_no_solution", "n_solution", "n_mi_epochs")},
+            n_repeated=found["n_repeated"] + self._n_shared,
             axes=both,
             levels=results,
             stanford=_kpi_records.stanford_bins(found["stanford"], *self._bins),
@@ -339,7 +347,7 @@ class Campaign:
         selector = self._core.selector()
         for _ in range(_core.KpiSelector.passes()):
             for table in tables():
-                selector.scan(self._columns(frame_of(table))[0])
+                selector.scan(self._slots.worst(self._columns(frame_of(table))[0]))
             selector.narrow()
         values = selector.values()
         return [values[k : k + 4] for k in range(0, len(values), 4)]
@@ -353,6 +361,11 @@ class Campaign:
         notes = []
         if self._n_bad_levels:
             notes.append(f"{self._n_bad_levels} rows hold a protection level that is not positive and finite; it counts as none.")
+        if self._n_shared:
+            notes.append(
+                f"{self._n_shared} rows share an epoch of the grid, one every {self.period_s:g} s, with another: of each epoch the "
+                "worst row counts (an error beyond the limits or above the level first, then one without a level, then the largest ratio)."
+            )
         if self.period_s > self.window_s:
             notes.append(f"Sampled every {self.period_s:g} s: the {self.window_s:g} s continuity window is one epoch and not meaningful.")
         return notes

@@ -137,7 +137,9 @@ class _Points:
     def of(epochs: pl.DataFrame) -> _Points:
         def array(*names: str) -> NDArray[np.float64]:
             present = [pl.col(n) for n in names if n in epochs.columns]
-            return epochs.select(pl.coalesce(*present, pl.lit(math.nan)).alias("v")).to_series().to_numpy()
+            # A literal alone would be one row: an absent column is unknown at every epoch.
+            unknown = pl.repeat(math.nan, epochs.height, dtype=pl.Float64)
+            return epochs.select(pl.coalesce(*present, unknown).alias("v")).to_series().to_numpy()
 
         return _Points(
             array("est_lat_rad"),

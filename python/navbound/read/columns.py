@@ -150,7 +150,7 @@ STATED_QUANTITIES: tuple[Quantity, ...] = (
     _q("nse_along_m", "m", -1e8, 1e8),
     _q("tse_m", "m", -1e8, 1e8, m="tse"),
     _q("fte_m", "m", -1e8, 1e8, m="fte"),
-    _q("alert", "text", 0.0, 0.0),
+    _q("alert", "text", 0.0, 0.0, text="alert_state alarm"),
 )
 """What a recorded track may state against its own positions. It bounds nothing; the verdict weighs it."""
 

@@ -9,6 +9,7 @@ from typing import Literal
 import polars as pl
 
 from navbound.errors import InputError
+from navbound.read.stated import worse_than_covariance
 
 COLUMNS = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
 
@@ -90,13 +91,22 @@ def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
     if {"cov_ee_m2", "cov_en_m2", "cov_nn_m2"} <= have:
         alone = "cov_uu_m2" in have and not {"cov_eu_m2", "cov_nu_m2"} <= have
         more = " The vertical axis is taken as uncorrelated, which the file does not say." if alone else ""
-        return Claimed(_complete(epochs), f"Covariance: as the file gives it.{more}", "file")
+        words = f"Covariance: as the file gives it.{more}{_beside(have)}"
+        return Claimed(worse_than_covariance(_complete(epochs)), words, "file")
     if {"sigma_e_m", "sigma_n_m"} <= have:
         squares = {f"cov_{a}{a}_m2": pl.col(f"sigma_{a}_m") ** 2 for a in "enu" if f"sigma_{a}_m" in have}
         filled = epochs.with_columns(pl.lit(0.0).alias("cov_en_m2"), **squares)
         words = "Covariance: from the file's standard deviations; axes taken as uncorrelated, which the file does not say."
-        return Claimed(_complete(filled), words, "file_axes")
+        return Claimed(worse_than_covariance(_complete(filled)), f"{words}{_beside(have)}", "file_axes")
     return _coded(epochs, have)
+
+
+def _beside(have: set[str]) -> str:
+    """Accuracies that the file states beside the one that is used."""
+    named = {"epu_m": "EPU", "nac_p": "NACp", "rc_m": "Rc", "nic": "NIC"}
+    others = [words for name, words in named.items() if name in have]
+    compared = " An EPU larger than twice the distance root mean square speaks against the covariance." if "epu_m" in have else ""
+    return f" Stated beside it and not used: {', '.join(others)}.{compared}" if others else ""
 
 
 class Claims:

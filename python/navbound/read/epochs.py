@@ -10,7 +10,7 @@ import polars as pl
 
 from navbound import _core
 from navbound.errors import FormatError
-from navbound.read import receivers
+from navbound.read import levels, receivers
 from navbound.read.columns import POSITION, Assignment, assign
 from navbound.read.rejections import Rejections, Tally
 from navbound.read.repeats import LEFT_OUT, left_out
@@ -156,6 +156,11 @@ def _not_empty(source: Source, out: pl.DataFrame) -> None:
 
 def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> tuple[pl.DataFrame, pl.DataFrame]:
     """One row an instant, in the order of time; a repeated instant of a track is left out and counted. Second: rows that contradict."""
+    # Those of a table are null already.
+    out, without = levels.without_bound(out)
+    for name, at in without.items():
+        where = out.filter(at)
+        rejections.add(f"{name}: {levels.REASON}", where.height, where[LINE][0], "0 or less", malformed=False)
     late, tally = Late(), Tally()
     late.see(out)
     notes += late.words(rejections.path, rejections.unit)

@@ -7,9 +7,24 @@ import polars as pl
 ERROR, ALERT = "stated_error_m", "stated_alert"
 """The largest lateral or horizontal error that a row states [m]; the word of an alert that it states, null where it states none."""
 
+WORSE = "stated_worse_m"
+"""The 95 % radius (EPU) that a row states, where it is larger than the covariance of the row allows by any definition [m]."""
+
+TWO_DRMS = 2.0
+"""Times the root of the sum of both variances: no ellipse has a 95 % circle as large
+(1.96 for a line, 1.73 for a circle). [1] Provenance: standard."""
+
 _LENGTHS = ("nse_h_m", "nse_cross_m", "nse_along_m", "tse_m", "fte_m")
 _NO_ALERT = ("", "normal", "none", "no", "ok", "off", "false", "0", "0.0", "nan", "null")
 """Words that say that there is no alert. Any other is one: nobody knows what it means, and it is not "normal"."""
+
+
+def worse_than_covariance(epochs: pl.DataFrame) -> pl.DataFrame:
+    """Add `WORSE` where the table has both an EPU and a covariance."""
+    if not {"epu_m", "cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
+        return epochs
+    largest_m = TWO_DRMS * (pl.col("cov_ee_m2") + pl.col("cov_nn_m2")).sqrt()
+    return epochs.with_columns(pl.when(pl.col("epu_m") > largest_m).then("epu_m").alias(WORSE))
 
 
 def against_itself(rows: pl.DataFrame) -> pl.DataFrame:

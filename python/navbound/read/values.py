@@ -9,7 +9,7 @@ import polars as pl
 
 from navbound import status
 from navbound.errors import UNSEEN, FormatError
-from navbound.read import stated
+from navbound.read import levels, stated
 from navbound.read.columns import (
     LEVEL_QUANTITIES,
     POSITION,
@@ -38,7 +38,7 @@ _MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
 _AHEAD_NS = 1_000_000_000
 """How much later than its row a position may be said to be: both may be rounded."""
 
-FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED = range(0, 500_000, 100_000)
+FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS = range(0, 600_000, 100_000)
 """Where a reason stands among the others of its file; the number of the column is added to that of an optional one."""
 
 
@@ -107,6 +107,11 @@ class Values:
                 bad |= self._count(OPTIONAL + place, frame, column.name, reason)
         self.tally.n_with_bad_values += int(bad.sum())
         part = pl.DataFrame([values.alias(name) for name, values in out.items()])
+        part, without = levels.without_bound(part)
+        for place, (name, at) in enumerate(without.items()):
+            where, column = frame.filter(at), self._mapping.columns[name].name
+            # An outage written as zero is no damage of the file.
+            self.tally.add(LEVELS + place, f"{column}: {levels.REASON}", where.height, where[LINE][0], str(where[column][0]), kind="quiet")
         part = _with_speed(part).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
             if name in part.columns:

@@ -268,8 +268,18 @@ def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejecte
     if found.epochs.is_empty():
         where = "any runway of the table" if names is None else ", ".join(names)
         passes = " ".join(["", *found.notes])
-        raise InputError("path", str(path), domain=f"paths that a track follows: no approach to {where} was found with {gates}.{passes}")
+        raise InputError("path", str(path), domain=f"paths that a track follows: no approach to {where} ({_gates_words(gates)}).{passes}")
     return _on_approach(found, gates, epochs.height)
+
+
+def _gates_words(gates: Gates) -> str:
+    """What counts as an approach, in the units of charts."""
+    descending = ", descending" if gates.descending else ""
+    return (
+        f"an approach is at least {gates.span_min_m / 1852:.3g} NM and {gates.n_min} points between {gates.before_min_m / 1852:.3g} and "
+        f"{gates.before_max_m / 1852:.3g} NM before a threshold, within {gates.cross_max_m:.0f} m of the extended centreline, "
+        f"and comes within {gates.lands_within_m / 1852:.3g} NM of the threshold{descending}"
+    )
 
 
 _NO_PATH = "Path: none given, so there is no flight technical error; only the navigation system is judged."

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.read.plausible import Limits
-from navbound.read.stated import ALERT, ERROR
+from navbound.read.stated import ALERT, ERROR, WORSE
 from navbound.status import USABLE
 
 if TYPE_CHECKING:
@@ -24,8 +24,9 @@ class Doubts:
 
     Attributes
     ----------
-    n_stated_beyond, n_stated_alert, n_stated_against : int
-        Epochs with status ok or degraded where the recording itself states an error beyond RNP, an alert, or either.
+    n_stated_beyond, n_stated_alert, n_stated_worse, n_stated_against : int
+        Epochs with status ok or degraded where the recording itself states an error beyond RNP, an alert, an accuracy worse than its
+        covariance, or any of these.
     n_without_level : int
         Judged epochs of tracks whose column of horizontal protection levels holds none: no column of nothing may stand for a level.
     n_long_steps : int
@@ -37,7 +38,9 @@ class Doubts:
     def __init__(self, with_levels: Container[str]) -> None:
         self._with_levels = with_levels
         self._last: tuple[str, int] | None = None
-        self.n_stated_beyond = self.n_stated_alert = self.n_stated_against = self.n_without_level = self.n_long_steps = 0
+        self.n_stated_beyond = self.n_stated_worse = self.n_stated_alert = self.n_stated_against = self.n_without_level = (
+            self.n_long_steps
+        ) = 0
         self.longest_step_s: float | None = None
 
     def see(self, margins: pl.DataFrame) -> None:
@@ -50,11 +53,13 @@ class Doubts:
         usable, never = pl.col("status").is_in(USABLE), pl.lit(value=False)
         beyond = usable & (pl.col(ERROR) > pl.col("rnp_m")) if ERROR in margins.columns else never
         alert = usable & pl.col(ALERT).is_not_null() if ALERT in margins.columns else never
+        worse = usable & pl.col(WORSE).is_not_null() if WORSE in margins.columns else never
         beyond, alert = beyond.fill_null(value=False), alert.fill_null(value=False)
-        counts = margins.select(usable.alias("_usable"), beyond=beyond, alert=alert, either=beyond | alert)
+        counts = margins.select(usable.alias("_usable"), beyond=beyond, alert=alert, worse=worse, any=beyond | alert | worse)
         self.n_stated_beyond += int(counts["beyond"].sum())
         self.n_stated_alert += int(counts["alert"].sum())
-        self.n_stated_against += int(counts["either"].sum())
+        self.n_stated_worse += int(counts["worse"].sum())
+        self.n_stated_against += int(counts["any"].sum())
 
     def _see_levels(self, margins: pl.DataFrame) -> None:
         if "hpl_m" not in margins.columns:

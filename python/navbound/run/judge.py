@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 
 from navbound import __version__, rnp, status, tse
+from navbound._rnp_exposure import LONGEST_STEP_S
 from navbound._states import METRES_PER_NM
 from navbound.errors import InputError
 from navbound.methods import BoundColumn, bounds, column_of, method, with_errors
@@ -158,7 +159,7 @@ def _with_alerts(
 
 def _monitor(sample_period_s: float, risk_integrity: float) -> rnp.Monitor:
     # A finished flight alerts nobody: the chain to the crew is a matter of the live monitor.
-    return rnp.Monitor(sample_period_s=sample_period_s, time_to_alert_s=math.inf, integrity_risk=risk_integrity)
+    return rnp.Monitor(sample_period_s=min(sample_period_s, LONGEST_STEP_S), time_to_alert_s=math.inf, integrity_risk=risk_integrity)
 
 
 def _counters(monitor: rnp.Monitor, counters: rnp.Counters) -> dict[str, object]:

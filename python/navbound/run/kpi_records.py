@@ -273,7 +273,7 @@ class Performance(Record):
     n_no_solution: int
     n_solution: int
     n_repeated: int
-    """Rows of an instant that already had one; not used."""
+    """Rows that share an epoch of the grid with another; of each epoch the worst row counts."""
     n_mi_epochs: int
     """Epochs with a solution and misleading information in either axis."""
     axes: list[AxisResult]

@@ -72,6 +72,7 @@ def _availability(result: Performance) -> str:
     hours = result.n_expected * result.period_s / 3600
     span = f"{hours:.3g} h" if hours < 48 else f"{hours / 24:.4g} days"
     absent = "absent epochs are not expected" if result.exclude_missing else f"{result.n_missing} absent"
+    repeated = f"; {result.n_repeated} rows share an epoch with another, the worst counts" if result.n_repeated else ""
     each = [
         f"{found.level.id} {share(found.availability_expected)} ({share(found.availability_low)} to {share(found.availability_high)}, "
         f"as from {found.n_effective:.0f} independent epochs)"
@@ -79,7 +80,7 @@ def _availability(result: Performance) -> str:
     ]
     return (
         f"Available, of {result.n_expected} expected epochs ({span}, one every {result.period_s:g} s; {absent}, {result.n_no_solution} "
-        f"without a level): {', '.join(each)}."
+        f"without a level{repeated}): {', '.join(each)}."
     )
 
 

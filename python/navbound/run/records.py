@@ -63,8 +63,9 @@ class Belief(Record):
     """Whether truth supports the bounds that a run states."""
 
     state: BeliefState
-    """`partial`: truth supports the bounds at less than the least share of the epochs. `refuted` withdraws the verdict; `contradicted` (a
-    bound beside the lateral ones is false) and `short` leave it not shown."""
+    """`partial`: truth supports the bounds at less than the least share of the epochs. `few`: fewer than 10 independent epochs, which
+    contradict nothing and support nothing. `copied`: the truth is the estimate itself; the verdict is not shown. `refuted` withdraws
+    the verdict; `contradicted` (a bound beside the lateral ones is false) and `short` leave it not shown."""
     n_epochs: int = 0
     """Epochs that are checked where truth is known: those with status ok, or the degraded ones where none is ok."""
     n_truth: int = 0
@@ -124,6 +125,8 @@ class Verdict(Record):
     """Epochs with status ok or degraded where the recording itself states an error beyond RNP."""
     n_stated_alert: int = 0
     """The same where it states an alert."""
+    n_stated_worse: int = 0
+    """The same where it states a 95 % radius that is larger than its covariance allows."""
     n_without_level: int = 0
     """Judged epochs of tracks with a column of horizontal protection levels that holds none."""
     n_long_steps: int = 0

@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import anp, evaluation, rnp
+from navbound._rnp_exposure import LONGEST_STEP_S
 from navbound.methods import column_of, method
 from navbound.run.doubts import Doubts, tracks_with_levels
 from navbound.run.records import (
@@ -229,6 +230,7 @@ def verdict_of(
         n_known_beyond=facts.n_known_beyond,
         n_stated_beyond=found.doubts.n_stated_beyond,
         n_stated_alert=found.doubts.n_stated_alert,
+        n_stated_worse=found.doubts.n_stated_worse,
         n_without_level=found.doubts.n_without_level,
         n_long_steps=found.doubts.n_long_steps,
         longest_step_s=found.doubts.longest_step_s,
@@ -283,7 +285,7 @@ class Gaps:
         self._n_left_out, self._period_s, self._n = left_out.height, period_s, 0
         self._rest = left_out.drop_nulls("time_ns").unique().sort("track", "time_ns")
         self._last = self._rest.clear()
-        self._longest_s = rnp.Monitor(sample_period_s=period_s, time_to_alert_s=math.inf).stale_after_s
+        self._longest_s = rnp.Monitor(sample_period_s=min(period_s, LONGEST_STEP_S), time_to_alert_s=math.inf).stale_after_s
 
     def see(self, epochs: pl.DataFrame) -> None:
         """The next epochs."""

@@ -9,7 +9,7 @@ import numpy as np
 from navbound import _core
 from navbound.run.numbers import length, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS
-from navbound.run.verdict.words import contradicted_words, refuted_words, truth_words
+from navbound.run.verdict.words import COPIED, contradicted_words, refuted_words, truth_words
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
@@ -77,8 +77,17 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
     more = f", and {verdict.n_outside} epochs with status ok or degraded have a bound beyond its limit" if verdict.n_outside else ""
     return (
         f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "
-        f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; {shares}."
+        f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; "
+        f"{shares}{_thin(verdict)}."
     )
+
+
+def _thin(verdict: Verdict) -> str:
+    """That a verdict rests on fewer epochs than may be called evidence."""
+    if not 0 < verdict.n_judged < FEW_EPOCHS:
+        return ""
+    step = "" if verdict.longest_step_s is None else f", up to {verdict.longest_step_s:.6g} s apart"
+    return f"; this is thin evidence, of only {verdict.n_judged} judged epoch{'' if verdict.n_judged == 1 else 's'}{step}"
 
 
 def _shares(verdict: Verdict) -> str:
@@ -101,12 +110,18 @@ def _not_shown(verdict: Verdict) -> list[str]:
         why.append(
             "The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false."
         )
+    if verdict.belief is not None and verdict.belief.state == "copied":
+        why.append(COPIED)
     if verdict.belief is not None and verdict.belief.state == "contradicted":
         why += contradicted_words(verdict.belief)
     if verdict.n_stated_beyond:
         why.append(f"The recording itself states an error beyond RNP at {verdict.n_stated_beyond} epochs.")
     if verdict.n_stated_alert:
         why.append(f"The recording itself states an alert at {verdict.n_stated_alert} epochs.")
+    if verdict.n_stated_worse:
+        why.append(
+            f"The recording itself states a 95 % radius (EPU) at {verdict.n_stated_worse} epochs that is larger than the covariance allows."
+        )
     if verdict.n_without_level:
         why.append(
             f"A column of horizontal protection levels holds none in the tracks of {verdict.n_without_level} judged epochs: their "

@@ -40,7 +40,7 @@ export interface LevelCheck {
 }
 
 export interface Belief {
-    state: "unchecked" | "supported" | "partial" | "short" | "contradicted" | "refuted";
+    state: "unchecked" | "supported" | "partial" | "few" | "copied" | "short" | "contradicted" | "refuted";
     /** Epochs checked where truth is known, and those of them with a true horizontal error. */
     n_epochs: number;
     n_truth: number;
@@ -70,6 +70,7 @@ export interface Verdict {
     n_known_beyond: number;
     n_stated_beyond: number;
     n_stated_alert: number;
+    n_stated_worse: number;
     n_without_level: number;
     n_long_steps: number;
     longest_step_s: number | null;

@@ -38,6 +38,11 @@ RISK_UNNAMED = 1e-4
 """Integrity risk of an hour where a level names none: a thousand times what any service level of the table allows, so that a level is never
 withdrawn for a demand that it does not make. Provenance: ours. [1]"""
 
+SAME_M, SAME_AT = 0.005, 1e-6
+"""An error at most this large [m] that a true covariance leaves at most so improbable [1] is no error of a measurement: half of what 1e-7
+degree are, in which tables state positions. A precise truth beside a precise estimate has a covariance that makes such errors probable.
+Provenance: ours."""
+
 APPROACH_S, HOUR_S = 150.0, 3600.0
 """Exposure of an integrity risk by approach (ICAO Annex 10: any approach, 150 s taken) and by hour."""
 
@@ -90,6 +95,7 @@ def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float], st
         p_values_beside=p_beside,
         n_above_vertical_level=sum(check.n_above for check in levels if check.level == "vpl_m"),
         truth_share=n_truth / max(usable.height, 1),
+        copied_share=_copied_share(usable),
     )
     return Belief(
         state=rule.of_belief(facts),
@@ -172,6 +178,25 @@ def _outside(epochs: pl.DataFrame, bound: str, error: str) -> tuple[int, int]:
     limit, size = column_of(epochs, bound), np.abs(column_of(epochs, error))
     known = np.isfinite(limit) & ~np.isnan(size)
     return int((size[known] > limit[known]).sum()), int(known.sum())
+
+
+def _copied_share(epochs: pl.DataFrame) -> float:
+    """Share of the epochs with truth where it is the estimate itself: no error at all, or one that no true covariance leaves so small."""
+    if not {"nse_e_m", "nse_n_m"} <= set(epochs.columns):
+        return 0.0
+    east, north = column_of(epochs, "nse_e_m"), column_of(epochs, "nse_n_m")
+    size = np.hypot(east, north)
+    known = np.isfinite(size)
+    if not known.any():
+        return 0.0
+    same = size == 0.0
+    if {"cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
+        # P(e' V^-1 e <= x) = 1 - exp(-x / 2); the smaller variance of both axes makes x largest, which is the careful side.
+        variance = np.fmin(column_of(epochs, "cov_ee_m2"), column_of(epochs, "cov_nn_m2"))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            improbable = -np.expm1(-0.5 * size**2 / variance) <= SAME_AT
+        same |= (size <= SAME_M) & improbable
+    return float(same[known].mean())
 
 
 def _magnitude(epochs: pl.DataFrame) -> evaluation.Magnitude | None:

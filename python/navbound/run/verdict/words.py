@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from navbound.methods import method
 from navbound.run.numbers import level, share
-from navbound.run.verdict.rule import LEAST_SHARE
+from navbound.run.verdict.rule import FEW_EPOCHS, LEAST_SHARE
 
 if TYPE_CHECKING:
     from navbound.run.records import Belief, BoundCheck, LevelCheck, Verdict
@@ -68,7 +68,23 @@ def truth_words(verdict: Verdict) -> list[str]:
     # What truth contradicts stands in the first sentence already.
     other = _contained([check for check in belief.beside if check.method == "anp-vertical" and not check.refuted])
     vertical = [f"Of the vertical errors {'; '.join(other)}."] if other else []
-    return [f"{_known(belief)}: of the errors at these epochs {'; '.join(lateral)}.", *vertical, *_below(belief), *_levels(belief)]
+    known = f"{_known(belief)}: of the errors at these epochs {'; '.join(lateral)}."
+    return [known, *_few(belief), *vertical, *_below(belief), *_levels(belief)]
+
+
+COPIED = (
+    "The truth is the estimate itself: at most of the epochs their distance is nil, or far below what two measurements leave. "
+    "It says nothing of the errors."
+)
+
+
+def _few(belief: Belief) -> list[str]:
+    if belief.state != "few":
+        return []
+    return [
+        f"These data do not contradict the bounds, and do not support them either: at least {FEW_EPOCHS:g} independent epochs are needed, "
+        f"and these are worth {belief.n_effective:.2g}."
+    ]
 
 
 def _known(belief: Belief) -> str:

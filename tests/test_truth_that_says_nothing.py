@@ -1,0 +1,57 @@
+"""A truth that is the estimate, and errors of too few independent epochs: neither supports a bound."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import navbound
+from navbound.run.verdict import rule
+from test_verdict import M_PER_RAD, table, white
+
+N = 400
+GOOD = rule.BeliefFacts(n_effective=100.0, p_values=[0.5], short=False, excluded=False)
+
+
+@pytest.mark.parametrize("shift_rad", [0.0, math.radians(1e-9)], ids=["equal", "a billionth of a degree"])
+def test_a_truth_that_is_the_estimate_is_none(tmp_path: Path, shift_rad: float) -> None:
+    error = np.full((N, 2), shift_rad * M_PER_RAD)
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, error_en_m=error)).summary.verdict
+    assert verdict.belief is not None
+    assert (verdict.id, verdict.belief.state) == ("not_shown", "copied")
+    assert "The truth is the estimate itself" in verdict.words
+
+
+def test_a_copy_of_half_of_the_epochs_is_none(tmp_path: Path) -> None:
+    error = white(N)
+    error[: N // 2] = 0.0
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, error_en_m=error)).summary.verdict
+    assert verdict.belief is not None
+    assert verdict.belief.state == "copied"
+
+
+def test_errors_far_below_a_careful_sigma_are_errors(tmp_path: Path) -> None:
+    """Errors of 0.1 m beside a sigma of 30 m: a careless sigma, no copy."""
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=30.0, error_en_m=white(N, 0.1))).summary.verdict
+    assert verdict.belief is not None
+    assert (verdict.id, verdict.belief.state) == ("inside", "supported")
+
+
+def test_few_independent_epochs_support_nothing(tmp_path: Path) -> None:
+    """An error that stays for a whole track is one independent epoch."""
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, error_en_m=np.ones((N, 2)))).summary.verdict
+    assert verdict.belief is not None
+    assert (verdict.id, verdict.belief.state) == ("inside", "few")
+    assert "at least 10 independent epochs are needed, and these are worth 1" in verdict.words
+
+
+def test_the_rule_of_few_and_copied() -> None:
+    assert rule.of_belief(GOOD) == "supported"
+    assert rule.of_belief(replace(GOOD, n_effective=9.9)) == "few"
+    assert rule.of_belief(replace(GOOD, n_effective=10.0)) == "supported"
+    assert rule.of_belief(replace(GOOD, copied_share=0.5)) == "copied"
+    assert rule.of_belief(replace(GOOD, copied_share=0.5, p_values=[1e-6])) == "refuted"
