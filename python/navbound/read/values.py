@@ -109,9 +109,9 @@ class Values:
         part = pl.DataFrame([values.alias(name) for name, values in out.items()])
         part, without = levels.without_bound(part)
         for place, (name, at) in enumerate(without.items()):
-            where, column = frame.filter(at), self._mapping.columns[name].name
+            where, heading = frame.filter(at), self._mapping.columns[name].name
             # An outage written as zero is no damage of the file.
-            self.tally.add(LEVELS + place, f"{column}: {levels.REASON}", where.height, where[LINE][0], str(where[column][0]), kind="quiet")
+            self.tally.add(LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet")
         part = _with_speed(part).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
             if name in part.columns:

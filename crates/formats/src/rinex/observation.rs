@@ -18,6 +18,8 @@ const LONGEST_RANGE_M: f64 = 1e9;
 const BACKWARDS: &str = "the time runs backwards against the epochs around it";
 const REPEATED: &str = "the epoch stands twice";
 const CONTRADICTED: &str = "epochs of one time contradict each other";
+const LISTED_TWICE: &str = "the satellite stands twice in the epoch; once is used";
+const LISTED_AGAINST: &str = "the satellite stands twice in the epoch with other values; it is not used";
 const SYSTEMS: usize = Constellation::ALL.len();
 
 /// A code of RINEX 3: kind (C, L, D, S), band, attribute.
@@ -178,9 +180,11 @@ impl Observations {
         self.indicator.reserve(values);
     }
 
-    /// Drop what no receiver measures: epochs out of the order of time, pseudoranges that are none. Each is counted in `refused`.
+    /// Drop what no receiver measures: epochs out of the order of time, a satellite that stands twice in one, pseudoranges that are none.
+    /// Each is counted in `refused`.
     pub(crate) fn believe(&mut self) {
         self.drop_backward_epochs();
+        self.drop_repeated_satellites();
         let mut epoch = 0;
         for k in 0..self.satellite.len() {
             while self.last_satellite.get(epoch).is_some_and(|last| *last <= k) {
@@ -213,13 +217,54 @@ impl Observations {
                 wrong[alike[0]] = None;
             }
         }
-        let mut o = Self::default();
-        for epoch in 0..self.time.len() {
-            if let Some(reason) = wrong[epoch] {
+        for (epoch, reason) in wrong.iter().enumerate() {
+            if let Some(reason) = reason {
                 self.refuse(self.line[epoch], "epoch", reason, format!("epoch {}", epoch + 1).as_bytes());
-                continue;
             }
-            for k in self.satellites(epoch) {
+        }
+        self.keep(|epoch| wrong[epoch].is_none(), |_| true);
+    }
+
+    /// One measurement is one: a satellite that stands twice in an epoch is used once where both are alike, and not at all where they differ.
+    fn drop_repeated_satellites(&mut self) {
+        let twice: Vec<usize> = (0..self.time.len()).filter(|epoch| self.stands_twice(*epoch)).collect();
+        if twice.is_empty() {
+            return;
+        }
+        let mut wrong = vec![false; self.satellite.len()];
+        for epoch in twice {
+            let all = self.satellites(epoch);
+            for k in all.clone() {
+                let alike: Vec<usize> = all.clone().filter(|other| self.satellite[*other] == self.satellite[k]).collect();
+                let bits = |of: usize| self.values(of).iter().map(|v| v.to_bits());
+                let differ = alike.iter().any(|other| !bits(*other).eq(bits(k)));
+                wrong[k] = alike.len() > 1 && (differ || alike[0] != k);
+                if wrong[k] {
+                    let SatelliteId { constellation, number } = self.satellite[k];
+                    let name = format!("{}{number:02}", constellation.letter());
+                    self.refuse(self.line[epoch], "satellite", if differ { LISTED_AGAINST } else { LISTED_TWICE }, name.as_bytes());
+                }
+            }
+        }
+        self.keep(|_| true, |satellite| !wrong[satellite]);
+    }
+
+    fn stands_twice(&self, epoch: usize) -> bool {
+        let mut seen = [[0_u64; 4]; SYSTEMS];
+        self.satellite[self.satellites(epoch)].iter().any(|s| {
+            let word = &mut seen[s.constellation.index()][usize::from(s.number) / 64];
+            let bit = 1 << (s.number % 64);
+            let before = *word & bit != 0;
+            *word |= bit;
+            before
+        })
+    }
+
+    /// Keep some epochs, and of these some satellites.
+    fn keep(&mut self, of_epochs: impl Fn(usize) -> bool, of_satellites: impl Fn(usize) -> bool) {
+        let mut o = Self::default();
+        for epoch in (0..self.time.len()).filter(|epoch| of_epochs(*epoch)) {
+            for k in self.satellites(epoch).filter(|k| of_satellites(*k)) {
                 o.begin_satellite(self.satellite[k]);
                 for v in self.value_range(k) {
                     o.push(self.value[v], self.indicator[v]);

@@ -154,10 +154,10 @@ fn a_difference_without_a_start_is_refused_not_guessed() {
     let o = read(&COMPACT.replace("3&19761890586   &", "               "));
     assert_eq!(o.n_refused, 1);
     assert!(o.values(3)[0].is_nan());
-    // Damage of the epoch line loses what follows until a fresh start, and says so.
+    // Damage of the epoch line loses what follows until a fresh start, and the epoch before it: a line too many there looks the same.
     let o = read(&COMPACT.replace("                    4\n", "                    x\n"));
-    assert_eq!((o.n_epochs(), o.n_refused), (1, 2));
-    assert!(o.refused.iter().all(|r| r.reason.contains("fresh start")), "{:?}", o.refused);
+    assert_eq!((o.n_epochs(), o.n_refused), (0, 3));
+    assert_eq!(o.refused.iter().filter(|r| r.reason.contains("fresh start")).count(), 2, "{:?}", o.refused);
 }
 
 proptest! {
@@ -205,4 +205,23 @@ fn a_range_that_no_receiver_measures_and_a_number_that_no_satellite_has_are_refu
     let found: Vec<_> = o.refused.iter().map(|r| (r.field.as_str(), r.line)).collect();
     assert!(found.contains(&("satellite", 14)) && found.iter().any(|(field, _)| *field == "C1C"), "{found:?}");
     assert_eq!((o.n_refused, o.satellites(0).len()), (2, 2));
+}
+
+#[test]
+fn a_satellite_that_stands_twice_in_an_epoch_is_one_measurement_or_none() {
+    let g02 = "G 2  21600712.022   113512506.8763        445.146          27.000\n";
+    let g19 = "G19  19761890.586                3          0.000           0.000\n";
+    // Once more as it stands, and once more with another range.
+    let twice =
+        V3.replace("33.9970000  0  4", "33.9970000  0  6").replace(g19, &format!("{g19}{g02}{}", g19.replace("890.586", "920.586")));
+    let (once, o) = (read(V3), read(&twice));
+    assert_eq!(o.satellite, once.satellite.iter().copied().filter(|s| *s != gps(19)).collect::<Vec<_>>());
+    assert_eq!(o.values(0), once.values(0));
+    assert_eq!((o.satellites(0), o.satellites(1)), (0..2, 2..3));
+    let reasons: Vec<(&str, &str)> = o.refused.iter().map(|r| (r.text.as_str(), r.reason.as_str())).collect();
+    let mut expected = [("G19", LISTED_AGAINST), ("G02", LISTED_TWICE), ("G19", LISTED_AGAINST)];
+    expected.sort_unstable();
+    let mut reasons = reasons;
+    reasons.sort_unstable();
+    assert_eq!(reasons, expected);
 }
