@@ -98,10 +98,12 @@ impl<'a> Judge<'a> {
         !self.records[newest].usable || self.set_back.contains(&newest) || dropped > STALE_S
     }
 
-    /// Whether record `k` repeats the time of the counted record before it with a bound outside, while monitoring stood.
+    /// Whether record `k` is of the time of the counted record before it, or at most `STALE_S` earlier, with a bound outside, while monitoring
+    /// stood.
     fn contradicts(&self, k: usize, caution: bool) -> bool {
         let newest = *self.upto(k).last().unwrap();
-        let repeat = newest < k && self.records[k].time_s == self.records[newest].time_s;
+        let age_s = self.records[newest].time_s - self.records[k].time_s;
+        let repeat = newest < k && (0..=STALE_S).contains(&age_s);
         repeat && self.records[k].usable && !self.lost_after(k) && !self.lost_before(k) && !self.records[k].inside(caution)
     }
 
