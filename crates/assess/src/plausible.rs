@@ -3,8 +3,12 @@
 //! A position report says nothing about its own honesty: a decoder or a receiver repeats the last position when none arrives, and a falsified
 //! receiver jumps. Both leave a track that no bound of the navigation error covers, so they are found here, first.
 
+mod way;
+
 use navbound_core::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians};
+
+use way::{Repeats, Way};
 
 /// What an aircraft can do. Provenance: ours; every figure is a setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,13 +87,16 @@ pub struct Judged {
 /// fastest speed where neither is reported. Where the recording says when both positions were valid, that is the time between them, and the
 /// latency is that of such times; elsewhere a position that is reachable only with more latency than makes a held one stale is late. The same
 /// holds from the first position of each minute, with the fastest speed reported since. A track that reports no speed is judged by its own:
-/// the fastest speed is then that of 95 % of its steps, with factor and margin, and a step that needs any latency makes its position late.
+/// the fastest speed is then that of 95 % of its steps, with factor and margin, and a step that needs any latency is a jump: nothing in it tells
+/// an old position from a wrong one.
 /// The time runs from the last *different* position: after 87 s without news an aircraft may
 /// be 20 km further on, and is not jumping. A reported speed above `factor * m + margin`, m being the median of the speeds reported
 /// around it, is not believed, and m counts in its place.
 ///
 /// An unchanged position is held, and stale in time, where the aircraft says that it moves. Where it says nothing of its speed, a position
-/// whose bits repeat for longer than the stale time is stale: measurements have noise, and nobody vouches that the aircraft stands.
+/// whose bits repeat for longer than the stale time is stale: measurements have noise, and nobody vouches that the aircraft stands. So is one
+/// that comes back to the bits of one of the last two different positions. Where the aircraft says that it moves, a position that makes good
+/// less than half the way by its reported speed, the noise taken off, is stale, too: noise on a held position is no flight.
 ///
 /// Provenance: ours.
 ///
@@ -163,6 +170,8 @@ pub struct Track {
     last: Option<(Report, EcefPosition)>,
     jumped: Option<GpsTime>,
     window: Option<Window>,
+    way: Way,
+    repeats: Repeats,
     /// Speeds of the reports before \[m/s\]; NaN where none was reported.
     before_mps: [f64; SPEEDS_BESIDE],
 }
@@ -176,7 +185,16 @@ impl Track {
     pub fn new(survey: Survey, limits: &Limits) -> Self {
         let silent = !survey.reports_speed;
         let limits = if silent { Limits { max_speed_mps: survey.own_speed(limits), ..*limits } } else { *limits };
-        Self { limits, silent, last: None, jumped: None, window: None, before_mps: [f64::NAN; SPEEDS_BESIDE] }
+        Self {
+            limits,
+            silent,
+            last: None,
+            jumped: None,
+            window: None,
+            way: Way::default(),
+            repeats: Repeats::default(),
+            before_mps: [f64::NAN; SPEEDS_BESIDE],
+        }
     }
 
     /// Judge the next reports; `after_mps` are the speeds of the [`SPEEDS_BESIDE`] reports after them, as far as there are any.
@@ -212,6 +230,8 @@ impl Track {
     fn step(&mut self, report: &Report, speed_doubted: bool) -> Result<Judged, OutOfDomain> {
         let limits = &self.limits;
         let here = sea_level(report)?;
+        let behind = self.way.is_behind(report, &here, limits);
+        let repeated_since = self.repeats.since(report);
         let Some((fix, from)) = self.last else {
             self.last = Some((*report, here));
             self.window = Some(Window::begin(report, here));
@@ -221,14 +241,15 @@ impl Track {
         let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
         let step_m = here.minus(&from).vector().norm();
         let mut too_fast_mps = 0.0;
-        let (mut finding, age_s) = if unchanged { (held(report, &fix, limits), elapsed) } else { (Finding::Plausible, 0.0) };
+        let (mut finding, mut age_s) = if unchanged { (held(report, fix.time, limits), elapsed) } else { (Finding::Plausible, 0.0) };
         if !unchanged {
             let flown = self.window.as_mut().is_none_or(|w| w.reaches(report, &here, limits));
             let between = Between::new(&fix, report, limits);
-            if !(step_m <= between.reach_m(between.latency_s, limits)) || !flown {
+            let latency_s = if self.silent && !between.dated { 0.0 } else { between.latency_s };
+            if !(step_m <= between.reach_m(latency_s, limits)) || !flown {
                 finding = Finding::Jump;
                 self.jumped = Some(report.time);
-            } else if !between.dated && !(step_m <= between.reach_m(if self.silent { 0.0 } else { limits.stale_after_s }, limits)) {
+            } else if !between.dated && !(step_m <= between.reach_m(limits.stale_after_s, limits)) {
                 finding = Finding::Late;
             }
             if step_m > between.reach_m(0.0, limits) && between.elapsed_s > 0.0 {
@@ -239,6 +260,11 @@ impl Track {
                 self.window = Some(Window::begin(report, here));
             }
             self.last = Some((*report, here));
+        }
+        let returned = held(report, repeated_since, limits) == Finding::Stale && report.speed_mps.is_nan();
+        if finding != Finding::Jump && (behind.is_some() || returned) {
+            finding = Finding::Stale;
+            age_s = age_s.max(behind.unwrap_or_else(|| report.time.seconds_since(repeated_since)));
         }
         let settling = self.jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
         if settling && matches!(finding, Finding::Plausible | Finding::Held | Finding::Late) {
@@ -284,10 +310,10 @@ impl Window {
 
 /// An unchanged position is held where the aircraft says it moves; a parked one repeats itself rightly. Where no speed is reported a repeat may
 /// be a slow one's rounded position, until it lasts.
-fn held(report: &Report, since: &Report, limits: &Limits) -> Finding {
+fn held(report: &Report, since: GpsTime, limits: &Limits) -> Finding {
     let silent = report.speed_mps.is_nan();
     let may_move = if silent { limits.moving_mps.is_finite() } else { report.speed_mps > limits.moving_mps };
-    match (may_move, within(report.time, since.time, limits.stale_after_s)) {
+    match (may_move, within(report.time, since, limits.stale_after_s)) {
         (true, false) => Finding::Stale,
         (true, true) if !silent => Finding::Held,
         _ => Finding::Plausible,

@@ -280,10 +280,24 @@ fn duplicate_and_late_epochs_are_dropped_and_counted() {
     monitor.step(&at(10, INSIDE, INSIDE));
     let step = monitor.step(&at(10, INSIDE, INSIDE));
     assert_eq!((step.acceptance, step.alert), (Acceptance::Duplicate, Alert::Normal));
-    let step = monitor.step(&at(9, INSIDE, 5000.0));
+    let step = monitor.step(&at(9, INSIDE, INSIDE));
     assert_eq!((step.acceptance, step.alert), (Acceptance::Late, Alert::Normal));
     let counters = monitor.counters();
     assert_eq!((counters.n_accepted, counters.n_duplicate, counters.n_late), (1, 1, 1));
+}
+
+/// Stale after 2 s: one nanosecond and two seconds late contradict, a nanosecond more is history.
+#[test]
+fn a_late_epoch_outside_contradicts_the_last_one() {
+    for (late_ns, alert) in [(1, Alert::Warning), (2_000_000_000, Alert::Warning), (2_000_000_001, Alert::Normal)] {
+        let mut monitor = Monitor::new(settings()).unwrap();
+        monitor.step(&at(10, INSIDE, INSIDE));
+        let seen = Observation { time: GpsTime::from_nanoseconds(10_000_000_000 - late_ns), ..at(10, INSIDE, 9000.0) };
+        let step = monitor.step(&seen);
+        assert_eq!((step.acceptance, step.alert), (Acceptance::Late, alert), "{late_ns} ns late");
+        let onsets: Vec<_> = monitor.open_events().map(|e| seconds(e.onset)).collect();
+        assert_eq!(onsets, if alert == Alert::Warning { vec![10] } else { vec![] }, "{late_ns} ns late");
+    }
 }
 
 #[test]
@@ -362,8 +376,8 @@ fn time_that_stands_or_runs_backwards_is_silence() {
         // Two dropped epochs are the permitted two seconds.
         assert!(found[2..].iter().all(|a| *a == Alert::Unavailable), "{what}: {:?}", &found[..8]);
         let open: Vec<_> = monitor.open_events().map(|e| (e.kind, seconds(e.onset), seconds(e.annunciation))).collect();
-        // Repeats of the first time are outside and contradict it.
-        let contradicted = (what == "stuck").then_some((Kind::Warning, 5000, 5000));
+        // Repeats of the first time, and those shortly before it, are outside and contradict it.
+        let contradicted = ["stuck", "backwards"].contains(&what).then_some((Kind::Warning, 5000, 5000));
         assert_eq!(open, contradicted.into_iter().chain([(Kind::Unavailable, 5000, 5000)]).collect::<Vec<_>>(), "{what}");
     }
 }

@@ -98,10 +98,12 @@ impl<'a> Judge<'a> {
         !self.records[newest].usable || self.set_back.contains(&newest) || dropped > STALE_S
     }
 
-    /// Whether record `k` repeats the time of the counted record before it with a bound outside, while monitoring stood.
+    /// Whether record `k` is of the time of the counted record before it, or at most `STALE_S` earlier, with a bound outside, while monitoring
+    /// stood.
     fn contradicts(&self, k: usize, caution: bool) -> bool {
         let newest = *self.upto(k).last().unwrap();
-        let repeat = newest < k && self.records[k].time_s == self.records[newest].time_s;
+        let age_s = self.records[newest].time_s - self.records[k].time_s;
+        let repeat = newest < k && (0..=STALE_S).contains(&age_s);
         repeat && self.records[k].usable && !self.lost_after(k) && !self.lost_before(k) && !self.records[k].inside(caution)
     }
 
@@ -302,14 +304,14 @@ const KINDS: [(f64, f64, bool); 7] = [
     (f64::NAN, f64::NAN, true),
     (f64::NAN, f64::NAN, false),
 ];
-/// No time, one period, longer than the permitted silence, backwards.
-const STEPS_S: [i64; 4] = [0, 1, 5, -4];
+/// No time, one period, longer than the permitted silence, backwards beyond it and within it.
+const STEPS_S: [i64; 5] = [0, 1, 5, -4, -1];
 
 /// Number `code` as a record after `time_s`.
 fn decode(code: usize, time_s: i64) -> Record {
     let (accuracy, integrity, usable) = KINDS[code % 7];
-    let step_s = STEPS_S[code / 7 % 4];
-    Record { time_s: time_s + step_s, accuracy, integrity, usable, halved: code / 28 % 2 == 1 }
+    let step_s = STEPS_S[code / 7 % STEPS_S.len()];
+    Record { time_s: time_s + step_s, accuracy, integrity, usable, halved: code / (7 * STEPS_S.len()) % 2 == 1 }
 }
 
 fn steady(n: usize, kind: usize) -> Vec<Record> {
@@ -370,11 +372,11 @@ fn long_random_sequences_are_judged_as_the_rules_say() {
         let mut code = 7;
         for _ in 0..120 {
             if numbers.next() % 100 < restless {
-                code = numbers.next() % 7 + 7 + if numbers.next().is_multiple_of(5) { 28 } else { 0 };
+                code = numbers.next() % 7 + 7 + if numbers.next().is_multiple_of(5) { 35 } else { 0 };
             }
-            let step = if numbers.next() % 100 < strange { numbers.next() % 4 } else { 1 };
+            let step = if numbers.next() % 100 < strange { numbers.next() % STEPS_S.len() } else { 1 };
             let time_s = trial.records.last().map_or(0, |r| r.time_s);
-            let alert = trial.step(decode(code % 7 + 7 * step + 28 * (code / 28), time_s));
+            let alert = trial.step(decode(code % 7 + 7 * step + 35 * (code / 35), time_s));
             seen[alert as usize] += 1;
         }
     }

@@ -112,6 +112,11 @@ impl Clock {
         by_records.max(self.ticked_s).max(by_stamp) > self.stale_after_s
     }
 
+    /// Whether a late record is no older, against the last that counted, than monitoring may be silent.
+    pub(super) fn is_recent(&self, late: GpsTime) -> bool {
+        self.last.is_some_and(|last| last.seconds_since(late) <= self.stale_after_s)
+    }
+
     /// When the silence was noticed, in the time of the records. Where that stands still it is the time at which it does.
     pub(super) fn silence_noticed(&self, last: GpsTime, now: GpsTime) -> GpsTime {
         last.plus_seconds(self.stale_after_s).min(now.max(last))

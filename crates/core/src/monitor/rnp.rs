@@ -10,7 +10,7 @@
 //!
 //! NaN is not within any limit, so it raises; a bound equal to its limit does not. What was not seen never helps an alert to end: an
 //! unusable epoch or a gap restarts the wait to clear and lets the wait to raise run on. Until the first epoch, monitoring is not
-//! available either. A second record of one time counts where it is outside. Where time stamps crawl, time outside is counted in records.
+//! available either. A second record of one time, or a late one no older than the stale time, counts where it is outside. Where time stamps crawl, time outside is counted in records.
 
 pub use super::clock::Acceptance;
 use super::clock::{Arrival, Clock};
@@ -167,11 +167,15 @@ impl Monitor {
             }
             Arrival::Duplicate => {
                 self.counters.n_duplicate += 1;
-                self.repeated(seen)
+                self.repeated(seen, Acceptance::Duplicate)
             }
             Arrival::Late => {
                 self.counters.n_late += 1;
-                self.dropped(Acceptance::Late, seen.time)
+                if self.clock.is_recent(seen.time) {
+                    self.repeated(seen, Acceptance::Late)
+                } else {
+                    self.dropped(Acceptance::Late, seen.time)
+                }
             }
             Arrival::SetBack { since } => self.set_back(since, seen.time),
         }
@@ -195,14 +199,16 @@ impl Monitor {
         self.nothing(acceptance, began)
     }
 
-    /// A repeat of the last time. A bound outside contradicts one inside, and is judged; one inside takes nothing back.
-    fn repeated(&mut self, seen: &Observation) -> Step {
+    /// A repeat of the last time, or a record shortly before it. A bound outside contradicts one inside, and is judged; one inside takes nothing back.
+    fn repeated(&mut self, seen: &Observation, acceptance: Acceptance) -> Step {
         let was_normal = self.alert() == Alert::Normal;
-        let dropped = self.dropped(Acceptance::Duplicate, seen.time);
+        let dropped = self.dropped(acceptance, seen.time);
         if !seen.usable || self.loss.is_some() {
             return dropped;
         }
-        let [raised_caution, raised_warning] = self.compare(seen, None, was_normal, Latch::contradict).map(raised);
+        // What it contradicts is the last epoch, so an alert begins there and not before.
+        let at_last = Observation { time: self.clock.last().unwrap_or(seen.time), ..*seen };
+        let [raised_caution, raised_warning] = self.compare(&at_last, None, was_normal, Latch::contradict).map(raised);
         Step { alert: self.alert(), began: [raised_caution, raised_warning, None], ..dropped }
     }
 
