@@ -111,7 +111,9 @@ class Values:
         for place, (name, at) in enumerate(without.items()):
             where, heading = frame.filter(at), self._mapping.columns[name].name
             # An outage written as zero is no damage of the file.
-            self.tally.add(LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet")
+            self.tally.add(
+                LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet"
+            )
         part = _with_speed(part).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
             if name in part.columns:

@@ -145,7 +145,7 @@ function scope(record: Performance, payload: Payload): HTMLElement {
     const when = (ns: number): string => `${date(utcOf(ns, payload))} ${clock(utcOf(ns, payload))}`;
     const part = (key: "n_expected" | "n_solution" | "n_missing" | "n_no_solution" | "n_repeated", words: string): (HTMLElement | string)[] => [valueOf(key, record[key], count(record[key])), words];
     return el("p", { class: "note" }, `${when(record.first_ns)} to ${when(record.last_ns)} UTC, an epoch every ${duration(record.period_s)}. `, ...part("n_expected", " epochs expected, "), ...part("n_solution", " with a solution, "),
-        ...part("n_no_solution", " without, "), ...part("n_missing", record.exclude_missing ? " missing and left out of the grid" : " missing and counted as not available"), ...(record.n_repeated > 0 ? [", ", ...part("n_repeated", " repeated and not used")] : []), ".");
+        ...part("n_no_solution", " without, "), ...part("n_missing", record.exclude_missing ? " missing and left out of the grid" : " missing and counted as not available"), ...(record.n_repeated > 0 ? [", ", ...part("n_repeated", " of the same epoch as another; the worst of each counts")] : []), ".");
 }
 
 const KINDS: Record<KpiEvent["kind"], string> = { hazard: "■ hazard", mi: "▲ misleading", loss: "loss" };
