@@ -34,6 +34,8 @@ from damage_kinds import BESIDE, KINDS, Cell, Cells, Kind, Result
 from navbound.errors import FormatError, InputError
 
 HANG_S, MEMORY_BYTES = 10.0, 2 << 30
+WAIT_S = 120.0
+"""A process that waits for ever uses no time of the processor. [s]"""
 FAILURES = ("CRASH", "HANG", "MEMORY", "WRONG", "SILENT", "WRONG FILE")
 
 
@@ -183,7 +185,10 @@ def _some(cells: set[Cell]) -> str:
 def _worker(connection: Connection, folder: Path) -> None:
     benches: dict[str, Bench] = {}
     while True:
-        name, d = connection.recv()
+        try:
+            name, d = connection.recv()
+        except EOFError:
+            return
         try:
             if name not in benches:
                 benches[name] = Bench(KINDS[name], folder)
@@ -203,20 +208,21 @@ class Worker:
         self.start()
 
     def start(self) -> None:
-        context = multiprocessing.get_context("fork")
+        # A copy of a process with threads may wait for a lock that nobody holds any more.
+        context = multiprocessing.get_context("spawn")
         self.connection, theirs = context.Pipe()
         self.process = context.Process(target=_worker, args=(theirs, self.folder), daemon=True)
         self.process.start()
         theirs.close()
 
     def ask(self, name: str, d: Damage | None) -> tuple[str, str]:
-        begin = self._processor_s()
+        begin, begun = self._processor_s(), time.monotonic()
         self.connection.send((name, d))
         while not self.connection.poll(1.0):
             if not self.process.is_alive():
                 self.start()
                 return "CRASH", "the process ended"
-            if d is not None and self._processor_s() - begin > HANG_S:
+            if d is not None and (self._processor_s() - begin > HANG_S or time.monotonic() - begun > WAIT_S):
                 self.process.kill()
                 self.start()
                 return "HANG", f"more than {HANG_S} s"
