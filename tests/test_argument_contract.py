@@ -10,8 +10,8 @@ import pytest
 
 import navbound
 from navbound import InputError, InternalError, NavboundError, _core, anp, gnss, ins, maps, raim, tse
-from navbound._arguments import checked
-from navbound._arrays import MOST_BYTES, flatten
+from navbound.table.arguments import checked
+from navbound.table.arrays import MOST_BYTES, flatten
 from public_calls import CALLS, MODULES
 from test_nan_contract import changed, differs, outputs, public
 

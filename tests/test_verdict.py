@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 
 import navbound
 from navbound import InputError, evaluation, exit_status
+from navbound.records.performance import Performance
+from navbound.records.run import CovarianceOrigin, Summary
 from navbound.run import analyze as recorded
 from navbound.run.judge import judge
-from navbound.run.kpi_records import Performance
-from navbound.run.numbers import share
-from navbound.run.records import CovarianceOrigin, Summary
 from navbound.run.verdict import rule
+from navbound.run.verdict.numbers import share
 
 START_NS = 1_400_000_000_000_000_000
 M_PER_RAD = 6.37e6

@@ -8,10 +8,10 @@ from functools import cached_property
 from pathlib import Path
 
 from navbound import _core
-from navbound._arguments import checked
 from navbound.errors import FormatError, InputError
 from navbound.procedures.findings import Finding, finding
 from navbound.procedures.legs import NAUTICAL_MILE_M, LevelOfService, Procedure, leg
+from navbound.table.arguments import checked
 
 LISTED = 12
 """Names that a refusal lists; the file has all."""

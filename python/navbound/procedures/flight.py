@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import evaluation
-from navbound._arguments import checked
-from navbound._arrays import flatten
 from navbound.errors import InputError
 from navbound.procedures.legs import NAUTICAL_MILE_M, Followed, Procedure
+from navbound.table.arguments import checked
+from navbound.table.arrays import flatten
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

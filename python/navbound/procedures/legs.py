@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from navbound import _core
-from navbound._arrays import flatten
+from navbound.table.arrays import flatten
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound.read.runways import Runway, near
-from navbound.run.records import CrossTrack
+from navbound.records.run import CrossTrack
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,7 +9,7 @@ from typing import Literal
 import polars as pl
 
 from navbound.errors import InputError
-from navbound.read.stated import worse_than_covariance
+from navbound.read.checks.stated import worse_than_covariance
 
 COLUMNS = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
 

@@ -9,32 +9,32 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
-from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
+from navbound.read.checks.plausible import Limits, check
+from navbound.read.checks.repeats import LEFT_OUT, left_out, separate
 from navbound.read.covariance import Claimed, claim
-from navbound.read.epochs import Reading, read
 from navbound.read.pieces import PIECE_ROWS
-from navbound.read.plausible import Limits, check
-from navbound.read.repeats import LEFT_OUT, left_out, separate
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
 from navbound.read.source import LARGE_BYTES, is_text_table
+from navbound.read.tables.epochs import Reading, read
 from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
-from navbound.run.files import sort_out
-from navbound.run.material import Material
+from navbound.records.material import Material
+from navbound.records.run import CovarianceOrigin, Rejection, Waypoint
+from navbound.run.inputs.files import sort_out
+from navbound.run.inputs.solved import solved
+from navbound.run.inputs.solving import Solving
 from navbound.run.pieces import AUXILIARY, covariance_status, in_pieces, states_truth, without_path
 from navbound.run.procedure import Flown, on_procedure
-from navbound.run.records import CovarianceOrigin, Rejection, Waypoint
-from navbound.run.solved import solved
-from navbound.run.solving import Solving
+from navbound.sbas.gains import EXTRACTION_LABEL, EXTRACTION_MARK
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from navbound.read.pieces import PiecedReading
+    from navbound.records.run import CrossTrack, InputFile
     from navbound.run.pieces import InPieces
-    from navbound.run.records import CrossTrack, InputFile
 
 
 def material(

@@ -7,28 +7,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from navbound import scenario as scenarios
-from navbound._arguments import checked
 from navbound.errors import InputError
+from navbound.records.performance import Level
+from navbound.rnp.requirement import requirement
 from navbound.run import analyze as recorded
-from navbound.run import directory, performance
+from navbound.run import directory
 from navbound.run import fly as simulated
-from navbound.run import taxi as taxiing
-from navbound.run.faults import fault_summaries
+from navbound.run.evaluate import performance
+from navbound.run.ground import flight as taxiing
 from navbound.run.judge import judge
-from navbound.run.kpi_records import Level
 from navbound.run.procedure import with_answers
-from navbound.run.requirement import requirement
 from navbound.run.settings import Settings
-from navbound.run.studies import PAGES, REPORTS, STUDIES
+from navbound.run.verdict.faults import fault_summaries
 from navbound.scenario import taxi as taxi_scenarios
+from navbound.studies.registry import PAGES, REPORTS, STUDIES
+from navbound.table.arguments import checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import Unpack
 
     from navbound.run.directory import Run
-    from navbound.run.studies import Study
     from navbound.scale import Work
+    from navbound.studies.registry import Study
 
 
 @checked
@@ -161,7 +162,7 @@ def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None
         with directory.own(out) as folder:
             directory.write(REPORTS[name](), folder)
     elif out is not None:
-        from navbound.report import studies  # noqa: PLC0415 - the page is presentation, made only where it is asked for
+        from navbound.studies import pages  # noqa: PLC0415 - the page is presentation, made only where it is asked for
 
-        studies.write(found, Path(out))
+        pages.write(found, Path(out))
     return found

@@ -13,13 +13,13 @@ import numpy as np
 import polars as pl
 
 from navbound import __version__, rnp, status, tse
-from navbound._rnp_exposure import LONGEST_STEP_S
-from navbound._states import METRES_PER_NM
 from navbound.errors import InputError
 from navbound.methods import BoundColumn, bounds, column_of, method, with_errors
+from navbound.records.run import RunRecord
+from navbound.rnp.exposure import LONGEST_STEP_S
+from navbound.rnp.states import METRES_PER_NM
 from navbound.run import pieces
 from navbound.run.directory import Run
-from navbound.run.records import RunRecord
 from navbound.run.settings import Settings
 from navbound.run.summarise import summarise
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.read.pieces import Frames
-    from navbound.run.material import Material
-    from navbound.run.records import EventSummary
+    from navbound.records.material import Material
+    from navbound.records.run import EventSummary
 
 STATE_LEVELS_NM = (0.3, 1.0, 2.0, 5.0)
 """The levels of the state classifier's authors (Ostroumov and Kuzmenko 2018)."""

@@ -17,16 +17,16 @@ from navbound.procedures.flight import results, rnp_words
 from navbound.procedures.legs import Followed
 from navbound.procedures.names import parts
 from navbound.read.approaches import statistics
-from navbound.read.repeats import left_out
-from navbound.run.records import InputFile, Waypoint
+from navbound.read.checks.repeats import left_out
+from navbound.records.run import InputFile, Waypoint
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.procedures import Flight, LegResult, Procedure
+    from navbound.records.run import CrossTrack
     from navbound.run.directory import Run
-    from navbound.run.records import CrossTrack
 
 NEXT_FLIGHT_S = 600.0
 """After so long without a judged position another flight begins (ours). [s]"""
