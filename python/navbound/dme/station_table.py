@@ -16,14 +16,13 @@ import numpy as np
 from navbound.errors import FormatError, InputError
 from navbound.storage import packed
 from navbound.table.arguments import checked
+from navbound.units import METRES_PER_FT, METRES_PER_NM
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
-METRES_PER_NM = 1852.0
-METRES_PER_FT = 0.3048
 EARTH_RADIUS_M = 6_371_000.0
 
 SERVICE_NM = {"LOW": 25.0, "MEDIUM": 40.0, "HIGH": 130.0}
