@@ -34,6 +34,21 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
+
+
+def _version(value: bool) -> None:
+    if value:
+        sys.stdout.write(f"navbound {navbound.__version__}\n")
+        raise typer.Exit
+
+
+@app.callback()
+def _about(
+    version: Annotated[bool, typer.Option("--version", help="Print the version, nothing else.", callback=_version, is_eager=True)] = False,
+) -> None:
+    pass
+
+
 LISTED_FAULTS = 10
 """Faults that are said at the end of a run; all of them are in its records."""
 
