@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 import polars as pl
 
+from navbound.read.checks.established import TruthDoubts
 from navbound.read.checks.repeats import LEFT_OUT
 
 if TYPE_CHECKING:
@@ -48,6 +49,8 @@ class Material:
         The epochs of a table that is too large for memory, in pieces on the disk; `epochs` is then without rows.
     with_levels : set of str
         Tracks with a protection level anywhere, where the epochs are in pieces.
+    truth_doubts : TruthDoubts
+        What speaks against the truth.
     limits_held : dict
         Phase to how its alert limit is held ("inferred", ...), where epochs have ``hpl_m`` and ``hal_m``.
     """
@@ -72,3 +75,4 @@ class Material:
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     frames: Frames | None = None
     with_levels: frozenset[str] = frozenset()
+    truth_doubts: TruthDoubts = field(default_factory=TruthDoubts)

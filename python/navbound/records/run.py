@@ -141,6 +141,10 @@ class Verdict(Record):
     """None where no epoch has both a bound or level and a true error."""
     n_truth: int = 0
     """Epochs of any status whose true position is known."""
+    n_truth_doubted: int = 0
+    """Epochs whose truth contradicts itself and is not used."""
+    truth_doubts: str = ""
+    """What speaks against the truth, with times; empty where nothing does."""
     n_implausible: int
     """Epochs whose input cannot be true (a jump that cannot be flown, a negative variance)."""
     worst_accuracy: Worst | None

@@ -11,6 +11,7 @@ import polars as pl
 
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
+from navbound.read.checks.established import TruthDoubts
 from navbound.read.checks.plausible import Limits, check
 from navbound.read.checks.repeats import LEFT_OUT, left_out, separate
 from navbound.read.covariance import Claimed, claim
@@ -143,15 +144,15 @@ def material(
     epochs, plausibility = check(claimed.epochs, limits if named.ecef_m is None else replace(limits, moving_mps=math.inf))
     origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
-    assumptions = [of_covariance, plausibility.words]
+    assumptions, truth_doubts = [of_covariance, plausibility.words], TruthDoubts()
     if truth is not None:
-        epochs, words, other = with_truth(epochs, named)
+        epochs, words, other, truth_doubts = with_truth(epochs, named)
         inputs += [] if other is None else [other.source]
         rejected += [] if other is None else other.rejected
         assumptions.append(words)
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
-        epochs, words = with_error(epochs)
-        assumptions.append(f"Truth: from the file itself.{words}")
+        epochs, truth_doubts = with_error(epochs)
+        assumptions.append(f"Truth: from the file itself. {truth_doubts.words}".rstrip())
     route = _follow(path, epochs, gates, rejected) if procedure is None else on_procedure(epochs, procedure)
     epochs = covariance_status(route.epochs)
     if procedure is None:
@@ -173,6 +174,7 @@ def material(
         left_out=pl.concat([_on_path(lost, epochs, route.tracks), route.left_out]),
         cross_track=route.cross_track,
         settings=context.settings_with(readings),
+        truth_doubts=truth_doubts,
     )
 
 

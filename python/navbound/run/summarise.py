@@ -211,6 +211,7 @@ def verdict_of(
         n_known_beyond=found.n_known_beyond,
         n_stated_against=found.doubts.n_stated_against,
         n_without_level=found.doubts.n_without_level,
+        truth_lost=material.truth_doubts.n > 0 and found.n_truth == 0,
     )
     decided = rule.of_tracks(facts)
     verdict = Verdict(
@@ -241,6 +242,8 @@ def verdict_of(
         worst_integrity=found.worst[1],
         truth_known=found.n_truth > 0,
         n_truth=found.n_truth,
+        n_truth_doubted=material.truth_doubts.n,
+        truth_doubts=material.truth_doubts.words,
     )
     words = verdict_words(verdict, judge, risks, material.covariance)
     return verdict.model_copy(update={"words": f"{words}{protection_words(protection)}"})

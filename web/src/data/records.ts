@@ -78,6 +78,8 @@ export interface Verdict {
     assumed: ("sigma_typed" | "sigma_coded" | "no_path")[];
     belief: Belief | null;
     n_truth: number;
+    n_truth_doubted: number;
+    truth_doubts: string;
     n_implausible: number;
     worst_accuracy: Worst | null;
     worst_integrity: Worst | null;

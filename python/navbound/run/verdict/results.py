@@ -9,7 +9,7 @@ import numpy as np
 from navbound import _core
 from navbound.run.verdict.numbers import length, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS
-from navbound.run.verdict.words import COPIED, contradicted_words, refuted_words, truth_words
+from navbound.run.verdict.words import COPIED, contradicted_words, covered_words, refuted_words, truth_words
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
     return (
         f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "
         f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; "
-        f"{shares}{_thin(verdict)}."
+        f"{shares}{covered_words(verdict.belief)}{_thin(verdict)}."
     )
 
 
