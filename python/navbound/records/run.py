@@ -89,6 +89,9 @@ class CovarianceOrigin(Record):
     id: Literal["simulated", "filter", "solved", "file", "file_axes", "epu", "nac_p", "containment_radius", "typed", "none"]
     sigma_m: float | None = None
     """What the user typed."""
+    own_low_m: float | None = None
+    own_high_m: float | None = None
+    """Least and largest sigma of one axis by the file's own accuracies, where the typed one overrules them."""
 
 
 class Verdict(Record):
@@ -127,6 +130,10 @@ class Verdict(Record):
     """The same where it states an alert."""
     n_stated_worse: int = 0
     """The same where it states a 95 % radius that is larger than its covariance allows."""
+    n_stated_uncontained: int = 0
+    """The same where it states a containment radius (Rc, NIC) beyond twice RNP, or none."""
+    unread: list[str] = Field(default_factory=list)
+    """Columns, or words of columns, that speak of integrity by their name and are not understood."""
     n_without_level: int = 0
     """Judged epochs of tracks with a column of horizontal protection levels that holds none."""
     n_long_steps: int = 0

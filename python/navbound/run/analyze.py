@@ -174,6 +174,7 @@ def material(
         left_out=pl.concat([_on_path(lost, epochs, route.tracks), route.left_out]),
         cross_track=route.cross_track,
         settings=context.settings_with(readings),
+        unread=list(dict.fromkeys(each for r in readings for each in r.unread)),
         truth_doubts=truth_doubts,
     )
 
@@ -228,12 +229,14 @@ def _in_pieces(recorded: InPieces, context: _Context) -> Material:
         left_out=reading.left_out,
         settings=context.settings_with([reading]),
         with_levels=frozenset(reading.with_levels),
+        unread=reading.unread,
     )
 
 
 def _origin(claimed: Claimed, sigma_m: float | None, *, solved_alone: bool) -> CovarianceOrigin:
     solved_covariance = solved_alone and claimed.origin == "file"
-    return CovarianceOrigin(id="solved" if solved_covariance else claimed.origin, sigma_m=sigma_m)
+    low, high = claimed.own_sigma_m or (None, None)
+    return CovarianceOrigin(id="solved" if solved_covariance else claimed.origin, sigma_m=sigma_m, own_low_m=low, own_high_m=high)
 
 
 def _refuse_experimental(readings: Sequence[Reading | PiecedReading]) -> None:

@@ -232,6 +232,8 @@ def verdict_of(
         n_stated_beyond=found.doubts.n_stated_beyond,
         n_stated_alert=found.doubts.n_stated_alert,
         n_stated_worse=found.doubts.n_stated_worse,
+        n_stated_uncontained=found.doubts.n_stated_uncontained,
+        unread=material.unread,
         n_without_level=found.doubts.n_without_level,
         n_long_steps=found.doubts.n_long_steps,
         longest_step_s=found.doubts.longest_step_s,

@@ -71,6 +71,8 @@ export interface Verdict {
     n_stated_beyond: number;
     n_stated_alert: number;
     n_stated_worse: number;
+    n_stated_uncontained: number;
+    unread: string[];
     n_without_level: number;
     n_long_steps: number;
     longest_step_s: number | null;

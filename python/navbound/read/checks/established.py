@@ -71,14 +71,15 @@ class TruthDoubts:
             times = ", ".join(f"{utc_text(time_ns)} UTC" for time_ns in self.jumps_ns[:_NAMED])
             more = f" and {len(self.jumps_ns) - _NAMED} more times" if len(self.jumps_ns) > _NAMED else ""
             sentences.append(
-                f"Truth is not believable at {self.n_jumping} epochs and is not used there: it jumps at {times}{more}, to places that cannot "
-                "have been reached from those before them. Only a part that agrees with itself over three quarters of a track is a reference."
+                f"Truth is not believable at {self.n_jumping} epochs and is not used there: it jumps at {times}{more}, to places "
+                "that cannot have been reached from those before. Only a part that agrees with itself over three quarters of a track is "
+                "a reference."
             )
         if self.n_standing:
             sentences.append(
-                f"Truth is not believable at {self.n_standing} epochs and is not used there: it stands still while the positions travel up to "
-                f"{self.travelled_m:.0f} m on a steady course, by more than their bounds allow. It is the truth of another receiver, or the "
-                "positions are wrong."
+                f"Truth is not believable at {self.n_standing} epochs and is not used there: it stands still while the positions travel "
+                f"up to {self.travelled_m:.0f} m on a steady course, by more than their bounds allow. It is the truth of another receiver, "
+                "or the positions are wrong."
             )
         return " ".join(sentences)
 
@@ -89,8 +90,8 @@ _TRUE_PLACE = ("truth_lat_rad", "truth_lon_rad")
 def established(epochs: pl.DataFrame) -> tuple[pl.DataFrame, TruthDoubts]:
     """Take the truth from epochs at which it cannot be one.
 
-    A track's truth is split where it jumps, by the rule of recorded positions. Parts that follow each other within the settling time and can
-    be reached from each other are one. The largest is the reference where it has at least `ESTABLISHED` of the track's true positions;
+    A track's truth is split where it jumps, by the rule of recorded positions. Parts that follow each other within the settling time
+    and can be reached from each other are one. The largest is the reference where it has at least `ESTABLISHED` of the track's truth;
     otherwise nobody knows which part is true, and none is. Epochs that have not settled after a jump have none either.
 
     Parameters
@@ -178,7 +179,7 @@ def _east_north_m(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArr
 
 
 def _travelled_m(group: pl.DataFrame) -> float | None:
-    """How far positions travel on a steady course, by more than their bounds allow, while their truth stands; None where they do not. [m]."""
+    """How far positions travel on a steady course, beyond their bounds, while their truth stands; None where they do not. [m]."""
     names = ("est_lat_rad", "est_lon_rad", "cov_ee_m2", "cov_nn_m2")
     true = group.select(_TRUE_PLACE).to_numpy()
     if not set(names) <= set(group.columns) or np.hypot(*_east_north_m(true[[0]], true).T).max() > _STANDS_M:

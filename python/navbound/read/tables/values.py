@@ -9,7 +9,7 @@ import polars as pl
 
 from navbound import status
 from navbound.errors import UNSEEN, FormatError
-from navbound.read.checks import levels, stated
+from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import Repeats, left_out, separate
 from navbound.read.tables.columns import (
@@ -81,6 +81,7 @@ class Values:
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._n_unknown = 0
+        self._unknown: dict[str, dict[str, None]] = {}
         self._largest = dict.fromkeys(POSITION, 0.0)
         self._unit = self._unit_dated = ""
 
@@ -118,12 +119,13 @@ class Values:
         for name in POSITION:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], _largest(part[name]))
-        return self._reported(part) if tuple(self._required) == POSITION else part
+        return self._reported(part, frame) if tuple(self._required) == POSITION else part
 
     def _check_kinds(self, frame: pl.DataFrame) -> None:
-        for column in (*self._mapping.columns.values(), *self._mapping.times):
-            if _no_field(frame.schema[column.name]):
-                raise FormatError(self._path, f"holds {frame.schema[column.name]}, where a number or a text is needed", field=column.name)
+        names = [column.name for column in (*self._mapping.columns.values(), *self._mapping.times)]
+        for name in (*names, *(name for name, _ in self._mapping.statements)):
+            if _no_field(frame.schema[name]):
+                raise FormatError(self._path, f"holds {frame.schema[name]}, where a number or a text is needed", field=name)
 
     def _count(self, place: int, frame: pl.DataFrame, name: str, reason: pl.Series) -> pl.Series:
         """Count the values of an optional column that could not be used; the rows stay, an empty field is no fault."""
@@ -143,12 +145,21 @@ class Values:
         self._dtypes |= {name: values.dtype for name, values in columns.items()}
         return [values.alias(_RAW + name) for name, values in columns.items()]
 
-    def _reported(self, part: pl.DataFrame) -> pl.DataFrame:
+    def _reported(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """What a recorded track says of its own epochs, in words of the list."""
         if "status" in part.columns:
             known = pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)
             self._n_unknown += part.filter(~known).height
-        return status.recorded(stated.against_itself(part))
+        found = [(name, kind.effect, statements.stated(kind, frame[name])) for name, kind in self._mapping.statements]
+        for name, _, each in found:
+            self._unknown.setdefault(name, {}).update(dict.fromkeys(each.unknown))
+        return stated.with_statements(status.recorded(stated.against_itself(part)), found)
+
+    @property
+    def unread(self) -> list[str]:
+        """Columns, or words of columns, that speak of integrity by their name and are not understood."""
+        words = {name: ", ".join(list(each)[: statements.SHOWN]) for name, each in self._unknown.items() if each}
+        return [*(f"{name} ({each})" for name, each in words.items()), *self._mapping.unread]
 
     def understand(self) -> None:
         """Decide in which unit the times are written, now that every row was taken.

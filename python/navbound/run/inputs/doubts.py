@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.read.checks.plausible import Limits
-from navbound.read.checks.stated import ALERT, ERROR, WORSE
+from navbound.read.checks.stated import ALERT, CONTAINMENT, ERROR, WORSE
 from navbound.status import USABLE
 
 if TYPE_CHECKING:
@@ -24,9 +24,9 @@ class Doubts:
 
     Attributes
     ----------
-    n_stated_beyond, n_stated_alert, n_stated_worse, n_stated_against : int
+    n_stated_beyond, n_stated_alert, n_stated_worse, n_stated_uncontained, n_stated_against : int
         Epochs with status ok or degraded where the recording itself states an error beyond RNP, an alert, an accuracy worse than its
-        covariance, or any of these.
+        covariance, a containment radius beyond twice RNP, or any of these.
     n_without_level : int
         Judged epochs of tracks whose column of horizontal protection levels holds none: no column of nothing may stand for a level.
     n_long_steps : int
@@ -38,9 +38,8 @@ class Doubts:
     def __init__(self, with_levels: Container[str]) -> None:
         self._with_levels = with_levels
         self._last: tuple[str, int] | None = None
-        self.n_stated_beyond = self.n_stated_worse = self.n_stated_alert = self.n_stated_against = self.n_without_level = (
-            self.n_long_steps
-        ) = 0
+        self.n_stated_beyond = self.n_stated_worse = self.n_stated_alert = self.n_stated_uncontained = self.n_stated_against = 0
+        self.n_without_level = self.n_long_steps = 0
         self.longest_step_s: float | None = None
 
     def see(self, margins: pl.DataFrame) -> None:
@@ -54,11 +53,14 @@ class Doubts:
         beyond = usable & (pl.col(ERROR) > pl.col("rnp_m")) if ERROR in margins.columns else never
         alert = usable & pl.col(ALERT).is_not_null() if ALERT in margins.columns else never
         worse = usable & pl.col(WORSE).is_not_null() if WORSE in margins.columns else never
-        beyond, alert = beyond.fill_null(value=False), alert.fill_null(value=False)
-        counts = margins.select(usable.alias("_usable"), beyond=beyond, alert=alert, worse=worse, any=beyond | alert | worse)
+        uncontained = usable & (pl.col(CONTAINMENT) > 2.0 * pl.col("rnp_m")) if CONTAINMENT in margins.columns else never
+        beyond, alert, uncontained = (each.fill_null(value=False) for each in (beyond, alert, uncontained))
+        each = {"beyond": beyond, "alert": alert, "worse": worse, "uncontained": uncontained}
+        counts = margins.select(usable.alias("_usable"), **each, any=beyond | alert | worse | uncontained)
         self.n_stated_beyond += int(counts["beyond"].sum())
         self.n_stated_alert += int(counts["alert"].sum())
         self.n_stated_worse += int(counts["worse"].sum())
+        self.n_stated_uncontained += int(counts["uncontained"].sum())
         self.n_stated_against += int(counts["any"].sum())
 
     def _see_levels(self, margins: pl.DataFrame) -> None:
