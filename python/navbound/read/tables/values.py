@@ -175,7 +175,7 @@ class Values:
                 f"{name}: {self._n_unknown} epochs have a status that is none of {', '.join(status.STATUSES)}; they are not judged"
             )
         if tuple(self._required) == POSITION and self._mapping.unused:
-            self.notes.append(f"{name}: columns not used: {', '.join(self._mapping.unused)}")
+            self.notes.append(f"{name}: columns not used: {_few(self._mapping.unused)}")
         self._look_like_radians()
         self._unit = self._understood(self._mapping.times, self._facts)
         if self._dated is not None:
@@ -353,6 +353,15 @@ def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
         .alias("reason"),
     )  # fmt: skip
     return frame["value"], frame["reason"]
+
+
+_NAMED = 100
+"""Columns that a note names. [1]"""
+
+
+def _few(names: list[str]) -> str:
+    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    return f"{', '.join(names[:_NAMED])}{more}"
 
 
 def _largest(values: pl.Series) -> float:

@@ -130,8 +130,8 @@ def _not_shown(verdict: Verdict) -> list[str]:
         why.append(f"The recording itself states an alert at {verdict.n_stated_alert} epochs.")
     if verdict.n_stated_worse:
         why.append(
-            f"The recording itself states an accuracy (95 % radius: EPU, NACp, sigma) at {verdict.n_stated_worse} epochs that is worse than "
-            "the covariance allows."
+            f"The recording itself states an accuracy (95 % radius: EPU, NACp, sigma) at {verdict.n_stated_worse} epochs that is worse "
+            "than the covariance allows."
         )
     if verdict.n_stated_uncontained:
         why.append(
