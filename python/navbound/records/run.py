@@ -134,6 +134,10 @@ class Verdict(Record):
     """The same where it states a containment radius (Rc, NIC) beyond twice RNP, or none."""
     unread: list[str] = Field(default_factory=list)
     """Columns, or words of columns, that speak of integrity by their name and are not understood."""
+    n_apart: int = 0
+    """Positions further from the line between their neighbours than their covariances and any manoeuvre explain."""
+    largest_apart_m: float | None = None
+    """The largest of these distances."""
     n_without_level: int = 0
     """Judged epochs of tracks with a column of horizontal protection levels that holds none."""
     n_long_steps: int = 0

@@ -73,6 +73,8 @@ export interface Verdict {
     n_stated_worse: number;
     n_stated_uncontained: number;
     unread: string[];
+    n_apart: number;
+    largest_apart_m: number | null;
     n_without_level: number;
     n_long_steps: number;
     longest_step_s: number | null;

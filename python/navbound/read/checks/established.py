@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
+from navbound.read.checks.places import east_north_m
 from navbound.read.checks.plausible import Limits, unreachable
-from navbound.read.checks.repeats import EARTH_RADIUS_M
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
@@ -160,29 +160,23 @@ def _size(parts: list[slice]) -> int:
 def _follows(time_s: NDArray[np.float64], place: NDArray[np.float64], end: int, start: int, speed_mps: float) -> bool:
     """Whether a part goes on where another ended; after the settling time too much could be reached to tell."""
     passed_s = float(time_s[start] - time_s[end])
-    way_m = float(np.hypot(*_east_north_m(place[[end]], place[[start]])[0]))
+    way_m = float(np.hypot(*east_north_m(place[[end]], place[[start]])[0]))
     return passed_s <= TRUTH.settle_s and way_m <= speed_mps * passed_s + TRUTH.noise_m
 
 
 def _own_speed(time_s: NDArray[np.float64], place: NDArray[np.float64]) -> float:
     """The fastest speed of a track, of 95 % of its own steps with factor and margin, as the rule of recorded positions has it. [m/s]."""
     passed_s = np.diff(time_s)
-    way_m = np.hypot(*_east_north_m(place[:-1], place[1:]).T)
+    way_m = np.hypot(*east_north_m(place[:-1], place[1:]).T)
     own_mps = float(np.quantile(way_m[passed_s > 0] / passed_s[passed_s > 0], 0.95)) if (passed_s > 0).any() else math.inf
     return min(TRUTH.speed_factor * own_mps + TRUTH.speed_margin_mps, TRUTH.max_speed_mps)
-
-
-def _east_north_m(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Ways between places (latitude, longitude), on a sphere. [m]."""
-    east = 2.0 * EARTH_RADIUS_M * np.cos(start[:, 0]) * np.sin(0.5 * (end[:, 1] - start[:, 1]))
-    return np.column_stack([east, EARTH_RADIUS_M * (end[:, 0] - start[:, 0])])
 
 
 def _travelled_m(group: pl.DataFrame) -> float | None:
     """How far positions travel on a steady course, beyond their bounds, while their truth stands; None where they do not. [m]."""
     names = ("est_lat_rad", "est_lon_rad", "cov_ee_m2", "cov_nn_m2")
     true = group.select(_TRUE_PLACE).to_numpy()
-    if not set(names) <= set(group.columns) or np.hypot(*_east_north_m(true[[0]], true).T).max() > _STANDS_M:
+    if not set(names) <= set(group.columns) or np.hypot(*east_north_m(true[[0]], true).T).max() > _STANDS_M:
         return None
     rows = group.filter(pl.all_horizontal(pl.col(name).is_finite() for name in names))
     time_s = rows["time_ns"].to_numpy() * 1e-9
@@ -190,7 +184,7 @@ def _travelled_m(group: pl.DataFrame) -> float | None:
     radius_m = _RADII * np.sqrt(rows.select(pl.max_horizontal(names[2:])).to_series().to_numpy())
     for leg_s in _LEGS_S:
         ends = _spaced(time_s, leg_s)
-        legs_m = _east_north_m(place[ends[:-1]], place[ends[1:]])
+        legs_m = east_north_m(place[ends[:-1]], place[ends[1:]])
         if len(legs_m) < _LEAST_LEGS:
             return None
         length_m = np.hypot(*legs_m.T)
@@ -198,7 +192,7 @@ def _travelled_m(group: pl.DataFrame) -> float | None:
         with np.errstate(invalid="ignore"):
             cosine = (legs_m[:-1] * legs_m[1:]).sum(axis=1) / (length_m[:-1] * length_m[1:])
         if beyond.mean() > 0.5 and np.median(np.nan_to_num(cosine)) > _LEAST_COSINE:
-            return float(np.hypot(*_east_north_m(place[[0]], place).T).max())
+            return float(np.hypot(*east_north_m(place[[0]], place).T).max())
     return None
 
 

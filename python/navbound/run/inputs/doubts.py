@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
+from navbound.read.checks.neighbours import Neighbours
 from navbound.read.checks.plausible import Limits
 from navbound.read.checks.stated import ALERT, CONTAINMENT, ERROR, WORSE
 from navbound.status import USABLE
@@ -29,13 +30,16 @@ class Doubts:
         covariance, a containment radius beyond twice RNP, or any of these.
     n_without_level : int
         Judged epochs of tracks whose column of horizontal protection levels holds none: no column of nothing may stand for a level.
+    neighbours : Neighbours or None
+        Positions that contradict those beside them; None for a flight that was simulated.
     n_long_steps : int
         Steps between successive epochs of a track that are longer than a position takes to become stale.
     longest_step_s : float or None
         The longest of all steps. [s]
     """
 
-    def __init__(self, with_levels: Container[str]) -> None:
+    def __init__(self, with_levels: Container[str], *, recorded: bool = True) -> None:
+        self.neighbours = Neighbours() if recorded else None
         self._with_levels = with_levels
         self._last: tuple[str, int] | None = None
         self.n_stated_beyond = self.n_stated_worse = self.n_stated_alert = self.n_stated_uncontained = self.n_stated_against = 0
@@ -47,6 +51,8 @@ class Doubts:
         self._see_statements(margins)
         self._see_levels(margins)
         self._see_steps(margins)
+        if self.neighbours is not None:
+            self.neighbours.see(margins)
 
     def _see_statements(self, margins: pl.DataFrame) -> None:
         usable, never = pl.col("status").is_in(USABLE), pl.lit(value=False)

@@ -138,6 +138,11 @@ def _not_shown(verdict: Verdict) -> list[str]:
             f"The recording itself states a containment radius (Rc, NIC) beyond twice RNP, or none, at "
             f"{verdict.n_stated_uncontained} epochs."
         )
+    if verdict.n_apart and verdict.largest_apart_m is not None:
+        why.append(
+            f"{verdict.n_apart} positions stand further from the line between their neighbours than their covariances allow "
+            f"(up to {verdict.largest_apart_m:.0f} m): two receivers under one name, or a covariance that is too small."
+        )
     if verdict.n_without_level:
         why.append(
             f"A column of horizontal protection levels holds none in the tracks of {verdict.n_without_level} judged epochs: their "

@@ -56,6 +56,8 @@ class TrackFacts:
         With status ok or degraded, where the recording itself states an error beyond RNP or an alert.
     n_without_level : int
         Judged, of tracks with a column of horizontal protection levels that holds none.
+    n_apart : int
+        Positions that contradict those beside them by more than their covariances allow.
     truth_lost : bool
         A truth was there, and none of it can be one.
     """
@@ -71,6 +73,7 @@ class TrackFacts:
     n_stated_against: int = 0
     n_without_level: int = 0
     truth_lost: bool = False
+    n_apart: int = 0
 
 
 def of_tracks(facts: TrackFacts) -> VerdictId:
@@ -81,7 +84,7 @@ def of_tracks(facts: TrackFacts) -> VerdictId:
         return "nothing_judged"
     if facts.n_outside or facts.n_beyond_alert_limit:
         return "outside"
-    doubts = facts.n_implausible + facts.n_stated_against + facts.n_without_level + facts.truth_lost
+    doubts = facts.n_implausible + facts.n_stated_against + facts.n_without_level + facts.n_apart + facts.truth_lost
     if doubts or facts.belief in UNSUPPORTED or not facts.n_judged >= LEAST_SHARE * facts.n_epochs:
         return "not_shown"
     return "inside"
