@@ -423,7 +423,7 @@ def test_the_first_sentence_says_what_the_user_typed(tmp_path: Path) -> None:
     )
     assert "inside RNP 0.3" in sentence
     assert run.summary.verdict.assumed == ["sigma_typed", "no_path"]
-    assert run.summary.covariance == CovarianceOrigin(id="typed", sigma_m=5.0)
+    assert run.summary.covariance == CovarianceOrigin(id="typed", sigma_m=5.0, own_low_m=3.0, own_high_m=3.0)
     stated = navbound.analyze(path).summary
     assert (stated.covariance.id, stated.verdict.assumed) == ("file_axes", ["no_path"])
     assert "typed" not in stated.verdict.words

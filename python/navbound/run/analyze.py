@@ -11,6 +11,7 @@ import polars as pl
 
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
+from navbound.read.checks.axes import doubts_of_axes
 from navbound.read.checks.established import TruthDoubts
 from navbound.read.checks.plausible import Limits, check
 from navbound.read.checks.repeats import LEFT_OUT, left_out, separate
@@ -144,7 +145,7 @@ def material(
     epochs, plausibility = check(claimed.epochs, limits if named.ecef_m is None else replace(limits, moving_mps=math.inf))
     origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
-    assumptions, truth_doubts = [of_covariance, plausibility.words], TruthDoubts()
+    assumptions, truth_doubts = [of_covariance, plausibility.words, *doubts_of_axes(epochs)], TruthDoubts()
     if truth is not None:
         epochs, words, other, truth_doubts = with_truth(epochs, named)
         inputs += [] if other is None else [other.source]
@@ -221,7 +222,7 @@ def _in_pieces(recorded: InPieces, context: _Context) -> Material:
         title=f"Recorded tracks: {Path(reading.source.path).name}",
         requirement=context.requirement,
         sample_period_s=recorded.period_s,
-        assumptions=[recorded.claimed.words, recorded.plausibility.words, _NO_PATH, *reading.notes],
+        assumptions=[recorded.claimed.words, recorded.plausibility.words, *recorded.doubts, _NO_PATH, *reading.notes],
         covariance=_origin(recorded.claimed, context.sigma_m, solved_alone=False),
         labels=recorded.labels,
         inputs=[reading.source],

@@ -42,6 +42,9 @@ FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS = range(0, 600_000, 100_000)
 """Where a reason stands among the others of its file; the number of the column is added to that of an optional one."""
 
 
+_HIGH_M, _LIKE = 300.0, 0.1
+"""Height from which geoid and pressure hardly change a ratio [m], and how much they may [1]. Provenance: ours."""
+
 _SHOWN = 20
 """Rows that show whether a column holds words: as many as the shortest piece of a file has. Provenance: ours."""
 
@@ -84,6 +87,7 @@ class Values:
         self._unknown: dict[str, dict[str, None]] = {}
         self._largest = dict.fromkeys(POSITION, 0.0)
         self._unit = self._unit_dated = ""
+        self._n_heights = self._n_feet = self._n_metres = 0
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
         """Columns in SI of some rows, with their times as they are written and the reasons against them.
@@ -119,6 +123,7 @@ class Values:
         for name in POSITION:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], _largest(part[name]))
+        self._see_heights(part)
         return self._reported(part, frame) if tuple(self._required) == POSITION else part
 
     def _check_kinds(self, frame: pl.DataFrame) -> None:
@@ -144,6 +149,27 @@ class Values:
         columns = {column.name: frame[column.name] for column in (*self._mapping.times, *dated)}
         self._dtypes |= {name: values.dtype for name, values in columns.items()}
         return [values.alias(_RAW + name) for name, values in columns.items()]
+
+    def _see_heights(self, part: pl.DataFrame) -> None:
+        """Count heights that are a pressure altitude times feet in a metre, or the other way round."""
+        if not {"est_h_m", "altitude_m"} <= set(part.columns):
+            return
+        high = part.filter(pl.min_horizontal(pl.col("est_h_m").abs(), pl.col("altitude_m").abs()) > _HIGH_M)
+        ratio = pl.col("est_h_m") / pl.col("altitude_m")
+        feet = 1.0 / UNITS["m"]["ft"]
+        self._n_heights += high.height
+        self._n_feet += high.filter((ratio / feet - 1.0).abs() <= _LIKE).height
+        self._n_metres += high.filter((ratio * feet - 1.0).abs() <= _LIKE).height
+
+    def _look_like_feet(self) -> None:
+        columns = self._mapping.columns
+        for n, name, other in ((self._n_feet, "est_h_m", "altitude_m"), (self._n_metres, "altitude_m", "est_h_m")):
+            if 2 * n > self._n_heights:
+                of, beside = columns[name], columns[other]
+                self.notes.append(
+                    f"{self._path.name}: “{of.name}” was read as {of.unit}, and is 3.28 times “{beside.name}” ({beside.unit}) at {n} of "
+                    f"{self._n_heights} rows: one of them is in another unit than it is read in; declare it ({name}={of.name}:ft)"
+                )
 
     def _reported(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """What a recorded track says of its own epochs, in words of the list."""
@@ -177,6 +203,7 @@ class Values:
         if tuple(self._required) == POSITION and self._mapping.unused:
             self.notes.append(f"{name}: columns not used: {_few(self._mapping.unused)}")
         self._look_like_radians()
+        self._look_like_feet()
         self._unit = self._understood(self._mapping.times, self._facts)
         if self._dated is not None:
             try:
@@ -253,6 +280,12 @@ class Values:
             self.notes.append(
                 f"{self._path.name}: “{lat.name}” and “{lon.name}” were read as degrees, but all values are small enough to be radians; "
                 f"if they are, declare est_lat_rad={lat.name}:rad and est_lon_rad={lon.name}:rad"
+            )
+        elif lat.unit == lon.unit == "deg" and 0 < self._largest["est_lat_rad"] <= math.pi / 2 * UNITS["rad"]["deg"]:
+            # The longitude is no radian. Near the equator this is a doubt without a cause.
+            self.notes.append(
+                f"{self._path.name}: “{lat.name}” was read as degrees, but all its values are small enough to be radians; if they are, "
+                f"declare est_lat_rad={lat.name}:rad"
             )
 
 
