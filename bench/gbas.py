@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from clock import Row, seconds, show
 from navbound import gbas, rraim
+from navbound.gbas.modes import MODES
 from navbound.studies.surface_movement import grid as grids
 from navbound.studies.surface_movement import scenario as surface
 from navbound.studies.surface_movement import sky as skies
@@ -21,7 +22,7 @@ def measure() -> list[Row]:
     config = config.model_copy(update={"geometry": config.geometry.model_copy(update={"duration_s": 3 * 86_400.0})})
     rules = grids.rules(config)
     sky = skies.look(config)
-    own = {mode.id: sky.of(mode.systems) for mode in grids.MODES}
+    own = {mode.id: sky.of(mode.systems) for mode in MODES}
     both, n = own["F2"], len(sky.az_rad)
     sigma_td = gbas.carrier_sigma(both.el_now_rad[3], 10.0, 60.0, gbas.carriers()["dual"])
     levels = seconds(lambda: gbas.protection_levels(both.az_rad, both.el_rad, both.systems, service="F"))
@@ -30,7 +31,7 @@ def measure() -> list[Row]:
     filtered = seconds(lambda: gbas.aided_covariance(both.az_rad[:2], both.el_rad[:2], both.systems, lat_rad=0.72, service="F"), repeats=3)
 
     def grid() -> None:
-        for mode in grids.MODES:
+        for mode in MODES:
             grids.coasting(config, rules, mode, "A", own[mode.id], covariance_m2=None)
 
     cells = n * 3 * 5 * 8 * 6

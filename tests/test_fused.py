@@ -11,12 +11,13 @@ import pytest
 from scipy import integrate, stats
 
 from navbound import FormatError, anp, evaluation, scenario
+from navbound.records.faults import FaultSummary
 from navbound.records.material import Material
 from navbound.run import fly
 from navbound.run.directory import Run
 from navbound.run.judge import judge
 from navbound.run.settings import Settings
-from navbound.run.verdict.faults import FaultSummary, fault_summaries
+from navbound.run.verdict.faults import fault_summaries
 from navbound.scenario import Scenario
 from navbound.studies.anp_comparison import study as anp_comparison
 

@@ -55,7 +55,7 @@ def map_command(
 ) -> None:
     """Map what a grid of users gets over a day, and say on what share of the area that is enough."""
     from navbound import maps  # noqa: PLC0415
-    from navbound.maps.ground import METRES_PER_NM  # noqa: PLC0415
+    from navbound.units import METRES_PER_NM  # noqa: PLC0415
 
     work = work_of(backend, workers, cluster, checkpoint)
     given: dict[str, Any] = {

@@ -15,6 +15,7 @@ from rich.table import Table
 
 from navbound.cli.parts import Json, err_console, out_console
 from navbound.errors import FormatError, InputError
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from navbound.procedures import Database, Procedure
@@ -46,7 +47,7 @@ def list_command(
         table.add_column(heading, overflow="fold")
     for e in shown:
         names = ", ".join(dict.fromkeys(r.transition for r in e.routes if r.transition))
-        levels = ", ".join(f"RNP {x.rnp_m / 1852:.3g}" for x in e.levels)
+        levels = ", ".join(f"RNP {x.rnp_m / METRES_PER_NM:.3g}" for x in e.levels)
         table.add_row(e.airport, e.kind, e.ident, names, str(sum(r.n_legs for r in e.routes)), levels, str(e.line))
     out_console.print(table)
     _say(database)
@@ -76,7 +77,9 @@ def show_command(
     if json:
         _print_json(_plain(procedure) | {"findings": [asdict(f) for f in findings]})
         return
-    table = Table(title=f"{procedure.name}, {procedure.length_m / 1852:.2f} NM" if math.isfinite(procedure.length_m) else procedure.name)
+    table = Table(
+        title=f"{procedure.name}, {procedure.length_m / METRES_PER_NM:.2f} NM" if math.isfinite(procedure.length_m) else procedure.name
+    )
     for heading in drawn.HEADINGS:
         table.add_column(heading, overflow="fold")
     for leg in procedure.legs:

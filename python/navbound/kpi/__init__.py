@@ -280,7 +280,7 @@ class Campaign:
         Returns
         -------
         DataFrame
-            The events that are over with it, columns as :class:`navbound.run.kpi_records.KpiEvent`.
+            The events that are over with it, columns as :class:`navbound.records.performance.KpiEvent`.
 
         Raises
         ------

@@ -9,6 +9,7 @@ from navbound.errors import InputError
 from navbound.kpi import records
 from navbound.records.performance import Level
 from navbound.table.arguments import checked
+from navbound.units import METRES_PER_NM
 
 RNP_TTA_S = 10.0
 """Time to alert of a level that is named by its RNP value: that of non-precision approach, inferred. [s]"""
@@ -68,7 +69,7 @@ def rnp(rnp_nm: float, *, tta_s: float, containment: int = 1) -> Level:
     return Level(
         id=name if containment == 1 else f"{name} x 2",
         title=f"{name}, alert limit {containment} x RNP",
-        hal_m=containment * rnp_nm * 1852.0,
+        hal_m=containment * rnp_nm * METRES_PER_NM,
         val_m=None,
         accuracy_h_m=None,
         accuracy_v_m=None,

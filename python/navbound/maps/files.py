@@ -3,41 +3,20 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError
 from navbound.maps import netcdf
 from navbound.records import maps as map_records
+from navbound.records.maps import Map
 from navbound.storage import folders
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
-    import polars as pl
 
 RECORD, SUMMARY, POINTS, ARRAYS, REPORT = "run.json", "summary.json", "map.parquet", "map.nc", "report.html"
-
-
-@dataclass(frozen=True)
-class Map:
-    """A finished map.
-
-    Attributes
-    ----------
-    summary, record : MapSummary, MapRecord
-        What was found, and what it takes to do it again.
-    points : DataFrame
-        One row a grid point, columns of docs/notation.md, section "Maps".
-    path : Path or None
-        Where it lies, once written.
-    """
-
-    summary: map_records.MapSummary
-    record: map_records.MapRecord
-    points: pl.DataFrame
-    path: Path | None = None
 
 
 def own(out: str | Path | None) -> AbstractContextManager[folders.Writer | None]:

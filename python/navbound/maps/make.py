@@ -21,6 +21,7 @@ from navbound.maps.limits import Limit, limits_of
 from navbound.maps.sources import File, Times
 from navbound.maps.statistics import PERCENTILES, Evaluate, Tile, percentile_name
 from navbound.records import maps as map_records
+from navbound.records.maps import Map
 from navbound.table.arguments import checked
 from navbound.time import utc_text
 
@@ -49,7 +50,7 @@ def make(
     out: str | Path | None = None,
     command: str = "",
     **options: object,
-) -> files.Map:
+) -> Map:
     """Evaluate a grid of users over a day.
 
     Parameters
@@ -114,7 +115,7 @@ def make(
             n_tiles=len(tiles),
             platform=platform.platform(),
         )
-        return files.write(files.Map(summary, record, points), folder)
+        return files.write(Map(summary, record, points), folder)
 
 
 def _options(kind: Kind, options: dict[str, object]) -> Any:

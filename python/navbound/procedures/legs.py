@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
     from navbound.procedures.flight import Limits
 
-NAUTICAL_MILE_M = 1852.0
 _STATUS = np.array(_core.procedure_words()[1])
 """Statuses of positions by their number in the core."""
 

@@ -11,8 +11,9 @@ import polars as pl
 
 from navbound import _core, gnss
 from navbound.errors import InputError
-from navbound.read.checks.established import TruthDoubts, established
+from navbound.read.checks.established import established
 from navbound.read.tables.epochs import read
+from navbound.records.truth import TruthDoubts
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 from navbound.records.base import Record
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import polars as pl
 
 
 class MapColumn(Record):
@@ -102,3 +108,23 @@ class MapRecord(Record):
     backend: str
     n_tiles: int
     platform: str
+
+
+@dataclass(frozen=True)
+class Map:
+    """A finished map.
+
+    Attributes
+    ----------
+    summary, record : MapSummary, MapRecord
+        What was found, and what it takes to do it again.
+    points : DataFrame
+        One row a grid point, columns of docs/notation.md, section "Maps".
+    path : Path or None
+        Where it lies, once written.
+    """
+
+    summary: MapSummary
+    record: MapRecord
+    points: pl.DataFrame
+    path: Path | None = None

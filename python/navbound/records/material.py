@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Literal
 
 import polars as pl
 
-from navbound.read.checks.established import TruthDoubts
-from navbound.read.checks.repeats import LEFT_OUT
+from navbound.records.frames import LEFT_OUT
+from navbound.records.truth import TruthDoubts
 
 if TYPE_CHECKING:
-    from navbound.read.pieces import Frames
     from navbound.records.run import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
+    from navbound.storage.frames import Frames
 
 
 @dataclass(frozen=True)

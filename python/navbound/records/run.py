@@ -10,10 +10,9 @@ from typing import Literal
 from pydantic import Field
 
 from navbound.records.base import Record
+from navbound.records.faults import FaultSummary
 from navbound.records.performance import Performance
-from navbound.run.verdict import rule
-from navbound.run.verdict.faults import FaultSummary
-from navbound.run.verdict.rule import BeliefState, VerdictId
+from navbound.records.verdict import LEAST_SHARE, BeliefState, VerdictId
 
 
 class Worst(Record):
@@ -144,7 +143,7 @@ class Verdict(Record):
     """Steps between successive epochs of a track that are longer than a position takes to become stale."""
     longest_step_s: float | None = None
     """The longest of all steps between successive epochs; None where no track has two."""
-    least_share: float = rule.LEAST_SHARE
+    least_share: float = LEAST_SHARE
     """Least share of judged epochs for "inside"."""
     assumed: list[Literal["sigma_typed", "sigma_coded", "no_path"]] = Field(default_factory=list)
     """What stands in the first sentence because no data says it."""

@@ -19,6 +19,8 @@ from navbound.rnp.catalogue import Specification, specification, specifications
 from navbound.rnp.exposure import PER_EPOCH, ExposureBasis, PerEpoch, PerHour, per_epoch_risk, per_hour_risk
 from navbound.rnp.states import StateClassifier, StateOfError, StateOfErrors, nse_boundary, state_of_error, state_of_errors, states_of_track
 from navbound.sbas.gains import EXTRACTION_LABEL
+from navbound.table.arguments import checked, number
+from navbound.table.arrays import shown
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -176,6 +178,7 @@ class Monitor:
         A setting outside its domain, or a chain that takes longer than the time to alert.
     """
 
+    @checked
     def __init__(
         self,
         *,
@@ -239,14 +242,12 @@ class Monitor:
         """
         first, second = _alerting("accuracy", accuracy), _alerting("integrity", integrity or accuracy)
         try:
-            time_ns = int(record["time_ns"])
-            accuracy_m, integrity_m, rnp_m = (_number(record[key]) for key in (first.column, second.integrity_column, "rnp_m"))
-            fte_m = _number(record.get("fte_m"))
-            hpl_m = _number(record["hpl_m"]) if "hpl_m" in record else None
+            time_ns = record["time_ns"]
+            accuracy_m, integrity_m, rnp_m = (_number(key, record[key]) for key in (first.column, second.integrity_column, "rnp_m"))
+            fte_m = _number("fte_m", record.get("fte_m"))
+            hpl_m = _number("hpl_m", record["hpl_m"]) if "hpl_m" in record else None
         except KeyError as e:
             raise InputError("record", "a mapping without it", domain=f"records with {e.args[0]}") from e
-        except (TypeError, ValueError, OverflowError) as e:
-            raise InputError("record", repr(dict(record))[:120], domain="records of numbers") from e
         _require_ns(time_ns)
         status = record.get("status", "ok")
         if not isinstance(status, str) or status not in USABLE + UNUSABLE:
@@ -396,7 +397,7 @@ def _alerting(argument: str, method_id: str) -> Method:
 
 def _require_ns(time_ns: int) -> None:
     if isinstance(time_ns, bool) or not isinstance(time_ns, (int, np.integer)) or not -(2**63) <= time_ns < 2**63:
-        raise InputError("time_ns", repr(time_ns)[:80], "ns", "[-2^63, 2^63), whole")
+        raise InputError("time_ns", shown(time_ns), "ns", "[-2^63, 2^63), whole")
 
 
 def _frame(table: pl.DataFrame | Mapping[str, Any]) -> pl.DataFrame:
@@ -415,8 +416,12 @@ def _times(frame: pl.DataFrame) -> NDArray[np.int64]:
         raise InputError("time_ns", f"a column of {frame['time_ns'].dtype}", "ns", "[-2^63, 2^63), whole") from e
 
 
-def _number(value: float | str | None) -> float:
-    return math.nan if value is None else float(value)
+def _number(name: str, value: object) -> float:
+    if value is None:
+        return math.nan
+    if type(value) is not float:
+        number(name, value)
+    return float(value)  # type: ignore[arg-type]
 
 
 def _numbers(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:

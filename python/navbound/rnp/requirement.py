@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from navbound import rnp
 from navbound.errors import InputError
-from navbound.run.verdict.numbers import METRES_PER_NM
+from navbound.units import METRES_PER_NM
 
 SHORT_NAMES = {"RNP AR": "RNP AR APCH"}
 """Names that people say."""

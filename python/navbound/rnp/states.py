@@ -11,13 +11,12 @@ from navbound import _core
 from navbound.errors import InputError
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten, unflatten
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
-
-METRES_PER_NM = 1852.0
 
 
 @checked

@@ -17,12 +17,12 @@ from navbound.errors import InputError
 from navbound.methods import BoundColumn, bounds, column_of, method, with_errors
 from navbound.records.run import RunRecord
 from navbound.rnp.exposure import LONGEST_STEP_S
-from navbound.rnp.states import METRES_PER_NM
 from navbound.run import pieces
 from navbound.run.directory import Run
 from navbound.run.inputs.doubts import tracks_with_levels
 from navbound.run.settings import Settings
 from navbound.run.summarise import summarise
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,8 +14,8 @@ from navbound.maps.sources import NS, Satellites, satellites
 from navbound.read.routes import load_route
 from navbound.read.runways import runway
 from navbound.records.prediction import Hole, PredictedLimit, PredictedLine, PredictedPlace, PredictedTimes, Prediction
-from navbound.run.verdict.numbers import METRES_PER_NM
 from navbound.time import utc_text
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +10,7 @@ import polars as pl
 
 from navbound.read.checks.places import east_north_m
 from navbound.read.checks.plausible import Limits, unreachable
-from navbound.time import utc_text
+from navbound.records.truth import TruthDoubts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,9 +20,6 @@ TRUTH = Limits(moving_mps=math.inf, noise_m=20.0)
 
 ESTABLISHED = 0.75
 """Least share of a track's truth that the largest consistent part must have: three times all others together. Provenance: ours. [1]"""
-
-_NAMED = 3
-"""Jumps whose times are named. [1]"""
 
 _STANDS_M = 1.0
 """A truth that stays within this does not move. Provenance: ours. [m]"""
@@ -35,53 +31,6 @@ _RADII = math.sqrt(-2.0 * math.log(1e-5))
 """Radius of a circular covariance that the error exceeds with a risk of 1e-5, in standard deviations. [1]"""
 _LEAST_COSINE = 0.5
 """Median cosine between successive legs from which they make a course: independent errors have -0.5 in mean, a random walk 0. Derived."""
-
-
-@dataclass(frozen=True)
-class TruthDoubts:
-    """What speaks against a truth.
-
-    Attributes
-    ----------
-    n_jumping : int
-        Epochs whose truth is not used since it contradicts its own motion.
-    jumps_ns : tuple of int
-        GPS times at which it jumps. [ns]
-    n_standing : int
-        Epochs whose truth is not used since it stands while the positions travel.
-    travelled_m : float
-        The longest way between two such positions. [m]
-    """
-
-    n_jumping: int = 0
-    jumps_ns: tuple[int, ...] = ()
-    n_standing: int = 0
-    travelled_m: float = 0.0
-
-    @property
-    def n(self) -> int:
-        """Epochs whose truth is not used."""
-        return self.n_jumping + self.n_standing
-
-    @property
-    def words(self) -> str:
-        """The same in sentences; empty where nothing does."""
-        sentences = []
-        if self.n_jumping:
-            times = ", ".join(f"{utc_text(time_ns)} UTC" for time_ns in self.jumps_ns[:_NAMED])
-            more = f" and {len(self.jumps_ns) - _NAMED} more times" if len(self.jumps_ns) > _NAMED else ""
-            sentences.append(
-                f"Truth is not believable at {self.n_jumping} epochs and is not used there: it jumps at {times}{more}, to places "
-                "that cannot have been reached from those before. Only a part that agrees with itself over three quarters of a track is "
-                "a reference."
-            )
-        if self.n_standing:
-            sentences.append(
-                f"Truth is not believable at {self.n_standing} epochs and is not used there: it stands still while the positions travel "
-                f"up to {self.travelled_m:.0f} m on a steady course, by more than their bounds allow. It is the truth of another receiver, "
-                "or the positions are wrong."
-            )
-        return " ".join(sentences)
 
 
 _TRUE_PLACE = ("truth_lat_rad", "truth_lon_rad")

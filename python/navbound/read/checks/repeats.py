@@ -7,14 +7,13 @@ from dataclasses import dataclass
 import polars as pl
 
 from navbound import status
+from navbound.records.frames import LEFT_OUT
 
 SAME_PLACE_M = 1.0
 """Distance up to which two positions of one time are one, written with other digits. [m] Provenance: ours; five decimals of a degree."""
 
 EARTH_RADIUS_M = 6_371_000.0
 
-LEFT_OUT = {"track": pl.String, "time_ns": pl.Int64}
-"""Rows of a recording that cannot be judged: which track, and when (null where not even the time is known)."""
 
 SAME_BOUND = 0.01
 """Relative difference up to which two numbers of an accuracy or a bound are one, written with other digits. [1] Provenance: ours."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, InputError
 from navbound.read.checks.statements import kind_of, speaks_of_integrity
+from navbound.units import METRES_PER_FT, METRES_PER_NM, MPS_PER_KT
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping, Sequence
@@ -19,22 +20,20 @@ if TYPE_CHECKING:
     from navbound.read.checks.statements import Kind
 
 _DEG = math.pi / 180.0
-_FT = 0.3048
-_NM = 1852.0
 
 UNITS: dict[str, dict[str, float]] = {
     "rad": {"rad": 1.0, "deg": _DEG, "°": _DEG},
-    "m": {"m": 1.0, "ft": _FT, "km": 1000.0, "nm": _NM},
+    "m": {"m": 1.0, "ft": METRES_PER_FT, "km": 1000.0, "nm": METRES_PER_NM},
     "m2": {"m2": 1.0, "m^2": 1.0, "m²": 1.0},
     "mps": {
         "mps": 1.0,
         "m/s": 1.0,
-        "kt": _NM / 3600,
-        "kts": _NM / 3600,
-        "kn": _NM / 3600,
+        "kt": MPS_PER_KT,
+        "kts": MPS_PER_KT,
+        "kn": MPS_PER_KT,
         "km/h": 1 / 3.6,
-        "ft/min": _FT / 60,
-        "fpm": _FT / 60,
+        "ft/min": METRES_PER_FT / 60,
+        "fpm": METRES_PER_FT / 60,
     },
     "1": {"1": 1.0, "": 1.0},
     "time": {},

@@ -13,11 +13,12 @@ from navbound.errors import FormatError
 from navbound.read import receivers
 from navbound.read.checks import levels
 from navbound.read.checks.rejections import Rejections, Tally
-from navbound.read.checks.repeats import LEFT_OUT, left_out
+from navbound.read.checks.repeats import left_out
 from navbound.read.source import Source, load
 from navbound.read.tables.columns import POSITION, Assignment, assign
 from navbound.read.tables.table import LINE, Table, table
 from navbound.read.tables.values import Late, Values, one_row_a_time, texts
+from navbound.records.frames import LEFT_OUT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -15,8 +15,9 @@ from navbound.read.checks.refusals import of_navigation, of_observations, skippe
 from navbound.read.truth import with_truth
 from navbound.run.evaluate.levels import Part, uniform
 from navbound.run.inputs.solving import Solving, require_same_time
-from navbound.run.verdict.numbers import METRES_PER_NM, share
+from navbound.run.verdict.numbers import share
 from navbound.status import REASONS
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from pathlib import Path

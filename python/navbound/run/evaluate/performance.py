@@ -18,6 +18,7 @@ from navbound.errors import InputError
 from navbound.read.source import load
 from navbound.read.truth import TOLERANCE_S, Truth, truth_of
 from navbound.records.run import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
+from navbound.records.verdict import LEAST_SHARE
 from navbound.run import directory
 from navbound.run.directory import Run
 from navbound.run.evaluate.levels import COVARIANCE
@@ -329,7 +330,7 @@ def _errors_known(found: LevelResult, result: Performance) -> bool:
     """Whether the errors are known in every axis that the level limits, at enough epochs with a protection level to speak of all."""
     axes = result.axes[: 1 if found.level.val_m is None else 2]
     n = [0 if axis.error_m is None else axis.error_m.n for axis in axes]
-    return found.truth_known and min(n) >= rule.LEAST_SHARE * found.n_solution
+    return found.truth_known and min(n) >= LEAST_SHARE * found.n_solution
 
 
 def _write(run: Run, parts: list[Stored], folder: folders.Writer) -> Run:

@@ -9,7 +9,7 @@ from navbound.run.verdict.numbers import length, share
 
 if TYPE_CHECKING:
     from navbound.records.performance import LevelResult, Performance, Subsets
-    from navbound.run.verdict.rule import VerdictId
+    from navbound.records.verdict import VerdictId
 
 
 def levels_verdict(verdict: VerdictId) -> list[str]:

@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from navbound.studies.series_memory import gauss_markov
-
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from navbound.scenario.taxi import Fault
 
@@ -21,6 +19,29 @@ CODE, PHASE, DRIFT, BIAS, STEERING, MONITOR, CLOCK, DOPPLER, START = range(9)
 """What a stream of random numbers is for."""
 _STREAMS_PER_TRACK = 1 << 16
 _STREAMS_PER_USE = 1 << 10
+
+
+def gauss_markov(draws: ArrayLike, time_s: ArrayLike) -> Floats:
+    """First-order Gauss-Markov series of unit variance at 1 Hz, stationary from the begin.
+
+    Parameters
+    ----------
+    draws : array_like, shape (..., n)
+        Independent standard normal numbers.
+    time_s : array_like, shape (...) or ()
+        Time constant of each row. [s]
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+        A sample a second.
+    """
+    series = np.array(draws, dtype=np.float64)
+    kept = np.exp(-1.0 / np.asarray(time_s, dtype=np.float64))
+    fresh = np.sqrt(1.0 - kept * kept)
+    for k in range(1, series.shape[-1]):
+        series[..., k] = kept * series[..., k - 1] + fresh * series[..., k]
+    return series
 
 
 def stream(seed: int, track: int, use: int, number: int = 0) -> np.random.Generator:

@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import gbas
+from navbound.gbas.modes import K95
 from navbound.records.material import Material
 from navbound.records.run import CovarianceOrigin, EventSummary, Waypoint
 from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
@@ -18,8 +19,6 @@ from navbound.run.ground.motion import move
 from navbound.run.ground.navigation import Navigated, Navigator
 from navbound.scenario import taxi as scenarios
 from navbound.status import USABLE
-from navbound.studies.series_memory import gauss_markov
-from navbound.studies.surface_movement.grid import K95
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -133,7 +132,9 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
     n = len(movement.along_m)
     east_m, north_m = movement.per_radian_m
     budget = gbas.error_budget()
-    fte = budget.sigma_fte_m * gauss_markov(errors.stream(seed, track, errors.STEERING).standard_normal(n), taxi.motion.steering_time_s)
+    fte = budget.sigma_fte_m * errors.gauss_markov(
+        errors.stream(seed, track, errors.STEERING).standard_normal(n), taxi.motion.steering_time_s
+    )
     # The aircraft steers by its estimate; where it really is lies an nse away.
     est_lat = movement.lat_rad - fte * np.sin(movement.course_rad) / north_m
     est_lon = movement.lon_rad + fte * np.cos(movement.course_rad) / east_m

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import gnss
-from navbound.studies.surface_movement.grid import MODES, Mode
+from navbound.gbas.modes import MODES, Mode
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

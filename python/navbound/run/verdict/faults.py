@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
 
 from navbound import anp, rnp
 from navbound.methods import column_of
-from navbound.records.base import Record
+from navbound.records.faults import FaultSummary, Outcome
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,40 +19,6 @@ if TYPE_CHECKING:
 PERSISTENT_S = 3
 """The gate throws away a good measurement now and then; measurements thrown away in as many seconds on end are no accident: of thirty a
 second at 1e-4 each, once in a hundred flights of two hours."""
-
-Outcome = Literal["no alert needed", "before", "within the time to alert", "late", "missed"]
-
-
-class FaultSummary(Record):
-    """One fault on one flight. Times count from its begin, in seconds; None where it never came to that."""
-
-    track: str
-    kind: str
-    start_ns: int
-    end_ns: int | None
-    """None for one that stays."""
-    gate_after_s: float | None
-    """Measurements thrown away by the filter's gate, several seconds on end."""
-    memory_after_s: float | None
-    """The innovations of the ranges remembered more than white ones do at the risk of the separation."""
-    disagree_after_s: float | None
-    """The filters with and without satellites were said to disagree."""
-    mode_after_s: float | None
-    mode: str | None
-    """What the navigation fell back to first."""
-    alert_after_s: float | None
-    alert: str | None
-    """The first alert of the monitor that was not there before: caution, warning, unavailable."""
-    outside_after_s: float | None
-    """The true cross-track error left RNP."""
-    outside_twice_after_s: float | None
-    """It left twice RNP."""
-    nse_h_max_m: float | None
-    """Largest true horizontal error while the fault lasted and in the ten minutes after."""
-    nse_u_max_m: float | None
-    outcome: Outcome
-    """Of the alert against the error leaving RNP."""
-    words: str
 
 
 _AFTER_S = 600.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-METRES_PER_NM = 1852.0
+from navbound.units import METRES_PER_NM
 
 
 def length(metres: float) -> str:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from navbound.evaluation import Nees, Pit
     from navbound.records.run import CovarianceOrigin, Held, MethodResult, ProtectionSummary, Verdict, Worst
-    from navbound.run.verdict.rule import VerdictId
+    from navbound.records.verdict import VerdictId
 
 HEADLINES: dict[VerdictId, str] = {
     "inside": "Inside",

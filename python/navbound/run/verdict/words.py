@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navbound.methods import method
+from navbound.records.verdict import LEAST_SHARE
 from navbound.run.verdict.numbers import level, share
-from navbound.run.verdict.rule import FEW_EPOCHS, LEAST_SHARE
+from navbound.run.verdict.rule import FEW_EPOCHS
 
 if TYPE_CHECKING:
     from navbound.records.run import Belief, BoundCheck, LevelCheck, Verdict

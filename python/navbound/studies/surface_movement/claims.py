@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from navbound import gbas
+from navbound.gbas.modes import MODES
 from navbound.studies.surface_movement import grid
 from navbound.studies.surface_movement.records import Claim
 
@@ -59,7 +60,7 @@ class Evidence:
 
     def triple(self, quantity: str, phase: str, seconds: float, case: str = "A") -> str:
         """The largest biases of the three modes in words."""
-        return ", ".join(f"{m.id} {shown(self.largest(quantity, m.id, phase, seconds, case))}" for m in grid.MODES)
+        return ", ".join(f"{m.id} {shown(self.largest(quantity, m.id, phase, seconds, case))}" for m in MODES)
 
 
 def shown(bias_m: float) -> str:
@@ -71,7 +72,7 @@ def aided_ratios(config: SurfaceMovement, sky: Sky) -> dict[str, tuple[float, fl
     """Least and largest ratio of the deviation with an inertial system to that of ranges alone, by form of the noise, over some skies."""
     found: dict[str, list[float]] = {"paper": [], "bound": []}
     some = np.linspace(0, len(sky.az_rad) - 1, min(AIDED_SKIES, len(sky.az_rad))).astype(int)
-    for mode in grid.MODES:
+    for mode in MODES:
         own = sky.of(mode.systems)
         az, el = own.az_rad[some], own.el_rad[some]
         alone = gbas.protection_levels(az, el, own.systems, service=mode.service)
@@ -171,7 +172,7 @@ def _c09(e: Evidence) -> Judged:
 
 
 def _c10(e: Evidence) -> Judged:
-    met = [m.id for m in grid.MODES for case in grid.CASES if e.largest("monitor", m.id, "SLL", case=case) >= 0]
+    met = [m.id for m in MODES for case in grid.CASES if e.largest("monitor", m.id, "SLL", case=case) >= 0]
     return _if(not met, f"met by {', '.join(met)}" if met else "met by none")
 
 
@@ -208,7 +209,7 @@ def _c13(e: Evidence) -> Judged:
 def _c14(e: Evidence) -> Judged:
     pairs = [
         (e.largest("multi", m.id, p, t, case), e.largest("single", m.id, p, t, case))
-        for m in grid.MODES
+        for m in MODES
         for p in NEEDED_PHASES
         for t in e.times
         for case in grid.CASES
@@ -239,7 +240,7 @@ def _c16(e: Evidence) -> Judged:
 def _c17(e: Evidence) -> Judged:
     more = [
         (m.id, p, t)
-        for m in grid.MODES
+        for m in MODES
         for p in NEEDED_PHASES
         for t in e.times
         if e.largest("monitor", m.id, p, t) > e.largest("monitor", m.id, p)
@@ -258,8 +259,8 @@ def _c18(e: Evidence) -> Judged:
         good = np.logical_and.reduce([w.all(axis=0) for w in within])
         return float(biases[good].max()) if good.any() else -1.0
 
-    sparse = {m.id: largest(m.id, every) for m in grid.MODES}
-    dense = {m.id: largest(m.id, 1) for m in grid.MODES}
+    sparse = {m.id: largest(m.id, every) for m in MODES}
+    dense = {m.id: largest(m.id, 1) for m in MODES}
     words = [", ".join(f"{m} {shown(v)}" for m, v in found.items()) for found in (sparse, dense)]
     found = f"single fault at 600 s: {words[1]} over all geometries; {words[0]} over those 30 min apart, by which the number was fixed"
     return _if(all(v >= 0 for v in dense.values()), found, "fixes a number")

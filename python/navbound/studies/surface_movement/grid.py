@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from navbound import _core, gbas, gnss, rraim
 from navbound.errors import InputError
 from navbound.gbas import Carrier, ErrorBudget, FaultRates, Levels, Mark, SubPhase
+from navbound.gbas.modes import Mode
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,29 +20,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-K95 = float(_core.chi_factor(1, np.array([0.05]))[0])
-"""The two-sided 95 % factor behind every accuracy here."""
 CASES: tuple[str, ...] = ("A", "B")
 GPS_HALF = 9
 """Satellites of GPS among the 18 of both constellations (inferred)."""
-
-
-@dataclass(frozen=True)
-class Mode:
-    """One way to process: name, service, phase differenced in time, constellations, words."""
-
-    id: str
-    service: Literal["D", "F"]
-    carrier: str
-    systems: tuple[str, ...]
-    words: str
-
-
-MODES = (
-    Mode("D", "D", "single", ("gps",), "GAST D, GPS"),
-    Mode("F1", "F", "dual", ("gps",), "GAST F, GPS"),
-    Mode("F2", "F", "dual", ("gps", "galileo"), "GAST F, GPS and Galileo"),
-)
 
 
 @dataclass(frozen=True)

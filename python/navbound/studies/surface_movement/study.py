@@ -14,6 +14,7 @@ import numpy as np
 
 from navbound import gbas
 from navbound.errors import InputError
+from navbound.gbas.modes import K95, MODES, Mode
 from navbound.studies.surface_movement import claims, grid, sky
 from navbound.studies.surface_movement import scenario as surface
 from navbound.studies.surface_movement.records import Before, Cell, Curve, Errors, Margin, Number, Phase, Study
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.gbas import Levels, Mark
-    from navbound.studies.surface_movement.grid import Mode, Rules
+    from navbound.studies.surface_movement.grid import Rules
     from navbound.studies.surface_movement.records import Quantity
     from navbound.studies.surface_movement.scenario import SurfaceMovement
     from navbound.studies.surface_movement.sky import Sky
@@ -66,8 +67,8 @@ def study(config: SurfaceMovement, sky: Sky, progress: Callable[[int, int], None
     """The study of given skies."""
     rules = grid.rules(config)
     tell, found = progress or (lambda _done, _all: None), []
-    for done, mode in enumerate(grid.MODES):
-        tell(done, len(grid.MODES))
+    for done, mode in enumerate(MODES):
+        tell(done, len(MODES))
         found.append(_mode(config, rules, mode, sky.of(mode.systems)))
     tell(len(found), len(found))
     befores = [f.before for f in found]
@@ -129,7 +130,7 @@ def _mode(config: SurfaceMovement, rules: Rules, mode: Mode, sky: Sky) -> _Found
     found.errors = _errors(mode, levels, gain, float(biases.max()))
     statistic = np.nanmedian if config.method.missed_detection == "median" else np.nanmax
     # The worst direction of the covariance used.
-    sigma = (levels.accuracy_m - levels.bias_hor_m) / grid.K95
+    sigma = (levels.accuracy_m - levels.bias_hor_m) / K95
     typical, typical_gain = float(statistic(sigma)), float(statistic(gain))
     for case in grid.CASES:
         if case == grid.CASES[0] or len(mode.systems) > 1:
@@ -212,7 +213,7 @@ def _cells_coasting(
             continue
         # Accuracy is 1.96 sigma and the effect of the bias.
         none = accuracy[:, 0] - biases[0] * _slope(accuracy, biases)
-        sigma, gain = float(statistic(none)) / grid.K95, float(statistic(_slope(accuracy, biases)))
+        sigma, gain = float(statistic(none)) / K95, float(statistic(_slope(accuracy, biases)))
         share = rules.allocation.coasting_ground
         decades = grid.margins(rules, mode, place["case"], phase, share=share, sigma_m=sigma, bias_m=biases * gain)
         yield _monitor_cell(place, seconds, decades, biases)

@@ -15,13 +15,13 @@ from navbound.read import runways
 from navbound.records.material import Material
 from navbound.records.run import CovarianceOrigin, Waypoint
 from navbound.status import USABLE, sentences, statuses
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
 
-METRES_PER_NM = 1852.0
 DEPARTURE, DESTINATION = "UKBB/18L", "UKHH/08"
 POINTS_DEG = {
     "GOTAP": (50.255, 31.82),

@@ -19,6 +19,7 @@ from navbound.errors import InputError
 from navbound.records.base import Record
 from navbound.run.judge import STATE_LEVELS_NM, judge
 from navbound.studies.ukraine_rnav import flight as scene
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -129,9 +130,9 @@ def run(*, seed: int = SEED) -> Study:
     pairs = _pairs(flown)
     at_once = int(np.count_nonzero((np.diff(flown.selection.best, axis=0) != 0).any(axis=1)))
     means = [_means(flown, judged, name, nse95[name]) for name in scene.LABELS]
-    every = np.unique(np.searchsorted(flown.along_m, np.arange(0.0, flown.along_m[-1], EVERY_NM * scene.METRES_PER_NM)))
+    every = np.unique(np.searchsorted(flown.along_m, np.arange(0.0, flown.along_m[-1], EVERY_NM * METRES_PER_NM)))
     return Study(
-        length_nm=float(flown.along_m[-1] / scene.METRES_PER_NM),
+        length_nm=float(flown.along_m[-1] / METRES_PER_NM),
         n_epochs=len(flown.along_m),
         stations=list(flown.stations.ident),
         states=classifier.names,
@@ -141,7 +142,7 @@ def run(*, seed: int = SEED) -> Study:
         n_switches_without_waiting=at_once,
         points=[
             Point(
-                along_nm=float(flown.along_m[k] / scene.METRES_PER_NM),
+                along_nm=float(flown.along_m[k] / METRES_PER_NM),
                 h_m=float(flown.h_m[k]),
                 n_stations=int(flown.selection.n_stations[k]),
                 pair=_pair_name(flown, k),
@@ -237,7 +238,7 @@ def _means(flown: scene.Flight, judged: Run, name: str, nse95: Floats) -> Means:
 
 
 def _pairs(flown: scene.Flight) -> list[PairUse]:
-    used, nm = flown.selection.used, flown.along_m / scene.METRES_PER_NM
+    used, nm = flown.selection.used, flown.along_m / METRES_PER_NM
     drms = np.sqrt(np.trace(flown.selection.used_en_m2, axis1=1, axis2=2))
     edges = [0, *(np.flatnonzero((np.diff(used, axis=0) != 0).any(axis=1)) + 1).tolist(), len(used)]
     return [
