@@ -104,6 +104,8 @@ class LevelFacts:
         Largest probability of as many for a level that keeps its integrity risk; None where there are none.
     truth_known : bool
         Errors are known.
+    copied : bool
+        Where they are known the truth is the estimate itself.
     """
 
     n_expected: int
@@ -112,6 +114,7 @@ class LevelFacts:
     n_misleading_events: int
     p_misleading: float | None
     truth_known: bool
+    copied: bool = False
 
 
 _GRAVEST: tuple[VerdictId, ...] = ("not_believable", "nothing_judged", "outside", "not_shown", "inside")
@@ -130,7 +133,7 @@ def _of_level(facts: LevelFacts) -> VerdictId:
         return "nothing_judged"
     if facts.n_solution - facts.n_available > (1.0 - LEAST_SHARE) * facts.n_expected:
         return "outside"
-    if facts.n_misleading_events or not facts.truth_known or not facts.n_available >= LEAST_SHARE * facts.n_expected:
+    if facts.copied or facts.n_misleading_events or not facts.truth_known or not facts.n_available >= LEAST_SHARE * facts.n_expected:
         return "not_shown"
     return "inside"
 
