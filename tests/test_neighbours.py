@@ -62,3 +62,13 @@ def test_one_epoch_aside_is_seen_by_its_neighbours(tmp_path: Path) -> None:
     verdict = moved(tmp_path, error, sigma_m=3.0)
     assert verdict.id == "not_shown"
     assert verdict.n_apart >= 1
+
+
+@pytest.mark.parametrize("rows", [2, 3, 10, 50])
+def test_two_receivers_in_blocks_at_the_speed_of_an_aircraft(tmp_path: Path, rows: int) -> None:
+    """Each switch may be chance, all of them may not."""
+    error = white(N, 1.0)
+    error[(np.arange(N) // rows) % 2 == 1, 0] += 397.0
+    verdict = moved(tmp_path, error, 250.0)
+    assert verdict.id == "not_shown"
+    assert verdict.n_apart > 0 or verdict.n_implausible > 0

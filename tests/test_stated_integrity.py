@@ -41,6 +41,9 @@ def stating(tmp_path: Path, name: str, fine: object, bad: object, *, sigma_m: fl
         ("sol_status", "SOL_COMPUTED", "INSUFFICIENT_OBS"),
         ("nav_mode", "NAV", "DR"),
         ("gps_status", "A", "V"),
+        ("posValid", 1, 0),
+        ("FixMode", 3, 1),
+        ("Fix Type", "3D Fix", "No Fix"),
     ],
 )
 def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Path, name: str, fine: object, bad: object) -> None:
@@ -71,7 +74,15 @@ def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine:
 
 @pytest.mark.parametrize(
     ("name", "value", "named"),
-    [("mode", "LOITER", "mode (loiter)"), ("raim", "1", "raim (1)"), ("fix_quality", "12", "fix_quality (12)"), ("hacc", "300", "hacc")],
+    [
+        ("mode", "LOITER", "mode (loiter)"),
+        ("raim", "1", "raim (1)"),
+        ("fix_quality", "12", "fix_quality (12)"),
+        ("hacc", "300", "hacc"),
+        ("rtk_status", "x", "rtk_status"),
+        ("posAccuracy", "9", "posAccuracy"),
+        ("valid", "", "valid (empty)"),
+    ],
 )
 def test_what_is_not_understood_is_named(tmp_path: Path, name: str, value: str, named: str) -> None:
     verdict = stating(tmp_path, name, value, value)
@@ -121,6 +132,11 @@ def test_a_typed_sigma_states_what_it_overrules_and_a_larger_one_of_the_file_cou
     verdict = navbound.analyze(table(tmp_path / "b.csv", N, sigma_m=2.0), sigma_m=3.0).summary.verdict
     assert (verdict.id, verdict.n_stated_worse) == ("inside", 0)
     assert "over the file's own accuracy (sigma 2 to 2 m)" in first_sentence(verdict.words)
+
+
+def test_an_epu_beside_the_files_own_sigma_counts_under_a_typed_one_too(tmp_path: Path) -> None:
+    path = table(tmp_path / "a.csv", N, added={"epu_m": np.full(N, 200.0)})
+    assert navbound.analyze(path, sigma_m=3.0).summary.verdict.n_stated_worse == N
 
 
 def test_pieces_state_the_same(tmp_path: Path) -> None:

@@ -89,3 +89,11 @@ def test_false_positions_of_a_standing_receiver_are_still_false_bounds(tmp_path:
     rows = {"est_lat_rad": lat, "est_lon_rad": lon, "time_ns": START_NS + k * 1_000_000_000}
     verdict = navbound.analyze(table(tmp_path / "a.csv", N, added=rows), truth=f"{x:.3f},{y:.3f},{z:.3f}").summary.verdict
     assert verdict.id == "not_believable"
+
+
+def test_a_truth_that_freezes_under_way_is_none_from_there_on(tmp_path: Path) -> None:
+    lat = 0.85 + 50.0 * np.arange(N) / M_PER_RAD
+    truth = {"truth_lat_rad": np.minimum(lat, lat[340]), "truth_lon_rad": np.full(N, 0.04)}
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, error_en_m=white(N), added=truth)).summary.verdict
+    assert (verdict.id, verdict.n_truth, verdict.n_truth_doubted) == ("inside", 340, 60)
+    assert "it stands still while the positions travel" in verdict.words

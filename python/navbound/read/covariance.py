@@ -110,7 +110,8 @@ def _typed(epochs: pl.DataFrame, sigma_m: float) -> Claimed:
     words = f"Covariance: circular with sigma = {sigma_m:g} m in each axis, as stated by the user."
     found = _circle(epochs, pl.lit(sigma_m), words, "typed")
     own_m = own.epochs.select(((pl.col("cov_ee_m2") + pl.col("cov_nn_m2")) / 2).sqrt().alias("own")).to_series()
-    worse_m = pl.select(pl.when(own_m > (1.0 + 1e-9) * sigma_m).then(own_m / circular_sigma(0.05))).to_series().alias(WORSE)
+    stated_m = own.epochs.select(pl.max_horizontal(own_m / circular_sigma(0.05), *_least_radii(own.epochs)).alias("m")).to_series()
+    worse_m = pl.select(pl.when(stated_m > (1.0 + 1e-9) * sigma_m / circular_sigma(0.05)).then(stated_m)).to_series().alias(WORSE)
     stated = [worse_m, *([own.epochs[CONTAINMENT]] if CONTAINMENT in own.epochs.columns else [])]
     known = own_m.filter(own_m.is_finite().fill_null(value=False))
     if known.is_empty():

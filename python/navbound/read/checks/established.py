@@ -61,12 +61,15 @@ def established(epochs: pl.DataFrame) -> tuple[pl.DataFrame, TruthDoubts]:
     jumps, longest_m = list[int](), 0.0
     for group in rows.partition_by("track", maintain_order=True):
         lost, at = _contradicting(group)
-        travelled_m = _travelled_m(group)
-        if travelled_m is not None:
-            standing.append(group["__row"])
-            longest_m = max(longest_m, travelled_m)
-        elif lost.any():
-            jumping.append(group["__row"].filter(lost))
+        stands = pl.Series(np.zeros(group.height, dtype=np.bool_))
+        for part in _standing_parts(group):
+            travelled_m = _travelled_m(group[part])
+            if travelled_m is not None:
+                stands |= pl.int_range(group.height, eager=True).is_between(part.start, part.stop - 1)
+                longest_m = max(longest_m, travelled_m)
+        standing.append(group["__row"].filter(stands))
+        if (lost & ~stands).any():
+            jumping.append(group["__row"].filter(lost & ~stands))
             jumps += at
     doubts = TruthDoubts(sum(map(len, jumping)), tuple(sorted(jumps)), sum(map(len, standing)), longest_m)
     if not doubts.n:
@@ -119,6 +122,14 @@ def _own_speed(time_s: NDArray[np.float64], place: NDArray[np.float64]) -> float
     way_m = np.hypot(*east_north_m(place[:-1], place[1:]).T)
     own_mps = float(np.quantile(way_m[passed_s > 0] / passed_s[passed_s > 0], 0.95)) if (passed_s > 0).any() else math.inf
     return min(TRUTH.speed_factor * own_mps + TRUTH.speed_margin_mps, TRUTH.max_speed_mps)
+
+
+def _standing_parts(group: pl.DataFrame) -> list[slice]:
+    """Rows over which the truth does not move from one to the next."""
+    true = group.select(_TRUE_PLACE).to_numpy()
+    moves = np.flatnonzero(np.hypot(*east_north_m(true[:-1], true[1:]).T) > _STANDS_M) + 1
+    edges = [0, *moves.tolist(), group.height]
+    return [slice(start, end) for start, end in zip(edges[:-1], edges[1:], strict=True) if end - start > _LEAST_LEGS]
 
 
 def _travelled_m(group: pl.DataFrame) -> float | None:

@@ -15,6 +15,8 @@ COLUMNS = ("track", "time_ns", "status", "est_lat_rad", "est_lon_rad", "cov_ee_m
 
 RISK = 1e-9
 """Probability of one such triple under the stated covariances at which it contradicts them. Provenance: ours. [1]"""
+MANY = 1e-3
+"""Probability of a triple that may stand alone, and not in numbers. Provenance: ours. [1]"""
 ACCELERATION_MPS2 = 10.0
 """Largest acceleration of an ordinary manoeuvre, between 1 g of a braking car and of a steep turn. Provenance: ours. [m/s2]"""
 ROUNDING_M = 2.0
@@ -35,16 +37,18 @@ class Neighbours:
     The rest is compared with ``sqrt(-2 ln RISK)`` standard deviations of d, the larger variance of both axes taken. A position may
     be as late as one that is not yet stale. [ours]
 
+    More triples beyond the distance of the risk `MANY` than chance makes (Chernoff's bound of a Poisson number at `RISK`, three overlapping
+    triples taken for one) contradict the covariances, too.
+
     Attributes
     ----------
-    n : int
-        Triples beyond.
     largest_m : float
-        The largest distance d of these. [m]
+        The largest distance d of triples beyond. [m]
     """
 
     def __init__(self) -> None:
-        self.n, self.largest_m = 0, 0.0
+        self._n = self._n_many = self._n_triples = 0
+        self.largest_m = 0.0
         self._last: pl.DataFrame | None = None
 
     def see(self, epochs: pl.DataFrame) -> None:
@@ -73,6 +77,15 @@ class Neighbours:
         late_m = Limits().stale_after_s * length / whole_s
         rest = np.hypot(np.maximum(across - free_m, 0.0), np.maximum(along - free_m - late_m, 0.0))
         deviation = np.sqrt(variance[1:-1] + (1.0 - share) ** 2 * variance[:-2] + share**2 * variance[2:])
-        beyond = same & (rest > math.sqrt(-2.0 * math.log(RISK)) * deviation)
-        self.n += int(beyond.sum())
-        self.largest_m = max(self.largest_m, float(np.hypot(*away[beyond].T).max(initial=0.0)))
+        beyond, many = (same & (rest > math.sqrt(-2.0 * math.log(risk)) * deviation) for risk in (RISK, MANY))
+        self._n += int(beyond.sum())
+        self._n_many += int(many.sum())
+        self._n_triples += int(same.sum())
+        self.largest_m = max(self.largest_m, float(np.hypot(*away[many].T).max(initial=0.0)))
+
+    @property
+    def n(self) -> int:
+        """Triples that contradict their covariances."""
+        events, mean = self._n_many / 3.0, MANY * self._n_triples
+        by_chance = events <= mean or events - mean - events * math.log(events / mean) > math.log(RISK)
+        return self._n if by_chance else self._n_many

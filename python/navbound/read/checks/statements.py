@@ -6,6 +6,7 @@ Names and codes as NMEA 0183, u-blox, NovAtel, MAVLink and RTKLIB write them (pr
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -133,9 +134,12 @@ KINDS: tuple[Kind, ...] = (
     ),
 )
 
-_BY_NAME = {name: kind for kind in KINDS for name in kind.names}
+_BY_NAME = {name.replace("_", ""): kind for kind in KINDS for name in kind.names}
 
+_LONGEST = 200
+"""Characters of a name that are looked at. [1]"""
 _SPEAKS = _words(
+    "status "
     "valid invalid validity fix quality raim fde integrity alert alarm warning caution fault failure fail failed health healthy "
     "flag flags mode nac nacp nacv nucp nic sil sils sda rc hpl hul hil hal vpl vul val xpl protection containment spoofing "
     "spoofed spoof jamming jammed jam interference reliable reliability trust usable error errors uncertainty accuracy acc hacc "
@@ -146,12 +150,13 @@ _SPEAKS = _words(
 
 def kind_of(plain_name: str) -> Kind | None:
     """The kind of statement that a column of this name makes; None for any other column."""
-    return _BY_NAME.get(plain_name)
+    return _BY_NAME.get(plain_name.replace("_", ""))
 
 
-def speaks_of_integrity(plain_name: str) -> bool:
-    """Whether the name of a column that nothing reads is one of a statement of integrity."""
-    return not _SPEAKS.isdisjoint(plain_name.replace("/", "_").split("_"))
+def speaks_of_integrity(name: str) -> bool:
+    """Whether the name of a column that nothing reads, as the file writes it, is one of a statement of integrity."""
+    parts = re.split(r"[^a-z0-9]+", re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name[:_LONGEST]).lower())
+    return not _SPEAKS.isdisjoint([*parts, name.lower()])
 
 
 @dataclass(frozen=True)
@@ -184,13 +189,14 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
     fine = text.is_in(_listed(kind.fine))
     against = text.is_in(_listed(kind.against))
     unknown = said & ~fine & ~against
+    empty = (~said.fill_null(value=False)).any() and kind.effect == "invalid"
     if kind.numbers_unknown:
         unknown, fine = unknown | (said & number), fine & ~number
     if kind.other_against:
         others = unknown & ~number if kind.numbers_unknown else unknown
         against, unknown = against | others, unknown & ~others
     words = pl.select(pl.when(said & against & ~fine).then(text)).to_series()
-    return Stated(words, text.filter(unknown.fill_null(value=False)).unique(maintain_order=True).head(SHOWN).to_list())
+    return Stated(words, text.filter(unknown.fill_null(value=False)).unique(maintain_order=True).head(SHOWN).to_list() + ["empty"] * empty)
 
 
 def _listed(words: Iterable[str]) -> list[str]:

@@ -227,7 +227,7 @@ class Assignment:
         """Columns that nothing reads, though their names speak of integrity."""
         plain = {name: _plain(name)[0] for name in self.unused}
         transponders = bool(TRANSPONDER & set(plain.values()))
-        return [name for name, each in plain.items() if speaks_of_integrity(each) and not (transponders and each == "alert")]
+        return [name for name, each in plain.items() if speaks_of_integrity(name) and not (transponders and each == "alert")]
 
 
 POSITION = ("est_lat_rad", "est_lon_rad")
