@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -129,7 +130,7 @@ def _standing_parts(group: pl.DataFrame) -> list[slice]:
     true = group.select(_TRUE_PLACE).to_numpy()
     moves = np.flatnonzero(np.hypot(*east_north_m(true[:-1], true[1:]).T) > _STANDS_M) + 1
     edges = [0, *moves.tolist(), group.height]
-    return [slice(start, end) for start, end in zip(edges[:-1], edges[1:], strict=True) if end - start > _LEAST_LEGS]
+    return [slice(start, end) for start, end in pairwise(edges) if end - start > _LEAST_LEGS]
 
 
 def _travelled_m(group: pl.DataFrame) -> float | None:
