@@ -320,7 +320,7 @@ def _rejected(parts: list[Stored]) -> list[Rejection]:
 def _copied(parts: list[Stored]) -> bool:
     """Whether the truth is the estimate at so many epochs that it is none."""
     n_same, n_known = (sum(each) for each in zip(*map(copied, tables_of(parts)), strict=True))
-    return n_known > 0 and n_same >= rule.COPIED_SHARE * n_known
+    return bool(n_known > 0 and n_same >= rule.COPIED_SHARE * n_known)
 
 
 def _facts(found: LevelResult, result: Performance, *, is_copied: bool) -> rule.LevelFacts:
