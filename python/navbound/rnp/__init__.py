@@ -225,7 +225,12 @@ class Monitor:
         ----------
         record : mapping
             ``time_ns``, ``rnp_m``, both bounds under the names of their methods' columns and, where there are any, ``status``, ``fte_m``
-            and ``hpl_m``. A bound that is None is a NaN, and alerts; so is ``hpl_m`` after the first epoch that had one.
+            and ``hpl_m``. A bound that is None is a NaN, and alerts.
+
+            **A level that is due and missing alerts.** A record with the key ``hpl_m`` declares that its source has protection levels,
+            whatever stands there: from the first such record on every epoch with status ``ok`` owes one, and one that is None, NaN or
+            absent is no integrity bound and raises the warning at once. Only a source whose records never have the key is judged by its
+            bounds alone.
         accuracy, integrity : str
             Ids of the methods that made the two bounds, of those that may feed an alert; ``tse-exact`` is read from ``tse_exact_m`` and
             ``tse_exact_integrity_m``. The integrity bound is of the same method unless another is named.
@@ -239,7 +244,8 @@ class Monitor:
         try:
             time_ns = record["time_ns"]
             accuracy_m, integrity_m, rnp_m = (_number(key, record[key]) for key in (first.column, second.integrity_column, "rnp_m"))
-            fte_m, hpl_m = (_number(key, record.get(key)) for key in ("fte_m", "hpl_m"))
+            fte_m = _number("fte_m", record.get("fte_m"))
+            hpl_m = _number("hpl_m", record["hpl_m"]) if "hpl_m" in record else None
         except KeyError as e:
             raise InputError("record", "a mapping without it", domain=f"records with {e.args[0]}") from e
         _require_ns(time_ns)
@@ -290,8 +296,9 @@ class Monitor:
         ----------
         table : DataFrame or mapping of columns
             ``time_ns``, ``rnp_m``, both bounds under the names of their methods' columns and, where there are any, ``status``, ``track``,
-            ``fte_m`` and ``hpl_m``. A null bound of a row whose status is ``ok`` is a NaN, and alerts; so is its null ``hpl_m`` in a track
-            that has one anywhere.
+            ``fte_m`` and ``hpl_m``. A null bound of a row whose status is ``ok`` is a NaN, and alerts; so is its null ``hpl_m``: a table
+            with this column declares that the source of every track has protection levels. Tracks without belong in a table without it, or
+            are named by :meth:`tracks`.
         accuracy, integrity : str
             Ids of the methods that made the two bounds, of those that may feed an alert; ``tse-exact`` is read from ``tse_exact_m`` and
             ``tse_exact_integrity_m``. The integrity bound is of the same method unless another is named.
@@ -302,11 +309,8 @@ class Monitor:
             A method that may not feed an alert, a missing column, a null time, or a status that is none.
         """
         frame = _frame(table)
-        names, index = _tracks(frame)
-        with_levels = np.zeros(len(names), dtype=np.bool_)
-        if "hpl_m" in frame.columns:
-            with_levels[index[~np.isnan(_numbers(frame, "hpl_m"))]] = True
-        tracks = self.tracks(dict(zip(names, with_levels.tolist(), strict=True)), accuracy=accuracy, integrity=integrity)
+        names, _ = _tracks(frame)
+        tracks = self.tracks(dict.fromkeys(names, "hpl_m" in frame.columns), accuracy=accuracy, integrity=integrity)
         alert, compared_m = tracks.judge(frame)
         events, total, each = tracks.decided()
         return MonitorRun(alert, compared_m, events, total, each)
@@ -317,7 +321,8 @@ class Monitor:
         Parameters
         ----------
         with_levels : mapping of str to bool
-            Every track, and whether it has a protection level (``hpl_m``) anywhere.
+            Every track, and whether its source has protection levels (``hpl_m``): then every epoch with status ``ok`` owes one, and one
+            without is outside. Of a track that is named without, the first level is the beginning of levels that are due.
         accuracy, integrity : str
             As in :meth:`run`.
 

@@ -71,6 +71,10 @@ export interface Verdict {
     n_stated_beyond: number;
     n_stated_alert: number;
     n_stated_worse: number;
+    n_stated_uncontained: number;
+    unread: string[];
+    n_apart: number;
+    largest_apart_m: number | null;
     n_without_level: number;
     n_long_steps: number;
     longest_step_s: number | null;
@@ -78,6 +82,8 @@ export interface Verdict {
     assumed: ("sigma_typed" | "sigma_coded" | "no_path")[];
     belief: Belief | null;
     n_truth: number;
+    n_truth_doubted: number;
+    truth_doubts: string;
     n_implausible: number;
     worst_accuracy: Worst | null;
     worst_integrity: Worst | null;

@@ -93,7 +93,7 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Re
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", records.skipped)]
     epochs = found.epochs
     if truth.given is not None and truth.ecef_m is None:
-        epochs, words, other = with_truth(epochs, truth)
+        epochs, words, other, _ = with_truth(epochs, truth)
         refused += [] if other is None else other.rejected
         notes.append(words)
     return Part(
