@@ -22,6 +22,7 @@ const LAYERS: [&[&str]; 5] = [
         "tse",
         "anp",
         "rnp",
+        "judge",
         "gnss",
         "sbas",
         "araim",
