@@ -8,7 +8,7 @@ import numpy as np
 
 from clock import Row, seconds, show
 from navbound import dme
-from navbound.run.ukraine_flight import network
+from navbound.studies.ukraine_rnav.flight import network
 
 if TYPE_CHECKING:
     from collections.abc import Callable

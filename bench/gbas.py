@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING
 
 from clock import Row, seconds, show
 from navbound import gbas, rraim
-from navbound.run import surface_grid, surface_sky
-from navbound.scenario import surface
+from navbound.gbas.modes import MODES
+from navbound.studies.surface_movement import grid as grids
+from navbound.studies.surface_movement import scenario as surface
+from navbound.studies.surface_movement import sky as skies
 
 if TYPE_CHECKING:
     pass
@@ -18,9 +20,9 @@ def measure() -> list[Row]:
     config = surface.load()
     # Three days of ten-minute geometries: 432, by 3 modes, 5 sub-phases, 8 coasting times and 6 biases.
     config = config.model_copy(update={"geometry": config.geometry.model_copy(update={"duration_s": 3 * 86_400.0})})
-    rules = surface_grid.rules(config)
-    sky = surface_sky.look(config)
-    own = {mode.id: sky.of(mode.systems) for mode in surface_grid.MODES}
+    rules = grids.rules(config)
+    sky = skies.look(config)
+    own = {mode.id: sky.of(mode.systems) for mode in MODES}
     both, n = own["F2"], len(sky.az_rad)
     sigma_td = gbas.carrier_sigma(both.el_now_rad[3], 10.0, 60.0, gbas.carriers()["dual"])
     levels = seconds(lambda: gbas.protection_levels(both.az_rad, both.el_rad, both.systems, service="F"))
@@ -29,8 +31,8 @@ def measure() -> list[Row]:
     filtered = seconds(lambda: gbas.aided_covariance(both.az_rad[:2], both.el_rad[:2], both.systems, lat_rad=0.72, service="F"), repeats=3)
 
     def grid() -> None:
-        for mode in surface_grid.MODES:
-            surface_grid.coasting(config, rules, mode, "A", own[mode.id], covariance_m2=None)
+        for mode in MODES:
+            grids.coasting(config, rules, mode, "A", own[mode.id], covariance_m2=None)
 
     cells = n * 3 * 5 * 8 * 6
     whole = seconds(grid, repeats=2)

@@ -8,7 +8,7 @@ Expected output:
 """
 
 import navbound
-from navbound.run.words import share
+from navbound.run.verdict.results import share
 from navbound.time import utc_text
 
 run = navbound.fly("beijing-shanghai-degraded")

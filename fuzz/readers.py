@@ -22,10 +22,10 @@ with atheris.instrument_imports(include=["navbound"]):
     import numpy as np
 
     from navbound import scenario
-    from navbound._folder import MANIFEST, require_whole
+    from navbound.storage.folders import MANIFEST, require_whole
     from navbound.errors import FormatError, InputError
     from navbound.read import read
-    from navbound.read.columns import assign
+    from navbound.read.tables.columns import assign
     from navbound.scale.checkpoint import Folder
     from navbound.scenario import taxi
 

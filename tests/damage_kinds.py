@@ -20,8 +20,8 @@ from conftest import SHARED
 from navbound import gnss, sbas
 from navbound.errors import FormatError, InputError
 from navbound.read import read
-from navbound.run.files import sort_out
-from navbound.run.performance import Options, evaluate_files
+from navbound.run.evaluate.performance import Options, evaluate_files
+from navbound.run.inputs.files import sort_out
 
 DATA = SHARED / "data"
 Cell = tuple[Hashable, str]

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from navbound.run.kpi_records import (
+from navbound.records.performance import (
     AxisResult,
     DayResult,
     KpiEvent,

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 import polars as pl
 
-from navbound.run.records import (
+from navbound.records.run import (
     CrossTrack,
     EventSummary,
     Honesty,

@@ -14,8 +14,8 @@ import pytest
 
 from navbound import InputError
 from navbound.read import Gates, runway
+from navbound.records.material import Material
 from navbound.run.analyze import material
-from navbound.run.material import Material
 
 SHARED = Path(__file__).parents[2] / "shared" / "data" / "aircraft"
 TRACKS = SHARED / "paris_tma_20211007" / "tracks.csv.gz"

@@ -10,12 +10,12 @@ import polars as pl
 import pytest
 
 from navbound import FormatError, InputError, path
+from navbound.read.checks.plausible import check
 from navbound.read.covariance import NACP_EPU_M, NIC_RC_M, circular_sigma, claim
-from navbound.read.epochs import read
-from navbound.read.plausible import check
+from navbound.read.tables.epochs import read
+from navbound.records.material import Material
 from navbound.run.analyze import material
 from navbound.run.judge import judge
-from navbound.run.material import Material
 
 SHARED = Path(__file__).parents[2] / "shared" / "data"
 SPOOFED = SHARED / "aircraft" / "other" / "noisy_spoofing.json.gz"

@@ -10,9 +10,10 @@ import pytest
 
 import navbound
 from navbound import InputError, InternalError, NavboundError, _core, anp, gnss, ins, maps, raim, tse
-from navbound._arguments import checked
-from navbound._arrays import MOST_BYTES, flatten
+from navbound.table.arguments import checked
+from navbound.table.arrays import MOST_BYTES, flatten
 from public_calls import CALLS, MODULES
+from public_classes import CLASSES
 from test_nan_contract import changed, differs, outputs, public
 
 if TYPE_CHECKING:
@@ -94,6 +95,25 @@ def test_an_abused_argument_brings_no_foreign_exception(name: str, argument: str
     with np.errstate(all="ignore"):
         results = {abuse: outcome(call, argument, abused(value)) for abuse, abused in abuses.items()}
     assert {abuse: result for abuse, result in results.items() if result not in {"ok", "refused"}} == {}
+
+
+NONE_ALLOWED = {
+    *(("rnp.Monitor.step", name) for name in ("rnp_m", "tse_exact_m", "tse_exact_integrity_m", "fte_m", "hpl_m")),
+    ("ins.Imu", "interval_s"),
+}
+"""An absent number of a record is a NaN, which alerts; an absent interval is that of the times."""
+
+
+@pytest.mark.parametrize(("name", "argument"), [(name, argument) for name, call in CLASSES.items() for argument in call.numbers])
+def test_an_abused_field_or_argument_of_a_class_is_refused(name: str, argument: str) -> None:
+    call = CLASSES[name]
+    call()
+    with np.errstate(all="ignore"):
+        refusable = {abuse: outcome(call, argument, abused(call.numbers[argument])) for abuse, abused in NO_NUMBERS.items()}
+        sized = {abuse: outcome(call, argument, abused(call.numbers[argument])) for abuse, abused in NUMBERS_OF_ANY_SIZE.items()}
+    allowed = {"None": "ok"} if (name, argument) in NONE_ALLOWED else {}
+    assert {abuse: result for abuse, result in refusable.items() if result != "refused"} == allowed
+    assert {abuse: result for abuse, result in sized.items() if result not in {"ok", "refused"}} == {}
 
 
 OPTIONAL = {
@@ -209,7 +229,7 @@ def test_a_panic_of_the_core_is_one_class_that_says_it_is_our_bug(monkeypatch: p
         raise _core.PanicException("index out of bounds")
 
     monkeypatch.setattr(_core, "tse_exact", gives_up)
-    with pytest.raises(InternalError, match=r"tse\w*\.exact: this is a bug in navbound, please report it: index out of bounds") as bug:
+    with pytest.raises(InternalError, match=r"tse[\w.]*\.exact: this is a bug in navbound, please report it: index out of bounds") as bug:
         tse.exact(30.0, 8.0, [1e-5, 1e-7])
     assert isinstance(bug.value, NavboundError)
     assert not isinstance(bug.value, InputError)

@@ -11,10 +11,13 @@ import pytest
 
 import navbound
 from navbound import FormatError, InputError, scale, scenario
-from navbound.run import campaign, fly, study_anp_comparison, study_tse_coverage, taxi
-from navbound.run.material import Material
+from navbound.records.material import Material
+from navbound.run import campaign, fly
+from navbound.run.ground import flight as taxi
 from navbound.scenario import Scenario
 from navbound.scenario import taxi as taxi_scenarios
+from navbound.studies.anp_comparison import study as anp_comparison
+from navbound.studies.tse_coverage import study as tse_coverage
 
 TAXI = taxi_scenarios.FOLDER / "barcelona-taxi.toml"
 
@@ -94,7 +97,7 @@ def test_a_tile_is_known_again_by_another_process(quick: Scenario) -> None:
 
 
 def test_progress_of_the_comparison_counts_the_flights_of_all_cases(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(study_anp_comparison, "CASES", (("a", "x", 1), ("b", "y", 2)))
+    monkeypatch.setattr(anp_comparison, "CASES", (("a", "x", 1), ("b", "y", 2)))
     asked: list[tuple[str, int]] = []
 
     def case(name: str, scenario: str, flights: int, **work: Any) -> Any:
@@ -102,33 +105,31 @@ def test_progress_of_the_comparison_counts_the_flights_of_all_cases(monkeypatch:
         work["progress"](flights, flights)
         return SimpleNamespace(flights=flights)
 
-    monkeypatch.setattr(study_anp_comparison, "_case", case)
-    monkeypatch.setattr(study_anp_comparison, "Study", lambda **_: None)
+    monkeypatch.setattr(anp_comparison, "_case", case)
+    monkeypatch.setattr(anp_comparison, "Study", lambda **_: None)
     for part in ("_entries", "_words"):
-        monkeypatch.setattr(study_anp_comparison, part, lambda _: [])
+        monkeypatch.setattr(anp_comparison, part, lambda _: [])
     told: list[tuple[int, int]] = []
-    study_anp_comparison.run(flights=6, progress=lambda done, total: told.append((done, total)))
+    anp_comparison.run(flights=6, progress=lambda done, total: told.append((done, total)))
     assert asked == [("a", 6), ("b", 3)]
     assert told == [(6, 9), (9, 9)]
     with pytest.raises(InputError, match="flights"):
-        study_anp_comparison.run(flights=0)
+        anp_comparison.run(flights=0)
 
 
 def test_the_drawn_row_of_the_coverage_study_is_kept_in_parts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(study_tse_coverage, "DRAWN_AT_ONCE", 4_000)
-    first = study_tse_coverage.run(step_s=3600, monte_carlo=10_000, checkpoint=tmp_path)
+    monkeypatch.setattr(tse_coverage, "DRAWN_AT_ONCE", 4_000)
+    first = tse_coverage.run(step_s=3600, monte_carlo=10_000, checkpoint=tmp_path)
     drawn = next(row for row in first.rows if row.origin == "monte carlo")
     assert drawn.n_samples == 10_000
     # Five laws and three parts of the drawn row.
     assert len(list(tmp_path.glob("*.npz"))) == 8
     told: list[tuple[int, int]] = []
-    again = study_tse_coverage.run(
-        step_s=3600, monte_carlo=10_000, checkpoint=tmp_path, progress=lambda done, total: told.append((done, total))
-    )
+    again = tse_coverage.run(step_s=3600, monte_carlo=10_000, checkpoint=tmp_path, progress=lambda done, total: told.append((done, total)))
     assert again == first
     assert told == [(8, 8)]
     # Each part has a stream of its own: the first part alone says something else.
-    assert study_tse_coverage.run(step_s=3600, monte_carlo=4_000).rows[2].accuracy != drawn.accuracy
+    assert tse_coverage.run(step_s=3600, monte_carlo=4_000).rows[2].accuracy != drawn.accuracy
 
 
 @pytest.mark.parametrize("name", ["surface-movement", "decorrelation-time"])

@@ -10,9 +10,10 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
-from navbound import InputError, cli_parts, maps, scale
-from navbound.cli import app
-from navbound.run.studies import STUDIES
+from navbound import InputError, maps, scale
+from navbound.cli import parts
+from navbound.cli.main import app
+from navbound.studies.registry import STUDIES
 
 HEAVY = {"numpy", "polars", "navbound.run.judge"}
 
@@ -21,12 +22,12 @@ HEAVY = {"numpy", "polars", "navbound.run.judge"}
 def screen(monkeypatch: pytest.MonkeyPatch) -> io.StringIO:
     """A terminal of which every character is kept."""
     kept = io.StringIO()
-    monkeypatch.setattr(cli_parts, "err_console", Console(file=kept, force_terminal=True, width=100))
+    monkeypatch.setattr(parts, "err_console", Console(file=kept, force_terminal=True, width=100))
     return kept
 
 
 def test_a_bar_counts_and_says_how_long_it_takes(screen: io.StringIO) -> None:
-    with cli_parts.Bar("flights") as tell:
+    with parts.Bar("flights") as tell:
         tell(0, 3)
         tell(2, 3)
         tell(3, 3)
@@ -38,7 +39,7 @@ def test_a_bar_counts_and_says_how_long_it_takes(screen: io.StringIO) -> None:
 
 
 def test_work_of_one_part_needs_no_bar(screen: io.StringIO) -> None:
-    with cli_parts.Bar("flights") as tell:
+    with parts.Bar("flights") as tell:
         tell(0, 1)
         tell(1, 1)
     assert screen.getvalue() == ""
@@ -46,16 +47,16 @@ def test_work_of_one_part_needs_no_bar(screen: io.StringIO) -> None:
 
 def test_off_a_terminal_there_is_no_bar(monkeypatch: pytest.MonkeyPatch) -> None:
     kept = io.StringIO()
-    monkeypatch.setattr(cli_parts, "err_console", Console(file=kept))
-    with cli_parts.Bar("flights") as tell:
+    monkeypatch.setattr(parts, "err_console", Console(file=kept))
+    with parts.Bar("flights") as tell:
         tell(0, 3)
         tell(3, 3)
     assert kept.getvalue() == ""
 
 
 def test_what_was_not_asked_for_is_left_to_the_job() -> None:
-    assert cli_parts.work_of(None, None, None, None) == {}
-    assert cli_parts.work_of("processes", 2, None, None) == {"backend": "processes", "workers": scale.Workers(2)}
+    assert parts.work_of(None, None, None, None) == {}
+    assert parts.work_of("processes", 2, None, None) == {"backend": "processes", "workers": scale.Workers(2)}
 
 
 @pytest.mark.parametrize(
@@ -69,14 +70,14 @@ def test_what_was_not_asked_for_is_left_to_the_job() -> None:
 )
 def test_workers_that_would_not_be_asked_are_refused(backend: str | None, workers: int | None, cluster: str | None, named: str) -> None:
     with pytest.raises(InputError, match=named):
-        cli_parts.work_of(backend, workers, cluster, None)
+        parts.work_of(backend, workers, cluster, None)
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["methods", "--json"]])
 def test_the_command_line_answers_without_loading_tables(arguments: list[str]) -> None:
     program = f"""
 import sys
-from navbound.cli import app
+from navbound.cli.main import app
 try:
     app({arguments!r})
 except SystemExit:

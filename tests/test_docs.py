@@ -51,6 +51,6 @@ def test_the_tree_of_the_design_is_the_tree() -> None:
     assert crates == {c.name for c in (ROOT / "crates").iterdir()} - {"python"}
     stages = set(re.findall(r"\bsrc/([a-z]+)/", tree))
     assert stages == {s.name for s in (ROOT / "crates" / "core" / "src").iterdir() if s.is_dir()}
-    subjects = next(line for line in tree.splitlines() if "one module a subject" in line).split("one module")[0].split()
+    subjects = next(line for line in tree.splitlines() if "one folder a subject" in line).split("one folder")[0].split()
     assert len(subjects) > 5
-    assert all((ROOT / "python" / "navbound" / f"{name}.py").exists() for name in subjects)
+    assert all((ROOT / "python" / "navbound" / name / "__init__.py").exists() for name in subjects)

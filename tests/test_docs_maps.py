@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from navbound import cli
+from navbound.cli import main as cli
 
 DOCS = Path(__file__).parents[1] / "docs"
 

@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from navbound import _core
-from navbound.cli import app
+from navbound.cli.main import app
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "methods" / "procedures.md").read_text(encoding="utf-8")

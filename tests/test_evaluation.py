@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from navbound import InputError, evaluation
-from navbound.run.words import honesty_words
+from navbound.run.verdict.results import honesty_words
 
 SEED = 20261121
 

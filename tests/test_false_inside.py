@@ -13,10 +13,11 @@ import pytest
 from navbound import FormatError, InputError, gnss, ins, rnp, status
 from navbound.read import read
 from navbound.read.source import load
-from navbound.run import analyze, solved
+from navbound.run import analyze
 from navbound.run.directory import Run
+from navbound.run.inputs import solved
+from navbound.run.inputs.solving import Solving
 from navbound.run.judge import judge
-from navbound.run.solving import Solving
 
 N = 600
 START_S = 1_600_000_000.0

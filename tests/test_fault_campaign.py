@@ -12,11 +12,12 @@ import pytest
 from navbound import _core, scenario
 from navbound.errors import InputError
 from navbound.run import fly
-from navbound.run.studies import STUDIES
 from navbound.scenario import faults
-from navbound.studies.fault_campaign import healthy, measures, records, study
+from navbound.studies.fault_campaign import healthy, measures, records
+from navbound.studies.fault_campaign import study as fault_campaign
 from navbound.studies.fault_campaign.kinds import KINDS, ONSETS_S, Kind
 from navbound.studies.fault_campaign.table import markdown
+from navbound.studies.registry import STUDIES
 
 PAGE = Path(__file__).parents[1] / "docs" / "methods" / "sensors.md"
 
@@ -25,7 +26,7 @@ def test_the_campaign_is_as_large_as_promised() -> None:
     assert len(KINDS) >= 40
     assert all(len(kind.sizes) == 6 for kind in KINDS)
     assert len(ONSETS_S) == 5
-    assert study.FLIGHTS == 5
+    assert fault_campaign.FLIGHTS == 5
     assert "fault-campaign" in STUDIES
 
 
@@ -40,9 +41,9 @@ def test_every_kind_of_sensor_fault_is_in_the_documentation_and_in_the_campaign(
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.id)
 def test_every_kind_can_be_flown_in_every_size(kind: Kind) -> None:
     """The core takes the scenario: names, units, limits."""
-    base = scenario.load(study.SCENARIO)
+    base = scenario.load(fault_campaign.SCENARIO)
     for size in range(len(kind.sizes)):
-        changed, onset_s = study.faulty(base, study.Tile(kind.id, size, 2, 1))
+        changed, onset_s = fault_campaign.faulty(base, fault_campaign.Tile(kind.id, size, 2, 1))
         _core.Sensors(changed.core_json(), None)
         assert onset_s in (*ONSETS_S, 0.0, ONSETS_S[2] - 120.0)
 
@@ -100,10 +101,10 @@ def test_the_interval_of_a_share_is_the_score_interval() -> None:
 
 def test_a_part_of_the_campaign_is_the_same_whoever_flies_it_and_goes_on_where_it_stopped(tmp_path: Path) -> None:
     part: dict[str, Any] = {"kinds": ["imu-nan", "satellite-step"], "sizes": [3], "onsets": [2], "flights": 1}
-    serial = study.run(**part, checkpoint=tmp_path)
+    serial = fault_campaign.run(**part, checkpoint=tmp_path)
     done: list[tuple[int, int]] = []
-    again = study.run(**part, checkpoint=tmp_path, progress=lambda i, n: done.append((i, n)))
-    processes = study.run(**part, backend="processes")
+    again = fault_campaign.run(**part, checkpoint=tmp_path, progress=lambda i, n: done.append((i, n)))
+    processes = fault_campaign.run(**part, backend="processes")
     assert done == [(3, 3)]
     assert serial == again == processes
     assert [row.kind for row in serial.rows] == ["imu-nan", "satellite-step"]
@@ -112,14 +113,16 @@ def test_a_part_of_the_campaign_is_the_same_whoever_flies_it_and_goes_on_where_i
 
 def test_a_single_fault_of_each_family_is_never_ok_and_wrong() -> None:
     """A small part, flown in full; the whole is in docs/methods/fused-integrity.md."""
-    part = study.run(kinds=["imu-nan", "accelerometer-x-step", "receiver-one-name", "satellite-step"], sizes=[4], onsets=[2], flights=1)
+    part = fault_campaign.run(
+        kinds=["imu-nan", "accelerometer-x-step", "receiver-one-name", "satellite-step"], sizes=[4], onsets=[2], flights=1
+    )
     assert part.single.epochs == 0.0
     assert part.healthy.false_alerts == 0
 
 
 def test_a_diverged_flight_is_a_result_with_every_second() -> None:
     """Accelerometers wrong by 20 g, without satellites and stations: the estimate is 5000 km from the path after four minutes."""
-    changed, _ = study.faulty(scenario.load(study.SCENARIO), study.Tile("outage-and-accelerometer", 5, 1, 1))
+    changed, _ = fault_campaign.faulty(scenario.load(fault_campaign.SCENARIO), fault_campaign.Tile("outage-and-accelerometer", 5, 1, 1))
     data = changed.model_dump()
     data["sensors"]["stations"] = []
     data["sensors"]["faults"][1]["accelerometer_mps2"] = [100.0, 0.0, 0.0]
@@ -136,9 +139,9 @@ def test_a_diverged_flight_is_a_result_with_every_second() -> None:
 
 def test_unknown_parts_are_refused_by_name() -> None:
     with pytest.raises(InputError, match="kinds"):
-        study.run(kinds=["nothing"])
+        fault_campaign.run(kinds=["nothing"])
     with pytest.raises(InputError, match="onsets"):
-        study.run(kinds=["imu-nan"], onsets=[9])
+        fault_campaign.run(kinds=["imu-nan"], onsets=[9])
 
 
 def test_healthy_flights_are_counted_whole_and_are_the_same_whoever_flies_them(tmp_path: Path) -> None:

@@ -14,9 +14,9 @@ import polars as pl
 import pytest
 
 from navbound import InputError, path, scenario
+from navbound.records.material import Material
 from navbound.run.fly import material
 from navbound.run.judge import judge
-from navbound.run.material import Material
 from navbound.run.settings import Settings
 
 DRAWN = "beijing-shanghai-drawn"

@@ -14,11 +14,11 @@ import pytest
 
 import navbound
 from navbound import FormatError, InputError, gbas, gnss
-from navbound.run import taxi as flown
-from navbound.run import taxi_errors as errors
 from navbound.run.directory import Run
-from navbound.run.taxi_motion import move
-from navbound.run.taxi_navigation import Navigator, moved_by
+from navbound.run.ground import errors
+from navbound.run.ground import flight as flown
+from navbound.run.ground.motion import move
+from navbound.run.ground.navigation import Navigator, moved_by
 from navbound.scenario import taxi
 
 if TYPE_CHECKING:

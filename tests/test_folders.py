@@ -8,14 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from navbound import FormatError, _folder
+from navbound import FormatError
 from navbound.run import directory
+from navbound.storage import folders
 
 NAMES = ("run.json", "epochs.parquet", "report.html")
 
 
 def write(out: Path, word: str) -> None:
-    with _folder.own(out, NAMES, "a run's") as folder:
+    with folders.own(out, NAMES, "a run's") as folder:
         for name in NAMES:
             folder.text(name, f"{name} of the {word} job")
 
@@ -50,7 +51,7 @@ for last in range(100):
 def words(out: Path) -> set[str]:
     """Which job's files a reader takes; none where it refuses the folder."""
     try:
-        _folder.require_whole(out, NAMES, "a run directory")
+        folders.require_whole(out, NAMES, "a run directory")
     except FormatError:
         return set()
     return {(out / name).read_text().split(" of the ")[1] for name in NAMES}
@@ -73,11 +74,11 @@ def test_a_job_killed_at_any_write_leaves_no_folder_that_reads_as_its_result(tmp
     for last in range(finished + 1):
         write(tmp_path / str(last), "next")
         assert words(tmp_path / str(last)) == {"next job"}, "what a killed job leaves must not stop the next one"
-        assert sorted(p.name for p in (tmp_path / str(last)).iterdir()) == sorted([*NAMES, _folder.MANIFEST])
+        assert sorted(p.name for p in (tmp_path / str(last)).iterdir()) == sorted([*NAMES, folders.MANIFEST])
 
 
 def test_two_jobs_do_not_write_in_one_folder(tmp_path: Path) -> None:
-    with _folder.own(tmp_path, NAMES, "a run's") as folder:
+    with folders.own(tmp_path, NAMES, "a run's") as folder:
         with pytest.raises(FormatError, match="another job is writing here"):
             write(tmp_path, "second")
         for name in NAMES:
@@ -102,19 +103,19 @@ def test_a_file_changed_after_the_job_is_found(tmp_path: Path) -> None:
     report = tmp_path / "report.html"
     report.write_bytes(report.read_bytes().replace(b"first", b"other"))
     with pytest.raises(FormatError, match="its digest differs"):
-        _folder.require_whole(tmp_path, NAMES, "a run directory")
+        folders.require_whole(tmp_path, NAMES, "a run directory")
 
 
 def test_a_run_without_a_manifest_is_no_run(tmp_path: Path) -> None:
     write(tmp_path, "first")
-    (tmp_path / _folder.MANIFEST).unlink()
+    (tmp_path / folders.MANIFEST).unlink()
     with pytest.raises(FormatError, match="did not finish"):
         directory.load(tmp_path)
 
 
 FULL = """
 import resource, signal, sys
-from navbound.cli import main
+from navbound.cli.main import main
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
 sys.argv = ["navbound", "fly", "beijing-shanghai-seed", "--out", sys.argv[1]]

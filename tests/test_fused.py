@@ -10,14 +10,16 @@ import polars as pl
 import pytest
 from scipy import integrate, stats
 
-import navbound
 from navbound import FormatError, anp, evaluation, scenario
-from navbound.run import fly, study_anp_comparison
+from navbound.records.faults import FaultSummary
+from navbound.records.material import Material
+from navbound.run import fly
 from navbound.run.directory import Run
-from navbound.run.faults import fault_summaries
 from navbound.run.judge import judge
 from navbound.run.settings import Settings
+from navbound.run.verdict.faults import fault_summaries
 from navbound.scenario import Scenario
+from navbound.studies.anp_comparison import study as anp_comparison
 
 RATE_HZ = 10
 """The path is smooth: ten samples a second lose millimetres and save nineteen parts of twenty of the time."""
@@ -43,7 +45,7 @@ def errors(epochs: pl.DataFrame, skip_s: float = 120.0) -> tuple[np.ndarray, np.
 
 
 @pytest.fixture(scope="module")
-def real() -> navbound.run.material.Material:
+def real() -> Material:
     return fly.material(quick("beijing-shanghai-real"), flights=4)
 
 
@@ -52,7 +54,7 @@ def white() -> Run:
     return judge(fly.material(quick("beijing-shanghai-white")), Settings(methods=()))
 
 
-def test_the_filter_is_as_good_as_it_says_where_errors_stay(real: navbound.run.material.Material) -> None:
+def test_the_filter_is_as_good_as_it_says_where_errors_stay(real: Material) -> None:
     error, covariance, track = errors(real.epochs)
     nees = evaluation.nees(error, covariance, track)
     assert nees.nees_low <= nees.nees_mean <= nees.nees_high
@@ -78,7 +80,7 @@ def test_a_filter_that_takes_all_errors_for_white_is_caught_by_nees_and_pit_but_
     assert told["range"]["lag_one"] > 0.3
 
 
-def test_flights_do_not_depend_on_the_company_they_keep(real: navbound.run.material.Material) -> None:
+def test_flights_do_not_depend_on_the_company_they_keep(real: Material) -> None:
     alone = fly.material(quick("beijing-shanghai-real"), flights=1).epochs
     assert alone.equals(real.epochs.filter(pl.col("track") == "flight-000"))
 
@@ -99,7 +101,7 @@ def test_the_mode_falls_back_without_satellites_and_returns() -> None:
     assert ratio.max() < 3.5  # type: ignore[operator]
 
 
-def summary(name: str, faults: list[dict[str, Any]] | None = None) -> tuple[Run, list[navbound.run.faults.FaultSummary]]:
+def summary(name: str, faults: list[dict[str, Any]] | None = None) -> tuple[Run, list[FaultSummary]]:
     # Fewer satellites are faster, and enough where none of them is at fault.
     found = quick(name, faults, ["gps", "beidou"] if "satellite" in name or "approach" in name else ["gps"])
     run = judge(fly.material(found), Settings(methods=()))
@@ -288,8 +290,8 @@ def test_the_ranked_probability_score_is_its_integral() -> None:
 def test_the_comparison_says_of_every_published_number_what_became_of_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     file = tmp_path / "quick.toml"
     file.write_text(f'base = "beijing-shanghai-seed"\n[sensors]\nrate_hz = {RATE_HZ}\n', encoding="utf-8")
-    monkeypatch.setattr(study_anp_comparison, "CASES", (("seed", str(file), 1),))
-    study = study_anp_comparison.run(flights=2)
+    monkeypatch.setattr(anp_comparison, "CASES", (("seed", str(file), 1),))
+    study = anp_comparison.run(flights=2)
     (case,) = study.cases
     assert len(case.bounds) == 8
     assert {b.evaluation for b in case.bounds} == {"circle", "sphere", "ellipsoid"}

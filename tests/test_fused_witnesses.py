@@ -12,7 +12,7 @@ from navbound.run import fly
 from navbound.run.judge import judge
 from navbound.run.settings import Settings
 from navbound.scenario import load
-from navbound.studies.fault_campaign import study
+from navbound.studies.fault_campaign import study as fault_campaign
 from navbound.studies.fault_campaign.kinds import KINDS
 
 SCENARIO = """
@@ -159,7 +159,7 @@ def test_without_a_snapshot_nothing_is_ok_and_no_level_is_published(tmp_path: Pa
 def test_a_filter_that_stations_contradicted_is_not_believed_when_they_fall_silent() -> None:
     """Satellites out, an accelerometer wrong by 0.1 m/s²: the stations contradict the filter, and then the aircraft leaves their range."""
     kind = next(kind for kind in KINDS if kind.id == "outage-and-accelerometer")
-    scenario, _ = study.faulty(load(study.SCENARIO), study.Tile(kind.id, kind.sizes.index(0.1), 3, 3))
+    scenario, _ = fault_campaign.faulty(load(fault_campaign.SCENARIO), fault_campaign.Tile(kind.id, kind.sizes.index(0.1), 3, 3))
     epochs = judge(fly.material(scenario, flights=3, seed=None), Settings(methods=())).epochs
     astray = epochs.filter(pl.col("nse_h_m") > 2.0 * pl.col("rnp_m"))
     # The case is one: it was contradicted, and far off.

@@ -19,7 +19,7 @@ import pytest
 
 import navbound
 from navbound import InputError, _core, gnss
-from navbound._signal_choice import smaller_covariance
+from navbound.gnss.signal_choice import smaller_covariance
 from navbound.methods import bounds
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]

@@ -14,10 +14,11 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from navbound import FormatError, InputError, _packed, dme, gnss, sbas
+from navbound import FormatError, InputError, dme, gnss, sbas
 from navbound.exit_status import UNREADABLE
 from navbound.read import read
-from navbound.read.columns import _plain
+from navbound.read.tables.columns import _plain
+from navbound.storage import packed
 
 MB = 1 << 20
 
@@ -65,13 +66,13 @@ def test_a_bomb_of_three_gigabytes_needs_no_memory(tmp_path: Path) -> None:
 def test_the_limit_is_a_setting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = bomb(tmp_path / "bomb.gz", 80)
     monkeypatch.setenv("NAVBOUND_UNPACKED_RATIO", "2000")
-    assert len(_packed.read(path)) == 80 * MB
+    assert len(packed.read(path)) == 80 * MB
     monkeypatch.setenv("NAVBOUND_UNPACKED_BYTES", str(80 * MB - 1))
     with pytest.raises(FormatError, match="84 MB that are allowed"):
-        _packed.read(path)
+        packed.read(path)
     monkeypatch.setenv("NAVBOUND_UNPACKED_BYTES", "plenty")
     with pytest.raises(InputError, match="NAVBOUND_UNPACKED_BYTES"):
-        _packed.read(path)
+        packed.read(path)
 
 
 def test_a_parquet_file_that_unpacks_to_more_than_the_limit_is_refused(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ import pytest
 
 from conftest import SHARED
 from navbound import InputError, kpi
-from navbound.run.kpi_records import Performance
+from navbound.records.performance import Performance
 
 REFERENCE = SHARED / "reference" / "ref-sbas-kpi.json"
 PRINTED = 5e-10

@@ -176,7 +176,7 @@ def test_the_whole_set_of_a_real_day_is_the_position_itself(shared_data: Path) -
     navigation = gnss.read_navigation(folder / "ESBC00DNK_R_20201770000_01D_MN.rnx.gz")
     found = gnss.solve(observations, navigation, systems="G", truth_ecef_m=ESBC_TRUTH, keep_ranges=True)
     assert found.ranges is not None
-    from navbound.run.levels_of import _range_errors  # noqa: PLC0415 - the step under test
+    from navbound.run.evaluate.levels import _range_errors  # noqa: PLC0415 - the step under test
 
     table = _range_errors(found.ranges, found.epochs)
     assert table.group_by("time_ns").len().join(found.epochs, on="time_ns").select((pl.col("len") == pl.col("n_sv")).all()).item()

@@ -205,9 +205,9 @@ def test_a_table_beyond_the_memory_is_refused_before_it_is_taken_apart(tmp_path:
     file = tmp_path / "large.csv"
     file.write_text(as_text(GOOD))
     n_bytes = file.stat().st_size
-    monkeypatch.setattr("navbound.read.memory.free_bytes", lambda: 7 * n_bytes)
+    monkeypatch.setattr("navbound.read.tables.memory.free_bytes", lambda: 7 * n_bytes)
     navbound.analyze(file)
-    monkeypatch.setattr("navbound.read.memory.free_bytes", lambda: 7 * n_bytes - 1)
+    monkeypatch.setattr("navbound.read.tables.memory.free_bytes", lambda: 7 * n_bytes - 1)
     with pytest.raises(FormatError, match=r"large.csv: .* MB of text take about .* read in pieces"):
         navbound.analyze(file, truth="4200000,170000,4780000")
     navbound.analyze(file, piece_rows=7)

@@ -18,7 +18,7 @@ import pytest
 from conftest import SHARED
 from navbound.errors import FormatError, InputError
 from navbound.run.analyze import material
-from navbound.run.performance import Options, evaluate_files
+from navbound.run.evaluate.performance import Options, evaluate_files
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -14,7 +14,8 @@ import pytest
 from scipy.io import netcdf_file
 from typer.testing import CliRunner
 
-from navbound import cli, exit_status, gnss, maps
+from navbound import exit_status, gnss, maps
+from navbound.cli import main as cli
 from navbound.errors import FormatError, InputError
 from navbound.maps.sources import Times
 from navbound.maps.statistics import Evaluate, Tile, percentile_name

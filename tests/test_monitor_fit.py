@@ -14,7 +14,7 @@ from scipy import stats
 import navbound
 import rinex_fixture
 from navbound import araim, gnss, raim
-from navbound._monitor_fit import DISBELIEF, exact_interval, fit_of
+from navbound.gnss.monitor_fit import DISBELIEF, exact_interval, fit_of
 
 LIGHT = 299792458.0
 DAY = "ESBC00DNK_R_20201770000_01D"

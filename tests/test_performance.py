@@ -18,7 +18,7 @@ import navbound
 from navbound import FormatError, InputError, gnss, kpi
 from navbound.exit_status import NO_VERDICT
 from navbound.run import directory
-from navbound.run.performance import CSV, PARTS
+from navbound.run.evaluate.performance import CSV, PARTS
 from test_kpi import comparable, series
 
 LEVELS = "NPA,APV-I,LPV-200"

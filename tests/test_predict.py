@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from navbound import cli, gnss, kpi, raim
+from navbound import gnss, kpi, raim
+from navbound.cli import main as cli
 from navbound.errors import InputError
 from navbound.maps.sources import Times
-from navbound.run.predict_raim import Asked, place, predict, route
+from navbound.run.predict import Asked, place, predict, route
 from navbound.time import gps_ns
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 import navbound
 from navbound import InputError
-from navbound.cli import app
+from navbound.cli.main import app
 from navbound.procedures.names import parts
 from navbound.run.directory import Run
 from navbound.run.procedure import Flown

@@ -10,7 +10,7 @@ from typing import get_args
 import pytest
 from typer.testing import CliRunner
 
-from navbound.cli import app
+from navbound.cli.main import app
 from navbound.methods import ProtectionMethod, Provenance, methods, protection_methods
 
 BOUND = Path(__file__).parents[1] / "crates" / "core" / "src" / "bound"

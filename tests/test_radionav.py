@@ -9,8 +9,8 @@ import pytest
 from scipy import stats
 
 from navbound import InputError, anp, dme
-from navbound.read import epochs
-from navbound.run.ukraine_flight import network
+from navbound.read.tables import epochs
+from navbound.studies.ukraine_rnav.flight import network
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 import navbound
 from navbound import FormatError, InputError, gnss, sbas
-from navbound.cli import app
+from navbound.cli.main import app
 from navbound.methods import bounds
 from navbound.read import read
 

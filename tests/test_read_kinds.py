@@ -13,9 +13,9 @@ import pytest
 
 from navbound import _core
 from navbound.errors import FormatError
-from navbound.read import foreign
-from navbound.read.epochs import read
 from navbound.read.source import load
+from navbound.read.tables import foreign
+from navbound.read.tables.epochs import read
 from packing import compress
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ import pytest
 
 import kpi_fixture
 import report_fixture
+from navbound.records.performance import LevelResult, Performance, StanfordCounts
 from navbound.report import render
-from navbound.run.kpi_records import LevelResult, Performance, StanfordCounts
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

@@ -12,10 +12,10 @@ import polars as pl
 import pytest
 
 from navbound import InputError, methods, rnp
+from navbound.records.material import Material
+from navbound.records.run import CovarianceOrigin
 from navbound.run import analyze
 from navbound.run import judge as judging
-from navbound.run.material import Material
-from navbound.run.records import CovarianceOrigin
 from navbound.run.settings import Settings
 from test_rnp import PERIOD_NS, table
 

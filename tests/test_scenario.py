@@ -9,7 +9,7 @@ import pytest
 
 from navbound import FormatError, InputError, scenario
 
-SHIPPED = Path(scenario.__file__).parent / "beijing-shanghai-drawn.toml"
+SHIPPED = Path(scenario.__file__).parent / "shipped" / "beijing-shanghai-drawn.toml"
 
 
 def changed(tmp_path: Path, old: str, new: str) -> Path:

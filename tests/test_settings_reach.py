@@ -11,9 +11,9 @@ import pytest
 
 from navbound import InputError
 from navbound.methods import bounds
+from navbound.records.material import Material
+from navbound.records.run import CovarianceOrigin
 from navbound.run.judge import judge
-from navbound.run.material import Material
-from navbound.run.records import CovarianceOrigin
 from navbound.run.settings import Settings
 
 DEFAULTS = {"risk_accuracy": 0.05, "risk_integrity": 1e-5}

@@ -19,10 +19,10 @@ import report_fixture
 from navbound import FormatError, InputError
 from navbound.errors import UNSEEN, visible
 from navbound.read import read
+from navbound.records.run import Rejection
 from navbound.report import render
-from navbound.run.field_csv import write_csv
-from navbound.run.levels_of import SCHEMA
-from navbound.run.records import Rejection
+from navbound.run.evaluate.levels import SCHEMA
+from navbound.write.field_csv import write_csv
 
 EVIL = "DLH\x1b]0;title\x07\x1b[31m1\u202e2\u2066\u20283\x9b"
 HARMLESS = "DLH]0;title[31m123"

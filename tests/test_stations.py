@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from navbound import FormatError, InputError, dme
-from navbound.run.ukraine_flight import network
+from navbound.studies.ukraine_rnav.flight import network
 
 SHARED = Path(__file__).parents[2] / "shared" / "data"
 SOURCE = SHARED / "infra" / "navaids" / "ourairports_navaids.csv.gz"

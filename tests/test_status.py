@@ -11,8 +11,8 @@ import polars as pl
 import pytest
 
 from navbound import InputError, gbas, gnss, rnp, status
-from navbound.read import plausible
-from navbound.run.levels_of_monitor import decisions
+from navbound.read.checks import plausible
+from navbound.run.evaluate.monitored import decisions
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "python" / "navbound"
@@ -28,7 +28,7 @@ DECIDING_CALLS = {
 """Calls that decide by what their receiver or arguments hold."""
 
 
-UNUSED_ROWS = {"read/rejections.py", "read/epochs.py", "read/values.py"}
+UNUSED_ROWS = {"read/checks/rejections.py", "read/tables/epochs.py", "read/tables/values.py"}
 """Readers count the rows of a file that they leave out by the text of the defect; no epoch's status comes of it. May only shrink."""
 
 

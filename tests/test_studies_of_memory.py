@@ -11,9 +11,9 @@ import pytest
 from scipy.optimize import brentq
 
 from navbound import FormatError, InputError, gnss, study
-from navbound.run import study_decorrelation_time as decorrelation
-from navbound.run import study_multipath_time_constants as multipath
-from navbound.run.series_memory import INVERSE_E, autocorrelation, first_crossing
+from navbound.studies.decorrelation_time import study as decorrelation
+from navbound.studies.multipath_time_constants import study as multipath
+from navbound.studies.series_memory import INVERSE_E, autocorrelation, first_crossing
 
 
 def exact_crossing(tau: float, ts: float) -> float:

@@ -14,12 +14,10 @@ from rich.console import Console
 
 import navbound
 from navbound import FormatError, InputError
-from navbound.run import error_extraction_day as recorded
-from navbound.run import error_extraction_faults as faults
-from navbound.run import error_extraction_risks as risks
-from navbound.run import study_error_extraction as study
-from navbound.run.error_extraction_records import Stage, Study
-from navbound.run.series_memory import gauss_markov
+from navbound.run.ground.errors import gauss_markov
+from navbound.studies.error_extraction import day as recorded
+from navbound.studies.error_extraction import faults, risks, study
+from navbound.studies.error_extraction.records import Stage, Study
 
 
 @cache

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from navbound import FormatError, InputError, gbas, gnss, study
-from navbound.run import study_surface_movement, surface_sky
-from navbound.run.surface_records import Study
-from navbound.scenario import surface
+from navbound.studies.surface_movement import scenario as surface
+from navbound.studies.surface_movement import sky
+from navbound.studies.surface_movement import study as surface_movement
+from navbound.studies.surface_movement.records import Study
 
 REPRODUCED = {"C01", "C02", "C03", "C06", "C07", "C08", "C09", "C10", "C11", "C12", "C13", "C14", "C19"}
 
@@ -49,9 +50,10 @@ class Reference:
     galileo: gnss.Orbits
 
     def study(self, *files: Path) -> Study:
-        config = study_surface_movement.configured([*files, self.almanac])
-        sky = surface_sky.look(config, {"galileo": (self.galileo, "24 nominal Galileo satellites of the reference")})
-        return study_surface_movement.study(config, sky)
+        config = surface_movement.configured([*files, self.almanac])
+        return surface_movement.study(
+            config, sky.look(config, {"galileo": (self.galileo, "24 nominal Galileo satellites of the reference")})
+        )
 
 
 @pytest.fixture(scope="module")
@@ -168,7 +170,7 @@ def test_a_covariance_that_bounds_costs_and_the_papers_gains(tmp_path: Path) -> 
     for form in ("snapshot", "paper", "bound"):
         table = f"only = ['NTW']\n[geometry]\nduration_s = 1200.0\n[grid]\ncoasting_s = [10.0]\n[method]\ncovariance = '{form}'\n"
         (tmp_path / "form.toml").write_text(table, encoding="utf-8")
-        found = study_surface_movement.run([tmp_path / "form.toml"])
+        found = surface_movement.run([tmp_path / "form.toml"])
         worst[form] = {c.mode: c.worst_m or np.nan for c in found.cells if (c.quantity, c.case, c.coasting_s) == ("single", "A", 10.0)}
         assert any("nothing shows to bound" in words for words in found.words) is (form == "paper")
     for mode in ("D", "F1", "F2"):
@@ -192,7 +194,7 @@ def test_the_shipped_satellites_are_nominal_and_expanded(nominal: Study) -> None
 
 def test_the_24_fail_where_the_specification_says(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text("[geometry]\ngps = 'nominal'\n[grid]\ncoasting_s = [10.0]\n", encoding="utf-8")
-    found = study_surface_movement.run([tmp_path / "own.toml"])
+    found = surface_movement.run([tmp_path / "own.toml"])
     assert "24 nominal GPS satellites" in found.constellation
     # The specification finds 5.63 m at an hour of its own; claim C01 asks 4.5 m.
     assert {b.mode: b.hpl_max_m[-1] for b in found.before}["D"] > 5.0
@@ -201,7 +203,7 @@ def test_the_24_fail_where_the_specification_says(tmp_path: Path) -> None:
 def test_no_requirement_is_shown_without_its_mark(nominal: Study) -> None:
     from rich.console import Console  # noqa: PLC0415
 
-    from navbound.report import surface as page  # noqa: PLC0415
+    from navbound.studies.surface_movement import page  # noqa: PLC0415
 
     console = Console(width=240, record=True, file=io.StringIO())
     console.print(nominal.table())
@@ -232,7 +234,7 @@ def test_a_table_of_ones_own_is_marked_given(tmp_path: Path) -> None:
         "speed_mps = 5.0\nexposure_s = 60.0\n",
         encoding="utf-8",
     )
-    found = study_surface_movement.run([tmp_path / "own.toml"])
+    found = surface_movement.run([tmp_path / "own.toml"])
     assert [(p.id, p.held) for p in found.phases] == [("X", "given")]
     assert {c.verdict for c in found.claims} == {"not judged"}
     assert all(c.coasting_s in {0.0, 60.0} for c in found.cells)
@@ -263,12 +265,12 @@ def test_a_table_of_ones_own_is_marked_given(tmp_path: Path) -> None:
 def test_a_bad_configuration_is_refused_by_name(tmp_path: Path, text: str, error: type[Exception], says: str) -> None:
     (tmp_path / "bad.toml").write_text(text, encoding="utf-8")
     with pytest.raises(error, match=says):
-        study_surface_movement.run([tmp_path / "bad.toml"])
+        surface_movement.run([tmp_path / "bad.toml"])
 
 
 def test_two_configurations_are_one_too_many(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="configurations"):
-        study_surface_movement.run([tmp_path / "a.toml", tmp_path / "b.toml"])
+        surface_movement.run([tmp_path / "a.toml", tmp_path / "b.toml"])
 
 
 def test_an_almanac_of_another_week_is_refused(shared_data: Path, tmp_path: Path) -> None:
@@ -280,10 +282,10 @@ def test_an_almanac_of_another_week_is_refused(shared_data: Path, tmp_path: Path
         path.write_text(f"[geometry]\nstart = {start}\nduration_s = 3600.0\ngps = '{almanac}'\n", encoding="utf-8")
         config = surface.load(path)
         if fits:
-            assert surface_sky.look(config).az_rad.shape == (6, 31 + 24)
+            assert sky.look(config).az_rad.shape == (6, 31 + 24)
         else:
             with pytest.raises(InputError, match="within a week of the almanac"):
-                surface_sky.look(config)
+                sky.look(config)
 
 
 def test_a_navigation_file_gives_both_constellations(shared_data: Path, tmp_path: Path) -> None:
@@ -292,7 +294,7 @@ def test_a_navigation_file_gives_both_constellations(shared_data: Path, tmp_path
         pytest.skip(f"{path} is not here")
     table = tmp_path / "esbc.toml"
     table.write_text("[geometry]\nduration_s = 7200.0\n[grid]\ncoasting_s = [10.0]\n", encoding="utf-8")
-    found = study_surface_movement.run([table, path])
+    found = surface_movement.run([table, path])
     assert "GPS satellites of ESBC" in found.constellation
     assert "Galileo satellites of ESBC" in found.constellation
     # 2020-06-25: 31 GPS and 22 Galileo satellites in service; at Barcelona some ten and seven are above 5 degrees.
@@ -300,4 +302,4 @@ def test_a_navigation_file_gives_both_constellations(shared_data: Path, tmp_path
     assert 13 <= found.before[2].n_sv_mean <= 22
     table.write_text("[geometry]\nstart = 2020-07-25T00:00:00\n", encoding="utf-8")
     with pytest.raises(InputError, match="a day that"):
-        study_surface_movement.run([table, path])
+        surface_movement.run([table, path])

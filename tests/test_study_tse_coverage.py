@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from navbound import InputError
-from navbound.run import study_tse_coverage as study
+from navbound.studies.tse_coverage import study
 
 # Section 8.3: exact, SQSM, CTEM, LTEM at both levels [%], computed independently with the same constellation.
 EXPECTED = {

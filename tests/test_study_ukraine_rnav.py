@@ -16,8 +16,8 @@ from scipy import stats
 import navbound
 from navbound import InputError, evaluation, rnp
 from navbound.run import directory
-from navbound.run import study_ukraine_rnav as study
-from navbound.run import ukraine_flight as scene
+from navbound.studies.ukraine_rnav import flight as scene
+from navbound.studies.ukraine_rnav import study
 
 if TYPE_CHECKING:
     from pathlib import Path

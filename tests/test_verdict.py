@@ -18,12 +18,13 @@ from numpy.typing import NDArray
 
 import navbound
 from navbound import InputError, evaluation, exit_status
+from navbound.records.performance import Performance
+from navbound.records.run import CovarianceOrigin, Summary
+from navbound.records.verdict import BeliefState
 from navbound.run import analyze as recorded
 from navbound.run.judge import judge
-from navbound.run.kpi_records import Performance
-from navbound.run.numbers import share
-from navbound.run.records import CovarianceOrigin, Summary
 from navbound.run.verdict import rule
+from navbound.run.verdict.numbers import share
 
 START_NS = 1_400_000_000_000_000_000
 M_PER_RAD = 6.37e6
@@ -451,7 +452,7 @@ def test_help_and_documentation_list_every_status() -> None:
 def test_every_verdict_has_its_status() -> None:
     found = {verdict: exit_status.of_verdict(verdict) for verdict in rule.MEANS_INSIDE}
     assert found == {"inside": 0, "outside": 0, "not_shown": 0, "not_believable": 4, "nothing_judged": 4}
-    of_belief = {state: exit_status.of_verdict("not_shown", state) for state in get_args(rule.BeliefState)}
+    of_belief = {state: exit_status.of_verdict("not_shown", state) for state in get_args(BeliefState)}
     assert of_belief == {"unchecked": 0, "supported": 0, "partial": 0, "few": 0, "copied": 0, "short": 0, "contradicted": 4, "refuted": 4}
 
 

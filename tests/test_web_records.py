@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from navbound.run import kpi_records
-from navbound.run.record import Record
+from navbound.records import performance as kpi_records
+from navbound.records.base import Record
 
 SOURCE = Path(__file__).parents[1] / "web" / "src" / "data" / "performance.ts"
 RECORDS = {

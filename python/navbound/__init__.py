@@ -13,15 +13,20 @@ from navbound._core import __version__
 from navbound.errors import FormatError, InputError, InternalError, NavboundError
 
 if TYPE_CHECKING:
-    from navbound.run.commands import analyze, fly, study
+    from navbound.run.commands import analyze, fly
+    from navbound.studies.run import study
 
 __all__ = ["FormatError", "InputError", "InternalError", "NavboundError", "__version__", "analyze", "fly", "study"]
 
 
 def __getattr__(name: str) -> object:
     """Load the jobs, and the tables they need, only when one is used."""
-    if name in {"fly", "analyze", "study"}:
+    if name in {"fly", "analyze"}:
         from navbound.run import commands  # noqa: PLC0415
 
         return getattr(commands, name)
+    if name == "study":
+        from navbound.studies.run import study  # noqa: PLC0415
+
+        return study
     raise AttributeError(f"module 'navbound' has no attribute {name!r}")

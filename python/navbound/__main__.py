@@ -1,5 +1,5 @@
 """`python -m navbound` is `navbound`."""
 
-from navbound.cli import main
+from navbound.cli.main import main
 
 main()

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 import numpy as np
 
 from navbound import _core
-from navbound._arguments import checked
+from navbound.table.arguments import checked
 
 GPS_EPOCH_UNIX_NS = 315_964_800_000_000_000
 """Unix time of 1980-01-06 00:00:00 UTC."""

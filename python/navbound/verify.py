@@ -20,7 +20,7 @@ from navbound.errors import FormatError, NavboundError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-VECTORS = Path(__file__).parent / "_vectors"
+VECTORS = Path(__file__).parent / "vectors"
 """The vector files that ship with the package."""
 
 

@@ -1,4 +1,4 @@
-//! Who may use whom: inside core in the order of the flow, between the crates, and in the Python package.
+//! Who may use whom: inside core in the order of the flow, and between the crates. For the Python package: tests/test_layers.py.
 #![allow(clippy::unwrap_used, clippy::panic)] // A test may stop at the first surprise, in its helpers too.
 
 use std::fs;
@@ -15,42 +15,6 @@ const CRATES: [(&str, &[&str]); 6] = [
     ("assess", &["core", "path", "formats", "simulate"]),
     ("python", &["core", "path", "formats", "simulate", "assess"]),
 ];
-/// Parts of the Python package from what computes to what shows; a part may import from those before it and from itself.
-const LAYERS: [&[&str]; 5] = [
-    &["_core", "errors", "_arrays", "records", "status"],
-    &[
-        "tse",
-        "anp",
-        "rnp",
-        "judge",
-        "gnss",
-        "sbas",
-        "araim",
-        "raim",
-        "rraim",
-        "gbas",
-        "ins",
-        "dme",
-        "kpi",
-        "path",
-        "procedures",
-        "time",
-        "methods",
-        "evaluation",
-        "verify",
-        "read",
-        "write",
-        "scenario",
-        "simulate",
-    ],
-    &["run"],
-    &["report", "live"],
-    &["cli"],
-];
-
-/// Modules that hold only what stages hand to each other.
-const EXCHANGED: [&str; 4] = ["run.record", "run.records", "run.kpi_records", "run.material"];
-
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
@@ -126,43 +90,6 @@ fn crates_depend_one_way() {
     members.sort();
     known.sort();
     assert_eq!(members, known, "a crate without a place in the order");
-}
-
-/// The part of the package a module path names: `navbound.run.judge` -> `run`. The records that stages exchange are a part of their own.
-fn part(module: &str) -> Option<&str> {
-    let rest = module.strip_prefix("navbound.")?;
-    if EXCHANGED.contains(&rest) { Some("records") } else { rest.split('.').next() }
-}
-
-fn layer(part: &str) -> Option<usize> {
-    LAYERS.iter().position(|l| l.contains(&part))
-}
-
-#[test]
-fn the_python_package_imports_one_way() {
-    let package = root().join("python/navbound");
-    let mut imports = 0;
-    for file in files(&package, "py") {
-        let inside = file.strip_prefix(&package).unwrap();
-        let own = inside.iter().next().unwrap().to_str().unwrap().trim_end_matches(".py").to_owned();
-        let Some(own_layer) = layer(&own) else { continue };
-        for line in fs::read_to_string(&file).unwrap().lines().filter(|l| !l.starts_with([' ', '\t'])) {
-            let mut words = line.split_whitespace();
-            let (Some("from" | "import"), Some(module)) = (words.next(), words.next()) else { continue };
-            // `from navbound import a, b` names parts behind the import.
-            let behind: Vec<_> = if module == "navbound" {
-                words.skip(1).map(|w| w.trim_matches([',', '(', ')']).to_owned()).collect()
-            } else {
-                part(module).map(str::to_owned).into_iter().collect()
-            };
-            for used in behind {
-                let Some(used_layer) = layer(&used) else { continue };
-                imports += 1;
-                assert!(used_layer <= own_layer, "{} imports {used}, a later layer", inside.display());
-            }
-        }
-    }
-    assert!(imports > 3, "only {imports} imports found: the search is broken");
 }
 
 #[test]

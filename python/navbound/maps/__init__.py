@@ -5,10 +5,11 @@
 
 from __future__ import annotations
 
-from navbound.maps.files import Map, load
+from navbound.maps.files import load
 from navbound.maps.grid import Grid
 from navbound.maps.kinds import KINDS, Kind
 from navbound.maps.limits import Limit
 from navbound.maps.make import make
+from navbound.records.maps import Map
 
 __all__ = ["KINDS", "Grid", "Kind", "Limit", "Map", "load", "make"]

@@ -3,43 +3,23 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from navbound import _folder
 from navbound.errors import FormatError
-from navbound.maps import netcdf, records
+from navbound.maps import netcdf
+from navbound.records import maps as map_records
+from navbound.records.maps import Map
+from navbound.storage import folders
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
-    import polars as pl
 
 RECORD, SUMMARY, POINTS, ARRAYS, REPORT = "run.json", "summary.json", "map.parquet", "map.nc", "report.html"
 
 
-@dataclass(frozen=True)
-class Map:
-    """A finished map.
-
-    Attributes
-    ----------
-    summary, record : MapSummary, MapRecord
-        What was found, and what it takes to do it again.
-    points : DataFrame
-        One row a grid point, columns of docs/notation.md, section "Maps".
-    path : Path or None
-        Where it lies, once written.
-    """
-
-    summary: records.MapSummary
-    record: records.MapRecord
-    points: pl.DataFrame
-    path: Path | None = None
-
-
-def own(out: str | Path | None) -> AbstractContextManager[_folder.Writer | None]:
+def own(out: str | Path | None) -> AbstractContextManager[folders.Writer | None]:
     """Make the folder of a map before the work; none where `out` is None.
 
     Raises
@@ -47,10 +27,10 @@ def own(out: str | Path | None) -> AbstractContextManager[_folder.Writer | None]
     FormatError
         The folder cannot be written, holds files that are not a map's, or another job writes in it.
     """
-    return nullcontext() if out is None else _folder.own(Path(out), {RECORD, SUMMARY, POINTS, ARRAYS, REPORT}, "a map's")
+    return nullcontext() if out is None else folders.own(Path(out), {RECORD, SUMMARY, POINTS, ARRAYS, REPORT}, "a map's")
 
 
-def write(made: Map, folder: _folder.Writer | None) -> Map:
+def write(made: Map, folder: folders.Writer | None) -> Map:
     """Write every record, the points as Parquet and NetCDF, and the report into a folder of :func:`own`; nothing where there is none."""
     if folder is None:
         return made
@@ -76,10 +56,10 @@ def load(path: str | Path) -> Map:
     from pydantic import ValidationError  # noqa: PLC0415
 
     folder = Path(path)
-    _folder.require_whole(folder, (RECORD, SUMMARY, POINTS), "the folder of a map")
+    folders.require_whole(folder, (RECORD, SUMMARY, POINTS), "the folder of a map")
     try:
-        summary = records.MapSummary.model_validate_json((folder / SUMMARY).read_bytes())
-        record = records.MapRecord.model_validate_json((folder / RECORD).read_bytes())
+        summary = map_records.MapSummary.model_validate_json((folder / SUMMARY).read_bytes())
+        record = map_records.MapRecord.model_validate_json((folder / RECORD).read_bytes())
         return Map(summary, record, pl.read_parquet(folder / POINTS), folder)
     except OSError as e:
         raise FormatError(folder, f"is not the folder of a map: {e}") from e

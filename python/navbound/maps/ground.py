@@ -9,6 +9,7 @@ import numpy as np
 
 from navbound import _core, dme
 from navbound.maps.limits import Limit
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from navbound.maps.kinds import Levels
 
     Floats = NDArray[np.float64]
-
-METRES_PER_NM = 1852.0
 
 
 @dataclass(frozen=True)

@@ -13,14 +13,16 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, scale
-from navbound._arguments import checked
 from navbound.errors import InputError
-from navbound.maps import files, records
+from navbound.maps import files
 from navbound.maps.grid import Grid
 from navbound.maps.kinds import KINDS, Column, Kind
 from navbound.maps.limits import Limit, limits_of
 from navbound.maps.sources import File, Times
 from navbound.maps.statistics import PERCENTILES, Evaluate, Tile, percentile_name
+from navbound.records import maps as map_records
+from navbound.records.maps import Map
+from navbound.table.arguments import checked
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
@@ -48,7 +50,7 @@ def make(
     out: str | Path | None = None,
     command: str = "",
     **options: object,
-) -> files.Map:
+) -> Map:
     """Evaluate a grid of users over a day.
 
     Parameters
@@ -102,7 +104,7 @@ def make(
         columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
         points = pl.DataFrame({"lat_rad": lat, "lon_rad": lon} | columns)
         summary = _summary(chosen, grid, points, asked, job)
-        record = records.MapRecord(
+        record = map_records.MapRecord(
             navbound_version=_core.__version__,
             command=command,
             created_utc=datetime.now(UTC).isoformat(timespec="seconds"),
@@ -113,7 +115,7 @@ def make(
             n_tiles=len(tiles),
             platform=platform.platform(),
         )
-        return files.write(files.Map(summary, record, points), folder)
+        return files.write(Map(summary, record, points), folder)
 
 
 def _options(kind: Kind, options: dict[str, object]) -> Any:
@@ -162,28 +164,28 @@ def _inputs(job: Any) -> dict[str, str]:
     return {str(path): File.of(path).sha256 for path in paths if path.is_file()}
 
 
-def _summary(kind: Kind, grid: Grid, points: pl.DataFrame, asked: list[Limit], job: Any) -> records.MapSummary:
+def _summary(kind: Kind, grid: Grid, points: pl.DataFrame, asked: list[Limit], job: Any) -> map_records.MapSummary:
     n_epochs = job.n_epochs()
     weights, available = grid.weights(), points["p_available"].to_numpy()
-    coverage = [records.MapCoverage(available=at, share=_share(weights, available >= at)) for at in COVERAGE_AT]
+    coverage = [map_records.MapCoverage(available=at, share=_share(weights, available >= at)) for at in COVERAGE_AT]
     worst = int(np.argmin(available))
-    where = records.MapWorst(
+    where = map_records.MapWorst(
         lat_rad=float(points["lat_rad"][worst]),
         lon_rad=float(points["lon_rad"][worst]),
         available=float(available[worst]),
         share=_share(weights, available == available[worst]),
     )
     own = {f.name: getattr(grid, f.name) for f in fields(grid)}
-    return records.MapSummary(
+    return map_records.MapSummary(
         kind=kind.id,
         title=f"{kind.title}: {grid.n_lat} × {grid.n_lon} points" + ("" if n_epochs == 1 else f", {n_epochs} epochs"),
         words=_words(kind, asked, coverage, where, n_epochs),
         source=kind.source,
-        grid=records.MapGrid(n_lat=grid.n_lat, n_lon=grid.n_lon, **own),
+        grid=map_records.MapGrid(n_lat=grid.n_lat, n_lon=grid.n_lon, **own),
         n_epochs=n_epochs,
         percentiles=list(PERCENTILES) if n_epochs > 1 else [],
         columns=[_column(column, points, weights) for column in kind.columns],
-        limits=[records.MapLimit(column=a.column, limit=a.limit, source=a.source, provenance=a.provenance) for a in asked],
+        limits=[map_records.MapLimit(column=a.column, limit=a.limit, source=a.source, provenance=a.provenance) for a in asked],
         coverage=coverage,
         available_mean=float(np.clip((weights * available).sum(), 0.0, 1.0)),
         outcomes=_outcomes(kind, points, weights),
@@ -197,21 +199,21 @@ def _share(weights: np.ndarray[Any, np.dtype[np.float64]], where: np.ndarray[Any
     return 1.0 if where.all() else float(weights[where].sum())
 
 
-def _outcomes(kind: Kind, points: pl.DataFrame, weights: np.ndarray[Any, np.dtype[np.float64]]) -> list[records.MapOutcome]:
+def _outcomes(kind: Kind, points: pl.DataFrame, weights: np.ndarray[Any, np.dtype[np.float64]]) -> list[map_records.MapOutcome]:
     named = {"p_available": "Within the limits"} | {cause.name: cause.title for cause in kind.causes}
     shares = {name: float(np.clip((weights * points[name].to_numpy()).sum(), 0.0, 1.0)) for name in named}
     # What is left has a number; a rounding of the shares is none of it.
     beyond = 1.0 - sum(shares.values())
-    found = [records.MapOutcome(name=name, title=title, share=shares[name]) for name, title in named.items()]
-    rest = records.MapOutcome(name="beyond", title="Beyond the limits", share=beyond if beyond > _ROUNDING else 0.0)
+    found = [map_records.MapOutcome(name=name, title=title, share=shares[name]) for name, title in named.items()]
+    rest = map_records.MapOutcome(name="beyond", title="Beyond the limits", share=beyond if beyond > _ROUNDING else 0.0)
     return [found[0], rest, *found[1:]]
 
 
-def _column(column: Column, points: pl.DataFrame, weights: np.ndarray[Any, np.dtype[np.float64]]) -> records.MapColumn:
+def _column(column: Column, points: pl.DataFrame, weights: np.ndarray[Any, np.dtype[np.float64]]) -> map_records.MapColumn:
     names = {f"{p:g}": percentile_name(column.name, p) for p in PERCENTILES}
     present = {p: name for p, name in names.items() if name in points.columns} or {"": column.name}
     typical = {p: _half(points[name].to_numpy(), weights) for p, name in present.items()}
-    return records.MapColumn(name=column.name, title=column.title, unit=column.unit, typical=typical)
+    return map_records.MapColumn(name=column.name, title=column.title, unit=column.unit, typical=typical)
 
 
 def _half(values: np.ndarray[Any, np.dtype[np.float64]], weights: np.ndarray[Any, np.dtype[np.float64]]) -> float | None:
@@ -222,7 +224,7 @@ def _half(values: np.ndarray[Any, np.dtype[np.float64]], weights: np.ndarray[Any
     return found if math.isfinite(found) else None
 
 
-def _words(kind: Kind, asked: list[Limit], coverage: list[records.MapCoverage], worst: records.MapWorst, n_epochs: int) -> str:
+def _words(kind: Kind, asked: list[Limit], coverage: list[map_records.MapCoverage], worst: map_records.MapWorst, n_epochs: int) -> str:
     units = {column.name: "" if column.unit == "1" else " m" for column in kind.columns}
     titles = {column.name: column.title[0].lower() + column.title[1:] for column in kind.columns}
     within = " and ".join(f"{titles[a.column]} of at most {a.limit:.6g}{units[a.column]}" for a in asked)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import polars as pl
     from numpy.typing import NDArray
 
-    from navbound.maps.records import MapSummary
+    from navbound.records.maps import MapSummary
 
 _DIMENSION, _VARIABLE, _ATTRIBUTE = 10, 11, 12
 _CHAR, _DOUBLE = 2, 6

@@ -8,10 +8,11 @@ from functools import cached_property
 from pathlib import Path
 
 from navbound import _core
-from navbound._arguments import checked
 from navbound.errors import FormatError, InputError
 from navbound.procedures.findings import Finding, finding
-from navbound.procedures.legs import NAUTICAL_MILE_M, LevelOfService, Procedure, leg
+from navbound.procedures.legs import LevelOfService, Procedure, leg
+from navbound.table.arguments import checked
+from navbound.units import METRES_PER_NM
 
 LISTED = 12
 """Names that a refusal lists; the file has all."""
@@ -214,7 +215,7 @@ class Database:
         coded = [row["rnp_coded_m"] for row in rows if row["part"] == "final" and row["rnp_coded_m"] is not None]
         known = [level.rnp_m for level in entry.levels] + coded
         if known and not any(abs(selected_m - m) <= SAME * max(selected_m, m) for m in known):
-            names = sorted({f"RNP {m / NAUTICAL_MILE_M:.3g}" for m in known})
+            names = sorted({f"RNP {m / METRES_PER_NM:.3g}" for m in known})
             raise InputError("line", line, domain=f"a line of minima of {entry.airport} {entry.ident}: {', '.join(names)}")
         return selected_m
 
@@ -274,4 +275,4 @@ def _rnp_m(line: str) -> float:
     value = float(match[1]) if match else float("nan")
     if not 0 < value <= 20:
         raise InputError("line", line, domain="'RNP x' with x in NM, in (0, 20]")
-    return value * NAUTICAL_MILE_M
+    return value * METRES_PER_NM

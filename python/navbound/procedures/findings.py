@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from navbound.units import METRES_PER_NM
+
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-NM = 1852.0
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def finding(row: dict[str, Any]) -> Finding:
 
 
 def _rnp(m: float) -> str:
-    return f"RNP {m / NM:.3g}"
+    return f"RNP {m / METRES_PER_NM:.3g}"
 
 
 def _course(published: float, expected: float) -> str:
@@ -74,9 +74,9 @@ _WORDS: dict[str, Callable[[float, float], str]] = {
     "centre": lambda p, e: (
         f"the fixes are {p:.1f} m and {e:.1f} m from the published centre: no circle; it moves by at least {abs(p - e) / 2:.1f} m"
     ),
-    "radius": lambda p, e: f"coded radius {p / NM:.3f} NM, the fixes give {e / NM:.3f} NM: {abs(p - e):.1f} m apart",
+    "radius": lambda p, e: f"coded radius {p / METRES_PER_NM:.3f} NM, the fixes give {e / METRES_PER_NM:.3f} NM: {abs(p - e):.1f} m apart",
     "course": _course,
-    "length": lambda p, e: f"coded length {p / NM:.1f} NM, the fixes give {e / NM:.2f} NM",
+    "length": lambda p, e: f"coded length {p / METRES_PER_NM:.1f} NM, the fixes give {e / METRES_PER_NM:.2f} NM",
     "rnp_grows": lambda p, e: f"{_rnp(p)} after {_rnp(e)}: it grows towards the runway",
     "rnp_grows_early": lambda p, e: f"{_rnp(p)} after {_rnp(e)} inside a transition",
     "rnp_and_level": lambda p, e: f"the leg has {_rnp(p)}, the nearest line of minima {_rnp(e)}: a factor of {max(p / e, e / p):.0f}",

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import evaluation
-from navbound._arguments import checked
-from navbound._arrays import flatten
 from navbound.errors import InputError
-from navbound.procedures.legs import NAUTICAL_MILE_M, Followed, Procedure
+from navbound.procedures.legs import Followed, Procedure
+from navbound.table.arguments import checked
+from navbound.table.arrays import flatten
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -244,4 +245,4 @@ def _leg(
 
 def rnp_words(rnp_m: float) -> str:
     """An RNP on the screen."""
-    return f"RNP {rnp_m / NAUTICAL_MILE_M:.3g}" if math.isfinite(rnp_m) else "RNP unknown"
+    return f"RNP {rnp_m / METRES_PER_NM:.3g}" if math.isfinite(rnp_m) else "RNP unknown"

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from navbound import _core
-from navbound._arrays import flatten
+from navbound.table.arrays import flatten
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from navbound.procedures.flight import Limits
 
-NAUTICAL_MILE_M = 1852.0
 _STATUS = np.array(_core.procedure_words()[1])
 """Statuses of positions by their number in the core."""
 

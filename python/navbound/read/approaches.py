@@ -10,15 +10,13 @@ import numpy as np
 import polars as pl
 
 from navbound.read.runways import Runway, near
-from navbound.run.records import CrossTrack
+from navbound.records.run import CrossTrack
+from navbound.units import METRES_PER_FT, METRES_PER_NM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
-
-_NM = 1852.0
-_FT = 0.3048
 
 
 @dataclass(frozen=True)
@@ -51,17 +49,17 @@ class Gates:
         A longer pause between points begins another approach.
     """
 
-    before_min_m: float = 0.5 * _NM
-    before_max_m: float = 6.0 * _NM
+    before_min_m: float = 0.5 * METRES_PER_NM
+    before_max_m: float = 6.0 * METRES_PER_NM
     cross_max_m: float = 150.0
     track_max_rad: float = math.radians(6.0)
-    altitude_max_m: float = 3500 * _FT
-    above_runway_m: float = 2500 * _FT
+    altitude_max_m: float = 3500 * METRES_PER_FT
+    above_runway_m: float = 2500 * METRES_PER_FT
     descending: bool = True
     lasts_min_s: float = 60.0
     n_min: int = 4
-    span_min_m: float = 2.5 * _NM
-    lands_within_m: float = 1.5 * _NM
+    span_min_m: float = 2.5 * METRES_PER_NM
+    lands_within_m: float = 1.5 * METRES_PER_NM
     gap_max_s: float = 120.0
 
 
@@ -218,8 +216,8 @@ def _segments(gated: pl.DataFrame, epochs: pl.DataFrame, gates: Gates, names: li
     rules = {
         f"fewer than {gates.n_min} points": pl.col("n") >= gates.n_min,
         f"inside the gates for less than {gates.lasts_min_s:g} s": pl.col("lasts_s") >= gates.lasts_min_s,
-        f"shorter than {gates.span_min_m / _NM:g} NM": pl.col("span") >= gates.span_min_m,
-        f"ends more than {gates.lands_within_m / _NM:g} NM before the threshold": pl.col("nearest") <= gates.lands_within_m,
+        f"shorter than {gates.span_min_m / METRES_PER_NM:g} NM": pl.col("span") >= gates.span_min_m,
+        f"ends more than {gates.lands_within_m / METRES_PER_NM:g} NM before the threshold": pl.col("nearest") <= gates.lands_within_m,
     }
     failed = pl.coalesce(pl.when(~holds.fill_null(value=False)).then(pl.lit(words)) for words, holds in rules.items())
     segments = segments.with_columns(failed=failed)
@@ -235,7 +233,7 @@ def _segments(gated: pl.DataFrame, epochs: pl.DataFrame, gates: Gates, names: li
     return points.join(accepted.select("segment"), on="segment", how="semi"), left_out
 
 
-_PASS_M = 1.0 * _NM
+_PASS_M = 1.0 * METRES_PER_NM
 """Along a centreline for this far is a pass that a reader of the result may miss among the approaches. Provenance: ours."""
 _PASSES_NAMED = 8
 
@@ -251,7 +249,7 @@ def _left_out(failed: pl.DataFrame, accepted: pl.DataFrame, names: list[str]) ->
     if lost.is_empty():
         return []
     shown = [
-        f"{row['track']} to {names[row['runway']]} ({row['failed']}: {row['n']} points, {row['span'] / _NM:.1f} NM)"
+        f"{row['track']} to {names[row['runway']]} ({row['failed']}: {row['n']} points, {row['span'] / METRES_PER_NM:.1f} NM)"
         for row in lost.head(_PASSES_NAMED).iter_rows(named=True)
     ]
     more = f"; and {lost.height - _PASSES_NAMED} more" if lost.height > _PASSES_NAMED else ""

@@ -9,31 +9,43 @@ from typing import Literal
 import polars as pl
 
 from navbound.errors import InputError
-from navbound.read.stated import worse_than_covariance
+from navbound.read.checks.stated import worse_than_covariance
+from navbound.units import METRES_PER_NM
 
 COLUMNS = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
 
-_NM = 1852.0
 
 NACP_EPU_M = {
     11: 3.0,
     10: 10.0,
     9: 30.0,
-    8: 0.05 * _NM,
-    7: 0.1 * _NM,
-    6: 0.3 * _NM,
-    5: 0.5 * _NM,
-    4: _NM,
-    3: 2 * _NM,
-    2: 4 * _NM,
-    1: 10 * _NM,
+    8: 0.05 * METRES_PER_NM,
+    7: 0.1 * METRES_PER_NM,
+    6: 0.3 * METRES_PER_NM,
+    5: 0.5 * METRES_PER_NM,
+    4: METRES_PER_NM,
+    3: 2 * METRES_PER_NM,
+    2: 4 * METRES_PER_NM,
+    1: 10 * METRES_PER_NM,
 }
 """Navigation accuracy category for position to the upper limit of the 95 % horizontal radius [m]; 0 is "unknown".
 
 Provenance: inferred (RTCA DO-260B / EUROCAE ED-102A, coding of NACp); the document was not read.
 """
 
-NIC_RC_M = {11: 7.5, 10: 25.0, 9: 75.0, 8: 0.1 * _NM, 7: 0.2 * _NM, 6: 0.6 * _NM, 5: _NM, 4: 2 * _NM, 3: 4 * _NM, 2: 8 * _NM, 1: 20 * _NM}
+NIC_RC_M = {
+    11: 7.5,
+    10: 25.0,
+    9: 75.0,
+    8: 0.1 * METRES_PER_NM,
+    7: 0.2 * METRES_PER_NM,
+    6: 0.6 * METRES_PER_NM,
+    5: METRES_PER_NM,
+    4: 2 * METRES_PER_NM,
+    3: 4 * METRES_PER_NM,
+    2: 8 * METRES_PER_NM,
+    1: 20 * METRES_PER_NM,
+}
 """Navigation integrity category to the containment radius [m]; 0 is "unknown". For 6 the largest of its three radii.
 
 Provenance: inferred (RTCA DO-260B / EUROCAE ED-102A, coding of NIC); the document was not read.

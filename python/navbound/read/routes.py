@@ -12,13 +12,13 @@ import polars as pl
 from navbound import path
 from navbound.errors import FormatError, InputError
 from navbound.read.source import load
-from navbound.read.table import table
-from navbound.run.records import Waypoint
+from navbound.read.tables.table import table
+from navbound.records.run import Waypoint
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from navbound.run.records import InputFile
+    from navbound.records.run import InputFile
 
 
 @dataclass(frozen=True)

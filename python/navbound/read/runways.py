@@ -13,8 +13,7 @@ import polars as pl
 
 from navbound import path
 from navbound.errors import InputError
-
-_FT = 0.3048
+from navbound.units import METRES_PER_FT
 
 
 @dataclass(frozen=True)
@@ -78,9 +77,9 @@ def table() -> pl.DataFrame:
             lon_rad=pl.col(f"{this}_lon_deg") * rad,
             far_lat_rad=pl.col(f"{far}_lat_deg") * rad,
             far_lon_rad=pl.col(f"{far}_lon_deg") * rad,
-            elevation_m=pl.col(f"{this}_elevation_ft").fill_null(0) * _FT,
-            displaced_m=pl.col(f"{this}_displaced_ft").fill_null(0) * _FT,
-            length_m=pl.col("length_ft").fill_null(0) * _FT,
+            elevation_m=pl.col(f"{this}_elevation_ft").fill_null(0) * METRES_PER_FT,
+            displaced_m=pl.col(f"{this}_displaced_ft").fill_null(0) * METRES_PER_FT,
+            length_m=pl.col("length_ft").fill_null(0) * METRES_PER_FT,
         )
 
     return pl.concat([end("low", "high"), end("high", "low")])

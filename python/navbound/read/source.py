@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from navbound import _packed
 from navbound.errors import FormatError, visible
-from navbound.read import foreign, receivers
-from navbound.run.records import InputFile
+from navbound.read import receivers
+from navbound.read.tables import foreign
+from navbound.records.run import InputFile
+from navbound.storage import packed
 
 Kind = Literal["csv", "json", "parquet", "rtklib", "ubx", "sbf", "novatel", "nmea"]
 
@@ -117,8 +118,8 @@ def load(path: str | Path) -> Source:
     Raises
     ------
     FormatError
-        No such file, not a file, empty, packed and damaged, cut short, of several files or above the limit of :mod:`navbound._packed`, or a
-        kind that is known and not read.
+        No such file, not a file, empty, packed and damaged, cut short, of several files above the limit of
+        :mod:`navbound.storage.packed`, or a kind that is known and not read.
     """
     path = Path(path)
     try:
@@ -127,7 +128,7 @@ def load(path: str | Path) -> Source:
         raise FormatError(path, "no such file") from e
     except OSError as e:
         raise FormatError(path, f"cannot be read: {e.strerror}") from e
-    content = _packed.plain(path, stored)
+    content = packed.plain(path, stored)
     if not content.strip():
         raise FormatError(path, "the file is empty")
     other = foreign.kind(content)

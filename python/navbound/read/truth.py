@@ -11,15 +11,15 @@ import polars as pl
 
 from navbound import _core, gnss
 from navbound.errors import InputError
-from navbound.read.epochs import read
-from navbound.read.plausible import impossible
+from navbound.read.checks.plausible import impossible
+from navbound.read.tables.epochs import read
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
 
-    from navbound.read.epochs import Reading
+    from navbound.read.tables.epochs import Reading
 
 TOLERANCE_S = 0.01
 """How far apart in time an estimate and its truth may lie. At 70 m/s a hundredth of a second is 0.7 m."""

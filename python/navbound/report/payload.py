@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.read.pieces import Frames
-    from navbound.run.records import RunRecord, Summary, TrackSummary, Waypoint, Worst
+    from navbound.records.run import RunRecord, Summary, TrackSummary, Waypoint, Worst
 
 BUDGET_BYTES = 1_800_000
 """Records and embedded tracks as text; with the page's own parts (about 0.15 MB) the file stays below 2 MB."""

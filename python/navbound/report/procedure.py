@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from jinja2 import Environment, StrictUndefined
 
-from navbound.procedures.legs import NAUTICAL_MILE_M, ORIGINS, STATES
+from navbound.procedures.legs import ORIGINS, STATES
 from navbound.procedures.picture import altitude_words, picture
+from navbound.units import METRES_PER_FT, METRES_PER_NM
 
 if TYPE_CHECKING:
     from navbound.procedures.findings import Finding
@@ -33,14 +34,13 @@ HEADINGS = (
 )
 WIDTH, HEIGHT, EDGE = 1040.0, 620.0, 60.0
 PROFILE_HEIGHT = 260.0
-FOOT_M = 0.3048
 
 
 def cells(leg: Leg) -> tuple[str, ...]:
     """One leg in the units of the screen; a number that does not exist is a dash."""
-    end = "-" if not math.isfinite(leg.length_m) else f"{leg.length_m / NAUTICAL_MILE_M:.2f}"
-    coded = "" if leg.rnp_coded_m is None or not leg.rnp_differs else f" (field {leg.rnp_coded_m / NAUTICAL_MILE_M:.3g})"
-    rnp = f"{leg.rnp_m / NAUTICAL_MILE_M:.3g}" if math.isfinite(leg.rnp_m) else "-"
+    end = "-" if not math.isfinite(leg.length_m) else f"{leg.length_m / METRES_PER_NM:.2f}"
+    coded = "" if leg.rnp_coded_m is None or not leg.rnp_differs else f" (field {leg.rnp_coded_m / METRES_PER_NM:.3g})"
+    rnp = f"{leg.rnp_m / METRES_PER_NM:.3g}" if math.isfinite(leg.rnp_m) else "-"
     speed = "" if leg.speed_kt is None else f"{ {'-': '≤ ', '+': '≥ '}.get(leg.speed_description, '') }{leg.speed_kt:g}"
     return (
         f"{leg.sequence:03d}",
@@ -50,7 +50,7 @@ def cells(leg: Leg) -> tuple[str, ...]:
         rnp + coded,
         ORIGINS[leg.rnp_origin] if leg.has_path else "",
         end,
-        "" if leg.radius_m is None else f"{leg.radius_m / NAUTICAL_MILE_M:.3f}",
+        "" if leg.radius_m is None else f"{leg.radius_m / METRES_PER_NM:.3f}",
         altitude_words(leg),
         "" if leg.vertical_angle_rad is None else f"{math.degrees(leg.vertical_angle_rad):.2f}°",
         speed,
@@ -70,7 +70,7 @@ def notes(procedure: Procedure, findings: list[Finding]) -> list[Note]:
     """What a reader must know beside the table."""
     notes = []
     if procedure.levels:
-        names = ", ".join(f"RNP {x.rnp_m / NAUTICAL_MILE_M:.3g}" for x in procedure.levels)
+        names = ", ".join(f"RNP {x.rnp_m / METRES_PER_NM:.3g}" for x in procedure.levels)
         selected = f"; selected: {procedure.line}." if procedure.line else "; none selected."
         notes.append(Note(f"Lines of minima: {names}{selected}", is_warning=False))
     warnings = []
@@ -82,8 +82,8 @@ def notes(procedure: Procedure, findings: list[Finding]) -> list[Note]:
         ]
     differing = [x for x in procedure.legs if x.rnp_differs]
     warnings += [
-        f"Leg to {x.fix}: the field has RNP {x.rnp_coded_m / NAUTICAL_MILE_M:.3g}, {ORIGINS[x.rnp_origin]}"
-        + (f" RNP {x.rnp_m / NAUTICAL_MILE_M:.3g}." if math.isfinite(x.rnp_m) else ".")
+        f"Leg to {x.fix}: the field has RNP {x.rnp_coded_m / METRES_PER_NM:.3g}, {ORIGINS[x.rnp_origin]}"
+        + (f" RNP {x.rnp_m / METRES_PER_NM:.3g}." if math.isfinite(x.rnp_m) else ".")
         for x in differing
         if x.rnp_coded_m is not None
     ]
@@ -132,8 +132,8 @@ def _plan(procedure: Procedure, shown: Picture) -> dict[str, Any]:
         }
         for line in shown.lines
     ]
-    bar_m = next(m for m in (50, 20, 10, 5, 2, 1, 0.5, 0.1, 0.0) if m * NAUTICAL_MILE_M / span < WIDTH / 4)
-    bar = {"x1": 10.0, "x2": 10.0 + bar_m * NAUTICAL_MILE_M / span, "y": height - 10, "words": f"{bar_m:g} NM"}
+    bar_m = next(m for m in (50, 20, 10, 5, 2, 1, 0.5, 0.1, 0.0) if m * METRES_PER_NM / span < WIDTH / 4)
+    bar = {"x1": 10.0, "x2": 10.0 + bar_m * METRES_PER_NM / span, "y": height - 10, "words": f"{bar_m:g} NM"}
     marks = _labelled([(*at(m.east_m, m.north_m), m.name) for m in shown.marks])
     return {"width": WIDTH, "height": round(height, 1), "lines": lines, "marks": marks, "bar": bar}
 
@@ -151,7 +151,7 @@ def _profile(shown: Picture) -> dict[str, Any] | None:
         return round(x, 1), round(PROFILE_HEIGHT - 30 - (altitude - low) / rise * (PROFILE_HEIGHT - 80), 1)
 
     points = [at(m.along_m, m.altitude_m) for m in known]
-    rows = [{"y": at(first, a)[1], "words": f"{a / FOOT_M:.0f} ft"} for a in (low, high)]
+    rows = [{"y": at(first, a)[1], "words": f"{a / METRES_PER_FT:.0f} ft"} for a in (low, high)]
     marks = _labelled([(*p, f"{m.name} {m.altitude}") for p, m in zip(points, known, strict=True)])
     text = " ".join(f"{x},{y}" for x, y in points)
     return {"width": WIDTH, "height": PROFILE_HEIGHT, "points": text, "marks": marks, "rows": rows}

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import polars as pl
 
     from navbound.read.pieces import Frames
-    from navbound.run.records import RunRecord, Summary, Waypoint
+    from navbound.records.run import RunRecord, Summary, Waypoint
 
 _NEEDED = ("track", "time_ns")
 

@@ -13,7 +13,7 @@ from navbound.report.render import write_page
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from navbound.maps.files import Map
+    from navbound.records.maps import Map
 
 _SHARE = "share_available"
 """The page's name of ``p_available``: shares near one need the same fineness as those near nothing, so not their logarithm."""

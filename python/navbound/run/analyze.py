@@ -9,32 +9,34 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
-from navbound._extraction_gains import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
+from navbound.read.checks.plausible import Limits, check
+from navbound.read.checks.repeats import left_out, separate
 from navbound.read.covariance import Claimed, claim
-from navbound.read.epochs import Reading, read
 from navbound.read.pieces import PIECE_ROWS
-from navbound.read.plausible import Limits, check
-from navbound.read.repeats import LEFT_OUT, left_out, separate
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
 from navbound.read.source import LARGE_BYTES, is_text_table
+from navbound.read.tables.epochs import Reading, read
 from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
-from navbound.run.files import sort_out
-from navbound.run.material import Material
+from navbound.records.frames import LEFT_OUT
+from navbound.records.material import Material
+from navbound.records.run import CovarianceOrigin, Rejection, Waypoint
+from navbound.run.inputs.files import sort_out
+from navbound.run.inputs.solved import solved
+from navbound.run.inputs.solving import Solving
 from navbound.run.pieces import AUXILIARY, covariance_status, in_pieces, states_truth, without_path
 from navbound.run.procedure import Flown, on_procedure
-from navbound.run.records import CovarianceOrigin, Rejection, Waypoint
-from navbound.run.solved import solved
-from navbound.run.solving import Solving
+from navbound.sbas.gains import EXTRACTION_LABEL, EXTRACTION_MARK
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from navbound.read.pieces import PiecedReading
+    from navbound.records.run import CrossTrack, InputFile
     from navbound.run.pieces import InPieces
-    from navbound.run.records import CrossTrack, InputFile
 
 
 def material(
@@ -276,9 +278,10 @@ def _gates_words(gates: Gates) -> str:
     """What counts as an approach, in the units of charts."""
     descending = ", descending" if gates.descending else ""
     return (
-        f"an approach is at least {gates.span_min_m / 1852:.3g} NM and {gates.n_min} points between {gates.before_min_m / 1852:.3g} and "
-        f"{gates.before_max_m / 1852:.3g} NM before a threshold, within {gates.cross_max_m:.0f} m of the extended centreline, "
-        f"and comes within {gates.lands_within_m / 1852:.3g} NM of the threshold{descending}"
+        f"an approach is at least {gates.span_min_m / METRES_PER_NM:.3g} NM and {gates.n_min} points between "
+        f"{gates.before_min_m / METRES_PER_NM:.3g} and "
+        f"{gates.before_max_m / METRES_PER_NM:.3g} NM before a threshold, within {gates.cross_max_m:.0f} m of the extended centreline, "
+        f"and comes within {gates.lands_within_m / METRES_PER_NM:.3g} NM of the threshold{descending}"
     )
 
 
@@ -295,15 +298,15 @@ def _on_route(route: Route, epochs: pl.DataFrame, rejected: list[Rejection]) -> 
         reason = "before the start or beyond the end of the route"
         rejected.append(Rejection(file=route.source.path, reason=reason, count=n_beyond, first_line=None, example=f"{n_beyond} epochs"))
     points = followed.select(cross_m="fte_m", segment="track")
-    words = f"Path: route {route.source.path}, {len(route.waypoints)} waypoints, {route.path.length_m / 1852:.2f} NM."
+    words = f"Path: route {route.source.path}, {len(route.waypoints)} waypoints, {route.path.length_m / METRES_PER_NM:.2f} NM."
     return _Path(followed, [words], f"Route {route.name}", route.waypoints, [route.source], [statistics(route.name, points)])
 
 
 def _on_approach(found: Approaches, gates: Gates, n_recorded: int) -> _Path:
     n, runways = len(found.tracks), ", ".join(r.name for r in found.runways)
     words = [
-        f"Path: the centreline through the runway ends of the shipped table (OurAirports), {gates.before_max_m / 1852:g} to "
-        f"{gates.before_min_m / 1852:g} NM before the landing threshold; {n} approaches.",
+        f"Path: the centreline through the runway ends of the shipped table (OurAirports), {gates.before_max_m / METRES_PER_NM:g} to "
+        f"{gates.before_min_m / METRES_PER_NM:g} NM before the landing threshold; {n} approaches.",
         f"Judged are all epochs from the first to the last point of an approach, {found.epochs.height} of {n_recorded} recorded; what came "
         "before the first point is not. The path is the extended centreline, not a coded procedure: its own error counts as flight "
         "technical error.",

@@ -12,7 +12,7 @@ import numpy as np
 import polars as pl
 
 from navbound.errors import InputError
-from navbound.run.records import InputFile
+from navbound.records.run import InputFile
 from navbound.scale import map_tiles
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""The three jobs as functions: fly, analyze, study. The command line is a thin skin over these."""
+"""Two of the jobs as functions: fly and analyze. The command line is a thin skin over these."""
 
 from __future__ import annotations
 
@@ -7,27 +7,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from navbound import scenario as scenarios
-from navbound._arguments import checked
-from navbound.errors import InputError
+from navbound.records.performance import Level
+from navbound.rnp.requirement import requirement
 from navbound.run import analyze as recorded
-from navbound.run import directory, performance
+from navbound.run import directory
 from navbound.run import fly as simulated
-from navbound.run import taxi as taxiing
-from navbound.run.faults import fault_summaries
+from navbound.run.evaluate import performance
+from navbound.run.ground import flight as taxiing
 from navbound.run.judge import judge
-from navbound.run.kpi_records import Level
 from navbound.run.procedure import with_answers
-from navbound.run.requirement import requirement
 from navbound.run.settings import Settings
-from navbound.run.studies import PAGES, REPORTS, STUDIES
+from navbound.run.verdict.faults import fault_summaries
 from navbound.scenario import taxi as taxi_scenarios
+from navbound.table.arguments import checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import Unpack
 
     from navbound.run.directory import Run
-    from navbound.run.studies import Study
     from navbound.scale import Work
 
 
@@ -98,7 +96,7 @@ def analyze(
     files : sequence of paths
         CSV, Parquet, JSON tables or RTKLIB ``.pos``, plain or gzip.
     spec, phase : str
-        Navigation specification, as :func:`navbound.run.requirement.requirement` reads it.
+        Navigation specification, as :func:`navbound.rnp.requirement.requirement` reads it.
     levels : names or Level, optional
         Service levels (:func:`navbound.kpi.levels`). The files are then tables with protection levels, or RINEX observations with
         navigation files and SBAS messages; ``spec``, ``phase`` and ``settings`` have no part in it.
@@ -108,7 +106,7 @@ def analyze(
         Called with (done, all) files of a performance run.
     **reading
         See :func:`navbound.run.analyze.material`: ``path``, ``truth``, ``sigma_m``, ``columns``, ...; with ``levels`` the fields of
-        :class:`navbound.run.performance.Options`.
+        :class:`navbound.run.evaluate.performance.Options`.
 
     Raises
     ------
@@ -126,42 +124,3 @@ def analyze(
         material = recorded.material(files, requirement=wanted.words, rnp_m=wanted.rnp_m, **reading)  # type: ignore[arg-type]
         run = judge(material, settings, command)
         return directory.write(with_answers(run) if reading.get("procedure") is not None else run, folder)
-
-
-@checked
-def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None = None, **work: Unpack[Work]) -> Study:
-    """Run a study by its name.
-
-    Parameters
-    ----------
-    name : str
-        Which.
-    files : sequence of str or Path
-        Recorded data, for a study that needs some.
-    out : str or Path, optional
-        Directory to write: a run with its report for a study of a flight, records and a page for one that has a page.
-    **work
-        ``backend``, ``checkpoint`` and ``workers`` of :func:`navbound.scale.map_tiles` for a study that is cut into tiles; ``progress`` for
-        any.
-
-    Raises
-    ------
-    InputError
-        No such study; the message lists those that exist. Files for a study that needs none, a directory for one without a flight, a back
-        end for one that is not cut into tiles.
-    FormatError
-        A file that is not there or cannot be read, or a run directory that cannot be written.
-    """
-    if name not in STUDIES:
-        raise InputError("study", name, domain=", ".join(STUDIES))
-    if out is not None and name not in REPORTS and name not in PAGES:
-        raise InputError("out", str(out), domain=f"no directory: only {', '.join([*REPORTS, *sorted(PAGES)])} have something to report")
-    found = STUDIES[name](files, **work)
-    if out is not None and name in REPORTS:
-        with directory.own(out) as folder:
-            directory.write(REPORTS[name](), folder)
-    elif out is not None:
-        from navbound.report import studies  # noqa: PLC0415 - the page is presentation, made only where it is asked for
-
-        studies.write(found, Path(out))
-    return found

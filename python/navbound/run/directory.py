@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from navbound import _folder
 from navbound.errors import FormatError
+from navbound.storage import folders
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import polars as pl
 
     from navbound.read.pieces import Frames
-    from navbound.run.records import RunRecord, Summary, Waypoint
+    from navbound.records.run import RunRecord, Summary, Waypoint
 
 RECORD = "run.json"
 SUMMARY = "summary.json"
@@ -57,7 +57,7 @@ class Run:
         return self.path / REPORT
 
 
-def own(out: str | Path | None) -> AbstractContextManager[_folder.Writer | None]:
+def own(out: str | Path | None) -> AbstractContextManager[folders.Writer | None]:
     """Make a run directory before the work; none where `out` is None.
 
     Raises
@@ -65,10 +65,10 @@ def own(out: str | Path | None) -> AbstractContextManager[_folder.Writer | None]
     FormatError
         The directory cannot be written, holds files that are not a run's, or another job writes in it.
     """
-    return nullcontext() if out is None else _folder.own(Path(out), {RECORD, SUMMARY, EPOCHS, EVENTS, REPORT}, "a run's")
+    return nullcontext() if out is None else folders.own(Path(out), {RECORD, SUMMARY, EPOCHS, EVENTS, REPORT}, "a run's")
 
 
-def write(run: Run, folder: _folder.Writer | None) -> Run:
+def write(run: Run, folder: folders.Writer | None) -> Run:
     """Write every record and the report into a directory of :func:`own`; nothing where there is none."""
     if folder is None:
         return run
@@ -93,9 +93,9 @@ def load(path: Path) -> Run:
     import polars as pl  # noqa: PLC0415
     from pydantic import ValidationError  # noqa: PLC0415
 
-    from navbound.run.records import RunRecord, Summary  # noqa: PLC0415
+    from navbound.records.run import RunRecord, Summary  # noqa: PLC0415
 
-    _folder.require_whole(path, (RECORD, SUMMARY, EPOCHS, EVENTS), "a run directory")
+    folders.require_whole(path, (RECORD, SUMMARY, EPOCHS, EVENTS), "a run directory")
     try:
         summary = Summary.model_validate_json((path / SUMMARY).read_bytes())
         record = RunRecord.model_validate_json((path / RECORD).read_bytes())

@@ -11,9 +11,9 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
+from navbound.records.material import Material
+from navbound.records.run import CovarianceOrigin, Waypoint
 from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
-from navbound.run.material import Material
-from navbound.run.records import CovarianceOrigin, Waypoint
 from navbound.scenario import Scenario, find, load
 
 if TYPE_CHECKING:

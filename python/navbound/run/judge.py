@@ -13,22 +13,22 @@ import numpy as np
 import polars as pl
 
 from navbound import __version__, rnp
-from navbound._rnp_exposure import LONGEST_STEP_S
-from navbound._states import METRES_PER_NM
 from navbound.errors import InputError
 from navbound.judge import Judges, with_levels
 from navbound.judge import Settings as Rules
 from navbound.methods import column_of
-from navbound.read.pieces import Frames
+from navbound.records.run import RunRecord
+from navbound.rnp.exposure import LONGEST_STEP_S
 from navbound.run import pieces
 from navbound.run.directory import Run
-from navbound.run.records import RunRecord
 from navbound.run.settings import Settings
 from navbound.run.summarise import summarise
+from navbound.storage.frames import Frames
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
-    from navbound.run.material import Material
-    from navbound.run.records import EventSummary
+    from navbound.records.material import Material
+    from navbound.records.run import EventSummary
 
 STATE_LEVELS_NM = (0.3, 1.0, 2.0, 5.0)
 """The levels of the state classifier's authors (Ostroumov and Kuzmenko 2018)."""

@@ -17,16 +17,17 @@ from navbound.procedures.flight import results, rnp_words
 from navbound.procedures.legs import Followed
 from navbound.procedures.names import parts
 from navbound.read.approaches import statistics
-from navbound.read.repeats import left_out
-from navbound.run.records import InputFile, Waypoint
+from navbound.read.checks.repeats import left_out
+from navbound.records.run import InputFile, Waypoint
 from navbound.time import utc_text
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.procedures import Flight, LegResult, Procedure
+    from navbound.records.run import CrossTrack
     from navbound.run.directory import Run
-    from navbound.run.records import CrossTrack
 
 NEXT_FLIGHT_S = 600.0
 """After so long without a judged position another flight begins (ours). [s]"""
@@ -219,7 +220,8 @@ def _leg_words(leg: LegResult, time_ns: int) -> str:
     turns = f"; {leg.n_transition} in turns" if leg.n_transition else ""
     inside = f"inside RNP {leg.n_inside}, inside twice RNP {leg.n_inside_twice}{turns}"
     return (
-        f"Leg {leg.fix or leg.terminator} ({leg.terminator}, {rnp_words(leg.rnp_m)}, {leg.length_m / 1852:.2f} NM): {leg.n} positions in "
+        f"Leg {leg.fix or leg.terminator} ({leg.terminator}, {rnp_words(leg.rnp_m)}, {leg.length_m / METRES_PER_NM:.2f} NM): "
+        f"{leg.n} positions in "
         f"{leg.duration_s:.0f} s, mean {leg.mean_m:+.2f} m, RMS {leg.rms_m:.2f} m, 95 % {leg.p95_m:.2f} m, largest {leg.max_abs_m:.2f} m"
         f"{share} at {utc_text(time_ns + round(leg.worst_time_s * 1e9))}; {inside}."
     )

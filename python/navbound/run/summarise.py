@@ -10,10 +10,8 @@ import numpy as np
 import polars as pl
 
 from navbound import anp, evaluation, rnp
-from navbound._rnp_exposure import LONGEST_STEP_S
 from navbound.methods import column_of, method
-from navbound.run.doubts import Doubts, tracks_with_levels
-from navbound.run.records import (
+from navbound.records.run import (
     Belief,
     EventSummary,
     Held,
@@ -26,16 +24,18 @@ from navbound.run.records import (
     Verdict,
     Worst,
 )
+from navbound.rnp.exposure import LONGEST_STEP_S
+from navbound.run.inputs.doubts import Doubts, tracks_with_levels
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import of_epochs
-from navbound.run.words import honesty_words, protection_words, verdict_words
+from navbound.run.verdict.results import honesty_words, protection_words, verdict_words
 from navbound.status import USABLE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.methods import Method
-    from navbound.run.material import Material
+    from navbound.records.material import Material
 
 LISTED_EVENTS = 500
 """Events in summary.json; all of them are in events.parquet, and the report says how many are not listed."""

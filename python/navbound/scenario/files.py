@@ -18,7 +18,7 @@ from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
-_FOLDER = Path(__file__).parent
+_FOLDER = Path(__file__).parent / "shipped"
 _KINDS = {
     "lateral-ramp",
     "degraded-ranging",

@@ -15,7 +15,7 @@ from navbound.scenario.part import Part
 from navbound.scenario.sensors import Imu
 from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
 
-FOLDER = Path(__file__).parent / "taxiing"
+FOLDER = Path(__file__).parent / "shipped" / "taxiing"
 
 PhaseId = Literal["RWY", "RET", "NTW", "ATW", "TL", "SLL"]
 """The landing roll, and the sub-phases of :func:`navbound.gbas.sub_phases`."""

@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from navbound.errors import InputError
+from navbound.units import METRES_PER_FT, METRES_PER_NM, MPS_PER_KT
 
 TO_SI: dict[str, tuple[str, float]] = {
     "_deg": ("_rad", math.pi / 180),
     "_degps": ("_radps", math.pi / 180),
-    "_nm": ("_m", 1852.0),
+    "_nm": ("_m", METRES_PER_NM),
     "_km": ("_m", 1000.0),
-    "_ft": ("_m", 0.3048),
-    "_kt": ("_mps", 1852 / 3600),
-    "_fpm": ("_mps", 0.3048 / 60),
+    "_ft": ("_m", METRES_PER_FT),
+    "_kt": ("_mps", MPS_PER_KT),
+    "_fpm": ("_mps", METRES_PER_FT / 60),
     "_min": ("_s", 60.0),
     "_degph": ("_radps", math.pi / 180 / 3600),
     "_degprth": ("_radprts", math.pi / 180 / 60),

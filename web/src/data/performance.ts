@@ -1,4 +1,4 @@
-// The records of a performance evaluation; names and meanings are those of python/navbound/run/kpi_records.py.
+// The records of a performance evaluation; names and meanings are those of python/navbound/records/performance.py.
 
 export type AxisId = "h" | "v";
 

@@ -1,4 +1,4 @@
-// The records of a run as the page receives them; names and meanings are those of python/navbound/run/records.py.
+// The records of a run as the page receives them; names and meanings are those of python/navbound/records/run.py.
 
 import type { PackedColumn } from "./packing.ts";
 import type { Performance } from "./performance.ts";

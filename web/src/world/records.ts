@@ -1,4 +1,4 @@
-// The records of a map as the page receives them; names and meanings are those of python/navbound/maps/records.py.
+// The records of a map as the page receives them; names and meanings are those of python/navbound/records/maps.py.
 
 import { unpack, type PackedColumn } from "../data/packing.ts";
 

@@ -1,10 +1,10 @@
 """Tables that are too large for memory: read, sorted and kept in pieces, with the same rows, counts and words as at once.
 
-``spool`` keeps frames on the disk, ``chunks`` cuts a text file at the ends of lines, ``order`` sorts by distribution to pieces, and
+``chunks`` cuts a text file at the ends of lines, ``order`` sorts by distribution to pieces that lie on the disk, and
 ``reading`` is the reader.
 """
 
 from navbound.read.pieces.reading import PIECE_ROWS, PiecedReading, read_pieces
-from navbound.read.pieces.spool import Frames
+from navbound.storage.frames import Frames
 
 __all__ = ["PIECE_ROWS", "Frames", "PiecedReading", "read_pieces"]

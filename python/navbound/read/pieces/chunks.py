@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError
 from navbound.read.source import Source
-from navbound.read.table import lines_of
+from navbound.read.tables.table import lines_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound.read.pieces.spool import Spool
+from navbound.storage.frames import Spool
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -9,20 +9,21 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound.errors import FormatError
-from navbound.read.columns import POSITION, assign
+from navbound.read.checks.rejections import Rejections, Tally
+from navbound.read.checks.repeats import left_out
 from navbound.read.pieces.chunks import CHUNK_BYTES, Chunks
 from navbound.read.pieces.order import Pieces
-from navbound.read.pieces.spool import Spool
-from navbound.read.rejections import Rejections, Tally
-from navbound.read.repeats import LEFT_OUT, left_out
-from navbound.read.table import LINE, Layout, layout_of, rows_of
-from navbound.read.values import Late, Values, one_row_a_time, texts
+from navbound.read.tables.columns import POSITION, assign
+from navbound.read.tables.table import LINE, Layout, layout_of, rows_of
+from navbound.read.tables.values import Late, Values, one_row_a_time, texts
+from navbound.records.frames import LEFT_OUT
+from navbound.storage.frames import Spool
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from navbound.read.columns import Assignment
-    from navbound.run.records import InputFile, Rejection
+    from navbound.read.tables.columns import Assignment
+    from navbound.records.run import InputFile, Rejection
 
 PIECE_ROWS = 1 << 17
 """Rows that are worked on at a time."""

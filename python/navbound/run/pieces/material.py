@@ -10,12 +10,12 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
-from navbound.read.columns import POSITION_TIME, assign
+from navbound.read.checks.plausible import Checker, Limits, Plausibility
 from navbound.read.covariance import COLUMNS, Claimed, Claims
 from navbound.read.pieces import Frames, PiecedReading, read_pieces
 from navbound.read.pieces.chunks import Chunks
-from navbound.read.plausible import Checker, Limits, Plausibility
-from navbound.read.table import layout_of
+from navbound.read.tables.columns import POSITION_TIME, assign
+from navbound.read.tables.table import layout_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

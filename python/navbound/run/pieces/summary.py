@@ -10,9 +10,9 @@ import polars as pl
 
 from navbound import evaluation
 from navbound.methods import method
-from navbound.read.stated import ALERT, ERROR, WORSE
-from navbound.run.doubts import Doubts
-from navbound.run.records import PhaseSummary, Summary, TrackSummary, Worst
+from navbound.read.checks.stated import ALERT, ERROR, WORSE
+from navbound.records.run import PhaseSummary, Summary, TrackSummary, Worst
+from navbound.run.inputs.doubts import Doubts
 from navbound.run.summarise import (
     OUTSIDE,
     Gaps,
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from navbound.read.pieces import Frames
-    from navbound.run.material import Material
-    from navbound.run.records import MethodResult
+    from navbound.records.material import Material
+    from navbound.records.run import MethodResult
 
 
 @dataclass

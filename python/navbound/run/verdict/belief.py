@@ -10,7 +10,7 @@ import polars as pl
 
 from navbound import evaluation
 from navbound.methods import column_of, method
-from navbound.run.records import Belief, BoundCheck, LevelCheck
+from navbound.records.run import Belief, BoundCheck, LevelCheck
 from navbound.run.verdict import rule
 from navbound.status import USABLE
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.methods import Method
-    from navbound.run.kpi_records import LevelResult
+    from navbound.records.performance import LevelResult
 
 CIRCLE = "anp-circle"
 """The covariance itself as a bound: every lateral bound rests on it."""

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING
 
-VerdictId = Literal["inside", "outside", "not_shown", "not_believable", "nothing_judged"]
-BeliefState = Literal["unchecked", "supported", "partial", "few", "copied", "short", "contradicted", "refuted"]
+from navbound.records.verdict import LEAST_SHARE
 
-LEAST_SHARE = 0.95
-"""Least share of all expected epochs that must be judged with status ok before "inside" may be said.
-
-RNP asks for a total system error within the RNP value during at least 95 % of the total flight time (ICAO Doc 9613); time that could not
-be judged is time that was not shown to be inside. Provenance: re-derived (docs/decisions/0020)."""
+if TYPE_CHECKING:
+    from navbound.records.verdict import BeliefState, VerdictId
 
 REFUTED_AT = 1e-3
 """Probability of the data under the claimed bounds at which they are taken as false (docs/methods/coverage.md). Provenance: ours."""

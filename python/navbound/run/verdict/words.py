@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navbound.methods import method
-from navbound.run.numbers import level, share
-from navbound.run.verdict.rule import FEW_EPOCHS, LEAST_SHARE
+from navbound.records.verdict import LEAST_SHARE
+from navbound.run.verdict.numbers import level, share
+from navbound.run.verdict.rule import FEW_EPOCHS
 
 if TYPE_CHECKING:
-    from navbound.run.records import Belief, BoundCheck, LevelCheck, Verdict
+    from navbound.records.run import Belief, BoundCheck, LevelCheck, Verdict
 
 WHOLE_BELOW = 0.01
 """Risk below which a bound that every error respects needs no interval: hardly an epoch was to be expected beyond it."""

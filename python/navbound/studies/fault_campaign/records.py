@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound.run.record import Record
+from navbound.records.base import Record
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from navbound.scale import Work
 
-SCENARIO = Path(__file__).parents[2] / "scenario" / "studies" / "fault-campaign.toml"
+SCENARIO = Path(__file__).parents[2] / "scenario" / "shipped" / "studies" / "fault-campaign.toml"
 FLIGHTS = 5
 HEALTHY = "healthy"
 _BY_ID = {kind.id: kind for kind in KINDS}

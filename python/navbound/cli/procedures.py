@@ -1,0 +1,170 @@
+"""`navbound procedures`: what a navigation database holds, one procedure of it, and what contradicts itself."""
+
+from __future__ import annotations
+
+import json as encoder
+import math
+import sys
+from collections import Counter
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.table import Table
+
+from navbound.cli.parts import Json, err_console, out_console
+from navbound.errors import FormatError, InputError
+from navbound.units import METRES_PER_NM
+
+if TYPE_CHECKING:
+    from navbound.procedures import Database, Procedure
+    from navbound.run.procedure import Flown
+
+app = typer.Typer(help="Published procedures of a navigation database (ARINC 424).", no_args_is_help=True, rich_markup_mode=None)
+File = Annotated[Path, typer.Argument(help="Navigation database: ARINC 424, 132 characters a line, plain or gzip.")]
+
+
+@app.command("list")
+def list_command(
+    file: File,
+    airport: Annotated[str | None, typer.Option(help="Only one airport.")] = None,
+    kind: Annotated[str | None, typer.Option(help="Only sid, star or approach.")] = None,
+    json: Json = False,
+) -> None:
+    """List procedures with their transitions and lines of minima."""
+    if kind not in {None, "sid", "star", "approach"}:
+        raise InputError("kind", str(kind), domain="sid, star or approach")
+    database = _read(file)
+    shown = [e for e in database.entries if airport in {None, e.airport} and kind in {None, e.kind}]
+    if not shown:
+        raise InputError("airport", str(airport), domain=f"airports with procedures in {file}")
+    if json:
+        _print_json({"file": str(file), "header": database.header, "counts": database.counts, "procedures": [asdict(e) for e in shown]})
+        return
+    table = Table(title=f"{file.name}: {len(shown)} procedures")
+    for heading in ("airport", "kind", "procedure", "transitions", "legs", "lines of minima", "line"):
+        table.add_column(heading, overflow="fold")
+    for e in shown:
+        names = ", ".join(dict.fromkeys(r.transition for r in e.routes if r.transition))
+        levels = ", ".join(f"RNP {x.rnp_m / METRES_PER_NM:.3g}" for x in e.levels)
+        table.add_row(e.airport, e.kind, e.ident, names, str(sum(r.n_legs for r in e.routes)), levels, str(e.line))
+    out_console.print(table)
+    _say(database)
+
+
+@app.command("show")
+def show_command(
+    file: File,
+    name: Annotated[str, typer.Argument(help="AIRPORT/PROCEDURE[:TRANSITION], such as KDEN/H26-Z:FUZZZ.")],
+    line: Annotated[str | None, typer.Option("--line", help="Line of minima that is flown, such as 'RNP 0.3'.")] = None,
+    missed: Annotated[bool, typer.Option("--missed", help="With the missed approach.")] = False,
+    defaults: Annotated[bool, typer.Option("--defaults", help="Legs without a coded RNP take the default of the specification.")] = False,
+    out: Annotated[Path | None, typer.Option("--out", help="HTML page with plan and profile to write.")] = None,
+    json: Json = False,
+) -> None:
+    """Show the legs of one procedure, and with --out its plan and profile as a page."""
+    from navbound.procedures.names import parts  # noqa: PLC0415
+    from navbound.report import procedure as drawn  # noqa: PLC0415
+
+    database = _read(file)
+    airport, ident, transition = parts(name)
+    procedure = database.procedure(airport, ident, transition, missed=missed, line=line, defaults=defaults)
+    lines = {x.line for x in procedure.legs} | {x.line for x in procedure.levels}
+    findings = [f for f in database.contradictions(airport) if f.procedure == ident and f.line in lines]
+    if out is not None:
+        _write(out, drawn.page(procedure, findings))
+    if json:
+        _print_json(_plain(procedure) | {"findings": [asdict(f) for f in findings]})
+        return
+    table = Table(
+        title=f"{procedure.name}, {procedure.length_m / METRES_PER_NM:.2f} NM" if math.isfinite(procedure.length_m) else procedure.name
+    )
+    for heading in drawn.HEADINGS:
+        table.add_column(heading, overflow="fold")
+    for leg in procedure.legs:
+        table.add_row(*drawn.cells(leg))
+    out_console.print(table)
+    for note in drawn.notes(procedure, findings):
+        out_console.print(note.text, markup=False, highlight=False)
+    if out is not None:
+        out_console.print(f"Page: {out.resolve()}", markup=False, highlight=False, soft_wrap=True)
+
+
+@app.command("check")
+def check_command(
+    file: File,
+    airport: Annotated[str | None, typer.Option(help="Only one airport.")] = None,
+    remarks: Annotated[bool, typer.Option("--remarks", help="List remarks too, which contradict nothing.")] = False,
+    json: Json = False,
+) -> None:
+    """Find contradictions in the published data, each with its line."""
+    database = _read(file)
+    findings = database.contradictions(airport)
+    contradictions = [f for f in findings if not f.remark]
+    others = Counter(f.kind for f in findings if f.remark)
+    if json:
+        refused = [asdict(r) for r in database.refused]
+        rows = [asdict(f) | {"where": f.where} for f in findings]
+        _print_json({"file": str(file), "counts": database.counts, "n_refused": database.n_refused, "refused": refused, "findings": rows})
+        return
+    table = Table(title=f"{file.name}: {len(contradictions)} contradictions")
+    for heading in ("line", "where", "what"):
+        table.add_column(heading, overflow="fold")
+    for f in findings if remarks else contradictions:
+        table.add_row(str(f.line), f.where, f.words)
+    out_console.print(table)
+    if others:
+        counted = ", ".join(f"{n} {kind}" for kind, n in sorted(others.items()))
+        out_console.print(f"Remarks: {counted}" + ("." if remarks else " (--remarks lists them)."), markup=False, highlight=False)
+    _say(database)
+
+
+def flown(name: str | None, database: Path | None, line: str | None, *, defaults: bool, missed: bool) -> Flown | None:
+    """The procedure that `navbound analyze` judges against; options that would do nothing without it are refused."""
+    from navbound.run.procedure import Flown  # noqa: PLC0415
+
+    if name is None:
+        if database is not None or line is not None or defaults or missed:
+            raise InputError("procedure", "none", domain="it together with --database, --line, --defaults and --missed")
+        return None
+    if database is None:
+        raise InputError("database", "none", domain="a navigation database (ARINC 424) together with --procedure")
+    return Flown(database, name, line, defaults, missed)
+
+
+def _read(file: Path) -> Database:
+    from navbound import procedures  # noqa: PLC0415
+
+    return procedures.read(file)
+
+
+def _say(database: Database) -> None:
+    for words in database.notes:
+        err_console.print(words, markup=False, highlight=False)
+
+
+def _plain(procedure: Procedure) -> dict[str, Any]:
+    named = {"name": procedure.name, "file": procedure.file, "line": procedure.line, "length_m": procedure.length_m}
+    return named | {"legs": [asdict(x) for x in procedure.legs], "levels": [asdict(x) for x in procedure.levels], "notes": procedure.notes}
+
+
+def _print_json(value: object) -> None:
+    sys.stdout.write(encoder.dumps(_finite(value), indent=1) + "\n")
+
+
+def _finite(value: Any) -> Any:
+    """A number that does not exist is null: JSON has no NaN."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {k: _finite(v) for k, v in value.items()}
+    return [_finite(v) for v in value] if isinstance(value, list | tuple) else value
+
+
+def _write(out: Path, page: str) -> None:
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        out.write_text(page, encoding="utf-8")
+    except OSError as e:
+        raise FormatError(out, f"the page cannot be written: {e.strerror}") from e

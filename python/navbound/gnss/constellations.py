@@ -1,0 +1,241 @@
+"""Satellites and their orbits: nominal constellations, almanacs, elements of a caller's own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from navbound import _core
+from navbound.errors import FormatError, InputError
+from navbound.storage import packed
+from navbound.table.arguments import checked, checked_fields
+from navbound.table.arrays import flatten
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+CONSTELLATIONS = ("gps", "glonass", "galileo", "beidou", "sbas")
+"""The systems in the order of their index; a solution has one clock for each that it uses."""
+
+_LETTERS = "GRECS"
+BROADCAST_AGE_S = 86_400.0
+"""A broadcast record serves geometry this far from its reference time: by then a satellite stands some 1e-3 rad off. [s]"""
+
+
+@checked_fields
+@dataclass(frozen=True)
+class Orbits:
+    """Satellites and their Kepler elements at a reference instant; all arrays have shape (n,).
+
+    Attributes
+    ----------
+    satellite : tuple of str
+        Names, ``G01``.
+    constellation : ndarray of int
+        Index in :data:`CONSTELLATIONS`.
+    semi_major_m : ndarray
+        Semi-major axis. [m]
+    eccentricity : ndarray
+        0 for a circle. [1]
+    inclination_rad : ndarray
+        Inclination to the equator. [rad]
+    node_rad : ndarray
+        Longitude of the ascending node at the reference instant: right ascension counted from Greenwich. [rad]
+    perigee_rad : ndarray
+        Argument of perigee. [rad]
+    mean_anomaly_rad : ndarray
+        Mean anomaly at the reference instant; with ``perigee_rad`` 0 and a circle the argument of latitude. [rad]
+    node_rate_radps : ndarray
+        Rate of right ascension of the node; 0 where nothing is known of it. [rad/s]
+    reference_ns : int or None
+        GPS time of the reference instant; None for nominal orbits, and for an almanac whose week may have rolled over. [ns]
+    """
+
+    satellite: tuple[str, ...]
+    constellation: NDArray[np.int64]
+    semi_major_m: NDArray[np.float64]
+    eccentricity: NDArray[np.float64]
+    inclination_rad: NDArray[np.float64]
+    node_rad: NDArray[np.float64]
+    perigee_rad: NDArray[np.float64]
+    mean_anomaly_rad: NDArray[np.float64]
+    node_rate_radps: NDArray[np.float64]
+    reference_ns: int | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse columns of different lengths."""
+        for name in self.__dataclass_fields__:
+            shape = np.shape(getattr(self, name))
+            if name != "reference_ns" and shape != (len(self.satellite),):
+                raise InputError(name, f"shape {shape}", domain=f"one value a satellite, shape ({len(self.satellite)},)")
+
+    def __add__(self, other: Orbits) -> Orbits:
+        """Both sets of satellites; of two reference instants neither is kept unless they agree."""
+        names = [n for n in self.__dataclass_fields__ if n not in {"satellite", "reference_ns"}]
+        joined = {n: np.concatenate([getattr(self, n), getattr(other, n)]) for n in names}
+        reference = self.reference_ns if self.reference_ns == other.reference_ns else None
+        return Orbits(satellite=self.satellite + other.satellite, reference_ns=reference, **joined)
+
+    def without(self, satellites: Sequence[str]) -> Orbits:
+        """The same without some satellites, as for those that a notice takes out of service.
+
+        Raises
+        ------
+        InputError
+            One that is not among them.
+        """
+        absent = sorted(set(satellites) - set(self.satellite))
+        if absent:
+            raise InputError("without", ", ".join(absent), domain=f"satellites of these orbits: {', '.join(self.satellite)}")
+        kept = np.array([name not in satellites for name in self.satellite], dtype=bool)
+        columns = [n for n in self.__dataclass_fields__ if n not in {"satellite", "reference_ns"}]
+        names = tuple(name for name, keep in zip(self.satellite, kept, strict=True) if keep)
+        return Orbits(satellite=names, reference_ns=self.reference_ns, **{n: getattr(self, n)[kept] for n in columns})
+
+    def elements(self) -> NDArray[np.float64]:
+        """Seven elements a row: axis, eccentricity, inclination, node, perigee, mean anomaly, rate of the node; shape (n, 7)."""
+        columns = (
+            self.semi_major_m,
+            self.eccentricity,
+            self.inclination_rad,
+            self.node_rad,
+            self.perigee_rad,
+            self.mean_anomaly_rad,
+            self.node_rate_radps,
+        )
+        return np.ascontiguousarray(np.stack(columns, axis=-1), dtype=np.float64)
+
+
+@checked
+def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bool = False) -> Orbits:
+    """Nominal constellation as data that ships with navbound, or an almanac of GPS.
+
+    Parameters
+    ----------
+    name : {"gps", "gps-expanded", "galileo", "beidou"}, str or Path
+        GPS: 24 slots of the standard positioning service's performance standard; expanded: the 27 with its slots B1, D2 and F2 split in
+        two. Galileo: 24 in medium orbits (Walker 24/3/1).
+        BeiDou-3: 24 likewise, three inclined geosynchronous, three geostationary. Join them with ``+``. Anything else is the path of an
+        almanac, YUMA or SEM, or of a RINEX navigation file: the healthy satellites with a record within a day.
+    near_ns : int, optional
+        A GPS time within ten years of the almanac. Its week has ten bits and may have rolled over: without a time near it
+        ``reference_ns`` is None unless the file holds a full week. [ns]
+    unhealthy : bool, optional
+        Keep satellites that the almanac calls unhealthy.
+
+    Returns
+    -------
+    Orbits
+        Times count from its reference instant: the almanac's time of applicability.
+
+    Raises
+    ------
+    InputError
+        Neither a shipped name nor a file.
+    FormatError
+        Not an almanac, with line and field.
+    """
+    shipped = _core.nominal_constellations()
+    if str(name) in shipped:
+        found = dict(shipped[str(name)])
+        found["node_rate_radps"] = np.zeros(len(found["satellite"]))
+        kept = np.ones(len(found["satellite"]), dtype=bool)
+    else:
+        path = Path(name)
+        if not path.exists():
+            raise InputError("name", str(name), domain=f"one of {', '.join(shipped)}, or the path of an almanac")
+        content = packed.read(path)
+        if _is_navigation(content):
+            return _broadcast(content, path, near_ns)
+        found = _core.read_almanac(content, str(path), near_ns)
+        kept = (np.asarray(found.pop("health")) == 0) | unhealthy
+    reference = found.pop("reference_ns", None)
+    satellites = tuple(s for s, keep in zip(found.pop("satellite"), kept, strict=True) if keep)
+    indices = np.asarray(found.pop("constellation"), dtype=np.int64)[kept]
+    columns = {column: values[kept] for column, values in found.items()}
+    return Orbits(satellite=satellites, constellation=indices, reference_ns=reference, **columns)
+
+
+def _is_navigation(content: bytes) -> bool:
+    """Whether a file begins like a RINEX one."""
+    return b"RINEX VERSION" in content[:4096].split(b"\n", 1)[0]
+
+
+def _broadcast(content: bytes, path: Path, near_ns: int | None) -> Orbits:
+    """Orbits of a RINEX navigation file at an instant, by default the middle of its records."""
+    navigation = _core.Navigation([(content, str(path))])
+    records = navigation.records()
+    times = records["orbit_time_ns"]
+    if len(times) == 0:
+        raise FormatError(path, "holds no orbit of GPS, Galileo or BeiDou")
+    first, last = int(times.min()), int(times.max())
+    reference = (first + last) // 2 if near_ns is None else near_ns
+    # Geostationary satellites of BeiDou count from a tilted frame, which plain elements do not know.
+    tilted = {s for s, m in zip(records["satellite"], records["message"], strict=True) if m == "D2"}
+    names: list[str] = []
+    indices: list[int] = []
+    rows: list[NDArray[np.float64]] = []
+    for index in range(len(CONSTELLATIONS)):
+        for name, row, age in zip(*navigation.orbits(index, reference), strict=True):
+            if abs(age) <= BROADCAST_AGE_S and name not in tilted:
+                names.append(name)
+                indices.append(index)
+                rows.append(row)
+    if not names:
+        raise InputError("near_ns", reference, "ns", f"a time within a day of the file's records, [{first}, {last}]")
+    axis, eccentricity, inclination, node, perigee, anomaly, node_rate = np.ascontiguousarray(np.stack(rows).T)
+    of = np.array(indices, dtype=np.int64)
+    return Orbits(tuple(names), of, axis, eccentricity, inclination, node, perigee, anomaly, node_rate, reference)
+
+
+@checked
+def nominal(
+    semi_major_m: ArrayLike,
+    inclination_rad: ArrayLike,
+    node_rad: ArrayLike,
+    latitude_argument_rad: ArrayLike,
+    *,
+    eccentricity: ArrayLike = 0.0,
+    perigee_rad: ArrayLike = 0.0,
+    system: str = "gps",
+) -> Orbits:
+    """Orbits from elements of your own.
+
+    Parameters
+    ----------
+    semi_major_m : array_like
+        Semi-major axis. [m]
+    inclination_rad, node_rad : array_like
+        Inclination, and longitude of the ascending node at the reference instant. [rad]
+    latitude_argument_rad : array_like
+        Argument of latitude at the reference instant; for an ellipse the mean anomaly plus ``perigee_rad``. [rad]
+    eccentricity : array_like, optional
+        0 for a circle. [1]
+    perigee_rad : array_like, optional
+        Argument of perigee. [rad]
+    system : str, optional
+        One of :data:`CONSTELLATIONS`.
+
+    Raises
+    ------
+    InputError
+        Shapes that do not broadcast, or a system that is not there. Elements are checked where they are used.
+    """
+    if system not in CONSTELLATIONS:
+        raise InputError("system", system, domain=f"one of {', '.join(CONSTELLATIONS)}")
+    _, (a, i, node, latitude, e, perigee) = flatten(
+        semi_major_m=(semi_major_m, ()),
+        inclination_rad=(inclination_rad, ()),
+        node_rad=(node_rad, ()),
+        latitude_argument_rad=(latitude_argument_rad, ()),
+        eccentricity=(eccentricity, ()),
+        perigee_rad=(perigee_rad, ()),
+    )
+    index = CONSTELLATIONS.index(system)
+    names = tuple(f"{_LETTERS[index]}{k + 1:02d}" for k in range(a.size))
+    return Orbits(names, np.full(a.size, index, dtype=np.int64), a, e, i, node, perigee, latitude - perigee, np.zeros(a.size))

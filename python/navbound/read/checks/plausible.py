@@ -1,0 +1,246 @@
+"""Can the recorded positions have been flown? Every recorded track is asked before any bound is formed."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import polars as pl
+
+from navbound import _core, status
+from navbound.read.covariance import COLUMNS
+from navbound.read.tables.columns import POSITION_TIME
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    _Reports = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What an aircraft can do; docs/methods/recorded-tracks.md has the rule. Provenance: ours.
+
+    Attributes
+    ----------
+    max_speed_mps : float
+        Fastest speed over the ground, and the one assumed where none is reported.
+    speed_factor, speed_margin_mps : float
+        Allowed over a reported speed: rounding, acceleration.
+    latency_s : float
+        How much older than its time stamp a position may be.
+    fix_latency_s : float
+        The same where the recording says when a position was valid: what such times are wrong by.
+    noise_m : float
+        A distance that is never called a jump.
+    moving_mps : float
+        Reported speed from which an unchanged position counts as held; infinite for a receiver that is known to stand.
+    stale_after_s : float
+        Age from which a held position is no position.
+    settle_s : float
+        How long after a jump no position is believed.
+    """
+
+    max_speed_mps: float = 400.0
+    speed_factor: float = 1.25
+    speed_margin_mps: float = 25.0
+    latency_s: float = 10.0
+    fix_latency_s: float = 1.0
+    noise_m: float = 100.0
+    moving_mps: float = 15.0
+    stale_after_s: float = 2.0
+    settle_s: float = 30.0
+
+
+_UNDATED = -(2**63)
+
+_REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled", "position_late"]
+"""What the core found, by its codes."""
+
+
+@dataclass(frozen=True)
+class Plausibility:
+    """Counts of what was found.
+
+    Attributes
+    ----------
+    n_held, n_stale, n_jump, n_unsettled, n_late : int
+        Epochs by finding.
+    n_fast : int
+        Steps faster than the aircraft's own speed allows in the time between the positions.
+    fastest_mps : float
+        The fastest of these.
+    n_speed_doubted : int
+        Reported speeds beyond what those beside them allow.
+    n_steps_5km : int
+        Steps between successive epochs of more than 5 km.
+    largest_step_m : float
+        The largest of all steps.
+    words : str
+        The same as a sentence.
+    """
+
+    n_held: int
+    n_stale: int
+    n_jump: int
+    n_unsettled: int
+    n_late: int
+    n_fast: int
+    fastest_mps: float
+    n_speed_doubted: int
+    n_steps_5km: int
+    largest_step_m: float
+    words: str
+
+
+def impossible(rows: pl.DataFrame, lat: str, lon: str) -> pl.Series:
+    """Whether each position of one track, in the order of time, cannot have been reached, or follows a jump that has not settled."""
+    time, lat_rad, lon_rad = (np.ascontiguousarray(rows[name].to_numpy()) for name in ("time_ns", lat, lon))
+    undated, silent = np.full(rows.height, _UNDATED), np.full(rows.height, np.nan)
+    # A true position may stand still.
+    limits = asdict(Limits(moving_mps=np.inf))
+    track = _core.PlausibleTrack(limits, reports_speed=False)
+    reports = (time, undated, lat_rad, lon_rad, silent)
+    track.see(reports)
+    code = track.judge(reports, [])["finding"]
+    wrong = [_REASON_ID.index(id_) for id_ in ("position_jump", "position_not_settled", "position_late")]
+    return pl.Series(np.isin(code, wrong))
+
+
+def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFrame, Plausibility]:
+    """Give every epoch a status and a reason, and take the covariance from those whose position is not to be believed.
+
+    Parameters
+    ----------
+    epochs : DataFrame
+        Epoch table, sorted by track and time.
+    limits : Limits, optional
+        What an aircraft can do.
+
+    Returns
+    -------
+    epochs : DataFrame
+        With ``status``, ``reason_id`` and ``reason``; those that a solver gave before stand where nothing is implausible.
+    plausibility : Plausibility
+        What was found.
+    """
+    checker = Checker(limits or Limits())
+    return checker.check(epochs), checker.plausibility()
+
+
+class Checker:
+    """The same for a table that comes in pieces, each the continuation of the one before.
+
+    A track that goes on in a later piece must have been seen before the first of its pieces is checked (:meth:`see`), whole or as far as
+    its first reported speed: one that reports none is judged by the speed of all its steps.
+    """
+
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
+        self._tracks: dict[str, _core.PlausibleTrack] = {}
+        self._n = np.zeros(len(_REASON_ID), dtype=np.int64)
+        self._n_steps = self._n_fast = self._n_dated = self._n_rows = self._n_doubted = 0
+        self._largest = self._fastest = 0.0
+
+    def see(self, epochs: pl.DataFrame) -> None:
+        """See the next part of one track that goes on in other pieces."""
+        (group,) = _columns(epochs).partition_by("track", maintain_order=True)
+        self._track(group).see(_reports(group))
+
+    def check(self, epochs: pl.DataFrame, after: pl.DataFrame | None = None) -> pl.DataFrame:
+        """The next piece with status and reason of every epoch, as :func:`check` gives them; ``after`` begins with the rows after it."""
+        columns = _columns(epochs)
+        judged = []
+        for group in columns.partition_by("track", maintain_order=True):
+            name, seen = group["track"][0], group["track"][0] in self._tracks
+            track, reports = self._track(group), _reports(group)
+            if not seen:
+                track.see(reports)
+            judged.append(track.judge(reports, _speeds_after(name, after)))
+            # Rows are in the order of tracks: only the last one may go on.
+            self._tracks = {name: track} | {k: v for k, v in self._tracks.items() if k > name}
+        names = ("finding", "step_m", "too_fast_mps", "speed_doubted")
+        code, step, fast, doubted = (np.concatenate([found[name] for found in judged]) for name in names)
+        self._n_doubted += int(doubted.sum())
+        self._count(code, step, fast, columns)
+        return _marked(epochs, code)
+
+    def _track(self, group: pl.DataFrame) -> _core.PlausibleTrack:
+        name = group["track"][0]
+        if name not in self._tracks:
+            self._tracks[name] = _core.PlausibleTrack(asdict(self._limits), reports_speed=False)
+        return self._tracks[name]
+
+    def _count(self, code: NDArray[np.uint8], step: NDArray[np.float64], fast: NDArray[np.float64], columns: pl.DataFrame) -> None:
+        self._n += np.bincount(code, minlength=len(_REASON_ID))
+        self._n_steps += int((step > 5000).sum())
+        self._largest = max(self._largest, float(step.max(initial=0.0)))
+        self._n_fast += int((fast > 0).sum())
+        self._fastest = max(self._fastest, float(fast.max(initial=0.0)))
+        self._n_dated += int((columns["fixed_ns"] != _UNDATED).sum())
+        self._n_rows += columns.height
+
+    def plausibility(self) -> Plausibility:
+        """What was found in all pieces so far."""
+        limits, n, n_steps, largest, fastest = self._limits, self._n, self._n_steps, self._largest, self._fastest
+        words = (
+            f"Plausibility: {n[3]} position jumps that cannot be flown ({n[4]} more epochs not settled after them), {n[2]} epochs with a "
+            f"position held for more than {limits.stale_after_s:g} s, {n[1]} with one held shorter; {n_steps} steps of more than 5 km "
+            f"between successive epochs, the largest {largest / 1e3:.1f} km."
+        )
+        if self._n_fast:
+            words += (
+                f" {self._n_fast} steps are faster than the aircraft's own speed in the time between the positions, the fastest "
+                f"{fastest:.0f} m/s; {n[5]} of them need a position that was older than {limits.stale_after_s:g} s and are marked."
+            )
+        if self._n_doubted:
+            words += f" {self._n_doubted} reported speeds are beyond what the speeds beside them allow, and were not used."
+        if self._n_dated:
+            words += (
+                f" {self._n_dated} of {self._n_rows} rows say when their position was valid; between those, steps are judged by that time."
+            )
+        held, stale, jump, unsettled, late = (int(k) for k in n[1:])
+        return Plausibility(held, stale, jump, unsettled, late, self._n_fast, fastest, self._n_doubted, n_steps, largest, words)
+
+
+def _columns(epochs: pl.DataFrame) -> pl.DataFrame:
+    speed = pl.col("ground_speed_mps") if "ground_speed_mps" in epochs.columns else pl.lit(None, pl.Float64)
+    fixed = pl.col(POSITION_TIME) if POSITION_TIME in epochs.columns else pl.lit(None, pl.Int64)
+    return epochs.select(
+        "track",
+        "time_ns",
+        fixed.fill_null(_UNDATED).alias("fixed_ns"),
+        "est_lat_rad",
+        "est_lon_rad",
+        speed.fill_null(np.nan).alias("speed"),
+    )
+
+
+def _speeds_after(track: str, after: pl.DataFrame | None) -> list[float]:
+    """Speeds of the first rows after a piece, of the track that goes on."""
+    if after is None or after.is_empty():
+        return []
+    rows = _columns(after.head(_core.SPEEDS_BESIDE))
+    return rows.filter(pl.col("track") == track)["speed"].to_list()
+
+
+def _reports(group: pl.DataFrame) -> _Reports:
+    time, valid, lat, lon, speed = (np.ascontiguousarray(group[c].to_numpy()) for c in group.columns[1:])
+    return time, valid, lat, lon, speed
+
+
+def _marked(epochs: pl.DataFrame, code: NDArray[np.uint8]) -> pl.DataFrame:
+    """Status and reason by the core's codes, and no covariance where the position is not believed."""
+    marked = status.with_reason(epochs, pl.Series("reason_id", _REASON_ID, dtype=pl.String).gather(code))
+    if "status" in epochs.columns:
+        solved = status.with_reason_id(epochs)
+        # The graver stands; of two alike, what was said before.
+        both = marked.select("status").with_columns(before=solved["status"])
+        stands = both.select((status.worse(pl.col("before"), pl.col("status")) == pl.col("before")).alias("stands"))["stands"]
+        marked = marked.with_columns(pl.when(stands).then(solved[c]).otherwise(pl.col(c)).alias(c) for c in status.COLUMNS)
+    believed = pl.col("status").is_in(status.USABLE)
+    marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COLUMNS if c in epochs.columns)
+    # One order of columns, whether the recording had a status or not.
+    said = ("reason_id", "status", "reason")
+    return marked.select(pl.exclude(*said), *said)

@@ -1,0 +1,147 @@
+"""Rows of one track and one time: the same again, or another position or bound, of which none can be believed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import polars as pl
+
+from navbound import status
+from navbound.records.frames import LEFT_OUT
+
+SAME_PLACE_M = 1.0
+"""Distance up to which two positions of one time are one, written with other digits. [m] Provenance: ours; five decimals of a degree."""
+
+EARTH_RADIUS_M = 6_371_000.0
+
+
+SAME_BOUND = 0.01
+"""Relative difference up to which two numbers of an accuracy or a bound are one, written with other digits. [1] Provenance: ours."""
+
+BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic", "hpl_m", "vpl_m", "hpe_m", "vpe_m")
+"""What a row states of its accuracy or its bound, beside its covariance."""
+
+ERRORS = ("nse_e_m", "nse_n_m", "nse_u_m", "stated_error_m")
+"""What a row states of its error. Two of one time are one as two positions are."""
+
+COVARIANCE = {
+    "cov_ee_m2": ("cov_ee_m2", "cov_ee_m2"),
+    "cov_en_m2": ("cov_ee_m2", "cov_nn_m2"),
+    "cov_nn_m2": ("cov_nn_m2", "cov_nn_m2"),
+    "cov_eu_m2": ("cov_ee_m2", "cov_uu_m2"),
+    "cov_nu_m2": ("cov_nn_m2", "cov_uu_m2"),
+    "cov_uu_m2": ("cov_uu_m2", "cov_uu_m2"),
+}
+"""Entries of a covariance and the variances whose geometric mean is their size: a correlation near zero has no size of its own."""
+
+_OTHER_PLACE = "another position has the same time"
+_OTHER_BOUND = "another accuracy, bound or error has the same time"
+
+
+@dataclass(frozen=True)
+class Repeats:
+    """What became of rows that share a time.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        One row a time; a contradicted one has status ``invalid_input``.
+    identical, contradicting : DataFrame
+        Rows left out: those that repeat the kept row of their time, and those with another position, bound or status.
+    """
+
+    epochs: pl.DataFrame
+    identical: pl.DataFrame
+    contradicting: pl.DataFrame
+
+
+def separate(epochs: pl.DataFrame) -> Repeats:
+    """One row a time out of rows sorted by track and time.
+
+    Two rows of one time contradict each other where their positions lie further apart than `SAME_PLACE_M` (``position_jump``: no vehicle is
+    in two places), or where both state an accuracy, a bound or an error and the numbers differ (``invalid_number``). Nobody knows which of
+    them is right, so the epoch is not believed. Where only the statuses differ, the graver counts.
+    """
+    key = ["track", "time_ns"]
+    again = (pl.all_horizontal(pl.col(k) == pl.col(k).shift(1) for k in key)).fill_null(value=False)
+    if not epochs.select(again.any()).item():
+        return Repeats(epochs, epochs.clear(), epochs.clear())
+    epochs = _gravest_first(epochs, key)
+    place, bound = _other_place(epochs, key), _other_bound(epochs, key)
+    status_differs = _differs("status", key) if "status" in epochs.columns else pl.lit(value=False)
+    marked = epochs.with_columns(again.alias("__again"), place.alias("__place"), bound.alias("__bound"), status_differs.alias("__status"))
+    doubted = marked.with_columns(pl.col("__place", "__bound").any().over(key)).filter(~pl.col("__again"))
+    kept = _refused(doubted.drop(_MARKS), doubted.select(_REASON).unnest("reason"))
+    repeated = marked.filter("__again")
+    contradicts = repeated.select(pl.any_horizontal("__place", "__bound", "__status")).to_series()
+    plain = repeated.drop(_MARKS)
+    return Repeats(kept, plain.filter(~contradicts), plain.filter(contradicts))
+
+
+_MARKS = ("__again", "__place", "__bound", "__status")
+_REASON = pl.struct(
+    reason_id=pl.when("__place").then(pl.lit("position_jump")).when("__bound").then(pl.lit("invalid_number")),
+    sentence=pl.when("__place").then(pl.lit(_OTHER_PLACE)).when("__bound").then(pl.lit(_OTHER_BOUND)),
+).alias("reason")
+
+
+def _gravest_first(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
+    """The row of the gravest status first within its time; a status that the list does not know is the gravest."""
+    if "status" not in epochs.columns:
+        return epochs
+    place = {id_: k for k, id_ in enumerate(status.STATUSES)}
+    rank = pl.col("status").replace_strict(place, default=len(place), return_dtype=pl.Int64)
+    # An empty field says nothing.
+    return (
+        epochs.with_columns(rank.fill_null(-1).alias("__rank"))
+        .sort(*key, "__rank", descending=[False, False, True], maintain_order=True)
+        .drop("__rank")
+    )
+
+
+def _differs(name: str, key: list[str]) -> pl.Expr:
+    return (pl.col(name) != pl.col(name).first().over(key)).fill_null(value=False)
+
+
+def _other_place(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
+    """Further than `SAME_PLACE_M` from the first position of the time, in the plane or, where both have one, in height."""
+    if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
+        return pl.lit(value=False)
+    lat, lon = pl.col("est_lat_rad"), pl.col("est_lon_rad")
+    north = EARTH_RADIUS_M * (lat - lat.first().over(key))
+    # A meridian and the same one a turn further are one.
+    east = EARTH_RADIUS_M * lat.cos() * ((lon - lon.first().over(key)) / 2).sin() * 2
+    # A NaN is no small distance.
+    here = (north**2 + east**2 <= SAME_PLACE_M**2).fill_null(value=False)
+    if "est_h_m" not in epochs.columns:
+        return ~here
+    apart = (pl.col("est_h_m") - pl.col("est_h_m").drop_nulls().first().over(key)).abs() > SAME_PLACE_M
+    return ~here | apart.fill_null(value=False)
+
+
+def _other_bound(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
+    """Any number of the accuracy, bound or error that differs from the first that its time states; an empty field states nothing."""
+    size = {name: pl.col(name).abs() for name in BOUNDS if name in epochs.columns}
+    for name, (one, other) in COVARIANCE.items():
+        if {name, one, other} <= set(epochs.columns):
+            size[name] = (pl.col(one) * pl.col(other)).sqrt()
+
+    def first(name: str) -> pl.Expr:
+        return pl.col(name).drop_nulls().first().over(key)
+
+    differs = [(pl.col(name) - first(name)).abs() > SAME_BOUND * of.max().over(key) for name, of in size.items()]
+    differs += [(pl.col(name) - first(name)).abs() > SAME_PLACE_M for name in ERRORS if name in epochs.columns]
+    return pl.any_horizontal(*(each.fill_null(value=False) for each in differs)) if differs else pl.lit(value=False)
+
+
+def _refused(kept: pl.DataFrame, reasons: pl.DataFrame) -> pl.DataFrame:
+    if reasons["reason_id"].is_null().all():
+        return kept
+    if "status" not in kept.columns:
+        kept = kept.with_columns(pl.lit("ok").alias("status"))
+    return status.overridden(kept, reasons["reason_id"], reasons["sentence"])
+
+
+def left_out(rows: pl.DataFrame) -> pl.DataFrame:
+    """Track and time of rows that cannot be judged."""
+    return rows.select(pl.col(name).cast(dtype) for name, dtype in LEFT_OUT.items())

@@ -1,0 +1,374 @@
+"""Which column of a table is what, and in which unit: known names, and what a caller declares."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from navbound.errors import FormatError, InputError
+from navbound.units import METRES_PER_FT, METRES_PER_NM, MPS_PER_KT
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Iterable, Mapping, Sequence
+    from pathlib import Path
+
+_DEG = math.pi / 180.0
+
+UNITS: dict[str, dict[str, float]] = {
+    "rad": {"rad": 1.0, "deg": _DEG, "°": _DEG},
+    "m": {"m": 1.0, "ft": METRES_PER_FT, "km": 1000.0, "nm": METRES_PER_NM},
+    "m2": {"m2": 1.0, "m^2": 1.0, "m²": 1.0},
+    "mps": {
+        "mps": 1.0,
+        "m/s": 1.0,
+        "kt": MPS_PER_KT,
+        "kts": MPS_PER_KT,
+        "kn": MPS_PER_KT,
+        "km/h": 1 / 3.6,
+        "ft/min": METRES_PER_FT / 60,
+        "fpm": METRES_PER_FT / 60,
+    },
+    "1": {"1": 1.0, "": 1.0},
+    "time": {},
+    "text": {},
+}
+"""Units a column may be written in, by SI unit: factor to SI."""
+
+TIME_UNITS = ("gps_ns", "gps_s", "gps_week", "gps_tow_s", "utc", "utc_s", "utc_ms", "utc_us", "utc_ns", "utc_text")
+"""Ways to write a time; `utc` tells Unix seconds, milli-, micro- and nanoseconds apart by their size, and ISO 8601 text by its looks."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A column of the epoch table that a file may hold.
+
+    Attributes
+    ----------
+    name : str
+        Its name in docs/notation.md.
+    si : str
+        Its SI unit, a key of `UNITS`.
+    low, high : float
+        What is possible, in SI.
+    aliases : dict
+        Known names, in lower case, to the unit they are in.
+    """
+
+    name: str
+    si: str
+    low: float
+    high: float
+    aliases: dict[str, str]
+
+
+def _q(name: str, si: str, low: float, high: float, **aliases: str) -> Quantity:
+    return Quantity(
+        name, si, low, high, {name: si} | {k: v for unit, names in aliases.items() for k, v in ((n, unit) for n in names.split())}
+    )
+
+
+_INF = math.inf
+
+QUANTITIES: tuple[Quantity, ...] = (
+    _q("est_lat_rad", "rad", -math.pi / 2, math.pi / 2, deg="latitude lat lat_deg latitude_deg est_lat_deg", rad="lat_rad latitude_rad"),
+    _q(
+        "est_lon_rad",
+        "rad",
+        -math.pi,
+        2 * math.pi,
+        deg="longitude lon lng long lon_deg longitude_deg est_lon_deg",
+        rad="lon_rad longitude_rad",
+    ),
+    _q(
+        "est_h_m",
+        "m",
+        -2e4,
+        1e8,
+        m="h_m height height_m ellipsoid_height ellipsoidal_height",
+        ft="geoaltitude geoaltitude_ft alt_geom height_ft",
+    ),
+    _q("altitude_m", "m", -2e3, 1e5, m="alt_m", ft="altitude altitude_ft alt_baro pressure_altitude"),
+    _q("ground_track_rad", "rad", -2 * math.pi, 2 * math.pi, deg="track track_deg ground_track true_track cog"),
+    _q("ground_speed_mps", "mps", 0.0, 2e4, kt="groundspeed ground_speed gs ground_speed_kt velocity_kt sog", mps="speed_mps vel_m_s"),
+    _q("vel_n_mps", "mps", -2e4, 2e4, mps="vel_n_m_s vn_mps vn_m_s vn velocity_n velocity_north vel_north north_velocity v_north"),
+    _q("vel_e_mps", "mps", -2e4, 2e4, mps="vel_e_m_s ve_mps ve_m_s ve velocity_e velocity_east vel_east east_velocity v_east"),
+    _q(
+        "vertical_rate_mps",
+        "mps",
+        -2e3,
+        2e3,
+        **{"ft/min": "vertical_rate vertrate baro_rate geom_rate vertical_rate_fpm"},
+        mps="climb_rate_mps",
+    ),
+    _q("truth_lat_rad", "rad", -math.pi / 2, math.pi / 2, deg="truth_lat_deg truth_lat truth_latitude"),
+    _q("truth_lon_rad", "rad", -math.pi, 2 * math.pi, deg="truth_lon_deg truth_lon truth_lng truth_longitude"),
+    _q("truth_h_m", "m", -2e4, 1e8, m="truth_h truth_height truth_height_m"),
+    _q("cov_ee_m2", "m2", 0.0, _INF),
+    _q("cov_en_m2", "m2", -_INF, _INF),
+    _q("cov_nn_m2", "m2", 0.0, _INF),
+    _q("cov_eu_m2", "m2", -_INF, _INF),
+    _q("cov_nu_m2", "m2", -_INF, _INF),
+    _q("cov_uu_m2", "m2", 0.0, _INF),
+    _q("sigma_e_m", "m", 0.0, _INF, m="sde sde_m std_e std_e_m sigma_east_m"),
+    _q("sigma_n_m", "m", 0.0, _INF, m="sdn sdn_m std_n std_n_m sigma_north_m"),
+    _q("sigma_u_m", "m", 0.0, _INF, m="sdu sdu_m std_u std_u_m sigma_up_m"),
+    _q("epu_m", "m", 0.0, _INF, m="epu anp_m", nm="epu_nm anp_nm"),
+    _q("rc_m", "m", 0.0, _INF, m="rc", nm="rc_nm"),
+    _q("nac_p", "1", 0.0, 15.0, **{"1": "nacp nac_p"}),
+    _q("nic", "1", 0.0, 15.0, **{"1": "nic"}),
+    _q("n_sv", "1", 0.0, 255.0, **{"1": "ns n_sats satellites"}),
+    _q("track", "text", 0.0, 0.0, text="icao24 icao track_id flight_id aircraft_id"),
+    _q("callsign", "text", 0.0, 0.0, text="callsign flight"),
+    _q("hpl_m", "m", 0.0, 1e9, m="hpl"),
+    _q("vpl_m", "m", 0.0, 1e9, m="vpl"),
+    _q("status", "text", 0.0, 0.0),
+    _q("reason_id", "text", 0.0, 0.0),
+    _q("reason", "text", 0.0, 0.0),
+)
+
+LEVEL_QUANTITIES: tuple[Quantity, ...] = (
+    _q("nse_e_m", "m", -1e8, 1e8, m="eerr e_err east_error_m"),
+    _q("nse_n_m", "m", -1e8, 1e8, m="nerr n_err north_error_m"),
+    _q("nse_u_m", "m", -1e8, 1e8, m="uerr u_err up_error_m"),
+    _q("hpe_m", "m", 0.0, 1e8, m="hpe"),
+    _q("vpe_m", "m", -1e8, 1e8, m="vpe"),
+    _q("hdop", "1", 0.0, 1e6, **{"1": "hdop"}),
+    _q("vdop", "1", 0.0, 1e6, **{"1": "vdop"}),
+    _q("mode", "text", 0.0, 0.0),
+)
+"""What a table of errors and protection levels may hold beyond a recorded track."""
+
+STATED_QUANTITIES: tuple[Quantity, ...] = (
+    *(q for q in LEVEL_QUANTITIES if q.name in {"nse_e_m", "nse_n_m"}),
+    _q("nse_h_m", "m", 0.0, 1e8, m="hpe_m hpe horizontal_error_m"),
+    _q("nse_cross_m", "m", -1e8, 1e8),
+    _q("nse_along_m", "m", -1e8, 1e8),
+    _q("tse_m", "m", -1e8, 1e8, m="tse"),
+    _q("fte_m", "m", -1e8, 1e8, m="fte"),
+    _q("alert", "text", 0.0, 0.0, text="alert_state alarm"),
+)
+"""What a recorded track may state against its own positions. It bounds nothing; the verdict weighs it."""
+
+TRANSPONDER = frozenset({"squawk", "spi"})
+"""Columns beside which `alert` is the transponder's: a change of its code."""
+
+TIME_NAMES: dict[str, str] = {
+    "time_ns": "gps_ns", "gps_time_ns": "gps_ns", "gps_time_s": "gps_s", "gps_s": "gps_s",
+    "gps_week": "gps_week", "week": "gps_week", "gps_tow": "gps_tow_s", "gps_tow_s": "gps_tow_s", "tow_s": "gps_tow_s", "tow": "gps_tow_s",
+    "timestamp": "utc", "time": "utc", "utc": "utc", "datetime": "utc", "time_utc": "utc", "utc_time": "utc",
+    "unix_time": "utc_s", "unix_time_s": "utc_s", "time_s": "utc_s", "timestamp_ms": "utc_ms", "time_ms": "utc_ms",
+    "time_utc_usec": "utc_us", "utc_us": "utc_us", "timestamp_us": "utc_us", "time_us": "utc_us", "timeus": "utc_us",
+}  # fmt: skip
+"""Known names of time columns to the way they are written."""
+
+POSITION_TIME = "position_time_ns"
+"""When a position was valid, GPS time [ns]; the row's own time is that of the report."""
+
+POSITION_TIME_NAMES = ("position_time_ns", "last_position", "lastposupdate", "time_position", "position_time", "lastposition")
+"""Columns that say when a row's position was valid, where its time is that of the report."""
+
+
+OPENSKY_STATES: dict[str, tuple[str, str]] = {
+    "est_h_m": ("geoaltitude", "m"),
+    "altitude_m": ("baroaltitude", "m"),
+    "ground_track_rad": ("heading", "deg"),
+    "ground_speed_mps": ("velocity", "mps"),
+    "vertical_rate_mps": ("vertrate", "mps"),
+}
+"""State vectors as the OpenSky Network stores them, in SI; its ``heading`` is the track. A table is one when it has all these names,
+some of which mean something else elsewhere."""
+
+
+_LONGEST_NAME = 80
+"""Longer names are compared with nothing: likeness takes quadratic time. [1]"""
+_MOST_COMPARED = 1000
+"""Columns whose names are compared with the known ones. [1]"""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the file, what it holds, and how it is written."""
+
+    quantity: str
+    name: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """What each column of a file is.
+
+    Attributes
+    ----------
+    columns : dict
+        Quantity to column; times under ``gps_ns``, ``gps_week`` and so on stand in `times`.
+    times : list of Column
+        One column, or week and time of week.
+    unused : list of str
+        Columns that nothing is known about.
+    """
+
+    columns: dict[str, Column]
+    times: list[Column]
+    unused: list[str]
+
+
+POSITION = ("est_lat_rad", "est_lon_rad")
+"""What the rows of a recorded track need beside a time."""
+
+
+def assign(
+    names: Iterable[str],
+    declared: Mapping[str, str] | None,
+    path: Path,
+    *,
+    needs: Sequence[str] = POSITION,
+    texts: Container[str] = (),
+) -> Assignment:
+    """Find what each column is.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Columns of the file.
+    declared : mapping, optional
+        Quantity, or ``time``, to ``column`` or ``column:unit``; goes before the known names.
+    path : Path
+        The file, for messages.
+    needs : sequence of str
+        Quantities without which the file is refused, beside a time; other than a position they are those of errors and protection levels.
+    texts : container of str
+        Columns that hold words and no number: one named `track` is then a flight's name, not its direction.
+
+    Raises
+    ------
+    InputError
+        A declaration that names an unknown quantity or unit.
+    FormatError
+        A declared column that the file lacks, or no time, latitude or longitude: what is needed and the nearest names found.
+    """
+    names = list(names)
+    quantities = QUANTITIES + (STATED_QUANTITIES if tuple(needs) == POSITION else LEVEL_QUANTITIES)
+    own = {"time_ns", "est_lat_rad"} <= set(names) or any(_plain(name)[0] == "track" and name in texts for name in names)
+    columns: dict[str, Column] = {}
+    times: list[Column] = []
+    for key, value in (declared or {}).items():
+        column = _declared(key, value, names, path, quantities)
+        if column.quantity == "time":
+            times.append(column)
+        else:
+            columns[key] = column
+    taken = {c.name for c in [*columns.values(), *times]}
+    if {_plain(name)[0] for name in names} & TRANSPONDER:
+        quantities = tuple(q for q in quantities if q.name != "alert")
+    if {name for name, _ in OPENSKY_STATES.values()} <= set(names):
+        states = {key: Column(key, name, unit) for key, (name, unit) in OPENSKY_STATES.items() if name not in taken}
+        columns = states | columns
+        taken |= {c.name for c in states.values()}
+    for quantity in quantities:
+        if quantity.name not in columns:
+            found = _known(quantity, [n for n in names if n not in taken], own=own)
+            if found is not None:
+                columns[quantity.name] = found
+                taken.add(found.name)
+    if not times:
+        times = _times([n for n in names if n not in taken])
+        taken |= {c.name for c in times}
+    _require(columns, times, names, path, needs)
+    return Assignment(columns, times, [n for n in names if n not in taken])
+
+
+def position_time(unused: list[str]) -> Column | None:
+    """The column that says when positions were valid, taken out of those that nobody uses; None where there is none."""
+    for name in unused:
+        if _plain(name)[0] in POSITION_TIME_NAMES:
+            unused.remove(name)
+            return Column("time", name, "gps_ns" if _plain(name)[0].endswith("_ns") else "utc")
+    return None
+
+
+@functools.lru_cache(maxsize=1024)
+def _plain(name: str) -> tuple[str, str | None]:
+    """``Latitude (deg)`` to ``latitude`` and ``deg``."""
+    stem, unit = name.strip(), None
+    if stem.endswith((")", "]")):
+        # By searches and no pattern: one with several runs of blanks takes quadratic time.
+        inside = stem[:-1]
+        last_closed = max(inside.rfind(")"), inside.rfind("]"))
+        opened = [at for bracket in "([" if (at := inside.find(bracket, last_closed + 1)) >= 0]
+        if opened:
+            stem, unit = inside[: min(opened)], inside[min(opened) + 1 :].strip().lower()
+    return re.sub(r"[\s\-.]+", "_", stem.strip().lower()), unit
+
+
+def _known(quantity: Quantity, names: list[str], *, own: bool) -> Column | None:
+    """Find the first known name, in the order of the aliases; ``own``: `track` is who flies, not whither, as in our own epoch table."""
+    plain = {_plain(name)[0]: name for name in reversed(names)}
+    if own and quantity.name in {"track", "ground_track_rad"}:
+        plain = {k: v for k, v in plain.items() if (k == "track") == (quantity.name == "track")}
+    elif quantity.name == "track":
+        plain.pop("track", None)
+    for alias, unit in quantity.aliases.items():
+        if alias in plain:
+            name = plain[alias]
+            written = _plain(name)[1]
+            return Column(quantity.name, name, written if written in UNITS[quantity.si] else unit)
+    return None
+
+
+def _times(names: list[str]) -> list[Column]:
+    plain = {_plain(name)[0]: name for name in reversed(names)}
+    found = [Column("time", plain[alias], unit) for alias, unit in TIME_NAMES.items() if alias in plain]
+    week = [c for c in found if c.unit == "gps_week"][:1]
+    tow = [c for c in found if c.unit == "gps_tow_s"][:1]
+    single = [c for c in found if c.unit not in {"gps_week", "gps_tow_s"}][:1]
+    return single or (week + tow if week and tow else [])
+
+
+def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Quantity, ...]) -> Column:
+    quantities = {q.name: q for q in known}
+    name, separator, unit = value.rpartition(":")
+    if not separator or name not in names:
+        name, unit = (value, "") if value in names or not separator else (name, unit)
+    if name not in names:
+        short = [n for n in names if len(n) <= _LONGEST_NAME]
+        near = ", ".join(difflib.get_close_matches(name[:_LONGEST_NAME], short, 3, 0.5)) or ", ".join(short[:12])
+        raise FormatError(path, f"there is no column “{name}”; found: {near}", 1, key)
+    if key in {"time", "time_ns"}:
+        unit = unit or TIME_NAMES.get(_plain(name)[0], "utc" if key == "time" else "gps_ns")
+        if unit not in TIME_UNITS:
+            raise InputError("columns", value, domain=f"units of time: {', '.join(TIME_UNITS)}")
+        return Column("time", name, unit)
+    if key not in quantities:
+        raise InputError("columns", key, domain=f"known quantities: time, {', '.join(quantities)}")
+    q = quantities[key]
+    plain, written = _plain(name)
+    unit = unit or (written if written in UNITS[q.si] else "") or q.aliases.get(plain, q.si)
+    if q.si != "text" and unit.lower() not in UNITS[q.si]:
+        raise InputError("columns", value, domain=f"units of {key}: {', '.join(u for u in UNITS[q.si] if u)}")
+    return Column(key, name, unit.lower())
+
+
+def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, wanted: Sequence[str]) -> None:
+    """Refuse a table without a time or a wanted quantity, and say what comes nearest."""
+    aliases = {q.name: list(q.aliases) for q in QUANTITIES + LEVEL_QUANTITIES}
+    needs = {"time": ([*times], list(TIME_NAMES))}
+    needs |= {name: ([columns[name]] if name in columns else [], aliases[name]) for name in wanted}
+    for need, (found, known) in needs.items():
+        if found:
+            continue
+        unit = {"time": "utc_s", "est_lat_rad": "deg", "est_lon_rad": "deg"}.get(need, "m")
+        short = [n for n in names if len(n) <= _LONGEST_NAME][:_MOST_COMPARED]
+        near = {n: max(difflib.SequenceMatcher(None, _plain(n)[0], a).ratio() for a in known) for n in short}
+        best = sorted(short, key=lambda n: -near[n])[:5]
+        raise FormatError(
+            path,
+            f"no column holds it (known names: {', '.join(known[:6])}, ...); the nearest of the {len(names)} found are "
+            f"{', '.join(best)}; if one of them is it, declare it: {need}=COLUMN:{unit}",
+            1,
+            need,
+        )

@@ -1,0 +1,171 @@
+"""A table to the epoch table: strict numbers in SI, GPS time, and a count of what did not fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import polars as pl
+
+from navbound import _core
+from navbound.errors import FormatError
+from navbound.read import receivers
+from navbound.read.checks import levels
+from navbound.read.checks.rejections import Rejections, Tally
+from navbound.read.checks.repeats import left_out
+from navbound.read.source import Source, load
+from navbound.read.tables.columns import POSITION, Assignment, assign
+from navbound.read.tables.table import LINE, Table, table
+from navbound.read.tables.values import Late, Values, one_row_a_time, texts
+from navbound.records.frames import LEFT_OUT
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from navbound.records.run import InputFile, Rejection
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One file read.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        Columns of docs/notation.md that the file holds: at least ``track``, ``time_ns``, ``est_lat_rad``, ``est_lon_rad``.
+    source : InputFile
+        Digest and size.
+    rejected : list of Rejection
+        What was left out.
+    unused : list of str
+        Columns of the file that were not understood.
+    notes : list of str
+        Doubts that a person should settle: a missing time zone, rows out of order, degrees that may be radians.
+    columns : dict
+        Quantity to the column it was read from and its unit.
+    left_out : DataFrame
+        ``track`` and ``time_ns`` of rows that were expected to hold a position and cannot be judged: without a position or a time, with a
+        refused value in one of them, or with another position, bound or status at the time of another row. A null time is not known.
+    """
+
+    epochs: pl.DataFrame
+    source: InputFile
+    rejected: list[Rejection]
+    unused: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    columns: dict[str, str] = field(default_factory=dict)
+    left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
+
+
+def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:
+    """Read a recorded track: CSV, JSON, Parquet, an RTKLIB solution file, or the log of a receiver.
+
+    Each may be packed by gzip, compress (``.Z``) or zip. Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183; they need the
+    extra ``receivers``.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    columns : mapping of str to str, optional
+        What a column is, where its name does not say: ``{"est_lat_rad": "breite:deg", "time": "zeit:utc_ms"}``.
+    needs : sequence of str
+        Columns of docs/notation.md without which a table is refused. Without a position among them it is a table of protection levels,
+        whose rows need a time alone.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be interpreted, or of whose rows more than a tenth is malformed.
+    InputError
+        A declared column that names no known quantity or unit; a log whose decoder is not installed.
+    """
+    source = load(path)
+    if source.kind == "rtklib":
+        return _rtklib(source)
+    if source.kind in {"ubx", "sbf", "novatel", "nmea"}:
+        return _log(source, source.kind)
+    found = table(source)
+    mapping = assign(found.columns, columns, source.path, needs=needs, texts=texts(found.frame))
+    return _epochs(source, found, mapping, [name for name in POSITION if name in needs])
+
+
+def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequence[str]) -> Reading:
+    rejections, values = found.rejections, Values(source.path, source.stem, mapping, required)
+    part = values.take(found.frame)
+    values.understand()
+    out, without = values.timed(part)
+    values.tally.into(rejections)
+    out, contradicting = _in_order(out, rejections, values.notes)
+    rejections.refuse_if_too_many(found.n_rows)
+    _not_empty(source, out)
+    lost = pl.concat([without, left_out(contradicting)])
+    return Reading(out.drop(LINE), source.record(found.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
+
+
+def _rtklib(source: Source) -> Reading:
+    d = _core.read_rtklib(source.text(), str(source.path))
+    rejections, notes = Rejections(source.path), list[str]()
+    refused = pl.DataFrame(d["refused"], schema=["line", "field", "reason", "text"], orient="row")
+    for (name, reason), group in refused.group_by("field", "reason", maintain_order=True):
+        rejections.add(f"{name}: {reason}", group.height, group["line"][0], group["text"][0])
+    cov = d["cov_m2"]
+    names = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
+    plain = {k: d[k] for k in ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m", "ground_speed_mps", "n_sv", "hpl_m", "vpl_m")}
+    out = pl.DataFrame({LINE: d["line"]} | plain | {name: cov[:, i] for i, name in enumerate(names)})
+    out = out.with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
+    out, contradicting = _in_order(out, rejections, notes)
+    rejections.refuse_if_too_many(d["n_rows"])
+    _not_empty(source, out)
+    empty = [c for c in out.columns if out[c].is_null().all()]
+    # A selection of constants alone has one row of them even where no row was refused.
+    without = refused.with_columns(track=pl.lit(source.stem), time_ns=pl.lit(None, pl.Int64)).select("track", "time_ns")
+    lost = _left_out(without, contradicting)
+    return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes, left_out=lost)
+
+
+def _log(source: Source, kind: receivers.Kind) -> Reading:
+    log = receivers.read(source, kind)
+    rejections = Rejections(source.path, "record")
+    for reason, (count, first, example, damaged) in log.left_out.items():
+        rejections.add(reason, count, first, example, malformed=damaged)
+    rejections.refuse_if_too_many(log.n_rows)
+    out = pl.DataFrame(log.rows, infer_schema_length=None)
+    _not_empty(source, out)
+    if "unix_ns" in out.columns:
+        gps = pl.Series("time_ns", _core.gps_from_unix_ns(np.ascontiguousarray(out["unix_ns"].fill_null(0).to_numpy(), dtype=np.int64)))
+        known = pl.coalesce("time_ns", gps) if "time_ns" in out.columns else gps
+        out = out.with_columns(known.alias("time_ns")).drop("unix_ns")
+    out = out.rename({"record": LINE}).with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
+    out, contradicting = _in_order(out, rejections, log.notes)
+    empty = [c for c in out.columns if out[c].is_null().all()]
+    lost = _left_out(contradicting)
+    return Reading(
+        out.drop(LINE, *empty), source.record(log.n_rows), rejections.records, notes=log.notes, columns=log.columns, left_out=lost
+    )
+
+
+def _left_out(*rows: pl.DataFrame) -> pl.DataFrame:
+    return pl.concat([left_out(each) for each in rows])
+
+
+def _not_empty(source: Source, out: pl.DataFrame) -> None:
+    if out.is_empty():
+        raise FormatError(source.path, "no row holds a time, a latitude and a longitude")
+
+
+def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """One row an instant, in the order of time; a repeated instant of a track is left out and counted. Second: rows that contradict."""
+    # Those of a table are null already.
+    out, without = levels.without_bound(out)
+    for name, at in without.items():
+        where = out.filter(at)
+        rejections.add(f"{name}: {levels.REASON}", where.height, where[LINE][0], "0 or less", malformed=False)
+    late, tally = Late(), Tally()
+    late.see(out)
+    notes += late.words(rejections.path, rejections.unit)
+    found = one_row_a_time(out, tally)
+    tally.into(rejections)
+    return found.epochs, found.contradicting

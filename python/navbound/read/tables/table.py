@@ -1,0 +1,251 @@
+"""Any table to columns of text or numbers, with the line each row stands on."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import polars as pl
+
+from navbound.errors import FormatError
+from navbound.read.checks.rejections import Rejections
+from navbound.read.tables.memory import require_free
+from navbound.storage import packed
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from navbound.read.source import Source
+
+LINE = "__line"
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows as they stand in the file.
+
+    Attributes
+    ----------
+    frame : DataFrame
+        The columns of the file, text where the file is text, and `LINE`.
+    rejections : Rejections
+        Rows that could not be taken apart.
+    n_rows : int
+        Rows in the file, used or not.
+    """
+
+    frame: pl.DataFrame
+    rejections: Rejections
+    n_rows: int
+
+    @property
+    def columns(self) -> list[str]:
+        """Names in the file."""
+        return [c for c in self.frame.columns if c != LINE]
+
+
+def table(source: Source) -> Table:
+    """Take a CSV, JSON or Parquet file apart.
+
+    Raises
+    ------
+    FormatError
+        The file is none of these, has no rows, or its columns differ in length.
+    """
+    found = {"csv": _csv, "json": _json, "parquet": _parquet}[source.kind](source)
+    if found.n_rows == 0:
+        raise FormatError(source.path, "no rows below the header")
+    found.rejections.refuse_if_too_many(found.n_rows)
+    return found
+
+
+def _csv(source: Source) -> Table:
+    """Text lines with a separator; lines with another number of fields than the header are left out and counted."""
+    require_free(source)
+    lines = lines_of(source.text(), 1)
+    if lines.is_empty():
+        raise FormatError(source.path, "nothing but comments")
+    layout = layout_of(source.path, lines)
+    rows = rows_of(source.path, layout, lines[1:])
+    rejections = Rejections(source.path)
+    if rows.bad is not None:
+        rejections.add(*rows.bad)
+    return Table(rows.frame, rejections, rows.n_rows)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What the first line of a text table says of the others."""
+
+    header: str
+    separator: str
+    names: list[str]
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Some rows of a text table: those of as many fields as the header, and of the others reason, count, line and text of the first."""
+
+    frame: pl.DataFrame
+    n_rows: int
+    bad: tuple[str, int, int, str] | None
+
+
+def lines_of(text: str, first_line: int) -> pl.DataFrame:
+    """Lines that are neither empty nor remarks, with their numbers; `first_line` is that of the first."""
+    lines = pl.DataFrame({"text": text.split("\n")}, schema={"text": pl.String}).with_columns(pl.col("text").str.strip_chars_end("\r"))
+    lines = lines.with_columns(pl.int_range(first_line, first_line + pl.len()).alias(LINE))
+    return lines.filter(pl.col("text").str.strip_chars() != "", ~pl.col("text").str.starts_with("#"))
+
+
+def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
+    """Separator and names of the first of these lines.
+
+    Raises
+    ------
+    FormatError
+        A name that stands twice.
+    """
+    header = str(lines["text"][0])
+    separator = max(",;\t", key=header.count)
+    return Layout(header, separator, _names(path, header, separator))
+
+
+def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
+    """Take lines below the header apart.
+
+    Raises
+    ------
+    FormatError
+        Lines that do not make as many rows.
+    """
+    # Separators within quotation marks do not count; a quotation mark that is left over opens a field that does not end.
+    bare = pl.col("text").str.replace_all(r'"[^"]*"', "")
+    counted = lines.with_columns(n=bare.str.count_matches(layout.separator, literal=True) + 1, open=bare.str.contains('"', literal=True))
+    n_fields = len(layout.names)
+    good = counted.filter(pl.col("n") == n_fields, ~pl.col("open"))
+    bad = counted.filter((pl.col("n") != n_fields) | pl.col("open"))
+    refused = None
+    if not bad.is_empty():
+        text, line, n, _ = bad.row(0)
+        refused = (f"a row with another number of fields than the header's {n_fields} (first: {n})", bad.height, line, text)
+    body = "\n".join([layout.header, *good["text"].to_list()]).encode()
+    schema = dict.fromkeys(map(str, range(n_fields)), pl.String)
+    try:
+        frame = pl.read_csv(io.BytesIO(body), separator=layout.separator, has_header=False, skip_rows=1, schema=schema)
+    except pl.exceptions.PolarsError as e:
+        raise FormatError(path, f"not a table: {e}") from e
+    if frame.height != good.height:
+        raise FormatError(path, f"not a table: {good.height} lines make {frame.height} rows")
+    named = {str(i): name for i, name in enumerate(layout.names) if name}
+    return Rows(frame.select(named.keys()).rename(named).with_columns(good[LINE]), counted.height, refused)
+
+
+def _names(path: Path, header: str, separator: str) -> list[str]:
+    names = [n.strip().strip('"') for n in header.split(separator)]
+    # Unnamed columns (a data frame's index, a separator at the end of the line) may be many: nothing can ask for them.
+    repeated = [name for name, n in Counter(names).items() if n > 1 and name]
+    if repeated:
+        raise FormatError(path, f"the column “{repeated[0]}” is named twice", 1)
+    return names
+
+
+def _parquet(source: Source) -> Table:
+    try:
+        stated = pl.scan_parquet(io.BytesIO(source.content))
+        n_rows, n_columns = stated.select(pl.len()).collect().item(), len(stated.collect_schema())
+        # Eight bytes a field: a column of one value packs to nothing.
+        packed.require_room(source.path, len(source.content), 8 * n_rows * n_columns)
+        frame = pl.read_parquet(io.BytesIO(source.content))
+    except (pl.exceptions.PolarsError, OSError) as e:
+        raise FormatError(source.path, f"damaged Parquet file: {str(e).splitlines()[0]}") from e
+    return Table(_counted(frame), Rejections(source.path, "record"), frame.height)
+
+
+def _json(source: Source) -> Table:
+    try:
+        data = json.loads(source.text())
+    except json.JSONDecodeError as e:
+        raise FormatError(source.path, f"not JSON: {e.msg}", e.lineno) from e
+    except RecursionError as e:
+        raise FormatError(source.path, "not a table: JSON nested too deeply") from e
+    rejections = Rejections(source.path, "record")
+    if isinstance(data, dict) and isinstance(data.get("trace"), list):
+        columns = _readsb(source, data)
+    elif isinstance(data, dict):
+        rows = {tuple(values) for values in data.values() if isinstance(values, dict)}
+        if len(rows) > 1:
+            raise FormatError(source.path, "not a table: its columns name different rows")
+        columns = {name: _column(source, name, values) for name, values in data.items()}
+    else:
+        columns = _records(source, data)
+    lengths = {len(values) for values in columns.values()}
+    if len(lengths) != 1:
+        raise FormatError(
+            source.path, f"not a table: columns of {' and '.join(map(str, sorted(lengths)))} items" if lengths else "no columns"
+        )
+    frame = pl.DataFrame({name: _series(name, values) for name, values in columns.items()})
+    return Table(_counted(frame), rejections, frame.height)
+
+
+def _counted(frame: pl.DataFrame) -> pl.DataFrame:
+    return frame.with_columns(pl.int_range(1, pl.len() + 1).alias(LINE))
+
+
+def _column(source: Source, name: str, values: Any) -> list[Any]:
+    """Take a column of the form {"0": v, "1": v} or [v, v]."""
+    if isinstance(values, dict):
+        return list(values.values())
+    if isinstance(values, list):
+        return values
+    raise FormatError(source.path, f"not a table: “{name}” is neither a column {{row: value}} nor a list", field=name)
+
+
+def _records(source: Source, data: list[Any]) -> dict[str, list[Any]]:
+    """Turn a list of objects into columns; a key that a record lacks is empty there."""
+    if not data or not all(isinstance(record, dict) for record in data):
+        raise FormatError(source.path, "not a table: a list of records {column: value} is needed")
+    names = dict.fromkeys(name for record in data for name in record)
+    return {name: [record.get(name) for record in data] for name in names}
+
+
+def _readsb(source: Source, data: dict[str, Any]) -> dict[str, list[Any]]:
+    """Take the trace of one aircraft apart, as readsb and its web services write it.
+
+    Rows are ``[seconds, lat, lon, pressure altitude ft or "ground", kt, deg, flags, ft/min, details, source, geometric altitude ft, ...]``;
+    quality indicators stand in the details, when they were received.
+    """
+    trace = data["trace"]
+    if not all(isinstance(row, list) and len(row) >= 9 for row in trace) or not isinstance(data.get("timestamp"), (int, float)):
+        raise FormatError(source.path, "not a readsb trace: a start time and rows of at least nine items are needed", field="trace")
+    details = [row[8] if isinstance(row[8], dict) else {} for row in trace]
+    start = data["timestamp"]
+    seconds = [row[0] for row in trace]
+    if not all(isinstance(s, (int, float)) for s in seconds):
+        raise FormatError(source.path, "not a readsb trace: rows begin with seconds", field="trace")
+    names = {"lat": 1, "lon": 2, "groundspeed": 4, "track": 5, "vertical_rate": 7}
+    columns = {name: [row[i] for row in trace] for name, i in names.items()}
+    return columns | {
+        "unix_time_s": [start + s for s in seconds],
+        "altitude": [None if row[3] == "ground" else row[3] for row in trace],
+        "geoaltitude": [row[10] if len(row) > 10 else None for row in trace],
+        "icao24": [str(data.get("icao", source.stem))] * len(trace),
+        "callsign": [d.get("flight") for d in details],
+        "nac_p": [d.get("nac_p") for d in details],
+        "nic": [d.get("nic") for d in details],
+        "rc": [d.get("rc") for d in details],
+    }
+
+
+def _series(name: str, values: list[Any]) -> pl.Series:
+    """Numbers, truth values or text; a mixture becomes text."""
+    try:
+        return pl.Series(name, values, strict=True)
+    except (TypeError, pl.exceptions.PolarsError, OverflowError):
+        kinds = {type(v) for v in values if v is not None}
+        if kinds <= {int, float}:
+            return pl.Series(name, [None if v is None else float(v) for v in values], dtype=pl.Float64)
+        return pl.Series(name, [None if v is None else str(v) for v in values], dtype=pl.String)

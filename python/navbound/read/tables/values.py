@@ -1,0 +1,349 @@
+"""Rows of a table to columns in SI with GPS time, all at once or in pieces of the file: the same numbers, counts and notes."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from navbound import status
+from navbound.errors import UNSEEN, FormatError
+from navbound.read.checks import levels, stated
+from navbound.read.checks.rejections import Kind, Tally
+from navbound.read.checks.repeats import Repeats, left_out, separate
+from navbound.read.tables.columns import (
+    LEVEL_QUANTITIES,
+    POSITION,
+    POSITION_TIME,
+    QUANTITIES,
+    STATED_QUANTITIES,
+    UNITS,
+    Assignment,
+    Column,
+    position_time,
+)
+from navbound.read.tables.table import LINE
+from navbound.read.tables.times import TimeFacts, converted, understand, units
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+_QUANTITY = {q.name: q for q in STATED_QUANTITIES + QUANTITIES + LEVEL_QUANTITIES}
+_BAD, _EXAMPLE = "__bad", "__example"
+_RAW = "__raw "
+_MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
+
+_AHEAD_NS = 1_000_000_000
+"""How much later than its row a position may be said to be: both may be rounded."""
+
+FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS = range(0, 600_000, 100_000)
+"""Where a reason stands among the others of its file; the number of the column is added to that of an optional one."""
+
+
+_SHOWN = 20
+"""Rows that show whether a column holds words: as many as the shortest piece of a file has. Provenance: ours."""
+
+
+def texts(frame: pl.DataFrame) -> set[str]:
+    """Columns of text of which something is written in the first rows, and nothing there is a number."""
+    head = frame.head(_SHOWN)
+    strings = [name for name, dtype in head.schema.items() if dtype == pl.String and name != LINE]
+    written = {name: head[name].str.strip_chars().set(head[name].str.strip_chars().str.contains(_MISSING), None) for name in strings}
+    return {name for name, each in written.items() if each.count() and each.cast(pl.Float64, strict=False).count() == 0}
+
+
+def _with_speed(part: pl.DataFrame) -> pl.DataFrame:
+    """The speed over the ground, of the velocities north and east where no column or no value states it."""
+    if not {"vel_n_mps", "vel_e_mps"} <= set(part.columns):
+        return part
+    of_velocity = (pl.col("vel_n_mps") ** 2 + pl.col("vel_e_mps") ** 2).sqrt()
+    reported = [pl.col("ground_speed_mps")] if "ground_speed_mps" in part.columns else []
+    return part.with_columns(pl.coalesce(*reported, of_velocity).alias("ground_speed_mps")).drop("vel_n_mps", "vel_e_mps")
+
+
+class Values:
+    """Takes rows of one table; every piece is taken before the times are understood, and dated after.
+
+    Attributes
+    ----------
+    tally : Tally
+        What could not be used.
+    notes : list of str
+        Doubts; whole once the times are understood.
+    """
+
+    def __init__(self, path: Path, stem: str, mapping: Assignment, required: Sequence[str]) -> None:
+        self.tally, self.notes = Tally(), list[str]()
+        self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
+        self._dated = position_time(mapping.unused)
+        self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
+        self._dtypes: dict[str, pl.DataType] = {}
+        self._n_unknown = 0
+        self._largest = dict.fromkeys(POSITION, 0.0)
+        self._unit = self._unit_dated = ""
+
+    def take(self, frame: pl.DataFrame) -> pl.DataFrame:
+        """Columns in SI of some rows, with their times as they are written and the reasons against them.
+
+        Raises
+        ------
+        FormatError
+            A column that holds neither numbers nor text.
+        """
+        self._check_kinds(frame)
+        out, against = {LINE: frame[LINE]}, list[tuple[str, pl.Series]]()
+        bad = pl.repeat(value=False, n=frame.height, eager=True)
+        for place, (name, column) in enumerate(self._mapping.columns.items()):
+            raw = frame[column.name]
+            if _QUANTITY[name].si == "text":
+                out[name] = raw.cast(pl.String).str.replace_all(UNSEEN, "").str.strip_chars()
+                continue
+            out[name], reason = numbers(raw, column)
+            if name in self._required:
+                against.append((column.name, reason))
+            else:
+                bad |= self._count(OPTIONAL + place, frame, column.name, reason)
+        self.tally.n_with_bad_values += int(bad.sum())
+        part = pl.DataFrame([values.alias(name) for name, values in out.items()])
+        part, without = levels.without_bound(part)
+        for place, (name, at) in enumerate(without.items()):
+            where, heading = frame.filter(at), self._mapping.columns[name].name
+            # An outage written as zero is no damage of the file.
+            self.tally.add(
+                LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet"
+            )
+        part = _with_speed(part).with_columns(*_reasons(frame, against), *self._raw(frame))
+        for name in POSITION:
+            if name in part.columns:
+                self._largest[name] = max(self._largest[name], _largest(part[name]))
+        return self._reported(part) if tuple(self._required) == POSITION else part
+
+    def _check_kinds(self, frame: pl.DataFrame) -> None:
+        for column in (*self._mapping.columns.values(), *self._mapping.times):
+            if _no_field(frame.schema[column.name]):
+                raise FormatError(self._path, f"holds {frame.schema[column.name]}, where a number or a text is needed", field=column.name)
+
+    def _count(self, place: int, frame: pl.DataFrame, name: str, reason: pl.Series) -> pl.Series:
+        """Count the values of an optional column that could not be used; the rows stay, an empty field is no fault."""
+        bad = (reason != "empty").fill_null(value=False)
+        for text in reason.filter(bad).unique(maintain_order=True):
+            at = frame.filter((reason == text).fill_null(value=False))
+            self.tally.add(place, f"{name}: {text}; row used without it", at.height, at[LINE][0], str(at[name][0]), kind="value")
+        return bad
+
+    def _raw(self, frame: pl.DataFrame) -> list[pl.Series]:
+        self._facts.append(TimeFacts.of(frame, self._mapping.times))
+        if self._dated is not None and _no_field(frame.schema[self._dated.name]):
+            self._dated = None
+        dated = [] if self._dated is None else [self._dated]
+        self._facts_dated += [TimeFacts.of(frame, [column]) for column in dated]
+        columns = {column.name: frame[column.name] for column in (*self._mapping.times, *dated)}
+        self._dtypes |= {name: values.dtype for name, values in columns.items()}
+        return [values.alias(_RAW + name) for name, values in columns.items()]
+
+    def _reported(self, part: pl.DataFrame) -> pl.DataFrame:
+        """What a recorded track says of its own epochs, in words of the list."""
+        if "status" in part.columns:
+            known = pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)
+            self._n_unknown += part.filter(~known).height
+        return status.recorded(stated.against_itself(part))
+
+    def understand(self) -> None:
+        """Decide in which unit the times are written, now that every row was taken.
+
+        Raises
+        ------
+        FormatError
+            Numbers that are no times.
+        """
+        name = self._path.name
+        if self._n_unknown:
+            self.notes.append(
+                f"{name}: {self._n_unknown} epochs have a status that is none of {', '.join(status.STATUSES)}; they are not judged"
+            )
+        if tuple(self._required) == POSITION and self._mapping.unused:
+            self.notes.append(f"{name}: columns not used: {', '.join(self._mapping.unused)}")
+        self._look_like_radians()
+        self._unit = self._understood(self._mapping.times, self._facts)
+        if self._dated is not None:
+            try:
+                self._unit_dated = self._understood([self._dated], self._facts_dated)
+            except FormatError as e:
+                self.notes.append(f"{name}: “{self._dated.name}” is not used: {e.message}")
+                self._dated = None
+        # The numbers of all rows are needed no more.
+        self._facts, self._facts_dated = [], []
+
+    def _understood(self, columns: list[Column], facts: list[TimeFacts]) -> str:
+        return understand(TimeFacts.together(facts), columns, self._dtypes[columns[0].name], self._path, self.notes)
+
+    @staticmethod
+    def keys(part: pl.DataFrame) -> pl.DataFrame:
+        """What :meth:`when` needs of a part."""
+        return part.select(name for name in part.columns if name == "track" or name.startswith(_RAW))
+
+    def when(self, part: pl.DataFrame) -> pl.DataFrame:
+        """Track and time of rows that have one; nothing is counted."""
+        time, _ = converted(_written(part), self._mapping.times, self._unit)
+        return part.select(self._track(part), time.alias("time_ns")).drop_nulls("time_ns")
+
+    def _track(self, part: pl.DataFrame) -> pl.Expr:
+        return (pl.col("track").fill_null(self._stem) if "track" in part.columns else pl.lit(self._stem)).alias("track")
+
+    def timed(self, part: pl.DataFrame) -> tuple[pl.DataFrame, pl.DataFrame]:
+        """Rows with GPS time and track that may be epochs; and track and time of those that may not, which are counted."""
+        raw = _written(part)
+        time, reason = converted(raw, self._mapping.times, self._unit)
+        name = self._mapping.times[0].name
+        timeless = raw.select(pl.when(reason.is_not_null()).then(pl.concat_str(pl.lit(f"{name}: "), reason))).to_series()
+        out = part.with_columns(
+            time.alias("time_ns"),
+            pl.coalesce(_BAD, timeless).alias(_BAD),
+            pl.when(pl.col(_BAD).is_null()).then(_text(raw[name], timeless.is_not_null())).otherwise(pl.col(_EXAMPLE)).alias(_EXAMPLE),
+        )
+        out = self._positions_dated(out, raw).drop(pl.selectors.starts_with(_RAW))
+        out = out.with_columns(self._track(out))
+        without = out.filter(pl.col(_BAD).is_not_null())
+        for (reason_text,), group in without.group_by(_BAD, maintain_order=True):
+            kind: Kind = "quiet" if str(reason_text).endswith(": empty") else "row"
+            self.tally.add(REQUIRED, str(reason_text), group.height, group[LINE][0], str(group[_EXAMPLE][0]), kind=kind)
+        return out.filter(pl.col(_BAD).is_null()).drop(_BAD, _EXAMPLE), left_out(without)
+
+    def _positions_dated(self, out: pl.DataFrame, raw: pl.DataFrame) -> pl.DataFrame:
+        """When each position was valid, where a column says so; a time that is none, or later than its row, is counted and not used."""
+        if self._dated is None:
+            return out
+        name = self._dated.name
+        valid, reason = converted(raw, [self._dated], self._unit_dated)
+        late = (valid > out["time_ns"] + _AHEAD_NS).fill_null(value=False)
+        reason = pl.select(pl.when(late).then(pl.lit("later than its row")).otherwise(reason)).to_series()
+        for text in reason.drop_nulls().filter(reason.drop_nulls() != "empty").unique(maintain_order=True):
+            at = (reason == text).fill_null(value=False)
+            # Without it the row's own time serves: that makes no row malformed.
+            words = f"{name}: {text}; row used without it"
+            self.tally.add(DATED, words, int(at.sum()), out.filter(at)[LINE][0], str(raw.filter(at)[name][0]), kind="quiet")
+        return out.with_columns(pl.select(pl.when(reason.is_null()).then(valid)).to_series().alias(POSITION_TIME))
+
+    def described(self) -> dict[str, str]:
+        """Quantity to the column that it was read from and its unit."""
+        columns = {c.quantity: f"{c.name}:{c.unit}" for c in self._mapping.columns.values()}
+        return columns | {"time": ", ".join(units(self._mapping.times, self._unit))}
+
+    def _look_like_radians(self) -> None:
+        """Note degrees that could be radians: a flight near 0 N 0 E and a wrong unit look alike, so a person must judge."""
+        columns = self._mapping.columns
+        if not set(POSITION) <= columns.keys():
+            return
+        lat, lon = (columns[name] for name in POSITION)
+        largest = max(2 * self._largest["est_lat_rad"], self._largest["est_lon_rad"])
+        if lat.unit == "deg" and lon.unit == "deg" and 0 < largest <= math.pi * UNITS["rad"]["deg"]:
+            self.notes.append(
+                f"{self._path.name}: “{lat.name}” and “{lon.name}” were read as degrees, but all values are small enough to be radians; "
+                f"if they are, declare est_lat_rad={lat.name}:rad and est_lon_rad={lon.name}:rad"
+            )
+
+
+class Late:
+    """Rows that stood after a later one of their track, counted in the order of the file."""
+
+    def __init__(self) -> None:
+        self._latest: dict[str, int] = {}
+        self._n, self._first = 0, 0
+
+    def see(self, out: pl.DataFrame) -> None:
+        """The next rows, with ``track``, ``time_ns`` and their line."""
+        before = pl.lit(None, pl.Int64)
+        if self._latest:
+            before = pl.col("track").replace_strict(self._latest, default=None, return_dtype=pl.Int64)
+        late = out.filter(pl.col("time_ns") < pl.max_horizontal(pl.col("time_ns").cum_max().over("track"), before))
+        if not late.is_empty():
+            self._first = self._first or int(late[LINE][0])
+            self._n += late.height
+        for track, time_ns in out.drop_nulls("time_ns").group_by("track").agg(pl.col("time_ns").max()).iter_rows():
+            self._latest[track] = max(time_ns, self._latest.get(track, time_ns))
+
+    def words(self, path: Path, unit: str) -> list[str]:
+        """A note, where there are any."""
+        if not self._n:
+            return []
+        n, first = self._n, f"{unit} {self._first}"
+        return [f"{path.name}: {n} rows stood after a later one of their track and were put in order of time (first: {first})"]
+
+
+def one_row_a_time(out: pl.DataFrame, tally: Tally) -> Repeats:
+    """Rows in the order of track and time, one an instant; the others are counted."""
+    found = separate(out.sort("track", "time_ns", maintain_order=True))
+    reason = "time repeated within a track"
+    kinds = {reason: found.identical, f"{reason} with another position, bound or status": found.contradicting}
+    for place, (words, repeated) in enumerate(kinds.items()):
+        if not repeated.is_empty():
+            track, time_ns, line = repeated.sort(LINE).select("track", "time_ns", LINE).row(0)
+            tally.add(REPEATED + place, words, repeated.height, line, f"track {track}, time_ns {time_ns}", kind="quiet")
+    return found
+
+
+def _no_field(dtype: pl.DataType) -> bool:
+    return dtype.is_nested() or dtype in (pl.Binary, pl.Object)
+
+
+def _reasons(frame: pl.DataFrame, against: list[tuple[str, pl.Series]]) -> list[pl.Series]:
+    """The first reason against each row, and the text at fault; null where there is none."""
+    bad = example = pl.repeat(None, frame.height, dtype=pl.String, eager=True)
+    for name, reason in against:
+        first = reason.is_not_null() & bad.is_null()
+        both = pl.select(
+            pl.when(first).then(pl.concat_str(pl.lit(f"{name}: "), reason)).otherwise(bad).alias(_BAD),
+            pl.when(first).then(_text(frame[name], first)).otherwise(example).alias(_EXAMPLE),
+        )
+        bad, example = both[_BAD], both[_EXAMPLE]
+    return [bad.alias(_BAD), example.alias(_EXAMPLE)]
+
+
+def _written(part: pl.DataFrame) -> pl.DataFrame:
+    """Columns of times as they stand in the file."""
+    names = [name for name in part.columns if name.startswith(_RAW)]
+    return part.select(pl.col(name).alias(name.removeprefix(_RAW)) for name in names)
+
+
+def _text(raw: pl.Series, where: pl.Series) -> pl.Series:
+    """What stands in some rows of a column."""
+    if raw.dtype == pl.String:
+        return raw
+    text = pl.repeat(None, len(raw), dtype=pl.String, eager=True)
+    return text.scatter(where.arg_true(), [str(value) for value in raw.filter(where)])
+
+
+def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
+    """Values in SI, null where there is none; and why, null where nothing is wrong."""
+    q = _QUANTITY[what.quantity]
+    factor = UNITS[q.si][what.unit]
+    if column.dtype == pl.String:
+        text = column.str.strip_chars()
+        # Programs write a missing number as an empty field or as nan: an outage is no damage.
+        text = text.set(text.str.contains(_MISSING), None)
+        raw = text.cast(pl.Float64, strict=False)
+        empty = text.is_null()
+    elif column.dtype.is_numeric() or column.dtype == pl.Null:
+        raw = column.cast(pl.Float64)
+        # A data frame writes a missing number as NaN.
+        empty = raw.is_null() | raw.is_nan()
+    else:
+        raw, empty = pl.Series([None] * len(column), dtype=pl.Float64), column.is_null()
+    frame = pl.DataFrame({"raw": raw, "empty": empty, "si": raw * factor})
+    allowed = f"outside [{q.low / factor:.6g}, {q.high / factor:.6g}] {'' if q.si == '1' else what.unit}".rstrip()
+    frame = frame.select(
+        pl.when(pl.col("si").is_between(q.low, q.high) & pl.col("raw").is_finite()).then("si").alias("value"),
+        pl.when("empty").then(pl.lit("empty"))
+        .when(pl.col("raw").is_null()).then(pl.lit("not a number"))
+        .when(~pl.col("raw").is_finite()).then(pl.lit("not finite"))
+        .when(~pl.col("si").is_between(q.low, q.high)).then(pl.lit(allowed))
+        .alias("reason"),
+    )  # fmt: skip
+    return frame["value"], frame["reason"]
+
+
+def _largest(values: pl.Series) -> float:
+    found = values.abs().max()
+    return float(found) if isinstance(found, (int, float)) else 0.0

@@ -1,0 +1,74 @@
+"""What a simulator or a reader hands to the judging stage: the epoch table up to path and error, and its context.
+
+The judging stage (judge.py) does not ask whether the epochs were flown or recorded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+import polars as pl
+
+from navbound.records.frames import LEFT_OUT
+
+if TYPE_CHECKING:
+    from navbound.records.run import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
+    from navbound.storage.frames import Frames
+
+
+@dataclass(frozen=True)
+class Material:
+    """Epochs and their context.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        Columns of docs/notation.md: at least ``track``, ``time_ns``, ``est_lat_rad``, ``est_lon_rad``, ``course_rad``, ``fte_m``,
+        ``rnp_m``, ``cov_ee_m2``, ``cov_en_m2``, ``cov_nn_m2``, ``status``; with truth also ``nse_e_m``, ``nse_n_m``, ``nse_u_m``.
+    kind : {"fly", "analyze"}
+        Which command made it.
+    title : str
+        Heading of the report.
+    requirement : str
+        The navigation specification, in words ("RNP 0.3", "RNP by phase of flight").
+    sample_period_s : float
+        Nominal time between epochs of one track.
+    assumptions : list of str
+        Sentences for the verdict: where the covariance came from, what was not modelled.
+    labels : dict
+        Track to a label a person recognises.
+    events : list of EventSummary
+        Points of the flight besides the monitor's alerts.
+    covariance : CovarianceOrigin
+        Where the covariance comes from.
+    left_out : DataFrame
+        ``track`` and ``time_ns`` of recorded rows that cannot be judged and are no epochs: they are expected all the same.
+    frames : Frames, optional
+        The epochs of a table that is too large for memory, in pieces on the disk; `epochs` is then without rows.
+    with_levels : set of str
+        Tracks with a protection level anywhere, where the epochs are in pieces.
+    limits_held : dict
+        Phase to how its alert limit is held ("inferred", ...), where epochs have ``hpl_m`` and ``hal_m``.
+    """
+
+    epochs: pl.DataFrame
+    kind: Literal["fly", "analyze"]
+    title: str
+    requirement: str
+    sample_period_s: float
+    assumptions: list[str]
+    covariance: CovarianceOrigin
+    labels: dict[str, str] = field(default_factory=dict)
+    waypoints: list[Waypoint] = field(default_factory=list)
+    inputs: list[InputFile] = field(default_factory=list)
+    rejected: list[Rejection] = field(default_factory=list)
+    cross_track: list[CrossTrack] = field(default_factory=list)
+    scenario: dict[str, object] | None = None
+    seed: int | None = None
+    settings: dict[str, object] = field(default_factory=dict)
+    events: list[EventSummary] = field(default_factory=list)
+    limits_held: dict[str, str] = field(default_factory=dict)
+    left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
+    frames: Frames | None = None
+    with_levels: frozenset[str] = frozenset()

@@ -1,0 +1,280 @@
+"""One part of a campaign: a table, or a receiver's observations with the navigation data and the messages of its time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import polars as pl
+
+from navbound import gnss, sbas
+from navbound.errors import FormatError, InputError
+from navbound.read.checks.refusals import of_navigation, of_observations, rejections, skipped_words, without_epochs
+from navbound.read.tables.epochs import read
+from navbound.read.truth import Truth, with_error, with_truth
+from navbound.run.inputs.solving import Solving, require_same_time
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from navbound.records.run import Rejection
+
+
+COVARIANCE = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
+
+SCHEMA = pl.Schema(
+    {
+        "track": pl.String,
+        "time_ns": pl.Int64,
+        **dict.fromkeys(("est_lat_rad", "est_lon_rad", "est_h_m"), pl.Float64),
+        **dict.fromkeys(("nse_e_m", "nse_n_m", "nse_u_m", "hpe_m", "vpe_m", "hpl_m", "vpl_m"), pl.Float64),
+        **dict.fromkeys(COVARIANCE, pl.Float64),
+        "n_sv": pl.Int64,
+        **dict.fromkeys(("hdop", "vdop"), pl.Float64),
+        **dict.fromkeys(("mode", "status", "reason_id", "reason"), pl.String),
+    }
+)
+"""Columns of a performance run's epochs."""
+
+BEFORE_NS = 3_600_000_000_000
+"""Messages of the hour before the first epoch still count: nothing that a service broadcasts is valid longer."""
+
+SAME = (
+    "Errors and protection levels belong to the same solutions: the receiver's pseudoranges with the corrections of the SBAS service, "
+    "weighted by its error model, the satellites of the level."
+)
+"""Stands beside every number of a run on observations and SBAS messages."""
+
+OWN = (
+    "No service monitors these satellites: the protection levels are 6.0 and 5.33 standard deviations (the multipliers of SBAS) of the "
+    "position's own covariance, a bound of errors that are as the weights say and of no fault. Experimental, not integrity."
+)
+"""Stands beside every number of a run on observations alone."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """What one file gave.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        Columns of `SCHEMA`.
+    n_rows : int
+        Rows or epochs in the file.
+    rejected : list of dict
+        Fields of `Rejection`.
+    notes : list of str
+        What a person should know.
+    experimental : str
+        Words that must stand beside levels that no integrity rests on; empty for others.
+    ranges : DataFrame, optional
+        Ranges with their errors, for the Stanford-ESA diagram; columns of :func:`navbound.kpi.stanford_esa`.
+    """
+
+    epochs: pl.DataFrame
+    n_rows: int
+    rejected: list[dict[str, Any]]
+    notes: list[str]
+    experimental: str = ""
+    ranges: pl.DataFrame | None = None
+
+
+def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, needs: Sequence[str] = ("hpl_m",)) -> Part:
+    """Read a table of errors and protection levels, or of positions and protection levels with a truth.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    truth : Truth
+        Where the receiver really was.
+    columns : mapping, optional
+        What a column is, where its name does not say.
+    needs : sequence of str
+        The protection levels that are judged; a file without one of them is refused: availability would be 0 for no fault of the system.
+
+    Raises
+    ------
+    FormatError
+        Not a table, or no time or protection level in it.
+    InputError
+        Several tracks in one file, or a truth without positions.
+    """
+    reading = read(path, columns=columns, needs=needs)
+    for name in needs:
+        if name not in reading.epochs.columns:
+            raise FormatError(path, "no column holds this protection level, which the levels to be judged need", field=name)
+    tracks = reading.epochs["track"].unique().sort().to_list()
+    if len(tracks) > 1:
+        raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")
+    epochs, notes, refused = reading.epochs, list(reading.notes), list(reading.rejected)
+    if truth.given is not None:
+        epochs, words, other = with_truth(epochs, truth)
+        notes.append(words)
+        refused += [] if other is None else other.rejected
+    else:
+        epochs, own = _with_own_truth(epochs)
+        notes += [f"{path.name}: {each}" for each in own]
+    if reading.unused:
+        notes.append(f"{path.name}: columns not used: {', '.join(reading.unused)}")
+    rejected = [one.model_dump() for one in refused]
+    # Columns of Error Extraction say in their own name what they are.
+    of_extraction = any(reading.columns.get(name, "").startswith("ee_") for name in ("hpl_m", "vpl_m"))
+    return Part(uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
+
+
+def _with_own_truth(epochs: pl.DataFrame) -> tuple[pl.DataFrame, list[str]]:
+    """Errors from the table's own true positions, where it states no errors; and what became of such columns."""
+    have = {name for name in epochs.columns if epochs[name].null_count() < epochs.height}
+    if not {"truth_lat_rad", "truth_lon_rad"} <= have:
+        return epochs, []
+    errors = sorted(have & {"nse_e_m", "hpe_m"})
+    if errors:
+        return epochs, [f"truth_lat_rad and truth_lon_rad are not used: the errors are those that the table states ({', '.join(errors)})."]
+    if not {"est_lat_rad", "est_lon_rad"} <= have:
+        return epochs, ["truth_lat_rad and truth_lon_rad are not used: the table holds no estimated positions to compare with them."]
+    epochs, words = with_error(epochs)
+    return epochs, [f"Truth: from the file itself.{words}"]
+
+
+class Service:
+    """Navigation data and SBAS messages of a campaign, read once for all its observation files.
+
+    Parameters
+    ----------
+    navigation, logs : sequence of paths
+        RINEX navigation files, logs of SBAS messages.
+    prn : int, optional
+        Which geostationary satellite's messages.
+    """
+
+    def __init__(self, navigation: Sequence[Path], logs: Sequence[Path], prn: int | None) -> None:
+        self._navigation, self._logs, self._prn = navigation, logs, prn
+
+    @property
+    def has_messages(self) -> bool:
+        """Whether there are logs of SBAS messages."""
+        return bool(self._logs)
+
+    @cached_property
+    def navigation(self) -> gnss.Navigation:
+        """Broadcast messages of all files."""
+        return gnss.read_navigation(list(self._navigation))
+
+    def rejected(self) -> list[Rejection]:
+        """What was refused of the navigation files and of the logs."""
+        of_logs = [one for path, log in zip(self._logs, self._each, strict=True) for one in rejections(path, log.refused)]
+        return [*of_navigation(self.navigation), *of_logs]
+
+    def words(self) -> list[str]:
+        """What the preambles say against the times of the logs."""
+        return [f"{path.name}: {words}" for path, log in zip(self._logs, self._each, strict=True) for words in log.tag_words()]
+
+    @cached_property
+    def _each(self) -> list[sbas.Messages]:
+        return [sbas.read(log) for log in self._logs]
+
+    @cached_property
+    def _messages(self) -> sbas.Messages:
+        """Those of all logs in the order of time."""
+        logs = self._each
+        time_ns, sender, data = (np.concatenate([getattr(m, name) for m in logs]) for name in ("time_ns", "prn", "data"))
+        order = np.argsort(time_ns, kind="stable")
+        refused = [r for m in logs for r in m.refused]
+        return sbas.Messages(time_ns[order], sender[order], data[order], logs[0].format, logs[0].tag, refused)
+
+    def messages(self, first_ns: int, last_ns: int) -> sbas.Messages:
+        """Messages of one satellite that count between two instants.
+
+        Raises
+        ------
+        InputError
+            None of that time; messages of several satellites and none chosen, or a satellite that sent none.
+        """
+        every = self._messages
+        from_, to = np.searchsorted(every.time_ns, [first_ns - BEFORE_NS, last_ns + 1])
+        near = replace(every, time_ns=every.time_ns[from_:to], prn=every.prn[from_:to], data=every.data[from_:to])
+        if not near.time_ns.size:
+            raise InputError("files", ", ".join(map(str, self._logs))[:200], domain="message logs of the time of the observations")
+        senders = np.unique(near.prn).tolist()
+        if len(senders) > 1 if self._prn is None else self._prn not in senders:
+            wanted = "none" if self._prn is None else self._prn
+            raise InputError("prn", wanted, domain=f"one of the satellites of the logs: {', '.join(map(str, senders))}")
+        return near if self._prn is None else near.of(self._prn)
+
+
+def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges: bool = False, solving: Solving | None = None) -> Part:
+    """Solve a receiver's positions: with the service's corrections and levels, or without messages with the levels of their own covariance.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be read.
+    InputError
+        Messages of several satellites and none chosen, no message of the time, or ranges wanted without truth or with messages.
+    """
+    observations = gnss.read_observations(path)
+    if not observations.n_epochs:
+        raise without_epochs(observations)
+    require_same_time(observations, service.navigation)
+    ranges = None
+    if service.has_messages:
+        epochs, notes = _corrected(observations, service, truth)
+    else:
+        how: dict[str, Any] = {"signals": "single", "systems": "G", "truth_ecef_m": truth.ecef_m, "keep_ranges": keep_ranges}
+        positions = (solving or Solving()).solve(observations, service.navigation, **how)
+        epochs, notes = positions.epochs, [OWN, *(f"{name}: {words}" for name, words in positions.models.items())]
+        ranges = positions.ranges
+    refused = [*of_observations(observations), *service.rejected()]
+    notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", service.navigation.skipped)]
+    if truth.given is not None and truth.ecef_m is None:
+        epochs, words, other = with_truth(epochs, truth)
+        refused += [] if other is None else other.rejected
+        notes.append(words)
+    rejected = [one.model_dump() for one in refused]
+    if service.has_messages:
+        return Part(uniform(epochs), observations.n_epochs, rejected, notes)
+    errors = None if ranges is None else _range_errors(ranges, epochs)
+    return Part(uniform(_of_own(epochs)), observations.n_epochs, rejected, notes, sbas.EXTRACTION_LABEL, errors)
+
+
+def _corrected(observations: gnss.Observations, service: Service, truth: Truth) -> tuple[pl.DataFrame, list[str]]:
+    """Positions with the corrections of the SBAS service and the protection levels of those solutions; words about them."""
+    messages = service.messages(int(observations.time_ns[0]), int(observations.time_ns[-1]))
+    positions = sbas.solve(observations, service.navigation, messages, truth_ecef_m=truth.ecef_m)
+    notes = [SAME, *service.words(), *(f"{name}: {words}" for name, words in positions.models.items())]
+    # Without counts: the same words of many files stand once.
+    notes.extend(f"Satellites left out where: {why}." for why in positions.unused)
+    return positions.epochs, notes
+
+
+def _of_own(epochs: pl.DataFrame) -> pl.DataFrame:
+    """Levels of the positions' own covariances."""
+    found = sbas.covariance_levels(np.column_stack([epochs[name].fill_null(np.nan).to_numpy() for name in COVARIANCE]))
+    return epochs.with_columns(hpl_m=pl.Series(found[0], nan_to_null=True), vpl_m=pl.Series(found[1], nan_to_null=True))
+
+
+def _range_errors(ranges: pl.DataFrame, epochs: pl.DataFrame) -> pl.DataFrame:
+    """Residuals at the estimated position become errors at the true one: the true range is longer by -u . nse."""
+    if "nse_e_m" not in epochs.columns:
+        raise InputError("stanford_esa", "no truth", domain="it with --truth: a subset's error is that against the true position")
+    joined = ranges.join(epochs.select("time_ns", "nse_e_m", "nse_n_m", "nse_u_m"), on="time_ns", maintain_order="left")
+    east, north = pl.col("el_rad").cos() * pl.col("az_rad").sin(), pl.col("el_rad").cos() * pl.col("az_rad").cos()
+    moved = east * pl.col("nse_e_m") + north * pl.col("nse_n_m") + pl.col("el_rad").sin() * pl.col("nse_u_m")
+    return joined.with_columns(range_error_m=pl.col("residual_m") + moved).drop_nulls("range_error_m")
+
+
+def uniform(epochs: pl.DataFrame) -> pl.DataFrame:
+    """Every column of the schema, absent ones null, in the order of time; sizes of the errors from their components."""
+    filled = epochs.select(
+        (pl.col(name) if name in epochs.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in SCHEMA.items()
+    )
+    horizontal = (pl.col("nse_e_m") ** 2 + pl.col("nse_n_m") ** 2).sqrt()
+    # Components stand above a size that is stated beside them: they are what the indicators take.
+    return filled.with_columns(
+        hpe_m=pl.coalesce(horizontal, "hpe_m"), vpe_m=pl.coalesce(pl.col("nse_u_m").abs(), pl.col("vpe_m").abs())
+    ).sort("time_ns", maintain_order=True)

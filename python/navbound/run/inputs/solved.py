@@ -1,0 +1,68 @@
+"""Positions solved from raw measurements, as one more file that was read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from navbound import gnss
+from navbound.errors import FormatError
+from navbound.gnss.receivers import unused_words
+from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
+from navbound.read.checks.repeats import left_out, separate
+from navbound.read.tables.epochs import Reading
+from navbound.records.run import Rejection
+from navbound.run.inputs.solving import Solving, require_same_time
+from navbound.status import REASONS
+
+if TYPE_CHECKING:
+    from navbound.read.source import Source
+    from navbound.run.inputs.files import Files
+
+
+def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
+    """Solve every file of measurements with the orbits and clocks of all.
+
+    Raises
+    ------
+    FormatError
+        A file that cannot be read, or in which no position can be solved.
+    """
+    navigation = gnss.read_navigation([source.path for source in files.navigation])
+    readings = [_reading(source, navigation, solving or Solving()) for source in files.observations]
+    if readings:
+        readings[0].rejected.extend(of_navigation(navigation))
+        readings[0].notes.extend(skipped_words(", ".join(path.name for path in navigation.paths), navigation.skipped))
+    return readings
+
+
+def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> Reading:
+    observations = gnss.read_observations(source.path)
+    if observations.n_epochs == 0:
+        raise without_epochs(observations)
+    require_same_time(observations, navigation)
+    found = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem)
+    without = found.epochs.filter(pl.col("est_lat_rad").is_null())
+    repeats = separate(found.epochs.filter(pl.col("est_lat_rad").is_not_null()).sort("time_ns", maintain_order=True))
+    known = repeats.epochs
+    if known.is_empty():
+        raise FormatError(source.path, f"no position could be solved; satellites not used: {unused_words(found.unused)}")
+    path = str(source.path)
+    rejected = [
+        Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=f"{count} epochs")
+        for id_, count in without.group_by("reason_id").len().sort("reason_id").iter_rows()
+    ]
+    kinds = {"time repeated": repeats.identical, "time repeated with another position, bound or status": repeats.contradicting}
+    rejected += [
+        Rejection(file=path, reason=reason, count=rows.height, first_line=None, example=f"{rows.height} epochs")
+        for reason, rows in kinds.items()
+        if not rows.is_empty()
+    ]
+    rejected += of_observations(observations)
+    notes = [f"{source.path.name}: {name}: {words}" for name, words in found.models.items()]
+    notes += skipped_words(source.path.name, observations.skipped)
+    notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in found.unused.items()]
+    lost = pl.concat([left_out(without), left_out(repeats.contradicting)])
+    columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in found.codes.values() for c in codes)}
+    return Reading(known, source.record(observations.n_epochs), rejected, notes=notes, columns=columns, left_out=lost)

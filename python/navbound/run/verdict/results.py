@@ -1,0 +1,202 @@
+"""Numbers as a navigator says them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from navbound import _core
+from navbound.run.verdict.numbers import length, level, share
+from navbound.run.verdict.rule import FEW_EPOCHS
+from navbound.run.verdict.words import COPIED, contradicted_words, refuted_words, truth_words
+from navbound.time import utc_text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from navbound.evaluation import Nees, Pit
+    from navbound.records.run import CovarianceOrigin, Held, MethodResult, ProtectionSummary, Verdict, Worst
+    from navbound.records.verdict import VerdictId
+
+HEADLINES: dict[VerdictId, str] = {
+    "inside": "Inside",
+    "outside": "Not always inside",
+    "not_shown": "Not shown to be inside",
+    "not_believable": "Not believable",
+    "nothing_judged": "Nothing judged against",
+}
+"""The first words of each verdict."""
+
+
+def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, float], covariance: CovarianceOrigin) -> str:
+    """What a navigator wants to know first, in sentences."""
+    assumed = _assumed(verdict, covariance)
+    first = _first(verdict, risks)
+    parts = [f"{assumed}: {first[0].lower()}{first[1:]}" if assumed else first]
+    if verdict.id == "not_shown":
+        parts += _not_shown(verdict)
+    if verdict.worst_accuracy is not None:
+        parts.append(_worst(verdict.worst_accuracy))
+    if verdict.n_implausible:
+        parts.append(
+            f"{verdict.n_implausible} epochs cannot be true (see their reasons); what looks right beside them may be wrong as well."
+        )
+    parts += _contradicted(verdict)
+    if verdict.n_long_steps and verdict.longest_step_s is not None:
+        parts.append(
+            f"Between epochs nothing is known: {verdict.n_long_steps} steps are longer than a position takes to become stale, "
+            f"the longest {verdict.longest_step_s:.6g} s."
+        )
+    parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
+    parts += truth_words(verdict)
+    return " ".join(parts)
+
+
+def _assumed(verdict: Verdict, covariance: CovarianceOrigin) -> str:
+    named = {
+        "sigma_typed": "" if covariance.sigma_m is None else f"a sigma of {covariance.sigma_m:g} m in each axis, typed by the user",
+        "sigma_coded": "a sigma made of a quality indicator (NACp, NIC or Rc)",
+        "no_path": "no path (the circle of the position error is compared with RNP, without flight technical error)",
+    }
+    return f"Assuming {' and '.join(named[each] for each in verdict.assumed)}" if verdict.assumed else ""
+
+
+def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
+    accuracy, integrity = (level(risk) for risk in risks)
+    shares = _shares(verdict)
+    if verdict.id == "nothing_judged" or verdict.share_inside is None or verdict.share_contained is None:
+        found = f" {verdict.n_outside} epochs that are not ok have a bound beyond its limit." if verdict.n_outside else ""
+        return f"{HEADLINES[verdict.id]} {verdict.requirement}: {shares}.{found}"
+    if verdict.id == "not_believable":
+        n = verdict.n_known_beyond
+        beyond = f"at {n} ok epochs the known error is beyond twice RNP though the bound is within it" if n else ""
+        false = refuted_words(verdict.belief) if verdict.belief is not None and (not n or verdict.belief.state == "refuted") else ""
+        why = "; ".join(each for each in (beyond, false) if each) or refuted_words(verdict.belief)
+        return f"{HEADLINES[verdict.id]}, margins to {verdict.requirement} mean nothing: {why}; {shares}."
+    more = f", and {verdict.n_outside} epochs with status ok or degraded have a bound beyond its limit" if verdict.n_outside else ""
+    return (
+        f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "
+        f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; "
+        f"{shares}{_thin(verdict)}."
+    )
+
+
+def _thin(verdict: Verdict) -> str:
+    """That a verdict rests on fewer epochs than may be called evidence."""
+    if not 0 < verdict.n_judged < FEW_EPOCHS:
+        return ""
+    step = "" if verdict.longest_step_s is None else f", up to {verdict.longest_step_s:.6g} s apart"
+    return f"; this is thin evidence, of only {verdict.n_judged} judged epoch{'' if verdict.n_judged == 1 else 's'}{step}"
+
+
+def _shares(verdict: Verdict) -> str:
+    """What became of all epochs."""
+    if verdict.n_epochs == 0:
+        return "there is no epoch"
+    if verdict.n_judged == verdict.n_epochs:
+        return f"all {verdict.n_epochs} epochs are ok and judged"
+    missing = f" ({verdict.n_missing} epochs missing in gaps or without a usable time and position)" if verdict.n_missing else ""
+    kinds = {"ok and judged": verdict.n_judged, "degraded": verdict.n_degraded, f"without a bound{missing}": verdict.n_unjudged}
+    return f"of {verdict.n_epochs} epochs {', '.join(f'{share(n / verdict.n_epochs)} are {kind}' for kind, n in kinds.items())}"
+
+
+def _not_shown(verdict: Verdict) -> list[str]:
+    """Why the margins alone are not enough."""
+    why = []
+    if verdict.n_judged < verdict.least_share * verdict.n_epochs:
+        why.append(f"At least {level(1.0 - verdict.least_share)} of the epochs must be ok and judged.")
+    if verdict.belief is not None and verdict.belief.state == "short":
+        why.append(
+            "The error is within the bounds less often than they claim, on too few independent epochs to decide whether they are false."
+        )
+    if verdict.belief is not None and verdict.belief.state == "copied":
+        why.append(COPIED)
+    if verdict.belief is not None and verdict.belief.state == "contradicted":
+        why += contradicted_words(verdict.belief)
+    if verdict.n_stated_beyond:
+        why.append(f"The recording itself states an error beyond RNP at {verdict.n_stated_beyond} epochs.")
+    if verdict.n_stated_alert:
+        why.append(f"The recording itself states an alert at {verdict.n_stated_alert} epochs.")
+    if verdict.n_stated_worse:
+        why.append(
+            f"The recording itself states a 95 % radius (EPU) at {verdict.n_stated_worse} epochs that is larger than the covariance allows."
+        )
+    if verdict.n_without_level:
+        why.append(
+            f"A column of horizontal protection levels holds none in the tracks of {verdict.n_without_level} judged epochs: their "
+            "integrity was compared without a level."
+        )
+    return why
+
+
+def _contradicted(verdict: Verdict) -> list[str]:
+    """What truth contradicts, where no earlier sentence of the verdict names it."""
+    belief = verdict.belief
+    if belief is None or (verdict.id == "not_shown" and belief.state == "contradicted"):
+        return []
+    # A verdict withdrawn by a false bound names all of them first.
+    named_first = verdict.id == "not_believable" and (belief.state == "refuted" or not verdict.n_known_beyond)
+    return [] if named_first else contradicted_words(belief)
+
+
+def _worst(worst: Worst) -> str:
+    where = f" in {worst.phase}" if worst.phase else ""
+    sign = "margin" if worst.margin_m >= 0 else "excess"
+    return (
+        f"Worst {sign} {length(abs(worst.margin_m))} (bound {length(worst.bound_m)}, limit {length(worst.limit_m)}) "
+        f"at {utc_text(worst.time_ns)} UTC{where}, track {worst.track}."
+    )
+
+
+def protection_words(protection: list[ProtectionSummary]) -> str:
+    """How protection levels stood against alert limits, and whether they told the truth; nothing where there are none."""
+    if not protection:
+        return ""
+    n = sum(p.n_epochs for p in protection)
+    available = share(sum(p.share_available * p.n_epochs for p in protection) / n)
+    held = ", ".join(sorted({p.hal_held for p in protection}))
+    misled = sum(p.n_misleading for p in protection)
+    truth = f" At {misled} epochs the true error is above the protection level: misleading information." if misled else ""
+    return f" Protection level within the alert limit ({held}) at {available} of {n} epochs.{truth}"
+
+
+def honesty_words(nees: Nees, pit: Pit, regions: Sequence[Held] = ()) -> str:
+    """Whether the covariance may be believed, with the factor by which it is off, and on how much evidence."""
+    found = (
+        f"NEES {nees.nees_mean:.3g}, {nees.dimension} for an honest covariance, "
+        f"limits {nees.nees_low:.3g} to {nees.nees_high:.3g} for {nees.n_effective:.0f} effective epochs"
+    )
+    return f"{found}{_judgement(nees, pit)}{_regions(regions)}"
+
+
+def _judgement(nees: Nees, pit: Pit) -> str:
+    factor = (nees.nees_mean / nees.dimension) ** 0.5
+    outside = not nees.nees_low <= nees.nees_mean <= nees.nees_high
+    low, high = _core.chi_quantile(nees.dimension, np.array([0.975, 0.025])) ** 2
+    if outside and nees.n_effective < FEW_EPOCHS and low <= nees.nees_mean <= high:
+        return (
+            ", outside. But so few say little, and where errors stay for a whole track even their number is a guess: a single epoch may "
+            f"have {low:.2g} to {high:.2g}. More tracks decide it."
+        )
+    if outside:
+        claims = (
+            "too little; the errors are {:.2g} times larger than it says"
+            if factor > 1
+            else "too much; the errors are {:.2g} times what it says"
+        )
+        return f": the covariance claims {claims.format(factor)}."
+    n_outside = sum(not pit.low <= count <= pit.high for count in pit.counts)
+    if n_outside == 0:
+        return ": these data give no reason to doubt the covariance."
+    largest = max(pit.counts) * len(pit.counts) / sum(pit.counts)
+    return (
+        f": no reason to doubt the size of the covariance. But {n_outside} of the {len(pit.counts)} bins of the histogram "
+        f"{'is' if n_outside == 1 else 'are'} outside the band (one in twenty is by chance), and the fullest holds {largest:.2g} times its "
+        "share: errors are not spread as one Gaussian."
+    )
+
+
+def _regions(regions: Sequence[Held]) -> str:
+    held = [f"the 95 % {r.region} held {share(r.share)} of the epochs ({share(r.low)} to {share(r.high)})" for r in regions]
+    return f" Over all tracks {', '.join(held)}; limits from drawing whole tracks again." if held else ""

@@ -1,0 +1,1 @@
+"""The published evaluation of three-dimensional ANP on fused flights."""

@@ -1,0 +1,1 @@
+"""Decorrelation time of ground monitors: appendix B of Song, Milner and No 2024 (navi.673)."""

@@ -1,0 +1,1 @@
+"""Error Extraction (experimental, not integrity): the published comparison on a real day, its gain by cause, and other laws of error."""

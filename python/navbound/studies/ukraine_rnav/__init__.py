@@ -1,0 +1,1 @@
+"""A flight from Kyiv to Kharkiv on DME and VOR."""

@@ -1,0 +1,1 @@
+"""Arguments of public functions: what kind of object each may be, and arrays that are broadcast for the core and given back in shape."""

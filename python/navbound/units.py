@@ -1,0 +1,10 @@
+"""Units in which people state lengths and speeds, in SI: navbound computes in SI, and people read and write these."""
+
+from __future__ import annotations
+
+METRES_PER_NM = 1852.0
+"""International nautical mile (ICAO Annex 5). [m]"""
+METRES_PER_FT = 0.3048
+"""International foot (ICAO Annex 5). [m]"""
+MPS_PER_KT = METRES_PER_NM / 3600.0
+"""A nautical mile an hour. [m/s]"""
