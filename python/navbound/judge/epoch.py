@@ -13,6 +13,8 @@ from navbound import status as status_list
 from navbound.errors import InputError
 from navbound.judge.settings import ALERTS
 from navbound.rnp import Acceptance, Alert, Counters, Event
+from navbound.table.arguments import number
+from navbound.table.arrays import shown
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -90,7 +92,7 @@ class Judge:
         time_ns, numbers = _time(epoch.get("time_ns")), [_number(name, epoch.get(name)) for name in _COLUMNS]
         code = _STATUS.get(cast("str", epoch.get("status", "ok")))
         if code is None:
-            raise InputError("status", repr(epoch.get("status"))[:80], domain=", ".join(_STATUS))
+            raise InputError("status", shown(epoch.get("status")), domain=", ".join(_STATUS))
         found, status, why, state, alert, acceptance, ended, began = self._core.step(time_ns, code, numbers)
         reason_id, reason = why or (None, None)
         return Judged(
@@ -159,12 +161,13 @@ class Judge:
 
 def _time(time_ns: object) -> int:
     if isinstance(time_ns, bool) or not isinstance(time_ns, (int, np.integer)) or not -(2**63) <= time_ns < 2**63:
-        raise InputError("time_ns", repr(time_ns)[:80], "ns", "[-2^63, 2^63), whole")
+        raise InputError("time_ns", shown(time_ns), "ns", "[-2^63, 2^63), whole")
     return int(time_ns)
 
 
-def _number(name: str, value: float | str | None) -> float:
-    try:
-        return math.nan if value is None else float(value)
-    except (TypeError, ValueError, OverflowError) as e:
-        raise InputError(name, repr(value)[:80], domain="a number, or None where it is not known") from e
+def _number(name: str, value: object) -> float:
+    if value is None:
+        return math.nan
+    if type(value) is not float:
+        number(name, value)
+    return float(value)  # type: ignore[arg-type]
