@@ -33,8 +33,8 @@ def settings(method: str = "tse-exact", *, raise_delay_s: float = 3.0, beside: S
 
 
 def damaged(seed: int, n: int = 3000) -> pl.DataFrame:
-    """Three tracks mixed in time, whose errors and deviations come and go over minutes; lost values, variances below zero, repeats, steps back
-    and gaps, levels in two of the tracks."""
+    """Three tracks mixed in time, whose errors and deviations come and go over minutes; lost values, variances below zero, repeats, steps
+    back and gaps, levels in two of the tracks."""
     generator = np.random.default_rng(seed)
     k = np.arange(n)
     sigma = np.exp(3.0 + 2.0 * np.sin(k / 150.0 + seed))
@@ -90,7 +90,7 @@ def by_steps(
     events: dict[str, list[rnp.Event]] = defaultdict(list)
     for row in table.iter_rows(named=True):
         track = row["track"]
-        if restarts is not None and restarts.random() < 0.2:
+        if restarts is not None and restarts.random() < 0.05:
             judges[track] = Judge.from_bytes(judges[track].to_bytes(), rules)
         judged.append(judges[track].step(row))
         events[track] += judged[-1].ended
@@ -128,7 +128,7 @@ def assert_same_events(events: pl.DataFrame, by_track: dict[str, list[rnp.Event]
     for track, found in by_track.items():
         rows = events.filter(pl.col("track") == track).drop("track").rows()
         # Text, in which every bit of a number is seen; the table has a null for a NaN.
-        stated = [tuple(None if x != x else x for x in event) for event in found]
+        stated = [tuple(None if isinstance(x, float) and math.isnan(x) else x for x in event) for event in found]
         assert sorted(map(repr, rows)) == sorted(map(repr, stated))
 
 
@@ -167,9 +167,8 @@ def test_many_epochs_are_the_same_bits_with_restarts_anywhere(seed: int) -> None
     assert_same_events(events, by_track)
 
 
-@pytest.mark.parametrize("name", ["beijing-shanghai", "beijing-shanghai-jammed"])
-def test_a_flight_is_its_epochs_one_after_the_other(name: str) -> None:
-    material = fly.material(scenario.load(name), seed=1, flights=1)
+def test_a_flight_is_its_epochs_one_after_the_other() -> None:
+    material = fly.material(scenario.load("beijing-shanghai-jammed"), seed=1, flights=1)
     run = judge(material)
     monitor = rnp.Monitor(sample_period_s=material.sample_period_s, time_to_alert_s=math.inf)
     rules = Settings(monitor, beside=["tse-ltem"], states=rnp.StateClassifier((0.3, 1.0, 2.0, 5.0)))

@@ -99,7 +99,8 @@ impl Plan {
     pub fn numbers<'a>(&self, judged: &'a Judged) -> impl Iterator<Item = f64> + 'a {
         let (evaluated, errors) = (&judged.evaluated, &judged.evaluated.errors);
         let along_path = [errors.horizontal_m, errors.spatial_m, errors.along_m, errors.cross_m, errors.tse_m, errors.tse_v_m];
-        let bound = |bound: Option<Result<_, Unavailable>>| bound.and_then(Result::ok).map(|b: navbound_core::bound::AlertBound| b.length().m());
+        let bound =
+            |bound: Option<Result<_, Unavailable>>| bound.and_then(Result::ok).map(|b: navbound_core::bound::AlertBound| b.length().m());
         let own = [bound(evaluated.accuracy), bound(evaluated.integrity)];
         let risks = [0, 1].map(|k| evaluated.exceedance.map(|risk| risk[k]));
         let states = (0..self.n_states()).map(|k| evaluated.state_probability.and_then(|p| p.get(k).copied()));
