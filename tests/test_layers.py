@@ -28,7 +28,7 @@ LAYERS = (
         "tse",
         "verify",
     ),
-    ("read", "write"),
+    ("judge", "read", "write"),
     ("scale", "report"),
     ("maps", "run"),
     ("studies",),

@@ -131,7 +131,7 @@ def method(method_id: str) -> Method:
 
 
 _NSE = ("nse_e_m", "nse_n_m", "nse_u_m")
-_NEEDS = {
+ERRORS_NEED = {
     "nse_h_m": {"nse_e_m"},
     "nse_3d_m": {"nse_e_m", "nse_u_m"},
     "nse_along_m": {"nse_e_m", "course_rad"},
@@ -161,7 +161,7 @@ def with_errors(epochs: pl.DataFrame) -> pl.DataFrame:
 
     columns = {name: column_of(epochs, name) for name in (*_COLUMNS, *_NSE) if name in epochs.columns}
     errors = _core.errors_of(epochs.height, columns)
-    there = {name: errors[name] for name, needs in _NEEDS.items() if needs <= set(epochs.columns)}
+    there = {name: errors[name] for name, needs in ERRORS_NEED.items() if needs <= set(epochs.columns)}
     return epochs.with_columns(pl.Series(name, values, nan_to_null=True) for name, values in there.items())
 
 

@@ -23,7 +23,7 @@ from navbound.table.arguments import checked, number
 from navbound.table.arrays import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -340,7 +340,6 @@ class TrackMonitors:
 
     def __init__(self, monitors: _core.RnpMonitors, names: tuple[str, ...], methods: tuple[Method, Method]) -> None:
         self._core, self._names, self._methods = monitors, names, methods
-        self._index = pl.DataFrame({"track": names, "index": range(len(names))}, schema={"track": pl.String, "index": pl.UInt32})
 
     def judge(self, frame: pl.DataFrame) -> tuple[pl.Series, pl.Series]:
         """Judge the next rows: ``alert`` and ``integrity_compared_m`` of :class:`MonitorRun`.
@@ -365,23 +364,14 @@ class TrackMonitors:
             _numbers(frame, "hpl_m") if "hpl_m" in frame.columns else None,
             _numbers(frame, "rnp_m"),
             (usable, _level_due(frame)),
-            self._of(frame),
+            track_index(frame, self._names),
         )
         return pl.Series("alert", words, dtype=pl.String), pl.Series("integrity_compared_m", compared_m, nan_to_null=True)
-
-    def _of(self, frame: pl.DataFrame) -> NDArray[np.uint32]:
-        if "track" not in frame.columns:
-            return np.zeros(frame.height, dtype=np.uint32)
-        track = frame["track"].cast(pl.String).fill_null("")
-        index = track.replace_strict(self._index["track"], self._index["index"], default=None, return_dtype=pl.UInt32)
-        if index.null_count():
-            raise InputError("track", track.filter(index.is_null())[0], domain="tracks that were named before the first piece")
-        return np.ascontiguousarray(index.to_numpy())
 
     def decided(self) -> tuple[pl.DataFrame, Counters, dict[str, Counters]]:
         """Events, counters of all tracks together and of each, of the rows so far."""
         rows, each, total = self._core.decided()
-        return _events(list(self._names), rows), Counters(**total), {n: Counters(**c) for n, c in zip(self._names, each, strict=True)}
+        return events_table(list(self._names), rows), Counters(**total), {n: Counters(**c) for n, c in zip(self._names, each, strict=True)}
 
 
 @cache
@@ -459,7 +449,27 @@ def _tracks(frame: pl.DataFrame) -> tuple[list[str], NDArray[np.uint32]]:
     return names.to_list(), np.ascontiguousarray(index.to_numpy())
 
 
-def _events(names: list[str], rows: list[tuple[int, tuple[str, int, int, int | None, float, float, float]]]) -> pl.DataFrame:
+def track_index(frame: pl.DataFrame, names: Sequence[str]) -> NDArray[np.uint32]:
+    """Place of each row's track in a list of names; 0 for a table without tracks.
+
+    Raises
+    ------
+    InputError
+        A track that is not in the list.
+    """
+    if "track" not in frame.columns:
+        return np.zeros(frame.height, dtype=np.uint32)
+    track = frame["track"].cast(pl.String).fill_null("")
+    index = track.replace_strict(
+        pl.Series(names, dtype=pl.String), pl.Series(range(len(names)), dtype=pl.UInt32), default=None, return_dtype=pl.UInt32
+    )
+    if index.null_count():
+        raise InputError("track", track.filter(index.is_null())[0], domain="tracks that were named before the first piece")
+    return np.ascontiguousarray(index.to_numpy())
+
+
+def events_table(names: list[str], rows: list[tuple[int, tuple[str, int, int, int | None, float, float, float]]]) -> pl.DataFrame:
+    """The table of events (:class:`MonitorRun`) of rows of the core, each with the index of its track's name."""
     schema = {
         "track": pl.String,
         "kind": pl.String,

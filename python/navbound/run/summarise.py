@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import anp, evaluation, rnp
+from navbound.judge import with_levels
 from navbound.methods import column_of, method
 from navbound.records.run import (
     Belief,
@@ -25,7 +26,7 @@ from navbound.records.run import (
     Worst,
 )
 from navbound.rnp.exposure import LONGEST_STEP_S
-from navbound.run.inputs.doubts import Doubts, tracks_with_levels
+from navbound.run.inputs.doubts import Doubts
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import of_epochs
 from navbound.run.verdict.results import honesty_words, protection_words, verdict_words
@@ -161,7 +162,7 @@ def _facts(material: Material, margins: pl.DataFrame, stated: list[MethodResult]
     judge = stated[0]
     judged = judged_margins(margins)
     truth = "nse_h_m" in margins.columns
-    doubts = Doubts(tracks_with_levels(margins), recorded=material.kind == "analyze")
+    doubts = Doubts({track for track, has in with_levels(margins).items() if has}, recorded=material.kind == "analyze")
     doubts.see(margins)
     return VerdictFacts(
         n_recorded=margins.height,

@@ -15,11 +15,6 @@ if TYPE_CHECKING:
     from collections.abc import Container
 
 
-def tracks_with_levels(epochs: pl.DataFrame) -> set[str]:
-    """Tracks that have a horizontal protection level anywhere."""
-    return set(epochs.filter(pl.col("hpl_m").is_finite())["track"].unique()) if "hpl_m" in epochs.columns else set()
-
-
 class Doubts:
     """Counts over epochs in the order of track and time.
 

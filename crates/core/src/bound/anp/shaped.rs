@@ -3,7 +3,7 @@
 use super::accept::{accept, accepted_axes};
 use super::radial::flat;
 use crate::quantity::{OutOfDomain, Risk};
-use crate::special::float::{ln, sqrt};
+use crate::special::float::{ln, sqrt, within};
 use crate::special::normal::{density, two_sided_factor};
 use crate::special::quadrature::integrate_broken;
 use crate::special::radius::strip::line;
@@ -137,7 +137,7 @@ struct Disc {
 fn disc_given([ee, en, nn]: [f64; 3]) -> Result<Disc, OutOfDomain> {
     // A conditional variance may be rounding: what is left of a perfectly correlated error.
     let (ee, nn) = (ee.max(0.0), nn.max(0.0));
-    let en = en.clamp(-sqrt(ee * nn), sqrt(ee * nn));
+    let en = within(en, -sqrt(ee * nn), sqrt(ee * nn));
     let (variances, axes) = accepted_axes(flat([ee, en, nn, 0.0, 0.0, 0.0]), NAMES[0])?;
     Ok(Disc { variances, sigmas: [sqrt(variances[0]), sqrt(variances[1])], axes })
 }
