@@ -23,8 +23,8 @@ import navbound._core
 ROOT = Path(__file__).parents[1]
 # Tests of bound, monitor and judge through public functions; the others need minutes, a browser or another machine's files.
 FILES = (
-    "vectors", "anp", "anp_oracle", "araim", "argument_contract", "error_extraction", "evaluation", "false_inside", "fault_campaign",
-    "fused", "fused_integrity", "fused_witnesses", "gbas", "ins_entry", "judge_errors", "levels_of_nothing", "nan_contract", "predict",
+    "vectors", "anp", "anp_covariances", "anp_oracle", "araim", "argument_contract", "error_extraction", "evaluation", "false_inside", "fault_campaign",
+    "fused", "fused_integrity", "fused_witnesses", "gbas", "gbas_aided", "ins_entry", "judge_errors", "levels_of_nothing", "nan_contract", "predict",
     "protection_methods", "raim", "risks", "rnp", "rnp_monitor", "rnp_state", "rraim", "sbas", "sbas_message_loss", "sbas_positions",
     "stations", "status", "thin_evidence", "tse", "verdict",
 )  # fmt: skip
