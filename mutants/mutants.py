@@ -70,11 +70,14 @@ def compiled(copy: Path, target: Path, what: tuple[str, ...]) -> tuple[list[Path
             made.append(Path(message["filenames"][0]))
         error = message.get("message") or {}
         if error.get("level") == "error":
-            words += error.get("rendered", "")
+            near: set[int] = set()
             for span in error.get("spans", []):
                 text = (copy / span["file_name"]).read_text().splitlines()[span["line_start"] - 1 : span["line_end"]]
-                wrong |= {int(n) for n in re.findall(r"mutant::is\((\d+)\)", "\n".join(text))}
-    return ([] if done.returncode else made), wrong, words or done.stderr[-3000:]
+                near |= {int(n) for n in re.findall(r"mutant::is\((\d+)\)", "\n".join(text))}
+            wrong |= near
+            # A last error only counts the others.
+            words += "" if near or not error.get("spans") else error.get("rendered", "")
+    return ([] if done.returncode else made), wrong, words or ("" if wrong else done.stderr[-3000:])
 
 
 def prepared(chosen: list[Mutant], copy: Path, target: Path) -> tuple[list[Mutant], list[Path]]:
@@ -88,7 +91,7 @@ def prepared(chosen: list[Mutant], copy: Path, target: Path) -> tuple[list[Mutan
         if programs:
             print(f"left out: {dict(Counter(left_out.values()))}")
             return [m for m in chosen if m.number not in left_out], programs
-        if not wrong:
+        if words:
             raise SystemExit(words[:6000])
         left_out |= dict.fromkeys(wrong, "does not compile")
 
@@ -136,8 +139,8 @@ def run(program: Path, test: str, folder: Path, variables: dict[str, str], secon
         return -1
 
 
-def killed_by_python(stay: list[Mutant], copy: Path, work: Path, target: Path) -> dict[int, str]:
-    """Vector or contract test that kills each mutant; those that none kills are absent."""
+def packaged(copy: Path, work: Path, target: Path) -> Path:
+    """The Python package with the module that holds the mutants."""
     made, _, words = compiled(copy, target, MODULE)
     if not made:
         raise SystemExit(words[:6000])
@@ -145,6 +148,11 @@ def killed_by_python(stay: list[Mutant], copy: Path, work: Path, target: Path) -
     shutil.rmtree(package, ignore_errors=True)
     shutil.copytree(ROOT / "python", package, ignore=shutil.ignore_patterns("__pycache__", "*.so"))
     shutil.copy2(made[0], package / "navbound" / "_core.abi3.so")
+    return package
+
+
+def killed_by_python(stay: list[Mutant], package: Path, work: Path) -> dict[int, str]:
+    """Vector or contract test that kills each mutant; those that none kills are absent."""
     result = work / "python.json"
     command = [ROOT / ".venv" / "bin" / "python", Path(__file__).parent / "in_python.py", "--result", result]
     subprocess.run(
@@ -177,9 +185,11 @@ def main() -> int:
     every = json.loads(a.list.read_text()) if a.list else listed()
     copy = a.work / "copy"
     stay, programs = prepared(sample(every, a.n, a.seed), copy, a.target)
-    killers = {} if a.only_python else killed_by_core(stay, programs, copy, a.work)
-    print(f"the tests of the core kill {len(killers)} of {len(stay)}", flush=True)
-    killers |= killed_by_python([m for m in stay if m.number not in killers], copy, a.work, a.target)
+    with ThreadPoolExecutor(1) as pool:
+        package = pool.submit(packaged, copy, a.work, a.target)
+        killers = {} if a.only_python else killed_by_core(stay, programs, copy, a.work)
+        print(f"the tests of the core kill {len(killers)} of {len(stay)}", flush=True)
+        killers |= killed_by_python([m for m in stay if m.number not in killers], package.result(), a.work)
     report(stay, killers, len(every))
     return 0
 
