@@ -77,7 +77,7 @@ def compiled(copy: Path, target: Path, what: tuple[str, ...]) -> tuple[list[Path
             wrong |= near
             # A last error only counts the others.
             words += "" if near or not error.get("spans") else error.get("rendered", "")
-    return ([] if done.returncode else made), wrong, words or ("" if wrong else done.stderr[-3000:])
+    return ([] if done.returncode else made), wrong, words or done.stderr[-3000:]
 
 
 def prepared(chosen: list[Mutant], copy: Path, target: Path) -> tuple[list[Mutant], list[Path]]:
@@ -91,7 +91,7 @@ def prepared(chosen: list[Mutant], copy: Path, target: Path) -> tuple[list[Mutan
         if programs:
             print(f"left out: {dict(Counter(left_out.values()))}")
             return [m for m in chosen if m.number not in left_out], programs
-        if words:
+        if not wrong:
             raise SystemExit(words[:6000])
         left_out |= dict.fromkeys(wrong, "does not compile")
 

@@ -91,7 +91,7 @@ impl Plausibility {
         let dt = sample.interval_s;
         let now = [sample.velocity_mps / dt, sample.angle_rad / dt];
         let frozen = self.repeats(&[sample.velocity_mps, sample.angle_rad]);
-        let beyond = (0..2).any(|k| !(now[k].amax() <= self.envelope.most[k]));
+        let beyond = (0..2).any(|k| !within(&now[k], self.envelope.most[k]));
         let saturated = self.saturates(&now);
         let clipped = self.clips(&[sample.velocity_mps, sample.angle_rad]);
         let changed = self.changes(sample.time, &now[0]);
@@ -116,7 +116,7 @@ impl Plausibility {
     }
 
     fn saturates(&mut self, now: &[Vector3<f64>; 2]) -> bool {
-        let yes = (0..2).any(|k| !(now[k].amax() < SATURATED.0 * self.envelope.range[k]));
+        let yes = (0..2).any(|k| !now[k].iter().all(|x| x.abs() < SATURATED.0 * self.envelope.range[k]));
         self.saturated = if yes { self.saturated + 1 } else { 0 };
         self.saturated >= SATURATED.1
     }
@@ -156,8 +156,13 @@ impl Plausibility {
         }
         self.changed = Some((time, *force));
         // Over a hole a change says nothing.
-        dt <= 2.0 * CHANGE_S && !((force - before).amax() <= self.envelope.change_mps3 * dt)
+        dt <= 2.0 * CHANGE_S && !within(&(force - before), self.envelope.change_mps3 * dt)
     }
+}
+
+/// Whether no component is beyond a size; one that is no number is, which a largest component would pass over.
+fn within(v: &Vector3<f64>, most: f64) -> bool {
+    v.iter().all(|x| x.abs() <= most)
 }
 
 #[cfg(test)]
