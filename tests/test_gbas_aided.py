@@ -36,7 +36,9 @@ def dynamics(lat: float) -> np.ndarray:
     return np.asarray(block_diag(unit, np.array([[0.0, 1.0], [0.0, 0.0]]), np.zeros((1, 1))))
 
 
-def plain(az: np.ndarray, el: np.ndarray, second: np.ndarray, lat: float, service: Literal["D", "F"], noise: str, seconds: int) -> np.ndarray:
+def plain(
+    az: np.ndarray, el: np.ndarray, second: np.ndarray, *, lat: float, service: Literal["D", "F"], noise: str, seconds: int
+) -> np.ndarray:
     n, sigma, unit = len(az), gbas.range_sigma(el, service), gbas.inertial()
     shortest, longest = MULTIPATH_S[service]
     multipath = sigma.ground_m**2 + sigma.air_m**2
@@ -73,7 +75,7 @@ def plain(az: np.ndarray, el: np.ndarray, second: np.ndarray, lat: float, servic
 def test_the_filter_is_the_plain_one(second: list[int], service: Literal["D", "F"], noise: Literal["paper", "bound"]) -> None:
     for seconds in (0, 1, 60):
         found = gbas.aided_covariance(AZ, EL, second, lat_rad=0.72, service=service, noise=noise, seconds=seconds)
-        expected = plain(AZ, EL, np.array(second) > 0, 0.72, service, noise, seconds)
+        expected = plain(AZ, EL, np.array(second) > 0, lat=0.72, service=service, noise=noise, seconds=seconds)
         # The updates cancel 1e8 m² of clock variance down to 0.1 m², which leaves 1e-7; the exponential's fourth order is smaller.
         assert np.abs(found - expected).max() < 3e-7 * np.abs(expected).max(), seconds
 
@@ -82,6 +84,6 @@ def test_the_inertial_system_alone_drifts_as_the_plain_one() -> None:
     """Two ranges cannot hold the position: what gravity, the Earth's turning and the gyros do to it shows."""
     az, el = AZ[:2], EL[:2]
     found = gbas.aided_covariance(az, el, lat_rad=-0.9, noise="bound", seconds=600)
-    expected = plain(az, el, np.zeros(2), -0.9, "D", "bound", 600)
+    expected = plain(az, el, np.zeros(2), lat=-0.9, service="D", noise="bound", seconds=600)
     # Without the bounds of other ranges the clock's 1e8 m² of variance stays in every element.
     assert np.abs(found / expected - 1.0).max() < 1e-4
