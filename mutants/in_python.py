@@ -33,8 +33,8 @@ FILES = (
     "stations", "status", "thin_evidence", "tse", "verdict",
 )  # fmt: skip
 LONGEST_S = 40.0
-WHOLE_S = 8.0
-AT_ONCE = 4
+WHOLE_S = 30.0
+AT_ONCE = 2
 
 
 LIBRARY = ctypes.CDLL(navbound._core.__file__)
