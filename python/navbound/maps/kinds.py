@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 from navbound.maps.ground import Dme
 from navbound.maps.orbital import Araim, Dop, Raim
 from navbound.maps.service import Sbas
+from navbound.table.declare import unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +27,11 @@ class Column:
 
     name: str
     title: str
-    unit: Literal["1", "m"]
+
+    @property
+    def unit(self) -> Literal["1", "m"]:
+        """Unit as the list of columns declares it."""
+        return "m" if unit_of(self.name) == "m" else "1"
 
 
 @dataclass(frozen=True)
@@ -95,9 +100,9 @@ class Kind:
     user_epoch_s: float
 
 
-_HPL, _VPL = Column("hpl_m", "Horizontal protection level", "m"), Column("vpl_m", "Vertical protection level", "m")
+_HPL, _VPL = Column("hpl_m", "Horizontal protection level"), Column("vpl_m", "Vertical protection level")
 _DOPS = tuple(
-    Column(name, f"{title} dilution of precision", "1")
+    Column(name, f"{title} dilution of precision")
     for name, title in (("pdop", "Position"), ("hdop", "Horizontal"), ("vdop", "Vertical"), ("gdop", "Geometric"))
 )
 
@@ -122,7 +127,7 @@ KINDS: dict[str, Kind] = {
             "araim",
             "ARAIM protection levels",
             "navbound.araim.predict",
-            (_VPL, _HPL, Column("emt_m", "Effective monitor threshold", "m")),
+            (_VPL, _HPL, Column("emt_m", "Effective monitor threshold")),
             _MONITORED,
             Araim,
             8e-6,
@@ -133,8 +138,8 @@ KINDS: dict[str, Kind] = {
             "DME/DME coverage",
             "navbound.dme.coverage",
             (
-                Column("nse_best_m", "95 % navigation error of the best pair", "m"),
-                Column("nse_all_m", "95 % navigation error of all stations", "m"),
+                Column("nse_best_m", "95 % navigation error of the best pair"),
+                Column("nse_all_m", "95 % navigation error of all stations"),
             ),
             (Cause("p_too_few", "No pair of stations in sight that serves"),),
             Dme,

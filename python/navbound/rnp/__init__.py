@@ -19,6 +19,8 @@ from navbound.rnp.catalogue import Specification, specification, specifications
 from navbound.rnp.exposure import PER_EPOCH, ExposureBasis, PerEpoch, PerHour, per_epoch_risk, per_hour_risk
 from navbound.rnp.states import StateClassifier, StateOfError, StateOfErrors, nse_boundary, state_of_error, state_of_errors, states_of_track
 from navbound.sbas.gains import EXTRACTION_LABEL
+from navbound.table.columns import EVENTS
+from navbound.table.declare import schema as schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -450,14 +452,5 @@ def _tracks(frame: pl.DataFrame) -> tuple[list[str], NDArray[np.uint32]]:
 
 
 def _events(names: list[str], rows: list[tuple[int, tuple[str, int, int, int | None, float, float, float]]]) -> pl.DataFrame:
-    schema = {
-        "track": pl.String,
-        "kind": pl.String,
-        "onset_ns": pl.Int64,
-        "annunciation_ns": pl.Int64,
-        "clear_ns": pl.Int64,
-        "peak_m": pl.Float64,
-        "limit_m": pl.Float64,
-        "min_margin_m": pl.Float64,
-    }
-    return pl.DataFrame([(names[track], *event) for track, event in rows], schema=schema, orient="row").fill_nan(None)
+    without_words = schema_of(column for column in EVENTS if column.name != "words")
+    return pl.DataFrame([(names[track], *event) for track, event in rows], schema=without_words, orient="row").fill_nan(None)

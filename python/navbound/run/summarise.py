@@ -30,6 +30,7 @@ from navbound.run.verdict import rule
 from navbound.run.verdict.belief import of_epochs
 from navbound.run.verdict.results import honesty_words, protection_words, verdict_words
 from navbound.status import USABLE
+from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,8 +45,6 @@ TRACKS_TO_DRAW = 10
 """Fewer tracks drawn again say little of how tracks differ."""
 
 REGION_RISK = 0.05
-
-COVARIANCE_COLUMNS = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
 
 
 def summarise(
@@ -463,7 +462,7 @@ def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
     if not set(errors) <= set(epochs.columns) or "cov_ee_m2" not in epochs.columns:
         return None
     error = np.column_stack([column_of(epochs, name) for name in errors])
-    upper = np.column_stack([column_of(epochs, name) for name in COVARIANCE_COLUMNS[: 6 if vertical else 3]])
+    upper = np.column_stack([column_of(epochs, name) for name in COVARIANCE[: 6 if vertical else 3]])
     usable = epochs.get_column("status").is_in(USABLE).to_numpy()
     known = usable & np.isfinite(error).all(axis=1) & np.isfinite(upper).all(axis=1)
     if not known.any():

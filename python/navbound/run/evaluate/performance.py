@@ -21,7 +21,6 @@ from navbound.records.run import Honesty, InputFile, Rejection, RunRecord, Summa
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run import directory
 from navbound.run.directory import Run
-from navbound.run.evaluate.levels import COVARIANCE
 from navbound.run.evaluate.monitored import GIVEN, monitor_of, monitored
 from navbound.run.evaluate.parts import Stored, finished_parts, ranges_of_parts, tables_of
 from navbound.run.evaluate.words import levels_verdict, performance_words
@@ -31,6 +30,7 @@ from navbound.run.summarise import honesty_of
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import of_level
 from navbound.storage import folders
+from navbound.table.columns import COVARIANCE
 from navbound.write.field_csv import write_csv
 
 if TYPE_CHECKING:
