@@ -80,7 +80,7 @@ def written(kind: object, named: dict[object, str]) -> str:
         return f"({inner})[]" if "|" in inner else f"{inner}[]"
     if origin is dict:
         return f"Record<{written(arguments[0], named)}, {written(arguments[1], named)}>"
-    return PLAIN[kind] if kind in PLAIN else kind.__name__  # type: ignore[attr-defined]
+    return PLAIN.get(kind) or kind.__name__  # type: ignore[attr-defined]
 
 
 PLAIN: dict[object, str] = {int: "number", float: "number", str: "string", bool: "boolean", object: "unknown", type(None): "null"}

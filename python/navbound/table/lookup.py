@@ -85,7 +85,7 @@ def drawn(names: Iterable[str]) -> list[dict[str, object]]:
                 "limit": column.shown.limit,
             }
             charts.setdefault((column.shown.chart, column.unit), []).append(line)
-    return [{"title": title, "unit": unit, "lines": lines} for (title, unit), lines in charts.items()]
+    return [{"title": title, "unit": UNITS[unit], "lines": lines} for (title, unit), lines in charts.items()]
 
 
 def metadata(names: Iterable[str], methods: Iterable[str] = ()) -> dict[str, str]:
