@@ -7,7 +7,9 @@ is navbound.table.columns, the records are those of navbound.records, the order 
 from __future__ import annotations
 
 import re
+import runpy
 import sys
+import textwrap
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -99,8 +101,29 @@ def _union(name: str, words: list[str]) -> str:
     return "\n".join([f"export type {name} =", *(f'    | "{word}"' for word in words[:-1]), f'    | "{words[-1]}";'])
 
 
+def architecture(text: str) -> str:
+    """docs/architecture.md with the picture of the parts, as the tests hold their order."""
+    held = (ROOT / "crates" / "core" / "tests" / "architecture.rs").read_text(encoding="utf-8")
+    stages = _words(held.partition("const FLOW")[2].partition(";")[2].partition(";")[0])
+    crates = re.findall(r'\("(\w+)", &\[(.*?)\]\)', held.partition("const CRATES")[2].partition("];\n")[0])
+    layers = runpy.run_path(str(ROOT / "tests" / "test_layers.py"))["LAYERS"]
+    lines = ["crates/core/src: what happens to one epoch; a stage uses the stages before it", "", f"  {' > '.join(stages)}", ""]
+    lines += ["crates: what each uses", ""]
+    lines += [f"  {name:<9} {', '.join(_words(used)) or 'nothing of ours'}" for name, used in crates]
+    lines += ["", "python/navbound: a part uses its own line and the lines beneath it", ""]
+    for place in range(len(layers), 0, -1):
+        first, *more = textwrap.wrap("  ".join(layers[place - 1]), 90)
+        lines += [f"  {place} {first}", *(f"    {line}" for line in more)]
+    return marked(text, {"parts": "\n".join(["```text", *lines, "```"])})
+
+
+def _words(text: str) -> list[str]:
+    return re.findall(r'"(\w+)"', text)
+
+
 PAGES: dict[Path, Callable[[str], str]] = {
     ROOT / "docs" / "notation.md": notation,
+    ROOT / "docs" / "architecture.md": architecture,
     ROOT / "web" / "src" / "columns.gen.ts": columns_page,
     ROOT / "web" / "src" / "records.gen.ts": records_page,
 }

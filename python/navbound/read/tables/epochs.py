@@ -86,8 +86,8 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: S
     source = load(path)
     if source.kind == "rtklib":
         return _rtklib(source)
-    if source.kind in {"ubx", "sbf", "novatel", "nmea"}:
-        return _log(source, source.kind)
+    if receivers.is_log(kind := source.kind):
+        return _log(source, kind)
     found = table(source)
     mapping = assign(found.columns, columns, source.path, needs=needs, texts=texts(found.frame))
     return _epochs(source, found, mapping, [name for name in POSITION if name in needs])
