@@ -41,5 +41,5 @@ def test_every_place_for_something_new_exists(row: list[str]) -> None:
 
 @pytest.mark.parametrize("row", rows("Where do I put"), ids=lambda row: row[0])
 def test_every_list_that_the_page_names_is_in_its_file(row: list[str]) -> None:
-    for name, file in re.findall(r"`([A-Z]+)` in `([^`]+)`", row[-1]):
+    for name, file in re.findall(r"`([A-Z_]+)` in `([^`]+)`", row[-1]):
         assert name in (ROOT / file).read_text(encoding="utf-8")

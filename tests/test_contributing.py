@@ -50,7 +50,7 @@ def test_the_vector_file_of_the_page_is_met(tmp_path: Path) -> None:
         assert outcome.failures == []
 
 
-@pytest.mark.parametrize("heading", ["A format", "A column", "A study", "A scenario"])
+@pytest.mark.parametrize("heading", ["A protection level", "A format", "A column", "A study", "A scenario"])
 def test_the_python_of_the_page_runs(heading: str, tmp_path: Path) -> None:
     scripts = blocks(heading, "python")
     assert scripts

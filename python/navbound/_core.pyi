@@ -94,7 +94,7 @@ class RnpMonitor:
         accuracy: tuple[str, float],
         integrity: tuple[str, float],
         fte_m: float,
-        hpl_m: float,
+        hpl_m: float | None,
         rnp_m: float,
         judged: tuple[bool, bool],
     ) -> tuple[str, str, list[_EventRow], list[_EventRow]]: ...

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import polars as pl
     from numpy.typing import NDArray
 
-Provenance = Literal["printed", "re-derived", "standard", "ours", "inferred"]
+Provenance = Literal["printed", "re-derived", "standard", "ours", "inferred", "yours"]
 
 
 @dataclass(frozen=True)

@@ -372,6 +372,9 @@ export interface CovarianceOrigin {
     id: "simulated" | "filter" | "solved" | "file" | "file_axes" | "epu" | "nac_p" | "containment_radius" | "typed" | "none";
     /** What the user typed. */
     sigma_m: number | null;
+    own_low_m: number | null;
+    /** Least and largest sigma of one axis by the file's own accuracies, where the typed one overrules them. */
+    own_high_m: number | null;
 }
 
 /** Inside or not, in one look. */
@@ -409,6 +412,14 @@ export interface Verdict {
     n_stated_alert: number;
     /** The same where it states a 95 % radius that is larger than its covariance allows. */
     n_stated_worse: number;
+    /** The same where it states a containment radius (Rc, NIC) beyond twice RNP, or none. */
+    n_stated_uncontained: number;
+    /** Columns, or words of columns, that speak of integrity by their name and are not understood. */
+    unread: string[];
+    /** Positions further from the line between their neighbours than their covariances and any manoeuvre explain. */
+    n_apart: number;
+    /** The largest of these distances. */
+    largest_apart_m: number | null;
     /** Judged epochs of tracks with a column of horizontal protection levels that holds none. */
     n_without_level: number;
     /** Steps between successive epochs of a track that are longer than a position takes to become stale. */
@@ -423,6 +434,10 @@ export interface Verdict {
     belief: Belief | null;
     /** Epochs of any status whose true position is known. */
     n_truth: number;
+    /** Epochs whose truth contradicts itself and is not used. */
+    n_truth_doubted: number;
+    /** What speaks against the truth, with times; empty where nothing does. */
+    truth_doubts: string;
     /** Epochs whose input cannot be true (a jump that cannot be flown, a negative variance). */
     n_implausible: number;
     worst_accuracy: Worst | null;

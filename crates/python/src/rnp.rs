@@ -154,12 +154,17 @@ impl RnpMonitor {
         accuracy: (&str, f64),
         integrity: (&str, f64),
         fte_m: f64,
-        hpl_m: f64,
+        hpl_m: Option<f64>,
         rnp_m: f64,
         judged: (bool, bool),
     ) -> PyResult<(&'static str, &'static str, Vec<EventRow>, Vec<EventRow>)> {
         let claimed = |(id, bound_m): (&str, f64)| alerting(id).map(|method| method.claim_evaluated(Metres::new(bound_m)));
         let (accuracy, integrity) = (claimed(accuracy)?, claimed(integrity)?);
+        // A record with the key says that its source has levels, whatever stands there.
+        if hpl_m.is_some() {
+            self.comparison.expect_levels();
+        }
+        let hpl_m = hpl_m.unwrap_or(f64::NAN);
         let step = self.monitor.step(&Observation {
             time: GpsTime::from_nanoseconds(time_ns),
             accuracy,

@@ -19,6 +19,8 @@ from navbound.rnp.catalogue import Specification, specification, specifications
 from navbound.rnp.exposure import PER_EPOCH, ExposureBasis, PerEpoch, PerHour, per_epoch_risk, per_hour_risk
 from navbound.rnp.states import StateClassifier, StateOfError, StateOfErrors, nse_boundary, state_of_error, state_of_errors, states_of_track
 from navbound.sbas.gains import EXTRACTION_LABEL
+from navbound.table.arguments import checked, number
+from navbound.table.arrays import shown
 from navbound.table.columns import EVENTS
 from navbound.table.declare import schema as schema_of
 
@@ -178,6 +180,7 @@ class Monitor:
         A setting outside its domain, or a chain that takes longer than the time to alert.
     """
 
+    @checked
     def __init__(
         self,
         *,
@@ -224,7 +227,12 @@ class Monitor:
         ----------
         record : mapping
             ``time_ns``, ``rnp_m``, both bounds under the names of their methods' columns and, where there are any, ``status``, ``fte_m``
-            and ``hpl_m``. A bound that is None is a NaN, and alerts; so is ``hpl_m`` after the first epoch that had one.
+            and ``hpl_m``. A bound that is None is a NaN, and alerts.
+
+            **A level that is due and missing alerts.** A record with the key ``hpl_m`` declares that its source has protection levels,
+            whatever stands there: from the first such record on every epoch with status ``ok`` owes one, and one that is None, NaN or
+            absent is no integrity bound and raises the warning at once. Only a source whose records never have the key is judged by its
+            bounds alone.
         accuracy, integrity : str
             Ids of the methods that made the two bounds, of those that may feed an alert; ``tse-exact`` is read from ``tse_exact_m`` and
             ``tse_exact_integrity_m``. The integrity bound is of the same method unless another is named.
@@ -236,13 +244,12 @@ class Monitor:
         """
         first, second = _alerting("accuracy", accuracy), _alerting("integrity", integrity or accuracy)
         try:
-            time_ns = int(record["time_ns"])
-            accuracy_m, integrity_m, rnp_m = (_number(record[key]) for key in (first.column, second.integrity_column, "rnp_m"))
-            fte_m, hpl_m = (_number(record.get(key)) for key in ("fte_m", "hpl_m"))
+            time_ns = record["time_ns"]
+            accuracy_m, integrity_m, rnp_m = (_number(key, record[key]) for key in (first.column, second.integrity_column, "rnp_m"))
+            fte_m = _number("fte_m", record.get("fte_m"))
+            hpl_m = _number("hpl_m", record["hpl_m"]) if "hpl_m" in record else None
         except KeyError as e:
             raise InputError("record", "a mapping without it", domain=f"records with {e.args[0]}") from e
-        except (TypeError, ValueError, OverflowError) as e:
-            raise InputError("record", repr(dict(record))[:120], domain="records of numbers") from e
         _require_ns(time_ns)
         status = record.get("status", "ok")
         if not isinstance(status, str) or status not in USABLE + UNUSABLE:
@@ -291,8 +298,9 @@ class Monitor:
         ----------
         table : DataFrame or mapping of columns
             ``time_ns``, ``rnp_m``, both bounds under the names of their methods' columns and, where there are any, ``status``, ``track``,
-            ``fte_m`` and ``hpl_m``. A null bound of a row whose status is ``ok`` is a NaN, and alerts; so is its null ``hpl_m`` in a track
-            that has one anywhere.
+            ``fte_m`` and ``hpl_m``. A null bound of a row whose status is ``ok`` is a NaN, and alerts; so is its null ``hpl_m``: a table
+            with this column declares that the source of every track has protection levels. Tracks without belong in a table without it, or
+            are named by :meth:`tracks`.
         accuracy, integrity : str
             Ids of the methods that made the two bounds, of those that may feed an alert; ``tse-exact`` is read from ``tse_exact_m`` and
             ``tse_exact_integrity_m``. The integrity bound is of the same method unless another is named.
@@ -303,11 +311,8 @@ class Monitor:
             A method that may not feed an alert, a missing column, a null time, or a status that is none.
         """
         frame = _frame(table)
-        names, index = _tracks(frame)
-        with_levels = np.zeros(len(names), dtype=np.bool_)
-        if "hpl_m" in frame.columns:
-            with_levels[index[~np.isnan(_numbers(frame, "hpl_m"))]] = True
-        tracks = self.tracks(dict(zip(names, with_levels.tolist(), strict=True)), accuracy=accuracy, integrity=integrity)
+        names, _ = _tracks(frame)
+        tracks = self.tracks(dict.fromkeys(names, "hpl_m" in frame.columns), accuracy=accuracy, integrity=integrity)
         alert, compared_m = tracks.judge(frame)
         events, total, each = tracks.decided()
         return MonitorRun(alert, compared_m, events, total, each)
@@ -318,7 +323,8 @@ class Monitor:
         Parameters
         ----------
         with_levels : mapping of str to bool
-            Every track, and whether it has a protection level (``hpl_m``) anywhere.
+            Every track, and whether its source has protection levels (``hpl_m``): then every epoch with status ``ok`` owes one, and one
+            without is outside. Of a track that is named without, the first level is the beginning of levels that are due.
         accuracy, integrity : str
             As in :meth:`run`.
 
@@ -393,7 +399,7 @@ def _alerting(argument: str, method_id: str) -> Method:
 
 def _require_ns(time_ns: int) -> None:
     if isinstance(time_ns, bool) or not isinstance(time_ns, (int, np.integer)) or not -(2**63) <= time_ns < 2**63:
-        raise InputError("time_ns", repr(time_ns)[:80], "ns", "[-2^63, 2^63), whole")
+        raise InputError("time_ns", shown(time_ns), "ns", "[-2^63, 2^63), whole")
 
 
 def _frame(table: pl.DataFrame | Mapping[str, Any]) -> pl.DataFrame:
@@ -412,8 +418,12 @@ def _times(frame: pl.DataFrame) -> NDArray[np.int64]:
         raise InputError("time_ns", f"a column of {frame['time_ns'].dtype}", "ns", "[-2^63, 2^63), whole") from e
 
 
-def _number(value: float | str | None) -> float:
-    return math.nan if value is None else float(value)
+def _number(name: str, value: object) -> float:
+    if value is None:
+        return math.nan
+    if type(value) is not float:
+        number(name, value)
+    return float(value)  # type: ignore[arg-type]
 
 
 def _numbers(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:

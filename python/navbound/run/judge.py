@@ -19,6 +19,7 @@ from navbound.records.run import RunRecord
 from navbound.rnp.exposure import LONGEST_STEP_S
 from navbound.run import pieces
 from navbound.run.directory import Run
+from navbound.run.inputs.doubts import tracks_with_levels
 from navbound.run.settings import Settings
 from navbound.run.summarise import summarise
 from navbound.units import METRES_PER_NM
@@ -151,10 +152,14 @@ def _with_alerts(
     epochs: pl.DataFrame, judging: str, sample_period_s: float, risk_integrity: float
 ) -> tuple[pl.DataFrame, pl.DataFrame, dict[str, object]]:
     monitor = _monitor(sample_period_s, risk_integrity)
-    result = monitor.run(epochs, accuracy=judging)
-    if _has_values(epochs, "hpl_m"):
-        epochs = epochs.with_columns(result.integrity_compared_m)
-    return epochs.with_columns(result.alert.alias("alert")), _in_words(result.events), _counters(monitor, result.counters)
+    # A track whose column holds no level anywhere is counted by the verdict, which is then not "inside".
+    with_levels = tracks_with_levels(epochs)
+    monitors = monitor.tracks({track: track in with_levels for track in epochs["track"].unique(maintain_order=True)}, accuracy=judging)
+    alert, compared_m = monitors.judge(epochs)
+    if with_levels:
+        epochs = epochs.with_columns(compared_m)
+    events, total, _ = monitors.decided()
+    return epochs.with_columns(alert.alias("alert")), _in_words(events), _counters(monitor, total)
 
 
 def _monitor(sample_period_s: float, risk_integrity: float) -> rnp.Monitor:

@@ -160,7 +160,7 @@ def _facts(material: Material, margins: pl.DataFrame, stated: list[MethodResult]
     judge = stated[0]
     judged = judged_margins(margins)
     truth = "nse_h_m" in margins.columns
-    doubts = Doubts(tracks_with_levels(margins))
+    doubts = Doubts(tracks_with_levels(margins), recorded=material.kind == "analyze")
     doubts.see(margins)
     return VerdictFacts(
         n_recorded=margins.height,
@@ -210,6 +210,8 @@ def verdict_of(
         n_known_beyond=found.n_known_beyond,
         n_stated_against=found.doubts.n_stated_against,
         n_without_level=found.doubts.n_without_level,
+        n_apart=0 if found.doubts.neighbours is None else found.doubts.neighbours.n,
+        truth_lost=material.truth_doubts.n > 0 and found.n_truth == 0,
     )
     decided = rule.of_tracks(facts)
     verdict = Verdict(
@@ -230,6 +232,10 @@ def verdict_of(
         n_stated_beyond=found.doubts.n_stated_beyond,
         n_stated_alert=found.doubts.n_stated_alert,
         n_stated_worse=found.doubts.n_stated_worse,
+        n_stated_uncontained=found.doubts.n_stated_uncontained,
+        unread=material.unread,
+        n_apart=facts.n_apart,
+        largest_apart_m=found.doubts.neighbours.largest_m if found.doubts.neighbours is not None and facts.n_apart else None,
         n_without_level=found.doubts.n_without_level,
         n_long_steps=found.doubts.n_long_steps,
         longest_step_s=found.doubts.longest_step_s,
@@ -240,6 +246,8 @@ def verdict_of(
         worst_integrity=found.worst[1],
         truth_known=found.n_truth > 0,
         n_truth=found.n_truth,
+        n_truth_doubted=material.truth_doubts.n,
+        truth_doubts=material.truth_doubts.words,
     )
     words = verdict_words(verdict, judge, risks, material.covariance)
     return verdict.model_copy(update={"words": f"{words}{protection_words(protection)}"})

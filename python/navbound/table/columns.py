@@ -58,7 +58,13 @@ EPOCHS: tuple[Column, ...] = (
     *row("stated_error_m", "the largest lateral or horizontal error that a row of a recording states itself", "source"),
     *row(
         "stated_worse_m",
-        "the 95 % radius that a row of a recording states, where it is larger than the row's covariance allows",
+        "the 95 % radius that a row of a recording states (EPU, standard deviations, the lower limit of a NACp), where it is larger than "
+        "the row's covariance allows",
+        "source",
+    ),
+    *row(
+        "stated_rc_m",
+        "the containment radius that a row of a recording states (Rc, or that of its NIC); infinite where it states that none is known",
         "source",
     ),
     *row("stated_alert", "the word of an alert that a row of a recording states itself; null where it states none", "source", kind="text"),

@@ -30,6 +30,11 @@ impl IntegrityComparison {
         Self { level_expected: true }
     }
 
+    /// The source states levels, so every epoch from now on should have one: also one whose level is not a number.
+    pub const fn expect_levels(&mut self) {
+        self.level_expected = true;
+    }
+
     /// The integrity bound of one epoch. `fte` and `level` are NaN where they are not known; a level that is negative is not known. `due`:
     /// the epoch is one that should have a level, where its track has any.
     pub fn bound(&mut self, bound: AlertBound, fte: Metres, level: Metres, due: bool) -> AlertBound {
@@ -99,6 +104,13 @@ mod tests {
         assert_eq!(at(UNKNOWN), 50.0, "no level so far");
         assert_eq!(at(Metres::new(900.0)), 910.0);
         assert!(at(UNKNOWN).is_nan());
+    }
+
+    #[test]
+    fn a_source_that_states_levels_owes_one_from_the_first_epoch_on() {
+        let mut comparison = IntegrityComparison::default();
+        comparison.expect_levels();
+        assert!(comparison.bound(alert_bound("tse-exact", 50.0), Metres::new(10.0), UNKNOWN, true).length().m().is_nan());
     }
 
     #[test]

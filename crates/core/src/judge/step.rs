@@ -187,6 +187,9 @@ impl Judge {
         let or_unknown = |bound: Option<Result<AlertBound, Unavailable>>| bound.and_then(Result::ok).unwrap_or_else(unknown);
         let (accuracy, integrity) = (or_unknown(evaluated.accuracy), or_unknown(evaluated.integrity));
         let fte = Metres::new(sample.fte_m.unwrap_or(f64::NAN));
+        if sample.hpl.is_some() {
+            self.comparison.expect_levels();
+        }
         let level = sample.hpl.unwrap_or(Metres::new(f64::NAN));
         let integrity = self.comparison.bound(integrity, fte, level, sample.status == Status::Ok);
         let step = self.monitor.step(&rnp::Observation {

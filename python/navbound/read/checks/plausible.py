@@ -94,18 +94,16 @@ class Plausibility:
     words: str
 
 
-def impossible(rows: pl.DataFrame, lat: str, lon: str) -> pl.Series:
-    """Whether each position of one track, in the order of time, cannot have been reached, or follows a jump that has not settled."""
+def unreachable(rows: pl.DataFrame, lat: str, lon: str, limits: Limits) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Where the positions of one track, in the order of time, jump; and where they jump or have not settled since."""
     time, lat_rad, lon_rad = (np.ascontiguousarray(rows[name].to_numpy()) for name in ("time_ns", lat, lon))
     undated, silent = np.full(rows.height, _UNDATED), np.full(rows.height, np.nan)
-    # A true position may stand still.
-    limits = asdict(Limits(moving_mps=np.inf))
-    track = _core.PlausibleTrack(limits, reports_speed=False)
+    track = _core.PlausibleTrack(asdict(limits), reports_speed=False)
     reports = (time, undated, lat_rad, lon_rad, silent)
     track.see(reports)
     code = track.judge(reports, [])["finding"]
-    wrong = [_REASON_ID.index(id_) for id_ in ("position_jump", "position_not_settled", "position_late")]
-    return pl.Series(np.isin(code, wrong))
+    jump, unsettled, late = (code == _REASON_ID.index(id_) for id_ in ("position_jump", "position_not_settled", "position_late"))
+    return jump | late, jump | late | unsettled
 
 
 def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFrame, Plausibility]:

@@ -6,16 +6,19 @@ import difflib
 import functools
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, InputError
+from navbound.read.checks.statements import kind_of, speaks_of_integrity
 from navbound.table.columns import COVARIANCE, EPOCHS, READ, VARIANCES
 from navbound.units import METRES_PER_FT, METRES_PER_NM, MPS_PER_KT
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping, Sequence
     from pathlib import Path
+
+    from navbound.read.checks.statements import Kind
 
 _DEG = math.pi / 180.0
 
@@ -146,7 +149,7 @@ STATED_QUANTITIES: tuple[Quantity, ...] = (
     _q("nse_along_m", -1e8, 1e8),
     _q("tse_m", -1e8, 1e8, m="tse"),
     _q("fte_m", -1e8, 1e8, m="fte"),
-    _q("alert", 0.0, 0.0, text="alert_state alarm"),
+    _q("alert", 0.0, 0.0),
 )
 """What a recorded track may state against its own positions. It bounds nothing; the verdict weighs it."""
 
@@ -207,11 +210,21 @@ class Assignment:
         One column, or week and time of week.
     unused : list of str
         Columns that nothing is known about.
+    statements : list of (str, Kind)
+        Columns in which a recorded track states the validity or the integrity of its own positions.
     """
 
     columns: dict[str, Column]
     times: list[Column]
     unused: list[str]
+    statements: list[tuple[str, Kind]] = field(default_factory=list)
+
+    @property
+    def unread(self) -> list[str]:
+        """Columns that nothing reads, though their names speak of integrity."""
+        plain = {name: _plain(name)[0] for name in self.unused}
+        transponders = bool(TRANSPONDER & set(plain.values()))
+        return [name for name, each in plain.items() if speaks_of_integrity(name) and not (transponders and each == "alert")]
 
 
 POSITION = ("est_lat_rad", "est_lon_rad")
@@ -276,7 +289,13 @@ def assign(
         times = _times([n for n in names if n not in taken])
         taken |= {c.name for c in times}
     _require(columns, times, names, path, needs)
-    return Assignment(columns, times, [n for n in names if n not in taken])
+    free = [n for n in names if n not in taken]
+    kinds = {name: kind_of(_plain(name)[0]) for name in free} if tuple(needs) == POSITION else {}
+    if {_plain(name)[0] for name in names} & TRANSPONDER:
+        kinds.pop("alert", None)
+    statements = [(name, kind) for name, kind in kinds.items() if kind is not None]
+    stating = {name for name, _ in statements}
+    return Assignment(columns, times, [n for n in free if n not in stating], statements)
 
 
 def position_time(unused: list[str]) -> Column | None:

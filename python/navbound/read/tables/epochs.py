@@ -49,6 +49,8 @@ class Reading:
     left_out : DataFrame
         ``track`` and ``time_ns`` of rows that were expected to hold a position and cannot be judged: without a position or a time, with a
         refused value in one of them, or with another position, bound or status at the time of another row. A null time is not known.
+    unread : list of str
+        Columns, or words of columns, that speak of integrity by their name and are not understood.
     """
 
     epochs: pl.DataFrame
@@ -58,6 +60,7 @@ class Reading:
     notes: list[str] = field(default_factory=list)
     columns: dict[str, str] = field(default_factory=dict)
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
+    unread: list[str] = field(default_factory=list)
 
 
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:
@@ -103,7 +106,8 @@ def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequenc
     rejections.refuse_if_too_many(found.n_rows)
     _not_empty(source, out)
     lost = pl.concat([without, left_out(contradicting)])
-    return Reading(out.drop(LINE), source.record(found.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
+    of_file = (source.record(found.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
+    return Reading(out.drop(LINE), *of_file, unread=values.unread)
 
 
 def _rtklib(source: Source) -> Reading:

@@ -108,7 +108,7 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, need
         raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")
     epochs, notes, refused = reading.epochs, list(reading.notes), list(reading.rejected)
     if truth.given is not None:
-        epochs, words, other = with_truth(epochs, truth)
+        epochs, words, other, _ = with_truth(epochs, truth)
         notes.append(words)
         refused += [] if other is None else other.rejected
     else:
@@ -132,8 +132,8 @@ def _with_own_truth(epochs: pl.DataFrame) -> tuple[pl.DataFrame, list[str]]:
         return epochs, [f"truth_lat_rad and truth_lon_rad are not used: the errors are those that the table states ({', '.join(errors)})."]
     if not {"est_lat_rad", "est_lon_rad"} <= have:
         return epochs, ["truth_lat_rad and truth_lon_rad are not used: the table holds no estimated positions to compare with them."]
-    epochs, words = with_error(epochs)
-    return epochs, [f"Truth: from the file itself.{words}"]
+    epochs, doubts = with_error(epochs)
+    return epochs, [f"Truth: from the file itself. {doubts.words}".rstrip()]
 
 
 class Service:
@@ -227,7 +227,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     refused = [*of_observations(observations), *service.rejected()]
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", service.navigation.skipped)]
     if truth.given is not None and truth.ecef_m is None:
-        epochs, words, other = with_truth(epochs, truth)
+        epochs, words, other, _ = with_truth(epochs, truth)
         refused += [] if other is None else other.rejected
         notes.append(words)
     rejected = [one.model_dump() for one in refused]

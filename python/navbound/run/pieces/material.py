@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
+from navbound.read.checks.axes import Axes
 from navbound.read.checks.plausible import Checker, Limits, Plausibility
 from navbound.read.covariance import Claimed, Claims
 from navbound.read.pieces import Frames, PiecedReading, read_pieces
@@ -70,6 +71,8 @@ class InPieces:
         Track to the callsign it mostly has, or to its own name.
     period_s : float
         Usual time between epochs of a track; 1 s where no track has two. [s]
+    doubts : list of str
+        That the positions do not move as the recording says.
     """
 
     reading: PiecedReading
@@ -78,6 +81,7 @@ class InPieces:
     plausibility: Plausibility
     labels: dict[str, str]
     period_s: float
+    doubts: list[str]
 
 
 def in_pieces(
@@ -92,17 +96,19 @@ def in_pieces(
     """
     reading = read_pieces(path, columns=columns, piece_rows=piece_rows)
     checker, claims, epochs = Checker(limits), Claims(sigma_m), Frames()
+    axes = Axes()
     steps, labels = _Steps(reading.n_rows), _Labels(reading.names)
     for part in reading.spread():
         checker.see(part)
     for piece, after in _with_the_next(reading.epochs(), _core.SPEEDS_BESIDE):
         labels.see(piece)
+        axes.see(piece)
         claimed = claims.claim(piece)
         ready = covariance_status(without_path(checker.check(claimed.epochs, after))).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
         steps.see(ready)
         epochs.put(ready.drop(AUXILIARY, strict=False))
     reading.pieces.close()
-    return InPieces(reading, epochs, claimed, checker.plausibility(), labels.usual(), steps.median_s())
+    return InPieces(reading, epochs, claimed, checker.plausibility(), labels.usual(), steps.median_s(), axes.words())
 
 
 def _with_the_next(pieces: Iterator[pl.DataFrame], n: int) -> Iterator[tuple[pl.DataFrame, pl.DataFrame]]:

@@ -10,7 +10,8 @@ import polars as pl
 
 from navbound import evaluation
 from navbound.methods import method
-from navbound.read.checks.stated import ALERT, ERROR, WORSE
+from navbound.read.checks.neighbours import COLUMNS as NEIGHBOURS
+from navbound.read.checks.stated import ALERT, CONTAINMENT, ERROR, WORSE
 from navbound.records.run import PhaseSummary, Summary, TrackSummary, Worst
 from navbound.run.inputs.doubts import Doubts
 from navbound.run.summarise import (
@@ -128,8 +129,8 @@ def summary(material: Material, epochs: Frames, events: pl.DataFrame, ids: Seque
         Of accuracy and of integrity. [1]
     """
     judging = ids[0]
-    read = ("track", "time_ns", "phase", "status", "rnp_m", "along_m", "est_lat_rad", "est_lon_rad", "integrity_compared_m")
-    doubted = ("hpl_m", ERROR, ALERT, WORSE)
+    read = ("phase", "rnp_m", "along_m", "integrity_compared_m", *NEIGHBOURS)
+    doubted = ("hpl_m", ERROR, ALERT, WORSE, CONTAINMENT)
     names = [*read, *doubted, method(judging).column, method(judging).integrity_column]
     sums = _Sums(material, judging, events)
     for piece in epochs.select([name for name in names if name in epochs.columns]):
