@@ -21,7 +21,7 @@ from navbound.run import pieces
 from navbound.run.directory import Run
 from navbound.run.inputs.doubts import tracks_with_levels
 from navbound.run.settings import Settings
-from navbound.run.summarise import summarise
+from navbound.run.summary.summarise import summarise
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ from navbound.run.evaluate.parts import Stored, finished_parts, ranges_of_parts,
 from navbound.run.evaluate.words import levels_verdict, performance_words
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
-from navbound.run.summarise import honesty_of
+from navbound.run.summary.consistency import honesty_of
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import copied, of_level
 from navbound.run.verdict.words import COPIED
