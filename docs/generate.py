@@ -103,9 +103,9 @@ def _union(name: str, words: list[str]) -> str:
 
 def architecture(text: str) -> str:
     """docs/architecture.md with the picture of the parts, as the tests hold their order."""
-    held = (ROOT / "crates" / "core" / "tests" / "architecture.rs").read_text(encoding="utf-8")
-    stages = _words(held.partition("const FLOW")[2].partition(";")[2].partition(";")[0])
-    crates = re.findall(r'\("(\w+)", &\[(.*?)\]\)', held.partition("const CRATES")[2].partition("];\n")[0])
+    order = (ROOT / "crates" / "core" / "tests" / "architecture.rs").read_text(encoding="utf-8")
+    stages = _words(order.partition("const FLOW")[2].partition(";")[2].partition(";")[0])
+    crates = re.findall(r'\("(\w+)", &\[(.*?)\]\)', order.partition("const CRATES")[2].partition("];\n")[0])
     layers = runpy.run_path(str(ROOT / "tests" / "test_layers.py"))["LAYERS"]
     lines = ["crates/core/src: what happens to one epoch; a stage uses the stages before it", "", f"  {' > '.join(stages)}", ""]
     lines += ["crates: what each uses", ""]
