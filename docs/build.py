@@ -1,4 +1,4 @@
-"""Write docs/methods/index.md from the lists of methods and of algorithms: the page that lists every method. `./dev docs` writes, `--check` compares."""
+"""Write docs/methods/index.md from the lists of methods and of algorithms. `./dev docs` writes, `--check` compares."""
 
 from __future__ import annotations
 

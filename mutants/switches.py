@@ -167,7 +167,7 @@ class Source:
 
 def written(mutants: list[Mutant], copy: Path) -> dict[int, str]:
     """Write the copy with every mutant that can be in it; the others with their reasons."""
-    for name in ("crates", "vectors", "Cargo.toml", "Cargo.lock", "docs/notation.md"):
+    for name in ("crates", "vectors", "Cargo.toml", "Cargo.lock", "docs/notation.md", "CONTRIBUTING.md"):
         (copy / name).parent.mkdir(parents=True, exist_ok=True)
         source = ROOT / name
         if source.is_dir():

@@ -80,9 +80,9 @@ def test_a_box_leaves_its_risk_outside(loads: tuple[float, float, float], risk: 
         turn = np.ix_(order, order)
         k = anp.box_factor(v[turn] * np.outer(sigma, sigma), risk)
         # Both integrals carry ten digits of the risk.
-        assert one_cause(k, factors[list(order)]) == pytest.approx(risk, rel=1e-9)
+        assert one_cause(float(k), factors[list(order)]) == pytest.approx(risk, rel=1e-9)
     k = anp.box_factor(np.diag([4.0, 1.0, 0.0]) + np.diag([2.0 * v[0, 1], 0.0], 1) + np.diag([2.0 * v[0, 1], 0.0], -1), risk)
-    assert one_cause(k, factors[:2]) == pytest.approx(risk, rel=1e-9)
+    assert one_cause(float(k), factors[:2]) == pytest.approx(risk, rel=1e-9)
 
 
 @pytest.mark.parametrize("risk", [0.3, 0.05, 1e-5])

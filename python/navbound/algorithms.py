@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from navbound.errors import InputError
 from navbound.methods import ProtectionMethod, protection_methods
+from navbound.table.declare import unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -40,7 +41,11 @@ class Column:
 
     name: str
     title: str
-    unit: Literal["1", "m"]
+
+    @property
+    def unit(self) -> Literal["1", "m"]:
+        """Unit by the ending of the name."""
+        return "m" if unit_of(self.name) == "m" else "1"
 
 
 @dataclass(frozen=True)
@@ -170,8 +175,8 @@ class Algorithm:
 
 E = TypeVar("E", bound=Entry)
 
-HPL = Column("hpl_m", "Horizontal protection level", "m")
-VPL = Column("vpl_m", "Vertical protection level", "m")
+HPL = Column("hpl_m", "Horizontal protection level")
+VPL = Column("vpl_m", "Vertical protection level")
 ARAIM_CAUSES = (
     Cause("p_too_few", "Too few satellites, or badly placed ones", ("too_few_satellites", "singular")),
     Cause("p_too_many", "More satellites or fault modes than are worked out", ("too_many",)),
@@ -203,7 +208,7 @@ _ENTRIES: dict[str, tuple[Entry, ...]] = {
             name="araim",
             call="navbound.araim.predict",
             title="ARAIM protection levels",
-            columns=(VPL, HPL, Column("emt_m", "Effective monitor threshold", "m")),
+            columns=(VPL, HPL, Column("emt_m", "Effective monitor threshold")),
             causes=ARAIM_CAUSES,
             constellation=("gps", "galileo"),
             options={"service": "lpv-200", "model": "dual-frequency"},

@@ -80,7 +80,7 @@ class Kind:
 
 
 _DOPS = tuple(
-    Column(name, f"{title} dilution of precision", "1")
+    Column(name, f"{title} dilution of precision")
     for name, title in (("pdop", "Position"), ("hdop", "Horizontal"), ("vdop", "Vertical"), ("gdop", "Geometric"))
 )
 
@@ -98,8 +98,8 @@ _OWN = (
         "DME/DME coverage",
         "navbound.dme.coverage",
         (
-            Column("nse_best_m", "95 % navigation error of the best pair", "m"),
-            Column("nse_all_m", "95 % navigation error of all stations", "m"),
+            Column("nse_best_m", "95 % navigation error of the best pair"),
+            Column("nse_all_m", "95 % navigation error of all stations"),
         ),
         (Cause("p_too_few", "No pair of stations in sight that serves"),),
         Dme,

@@ -10,10 +10,8 @@ import polars as pl
 
 from navbound.errors import InputError
 from navbound.read.checks.stated import CONTAINMENT, WORSE, worse_than_covariance
+from navbound.table.columns import COVARIANCE, HORIZONTAL
 from navbound.units import METRES_PER_NM
-
-COLUMNS = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
-
 
 NACP_EPU_M = {
     11: 3.0,
@@ -143,7 +141,7 @@ def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
 
 
 def _of_file(epochs: pl.DataFrame, have: set[str]) -> Claimed:
-    if {"cov_ee_m2", "cov_en_m2", "cov_nn_m2"} <= have:
+    if set(HORIZONTAL) <= have:
         alone = "cov_uu_m2" in have and not {"cov_eu_m2", "cov_nu_m2"} <= have
         more = " The vertical axis is taken as uncorrelated, which the file does not say." if alone else ""
         words = f"Covariance: as the file gives it.{more}{_beside(have)}"
@@ -212,7 +210,7 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
         )
         return _circle(epochs, radius * k_rc, words, "containment_radius")
     words = "Covariance: none. The file states no accuracy and none was given (sigma_m), so nothing bounds the navigation error."
-    return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COLUMNS), words, "none")
+    return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COVARIANCE), words, "none")
 
 
 def _held(name: str) -> pl.Expr:
@@ -226,7 +224,7 @@ def _circle(epochs: pl.DataFrame, sigma: pl.Expr, words: str, origin: Origin) ->
     epochs = epochs.with_columns((sigma**2).alias("cov_ee_m2"))
     known = pl.col("cov_ee_m2").is_not_null()
     epochs = epochs.with_columns(pl.when(known).then(0.0).alias("cov_en_m2"), pl.col("cov_ee_m2").alias("cov_nn_m2"))
-    return Claimed(_complete(epochs.drop("cov_eu_m2", "cov_nu_m2", "cov_uu_m2", strict=False)), words, origin)
+    return Claimed(_complete(epochs.drop(COVARIANCE[3:], strict=False)), words, origin)
 
 
 def _complete(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -234,9 +232,9 @@ def _complete(epochs: pl.DataFrame) -> pl.DataFrame:
 
     A vertical variance whose correlations the file does not state claims a vertical interval all the same, so they are taken as zero.
     """
-    missing = [c for c in COLUMNS if c not in epochs.columns]
+    missing = [c for c in COVARIANCE if c not in epochs.columns]
     vertical = pl.col("cov_uu_m2").is_not_null() if "cov_uu_m2" in epochs.columns else pl.lit(value=False)
-    correlation = {"cov_eu_m2", "cov_nu_m2"}
+    correlation = set(COVARIANCE[3:5])
     return epochs.with_columns(
         (pl.when(vertical).then(pl.lit(0.0)) if c in correlation else pl.lit(None, pl.Float64)).alias(c) for c in missing
     )

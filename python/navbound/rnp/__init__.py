@@ -21,6 +21,8 @@ from navbound.rnp.states import StateClassifier, StateOfError, StateOfErrors, ns
 from navbound.sbas.gains import EXTRACTION_LABEL
 from navbound.table.arguments import checked, number
 from navbound.table.arrays import shown
+from navbound.table.columns import EVENTS
+from navbound.table.declare import schema as schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -470,14 +472,5 @@ def track_index(frame: pl.DataFrame, names: Sequence[str]) -> NDArray[np.uint32]
 
 def events_table(names: list[str], rows: list[tuple[int, tuple[str, int, int, int | None, float, float, float]]]) -> pl.DataFrame:
     """The table of events (:class:`MonitorRun`) of rows of the core, each with the index of its track's name."""
-    schema = {
-        "track": pl.String,
-        "kind": pl.String,
-        "onset_ns": pl.Int64,
-        "annunciation_ns": pl.Int64,
-        "clear_ns": pl.Int64,
-        "peak_m": pl.Float64,
-        "limit_m": pl.Float64,
-        "min_margin_m": pl.Float64,
-    }
-    return pl.DataFrame([(names[track], *event) for track, event in rows], schema=schema, orient="row").fill_nan(None)
+    without_words = schema_of(column for column in EVENTS if column.name != "words")
+    return pl.DataFrame([(names[track], *event) for track, event in rows], schema=without_words, orient="row").fill_nan(None)

@@ -22,7 +22,7 @@ from navbound.rnp.exposure import LONGEST_STEP_S
 from navbound.run import pieces
 from navbound.run.directory import Run
 from navbound.run.settings import Settings
-from navbound.run.summarise import summarise
+from navbound.run.summary.summarise import summarise
 from navbound.storage.frames import Frames
 from navbound.units import METRES_PER_NM
 

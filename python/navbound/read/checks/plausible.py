@@ -9,8 +9,8 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
-from navbound.read.covariance import COLUMNS
 from navbound.read.tables.columns import POSITION_TIME
+from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -238,7 +238,7 @@ def _marked(epochs: pl.DataFrame, code: NDArray[np.uint8]) -> pl.DataFrame:
         stands = both.select((status.worse(pl.col("before"), pl.col("status")) == pl.col("before")).alias("stands"))["stands"]
         marked = marked.with_columns(pl.when(stands).then(solved[c]).otherwise(pl.col(c)).alias(c) for c in status.COLUMNS)
     believed = pl.col("status").is_in(status.USABLE)
-    marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COLUMNS if c in epochs.columns)
+    marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COVARIANCE if c in epochs.columns)
     # One order of columns, whether the recording had a status or not.
     said = ("reason_id", "status", "reason")
     return marked.select(pl.exclude(*said), *said)

@@ -21,17 +21,17 @@ from navbound.records.run import Honesty, InputFile, Rejection, RunRecord, Summa
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run import directory
 from navbound.run.directory import Run
-from navbound.run.evaluate.levels import COVARIANCE
 from navbound.run.evaluate.monitored import GIVEN, monitor_of, monitored
 from navbound.run.evaluate.parts import Stored, finished_parts, ranges_of_parts, tables_of
 from navbound.run.evaluate.words import levels_verdict, performance_words
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
-from navbound.run.summarise import honesty_of
+from navbound.run.summary.consistency import honesty_of
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import copied, of_level
 from navbound.run.verdict.words import COPIED
 from navbound.storage import folders
+from navbound.table.columns import COVARIANCE
 from navbound.write.field_csv import write_csv
 
 if TYPE_CHECKING:

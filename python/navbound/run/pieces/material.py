@@ -12,11 +12,12 @@ import polars as pl
 from navbound import _core, status
 from navbound.read.checks.axes import Axes
 from navbound.read.checks.plausible import Checker, Limits, Plausibility
-from navbound.read.covariance import COLUMNS, Claimed, Claims
+from navbound.read.covariance import Claimed, Claims
 from navbound.read.pieces import Frames, PiecedReading, read_pieces
 from navbound.read.pieces.chunks import Chunks
 from navbound.read.tables.columns import POSITION_TIME, assign
 from navbound.read.tables.table import layout_of
+from navbound.table.columns import COVARIANCE, HORIZONTAL
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -43,7 +44,7 @@ def without_path(epochs: pl.DataFrame) -> pl.DataFrame:
 
 def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
     """Status of epochs whose position may be believed, but not the covariance. Written so that a NaN is on the bad side."""
-    ee, nn, en = pl.col("cov_ee_m2"), pl.col("cov_nn_m2"), pl.col("cov_en_m2")
+    ee, en, nn = (pl.col(name) for name in HORIZONTAL)
     # 1e-9 of the squared largest variance: the sixteen digits of a double less those the determinant loses.
     determinant = ee * nn - en**2 >= -1e-9 * pl.max_horizontal(ee, nn) ** 2
     positive = pl.all_horizontal(ee.is_finite(), nn.is_finite(), en.is_finite(), ee >= 0, nn >= 0, determinant).fill_null(value=False)
@@ -55,7 +56,7 @@ def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
         .when(ee + nn == 0).then(pl.lit("zero_covariance"))
     )  # fmt: skip
     epochs = status.overridden(epochs, epochs.select(fault.alias("reason_id"))["reason_id"])
-    return epochs.with_columns(pl.when(pl.col("status").is_in(status.USABLE)).then(pl.col(c)).alias(c) for c in COLUMNS)
+    return epochs.with_columns(pl.when(pl.col("status").is_in(status.USABLE)).then(pl.col(c)).alias(c) for c in COVARIANCE)
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from navbound.methods import column_of, method
 from navbound.records.run import Belief, BoundCheck, LevelCheck
 from navbound.run.verdict import rule
 from navbound.status import USABLE
+from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -215,7 +216,7 @@ def _copied_share(epochs: pl.DataFrame) -> float:
 
 def _magnitude(epochs: pl.DataFrame) -> evaluation.Magnitude | None:
     """The horizontal error in units of its covariance; None where no epoch has both."""
-    names = ("nse_e_m", "nse_n_m", "cov_ee_m2", "cov_en_m2", "cov_nn_m2")
+    names = ("nse_e_m", "nse_n_m", *HORIZONTAL)
     if not set(names) <= set(epochs.columns):
         return None
     east, north, ee, en, nn = (column_of(epochs, name) for name in names)
