@@ -82,6 +82,12 @@ def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine:
         ("rtk_status", "x", "rtk_status"),
         ("posAccuracy", "9", "posAccuracy"),
         ("valid", "", "valid (empty)"),
+        ("NSE", "3000", "NSE"),
+        ("err_h_m", "4000", "err_h_m"),
+        ("HFOM", "2000", "HFOM"),
+        ("coasting", "1", "coasting"),
+        ("age_s", "900", "age_s"),
+        ("sat_count", "0", "sat_count"),
     ],
 )
 def test_what_is_not_understood_is_named(tmp_path: Path, name: str, value: str, named: str) -> None:

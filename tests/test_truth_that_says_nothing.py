@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -39,6 +40,12 @@ def test_errors_far_below_a_careful_sigma_are_errors(tmp_path: Path) -> None:
     verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=30.0, error_en_m=white(N, 0.1))).summary.verdict
     assert verdict.belief is not None
     assert (verdict.id, verdict.belief.state) == ("inside", "supported")
+    # Squares of white errors of 0.1 m are (30 / 0.1)^2 times smaller, within what 400 pairs leave to chance (a twentieth each way).
+    factor = re.search(r"The squared errors are ([\d.e+]+) times smaller than the covariance states", verdict.words)
+    assert factor is not None
+    assert float(factor[1]) == pytest.approx(9e4, rel=0.15)
+    usual = navbound.analyze(table(tmp_path / "b.csv", N, error_en_m=white(N))).summary.verdict
+    assert "times smaller" not in usual.words
 
 
 def test_few_independent_epochs_support_nothing(tmp_path: Path) -> None:

@@ -143,7 +143,8 @@ _SPEAKS = _words(
     "valid invalid validity fix quality raim fde integrity alert alarm warning caution fault failure fail failed health healthy "
     "flag flags mode nac nacp nacv nucp nic sil sils sda rc hpl hul hil hal vpl vul val xpl protection containment spoofing "
     "spoofed spoof jamming jammed jam interference reliable reliability trust usable error errors uncertainty accuracy acc hacc "
-    "vacc pacc sigma std stddev epu anp epe eph epv ehpe cep drms rms confidence outlier misleading degraded lost loss solution "
+    "vacc pacc sigma std stddev epu anp epe eph epv ehpe cep drms rms fom hfom vfom "
+    "nse tse fte err coasting coast extrapolated age nsat nsats sats satellites sat confidence outlier misleading degraded lost loss solution "
 )
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
 

@@ -74,7 +74,7 @@ def _checked(verdict: Verdict) -> list[str]:
     other = _contained([check for check in belief.beside if check.method == "anp-vertical" and not check.refuted])
     vertical = [f"Of the vertical errors {'; '.join(other)}."] if other else []
     known = f"{_known(belief)}: of the errors at these epochs {'; '.join(lateral)}."
-    return [known, *_few(belief), *vertical, *_below(belief), *_levels(belief)]
+    return [known, *_small(belief), *_few(belief), *vertical, *_below(belief), *_levels(belief)]
 
 
 COPIED = (
@@ -88,6 +88,21 @@ def covered_words(belief: Belief | None) -> str:
     if belief is None or not 0 < belief.n_truth < belief.n_epochs:
         return ""
     return f"; the true position is known at {share(belief.n_truth / belief.n_epochs)} of the checked epochs only"
+
+
+TOO_SMALL = 0.1
+"""Share of the squared error that the covariance states below which a reader is warned. Provenance: ours."""
+
+
+def _small(belief: Belief) -> list[str]:
+    """Errors that no covariance of this size explains."""
+    if belief.square_mean is None or belief.state == "copied" or not belief.square_mean < TOO_SMALL * 2.0:
+        return []
+    ratio = 2.0 / belief.square_mean if belief.square_mean > 0.0 else float("inf")
+    return [
+        f"The squared errors are {ratio:.3g} times smaller than the covariance states: either the covariance is far too large, or the truth "
+        "is not independent of the estimate."
+    ]
 
 
 def _few(belief: Belief) -> list[str]:
