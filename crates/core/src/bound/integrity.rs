@@ -30,6 +30,11 @@ impl IntegrityComparison {
         Self { level_expected: true }
     }
 
+    /// Whether every epoch should have a level: declared, or one had it.
+    pub const fn expects_levels(&self) -> bool {
+        self.level_expected
+    }
+
     /// The integrity bound of one epoch. `fte` and `level` are NaN where they are not known; a level that is negative is not known. `due`:
     /// the epoch is one that should have a level, where its track has any.
     pub fn bound(&mut self, bound: AlertBound, fte: Metres, level: Metres, due: bool) -> AlertBound {

@@ -124,9 +124,9 @@ pub struct Judged {
 /// The judge of one aircraft.
 #[derive(Debug, Clone, Copy)]
 pub struct Judge {
-    settings: Settings,
-    comparison: IntegrityComparison,
-    monitor: rnp::Monitor,
+    pub(super) settings: Settings,
+    pub(super) comparison: IntegrityComparison,
+    pub(super) monitor: rnp::Monitor,
 }
 
 impl Settings {
