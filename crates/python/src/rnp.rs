@@ -90,7 +90,7 @@ fn event_row(e: &Event) -> EventRow {
     )
 }
 
-fn counters_dict<'py>(py: Python<'py>, c: &Counters) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn counters_dict<'py>(py: Python<'py>, c: &Counters) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
     d.set_item("n_accepted", c.n_accepted)?;
     d.set_item("n_duplicate", c.n_duplicate)?;
