@@ -1,7 +1,7 @@
 //! A lane as bytes.
 //!
 //! ```text
-//! version, digest of the settings, position in the journal, state of the decoder, the source and the tracks, CRC-32C of all before
+//! version, digest of the settings, position in the journal in, bytes of the journal out, state of the decoder, the source and the tracks, CRC-32C of all before
 //! ```
 
 use crate::codec::{Damaged, Reader, Writer};
@@ -61,12 +61,14 @@ fn read_time(from: &mut Reader<'_>) -> Result<Option<GpsTime>, Damaged> {
 }
 
 impl Lane {
-    /// The whole state beside the settings, behind the input at `position` of the journal.
-    pub fn snapshot(&self, position: u64) -> Vec<u8> {
+    /// The whole state beside the settings, behind the input at `position` of the journal in, when `written` bytes of the journal out were
+    /// there: without them its outputs would be missing, and the state must not be taken up.
+    pub fn snapshot(&self, position: u64, written: u64) -> Vec<u8> {
         let mut to = Writer::default();
         to.u8(VERSION);
         to.0.extend(self.settings.digest);
         to.u64(position);
+        to.u64(written);
         self.decoder.write(&mut to);
         self.feed.write(&mut to);
         time(&mut to, self.event_time);
@@ -93,11 +95,11 @@ impl Lane {
         to.0
     }
 
-    /// The lane of a snapshot, and the position of the journal that it stands behind.
+    /// The lane of a snapshot, the position of the journal in that it stands behind, and the bytes of the journal out that belong to it.
     ///
     /// # Errors
     /// [`SnapshotRefused`] for damage, another version and other settings.
-    pub fn restore(settings: Settings, bytes: &[u8]) -> Result<(Self, u64), SnapshotRefused> {
+    pub fn restore(settings: Settings, bytes: &[u8]) -> Result<(Self, u64, u64), SnapshotRefused> {
         let (content, crc) = bytes.split_last_chunk::<4>().ok_or(SnapshotRefused::Checksum)?;
         if crc32c(content) != u32::from_le_bytes(*crc) {
             return Err(SnapshotRefused::Checksum);
@@ -112,7 +114,7 @@ impl Lane {
             return Err(SnapshotRefused::Settings);
         }
         from = Reader(rest);
-        let position = from.u64()?;
+        let (position, written) = (from.u64()?, from.u64()?);
         let decoder = Decoder::read(settings.format, settings.track, &mut from)?;
         let mut lane = Self::new(settings).map_err(|_| SnapshotRefused::Settings)?;
         lane.decoder = decoder;
@@ -122,7 +124,7 @@ impl Lane {
         lane.past = read_past(&mut from)?;
         lane.read_tracks(&mut from)?;
         from.finish()?;
-        Ok((lane, position))
+        Ok((lane, position, written))
     }
 
     fn read_tracks(&mut self, from: &mut Reader<'_>) -> Result<(), SnapshotRefused> {

@@ -89,15 +89,15 @@ impl LiveLane {
         Lane::new(settings.0.clone()).map(Self).map_err(refused)
     }
 
-    /// The lane of a snapshot and its position; `ValueError` says why it is not taken up.
+    /// The lane of a snapshot, its position, and how much was written out then; `ValueError` says why it is not taken up.
     #[staticmethod]
-    fn restore(settings: PyRef<'_, LiveSettings>, snapshot: &[u8]) -> PyResult<(Self, u64)> {
+    fn restore(settings: PyRef<'_, LiveSettings>, snapshot: &[u8]) -> PyResult<(Self, u64, u64)> {
         let restored = Lane::restore(settings.0.clone(), snapshot).map_err(|why| PyValueError::new_err(why.to_string()))?;
-        Ok((Self(restored.0), restored.1))
+        Ok((Self(restored.0), restored.1, restored.2))
     }
 
-    fn snapshot<'py>(&self, py: Python<'py>, position: u64) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &self.0.snapshot(position))
+    fn snapshot<'py>(&self, py: Python<'py>, position: u64, written: u64) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.0.snapshot(position, written))
     }
 
     /// Journal frames that begin at `position` of the journal in.

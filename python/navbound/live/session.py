@@ -145,8 +145,9 @@ class Session:
     def snapshot(self) -> None:
         """Keep the state behind all that was taken."""
         self._in.sync()
+        self._out.sync()
         self._passed("in-snapshot")
-        content = self._lane.snapshot(self._in.length)
+        content = self._lane.snapshot(self._in.length, self._out.length)
         partial = self.folder / f"{journal.SNAPSHOT}.partial"
         partial.write_bytes(content)
         self._passed("before-rename")
@@ -158,13 +159,13 @@ class Session:
         path = self.folder / journal.SNAPSHOT
         if path.exists():
             try:
-                lane, position = _core.LiveLane.restore(self._core, path.read_bytes())
+                lane, position, written = _core.LiveLane.restore(self._core, path.read_bytes())
             except ValueError as e:
                 self._say(f"{path.name} is refused: {e}; the state is built anew from the journal")
             else:
-                if position <= self._in.length:
+                if position <= self._in.length and written <= self._out.length:
                     return lane, position
-                self._say(f"{path.name} is refused: it is ahead of the journal; the state is built anew from the journal")
+                self._say(f"{path.name} is refused: it is ahead of the journals; the state is built anew from the journal")
         return _core.LiveLane(self._core), 0
 
     def _recover(self, position: int) -> None:
