@@ -39,7 +39,7 @@ def test_a_fleet_gives_the_alerts_of_the_batch_monitor_each_once(tmp_path: Path,
 
 
 def test_every_speed_and_every_grouping_give_the_same_bits(tmp_path: Path) -> None:
-    source = recorded(tmp_path / "in", frames(fleet(20, 40), 7, heartbeats=True))
+    source = recorded(tmp_path / "in", frames(fleet(60, 40), 7, heartbeats=True))
     live.judge(source, tmp_path / "batch")
     runs = {f"group-{group}": {"group": group} for group in (1, 7, 1000)} | {"speed-8": {"speed": 8.0}}
     for name, how in runs.items():

@@ -82,7 +82,8 @@ pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived
         track.incarnation = track.incarnation.saturating_add(1);
     }
     if matches!(judged.step.acceptance, Acceptance::Accepted | Acceptance::ClockSetBack) {
-        track.last = Some(position.time);
+        let next = track.last.map(|last| last.plus_seconds(settings.judge.monitor.chain.sample_period_s));
+        (track.stepped, track.last) = (next == Some(position.time), Some(position.time));
         track.silent = false;
     }
     out.push(Output::Epoch(epoch(arrived, &seen, &judged, reason)));

@@ -199,7 +199,7 @@ impl Lane {
         loop {
             let Some(track) = self.tracks.get_mut(&id) else { return };
             let before = track.waiting.first();
-            let Some(arrived) = track.waiting.due(watermark, track.last.map(|last| last.plus_seconds(period_s))) else { return };
+            let Some(arrived) = track.waiting.due(watermark, track.next(period_s)) else { return };
             let first = track.waiting.first();
             self.wait_anew(id, before, first);
             self.judge(&arrived, out);

@@ -41,8 +41,8 @@ impl Waiting {
         self.0.first().map(|arrived| arrived.position.time)
     }
 
-    /// The earliest, where its turn has come: the watermark has reached it, it is exactly one period after the last that was released, or too
-    /// many wait.
+    /// The earliest, where its turn has come: the watermark has reached it, it is the one that follows in a row of
+    /// exact periods, or too many wait.
     pub(crate) fn due(&mut self, watermark: GpsTime, next: Option<GpsTime>) -> Option<Arrived> {
         let first = self.first()?;
         let released = first <= watermark || next == Some(first) || self.0.len() > MOST_WAITING;

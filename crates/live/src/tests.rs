@@ -126,7 +126,8 @@ fn records_within_the_lateness_are_put_in_order() {
     let (a, b) = (judged(&a), judged(&b));
     let n = a.len().min(b.len());
     assert!(n > 30);
-    assert_eq!(a[..n], b[..n]);
+    let first = a.iter().zip(&b).position(|(a, b)| a != b);
+    assert!(first.is_none(), "record {first:?}");
     assert_eq!((mixed.counters().n_reordered, mixed.monitor_counters().n_late), (20, 0));
     assert!(mixed.counters().n_duplicate > 0);
 }
@@ -288,7 +289,8 @@ fn journal() -> Vec<Vec<u8>> {
         let t = f64::from(k);
         let mut text = good("a", t) + &good("b", t + 0.3);
         if k % 7 != 3 {
-            text += &line("c", t, ",\"fte_m\":600.0,\"sigma_m\":10.0");
+            let fte_m = if (8..16).contains(&k) { 600 } else { 0 };
+            text += &line("c", t, &format!(",\"fte_m\":{fte_m},\"sigma_m\":10.0"));
         }
         if !(10..16).contains(&k) {
             text += &good("d", t);
@@ -313,7 +315,7 @@ fn judged(lane: &mut Lane, inputs: &[Vec<u8>]) -> Vec<u8> {
 fn a_lane_that_is_restored_anywhere_goes_on_in_every_bit() {
     let inputs = journal();
     let expected = judged(&mut Lane::new(settings()).unwrap(), &inputs);
-    assert!(transitions(&Output::all(&expected).unwrap()).len() > 4);
+    assert!(transitions(&Output::all(&expected).unwrap()).len() == 4);
     for cut in 0..inputs.len() {
         let mut first = Lane::new(settings()).unwrap();
         let mut bytes = judged(&mut first, &inputs[..cut]);

@@ -16,6 +16,8 @@ pub(crate) struct Track {
     pub(crate) open: [Option<(u32, GpsTime)>; 3],
     /// Time of the last record that the monitor took.
     pub(crate) last: Option<GpsTime>,
+    /// Whether that record came exactly one sample period after the one before: only then is the next one known.
+    pub(crate) stepped: bool,
     /// Distance along the path of the last foot.
     pub(crate) along: Option<Metres>,
     pub(crate) waiting: Waiting,
@@ -25,7 +27,12 @@ pub(crate) struct Track {
 
 impl Track {
     pub(crate) fn new(judge: Judge, incarnation: u32) -> Self {
-        Self { judge, incarnation, open: [None; 3], last: None, along: None, waiting: Waiting::default(), silent: false }
+        Self { judge, incarnation, open: [None; 3], last: None, stepped: false, along: None, waiting: Waiting::default(), silent: false }
+    }
+
+    /// Time of the next record, where the last ones came at the period.
+    pub(crate) fn next(&self, period_s: f64) -> Option<GpsTime> {
+        self.last.filter(|_| self.stepped).map(|last| last.plus_seconds(period_s))
     }
 
     /// The alert in force of a kind.
@@ -43,6 +50,7 @@ impl Track {
             });
         }
         to.option(self.last, |to, time| to.i64(time.nanoseconds()));
+        to.flag(self.stepped);
         to.option(self.along, |to, along| to.f64(along.m()));
         self.waiting.write(to);
         to.flag(self.silent);
@@ -56,7 +64,8 @@ impl Track {
             *each = from.option(|from| Ok((from.u32()?, GpsTime::from_nanoseconds(from.i64()?))))?;
         }
         let last = from.option(Reader::i64)?.map(GpsTime::from_nanoseconds);
+        let stepped = from.flag()?;
         let along = from.option(Reader::f64)?.map(Metres::new);
-        Ok(Self { judge, incarnation, open, last, along, waiting: Waiting::read(from)?, silent: from.flag()? })
+        Ok(Self { judge, incarnation, open, last, stepped, along, waiting: Waiting::read(from)?, silent: from.flag()? })
     }
 }
