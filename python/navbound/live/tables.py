@@ -12,6 +12,14 @@ from navbound.live import journal, transition
 if TYPE_CHECKING:
     from pathlib import Path
 
+SCHEMA = pl.Schema(
+    {name: pl.Int64 for name in transition.FIELDS}
+    | dict.fromkeys(("key", "track", "kind", "transition"), pl.String())
+    | dict.fromkeys(("peak_m", "limit_m", "min_margin_m", "latency_s"), pl.Float64())
+    | dict.fromkeys(("within_time_to_alert", "replayed"), pl.Boolean())
+)
+"""Of the table of transitions, also where there are none."""
+
 
 def epochs(folder: Path) -> pl.DataFrame:
     """Every record that was judged, in the order in which it was."""
@@ -23,7 +31,8 @@ def epochs(folder: Path) -> pl.DataFrame:
 def transitions(folder: Path, *, time_to_alert_s: float) -> pl.DataFrame:
     """Every alert that began or ended, in the order in which it did."""
     rows = _core.live_transitions(journal.read(folder / journal.OUT))
-    return pl.DataFrame([transition.record(r, time_to_alert_s=time_to_alert_s, replayed=False) for r in rows], infer_schema_length=None)
+    records = [transition.record(r, time_to_alert_s=time_to_alert_s, replayed=False) for r in rows]
+    return pl.DataFrame(records, schema=SCHEMA, infer_schema_length=None)
 
 
 def write(folder: Path, *, time_to_alert_s: float) -> None:

@@ -8,7 +8,7 @@ use super::Decoded;
 use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, TrackId};
-use navbound_core::quantity::{GpsTime, Radians, Reason, Status};
+use navbound_core::quantity::{GpsTime, Reason, Status};
 use navbound_formats::time::{Calendar, Scale, from_calendar};
 
 const SECOND_NS: i64 = 1_000_000_000;
@@ -69,7 +69,7 @@ impl Epochs {
         let gga = Fields(&gga);
         let angle = |at: usize, sign: usize, negative: u8| {
             let degrees = degrees(gga.get(at)?)?;
-            Some(Radians::degrees(if gga.get(sign)? == [negative] { -degrees } else { degrees }).rad())
+            Some(if gga.get(sign)? == [negative] { -degrees } else { degrees }.to_radians())
         };
         let (lat_rad, lon_rad) = (angle(2, 3, b'S'), angle(4, 5, b'W'));
         let sound = gga.number(6).is_some_and(|quality| quality > 0.0) && lat_rad.is_some() && lon_rad.is_some();

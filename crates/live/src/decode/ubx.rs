@@ -8,7 +8,7 @@ use super::Decoded;
 use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, TrackId};
-use navbound_core::quantity::{GpsTime, Radians, Reason, Status};
+use navbound_core::quantity::{GpsTime, Reason, Status};
 use navbound_formats::time::{Calendar, Scale, from_calendar, from_week};
 
 const PVT: [u8; 2] = [0x01, 0x07];
@@ -86,13 +86,14 @@ impl Epochs {
 
 fn position(pvt: &[u8], time: Option<&[u8]>, cov: Option<&[u8]>, track: TrackId) -> Option<Decoded> {
     let Some(time) = time.and_then(gps_time).or_else(|| utc(pvt)) else { return Some(Err(Refused::Undated)) };
-    let scaled = |at: usize, scale: f64| i32_at(pvt, at).map(|value| f64::from(value) * scale);
+    // Divided, a number of tenths is the nearest double to what the message says.
+    let degrees = |at: usize| i32_at(pvt, at).map(|value| (f64::from(value) / 1e7).to_radians());
     let (fix, flags, invalid) = (*pvt.get(20)?, *pvt.get(21)?, pvt.get(78)? & 1 == 1);
     let sound = FIXES.contains(&fix) && flags & 1 == 1 && !invalid;
     let position = Position {
-        lat_rad: scaled(28, 1e-7).map(|deg| Radians::degrees(deg).rad()),
-        lon_rad: scaled(24, 1e-7).map(|deg| Radians::degrees(deg).rad()),
-        h_m: scaled(32, 1e-3),
+        lat_rad: degrees(28),
+        lon_rad: degrees(24),
+        h_m: i32_at(pvt, 32).map(|mm| f64::from(mm) * 1e-3),
         covariance_m2: cov.and_then(covariance).or_else(|| of_accuracies(pvt)),
         status: if sound { Status::Ok } else { Status::NotAvailable },
         reason: (!sound).then_some(Reason::Reported),
