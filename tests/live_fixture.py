@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import runpy
+import sys
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
@@ -33,8 +34,6 @@ def fleet(n: int, seconds: int, seed: int = 1) -> tuple[Sent, ...]:
 @cache
 def truth(n: int, seconds: int, seed: int = 1) -> tuple[frozenset[str], frozenset[str]]:
     """Keys of alerts raised and cleared by the batch monitor over the same fleet."""
-    import sys
-
     fleet(n, seconds, seed)
     sys.path.insert(0, str(SHARED))
     try:

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from live_fixture import FLEET, fleet, generator, transitions
 
+from live_fixture import FLEET, fleet, generator, transitions
 from navbound import _core, live
 from navbound.live import journal, session
 from navbound.live.source import File

@@ -17,6 +17,7 @@ import navbound
 from navbound import live
 from navbound.live import tables
 from navbound.live.source import File
+from navbound.run.directory import Run
 from navbound.time import gps_ns
 
 RNP_M = 0.3 * 1852.0
@@ -105,6 +106,26 @@ def test_recorded_approaches_have_the_bounds_alerts_and_events_of_the_batch(shar
     assert expected <= got
     # An approach that is over falls silent: a recording ends there, a live feed does not know that.
     assert {kind for _, kind, _ in got - expected} <= {"unavailable"}
+
+
+def test_the_shipped_flight_has_the_bounds_and_alerts_of_its_own_run(flown: Run, tmp_path: Path) -> None:
+    assert flown.path is not None
+    session = live.Session(tmp_path / "out", live.Settings(format="json", rnp_m=RNP_M, method="tse-exact"))
+    session.run(live.open_source(str(flown.path)))
+    epochs = tables.epochs(tmp_path / "out")
+    batch = flown.epochs.with_columns(pl.col("track").str.replace_all("[ /]", "_"))
+    assert epochs.height == batch.height > 5000
+    pairs = {"accuracy_bound_m": "tse_exact_m", "integrity_bound_m": "tse_exact_integrity_m", "alert": "alert", "status": "status"}
+    assert differing(epochs, batch, pairs) == dict.fromkeys(pairs, 0)
+
+
+def test_a_run_is_skipped_to_the_byte_where_a_session_stopped(flown: Run) -> None:
+    whole = live.open_source(str(flown.path), chunk=1 << 30).read(0.0)
+    assert whole is not None
+    for begin in (0, 1, 777, 512 * 40, len(whole) - 1):
+        source = live.open_source(str(flown.path), chunk=512)
+        source.skip(begin)
+        assert source.read(0.0) == whole[begin : begin + 512], begin
 
 
 def sentence(body: str) -> str:

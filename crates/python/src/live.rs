@@ -193,10 +193,10 @@ fn live_inputs<'py>(py: Python<'py>, frames: &[u8]) -> PyResult<Vec<(&'static st
 
 /// Ends of the whole frames of a journal, and what stands behind the last: `end`, `torn` or `damaged`.
 #[pyfunction]
-fn live_frames(bytes: &[u8]) -> (Vec<usize>, &'static str) {
+fn live_frames(frames: &[u8]) -> (Vec<usize>, &'static str) {
     let (mut at, mut ends) = (0, Vec::new());
     loop {
-        let rest = bytes.get(at..).unwrap_or_default();
+        let rest = frames.get(at..).unwrap_or_default();
         match journal::next(rest) {
             Next::Payload(_, length) => {
                 at += length;

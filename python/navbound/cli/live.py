@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from navbound.live import Session, Settings
 
 
-
 class SourceFirst(TyperGroup):
     """`navbound live SOURCE` is `navbound live watch SOURCE`."""
 
@@ -38,14 +37,12 @@ Journal = Annotated[Path, typer.Argument(help="Folder of a session, or its journ
 
 @app.command()
 def watch(
-    source: Annotated[str, typer.Argument(help="A file, - (standard input), tcp://host:port or udp://host:port.")],
+    source: Annotated[str, typer.Argument(help="A file, a run directory, - (standard input), tcp://host:port or udp://host:port.")],
     out: SessionOut = Path("out/live"),
     spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3'.")] = "RNP 0.3",
     path: Annotated[str | None, typer.Option(help="Where the aircraft should be: a runway (LFPG/08R) or a route file.")] = None,
-    format: Annotated[str | None, typer.Option(help="json, ubx or nmea. [default: by the first bytes of a file]")] = None,
-    method: Annotated[
-        str, typer.Option(help="tse-exact or anp-circle. [default: the first with --path, the second without]")
-    ] = "",
+    form: Annotated[str | None, typer.Option("--format", help="json, ubx or nmea. [default: by the first bytes of a file]")] = None,
+    method: Annotated[str, typer.Option(help="tse-exact or anp-circle. [default: the first with --path, the second without]")] = "",
     track: Annotated[str, typer.Option(help="Name of a receiver's track.")] = "receiver",
     period_s: Annotated[float, typer.Option(help="Sample period of a track.")] = 1.0,
     time_to_alert_s: Annotated[float, typer.Option(help="Time to alert; a chain of times that is longer is refused.")] = 10.0,
@@ -64,7 +61,7 @@ def watch(
     from navbound.live.source import CHUNK, format_of  # noqa: PLC0415
     from navbound.rnp.requirement import requirement  # noqa: PLC0415
 
-    known = format or (None if "://" in source or source == "-" else format_of(source))
+    known = form or (None if "://" in source or source == "-" else format_of(source))
     if known is None and ("://" in source or source == "-"):
         raise InputError("format", "none", domain="json, ubx or nmea with --format: a stream is not guessed")
     settings = live.Settings(
@@ -122,9 +119,7 @@ def judge(journal: Journal, out: SessionOut = Path("out/judged"), json: JsonLine
 
 
 @app.command()
-def compare(
-    a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: Annotated[Path, typer.Argument(help="Another.")]
-) -> None:
+def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: Annotated[Path, typer.Argument(help="Another.")]) -> None:
     """Compare every bound, status, alert and transition of two sessions as bits; exit status 70 where one differs."""
     from navbound import live  # noqa: PLC0415
 

@@ -72,6 +72,7 @@ class Journal:
         os.fsync(self._file.fileno())
 
     def close(self) -> None:
+        """Leave the file as it is."""
         self._file.close()
 
 

@@ -13,6 +13,7 @@ from typing import IO, Protocol
 from urllib.parse import urlsplit
 
 from navbound.errors import FormatError, InputError
+from navbound.live.recording import Recording
 
 CHUNK = 32 * 1024
 """Bytes that are read at once. [B]"""
@@ -27,12 +28,14 @@ class Source(Protocol):
     ----------
     live : bool
         Whether the time at which bytes arrive means something.
-    up : bool
-        Whether the connection is there.
     """
 
     live: bool
-    up: bool
+
+    @property
+    def up(self) -> bool:
+        """Whether the connection is there."""
+        ...
 
     def read(self, timeout_s: float) -> bytes | None:
         """The next bytes; b"" where none came in time; None at the end."""
@@ -42,7 +45,9 @@ class Source(Protocol):
         """Leave out what was read by a session before."""
         ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Give it back."""
+        ...
 
 
 class File:
@@ -59,13 +64,16 @@ class File:
             raise FormatError(path, f"cannot be opened: {e.strerror}; a source is a file, - , tcp://host:port or udp://host:port") from e
 
     def read(self, timeout_s: float) -> bytes | None:
+        """Take the next bytes: as :class:`Source` says."""
         del timeout_s
         return self._file.read(self._chunk) or None
 
     def skip(self, n_bytes: int) -> None:
+        """Leave out what was read by a session before."""
         self._file.seek(n_bytes)
 
     def close(self) -> None:
+        """Give it back."""
         self._file.close()
 
 
@@ -79,6 +87,7 @@ class StandardInput:
         self._descriptor = sys.stdin.fileno()
 
     def read(self, timeout_s: float) -> bytes | None:
+        """Take the next bytes: as :class:`Source` says."""
         if not select.select([self._descriptor], [], [], timeout_s)[0]:
             return b""
         return os.read(self._descriptor, CHUNK) or None
@@ -97,7 +106,7 @@ class Tcp:
 
     def __init__(self, host: str, port: int) -> None:
         self._address, self._wait_s, self._next_s = (host, port), _RETRY_FIRST_S, 0.0
-        self._jitter = random.Random()  # noqa: S311 - it spreads retries, no secret
+        self._jitter = random.Random()
         try:
             self._socket: socket.socket | None = socket.create_connection(self._address, _CONNECT_S)
         except OSError as e:
@@ -110,6 +119,7 @@ class Tcp:
         return self._socket is not None
 
     def read(self, timeout_s: float) -> bytes | None:
+        """Take the next bytes: as :class:`Source` says."""
         if self._socket is None:
             self._again(timeout_s)
             return b""
@@ -140,6 +150,7 @@ class Tcp:
         """A connection begins where it begins."""
 
     def close(self) -> None:
+        """Give it back."""
         if self._socket is not None:
             self._socket.close()
             self._socket = None
@@ -165,6 +176,7 @@ class Udp:
         return int(self._socket.getsockname()[1])
 
     def read(self, timeout_s: float) -> bytes | None:
+        """Take the next bytes: as :class:`Source` says."""
         if not select.select([self._socket], [], [], timeout_s)[0]:
             return b""
         data = self._socket.recv(65_535)
@@ -174,6 +186,7 @@ class Udp:
         """Datagrams that were read are gone."""
 
     def close(self) -> None:
+        """Give it back."""
         self._socket.close()
 
 
@@ -183,7 +196,7 @@ def open_source(name: str, *, lines: bool = False, chunk: int = CHUNK) -> Source
     Parameters
     ----------
     name : str
-        A file, ``-`` for standard input, ``tcp://host:port`` or ``udp://host:port``.
+        A file, a run directory, ``-`` for standard input, ``tcp://host:port`` or ``udp://host:port``.
     lines : bool
         Whether it sends lines of text.
     chunk : int
@@ -199,7 +212,7 @@ def open_source(name: str, *, lines: bool = False, chunk: int = CHUNK) -> Source
     if name == "-":
         return StandardInput()
     if "://" not in name:
-        return File(Path(name), chunk)
+        return Recording(Path(name), chunk) if Path(name).is_dir() else File(Path(name), chunk)
     parts = urlsplit(name)
     try:
         host, port = parts.hostname, parts.port
@@ -212,6 +225,8 @@ def open_source(name: str, *, lines: bool = False, chunk: int = CHUNK) -> Source
 
 def format_of(name: str) -> str | None:
     """What a file holds, by its first bytes; None where that is not seen."""
+    if Path(name).is_dir():
+        return "json"
     try:
         with Path(name).open("rb") as file:
             start = file.read(1 << 16)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SCHEMA = pl.Schema(
-    {name: pl.Int64 for name in transition.FIELDS}
+    dict.fromkeys(transition.FIELDS, pl.Int64)
     | dict.fromkeys(("key", "track", "kind", "transition"), pl.String())
     | dict.fromkeys(("peak_m", "limit_m", "min_margin_m", "latency_s"), pl.Float64())
     | dict.fromkeys(("within_time_to_alert", "replayed"), pl.Boolean())
