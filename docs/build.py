@@ -1,4 +1,4 @@
-"""Write docs/methods/index.md from METHODS and PROTECTION: the page that lists every method. `./dev docs` writes, `--check` compares."""
+"""Write docs/methods/index.md from the lists of methods and of algorithms. `./dev docs` writes, `--check` compares."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 from navbound import verify
-from navbound.methods import Method, ProtectionMethod, methods, protection_methods
+from navbound.algorithms import algorithms
+from navbound.methods import Method, ProtectionMethod, methods
 
 PAGE = Path(__file__).parent / "methods" / "index.md"
 
@@ -29,8 +30,8 @@ def page() -> str:
         "budgets and error models carry their own.",
         "",
     ]
-    for p in protection_methods().values():
-        lines += _levels(p)
+    for algorithm in algorithms().values():
+        lines += _levels(algorithm.declared)
     lines += [
         "## Reference vectors",
         "",

@@ -13,6 +13,7 @@ from navbound import InputError, InternalError, NavboundError, _core, anp, gnss,
 from navbound.table.arguments import checked
 from navbound.table.arrays import MOST_BYTES, flatten
 from public_calls import CALLS, MODULES
+from public_classes import CLASSES
 from test_nan_contract import changed, differs, outputs, public
 
 if TYPE_CHECKING:
@@ -94,6 +95,25 @@ def test_an_abused_argument_brings_no_foreign_exception(name: str, argument: str
     with np.errstate(all="ignore"):
         results = {abuse: outcome(call, argument, abused(value)) for abuse, abused in abuses.items()}
     assert {abuse: result for abuse, result in results.items() if result not in {"ok", "refused"}} == {}
+
+
+NONE_ALLOWED = {
+    *(("rnp.Monitor.step", name) for name in ("rnp_m", "tse_exact_m", "tse_exact_integrity_m", "fte_m", "hpl_m")),
+    ("ins.Imu", "interval_s"),
+}
+"""An absent number of a record is a NaN, which alerts; an absent interval is that of the times."""
+
+
+@pytest.mark.parametrize(("name", "argument"), [(name, argument) for name, call in CLASSES.items() for argument in call.numbers])
+def test_an_abused_field_or_argument_of_a_class_is_refused(name: str, argument: str) -> None:
+    call = CLASSES[name]
+    call()
+    with np.errstate(all="ignore"):
+        refusable = {abuse: outcome(call, argument, abused(call.numbers[argument])) for abuse, abused in NO_NUMBERS.items()}
+        sized = {abuse: outcome(call, argument, abused(call.numbers[argument])) for abuse, abused in NUMBERS_OF_ANY_SIZE.items()}
+    allowed = {"None": "ok"} if (name, argument) in NONE_ALLOWED else {}
+    assert {abuse: result for abuse, result in refusable.items() if result != "refused"} == allowed
+    assert {abuse: result for abuse, result in sized.items() if result not in {"ok", "refused"}} == {}
 
 
 OPTIONAL = {

@@ -10,6 +10,7 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
+import navbound
 from navbound import InputError, maps, scale
 from navbound.cli import parts
 from navbound.cli.main import app
@@ -97,3 +98,21 @@ def test_help_names_everything_there_is() -> None:
     assert all(name in helped("study") for name in STUDIES)
     for command in ("fly", "map", "study"):
         assert all(backend in helped(command) for backend in scale.BACKENDS), command
+
+
+def test_the_version_is_printed() -> None:
+    printed = CliRunner().invoke(app, ["--version"])
+    assert (printed.output, printed.exit_code) == (f"navbound {navbound.__version__}\n", 0)
+
+
+def test_subjects_and_jobs_are_listed_and_loaded_when_they_are_used() -> None:
+    program = (
+        "import sys, navbound; dir(navbound); print(any(m in sys.modules for m in ('numpy', 'polars')));"
+        "print(navbound.tse.exact(30.0, 8.0, 1e-5))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    loaded, bound = done.stdout.split()
+    assert loaded == "False"
+    assert float(bound) > 30.0
+    assert {*navbound.SUBJECTS, "fly", "analyze", "study"} <= set(dir(navbound))
+    assert all(getattr(navbound, name).__name__ == f"navbound.{name}" for name in navbound.SUBJECTS)

@@ -30,6 +30,18 @@ def test_the_job_of_judging_holds_no_mathematics() -> None:
     assert mathematics(Path(judge.__file__).read_text(encoding="utf-8")) == []
 
 
+DECISIONS = {"bounds", "bounds_of", "with_errors", "exceedance_risk", "probabilities", "tightest", "overridden", "step", "run", "tracks"}
+"""Names by which parts of a step are called one by one."""
+
+
+def test_the_job_of_judging_decides_nothing_of_an_epoch() -> None:
+    tree = ast.parse(Path(judge.__file__).read_text(encoding="utf-8"))
+    called = {node.func for node in ast.walk(tree) if isinstance(node, ast.Call)}
+    names = {f.attr if isinstance(f, ast.Attribute) else f.id for f in called if isinstance(f, ast.Attribute | ast.Name)}
+    assert names & DECISIONS == set()
+    assert "Judges" in names
+
+
 def along_only(n: int) -> pl.DataFrame:
     """Covariances of errors along the course alone, at random courses and sizes; seed 1."""
     random = np.random.default_rng(1)

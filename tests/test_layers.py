@@ -9,7 +9,7 @@ PACKAGE = Path(__file__).parents[1] / "python" / "navbound"
 LAYERS = (
     ("errors", "exit_status", "units", "_core"),
     ("risks", "status", "storage", "table", "time"),
-    ("records", "methods", "scenario"),
+    ("records", "methods", "algorithms", "scenario"),
     (
         "anp",
         "araim",
@@ -28,7 +28,7 @@ LAYERS = (
         "tse",
         "verify",
     ),
-    ("read", "write"),
+    ("judge", "read", "write"),
     ("scale", "report"),
     ("maps", "run"),
     ("studies",),

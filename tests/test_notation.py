@@ -34,10 +34,17 @@ WORDS = {
     "decision",
     "signals",
     "message",
+    "level",
+    "cause",
+    "callsign",
+    "mode_before",
+    "mode_onset",
 }
 SUFFIXES = ("_m", "_m2", "_s", "_ns", "_rad", "_mps", "_mps2", "_radps")
 UNITLESS = ("p_", "n_")
-DIMENSIONLESS = {"hdop", "vdop", "innovation_memory"}
+DIMENSIONLESS = {"pdop", "hdop", "vdop", "gdop", "innovation_memory", "nac_p", "nic", "over_tta", "flight", "nees"}
+ENDINGS = ("_square", "_lag_one", "_memory_max")
+"""Squares, correlations and memories of normalised innovations."""
 
 
 def declared() -> set[str]:
@@ -51,7 +58,8 @@ def test_the_glossary_declares_columns() -> None:
 
 @pytest.mark.parametrize("name", sorted(declared()))
 def test_every_declared_column_ends_in_a_unit(name: str) -> None:
-    assert name in WORDS | DIMENSIONLESS or name.endswith(SUFFIXES) or name.startswith(UNITLESS), name
+    plain = name.removeprefix("reversion_")
+    assert plain in WORDS | DIMENSIONLESS or plain.endswith((*SUFFIXES, *ENDINGS)) or plain.startswith(UNITLESS), name
 
 
 def test_every_column_of_a_run_is_declared(flown) -> None:  # type: ignore[no-untyped-def]

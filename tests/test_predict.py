@@ -67,8 +67,9 @@ def test_holes_are_where_the_levels_are_outside_the_limit() -> None:
             inside = [(h.start_s, h.end_s) for h in holes]
             assert all(any(a <= t < b for a, b in inside) == out for t, out in zip(EIGHT_HOURS.offsets_s(), outside, strict=True))
         assert line.p_exclusion == float((levels.hel_m <= 0.1 * 1852.0).mean())
+        assert line.p_exclusion is not None
         assert line.p_detection >= line.p_exclusion
-    assert any(line.n_holes_exclusion > 0 for line in found.lines)
+    assert any(line.n_holes_exclusion for line in found.lines)
     assert found.satellites == list(orbits.satellite)
     assert any("inferred" in words for words in found.assumptions)
     assert found.limits[0].provenance == "inferred"
@@ -78,6 +79,8 @@ def test_a_satellite_out_of_service_never_helps() -> None:
     asked = Asked(["gps"], EIGHT_HOURS, ("NPA",))
     whole = predict(asked, [place("55.5,8.45")]).lines[0]
     less = predict(Asked(["gps"], EIGHT_HOURS, ("NPA",), ("G01", "G02", "G03", "G04", "G05")), [place("55.5,8.45")]).lines[0]
+    assert less.p_exclusion is not None
+    assert whole.p_exclusion is not None
     assert less.p_exclusion < whole.p_exclusion
     assert less.p_detection <= whole.p_detection
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import polars as pl
 import pytest
 
 import report_fixture
@@ -381,4 +382,17 @@ def test_an_empty_run_shows_its_verdict(browser: Browser, tmp_path: Path) -> Non
     empty = report_fixture.Fixture(fixture.summary, fixture.record, fixture.epochs.head(0), fixture.events.head(0), [])
     page = _open(browser, _write(empty, tmp_path / "report.html"))
     assert page.locator("#verdict .state").inner_text().startswith("Nothing judged")
+    page.context.close()
+
+
+def test_a_declared_column_is_drawn_without_code_of_its_own(browser: Browser, one: report_fixture.Fixture, tmp_path: Path) -> None:
+    distance_m = np.linspace(1.25, 9.5, one.epochs.height)
+    epochs = one.epochs.with_columns(separation_m=pl.Series(distance_m), separation_limit_m=pl.lit(60.0))
+    page = _open(browser, render(one.summary, one.record, epochs, one.events, one.waypoints, tmp_path / "report.html"))
+    chart = page.locator("figure.chart", has_text="Filters with and without satellites")
+    assert "may be where both are right" in chart.locator("figcaption").inner_text()
+    _go(page, 700)
+    for key, expected in (("separation_m", distance_m[700]), ("separation_limit_m", 60.0)):
+        shown = float(chart.locator(f'[data-key="{key}"]').first.get_attribute("data-value") or "nan")
+        assert shown == pytest.approx(expected, abs=LENGTH_M)
     page.context.close()

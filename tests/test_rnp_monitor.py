@@ -226,13 +226,32 @@ def test_a_missing_level_never_makes_the_comparison_better() -> None:
     # The track has a source of levels, so each of its epochs should have one.
     assert run.integrity_compared_m.to_list() == [None, 300.0, None, 300.0]
     assert run.alert.to_list() == ["warning"] * 4
-    # Epoch by epoch nobody knows of levels before the first.
+    # So it is epoch by epoch: a record with the key declares levels.
     monitor = rnp.Monitor()
     shown = [monitor.step(row).alert for row in table(**columns, hpl_m=levels).to_dicts()]
-    assert shown == ["normal", "normal", "warning", "warning"]
-    # A track without any level is judged by the bound alone, beside one that has them.
+    assert shown == ["warning"] * 4
+    # A track without any level is judged by the bound alone where it is named so, beside one that has them; else its levels are missing.
     beside = table(**columns, track=["a", "b", "a", "b"], hpl_m=[None, 200.0, None, 200.0])
-    assert rnp.Monitor().run(beside).alert.to_list() == ["normal"] * 4
+    assert rnp.Monitor().run(beside).alert.to_list() == ["warning", "normal"] * 2
+    assert rnp.Monitor().tracks({"a": False, "b": True}).judge(beside)[0].to_list() == ["normal"] * 4
+
+
+@pytest.mark.parametrize("level", [None, math.nan])
+def test_a_level_that_is_missing_from_the_first_epoch_on_alerts(level: float | None) -> None:
+    record = {"time_ns": 0, "rnp_m": RNP_M, "tse_exact_m": 10.0, "tse_exact_integrity_m": 20.0, "fte_m": 0.0}
+    assert rnp.Monitor().step(record).alert == "normal", "a source whose records never have a level"
+    assert rnp.Monitor().step(record | {"hpl_m": level}).alert == "warning"
+    # Nothing vouches for a degraded epoch: none is due, and its bound is what there is.
+    assert rnp.Monitor().step(record | {"hpl_m": level, "status": "degraded"}).alert == "normal"
+    monitor = rnp.Monitor()
+    assert monitor.step(record | {"hpl_m": 30.0}).alert == "normal"
+    assert monitor.step(record | {"time_ns": PERIOD_NS}).alert == "warning", "the key went missing"
+    assert (
+        rnp.Monitor()
+        .run(table(**{name: [value] * 3 for name, value in record.items() if name not in {"time_ns", "rnp_m"}}, hpl_m=[level] * 3))
+        .alert.to_list()
+        == ["warning"] * 3
+    )
 
 
 def test_a_judged_run_hands_the_larger_one_to_the_monitor() -> None:

@@ -20,6 +20,7 @@ from navbound.errors import FormatError, InputError, NavboundError
 from navbound.maps.orbital import Dop
 from navbound.maps.sources import Times
 from navbound.maps.statistics import Evaluate, Tile
+from navbound.scale import backends
 
 TILES = list(range(8))
 Parts = list[dict[str, Any]]
@@ -142,6 +143,18 @@ def test_a_tile_that_loses_every_worker_is_an_error(workers: dict[str, scale.Wor
         scale.map_tiles(function, [0], backend="processes", workers=scale.Workers(1))
     with pytest.raises(NavboundError, match="worker after worker"):
         scale.map_tiles(function, [0], backend="dask", workers=workers["dask"])
+
+
+def test_a_cluster_without_workers_is_not_waited_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    distributed = pytest.importorskip("distributed", reason="SKIPPED ALOUD: Dask is not installed")
+    monkeypatch.setattr(backends, "LOOK_S", 0.2)
+    monkeypatch.setattr(backends, "ALONE_S", 0.6)
+    with (
+        distributed.LocalCluster(n_workers=0, dashboard_address=":0", silence_logs="CRITICAL") as cluster,
+        distributed.Client(cluster) as client,
+        pytest.raises(NavboundError, match=r"no worker for 0.6\d* s; 2 tiles are not done"),
+    ):
+        scale.map_tiles(tiles_fixture.numbers, [0, 1], backend="dask", workers=scale.Workers(cluster=client))
 
 
 def test_a_full_disk_is_named_and_leaves_no_half_tile(tmp_path: Path) -> None:

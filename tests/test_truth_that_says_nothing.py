@@ -11,7 +11,7 @@ import pytest
 
 import navbound
 from navbound.run.verdict import rule
-from test_verdict import M_PER_RAD, table, white
+from test_verdict import M_PER_RAD, START_NS, table, white
 
 N = 400
 GOOD = rule.BeliefFacts(n_effective=100.0, p_values=[0.5], short=False, excluded=False)
@@ -55,3 +55,20 @@ def test_the_rule_of_few_and_copied() -> None:
     assert rule.of_belief(replace(GOOD, n_effective=10.0)) == "supported"
     assert rule.of_belief(replace(GOOD, copied_share=0.5)) == "copied"
     assert rule.of_belief(replace(GOOD, copied_share=0.5, p_values=[1e-6])) == "refuted"
+
+
+@pytest.mark.parametrize(
+    ("error_m", "expected"), [(0.0, "not_shown"), (1e-4, "not_shown"), (0.3, "inside")], ids=["zero", "a tenth of a millimetre", "an error"]
+)
+def test_a_copied_truth_shows_nothing_of_protection_levels_either(tmp_path: Path, error_m: float, expected: str) -> None:
+    rows = [f"{START_NS + k * 1_000_000_000},{error_m},{error_m},{error_m},15.0,20.0" for k in range(N)]
+    (tmp_path / "a.csv").write_text("\n".join(["time_ns,nse_e_m,nse_n_m,nse_u_m,hpl_m,vpl_m", *rows]))
+    verdict = navbound.analyze(tmp_path / "a.csv", levels="APV-I").summary.verdict
+    assert (verdict.id, "The truth is the estimate itself" in verdict.words) == (expected, expected == "not_shown")
+
+
+def test_positions_with_their_own_copy_as_truth_show_nothing_of_levels(tmp_path: Path) -> None:
+    rows = [f"{START_NS + k * 1_000_000_000},{48 + k * 1e-5},2.0,100.0,{48 + k * 1e-5},2.0,100.0,15.0,20.0" for k in range(N)]
+    header = "time_ns,lat_deg,lon_deg,height_m,truth_lat_deg,truth_lon_deg,truth_h_m,hpl_m,vpl_m"
+    (tmp_path / "a.csv").write_text("\n".join([header, *rows]))
+    assert navbound.analyze(tmp_path / "a.csv", levels="APV-I").summary.verdict.id == "not_shown"

@@ -419,10 +419,12 @@ def test_the_first_sentence_says_what_the_user_typed(tmp_path: Path) -> None:
     path = table(tmp_path / "a.csv")
     run = navbound.analyze(path, sigma_m=5.0)
     sentence = first_sentence(run.summary.verdict.words)
-    assert sentence.startswith("Assuming a sigma of 5 m in each axis, typed by the user and no path")
+    assert sentence.startswith(
+        "Assuming a sigma of 5 m in each axis, typed by the user over the file's own accuracy (sigma 3 to 3 m) and no path"
+    )
     assert "inside RNP 0.3" in sentence
     assert run.summary.verdict.assumed == ["sigma_typed", "no_path"]
-    assert run.summary.covariance == CovarianceOrigin(id="typed", sigma_m=5.0)
+    assert run.summary.covariance == CovarianceOrigin(id="typed", sigma_m=5.0, own_low_m=3.0, own_high_m=3.0)
     stated = navbound.analyze(path).summary
     assert (stated.covariance.id, stated.verdict.assumed) == ("file_axes", ["no_path"])
     assert "typed" not in stated.verdict.words

@@ -8,27 +8,14 @@ from typing import TYPE_CHECKING, Literal, cast
 
 from navbound import _core
 from navbound.errors import InputError
+from navbound.table.columns import HORIZONTAL, METHOD_INPUTS
 
 if TYPE_CHECKING:
     import numpy as np
     import polars as pl
     from numpy.typing import NDArray
 
-Provenance = Literal["printed", "re-derived", "standard", "ours", "inferred"]
-
-_COLUMNS = (
-    "course_rad",
-    "path_angle_rad",
-    "fte_m",
-    "fte_v_m",
-    "rnp_m",
-    "cov_ee_m2",
-    "cov_en_m2",
-    "cov_nn_m2",
-    "cov_eu_m2",
-    "cov_nu_m2",
-    "cov_uu_m2",
-)
+Provenance = Literal["printed", "re-derived", "standard", "ours", "inferred", "yours"]
 
 
 @dataclass(frozen=True)
@@ -131,14 +118,14 @@ def method(method_id: str) -> Method:
 
 
 _NSE = ("nse_e_m", "nse_n_m", "nse_u_m")
-_NEEDS = {
+ERRORS_NEED = {
     "nse_h_m": {"nse_e_m"},
     "nse_3d_m": {"nse_e_m", "nse_u_m"},
     "nse_along_m": {"nse_e_m", "course_rad"},
     "nse_cross_m": {"nse_e_m", "course_rad"},
     "tse_m": {"nse_e_m", "course_rad", "fte_m"},
     "tse_v_m": {"nse_e_m", "course_rad", "fte_v_m", "nse_u_m", "path_angle_rad"},
-    "sigma_cross_m": {"cov_ee_m2", "cov_en_m2", "cov_nn_m2", "course_rad"},
+    "sigma_cross_m": {*HORIZONTAL, "course_rad"},
 }
 """Columns of errors, and those that an epoch table must have for them."""
 
@@ -159,9 +146,9 @@ def with_errors(epochs: pl.DataFrame) -> pl.DataFrame:
     """
     import polars as pl  # noqa: PLC0415 - a list of methods needs no tables
 
-    columns = {name: column_of(epochs, name) for name in (*_COLUMNS, *_NSE) if name in epochs.columns}
+    columns = {name: column_of(epochs, name) for name in (*METHOD_INPUTS, *_NSE) if name in epochs.columns}
     errors = _core.errors_of(epochs.height, columns)
-    there = {name: errors[name] for name, needs in _NEEDS.items() if needs <= set(epochs.columns)}
+    there = {name: errors[name] for name, needs in ERRORS_NEED.items() if needs <= set(epochs.columns)}
     return epochs.with_columns(pl.Series(name, values, nan_to_null=True) for name, values in there.items())
 
 
@@ -188,7 +175,7 @@ def bounds(epochs: pl.DataFrame, method_id: str, risk: float) -> BoundColumn:
         Unknown method, or a risk outside [1e-300, 0.5].
     """
     wanted = method(method_id)
-    columns = {name: column_of(epochs, name) for name in _COLUMNS if name in epochs.columns}
+    columns = {name: column_of(epochs, name) for name in METHOD_INPUTS if name in epochs.columns}
     bound_m, reason, reasons = _core.bounds_of(wanted.id, risk, epochs.height, columns)
     return BoundColumn(bound_m, reason, reasons)
 

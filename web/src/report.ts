@@ -6,6 +6,7 @@ import { anp } from "./chart/anp.ts";
 import { lateral, vertical } from "./chart/deviation.ts";
 import { honesty } from "./chart/honesty.ts";
 import { modes } from "./chart/modes.ts";
+import { declared } from "./chart/declared.ts";
 import { alertLimit } from "./chart/alertlimit.ts";
 import { exceedance } from "./chart/risk.ts";
 import { performance } from "./chart/scales.ts";
@@ -16,7 +17,7 @@ import type { Payload } from "./data/records.ts";
 import { indexAt } from "./data/events.ts";
 import { scene, type AxisName, type Component, type Scene } from "./data/scene.ts";
 import { Store } from "./data/store.ts";
-import { Table } from "./data/table.ts";
+import { Table, type NumberName } from "./data/table.ts";
 import { map } from "./map/map.ts";
 import { cursorBar } from "./panel/cursorbar.ts";
 import { asked } from "./panel/kpi-verdict.ts";
@@ -31,7 +32,7 @@ import { SHORT_M } from "./show/format.ts";
 import { choose, themeStore, type Choice } from "./show/theme.ts";
 
 /** The parts of the page that show one track, in order, and the columns of which one is needed to say anything. */
-const PARTS: { component: Component; host: "upper" | "charts"; needs: string[]; aloft?: true }[] = [
+const PARTS: { component: Component; host: "upper" | "charts"; needs: NumberName[]; aloft?: true }[] = [
     { component: map, host: "upper", needs: ["est_lat_rad"] },
     { component: performance, host: "upper", needs: ["rnp_m", "fte_m", "fte_v_m"] },
     { component: lateral, host: "charts", needs: ["fte_m"] },
@@ -101,7 +102,7 @@ class Page {
         const rolls = table.column("rnp_m")?.every((v) => v < SHORT_M) ?? false;
         const explained = (part: (typeof PARTS)[number]): boolean => this.series === null && part.component !== modes && !(rolls && part.aloft);
         const wanted = PARTS.filter((part) => explained(part) || part.needs.some((name) => table.has(name)));
-        this.ends = [...wanted.map(({ component, host }) => component(this[host], now)), cursorBar(this.bar, now)];
+        this.ends = [...wanted.map(({ component, host }) => component(this[host], now)), declared(this.charts, now), cursorBar(this.bar, now)];
         const worst = payload.summary.verdict.worst_accuracy;
         now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));
         if (this.series !== null) this.ends.push(linkByTime({ table, cursor: now.cursor, width_s: 0 }, this.series));

@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { frameOf, join, nameAt, outline, regionOf, REGIONS, type Frame } from "../src/chart/regions.ts";
 import { AVAILABLE, bucketTable, BUCKETS, causeOf, payloadOf, rowsOf, unavailableOf } from "../src/data/buckets.ts";
 import { linkByTime } from "../src/data/link.ts";
-import type { KpiEvent, KpiSeries, LevelResult, Performance, StanfordBins } from "../src/data/performance.ts";
+import type { KpiEvent, KpiSeries, LevelResult, Performance, StanfordBins } from "../src/records.gen.ts";
 import type { Payload } from "../src/data/records.ts";
 import { Store } from "../src/data/store.ts";
 import { share } from "../src/show/format.ts";

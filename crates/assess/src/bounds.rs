@@ -1,9 +1,9 @@
 //! Any method of [`navbound_core::bound::METHODS`] over the columns of an epoch table.
 
 use navbound_core::bound::Method;
-use navbound_core::frame::{Covariance, Displacement, Enu};
-use navbound_core::quantity::{Metres, Radians, Reason, Risk, Unavailable};
-use navbound_core::solution::Epoch;
+use navbound_core::frame::{Covariance, Enu};
+use navbound_core::judge::Sample;
+use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Risk, Status, Unavailable};
 use rayon::prelude::*;
 
 /// Epochs in one task of the pool: enough work (above 0.1 ms) to be worth the hand-over.
@@ -29,29 +29,24 @@ pub struct Columns<'a> {
 }
 
 impl Columns<'_> {
-    /// The epoch of one row. The expected point is the foot of the perpendicular, so the offset has no part along the path.
-    fn epoch(&self, row: usize) -> Epoch {
-        let at = |column: Option<&[f64]>| column.and_then(|c| c.get(row)).copied().filter(|v| !v.is_nan());
-        let course = at(self.course_rad);
-        let offset = at(self.fte_m).zip(course).map(|(fte, course)| {
-            Displacement::<Enu>::new(
-                Metres::new(fte * course.cos()),
-                Metres::new(-fte * course.sin()),
-                Metres::new(at(self.fte_v_m).unwrap_or(0.0)),
-            )
-        });
-        Epoch {
-            time: None,
-            course: course.map(Radians::new),
-            path_angle: at(self.path_angle_rad).map(Radians::new),
-            offset,
+    /// What the columns say of one row, at no time and of no status.
+    pub(crate) fn sample(&self, row: usize) -> Sample {
+        Sample {
+            time: GpsTime::default(),
+            status: Status::Ok,
+            course: at(self.course_rad, row).map(Radians::new),
+            path_angle: at(self.path_angle_rad, row).map(Radians::new),
+            fte_m: at(self.fte_m, row),
+            fte_v_m: at(self.fte_v_m, row),
             covariance: self.covariance(row),
-            mean: None,
-            rnp: at(self.rnp_m).map(Metres::new),
+            nse_en_m: None,
+            nse_u_m: None,
+            rnp: at(self.rnp_m, row).map(Metres::new),
+            hpl: None,
         }
     }
 
-    pub(crate) fn covariance(&self, row: usize) -> Option<Covariance<Enu>> {
+    fn covariance(&self, row: usize) -> Option<Covariance<Enu>> {
         let mut upper = [0.0; 6];
         for (slot, column) in upper.iter_mut().zip(self.covariance_m2) {
             // Horizontal data have no vertical columns: an unknown variance is NaN, so that a 3-D method refuses instead of taking 0.
@@ -59,6 +54,11 @@ impl Columns<'_> {
         }
         upper[..3].iter().all(|v| !v.is_nan()).then(|| Covariance::from_upper(upper))
     }
+}
+
+/// The number of a row; a NaN is an absent value.
+pub(crate) fn at(column: Option<&[f64]>, row: usize) -> Option<f64> {
+    column.and_then(|c| c.get(row)).copied().filter(|v| !v.is_nan())
 }
 
 /// One method's bounds, row by row.
@@ -86,7 +86,7 @@ pub fn bounds(columns: &Columns<'_>, method: &Method, risk: Risk) -> BoundColumn
     let results: Vec<Result<f64, Unavailable>> = (0..columns.len)
         .into_par_iter()
         .with_min_len(EPOCHS_PER_TASK)
-        .map(|row| (method.bound)(&columns.epoch(row), risk).map(Metres::m))
+        .map(|row| (method.bound)(&columns.sample(row).epoch(), risk).map(Metres::m))
         .collect();
     let mut reasons: Vec<Refused> = Vec::new();
     let mut reason = Vec::with_capacity(results.len());
@@ -99,20 +99,21 @@ pub fn bounds(columns: &Columns<'_>, method: &Method, risk: Risk) -> BoundColumn
             }
             Err(why) => {
                 bound_m.push(f64::NAN);
-                reason.push(1 + position(&mut reasons, &why));
+                reason.push(reason_code(&mut reasons, &why));
             }
         }
     }
     BoundColumn { bound_m, reason, reasons }
 }
 
-fn position(reasons: &mut Vec<Refused>, why: &Unavailable) -> u32 {
+/// 1 + the place of a reason in the list, which gets it where it is new.
+pub(crate) fn reason_code(reasons: &mut Vec<Refused>, why: &Unavailable) -> u32 {
     let refused = Refused { reason: why.reason(), words: why.to_string() };
     let index = reasons.iter().position(|known| *known == refused).unwrap_or_else(|| {
         reasons.push(refused);
         reasons.len() - 1
     });
-    u32::try_from(index).unwrap_or(u32::MAX - 1)
+    u32::try_from(index).unwrap_or(u32::MAX - 1) + 1
 }
 
 #[cfg(test)]

@@ -28,3 +28,8 @@ pub mod signal;
 pub mod solution;
 pub mod spec;
 pub mod special;
+
+/// The Rust examples of CONTRIBUTING.md, run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../CONTRIBUTING.md")]
+struct Contributing;

@@ -6,7 +6,7 @@ use navbound_core::frame::Covariance;
 use navbound_core::judge::{Judge, Sample, Settings};
 use navbound_core::monitor::rnp::{Alert, Chain, Settings as MonitorSettings};
 use navbound_core::monitor::state::StateTable;
-use navbound_core::quantity::{GpsTime, Metres, Radians, Risk, Status};
+use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Risk, Status};
 
 /// Normal deviates of two-sided 5 % and 1e-5 (tables of the normal law).
 const K95: f64 = 1.959_963_984_540_054;
@@ -84,10 +84,27 @@ fn what_the_status_forbids_is_not_judged_and_what_is_missing_says_so() {
     let without_path = judge.step(&Sample { course: None, ..sample(1) });
     assert!(matches!(without_path.evaluated.accuracy, Some(Err(_))));
     assert!(without_path.integrity_compared.m().is_nan());
-    assert_eq!(without_path.step.alert, Alert::Warning, "a bound that is not known is within no limit");
+    assert_eq!((without_path.evaluated.status, without_path.evaluated.reason()), (Status::NotAvailable, Some(Reason::MissingField)));
+    assert_eq!(without_path.step.alert, Alert::Unavailable, "an epoch that cannot be judged is a loss of monitoring");
     let without_rnp = judge.step(&Sample { rnp: None, ..sample(2) });
     assert!(without_rnp.evaluated.exceedance.is_none() && without_rnp.evaluated.state_probability.is_some());
     assert_eq!(without_rnp.step.alert, Alert::Warning);
+}
+
+#[test]
+fn a_reason_against_judging_is_the_status_of_everything_after_it() {
+    let mut judge = Judge::new(settings()).unwrap();
+    let wide = Sample { rnp: Some(Metres::new(100.0)), ..sample(0) };
+    assert_eq!(judge.step(&wide).evaluated.status, Status::Ok);
+    let negative = Covariance::from_upper([-1.0, 0.0, 4.0, f64::NAN, f64::NAN, f64::NAN]);
+    let refused = judge.step(&Sample { time: sample(1).time, covariance: Some(negative), ..wide });
+    assert_eq!((refused.evaluated.status, refused.evaluated.reason()), (Status::InvalidInput, Some(Reason::InvalidNumber)));
+    assert!(refused.evaluated.exceedance.is_none() && refused.evaluated.state_probability.is_none());
+    assert_eq!(refused.step.alert, Alert::Unavailable);
+    let began = refused.step.began[2].unwrap();
+    assert_eq!((began.onset, began.annunciation, began.clear), (sample(1).time, sample(1).time, None), "what began is said at once");
+    let other = judge.settings().beside(Alerting::of("anp-circle").unwrap().method(), &Sample { covariance: Some(negative), ..wide });
+    assert!(other.unwrap().iter().all(Result::is_err), "the bound of another method says why it is none");
 }
 
 #[test]

@@ -259,3 +259,16 @@ fn what_is_no_covariance_is_refused() {
     assert!((almost / two_sided_factor(0.05) - 1.0).abs() < 1e-12);
     assert_eq!(flat([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]), [1.0, 2.0, 3.0, 0.0, 0.0, 0.0]);
 }
+
+#[test]
+fn a_covariance_with_one_element_that_is_no_number_is_none() {
+    for i in 0..3 {
+        for j in 0..3 {
+            for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut v = Matrix3::<f64>::identity();
+                (v[(i, j)], v[(j, i)]) = (bad, bad);
+                assert!(Covariance::<Enu>::new(v).is_err(), "{i} {j} {bad}");
+            }
+        }
+    }
+}

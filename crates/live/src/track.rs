@@ -57,7 +57,10 @@ impl Track {
     }
 
     pub(crate) fn read(settings: &judge::Settings, from: &mut Reader<'_>) -> Result<Self, Damaged> {
-        let judge = Judge::from_bytes(*settings, from.bytes()?).map_err(|_| Damaged("the state of a monitor cannot be"))?;
+        let judge = Judge::from_bytes(from.bytes()?).map_err(|_| Damaged("the state of a monitor cannot be"))?;
+        if judge.settings().monitor != settings.monitor {
+            return Err(Damaged("the state of a monitor that was set otherwise"));
+        }
         let incarnation = from.u32()?;
         let mut open = [None; 3];
         for each in &mut open {

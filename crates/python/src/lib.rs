@@ -14,6 +14,7 @@ mod gnss;
 mod ins_consistency;
 mod ins_fuse;
 mod ins_simulate;
+mod judge;
 mod kpi;
 mod live;
 mod live_outputs;
@@ -55,6 +56,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     sbas_positions::register(m)?;
     ee::register(m)?;
     states::register(m)?;
+    judge::register(m)?;
     evaluation::register(m)?;
     gnss::register(m)?;
     gbas::register(m)?;

@@ -68,20 +68,20 @@ fn bounds_of<'py>(py: Python<'py>, method: &str, risk: f64, n_epochs: usize, col
     let method = bound::method(method).ok_or_else(|| PyKeyError::new_err(method.to_owned()))?;
     let risk = Risk::new(risk).map_err(|e| input_error(e, None))?;
     let held = Table::of(n_epochs, columns)?;
-    let table = held.columns()?;
+    let (table, ..) = held.parts()?;
     let column = py.detach(|| bounds::bounds(&table, method, risk));
     let reasons = column.reasons.into_iter().map(|r| (r.reason.id(), r.words)).collect();
     Ok((column.bound_m.into_pyarray(py), column.reason.into_pyarray(py), reasons))
 }
 
 /// Columns of an epoch table, kept from the collector while they are read.
-struct Table<'py> {
+pub(crate) struct Table<'py> {
     len: usize,
     held: Vec<Option<PyReadonlyArray1<'py, f64>>>,
 }
 
-/// Columns that methods read, then those of the navigation error.
-const COLUMNS: [&str; 14] = [
+/// Columns that methods read, then those of the navigation error, then the protection level.
+pub(crate) const COLUMNS: [&str; 15] = [
     "course_rad",
     "path_angle_rad",
     "fte_m",
@@ -96,10 +96,21 @@ const COLUMNS: [&str; 14] = [
     "nse_e_m",
     "nse_n_m",
     "nse_u_m",
+    "hpl_m",
 ];
 
+/// Columns of methods, those of the navigation error, and the protection level.
+pub(crate) type Parts<'a> = (Columns<'a>, judge::Errs<'a>, Option<&'a [f64]>);
+
+/// All columns in the order of [`COLUMNS`] as the parts of a table.
+pub(crate) fn parts(len: usize, slices: [Option<&[f64]>; COLUMNS.len()]) -> Parts<'_> {
+    let [course_rad, path_angle_rad, fte_m, fte_v_m, rnp_m, ee, en, nn, eu, nu, uu, east, north, up, hpl_m] = slices;
+    let covariance_m2 = [ee, en, nn, eu, nu, uu];
+    (Columns { len, course_rad, path_angle_rad, fte_m, fte_v_m, rnp_m, covariance_m2 }, [east, north, up], hpl_m)
+}
+
 impl<'py> Table<'py> {
-    fn of(len: usize, columns: &Bound<'py, PyDict>) -> PyResult<Self> {
+    pub(crate) fn of(len: usize, columns: &Bound<'py, PyDict>) -> PyResult<Self> {
         let held = COLUMNS.iter().map(|name| {
             let Some(value) = columns.get_item(name)? else { return Ok(None) };
             let array: PyReadonlyArray1<'py, f64> = value.extract()?;
@@ -111,18 +122,12 @@ impl<'py> Table<'py> {
         Ok(Self { len, held: held.collect::<PyResult<_>>()? })
     }
 
-    fn slices(&self) -> PyResult<[Option<&[f64]>; 14]> {
-        let mut slices = [None; 14];
+    pub(crate) fn parts(&self) -> PyResult<Parts<'_>> {
+        let mut slices = [None; COLUMNS.len()];
         for (slot, column) in slices.iter_mut().zip(&self.held) {
-            *slot = slice(column)?;
+            *slot = column.as_ref().map(|a| a.as_slice()).transpose()?;
         }
-        Ok(slices)
-    }
-
-    fn columns(&self) -> PyResult<Columns<'_>> {
-        let [course_rad, path_angle_rad, fte_m, fte_v_m, rnp_m, ee, en, nn, eu, nu, uu, ..] = self.slices()?;
-        let covariance_m2 = [ee, en, nn, eu, nu, uu];
-        Ok(Columns { len: self.len, course_rad, path_angle_rad, fte_m, fte_v_m, rnp_m, covariance_m2 })
+        Ok(parts(self.len, slices))
     }
 }
 
@@ -130,8 +135,8 @@ impl<'py> Table<'py> {
 #[pyfunction]
 fn errors_of<'py>(py: Python<'py>, n_epochs: usize, columns: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
     let held = Table::of(n_epochs, columns)?;
-    let (table, [.., east, north, up]) = (held.columns()?, held.slices()?);
-    let errors = py.detach(|| judge::errors(&table, [east, north, up]));
+    let (table, nse_m, _) = held.parts()?;
+    let errors = py.detach(|| judge::errors(&table, nse_m));
     let d = PyDict::new(py);
     for (name, of) in ERRORS {
         d.set_item(name, errors.iter().map(|e| of(e).unwrap_or(f64::NAN)).collect::<Vec<_>>().into_pyarray(py))?;
@@ -150,10 +155,6 @@ const ERRORS: [Error; 7] = [
     ("tse_v_m", |e| e.tse_v_m),
     ("sigma_cross_m", |e| e.sigma_cross_m),
 ];
-
-fn slice<'a>(array: &'a Option<PyReadonlyArray1<'_, f64>>) -> PyResult<Option<&'a [f64]>> {
-    array.as_ref().map(|a| a.as_slice().map_err(Into::into)).transpose()
-}
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(methods, m)?)?;

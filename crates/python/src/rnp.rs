@@ -59,13 +59,13 @@ fn per_hour_risk(risk_per_epoch: f64, tau_s: f64, sample_period_s: f64) -> PyRes
 
 /// Settings and state of one monitor.
 #[pyclass(module = "navbound._core")]
-struct RnpMonitor {
-    monitor: rnp::Monitor,
+pub(crate) struct RnpMonitor {
+    pub(crate) monitor: rnp::Monitor,
     comparison: IntegrityComparison,
 }
 
 /// The method with this id, where it may feed an alert; `KeyError` with the id otherwise.
-fn alerting(id: &str) -> PyResult<Alerting> {
+pub(crate) fn alerting(id: &str) -> PyResult<Alerting> {
     Alerting::of(id).map_err(|_| PyKeyError::new_err(id.to_owned()))
 }
 
@@ -76,9 +76,9 @@ fn alerting_methods() -> Vec<&'static str> {
 }
 
 /// kind, onset_ns, annunciation_ns, clear_ns, peak_m, limit_m, min_margin_m.
-type EventRow = (&'static str, i64, i64, Option<i64>, f64, f64, f64);
+pub(crate) type EventRow = (&'static str, i64, i64, Option<i64>, f64, f64, f64);
 
-fn event_row(e: &Event) -> EventRow {
+pub(crate) fn event_row(e: &Event) -> EventRow {
     (
         e.kind.word(),
         e.onset.nanoseconds(),
@@ -108,7 +108,7 @@ pub(crate) fn counters_dict<'py>(py: Python<'py>, c: &Counters) -> PyResult<Boun
     Ok(d)
 }
 
-const fn acceptance_word(acceptance: Acceptance) -> &'static str {
+pub(crate) const fn acceptance_word(acceptance: Acceptance) -> &'static str {
     match acceptance {
         Acceptance::Accepted => "accepted",
         Acceptance::Duplicate => "duplicate",
@@ -154,12 +154,17 @@ impl RnpMonitor {
         accuracy: (&str, f64),
         integrity: (&str, f64),
         fte_m: f64,
-        hpl_m: f64,
+        hpl_m: Option<f64>,
         rnp_m: f64,
         judged: (bool, bool),
     ) -> PyResult<(&'static str, &'static str, Vec<EventRow>, Vec<EventRow>)> {
         let claimed = |(id, bound_m): (&str, f64)| alerting(id).map(|method| method.claim_evaluated(Metres::new(bound_m)));
         let (accuracy, integrity) = (claimed(accuracy)?, claimed(integrity)?);
+        // A record with the key says that its source has levels, whatever stands there.
+        if hpl_m.is_some() {
+            self.comparison.expect_levels();
+        }
+        let hpl_m = hpl_m.unwrap_or(f64::NAN);
         let step = self.monitor.step(&Observation {
             time: GpsTime::from_nanoseconds(time_ns),
             accuracy,
@@ -230,15 +235,18 @@ impl RnpMonitors {
 
     /// Events with the index of their track, counters of each track, and of all together.
     fn decided<'py>(&self, py: Python<'py>) -> PyResult<Decided<'py>> {
-        let events = self.monitors.events().iter().map(|(track, event)| (*track, event_row(event))).collect();
-        let counters = self.monitors.counters();
-        let each = counters.iter().map(|c| counters_dict(py, c)).collect::<PyResult<_>>()?;
-        let all = counters.iter().fold(Counters::default(), |sum, c| sum.merged(c));
-        Ok((events, each, counters_dict(py, &all)?))
+        decided(py, &self.monitors.events(), &self.monitors.counters())
     }
 }
 
-type Decided<'py> = (Vec<(u32, EventRow)>, Vec<Bound<'py, PyDict>>, Bound<'py, PyDict>);
+pub(crate) fn decided<'py>(py: Python<'py>, events: &[(u32, Event)], counters: &[Counters]) -> PyResult<Decided<'py>> {
+    let events = events.iter().map(|(track, event)| (*track, event_row(event))).collect();
+    let each = counters.iter().map(|c| counters_dict(py, c)).collect::<PyResult<_>>()?;
+    let all = counters.iter().fold(Counters::default(), |sum, c| sum.merged(c));
+    Ok((events, each, counters_dict(py, &all)?))
+}
+
+pub(crate) type Decided<'py> = (Vec<(u32, EventRow)>, Vec<Bound<'py, PyDict>>, Bound<'py, PyDict>);
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(specifications, m)?)?;

@@ -29,8 +29,8 @@ fn nse_boundary<'py>(
 
 /// Boundaries, means and deviations of the states, and their posteriors.
 #[pyclass(frozen, module = "navbound._core")]
-struct RnpStates {
-    table: StateTable,
+pub(crate) struct RnpStates {
+    pub(crate) table: StateTable,
     #[pyo3(get)]
     ordered: bool,
 }

@@ -7,6 +7,7 @@ provenance: :data:`SERVICES` and :data:`SUPPORT`.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -321,3 +322,29 @@ def _columns(
 def _levels(found: dict[str, Any], shape: tuple[int, ...]) -> Levels:
     status = np.array(found.pop("words"))[found.pop("outcome")]
     return Levels(status=status.reshape(shape), **{name: values.reshape(shape) for name, values in found.items()})
+
+
+def demand(service: str) -> tuple[str, bool, tuple[tuple[str, float, str, str], ...]]:
+    """What a service asks of levels: a service level's name, whether its vertical limit counts, and the effective monitor threshold.
+
+    Raises
+    ------
+    InputError
+        No such service.
+    """
+    if service not in SERVICES:
+        raise InputError("service", service, domain=f"one of {', '.join(SERVICES)}")
+    limits = SERVICES[service]
+    if math.isnan(limits.emt_limit_m):
+        return "NPA", False, ()
+    return "LPV-200", True, (("emt_m", limits.emt_limit_m, limits.source, limits.provenance),)
+
+
+def assumptions(model: str) -> list[str]:
+    """What predicted levels rest on, as sentences."""
+    errors, horizontal = ERROR_MODELS[model], SERVICES["horizontal"]
+    return [
+        f"Levels: solution separation over satellite and constellation faults; service horizontal: {horizontal.source} "
+        f"({horizontal.provenance}).",
+        f"Range errors: {errors.source} ({errors.provenance}); orbits, clocks and fault rates: {SUPPORT.source} ({SUPPORT.provenance}).",
+    ]

@@ -10,6 +10,7 @@ import numpy as np
 from navbound import _core
 from navbound.errors import InputError
 from navbound.gnss.constellations import CONSTELLATIONS
+from navbound.table.arguments import checked_fields
 from navbound.table.arrays import flatten
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Service:
     """Risks that a service may take, and how they are split; each in (0, 1).
@@ -56,6 +58,7 @@ class Service:
     provenance: str = "ours"
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Support:
     """What is promised of satellites, one number a constellation in the order of ``gnss.CONSTELLATIONS``.
@@ -95,6 +98,7 @@ SUPPORT: Support = _support()
 """The shipped promises; no integrity support message is broadcast, so they are those of a study, marked as inferred."""
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Requirement:
     """What receivers without priors must meet (RAIM): one fault at a time; each in (0, 1).
@@ -114,6 +118,7 @@ class Requirement:
     provenance: str = "ours"
 
 
+@checked_fields
 @dataclass(frozen=True)
 class ErrorModel:
     """Receiver, multipath and what the atmosphere leaves of one range.

@@ -13,6 +13,7 @@ import typer
 
 import navbound
 from navbound import _core
+from navbound.algorithms import Recorded, algorithms, entries
 from navbound.cli import live, maps, predict, procedures
 from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, err_console, out_console, work_of
 from navbound.errors import FormatError, InputError, InternalError, NavboundError
@@ -33,6 +34,21 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
+
+
+def _version(value: bool) -> None:
+    if value:
+        sys.stdout.write(f"navbound {navbound.__version__}\n")
+        raise typer.Exit
+
+
+@app.callback()
+def _about(
+    version: Annotated[bool, typer.Option("--version", help="Print the version, nothing else.", callback=_version, is_eager=True)] = False,
+) -> None:
+    pass
+
+
 LISTED_FAULTS = 10
 """Faults that are said at the end of a run; all of them are in its records."""
 
@@ -160,7 +176,7 @@ def analyze(
     ] = None,
     protection: Annotated[
         str | None,
-        typer.Option(help="With --levels: protection levels of observations from given (the files), raim, araim or araim-horizontal."),
+        typer.Option(help=f"With --levels: protection levels of observations from given (the files), {', '.join(entries(Recorded))}."),
     ] = None,
     out: Out = None,
     json: Json = False,
@@ -293,9 +309,8 @@ def study(
 def methods(json: Json = False) -> None:
     """List every method with its source, provenance and promises."""
     from navbound.methods import methods as all_methods  # noqa: PLC0415
-    from navbound.methods import protection_methods  # noqa: PLC0415
 
-    found, levels = list(all_methods().values()), list(protection_methods().values())
+    found, levels = list(all_methods().values()), [algorithm.declared for algorithm in algorithms().values()]
     if json:
         both = {"methods": [m.__dict__ for m in found], "protection_levels": [p.__dict__ for p in levels]}
         sys.stdout.write(encoder.dumps(both, indent=1) + "\n")

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from navbound.algorithms import Grid as MapOf
+from navbound.algorithms import entries
 from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, out_console, work_of
 from navbound.errors import InputError
 
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def map_command(
-    kind: Annotated[str, typer.Argument(help="What to map: dop, raim, araim, sbas, dme.")],
+    kind: Annotated[str, typer.Argument(help=f"What to map: dop, {', '.join(entries(MapOf))}, sbas, dme.")],
     step_deg: Annotated[float, typer.Option(help="Side of a cell.")] = 5.0,
     region: Annotated[str | None, typer.Option(help="South,north,west,east in degrees. [default: the world]")] = None,
     constellation: Annotated[

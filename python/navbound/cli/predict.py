@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
+from navbound.algorithms import Place, entries, entry
 from navbound.cli.parts import command_line, out_console
 from navbound.errors import InputError
 
@@ -18,13 +19,12 @@ if TYPE_CHECKING:
     from navbound.maps.sources import Times
     from navbound.records.prediction import Hole, Prediction
 
-KINDS = ("raim",)
 LISTED = 40
 """Holes that the table lists; `--json` has all."""
 
 
 def predict_command(
-    kind: Annotated[str, typer.Argument(help=f"What to predict: {', '.join(KINDS)}.")],
+    kind: Annotated[str, typer.Argument(help=f"What to predict: {', '.join(entries(Place))}.")],
     constellation: Annotated[
         list[str], typer.Argument(help="YUMA or SEM almanac, RINEX navigation file, or gps, galileo, beidou (nominal, of no date).")
     ],
@@ -48,12 +48,11 @@ def predict_command(
     model: Annotated[str, typer.Option(help="Error of a range: single-frequency, dual-frequency.")] = "single-frequency",
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,
 ) -> None:
-    """Say when, over a day, RAIM could not detect or not exclude a faulty satellite at a place or on a route."""
+    """Say when, over a day, a monitor on board could not detect or not exclude a faulty satellite at a place or on a route."""
     from navbound import raim  # noqa: PLC0415
     from navbound.run import predict as predict_raim  # noqa: PLC0415
 
-    if kind not in KINDS:
-        raise InputError("kind", kind, domain=f"one of {', '.join(KINDS)}")
+    entry(Place, "kind", kind)
     if model not in raim.ERROR_MODELS:
         raise InputError("model", model, domain=f"one of {', '.join(raim.ERROR_MODELS)}")
     asked = predict_raim.Asked(
@@ -64,6 +63,7 @@ def predict_command(
         systems=systems,
         mask_rad=math.radians(mask_deg),
         model=model,
+        kind=kind,
     )
     places = [predict_raim.place(text) for text in at or ()] + [predict_raim.route(file) for file in route or ()]
     found = predict_raim.predict(asked, places, command=command_line())
@@ -95,7 +95,7 @@ def _show(found: Prediction) -> None:
     gone = f", without {', '.join(found.without)}" if found.without else ""
     systems = ", ".join(words for letter, words in gnss.SYSTEMS.items() if any(s[0] == letter for s in found.satellites))
     out.print(
-        f"RAIM, {len(found.satellites)} satellites of {systems} ({', '.join(found.orbits)}){gone}",
+        f"{found.kind.upper()}, {len(found.satellites)} satellites of {systems} ({', '.join(found.orbits)}){gone}",
         style="bold",
         markup=False,
         highlight=False,
@@ -114,9 +114,9 @@ def _show(found: Prediction) -> None:
             share(line.p_detection),
             str(line.n_holes_detection),
             _lasting(line.longest_detection_s),
-            share(line.p_exclusion),
-            str(line.n_holes_exclusion),
-            _lasting(line.longest_exclusion_s),
+            "-" if line.p_exclusion is None else share(line.p_exclusion),
+            "-" if line.n_holes_exclusion is None else str(line.n_holes_exclusion),
+            "-" if line.longest_exclusion_s is None else _lasting(line.longest_exclusion_s),
         )
     out.print(table)
     for hole in found.holes[:LISTED]:

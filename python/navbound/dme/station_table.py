@@ -15,11 +15,12 @@ import numpy as np
 
 from navbound.errors import FormatError, InputError
 from navbound.storage import packed
-from navbound.table.arguments import checked
+from navbound.table.arguments import checked, checked_fields
+from navbound.table.arrays import flatten, shown, whole_numbers
 from navbound.units import METRES_PER_FT, METRES_PER_NM
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -36,6 +37,7 @@ _NEEDED = ("ident", "kind", "lat_deg", "lon_deg", "elevation_ft")
 _KNOWN = (*_NEEDED, "country", "frequency_khz", "power", "service_nm")
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Stations:
     """A network of DME stations.
@@ -93,9 +95,18 @@ class Stations:
         """Whether a VOR stands beside the DME, shape (n,)."""
         return np.array([kind in BEARING_KINDS for kind in self.kind], dtype=np.bool_)
 
-    def take(self, places: Iterable[int]) -> Stations:
-        """The stations at these places of the table, in that order."""
-        k = np.fromiter(places, dtype=np.intp)
+    @checked
+    def take(self, places: Sequence[int]) -> Stations:
+        """The stations at these places of the table, in that order.
+
+        Raises
+        ------
+        InputError
+            Places that are no whole numbers, or beyond the table.
+        """
+        k = whole_numbers("places", places).ravel()
+        if k.size and not (k.min() >= 0 and k.max() < len(self.ident)):
+            raise InputError("places", shown(places), domain=f"places in [0, {len(self.ident) - 1}]")
         ident, kind, country = (tuple(column[i] for i in k) for column in (self.ident, self.kind, self.country))
         return Stations(ident, kind, country, self.lat_rad[k], self.lon_rad[k], self.h_m[k], self.service_m[k], self.frequency_khz[k])
 
@@ -108,7 +119,7 @@ class Stations:
             An identifier that is not in the table.
         """
         self._known(idents)
-        return self.take(k for k, ident in enumerate(self.ident) if ident not in idents)
+        return self.take([k for k, ident in enumerate(self.ident) if ident not in idents])
 
     def only(self, *idents: str) -> Stations:
         """Only these.
@@ -119,8 +130,9 @@ class Stations:
             An identifier that is not in the table.
         """
         self._known(idents)
-        return self.take(k for k, ident in enumerate(self.ident) if ident in idents)
+        return self.take([k for k, ident in enumerate(self.ident) if ident in idents])
 
+    @checked
     def near(self, lat_rad: ArrayLike, lon_rad: ArrayLike, distance_m: float) -> Stations:
         """The stations within a distance of any of some points, on a sphere.
 
@@ -138,7 +150,7 @@ class Stations:
         """
         if not distance_m > 0:
             raise InputError("distance_m", distance_m, "m", "(0, inf)")
-        lat, lon = (np.ravel(np.asarray(values, dtype=np.float64)) for values in (lat_rad, lon_rad))
+        _, (lat, lon) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()))
         if not (np.isfinite(lat).all() and np.isfinite(lon).all()):
             raise InputError("lat_rad, lon_rad", "a value that is not finite", domain="finite points")
         least = math.cos(min(distance_m / EARTH_RADIUS_M, math.pi))

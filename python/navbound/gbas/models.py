@@ -10,7 +10,7 @@ import numpy as np
 
 from navbound import _core
 from navbound.errors import InputError
-from navbound.table.arguments import checked
+from navbound.table.arguments import checked, checked_fields
 from navbound.table.arrays import flatten, unflatten
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ SERVICES = ("D", "F")
 """GBAS approach service types: single-frequency code smoothed over 30 s, ionosphere-free code smoothed over 100 s."""
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Mark:
     """How one number is held.
@@ -40,6 +41,7 @@ class Mark:
     why: str
 
 
+@checked_fields
 @dataclass(frozen=True)
 class SubPhase:
     """What one sub-phase of surface movement asks. Nearly every number is inferred: print none without its mark.
@@ -69,6 +71,7 @@ class SubPhase:
     marks: tuple[Mark, ...]
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Carrier:
     """Errors of phase differenced in time.
@@ -99,6 +102,7 @@ class Carrier:
         return [self.noise_m, self.troposphere_gradient, self.clock_mps, ionosphere]
 
 
+@checked_fields
 @dataclass(frozen=True)
 class FaultRates:
     """Rates of faults in one of the paper's cases.
@@ -129,6 +133,7 @@ class FaultRates:
     marks: tuple[Mark, ...]
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Allocation:
     """How the integrity risk of a sub-phase is shared out; shares of it [1].
@@ -161,6 +166,7 @@ class Allocation:
     marks: tuple[Mark, ...]
 
 
+@checked_fields
 @dataclass(frozen=True)
 class ErrorBudget:
     """What flight technical and path definition error take of a containment.
@@ -181,6 +187,7 @@ class ErrorBudget:
     marks: tuple[Mark, ...]
 
 
+@checked_fields
 @dataclass(frozen=True)
 class MonitorCurve:
     """A ground monitor's missed detection against the size of a range error.
@@ -207,6 +214,7 @@ class MonitorCurve:
     marks: tuple[Mark, ...]
 
 
+@checked_fields
 @dataclass(frozen=True)
 class RangeSigma:
     """Standard deviations of smoothed, corrected ranges; arrays have the shape of the elevations [m].
@@ -227,6 +235,7 @@ class RangeSigma:
     ionosphere_m: NDArray[np.float64]
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Inertial:
     """The inertial system of the study, the receiver's clock and the white parts of its ranges.

@@ -11,7 +11,7 @@ import numpy as np
 from navbound import _core
 from navbound.errors import FormatError, InputError
 from navbound.storage import packed
-from navbound.table.arguments import checked
+from navbound.table.arguments import checked, checked_fields
 from navbound.table.arrays import flatten
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ BROADCAST_AGE_S = 86_400.0
 """A broadcast record serves geometry this far from its reference time: by then a satellite stands some 1e-3 rad off. [s]"""
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Orbits:
     """Satellites and their Kepler elements at a reference instant; all arrays have shape (n,).
@@ -66,6 +67,13 @@ class Orbits:
     node_rate_radps: NDArray[np.float64]
     reference_ns: int | None = None
 
+    def __post_init__(self) -> None:
+        """Refuse columns of different lengths."""
+        for name in self.__dataclass_fields__:
+            shape = np.shape(getattr(self, name))
+            if name != "reference_ns" and shape != (len(self.satellite),):
+                raise InputError(name, f"shape {shape}", domain=f"one value a satellite, shape ({len(self.satellite)},)")
+
     def __add__(self, other: Orbits) -> Orbits:
         """Both sets of satellites; of two reference instants neither is kept unless they agree."""
         names = [n for n in self.__dataclass_fields__ if n not in {"satellite", "reference_ns"}]
@@ -100,7 +108,7 @@ class Orbits:
             self.mean_anomaly_rad,
             self.node_rate_radps,
         )
-        return np.ascontiguousarray(np.stack(columns, axis=-1))
+        return np.ascontiguousarray(np.stack(columns, axis=-1), dtype=np.float64)
 
 
 @checked

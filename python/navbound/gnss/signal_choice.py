@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from navbound.table.columns import VARIANCES
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -53,7 +55,7 @@ def smaller_covariance(solve: Callable[[str], Positions]) -> Positions:
 
 
 def _trace(epochs: pl.DataFrame) -> NDArray[np.float64]:
-    axes = epochs.select("cov_ee_m2", "cov_nn_m2", "cov_uu_m2").fill_null(np.nan).to_numpy()
+    axes = epochs.select(VARIANCES).fill_null(np.nan).to_numpy()
     return np.asarray(axes.sum(axis=1), dtype=np.float64)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound.errors import InputError
+from navbound.table.arguments import checked_fields
 from navbound.table.arrays import numbers, whole_numbers
 
 if TYPE_CHECKING:
@@ -35,11 +36,18 @@ def _times(time_ns: ArrayLike) -> NDArray[np.int64]:
 
 def _joined(n: int, *columns: tuple[str, ArrayLike, int]) -> NDArray[np.float64]:
     """Join columns of given widths to one table of n rows."""
-    return np.ascontiguousarray(
-        np.concatenate([rows(name, np.reshape(numbers(name, value), (-1, width)), (n, width)) for name, value, width in columns], 1)
-    )
+    return np.ascontiguousarray(np.concatenate([rows(name, _flat(name, value, width), (n, width)) for name, value, width in columns], 1))
 
 
+def _flat(name: str, value: ArrayLike, width: int) -> NDArray[np.generic]:
+    """Rows of a width, one for each item: a matrix of three by three is a row of nine."""
+    array = numbers(name, value)
+    if array.size % width or (array.ndim == 0 and width > 1):
+        raise InputError(name, f"shape {array.shape}", domain=f"{width} numbers a row")
+    return array.reshape(-1, width)
+
+
+@checked_fields
 @dataclass(frozen=True)
 class SatelliteRanges:
     """Ranges to satellites, corrected for everything that is known of them.
@@ -101,6 +109,7 @@ def _satellite(name: str) -> tuple[str, int]:
     return name[0], int(name[1:])
 
 
+@checked_fields
 @dataclass(frozen=True)
 class DmeRanges:
     """Slant ranges to DME stations.
@@ -136,6 +145,7 @@ def _stations(station: ArrayLike, n: int) -> list[int]:
     return [int(k) for k in array]
 
 
+@checked_fields
 @dataclass(frozen=True)
 class VorBearings:
     """Bearings of the aircraft from VOR stations.
@@ -165,6 +175,7 @@ class VorBearings:
         return time, _stations(self.station, time.size), table
 
 
+@checked_fields
 @dataclass(frozen=True)
 class BaroHeights:
     """Heights from a barometric altimeter.
@@ -191,6 +202,7 @@ class BaroHeights:
         return time, _joined(time.size, ("height_m", self.height_m, 1), ("sigma_white_m", self.sigma_white_m, 1), *slow)
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Fixes:
     """Positions, and perhaps velocities, that another receiver has solved.
@@ -260,6 +272,7 @@ class Fixes:
                 )
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Aiding:
     """All measurements of a flight, one table a kind; an absent table is a sensor that is not there."""

@@ -12,34 +12,8 @@ from navbound.errors import InputError
 from navbound.ins.settings import FilterSettings, ImuModel, StartSigma, told
 from navbound.scenario import Scenario, load
 from navbound.table.arguments import checked
-
-SCORE = (
-    "n_epochs",
-    "nees",
-    "p_circle",
-    "p_sphere",
-    *(f"rms_{axis}_m" for axis in "enu"),
-    *(f"sigma_{axis}_m" for axis in "enu"),
-    *(f"p_{mode}" for mode in ("coasting", "vor_dme", "dme_dme", "gnss", "aligning")),
-    "n_stopped",
-)
-"""Of one filter."""
-COLUMNS = (
-    *SCORE,
-    "range_mean_square",
-    "range_lag_one",
-    "n_ranges_used",
-    "n_ranges_gated",
-    "range_memory_max",
-)
-REVERSION = (
-    "n_compared",
-    "separation_mean_square",
-    "separation_max_square",
-    "n_disagreements",
-    *(f"reversion_{name}" for name in SCORE),
-)
-"""Only with a filter without satellites beside the main one."""
+from navbound.table.columns import CONSISTENCY, REVERSION
+from navbound.table.declare import schema
 
 
 @checked
@@ -100,7 +74,6 @@ def consistency(
     words = told(imu_model or ImuModel(), settings or FilterSettings(), start or StartSigma(), (1.0, 0.0), None)
     table = _core.ins_consistency(found.core_json(), chosen, first, normals, words, skip_s)
     how = settings or FilterSettings()
-    names = (*COLUMNS, *REVERSION) if how.reversion or how.form == "federated" else COLUMNS
-    columns = {name: table[:, k] for k, name in enumerate(names)}
-    counts = [name for name in names if name.startswith(("n_", "reversion_n_"))]
-    return pl.DataFrame({"flight": np.arange(first, first + flights), **columns}).with_columns(pl.col(counts).cast(pl.Int64))
+    declared = (*CONSISTENCY, *REVERSION) if how.reversion or how.form == "federated" else CONSISTENCY
+    numbers = np.column_stack([np.arange(first, first + flights), table])
+    return pl.DataFrame({column.name: numbers[:, k] for k, column in enumerate(declared)}).cast(schema(declared))

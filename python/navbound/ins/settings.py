@@ -10,6 +10,7 @@ import numpy as np
 
 from navbound.errors import InputError
 from navbound.ins.aiding import rows
+from navbound.table.arguments import checked_fields
 from navbound.table.arrays import whole_numbers
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 STANDARD_GRAVITY_MPS2 = 9.80665
 
 
+@checked_fields
 @dataclass(frozen=True, kw_only=True)
 class StartSigma:
     """How well a start is known.
@@ -34,6 +36,7 @@ class StartSigma:
     attitude_sigma_rad: tuple[float, float, float] = (5e-5, 5e-5, 5e-4)
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Start(StartSigma):
     """Where the navigation begins, and how well that is known (`StartSigma`, by name).
@@ -56,6 +59,7 @@ class Start(StartSigma):
     attitude_rad: tuple[float, float, float]
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Imu:
     """Increments of an inertial unit over its sampling intervals, body axes forward, right, down.
@@ -97,7 +101,7 @@ class Imu:
             usual = float(np.median(since[1:])) if time.size > 1 else math.nan
             interval = np.where((since > 0.0) & (since <= 1.5 * usual), since, usual)
         else:
-            interval = np.broadcast_to(np.asarray(self.interval_s, dtype=np.float64), time.shape)
+            interval = rows("interval_s", self.interval_s, time.shape)
         return {
             "time_ns": time,
             "interval_s": np.ascontiguousarray(interval),
@@ -106,6 +110,7 @@ class Imu:
         }
 
 
+@checked_fields
 @dataclass(frozen=True)
 class SensorNoise:
     """White noise and a first-order Gauss-Markov bias of each axis.
@@ -125,6 +130,7 @@ class SensorNoise:
     bias_time_s: float = 3600.0
 
 
+@checked_fields
 @dataclass(frozen=True)
 class ImuModel:
     """What the filter believes of the inertial unit.
@@ -137,6 +143,7 @@ class ImuModel:
     accelerometer: SensorNoise = SensorNoise(10e-6 * STANDARD_GRAVITY_MPS2, 1e-4 * STANDARD_GRAVITY_MPS2)
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Clock:
     """What the filter believes of the receiver's clock, as lengths; the default is a temperature-compensated crystal (inferred).
@@ -158,6 +165,7 @@ class Clock:
     inter_system_m: float = 100.0
 
 
+@checked_fields
 @dataclass(frozen=True)
 class Wheels:
     """The vehicle rolls where its wheels point: no sideways or upward velocity at a point. An assumption; not for aircraft.
@@ -180,6 +188,7 @@ class Wheels:
     period_s: float = 0.1
 
 
+@checked_fields
 @dataclass(frozen=True)
 class FilterSettings:
     """How the filter works.

@@ -19,6 +19,8 @@ from navbound.records.performance import (
     StanfordBins,
     StanfordCounts,
 )
+from navbound.table.columns import LEVEL_EVENTS
+from navbound.table.declare import schema
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,27 +32,7 @@ _DAY_NS = 86_400_000_000_000
 _PER = 100_000
 _MARITIME_S = 900.0
 
-EVENT_SCHEMA = pl.Schema(
-    {
-        "level": pl.String,
-        "kind": pl.String,
-        "onset_ns": pl.Int64,
-        "clear_ns": pl.Int64,
-        "n_epochs": pl.Int64,
-        "duration_s": pl.Float64,
-        "over_tta": pl.Boolean,
-        "cause": pl.String,
-        "reason": pl.String,
-        "hpe_max_m": pl.Float64,
-        "vpe_max_m": pl.Float64,
-        "hpl_max_m": pl.Float64,
-        "vpl_max_m": pl.Float64,
-        "n_sv_before": pl.Int64,
-        "n_sv_onset": pl.Int64,
-        "mode_before": pl.String,
-        "mode_onset": pl.String,
-    }
-)
+EVENT_SCHEMA = schema(LEVEL_EVENTS)
 """Columns of a performance run's events.parquet: the fields of `KpiEvent`."""
 
 

@@ -13,7 +13,7 @@ from navbound import _core
 from navbound.errors import InputError
 from navbound.kpi import records
 from navbound.records.performance import Level, Performance, StanfordBins, StanfordCounts, SubsetFound, Subsets
-from navbound.table.arguments import checked
+from navbound.table.arguments import checked, checked_fields
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -30,6 +30,7 @@ _FLOATS = ("az_rad", "el_rad", "sigma_m", "range_error_m")
 _SHARED = ("shared_1_m", "shared_2_m", "shared_3_m", "shared_4_m")
 
 
+@checked_fields
 @dataclass(frozen=True)
 class SubsetOptions:
     """How the subsets of the Stanford-ESA diagram are made.

@@ -187,7 +187,7 @@ class Session:
             self._out.append(part.frames)
             self._show(_core.live_transitions(part.frames))
         if again != expected:
-            raise InternalError("the journal judged again gives other outputs than before: not deterministic")
+            raise InternalError("live.Session", "the journal judged again gives other outputs than before: not deterministic")
         self._show([row for row in _core.live_transitions(before.frames) if row[3] > position], replayed=True)
         if at > position:
             self._say(f"recovered: {at - position} bytes of the journal judged again, {len(again)} outputs were there already")

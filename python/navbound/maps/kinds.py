@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
+from navbound.algorithms import ARAIM_CAUSES, HPL, VPL, Cause, Column, Grid, algorithms
 from navbound.maps.ground import Dme
-from navbound.maps.orbital import Araim, Dop, Raim
+from navbound.maps.orbital import Dop, options_of
 from navbound.maps.service import Sbas
 
 if TYPE_CHECKING:
@@ -18,23 +19,6 @@ if TYPE_CHECKING:
     from navbound.maps.limits import Limit
 
     Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Column:
-    """A number of every user and instant."""
-
-    name: str
-    title: str
-    unit: Literal["1", "m"]
-
-
-@dataclass(frozen=True)
-class Cause:
-    """Why a user has no number at an instant, or an infinite one; ``name`` is the column of its share of the instants."""
-
-    name: str
-    title: str
 
 
 class Levels(Protocol):
@@ -95,51 +79,41 @@ class Kind:
     user_epoch_s: float
 
 
-_HPL, _VPL = Column("hpl_m", "Horizontal protection level", "m"), Column("vpl_m", "Vertical protection level", "m")
 _DOPS = tuple(
-    Column(name, f"{title} dilution of precision", "1")
+    Column(name, f"{title} dilution of precision")
     for name, title in (("pdop", "Position"), ("hdop", "Horizontal"), ("vdop", "Vertical"), ("gdop", "Geometric"))
 )
 
-_FEW = Cause("p_too_few", "Too few satellites, or badly placed ones")
-_MONITORED = (
-    _FEW,
-    Cause("p_too_many", "More satellites or fault modes than are worked out"),
-    Cause("p_not_monitored", "Faults that cannot be monitored take the whole integrity risk"),
-)
 _SERVED = (
     Cause("p_no_signal", "The service's satellite is too low"),
     Cause("p_no_service", "The service offers no usable satellite: no mask or corrections in force, no ionosphere there, or message 0"),
     Cause("p_too_few", "Too few usable satellites, or badly placed ones"),
 )
 
-KINDS: dict[str, Kind] = {
-    kind.id: kind
-    for kind in (
-        Kind("dop", "Dilution of precision", "normal equation of ranges of equal weight", _DOPS, (_FEW,), Dop, 0.6e-6),
-        Kind("raim", "RAIM protection level", "navbound.araim.predict, service raim", (_HPL,), _MONITORED, Raim, 8e-6),
-        Kind(
-            "araim",
-            "ARAIM protection levels",
-            "navbound.araim.predict",
-            (_VPL, _HPL, Column("emt_m", "Effective monitor threshold", "m")),
-            _MONITORED,
-            Araim,
-            8e-6,
+_OWN = (
+    Kind("dop", "Dilution of precision", "normal equation of ranges of equal weight", _DOPS, ARAIM_CAUSES[:1], Dop, 0.6e-6),
+    Kind("sbas", "SBAS protection levels", "navbound.sbas.protection_levels", (VPL, HPL), _SERVED, Sbas, 4e-6),
+    Kind(
+        "dme",
+        "DME/DME coverage",
+        "navbound.dme.coverage",
+        (
+            Column("nse_best_m", "95 % navigation error of the best pair"),
+            Column("nse_all_m", "95 % navigation error of all stations"),
         ),
-        Kind("sbas", "SBAS protection levels", "navbound.sbas.protection_levels", (_VPL, _HPL), _SERVED, Sbas, 4e-6),
-        Kind(
-            "dme",
-            "DME/DME coverage",
-            "navbound.dme.coverage",
-            (
-                Column("nse_best_m", "95 % navigation error of the best pair", "m"),
-                Column("nse_all_m", "95 % navigation error of all stations", "m"),
-            ),
-            (Cause("p_too_few", "No pair of stations in sight that serves"),),
-            Dme,
-            200e-6,
-        ),
-    )
-}
-"""Every kind by its name."""
+        (Cause("p_too_few", "No pair of stations in sight that serves"),),
+        Dme,
+        200e-6,
+    ),
+)
+
+
+def kinds() -> dict[str, Kind]:
+    """Every kind by its name: dilution, the algorithms of :mod:`navbound.algorithms` that take orbits, and the services."""
+    of_orbits = [
+        Kind(one.name, one.title, one.source, one.columns, one.causes, options_of(one), one.user_epoch_s)
+        for algorithm in algorithms().values()
+        for one in algorithm.entries
+        if isinstance(one, Grid)
+    ]
+    return {kind.id: kind for kind in (_OWN[0], *of_orbits, *_OWN[1:])}

@@ -13,10 +13,11 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, scale
+from navbound.algorithms import Column
 from navbound.errors import InputError
 from navbound.maps import files
 from navbound.maps.grid import Grid
-from navbound.maps.kinds import KINDS, Column, Kind
+from navbound.maps.kinds import Kind, kinds
 from navbound.maps.limits import Limit, limits_of
 from navbound.maps.sources import File, Times
 from navbound.maps.statistics import PERCENTILES, Evaluate, Tile, percentile_name
@@ -56,7 +57,7 @@ def make(
     Parameters
     ----------
     kind : str
-        A name of :data:`KINDS`.
+        A name of :func:`kinds`.
     grid : Grid, optional
         Users; without it the world in cells of five degrees.
     limits : mapping of column to float, optional
@@ -70,7 +71,7 @@ def make(
     command : str, optional
         For the run record.
     **options
-        The arguments of the kind: the fields of ``KINDS[kind].options``.
+        The arguments of the kind: the fields of ``kinds()[kind].options``.
 
     Returns
     -------
@@ -84,9 +85,10 @@ def make(
     FormatError
         A file that cannot be read, or a folder that cannot be written.
     """
-    chosen = KINDS.get(kind)
-    if chosen is None:
-        raise InputError("kind", kind, domain=f"one of {', '.join(KINDS)}")
+    known = kinds()
+    if kind not in known:
+        raise InputError("kind", kind, domain=f"one of {', '.join(known)}")
+    chosen = known[kind]
     grid = grid or Grid()
     job = _options(chosen, options)
     asked = _limits(chosen, job, limits, level)

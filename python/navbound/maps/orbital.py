@@ -1,25 +1,25 @@
-"""Maps from orbits: dilutions, RAIM, ARAIM."""
+"""Maps from orbits: dilutions, and the algorithms of protection levels that take orbits."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, make_dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from navbound import gnss
-from navbound.errors import InputError
 from navbound.maps import sources
 from navbound.maps.limits import Limit, limits_of
 from navbound.maps.sources import Satellites, Times
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from numpy.typing import NDArray
 
+    from navbound.algorithms import Grid
     from navbound.maps.kinds import Levels
 
     Floats = NDArray[np.float64]
@@ -95,79 +95,46 @@ class Dop(_Day):
         return [Limit("pdop", 6.0, "GPS SPS performance standard, PDOP availability (the text was not read)", "inferred")]
 
 
-_CAUSES = {"p_too_few": ("too_few_satellites", "singular"), "p_too_many": ("too_many",), "p_not_monitored": ("not_monitored",)}
-"""The statuses of ``navbound.araim`` behind each cause."""
-
-
 @dataclass(frozen=True)
-class _AraimLevels:
+class _Predicted:
     sky: Satellites
-    service: str
-    model: str
+    entry: Grid
+    options: tuple[tuple[str, Any], ...]
 
     def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
-        from navbound import araim  # noqa: PLC0415
-
         s = self.sky
-        found = araim.predict(s.orbits, lat_rad, lon_rad, s.h_m, s.time_s, mask_rad=s.mask_rad, service=self.service, model=self.model)
-        columns: dict[str, NDArray[Any]] = {
-            name: np.ascontiguousarray(getattr(found, name).T, dtype=np.float64) for name in ("hpl_m", "vpl_m", "emt_m", "n_sv")
-        }
-        return columns | {cause: np.isin(found.status, words).T for cause, words in _CAUSES.items()}
+        levels = self.entry(s.orbits, lat_rad, lon_rad, s.h_m, s.time_s, mask_rad=s.mask_rad, **dict(self.options))
+        names = [column.name for column in self.entry.columns] + ["n_sv"]
+        columns: dict[str, NDArray[Any]] = {name: np.ascontiguousarray(getattr(levels, name).T, dtype=np.float64) for name in names}
+        return columns | {cause.name: np.isin(levels.status, cause.statuses).T for cause in self.entry.causes}
 
 
 @dataclass(frozen=True)
-class Araim(_Day):
-    """Advanced RAIM: protection levels predicted from orbits.
+class _Algorithm(_Day):
+    """Protection levels predicted from orbits by an algorithm of the list."""
 
-    Attributes
-    ----------
-    service, model : str
-        Names of ``araim.SERVICES`` and ``araim.ERROR_MODELS``.
-    """
+    ENTRY: ClassVar[Grid]
 
-    constellation: tuple[str | Path, ...] = ("gps", "galileo")
-    service: str = "lpv-200"
-    model: str = "dual-frequency"
+    def _options(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in self.ENTRY.options}
 
     def levels(self) -> Levels:
         """What works out the numbers."""
-        return _AraimLevels(self.sky(), self.service, self.model)
+        return _Predicted(self.sky(), self.ENTRY, tuple(self._options().items()))
 
     def limits(self) -> list[Limit]:
         """What is asked without a word of the caller."""
-        from navbound import araim  # noqa: PLC0415
-
-        if self.service not in araim.SERVICES:
-            raise InputError("service", self.service, domain=f"one of {', '.join(araim.SERVICES)}")
-        service = araim.SERVICES[self.service]
-        if math.isnan(service.emt_limit_m):
-            return limits_of("NPA", vertical=False)
-        emt = Limit("emt_m", service.emt_limit_m, service.source, service.provenance)
-        return [*limits_of("LPV-200"), emt]
+        level, vertical, more = self.ENTRY.limits(**({"service": self._options()["service"]} if "service" in self.ENTRY.options else {}))
+        return [*limits_of(level, vertical=vertical), *(Limit(*one) for one in more)]
 
     def assumptions(self) -> list[str]:
         """What the numbers rest on."""
-        return [
-            *super().assumptions(),
-            f"Service {self.service}, error model {self.model}; promises of the satellites as shipped, inferred.",
-        ]
+        return [*super().assumptions(), *([self.ENTRY.words.format(**self._options())] if self.ENTRY.words else [])]
 
 
-@dataclass(frozen=True)
-class Raim(_Day):
-    """RAIM: horizontal levels of one fault at a time."""
-
-    model: str = "single-frequency"
-
-    def levels(self) -> Levels:
-        """What works out the numbers."""
-        return _AraimLevels(self.sky(), "raim", self.model)
-
-    def limits(self) -> list[Limit]:
-        """What is asked without a word of the caller."""
-        return limits_of("NPA", vertical=False)
-
-    def assumptions(self) -> list[str]:
-        """What the numbers rest on."""
-        return [*super().assumptions(), f"One faulty satellite at a time, error model {self.model}."]
+@cache
+def options_of(entry: Grid) -> type[_Algorithm]:
+    """The arguments of a map of one algorithm: those of orbits and users, and its own."""
+    own = [("constellation", tuple[str | Path, ...], field(default=entry.constellation))]
+    own += [(name, type(default), field(default=default)) for name, default in entry.options.items()]
+    return make_dataclass(entry.name, own, bases=(_Algorithm,), namespace={"ENTRY": entry}, frozen=True)

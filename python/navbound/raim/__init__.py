@@ -294,3 +294,15 @@ def _columns(
 def _levels(found: dict[str, Any], shape: tuple[int, ...]) -> Levels:
     status = np.array(found.pop("words"))[found.pop("outcome")]
     return Levels(status=status.reshape(shape), **{name: values.reshape(shape) for name, values in found.items()})
+
+
+def assumptions(model: str) -> list[str]:
+    """What predicted levels rest on, as sentences."""
+    errors = ERROR_MODELS[model]
+    return [
+        f"Levels: {SOURCES[0]}; {SOURCES[1]}. No aiding by a barometric altimeter.",
+        f"Risks: false alarm {RAIM.false_alarm:g}, missed detection {RAIM.missed_detection:g}, without a fault {RAIM.fault_free:g}: "
+        f"{RAIM.source}; together {RAIM.provenance}.",
+        f"Range errors: {errors.source} ({errors.provenance}); orbits and clocks: {SUPPORT.source} ({SUPPORT.provenance}).",
+        "One satellite fails at a time.",
+    ]

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import polars as pl
 
 from navbound.errors import InputError
-from navbound.read.checks.stated import worse_than_covariance
+from navbound.read.checks.stated import CONTAINMENT, WORSE, worse_than_covariance
+from navbound.table.columns import COVARIANCE, HORIZONTAL
 from navbound.units import METRES_PER_NM
-
-COLUMNS = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
-
 
 NACP_EPU_M = {
     11: 3.0,
@@ -74,6 +72,8 @@ class Claimed:
     epochs: pl.DataFrame
     words: str
     origin: Origin
+    own_sigma_m: tuple[float, float] | None = None
+    """Least and largest sigma of one axis by the file's own accuracies, where the caller's overrules them. [m]"""
 
 
 def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
@@ -94,22 +94,63 @@ def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
     InputError
         `sigma_m` that is not positive and finite.
     """
-    have = set(epochs.columns)
     if sigma_m is not None:
         if not (math.isfinite(sigma_m) and sigma_m > 0):
             raise InputError("sigma_m", sigma_m, "m", "(0, inf)")
-        words = f"Covariance: circular with sigma = {sigma_m:g} m in each axis, as stated by the user."
-        return _circle(epochs, pl.lit(float(sigma_m)), words, "typed")
-    if {"cov_ee_m2", "cov_en_m2", "cov_nn_m2"} <= have:
+        return _typed(epochs, float(sigma_m))
+    claimed = _of_file(epochs, set(epochs.columns))
+    return replace(claimed, epochs=worse_than_covariance(_with_containment(claimed.epochs), _least_radii(claimed.epochs)))
+
+
+def _typed(epochs: pl.DataFrame, sigma_m: float) -> Claimed:
+    """The caller's standard deviation; where the file's own is larger, that speaks against it."""
+    own = claim(epochs)
+    words = f"Covariance: circular with sigma = {sigma_m:g} m in each axis, as stated by the user."
+    found = _circle(epochs, pl.lit(sigma_m), words, "typed")
+    own_m = own.epochs.select(((pl.col("cov_ee_m2") + pl.col("cov_nn_m2")) / 2).sqrt().alias("own")).to_series()
+    stated_m = own.epochs.select(pl.max_horizontal(own_m / circular_sigma(0.05), *_least_radii(own.epochs)).alias("m")).to_series()
+    worse_m = pl.select(pl.when(stated_m > (1.0 + 1e-9) * sigma_m / circular_sigma(0.05)).then(stated_m)).to_series().alias(WORSE)
+    stated = [worse_m, *([own.epochs[CONTAINMENT]] if CONTAINMENT in own.epochs.columns else [])]
+    known = own_m.filter(own_m.is_finite().fill_null(value=False))
+    if known.is_empty():
+        return replace(found, epochs=found.epochs.with_columns(stated))
+    low, high = float(known.min()), float(known.max())  # type: ignore[arg-type]
+    more = f" The file's own accuracies, sigma {low:.3g} to {high:.3g} m, are overruled."
+    return Claimed(found.epochs.with_columns(stated), f"{words}{more}", "typed", (low, high))
+
+
+def _least_radii(epochs: pl.DataFrame) -> list[pl.Expr]:
+    """The least 95 % radius by each accuracy of the file; an indicator stands for a class of radii, of which its lower limit. [m]."""
+    radii = [pl.col("epu_m")] if "epu_m" in epochs.columns else []
+    if {"sigma_e_m", "sigma_n_m"} <= set(epochs.columns):
+        radii.append(((pl.col("sigma_e_m") ** 2 + pl.col("sigma_n_m") ** 2) / 2).sqrt() / circular_sigma(0.05))
+    if "nac_p" in epochs.columns:
+        better = {category: NACP_EPU_M.get(category + 1, 0.0) for category in range(12)}
+        radii.append(_held("nac_p").replace_strict(better, default=None, return_dtype=pl.Float64))
+    return radii
+
+
+def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
+    """Add `CONTAINMENT`, infinite where the indicator says that there is none, where the table states one."""
+    have = set(epochs.columns)
+    if not have & {"rc_m", "nic"}:
+        return epochs
+    coded = _held("nic").replace_strict(NIC_RC_M | {0: math.inf}, default=None, return_dtype=pl.Float64) if "nic" in have else None
+    stated = ([_held("rc_m")] if "rc_m" in have else []) + ([] if coded is None else [coded])
+    return epochs.with_columns(pl.coalesce(stated).alias(CONTAINMENT))
+
+
+def _of_file(epochs: pl.DataFrame, have: set[str]) -> Claimed:
+    if set(HORIZONTAL) <= have:
         alone = "cov_uu_m2" in have and not {"cov_eu_m2", "cov_nu_m2"} <= have
         more = " The vertical axis is taken as uncorrelated, which the file does not say." if alone else ""
         words = f"Covariance: as the file gives it.{more}{_beside(have)}"
-        return Claimed(worse_than_covariance(_complete(epochs)), words, "file")
+        return Claimed(_complete(epochs), words, "file")
     if {"sigma_e_m", "sigma_n_m"} <= have:
         squares = {f"cov_{a}{a}_m2": pl.col(f"sigma_{a}_m") ** 2 for a in "enu" if f"sigma_{a}_m" in have}
         filled = epochs.with_columns(pl.lit(0.0).alias("cov_en_m2"), **squares)
         words = "Covariance: from the file's standard deviations; axes taken as uncorrelated, which the file does not say."
-        return Claimed(worse_than_covariance(_complete(filled)), f"{words}{_beside(have)}", "file_axes")
+        return Claimed(_complete(filled), f"{words}{_beside(have)}", "file_axes")
     return _coded(epochs, have)
 
 
@@ -117,7 +158,7 @@ def _beside(have: set[str]) -> str:
     """Accuracies that the file states beside the one that is used."""
     named = {"epu_m": "EPU", "nac_p": "NACp", "rc_m": "Rc", "nic": "NIC"}
     others = [words for name, words in named.items() if name in have]
-    compared = " An EPU larger than twice the distance root mean square speaks against the covariance." if "epu_m" in have else ""
+    compared = " One that is larger than twice the distance root mean square speaks against the covariance." if others else ""
     return f" Stated beside it and not used: {', '.join(others)}.{compared}" if others else ""
 
 
@@ -127,6 +168,7 @@ class Claims:
     def __init__(self, sigma_m: float | None) -> None:
         self._sigma_m = sigma_m
         self._before: pl.DataFrame | None = None
+        self._own_m: tuple[float, float] | None = None
 
     def claim(self, epochs: pl.DataFrame) -> Claimed:
         """The next piece, as :func:`claim`."""
@@ -137,7 +179,10 @@ class Claims:
         last = joined.filter(pl.col("track") == joined["track"][-1])
         rows = [last.filter(pl.col(name).is_not_null()).tail(1) for name in _INDICATORS if name in last.columns]
         self._before = pl.concat([last.clear(), *rows]).unique("time_ns").sort("time_ns")
-        return Claimed(claimed.epochs[before.height :], claimed.words, claimed.origin)
+        if claimed.own_sigma_m is not None:
+            low, high = self._own_m or claimed.own_sigma_m
+            self._own_m = (min(low, claimed.own_sigma_m[0]), max(high, claimed.own_sigma_m[1]))
+        return replace(claimed, epochs=claimed.epochs[before.height :], own_sigma_m=self._own_m)
 
 
 _INDICATORS = ("nac_p", "nic", "rc_m")
@@ -165,7 +210,7 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
         )
         return _circle(epochs, radius * k_rc, words, "containment_radius")
     words = "Covariance: none. The file states no accuracy and none was given (sigma_m), so nothing bounds the navigation error."
-    return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COLUMNS), words, "none")
+    return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COVARIANCE), words, "none")
 
 
 def _held(name: str) -> pl.Expr:
@@ -179,7 +224,7 @@ def _circle(epochs: pl.DataFrame, sigma: pl.Expr, words: str, origin: Origin) ->
     epochs = epochs.with_columns((sigma**2).alias("cov_ee_m2"))
     known = pl.col("cov_ee_m2").is_not_null()
     epochs = epochs.with_columns(pl.when(known).then(0.0).alias("cov_en_m2"), pl.col("cov_ee_m2").alias("cov_nn_m2"))
-    return Claimed(_complete(epochs.drop("cov_eu_m2", "cov_nu_m2", "cov_uu_m2", strict=False)), words, origin)
+    return Claimed(_complete(epochs.drop(COVARIANCE[3:], strict=False)), words, origin)
 
 
 def _complete(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -187,9 +232,9 @@ def _complete(epochs: pl.DataFrame) -> pl.DataFrame:
 
     A vertical variance whose correlations the file does not state claims a vertical interval all the same, so they are taken as zero.
     """
-    missing = [c for c in COLUMNS if c not in epochs.columns]
+    missing = [c for c in COVARIANCE if c not in epochs.columns]
     vertical = pl.col("cov_uu_m2").is_not_null() if "cov_uu_m2" in epochs.columns else pl.lit(value=False)
-    correlation = {"cov_eu_m2", "cov_nu_m2"}
+    correlation = set(COVARIANCE[3:5])
     return epochs.with_columns(
         (pl.when(vertical).then(pl.lit(0.0)) if c in correlation else pl.lit(None, pl.Float64)).alias(c) for c in missing
     )

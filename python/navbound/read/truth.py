@@ -11,8 +11,9 @@ import polars as pl
 
 from navbound import _core, gnss
 from navbound.errors import InputError
-from navbound.read.checks.plausible import impossible
+from navbound.read.checks.established import established
 from navbound.read.tables.epochs import read
+from navbound.records.truth import TruthDoubts
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,8 +65,8 @@ def truth_of(given: str | Path | None, tolerance_s: float) -> Truth:
     return Truth(text, point, tolerance_s)
 
 
-def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, Reading | None]:
-    """Form the navigation error against a truth that was named; words about it, and what was read of its file.
+def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, Reading | None, TruthDoubts]:
+    """Form the navigation error against a truth that was named; words about it, what was read of its file, what speaks against it.
 
     Raises
     ------
@@ -76,14 +77,16 @@ def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, R
         raise InputError("truth", truth.given, domain="no truth: the table holds no positions to compare with it")
     if truth.ecef_m is None:
         other = read(str(truth.given))
-        return *join(epochs, other, truth.tolerance_s), other
+        joined, words, doubts = join(epochs, other, truth.tolerance_s)
+        return joined, words, other, doubts
     place = gnss.geodetic(truth.ecef_m)
     names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m")
     fixed = epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True))
-    return with_error(fixed)[0], f"Truth: the fixed point {truth.given} m, Earth-fixed.", None
+    found, doubts = with_error(fixed)
+    return found, _sentences(f"Truth: the fixed point {truth.given} m, Earth-fixed.", doubts.words), None, doubts
 
 
-def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S) -> tuple[pl.DataFrame, str]:
+def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S) -> tuple[pl.DataFrame, str, TruthDoubts]:
     """Join the nearest truth in time, and form the navigation error.
 
     Parameters
@@ -101,6 +104,8 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
         With ``truth_lat_rad``, ``truth_lon_rad``, ``truth_h_m`` and the navigation error.
     words : str
         How many epochs have a truth, and the largest difference in time.
+    doubts : TruthDoubts
+        What speaks against it.
 
     Raises
     ------
@@ -140,16 +145,15 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
         f"{float(largest) * 1e-6 if isinstance(largest, int) else 0.0:g} ms apart (allowed {tolerance_s * 1e3:g} ms)."
     )
     epochs, doubts = with_error(joined.drop("truth_time_ns"))
-    return epochs, f"{words}{doubts}"
+    return epochs, _sentences(words, doubts.words), doubts
 
 
-def with_error(epochs: pl.DataFrame) -> tuple[pl.DataFrame, str]:
+def with_error(epochs: pl.DataFrame) -> tuple[pl.DataFrame, TruthDoubts]:
     """Navigation error, true minus estimated, where a truth is known; upwards only where both heights are.
 
-    A truth that jumps is none at these epochs: they lose it, and the words say at how many; empty where none does.
+    A truth that contradicts itself is none (:func:`navbound.read.checks.established.established`): the doubts say at how many epochs.
     """
-    epochs, n_impossible = _without_jumps(epochs)
-    words = f" {n_impossible} true positions cannot have been reached from those before them, and are not used." if n_impossible else ""
+    epochs, doubts = established(epochs)
 
     def places(prefix: str, fallback: pl.Expr) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
         height = pl.coalesce(pl.col(f"{prefix}_h_m"), fallback) if f"{prefix}_h_m" in epochs.columns else fallback
@@ -160,22 +164,11 @@ def with_error(epochs: pl.DataFrame) -> tuple[pl.DataFrame, str]:
     error = _core.navigation_error(places("est", pl.lit(0.0)), places("truth", pl.lit(0.0)))
     epochs = epochs.with_columns(pl.Series(f"nse_{axis}_m", error[:, i]).fill_nan(None) for i, axis in enumerate("enu"))
     heights = [pl.col(c).is_not_null() if c in epochs.columns else pl.lit(value=False) for c in ("est_h_m", "truth_h_m")]
-    return epochs.with_columns(pl.when(pl.all_horizontal(heights)).then("nse_u_m")), words
+    return epochs.with_columns(pl.when(pl.all_horizontal(heights)).then("nse_u_m")), doubts
 
 
-def _without_jumps(epochs: pl.DataFrame) -> tuple[pl.DataFrame, int]:
-    """Take the truth from epochs at which it jumps or has not settled since, by the rule of recorded positions; how many these are."""
-    known = pl.all_horizontal(pl.col(name).is_finite() for name in _TRUE_PLACE).fill_null(value=False)
-    rows = epochs.with_row_index("__row").filter(known).select("__row", "track", "time_ns", *_TRUE_PLACE)
-    lost = [group["__row"].filter(impossible(group, *_TRUE_PLACE)) for group in rows.partition_by("track", maintain_order=True)]
-    if not any(len(each) for each in lost):
-        return epochs, 0
-    jumping = pl.int_range(pl.len()).is_in(pl.concat(lost).implode())
-    names = [name for name in (*_TRUE_PLACE, "truth_h_m") if name in epochs.columns]
-    return epochs.with_columns(pl.when(~jumping).then(pl.col(name)).alias(name) for name in names), sum(map(len, lost))
-
-
-_TRUE_PLACE = ("truth_lat_rad", "truth_lon_rad")
+def _sentences(*words: str) -> str:
+    return " ".join(each for each in words if each)
 
 
 def _span(frame: pl.DataFrame) -> str:

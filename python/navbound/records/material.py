@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 import polars as pl
 
 from navbound.records.frames import LEFT_OUT
+from navbound.records.truth import TruthDoubts
 
 if TYPE_CHECKING:
     from navbound.records.run import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
@@ -48,6 +49,10 @@ class Material:
         The epochs of a table that is too large for memory, in pieces on the disk; `epochs` is then without rows.
     with_levels : set of str
         Tracks with a protection level anywhere, where the epochs are in pieces.
+    unread : list of str
+        Columns, or words of columns, that speak of integrity by their name and are not understood.
+    truth_doubts : TruthDoubts
+        What speaks against the truth.
     limits_held : dict
         Phase to how its alert limit is held ("inferred", ...), where epochs have ``hpl_m`` and ``hal_m``.
     """
@@ -72,3 +77,5 @@ class Material:
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     frames: Frames | None = None
     with_levels: frozenset[str] = frozenset()
+    unread: list[str] = field(default_factory=list)
+    truth_doubts: TruthDoubts = field(default_factory=TruthDoubts)

@@ -1,4 +1,4 @@
-"""What a prediction of RAIM says, as records."""
+"""What a prediction of detection and exclusion says, as records."""
 
 from __future__ import annotations
 
@@ -55,14 +55,14 @@ class PredictedLine(Record):
     limit: str
     p_detection: float
     """Share of the instants with the level of detection inside the limit. [1]"""
-    p_exclusion: float
-    """Share of the instants with the level of exclusion inside the limit. [1]"""
-    p_detection_published: float
-    """The same by the published slope level, which leaves the noise out. [1]"""
+    p_exclusion: float | None
+    """Share of the instants with the level of exclusion inside the limit; None where the levels say nothing of exclusion. [1]"""
+    p_detection_published: float | None
+    """The same as detection by the published slope level, which leaves the noise out; None where there is none. [1]"""
     n_holes_detection: int
-    n_holes_exclusion: int
+    n_holes_exclusion: int | None
     longest_detection_s: float
-    longest_exclusion_s: float
+    longest_exclusion_s: float | None
 
 
 class PredictedTimes(Record):
@@ -80,6 +80,8 @@ class Prediction(Record):
 
     navbound_version: str
     command: str
+    kind: str
+    """Whose levels, as ``raim``."""
     orbits: list[str]
     satellites: list[str]
     without: list[str]

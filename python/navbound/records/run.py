@@ -88,6 +88,9 @@ class CovarianceOrigin(Record):
     id: Literal["simulated", "filter", "solved", "file", "file_axes", "epu", "nac_p", "containment_radius", "typed", "none"]
     sigma_m: float | None = None
     """What the user typed."""
+    own_low_m: float | None = None
+    own_high_m: float | None = None
+    """Least and largest sigma of one axis by the file's own accuracies, where the typed one overrules them."""
 
 
 class Verdict(Record):
@@ -126,6 +129,14 @@ class Verdict(Record):
     """The same where it states an alert."""
     n_stated_worse: int = 0
     """The same where it states a 95 % radius that is larger than its covariance allows."""
+    n_stated_uncontained: int = 0
+    """The same where it states a containment radius (Rc, NIC) beyond twice RNP, or none."""
+    unread: list[str] = Field(default_factory=list)
+    """Columns, or words of columns, that speak of integrity by their name and are not understood."""
+    n_apart: int = 0
+    """Positions further from the line between their neighbours than their covariances and any manoeuvre explain."""
+    largest_apart_m: float | None = None
+    """The largest of these distances."""
     n_without_level: int = 0
     """Judged epochs of tracks with a column of horizontal protection levels that holds none."""
     n_long_steps: int = 0
@@ -140,6 +151,10 @@ class Verdict(Record):
     """None where no epoch has both a bound or level and a true error."""
     n_truth: int = 0
     """Epochs of any status whose true position is known."""
+    n_truth_doubted: int = 0
+    """Epochs whose truth contradicts itself and is not used."""
+    truth_doubts: str = ""
+    """What speaks against the truth, with times; empty where nothing does."""
     n_implausible: int
     """Epochs whose input cannot be true (a jump that cannot be flown, a negative variance)."""
     worst_accuracy: Worst | None

@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 
 from navbound.report import packing
+from navbound.table import lookup
 from navbound.time import GPS_EPOCH_UNIX_NS, utc_offset_s
 
 if TYPE_CHECKING:
@@ -23,16 +24,6 @@ if TYPE_CHECKING:
 
 BUDGET_BYTES = 1_800_000
 """Records and embedded tracks as text; with the page's own parts (about 0.15 MB) the file stays below 2 MB."""
-
-_NUMBERS = (
-    *("est_lat_rad", "est_lon_rad", "est_h_m", "cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_uu_m2"),
-    *("path_lat_rad", "path_lon_rad", "path_h_m", "course_rad", "along_m", "ground_speed_mps", "rnp_m"),
-    *("fte_m", "fte_v_m", "tse_m", "tse_v_m", "sigma_cross_m"),
-    *("nse_e_m", "nse_n_m", "nse_u_m", "nse_along_m", "nse_cross_m", "nse_h_m", "nse_3d_m"),
-    *("hpl_m", "vpl_m", "hpl_multi_m", "hal_m", "integrity_compared_m"),
-    *("p_exceed_rnp", "p_exceed_2rnp", "n_sv", "n_gated", "hdop", "vdop"),
-)
-_WORDS = ("leg", "phase", "status", "reason", "alert", "state", "nav_mode", "nav_source", "nav_reasons")
 
 
 @dataclass(frozen=True)
@@ -92,6 +83,7 @@ def _records(
         "waypoints": [w.model_dump(mode="json") for w in waypoints],
         "utc_offset_s": utc_offset_s(_first_time_ns(summary, epochs)),
         "gps_epoch_unix_s": GPS_EPOCH_UNIX_NS // 1_000_000_000,
+        "charts": lookup.drawn(epochs.columns),
         "coastline": clip_coastline(*_region(epochs, waypoints)),
     }
 
@@ -106,7 +98,7 @@ def _worst_tracks(summary: Summary, epochs: pl.DataFrame | Frames, room_bytes: i
     blocks: list[str] = []
     words: list[str] = []
     columns = _columns(summary, epochs)
-    drawn = ["time_ns", *columns, *(name for name in _WORDS if name in epochs.columns)]
+    drawn = ["time_ns", *columns, *(name for name in lookup.in_report("text") if name in epochs.columns)]
     for track in _worst_first(summary.tracks):
         frame, more = _track(epochs, track, summary.verdict.worst_accuracy, drawn)
         if frame.height == 0:
@@ -154,12 +146,9 @@ def _worst_first(tracks: list[TrackSummary]) -> list[TrackSummary]:
 
 
 def _columns(summary: Summary, epochs: pl.DataFrame | Frames) -> list[str]:
-    """Numeric columns worth embedding: the fixed ones, each method's bound, each state's probability."""
-    methods = [m.id.replace("-", "_") + "_m" for m in summary.accuracy] + [
-        m.id.replace("-", "_") + "_integrity_m" for m in summary.integrity
-    ]
-    states = [f"p_state_{i + 1}" for i in range(len(summary.states))]
-    return [name for name in dict.fromkeys([*_NUMBERS, *methods, *states]) if name in epochs.columns]
+    """Numeric columns to embed: those that the list of columns shows, each method's bound, each state's probability."""
+    methods = dict.fromkeys(m.id for m in (*summary.accuracy, *summary.integrity))
+    return [name for name in lookup.in_report("number", methods, len(summary.states)) if name in epochs.columns]
 
 
 def _pack_track(track: str, frame: pl.DataFrame, columns: list[str]) -> tuple[dict[str, object], str]:
@@ -172,7 +161,7 @@ def _pack_track(track: str, frame: pl.DataFrame, columns: list[str]) -> tuple[di
         values = frame[name].cast(pl.Float64).fill_null(math.nan).to_numpy()
         if np.isfinite(values).any():
             packed.append(packing.pack(name, values))
-    words = {name: packing.run_lengths(frame[name].cast(pl.String).to_list()) for name in _WORDS if name in frame.columns}
+    words = {name: packing.run_lengths(frame[name].cast(pl.String).to_list()) for name in lookup.in_report("text") if name in frame.columns}
     head: dict[str, object] = {
         "track": track,
         "n": frame.height,

@@ -66,8 +66,11 @@ def write_page(title: str, words: str, page: payload.Page, target: Path) -> Path
     target.parent.mkdir(parents=True, exist_ok=True)
     # The page is written whole or not at all: a report cut short could pass for a report.
     partial = target.with_name(target.name + ".partial")
-    partial.write_text(_html(title, words, page), encoding="utf-8")
-    partial.replace(target)
+    try:
+        partial.write_text(_html(title, words, page), encoding="utf-8")
+        partial.replace(target)
+    finally:
+        partial.unlink(missing_ok=True)
     return target
 
 

@@ -19,9 +19,13 @@ from navbound.rnp.catalogue import Specification, specification, specifications
 from navbound.rnp.exposure import PER_EPOCH, ExposureBasis, PerEpoch, PerHour, per_epoch_risk, per_hour_risk
 from navbound.rnp.states import StateClassifier, StateOfError, StateOfErrors, nse_boundary, state_of_error, state_of_errors, states_of_track
 from navbound.sbas.gains import EXTRACTION_LABEL
+from navbound.table.arguments import checked, number
+from navbound.table.arrays import shown
+from navbound.table.columns import EVENTS
+from navbound.table.declare import schema as schema_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -176,6 +180,7 @@ class Monitor:
         A setting outside its domain, or a chain that takes longer than the time to alert.
     """
 
+    @checked
     def __init__(
         self,
         *,
@@ -222,7 +227,12 @@ class Monitor:
         ----------
         record : mapping
             ``time_ns``, ``rnp_m``, both bounds under the names of their methods' columns and, where there are any, ``status``, ``fte_m``
-            and ``hpl_m``. A bound that is None is a NaN, and alerts; so is ``hpl_m`` after the first epoch that had one.
+            and ``hpl_m``. A bound that is None is a NaN, and alerts.
+
+            **A level that is due and missing alerts.** A record with the key ``hpl_m`` declares that its source has protection levels,
+            whatever stands there: from the first such record on every epoch with status ``ok`` owes one, and one that is None, NaN or
+            absent is no integrity bound and raises the warning at once. Only a source whose records never have the key is judged by its
+            bounds alone.
         accuracy, integrity : str
             Ids of the methods that made the two bounds, of those that may feed an alert; ``tse-exact`` is read from ``tse_exact_m`` and
             ``tse_exact_integrity_m``. The integrity bound is of the same method unless another is named.
@@ -234,13 +244,12 @@ class Monitor:
         """
         first, second = _alerting("accuracy", accuracy), _alerting("integrity", integrity or accuracy)
         try:
-            time_ns = int(record["time_ns"])
-            accuracy_m, integrity_m, rnp_m = (_number(record[key]) for key in (first.column, second.integrity_column, "rnp_m"))
-            fte_m, hpl_m = (_number(record.get(key)) for key in ("fte_m", "hpl_m"))
+            time_ns = record["time_ns"]
+            accuracy_m, integrity_m, rnp_m = (_number(key, record[key]) for key in (first.column, second.integrity_column, "rnp_m"))
+            fte_m = _number("fte_m", record.get("fte_m"))
+            hpl_m = _number("hpl_m", record["hpl_m"]) if "hpl_m" in record else None
         except KeyError as e:
             raise InputError("record", "a mapping without it", domain=f"records with {e.args[0]}") from e
-        except (TypeError, ValueError, OverflowError) as e:
-            raise InputError("record", repr(dict(record))[:120], domain="records of numbers") from e
         _require_ns(time_ns)
         status = record.get("status", "ok")
         if not isinstance(status, str) or status not in USABLE + UNUSABLE:
@@ -289,8 +298,9 @@ class Monitor:
         ----------
         table : DataFrame or mapping of columns
             ``time_ns``, ``rnp_m``, both bounds under the names of their methods' columns and, where there are any, ``status``, ``track``,
-            ``fte_m`` and ``hpl_m``. A null bound of a row whose status is ``ok`` is a NaN, and alerts; so is its null ``hpl_m`` in a track
-            that has one anywhere.
+            ``fte_m`` and ``hpl_m``. A null bound of a row whose status is ``ok`` is a NaN, and alerts; so is its null ``hpl_m``: a table
+            with this column declares that the source of every track has protection levels. Tracks without belong in a table without it, or
+            are named by :meth:`tracks`.
         accuracy, integrity : str
             Ids of the methods that made the two bounds, of those that may feed an alert; ``tse-exact`` is read from ``tse_exact_m`` and
             ``tse_exact_integrity_m``. The integrity bound is of the same method unless another is named.
@@ -301,11 +311,8 @@ class Monitor:
             A method that may not feed an alert, a missing column, a null time, or a status that is none.
         """
         frame = _frame(table)
-        names, index = _tracks(frame)
-        with_levels = np.zeros(len(names), dtype=np.bool_)
-        if "hpl_m" in frame.columns:
-            with_levels[index[~np.isnan(_numbers(frame, "hpl_m"))]] = True
-        tracks = self.tracks(dict(zip(names, with_levels.tolist(), strict=True)), accuracy=accuracy, integrity=integrity)
+        names, _ = _tracks(frame)
+        tracks = self.tracks(dict.fromkeys(names, "hpl_m" in frame.columns), accuracy=accuracy, integrity=integrity)
         alert, compared_m = tracks.judge(frame)
         events, total, each = tracks.decided()
         return MonitorRun(alert, compared_m, events, total, each)
@@ -316,7 +323,8 @@ class Monitor:
         Parameters
         ----------
         with_levels : mapping of str to bool
-            Every track, and whether it has a protection level (``hpl_m``) anywhere.
+            Every track, and whether its source has protection levels (``hpl_m``): then every epoch with status ``ok`` owes one, and one
+            without is outside. Of a track that is named without, the first level is the beginning of levels that are due.
         accuracy, integrity : str
             As in :meth:`run`.
 
@@ -334,7 +342,6 @@ class TrackMonitors:
 
     def __init__(self, monitors: _core.RnpMonitors, names: tuple[str, ...], methods: tuple[Method, Method]) -> None:
         self._core, self._names, self._methods = monitors, names, methods
-        self._index = pl.DataFrame({"track": names, "index": range(len(names))}, schema={"track": pl.String, "index": pl.UInt32})
 
     def judge(self, frame: pl.DataFrame) -> tuple[pl.Series, pl.Series]:
         """Judge the next rows: ``alert`` and ``integrity_compared_m`` of :class:`MonitorRun`.
@@ -359,23 +366,14 @@ class TrackMonitors:
             _numbers(frame, "hpl_m") if "hpl_m" in frame.columns else None,
             _numbers(frame, "rnp_m"),
             (usable, _level_due(frame)),
-            self._of(frame),
+            track_index(frame, self._names),
         )
         return pl.Series("alert", words, dtype=pl.String), pl.Series("integrity_compared_m", compared_m, nan_to_null=True)
-
-    def _of(self, frame: pl.DataFrame) -> NDArray[np.uint32]:
-        if "track" not in frame.columns:
-            return np.zeros(frame.height, dtype=np.uint32)
-        track = frame["track"].cast(pl.String).fill_null("")
-        index = track.replace_strict(self._index["track"], self._index["index"], default=None, return_dtype=pl.UInt32)
-        if index.null_count():
-            raise InputError("track", track.filter(index.is_null())[0], domain="tracks that were named before the first piece")
-        return np.ascontiguousarray(index.to_numpy())
 
     def decided(self) -> tuple[pl.DataFrame, Counters, dict[str, Counters]]:
         """Events, counters of all tracks together and of each, of the rows so far."""
         rows, each, total = self._core.decided()
-        return _events(list(self._names), rows), Counters(**total), {n: Counters(**c) for n, c in zip(self._names, each, strict=True)}
+        return events_table(list(self._names), rows), Counters(**total), {n: Counters(**c) for n, c in zip(self._names, each, strict=True)}
 
 
 @cache
@@ -391,7 +389,7 @@ def _alerting(argument: str, method_id: str) -> Method:
 
 def _require_ns(time_ns: int) -> None:
     if isinstance(time_ns, bool) or not isinstance(time_ns, (int, np.integer)) or not -(2**63) <= time_ns < 2**63:
-        raise InputError("time_ns", repr(time_ns)[:80], "ns", "[-2^63, 2^63), whole")
+        raise InputError("time_ns", shown(time_ns), "ns", "[-2^63, 2^63), whole")
 
 
 def _frame(table: pl.DataFrame | Mapping[str, Any]) -> pl.DataFrame:
@@ -410,8 +408,12 @@ def _times(frame: pl.DataFrame) -> NDArray[np.int64]:
         raise InputError("time_ns", f"a column of {frame['time_ns'].dtype}", "ns", "[-2^63, 2^63), whole") from e
 
 
-def _number(value: float | str | None) -> float:
-    return math.nan if value is None else float(value)
+def _number(name: str, value: object) -> float:
+    if value is None:
+        return math.nan
+    if type(value) is not float:
+        number(name, value)
+    return float(value)  # type: ignore[arg-type]
 
 
 def _numbers(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:
@@ -449,15 +451,26 @@ def _tracks(frame: pl.DataFrame) -> tuple[list[str], NDArray[np.uint32]]:
     return names.to_list(), np.ascontiguousarray(index.to_numpy())
 
 
-def _events(names: list[str], rows: list[tuple[int, tuple[str, int, int, int | None, float, float, float]]]) -> pl.DataFrame:
-    schema = {
-        "track": pl.String,
-        "kind": pl.String,
-        "onset_ns": pl.Int64,
-        "annunciation_ns": pl.Int64,
-        "clear_ns": pl.Int64,
-        "peak_m": pl.Float64,
-        "limit_m": pl.Float64,
-        "min_margin_m": pl.Float64,
-    }
-    return pl.DataFrame([(names[track], *event) for track, event in rows], schema=schema, orient="row").fill_nan(None)
+def track_index(frame: pl.DataFrame, names: Sequence[str]) -> NDArray[np.uint32]:
+    """Place of each row's track in a list of names; 0 for a table without tracks.
+
+    Raises
+    ------
+    InputError
+        A track that is not in the list.
+    """
+    if "track" not in frame.columns:
+        return np.zeros(frame.height, dtype=np.uint32)
+    track = frame["track"].cast(pl.String).fill_null("")
+    index = track.replace_strict(
+        pl.Series(names, dtype=pl.String), pl.Series(range(len(names)), dtype=pl.UInt32), default=None, return_dtype=pl.UInt32
+    )
+    if index.null_count():
+        raise InputError("track", track.filter(index.is_null())[0], domain="tracks that were named before the first piece")
+    return np.ascontiguousarray(index.to_numpy())
+
+
+def events_table(names: list[str], rows: list[tuple[int, tuple[str, int, int, int | None, float, float, float]]]) -> pl.DataFrame:
+    """The table of events (:class:`MonitorRun`) of rows of the core, each with the index of its track's name."""
+    without_words = schema_of(column for column in EVENTS if column.name != "words")
+    return pl.DataFrame([(names[track], *event) for track, event in rows], schema=without_words, orient="row").fill_nan(None)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from navbound import _core
-from navbound.table.arguments import checked
+from navbound.table.arguments import checked, checked_fields
 
 LONGEST_STEP_S = 3600.0
 """Longest time between epochs that an hour's risk can be shared over: of a longer one each epoch carries the risk of its own hour. [s]"""
@@ -47,6 +47,7 @@ def per_hour_risk(risk_per_epoch: float, tau_s: float, sample_period_s: float = 
     return _core.per_hour_risk(risk_per_epoch, tau_s, sample_period_s)
 
 
+@runtime_checkable
 class ExposureBasis(Protocol):
     """What the integrity risk is counted over."""
 
@@ -59,6 +60,7 @@ class ExposureBasis(Protocol):
         ...
 
 
+@checked_fields
 @dataclass(frozen=True)
 class PerEpoch:
     """The risk is each epoch's own, as in the source; how often it is met in an hour is not said."""
@@ -76,6 +78,7 @@ class PerEpoch:
         return f"{risk:.3g} per epoch, which is {hour:.2g} per hour for an error that forgets in {self.tau_s:g} s"
 
 
+@checked_fields
 @dataclass(frozen=True)
 class PerHour:
     """The risk is that of being outside at least once in an hour of flight."""

@@ -11,6 +11,7 @@ import polars as pl
 
 from navbound.errors import InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
+from navbound.read.checks.axes import doubts_of_axes
 from navbound.read.checks.plausible import Limits, check
 from navbound.read.checks.repeats import left_out, separate
 from navbound.read.covariance import Claimed, claim
@@ -23,6 +24,7 @@ from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
 from navbound.records.frames import LEFT_OUT
 from navbound.records.material import Material
 from navbound.records.run import CovarianceOrigin, Rejection, Waypoint
+from navbound.records.truth import TruthDoubts
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solved import solved
 from navbound.run.inputs.solving import Solving
@@ -145,15 +147,15 @@ def material(
     epochs, plausibility = check(claimed.epochs, limits if named.ecef_m is None else replace(limits, moving_mps=math.inf))
     origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
-    assumptions = [of_covariance, plausibility.words]
+    assumptions, truth_doubts = [of_covariance, plausibility.words, *doubts_of_axes(epochs)], TruthDoubts()
     if truth is not None:
-        epochs, words, other = with_truth(epochs, named)
+        epochs, words, other, truth_doubts = with_truth(epochs, named)
         inputs += [] if other is None else [other.source]
         rejected += [] if other is None else other.rejected
         assumptions.append(words)
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
-        epochs, words = with_error(epochs)
-        assumptions.append(f"Truth: from the file itself.{words}")
+        epochs, truth_doubts = with_error(epochs)
+        assumptions.append(f"Truth: from the file itself. {truth_doubts.words}".rstrip())
     route = _follow(path, epochs, gates, rejected) if procedure is None else on_procedure(epochs, procedure)
     epochs = covariance_status(route.epochs)
     if procedure is None:
@@ -175,6 +177,8 @@ def material(
         left_out=pl.concat([_on_path(lost, epochs, route.tracks), route.left_out]),
         cross_track=route.cross_track,
         settings=context.settings_with(readings),
+        unread=list(dict.fromkeys(each for r in readings for each in r.unread)),
+        truth_doubts=truth_doubts,
     )
 
 
@@ -220,7 +224,7 @@ def _in_pieces(recorded: InPieces, context: _Context) -> Material:
         title=f"Recorded tracks: {Path(reading.source.path).name}",
         requirement=context.requirement,
         sample_period_s=recorded.period_s,
-        assumptions=[recorded.claimed.words, recorded.plausibility.words, _NO_PATH, *reading.notes],
+        assumptions=[recorded.claimed.words, recorded.plausibility.words, *recorded.doubts, _NO_PATH, *reading.notes],
         covariance=_origin(recorded.claimed, context.sigma_m, solved_alone=False),
         labels=recorded.labels,
         inputs=[reading.source],
@@ -228,12 +232,14 @@ def _in_pieces(recorded: InPieces, context: _Context) -> Material:
         left_out=reading.left_out,
         settings=context.settings_with([reading]),
         with_levels=frozenset(reading.with_levels),
+        unread=reading.unread,
     )
 
 
 def _origin(claimed: Claimed, sigma_m: float | None, *, solved_alone: bool) -> CovarianceOrigin:
     solved_covariance = solved_alone and claimed.origin == "file"
-    return CovarianceOrigin(id="solved" if solved_covariance else claimed.origin, sigma_m=sigma_m)
+    low, high = claimed.own_sigma_m or (None, None)
+    return CovarianceOrigin(id="solved" if solved_covariance else claimed.origin, sigma_m=sigma_m, own_low_m=low, own_high_m=high)
 
 
 def _refuse_experimental(readings: Sequence[Reading | PiecedReading]) -> None:

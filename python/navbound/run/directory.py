@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError
 from navbound.storage import folders
+from navbound.table import lookup
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -76,7 +77,8 @@ def write(run: Run, folder: folders.Writer | None) -> Run:
 
     folder.text(RECORD, run.record.model_dump_json(indent=1))
     folder.text(SUMMARY, run.summary.model_dump_json(indent=1))
-    folder.write(EPOCHS, lambda path: run.table.write_parquet(path, compression="zstd"))
+    units = lookup.metadata(run.table.columns, run.record.methods)
+    folder.write(EPOCHS, lambda path: run.table.write_parquet(path, compression="zstd", metadata=units))
     folder.write(EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
     folder.write(REPORT, lambda path: render(run.summary, run.record, run.table, run.events, run.waypoints, path))
     return Run(run.summary, run.record, run.table, run.events, run.waypoints, folder.folder)

@@ -139,7 +139,7 @@ def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
     numbers = {name: values for name, values in columns.items() if name not in _CODES}
     table = pl.DataFrame({"track": words.pop("track"), "time_ns": numbers.pop("time_ns"), **numbers, **words})
     # A value that does not exist is null in a table.
-    return table.with_columns(pl.col(pl.Float64).fill_nan(None)).with_columns(pl.col("^n_(sv|gated)$").cast(pl.Int32))
+    return table.with_columns(pl.col(pl.Float64).fill_nan(None)).with_columns(pl.col("^n_(sv|gated)$").cast(pl.Int64))
 
 
 def _reasons(columns: dict[str, Any], available: NDArray[np.bool_]) -> dict[str, pl.Series]:

@@ -12,21 +12,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound import __version__, rnp, status, tse
+from navbound import __version__, rnp
 from navbound.errors import InputError
-from navbound.methods import BoundColumn, bounds, column_of, method, with_errors
+from navbound.judge import Judges, with_levels
+from navbound.judge import Settings as Rules
+from navbound.methods import column_of
 from navbound.records.run import RunRecord
 from navbound.rnp.exposure import LONGEST_STEP_S
 from navbound.run import pieces
 from navbound.run.directory import Run
 from navbound.run.settings import Settings
-from navbound.run.summarise import summarise
+from navbound.run.summary.summarise import summarise
+from navbound.storage.frames import Frames
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from navbound.read.pieces import Frames
     from navbound.records.material import Material
     from navbound.records.run import EventSummary
 
@@ -61,35 +61,47 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
         return _judge_pieces(material, material.frames, settings, command)
     if material.epochs.height == 0:
         raise InputError("epochs", 0, "1", "at least one epoch")
-    epochs = with_errors(material.epochs)
-    judging = WITH_PATH if _has_values(epochs, "fte_m") else WITHOUT_PATH
-    ids = list(dict.fromkeys((judging, *settings.methods)))
-    epochs = _with_bounds(epochs, ids, judging, settings)
-    epochs = _with_risks(epochs)
-    epochs, events, counters = _with_alerts(epochs, judging, material.sample_period_s, settings.risk_integrity)
-    events = _with_points(events, material.events)
-    epochs, states = _with_states(epochs, settings.risk_accuracy)
-    shown = [i for i in ids if i == judging or _has_values(epochs, method(i).column)]
+    judging = WITH_PATH if _has_values(material.epochs, "fte_m") else WITHOUT_PATH
+    rules = _rules(material, settings, judging, states=_classifier(material.epochs) if judging == WITH_PATH else None)
+    judges = Judges(rules, with_levels(material.epochs))
+    epochs = judges.judge(material.epochs)
+    events, counters, _ = judges.decided()
+    events = _with_points(_in_words(events), material.events)
+    shown = [m.id for m in (rules.method, *rules.beside) if m.id == judging or _has_values(epochs, m.column)]
+    states = rules.state_names if "state" in epochs.columns else []
     risks = (settings.risk_accuracy, settings.risk_integrity)
     summary = summarise(material, epochs, events, ids=shown, judging=judging, states=states, risks=risks)
-    return Run(summary, _record(material, settings, shown, counters, command), epochs, events, material.waypoints)
+    return Run(
+        summary, _record(material, settings, shown, _counters(material, settings, counters), command), epochs, events, material.waypoints
+    )
 
 
-def _judge_pieces(material: Material, epochs: Frames, settings: Settings, command: str) -> Run:
+def _judge_pieces(material: Material, pieced: Frames, settings: Settings, command: str) -> Run:
     """The same of a table in pieces on the disk, which has neither path nor truth."""
-    ids = list(dict.fromkeys((WITHOUT_PATH, *settings.methods)))
-    monitor = _monitor(material.sample_period_s, settings.risk_integrity)
-    monitors = monitor.tracks({track: track in material.with_levels for track in material.labels}, accuracy=WITHOUT_PATH)
-
-    def bounded(piece: pl.DataFrame) -> pl.DataFrame:
-        return _with_bounds(with_errors(piece), ids, WITHOUT_PATH, settings)
-
-    judged = pieces.judged(epochs, bounded, monitors, with_levels=bool(material.with_levels))
-    events, total, _ = monitors.decided()
+    rules = _rules(material, settings, WITHOUT_PATH)
+    judges = Judges(rules, {track: track in material.with_levels for track in material.labels})
+    epochs = Frames()
+    for piece in pieced:
+        epochs.put(judges.judge(piece))
+    events, counters, _ = judges.decided()
     events = _in_words(events)
-    summary = pieces.summary(material, judged, events, ids, (settings.risk_accuracy, settings.risk_integrity))
+    ids = [m.id for m in (rules.method, *rules.beside)]
+    summary = pieces.summary(material, epochs, events, ids, (settings.risk_accuracy, settings.risk_integrity))
     shown = [result.id for result in summary.accuracy]
-    return Run(summary, _record(material, settings, shown, _counters(monitor, total), command), judged, events, material.waypoints)
+    return Run(
+        summary, _record(material, settings, shown, _counters(material, settings, counters), command), epochs, events, material.waypoints
+    )
+
+
+def _rules(material: Material, settings: Settings, judging: str, states: rnp.StateClassifier | None = None) -> Rules:
+    monitor = _monitor(material, settings)
+    return Rules(monitor, method=judging, beside=settings.methods, risk_accuracy=settings.risk_accuracy, states=states)
+
+
+def _classifier(epochs: pl.DataFrame) -> rnp.StateClassifier | None:
+    # Where the limit is metres, everything is in the tightest level's band: on the ground the levels of flight say nothing.
+    in_flight = (10.0 * column_of(epochs, "rnp_m") >= STATE_LEVELS_NM[0] * METRES_PER_NM).any()
+    return rnp.StateClassifier(STATE_LEVELS_NM) if in_flight else None
 
 
 def _record(material: Material, settings: Settings, shown: list[str], counters: dict[str, object], command: str) -> RunRecord:
@@ -113,56 +125,14 @@ def _has_values(epochs: pl.DataFrame, name: str) -> bool:
     return name in epochs.columns and bool(np.isfinite(column_of(epochs, name)).any())
 
 
-def _with_bounds(epochs: pl.DataFrame, ids: list[str], judging: str, settings: Settings) -> pl.DataFrame:
-    usable = _usable(epochs)
-    columns: dict[str, NDArray[np.float64]] = {}
-    for method_id in ids:
-        wanted = method(method_id)
-        accuracy = bounds(epochs, method_id, settings.risk_accuracy)
-        integrity = bounds(epochs, method_id, settings.risk_integrity)
-        columns[wanted.column] = np.where(usable, accuracy.bound_m, np.nan)
-        columns[wanted.integrity_column] = np.where(usable, integrity.bound_m, np.nan)
-        if method_id == judging:
-            epochs = _with_reasons(epochs, accuracy, usable)
-    return epochs.with_columns(pl.Series(name, values, nan_to_null=True) for name, values in columns.items())
-
-
-def _with_reasons(epochs: pl.DataFrame, judged: BoundColumn, usable: NDArray[np.bool_]) -> pl.DataFrame:
-    """An epoch that cannot be judged says why, unless its reader said so already."""
-    code = np.where(usable, judged.reason, 0).astype(np.int64)
-    ids, sentences = (pl.Series([None, *names], dtype=pl.String) for names in ([r[k] for r in judged.reasons] for k in (0, 1)))
-    return status.overridden(epochs, ids.gather(code), sentences.gather(code))
-
-
-def _with_risks(epochs: pl.DataFrame) -> pl.DataFrame:
-    if not _has_values(epochs, "fte_m") or "sigma_cross_m" not in epochs.columns:
-        return epochs
-    fte, sigma, limit = (column_of(epochs, name) for name in ("fte_m", "sigma_cross_m", "rnp_m"))
-    known = np.isfinite(fte) & np.isfinite(sigma) & np.isfinite(limit) & _usable(epochs)
-    added = {}
-    for name, factor in (("p_exceed_rnp", 1.0), ("p_exceed_2rnp", 2.0)):
-        risk = np.full(epochs.height, np.nan)
-        risk[known] = tse.exceedance_risk(np.abs(fte[known]), sigma[known], factor * limit[known])
-        added[name] = risk
-    return epochs.with_columns(pl.Series(name, values, nan_to_null=True) for name, values in added.items())
-
-
-def _with_alerts(
-    epochs: pl.DataFrame, judging: str, sample_period_s: float, risk_integrity: float
-) -> tuple[pl.DataFrame, pl.DataFrame, dict[str, object]]:
-    monitor = _monitor(sample_period_s, risk_integrity)
-    result = monitor.run(epochs, accuracy=judging)
-    if _has_values(epochs, "hpl_m"):
-        epochs = epochs.with_columns(result.integrity_compared_m)
-    return epochs.with_columns(result.alert.alias("alert")), _in_words(result.events), _counters(monitor, result.counters)
-
-
-def _monitor(sample_period_s: float, risk_integrity: float) -> rnp.Monitor:
+def _monitor(material: Material, settings: Settings) -> rnp.Monitor:
     # A finished flight alerts nobody: the chain to the crew is a matter of the live monitor.
-    return rnp.Monitor(sample_period_s=min(sample_period_s, LONGEST_STEP_S), time_to_alert_s=math.inf, integrity_risk=risk_integrity)
+    period_s = min(material.sample_period_s, LONGEST_STEP_S)
+    return rnp.Monitor(sample_period_s=period_s, time_to_alert_s=math.inf, integrity_risk=settings.risk_integrity)
 
 
-def _counters(monitor: rnp.Monitor, counters: rnp.Counters) -> dict[str, object]:
+def _counters(material: Material, settings: Settings, counters: rnp.Counters) -> dict[str, object]:
+    monitor = _monitor(material, settings)
     return {
         "exposure": monitor.exposure,
         "stale_after_s": monitor.stale_after_s,
@@ -186,30 +156,3 @@ def _in_words(events: pl.DataFrame) -> pl.DataFrame:
         "unavailable": "no usable epoch: loss of monitoring",
     }
     return events.with_columns(pl.col("kind").replace_strict(sentence).alias("words"))
-
-
-def _with_states(epochs: pl.DataFrame, risk_accuracy: float) -> tuple[pl.DataFrame, list[str]]:
-    """How likely the total system error is in each level's band, and the tightest level that its accuracy bound supports.
-
-    The probabilities come from the law of the error itself (docs/methods/rnp-state.md), with the boundaries at the RNP values, since the
-    flight technical error of every epoch is known.
-    """
-    if not _has_values(epochs, "fte_m") or "sigma_cross_m" not in epochs.columns:
-        return epochs, []
-    # Where metres are asked for, everything is in the tightest level's band: on the ground the levels of flight say nothing.
-    if not (10.0 * column_of(epochs, "rnp_m") >= STATE_LEVELS_NM[0] * METRES_PER_NM).any():
-        return epochs, []
-    classifier = rnp.StateClassifier(STATE_LEVELS_NM)
-    fte, sigma = column_of(epochs, "fte_m"), column_of(epochs, "sigma_cross_m")
-    known = _usable(epochs) & np.isfinite(fte) & (sigma > 0)
-    probability = np.full((epochs.height, len(classifier.names)), np.nan)
-    probability[known] = classifier.probabilities(fte[known], sigma[known])
-    names = classifier.tightest(probability, risk_accuracy)
-    return epochs.with_columns(
-        pl.Series("state", names, dtype=pl.String),
-        *(pl.Series(f"p_state_{k + 1}", probability[:, k], nan_to_null=True) for k in range(len(classifier.names))),
-    ), classifier.names
-
-
-def _usable(epochs: pl.DataFrame) -> NDArray[np.bool_]:
-    return epochs.get_column("status").is_in(rnp.USABLE).to_numpy()

@@ -1,14 +1,15 @@
-"""RAIM for a flight that is yet to be flown: when a fault could not be detected, or not be excluded, at a place or on a route."""
+"""A flight that is yet to be flown: when a monitor on board could not detect or not exclude a fault, at a place or on a route."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from navbound import __version__, araim, gnss, kpi, raim
+from navbound import __version__, gnss, kpi
+from navbound.algorithms import Place, entry
 from navbound.errors import InputError
 from navbound.maps.sources import NS, Satellites, satellites
 from navbound.read.routes import load_route
@@ -55,6 +56,8 @@ class Asked:
         Lowest elevation. [rad]
     model : str
         Error model of a range, a name of ``raim.ERROR_MODELS``.
+    kind : str
+        Whose levels: a name of the places of :mod:`navbound.algorithms`.
     """
 
     constellation: Sequence[str | Path]
@@ -64,6 +67,7 @@ class Asked:
     systems: str | None = None
     mask_rad: float = math.radians(5.0)
     model: str = "single-frequency"
+    kind: str = "raim"
 
 
 def place(text: str) -> PredictedPlace:
@@ -119,6 +123,7 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
     """
     if not places:
         raise InputError("at", "none", domain="one place or route, or more")
+    called = entry(Place, "kind", asked.kind)
     names = [p.name for p in places]
     if len(set(names)) < len(names):
         raise InputError("at", ", ".join(names), domain="every place once")
@@ -136,9 +141,9 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
     lines: list[PredictedLine] = []
     holes: list[Hole] = []
     for each in places:
-        found = raim.predict(orbits, each.lat_rad, each.lon_rad, each.h_m, sky.time_s, mask_rad=asked.mask_rad, model=asked.model)
+        levels = called(orbits, each.lat_rad, each.lon_rad, each.h_m, sky.time_s, mask_rad=asked.mask_rad, model=asked.model)
         for wanted in limits:
-            line, more = _judge(each.name, wanted, found, when)
+            line, more = _judge(each.name, wanted, levels, when)
             lines.append(line)
             holes += more
     length_s = len(when.offsets_s) * when.step_s
@@ -151,6 +156,7 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
     )
     return Prediction(
         navbound_version=__version__,
+        kind=asked.kind,
         command=command,
         orbits=[str(name) for name in asked.constellation],
         satellites=list(orbits.satellite),
@@ -209,22 +215,23 @@ class _Instants:
         return None if self.start_ns is None else utc_text(self.start_ns + round(since_s * NS))
 
 
-def _judge(name: str, wanted: PredictedLimit, found: raim.Levels, when: _Instants) -> tuple[PredictedLine, list[Hole]]:
+def _judge(name: str, wanted: PredictedLimit, levels: Any, when: _Instants) -> tuple[PredictedLine, list[Hole]]:
     """One place, or one route whose every point counts, against one limit."""
-    n_sv = found.n_sv.min(axis=-1)
-    detection, exclusion = _worst(found.hpl_m), _worst(found.hel_m)
+    n_sv = levels.n_sv.min(axis=-1)
+    detection = _worst(levels.hpl_m)
     seen = _holes(_Kind(name, wanted, "detection"), detection, n_sv, when)
-    left = _holes(_Kind(name, wanted, "exclusion"), exclusion, n_sv, when)
+    exclusion, published = (_worst(getattr(levels, column)) if hasattr(levels, column) else None for column in ("hel_m", "hpl_slope_m"))
+    left = [] if exclusion is None else _holes(_Kind(name, wanted, "exclusion"), exclusion, n_sv, when)
     line = PredictedLine(
         place=name,
         limit=wanted.id,
         p_detection=float((detection <= wanted.hal_m).mean()),
-        p_exclusion=float((exclusion <= wanted.hal_m).mean()),
-        p_detection_published=float((_worst(found.hpl_slope_m) <= wanted.hal_m).mean()),
+        p_exclusion=None if exclusion is None else float((exclusion <= wanted.hal_m).mean()),
+        p_detection_published=None if published is None else float((published <= wanted.hal_m).mean()),
         n_holes_detection=len(seen),
-        n_holes_exclusion=len(left),
+        n_holes_exclusion=None if exclusion is None else len(left),
         longest_detection_s=max((h.end_s - h.start_s for h in seen), default=0.0),
-        longest_exclusion_s=max((h.end_s - h.start_s for h in left), default=0.0),
+        longest_exclusion_s=None if exclusion is None else max((h.end_s - h.start_s for h in left), default=0.0),
     )
     return line, seen + left
 
@@ -280,16 +287,12 @@ def _unhealthy(asked: Asked, sky: Satellites) -> list[str]:
 
 
 def _assumptions(asked: Asked, unhealthy: list[str], start_ns: int | None) -> list[str]:
-    needs, chosen = raim.RAIM, araim.ERROR_MODELS[asked.model]
     dated = (
         "Orbits of no date: times count from their reference instant." if start_ns is None else "Orbits of the files at the times asked."
     )
     return [
         f"{dated} {'Unhealthy by the almanac and not used: ' + ', '.join(unhealthy) + '.' if unhealthy else 'None is called unhealthy.'}",
         f"Satellites are tracked as soon as they are above {math.degrees(asked.mask_rad):g}°, whatever terrain, bank and interference do.",
-        f"Levels: {raim.SOURCES[0]}; {raim.SOURCES[1]}. No aiding by a barometric altimeter.",
-        f"Risks: false alarm {needs.false_alarm:g}, missed detection {needs.missed_detection:g}, without a fault {needs.fault_free:g}: "
-        f"{needs.source}; together {needs.provenance}.",
-        f"Range errors: {chosen.source} ({chosen.provenance}); orbits and clocks: {raim.SUPPORT.source} ({raim.SUPPORT.provenance}).",
-        f"One satellite fails at a time. A hole is exact to the step of {asked.times.step_s:g} s; one that is shorter may be missed.",
+        *entry(Place, "kind", asked.kind).words(asked.model),
+        f"A hole is exact to the step of {asked.times.step_s:g} s; one that is shorter may be missed.",
     ]

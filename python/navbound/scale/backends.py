@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     Function = Callable[[Any], Any]
     Pending = Sequence[tuple[int, Any]]
 
+LOOK_S = 5.0
+"""How often a cluster is looked at whether it has workers. [s]"""
+ALONE_S = 60.0
+"""A cluster that has had no worker for this long is not waited for. [s]"""
 MOST_LOSSES = 3
 """Losses of a worker in a row, without one tile finished in between, after which it is the tile's fault. [1]"""
 
@@ -127,9 +131,17 @@ def _client(distributed: Any, address: str) -> Any:
 
 def _gather(distributed: Any, client: Any, function: Function, pending: Pending) -> Iterator[tuple[int, Any]]:
     futures = {client.submit(function, tile, pure=False): index for index, tile in pending}
+    alone_s = 0.0
     try:
-        for future, result in distributed.as_completed(futures, with_results=True):
-            yield futures.pop(future), result
+        while futures:
+            try:
+                for future, result in distributed.as_completed(list(futures), loop=client.loop, with_results=True, timeout=LOOK_S):
+                    yield futures.pop(future), result
+            except TimeoutError:
+                # A scheduler without workers waits for ever for one to come.
+                alone_s = 0.0 if client.ncores() else alone_s + LOOK_S
+                if alone_s >= ALONE_S:
+                    raise NavboundError(f"the cluster has had no worker for {alone_s:g} s; {len(futures)} tiles are not done") from None
     except distributed.KilledWorker as e:
         raise NavboundError(f"the cluster lost worker after worker over a tile: {e}") from e
     finally:

@@ -60,9 +60,9 @@ class Writer:
             os.replace(self.folder / f"{name}{_PARTIAL}", self.folder / name)
 
     def forget(self) -> None:
-        """Remove what was written and did not appear."""
-        for name in [*self._names, MANIFEST]:
-            (self.folder / f"{name}{_PARTIAL}").unlink(missing_ok=True)
+        """Remove what was written and did not appear, also what a writer of whole files began beside it."""
+        for remains in _remains(self.folder):
+            remains.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -90,7 +90,7 @@ def own(out: Path, ours: Collection[str], whose: str) -> Iterator[Writer]:
         if strangers:
             raise FormatError(out, f"holds files that are not {whose} ({', '.join(strangers[:3])}); choose another --out")
         with _alone(out):
-            for remains in [p for p in out.iterdir() if _place(p.name) != p.name]:
+            for remains in _remains(out):
                 remains.unlink()
             writer = Writer(out)
             try:
@@ -106,6 +106,10 @@ def own(out: Path, ours: Collection[str], whose: str) -> Iterator[Writer]:
         if not type(e).__module__.startswith("polars"):
             raise
         raise FormatError(out, f"cannot be written: {str(e).splitlines()[0]}") from e
+
+
+def _remains(folder: Path) -> list[Path]:
+    return [path for path in folder.iterdir() if _place(path.name) != path.name]
 
 
 def _place(name: str) -> str:

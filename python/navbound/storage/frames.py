@@ -105,14 +105,14 @@ class Frames:
         """The first value of a column."""
         return self._spool.get(self._places[0][name])[name][0]
 
-    def write_parquet(self, path: str | Path, compression: Literal["zstd"]) -> None:
+    def write_parquet(self, path: str | Path, compression: Literal["zstd"], metadata: dict[str, str] | None = None) -> None:
         """Write one file, a row group for each piece."""
 
         def pieces(*_: object) -> Iterator[pl.DataFrame]:
             # All columns and rows are asked for: nothing stands between the pieces and the file.
             yield from self
 
-        register_io_source(pieces, schema=self.schema).sink_parquet(path, compression=compression, engine="streaming")
+        register_io_source(pieces, schema=self.schema).sink_parquet(path, compression=compression, metadata=metadata, engine="streaming")
 
     def numbers(self, name: str) -> NDArray[np.float64]:
         """The numbers of a column that are finite, in order."""

@@ -1,1 +1,1 @@
-"""Arguments of public functions: what kind of object each may be, and arrays that are broadcast for the core and given back in shape."""
+"""Tables and arguments: every column once (columns), how one is declared and looked up; arguments and arrays of public functions."""

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 R = TypeVar("R")
+C = TypeVar("C")
 Check = Callable[[str, Any], object]
 """Refuses a value of a named argument by an `InputError`."""
 
@@ -63,6 +64,18 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
             raise InternalError(f"{function.__module__}.{function.__name__}", e) from e
 
     return checking
+
+
+def checked_fields(cls: type[C]) -> type[C]:
+    """Refuse fields of a wrong kind when an object of a dataclass is made, as the annotations of the fields say.
+
+    Raises
+    ------
+    InputError
+        When an object is made, with the field's name, what it was and what is expected.
+    """
+    cls.__init__ = checked(cls.__init__)  # type: ignore[method-assign]
+    return cls
 
 
 def _check(annotation: object, known: Mapping[str, Any]) -> Check | None:
@@ -108,6 +121,8 @@ def _alternative(node: ast.expr, known: Mapping[str, Any]) -> Check | None:
 def _subscripted(name: str, of: str, inner: ast.expr) -> Check | None:
     if name == "Literal":
         return _one_of(ast.literal_eval(inner) if isinstance(inner, ast.Tuple) else (ast.literal_eval(inner),))
+    if name == "tuple" and of == "(float, ...)":
+        return _row_of_numbers
     if name == "tuple" and set(of) <= set("(float, )"):
         return _tuple_of_numbers(of.count("float"))
     if (name, of) in _OF_NUMBERS:
@@ -139,7 +154,14 @@ def _one_of(allowed: tuple[Any, ...]) -> Check:
     return _kind(f"one of {', '.join(map(str, allowed))}", lambda value: isinstance(value, str | int) and value in allowed)
 
 
-def _number(name: str, value: Any) -> None:
+def number(name: str, value: Any) -> None:
+    """Refuse what is not one real number.
+
+    Raises
+    ------
+    InputError
+        As :func:`navbound.table.arrays.numbers`, or more than one.
+    """
     numbers(name, value, expected="a number")
     if np.ndim(value) != 0:
         raise InputError(name, f"shape {np.shape(value)}", domain="one number")
@@ -184,8 +206,14 @@ def _tuple_of_numbers(count: int) -> Check:
     return check
 
 
+def _row_of_numbers(name: str, value: Any) -> None:
+    numbers(name, value)
+    if np.ndim(value) != 1:
+        raise InputError(name, shown(value), domain="numbers in a row")
+
+
 _NAMED: dict[str, Check] = {
-    "float": _number,
+    "float": number,
     "int": _integer,
     "bool": _kind("True or False", lambda value: isinstance(value, bool | np.bool_)),
     "str": _kind("text", lambda value: isinstance(value, str)),

@@ -11,12 +11,12 @@ import polars as pl
 
 from navbound import _core
 from navbound.errors import InputError
+from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _POSITION = ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m")
-_COVARIANCE = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def rtklib(epochs: pl.DataFrame, path: str | Path, *, track: str | None = None, 
     InputError
         Columns that are missing, several tracks, a quality that is none, a number outside its domain, or not one epoch to write.
     """
-    missing = [c for c in (*_POSITION, *_COVARIANCE) if c not in epochs.columns]
+    missing = [c for c in (*_POSITION, *COVARIANCE) if c not in epochs.columns]
     if missing:
         raise InputError("epochs", f"a table without {', '.join(missing)}", domain="a table with time, position and covariance")
     if quality not in range(1, 8):
@@ -74,7 +74,7 @@ def rtklib(epochs: pl.DataFrame, path: str | Path, *, track: str | None = None, 
         epochs = epochs.filter(pl.col("track") == track)
     elif len(tracks) > 1:
         raise InputError("track", None, domain=f"one of {', '.join(map(str, tracks[:8]))}: a solution file holds one track")
-    there = pl.all_horizontal(pl.col(c).is_not_null() & pl.col(c).is_finite() for c in (*_POSITION, *_COVARIANCE))
+    there = pl.all_horizontal(pl.col(c).is_not_null() & pl.col(c).is_finite() for c in (*_POSITION, *COVARIANCE))
     kept = epochs.filter(there)
     if kept.is_empty():
         raise InputError("epochs", f"{epochs.height} epochs", domain="a table with a position and a covariance in one epoch at least")
@@ -85,7 +85,7 @@ def rtklib(epochs: pl.DataFrame, path: str | Path, *, track: str | None = None, 
         _floats(kept, "est_lat_rad"),
         _floats(kept, "est_lon_rad"),
         _floats(kept, "est_h_m"),
-        np.ascontiguousarray(np.column_stack([_floats(kept, c) for c in _COVARIANCE])),
+        np.ascontiguousarray(np.column_stack([_floats(kept, c) for c in COVARIANCE])),
         np.ascontiguousarray(count.to_numpy(), dtype=np.uint32),
         quality,
     )

@@ -1,5 +1,6 @@
 // The bound columns of the methods that bound one of some errors, as lines.
 
+import type { MethodColumn } from "../columns.gen.ts";
 import type { MethodResult } from "../data/records.ts";
 import type { Scene } from "../data/scene.ts";
 import { level } from "../show/format.ts";
@@ -9,8 +10,8 @@ import type { Line } from "./strip.ts";
 const HUES: Colour[] = ["m1", "m2", "m3", "m4", "m5"];
 const DASHES = [undefined, [7, 3], [2, 3], [9, 3, 2, 3], [4, 4], [12, 3], [1, 2]];
 
-export function columnOf(method: MethodResult, integrity: boolean): string {
-    return `${method.id.replaceAll("-", "_")}${integrity ? "_integrity_m" : "_m"}`;
+export function columnOf(method: MethodResult, integrity: boolean): MethodColumn {
+    return `${method.id.replaceAll("-", "_")}${integrity ? "_integrity_m" : "_m"}` as MethodColumn;
 }
 
 export function about(method: MethodResult): string {

@@ -3,6 +3,7 @@
 import type uPlot from "uplot";
 import { runsOf } from "../data/runs.ts";
 import type { Scene } from "../data/scene.ts";
+import type { NumberName } from "../data/table.ts";
 import { plain } from "../show/format.ts";
 import { colour, type Colour } from "../show/theme.ts";
 import { hatch } from "./decorate.ts";
@@ -23,7 +24,7 @@ const BAND = 0.2;
 
 export function modes(host: HTMLElement, scene: Scene): () => void {
     const words = scene.table.wordColumn("nav_mode")!;
-    const columns: [string, string, Colour][] = [["n_sv", "Satellites in use", "s2"], ["n_gated", "Measurements gated in the second", "caution"]];
+    const columns: [NumberName, string, Colour][] = [["n_sv", "Satellites in use", "s2"], ["n_gated", "Measurements gated in the second", "caution"]];
     const lines: Line[] = columns.flatMap(([key, label, hue]) => {
         const values = scene.table.column(key);
         return values === undefined ? [] : [{ key, label, values, colour: hue, endLabel: key === "n_sv" ? "satellites" : "gated" }];
@@ -35,8 +36,8 @@ export function modes(host: HTMLElement, scene: Scene): () => void {
         note: `What keeps the position: ${present.join(", ")}. Beneath, the mode second by second; a mode is left 5 s after it was last possible and entered after 10 s without a break.`,
         lines, show: (v) => plain(v, 0), words: [
             { key: "nav_mode", label: "Mode", text: (w) => (w === null ? "none" : MODES[w]?.words ?? w) },
-            ...(scene.table.wordColumn("nav_source") === undefined ? [] : [{ key: "nav_source", label: "Position of", text: (w: string | null) => (w === null ? "none" : SOURCES[w] ?? w) }]),
-            ...(scene.table.wordColumn("nav_reasons") === undefined ? [] : [{ key: "nav_reasons", label: "Not ok because of", text: (w: string | null) => (w === null || w === "" ? "nothing" : w.replaceAll(" ", ", ")) }]),
+            ...(scene.table.wordColumn("nav_source") === undefined ? [] : [{ key: "nav_source" as const, label: "Position of", text: (w: string | null) => (w === null ? "none" : SOURCES[w] ?? w) }]),
+            ...(scene.table.wordColumn("nav_reasons") === undefined ? [] : [{ key: "nav_reasons" as const, label: "Not ok because of", text: (w: string | null) => (w === null || w === "" ? "nothing" : w.replaceAll(" ", ", ")) }]),
         ],
     });
 }

@@ -2,7 +2,7 @@
 
 import type uPlot from "uplot";
 import { causeOf, unavailableOf } from "../data/buckets.ts";
-import type { AxisId, LevelResult, Performance } from "../data/performance.ts";
+import type { Axis, LevelResult, Performance } from "../records.gen.ts";
 import type { Scene } from "../data/scene.ts";
 import { el, svg } from "../show/dom.ts";
 import { duration, metres, NONE, share, wholeMetres } from "../show/format.ts";
@@ -11,13 +11,13 @@ import { hatch } from "./decorate.ts";
 import { strip, type Line, type Scale } from "./strip.ts";
 
 const FLOOR_M = 0.01;
-const NAMES: Record<AxisId, { name: string; error: string; level: string; limit: string }> = {
+const NAMES: Record<Axis, { name: string; error: string; level: string; limit: string }> = {
     h: { name: "Horizontal", error: "HPE", level: "HPL", limit: "HAL" },
     v: { name: "Vertical", error: "VPE", level: "VPL", limit: "VAL" },
 };
 
 /** Error, protection level and alert limit of one axis. */
-export function protection(host: HTMLElement, scene: Scene, performance: Performance, chosen: LevelResult, axis: AxisId): () => void {
+export function protection(host: HTMLElement, scene: Scene, performance: Performance, chosen: LevelResult, axis: Axis): () => void {
     const { table } = scene;
     const { name, error, level, limit } = NAMES[axis];
     const [high, low, errors] = [table.column(`${axis}pl_max_m`)!, table.column(`${axis}pl_min_m`)!, table.column(`${axis}pe_max_m`)!];

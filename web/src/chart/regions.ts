@@ -1,6 +1,6 @@
 // The regions of a Stanford diagram: where they lie, and which of them a bin of the histogram is in. Pure functions.
 
-import type { StanfordBins, StanfordCounts } from "../data/performance.ts";
+import type { StanfordBins, StanfordCounts } from "../records.gen.ts";
 
 export type RegionId = "nominal" | "mi" | "hmi" | "unavailable" | "unavailable_mi";
 

@@ -2,6 +2,7 @@
 // what is left between them is the room for flight technical error, the pointer is the deviation.
 
 import type { Scene } from "../data/scene.ts";
+import type { NumberName } from "../data/table.ts";
 import { el, setValue, svg, valueOf } from "../show/dom.ts";
 import { level, limitName, metres, nauticalMiles, rnpName, SHORT_M, signedMetres } from "../show/format.ts";
 import { columnOf } from "./methods.ts";
@@ -11,12 +12,12 @@ interface Gauge {
     vertical: boolean;
     /** The ends are a required limit, not only the ends of the scale. */
     required: boolean;
-    deviation: string;
+    deviation: NumberName;
     limit: (i: number) => number;
     limitWords: (limit_m: number) => string;
     /** Column of the 95 % navigation error bound along this direction. */
-    anp: string | null;
-    rows: [key: string, label: string, show: (v: number) => string][];
+    anp: NumberName | null;
+    rows: [key: NumberName, label: string, show: (v: number) => string][];
 }
 
 const LENGTH = 280;
@@ -42,7 +43,7 @@ export function performance(host: HTMLElement, scene: Scene): () => void {
 function lateralGauge(scene: Scene): Gauge | null {
     const { table, payload } = scene;
     if (!table.has("rnp_m")) return null;
-    const anp = ["anp_cross_m", "anp_circle_m"].find((c) => table.has(c)) ?? null;
+    const anp = (["anp_cross_m", "anp_circle_m"] as const).find((c) => table.has(c)) ?? null;
     const bound = payload.summary.accuracy.find((m) => m.id === payload.summary.verdict.method);
     const rows: Gauge["rows"] = [["rnp_m", "RNP", (v) => (v < SHORT_M ? limitName(v) : `${nauticalMiles(v)} · ${metres(v)}`)]];
     if (anp !== null) rows.push([anp, `ANP 95 %, ${anp === "anp_cross_m" ? "across track" : "circle"}`, metres]);

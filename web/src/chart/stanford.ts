@@ -1,6 +1,6 @@
 // Stanford diagram: protection level against error, log-count pixels, the regions shaded and named with counts and fractions.
 
-import type { AxisId, Level, StanfordBins, StanfordCounts } from "../data/performance.ts";
+import type { Axis, Level, StanfordBins, StanfordCounts } from "../records.gen.ts";
 import type { Store } from "../data/store.ts";
 import { el, freshId, svg, valueOf } from "../show/dom.ts";
 import { count, NONE, plain, share, wholeMetres } from "../show/format.ts";
@@ -21,7 +21,7 @@ const SMALLEST_PX = 1.5;
 const MI_PX = 2.5;
 const HMI_PX = 6;
 
-const AXES: Record<AxisId, { name: string; error: string; level: string; limit: string }> = {
+const AXES: Record<Axis, { name: string; error: string; level: string; limit: string }> = {
     h: { name: "Horizontal", error: "HPE", level: "HPL", limit: "HAL" },
     v: { name: "Vertical", error: "VPE", level: "VPL", limit: "VAL" },
 };

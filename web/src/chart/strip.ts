@@ -3,6 +3,7 @@
 
 import uPlot from "uplot";
 import { axisValues, mod, type Scene } from "../data/scene.ts";
+import type { WordName } from "../data/table.ts";
 import { choice, el, freshId } from "../show/dom.ts";
 import { clock, date, NONE, plain } from "../show/format.ts";
 import { colour, type Colour } from "../show/theme.ts";
@@ -58,7 +59,7 @@ export interface StripOptions {
     /** The lines are drawn by `draw`, not as lines. */
     noPaths?: boolean;
     /** Columns of words shown with the values at the cursor. */
-    words?: { key: string; label: string; text?: (word: string | null) => string }[];
+    words?: { key: WordName; label: string; text?: (word: string | null) => string }[];
     /** Heights of the horizontal grid lines; uPlot's choice without it. */
     ySplits?: (min: number, max: number) => number[];
 }

@@ -1,6 +1,6 @@
 // The series of a performance evaluation as a table, so that the charts of epochs draw it too.
 
-import type { KpiSeries, LevelResult, Performance } from "./performance.ts";
+import type { KpiSeries, LevelResult, Performance } from "../records.gen.ts";
 import type { PackedTrack, Payload } from "./records.ts";
 import { Table } from "./table.ts";
 
@@ -8,6 +8,10 @@ import { Table } from "./table.ts";
 export const BUCKETS = "\u0000performance";
 
 const NUMBERS = ["hpe_max_m", "vpe_max_m", "hpl_min_m", "hpl_max_m", "vpl_min_m", "vpl_max_m"] as const;
+
+/** Columns of the series, which no epoch has. */
+export type SeriesColumn = (typeof NUMBERS)[number] | ReturnType<typeof unavailableOf>;
+export type SeriesWord = ReturnType<typeof causeOf>;
 
 /** Buckets in order; an empty one stands where time passes without a bucket, so that no line crosses it. */
 export function rowsOf(series: KpiSeries): (number | null)[] {
@@ -37,11 +41,11 @@ export function bucketTable(performance: Performance, payload: Payload): Table {
 export const AVAILABLE = "available";
 
 /** Share of the bucket's expected epochs at which the level was not available. */
-export function unavailableOf(level: string): string {
+export function unavailableOf(level: string): `unavailable ${string}` {
     return `unavailable ${level}`;
 }
 
-export function causeOf(level: string): string {
+export function causeOf(level: string): `cause ${string}` {
     return `cause ${level}`;
 }
 

@@ -1,8 +1,14 @@
 // The epoch table of one track.
 
+import type { ColumnName, WordColumn } from "../columns.gen.ts";
+import type { SeriesColumn, SeriesWord } from "./buckets.ts";
 import { inflate, unpack } from "./packing.ts";
 import type { PackedTrack, Payload } from "./records.ts";
 import { expand, runsOf, type Run } from "./runs.ts";
+
+/** What a chart may ask for. A name that the list of columns does not show in a report is an error of type, not an empty chart. */
+export type NumberName = ColumnName | SeriesColumn;
+export type WordName = WordColumn | SeriesWord;
 
 function expanded(head: PackedTrack): Map<string, (string | null)[]> {
     return new Map(Object.entries(head.words).map(([name, packed]) => [name, expand(packed.words, packed.runs)]));
@@ -38,24 +44,24 @@ export class Table {
         return new Table(head, numbers, start + payload.gps_epoch_unix_s - payload.utc_offset_s);
     }
 
-    has(name: string): boolean {
+    has(name: NumberName): boolean {
         return this.numbers.has(name);
     }
 
-    column(name: string): Float64Array | undefined {
+    column(name: NumberName): Float64Array | undefined {
         return this.numbers.get(name);
     }
 
     /** NaN when the column or the value is absent. */
-    value(name: string, i: number): number {
+    value(name: NumberName, i: number): number {
         return this.numbers.get(name)?.[i] ?? NaN;
     }
 
-    word(name: string, i: number): string | null {
+    word(name: WordName, i: number): string | null {
         return this.words.get(name)?.[i] ?? null;
     }
 
-    wordColumn(name: string): (string | null)[] | undefined {
+    wordColumn(name: WordName): (string | null)[] | undefined {
         return this.words.get(name);
     }
 

@@ -113,7 +113,7 @@ function errorSize(scene: Scene): number {
     const sigma = Math.sqrt(scene.table.value("cov_ee_m2", i) + scene.table.value("cov_nn_m2", i));
     if (!Number.isFinite(sigma)) return 50;
     // Both circles fit the view: their diameter is less than twice the room.
-    const circles = ["hal_m", "hpl_m"].map((name) => 0.6 * scene.table.value(name, i)).filter(Number.isFinite);
+    const circles = (["hal_m", "hpl_m"] as const).map((name) => 0.6 * scene.table.value(name, i)).filter(Number.isFinite);
     return Math.max(2.5 * sigma, 0.5, ...circles);
 }
 

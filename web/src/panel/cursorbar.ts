@@ -1,6 +1,7 @@
 // The cursor as text, always in view: where it is, what the values are, and a slider that the keyboard moves.
 
 import type { Scene } from "../data/scene.ts";
+import type { NumberName } from "../data/table.ts";
 import { button, choice, el, setValue, valueOf } from "../show/dom.ts";
 import { clock, metres, nauticalMiles, rnpName, signedMetres } from "../show/format.ts";
 import { columnOf } from "../chart/methods.ts";
@@ -63,7 +64,7 @@ interface Field {
 
 function fieldsOf(scene: Scene): Field[] {
     const { table, payload } = scene;
-    const column = (key: string, label: string, show: (v: number) => string): Field[] => (table.has(key) ? [{ key, label, of: (i) => table.value(key, i), show }] : []);
+    const column = (key: NumberName, label: string, show: (v: number) => string): Field[] => (table.has(key) ? [{ key, label, of: (i) => table.value(key, i), show }] : []);
     const judge = payload.summary.accuracy.find((m) => m.id === payload.summary.verdict.method);
     const bound = judge === undefined ? null : columnOf(judge, false);
     return [

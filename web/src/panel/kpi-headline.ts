@@ -1,6 +1,6 @@
 // Integrity in one sentence, before everything else that a performance record says.
 
-import type { Performance } from "../data/performance.ts";
+import type { Performance } from "../records.gen.ts";
 import { el } from "../show/dom.ts";
 import { count } from "../show/format.ts";
 

@@ -1,6 +1,6 @@
 // The verdict of a performance run: the levels that were asked for, and their integrity, availability, continuity and accuracy.
 
-import type { LevelResult, Performance } from "../data/performance.ts";
+import type { LevelResult, Performance } from "../records.gen.ts";
 import type { Payload } from "../data/records.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
 import { count, duration, metres, NONE, plain, share } from "../show/format.ts";

@@ -1,6 +1,6 @@
 // The four indicators of every level: what was asked, what was found. One column a level.
 
-import type { AxisResult, Level, LevelResult, Performance, Spread } from "../data/performance.ts";
+import type { AxisResult, Level, LevelResult, Performance, Spread } from "../records.gen.ts";
 import { utcOf } from "../data/events.ts";
 import type { Payload } from "../data/records.ts";
 import { el, valueOf } from "../show/dom.ts";

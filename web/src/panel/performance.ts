@@ -6,7 +6,7 @@ import { bucketTable, payloadOf } from "../data/buckets.ts";
 import type { Cursor } from "../data/link.ts";
 import { utcOf } from "../data/events.ts";
 import type { Ground } from "../data/others.ts";
-import type { DayResult, KpiEvent, LevelResult, Performance, StanfordBins } from "../data/performance.ts";
+import type { DayResult, KpiEvent, LevelResult, Performance, StanfordBins } from "../records.gen.ts";
 import type { Payload } from "../data/records.ts";
 import { scene, type AxisName, type Scene, type Window } from "../data/scene.ts";
 import { Store } from "../data/store.ts";

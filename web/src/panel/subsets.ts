@@ -1,7 +1,7 @@
 // The gravest satellite subsets of the Stanford-ESA diagram.
 
 import { utcOf } from "../data/events.ts";
-import type { Performance, SubsetFound } from "../data/performance.ts";
+import type { Performance, SubsetFound } from "../records.gen.ts";
 import type { Payload } from "../data/records.ts";
 import { el } from "../show/dom.ts";
 import { clock, count, date, metres, plain } from "../show/format.ts";

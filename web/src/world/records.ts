@@ -1,58 +1,9 @@
-// The records of a map as the page receives them; names and meanings are those of python/navbound/records/maps.py.
+// What the page of a map receives: its records as Python declares them, and its columns.
 
 import { unpack, type PackedColumn } from "../data/packing.ts";
+import type { MapRecord, MapSummary } from "../records.gen.ts";
 
-export interface MapColumn {
-    name: string;
-    title: string;
-    unit: "1" | "m";
-    typical: Record<string, number | null>;
-}
-
-export interface MapLimit {
-    column: string;
-    limit: number;
-    source: string;
-    provenance: string;
-}
-
-export interface MapGrid {
-    step_rad: number;
-    south_rad: number;
-    north_rad: number;
-    west_rad: number;
-    east_rad: number;
-    n_lat: number;
-    n_lon: number;
-}
-
-export interface MapSummary {
-    kind: string;
-    title: string;
-    words: string;
-    source: string;
-    grid: MapGrid;
-    n_epochs: number;
-    percentiles: number[];
-    columns: MapColumn[];
-    limits: MapLimit[];
-    coverage: { available: number; share: number }[];
-    available_mean: number;
-    outcomes: { name: string; title: string; share: number }[];
-    worst: { lat_rad: number; lon_rad: number; available: number; share: number };
-    assumptions: string[];
-}
-
-export interface MapRecord {
-    navbound_version: string;
-    command: string;
-    created_utc: string;
-    options: Record<string, string>;
-    inputs: Record<string, string>;
-    backend: string;
-    n_tiles: number;
-    platform: string;
-}
+export type { MapGrid, MapSummary } from "../records.gen.ts";
 
 export interface World {
     schema_id: "navbound-world-1";

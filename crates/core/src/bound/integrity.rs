@@ -30,8 +30,13 @@ impl IntegrityComparison {
         Self { level_expected: true }
     }
 
-    /// Whether every epoch should have a level: declared, or one had it.
-    pub const fn expects_levels(&self) -> bool {
+    /// The source states levels, so every epoch from now on should have one: also one whose level is not a number.
+    pub const fn expect_levels(&mut self) {
+        self.level_expected = true;
+    }
+
+    /// Whether an epoch should have a level.
+    pub const fn level_expected(&self) -> bool {
         self.level_expected
     }
 
@@ -104,6 +109,13 @@ mod tests {
         assert_eq!(at(UNKNOWN), 50.0, "no level so far");
         assert_eq!(at(Metres::new(900.0)), 910.0);
         assert!(at(UNKNOWN).is_nan());
+    }
+
+    #[test]
+    fn a_source_that_states_levels_owes_one_from_the_first_epoch_on() {
+        let mut comparison = IntegrityComparison::default();
+        comparison.expect_levels();
+        assert!(comparison.bound(alert_bound("tse-exact", 50.0), Metres::new(10.0), UNKNOWN, true).length().m().is_nan());
     }
 
     #[test]

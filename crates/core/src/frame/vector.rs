@@ -80,7 +80,8 @@ impl<F: Frame> Covariance<F> {
     pub fn new(matrix: Matrix3<f64>) -> Result<Self, OutOfDomain> {
         let scale = matrix.amax();
         let skew = (matrix - matrix.transpose()).amax();
-        if !(scale.is_finite() && skew <= 1e-9 * scale) {
+        // Element by element: the largest of them need not notice a NaN.
+        if !(matrix.iter().all(|v| v.is_finite()) && skew <= 1e-9 * scale) {
             return Err(OutOfDomain { argument: "covariance", value: skew, unit: "m²", domain: "symmetric and finite" });
         }
         let least = matrix.diagonal().min();

@@ -4,7 +4,7 @@ use super::atmosphere::klobuchar_towards;
 use super::ntcm::{self, Ntcm, ionisation_level};
 use crate::frame::Geodetic;
 use crate::quantity::GpsTime;
-use crate::signal::{Klobuchar, SPEED_OF_LIGHT_MPS};
+use crate::signal::Klobuchar;
 use crate::special::float::asin;
 use core::f64::consts::PI;
 use nalgebra::Vector3;
@@ -70,19 +70,10 @@ enum Slant {
 }
 
 impl Ionosphere {
-    /// From the GPS message; `None` where its amplitude is zero everywhere, which is no model.
-    ///
-    /// ```text
-    /// activity = c max over |phi_m| <= 0.3 semicircles of sum alpha_n phi_m^n       IS-GPS-200 20.3.3.5.2.5; derived
-    /// ```
+    /// From the GPS message; `None` where no satellite can have sent it ([`Klobuchar::implausible`]), which is no model.
     pub fn broadcast(message: Klobuchar) -> Option<Self> {
-        let amplitude = |step: i32| {
-            let phi = 0.01 * f64::from(step);
-            let [a, b, c, d] = message.alpha;
-            a + phi * (b + phi * (c + phi * d))
-        };
-        let activity_m = SPEED_OF_LIGHT_MPS * (-30..=30).map(amplitude).fold(0.0, f64::max);
-        (activity_m > 0.0 && activity_m.is_finite()).then_some(Self::Broadcast { message, activity_m })
+        let activity_m = message.activity_m();
+        message.implausible().is_none().then_some(Self::Broadcast { message, activity_m })
     }
 
     /// From Galileo's coefficients \[sfu, sfu/deg, sfu/deg²\]; `None` where they are all zero.

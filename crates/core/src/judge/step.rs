@@ -1,7 +1,7 @@
 //! One epoch, one step: errors, bounds, risks, state and alert of one aircraft. A table is a loop over it, a stream is a loop over it.
 //!
 //! ```text
-//! evaluate   what an epoch says by itself: errors along the axes of the path, bounds at both risks, risk beyond RNP, state
+//! evaluate   what an epoch says by itself: errors along the axes of the path, bounds at both risks, status, risk beyond RNP, state
 //! follow     what the epochs before it make of that: the integrity comparison and the monitor
 //! step       both
 //! ```
@@ -10,11 +10,11 @@
 
 use super::{Errors, Known};
 use crate::bound::tse::{Deviation, exceedance_risk};
-use crate::bound::{AlertBound, Alerting, IntegrityComparison};
+use crate::bound::{AlertBound, Alerting, Bound, IntegrityComparison, Method};
 use crate::frame::{Covariance, Displacement, Enu};
 use crate::monitor::rnp;
 use crate::monitor::state::{PerState, StateTable};
-use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Risk, Status, Unavailable};
+use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Reason, Risk, Status, Unavailable};
 use crate::solution::Epoch;
 use crate::special::float::sin_cos;
 
@@ -80,8 +80,9 @@ impl Sample {
         }
     }
 
-    fn known(&self) -> Known {
-        Known {
+    /// Its errors along the axes of the path.
+    pub fn errors(&self) -> Errors {
+        Errors::of(&Known {
             nse_en_m: self.nse_en_m,
             nse_u_m: self.nse_u_m,
             fte_m: self.fte_m,
@@ -89,7 +90,7 @@ impl Sample {
             course: self.course,
             path_angle: self.path_angle,
             covariance: self.covariance,
-        }
+        })
     }
 }
 
@@ -102,6 +103,8 @@ pub struct Evaluated {
     pub accuracy: Option<Result<AlertBound, Unavailable>>,
     /// Bound at the integrity risk, in the same way.
     pub integrity: Option<Result<AlertBound, Unavailable>>,
+    /// Whether the epoch can be judged: its own status, or that of the reason why there is no bound at the accuracy risk.
+    pub status: Status,
     /// Risk that the total system error is beyond RNP, and beyond twice RNP \[1\].
     pub exceedance: Option<[f64; 2]>,
     /// Probability of each state \[1\].
@@ -132,22 +135,47 @@ pub struct Judge {
 impl Settings {
     /// What an epoch says by itself.
     pub fn evaluate(&self, sample: &Sample) -> Evaluated {
-        let errors = Errors::of(&sample.known());
-        let usable = sample.status.usable();
+        let errors = sample.errors();
         let epoch = sample.epoch();
-        let bound = |risk| usable.then(|| self.method.bound(&epoch, risk));
-        let deviation = sample.fte_m.zip(errors.sigma_cross_m).filter(|_| usable);
+        let bound = |risk| sample.status.usable().then(|| self.method.bound(&epoch, risk));
+        let accuracy = bound(self.accuracy);
+        let status = unjudged(accuracy.as_ref()).map_or(sample.status, |why| why.reason().status());
+        let deviation = sample.fte_m.zip(errors.sigma_cross_m).filter(|_| status.usable());
         let deviation = deviation.and_then(|(fte, sigma)| Deviation::new(Metres::new(fte), Metres::new(sigma)).ok());
         let probability = deviation.and_then(|d| self.states.as_ref()?.of_error(d.fte(), d.sigma()).ok());
         Evaluated {
             errors,
-            accuracy: bound(self.accuracy),
+            accuracy,
             integrity: bound(self.integrity),
+            status,
             exceedance: deviation.zip(sample.rnp).and_then(|(d, rnp)| beyond(d, rnp)),
             state_probability: probability,
             tightest_level: probability.zip(self.states).map(|(p, states)| states.tightest(&p, self.accuracy)),
         }
     }
+
+    /// Bounds of any other method at the accuracy risk and at the integrity risk, for comparison only; `None` where the status does not
+    /// permit judging.
+    pub fn beside(&self, method: &'static Method, sample: &Sample) -> Option<[Result<Bound, Unavailable>; 2]> {
+        let epoch = sample.epoch();
+        sample.status.usable().then(|| [self.accuracy, self.integrity].map(|risk| Bound::of(method, &epoch, risk)))
+    }
+}
+
+impl Evaluated {
+    /// Why the epoch has no bound at the accuracy risk although its source permits judging.
+    pub fn unjudged(&self) -> Option<&Unavailable> {
+        unjudged(self.accuracy.as_ref())
+    }
+
+    /// The same as an entry of the list of reasons.
+    pub fn reason(&self) -> Option<Reason> {
+        self.unjudged().map(Unavailable::reason)
+    }
+}
+
+fn unjudged(accuracy: Option<&Result<AlertBound, Unavailable>>) -> Option<&Unavailable> {
+    accuracy.and_then(|bound| bound.as_ref().err())
 }
 
 /// Risk beyond RNP and beyond twice RNP; `None` where RNP is no length.
@@ -187,14 +215,17 @@ impl Judge {
         let or_unknown = |bound: Option<Result<AlertBound, Unavailable>>| bound.and_then(Result::ok).unwrap_or_else(unknown);
         let (accuracy, integrity) = (or_unknown(evaluated.accuracy), or_unknown(evaluated.integrity));
         let fte = Metres::new(sample.fte_m.unwrap_or(f64::NAN));
+        if sample.hpl.is_some() {
+            self.comparison.expect_levels();
+        }
         let level = sample.hpl.unwrap_or(Metres::new(f64::NAN));
-        let integrity = self.comparison.bound(integrity, fte, level, sample.status == Status::Ok);
+        let integrity = self.comparison.bound(integrity, fte, level, evaluated.status == Status::Ok);
         let step = self.monitor.step(&rnp::Observation {
             time: sample.time,
             accuracy,
             integrity,
             rnp: sample.rnp.unwrap_or(Metres::new(f64::NAN)),
-            usable: sample.status.usable(),
+            usable: evaluated.status.usable(),
         });
         Judged { evaluated, integrity_compared: integrity.length(), step }
     }

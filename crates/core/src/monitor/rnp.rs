@@ -35,6 +35,9 @@ pub enum Alert {
 }
 
 impl Alert {
+    /// All, in the order of their codes.
+    pub const ALL: [Self; 4] = [Self::Normal, Self::Caution, Self::Warning, Self::Unavailable];
+
     /// The word of the epoch table.
     pub const fn word(self) -> &'static str {
         match self {

@@ -40,10 +40,12 @@ pub fn nse_boundary(tse: Metres, fte: Metres) -> Result<Metres, OutOfDomain> {
 /// Boundaries, means and standard deviations of the states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StateTable {
-    n_levels: usize,
+    n_levels: u8,
     boundary: [f64; MAX_LEVELS],
     mean: PerState,
     sigma: PerState,
+    /// Logarithm of each density at its mean.
+    ln_peak: PerState,
 }
 
 impl StateTable {
@@ -82,7 +84,9 @@ impl StateTable {
         if !(1..=MAX_LEVELS).contains(&n) {
             return Err(OutOfDomain { argument: "levels", value: n as f64, unit: "1", domain: "1 to 12 levels" });
         }
-        let mut table = Self { n_levels: n, boundary: [0.0; MAX_LEVELS], mean: [0.0; MAX_STATES], sigma: [0.0; MAX_STATES] };
+        let per_state = [0.0; MAX_STATES];
+        // At most twelve levels, so their number fits.
+        let mut table = Self { n_levels: n as u8, boundary: [0.0; MAX_LEVELS], mean: per_state, sigma: per_state, ln_peak: per_state };
         let mut below = 0.0;
         for k in 0..n {
             let b = boundaries[k].m();
@@ -95,12 +99,15 @@ impl StateTable {
             below = b;
         }
         table.sigma[n] = table.sigma[n - 1];
+        for k in 0..=n {
+            table.ln_peak[k] = ln(FRAC_1_SQRT_2PI / table.sigma[k]);
+        }
         table.place_means()?;
         Ok(table)
     }
 
     fn place_means(&mut self) -> Result<(), OutOfDomain> {
-        let n = self.n_levels;
+        let n = self.n_levels();
         let mut w = 3.0;
         for i in 0..n - 1 {
             let radicand = w * w - 2.0 * ln(self.sigma[i + 1] / self.sigma[i]);
@@ -118,23 +125,23 @@ impl StateTable {
 
     /// How many levels.
     pub fn n_levels(&self) -> usize {
-        self.n_levels
+        usize::from(self.n_levels)
     }
     /// How many states: one more.
     pub fn n_states(&self) -> usize {
-        self.n_levels + 1
+        self.n_levels() + 1
     }
     /// The boundaries of navigation error \[m\].
     pub fn boundary_m(&self) -> &[f64] {
-        &self.boundary[..self.n_levels]
+        &self.boundary[..self.n_levels()]
     }
     /// The means of the states' densities \[m\].
     pub fn mean_m(&self) -> &[f64] {
-        &self.mean[..=self.n_levels]
+        &self.mean[..=self.n_levels()]
     }
     /// The standard deviations of the states' densities \[m\].
     pub fn sigma_m(&self) -> &[f64] {
-        &self.sigma[..=self.n_levels]
+        &self.sigma[..=self.n_levels()]
     }
     /// Density of the state at its boundary, where its neighbour's is the same \[1/m\].
     pub fn density_at_boundary(&self, k: usize) -> f64 {
@@ -145,13 +152,13 @@ impl StateTable {
     pub fn threshold_class(&self, nse: Metres) -> usize {
         let x = nse.m();
         let within = |b: &f64| x.abs() <= *b;
-        self.boundary_m().iter().position(within).unwrap_or(self.n_levels)
+        self.boundary_m().iter().position(within).unwrap_or(self.n_levels())
     }
 
     /// ln N(x; mu_k, sigma_k).
     pub(super) fn ln_likelihood(&self, k: usize, x: f64) -> f64 {
         let z = (x - self.mean[k]) / self.sigma[k];
-        -0.5 * z * z + ln(FRAC_1_SQRT_2PI / self.sigma[k])
+        -0.5 * z * z + self.ln_peak[k]
     }
 
     /// ln q_k(x) as published: the unguarded densities. An exhibit: a narrow last state loses far outside (docs/methods/rnp-state.md).
@@ -264,7 +271,7 @@ impl StateTable {
     pub fn tightest(&self, probability: &PerState, risk: Risk) -> u8 {
         let mut within = 0.0;
         let mut place = 0;
-        for share in &probability[..self.n_levels] {
+        for share in &probability[..self.n_levels()] {
             within += share;
             if 1.0 - within <= risk.q() {
                 return place;
@@ -300,18 +307,18 @@ impl StateTable {
     fn slices(&self, inside: impl Fn(f64) -> f64, outside: impl Fn(f64) -> f64) -> PerState {
         let mut share = [0.0; MAX_STATES];
         let (mut inside_below, mut outside_below) = (0.0, 1.0);
-        for k in 0..self.n_levels {
+        for k in 0..self.n_levels() {
             let (i, o) = (inside(self.boundary[k]), outside(self.boundary[k]));
             share[k] = if i < 0.5 { i - inside_below } else { outside_below - o };
             (inside_below, outside_below) = (i, o);
         }
-        share[self.n_levels] = outside_below;
+        share[self.n_levels()] = outside_below;
         share
     }
 
     fn ln_guarded(&self, k: usize, x: f64) -> f64 {
         // NaN must stay NaN: `min` would turn it into the mean.
-        let outwards = k == self.n_levels && x > self.mean[k];
+        let outwards = k == self.n_levels() && x > self.mean[k];
         self.ln_likelihood(k, if outwards { self.mean[k] } else { x })
     }
 

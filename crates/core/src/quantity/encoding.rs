@@ -78,7 +78,8 @@ impl<const N: usize> Encoder<N> {
         encoder
     }
 
-    fn raw(&mut self, bytes: &[u8]) {
+    /// Bytes as they are.
+    pub fn raw(&mut self, bytes: &[u8]) {
         let end = self.at.saturating_add(bytes.len());
         if let Some(slot) = self.bytes.get_mut(self.at..end) {
             slot.copy_from_slice(bytes);
@@ -155,7 +156,11 @@ impl<'a> Decoder<'a> {
         Ok(Self { left })
     }
 
-    fn raw<const M: usize>(&mut self) -> Result<[u8; M], BadBytes> {
+    /// Bytes as they are.
+    ///
+    /// # Errors
+    /// [`BadBytes`] at the end of the bytes.
+    pub fn raw<const M: usize>(&mut self) -> Result<[u8; M], BadBytes> {
         let (first, left) = self.left.split_first_chunk::<M>().ok_or(BadBytes::Length)?;
         self.left = left;
         Ok(*first)

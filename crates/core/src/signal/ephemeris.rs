@@ -3,7 +3,7 @@
 //! Source: IS-GPS-200 20.3.3.3 and 20.3.3.4, Galileo OS SIS ICD 5.1, BDS-SIS-ICD-B1I 5.2 and 5.3, RTCA DO-229 appendix A.4.4.11 (GEO);
 //! provenance: standard. Field names follow those documents in words.
 
-use super::{Carrier, Constellation, SatelliteId};
+use super::{Carrier, Constellation, SPEED_OF_LIGHT_MPS, SatelliteId};
 use crate::quantity::GpsTime;
 
 /// The navigation message a record came from; clocks and group delays of two messages do not mix.
@@ -183,4 +183,49 @@ pub struct Klobuchar {
     pub alpha: [f64; 4],
     /// Period, likewise.
     pub beta: [f64; 4],
+}
+
+/// Largest size of each coefficient that eight bits with its scale hold (IS-GPS-200 table 20-X). Standard.
+const MOST_ALPHA: [f64; 4] = [128.0 / 1_073_741_824.0, 128.0 / 134_217_728.0, 128.0 / 16_777_216.0, 128.0 / 16_777_216.0];
+/// The same of the period.
+const MOST_BETA: [f64; 4] = [128.0 * 2048.0, 128.0 * 16_384.0, 128.0 * 65_536.0, 128.0 * 65_536.0];
+/// Largest daily delay overhead that a message of any day states somewhere on the Earth \[m\]: below is a third of the least one seen (1.6 m
+/// at 47 sfu), above is what the climatology reaches at 500 sfu (0.04 m/sfu), twice the strongest sun of a century of monthly means. Ours.
+const ACTIVITY_M: (f64, f64) = (0.5, 20.0);
+
+impl Klobuchar {
+    /// Largest daily delay overhead that the message states anywhere \[m\]; NaN where a coefficient is.
+    ///
+    /// ```text
+    /// activity = c max over |phi_m| <= 0.3 semicircles of sum alpha_n phi_m^n       IS-GPS-200 20.3.3.5.2.5; derived
+    /// ```
+    pub fn activity_m(&self) -> f64 {
+        let amplitude = |step: i32| {
+            let phi = 0.01 * f64::from(step);
+            let [a, b, c, d] = self.alpha;
+            a + phi * (b + phi * (c + phi * d))
+        };
+        if self.alpha.iter().chain(&self.beta).any(|value| value.is_nan()) {
+            return f64::NAN;
+        }
+        SPEED_OF_LIGHT_MPS * (-30..=30).map(amplitude).fold(0.0, f64::max)
+    }
+
+    /// Whether every coefficient is zero: a field without content.
+    pub fn is_empty(&self) -> bool {
+        self.alpha == [0.0; 4]
+    }
+
+    /// Why no satellite sends these coefficients on any day; `None` where one may.
+    pub fn implausible(&self) -> Option<&'static str> {
+        let within = |values: &[f64; 4], most: &[f64; 4]| values.iter().zip(most).all(|(value, most)| value.abs() <= *most);
+        if !within(&self.alpha, &MOST_ALPHA) || !within(&self.beta, &MOST_BETA) {
+            return Some("a coefficient is larger than its eight bits can hold; the message counts as missing");
+        }
+        let activity_m = self.activity_m();
+        if activity_m >= ACTIVITY_M.0 && activity_m <= ACTIVITY_M.1 {
+            return None;
+        }
+        Some("its largest delay overhead is outside [0.5, 20] m, which no sun makes; the message counts as missing")
+    }
 }

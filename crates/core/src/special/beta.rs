@@ -1,6 +1,7 @@
 //! The beta law, and with it exact limits for a share: Clopper and Pearson.
 
 use super::float::{exp, ln, ln_1p, ln_gamma};
+use super::root::bisected;
 
 /// Terms of the continued fraction; it needs a few times the square root of the larger parameter.
 const MOST_TERMS: usize = 100_000;
@@ -26,14 +27,7 @@ pub fn beta_quantile(a: f64, b: f64, p: f64) -> f64 {
     if !(p > 0.0 && p < 1.0 && a > 0.0 && b > 0.0) {
         return f64::NAN;
     }
-    let (mut low, mut high) = (0.0, 1.0);
-    loop {
-        let middle = 0.5 * (low + high);
-        if !(low < middle && middle < high) {
-            return high;
-        }
-        if beta_head(a, b, middle) < p { low = middle } else { high = middle }
-    }
+    bisected(0.0, 1.0, |x| beta_head(a, b, x) < p)
 }
 
 /// Exact two-sided limits of a probability after `hits` in `trials`, each side missed with at most `risk / 2`.

@@ -1,6 +1,6 @@
 //! Two normal errors at once: the risk that both exceed, or that either does.
 
-use super::float::{acos, cos, exp, sin};
+use super::float::{acos, cos, exp, sin, within};
 use super::folded::two_tails;
 use super::normal::tail;
 use super::quadrature::integrate;
@@ -44,7 +44,7 @@ pub(crate) fn either_exceeds(limit_x: f64, mean_x: f64, limit_y: f64, mean_y: f6
     let (above, below) = (limit_y - mean_y, limit_y + mean_y);
     let both =
         both_exceed(right, above, rho) + both_exceed(left, below, rho) + both_exceed(right, below, -rho) + both_exceed(left, above, -rho);
-    (x + y - both).clamp(x.max(y), (x + y).min(1.0))
+    within(x + y - both, x.max(y), (x + y).min(1.0))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The folded normal law: |X| for X normal with a known mean. Both of its tails matter.
 
-use super::float::{exp, ln, ln_1p};
+use super::float::{exp, ln, ln_1p, within};
 use super::normal::{density, ln_tail, one_sided_factor, tail, two_sided_factor};
 use crate::quantity::Risk;
 use core::f64::consts::LN_2;
@@ -61,9 +61,9 @@ impl FoldedQuantile {
         let low = self.one_sided.max(-ratio);
         let missing = tail(self.two_sided + 2.0 * ratio) / self.risk;
         let start = self.one_sided + (self.two_sided - self.one_sided) * (-ln_1p(-missing) / LN_2);
-        let mut u = start.clamp(low, self.two_sided);
+        let mut u = within(start, low, self.two_sided);
         for _ in 0..if self.risk > 0.5 { STEPS_ABOVE_HALF } else { STEPS } {
-            u = self.halley(u, ratio).clamp(low, self.two_sided);
+            u = within(self.halley(u, ratio), low, self.two_sided);
         }
         u
     }

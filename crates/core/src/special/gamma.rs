@@ -1,6 +1,7 @@
 //! The chi-square law of any, also fractional, degrees of freedom: both tails and the quantile.
 
 use super::float::{exp, ln, ln_1p, ln_gamma, sqrt};
+use super::root::{bisected, scaled_while};
 use core::f64::consts::PI;
 
 /// Terms of the series and of the continued fraction; both need a few times the square root of the degrees of freedom.
@@ -24,18 +25,8 @@ pub fn chi_square_factor(dof: f64, q: f64) -> f64 {
     if !(q > 0.0 && q < 1.0 && dof > 0.0 && dof.is_finite()) {
         return f64::NAN;
     }
-    let mut high = dof + 1.0;
-    while chi_square_tail(dof, high) > q {
-        high *= 2.0;
-    }
-    let mut low = 0.0;
-    loop {
-        let middle = 0.5 * (low + high);
-        if !(low < middle && middle < high) {
-            return high;
-        }
-        if chi_square_tail(dof, middle) > q { low = middle } else { high = middle }
-    }
+    let is_below = |x: f64| chi_square_tail(dof, x) > q;
+    bisected(0.0, scaled_while(dof + 1.0, 2.0, is_below), is_below)
 }
 
 /// Regularised incomplete gamma functions P(a, x) and Q(a, x).

@@ -2,7 +2,7 @@
 
 use super::float::{exp, ln, ln_gamma, sqrt};
 use super::gamma::chi_square_head;
-use super::root::falling_root;
+use super::root::{falling_root, scaled_while};
 
 /// Beyond this there are more terms than a table of thresholds is worth.
 const MOST_NONCENTRALITY: f64 = 1e6;
@@ -62,10 +62,7 @@ pub fn noncentrality(dof: f64, x: f64, q: f64) -> f64 {
     if central <= q {
         return 0.0;
     }
-    let mut high = x + dof;
-    while noncentral_head(dof, high, x) > q {
-        high *= 2.0;
-    }
+    let high = scaled_while(x + dof, 2.0, |lambda| noncentral_head(dof, lambda, x) > q);
     // d head / d noncentrality = (head of two more degrees - head) / 2.
     let fall = |lambda: f64| {
         let head = noncentral_head(dof, lambda, x);

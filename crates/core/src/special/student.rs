@@ -2,7 +2,7 @@
 
 use super::beta::fraction as beta_fraction;
 use super::float::{exp, ln, ln_1p, sqrt};
-use super::root::falling_root;
+use super::root::{falling_root, scaled_while};
 use core::f64::consts::PI;
 
 /// Degrees of freedom from which the expansion of the gamma ratio has all digits.
@@ -69,14 +69,8 @@ impl StudentT {
     pub(crate) fn excess(&self, ratio: f64, q: f64) -> f64 {
         let risk = |bound: f64| self.tail(bound - ratio) + self.tail(bound + ratio);
         // The step is kept by itself: beside a ratio above 2^53 it is lost, and a bound that stays where it is has no end.
-        let (mut low, mut step) = (1.0 + ratio, 1.0);
-        while risk(ratio + step) > q {
-            step *= 2.0;
-        }
-        let high = ratio + step;
-        while risk(low) <= q {
-            low *= 0.5;
-        }
+        let high = ratio + scaled_while(1.0, 2.0, |step| risk(ratio + step) > q);
+        let low = scaled_while(1.0 + ratio, 0.5, |bound| risk(bound) <= q);
         let f = |y: f64| {
             let bound = exp(y);
             let now = risk(bound);

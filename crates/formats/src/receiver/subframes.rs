@@ -6,7 +6,7 @@ use crate::rinex::{Dated, Navigation};
 use crate::sbas::Received;
 use navbound_core::quantity::GpsTime;
 use navbound_core::signal::sbas::{BLOCK_BYTES, Block};
-use navbound_core::signal::{Ephemeris, SatelliteId};
+use navbound_core::signal::{Ephemeris, Klobuchar, SatelliteId};
 use std::collections::BTreeMap;
 
 /// Why a subframe is not used.
@@ -29,15 +29,22 @@ impl Subframes {
         }
         self.gps_without_parity(satellite, &words.map(|w| w >> 6), near)
     }
+    /// One message each time it changes; those that no satellite sends are counted alone.
+    fn ionosphere(&mut self, message: Klobuchar, end: GpsTime) {
+        if message.implausible().is_some() && !message.is_empty() {
+            return self.navigation.skip("GPS ionosphere messages that no sun makes".to_owned());
+        }
+        self.navigation.klobuchar_gps.get_or_insert(message);
+        let messages = &mut self.navigation.ionosphere_gps;
+        if messages.last().is_none_or(|d| d.message != message) {
+            messages.push(Dated { time: Some(end), message });
+        }
+    }
     /// Ten words of 24 bits.
     pub(super) fn gps_without_parity(&mut self, satellite: SatelliteId, words: &[u32; 10], near: GpsTime) -> Result<(), Reason> {
         let subframe = lnav::Subframe::new(words, near)?;
         if let Some((klobuchar, leap_seconds)) = subframe.ionosphere() {
-            self.navigation.klobuchar_gps.get_or_insert(klobuchar);
-            let messages = &mut self.navigation.ionosphere_gps;
-            if messages.last().is_none_or(|d| d.message != klobuchar) {
-                messages.push(Dated { time: Some(subframe.end), message: klobuchar });
-            }
+            self.ionosphere(klobuchar, subframe.end);
             self.navigation.leap_seconds.get_or_insert(leap_seconds);
         }
         let found = self.gps.entry(satellite).or_default().take(satellite, &subframe);

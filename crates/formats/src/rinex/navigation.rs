@@ -98,7 +98,7 @@ impl Navigation {
         self.geostationary.dedup();
     }
 
-    fn skip(&mut self, kind: String) {
+    pub(crate) fn skip(&mut self, kind: String) {
         *self.skipped.entry(kind).or_default() += 1;
     }
 }
@@ -148,9 +148,11 @@ fn header(lines: &mut Lines<'_>, navigation: &mut Navigation) -> Result<(), Unre
         match label(line) {
             b"END OF HEADER" => {
                 let whole = |name| alpha.get(name).zip(beta.get(name)).map(|(a, b)| Klobuchar { alpha: *a, beta: *b });
-                navigation.klobuchar_gps = whole(&b"GPS"[..]);
-                navigation.klobuchar_beidou = whole(&b"BDS"[..]);
-                navigation.ionosphere_gps.extend(navigation.klobuchar_gps.map(|message| Dated { time: None, message }));
+                for (system, name) in [(Constellation::Gps, &b"GPS"[..]), (Constellation::BeiDou, &b"BDS"[..])] {
+                    if let Some(message) = whole(name) {
+                        navigation.keep_ionosphere(system, Dated { time: None, message }, number);
+                    }
+                }
                 return Ok(());
             }
             b"ION ALPHA" => _ = alpha.insert(&b"GPS"[..], four(line, 2, number)?),
@@ -277,8 +279,19 @@ impl Navigation {
             Ok(v) => Klobuchar { alpha: [v[0], v[1], v[2], v[3]], beta: [v[4], v[5], v[6], v[7]] },
             Err(refusal) => return self.refused.push(refusal),
         };
+        self.keep_ionosphere(system, Dated { time: block.time(Scale::Gps), message }, block.number());
+    }
+
+    /// Keep a message; one that no satellite can have sent is refused, an empty one says nothing.
+    fn keep_ionosphere(&mut self, system: Constellation, dated: Dated<Klobuchar>, line: usize) {
+        let message = dated.message;
+        if let Some(reason) = message.implausible().filter(|_| !message.is_empty()) {
+            let field = format!("{} ionosphere", system.letter());
+            let text = format!("alpha {:?}, beta {:?}", message.alpha, message.beta);
+            return self.refused.push(Refusal { line, field, reason: reason.to_owned(), text });
+        }
         if system == Constellation::Gps {
-            self.ionosphere_gps.push(Dated { time: block.time(Scale::Gps), message });
+            self.ionosphere_gps.push(dated);
             self.klobuchar_gps.get_or_insert(message);
         } else {
             self.klobuchar_beidou.get_or_insert(message);

@@ -23,6 +23,11 @@ impl<'a> Block<'a> {
         Self { number, indent, lines: vec![first] }
     }
 
+    /// Line of its title.
+    pub(super) const fn number(&self) -> usize {
+        self.number
+    }
+
     pub(super) fn first(&self) -> &'a [u8] {
         self.lines.first().copied().unwrap_or_default()
     }

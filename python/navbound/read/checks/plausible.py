@@ -9,8 +9,8 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
-from navbound.read.covariance import COLUMNS
 from navbound.read.tables.columns import POSITION_TIME
+from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -94,18 +94,16 @@ class Plausibility:
     words: str
 
 
-def impossible(rows: pl.DataFrame, lat: str, lon: str) -> pl.Series:
-    """Whether each position of one track, in the order of time, cannot have been reached, or follows a jump that has not settled."""
+def unreachable(rows: pl.DataFrame, lat: str, lon: str, limits: Limits) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Where the positions of one track, in the order of time, jump; and where they jump or have not settled since."""
     time, lat_rad, lon_rad = (np.ascontiguousarray(rows[name].to_numpy()) for name in ("time_ns", lat, lon))
     undated, silent = np.full(rows.height, _UNDATED), np.full(rows.height, np.nan)
-    # A true position may stand still.
-    limits = asdict(Limits(moving_mps=np.inf))
-    track = _core.PlausibleTrack(limits, reports_speed=False)
+    track = _core.PlausibleTrack(asdict(limits), reports_speed=False)
     reports = (time, undated, lat_rad, lon_rad, silent)
     track.see(reports)
     code = track.judge(reports, [])["finding"]
-    wrong = [_REASON_ID.index(id_) for id_ in ("position_jump", "position_not_settled", "position_late")]
-    return pl.Series(np.isin(code, wrong))
+    jump, unsettled, late = (code == _REASON_ID.index(id_) for id_ in ("position_jump", "position_not_settled", "position_late"))
+    return jump | late, jump | late | unsettled
 
 
 def check(epochs: pl.DataFrame, limits: Limits | None = None) -> tuple[pl.DataFrame, Plausibility]:
@@ -240,7 +238,7 @@ def _marked(epochs: pl.DataFrame, code: NDArray[np.uint8]) -> pl.DataFrame:
         stands = both.select((status.worse(pl.col("before"), pl.col("status")) == pl.col("before")).alias("stands"))["stands"]
         marked = marked.with_columns(pl.when(stands).then(solved[c]).otherwise(pl.col(c)).alias(c) for c in status.COLUMNS)
     believed = pl.col("status").is_in(status.USABLE)
-    marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COLUMNS if c in epochs.columns)
+    marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COVARIANCE if c in epochs.columns)
     # One order of columns, whether the recording had a status or not.
     said = ("reason_id", "status", "reason")
     return marked.select(pl.exclude(*said), *said)

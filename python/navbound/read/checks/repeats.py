@@ -8,6 +8,7 @@ import polars as pl
 
 from navbound import status
 from navbound.records.frames import LEFT_OUT
+from navbound.table.columns import COVARIANCE, VARIANCES
 
 SAME_PLACE_M = 1.0
 """Distance up to which two positions of one time are one, written with other digits. [m] Provenance: ours; five decimals of a degree."""
@@ -24,14 +25,10 @@ BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic"
 ERRORS = ("nse_e_m", "nse_n_m", "nse_u_m", "stated_error_m")
 """What a row states of its error. Two of one time are one as two positions are."""
 
-COVARIANCE = {
-    "cov_ee_m2": ("cov_ee_m2", "cov_ee_m2"),
-    "cov_en_m2": ("cov_ee_m2", "cov_nn_m2"),
-    "cov_nn_m2": ("cov_nn_m2", "cov_nn_m2"),
-    "cov_eu_m2": ("cov_ee_m2", "cov_uu_m2"),
-    "cov_nu_m2": ("cov_nn_m2", "cov_uu_m2"),
-    "cov_uu_m2": ("cov_uu_m2", "cov_uu_m2"),
-}
+_EAST, _NORTH, _UP = VARIANCES
+SIZES = dict(
+    zip(COVARIANCE, ((_EAST, _EAST), (_EAST, _NORTH), (_NORTH, _NORTH), (_EAST, _UP), (_NORTH, _UP), (_UP, _UP)), strict=True),
+)
 """Entries of a covariance and the variances whose geometric mean is their size: a correlation near zero has no size of its own."""
 
 _OTHER_PLACE = "another position has the same time"
@@ -122,7 +119,7 @@ def _other_place(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
 def _other_bound(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
     """Any number of the accuracy, bound or error that differs from the first that its time states; an empty field states nothing."""
     size = {name: pl.col(name).abs() for name in BOUNDS if name in epochs.columns}
-    for name, (one, other) in COVARIANCE.items():
+    for name, (one, other) in SIZES.items():
         if {name, one, other} <= set(epochs.columns):
             size[name] = (pl.col(one) * pl.col(other)).sqrt()
 

@@ -2,29 +2,42 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import polars as pl
+
+from navbound import status
+from navbound.read.checks.statements import NO_ALERT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from navbound.read.checks.statements import Effect, Stated
 
 ERROR, ALERT = "stated_error_m", "stated_alert"
 """The largest lateral or horizontal error that a row states [m]; the word of an alert that it states, null where it states none."""
 
 WORSE = "stated_worse_m"
-"""The 95 % radius (EPU) that a row states, where it is larger than the covariance of the row allows by any definition [m]."""
+"""The 95 % radius that a row states (EPU, standard deviations, the lower limit of a NACp), where it is larger than the covariance of
+the row allows by any definition [m]."""
+
+CONTAINMENT = "stated_rc_m"
+"""The containment radius that a row states (Rc, or that of its NIC); infinite where it states that none is known [m]."""
 
 TWO_DRMS = 2.0
 """Times the root of the sum of both variances: no ellipse has a 95 % circle as large
 (1.96 for a line, 1.73 for a circle). [1] Provenance: standard."""
 
 _LENGTHS = ("nse_h_m", "nse_cross_m", "nse_along_m", "tse_m", "fte_m")
-_NO_ALERT = ("", "normal", "none", "no", "ok", "off", "false", "0", "0.0", "nan", "null")
-"""Words that say that there is no alert. Any other is one: nobody knows what it means, and it is not "normal"."""
 
 
-def worse_than_covariance(epochs: pl.DataFrame) -> pl.DataFrame:
-    """Add `WORSE` where the table has both an EPU and a covariance."""
-    if not {"epu_m", "cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
+def worse_than_covariance(epochs: pl.DataFrame, least_m: Sequence[pl.Expr]) -> pl.DataFrame:
+    """Add `WORSE` where the table states accuracies; ``least_m``: what each says that the 95 % radius is at least [m]."""
+    if not least_m or not {"cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
         return epochs
     largest_m = TWO_DRMS * (pl.col("cov_ee_m2") + pl.col("cov_nn_m2")).sqrt()
-    return epochs.with_columns(pl.when(pl.col("epu_m") > largest_m).then("epu_m").alias(WORSE))
+    stated_m = pl.max_horizontal(least_m)
+    return epochs.with_columns(pl.when(stated_m > largest_m).then(stated_m).alias(WORSE))
 
 
 def against_itself(rows: pl.DataFrame) -> pl.DataFrame:
@@ -37,5 +50,32 @@ def against_itself(rows: pl.DataFrame) -> pl.DataFrame:
     added = [pl.max_horizontal(errors).alias(ERROR)] if errors else []
     if "alert" in rows.columns:
         word = pl.col("alert").str.to_lowercase()
-        added.append(pl.when(word.is_in(_NO_ALERT).not_()).then(word).alias(ALERT))
+        added.append(pl.when(word.is_in(sorted(NO_ALERT | {"", "0.0"})).not_()).then(word).alias(ALERT))
     return rows.with_columns(added).drop(*_LENGTHS, "nse_e_m", "nse_n_m", "alert", strict=False)
+
+
+def with_statements(rows: pl.DataFrame, statements: Sequence[tuple[str, Effect, Stated]]) -> pl.DataFrame:
+    """Add what columns of validity and of alerts state: a row without a valid position is `reported`, an alert stands in `ALERT`.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        After :func:`against_itself` and :func:`navbound.status.recorded`.
+    statements : sequence of (str, Effect, Stated)
+        Name of each column, what its words do, and what it states.
+    """
+    words = {
+        effect: [pl.lit(f"{name} = ") + pl.lit(each.against) for name, kind, each in statements if kind == effect]
+        for effect in ("invalid", "alert")
+    }
+    if words["alert"]:
+        before = [pl.col(ALERT)] if ALERT in rows.columns else []
+        rows = rows.with_columns(pl.coalesce(*before, *words["alert"]).alias(ALERT))
+    if not words["invalid"]:
+        return rows
+    if "status" not in rows.columns:
+        rows = rows.with_columns(pl.lit("ok").alias("status"))
+    sentence = rows.select(pl.coalesce(pl.lit("the recording states ") + each for each in words["invalid"]).alias("sentence"))["sentence"]
+    # What the recording states already stays where it is as grave.
+    fault = pl.select(pl.when(sentence.is_not_null() & rows["status"].is_in(status.USABLE)).then(pl.lit("reported"))).to_series()
+    return status.overridden(rows, fault, sentence)

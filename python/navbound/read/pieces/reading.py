@@ -43,6 +43,8 @@ class PiecedReading:
         Tracks, in order.
     with_levels : set of str
         Tracks with a protection level anywhere.
+    unread : list of str
+        Columns, or words of columns, that speak of integrity by their name and are not understood.
     """
 
     source: InputFile
@@ -55,6 +57,7 @@ class PiecedReading:
     pieces: Pieces
     rejections: Rejections
     n_rows: int
+    unread: list[str]
 
     @property
     def rejected(self) -> list[Rejection]:
@@ -196,6 +199,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         pieces=pieces,
         rejections=first.rejections,
         n_rows=first.n_rows,
+        unread=values.unread,
     )
 
 

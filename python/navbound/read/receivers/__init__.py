@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from importlib import import_module
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeGuard
 
 from navbound.errors import FormatError
 
@@ -35,6 +35,11 @@ _FRAMES: dict[Kind, re.Pattern[bytes]] = {
     "nmea": re.compile(rb"\$[A-Z]{2}[A-Z]{3},[^\r\n]*\*[0-9A-F]{2}(,\d+)?\r?\n"),
 }
 """Beginnings of any message: the file is a log, whatever it holds."""
+
+
+def is_log(name: str) -> TypeGuard[Kind]:
+    """Whether this is the name of a receiver's log."""
+    return name in _FRAMES
 
 
 def kind(content: bytes) -> Kind | None:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from navbound import _core
-from navbound.read.receivers.log import COVARIANCE, Log, messages, package
+from navbound.read.receivers.log import Log, messages, package
+from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
     from navbound.read.source import Source

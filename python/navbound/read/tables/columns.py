@@ -6,15 +6,19 @@ import difflib
 import functools
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, InputError
+from navbound.read.checks.statements import kind_of, speaks_of_integrity
+from navbound.table.columns import COVARIANCE, EPOCHS, READ, VARIANCES
 from navbound.units import METRES_PER_FT, METRES_PER_NM, MPS_PER_KT
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping, Sequence
     from pathlib import Path
+
+    from navbound.read.checks.statements import Kind
 
 _DEG = math.pi / 180.0
 
@@ -51,7 +55,7 @@ class Quantity:
     name : str
         Its name in docs/notation.md.
     si : str
-        Its SI unit, a key of `UNITS`.
+        Its SI unit as the list of columns declares it, a key of `UNITS`.
     low, high : float
         What is possible, in SI.
     aliases : dict
@@ -65,7 +69,11 @@ class Quantity:
     aliases: dict[str, str]
 
 
-def _q(name: str, si: str, low: float, high: float, **aliases: str) -> Quantity:
+_DECLARED = {column.name: column.unit for column in (*EPOCHS, *READ)}
+
+
+def _q(name: str, low: float, high: float, **aliases: str) -> Quantity:
+    si = _DECLARED[name]
     return Quantity(
         name, si, low, high, {name: si} | {k: v for unit, names in aliases.items() for k, v in ((n, unit) for n in names.split())}
     )
@@ -74,10 +82,9 @@ def _q(name: str, si: str, low: float, high: float, **aliases: str) -> Quantity:
 _INF = math.inf
 
 QUANTITIES: tuple[Quantity, ...] = (
-    _q("est_lat_rad", "rad", -math.pi / 2, math.pi / 2, deg="latitude lat lat_deg latitude_deg est_lat_deg", rad="lat_rad latitude_rad"),
+    _q("est_lat_rad", -math.pi / 2, math.pi / 2, deg="latitude lat lat_deg latitude_deg est_lat_deg", rad="lat_rad latitude_rad"),
     _q(
         "est_lon_rad",
-        "rad",
         -math.pi,
         2 * math.pi,
         deg="longitude lon lng long lon_deg longitude_deg est_lon_deg",
@@ -85,71 +92,64 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
     _q(
         "est_h_m",
-        "m",
         -2e4,
         1e8,
         m="h_m height height_m ellipsoid_height ellipsoidal_height",
         ft="geoaltitude geoaltitude_ft alt_geom height_ft",
     ),
-    _q("altitude_m", "m", -2e3, 1e5, m="alt_m", ft="altitude altitude_ft alt_baro pressure_altitude"),
-    _q("ground_track_rad", "rad", -2 * math.pi, 2 * math.pi, deg="track track_deg ground_track true_track cog"),
-    _q("ground_speed_mps", "mps", 0.0, 2e4, kt="groundspeed ground_speed gs ground_speed_kt velocity_kt sog", mps="speed_mps vel_m_s"),
-    _q("vel_n_mps", "mps", -2e4, 2e4, mps="vel_n_m_s vn_mps vn_m_s vn velocity_n velocity_north vel_north north_velocity v_north"),
-    _q("vel_e_mps", "mps", -2e4, 2e4, mps="vel_e_m_s ve_mps ve_m_s ve velocity_e velocity_east vel_east east_velocity v_east"),
+    _q("altitude_m", -2e3, 1e5, m="alt_m", ft="altitude altitude_ft alt_baro pressure_altitude"),
+    _q("ground_track_rad", -2 * math.pi, 2 * math.pi, deg="track track_deg ground_track true_track cog"),
+    _q("ground_speed_mps", 0.0, 2e4, kt="groundspeed ground_speed gs ground_speed_kt velocity_kt sog", mps="speed_mps vel_m_s"),
+    _q("vel_n_mps", -2e4, 2e4, mps="vel_n_m_s vn_mps vn_m_s vn velocity_n velocity_north vel_north north_velocity v_north"),
+    _q("vel_e_mps", -2e4, 2e4, mps="vel_e_m_s ve_mps ve_m_s ve velocity_e velocity_east vel_east east_velocity v_east"),
     _q(
         "vertical_rate_mps",
-        "mps",
         -2e3,
         2e3,
         **{"ft/min": "vertical_rate vertrate baro_rate geom_rate vertical_rate_fpm"},
         mps="climb_rate_mps",
     ),
-    _q("truth_lat_rad", "rad", -math.pi / 2, math.pi / 2, deg="truth_lat_deg truth_lat truth_latitude"),
-    _q("truth_lon_rad", "rad", -math.pi, 2 * math.pi, deg="truth_lon_deg truth_lon truth_lng truth_longitude"),
-    _q("truth_h_m", "m", -2e4, 1e8, m="truth_h truth_height truth_height_m"),
-    _q("cov_ee_m2", "m2", 0.0, _INF),
-    _q("cov_en_m2", "m2", -_INF, _INF),
-    _q("cov_nn_m2", "m2", 0.0, _INF),
-    _q("cov_eu_m2", "m2", -_INF, _INF),
-    _q("cov_nu_m2", "m2", -_INF, _INF),
-    _q("cov_uu_m2", "m2", 0.0, _INF),
-    _q("sigma_e_m", "m", 0.0, _INF, m="sde sde_m std_e std_e_m sigma_east_m"),
-    _q("sigma_n_m", "m", 0.0, _INF, m="sdn sdn_m std_n std_n_m sigma_north_m"),
-    _q("sigma_u_m", "m", 0.0, _INF, m="sdu sdu_m std_u std_u_m sigma_up_m"),
-    _q("epu_m", "m", 0.0, _INF, m="epu anp_m", nm="epu_nm anp_nm"),
-    _q("rc_m", "m", 0.0, _INF, m="rc", nm="rc_nm"),
-    _q("nac_p", "1", 0.0, 15.0, **{"1": "nacp nac_p"}),
-    _q("nic", "1", 0.0, 15.0, **{"1": "nic"}),
-    _q("n_sv", "1", 0.0, 255.0, **{"1": "ns n_sats satellites"}),
-    _q("track", "text", 0.0, 0.0, text="icao24 icao track_id flight_id aircraft_id"),
-    _q("callsign", "text", 0.0, 0.0, text="callsign flight"),
-    _q("hpl_m", "m", 0.0, 1e9, m="hpl"),
-    _q("vpl_m", "m", 0.0, 1e9, m="vpl"),
-    _q("status", "text", 0.0, 0.0),
-    _q("reason_id", "text", 0.0, 0.0),
-    _q("reason", "text", 0.0, 0.0),
+    _q("truth_lat_rad", -math.pi / 2, math.pi / 2, deg="truth_lat_deg truth_lat truth_latitude"),
+    _q("truth_lon_rad", -math.pi, 2 * math.pi, deg="truth_lon_deg truth_lon truth_lng truth_longitude"),
+    _q("truth_h_m", -2e4, 1e8, m="truth_h truth_height truth_height_m"),
+    *(_q(name, 0.0 if name in VARIANCES else -_INF, _INF) for name in COVARIANCE),
+    _q("sigma_e_m", 0.0, _INF, m="sde sde_m std_e std_e_m sigma_east_m"),
+    _q("sigma_n_m", 0.0, _INF, m="sdn sdn_m std_n std_n_m sigma_north_m"),
+    _q("sigma_u_m", 0.0, _INF, m="sdu sdu_m std_u std_u_m sigma_up_m"),
+    _q("epu_m", 0.0, _INF, m="epu anp_m", nm="epu_nm anp_nm"),
+    _q("rc_m", 0.0, _INF, m="rc", nm="rc_nm"),
+    _q("nac_p", 0.0, 15.0, **{"1": "nacp nac_p"}),
+    _q("nic", 0.0, 15.0, **{"1": "nic"}),
+    _q("n_sv", 0.0, 255.0, **{"1": "ns n_sats satellites"}),
+    _q("track", 0.0, 0.0, text="icao24 icao track_id flight_id aircraft_id"),
+    _q("callsign", 0.0, 0.0, text="callsign flight"),
+    _q("hpl_m", 0.0, 1e9, m="hpl"),
+    _q("vpl_m", 0.0, 1e9, m="vpl"),
+    _q("status", 0.0, 0.0),
+    _q("reason_id", 0.0, 0.0),
+    _q("reason", 0.0, 0.0),
 )
 
 LEVEL_QUANTITIES: tuple[Quantity, ...] = (
-    _q("nse_e_m", "m", -1e8, 1e8, m="eerr e_err east_error_m"),
-    _q("nse_n_m", "m", -1e8, 1e8, m="nerr n_err north_error_m"),
-    _q("nse_u_m", "m", -1e8, 1e8, m="uerr u_err up_error_m"),
-    _q("hpe_m", "m", 0.0, 1e8, m="hpe"),
-    _q("vpe_m", "m", -1e8, 1e8, m="vpe"),
-    _q("hdop", "1", 0.0, 1e6, **{"1": "hdop"}),
-    _q("vdop", "1", 0.0, 1e6, **{"1": "vdop"}),
-    _q("mode", "text", 0.0, 0.0),
+    _q("nse_e_m", -1e8, 1e8, m="eerr e_err east_error_m"),
+    _q("nse_n_m", -1e8, 1e8, m="nerr n_err north_error_m"),
+    _q("nse_u_m", -1e8, 1e8, m="uerr u_err up_error_m"),
+    _q("hpe_m", 0.0, 1e8, m="hpe"),
+    _q("vpe_m", -1e8, 1e8, m="vpe"),
+    _q("hdop", 0.0, 1e6, **{"1": "hdop"}),
+    _q("vdop", 0.0, 1e6, **{"1": "vdop"}),
+    _q("mode", 0.0, 0.0),
 )
 """What a table of errors and protection levels may hold beyond a recorded track."""
 
 STATED_QUANTITIES: tuple[Quantity, ...] = (
     *(q for q in LEVEL_QUANTITIES if q.name in {"nse_e_m", "nse_n_m"}),
-    _q("nse_h_m", "m", 0.0, 1e8, m="hpe_m hpe horizontal_error_m"),
-    _q("nse_cross_m", "m", -1e8, 1e8),
-    _q("nse_along_m", "m", -1e8, 1e8),
-    _q("tse_m", "m", -1e8, 1e8, m="tse"),
-    _q("fte_m", "m", -1e8, 1e8, m="fte"),
-    _q("alert", "text", 0.0, 0.0, text="alert_state alarm"),
+    _q("nse_h_m", 0.0, 1e8, m="hpe_m hpe horizontal_error_m"),
+    _q("nse_cross_m", -1e8, 1e8),
+    _q("nse_along_m", -1e8, 1e8),
+    _q("tse_m", -1e8, 1e8, m="tse"),
+    _q("fte_m", -1e8, 1e8, m="fte"),
+    _q("alert", 0.0, 0.0),
 )
 """What a recorded track may state against its own positions. It bounds nothing; the verdict weighs it."""
 
@@ -210,11 +210,21 @@ class Assignment:
         One column, or week and time of week.
     unused : list of str
         Columns that nothing is known about.
+    statements : list of (str, Kind)
+        Columns in which a recorded track states the validity or the integrity of its own positions.
     """
 
     columns: dict[str, Column]
     times: list[Column]
     unused: list[str]
+    statements: list[tuple[str, Kind]] = field(default_factory=list)
+
+    @property
+    def unread(self) -> list[str]:
+        """Columns that nothing reads, though their names speak of integrity."""
+        plain = {name: _plain(name)[0] for name in self.unused}
+        transponders = bool(TRANSPONDER & set(plain.values()))
+        return [name for name, each in plain.items() if speaks_of_integrity(name) and not (transponders and each == "alert")]
 
 
 POSITION = ("est_lat_rad", "est_lon_rad")
@@ -279,7 +289,13 @@ def assign(
         times = _times([n for n in names if n not in taken])
         taken |= {c.name for c in times}
     _require(columns, times, names, path, needs)
-    return Assignment(columns, times, [n for n in names if n not in taken])
+    free = [n for n in names if n not in taken]
+    kinds = {name: kind_of(_plain(name)[0]) for name in free} if tuple(needs) == POSITION else {}
+    if {_plain(name)[0] for name in names} & TRANSPONDER:
+        kinds.pop("alert", None)
+    statements = [(name, kind) for name, kind in kinds.items() if kind is not None]
+    stating = {name for name, _ in statements}
+    return Assignment(columns, times, [n for n in free if n not in stating], statements)
 
 
 def position_time(unused: list[str]) -> Column | None:

@@ -19,6 +19,7 @@ from navbound.read.tables.columns import POSITION, Assignment, assign
 from navbound.read.tables.table import LINE, Table, table
 from navbound.read.tables.values import Late, Values, one_row_a_time, texts
 from navbound.records.frames import LEFT_OUT
+from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -48,6 +49,8 @@ class Reading:
     left_out : DataFrame
         ``track`` and ``time_ns`` of rows that were expected to hold a position and cannot be judged: without a position or a time, with a
         refused value in one of them, or with another position, bound or status at the time of another row. A null time is not known.
+    unread : list of str
+        Columns, or words of columns, that speak of integrity by their name and are not understood.
     """
 
     epochs: pl.DataFrame
@@ -57,6 +60,7 @@ class Reading:
     notes: list[str] = field(default_factory=list)
     columns: dict[str, str] = field(default_factory=dict)
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
+    unread: list[str] = field(default_factory=list)
 
 
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:
@@ -85,8 +89,8 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: S
     source = load(path)
     if source.kind == "rtklib":
         return _rtklib(source)
-    if source.kind in {"ubx", "sbf", "novatel", "nmea"}:
-        return _log(source, source.kind)
+    if receivers.is_log(kind := source.kind):
+        return _log(source, kind)
     found = table(source)
     mapping = assign(found.columns, columns, source.path, needs=needs, texts=texts(found.frame))
     return _epochs(source, found, mapping, [name for name in POSITION if name in needs])
@@ -102,7 +106,8 @@ def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequenc
     rejections.refuse_if_too_many(found.n_rows)
     _not_empty(source, out)
     lost = pl.concat([without, left_out(contradicting)])
-    return Reading(out.drop(LINE), source.record(found.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
+    of_file = (source.record(found.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
+    return Reading(out.drop(LINE), *of_file, unread=values.unread)
 
 
 def _rtklib(source: Source) -> Reading:
@@ -112,9 +117,8 @@ def _rtklib(source: Source) -> Reading:
     for (name, reason), group in refused.group_by("field", "reason", maintain_order=True):
         rejections.add(f"{name}: {reason}", group.height, group["line"][0], group["text"][0])
     cov = d["cov_m2"]
-    names = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
     plain = {k: d[k] for k in ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m", "ground_speed_mps", "n_sv", "hpl_m", "vpl_m")}
-    out = pl.DataFrame({LINE: d["line"]} | plain | {name: cov[:, i] for i, name in enumerate(names)})
+    out = pl.DataFrame({LINE: d["line"]} | plain | {name: cov[:, i] for i, name in enumerate(COVARIANCE)})
     out = out.with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
     out, contradicting = _in_order(out, rejections, notes)
     rejections.refuse_if_too_many(d["n_rows"])

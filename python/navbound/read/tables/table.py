@@ -22,6 +22,21 @@ if TYPE_CHECKING:
 
 LINE = "__line"
 
+MOST_COLUMNS = 5_000
+"""Columns of a table that is read: some steps take time for each, and no recording has so many. Provenance: ours."""
+
+
+def require_few(path: Path, n_columns: int) -> None:
+    """Refuse a table of very many columns before it is taken apart.
+
+    Raises
+    ------
+    FormatError
+        With how many there are and how many may be.
+    """
+    if n_columns > MOST_COLUMNS:
+        raise FormatError(path, f"a table of {n_columns} columns; at most {MOST_COLUMNS} are read: leave out those that are not needed")
+
 
 @dataclass(frozen=True)
 class Table:
@@ -146,6 +161,7 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
 
 def _names(path: Path, header: str, separator: str) -> list[str]:
     names = [n.strip().strip('"') for n in header.split(separator)]
+    require_few(path, len(names))
     # Unnamed columns (a data frame's index, a separator at the end of the line) may be many: nothing can ask for them.
     repeated = [name for name, n in Counter(names).items() if n > 1 and name]
     if repeated:
@@ -156,7 +172,9 @@ def _names(path: Path, header: str, separator: str) -> list[str]:
 def _parquet(source: Source) -> Table:
     try:
         stated = pl.scan_parquet(io.BytesIO(source.content))
-        n_rows, n_columns = stated.select(pl.len()).collect().item(), len(stated.collect_schema())
+        n_columns = len(stated.collect_schema())
+        require_few(source.path, n_columns)
+        n_rows = stated.select(pl.len()).collect().item()
         # Eight bytes a field: a column of one value packs to nothing.
         packed.require_room(source.path, len(source.content), 8 * n_rows * n_columns)
         frame = pl.read_parquet(io.BytesIO(source.content))
@@ -182,6 +200,7 @@ def _json(source: Source) -> Table:
         columns = {name: _column(source, name, values) for name, values in data.items()}
     else:
         columns = _records(source, data)
+    require_few(source.path, len(columns))
     lengths = {len(values) for values in columns.values()}
     if len(lengths) != 1:
         raise FormatError(

@@ -9,7 +9,7 @@ import polars as pl
 
 from navbound import status
 from navbound.errors import UNSEEN, FormatError
-from navbound.read.checks import levels, stated
+from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import Repeats, left_out, separate
 from navbound.read.tables.columns import (
@@ -41,6 +41,9 @@ _AHEAD_NS = 1_000_000_000
 FIELDS, OPTIONAL, DATED, REQUIRED, REPEATED, LEVELS = range(0, 600_000, 100_000)
 """Where a reason stands among the others of its file; the number of the column is added to that of an optional one."""
 
+
+_HIGH_M, _LIKE = 300.0, 0.1
+"""Height from which geoid and pressure hardly change a ratio [m], and how much they may [1]. Provenance: ours."""
 
 _SHOWN = 20
 """Rows that show whether a column holds words: as many as the shortest piece of a file has. Provenance: ours."""
@@ -81,8 +84,10 @@ class Values:
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._n_unknown = 0
+        self._unknown: dict[str, dict[str, None]] = {}
         self._largest = dict.fromkeys(POSITION, 0.0)
         self._unit = self._unit_dated = ""
+        self._n_heights = self._n_feet = self._n_metres = 0
 
     def take(self, frame: pl.DataFrame) -> pl.DataFrame:
         """Columns in SI of some rows, with their times as they are written and the reasons against them.
@@ -118,12 +123,14 @@ class Values:
         for name in POSITION:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], _largest(part[name]))
-        return self._reported(part) if tuple(self._required) == POSITION else part
+        self._see_heights(part)
+        return self._reported(part, frame) if tuple(self._required) == POSITION else part
 
     def _check_kinds(self, frame: pl.DataFrame) -> None:
-        for column in (*self._mapping.columns.values(), *self._mapping.times):
-            if _no_field(frame.schema[column.name]):
-                raise FormatError(self._path, f"holds {frame.schema[column.name]}, where a number or a text is needed", field=column.name)
+        names = [column.name for column in (*self._mapping.columns.values(), *self._mapping.times)]
+        for name in (*names, *(name for name, _ in self._mapping.statements)):
+            if _no_field(frame.schema[name]):
+                raise FormatError(self._path, f"holds {frame.schema[name]}, where a number or a text is needed", field=name)
 
     def _count(self, place: int, frame: pl.DataFrame, name: str, reason: pl.Series) -> pl.Series:
         """Count the values of an optional column that could not be used; the rows stay, an empty field is no fault."""
@@ -143,12 +150,42 @@ class Values:
         self._dtypes |= {name: values.dtype for name, values in columns.items()}
         return [values.alias(_RAW + name) for name, values in columns.items()]
 
-    def _reported(self, part: pl.DataFrame) -> pl.DataFrame:
+    def _see_heights(self, part: pl.DataFrame) -> None:
+        """Count heights that are a pressure altitude times feet in a metre, or the other way round."""
+        if not {"est_h_m", "altitude_m"} <= set(part.columns):
+            return
+        high = part.filter(pl.min_horizontal(pl.col("est_h_m").abs(), pl.col("altitude_m").abs()) > _HIGH_M)
+        ratio = pl.col("est_h_m") / pl.col("altitude_m")
+        feet = 1.0 / UNITS["m"]["ft"]
+        self._n_heights += high.height
+        self._n_feet += high.filter((ratio / feet - 1.0).abs() <= _LIKE).height
+        self._n_metres += high.filter((ratio * feet - 1.0).abs() <= _LIKE).height
+
+    def _look_like_feet(self) -> None:
+        columns = self._mapping.columns
+        for n, name, other in ((self._n_feet, "est_h_m", "altitude_m"), (self._n_metres, "altitude_m", "est_h_m")):
+            if 2 * n > self._n_heights:
+                of, beside = columns[name], columns[other]
+                self.notes.append(
+                    f"{self._path.name}: “{of.name}” was read as {of.unit}, and is 3.28 times “{beside.name}” ({beside.unit}) at {n} of "
+                    f"{self._n_heights} rows: one of them is in another unit than it is read in; declare it ({name}={of.name}:ft)"
+                )
+
+    def _reported(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """What a recorded track says of its own epochs, in words of the list."""
         if "status" in part.columns:
             known = pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)
             self._n_unknown += part.filter(~known).height
-        return status.recorded(stated.against_itself(part))
+        found = [(name, kind.effect, statements.stated(kind, frame[name])) for name, kind in self._mapping.statements]
+        for name, _, each in found:
+            self._unknown.setdefault(name, {}).update(dict.fromkeys(each.unknown))
+        return stated.with_statements(status.recorded(stated.against_itself(part)), found)
+
+    @property
+    def unread(self) -> list[str]:
+        """Columns, or words of columns, that speak of integrity by their name and are not understood."""
+        words = {name: ", ".join(list(each)[: statements.SHOWN]) for name, each in self._unknown.items() if each}
+        return [*(f"{name} ({each})" for name, each in words.items()), *self._mapping.unread]
 
     def understand(self) -> None:
         """Decide in which unit the times are written, now that every row was taken.
@@ -164,8 +201,9 @@ class Values:
                 f"{name}: {self._n_unknown} epochs have a status that is none of {', '.join(status.STATUSES)}; they are not judged"
             )
         if tuple(self._required) == POSITION and self._mapping.unused:
-            self.notes.append(f"{name}: columns not used: {', '.join(self._mapping.unused)}")
+            self.notes.append(f"{name}: columns not used: {_few(self._mapping.unused)}")
         self._look_like_radians()
+        self._look_like_feet()
         self._unit = self._understood(self._mapping.times, self._facts)
         if self._dated is not None:
             try:
@@ -242,6 +280,12 @@ class Values:
             self.notes.append(
                 f"{self._path.name}: “{lat.name}” and “{lon.name}” were read as degrees, but all values are small enough to be radians; "
                 f"if they are, declare est_lat_rad={lat.name}:rad and est_lon_rad={lon.name}:rad"
+            )
+        elif lat.unit == lon.unit == "deg" and 0 < self._largest["est_lat_rad"] <= math.pi / 2 * UNITS["rad"]["deg"]:
+            # The longitude is no radian. Near the equator this is a doubt without a cause.
+            self.notes.append(
+                f"{self._path.name}: “{lat.name}” was read as degrees, but all its values are small enough to be radians; if they are, "
+                f"declare est_lat_rad={lat.name}:rad"
             )
 
 
@@ -342,6 +386,15 @@ def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
         .alias("reason"),
     )  # fmt: skip
     return frame["value"], frame["reason"]
+
+
+_NAMED = 100
+"""Columns that a note names. [1]"""
+
+
+def _few(names: list[str]) -> str:
+    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    return f"{', '.join(names[:_NAMED])}{more}"
 
 
 def _largest(values: pl.Series) -> float:

@@ -16,6 +16,9 @@ from navbound.read.checks.refusals import of_navigation, of_observations, reject
 from navbound.read.tables.epochs import read
 from navbound.read.truth import Truth, with_error, with_truth
 from navbound.run.inputs.solving import Solving, require_same_time
+from navbound.table.columns import COVARIANCE
+from navbound.table.declare import schema
+from navbound.table.lookup import named
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,20 +26,12 @@ if TYPE_CHECKING:
     from navbound.records.run import Rejection
 
 
-COVARIANCE = ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2")
-
-SCHEMA = pl.Schema(
-    {
-        "track": pl.String,
-        "time_ns": pl.Int64,
-        **dict.fromkeys(("est_lat_rad", "est_lon_rad", "est_h_m"), pl.Float64),
-        **dict.fromkeys(("nse_e_m", "nse_n_m", "nse_u_m", "hpe_m", "vpe_m", "hpl_m", "vpl_m"), pl.Float64),
-        **dict.fromkeys(COVARIANCE, pl.Float64),
-        "n_sv": pl.Int64,
-        **dict.fromkeys(("hdop", "vdop"), pl.Float64),
-        **dict.fromkeys(("mode", "status", "reason_id", "reason"), pl.String),
-    }
+_NAMES = (
+    *("track", "time_ns", "est_lat_rad", "est_lon_rad", "est_h_m", "nse_e_m", "nse_n_m", "nse_u_m", "hpe_m", "vpe_m", "hpl_m", "vpl_m"),
+    *COVARIANCE,
+    *("n_sv", "hdop", "vdop", "mode", "status", "reason_id", "reason"),
 )
+SCHEMA = schema(named(_NAMES))
 """Columns of a performance run's epochs."""
 
 BEFORE_NS = 3_600_000_000_000
@@ -113,7 +108,7 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, need
         raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")
     epochs, notes, refused = reading.epochs, list(reading.notes), list(reading.rejected)
     if truth.given is not None:
-        epochs, words, other = with_truth(epochs, truth)
+        epochs, words, other, _ = with_truth(epochs, truth)
         notes.append(words)
         refused += [] if other is None else other.rejected
     else:
@@ -137,8 +132,8 @@ def _with_own_truth(epochs: pl.DataFrame) -> tuple[pl.DataFrame, list[str]]:
         return epochs, [f"truth_lat_rad and truth_lon_rad are not used: the errors are those that the table states ({', '.join(errors)})."]
     if not {"est_lat_rad", "est_lon_rad"} <= have:
         return epochs, ["truth_lat_rad and truth_lon_rad are not used: the table holds no estimated positions to compare with them."]
-    epochs, words = with_error(epochs)
-    return epochs, [f"Truth: from the file itself.{words}"]
+    epochs, doubts = with_error(epochs)
+    return epochs, [f"Truth: from the file itself. {doubts.words}".rstrip()]
 
 
 class Service:
@@ -232,7 +227,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     refused = [*of_observations(observations), *service.rejected()]
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", service.navigation.skipped)]
     if truth.given is not None and truth.ecef_m is None:
-        epochs, words, other = with_truth(epochs, truth)
+        epochs, words, other, _ = with_truth(epochs, truth)
         refused += [] if other is None else other.rejected
         notes.append(words)
     rejected = [one.model_dump() for one in refused]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from typing import TYPE_CHECKING
 
 import polars as pl
 
-from navbound import araim, gnss, raim
+from navbound import gnss
+from navbound.algorithms import Recorded, entries
 from navbound.errors import InputError
 from navbound.gnss.monitor_fit import DISBELIEF
 from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
@@ -45,18 +44,7 @@ CONTRADICTED = f"{DISBELIEF} (the residuals or the detections contradict the err
 """Stands beside every number of levels whose error model does not fit the ranges."""
 
 
-Monitor = Callable[..., "araim.Watched"]
-"""Observations, navigation and, by name, ``truth_ecef_m`` and what :func:`monitored` lets through, to tested positions with levels."""
-
-MONITORS: dict[str, Monitor] = {
-    "raim": raim.watch,
-    "araim": partial(araim.watch, service="lpv-200"),
-    "araim-horizontal": partial(araim.watch, service="horizontal"),
-}
-"""What protection levels of observations may come from, beside the files themselves."""
-
-
-def monitor_of(protection: str) -> Monitor | None:
+def monitor_of(protection: str) -> Recorded | None:
     """The monitor of a source of protection levels; None for those of the files.
 
     Raises
@@ -64,9 +52,10 @@ def monitor_of(protection: str) -> Monitor | None:
     InputError
         No such source.
     """
-    if protection != GIVEN and protection not in MONITORS:
-        raise InputError("protection", protection, domain=f"one of {', '.join([GIVEN, *MONITORS])}")
-    return MONITORS.get(protection)
+    known = entries(Recorded)
+    if protection != GIVEN and protection not in known:
+        raise InputError("protection", protection, domain=f"one of {', '.join([GIVEN, *known])}")
+    return known.get(protection)
 
 
 def monitored(solving: Solving) -> dict[str, str | float]:
@@ -85,7 +74,7 @@ def monitored(solving: Solving) -> dict[str, str | float]:
     return solving.named
 
 
-def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Monitor, solving: Solving | None = None) -> Part:
+def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Recorded, solving: Solving | None = None) -> Part:
     """Positions, tests and levels of every epoch of an observation file; signals and systems that are not named are the monitor's own.
 
     Raises
@@ -104,7 +93,7 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Mo
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", records.skipped)]
     epochs = found.epochs
     if truth.given is not None and truth.ecef_m is None:
-        epochs, words, other = with_truth(epochs, truth)
+        epochs, words, other, _ = with_truth(epochs, truth)
         refused += [] if other is None else other.rejected
         notes.append(words)
     return Part(

@@ -124,6 +124,8 @@ def _remember(folder: Path, key: str, source: Source, part: Part) -> Stored:
         partial.write_text(json.dumps({"facts": facts, "sha256": _digest_of(facts)}), encoding="utf-8")
         partial.replace(record)
     except OSError as e:
+        for remains in (_ranges_of(table), table, record):
+            remains.with_suffix(".partial").unlink(missing_ok=True)
         raise FormatError(folder, f"cannot be written: {e.strerror}") from e
     return Stored(table=table, source=source, **facts)
 

@@ -21,16 +21,17 @@ from navbound.records.run import Honesty, InputFile, Rejection, RunRecord, Summa
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run import directory
 from navbound.run.directory import Run
-from navbound.run.evaluate.levels import COVARIANCE
 from navbound.run.evaluate.monitored import GIVEN, monitor_of, monitored
 from navbound.run.evaluate.parts import Stored, finished_parts, ranges_of_parts, tables_of
 from navbound.run.evaluate.words import levels_verdict, performance_words
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
-from navbound.run.summarise import honesty_of
+from navbound.run.summary.consistency import honesty_of
 from navbound.run.verdict import rule
-from navbound.run.verdict.belief import of_level
+from navbound.run.verdict.belief import copied, of_level
+from navbound.run.verdict.words import COPIED
 from navbound.storage import folders
+from navbound.table.columns import COVARIANCE
 from navbound.write.field_csv import write_csv
 
 if TYPE_CHECKING:
@@ -261,12 +262,13 @@ def _honesty(parts: list[Stored]) -> tuple[Honesty | None, list[str]]:
 
 def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) -> Summary:
     names = ", ".join(found.level.id for found in result.levels)
-    decided = rule.of_levels([_facts(found, result) for found in result.levels])
+    is_copied = _copied(parts)
+    decided = rule.of_levels([_facts(found, result, is_copied=is_copied) for found in result.levels])
     verdict = Verdict(
         id=decided,
         # A service level is no RNP: what its id says stands in the words.
         inside=None,
-        words=" ".join([*levels_verdict(decided), *performance_words(result)]),
+        words=" ".join([*levels_verdict(decided), *([COPIED] if is_copied else []), *performance_words(result)]),
         requirement=names,
         method="performance",
         share_inside=None,
@@ -315,7 +317,13 @@ def _rejected(parts: list[Stored]) -> list[Rejection]:
     return found
 
 
-def _facts(found: LevelResult, result: Performance) -> rule.LevelFacts:
+def _copied(parts: list[Stored]) -> bool:
+    """Whether the truth is the estimate at so many epochs that it is none."""
+    n_same, n_known = (sum(each) for each in zip(*map(copied, tables_of(parts)), strict=True))
+    return bool(n_known > 0 and n_same >= rule.COPIED_SHARE * n_known)
+
+
+def _facts(found: LevelResult, result: Performance, *, is_copied: bool) -> rule.LevelFacts:
     return rule.LevelFacts(
         n_expected=found.n_expected,
         n_solution=found.n_solution,
@@ -323,6 +331,7 @@ def _facts(found: LevelResult, result: Performance) -> rule.LevelFacts:
         n_misleading_events=found.n_mi_events + found.n_hazard_events,
         p_misleading=of_level(found, result.period_s),
         truth_known=_errors_known(found, result),
+        copied=is_copied,
     )
 
 

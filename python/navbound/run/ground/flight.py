@@ -19,6 +19,7 @@ from navbound.run.ground.motion import move
 from navbound.run.ground.navigation import Navigated, Navigator
 from navbound.scenario import taxi as scenarios
 from navbound.status import USABLE
+from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -157,9 +158,7 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
         "fte_m": np.where(usable, fte, np.nan),
         "nse_e_m": nse[:, 0],
         "nse_n_m": nse[:, 1],
-        "cov_ee_m2": found.covariance_m2[:, 0, 0],
-        "cov_en_m2": found.covariance_m2[:, 0, 1],
-        "cov_nn_m2": found.covariance_m2[:, 1, 1],
+        **{name: found.covariance_m2[:, i, j] for name, (i, j) in zip(HORIZONTAL, ((0, 0), (0, 1), (1, 1)), strict=True)},
         "hpl_m": found.hpl_m,
         "hpl_multi_m": found.hpl_multi_m,
         "accuracy_m": found.accuracy_m,
@@ -170,7 +169,7 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
             "track": [track_name(track)] * n,
             "time_ns": taxi.start_ns + np.arange(n) * 1_000_000_000,
             **numbers,
-            "n_sv": found.n_sv.astype(np.int32),
+            "n_sv": found.n_sv.astype(np.int64),
             "leg": [legs[k] for k in movement.leg],
             "phase": [p.title for p in phases],
             "mode": np.where(movement.coasts, "rraim", "gbas"),

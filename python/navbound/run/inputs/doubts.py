@@ -6,17 +6,13 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
+from navbound.read.checks.neighbours import Neighbours
 from navbound.read.checks.plausible import Limits
-from navbound.read.checks.stated import ALERT, ERROR, WORSE
+from navbound.read.checks.stated import ALERT, CONTAINMENT, ERROR, WORSE
 from navbound.status import USABLE
 
 if TYPE_CHECKING:
     from collections.abc import Container
-
-
-def tracks_with_levels(epochs: pl.DataFrame) -> set[str]:
-    """Tracks that have a horizontal protection level anywhere."""
-    return set(epochs.filter(pl.col("hpl_m").is_finite())["track"].unique()) if "hpl_m" in epochs.columns else set()
 
 
 class Doubts:
@@ -24,23 +20,25 @@ class Doubts:
 
     Attributes
     ----------
-    n_stated_beyond, n_stated_alert, n_stated_worse, n_stated_against : int
+    n_stated_beyond, n_stated_alert, n_stated_worse, n_stated_uncontained, n_stated_against : int
         Epochs with status ok or degraded where the recording itself states an error beyond RNP, an alert, an accuracy worse than its
-        covariance, or any of these.
+        covariance, a containment radius beyond twice RNP, or any of these.
     n_without_level : int
         Judged epochs of tracks whose column of horizontal protection levels holds none: no column of nothing may stand for a level.
+    neighbours : Neighbours or None
+        Positions that contradict those beside them; None for a flight that was simulated.
     n_long_steps : int
         Steps between successive epochs of a track that are longer than a position takes to become stale.
     longest_step_s : float or None
         The longest of all steps. [s]
     """
 
-    def __init__(self, with_levels: Container[str]) -> None:
+    def __init__(self, with_levels: Container[str], *, recorded: bool = True) -> None:
+        self.neighbours = Neighbours() if recorded else None
         self._with_levels = with_levels
         self._last: tuple[str, int] | None = None
-        self.n_stated_beyond = self.n_stated_worse = self.n_stated_alert = self.n_stated_against = self.n_without_level = (
-            self.n_long_steps
-        ) = 0
+        self.n_stated_beyond = self.n_stated_worse = self.n_stated_alert = self.n_stated_uncontained = self.n_stated_against = 0
+        self.n_without_level = self.n_long_steps = 0
         self.longest_step_s: float | None = None
 
     def see(self, margins: pl.DataFrame) -> None:
@@ -48,17 +46,22 @@ class Doubts:
         self._see_statements(margins)
         self._see_levels(margins)
         self._see_steps(margins)
+        if self.neighbours is not None:
+            self.neighbours.see(margins)
 
     def _see_statements(self, margins: pl.DataFrame) -> None:
         usable, never = pl.col("status").is_in(USABLE), pl.lit(value=False)
         beyond = usable & (pl.col(ERROR) > pl.col("rnp_m")) if ERROR in margins.columns else never
         alert = usable & pl.col(ALERT).is_not_null() if ALERT in margins.columns else never
         worse = usable & pl.col(WORSE).is_not_null() if WORSE in margins.columns else never
-        beyond, alert = beyond.fill_null(value=False), alert.fill_null(value=False)
-        counts = margins.select(usable.alias("_usable"), beyond=beyond, alert=alert, worse=worse, any=beyond | alert | worse)
+        uncontained = usable & (pl.col(CONTAINMENT) > 2.0 * pl.col("rnp_m")) if CONTAINMENT in margins.columns else never
+        beyond, alert, uncontained = (each.fill_null(value=False) for each in (beyond, alert, uncontained))
+        each = {"beyond": beyond, "alert": alert, "worse": worse, "uncontained": uncontained}
+        counts = margins.select(usable.alias("_usable"), **each, any=beyond | alert | worse | uncontained)
         self.n_stated_beyond += int(counts["beyond"].sum())
         self.n_stated_alert += int(counts["alert"].sum())
         self.n_stated_worse += int(counts["worse"].sum())
+        self.n_stated_uncontained += int(counts["uncontained"].sum())
         self.n_stated_against += int(counts["any"].sum())
 
     def _see_levels(self, margins: pl.DataFrame) -> None:

@@ -10,12 +10,14 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
+from navbound.read.checks.axes import Axes
 from navbound.read.checks.plausible import Checker, Limits, Plausibility
-from navbound.read.covariance import COLUMNS, Claimed, Claims
+from navbound.read.covariance import Claimed, Claims
 from navbound.read.pieces import Frames, PiecedReading, read_pieces
 from navbound.read.pieces.chunks import Chunks
 from navbound.read.tables.columns import POSITION_TIME, assign
 from navbound.read.tables.table import layout_of
+from navbound.table.columns import COVARIANCE, HORIZONTAL
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -42,7 +44,7 @@ def without_path(epochs: pl.DataFrame) -> pl.DataFrame:
 
 def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
     """Status of epochs whose position may be believed, but not the covariance. Written so that a NaN is on the bad side."""
-    ee, nn, en = pl.col("cov_ee_m2"), pl.col("cov_nn_m2"), pl.col("cov_en_m2")
+    ee, en, nn = (pl.col(name) for name in HORIZONTAL)
     # 1e-9 of the squared largest variance: the sixteen digits of a double less those the determinant loses.
     determinant = ee * nn - en**2 >= -1e-9 * pl.max_horizontal(ee, nn) ** 2
     positive = pl.all_horizontal(ee.is_finite(), nn.is_finite(), en.is_finite(), ee >= 0, nn >= 0, determinant).fill_null(value=False)
@@ -54,7 +56,7 @@ def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
         .when(ee + nn == 0).then(pl.lit("zero_covariance"))
     )  # fmt: skip
     epochs = status.overridden(epochs, epochs.select(fault.alias("reason_id"))["reason_id"])
-    return epochs.with_columns(pl.when(pl.col("status").is_in(status.USABLE)).then(pl.col(c)).alias(c) for c in COLUMNS)
+    return epochs.with_columns(pl.when(pl.col("status").is_in(status.USABLE)).then(pl.col(c)).alias(c) for c in COVARIANCE)
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,8 @@ class InPieces:
         Track to the callsign it mostly has, or to its own name.
     period_s : float
         Usual time between epochs of a track; 1 s where no track has two. [s]
+    doubts : list of str
+        That the positions do not move as the recording says.
     """
 
     reading: PiecedReading
@@ -77,6 +81,7 @@ class InPieces:
     plausibility: Plausibility
     labels: dict[str, str]
     period_s: float
+    doubts: list[str]
 
 
 def in_pieces(
@@ -91,17 +96,19 @@ def in_pieces(
     """
     reading = read_pieces(path, columns=columns, piece_rows=piece_rows)
     checker, claims, epochs = Checker(limits), Claims(sigma_m), Frames()
+    axes = Axes()
     steps, labels = _Steps(reading.n_rows), _Labels(reading.names)
     for part in reading.spread():
         checker.see(part)
     for piece, after in _with_the_next(reading.epochs(), _core.SPEEDS_BESIDE):
         labels.see(piece)
+        axes.see(piece)
         claimed = claims.claim(piece)
         ready = covariance_status(without_path(checker.check(claimed.epochs, after))).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
         steps.see(ready)
         epochs.put(ready.drop(AUXILIARY, strict=False))
     reading.pieces.close()
-    return InPieces(reading, epochs, claimed, checker.plausibility(), labels.usual(), steps.median_s())
+    return InPieces(reading, epochs, claimed, checker.plausibility(), labels.usual(), steps.median_s(), axes.words())
 
 
 def _with_the_next(pieces: Iterator[pl.DataFrame], n: int) -> Iterator[tuple[pl.DataFrame, pl.DataFrame]]:

@@ -10,21 +10,15 @@ import polars as pl
 
 from navbound import evaluation
 from navbound.methods import method
-from navbound.read.checks.stated import ALERT, ERROR, WORSE
+from navbound.read.checks.neighbours import COLUMNS as NEIGHBOURS
+from navbound.read.checks.stated import ALERT, CONTAINMENT, ERROR, WORSE
 from navbound.records.run import PhaseSummary, Summary, TrackSummary, Worst
 from navbound.run.inputs.doubts import Doubts
-from navbound.run.summarise import (
-    OUTSIDE,
-    Gaps,
-    VerdictFacts,
-    by_status,
-    judged_margins,
-    listed,
-    method_result,
-    verdict_of,
-    with_margins,
-    worst_of,
-)
+from navbound.run.summary.margins import OUTSIDE, by_status, judged_margins, with_margins, worst_of
+from navbound.run.summary.methods import method_result
+from navbound.run.summary.missing import Gaps
+from navbound.run.summary.summarise import listed
+from navbound.run.summary.verdict import VerdictFacts, verdict_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -112,7 +106,7 @@ def _groups(margins: pl.DataFrame, by: list[str]) -> Iterator[tuple[tuple[Any, .
 
 
 def summary(material: Material, epochs: Frames, events: pl.DataFrame, ids: Sequence[str], risks: tuple[float, float]) -> Summary:
-    """Every record of summary.json, as :func:`navbound.run.summarise.summarise` makes them.
+    """Every record of summary.json, as :func:`navbound.run.summary.summarise.summarise` makes them.
 
     Parameters
     ----------
@@ -128,8 +122,8 @@ def summary(material: Material, epochs: Frames, events: pl.DataFrame, ids: Seque
         Of accuracy and of integrity. [1]
     """
     judging = ids[0]
-    read = ("track", "time_ns", "phase", "status", "rnp_m", "along_m", "est_lat_rad", "est_lon_rad", "integrity_compared_m")
-    doubted = ("hpl_m", ERROR, ALERT, WORSE)
+    read = ("phase", "rnp_m", "along_m", "integrity_compared_m", *NEIGHBOURS)
+    doubted = ("hpl_m", ERROR, ALERT, WORSE, CONTAINMENT)
     names = [*read, *doubted, method(judging).column, method(judging).integrity_column]
     sums = _Sums(material, judging, events)
     for piece in epochs.select([name for name in names if name in epochs.columns]):

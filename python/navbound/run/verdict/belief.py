@@ -13,6 +13,7 @@ from navbound.methods import column_of, method
 from navbound.records.run import Belief, BoundCheck, LevelCheck
 from navbound.run.verdict import rule
 from navbound.status import USABLE
+from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -180,6 +181,20 @@ def _outside(epochs: pl.DataFrame, bound: str, error: str) -> tuple[int, int]:
     return int((size[known] > limit[known]).sum()), int(known.sum())
 
 
+LEVEL_SIGMAS = 6.0
+"""Standard deviations in a protection level, where a copy is looked for: 5.33 to 6 by the levels of SBAS (DO-229, standard). [1]"""
+
+
+def copied(epochs: pl.DataFrame) -> tuple[int, int]:
+    """Epochs of errors and levels at which the truth is the estimate, by a sixth of the level as sigma; and epochs with a true error."""
+    size = np.fmax(np.abs(column_of(epochs, "hpe_m")), np.hypot(column_of(epochs, "nse_e_m"), column_of(epochs, "nse_n_m")))
+    known = np.isfinite(size)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        improbable = -np.expm1(-0.5 * (LEVEL_SIGMAS * size / column_of(epochs, "hpl_m")) ** 2) <= SAME_AT
+    same = (size == 0.0) | ((size <= SAME_M) & improbable)
+    return int(same[known].sum()), int(known.sum())
+
+
 def _copied_share(epochs: pl.DataFrame) -> float:
     """Share of the epochs with truth where it is the estimate itself: no error at all, or one that no true covariance leaves so small."""
     if not {"nse_e_m", "nse_n_m"} <= set(epochs.columns):
@@ -201,7 +216,7 @@ def _copied_share(epochs: pl.DataFrame) -> float:
 
 def _magnitude(epochs: pl.DataFrame) -> evaluation.Magnitude | None:
     """The horizontal error in units of its covariance; None where no epoch has both."""
-    names = ("nse_e_m", "nse_n_m", "cov_ee_m2", "cov_en_m2", "cov_nn_m2")
+    names = ("nse_e_m", "nse_n_m", *HORIZONTAL)
     if not set(names) <= set(epochs.columns):
         return None
     east, north, ee, en, nn = (column_of(epochs, name) for name in names)

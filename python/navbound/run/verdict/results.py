@@ -9,7 +9,7 @@ import numpy as np
 from navbound import _core
 from navbound.run.verdict.numbers import length, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS
-from navbound.run.verdict.words import COPIED, contradicted_words, refuted_words, truth_words
+from navbound.run.verdict.words import COPIED, contradicted_words, covered_words, refuted_words, truth_words
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
@@ -48,6 +48,8 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
             f"Between epochs nothing is known: {verdict.n_long_steps} steps are longer than a position takes to become stale, "
             f"the longest {verdict.longest_step_s:.6g} s."
         )
+    if verdict.unread:
+        parts.append(f"Not understood and not used, though the names speak of accuracy or integrity: {'; '.join(verdict.unread)}.")
     parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
     parts += truth_words(verdict)
     return " ".join(parts)
@@ -55,11 +57,19 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
 
 def _assumed(verdict: Verdict, covariance: CovarianceOrigin) -> str:
     named = {
-        "sigma_typed": "" if covariance.sigma_m is None else f"a sigma of {covariance.sigma_m:g} m in each axis, typed by the user",
+        "sigma_typed": _typed(covariance),
         "sigma_coded": "a sigma made of a quality indicator (NACp, NIC or Rc)",
         "no_path": "no path (the circle of the position error is compared with RNP, without flight technical error)",
     }
     return f"Assuming {' and '.join(named[each] for each in verdict.assumed)}" if verdict.assumed else ""
+
+
+def _typed(covariance: CovarianceOrigin) -> str:
+    if covariance.sigma_m is None:
+        return ""
+    low, high = covariance.own_low_m, covariance.own_high_m
+    own = "" if low is None or high is None else f" over the file's own accuracy (sigma {low:.3g} to {high:.3g} m)"
+    return f"a sigma of {covariance.sigma_m:g} m in each axis, typed by the user{own}"
 
 
 def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
@@ -78,7 +88,7 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
     return (
         f"{HEADLINES[verdict.id]} {verdict.requirement}: the {accuracy} bound is within RNP at {share(verdict.share_inside)} of "
         f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; "
-        f"{shares}{_thin(verdict)}."
+        f"{shares}{covered_words(verdict.belief)}{_thin(verdict)}."
     )
 
 
@@ -120,7 +130,18 @@ def _not_shown(verdict: Verdict) -> list[str]:
         why.append(f"The recording itself states an alert at {verdict.n_stated_alert} epochs.")
     if verdict.n_stated_worse:
         why.append(
-            f"The recording itself states a 95 % radius (EPU) at {verdict.n_stated_worse} epochs that is larger than the covariance allows."
+            f"The recording itself states an accuracy (95 % radius: EPU, NACp, sigma) at {verdict.n_stated_worse} epochs that is worse "
+            "than the covariance allows."
+        )
+    if verdict.n_stated_uncontained:
+        why.append(
+            f"The recording itself states a containment radius (Rc, NIC) beyond twice RNP, or none, at "
+            f"{verdict.n_stated_uncontained} epochs."
+        )
+    if verdict.n_apart and verdict.largest_apart_m is not None:
+        why.append(
+            f"{verdict.n_apart} positions stand further from the line between their neighbours than their covariances allow "
+            f"(up to {verdict.largest_apart_m:.0f} m): two receivers under one name, or a covariance that is too small."
         )
     if verdict.n_without_level:
         why.append(

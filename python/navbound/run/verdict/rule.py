@@ -52,6 +52,10 @@ class TrackFacts:
         With status ok or degraded, where the recording itself states an error beyond RNP or an alert.
     n_without_level : int
         Judged, of tracks with a column of horizontal protection levels that holds none.
+    n_apart : int
+        Positions that contradict those beside them by more than their covariances allow.
+    truth_lost : bool
+        A truth was there, and none of it can be one.
     """
 
     n_epochs: int
@@ -64,6 +68,8 @@ class TrackFacts:
     n_known_beyond: int = 0
     n_stated_against: int = 0
     n_without_level: int = 0
+    truth_lost: bool = False
+    n_apart: int = 0
 
 
 def of_tracks(facts: TrackFacts) -> VerdictId:
@@ -74,7 +80,7 @@ def of_tracks(facts: TrackFacts) -> VerdictId:
         return "nothing_judged"
     if facts.n_outside or facts.n_beyond_alert_limit:
         return "outside"
-    doubts = facts.n_implausible + facts.n_stated_against + facts.n_without_level
+    doubts = facts.n_implausible + facts.n_stated_against + facts.n_without_level + facts.n_apart + facts.truth_lost
     if doubts or facts.belief in UNSUPPORTED or not facts.n_judged >= LEAST_SHARE * facts.n_epochs:
         return "not_shown"
     return "inside"
@@ -98,6 +104,8 @@ class LevelFacts:
         Largest probability of as many for a level that keeps its integrity risk; None where there are none.
     truth_known : bool
         Errors are known.
+    copied : bool
+        Where they are known the truth is the estimate itself.
     """
 
     n_expected: int
@@ -106,6 +114,7 @@ class LevelFacts:
     n_misleading_events: int
     p_misleading: float | None
     truth_known: bool
+    copied: bool = False
 
 
 _GRAVEST: tuple[VerdictId, ...] = ("not_believable", "nothing_judged", "outside", "not_shown", "inside")
@@ -124,7 +133,7 @@ def _of_level(facts: LevelFacts) -> VerdictId:
         return "nothing_judged"
     if facts.n_solution - facts.n_available > (1.0 - LEAST_SHARE) * facts.n_expected:
         return "outside"
-    if facts.n_misleading_events or not facts.truth_known or not facts.n_available >= LEAST_SHARE * facts.n_expected:
+    if facts.copied or facts.n_misleading_events or not facts.truth_known or not facts.n_available >= LEAST_SHARE * facts.n_expected:
         return "not_shown"
     return "inside"
 

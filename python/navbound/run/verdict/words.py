@@ -60,6 +60,10 @@ def _false(bounds: list[BoundCheck], levels: list[LevelCheck]) -> list[str]:
 
 def truth_words(verdict: Verdict) -> list[str]:
     """How far truth is known, and how often each bound contained the error, with its interval and what the epochs are worth."""
+    return ([verdict.truth_doubts] if verdict.truth_doubts else []) + _checked(verdict)
+
+
+def _checked(verdict: Verdict) -> list[str]:
     belief = verdict.belief
     if not verdict.truth_known:
         return ["No truth: the covariance could not be checked."]
@@ -77,6 +81,13 @@ COPIED = (
     "The truth is the estimate itself: at most of the epochs their distance is nil, or far below what two measurements leave. "
     "It says nothing of the errors."
 )
+
+
+def covered_words(belief: Belief | None) -> str:
+    """The share of the checked epochs whose truth is known, where it is not all; for the first sentence."""
+    if belief is None or not 0 < belief.n_truth < belief.n_epochs:
+        return ""
+    return f"; the true position is known at {share(belief.n_truth / belief.n_epochs)} of the checked epochs only"
 
 
 def _few(belief: Belief) -> list[str]:

@@ -16,8 +16,8 @@ from navbound.methods import column_of
 from navbound.records.base import Record
 from navbound.run import fly
 from navbound.run.campaign import check_flights
-from navbound.run.summarise import COVARIANCE_COLUMNS
 from navbound.studies.anp_comparison.table import render
+from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -174,7 +174,7 @@ def _case(name: str, scenario: str, flights: int, **work: Unpack[Work]) -> Case:
     late = (epochs["time_ns"] - epochs["time_ns"].min() >= SKIP_S * 1e9) & epochs["cov_uu_m2"].is_not_null()
     epochs = epochs.filter(late)
     error = np.column_stack([column_of(epochs, f"nse_{axis}_m") for axis in "enu"])
-    ee, en, nn, eu, nu, uu = (column_of(epochs, column) for column in COVARIANCE_COLUMNS)
+    ee, en, nn, eu, nu, uu = (column_of(epochs, column) for column in COVARIANCE)
     covariance = np.moveaxis(np.array([[ee, en, eu], [en, nn, nu], [eu, nu, uu]]), 2, 0)
     track = epochs["track"].rle_id().to_numpy()
     sigma = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))

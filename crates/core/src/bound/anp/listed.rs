@@ -201,9 +201,9 @@ fn error_of<'a>(epoch: &'a Epoch, method: &'static str) -> Result<Error<'a>, Una
 /// The covariance of an epoch whose mean is zero; the fits know no other.
 fn centred<'a>(epoch: &'a Epoch, method: &'static str) -> Result<&'a Covariance<Enu>, Unavailable> {
     if let Some(mean) = &epoch.mean
-        && !(mean.vector().amax() == 0.0)
+        && let Some(value) = mean.vector().iter().find(|m| !(**m == 0.0))
     {
-        return Err(Unavailable::Invalid { field: "mean", value: mean.vector().amax(), unit: "m", domain: "{0}: the fit has no mean" });
+        return Err(Unavailable::Invalid { field: "mean", value: *value, unit: "m", domain: "{0}: the fit has no mean" });
     }
     epoch.covariance_for(method)
 }

@@ -3,7 +3,7 @@
 use super::accept::{accept, accepted_axes};
 use super::radial::flat;
 use crate::quantity::{OutOfDomain, Risk};
-use crate::special::float::{ln, sqrt};
+use crate::special::float::{ln, sqrt, within};
 use crate::special::normal::{density, two_sided_factor};
 use crate::special::quadrature::integrate_broken;
 use crate::special::radius::strip::line;
@@ -43,12 +43,13 @@ const NAMES: [&str; 2] = ["covariance", "mean"];
 pub fn rectangle(covariance: [f64; 3], mean: [f64; 2], half_sizes: [f64; 2]) -> Result<Sides, OutOfDomain> {
     check([("half_cross_m", half_sizes[0]), ("half_up_m", half_sizes[1])], &mean)?;
     let [cc, cv, vv] = covariance;
-    let accepted = accept([cc, cv, vv, 0.0, 0.0, 0.0], NAMES[0])?;
-    Ok(rectangle_sides([accepted[0], accepted[1], accepted[2]], mean, half_sizes))
+    // As it came: what is accepted may be turned to its principal axes, which the sides of a rectangle do notice.
+    accept([cc, cv, vv, 0.0, 0.0, 0.0], NAMES[0])?;
+    Ok(rectangle_sides(covariance, mean, half_sizes))
 }
 
 fn rectangle_sides([cc, cv, vv]: [f64; 3], [mc, mv]: [f64; 2], [a, b]: [f64; 2]) -> Sides {
-    if vv == 0.0 {
+    if !(vv > 0.0) {
         return both(given(0.0, mv, b), given(sqrt(cc.max(0.0)), mc, a));
     }
     let (slope, sigma) = (cv / vv, sqrt(vv));
@@ -137,7 +138,7 @@ struct Disc {
 fn disc_given([ee, en, nn]: [f64; 3]) -> Result<Disc, OutOfDomain> {
     // A conditional variance may be rounding: what is left of a perfectly correlated error.
     let (ee, nn) = (ee.max(0.0), nn.max(0.0));
-    let en = en.clamp(-sqrt(ee * nn), sqrt(ee * nn));
+    let en = within(en, -sqrt(ee * nn), sqrt(ee * nn));
     let (variances, axes) = accepted_axes(flat([ee, en, nn, 0.0, 0.0, 0.0]), NAMES[0])?;
     Ok(Disc { variances, sigmas: [sqrt(variances[0]), sqrt(variances[1])], axes })
 }

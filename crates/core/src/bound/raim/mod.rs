@@ -174,7 +174,7 @@ impl Monitor {
         let mut worst = ExclusionLevels { hel: detection.hpl, vel: detection.vpl };
         for i in 0..self.epoch.count {
             // One that moves nothing is the only one of its clock: without it all stays as it is.
-            if self.epoch.gain[i].amax() <= UNMOVED {
+            if self.epoch.gain[i].iter().all(|metres| metres.abs() <= UNMOVED) {
                 continue;
             }
             let (hel, vel) = self.without(i);

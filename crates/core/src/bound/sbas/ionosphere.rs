@@ -399,6 +399,129 @@ mod tests {
         assert!(whole > 850_000 && whole < 1201 * 721);
     }
 
+    /// Any value at every point, by its place.
+    fn rough(lat_deg: f64, lon_deg: f64) -> f64 {
+        5.0 + (0.7 * lat_deg + 0.31 * lon_deg).sin() + 2.0 * (0.13 * lon_deg - 0.2 * lat_deg).cos()
+    }
+
+    fn wrapped(lon_deg: f64) -> f64 {
+        (lon_deg + 180.0).rem_euclid(360.0) - 180.0
+    }
+
+    /// A.4.4.10.3 in words: along the row at 85 degrees to the meridians of the row at 75, then the four points.
+    fn between_75_and_85(lat_deg: f64, lon_deg: f64) -> f64 {
+        let sign = lat_deg.signum();
+        let first = if sign > 0.0 { -180.0 } else { -170.0 };
+        let row_85 = |lon: f64| {
+            let west = first + 30.0 * ((lon - first) / 30.0).floor();
+            let x = (lon - west) / 30.0;
+            rough(85.0 * sign, wrapped(west)) * (1.0 - x) + rough(85.0 * sign, wrapped(west + 30.0)) * x
+        };
+        let west = 10.0 * (lon_deg / 10.0).floor();
+        let (x, y) = ((lon_deg - west) / 10.0, (lat_deg.abs() - 75.0) / 10.0);
+        let row_75 = |lon: f64| rough(75.0 * sign, wrapped(lon));
+        (1.0 - y) * ((1.0 - x) * row_75(west) + x * row_75(west + 10.0)) + y * ((1.0 - x) * row_85(west) + x * row_85(west + 10.0))
+    }
+
+    /// A.4.4.10.3 beyond 85 degrees: y = (|latitude| - 85) / 10, x = (longitude - west) / 90 (1 - 2 y) + y.
+    fn around_the_pole(lat_deg: f64, lon_deg: f64) -> f64 {
+        let sign = lat_deg.signum();
+        let first = if sign > 0.0 { -180.0 } else { -140.0 };
+        let west = first + 90.0 * ((lon_deg - first) / 90.0).floor();
+        let y = (lat_deg.abs() - 85.0) / 10.0;
+        let x = (lon_deg - west) / 90.0 * (1.0 - 2.0 * y) + y;
+        let corner = |turn: f64| rough(85.0 * sign, wrapped(west + turn));
+        (1.0 - x) * (1.0 - y) * corner(0.0) + x * (1.0 - y) * corner(90.0) + x * y * corner(180.0) + (1.0 - x) * y * corner(270.0)
+    }
+
+    #[test]
+    fn rough_values_near_the_poles_are_those_of_the_standards_words() {
+        let grid = world(rough);
+        for step in 0..=3590 {
+            let lon = -179.5 + 0.1 * f64::from(step);
+            for (k, sign) in [(0, 1.0), (1, -1.0), (2, 1.0), (3, -1.0), (7, 1.0), (9, -1.0)] {
+                let lat = sign * (75.3 + f64::from(k));
+                let found = grid.vertical(at(lat, lon)).unwrap();
+                let expected = between_75_and_85(lat, lon);
+                // A few roundings of values below ten.
+                assert!((found.delay_m - expected).abs() < 1e-12 && (found.variance_m2 - 2.0 * expected).abs() < 1e-11, "{lat} {lon}");
+                let lat = sign * (85.1 + 0.5 * f64::from(k));
+                let found = grid.vertical(at(lat, lon)).unwrap();
+                assert!((found.delay_m - around_the_pole(lat, lon)).abs() < 1e-12, "{lat} {lon}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_silent_or_forbidden_point_near_the_poles_gives_nothing_beside_it() {
+        for point in [Point::NotMonitored, Point::DoNotUse, Point::Absent] {
+            let mut grid = world(|_, _| 3.0);
+            set(&mut grid, 75, 20, point);
+            set(&mut grid, -85, 40, point);
+            for (lat, lon) in [(80.0, 15.0), (80.0, 25.0), (-80.0, 35.0), (-80.0, 45.0), (-87.0, 45.0), (-87.0, 10.0)] {
+                assert_eq!(grid.vertical(at(lat, lon)), None, "{point:?} {lat} {lon}");
+            }
+            for (lat, lon) in [(80.0, 31.0), (80.0, 9.0), (-80.0, 75.0), (86.0, 15.0)] {
+                assert!(grid.vertical(at(lat, lon)).is_some(), "{point:?} {lat} {lon}");
+            }
+        }
+    }
+
+    /// Weights of a triangle's corners are those at which the three places add up to the point: three equations, solved as they are.
+    #[test]
+    fn a_triangle_serves_what_lies_inside_it_and_nothing_else() {
+        let places = [[1.0, 1.0], [0.0, 1.0], [0.0, 0.0], [1.0, 0.0]];
+        for missing in 0..4 {
+            for i in 0..=40 {
+                for j in 0..=40 {
+                    // Off the diagonals, where rounding would decide.
+                    let (x, y) = ((f64::from(i) + 0.013) / 41.0, (f64::from(j) + 0.007) / 41.0);
+                    let kept: Vec<usize> = (0..4).filter(|k| *k != missing).collect();
+                    let m = nalgebra::Matrix3::from_fn(|r, c| if r < 2 { places[kept[c]][r] } else { 1.0 });
+                    let w = m.lu().solve(&Vector3::new(x, y, 1.0)).unwrap();
+                    match triangle(missing, x, y) {
+                        Some(found) => {
+                            assert!(w.iter().all(|w| *w >= -1e-12), "{missing} {x} {y}");
+                            assert_eq!(found[missing], 0.0);
+                            kept.iter().zip(w.iter()).for_each(|(k, w)| assert!((found[*k] - w).abs() < 1e-14));
+                        }
+                        None => assert!(w.iter().any(|w| *w < 0.0), "{missing} {x} {y}"),
+                    }
+                }
+            }
+        }
+    }
+
+    /// Every pattern of one cell's corners, by the rule as it is written: forbidden, silent or absent points, and three that remain.
+    #[test]
+    fn every_pattern_of_a_cell_is_served_by_the_rule() {
+        let corners = [(40, 140), (40, 135), (35, 135), (35, 140)];
+        let values = [4.0, 7.0, 1.0, 2.0];
+        for pattern in 0..81_usize {
+            let kinds: Vec<usize> = (0..4).map(|k| pattern / 3_usize.pow(k) % 3).collect();
+            let mut grid = Grid::default();
+            for k in 0..4 {
+                let point = [Point::Value(values[k], 2.0 * values[k]), Point::NotMonitored, Point::DoNotUse][kinds[k]];
+                set(&mut grid, corners[k].0, corners[k].1, point);
+            }
+            for (x, y) in [(0.2, 0.3), (0.7, 0.9), (0.8, 0.1), (0.1, 0.6)] {
+                let found = grid.vertical(at(35.0 + 5.0 * y, 135.0 + 5.0 * x));
+                let silent: Vec<usize> = (0..4).filter(|k| kinds[*k] == 1).collect();
+                let weights = match silent.len() {
+                    _ if kinds.contains(&2) => None,
+                    0 => Some([x * y, (1.0 - x) * y, (1.0 - x) * (1.0 - y), x * (1.0 - y)]),
+                    1 => triangle(silent[0], x, y),
+                    _ => None,
+                };
+                let expected = weights.map(|w| (0..4).map(|k| w[k] * if kinds[k] == 0 { values[k] } else { 0.0 }).sum::<f64>());
+                match (found, expected) {
+                    (Some(f), Some(e)) => assert!((f.delay_m - e).abs() < 1e-12 && (f.variance_m2 - 2.0 * e).abs() < 1e-12, "{kinds:?}"),
+                    (f, e) => assert!(f.is_none() && e.is_none(), "{kinds:?} {x} {y}: {f:?} {e:?}"),
+                }
+            }
+        }
+    }
+
     proptest! {
         // Bilinear interpolation is exact on a plane; the sum of a few products loses some 1e-14 of 30. Up to the last cell before the date line,
         // where a plane in longitude jumps.

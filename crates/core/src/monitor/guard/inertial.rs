@@ -91,7 +91,7 @@ impl Plausibility {
         let dt = sample.interval_s;
         let now = [sample.velocity_mps / dt, sample.angle_rad / dt];
         let frozen = self.repeats(&[sample.velocity_mps, sample.angle_rad]);
-        let beyond = (0..2).any(|k| !(now[k].amax() <= self.envelope.most[k]));
+        let beyond = (0..2).any(|k| !within(&now[k], self.envelope.most[k]));
         let saturated = self.saturates(&now);
         let clipped = self.clips(&[sample.velocity_mps, sample.angle_rad]);
         let changed = self.changes(sample.time, &now[0]);
@@ -116,7 +116,7 @@ impl Plausibility {
     }
 
     fn saturates(&mut self, now: &[Vector3<f64>; 2]) -> bool {
-        let yes = (0..2).any(|k| !(now[k].amax() < SATURATED.0 * self.envelope.range[k]));
+        let yes = (0..2).any(|k| !now[k].iter().all(|x| x.abs() < SATURATED.0 * self.envelope.range[k]));
         self.saturated = if yes { self.saturated + 1 } else { 0 };
         self.saturated >= SATURATED.1
     }
@@ -156,6 +156,239 @@ impl Plausibility {
         }
         self.changed = Some((time, *force));
         // Over a hole a change says nothing.
-        dt <= 2.0 * CHANGE_S && !((force - before).amax() <= self.envelope.change_mps3 * dt)
+        dt <= 2.0 * CHANGE_S && !within(&(force - before), self.envelope.change_mps3 * dt)
+    }
+}
+
+/// Whether no component is beyond a size; one that is no number is, which a largest component would pass over.
+fn within(v: &Vector3<f64>, most: f64) -> bool {
+    v.iter().all(|x| x.abs() <= most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP_S: f64 = 0.02;
+
+    /// Number of the first sample that is doubted, counted from one; samples without a fault are noisy.
+    fn first_doubt(
+        envelope: Envelope,
+        acceleration: Option<f64>,
+        fault: impl Fn(i32, &mut Vector3<f64>, &mut Vector3<f64>),
+    ) -> Option<i32> {
+        let mut plausibility = Plausibility::new(envelope);
+        (1..=200).find(|k| {
+            let noise = f64::from(k * 7919 % 1009) * 1e-5;
+            let (mut force, mut rate) = (Vector3::new(noise, -noise, 9.8 + noise), Vector3::new(noise, 2.0 * noise, -noise) * 1e-2);
+            fault(*k, &mut force, &mut rate);
+            let time = GpsTime::default().plus_seconds(f64::from(*k) * STEP_S);
+            let sample = ImuIncrement { time, interval_s: STEP_S, velocity_mps: force * STEP_S, angle_rad: rate * STEP_S };
+            !plausibility.holds(&sample, acceleration)
+        })
+    }
+
+    const REPEATS: Envelope = Envelope { never_repeats: true, ..Envelope::NONE };
+
+    #[test]
+    fn a_healthy_unit_is_never_doubted() {
+        let tight = Envelope { range: [20.0, 1.0], most: [12.0, 0.1], change_mps3: 1.0, never_repeats: true };
+        assert_eq!(first_doubt(tight, Some(0.5), |_, _, _| ()), None);
+        assert_eq!(
+            first_doubt(Envelope::NONE, Some(0.0), |_, f, r| (*f, *r) = (Vector3::zeros(), Vector3::zeros())),
+            None,
+            "nothing is declared"
+        );
+    }
+
+    #[test]
+    fn samples_that_repeat_are_doubted_at_their_number() {
+        let (force, rate) = (Vector3::new(0.1, 0.2, 9.7), Vector3::new(1e-3, 2e-3, 3e-3));
+        // Rates alone 4, forces alone 12, both 4, zeros 3; begun at the tenth sample. What the unit has never exceeded is no stop: the
+        // first samples are larger.
+        let larger = |k: i32, f: &mut Vector3<f64>, r: &mut Vector3<f64>| {
+            if k == 1 {
+                (*f, *r) = (Vector3::repeat(30.0), Vector3::repeat(1.0))
+            }
+        };
+        assert_eq!(
+            first_doubt(REPEATS, None, |k, f, r| {
+                larger(k, f, r);
+                if k >= 10 {
+                    *r = rate
+                }
+            }),
+            Some(13)
+        );
+        assert_eq!(
+            first_doubt(REPEATS, None, |k, f, r| {
+                larger(k, f, r);
+                if k >= 10 {
+                    *f = force
+                }
+            }),
+            Some(21)
+        );
+        assert_eq!(
+            first_doubt(REPEATS, None, |k, f, r| {
+                larger(k, f, r);
+                if k >= 10 {
+                    (*f, *r) = (force, rate)
+                }
+            }),
+            Some(13)
+        );
+        let zeros = |k: i32, f: &mut Vector3<f64>, r: &mut Vector3<f64>| {
+            larger(k, f, r);
+            if k >= 10 {
+                (*f, *r) = (Vector3::zeros(), Vector3::zeros())
+            }
+        };
+        assert_eq!(first_doubt(REPEATS, None, zeros), Some(12));
+        assert_eq!(first_doubt(Envelope { most: [50.0; 2], ..Envelope::NONE }, None, zeros), None, "samples of this unit may repeat");
+        // A run that is broken begins anew: three equal rates, another, three equal ones.
+        assert_eq!(
+            first_doubt(REPEATS, None, |k, f, r| {
+                larger(k, f, r);
+                if k >= 10 && k % 4 != 0 {
+                    *r = rate
+                }
+            }),
+            None
+        );
+    }
+
+    #[test]
+    fn what_the_aircraft_cannot_do_and_what_is_no_number_is_doubted_at_once() {
+        let most = Envelope { most: [12.0, 0.5], ..Envelope::NONE };
+        for (force, rate, doubt) in
+            [(12.0, 0.5, None), (12.001, 0.0, Some(30)), (9.8, 0.501, Some(30)), (f64::NAN, 0.0, Some(30)), (9.8, f64::NAN, Some(30))]
+        {
+            for sign in [1.0, -1.0] {
+                let found = first_doubt(most, None, |k, f, r| {
+                    if k == 30 {
+                        (f.z, r.x) = (sign * force, sign * rate)
+                    }
+                });
+                assert_eq!(found, doubt, "{force} {rate}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_range_is_met_twice_before_it_is_doubted() {
+        let range = Envelope { range: [20.0, 1.0], ..Envelope::NONE };
+        for (force, rate) in [(19.7, 0.0), (-19.7, 0.0), (9.8, 0.99), (9.8, -0.99)] {
+            let at = |from: i32, to: i32| {
+                first_doubt(range, None, |k, f, r| {
+                    if k >= from && k <= to {
+                        (f.z, r.y) = (force, rate)
+                    }
+                })
+            };
+            assert_eq!((at(30, 30), at(30, 31)), (None, Some(31)), "{force} {rate}");
+        }
+        // 98 % of the range is not reached.
+        assert_eq!(first_doubt(range, None, |_, f, r| (f.z, r.y) = (19.5, 0.97)), None);
+        assert_eq!(
+            first_doubt(range, None, |k, f, _| if k == 30 || k == 32 {
+                f.z = 19.9
+            }),
+            None
+        );
+    }
+
+    #[test]
+    fn a_largest_value_met_three_times_is_a_stop() {
+        let clip = |most: i32| {
+            first_doubt(REPEATS, None, move |k, f, _| {
+                if k >= 30 && k < 30 + most {
+                    f.y = -15.0
+                }
+            })
+        };
+        assert_eq!((clip(2), clip(3)), (None, Some(32)));
+        // A larger one in between is a new stop, a smaller one begins anew.
+        assert_eq!(
+            first_doubt(REPEATS, None, |k, f, _| if (30..34).contains(&k) {
+                f.y = [15.0, 15.0, 16.0, 16.0][(k - 30) as usize]
+            }),
+            None
+        );
+        assert_eq!(
+            first_doubt(REPEATS, None, |k, f, _| if (30..34).contains(&k) {
+                f.y = [15.0, 15.0, 14.0, 15.0][(k - 30) as usize]
+            }),
+            None
+        );
+        assert_eq!(
+            first_doubt(REPEATS, None, |k, _, r| if (30..33).contains(&k) {
+                r.x = 2.0
+            }),
+            Some(32)
+        );
+    }
+
+    #[test]
+    fn a_force_that_changes_faster_than_declared_is_doubted_over_a_tenth_of_a_second() {
+        let change = Envelope { change_mps3: 10.0, ..Envelope::NONE };
+        // The tenths end with the samples 1, 6, 11, 16: one metre per second squared is allowed from end to end.
+        for (step, doubt) in [(0.9, None), (1.1, Some(16)), (-1.1, Some(16)), (f64::NAN, Some(12))] {
+            let found = first_doubt(change, None, |k, f, _| {
+                if k >= 12 {
+                    f.x += step
+                }
+            });
+            assert_eq!(found, doubt, "{step}");
+        }
+        let mut plausibility = Plausibility::new(change);
+        let mut hear = |t: f64, force: f64| {
+            let time = GpsTime::default().plus_seconds(t);
+            let velocity_mps = Vector3::new(force, 0.0, 9.8) * STEP_S;
+            plausibility.holds(&ImuIncrement { time, interval_s: STEP_S, velocity_mps, angle_rad: Vector3::zeros() }, None)
+        };
+        assert!(hear(0.0, 0.0) && hear(0.2, 1.9), "two metres in two tenths are allowed");
+        assert!(!hear(0.4, 4.0), "2.1 are not");
+        assert!(hear(0.65, 9.0), "a hole says nothing");
+        assert!(hear(0.3, 0.0) && hear(0.4, 0.9) && !hear(0.5, 2.0), "times that run backwards begin anew");
+    }
+
+    #[test]
+    fn a_weight_that_gravity_and_flight_do_not_give_is_doubted_where_the_satellites_are_steady() {
+        let declared = Envelope { most: [1e3, 1e3], ..Envelope::NONE };
+        let constant =
+            |size: f64, acceleration: Option<f64>| first_doubt(declared, acceleration, |_, f, _| *f = Vector3::new(0.0, 0.6, 0.8) * size);
+        // The mean of the first second is known with its fiftieth sample, or the next where the sum of fiftieths rounds below one.
+        for size in [2.9, 29.5, 0.0] {
+            assert!(matches!(constant(size, Some(2.9)), Some(50 | 51)), "{size}");
+            assert_eq!((constant(size, Some(3.1)), constant(size, None)), (None, None));
+        }
+        assert_eq!((constant(2.95, Some(0.0)), constant(29.3, Some(0.0))), (None, None));
+        // A mean over a second: forty times a second's twentieth of what is missing.
+        let lost = first_doubt(declared, Some(0.0), |k, f, _| {
+            if k > 100 {
+                *f = Vector3::zeros()
+            }
+        })
+        .unwrap();
+        // (1 - 1 / 50)^n < 0.3 for n above 59.6.
+        assert!((159..=162).contains(&lost), "{lost}");
+    }
+
+    #[test]
+    fn an_envelope_without_room_is_refused_by_name() {
+        assert!(Envelope::NONE.check().is_ok());
+        for bad in [0.0, -1.0, f64::NAN] {
+            let none = Envelope::NONE;
+            for (envelope, argument) in [
+                (Envelope { range: [bad, 1.0], ..none }, "force_range_mps2"),
+                (Envelope { range: [1.0, bad], ..none }, "rate_range_radps"),
+                (Envelope { most: [bad, 1.0], ..none }, "force_most_mps2"),
+                (Envelope { most: [1.0, bad], ..none }, "rate_most_radps"),
+                (Envelope { change_mps3: bad, ..none }, "force_change_mps3"),
+            ] {
+                assert_eq!(envelope.check().unwrap_err().argument, argument);
+            }
+        }
     }
 }

@@ -114,3 +114,49 @@ impl Default for Shares {
         Self::new()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(second: f64) -> GpsTime {
+        GpsTime::default().plus_seconds(second)
+    }
+
+    /// What is said after each of these mean squares, a second apart.
+    fn said(squares: &[f64]) -> Vec<Tuning> {
+        let mut shares = Shares::new();
+        let hear = |(k, s): (usize, &f64)| {
+            shares.innovations(at(k as f64), &Block { square: 4.0 * s, freedom: 4 });
+            shares.tuning()
+        };
+        squares.iter().enumerate().map(hear).collect()
+    }
+
+    #[test]
+    fn the_declared_errors_stand_until_five_instants_say_otherwise() {
+        assert!(matches!(Shares::new().tuning(), Tuning::AsDeclared));
+        for square in [3.1, 50.0, f64::NAN, f64::INFINITY] {
+            let found = said(&[square; 20]);
+            // The weight of five seconds of a mean over sixty is 4.84: the sixth passes five.
+            assert!(found[..5].iter().all(|t| matches!(t, Tuning::AsDeclared)), "{square}");
+            assert!(found[5..].iter().all(|t| matches!(t, Tuning::Foreign)), "{square}");
+        }
+        assert!(said(&[2.9; 300]).iter().all(|t| matches!(t, Tuning::AsDeclared)));
+    }
+
+    #[test]
+    fn a_foreign_filter_is_so_until_the_mean_falls_below_half() {
+        // The mean of n squares of 8 and m of 1 with weights exp(-age / 60 s), summed as they are.
+        let squares: Vec<f64> = (0..400).map(|k| if k < 60 { 8.0 } else { 1.0 }).collect();
+        let mean = |now: usize| {
+            let weighted = |f: &dyn Fn(usize) -> f64| (0..=now).map(|k| f(k) * (-((now - k) as f64) / 60.0).exp()).sum::<f64>();
+            weighted(&|k| squares[k]) / weighted(&|_| 1.0)
+        };
+        for (k, t) in said(&squares).iter().enumerate().skip(6) {
+            assert_eq!(matches!(t, Tuning::Foreign), mean(k) > 1.5, "{k}");
+        }
+        // One instant counts no more than ten.
+        assert!(said(&[&[1.0; 30][..], &[1e9], &[1.0; 30]].concat()).iter().all(|t| matches!(t, Tuning::AsDeclared)));
+    }
+}

@@ -6,7 +6,7 @@
 //! ```
 
 use super::AtRadius;
-use crate::special::float::{acos, ln, sin_cos, sqrt};
+use crate::special::float::{acos, ln, sin_cos, sqrt, within};
 use crate::special::normal::{density, tail};
 use crate::special::quadrature::integrate;
 
@@ -83,7 +83,7 @@ fn slice(sigma: f64, mean: f64, radius: f64, inner: impl Fn(f64) -> AtRadius) ->
 /// Where the integrands matter: around the point of the ball nearest to the mean, as far as the Gaussian factor stays above
 /// exp(-40) of it, plus what the inner factor may gain on the way.
 fn window(sigma: f64, mean: f64, radius: f64, inner: &impl Fn(f64) -> AtRadius) -> (f64, f64) {
-    let nearest = mean.clamp(-radius, radius);
+    let nearest = within(mean, -radius, radius);
     let (here, widest) = (inner(sqrt((radius - nearest) * (radius + nearest))), inner(radius));
     let gain = |best: f64, here: f64| if here > 0.0 && best > here { ln(best / here) } else { 0.0 };
     let allowance = DROPPED + EDGE + gain(1.0, here.outside).max(gain(widest.inside, here.inside));

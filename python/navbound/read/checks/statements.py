@@ -1,0 +1,203 @@
+"""Columns in which a recording states the validity or the integrity of its own positions: which names, and what their words mean.
+
+A word that is understood decides. A word or a column that is not understood, but speaks of integrity by its name, is named in the result.
+Names and codes as NMEA 0183, u-blox, NovAtel, MAVLink and RTKLIB write them (provenance: standard, from knowledge of the formats).
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import polars as pl
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+Effect = Literal["invalid", "alert"]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of statement.
+
+    Attributes
+    ----------
+    effect : {"invalid", "alert"}
+        What a word against the position does: the row has no valid position, or its receiver raised an alert.
+    names : frozenset of str
+        Columns, in lower case.
+    against, fine : frozenset of str
+        Words against the position, and words that speak for it or say nothing.
+    other_against : bool
+        Any word that is neither is against it. Numbers are, too, unless `numbers_unknown`.
+    numbers_unknown : bool
+        A number may mean either, and is not understood.
+    """
+
+    effect: Effect
+    names: frozenset[str]
+    against: frozenset[str]
+    fine: frozenset[str]
+    other_against: bool = False
+    numbers_unknown: bool = False
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+_NO = _words(
+    "0 -1 false f no n none v void invalid not_valid bad unusable fail failed lost off unhealthy unavailable not_available unreliable"
+)
+_YES = _words("1 true t yes y a valid ok good healthy on active available usable reliable")
+_NO_FIX = _words("0 -1 false no none no_fix nofix invalid not_valid lost v void n time time_only dr dead_reckoning estimated")
+_FIX = _words(
+    "2 3 4 5 6 9 true yes fix valid 2d 3d 2d_fix 3d_fix gps gnss dgps dgnss rtk rtk_fixed rtk_float fixed float sps pps ppp sbas single "
+    "autonomous differential a d r f p"
+)
+NO_ALERT = _words(
+    "normal none no ok off false 0 nan null n_a na good clear cleared pass passed nominal healthy valid available n safe in_use"
+)
+"""Words that state that there is no alert. Any other is one: nobody knows what it means, and it is not "normal"."""
+
+KINDS: tuple[Kind, ...] = (
+    Kind(
+        "invalid",
+        _words(
+            "valid is_valid validity position_valid pos_valid gps_valid gnss_valid fix_valid data_valid nav_valid solution_valid "
+            "location_valid usable reliable trusted healthy gps_ok gnss_ok position_ok pos_ok nav_ok integrity_ok raim_ok "
+            "fix_ok gnss_fix_ok "
+            "gnssfixok gps_available gnss_available raim_available"
+        ),
+        _NO,
+        _YES,
+        other_against=True,
+    ),
+    Kind("invalid", _words("fix gps_fix gnss_fix has_fix fix_status position_fix fixstatus gpsfix"), _NO_FIX, _FIX | {"1"}),
+    Kind("invalid", _words("fix_type fixtype gps_fix_type gnss_fix_type fix_mode gps_mode gnss_mode"), _NO_FIX | {"1"}, _FIX),
+    Kind(
+        "invalid",
+        _words("fix_quality gps_quality gps_qual gga_quality quality_indicator fixquality gps_quality_indicator"),
+        _NO_FIX | _words("6 7 8 simulator simulation simulated manual"),
+        (_FIX | {"1"}) - {"6"},
+    ),
+    Kind("invalid", _words("q quality solution_quality"), _NO_FIX, _FIX | {"1"}),
+    Kind(
+        "invalid",
+        _words(
+            "mode nav_mode navigation_mode pos_mode position_mode posmode mode_indicator positioning_mode sol_status solution_status "
+            "solution_type pos_type position_type nav_status navigation_status gps_status gnss_status position_status"
+        ),
+        _words(
+            "n e m s v none no_fix nofix not_valid invalid invalid_fix insufficient_obs no_convergence singularity cov_trace test_dist "
+            "cold_start v_h_limit residuals integrity_warning pending unauthorized dr dead_reckoning coast coasting estimated extrapolated "
+            "propagated predicted simulated simulator simulation manual fixedpos memory last_known lost degraded fail failed fault alert "
+            "alarm warning caution not_available unavailable denied reversion reversionary no_nav acquisition standby "
+            "jammed spoofed unreliable"
+        ),
+        _FIX - _words("2 3 4 5 6 9")
+        | _words(
+            "nav navigation normal ok good sol_computed waas egnos narrow_int wide_int l1_int psrdiff l1_float "
+            "narrow_float active available tracking"
+        ),
+    ),
+    Kind(
+        "alert",
+        _words("spoofing_state spoof_state spoof_det_state jamming_state jam_state"),
+        _words("2 3 indicated detected warning critical"),
+        _words("0 1 unknown ok none no"),
+    ),
+    Kind(
+        "alert",
+        _words(
+            "raim raim_status raim_flag raim_state integrity integrity_status integrity_flag integrity_state fde "
+            "fde_status health gps_health"
+        ),
+        frozenset(),
+        NO_ALERT,
+        other_against=True,
+        numbers_unknown=True,
+    ),
+    Kind(
+        "alert",
+        _words(
+            "alert alert_state alarm raim_alert raim_warning raim_fault raim_alarm integrity_alert integrity_warning integrity_alarm "
+            "integrity_lost loss_of_integrity loi fault fault_flag fault_detected failure gps_fault gnss_fault nav_fault warning caution "
+            "warning_flag spoofing spoofed spoofing_detected spoof_flag jamming jammed jamming_detected interference invalid is_invalid "
+            "position_invalid unreliable outlier misleading hmi error_flag do_not_use not_valid degraded"
+        ),
+        frozenset(),
+        NO_ALERT,
+        other_against=True,
+    ),
+)
+
+_BY_NAME = {name.replace("_", ""): kind for kind in KINDS for name in kind.names}
+
+_LONGEST = 200
+"""Characters of a name that are looked at. [1]"""
+_SPEAKS = _words(
+    "status "
+    "valid invalid validity fix quality raim fde integrity alert alarm warning caution fault failure fail failed health healthy "
+    "flag flags mode nac nacp nacv nucp nic sil sils sda rc hpl hul hil hal vpl vul val xpl protection containment spoofing "
+    "spoofed spoof jamming jammed jam interference reliable reliability trust usable error errors uncertainty accuracy acc hacc "
+    "vacc pacc sigma std stddev epu anp epe eph epv ehpe cep drms rms confidence outlier misleading degraded lost loss solution "
+)
+"""Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
+
+
+def kind_of(plain_name: str) -> Kind | None:
+    """The kind of statement that a column of this name makes; None for any other column."""
+    return _BY_NAME.get(plain_name.replace("_", ""))
+
+
+def speaks_of_integrity(name: str) -> bool:
+    """Whether the name of a column that nothing reads, as the file writes it, is one of a statement of integrity."""
+    parts = re.split(r"[^a-z0-9]+", re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name[:_LONGEST]).lower())
+    return not _SPEAKS.isdisjoint([*parts, name.lower()])
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What one column states, row by row.
+
+    Attributes
+    ----------
+    against : Series of str
+        The word against the position; null where there is none.
+    unknown : list of str
+        Words that are not understood, the first few.
+    """
+
+    against: pl.Series
+    unknown: list[str]
+
+
+SHOWN = 3
+"""Words of a column that are named. [1]"""
+_MISSING = ("", "nan", "null", "na", "n/a")
+
+
+def stated(kind: Kind, raw: pl.Series) -> Stated:
+    """Read a column. An empty field states nothing."""
+    text = raw.cast(pl.String, strict=False).str.strip_chars().str.to_lowercase()
+    text = text.str.replace_all(r"[\s\-]+", "_").str.replace(r"^\+?(-?\d+)\.0*$", "$1").str.replace(r"^_(\d)", "-$1")
+    number = text.cast(pl.Float64, strict=False).is_not_null() | text.is_in(["true", "false"])
+    said = text.is_not_null() & ~text.is_in(_MISSING)
+    fine = text.is_in(_listed(kind.fine))
+    against = text.is_in(_listed(kind.against))
+    unknown = said & ~fine & ~against
+    empty = (~said.fill_null(value=False)).any() and kind.effect == "invalid"
+    if kind.numbers_unknown:
+        unknown, fine = unknown | (said & number), fine & ~number
+    if kind.other_against:
+        others = unknown & ~number if kind.numbers_unknown else unknown
+        against, unknown = against | others, unknown & ~others
+    words = pl.select(pl.when(said & against & ~fine).then(text)).to_series()
+    return Stated(words, text.filter(unknown.fill_null(value=False)).unique(maintain_order=True).head(SHOWN).to_list() + ["empty"] * empty)
+
+
+def _listed(words: Iterable[str]) -> list[str]:
+    return sorted(words)

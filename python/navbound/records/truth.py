@@ -1,0 +1,57 @@
+"""What speaks against a truth that a recording is compared with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from navbound.time import utc_text
+
+_NAMED = 3
+"""Jumps whose times are named. [1]"""
+
+
+@dataclass(frozen=True)
+class TruthDoubts:
+    """What speaks against a truth.
+
+    Attributes
+    ----------
+    n_jumping : int
+        Epochs whose truth is not used since it contradicts its own motion.
+    jumps_ns : tuple of int
+        GPS times at which it jumps. [ns]
+    n_standing : int
+        Epochs whose truth is not used since it stands while the positions travel.
+    travelled_m : float
+        The longest way between two such positions. [m]
+    """
+
+    n_jumping: int = 0
+    jumps_ns: tuple[int, ...] = ()
+    n_standing: int = 0
+    travelled_m: float = 0.0
+
+    @property
+    def n(self) -> int:
+        """Epochs whose truth is not used."""
+        return self.n_jumping + self.n_standing
+
+    @property
+    def words(self) -> str:
+        """The same in sentences; empty where nothing does."""
+        sentences = []
+        if self.n_jumping:
+            times = ", ".join(f"{utc_text(time_ns)} UTC" for time_ns in self.jumps_ns[:_NAMED])
+            more = f" and {len(self.jumps_ns) - _NAMED} more times" if len(self.jumps_ns) > _NAMED else ""
+            sentences.append(
+                f"Truth is not believable at {self.n_jumping} epochs and is not used there: it jumps at {times}{more}, to places "
+                "that cannot have been reached from those before. Only a part that agrees with itself over three quarters of a track is "
+                "a reference."
+            )
+        if self.n_standing:
+            sentences.append(
+                f"Truth is not believable at {self.n_standing} epochs and is not used there: it stands still while the positions travel "
+                f"up to {self.travelled_m:.0f} m on a steady course, by more than their bounds allow. It is the truth of another receiver, "
+                "or the positions are wrong."
+            )
+        return " ".join(sentences)

@@ -1,0 +1,53 @@
+"""Epochs that should have been there and are not."""
+
+from __future__ import annotations
+
+import math
+
+import polars as pl
+
+from navbound import rnp
+from navbound.rnp.exposure import LONGEST_STEP_S
+
+
+class Gaps:
+    """Epochs that should have been there: recorded rows that are no epochs, and what the gaps beside them should have held.
+
+    A gap counts where it is longer than the monitor waits before it says that there is nothing. A left out row in it counts once. Epochs
+    come in the order of track and time, in pieces of any length.
+    """
+
+    def __init__(self, left_out: pl.DataFrame, period_s: float) -> None:
+        self._n_left_out, self._period_s, self._n = left_out.height, period_s, 0
+        self._rest = left_out.drop_nulls("time_ns").unique().sort("track", "time_ns")
+        self._last = self._rest.clear()
+        self._longest_s = rnp.Monitor(sample_period_s=min(period_s, LONGEST_STEP_S), time_to_alert_s=math.inf).stale_after_s
+
+    def see(self, epochs: pl.DataFrame) -> None:
+        """The next epochs."""
+        track, time_ns = epochs["track"][-1], epochs["time_ns"][-1]
+        due = (pl.col("track") < track) | ((pl.col("track") == track) & (pl.col("time_ns") <= time_ns))
+        before = self._rest.filter(due)
+        self._rest = self._rest.filter(~due)
+        self._count(pl.concat([epochs.select("track", "time_ns"), before]))
+
+    def _count(self, rows: pl.DataFrame) -> None:
+        rows = pl.concat([self._last, rows.unique().sort("track", "time_ns")])
+        step = pl.col("time_ns").diff().over("track").cast(pl.Float64) * 1e-9
+        gaps = rows.select(step=step).filter(pl.col("step") > self._longest_s)
+        self._n += int(gaps.select(((pl.col("step") / self._period_s).round() - 1).sum()).item() or 0)
+        self._last = rows.tail(1)
+
+    def n_missing(self) -> int:
+        """Of all epochs, once."""
+        if not self._rest.is_empty():
+            self._count(self._rest)
+            self._rest = self._rest.clear()
+        return self._n_left_out + self._n
+
+
+def n_missing(epochs: pl.DataFrame, left_out: pl.DataFrame, period_s: float) -> int:
+    """Epochs that should have been there: in gaps, and as rows of the recording that cannot be judged."""
+    gaps = Gaps(left_out, period_s)
+    gaps.see(epochs)
+    return gaps.n_missing()

@@ -1,0 +1,147 @@
+"""From counts of epochs to the verdict of a run and its words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import polars as pl
+
+from navbound.judge import with_levels
+from navbound.methods import column_of, method
+from navbound.records.run import Belief, MethodResult, ProtectionSummary, Verdict, Worst
+from navbound.run.inputs.doubts import Doubts
+from navbound.run.summary.margins import KNOWN_BEYOND, OUTSIDE, by_status, judged_margins, worst_of
+from navbound.run.summary.missing import n_missing
+from navbound.run.verdict import rule
+from navbound.run.verdict.belief import of_epochs
+from navbound.run.verdict.results import protection_words, verdict_words
+
+if TYPE_CHECKING:
+    from navbound.records.material import Material
+
+
+@dataclass(frozen=True)
+class VerdictFacts:
+    """What the verdict says and rests on, of every epoch.
+
+    Attributes
+    ----------
+    n_recorded, n_missing : int
+        Epochs that are there, and that should have been.
+    n_judged, n_inside, n_contained : int
+        With status ok and both margins; of these within RNP, and within twice RNP.
+    n_status : dict
+        Epochs by status.
+    worst : (Worst or None, Worst or None)
+        Epochs of the least margin, of accuracy and of integrity.
+    doubts : Doubts
+        What the recording says against itself.
+    """
+
+    n_recorded: int
+    n_missing: int
+    n_judged: int
+    n_inside: int
+    n_contained: int
+    n_outside: int
+    n_status: dict[str, int]
+    worst: tuple[Worst | None, Worst | None]
+    doubts: Doubts
+    belief: Belief | None = None
+    n_known_beyond: int = 0
+    n_truth: int = 0
+
+
+def facts_of(material: Material, margins: pl.DataFrame, stated: list[MethodResult], risks: tuple[float, float]) -> VerdictFacts:
+    """What the verdict says and rests on, of epochs in memory. The first of the stated methods judges."""
+    judge = stated[0]
+    judged = judged_margins(margins)
+    truth = "nse_h_m" in margins.columns
+    doubts = Doubts({track for track, has in with_levels(margins).items() if has}, recorded=material.kind == "analyze")
+    doubts.see(margins)
+    return VerdictFacts(
+        n_recorded=margins.height,
+        n_missing=n_missing(margins, material.left_out, material.sample_period_s),
+        n_judged=judged.height,
+        n_inside=int((judged["_margin"] >= 0).sum()),
+        n_contained=int((judged["_margin_integrity"] >= 0).sum()),
+        n_outside=margins.select(OUTSIDE.sum()).item(),
+        n_status=by_status(margins),
+        worst=worst_of(margins, judge.id),
+        doubts=doubts,
+        belief=of_epochs(margins, judge.id, risks, [each.id for each in stated]),
+        n_known_beyond=margins.select(KNOWN_BEYOND.sum()).item() if truth else 0,
+        n_truth=int(np.isfinite(column_of(margins, "nse_h_m")).sum()) if truth else 0,
+    )
+
+
+def verdict_of(
+    material: Material, found: VerdictFacts, stated: list[MethodResult], risks: tuple[float, float], protection: list[ProtectionSummary]
+) -> Verdict:
+    """The verdict and its words."""
+    judge, belief = stated[0], found.belief
+    n_epochs, n_degraded = found.n_recorded + found.n_missing, found.n_status.get("degraded", 0)
+    facts = rule.TrackFacts(
+        n_epochs=n_epochs,
+        n_judged=found.n_judged,
+        n_outside=found.n_outside,
+        n_beyond_alert_limit=sum(p.n_epochs - round(p.share_available * p.n_epochs) for p in protection),
+        n_implausible=found.n_status.get("invalid_input", 0),
+        n_misleading=sum(check.n_above for check in belief.levels if check.level == "hpl_m") if belief is not None else 0,
+        belief="unchecked" if belief is None else belief.state,
+        n_known_beyond=found.n_known_beyond,
+        n_stated_against=found.doubts.n_stated_against,
+        n_without_level=found.doubts.n_without_level,
+        n_apart=0 if found.doubts.neighbours is None else found.doubts.neighbours.n,
+        truth_lost=material.truth_doubts.n > 0 and found.n_truth == 0,
+    )
+    decided = rule.of_tracks(facts)
+    verdict = Verdict(
+        id=decided,
+        inside=rule.MEANS_INSIDE[decided],
+        words="",
+        requirement=material.requirement,
+        method=judge.id,
+        share_inside=found.n_inside / found.n_judged if found.n_judged else None,
+        share_contained=found.n_contained / found.n_judged if found.n_judged else None,
+        n_epochs=n_epochs,
+        n_judged=found.n_judged,
+        n_degraded=n_degraded,
+        n_unjudged=n_epochs - found.n_judged - n_degraded,
+        n_missing=found.n_missing,
+        n_outside=facts.n_outside,
+        n_known_beyond=facts.n_known_beyond,
+        n_stated_beyond=found.doubts.n_stated_beyond,
+        n_stated_alert=found.doubts.n_stated_alert,
+        n_stated_worse=found.doubts.n_stated_worse,
+        n_stated_uncontained=found.doubts.n_stated_uncontained,
+        unread=material.unread,
+        n_apart=facts.n_apart,
+        largest_apart_m=found.doubts.neighbours.largest_m if found.doubts.neighbours is not None and facts.n_apart else None,
+        n_without_level=found.doubts.n_without_level,
+        n_long_steps=found.doubts.n_long_steps,
+        longest_step_s=found.doubts.longest_step_s,
+        assumed=_assumed(material, judge.id),
+        belief=belief,
+        n_implausible=facts.n_implausible,
+        worst_accuracy=found.worst[0],
+        worst_integrity=found.worst[1],
+        truth_known=found.n_truth > 0,
+        n_truth=found.n_truth,
+        n_truth_doubted=material.truth_doubts.n,
+        truth_doubts=material.truth_doubts.words,
+    )
+    words = verdict_words(verdict, judge, risks, material.covariance)
+    return verdict.model_copy(update={"words": f"{words}{protection_words(protection)}"})
+
+
+def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "sigma_coded", "no_path"]]:
+    """What no data says and the first sentence must."""
+    assumed: list[Literal["sigma_typed", "sigma_coded", "no_path"]] = []
+    if material.covariance.id == "typed":
+        assumed.append("sigma_typed")
+    elif material.covariance.id in {"nac_p", "containment_radius"}:
+        assumed.append("sigma_coded")
+    return [*assumed, "no_path"] if method(judging).error_column == "nse_h_m" else assumed

@@ -1,0 +1,154 @@
+"""What a recording states of the validity and the integrity of its own positions: understood it decides, not understood it is named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import navbound
+from navbound.records.run import Verdict
+from test_verdict import first_sentence, table
+
+N = 400
+BAD = slice(100, 200)
+
+
+def stating(tmp_path: Path, name: str, fine: object, bad: object, *, sigma_m: float | None = None) -> Verdict:
+    values = np.array([fine] * N, dtype=object)
+    values[BAD] = bad
+    return navbound.analyze(table(tmp_path / "a.csv", N, added={name: [str(v) for v in values]}), sigma_m=sigma_m).summary.verdict
+
+
+@pytest.mark.parametrize(
+    ("name", "fine", "bad"),
+    [
+        ("valid", 1, 0),
+        ("valid", "true", "false"),
+        ("position_valid", "A", "V"),
+        ("valid", "1.0", "0.0"),
+        ("valid", 1, "maybe"),
+        ("fix", 1, 0),
+        ("fix", "3D", "none"),
+        ("fix_quality", 1, 0),
+        ("fix_quality", 4, 6),
+        ("gps_quality", 1, 8),
+        ("fix_type", 3, 1),
+        ("Q", 1, 0),
+        ("mode", "A", "N"),
+        ("mode", "GNSS", "dead reckoning"),
+        ("sol_status", "SOL_COMPUTED", "INSUFFICIENT_OBS"),
+        ("nav_mode", "NAV", "DR"),
+        ("gps_status", "A", "V"),
+        ("posValid", 1, 0),
+        ("FixMode", 3, 1),
+        ("Fix Type", "3D Fix", "No Fix"),
+    ],
+)
+def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Path, name: str, fine: object, bad: object) -> None:
+    verdict = stating(tmp_path, name, fine, bad)
+    assert (verdict.id, verdict.n_judged, verdict.unread) == ("not_shown", N - 100, [])
+    assert stating(tmp_path, name, fine, fine).id == "inside"
+
+
+@pytest.mark.parametrize(
+    ("name", "fine", "bad"),
+    [
+        ("raim", "OK", "ALERT"),
+        ("raim_alert", 0, 1),
+        ("integrity", "ok", "lost"),
+        ("integrity_status", "safe", "caution"),
+        ("spoofing_state", 1, 2),
+        ("jamming", 0, 1),
+        ("fault", "false", "true"),
+        ("alarm", "none", "RNP ALERT"),
+        ("invalid", 0, 1),
+    ],
+)
+def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine: object, bad: object) -> None:
+    verdict = stating(tmp_path, name, fine, bad)
+    assert (verdict.id, verdict.n_stated_alert) == ("not_shown", 100)
+    assert stating(tmp_path, name, fine, fine).id == "inside"
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "named"),
+    [
+        ("mode", "LOITER", "mode (loiter)"),
+        ("raim", "1", "raim (1)"),
+        ("fix_quality", "12", "fix_quality (12)"),
+        ("hacc", "300", "hacc"),
+        ("rtk_status", "x", "rtk_status"),
+        ("posAccuracy", "9", "posAccuracy"),
+        ("valid", "", "valid (empty)"),
+    ],
+)
+def test_what_is_not_understood_is_named(tmp_path: Path, name: str, value: str, named: str) -> None:
+    verdict = stating(tmp_path, name, value, value)
+    assert verdict.unread == [named]
+    assert f"Not understood and not used, though the names speak of accuracy or integrity: {named}." in verdict.words
+
+
+def test_several_statements_count_together(tmp_path: Path) -> None:
+    added = {"valid": [1] * N, "gps_valid": [1] * 300 + [0] * 100, "raim": ["ok"] * N, "alarm": ["x"] + ["none"] * (N - 1)}
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, added=added)).summary.verdict
+    assert (verdict.n_judged, verdict.n_stated_alert) == (300, 1)
+
+
+def test_the_transponders_columns_are_no_statements(tmp_path: Path) -> None:
+    added = {"alert": ["true"] * N, "spi": ["false"] * N, "squawk": ["7000"] * N}
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, added=added)).summary.verdict
+    assert (verdict.id, verdict.n_stated_alert, verdict.unread) == ("inside", 0, [])
+
+
+@pytest.mark.parametrize(("nac_p", "expected"), [(10, "inside"), (9, "not_shown"), (4, "not_shown"), (0, "not_shown")])
+def test_an_accuracy_category_beside_a_covariance_is_compared(tmp_path: Path, nac_p: int, expected: str) -> None:
+    """NACp 9 states a 95 % radius of 10 to 30 m (coding of DO-260B); twice the distance root mean square of 3 m is 8.5 m."""
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, added={"nac_p": [nac_p] * N})).summary.verdict
+    assert (verdict.id, verdict.n_stated_worse) == (expected, 0 if expected == "inside" else N)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "expected"),
+    [
+        ("nic", 8, "inside"),
+        ("nic", 6, "inside"),
+        ("nic", 5, "not_shown"),
+        ("nic", 0, "not_shown"),
+        ("rc", 1111, "inside"),
+        ("rc", 1112, "not_shown"),
+    ],
+)
+def test_a_containment_radius_beyond_twice_rnp_is_against_it(tmp_path: Path, name: str, value: int, expected: str) -> None:
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, added={name: [value] * N})).summary.verdict
+    assert (verdict.id, verdict.n_stated_uncontained) == (expected, 0 if expected == "inside" else N)
+
+
+def test_a_typed_sigma_states_what_it_overrules_and_a_larger_one_of_the_file_counts(tmp_path: Path) -> None:
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=40.0), sigma_m=3.0).summary.verdict
+    assert (verdict.id, verdict.n_stated_worse) == ("not_shown", N)
+    assert "a sigma of 3 m in each axis, typed by the user over the file's own accuracy (sigma 40 to 40 m)" in first_sentence(verdict.words)
+    verdict = navbound.analyze(table(tmp_path / "b.csv", N, sigma_m=2.0), sigma_m=3.0).summary.verdict
+    assert (verdict.id, verdict.n_stated_worse) == ("inside", 0)
+    assert "over the file's own accuracy (sigma 2 to 2 m)" in first_sentence(verdict.words)
+
+
+def test_an_epu_beside_the_files_own_sigma_counts_under_a_typed_one_too(tmp_path: Path) -> None:
+    path = table(tmp_path / "a.csv", N, added={"epu_m": np.full(N, 200.0)})
+    assert navbound.analyze(path, sigma_m=3.0).summary.verdict.n_stated_worse == N
+
+
+def test_pieces_state_the_same(tmp_path: Path) -> None:
+    added = {
+        "valid": [1] * 300 + [0] * 100,
+        "mode": ["A"] * 200 + ["LOITER"] * 200,
+        "raim_alert": [0] * 390 + [1] * 10,
+        "nic": [0] * N,
+        "hacc": [1] * N,
+    }
+    path = table(tmp_path / "a.csv", N, added=added)
+    for sigma_m in (None, 2.0):
+        whole = navbound.analyze(path, sigma_m=sigma_m).summary.verdict
+        assert whole == navbound.analyze(path, sigma_m=sigma_m, piece_rows=7).summary.verdict
+        assert whole.unread == ["mode (loiter)", "hacc"]
