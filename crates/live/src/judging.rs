@@ -7,7 +7,7 @@ use crate::settings::Settings;
 use crate::track::Track;
 use navbound_core::bound::AlertBound;
 use navbound_core::frame::{Covariance, LatLon};
-use navbound_core::judge::{Judged, Sample};
+use navbound_core::judge::{Evaluated, Judged, Sample};
 use navbound_core::monitor::rnp::{Acceptance, Event};
 use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Status, Unavailable};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -59,6 +59,12 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     (sample, reason)
 }
 
+/// Whether a number that a bound is made of is there and is no number.
+fn stated_as_none(position: &Position) -> bool {
+    let horizontal = position.covariance_m2.iter().flat_map(|terms| &terms[..3]);
+    horizontal.chain(&position.fte_m).any(|number| number.is_nan())
+}
+
 /// Judges a record and says what became of it. A fault of ours makes this epoch of this track unusable, and nothing else; whether one happened.
 pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived: &Arrived, out: &mut Vec<Output>, fault: bool) -> bool {
     let position = &arrived.position;
@@ -66,7 +72,10 @@ pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived
     let before = track.judge;
     let attempt = catch_unwind(AssertUnwindSafe(|| {
         assert!(!fault, "a fault that a test injects");
-        track.judge.step(&seen)
+        let evaluated = track.judge.settings().evaluate(&seen);
+        // A source that calls an epoch usable and states a number of it as none contradicts itself: nothing is within a limit then.
+        let status = if stated_as_none(position) { seen.status } else { evaluated.status };
+        track.judge.follow(&seen, Evaluated { status, ..evaluated })
     }));
     let failed = attempt.is_err();
     let (seen, judged) = match attempt {
@@ -106,7 +115,7 @@ fn epoch(arrived: &Arrived, seen: &Sample, judged: &Judged, reason: Option<Reaso
         track: position.track,
         time: position.time,
         arrival: arrived.arrival,
-        status: seen.status,
+        status: of.status,
         reason: reason.or(none),
         acceptance: judged.step.acceptance,
         alert: judged.step.alert,
