@@ -230,3 +230,33 @@ def test_memory_is_bounded_by_the_most_tracks(tmp_path: Path) -> None:
     assert lane.counters()["refused_fleet_full"] == 4900
     assert len(lane.snapshot(0, 0)) < 100 * 1024
     assert (tmp_path / journal.IN).exists() is False
+
+
+def test_a_command_that_is_ended_judges_what_it_has_and_can_be_resumed(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "navbound", "live", "-", "--format", "json", "--method", "tse-exact", "--json", "--out", str(out)]
+    told = list[str]()
+    for resume in ([], ["--resume"]):
+        with subprocess.Popen([*command, *resume], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            assert process.stdin is not None
+            before = (out / journal.IN).stat().st_size if resume else 0
+            record = {"v": 1, "track": "a", "time_ns": live.session.now_ns(), "fte_m": 5.0, "sigma_m": 2000.0}
+            process.stdin.write(json.dumps(record).encode() + b"\n")
+            process.stdin.flush()
+            end = time.monotonic() + 60
+            while time.monotonic() < end and not (out / journal.IN).exists():
+                time.sleep(0.05)
+            while time.monotonic() < end and (out / journal.IN).stat().st_size <= before:
+                time.sleep(0.05)
+            begin = time.monotonic()
+            process.terminate()
+            output, error = process.communicate(timeout=60)
+            assert process.returncode == 0, error
+            # Five seconds on an idle machine; this one may be shared by ten others.
+            assert time.monotonic() - begin < 5 * 10
+        told += output.decode().splitlines()
+    transitions_told = [json.loads(line) for line in told]
+    assert transitions_told[0]["kind"] == "warning"
+    assert transitions_told[0]["transition"] == "raised"
+    assert [t["key"] for t in transitions_told if not t["replayed"]] == [t["key"] for t in transitions(out) if not t["replayed"]]
+    assert len(_core.live_inputs(journal.read(out / journal.IN))) >= 4
