@@ -18,7 +18,24 @@ if TYPE_CHECKING:
     from navbound.studies.run import study
 
 SUBJECTS = (
-    *("anp", "araim", "dme", "evaluation", "gbas", "gnss", "ins", "kpi", "path", "procedures", "raim", "rnp", "rraim", "sbas", "tse"),
+    *(
+        "anp",
+        "araim",
+        "dme",
+        "evaluation",
+        "gbas",
+        "gnss",
+        "ins",
+        "judge",
+        "kpi",
+        "path",
+        "procedures",
+        "raim",
+        "rnp",
+        "rraim",
+        "sbas",
+        "tse",
+    ),
     *("algorithms", "maps", "methods", "scale", "scenario", "status", "time", "units", "verify", "write"),
 )
 """Modules that a caller uses, by name."""
