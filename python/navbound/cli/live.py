@@ -42,7 +42,9 @@ def watch(
     spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3'.")] = "RNP 0.3",
     path: Annotated[str | None, typer.Option(help="Where the aircraft should be: a runway (LFPG/08R) or a route file.")] = None,
     form: Annotated[str | None, typer.Option("--format", help="json, ubx or nmea. [default: by the first bytes of a file]")] = None,
-    method: Annotated[str, typer.Option(help="tse-exact or anp-circle. [default: the first with --path, the second without]")] = "",
+    method: Annotated[
+        str, typer.Option(help="tse-exact or anp-circle. [default: the first with --path or a run that has one, otherwise the second]")
+    ] = "",
     track: Annotated[str, typer.Option(help="Name of a receiver's track.")] = "receiver",
     period_s: Annotated[float, typer.Option(help="Sample period of a track.")] = 1.0,
     time_to_alert_s: Annotated[float, typer.Option(help="Time to alert; a chain of times that is longer is refused.")] = 10.0,
@@ -58,6 +60,7 @@ def watch(
     A file keeps no time of arrival, so no latency is claimed for it. A connection that is lost later is an event and is opened again.
     """
     from navbound import live  # noqa: PLC0415
+    from navbound.live.recording import has_path  # noqa: PLC0415
     from navbound.live.source import CHUNK, format_of  # noqa: PLC0415
     from navbound.rnp.requirement import requirement  # noqa: PLC0415
 
@@ -68,7 +71,7 @@ def watch(
         format=known or "json",
         rnp_m=requirement(spec).rnp_m,
         path=path,
-        method=method,
+        method=method or ("tse-exact" if has_path(Path(source)) else ""),
         track=track,
         sample_period_s=period_s,
         time_to_alert_s=time_to_alert_s,

@@ -31,6 +31,15 @@ _NUMBERS = (
 )
 
 
+def has_path(run: Path) -> bool:
+    """Whether a run knows how far its aircraft were from a path."""
+    try:
+        names = pl.read_parquet_schema(run / EPOCHS)
+        return "fte_m" in names and pl.read_parquet(run / EPOCHS, columns=["fte_m"])["fte_m"].is_not_null().any()
+    except (OSError, pl.exceptions.PolarsError):
+        return False
+
+
 class Recording:
     """Lines of a run directory. A number that is absent there is absent in the line; bytes have no time of arrival."""
 
