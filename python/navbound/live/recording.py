@@ -9,26 +9,13 @@ import polars as pl
 
 from navbound.errors import FormatError
 from navbound.storage.folders import require_whole
+from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 EPOCHS = "epochs.parquet"
-_NUMBERS = (
-    "est_lat_rad",
-    "est_lon_rad",
-    "est_h_m",
-    "fte_m",
-    "course_rad",
-    "cov_ee_m2",
-    "cov_en_m2",
-    "cov_nn_m2",
-    "cov_eu_m2",
-    "cov_nu_m2",
-    "cov_uu_m2",
-    "hpl_m",
-    "rnp_m",
-)
+_NUMBERS = ("est_lat_rad", "est_lon_rad", "est_h_m", "fte_m", "course_rad", *COVARIANCE, "hpl_m", "rnp_m")
 
 
 def has_path(run: Path) -> bool:
