@@ -72,7 +72,7 @@ def recorded(folder: Path, content: bytes, settings: live.Settings = FLEET) -> P
 
 
 def transitions(folder: Path) -> list[dict[str, Any]]:
-    """What was told."""
+    """What was reported."""
     return [json.loads(line) for line in (folder / journal.EVENTS).read_text().splitlines()]
 
 

@@ -19,11 +19,11 @@ from navbound.live import journal, transition
 from navbound.live.settings import Settings
 
 
-def told_keys(folder: Path) -> tuple[list[str], list[str]]:
+def reported_keys(folder: Path) -> tuple[list[str], list[str]]:
     """Raised and cleared alerts of tracks in the form of the reference."""
-    told = [t for t in transitions(folder) if t["track"]]
-    raised = [f"{t['track']}/{t['kind']}/{t['annunciation_ns']}/raise" for t in told if t["transition"] == "raised"]
-    cleared = [f"{t['track']}/{t['kind']}/{t['onset_ns']}/clear" for t in told if t["transition"] == "cleared"]
+    reported = [t for t in transitions(folder) if t["track"]]
+    raised = [f"{t['track']}/{t['kind']}/{t['annunciation_ns']}/raise" for t in reported if t["transition"] == "raised"]
+    cleared = [f"{t['track']}/{t['kind']}/{t['onset_ns']}/clear" for t in reported if t["transition"] == "cleared"]
     return raised, cleared
 
 
@@ -32,10 +32,10 @@ def test_a_fleet_gives_the_alerts_of_the_batch_monitor_each_once(tmp_path: Path,
     n, seconds = 200, 60
     source = recorded(tmp_path / "in", frames(fleet(n, seconds, seed), heartbeats=True))
     live.judge(source, tmp_path / "out")
-    for told, expected in zip(told_keys(tmp_path / "out"), truth(n, seconds, seed), strict=True):
+    for reported, expected in zip(reported_keys(tmp_path / "out"), truth(n, seconds, seed), strict=True):
         assert len(expected) > 10
-        assert len(told) == len(set(told)), "an alert is told twice"
-        assert set(told) == expected
+        assert len(reported) == len(set(reported)), "an alert is reported twice"
+        assert set(reported) == expected
 
 
 def test_every_speed_and_every_grouping_give_the_same_bits(tmp_path: Path) -> None:
@@ -82,8 +82,8 @@ def test_faults_within_the_lateness_change_nothing_and_later_ones_are_counted(tm
     got, faulty = judged(tmp_path, "mixed", sorted(mixed))
     assert delayed.sum() > 50
     assert repeated.sum() > 50
-    assert sorted(told_keys(got)[0]) == sorted(told_keys(expected)[0])
-    assert sorted(told_keys(got)[1]) == sorted(told_keys(expected)[1])
+    assert sorted(reported_keys(got)[0]) == sorted(reported_keys(expected)[0])
+    assert sorted(reported_keys(got)[1]) == sorted(reported_keys(expected)[1])
     assert faulty["n_duplicate"] + faulty["n_waiting_duplicate"] == repeated.sum()
     assert faulty["n_late"] == counters["n_late"] == 0
     # Beyond the lateness: the second after it was judged long ago.
@@ -107,13 +107,13 @@ def test_what_is_dropped_for_longer_than_the_stale_time_is_raised_once_at_its_ti
     left = [each for each in sent if kept(each[1])]
     assert len(sent) - len(left) == 3 * len(frozen)
     got, _ = judged(tmp_path, "dropped", left)
-    added = set(told_keys(got)[0]) - set(told_keys(expected)[0])
+    added = set(reported_keys(got)[0]) - set(reported_keys(expected)[0])
     silences = {key for key in added if "/unavailable/" in key}
     assert len(silences) >= len(frozen) - 1, "a track that was lost already is not lost again"
     for t in transitions(got):
         if f"{t['track']}/{t['kind']}/{t['annunciation_ns']}/raise" in silences and t["transition"] == "raised":
             assert t["annunciation_ns"] == t["onset_ns"] + 2_000_000_000
-            assert t["event_ns"] <= t["annunciation_ns"] + 300_000_000, "told when the watermark passes"
+            assert t["event_ns"] <= t["annunciation_ns"] + 300_000_000, "reported when the watermark passes"
             assert t["arrival_ns"] - t["annunciation_ns"] <= 1_300_000_000
 
 
@@ -122,9 +122,9 @@ def test_each_transition_has_the_fields_of_the_schema(tmp_path: Path) -> None:
     assert tuple(schema["required"]) == transition.FIELDS == tuple(schema["properties"])
     live.judge(recorded(tmp_path / "in", frames(fleet(50, 60))), tmp_path / "out")
     types = {"string": str, "integer": int, "number": float, "null": type(None), "boolean": bool}
-    told = transitions(tmp_path / "out")
-    assert told
-    for each in told:
+    reported = transitions(tmp_path / "out")
+    assert reported
+    for each in reported:
         assert tuple(each) == transition.FIELDS
         for name, value in each.items():
             rule = schema["properties"][name]
@@ -235,7 +235,7 @@ def test_memory_is_bounded_by_the_most_tracks(tmp_path: Path) -> None:
 def test_a_command_that_is_ended_judges_what_it_has_and_can_be_resumed(tmp_path: Path) -> None:
     out = tmp_path / "out"
     command = [sys.executable, "-m", "navbound", "live", "-", "--format", "json", "--method", "tse-exact", "--json", "--out", str(out)]
-    told = list[str]()
+    reported = list[str]()
     for resume in ([], ["--resume"]):
         with subprocess.Popen([*command, *resume], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
             assert process.stdin is not None
@@ -254,9 +254,9 @@ def test_a_command_that_is_ended_judges_what_it_has_and_can_be_resumed(tmp_path:
             assert process.returncode == 0, error
             # Five seconds on an idle machine; this one may be shared by ten others.
             assert time.monotonic() - begin < 5 * 10
-        told += output.decode().splitlines()
-    transitions_told = [json.loads(line) for line in told]
-    assert transitions_told[0]["kind"] == "warning"
-    assert transitions_told[0]["transition"] == "raised"
-    assert [t["key"] for t in transitions_told if not t["replayed"]] == [t["key"] for t in transitions(out) if not t["replayed"]]
+        reported += output.decode().splitlines()
+    transitions_reported = [json.loads(line) for line in reported]
+    assert transitions_reported[0]["kind"] == "warning"
+    assert transitions_reported[0]["transition"] == "raised"
+    assert [t["key"] for t in transitions_reported if not t["replayed"]] == [t["key"] for t in transitions(out) if not t["replayed"]]
     assert len(_core.live_inputs(journal.read(out / journal.IN))) >= 4

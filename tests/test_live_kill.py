@@ -66,11 +66,11 @@ def killed(log: Path, out: Path, point: str, passes: int) -> bool:
 def resumed(log: Path, out: Path) -> list[tuple[int, bytes]]:
     run(log, out)
     keys = [t["key"] for t in transitions(out) if not t["replayed"]]
-    told = {t["key"] for t in transitions(out)}
+    reported = {t["key"] for t in transitions(out)}
     written = [row[0][0] for row in _core.live_transitions(journal.read(out / journal.OUT))]
     assert len(written) == len(set(written))
-    assert told == set(written), "every alert that was written was told"
-    assert len(keys) == len(set(keys)), "told twice and not marked as a repetition"
+    assert reported == set(written), "every alert that was written was reported"
+    assert len(keys) == len(set(keys)), "reported twice and not marked as a repetition"
     return outputs(out)
 
 

@@ -100,9 +100,9 @@ fn a_silence_is_told_while_it_lasts_and_by_heartbeats_alone() {
     let mut out = Vec::new();
     for k in 3..10 {
         lane.step(&Input::Heartbeat { arrival: at(f64::from(k) + 0.1) }, &mut out);
-        let told = transitions(&out);
+        let reported = transitions(&out);
         // Last record at 2 s, stale after 2 s, lateness 1 s: due at 5 s.
-        assert_eq!(told.iter().filter(|key| key.contains("unavailable")).count(), if k >= 5 { 3 } else { 0 }, "{k} {told:?}");
+        assert_eq!(reported.iter().filter(|key| key.contains("unavailable")).count(), if k >= 5 { 3 } else { 0 }, "{k} {reported:?}");
     }
     assert!(transitions(&out).iter().any(|key| key.starts_with("feed:source/0/quiet/")));
 }
@@ -186,8 +186,8 @@ fn no_number_is_passed_over() {
             let refused: u64 = lane.counters().refused.iter().sum();
             // A deviation to the left is a number; a number beyond all doubles is no record.
             let passes = name == "fte_m" && value == "-1.0";
-            let told = keys.iter().any(|key| key.contains("/warning/")) || refused == 1;
-            assert_eq!(told, !passes, "{name} {value}: {keys:?}, {refused} refused");
+            let reported = keys.iter().any(|key| key.contains("/warning/")) || refused == 1;
+            assert_eq!(reported, !passes, "{name} {value}: {keys:?}, {refused} refused");
             assert!(value != "null" || lane.monitor_counters().n_nan == 1, "{name} {value}");
         }
     }
@@ -221,11 +221,11 @@ fn tracks_beyond_the_cap_are_refused_and_all_are_forgotten_after_silence() {
     assert_eq!(keys.iter().filter(|key| key.starts_with("feed:source/0/fleet_full/")).count(), 1);
     let mut out = Vec::new();
     (3..40).for_each(|k| lane.step(&Input::Heartbeat { arrival: at(f64::from(k)) }, &mut out));
-    let told = transitions(&out);
+    let reported = transitions(&out);
     assert_eq!((lane.n_tracks(), lane.counters().n_expired), (0, 50));
-    assert_eq!(told.iter().filter(|key| key.ends_with("/unavailable/expired")).count(), 0, "{told:?}");
-    assert_eq!(told.iter().filter(|key| key.contains("/unavailable/") && key.ends_with("expired")).count(), 50);
-    assert!(told.iter().any(|key| key.starts_with("feed:source/0/fleet_full/") && key.ends_with("cleared")));
+    assert_eq!(reported.iter().filter(|key| key.ends_with("/unavailable/expired")).count(), 0, "{reported:?}");
+    assert_eq!(reported.iter().filter(|key| key.contains("/unavailable/") && key.ends_with("expired")).count(), 50);
+    assert!(reported.iter().any(|key| key.starts_with("feed:source/0/fleet_full/") && key.ends_with("cleared")));
     // A track that comes back is another incarnation.
     let back: Vec<_> = (50..56)
         .flat_map(|k| transitions(&chunk(&mut lane, f64::from(k), &line("t00", f64::from(k), ",\"fte_m\":9e3,\"sigma_m\":1.0"))))

@@ -55,7 +55,7 @@ def watch(
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the session in --out.")] = False,
     json: JsonLines = False,
 ) -> None:
-    """Judge a source until it ends or the command is stopped; alerts are told as they are raised.
+    """Judge a source until it ends or the command is stopped; alerts are reported as they are raised.
 
     A file keeps no time of arrival, so no latency is claimed for it. A connection that is lost later is an event and is opened again.
     """
@@ -84,7 +84,7 @@ def watch(
         raise InputError("speed", speed, "1", "[0, inf)")
     opened = live.open_source(source, lines=settings.format == "json", chunk=512 if speed else CHUNK)
     stop = _stop()
-    session = live.Session(out, settings, resume=resume, tell=_tell(json=json), say=_say)
+    session = live.Session(out, settings, resume=resume, report=_report(json=json), say=_say)
     try:
         session.run(opened, stop=stop, speed=speed)
     finally:
@@ -108,7 +108,7 @@ def replay(
         raise InputError("speed", speed, "1", "[0, inf)")
     if group < 1:
         raise InputError("group", group, "1", "[1, inf)")
-    session = live.replay(journal, out, speed=speed, group=group, tell=_tell(json=json), stop=_stop())
+    session = live.replay(journal, out, speed=speed, group=group, report=_report(json=json), stop=_stop())
     _ended(session, settings_of(journal), json=json)
 
 
@@ -153,18 +153,18 @@ def _say(sentence: str) -> None:
     err_console.print(f"navbound live: {sentence}", markup=False, highlight=False, soft_wrap=True)
 
 
-def _tell(*, json: bool) -> Callable[[dict[str, Any]], None]:
+def _report(*, json: bool) -> Callable[[dict[str, Any]], None]:
     from navbound.live import transition  # noqa: PLC0415
     from navbound.time import utc_text  # noqa: PLC0415
 
-    def tell(told: dict[str, Any]) -> None:
+    def report(reported: dict[str, Any]) -> None:
         if json:
-            sys.stdout.write(transition.line(told) + "\n")
+            sys.stdout.write(transition.line(reported) + "\n")
             sys.stdout.flush()
         else:
-            out_console.print(transition.words(told, utc_text(told["event_ns"])), markup=False, highlight=False, soft_wrap=True)
+            out_console.print(transition.words(reported, utc_text(reported["event_ns"])), markup=False, highlight=False, soft_wrap=True)
 
-    return tell
+    return report
 
 
 def _ended(session: Session, settings: Settings, *, json: bool) -> None:

@@ -35,7 +35,7 @@ def replay(
     speed: float = 0.0,
     group: int = 1,
     settings: Settings | None = None,
-    tell: Callable[[dict[str, Any]], None] = lambda _: None,
+    report: Callable[[dict[str, Any]], None] = lambda _: None,
     stop: Callable[[], bool] = lambda: False,
 ) -> Session:
     """Read a journal through a new lane.
@@ -52,7 +52,7 @@ def replay(
         Inputs that are judged at once.
     settings : Settings, optional
         Default: those of the session.
-    tell : callable, optional
+    report : callable, optional
         Takes each transition.
     stop : callable, optional
         Ends it early.
@@ -68,7 +68,7 @@ def replay(
         Not a journal, or the folder is not free.
     """
     frames = journal.read(_journal(source))
-    session = Session(out, settings or settings_of(source), tell=tell)
+    session = Session(out, settings or settings_of(source), report=report)
     ends, _ = _core.live_frames(frames)
     pace, begin = Pace(speed), 0
     for place, end in enumerate(ends, 1):

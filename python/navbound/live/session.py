@@ -49,7 +49,7 @@ class Session:
         How it judges.
     resume : bool
         Go on with what stands in the folder; otherwise it must be empty.
-    tell : callable, optional
+    report : callable, optional
         Takes each transition once it is written.
     say : callable, optional
         Takes sentences about the session itself.
@@ -72,12 +72,12 @@ class Session:
         settings: Settings,
         *,
         resume: bool = False,
-        tell: Callable[[dict[str, Any]], None] = lambda _: None,
+        report: Callable[[dict[str, Any]], None] = lambda _: None,
         say: Callable[[str], None] = lambda _: None,
         passed: Callable[[str], None] = lambda _: None,
     ) -> None:
         self.settings, self.folder = settings, out
-        self._tell, self._say, self._passed = tell, say, passed
+        self._report, self._say, self._passed = report, say, passed
         self._core = settings.core()
         self.n_epochs = self.n_transitions = 0
         _prepare(out, settings, resume=resume)
@@ -111,7 +111,7 @@ class Session:
         return dict(self._lane.counters())
 
     def take(self, frames: bytes) -> None:
-        """Journal frames of inputs: written down, judged, told."""
+        """Journal frames of inputs: written down, judged, reported."""
         self._passed("before-journal")
         position = self._in.length
         self._in.append(frames)
@@ -134,13 +134,13 @@ class Session:
     def _show(self, rows: list[_core._TransitionRow], *, replayed: bool = False) -> None:
         if not rows:
             return
-        told = [transition.record(row, time_to_alert_s=self.settings.time_to_alert_s, replayed=replayed) for row in rows]
+        reported = [transition.record(row, time_to_alert_s=self.settings.time_to_alert_s, replayed=replayed) for row in rows]
         if not replayed:
-            self.n_transitions += len(told)
+            self.n_transitions += len(reported)
         with (self.folder / journal.EVENTS).open("a", encoding="utf-8") as file:
-            file.writelines(transition.line(t) + "\n" for t in told)
-        for t in told:
-            self._tell(t)
+            file.writelines(transition.line(t) + "\n" for t in reported)
+        for t in reported:
+            self._report(t)
 
     def snapshot(self) -> None:
         """Keep the state behind all that was taken."""
