@@ -172,9 +172,12 @@ fn live_input<'py>(py: Python<'py>, kind: &str, arrival_ns: Option<i64>, data: &
     Ok(PyBytes::new(py, &journal::frame(&input.to_bytes())))
 }
 
+/// Kind, arrival and bytes of an input.
+type InputRow<'py> = (&'static str, Option<i64>, Bound<'py, PyBytes>);
+
 /// Kind, arrival and bytes of the inputs in some frames.
 #[pyfunction]
-fn live_inputs<'py>(py: Python<'py>, frames: &[u8]) -> PyResult<Vec<(&'static str, Option<i64>, Bound<'py, PyBytes>)>> {
+fn live_inputs<'py>(py: Python<'py>, frames: &[u8]) -> PyResult<Vec<InputRow<'py>>> {
     let (mut at, mut inputs) = (0, Vec::new());
     let ns = |arrival: Option<GpsTime>| arrival.map(GpsTime::nanoseconds);
     while let Next::Payload(payload, length) = journal::next(frames.get(at..).unwrap_or_default()) {
