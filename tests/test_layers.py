@@ -32,6 +32,7 @@ LAYERS = (
     ("scale", "report"),
     ("maps", "run"),
     ("studies",),
+    ("live",),
     ("cli",),
 )
 """Parts of the package from what all others use to what shows. A part may import from its own layer and from those before it."""

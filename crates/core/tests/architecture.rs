@@ -7,13 +7,14 @@ use std::path::{Path, PathBuf};
 /// The stages in the order of the flow; each may use those before it.
 const FLOW: [&str; 10] = ["quantity", "special", "frame", "signal", "geometry", "solution", "spec", "bound", "monitor", "judge"];
 /// Each crate and those of ours it may depend on.
-const CRATES: [(&str, &[&str]); 6] = [
+const CRATES: [(&str, &[&str]); 7] = [
     ("core", &[]),
     ("path", &["core"]),
     ("formats", &["core", "path"]),
     ("simulate", &["core", "path", "formats"]),
     ("assess", &["core", "path", "formats", "simulate"]),
-    ("python", &["core", "path", "formats", "simulate", "assess"]),
+    ("live", &["core", "path", "formats"]),
+    ("python", &["core", "path", "formats", "simulate", "assess", "live"]),
 ];
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

@@ -11,6 +11,7 @@ pub mod rinex;
 pub mod rtklib;
 pub mod sbas;
 pub mod sp3;
+pub mod stream;
 pub mod time;
 
 pub use refusal::{Refusal, Unreadable};

@@ -16,6 +16,8 @@ mod ins_fuse;
 mod ins_simulate;
 mod judge;
 mod kpi;
+mod live;
+mod live_outputs;
 mod methods;
 mod orbits;
 mod path;
@@ -63,6 +65,8 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     ins_fuse::register(m)?;
     ins_consistency::register(m)?;
     kpi::register(m)?;
+    live::register(m)?;
+    live_outputs::register(m)?;
     dme::register(m)?;
     radionav::register(m)?;
     orbits::register(m)?;

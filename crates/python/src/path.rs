@@ -10,9 +10,9 @@ use pyo3::types::PyDict;
 
 /// A geodesic line or a route of legs and turns on the WGS-84 ellipsoid.
 #[pyclass(frozen, module = "navbound._core")]
-struct Path(Shape);
+pub(crate) struct Path(pub(crate) Shape);
 
-enum Shape {
+pub(crate) enum Shape {
     Line(Box<Line>),
     Route(Route),
 }

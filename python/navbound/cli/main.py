@@ -14,7 +14,7 @@ import typer
 import navbound
 from navbound import _core
 from navbound.algorithms import Recorded, algorithms, entries
-from navbound.cli import maps, predict, procedures
+from navbound.cli import live, maps, predict, procedures
 from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, err_console, out_console, work_of
 from navbound.errors import FormatError, InputError, InternalError, NavboundError
 from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed, of_verdict
@@ -417,6 +417,7 @@ def show(
 app.command("map")(maps.map_command)
 app.command("predict")(predict.predict_command)
 app.add_typer(procedures.app, name="procedures")
+app.add_typer(live.app, name="live")
 
 
 def _show(run: Run, *, json: bool) -> None:

@@ -41,12 +41,27 @@ impl core::error::Error for BadBytes {}
 /// Bytes of the checksum.
 const CHECKSUM: usize = 4;
 
-/// CRC-32C, bit by bit: a state is written seldom and is short.
+/// CRC-32C of bytes.
 pub fn crc32c(bytes: &[u8]) -> u32 {
-    const REFLECTED: u32 = 0x82F6_3B78;
-    let shifted = |crc: u32| if crc & 1 == 1 { (crc >> 1) ^ REFLECTED } else { crc >> 1 };
-    !bytes.iter().fold(!0, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| shifted(crc)))
+    !bytes.iter().fold(!0, |crc, byte| crc >> 8 ^ TABLE[(crc as u8 ^ byte) as usize])
 }
+
+/// What each last byte of a remainder adds to it.
+const TABLE: [u32; 256] = {
+    const REFLECTED: u32 = 0x82F6_3B78;
+    let mut table = [0; 256];
+    let mut k = 0;
+    while k < 256 {
+        let (mut crc, mut bit) = (k as u32, 0);
+        while bit < 8 {
+            crc = if crc & 1 == 1 { crc >> 1 ^ REFLECTED } else { crc >> 1 };
+            bit += 1;
+        }
+        table[k] = crc;
+        k += 1;
+    }
+    table
+};
 
 /// Writes a state into `N` bytes. What goes beyond them is dropped and makes the bytes unreadable, never a panic.
 #[derive(Debug, Clone)]

@@ -1,16 +1,7 @@
-//! Frames with a right checksum in a stream of anything.
-//!
-//! Source: u-blox interface description, UBX frame structure; Septentrio SBF reference guide, block header; standard.
+//! The frames of a log: the search of [`crate::stream`] over all its bytes. Sentences are passed over.
 
-use super::bits::{array, u16_at};
+use crate::stream::{self, Look, look};
 use memchr::memchr2_iter;
-
-/// Largest payload of a UBX frame that is believed: RXM-RAWX with all its 255 measurements has 8176 bytes.
-const LARGEST_UBX: usize = 8192;
-/// Sync, class and identifier, length before a payload; two bytes of checksum behind it.
-const UBX_HEAD: usize = 6;
-/// Sync, check sum, block number, length.
-const SBF_HEAD: usize = 8;
 
 /// One frame, its checksum verified.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +12,15 @@ pub(super) enum Frame<'a> {
     Sbf { block: u16, body: &'a [u8] },
 }
 
-impl Frame<'_> {
+impl<'a> Frame<'a> {
+    fn of(frame: stream::Frame<'a>) -> Option<Self> {
+        match frame {
+            stream::Frame::Ubx { kind, payload } => Some(Self::Ubx { kind, payload }),
+            stream::Frame::Sbf { block, body } => Some(Self::Sbf { block, body }),
+            stream::Frame::Nmea(_) | stream::Frame::Line(_) => None,
+        }
+    }
+
     /// One of those that hold raw data.
     pub(super) fn is_raw(&self) -> bool {
         match self {
@@ -56,11 +55,10 @@ impl<'a> Frames<'a> {
 
     /// Frame at a place and its length; `None` where none begins.
     fn look(&self, at: usize) -> Option<(usize, Result<Frame<'a>, &'static str>)> {
-        let rest = self.bytes.get(at..)?;
-        match array(rest, 0)? {
-            [0xb5, 0x62] => ubx(rest),
-            [b'$', b'@'] => sbf(rest),
-            _ => None,
+        match look(self.bytes.get(at..)?, false, true) {
+            Look::Nothing | Look::NeedMore => None,
+            Look::Frame { length, frame } => Some((length, Ok(Frame::of(frame)?))),
+            Look::Damaged { reason, length } => Some((length, Err(reason))),
         }
     }
 }
@@ -82,58 +80,3 @@ impl<'a> Iterator for Frames<'a> {
         None
     }
 }
-
-fn ubx(rest: &[u8]) -> Option<(usize, Result<Frame<'_>, &'static str>)> {
-    let kind = array(rest, 2)?;
-    let length = usize::from(u16_at(rest, 4)?);
-    if length > LARGEST_UBX {
-        return None;
-    }
-    let end = UBX_HEAD + length;
-    let (Some(payload), Some(sum)) = (rest.get(UBX_HEAD..end), array(rest, end)) else {
-        return Some((end, Err("the log ends within a UBX frame")));
-    };
-    let (mut a, mut b) = (0_u8, 0_u8);
-    for byte in rest.get(2..end)? {
-        a = a.wrapping_add(*byte);
-        b = b.wrapping_add(a);
-    }
-    let frame = if [a, b] == sum { Ok(Frame::Ubx { kind, payload }) } else { Err("the checksum of a UBX frame is wrong") };
-    Some((end + 2, frame))
-}
-
-fn sbf(rest: &[u8]) -> Option<(usize, Result<Frame<'_>, &'static str>)> {
-    let (sum, block, length) = (u16_at(rest, 2)?, u16_at(rest, 4)?, usize::from(u16_at(rest, 6)?));
-    // A prompt or an answer to a command begins with the same two bytes.
-    if length < SBF_HEAD || length % 4 != 0 {
-        return None;
-    }
-    let Some(whole) = rest.get(..length) else {
-        return Some((length, Err("the log ends within an SBF block")));
-    };
-    let checked = whole.get(4..)?;
-    let body = whole.get(SBF_HEAD..)?;
-    let frame =
-        if crc16(checked) == sum { Ok(Frame::Sbf { block: block & 0x1fff, body }) } else { Err("the CRC of an SBF block is wrong") };
-    Some((length, frame))
-}
-
-/// CRC-16 of the CCITT, polynomial 0x1021, beginning with zero.
-pub(super) fn crc16(bytes: &[u8]) -> u16 {
-    bytes.iter().fold(0, |crc, byte| crc << 8 ^ TABLE[usize::from((crc >> 8) as u8 ^ byte)])
-}
-
-const TABLE: [u16; 256] = {
-    let mut table = [0; 256];
-    let mut k = 0;
-    while k < 256 {
-        let (mut crc, mut bit) = ((k as u16) << 8, 0);
-        while bit < 8 {
-            crc = if crc & 0x8000 == 0 { crc << 1 } else { crc << 1 ^ 0x1021 };
-            bit += 1;
-        }
-        table[k] = crc;
-        k += 1;
-    }
-    table
-};

@@ -1,5 +1,5 @@
-use super::frames::crc16;
 use super::*;
+use crate::stream::crc16;
 use navbound_core::quantity::GpsTime;
 use navbound_core::signal::{Constellation, SatelliteId};
 use proptest::prelude::*;

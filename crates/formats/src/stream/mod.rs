@@ -1,0 +1,27 @@
+//! Frames out of bytes that are still arriving: UBX, SBF, NMEA sentences and lines.
+//!
+//! [`Framer`] takes bytes in pieces of any size. A frame whose end has not arrived is *need more* and not damage; it becomes damage when the
+//! stream falls silent or ends ([`Framer::flush`]). **Chunk law**: any cutting of the bytes gives the same frames in the same order, and the
+//! same damage, as all of them at once; the readers of files use the same search.
+
+mod check;
+mod frame;
+mod framer;
+mod lines;
+mod nmea;
+mod sbf;
+mod search;
+mod ubx;
+
+#[cfg(test)]
+pub(crate) use check::crc16;
+pub use frame::{Damage, Frame};
+pub use framer::{BadRest, Framer, Protocol};
+pub(crate) use search::{Look, look};
+
+/// Longest frame that is kept until its end arrives \[B\]. A length field above it is no length; the longest UBX frame that is believed has
+/// 8200 bytes. Provenance: ours.
+pub const LONGEST_FRAME: usize = 16 * 1024;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+#![allow(clippy::print_stderr)] // A test that is skipped says so.
+use super::*;
+use crate::receiver;
+use proptest::prelude::*;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Frames and damage as text, so that they outlive the bytes.
+fn named(found: &Result<Frame<'_>, Damage>) -> String {
+    match found {
+        Ok(frame) => format!("{frame:?}"),
+        Err(damage) => damage.reason.to_owned(),
+    }
+}
+
+fn cut_by(protocol: Protocol, bytes: &[u8], mut next: impl FnMut() -> usize) -> Vec<String> {
+    let (mut framer, mut seen, mut at) = (Framer::new(protocol), Vec::new(), 0);
+    while at < bytes.len() {
+        let end = (at + next().max(1)).min(bytes.len());
+        framer.push(&bytes[at..end], &mut |found| seen.push(named(&found)));
+        assert!(framer.rest().0.len() <= LONGEST_FRAME, "{} bytes are kept", framer.rest().0.len());
+        at = end;
+    }
+    framer.flush(&mut |found| seen.push(named(&found)));
+    assert!(framer.rest().0.is_empty());
+    seen
+}
+
+/// The same by the search of whole bytes, without a framer.
+fn at_once(bytes: &[u8]) -> Vec<String> {
+    let (mut seen, mut at) = (Vec::new(), 0);
+    while at < bytes.len() {
+        match look(&bytes[at..], true, true) {
+            Look::Nothing | Look::NeedMore => at += 1,
+            Look::Frame { length, frame } => {
+                seen.push(named(&Ok(frame)));
+                at += length;
+            }
+            Look::Damaged { reason, .. } => {
+                seen.push(reason.to_owned());
+                at += 2;
+            }
+        }
+    }
+    seen
+}
+
+/// A small linear generator: pieces of 1 to 2000 bytes, short ones often.
+fn pieces(seed: u64) -> impl FnMut() -> usize {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let draw = (state >> 33) as usize;
+        if draw.is_multiple_of(3) { 1 + draw / 3 % 7 } else { 1 + draw / 3 % 2000 }
+    }
+}
+
+fn logs() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/rxlogs");
+    let Ok(folders) = fs::read_dir(&folder) else {
+        eprintln!("SKIPPED ALOUD: no receiver logs at {}", folder.display());
+        return Vec::new();
+    };
+    let files = folders.flatten().flat_map(|f| fs::read_dir(f.path()).into_iter().flatten().flatten().map(|e| e.path()));
+    files.filter(|path| path.extension().is_some_and(|e| e == "log" || e == "ubx")).collect()
+}
+
+/// Cuttings of a log: `NAVBOUND_CUTTINGS` for more of them.
+fn n_cuttings() -> u64 {
+    std::env::var("NAVBOUND_CUTTINGS").ok().and_then(|text| text.parse().ok()).unwrap_or(6)
+}
+
+/// A log with a bit turned in every thousandth byte.
+fn damaged(bytes: &[u8]) -> Vec<u8> {
+    bytes.iter().enumerate().map(|(k, byte)| if k % 1000 == 500 { byte ^ 1 } else { *byte }).collect()
+}
+
+#[test]
+fn chunks_of_every_log_give_the_frames_of_the_whole() {
+    let (mut n_frames, mut n_damaged) = (0, 0);
+    for log in logs() {
+        let whole = fs::read(&log).unwrap();
+        for bytes in [damaged(&whole), whole] {
+            let expected = at_once(&bytes);
+            n_frames += expected.len();
+            n_damaged += expected.iter().filter(|text| text.contains("checksum") || text.contains("CRC")).count();
+            for seed in 0..n_cuttings() {
+                assert_eq!(cut_by(Protocol::Receiver, &bytes, pieces(seed)), expected, "{} cut by {seed}", log.display());
+            }
+        }
+    }
+    assert!(logs().is_empty() || (n_frames > 10_000 && n_damaged > 100), "{n_frames} frames, {n_damaged} damaged");
+    eprintln!("{n_frames} frames, of which {n_damaged} damaged");
+}
+
+#[test]
+fn the_reader_of_files_counts_the_frames_of_the_stream() {
+    for log in logs() {
+        let bytes = fs::read(&log).unwrap();
+        let Ok(read) = receiver::read(&bytes) else { continue };
+        let by_file = read.observations.refused.iter().filter(|refusal| refusal.field == "frame").count();
+        let seen = cut_by(Protocol::Receiver, &bytes, || 100);
+        let by_stream = seen.iter().filter(|text| text.contains("UBX frame") || text.contains("SBF block")).count();
+        assert_eq!(by_stream, by_file, "{}", log.display());
+    }
+}
+
+#[test]
+fn an_unfinished_frame_is_kept_and_is_damage_only_at_the_end() {
+    let frame = [0xb5, 0x62, 0x05, 0x01, 2, 0, 0x06, 0x01, 0x0f, 0x38];
+    for end in 1..frame.len() {
+        let (mut framer, mut seen) = (Framer::new(Protocol::Receiver), Vec::new());
+        framer.push(&frame[..end], &mut |found| seen.push(named(&found)));
+        assert!(seen.is_empty(), "{end} bytes");
+        framer.push(&frame[end..], &mut |found| seen.push(named(&found)));
+        assert_eq!(seen.len(), 1, "{end} bytes");
+        assert!(seen[0].contains("Ubx"), "{seen:?}");
+        let mut cut = Framer::new(Protocol::Receiver);
+        let mut damage = Vec::new();
+        cut.push(&frame[..end], &mut |_| ());
+        cut.flush(&mut |found| damage.push(named(&found)));
+        assert_eq!(damage.len(), usize::from(end >= 6), "{end} bytes");
+    }
+}
+
+#[test]
+fn a_length_that_never_fills_is_given_up() {
+    // SBF may state 65,535 bytes; a false sync must not hold up more than the longest frame.
+    let mut bytes = b"$@\0\0\xa7\x0f\xfc\xff".to_vec();
+    bytes.extend(b"$GPZDA,001924.00,13,04,2019,00,00*64\r\n");
+    let mut seen = Vec::new();
+    Framer::new(Protocol::Receiver).push(&bytes, &mut |found| seen.push(named(&found)));
+    assert_eq!(seen.len(), 1, "{seen:?}");
+}
+
+#[test]
+fn lines_may_end_anyhow_and_a_long_one_is_refused_once() {
+    let long = [b"x".repeat(40_000), b"\n{\"b\":2}\n".to_vec()].concat();
+    let text = [b"{\"a\":1}\r\n\n".to_vec(), long, b"last".to_vec()].concat();
+    for seed in 0..50 {
+        let seen = cut_by(Protocol::Lines, &text, pieces(seed));
+        assert_eq!(seen.len(), 4, "{seen:?}");
+        assert_eq!(seen[1], "a line longer than 16384 bytes");
+        assert!(seen[3].contains("108, 97, 115, 116"));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 500, ..ProptestConfig::default() })]
+
+    #[test]
+    fn chunks_of_hostile_bytes_give_the_frames_of_the_whole(
+        parts in prop::collection::vec(prop_oneof![
+            Just(vec![0xb5, 0x62]), Just(b"$@".to_vec()), Just(b"$GPGGA,".to_vec()), Just(b"*00".to_vec()), Just(b"\n".to_vec()),
+            Just(vec![0xb5, 0x62, 0x05, 0x01, 2, 0, 0x06, 0x01, 0x0f, 0x38]),
+            Just(b"$GPZDA,001924.00,13,04,2019,00,00*64\r\n".to_vec()),
+            prop::collection::vec(any::<u8>(), 0..40),
+        ], 0..30),
+        seed: u64,
+    ) {
+        let bytes = parts.concat();
+        prop_assert_eq!(cut_by(Protocol::Receiver, &bytes, pieces(seed)), at_once(&bytes));
+        prop_assert_eq!(cut_by(Protocol::Lines, &bytes, pieces(seed)), cut_by(Protocol::Lines, &bytes, || usize::MAX / 2));
+    }
+}

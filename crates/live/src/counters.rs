@@ -1,0 +1,125 @@
+//! What a lane counted.
+
+use crate::codec::{Damaged, Reader, Writer};
+
+/// Why something that arrived is no record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Refused {
+    /// Not a JSON object with the fields of a position.
+    NotAPosition,
+    /// Another version of the contract.
+    Version,
+    /// A name that no track may have.
+    TrackName,
+    /// A damaged frame or a line that is too long.
+    DamagedFrame,
+    /// A message shorter than its definition.
+    ShortMessage,
+    /// A position without a date or a time.
+    Undated,
+    /// Later than its arrival by more than two seconds.
+    FromTheFuture,
+    /// Earlier than its arrival by more than the retention.
+    TooOld,
+    /// A new track beyond the most that are watched.
+    FleetFull,
+}
+
+impl Refused {
+    /// All, in the order of their codes.
+    pub const ALL: [Self; 9] = [
+        Self::NotAPosition,
+        Self::Version,
+        Self::TrackName,
+        Self::DamagedFrame,
+        Self::ShortMessage,
+        Self::Undated,
+        Self::FromTheFuture,
+        Self::TooOld,
+        Self::FleetFull,
+    ];
+
+    /// The id of tables.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::NotAPosition => "not_a_position",
+            Self::Version => "version",
+            Self::TrackName => "track_name",
+            Self::DamagedFrame => "damaged_frame",
+            Self::ShortMessage => "short_message",
+            Self::Undated => "undated",
+            Self::FromTheFuture => "from_the_future",
+            Self::TooOld => "too_old",
+            Self::FleetFull => "fleet_full",
+        }
+    }
+}
+
+/// Counts of a lane, beside those of its monitors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counters {
+    /// Bytes of the source.
+    pub n_bytes: u64,
+    /// Frames or lines that were whole.
+    pub n_frames: u64,
+    /// Records accepted from the source.
+    pub n_records: u64,
+    /// Records dropped as the repeat of one that waits.
+    pub n_duplicate: u64,
+    /// Records that came after a later one of their track and were put before it.
+    pub n_reordered: u64,
+    /// Records that were judged as unusable since they were older than monitoring may be silent when they were released.
+    pub n_stale: u64,
+    /// Tracks that were forgotten after a long silence.
+    pub n_expired: u64,
+    /// Faults of ours in one record.
+    pub n_internal: u64,
+    /// What was refused, by [`Refused`].
+    pub refused: [u64; Refused::ALL.len()],
+}
+
+impl Counters {
+    pub(crate) const fn refuse(&mut self, reason: Refused) {
+        self.refused[reason as usize] += 1;
+    }
+
+    /// Names and counts.
+    pub fn named(&self) -> Vec<(String, u64)> {
+        let own = [
+            ("n_bytes", self.n_bytes),
+            ("n_frames", self.n_frames),
+            ("n_records", self.n_records),
+            ("n_waiting_duplicate", self.n_duplicate),
+            ("n_reordered", self.n_reordered),
+            ("n_stale", self.n_stale),
+            ("n_expired", self.n_expired),
+            ("n_internal", self.n_internal),
+        ];
+        let refused = Refused::ALL.into_iter().zip(self.refused).map(|(reason, n)| (format!("refused_{}", reason.id()), n));
+        own.into_iter().map(|(name, n)| (name.to_owned(), n)).chain(refused).collect()
+    }
+
+    pub(crate) fn write(&self, to: &mut Writer) {
+        let own = [self.n_bytes, self.n_frames, self.n_records, self.n_duplicate, self.n_reordered, self.n_stale, self.n_expired];
+        own.into_iter().chain([self.n_internal]).chain(self.refused).for_each(|n| to.u64(n));
+    }
+
+    pub(crate) fn read(from: &mut Reader<'_>) -> Result<Self, Damaged> {
+        let mut counters = Self {
+            n_bytes: from.u64()?,
+            n_frames: from.u64()?,
+            n_records: from.u64()?,
+            n_duplicate: from.u64()?,
+            n_reordered: from.u64()?,
+            n_stale: from.u64()?,
+            n_expired: from.u64()?,
+            n_internal: from.u64()?,
+            refused: [0; Refused::ALL.len()],
+        };
+        for count in &mut counters.refused {
+            *count = from.u64()?;
+        }
+        Ok(counters)
+    }
+}

@@ -1,0 +1,95 @@
+//! One JSON object a line: the contract for other programs that produce positions. Unknown keys are passed over, known ones are strict.
+
+use super::Decoded;
+use crate::counters::Refused;
+use crate::position::{Position, TrackId};
+use navbound_core::quantity::{GpsTime, Reason, Status};
+use serde::{Deserialize, Deserializer};
+use std::borrow::Cow;
+
+/// Version of the contract.
+const VERSION: u32 = 1;
+
+/// Names as in docs/notation.md; `null` is a number that is stated as none.
+#[derive(Deserialize)]
+struct Line<'a> {
+    v: u32,
+    #[serde(borrow)]
+    track: Cow<'a, str>,
+    time_ns: i64,
+    #[serde(default, borrow)]
+    status: Option<Cow<'a, str>>,
+    #[serde(default, deserialize_with = "number")]
+    est_lat_rad: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    est_lon_rad: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    est_h_m: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    fte_m: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    course_rad: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    sigma_m: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    cov_ee_m2: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    cov_en_m2: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    cov_nn_m2: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    cov_eu_m2: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    cov_nu_m2: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    cov_uu_m2: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    hpl_m: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    rnp_m: Option<f64>,
+}
+
+/// A number, NaN for `null`. A key that is absent does not come here.
+fn number<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
+    Option::<f64>::deserialize(from).map(|value| Some(value.unwrap_or(f64::NAN)))
+}
+
+pub(super) fn position(line: &[u8]) -> Decoded {
+    let line: Line<'_> = serde_json::from_slice(line).map_err(|_| Refused::NotAPosition)?;
+    if line.v != VERSION {
+        return Err(Refused::Version);
+    }
+    let track = TrackId::new(&line.track).ok_or(Refused::TrackName)?;
+    if line.time_ns < 0 {
+        return Err(Refused::Undated);
+    }
+    let status = Status::from_id(line.status.as_deref().unwrap_or("ok")).ok_or(Refused::NotAPosition)?;
+    let position = Position {
+        status,
+        reason: (!status.usable()).then_some(Reason::Reported),
+        lat_rad: line.est_lat_rad,
+        lon_rad: line.est_lon_rad,
+        h_m: line.est_h_m,
+        fte_m: line.fte_m,
+        course_rad: line.course_rad,
+        covariance_m2: line.covariance(),
+        hpl_m: line.hpl_m,
+        rnp_m: line.rnp_m,
+        ..Position::new(track, GpsTime::from_nanoseconds(line.time_ns))
+    };
+    Ok(position)
+}
+
+impl Line<'_> {
+    /// The covariance, or that of one standard deviation in every direction. Terms that are absent beside others are not known.
+    fn covariance(&self) -> Option<[f64; 6]> {
+        let terms = [self.cov_ee_m2, self.cov_en_m2, self.cov_nn_m2, self.cov_eu_m2, self.cov_nu_m2, self.cov_uu_m2];
+        if terms.iter().any(Option::is_some) {
+            return Some(terms.map(|term| term.unwrap_or(f64::NAN)));
+        }
+        // A square would make a negative deviation look like a good one.
+        self.sigma_m
+            .map(|sigma| if sigma >= 0.0 { sigma * sigma } else { f64::NAN })
+            .map(|variance| [variance, 0.0, variance, 0.0, 0.0, variance])
+    }
+}

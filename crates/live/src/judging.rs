@@ -1,0 +1,171 @@
+//! One released record under the judge of its track.
+
+use crate::order::Arrived;
+use crate::output::{EpochOut, Kind, Output, Transition, Turn};
+use crate::position::{Position, TrackId};
+use crate::settings::Settings;
+use crate::track::Track;
+use navbound_core::bound::AlertBound;
+use navbound_core::frame::{Covariance, LatLon};
+use navbound_core::judge::{Evaluated, Judged, Sample};
+use navbound_core::monitor::rnp::{Acceptance, Event};
+use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Status, Unavailable};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// What decided an alert: a time of the data, and the arrival of the input behind it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cause {
+    pub(crate) event: GpsTime,
+    pub(crate) arrival: Option<GpsTime>,
+}
+
+/// A record as the judge takes it. A record that is not usable says why, and one without a covariance is not.
+fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sample, Option<Reason>) {
+    let point = position.lat_rad.zip(position.lon_rad).map(|(lat, lon)| LatLon::new(Radians::new(lat), Radians::new(lon)));
+    let mut reason = position.reason;
+    let mut refuse = |why: Reason| reason = reason.or(Some(why));
+    let (mut fte_m, mut course) = (position.fte_m, position.course_rad.or(position.fte_m.map(|_| 0.0)).map(Radians::new));
+    match (&settings.path, point) {
+        (_, Some(Err(_))) => refuse(Reason::InvalidNumber),
+        (Some(path), Some(Ok(point))) => match path.project(&point, track.along) {
+            Ok(foot) => {
+                track.along = Some(foot.along);
+                (fte_m, course) = (Some(foot.cross.m()), Some(foot.course));
+            }
+            Err(_) => refuse(Reason::InvalidNumber),
+        },
+        // What another path deviates from says nothing of this one.
+        (Some(_), None) => (fte_m, course) = (None, None),
+        (None, _) => {}
+    }
+    match position.covariance_m2 {
+        None => refuse(Reason::NoCovariance),
+        Some([ee, _, nn, ..]) if ee == 0.0 && nn == 0.0 => refuse(Reason::ZeroCovariance),
+        Some(_) => {}
+    }
+    let sample = Sample {
+        time: position.time,
+        status: reason.filter(|_| position.status.usable()).map_or(position.status, Reason::status),
+        course,
+        path_angle: None,
+        fte_m,
+        fte_v_m: None,
+        covariance: position.covariance_m2.map(Covariance::from_upper),
+        nse_en_m: None,
+        nse_u_m: None,
+        rnp: Some(position.rnp_m.map_or(settings.rnp, Metres::new)),
+        hpl: position.hpl_m.map(Metres::new),
+    };
+    (sample, reason)
+}
+
+/// Whether a number that a bound is made of is there and is no number.
+fn stated_as_none(position: &Position) -> bool {
+    let horizontal = position.covariance_m2.iter().flat_map(|terms| &terms[..3]);
+    horizontal.chain(&position.fte_m).any(|number| number.is_nan())
+}
+
+/// Judges a record and says what became of it. A fault of ours makes this epoch of this track unusable, and nothing else; whether one happened.
+pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived: &Arrived, out: &mut Vec<Output>, fault: bool) -> bool {
+    let position = &arrived.position;
+    let (seen, mut reason) = sample(settings, track, position);
+    let before = track.judge;
+    let attempt = catch_unwind(AssertUnwindSafe(|| {
+        assert!(!fault, "a fault that a test injects");
+        let evaluated = track.judge.settings().evaluate(&seen);
+        // A source that calls an epoch usable and states a number of it as none contradicts itself: nothing is within a limit then.
+        let status = if stated_as_none(position) { seen.status } else { evaluated.status };
+        track.judge.follow(&seen, Evaluated { status, ..evaluated })
+    }));
+    let failed = attempt.is_err();
+    let (seen, judged) = match attempt {
+        Ok(judged) => (seen, judged),
+        Err(_) => {
+            track.judge = before;
+            reason = Some(Reason::FilterStopped);
+            let unusable = Sample { status: Status::NotAvailable, covariance: None, hpl: None, ..seen };
+            (unusable, track.judge.step(&unusable))
+        }
+    };
+    if judged.step.acceptance == Acceptance::ClockSetBack {
+        track.incarnation = track.incarnation.saturating_add(1);
+    }
+    if matches!(judged.step.acceptance, Acceptance::Accepted | Acceptance::ClockSetBack) {
+        let next = track.last.map(|last| last.plus_seconds(settings.judge.monitor.chain.sample_period_s));
+        (track.stepped, track.last) = (next == Some(position.time), Some(position.time));
+        track.silent = false;
+    }
+    out.push(Output::Epoch(epoch(arrived, &seen, &judged, reason)));
+    let cause = Cause { event: position.time, arrival: arrived.arrival };
+    let [caution, warning, lost] = judged.step.began;
+    begin(id, track, lost, cause, out);
+    judged.step.ended.iter().for_each(|event| end(id, track, event.as_ref(), Turn::Cleared, cause, out));
+    begin(id, track, caution, cause, out);
+    begin(id, track, warning, cause, out);
+    failed
+}
+
+fn epoch(arrived: &Arrived, seen: &Sample, judged: &Judged, reason: Option<Reason>) -> EpochOut {
+    let of = &judged.evaluated;
+    let bound = |bound: &Option<Result<AlertBound, Unavailable>>| bound.and_then(Result::ok).map_or(f64::NAN, |b| b.length().m());
+    let none = of.accuracy.and_then(Result::err).map(|why| why.reason());
+    let known = |number: Option<f64>| number.unwrap_or(f64::NAN);
+    let position = &arrived.position;
+    EpochOut {
+        track: position.track,
+        time: position.time,
+        arrival: arrived.arrival,
+        status: of.status,
+        reason: reason.or(none),
+        acceptance: judged.step.acceptance,
+        alert: judged.step.alert,
+        numbers: [
+            bound(&of.accuracy),
+            bound(&of.integrity),
+            judged.integrity_compared.m(),
+            known(seen.rnp.map(Metres::m)),
+            known(seen.fte_m),
+            known(of.errors.sigma_cross_m),
+            known(position.hpl_m),
+            known(position.lat_rad),
+            known(position.lon_rad),
+            known(position.h_m),
+        ],
+    }
+}
+
+/// An alert that was raised.
+pub(crate) fn begin(id: TrackId, track: &mut Track, event: Option<Event>, cause: Cause, out: &mut Vec<Output>) {
+    let Some(event) = event else { return };
+    let (kind, incarnation) = (Kind::of(event.kind), track.incarnation);
+    if let Some(open) = track.open_mut(kind) {
+        *open = Some((incarnation, event.annunciation));
+    }
+    out.push(transition(id, incarnation, Turn::Raised, event.annunciation, &event, cause));
+}
+
+/// An alert that is over; its key is that of its raise, whatever the clock of the track did since.
+pub(crate) fn end(id: TrackId, track: &mut Track, event: Option<&Event>, turn: Turn, cause: Cause, out: &mut Vec<Output>) {
+    let Some(event) = event else { return };
+    let own = (track.incarnation, event.annunciation);
+    let (incarnation, annunciation) = track.open_mut(Kind::of(event.kind)).and_then(Option::take).unwrap_or(own);
+    out.push(transition(id, incarnation, turn, annunciation, event, cause));
+}
+
+fn transition(id: TrackId, incarnation: u32, turn: Turn, annunciation: GpsTime, event: &Event, cause: Cause) -> Output {
+    let blank = Transition {
+        track: Some(id),
+        incarnation,
+        kind: Kind::of(event.kind),
+        turn,
+        annunciation,
+        onset: event.onset,
+        clear: None,
+        peak_m: f64::NAN,
+        limit_m: f64::NAN,
+        min_margin_m: f64::NAN,
+        event: cause.event,
+        arrival: cause.arrival,
+    };
+    Output::Transition(blank.with_event(event))
+}

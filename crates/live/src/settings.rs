@@ -1,0 +1,57 @@
+//! How a lane is set.
+
+use crate::decode::Format;
+use crate::position::TrackId;
+use navbound_core::frame::LatLon;
+use navbound_core::judge;
+use navbound_core::quantity::{Metres, OutOfDomain};
+use navbound_path::{Foot, Line, Route};
+
+/// Where the aircraft should be.
+#[derive(Debug, Clone)]
+pub enum Course {
+    /// An infinite geodesic.
+    Line(Box<Line>),
+    /// Legs and turns.
+    Route(Box<Route>),
+}
+
+impl Course {
+    /// The foot of a position, sought from the foot before it.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a position that no path is near.
+    pub fn project(&self, position: &LatLon, near: Option<Metres>) -> Result<Foot, OutOfDomain> {
+        match self {
+            Self::Line(line) => line.project(position),
+            Self::Route(route) => route.project(position, near),
+        }
+    }
+}
+
+/// Settings of a lane.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// What the source sends.
+    pub format: Format,
+    /// Whose positions those of a receiver are.
+    pub track: TrackId,
+    /// Method, risks and monitor of every track.
+    pub judge: judge::Settings,
+    /// RNP value in force where a record states none.
+    pub rnp: Metres,
+    /// The path; without one the flight technical error is the record's own.
+    pub path: Option<Course>,
+    /// Allowed lateness: how long the order of a track is waited for \[ns\].
+    pub lateness_ns: i64,
+    /// How much later than its arrival a record may be \[ns\].
+    pub ahead_ns: i64,
+    /// How much earlier than its arrival a record may be \[ns\].
+    pub retention_ns: i64,
+    /// Silence after which a track is forgotten \[ns\]; `None`: never.
+    pub expiry_ns: Option<i64>,
+    /// Most tracks that are watched.
+    pub max_tracks: usize,
+    /// Digest of what the settings were made from: a snapshot belongs to it.
+    pub digest: [u8; 32],
+}

@@ -1,0 +1,371 @@
+use super::*;
+use navbound_core::bound::Alerting;
+use navbound_core::judge;
+use navbound_core::monitor::rnp::{self, Chain};
+use navbound_core::quantity::{GpsTime, Metres, Risk};
+use proptest::prelude::*;
+use std::fmt::Write;
+
+const T0_NS: i64 = 1_447_500_000_000_000_000;
+
+fn settings() -> Settings {
+    let chain =
+        Chain { sample_period_s: 1.0, sensor_latency_s: 0.0, filter_s: 0.0, computing_s: 0.0, display_s: 0.0, time_to_alert_s: 10.0 };
+    Settings {
+        format: Format::Json,
+        track: TrackId::new("receiver").unwrap(),
+        judge: judge::Settings {
+            method: Alerting::of("tse-exact").unwrap(),
+            accuracy: Risk::new(0.05).unwrap(),
+            integrity: Risk::new(1e-5).unwrap(),
+            states: None,
+            monitor: rnp::Settings { chain, raise_delay_s: 3.0, clear_delay_s: 5.0, clear_ratio: 0.9, stale_after_s: 2.0 },
+            with_levels: false,
+        },
+        rnp: Metres::new(555.6),
+        path: None,
+        lateness_ns: 1_000_000_000,
+        ahead_ns: 2_000_000_000,
+        retention_ns: 3_600_000_000_000,
+        expiry_ns: Some(20_000_000_000),
+        max_tracks: 50,
+        digest: [7; 32],
+    }
+}
+
+/// A record of a track, `seconds` after the begin.
+fn line(track: &str, seconds: f64, rest: &str) -> String {
+    format!("{{\"v\":1,\"track\":\"{track}\",\"time_ns\":{}{rest}}}\n", T0_NS + (seconds * 1e9) as i64)
+}
+
+fn good(track: &str, seconds: f64) -> String {
+    line(track, seconds, ",\"fte_m\":20.0,\"sigma_m\":10.0")
+}
+
+fn at(seconds: f64) -> GpsTime {
+    GpsTime::from_nanoseconds(T0_NS + (seconds * 1e9) as i64)
+}
+
+fn chunk(lane: &mut Lane, arrival_s: f64, text: &str) -> Vec<Output> {
+    let mut out = Vec::new();
+    lane.step(&Input::Chunk { arrival: Some(at(arrival_s)), bytes: text.as_bytes() }, &mut out);
+    out
+}
+
+fn transitions(outputs: &[Output]) -> Vec<String> {
+    outputs.iter().filter_map(|output| if let Output::Transition(t) = output { Some(t.key()) } else { None }).collect()
+}
+
+/// Three tracks for `seconds`; what else arrives at a second is put behind their records.
+fn flown(lane: &mut Lane, seconds: u32, also: impl Fn(u32) -> String) -> Vec<Output> {
+    let mut all = Vec::new();
+    for k in 0..seconds {
+        let mut text = String::new();
+        for track in ["a", "b", "c"] {
+            text += &good(track, f64::from(k));
+        }
+        text += &also(k);
+        all.extend(chunk(lane, f64::from(k) + 0.1, &text));
+    }
+    all
+}
+
+fn of_track<'a>(outputs: &'a [Output], name: &str) -> Vec<&'a Output> {
+    let named = |output: &&Output| match output {
+        Output::Epoch(e) => e.track.name() == name,
+        Output::Transition(t) => t.track.is_some_and(|track| track.name() == name),
+    };
+    outputs.iter().filter(named).collect()
+}
+
+#[test]
+fn a_silence_is_raised_once_at_last_plus_stale_and_one_of_exactly_stale_is_none() {
+    for (resumes_s, raised) in [(6.0, 1), (4.0, 0)] {
+        let mut lane = Lane::new(settings()).unwrap();
+        let all = flown(&mut lane, 15, |k| {
+            let sends = f64::from(k) <= 2.0 || f64::from(k) >= resumes_s;
+            if sends { good("d", f64::from(k)) } else { String::new() }
+        });
+        let keys = transitions(&all);
+        let expected = format!("d/0/unavailable/{}/raised", at(4.0).nanoseconds());
+        assert_eq!(keys.iter().filter(|key| **key == expected).count(), raised, "{keys:?}");
+        assert_eq!(keys.len(), 2 * raised, "{keys:?}");
+    }
+}
+
+#[test]
+fn a_silence_is_told_while_it_lasts_and_by_heartbeats_alone() {
+    let mut lane = Lane::new(settings()).unwrap();
+    flown(&mut lane, 3, |_| String::new());
+    let mut out = Vec::new();
+    for k in 3..10 {
+        lane.step(&Input::Heartbeat { arrival: at(f64::from(k) + 0.1) }, &mut out);
+        let reported = transitions(&out);
+        // Last record at 2 s, stale after 2 s, lateness 1 s: due at 5 s.
+        assert_eq!(reported.iter().filter(|key| key.contains("unavailable")).count(), if k >= 5 { 3 } else { 0 }, "{k} {reported:?}");
+    }
+    assert!(transitions(&out).iter().any(|key| key.starts_with("feed:source/0/quiet/")));
+}
+
+#[test]
+fn records_within_the_lateness_are_put_in_order() {
+    let mut clean = Lane::new(settings()).unwrap();
+    let mut mixed = Lane::new(settings()).unwrap();
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for k in 0..20 {
+        let t = f64::from(k);
+        a.extend(chunk(&mut clean, t + 0.1, &(good("a", t) + &good("a", t + 0.4))));
+        b.extend(chunk(&mut mixed, t + 0.1, &(good("a", t + 0.4) + &good("a", t) + &good("a", t))));
+    }
+    let judged = |outputs: &[Output]| {
+        let times = outputs
+            .iter()
+            .filter_map(|o| if let Output::Epoch(e) = o { Some((e.time, e.alert, e.numbers.map(f64::to_bits))) } else { None });
+        times.collect::<Vec<_>>()
+    };
+    let (a, b) = (judged(&a), judged(&b));
+    let n = a.len().min(b.len());
+    assert!(n > 30);
+    let first = a.iter().zip(&b).position(|(a, b)| a != b);
+    assert!(first.is_none(), "record {first:?}");
+    assert_eq!((mixed.counters().n_reordered, mixed.monitor_counters().n_late), (20, 0));
+    assert!(mixed.counters().n_duplicate > 0);
+}
+
+#[test]
+fn a_time_stamp_an_hour_ahead_moves_nobody_else() {
+    let mut clean = Lane::new(settings()).unwrap();
+    let mut wrong = Lane::new(settings()).unwrap();
+    let expected = flown(&mut clean, 60, |k| good("d", f64::from(k)));
+    for offset_s in [3600.0, -3599.0] {
+        let mut lane = wrong.clone();
+        let all = flown(&mut lane, 60, |k| good("d", f64::from(k) + if (10..40).contains(&k) { offset_s } else { 0.0 }));
+        for name in ["a", "b", "c"] {
+            assert_eq!(format!("{:?}", of_track(&all, name)), format!("{:?}", of_track(&expected, name)), "{offset_s} {name}");
+        }
+        let keys: Vec<_> = transitions(&all).into_iter().filter(|key| key.starts_with("d/")).collect();
+        assert!(keys.iter().any(|key| key.contains("unavailable") && key.ends_with("raised")), "{keys:?}");
+        let mut unique = keys.clone();
+        unique.sort();
+        unique.dedup();
+        assert_eq!(unique.len(), keys.len(), "{keys:?}");
+        let unavailable_at = |second: f64| {
+            let epochs = all.iter().filter_map(|o| if let Output::Epoch(e) = o { (e.track.name() == "d").then_some(*e) } else { None });
+            epochs.into_iter().find(|e| e.time == at(second)).map(|e| e.alert)
+        };
+        // Right stamps come again from 40 s on.
+        assert_eq!(unavailable_at(45.0), Some(rnp::Alert::Normal), "{offset_s} {keys:?}");
+    }
+    wrong.fault = None;
+}
+
+#[test]
+fn a_clock_that_stays_wrong_is_an_alert_of_the_source() {
+    let mut lane = Lane::new(settings()).unwrap();
+    flown(&mut lane, 3, |_| String::new());
+    let mut keys = Vec::new();
+    for k in 3..20 {
+        keys.extend(transitions(&chunk(&mut lane, f64::from(k), &good("a", f64::from(k) + 5000.0))));
+    }
+    assert!(keys.iter().any(|key| key.starts_with("feed:source/0/clock/")), "{keys:?}");
+    assert_eq!(lane.counters().refused[Refused::FromTheFuture as usize], 17);
+}
+
+#[test]
+fn no_number_is_passed_over() {
+    let whole = ["fte_m\":20.0", "sigma_m\":10.0", "rnp_m\":555.6"];
+    for place in 0..whole.len() {
+        let mut fields: Vec<String> = whole.iter().map(|field| format!("\"{field}")).collect();
+        let name = whole[place].split('"').next().unwrap();
+        for value in ["null", "-1.0", "1e999"] {
+            fields[place] = format!("\"{name}\":{value}");
+            let rest = format!(",{}", fields.join(","));
+            let mut lane = Lane::new(settings()).unwrap();
+            let all = flown(&mut lane, 30, |k| if k == 10 { line("d", 10.0, &rest) } else { good("d", f64::from(k)) });
+            let keys: Vec<_> = transitions(&all).into_iter().filter(|key| key.starts_with("d/")).collect();
+            let refused: u64 = lane.counters().refused.iter().sum();
+            // A deviation to the left is a number; a number beyond all doubles is no record.
+            let passes = name == "fte_m" && value == "-1.0";
+            let reported = keys.iter().any(|key| key.contains("/warning/")) || refused == 1;
+            assert_eq!(reported, !passes, "{name} {value}: {keys:?}, {refused} refused");
+            assert!(value != "null" || lane.monitor_counters().n_nan == 1, "{name} {value}");
+        }
+    }
+}
+
+#[test]
+fn a_record_without_a_covariance_or_that_is_reported_unusable_is_not_monitored() {
+    for (rest, reason) in
+        [(",\"fte_m\":20.0", "no_covariance"), (",\"fte_m\":20.0,\"sigma_m\":10.0,\"status\":\"not_available\"", "reported")]
+    {
+        let mut lane = Lane::new(settings()).unwrap();
+        let all = flown(&mut lane, 10, |k| line("d", f64::from(k), rest));
+        let epochs: Vec<_> =
+            all.iter().filter_map(|o| if let Output::Epoch(e) = o { (e.track.name() == "d").then_some(e) } else { None }).collect();
+        assert!(epochs.len() > 5 && epochs.iter().all(|e| e.alert == rnp::Alert::Unavailable && e.reason.unwrap().id() == reason));
+    }
+}
+
+#[test]
+fn tracks_beyond_the_cap_are_refused_and_all_are_forgotten_after_silence() {
+    let mut lane = Lane::new(settings()).unwrap();
+    let mut keys = Vec::new();
+    for k in 0..3 {
+        let mut text = String::new();
+        for track in 0..60 {
+            text += &good(&format!("t{track:02}"), f64::from(k));
+        }
+        keys.extend(transitions(&chunk(&mut lane, f64::from(k) + 0.1, &text)));
+    }
+    assert_eq!((lane.n_tracks(), lane.counters().refused[Refused::FleetFull as usize]), (50, 30));
+    assert_eq!(keys.iter().filter(|key| key.starts_with("feed:source/0/fleet_full/")).count(), 1);
+    let mut out = Vec::new();
+    (3..40).for_each(|k| lane.step(&Input::Heartbeat { arrival: at(f64::from(k)) }, &mut out));
+    let reported = transitions(&out);
+    assert_eq!((lane.n_tracks(), lane.counters().n_expired), (0, 50));
+    assert_eq!(reported.iter().filter(|key| key.ends_with("/unavailable/expired")).count(), 0, "{reported:?}");
+    assert_eq!(reported.iter().filter(|key| key.contains("/unavailable/") && key.ends_with("expired")).count(), 50);
+    assert!(reported.iter().any(|key| key.starts_with("feed:source/0/fleet_full/") && key.ends_with("cleared")));
+    // A track that comes back is another incarnation.
+    let back: Vec<_> = (50..56)
+        .flat_map(|k| transitions(&chunk(&mut lane, f64::from(k), &line("t00", f64::from(k), ",\"fte_m\":9e3,\"sigma_m\":1.0"))))
+        .collect();
+    assert!(back.iter().any(|key| key.starts_with("t00/1/warning/")), "{back:?}");
+}
+
+#[test]
+fn a_fault_of_ours_in_one_record_makes_that_track_unavailable_and_nothing_else() {
+    let mut clean = Lane::new(settings()).unwrap();
+    let expected = flown(&mut clean, 20, |k| good("d", f64::from(k)));
+    let mut lane = Lane::new(settings()).unwrap();
+    lane.fault = TrackId::new("d");
+    let all = flown(&mut lane, 20, |k| good("d", f64::from(k)));
+    for name in ["a", "b", "c"] {
+        assert_eq!(format!("{:?}", of_track(&all, name)), format!("{:?}", of_track(&expected, name)));
+    }
+    assert!(lane.counters().n_internal > 10);
+    let keys: Vec<_> = transitions(&all).into_iter().filter(|key| key.starts_with("d/")).collect();
+    assert_eq!(keys.len(), 1, "{keys:?}");
+    assert!(keys[0].contains("/unavailable/"));
+}
+
+#[test]
+fn malformed_lines_are_counted_and_the_next_good_one_is_taken() {
+    let mut lane = Lane::new(settings()).unwrap();
+    let deep = format!("{}{}", "[".repeat(500), "]".repeat(500));
+    let long = format!("{{\"v\":1,\"track\":\"{}\",\"time_ns\":1}}", "x".repeat(33));
+    let bad = [
+        "",
+        "{",
+        "null",
+        "[]",
+        "{}",
+        "{\"v\":1}",
+        "{\"v\":2,\"track\":\"a\",\"time_ns\":1}",
+        "{\"v\":1,\"track\":\"\",\"time_ns\":1}",
+        "{\"v\":1,\"track\":\"a/b\",\"time_ns\":1}",
+        "{\"v\":1,\"track\":\"a\",\"time_ns\":1.5}",
+        "{\"v\":1,\"track\":\"a\",\"time_ns\":-1}",
+        "{\"v\":1,\"track\":\"a\",\"time_ns\":1,\"sigma_m\":\"x\"}",
+        "{\"v\":1,\"track\":\"a\",\"time_ns\":1,\"sigma_m\":NaN}",
+        "{\"v\":1,\"track\":\"a\",\"track\":\"b\",\"time_ns\":1}",
+        "{\"v\":1,\"track\":\"<img onerror>\",\"time_ns\":1}",
+        &deep,
+        &long,
+    ];
+    let mut text = String::new();
+    for each in bad {
+        writeln!(text, "{each}").unwrap();
+    }
+    chunk(&mut lane, 0.1, &(text + &good("a", 0.0)));
+    assert_eq!(lane.counters().refused.iter().sum::<u64>(), bad.len() as u64 - 1, "an empty line is nothing: {:?}", lane.counters());
+    assert_eq!((lane.counters().n_records, lane.n_tracks()), (1, 1));
+}
+
+/// A journal with everything in it.
+fn journal() -> Vec<Vec<u8>> {
+    let mut inputs = Vec::new();
+    for k in 0..40 {
+        let t = f64::from(k);
+        let mut text = good("a", t) + &good("b", t + 0.3);
+        if k % 7 != 3 {
+            let fte_m = if (8..16).contains(&k) { 600 } else { 0 };
+            text += &line("c", t, &format!(",\"fte_m\":{fte_m},\"sigma_m\":10.0"));
+        }
+        if !(10..16).contains(&k) {
+            text += &good("d", t);
+        }
+        let (head, tail) = text.split_at(text.len() / 3);
+        inputs.push(Input::Chunk { arrival: Some(at(t + 0.1)), bytes: head.as_bytes() }.to_bytes());
+        inputs.push(Input::Chunk { arrival: Some(at(t + 0.2)), bytes: tail.as_bytes() }.to_bytes());
+        inputs.push(Input::Heartbeat { arrival: at(t + 0.5) }.to_bytes());
+    }
+    inputs.push(Input::End { arrival: None }.to_bytes());
+    inputs
+}
+
+fn judged(lane: &mut Lane, inputs: &[Vec<u8>]) -> Vec<u8> {
+    let (mut out, mut bytes) = (Vec::new(), Vec::new());
+    inputs.iter().for_each(|input| lane.step(&Input::from_bytes(input).unwrap(), &mut out));
+    out.iter().for_each(|output| output.append(&mut bytes));
+    bytes
+}
+
+#[test]
+fn a_lane_that_is_restored_anywhere_goes_on_in_every_bit() {
+    let inputs = journal();
+    let expected = judged(&mut Lane::new(settings()).unwrap(), &inputs);
+    assert!(transitions(&Output::all(&expected).unwrap()).len() == 4);
+    for cut in 0..inputs.len() {
+        let mut first = Lane::new(settings()).unwrap();
+        let mut bytes = judged(&mut first, &inputs[..cut]);
+        let snapshot = first.snapshot(cut as u64, 5);
+        let (mut second, position, written) = Lane::restore(settings(), &snapshot).unwrap();
+        assert_eq!((position, written), (cut as u64, 5));
+        assert_eq!(second.snapshot(position, written), snapshot);
+        bytes.extend(judged(&mut second, &inputs[cut..]));
+        assert!(bytes == expected, "cut at input {cut}");
+    }
+}
+
+#[test]
+fn a_damaged_snapshot_is_refused() {
+    let mut lane = Lane::new(settings()).unwrap();
+    judged(&mut lane, &journal()[..60]);
+    let snapshot = lane.snapshot(60, 0);
+    for place in 0..snapshot.len() {
+        let mut damaged = snapshot.clone();
+        damaged[place] ^= 0x10;
+        assert_eq!(Lane::restore(settings(), &damaged).err(), Some(SnapshotRefused::Checksum), "byte {place}");
+        assert!(Lane::restore(settings(), &snapshot[..place]).is_err(), "cut at {place}");
+    }
+    let other = Settings { digest: [8; 32], ..settings() };
+    assert_eq!(Lane::restore(other, &snapshot).err(), Some(SnapshotRefused::Settings));
+}
+
+#[test]
+fn a_torn_frame_is_told_from_a_damaged_one() {
+    let frame = journal::frame(b"payload");
+    assert_eq!(journal::next(&frame), journal::Next::Payload(b"payload", frame.len()));
+    for end in 0..frame.len() {
+        assert_eq!(journal::next(&frame[..end]), journal::Next::Torn, "{end}");
+        let mut damaged = frame.clone();
+        damaged[end] ^= 1;
+        assert!(!matches!(journal::next(&damaged), journal::Next::Payload(..)), "{end}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_bytes_are_taken_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..2000), format in 0..3_usize) {
+        let format = [Format::Json, Format::Ubx, Format::Nmea][format];
+        let mut lane = Lane::new(Settings { format, ..settings() }).unwrap();
+        let mut out = Vec::new();
+        lane.step(&Input::Chunk { arrival: Some(at(0.0)), bytes: &bytes }, &mut out);
+        lane.step(&Input::End { arrival: None }, &mut out);
+        let _ = Input::from_bytes(&bytes);
+        let _ = Output::all(&bytes);
+        let with_crc = [bytes.as_slice(), &navbound_core::quantity::encoding::crc32c(&bytes).to_le_bytes()].concat();
+        prop_assert!(Lane::restore(settings(), &with_crc).is_err());
+    }
+}

@@ -1,0 +1,74 @@
+//! State of one track.
+
+use crate::codec::{Damaged, Reader, Writer};
+use crate::order::Waiting;
+use crate::output::Kind;
+use navbound_core::judge::{self, Judge};
+use navbound_core::quantity::{GpsTime, Metres};
+
+/// Everything that is kept of a track.
+#[derive(Debug, Clone)]
+pub(crate) struct Track {
+    pub(crate) judge: Judge,
+    /// How often it began anew: part of its keys.
+    pub(crate) incarnation: u32,
+    /// Incarnation and annunciation of the alerts in force, as their raises say: caution, warning, unavailable.
+    pub(crate) open: [Option<(u32, GpsTime)>; 3],
+    /// Time of the last record that the monitor took.
+    pub(crate) last: Option<GpsTime>,
+    /// Whether that record came exactly one sample period after the one before: only then is the next one known.
+    pub(crate) stepped: bool,
+    /// Distance along the path of the last foot.
+    pub(crate) along: Option<Metres>,
+    pub(crate) waiting: Waiting,
+    /// Whether its silence was noticed since the last record.
+    pub(crate) silent: bool,
+}
+
+impl Track {
+    pub(crate) fn new(judge: Judge, incarnation: u32) -> Self {
+        Self { judge, incarnation, open: [None; 3], last: None, stepped: false, along: None, waiting: Waiting::default(), silent: false }
+    }
+
+    /// Time of the next record, where the last ones came at the period.
+    pub(crate) fn next(&self, period_s: f64) -> Option<GpsTime> {
+        self.last.filter(|_| self.stepped).map(|last| last.plus_seconds(period_s))
+    }
+
+    /// The alert in force of a kind.
+    pub(crate) fn open_mut(&mut self, kind: Kind) -> Option<&mut Option<(u32, GpsTime)>> {
+        self.open.get_mut(kind as usize)
+    }
+
+    pub(crate) fn write(&self, to: &mut Writer) {
+        to.bytes(&self.judge.to_bytes());
+        to.u32(self.incarnation);
+        for open in self.open {
+            to.option(open, |to, (incarnation, annunciation)| {
+                to.u32(incarnation);
+                to.i64(annunciation.nanoseconds());
+            });
+        }
+        to.option(self.last, |to, time| to.i64(time.nanoseconds()));
+        to.flag(self.stepped);
+        to.option(self.along, |to, along| to.f64(along.m()));
+        self.waiting.write(to);
+        to.flag(self.silent);
+    }
+
+    pub(crate) fn read(settings: &judge::Settings, from: &mut Reader<'_>) -> Result<Self, Damaged> {
+        let judge = Judge::from_bytes(from.bytes()?).map_err(|_| Damaged("the state of a monitor cannot be"))?;
+        if judge.settings().monitor != settings.monitor {
+            return Err(Damaged("the state of a monitor that was set otherwise"));
+        }
+        let incarnation = from.u32()?;
+        let mut open = [None; 3];
+        for each in &mut open {
+            *each = from.option(|from| Ok((from.u32()?, GpsTime::from_nanoseconds(from.i64()?))))?;
+        }
+        let last = from.option(Reader::i64)?.map(GpsTime::from_nanoseconds);
+        let stepped = from.flag()?;
+        let along = from.option(Reader::f64)?.map(Metres::new);
+        Ok(Self { judge, incarnation, open, last, stepped, along, waiting: Waiting::read(from)?, silent: from.flag()? })
+    }
+}

@@ -1,0 +1,220 @@
+//! The lane of live data: journal frames in, journal frames out.
+
+use crate::error::input_error;
+use crate::live_outputs::{TransitionRow, transition_row};
+use crate::path::{Path, Shape};
+use navbound_core::bound::Alerting;
+use navbound_core::judge;
+use navbound_core::monitor::rnp::{self, Chain};
+use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
+use navbound_live::journal::{self, Next};
+use navbound_live::{Course, Format, Input, Lane, Output, Settings, TrackId};
+use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+fn refused(e: OutOfDomain) -> PyErr {
+    input_error(e, None)
+}
+
+/// How a lane is set, as the package checks it.
+#[pyclass(frozen, module = "navbound._core")]
+struct LiveSettings(Settings);
+
+#[pymethods]
+impl LiveSettings {
+    /// `judging`: format, name of a receiver's track, method. `risks`: accuracy, integrity. `monitor`: six times of the chain, raise delay,
+    /// clear delay, clear ratio, stale time. `times_ns`: lateness, ahead, retention.
+    #[new]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        judging: (String, String, String),
+        risks: (f64, f64),
+        monitor: ([f64; 6], f64, f64, f64, f64),
+        rnp_m: f64,
+        path: Option<PyRef<'_, Path>>,
+        times_ns: (i64, i64, i64),
+        expiry_ns: Option<i64>,
+        max_tracks: usize,
+        digest: [u8; 32],
+    ) -> PyResult<Self> {
+        let (format, track, method) = judging;
+        let ([sample_period_s, sensor_latency_s, filter_s, computing_s, display_s, time_to_alert_s], raise, clear, ratio, stale) = monitor;
+        let settings = rnp::Settings {
+            chain: Chain { sample_period_s, sensor_latency_s, filter_s, computing_s, display_s, time_to_alert_s },
+            raise_delay_s: raise,
+            clear_delay_s: clear,
+            clear_ratio: ratio,
+            stale_after_s: stale,
+        };
+        let judge = judge::Settings {
+            method: Alerting::of(&method).map_err(|_| PyKeyError::new_err(method))?,
+            accuracy: Risk::new(risks.0).map_err(refused)?,
+            integrity: Risk::new(risks.1).map_err(refused)?,
+            states: None,
+            monitor: settings.checked().map_err(refused)?,
+            with_levels: false,
+        };
+        let path = path.map(|path| match &path.0 {
+            Shape::Line(line) => Course::Line(line.clone()),
+            Shape::Route(route) => Course::Route(Box::new(route.clone())),
+        });
+        Ok(Self(Settings {
+            format: Format::of(&format).ok_or_else(|| PyKeyError::new_err(format))?,
+            track: TrackId::new(&track).ok_or_else(|| PyKeyError::new_err(track))?,
+            judge,
+            rnp: Metres::new(rnp_m),
+            path,
+            lateness_ns: times_ns.0,
+            ahead_ns: times_ns.1,
+            retention_ns: times_ns.2,
+            expiry_ns,
+            max_tracks,
+            digest,
+        }))
+    }
+}
+
+/// One lane.
+#[pyclass(module = "navbound._core")]
+struct LiveLane(Lane);
+
+/// Bytes taken, frames for the journal out, transitions, number of epochs, what stands behind the bytes taken.
+type Pushed<'py> = (usize, Bound<'py, PyBytes>, Vec<TransitionRow>, usize, &'static str);
+
+#[pymethods]
+impl LiveLane {
+    #[new]
+    fn new(settings: PyRef<'_, LiveSettings>) -> PyResult<Self> {
+        Lane::new(settings.0.clone()).map(Self).map_err(refused)
+    }
+
+    /// The lane of a snapshot, its position, and how much was written out then; `ValueError` says why it is not taken up.
+    #[staticmethod]
+    fn restore(settings: PyRef<'_, LiveSettings>, snapshot: &[u8]) -> PyResult<(Self, u64, u64)> {
+        let restored = Lane::restore(settings.0.clone(), snapshot).map_err(|why| PyValueError::new_err(why.to_string()))?;
+        Ok((Self(restored.0), restored.1, restored.2))
+    }
+
+    fn snapshot<'py>(&self, py: Python<'py>, position: u64, written: u64) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.0.snapshot(position, written))
+    }
+
+    /// Journal frames that begin at `position` of the journal in.
+    fn push<'py>(&mut self, py: Python<'py>, frames: &[u8], position: u64, emitted_ns: i64) -> PyResult<Pushed<'py>> {
+        let lane = &mut self.0;
+        let (taken, written, transitions, n_epochs, behind) = py.detach(|| run(lane, frames, position, emitted_ns));
+        Ok((taken, PyBytes::new(py, &written), transitions, n_epochs, behind))
+    }
+
+    #[getter]
+    fn event_time_ns(&self) -> Option<i64> {
+        self.0.event_time().map(GpsTime::nanoseconds)
+    }
+
+    #[getter]
+    fn n_tracks(&self) -> usize {
+        self.0.n_tracks()
+    }
+
+    fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let counts = crate::rnp::counters_dict(py, &self.0.monitor_counters())?;
+        for (name, n) in self.0.counters().named() {
+            counts.set_item(name, n)?;
+        }
+        Ok(counts)
+    }
+}
+
+fn run(lane: &mut Lane, frames: &[u8], position: u64, emitted_ns: i64) -> (usize, Vec<u8>, Vec<TransitionRow>, usize, &'static str) {
+    let (mut at, mut written, mut transitions, mut n_epochs) = (0, Vec::new(), Vec::new(), 0);
+    let (mut outputs, mut bytes) = (Vec::new(), Vec::new());
+    let emitted = GpsTime::from_nanoseconds(emitted_ns);
+    loop {
+        let rest = frames.get(at..).unwrap_or_default();
+        let (payload, length) = match journal::next(rest) {
+            Next::Payload(payload, length) => (payload, length),
+            Next::Torn if rest.is_empty() => return (at, written, transitions, n_epochs, "end"),
+            Next::Torn => return (at, written, transitions, n_epochs, "torn"),
+            Next::Damaged => return (at, written, transitions, n_epochs, "damaged"),
+        };
+        let Ok(input) = Input::from_bytes(payload) else { return (at, written, transitions, n_epochs, "damaged") };
+        at += length;
+        outputs.clear();
+        lane.step(&input, &mut outputs);
+        if outputs.is_empty() {
+            continue;
+        }
+        bytes.clear();
+        for output in &outputs {
+            output.append(&mut bytes);
+            match output {
+                Output::Epoch(_) => n_epochs += 1,
+                Output::Transition(transition) => transitions.push(transition_row(transition, position + at as u64, emitted_ns)),
+            }
+        }
+        written.extend(journal::frame(&journal::outputs(position + at as u64, emitted, &bytes)));
+    }
+}
+
+/// A journal frame of an input: `chunk`, `heartbeat`, `up`, `down`, `end`. All but `chunk` and `end` need an arrival.
+#[pyfunction]
+fn live_input<'py>(py: Python<'py>, kind: &str, arrival_ns: Option<i64>, data: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
+    let arrival = arrival_ns.map(GpsTime::from_nanoseconds);
+    let needed = || arrival.ok_or_else(|| PyValueError::new_err("an arrival is needed"));
+    let input = match kind {
+        "chunk" => Input::Chunk { arrival, bytes: data },
+        "heartbeat" => Input::Heartbeat { arrival: needed()? },
+        "up" | "down" => Input::Link { arrival: needed()?, up: kind == "up" },
+        "end" => Input::End { arrival },
+        _ => return Err(PyKeyError::new_err(kind.to_owned())),
+    };
+    Ok(PyBytes::new(py, &journal::frame(&input.to_bytes())))
+}
+
+/// Kind, arrival and bytes of an input.
+type InputRow<'py> = (&'static str, Option<i64>, Bound<'py, PyBytes>);
+
+/// Kind, arrival and bytes of the inputs in some frames.
+#[pyfunction]
+fn live_inputs<'py>(py: Python<'py>, frames: &[u8]) -> PyResult<Vec<InputRow<'py>>> {
+    let (mut at, mut inputs) = (0, Vec::new());
+    let ns = |arrival: Option<GpsTime>| arrival.map(GpsTime::nanoseconds);
+    while let Next::Payload(payload, length) = journal::next(frames.get(at..).unwrap_or_default()) {
+        at += length;
+        let input = Input::from_bytes(payload).map_err(|why| PyValueError::new_err(why.to_string()))?;
+        let (kind, arrival, bytes) = match input {
+            Input::Chunk { arrival, bytes } => ("chunk", ns(arrival), bytes),
+            Input::Heartbeat { arrival } => ("heartbeat", ns(Some(arrival)), [].as_slice()),
+            Input::Link { arrival, up } => (if up { "up" } else { "down" }, ns(Some(arrival)), [].as_slice()),
+            Input::End { arrival } => ("end", ns(arrival), [].as_slice()),
+        };
+        inputs.push((kind, arrival, PyBytes::new(py, bytes)));
+    }
+    Ok(inputs)
+}
+
+/// Ends of the whole frames of a journal, and what stands behind the last: `end`, `torn` or `damaged`.
+#[pyfunction]
+fn live_frames(frames: &[u8]) -> (Vec<usize>, &'static str) {
+    let (mut at, mut ends) = (0, Vec::new());
+    loop {
+        let rest = frames.get(at..).unwrap_or_default();
+        match journal::next(rest) {
+            Next::Payload(_, length) => {
+                at += length;
+                ends.push(at);
+            }
+            Next::Torn => return (ends, if rest.is_empty() { "end" } else { "torn" }),
+            Next::Damaged => return (ends, "damaged"),
+        }
+    }
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(live_input, m)?)?;
+    m.add_function(wrap_pyfunction!(live_inputs, m)?)?;
+    m.add_function(wrap_pyfunction!(live_frames, m)?)?;
+    m.add_class::<LiveSettings>()?;
+    m.add_class::<LiveLane>()
+}

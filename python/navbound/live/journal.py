@@ -1,0 +1,121 @@
+"""What came in and what came out, on the disk: appended, whole or cut, with one writer.
+
+A killed process leaves at most a torn last frame, which the next writer cuts off. A frame that is damaged elsewhere is an error.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from navbound import _core
+from navbound.errors import FormatError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+IN, OUT, SNAPSHOT, SETTINGS, EVENTS = "in.nvj", "out.nvj", "snapshot.bin", "live.json", "events.jsonl"
+
+
+class Journal:
+    """A file of frames that grows.
+
+    Attributes
+    ----------
+    length : int
+        Bytes of whole frames. [B]
+    torn : int
+        Bytes that were cut off when it was opened. [B]
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        content = path.read_bytes() if path.exists() else b""
+        ends, behind = _core.live_frames(content)
+        self.length = ends[-1] if ends else 0
+        if behind == "damaged":
+            raise FormatError(path, f"a frame is damaged at byte {self.length}; move the file away to begin anew")
+        self._last = content[ends[-2] if len(ends) > 1 else 0 : self.length]
+        self.torn = len(content) - self.length
+        self._file = path.open("ab", buffering=0)
+        self._file.truncate(self.length)
+
+    def append(self, frames: bytes) -> int:
+        """Write frames; the length then."""
+        view = memoryview(frames)
+        while view:
+            view = view[self._file.write(view) :]
+        self.length += len(frames)
+        return self.length
+
+    def cut(self, length: int) -> None:
+        """Take frames off the end."""
+        self._file.truncate(length)
+        self.length = length
+
+    def content(self, begin: int = 0) -> bytes:
+        """Frames from a position on."""
+        with self.path.open("rb") as file:
+            file.seek(begin)
+            return file.read(self.length - begin)
+
+    @property
+    def last_position(self) -> int:
+        """Of a journal out: the position of the journal in that its last frame stands for; 0 where it has none."""
+        return _core.live_last_position(self._last) if self._last else 0
+
+    def sync(self) -> None:
+        """To the disk."""
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """Leave the file as it is."""
+        self._file.close()
+
+
+def read(path: Path) -> bytes:
+    """Whole frames of a journal that nobody writes any more, or still does.
+
+    Raises
+    ------
+    FormatError
+        It cannot be read, or is damaged before its end.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as e:
+        raise FormatError(path, e.strerror or str(e)) from e
+    ends, behind = _core.live_frames(content)
+    if behind == "damaged" or not ends:
+        raise FormatError(path, f"not a journal, or damaged at byte {ends[-1] if ends else 0}")
+    return content[: ends[-1]]
+
+
+@contextmanager
+def alone(folder: Path) -> Iterator[None]:
+    """Be the only writer in a folder.
+
+    Raises
+    ------
+    FormatError
+        Another process writes there.
+    """
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as e:
+            raise FormatError(folder, "another session writes here; choose another --out, or end it") from e
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def put(path: Path, content: bytes) -> None:
+    """Replace a file: whoever reads it sees the old one or the new one."""
+    partial = path.with_name(f"{path.name}.partial")
+    partial.write_bytes(content)
+    os.replace(partial, path)

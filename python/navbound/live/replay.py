@@ -1,0 +1,124 @@
+"""A journal read again, at any speed and in any grouping, and two runs compared bit by bit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from navbound import _core
+from navbound.errors import FormatError
+from navbound.live import journal
+from navbound.live.session import Pace, Session
+from navbound.live.settings import load
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+    from typing import Any
+
+    from navbound.live.settings import Settings
+
+
+def _journal(source: Path) -> Path:
+    return source / journal.IN if source.is_dir() else source
+
+
+def settings_of(source: Path) -> Settings:
+    """Settings of a session by its folder or its journal."""
+    return load(_journal(source).parent / journal.SETTINGS)
+
+
+def replay(
+    source: Path,
+    out: Path,
+    *,
+    speed: float = 0.0,
+    group: int = 1,
+    settings: Settings | None = None,
+    report: Callable[[dict[str, Any]], None] = lambda _: None,
+    stop: Callable[[], bool] = lambda: False,
+) -> Session:
+    """Read a journal through a new lane.
+
+    Parameters
+    ----------
+    source : Path
+        Folder of a session, or its journal in.
+    out : Path
+        Folder of the new session.
+    speed : float
+        Times the pace of the data; 0: as fast as it goes. [1]
+    group : int
+        Inputs that are judged at once.
+    settings : Settings, optional
+        Default: those of the session.
+    report : callable, optional
+        Takes each transition.
+    stop : callable, optional
+        Ends it early.
+
+    Returns
+    -------
+    Session
+        Finished.
+
+    Raises
+    ------
+    FormatError
+        Not a journal, or the folder is not free.
+    """
+    frames = journal.read(_journal(source))
+    session = Session(out, settings or settings_of(source), report=report)
+    ends, _ = _core.live_frames(frames)
+    pace, begin = Pace(speed), 0
+    for place, end in enumerate(ends, 1):
+        if place % group and place != len(ends):
+            continue
+        if stop():
+            break
+        session.take(frames[begin:end])
+        begin = end
+        pace.wait(session.event_time_ns, stop)
+    session.snapshot()
+    session.close()
+    return session
+
+
+def judge(source: Path, out: Path) -> Session:
+    """The causal batch: the whole journal judged at once.
+
+    Raises
+    ------
+    FormatError
+        As :func:`replay`.
+    """
+    return replay(source, out, group=1 << 60)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How the outputs of two runs differ: every bound as its bits, every status, reason, alert and transition, and their order."""
+
+    n_epochs: int
+    n_transitions: int
+    n_differing: int
+    first: str | None
+
+
+def compare(a: Path, b: Path) -> Comparison:
+    """Compare the journals out of two sessions, whatever was written at once and when.
+
+    Raises
+    ------
+    FormatError
+        A journal that cannot be read or holds nothing: there would be nothing to compare.
+    """
+    both = [journal.read(folder / journal.OUT) for folder in (a, b)]
+    left, right = (_core.live_comparable(frames) for frames in both)
+    n_transitions = len(_core.live_transitions(both[0]))
+    if not left:
+        raise FormatError(a / journal.OUT, "holds no output: nothing to compare")
+    differing = [k for k, (x, y) in enumerate(zip(left, right, strict=False)) if x != y]
+    n_differing = len(differing) + abs(len(left) - len(right))
+    first = None if not n_differing else f"output {differing[0] if differing else min(len(left), len(right))}"
+    return Comparison(len(left) - n_transitions, n_transitions, n_differing, first)

@@ -1,0 +1,305 @@
+"""One source under the lane, with a journal: killed at any point and resumed, it gives what an undisturbed session gives.
+
+The order of one round: bytes are written to the journal in, judged, their outputs written to the journal out, then shown, then perhaps a
+snapshot is taken. On a restart the newest good snapshot is restored, the journal in is read from there, outputs that are written already
+are compared and not written again.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from navbound import __version__, _core
+from navbound.errors import FormatError, InputError, InternalError
+from navbound.live import journal, transition
+from navbound.live.settings import load
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+    from typing import Any
+
+    from navbound.live.settings import Settings
+    from navbound.live.source import Source
+
+_HEARTBEAT_S = 1.0
+_SNAPSHOT_S = 5.0
+_WAIT_S = 0.1
+_SLICE = 1 << 20
+"""Journal bytes that are judged at once when a session is resumed. [B]"""
+
+
+def now_ns() -> int:
+    """GPS time by the clock of this host, which is taken to be disciplined to UTC. [ns]."""
+    return int(_core.gps_from_unix_ns(np.array([time.time_ns()], dtype=np.int64))[0])
+
+
+class Session:
+    """A lane between two journals.
+
+    Parameters
+    ----------
+    out : Path
+        Folder of the session.
+    settings : Settings
+        How it judges.
+    resume : bool
+        Go on with what stands in the folder; otherwise it must be empty.
+    report : callable, optional
+        Takes each transition once it is written.
+    say : callable, optional
+        Takes sentences about the session itself.
+    passed : callable, optional
+        Called with the name of each point of a round; a test ends the process there.
+
+    Raises
+    ------
+    FormatError
+        The folder holds something else, is written by another process, or holds a damaged journal.
+    InputError
+        Resumed with other settings.
+    InternalError
+        What is judged again differs from what was judged before.
+    """
+
+    def __init__(
+        self,
+        out: Path,
+        settings: Settings,
+        *,
+        resume: bool = False,
+        report: Callable[[dict[str, Any]], None] = lambda _: None,
+        say: Callable[[str], None] = lambda _: None,
+        passed: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        self.settings, self.folder = settings, out
+        self._report, self._say, self._passed = report, say, passed
+        self._core = settings.core()
+        self.n_epochs = self.n_transitions = 0
+        _prepare(out, settings, resume=resume)
+        self._lock = journal.alone(out)
+        self._lock.__enter__()
+        self._in, self._out = journal.Journal(out / journal.IN), journal.Journal(out / journal.OUT)
+        for written in (self._in, self._out):
+            if written.torn:
+                say(f"{written.path.name}: {written.torn} bytes of an unfinished frame were cut off")
+        self._lane, position = self._restored()
+        self._recover(position)
+        self._snapshot_at = time.monotonic()
+
+    @property
+    def n_bytes(self) -> int:
+        """Bytes of the source that are in the journal. [B]."""
+        return int(self._lane.counters()["n_bytes"])
+
+    @property
+    def event_time_ns(self) -> int | None:
+        """Largest time of the data. [ns]."""
+        return self._lane.event_time_ns
+
+    @property
+    def n_tracks(self) -> int:
+        """Tracks that are watched."""
+        return self._lane.n_tracks
+
+    def counters(self) -> dict[str, float]:
+        """What was counted: records, refusals by reason, and the monitors' counters."""
+        return dict(self._lane.counters())
+
+    def take(self, frames: bytes) -> None:
+        """Journal frames of inputs: written down, judged, reported."""
+        self._passed("before-journal")
+        position = self._in.length
+        self._in.append(frames)
+        self._passed("after-journal")
+        self._judge(frames, position)
+        if time.monotonic() - self._snapshot_at > _SNAPSHOT_S:
+            self.snapshot()
+
+    def _judge(self, frames: bytes, position: int) -> None:
+        taken, written, rows, n_epochs, behind = self._lane.push(frames, position, now_ns())
+        if taken != len(frames):
+            raise FormatError(self._in.path, f"an input is {behind} at byte {position + taken}")
+        self._passed("after-step")
+        self._passed("before-commit")
+        self._out.append(written)
+        self._passed("after-commit")
+        self.n_epochs += n_epochs
+        self._show(rows)
+
+    def _show(self, rows: list[_core._TransitionRow], *, replayed: bool = False) -> None:
+        if not rows:
+            return
+        reported = [transition.record(row, time_to_alert_s=self.settings.time_to_alert_s, replayed=replayed) for row in rows]
+        if not replayed:
+            self.n_transitions += len(reported)
+        with (self.folder / journal.EVENTS).open("a", encoding="utf-8") as file:
+            file.writelines(transition.line(t) + "\n" for t in reported)
+        for t in reported:
+            self._report(t)
+
+    def snapshot(self) -> None:
+        """Keep the state behind all that was taken."""
+        self._in.sync()
+        self._out.sync()
+        self._passed("in-snapshot")
+        content = self._lane.snapshot(self._in.length, self._out.length)
+        partial = self.folder / f"{journal.SNAPSHOT}.partial"
+        partial.write_bytes(content)
+        self._passed("before-rename")
+        partial.replace(self.folder / journal.SNAPSHOT)
+        self._snapshot_at = time.monotonic()
+
+    def _restored(self) -> tuple[_core.LiveLane, int]:
+        """The lane of the snapshot, or a new one that reads the journal from its beginning."""
+        path = self.folder / journal.SNAPSHOT
+        if path.exists():
+            try:
+                lane, position, written = _core.LiveLane.restore(self._core, path.read_bytes())
+            except ValueError as e:
+                self._say(f"{path.name} is refused: {e}; the state is built anew from the journal")
+            else:
+                if position <= self._in.length and written <= self._out.length:
+                    return lane, position
+                self._say(f"{path.name} is refused: it is ahead of the journals; the state is built anew from the journal")
+        return _core.LiveLane(self._core), 0
+
+    def _recover(self, position: int) -> None:
+        """Judge again what came in behind the snapshot; what is out already must be the same and is not written again."""
+        before = _behind(self._out.content(), 0, self._in.length)
+        if before.length != self._out.length:
+            self._say("the journal out is ahead of the journal in: it is cut")
+            self._out.cut(before.length)
+        committed = before.comparable[-1][0] if before.comparable else 0
+        expected = [output for output in before.comparable if output[0] > position]
+        again: list[tuple[int, bytes]] = []
+        at = position
+        for frames in _slices(self._in.content(position)):
+            _, written, _, n_epochs, _ = self._lane.push(frames, at, now_ns())
+            at += len(frames)
+            self.n_epochs += n_epochs
+            part = _behind(written, committed, at)
+            again += [output for output in _core.live_comparable(written) if output[0] <= committed]
+            self._out.append(part.frames)
+            self._show(_core.live_transitions(part.frames))
+        if again != expected:
+            raise InternalError("live.Session", "the journal judged again gives other outputs than before: not deterministic")
+        self._show([row for row in _core.live_transitions(before.frames) if row[3] > position], replayed=True)
+        if at > position:
+            self._say(f"recovered: {at - position} bytes of the journal judged again, {len(again)} outputs were there already")
+
+    def finish(self) -> None:
+        """Judge what waits, keep everything, leave the folder."""
+        self.take(_core.live_input("end", None, b""))
+        self.snapshot()
+        self._out.sync()
+        self.close()
+
+    def close(self) -> None:
+        """Leave the folder as it is."""
+        for each in (self._in, self._out):
+            each.close()
+        self._lock.__exit__(None, None, None)
+
+    def run(self, source: Source, *, stop: Callable[[], bool] = lambda: False, speed: float = 0.0) -> None:
+        """Take what a source gives until its end, or until `stop`.
+
+        Parameters
+        ----------
+        source : Source
+            Opened.
+        stop : callable
+            Asked every tenth of a second.
+        speed : float
+            Of a file: times its own pace; 0 as fast as it goes. [1]
+        """
+        source.skip(self.n_bytes)
+        pace, up, beat = Pace(speed), True, time.monotonic()
+        while not stop():
+            data = source.read(_WAIT_S)
+            if data is None:
+                break
+            arrival = now_ns() if source.live else None
+            if source.live and source.up != up:
+                up = source.up
+                self.take(_core.live_input("up" if up else "down", arrival, b""))
+            if data:
+                self.take(_core.live_input("chunk", arrival, data))
+                pace.wait(self.event_time_ns, stop)
+            if source.live and time.monotonic() - beat >= _HEARTBEAT_S:
+                beat = time.monotonic()
+                self.take(_core.live_input("heartbeat", now_ns(), b""))
+        self.finish()
+
+
+class Pace:
+    """Keeps the time of the data to a multiple of the time that passes."""
+
+    def __init__(self, speed: float) -> None:
+        self._speed = speed
+        self._begun: tuple[float, int] | None = None
+
+    def wait(self, event_ns: int | None, stop: Callable[[], bool]) -> None:
+        """Until the time of the data may be shown."""
+        if not self._speed or event_ns is None:
+            return
+        if self._begun is None:
+            self._begun = (time.monotonic(), event_ns)
+        begun_s, first_ns = self._begun
+        due_s = begun_s + (event_ns - first_ns) / 1e9 / self._speed
+        while (left_s := due_s - time.monotonic()) > 0 and not stop():
+            time.sleep(min(left_s, _WAIT_S))
+
+
+class _Part:
+    """Frames of a journal out within some positions, and what they hold."""
+
+    def __init__(self, frames: bytes) -> None:
+        self.frames, self.length = frames, len(frames)
+        self.comparable = _core.live_comparable(frames)
+
+
+def _behind(frames: bytes, after: int, until: int) -> _Part:
+    """The frames whose inputs end behind one position and not behind another. Positions only grow."""
+    ends, _ = _core.live_frames(frames)
+    begins = [0, *ends][: len(ends)]
+    kept = [(b, e) for b, e in zip(begins, ends, strict=True) if after < _core.live_last_position(frames[b:e]) <= until]
+    return _Part(frames[kept[0][0] : kept[-1][1]] if kept else b"")
+
+
+def _slices(frames: bytes) -> list[bytes]:
+    """Whole frames, about a megabyte together."""
+    ends, _ = _core.live_frames(frames)
+    cuts, begin = list[bytes](), 0
+    for end in ends:
+        if end - begin >= _SLICE or end == ends[-1]:
+            cuts.append(frames[begin:end])
+            begin = end
+    return cuts
+
+
+def _prepare(out: Path, settings: Settings, *, resume: bool) -> None:
+    """A folder of this session: empty, or one with the same settings where it is resumed."""
+    ours = {journal.IN, journal.OUT, journal.SNAPSHOT, journal.SETTINGS, journal.EVENTS, f"{journal.SNAPSHOT}.partial"}
+    ours |= {"epochs.parquet", "events.parquet"}
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        present = {p.name for p in out.iterdir()}
+    except OSError as e:
+        raise FormatError(out, f"cannot be written: {e.strerror or e}") from e
+    if strangers := sorted(present - ours):
+        raise FormatError(out, f"holds files that are not a live session's ({', '.join(strangers[:3])}); choose another --out")
+    if resume and journal.SETTINGS in present:
+        kept = load(out / journal.SETTINGS)
+        if kept != settings:
+            differing = sorted(name for name in vars(kept) if getattr(kept, name) != getattr(settings, name))
+            raise InputError("resume", str(out), domain=f"a session of the same settings; these differ: {', '.join(differing)}")
+        return
+    if present:
+        raise FormatError(out, "holds a session already; go on with --resume, or choose another --out")
+    record = {"navbound_version": __version__, "settings": json.loads(settings.text())}
+    journal.put(out / journal.SETTINGS, json.dumps(record, indent=1).encode())

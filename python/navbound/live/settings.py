@@ -1,0 +1,159 @@
+"""How a live session judges: everything that its results depend on, in one record that is kept beside the journal."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING, Any
+
+from navbound import _core
+from navbound.errors import FormatError, InputError
+from navbound.read.routes import load_route
+from navbound.read.runways import runway
+
+if TYPE_CHECKING:
+    from navbound.path import Path
+
+FORMATS = ("json", "ubx", "nmea")
+METHODS = ("tse-exact", "anp-circle")
+COMPUTING_S = 0.2
+"""Share of the way to the crew: from the arrival of bytes to the alert. Provenance: inferred. [s]"""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a lane is set to.
+
+    Attributes
+    ----------
+    format : {"json", "ubx", "nmea"}
+        What the source sends.
+    rnp_m : float
+        RNP value in force where a record states none. [m]
+    path : str, optional
+        Runway (``LFPG/08R``) or route file. Without one the flight technical error is the record's own.
+    method : {"tse-exact", "anp-circle"}
+        Whose bound is compared with RNP. Default: the first with a path, the second without.
+    track : str
+        Name of a receiver's track.
+    risk_accuracy, risk_integrity : float
+        Risks of the bounds that are compared with RNP and with twice RNP. [1]
+    sample_period_s, time_to_alert_s, raise_delay_s, clear_delay_s, clear_ratio, stale_after_s : float
+        Of the monitor: docs/methods/rnp-monitor.md. [s; 1]
+    transport_s, display_s : float
+        Shares of the way from the error to the crew. The allowed lateness counts as well. [s]
+    lateness_s : float
+        How long the order of a track is waited for. [s]
+    ahead_s, retention_s : float
+        How much later or earlier than its arrival the time of a record may be. [s]
+    expiry_s : float, optional
+        Silence after which a track is forgotten; None: never. [s]
+    max_tracks : int
+        Most tracks that are watched.
+    """
+
+    format: str
+    rnp_m: float
+    path: str | None = None
+    method: str = ""
+    track: str = "receiver"
+    risk_accuracy: float = 0.05
+    risk_integrity: float = 1e-5
+    sample_period_s: float = 1.0
+    time_to_alert_s: float = 10.0
+    raise_delay_s: float = 3.0
+    clear_delay_s: float = 5.0
+    clear_ratio: float = 0.9
+    stale_after_s: float | None = None
+    transport_s: float = 0.5
+    display_s: float = 0.3
+    lateness_s: float = 0.0
+    ahead_s: float = 2.0
+    retention_s: float = 3600.0
+    expiry_s: float | None = None
+    max_tracks: int = 50_000
+
+    def __post_init__(self) -> None:
+        if self.format not in FORMATS:
+            raise InputError("format", self.format, domain=f"one of {', '.join(FORMATS)}")
+        if not self.method:
+            object.__setattr__(self, "method", METHODS[0] if self.path is not None else METHODS[1])
+        if self.method not in METHODS:
+            raise InputError("method", self.method, domain=f"one of {', '.join(METHODS)}")
+        if not 0 < self.rnp_m < float("inf"):
+            raise InputError("rnp_m", self.rnp_m, "m", "(0, inf)")
+        for name in ("lateness_s", "ahead_s", "retention_s", "transport_s", "display_s"):
+            if not 0 <= getattr(self, name) < 1e6:
+                raise InputError(name, getattr(self, name), "s", "[0, 1e6)")
+        if self.expiry_s is not None and not 0 < self.expiry_s < 1e9:
+            raise InputError("expiry_s", self.expiry_s, "s", "(0, 1e9)")
+        if not 0 < self.max_tracks <= 1_000_000:
+            raise InputError("max_tracks", self.max_tracks, "1", "[1, 1000000]")
+
+    @property
+    def stale_s(self) -> float:
+        """Silence after which monitoring is lost [s]."""
+        return max(2.0, 2.0 * self.sample_period_s) if self.stale_after_s is None else self.stale_after_s
+
+    def text(self) -> str:
+        """The record as JSON, one form for one content."""
+        return json.dumps(asdict(self), sort_keys=True, indent=1)
+
+    def core(self) -> _core.LiveSettings:
+        """The lane's settings.
+
+        Raises
+        ------
+        InputError
+            A value outside its domain, or a chain of times that is longer than the time to alert.
+        """
+        # Transport and lateness delay an exceedance and a silence alike, as computing does: the monitor's sums hold it in both.
+        computing_s = COMPUTING_S + self.transport_s + self.lateness_s
+        chain = [self.sample_period_s, 0.0, 0.0, computing_s, self.display_s, self.time_to_alert_s]
+        nanoseconds = (_ns(self.lateness_s), _ns(self.ahead_s), _ns(self.retention_s))
+        text = self.text()
+        path = None if self.path is None else _path(self.path)
+        try:
+            return _core.LiveSettings(
+                (self.format, self.track, self.method),
+                (self.risk_accuracy, self.risk_integrity),
+                (chain, self.raise_delay_s, self.clear_delay_s, self.clear_ratio, self.stale_s),
+                self.rnp_m,
+                None if path is None else path._core,
+                nanoseconds,
+                None if self.expiry_s is None else _ns(self.expiry_s),
+                self.max_tracks,
+                hashlib.sha256(text.encode()).digest(),
+            )
+        except KeyError as e:
+            raise InputError("track", self.track, domain="1 to 32 printable ASCII characters without blanks and '/'") from e
+
+    def changed(self, **values: Any) -> Settings:
+        """The same but for some values."""
+        return replace(self, **values)
+
+
+def load(file: FilePath) -> Settings:
+    """Settings of a session.
+
+    Raises
+    ------
+    FormatError
+        Not such a file.
+    """
+    try:
+        return Settings(**json.loads(file.read_text(encoding="utf-8"))["settings"])
+    except (OSError, ValueError, KeyError, TypeError) as e:
+        raise FormatError(file, f"not the settings of a live session: {e}") from e
+
+
+def _ns(seconds: float) -> int:
+    return round(seconds * 1e9)
+
+
+def _path(name: str) -> Path:
+    if FilePath(name).suffix.lower() in {".toml", ".csv"}:
+        return load_route(name).path
+    return runway(name).centreline

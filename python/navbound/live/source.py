@@ -1,0 +1,239 @@
+"""Where bytes come from: a file, standard input, a TCP connection, UDP datagrams. Nothing here looks into the bytes."""
+
+from __future__ import annotations
+
+import os
+import random
+import select
+import socket
+import sys
+import time
+from pathlib import Path
+from typing import IO, Protocol
+from urllib.parse import urlsplit
+
+from navbound.errors import FormatError, InputError
+from navbound.live.recording import Recording
+
+CHUNK = 32 * 1024
+"""Bytes that are read at once. [B]"""
+_RETRY_FIRST_S, _RETRY_MOST_S = 0.5, 30.0
+_CONNECT_S = 5.0
+
+
+class Source(Protocol):
+    """Bytes in pieces.
+
+    Attributes
+    ----------
+    live : bool
+        Whether the time at which bytes arrive means something.
+    """
+
+    live: bool
+
+    @property
+    def up(self) -> bool:
+        """Whether the connection is there."""
+        ...
+
+    def read(self, timeout_s: float) -> bytes | None:
+        """The next bytes; b"" where none came in time; None at the end."""
+        ...
+
+    def skip(self, n_bytes: int) -> None:
+        """Leave out what was read by a session before."""
+        ...
+
+    def close(self) -> None:
+        """Give it back."""
+        ...
+
+
+class File:
+    """A file: its bytes have no time of arrival."""
+
+    live = False
+    up = True
+
+    def __init__(self, path: Path, chunk: int = CHUNK) -> None:
+        self._chunk = chunk
+        try:
+            self._file: IO[bytes] = path.open("rb")
+        except OSError as e:
+            raise FormatError(path, f"cannot be opened: {e.strerror}; a source is a file, - , tcp://host:port or udp://host:port") from e
+
+    def read(self, timeout_s: float) -> bytes | None:
+        """Take the next bytes: as :class:`Source` says."""
+        del timeout_s
+        return self._file.read(self._chunk) or None
+
+    def skip(self, n_bytes: int) -> None:
+        """Leave out what was read by a session before."""
+        self._file.seek(n_bytes)
+
+    def close(self) -> None:
+        """Give it back."""
+        self._file.close()
+
+
+class StandardInput:
+    """What another program writes."""
+
+    live = True
+    up = True
+
+    def __init__(self) -> None:
+        self._descriptor = sys.stdin.fileno()
+
+    def read(self, timeout_s: float) -> bytes | None:
+        """Take the next bytes: as :class:`Source` says."""
+        if not select.select([self._descriptor], [], [], timeout_s)[0]:
+            return b""
+        return os.read(self._descriptor, CHUNK) or None
+
+    def skip(self, n_bytes: int) -> None:
+        """What was read is gone from a pipe."""
+
+    def close(self) -> None:
+        """It belongs to the process."""
+
+
+class Tcp:
+    """A connection that is opened again for ever once it was there."""
+
+    live = True
+
+    def __init__(self, host: str, port: int) -> None:
+        self._address, self._wait_s, self._next_s = (host, port), _RETRY_FIRST_S, 0.0
+        self._jitter = random.Random()
+        try:
+            self._socket: socket.socket | None = socket.create_connection(self._address, _CONNECT_S)
+        except OSError as e:
+            what = f"cannot be reached: {e.strerror or e}; start what sends there, or check host and port"
+            raise FormatError(f"tcp://{host}:{port}", what) from e
+
+    @property
+    def up(self) -> bool:
+        """Whether the connection is there."""
+        return self._socket is not None
+
+    def read(self, timeout_s: float) -> bytes | None:
+        """Take the next bytes: as :class:`Source` says."""
+        if self._socket is None:
+            self._again(timeout_s)
+            return b""
+        try:
+            if not select.select([self._socket], [], [], timeout_s)[0]:
+                return b""
+            data = self._socket.recv(CHUNK)
+        except OSError:
+            data = b""
+        if not data:
+            self.close()
+            self._next_s = time.monotonic()
+        return data
+
+    def _again(self, timeout_s: float) -> None:
+        wait_s = self._next_s - time.monotonic()
+        if wait_s > 0:
+            time.sleep(min(wait_s, timeout_s))
+            return
+        try:
+            self._socket = socket.create_connection(self._address, _CONNECT_S)
+            self._wait_s = _RETRY_FIRST_S
+        except OSError:
+            self._next_s = time.monotonic() + self._wait_s * self._jitter.uniform(0.8, 1.2)
+            self._wait_s = min(2 * self._wait_s, _RETRY_MOST_S)
+
+    def skip(self, n_bytes: int) -> None:
+        """A connection begins where it begins."""
+
+    def close(self) -> None:
+        """Give it back."""
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None
+
+
+class Udp:
+    """Datagrams to a port of this host; each ends a line."""
+
+    live = True
+    up = True
+
+    def __init__(self, host: str, port: int, *, lines: bool) -> None:
+        self._lines = lines
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self._socket.bind((host, port))
+        except OSError as e:
+            raise FormatError(f"udp://{host}:{port}", f"cannot be listened on: {e.strerror or e}; choose an address of this host") from e
+
+    @property
+    def port(self) -> int:
+        """The port that is listened on."""
+        return int(self._socket.getsockname()[1])
+
+    def read(self, timeout_s: float) -> bytes | None:
+        """Take the next bytes: as :class:`Source` says."""
+        if not select.select([self._socket], [], [], timeout_s)[0]:
+            return b""
+        data = self._socket.recv(65_535)
+        return data + b"\n" if self._lines and not data.endswith(b"\n") else data
+
+    def skip(self, n_bytes: int) -> None:
+        """Datagrams that were read are gone."""
+
+    def close(self) -> None:
+        """Give it back."""
+        self._socket.close()
+
+
+def open_source(name: str, *, lines: bool = False, chunk: int = CHUNK) -> Source:
+    """Open a source.
+
+    Parameters
+    ----------
+    name : str
+        A file, a run directory, ``-`` for standard input, ``tcp://host:port`` or ``udp://host:port``.
+    lines : bool
+        Whether it sends lines of text.
+    chunk : int
+        Bytes that are read of a file at once. [B]
+
+    Raises
+    ------
+    FormatError
+        It cannot be opened.
+    InputError
+        Not the name of a source.
+    """
+    if name == "-":
+        return StandardInput()
+    if "://" not in name:
+        return Recording(Path(name), chunk) if Path(name).is_dir() else File(Path(name), chunk)
+    parts = urlsplit(name)
+    try:
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        host = port = None
+    if parts.scheme not in {"tcp", "udp"} or not host or port is None:
+        raise InputError("source", name, domain="a file, -, tcp://host:port or udp://host:port")
+    return Tcp(host, port) if parts.scheme == "tcp" else Udp(host, port, lines=lines)
+
+
+def format_of(name: str) -> str | None:
+    """What a file holds, by its first bytes; None where that is not seen."""
+    if Path(name).is_dir():
+        return "json"
+    try:
+        with Path(name).open("rb") as file:
+            start = file.read(1 << 16)
+    except OSError:
+        return None
+    if start.lstrip()[:1] == b"{":
+        return "json"
+    if b"\xb5\x62\x01\x07" in start:
+        return "ubx"
+    return "nmea" if b"GGA," in start else None

@@ -1,0 +1,262 @@
+"""Live data: what comes out is the same however the journal is read, and the same as the batch monitor says."""
+
+from __future__ import annotations
+
+import json
+import socket
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from live_fixture import FLEET, Sent, fleet, frames, generator, recorded, transitions, truth
+from navbound import _core, live
+from navbound.errors import FormatError, InputError
+from navbound.live import journal, transition
+from navbound.live.settings import Settings
+
+
+def reported_keys(folder: Path) -> tuple[list[str], list[str]]:
+    """Raised and cleared alerts of tracks in the form of the reference."""
+    reported = [t for t in transitions(folder) if t["track"]]
+    raised = [f"{t['track']}/{t['kind']}/{t['annunciation_ns']}/raise" for t in reported if t["transition"] == "raised"]
+    cleared = [f"{t['track']}/{t['kind']}/{t['onset_ns']}/clear" for t in reported if t["transition"] == "cleared"]
+    return raised, cleared
+
+
+@pytest.mark.parametrize("seed", [1, 2, 7])
+def test_a_fleet_gives_the_alerts_of_the_batch_monitor_each_once(tmp_path: Path, seed: int) -> None:
+    n, seconds = 200, 60
+    source = recorded(tmp_path / "in", frames(fleet(n, seconds, seed), heartbeats=True))
+    live.judge(source, tmp_path / "out")
+    for reported, expected in zip(reported_keys(tmp_path / "out"), truth(n, seconds, seed), strict=True):
+        assert len(expected) > 10
+        assert len(reported) == len(set(reported)), "an alert is reported twice"
+        assert set(reported) == expected
+
+
+def test_every_speed_and_every_grouping_give_the_same_bits(tmp_path: Path) -> None:
+    source = recorded(tmp_path / "in", frames(fleet(60, 40), 7, heartbeats=True))
+    live.judge(source, tmp_path / "batch")
+    runs = {f"group-{group}": {"group": group} for group in (1, 7, 1000)} | {"speed-8": {"speed": 8.0}}
+    for name, how in runs.items():
+        live.replay(source, tmp_path / name, **how)
+        result = live.compare(tmp_path / "batch", tmp_path / name)
+        assert (result.n_epochs > 700, result.n_transitions > 4, result.n_differing) == (True, True, 0), name
+
+
+def test_a_comparison_sees_one_bit(tmp_path: Path) -> None:
+    sent = fleet(20, 40)
+    other = [(t, line.replace('"sigma_m":', '"sigma_m":1') if k == 300 else line) for k, (t, line) in enumerate(sent)]
+    for name, records in (("a", sent), ("b", other)):
+        live.judge(recorded(tmp_path / f"{name}-in", frames(records)), tmp_path / name)
+    assert live.compare(tmp_path / "a", tmp_path / "b").n_differing > 0
+
+
+def judged(tmp_path: Path, name: str, sent: list[Sent] | tuple[Sent, ...]) -> tuple[Path, dict[str, float]]:
+    session = live.judge(recorded(tmp_path / f"{name}-in", frames(sent, 1)), tmp_path / name)
+    return tmp_path / name, session.counters()
+
+
+def clean(n: int, seconds: int) -> list[Sent]:
+    """The fleet without its own repeats and late records."""
+    seen, kept = set[str](), list[Sent]()
+    for _, line in fleet(n, seconds):
+        time_ns = json.loads(line)["time_ns"]
+        if line not in seen:
+            kept.append((time_ns, line))
+        seen.add(line)
+    return sorted(kept)
+
+
+def test_faults_within_the_lateness_change_nothing_and_later_ones_are_counted(tmp_path: Path) -> None:
+    sent, g = clean(50, 60), generator(3)
+    expected, counters = judged(tmp_path, "clean", sent)
+    delayed = g.random(len(sent)) < 0.05
+    repeated = g.random(len(sent)) < 0.05
+    mixed = [(t + (800_000_000 if late else 0), line) for (t, line), late in zip(sent, delayed, strict=True)]
+    mixed += [(t + 100_000_000, line) for (t, line), again in zip(sent, repeated, strict=True) if again]
+    got, faulty = judged(tmp_path, "mixed", sorted(mixed))
+    assert delayed.sum() > 50
+    assert repeated.sum() > 50
+    assert sorted(reported_keys(got)[0]) == sorted(reported_keys(expected)[0])
+    assert sorted(reported_keys(got)[1]) == sorted(reported_keys(expected)[1])
+    assert faulty["n_duplicate"] + faulty["n_waiting_duplicate"] == repeated.sum()
+    assert faulty["n_late"] == counters["n_late"] == 0
+    # Beyond the lateness: the second after it was judged long ago.
+    chosen = set(range(500, len(sent), 211))
+    beyond = sorted((t + (5_000_000_000 if k in chosen else 0), line) for k, (t, line) in enumerate(sent))
+    late = judged(tmp_path, "late", beyond)[1]
+    assert late["n_late"] == len(chosen) > 5
+
+
+def test_what_is_dropped_for_longer_than_the_stale_time_is_raised_once_at_its_time(tmp_path: Path) -> None:
+    sent = clean(50, 60)
+    frozen = {f"{0x400000 + a:06x}": (20 + a % 5, 23 + a % 5) for a in range(0, 50, 7)}
+
+    def kept(line: str) -> bool:
+        record = json.loads(line)
+        begin, end = frozen.get(record["track"], (0, 0))
+        second = (record["time_ns"] - 1_447_500_000_000_000_000) // 1_000_000_000
+        return not begin <= second < end
+
+    expected, _ = judged(tmp_path, "clean", sent)
+    left = [each for each in sent if kept(each[1])]
+    assert len(sent) - len(left) == 3 * len(frozen)
+    got, _ = judged(tmp_path, "dropped", left)
+    added = set(reported_keys(got)[0]) - set(reported_keys(expected)[0])
+    silences = {key for key in added if "/unavailable/" in key}
+    assert len(silences) >= len(frozen) - 1, "a track that was lost already is not lost again"
+    for t in transitions(got):
+        if f"{t['track']}/{t['kind']}/{t['annunciation_ns']}/raise" in silences and t["transition"] == "raised":
+            assert t["annunciation_ns"] == t["onset_ns"] + 2_000_000_000
+            assert t["event_ns"] <= t["annunciation_ns"] + 300_000_000, "reported when the watermark passes"
+            assert t["arrival_ns"] - t["annunciation_ns"] <= 1_300_000_000
+
+
+def test_each_transition_has_the_fields_of_the_schema(tmp_path: Path) -> None:
+    schema = json.loads((Path(live.__file__).parent / "schemas" / "transition.json").read_text())
+    assert tuple(schema["required"]) == transition.FIELDS == tuple(schema["properties"])
+    live.judge(recorded(tmp_path / "in", frames(fleet(50, 60))), tmp_path / "out")
+    types = {"string": str, "integer": int, "number": float, "null": type(None), "boolean": bool}
+    reported = transitions(tmp_path / "out")
+    assert reported
+    for each in reported:
+        assert tuple(each) == transition.FIELDS
+        for name, value in each.items():
+            rule = schema["properties"][name]
+            if "type" in rule:
+                allowed = [rule["type"]] if isinstance(rule["type"], str) else rule["type"]
+                assert any(isinstance(value, types[t]) for t in allowed), name
+            else:
+                assert value in rule.get("enum", [rule.get("const")]), name
+        key = f"{each['track'] or 'feed:source'}/{each['incarnation']}/{each['kind']}/{each['annunciation_ns']}/{each['transition']}"
+        assert each["key"] == key
+
+
+def test_a_source_that_cannot_be_opened_says_what_to_do(tmp_path: Path) -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    for name, words in ((str(tmp_path / "none.ubx"), "cannot be opened"), (f"tcp://127.0.0.1:{port}", "start what sends there")):
+        with pytest.raises(FormatError, match=words):
+            live.open_source(name)
+    for name in ("ftp://a:1", "tcp://host", "tcp://host:x"):
+        with pytest.raises(InputError, match="tcp://host:port"):
+            live.open_source(name)
+    command = [sys.executable, "-m", "navbound", "live", f"tcp://127.0.0.1:{port}", "--format", "json", "--out", str(tmp_path / "o")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, "start what sends there" in done.stderr.replace("\n", " ")) == (3, True), done.stderr
+
+
+def test_a_chain_longer_than_the_time_to_alert_is_refused() -> None:
+    with pytest.raises(InputError, match="time_to_alert_s"):
+        Settings(format="json", rnp_m=100.0, lateness_s=1.0, time_to_alert_s=5.0).core()
+    Settings(format="json", rnp_m=100.0, lateness_s=1.0, time_to_alert_s=6.0).core()
+
+
+def test_a_connection_that_is_lost_is_an_event_and_is_opened_again(tmp_path: Path) -> None:
+    server = socket.create_server(("127.0.0.1", 0))
+    lines = [json.dumps({"v": 1, "track": "a", "time_ns": 0, "fte_m": 1.0, "sigma_m": 5.0})] * 2
+
+    def serve() -> None:
+        for line in lines:
+            peer, _ = server.accept()
+            stamped = json.loads(line) | {"time_ns": live.session.now_ns()}
+            peer.sendall(json.dumps(stamped).encode() + b"\n")
+            time.sleep(0.3)
+            peer.close()
+
+    threading.Thread(target=serve, daemon=True).start()
+    source = live.open_source(f"tcp://127.0.0.1:{server.getsockname()[1]}")
+    session = live.Session(tmp_path / "out", FLEET.changed(lateness_s=0.0))
+    end = time.monotonic() + 6
+    session.run(source, stop=lambda: time.monotonic() > end or session.counters()["n_records"] >= 2)
+    source.close()
+    server.close()
+    kinds = [(t["kind"], t["transition"]) for t in transitions(tmp_path / "out")]
+    assert session.counters()["n_records"] == 2
+    assert ("source_lost", "raised") in kinds
+    assert ("source_lost", "cleared") in kinds
+
+
+def test_datagrams_are_lines(tmp_path: Path) -> None:
+    source = live.open_source("udp://127.0.0.1:0", lines=True)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for k in range(3):
+            record = {"v": 1, "track": "a", "time_ns": live.session.now_ns() + k, "fte_m": 1.0, "sigma_m": 5.0}
+            sender.sendto(json.dumps(record).encode(), ("127.0.0.1", source.port))  # type: ignore[attr-defined]
+    session = live.Session(tmp_path / "out", FLEET.changed(lateness_s=0.0))
+    end = time.monotonic() + 5
+    session.run(source, stop=lambda: time.monotonic() > end or session.counters()["n_records"] >= 3)
+    source.close()
+    assert session.counters()["n_records"] == 3
+
+
+def test_a_folder_has_one_writer_and_belongs_to_its_settings(tmp_path: Path) -> None:
+    session = live.Session(tmp_path / "out", FLEET)
+    with pytest.raises(FormatError, match="another session writes here"):
+        live.Session(tmp_path / "out", FLEET, resume=True)
+    session.close()
+    with pytest.raises(FormatError, match="--resume"):
+        live.Session(tmp_path / "out", FLEET)
+    with pytest.raises(InputError, match="rnp_m"):
+        live.Session(tmp_path / "out", FLEET.changed(rnp_m=100.0), resume=True)
+    (tmp_path / "foreign").mkdir()
+    (tmp_path / "foreign" / "thesis.tex").write_text("x")
+    with pytest.raises(FormatError, match="not a live session's"):
+        live.Session(tmp_path / "foreign", FLEET)
+
+
+def test_a_journal_that_is_damaged_inside_is_refused(tmp_path: Path) -> None:
+    content = bytearray(frames(fleet(20, 40)))
+    content[len(content) // 2] ^= 1
+    with pytest.raises(FormatError, match="damaged"):
+        live.judge(recorded(tmp_path / "in", bytes(content)), tmp_path / "out")
+
+
+def test_memory_is_bounded_by_the_most_tracks(tmp_path: Path) -> None:
+    """What a track costs in a snapshot, and that tracks beyond the cap cost nothing."""
+    few = FLEET.changed(max_tracks=100)
+    lines = [
+        (1_447_500_000_000_000_000, f'{{"v":1,"track":"t{k}","time_ns":1447500000000000000,"fte_m":1,"sigma_m":5}}\n') for k in range(5000)
+    ]
+    lane = _core.LiveLane(few.core())
+    lane.push(frames(lines), 0, 0)
+    assert lane.n_tracks == 100
+    assert lane.counters()["refused_fleet_full"] == 4900
+    assert len(lane.snapshot(0, 0)) < 100 * 1024
+    assert (tmp_path / journal.IN).exists() is False
+
+
+def test_a_command_that_is_ended_judges_what_it_has_and_can_be_resumed(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "navbound", "live", "-", "--format", "json", "--method", "tse-exact", "--json", "--out", str(out)]
+    reported = list[str]()
+    for resume in ([], ["--resume"]):
+        with subprocess.Popen([*command, *resume], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            assert process.stdin is not None
+            before = (out / journal.IN).stat().st_size if resume else 0
+            record = {"v": 1, "track": "a", "time_ns": live.session.now_ns(), "fte_m": 5.0, "sigma_m": 2000.0}
+            process.stdin.write(json.dumps(record).encode() + b"\n")
+            process.stdin.flush()
+            end = time.monotonic() + 60
+            while time.monotonic() < end and not (out / journal.IN).exists():
+                time.sleep(0.05)
+            while time.monotonic() < end and (out / journal.IN).stat().st_size <= before:
+                time.sleep(0.05)
+            begin = time.monotonic()
+            process.terminate()
+            output, error = process.communicate(timeout=60)
+            assert process.returncode == 0, error
+            # Five seconds on an idle machine; this one may be shared by ten others.
+            assert time.monotonic() - begin < 5 * 10
+        reported += output.decode().splitlines()
+    transitions_reported = [json.loads(line) for line in reported]
+    assert transitions_reported[0]["kind"] == "warning"
+    assert transitions_reported[0]["transition"] == "raised"
+    assert [t["key"] for t in transitions_reported if not t["replayed"]] == [t["key"] for t in transitions(out) if not t["replayed"]]
+    assert len(_core.live_inputs(journal.read(out / journal.IN))) >= 4
