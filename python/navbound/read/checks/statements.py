@@ -144,7 +144,8 @@ _SPEAKS = _words(
     "flag flags mode nac nacp nacv nucp nic sil sils sda rc hpl hul hil hal vpl vul val xpl protection containment spoofing "
     "spoofed spoof jamming jammed jam interference reliable reliability trust usable error errors uncertainty accuracy acc hacc "
     "vacc pacc sigma std stddev epu anp epe eph epv ehpe cep drms rms fom hfom vfom "
-    "nse tse fte err coasting coast extrapolated age nsat nsats sats satellites sat confidence outlier misleading degraded lost loss solution "
+    "nse tse fte err coasting coast extrapolated age nsat nsats sats satellites sat "
+    "confidence outlier misleading degraded lost loss solution "
 )
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
 

@@ -100,8 +100,8 @@ def _small(belief: Belief) -> list[str]:
         return []
     ratio = 2.0 / belief.square_mean if belief.square_mean > 0.0 else float("inf")
     return [
-        f"The squared errors are {ratio:.3g} times smaller than the covariance states: either the covariance is far too large, or the truth "
-        "is not independent of the estimate."
+        f"The squared errors are {ratio:.3g} times smaller than the covariance states: either the covariance is far too large, or "
+        "the truth is not independent of the estimate."
     ]
 
 
