@@ -116,3 +116,13 @@ def test_subjects_and_jobs_are_listed_and_loaded_when_they_are_used() -> None:
     assert float(bound) > 30.0
     assert {*navbound.SUBJECTS, "fly", "analyze", "study"} <= set(dir(navbound))
     assert all(getattr(navbound, name).__name__ == f"navbound.{name}" for name in navbound.SUBJECTS)
+
+
+def test_a_missing_file_is_refused_without_loading_tables() -> None:
+    program = (
+        "import sys\nfrom navbound.cli.main import app\n"
+        "try:\n    app(['analyze', 'nowhere.csv'], standalone_mode=False)\nexcept Exception as e:\n    print(e)\n"
+        f"print([name for name in {sorted(HEAVY)!r} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == ["nowhere.csv: no such file", "[]"]

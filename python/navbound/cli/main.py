@@ -19,6 +19,7 @@ from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers
 from navbound.errors import FormatError, InputError, InternalError, NavboundError
 from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed, of_verdict
 from navbound.run.settings import DEFAULT_METHODS, Settings
+from navbound.storage.packed import require_there
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -193,6 +194,7 @@ def analyze(
     subsets = _subsets(min_satellites, max_satellites, listed_from, asked=stanford_esa)
     flown = procedures.flown(procedure, database, line, defaults=defaults, missed=missed)
     against: dict[str, Any] = {} if flown is None else {"procedure": flown}
+    require_there(files)
     if levels is not None:
         if flown is not None:
             raise InputError("procedure", procedure, domain="it without --levels, which judges no track")

@@ -122,14 +122,14 @@ def check_command(
 
 def flown(name: str | None, database: Path | None, line: str | None, *, defaults: bool, missed: bool) -> Flown | None:
     """The procedure that `navbound analyze` judges against; options that would do nothing without it are refused."""
-    from navbound.run.procedure import Flown  # noqa: PLC0415
-
     if name is None:
         if database is not None or line is not None or defaults or missed:
             raise InputError("procedure", "none", domain="it together with --database, --line, --defaults and --missed")
         return None
     if database is None:
         raise InputError("database", "none", domain="a navigation database (ARINC 424) together with --procedure")
+    from navbound.run.procedure import Flown  # noqa: PLC0415
+
     return Flown(database, name, line, defaults, missed)
 
 

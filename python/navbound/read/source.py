@@ -125,7 +125,7 @@ def load(path: str | Path) -> Source:
     try:
         stored = path.read_bytes()
     except FileNotFoundError as e:
-        raise FormatError(path, "no such file") from e
+        raise FormatError(path, packed.NO_SUCH_FILE) from e
     except OSError as e:
         raise FormatError(path, f"cannot be read: {e.strerror}") from e
     content = packed.plain(path, stored)

@@ -7,9 +7,13 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from navbound import _core
 from navbound.errors import FormatError, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 MOST_BYTES = 4 << 30
 """Plain bytes that a file may unpack to: fifty times the largest daily file. [B]"""
@@ -17,6 +21,22 @@ MOST_RATIO = 200
 """Plain bytes per packed byte: logs and tables pack to a third, repeated rows to a fiftieth, a bomb to a thousandth. [1]"""
 ALWAYS_BYTES = 64 << 20
 """What is unpacked whatever its ratio. [B]"""
+
+
+NO_SUCH_FILE = "no such file"
+
+
+def require_there(paths: Iterable[str | Path]) -> None:
+    """Refuse what is not there before anything heavy is loaded or worked out.
+
+    Raises
+    ------
+    FormatError
+        The first path that does not exist.
+    """
+    for path in paths:
+        if not os.path.lexists(path):
+            raise FormatError(path, NO_SUCH_FILE)
 
 
 def limit() -> tuple[int, int]:
