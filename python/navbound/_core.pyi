@@ -183,6 +183,10 @@ class TrackJudges:
 _Reports = tuple[NDArray[np.int64], NDArray[np.int64], _F, _F, _F]
 
 SPEEDS_BESIDE: int
+GGA_QUALITIES: list[int]
+RTKLIB_QUALITIES: list[int]
+SBF_MODES: list[int]
+NOVATEL_TYPES: list[tuple[int, str]]
 
 class PlausibleTrack:
     def __init__(self, limits: dict[str, float], reports_speed: bool) -> None: ...

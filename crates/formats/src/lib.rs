@@ -2,6 +2,7 @@
 
 pub mod almanac;
 pub mod arinc424;
+pub mod measured;
 mod order;
 pub mod packed;
 pub mod precise;

@@ -7,7 +7,7 @@ use navbound_assess::plausible::{Finding, Limits, Report, SPEEDS_BESIDE, Survey,
 use navbound_core::frame::{Covariance, Ecef, LatLon};
 use navbound_core::quantity::{GpsTime, OutOfDomain, Radians};
 use navbound_formats::packed::{Limit, unpack_within};
-use navbound_formats::{rtklib, time};
+use navbound_formats::{measured, rtklib, time};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -26,6 +26,7 @@ fn read_rtklib<'py>(py: Python<'py>, text: &str, path: &str) -> PyResult<Bound<'
     d.set_item("est_lon_rad", s.lon_rad.into_pyarray(py))?;
     d.set_item("est_h_m", s.h_m.into_pyarray(py))?;
     d.set_item("cov_m2", rows(py, &s.cov_m2)?)?;
+    d.set_item("states_quality", s.states_quality)?;
     d.set_item("quality", s.quality.into_pyarray(py))?;
     d.set_item("n_sv", s.n_sv.into_pyarray(py))?;
     d.set_item("ground_speed_mps", s.ground_speed_mps.into_pyarray(py))?;
@@ -258,5 +259,9 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(unix_from_gps_ns, m)?)?;
     m.add_function(wrap_pyfunction!(navigation_error, m)?)?;
     m.add("SPEEDS_BESIDE", SPEEDS_BESIDE)?;
+    m.add("GGA_QUALITIES", measured::GGA_QUALITIES.to_vec())?;
+    m.add("RTKLIB_QUALITIES", measured::RTKLIB_QUALITIES.to_vec())?;
+    m.add("SBF_MODES", measured::SBF_MODES.to_vec())?;
+    m.add("NOVATEL_TYPES", measured::NOVATEL_TYPES.to_vec())?;
     m.add_class::<PlausibleTrack>()
 }

@@ -31,6 +31,8 @@ pub struct Solutions {
     pub cov_m2: Vec<[f64; 6]>,
     /// RTKLIB's quality flag: 1 fix, 2 float, 3 SBAS, 4 differential, 5 single, 6 PPP; 0 where the file gives none.
     pub quality: Vec<u8>,
+    /// Whether the file has a column of qualities.
+    pub states_quality: bool,
     /// Satellites in the solution; 0 where the file gives none.
     pub n_sv: Vec<u32>,
     /// Speed over the ground \[m/s\]; NaN where the file gives none.
@@ -51,7 +53,7 @@ pub struct Solutions {
 /// [`Unreadable`] when no header names the columns, or names none that hold a time and a position.
 pub fn read(text: &str) -> Result<Solutions, Unreadable> {
     let layout = header::layout(text)?;
-    let mut solutions = Solutions::default();
+    let mut solutions = Solutions { states_quality: layout.quality.is_some(), ..Solutions::default() };
     for (index, content) in text.lines().enumerate() {
         if content.trim().is_empty() || content.trim_start().starts_with('%') {
             continue;

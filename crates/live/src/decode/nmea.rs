@@ -9,6 +9,7 @@ use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, TrackId};
 use navbound_core::quantity::{GpsTime, Reason, Status};
+use navbound_formats::measured::GGA_QUALITIES;
 use navbound_formats::time::{Calendar, Scale, from_calendar};
 
 const SECOND_NS: i64 = 1_000_000_000;
@@ -72,7 +73,8 @@ impl Epochs {
             Some(if gga.get(sign)? == [negative] { -degrees } else { degrees }.to_radians())
         };
         let (lat_rad, lon_rad) = (angle(2, 3, b'S'), angle(4, 5, b'W'));
-        let sound = gga.number(6).is_some_and(|quality| quality > 0.0) && lat_rad.is_some() && lon_rad.is_some();
+        let measured = gga.number(6).is_some_and(|quality| GGA_QUALITIES.iter().any(|each| f64::from(*each) == quality));
+        let sound = measured && lat_rad.is_some() && lon_rad.is_some();
         let position = Position {
             lat_rad,
             lon_rad,

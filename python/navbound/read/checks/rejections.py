@@ -15,6 +15,10 @@ MAX_BAD_SHARE = 0.1
 """A file with a larger share of malformed rows than this is refused as a whole. Provenance: ours."""
 
 
+_SHOWN = 3
+"""Reasons that a refusal names. [1]"""
+
+
 @dataclass
 class Rejections:
     """What was left out of one file, reason by reason.
@@ -52,6 +56,11 @@ class Rejections:
         """Count the values of an optional column that cannot be read. Their rows count once, in `n_with_bad_values`."""
         self.add(reason, count, first, example)
         self.malformed -= count
+
+    def in_words(self) -> str:
+        """The reasons with their counts, the first few, behind a colon; nothing where no row was left out."""
+        each = [f"{r.count} rows left out, {r.reason} ({r.example})" for r in self.records[:_SHOWN]]
+        return ": " + "; ".join(each) if each else ""
 
     def refuse_if_too_many(self, n_rows: int) -> None:
         """Refuse the file when more than the stated share of its rows is malformed.

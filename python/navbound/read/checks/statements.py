@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Literal
 
 import polars as pl
 
+from navbound import _core
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -48,6 +50,7 @@ def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
+_DIGITS, _GGA = frozenset("0123456789"), frozenset(map(str, _core.GGA_QUALITIES))
 _NO = _words(
     "0 -1 false f no n none v void invalid not_valid bad unusable fail failed lost off unhealthy unavailable not_available unreliable"
 )
@@ -80,8 +83,8 @@ KINDS: tuple[Kind, ...] = (
     Kind(
         "invalid",
         _words("fix_quality gps_quality gps_qual gga_quality quality_indicator fixquality gps_quality_indicator"),
-        _NO_FIX | _words("6 7 8 simulator simulation simulated manual"),
-        (_FIX | {"1"}) - {"6"},
+        _NO_FIX | _DIGITS - _GGA | _words("simulator simulation simulated manual"),
+        _FIX - _DIGITS | _GGA,
     ),
     Kind("invalid", _words("q quality solution_quality"), _NO_FIX, _FIX | {"1"}),
     Kind(

@@ -106,7 +106,7 @@ def _row(fix: _Fix, dated: tuple[int, date, time], log: Log) -> None:
     leap = _leap_second(gga)
     of_day = leap or of_day
     numbers = [_number(gga, name) for name in ("lat", "lon", "alt")]
-    if not quality or not isinstance(of_day, time) or numbers[0] is None or numbers[1] is None:
+    if quality not in _core.GGA_QUALITIES or not isinstance(of_day, time) or numbers[0] is None or numbers[1] is None:
         log.n_rows += 1
         log.leave_out("no fix", fix.record, f"quality {quality}, latitude {_field(gga, 'lat')!r}")
         return

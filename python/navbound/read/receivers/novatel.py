@@ -14,6 +14,7 @@ import zlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from navbound import _core
 from navbound.read.receivers.log import Log, diagonal, note_passed_over
 
 if TYPE_CHECKING:
@@ -32,6 +33,8 @@ _BODY = struct.Struct("<II3dfI3f12xBB")
 """Solution status and type, latitude, longitude, height, undulation, datum, three deviations, (station, ages), satellites, those used."""
 _ASCII = re.compile(rb"#([^#*\r\n]*)\*([0-9a-fA-F]{8})")
 _CRC_BYTES = 4
+_TYPES, _WORDS = dict(_core.NOVATEL_TYPES), {word for _, word in _core.NOVATEL_TYPES}
+"""Position types that are measured."""
 
 
 @dataclass(frozen=True)
@@ -93,10 +96,16 @@ def _binary(content: bytes, at: int) -> tuple[int | None, _Position | str | None
         return end, None
     if length < _BODY.size:
         return end, f"BESTPOS of {length} bytes"
-    status, _, lat, lon, height, undulation, _, north, east, up, _, n_sv = _BODY.unpack_from(content, at + head)
+    status, kind_of_position, lat, lon, height, undulation, _, north, east, up, _, n_sv = _BODY.unpack_from(content, at + head)
     numbers = (lat, lon, height, undulation, north, east, up)
     return end, _Position(
-        status == 0, time_status > _TIME_UNKNOWN, week, milliseconds, numbers, n_sv, f"{status}, time status {time_status}"
+        status == 0 and kind_of_position in _TYPES,
+        time_status > _TIME_UNKNOWN,
+        week,
+        milliseconds,
+        numbers,
+        n_sv,
+        f"{status}, position type {kind_of_position}, time status {time_status}",
     )
 
 
@@ -114,7 +123,13 @@ def _ascii(content: bytes, at: int) -> tuple[int | None, _Position | str | None]
         return frame.end(), f"BESTPOSA: {e}"
     known = names[4] != "UNKNOWN"
     return frame.end(), _Position(
-        fields[0] == "SOL_COMPUTED", known, week, milliseconds, numbers, n_sv, f"{fields[0]}, time status {names[4]}"
+        fields[0] == "SOL_COMPUTED" and fields[1] in _WORDS,
+        known,
+        week,
+        milliseconds,
+        numbers,
+        n_sv,
+        f"{fields[0]}, position type {fields[1]}, time status {names[4]}",
     )
 
 

@@ -62,7 +62,7 @@ def _finish(epoch: dict[str, Any], log: Log) -> None:
     week, tow_ms = epoch["at"]
     place = _place(pvt)
     unknown = week == _UNKNOWN_WEEK or tow_ms == _UNKNOWN_TOW
-    reason = "time not known" if unknown else "no position" if pvt.Type == 0 or pvt.Error != 0 or place is None else None
+    reason = "time not known" if unknown else "no position" if pvt.Type not in _core.SBF_MODES or pvt.Error != 0 or place is None else None
     if reason is not None or place is None:
         log.n_rows += 1
         log.leave_out(str(reason), epoch["record"], f"mode {pvt.Type}, error {pvt.Error}")

@@ -104,7 +104,7 @@ def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequenc
     values.tally.into(rejections)
     out, contradicting = _in_order(out, rejections, values.notes)
     rejections.refuse_if_too_many(found.n_rows)
-    _not_empty(source, out)
+    _not_empty(source, out, rejections)
     lost = pl.concat([without, left_out(contradicting)])
     of_file = (source.record(found.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
     return Reading(out.drop(LINE), *of_file, unread=values.unread)
@@ -120,13 +120,18 @@ def _rtklib(source: Source) -> Reading:
     plain = {k: d[k] for k in ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m", "ground_speed_mps", "n_sv", "hpl_m", "vpl_m")}
     out = pl.DataFrame({LINE: d["line"]} | plain | {name: cov[:, i] for i, name in enumerate(COVARIANCE)})
     out = out.with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
+    measured = pl.Series(d["quality"]).is_in(_core.RTKLIB_QUALITIES) | (not d["states_quality"])
+    unmeasured, out = out.filter(~measured), out.filter(measured)
+    if unmeasured.height:
+        example = f"quality {d['quality'][measured.arg_min()]}"
+        rejections.add("Q: not a measured position", unmeasured.height, unmeasured[LINE][0], example, malformed=False)
     out, contradicting = _in_order(out, rejections, notes)
     rejections.refuse_if_too_many(d["n_rows"])
-    _not_empty(source, out)
+    _not_empty(source, out, rejections)
     empty = [c for c in out.columns if out[c].is_null().all()]
     # A selection of constants alone has one row of them even where no row was refused.
     without = refused.with_columns(track=pl.lit(source.stem), time_ns=pl.lit(None, pl.Int64)).select("track", "time_ns")
-    lost = _left_out(without, contradicting)
+    lost = _left_out(without, unmeasured, contradicting)
     return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes, left_out=lost)
 
 
@@ -137,7 +142,7 @@ def _log(source: Source, kind: receivers.Kind) -> Reading:
         rejections.add(reason, count, first, example, malformed=damaged)
     rejections.refuse_if_too_many(log.n_rows)
     out = pl.DataFrame(log.rows, infer_schema_length=None)
-    _not_empty(source, out)
+    _not_empty(source, out, rejections)
     if "unix_ns" in out.columns:
         gps = pl.Series("time_ns", _core.gps_from_unix_ns(np.ascontiguousarray(out["unix_ns"].fill_null(0).to_numpy(), dtype=np.int64)))
         known = pl.coalesce("time_ns", gps) if "time_ns" in out.columns else gps
@@ -155,9 +160,9 @@ def _left_out(*rows: pl.DataFrame) -> pl.DataFrame:
     return pl.concat([left_out(each) for each in rows])
 
 
-def _not_empty(source: Source, out: pl.DataFrame) -> None:
+def _not_empty(source: Source, out: pl.DataFrame, rejections: Rejections) -> None:
     if out.is_empty():
-        raise FormatError(source.path, "no row holds a time, a latitude and a longitude")
+        raise FormatError(source.path, f"no row holds a time, a latitude and a longitude{rejections.in_words()}")
 
 
 def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> tuple[pl.DataFrame, pl.DataFrame]:
