@@ -30,7 +30,7 @@ from navbound.cli.parts import (
     tolerance,
 )
 from navbound.cli.show import show
-from navbound.errors import InputError
+from navbound.errors import ConflictError
 
 MOVED = "analyze --levels is navbound evaluate --levels; the old spelling goes with the next release"
 
@@ -97,12 +97,12 @@ def analyze_command(
     }
     if levels is not None:
         if flown is not None or path is not None or sigma_m is not None:
-            raise InputError("levels", levels, domain="it without --path, --procedure and --sigma-m, which judge a track")
+            raise ConflictError("levels", excludes=("path", "procedure", "sigma_m"), because="they judge a track")
         err_console.print(f"navbound: {MOVED}", markup=False, highlight=False, soft_wrap=True)
         evaluate.run(files, levels, of_levels, reading, out, json=json)
         return
     reading |= {} if flown is None else {"procedure": flown}
-    of_levels.refuse("it with navbound evaluate, which evaluates errors and protection levels")
+    of_levels.refuse_any()
     folder = run_folder(files, out)
     run = navbound.analyze(
         files,

@@ -29,7 +29,7 @@ from navbound.cli.parts import (
     tolerance,
 )
 from navbound.cli.show import show
-from navbound.errors import InputError
+from navbound.errors import ConflictError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -73,11 +73,11 @@ class Options:
     experimental: str
     protection: str | None
 
-    def refuse(self, domain: str) -> None:
-        """Refuse the first option that was typed, where none has a meaning."""
+    def refuse_any(self) -> None:
+        """Refuse the first option that was typed, where a track is judged."""
         for name, value in vars(self).items():
             if value not in {None, False, ""}:
-                raise InputError(name, "set" if value is True else value, domain=domain)
+                raise ConflictError(name, needs=("levels",), because="it is an option of navbound evaluate")
 
     def subsets(self) -> SubsetOptions | None:
         """Options of subsets of satellites; refused without subsets, where they would do nothing."""
@@ -87,8 +87,8 @@ class Options:
             from navbound.kpi import SubsetOptions  # noqa: PLC0415
 
             return SubsetOptions(**known)
-        for name, value in known.items():
-            raise InputError(name, value, domain="it together with --stanford-esa: without subsets of satellites it would do nothing")
+        for name in known:
+            raise ConflictError(name, needs=("stanford_esa",), because="it is a setting of the subsets of satellites")
         return None
 
 

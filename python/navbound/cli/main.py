@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -13,7 +13,7 @@ import navbound
 from navbound import _core
 from navbound.cli import analyze, evaluate, fly, lists, live, maps, predict, procedures, show, study, verify
 from navbound.cli.parts import err_console
-from navbound.errors import FormatError, InputError, InternalError, NavboundError
+from navbound.errors import FormatError, InputError, InternalError, NavboundError, visible
 from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed
 
 app = typer.Typer(
@@ -71,7 +71,9 @@ def main() -> None:
         _die(f"{e} (set NAVBOUND_TRACEBACK=1 for the traceback)", OUR_BUG)
     except FormatError as e:
         _die(str(e), UNREADABLE)
-    except (InputError, NavboundError) as e:
+    except InputError as e:
+        _die(visible(e.words(_option)), USAGE)
+    except NavboundError as e:
         _die(str(e), USAGE)
     except MemoryError:
         _die("the data need more memory than there is", UNREADABLE)
@@ -83,6 +85,17 @@ def main() -> None:
         if os.environ.get("NAVBOUND_TRACEBACK"):
             raise
         _die(f"this is a bug in navbound, please report it: {type(e).__name__}: {e} (set NAVBOUND_TRACEBACK=1 for the traceback)", OUR_BUG)
+
+
+def _option(argument: str) -> str:
+    """An argument as the command that runs has it: `--truth` for `truth`; unchanged where it is none of its options."""
+    command: Any = typer.main.get_command(app)
+    for word in sys.argv[1:]:
+        if word not in getattr(command, "commands", {}):
+            break
+        command = command.commands[word]
+    names: dict[str, str] = {parameter.name: parameter.opts[0] for parameter in command.params}
+    return {"columns": "--map", "mask_rad": "--mask", "study": "name"}.get(argument, names.get(argument, argument))
 
 
 def _die(message: str, status: int) -> None:

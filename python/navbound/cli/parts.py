@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.storage.packed import require_there
 
 if TYPE_CHECKING:
@@ -105,9 +105,9 @@ def work_of(backend: str | None, workers: int | None, cluster: str | None, check
     """Who works and what is kept, as far as it was asked for; refused where it would mean nothing."""
     found: Work = {}
     if cluster is not None and backend != "dask":
-        raise InputError("cluster", cluster, domain="none without --backend dask")
+        raise ConflictError("cluster", needs=("backend",), because="dask")
     if workers is not None and backend in {None, "serial"}:
-        raise InputError("workers", workers, domain="none without --backend processes or dask")
+        raise ConflictError("workers", needs=("backend",), because="processes or dask")
     if backend is not None:
         found["backend"] = backend
     if workers is not None or cluster is not None:

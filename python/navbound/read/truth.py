@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, gnss
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.read.checks.established import established
 from navbound.read.tables.epochs import read
 from navbound.records.truth import TruthDoubts
@@ -74,7 +74,7 @@ def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, R
         Epochs without positions; a recording as in :func:`join`.
     """
     if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
-        raise InputError("truth", truth.given, domain="no truth: the table holds no positions to compare with it")
+        raise ConflictError("truth", because="the table holds no positions to compare with it")
     if truth.ecef_m is None:
         other = read(str(truth.given))
         joined, words, doubts = join(epochs, other, truth.tolerance_s)

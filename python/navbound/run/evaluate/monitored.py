@@ -8,7 +8,7 @@ import polars as pl
 
 from navbound import gnss
 from navbound.algorithms import Recorded, entries
-from navbound.errors import InputError
+from navbound.errors import InputError, NotFoundError
 from navbound.gnss.monitor_fit import DISBELIEF
 from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.truth import with_truth
@@ -54,7 +54,7 @@ def monitor_of(protection: str) -> Recorded | None:
     """
     known = entries(Recorded)
     if protection != GIVEN and protection not in known:
-        raise InputError("protection", protection, domain=f"one of {', '.join([GIVEN, *known])}")
+        raise NotFoundError("protection", protection, "algorithm", [GIVEN, *known])
     return known.get(protection)
 
 
