@@ -46,7 +46,14 @@ Truth = Annotated[
     str | None, typer.Option(help="A file with true positions, joined by time; or X,Y,Z of a fixed point (Earth-fixed, metres).")
 ]
 TruthTolerance = Annotated[float | None, typer.Option(help="How far apart in time a truth epoch may be. [default: 0.01]")]
-Columns = Annotated[list[str] | None, typer.Option("--map", help="Column mapping: canonical=column[:unit]; may be repeated.")]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--map",
+        help="What a column is, where its name does not say: sigma_n_m=sd_north, time=t:gps_s, est_lat_rad=lat:deg_e7; may be repeated. "
+        "Names and units: docs/notation.md.",
+    ),
+]
 Solve = Annotated[
     bool, typer.Option("--solve", help="Solve positions from the raw measurements of receiver logs instead of taking the receiver's.")
 ]

@@ -151,7 +151,7 @@ def material(
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
     assumptions, truth_doubts = [of_covariance, plausibility.words, *doubts_of_axes(epochs)], TruthDoubts()
     if truth is not None:
-        epochs, words, other, truth_doubts = with_truth(epochs, named)
+        epochs, words, other, truth_doubts = with_truth(epochs, named, columns)
         inputs += [] if other is None else [other.source]
         rejected += [] if other is None else other.rejected
         assumptions.append(words)

@@ -12,7 +12,7 @@ import polars as pl
 
 from navbound import gnss, sbas
 from navbound.errors import ConflictError, FormatError, InputError
-from navbound.read.checks.refusals import of_navigation, of_observations, rejections, skipped_words, without_epochs
+from navbound.read.checks.refusals import of_navigation, of_observations, rejections, require_most_epochs, skipped_words
 from navbound.read.tables.epochs import read
 from navbound.read.truth import Truth, with_error, with_truth
 from navbound.run.inputs.solving import Solving, require_same_time
@@ -213,8 +213,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
         Messages of several satellites and none chosen, no message of the time, or ranges wanted without truth or with messages.
     """
     observations = gnss.read_observations(path)
-    if not observations.n_epochs:
-        raise without_epochs(observations)
+    require_most_epochs(observations)
     require_same_time(observations, service.navigation)
     ranges = None
     if service.has_messages:
