@@ -72,7 +72,7 @@ def with_truth(
 ) -> tuple[pl.DataFrame, str, Reading | None, TruthDoubts]:
     """Form the navigation error against a truth that was named; words about it, what was read of its file, what speaks against it.
 
-    Columns that the caller named for the estimates are those of the truth too, where its own names do not say what they are.
+    Columns that the caller named for the estimates are those of the truth too, where it has them all.
 
     Raises
     ------
@@ -93,12 +93,13 @@ def with_truth(
 
 
 def _recorded(path: str, columns: Mapping[str, str] | None) -> Reading:
-    try:
-        return read(path)
-    except FormatError:
-        if not columns:
-            raise
-        return read(path, columns=columns)
+    if columns:
+        try:
+            return read(path, columns=columns)
+        except FormatError:
+            # It does not have these columns: its own names say what they are.
+            pass
+    return read(path)
 
 
 def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S) -> tuple[pl.DataFrame, str, TruthDoubts]:

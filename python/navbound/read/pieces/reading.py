@@ -45,6 +45,8 @@ class PiecedReading:
         Tracks with a protection level anywhere.
     unread : list of str
         Columns, or words of columns, that speak of integrity by their name and are not understood.
+    unit_doubts : list of str
+        Columns whose numbers may be in another unit than they are read in.
     """
 
     source: InputFile
@@ -58,6 +60,7 @@ class PiecedReading:
     rejections: Rejections
     n_rows: int
     unread: list[str]
+    unit_doubts: list[str]
 
     @property
     def rejected(self) -> list[Rejection]:
@@ -200,6 +203,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         rejections=first.rejections,
         n_rows=first.n_rows,
         unread=values.unread,
+        unit_doubts=values.unit_doubts,
     )
 
 

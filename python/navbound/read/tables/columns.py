@@ -207,6 +207,8 @@ class Column:
     quantity: str
     name: str
     unit: str
+    unit_stated: bool = False
+    """Whether the file or the caller says the unit; otherwise it is the usual one of the name."""
 
 
 @dataclass(frozen=True)
@@ -347,11 +349,12 @@ def _known(quantity: Quantity, names: list[str], path: Path, *, own: bool) -> Co
     units = UNITS[quantity.si]
     for alias, unit in quantity.aliases.items():
         if alias in plain:
-            return Column(quantity.name, plain[alias], _written_unit(plain[alias], quantity, path) or unit)
+            written = _written_unit(plain[alias], quantity, path)
+            return Column(quantity.name, plain[alias], written or unit, unit_stated=written is not None or alias.endswith(f"_{unit}"))
         # `hpl_nm` is `hpl` in nautical miles, whether or not the list names it so.
         for ending in units if quantity.si not in {"1", "time", "text"} else ():
             if f"{alias}_{ending}" in plain:
-                return Column(quantity.name, plain[f"{alias}_{ending}"], ending)
+                return Column(quantity.name, plain[f"{alias}_{ending}"], ending, unit_stated=True)
     return None
 
 
@@ -422,10 +425,11 @@ def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Q
     if key not in quantities:
         raise InputError("columns", key, domain=f"known quantities: time, {', '.join(quantities)}")
     q = quantities[key]
-    unit = unit or _written_unit(name, q, path) or q.aliases.get(_plain(name)[0], q.si)
+    stated = unit or _written_unit(name, q, path)
+    unit = stated or q.aliases.get(_plain(name)[0], q.si)
     if q.si != "text" and unit.lower() not in UNITS[q.si]:
         raise InputError("columns", value, domain=f"units of {key}: {', '.join(u for u in UNITS[q.si] if u)}")
-    return Column(key, name, unit.lower())
+    return Column(key, name, unit.lower(), unit_stated=bool(stated))
 
 
 def _unit_of_time(name: str) -> str:
@@ -448,7 +452,9 @@ def _require(columns: dict[str, Column], times: list[Column], names: list[str], 
         short = [n for n in names if len(n) <= _LONGEST_NAME][:_MOST_COMPARED]
         near = {n: max(difflib.SequenceMatcher(None, _plain(n)[0], a).ratio() for a in known) for n in short}
         best = sorted(short, key=lambda n: -near[n])[:5]
-        unit = {"time": _unit_of_time(best[0] if best else ""), "est_lat_rad": "deg", "est_lon_rad": "deg"}.get(need, "m")
+        if not best:
+            raise FormatError(path, "the first line names no columns: a table begins with their names", 1, need)
+        unit = {"time": _unit_of_time(best[0]), "est_lat_rad": "deg", "est_lon_rad": "deg"}.get(need, "m")
         more = f" (of {', '.join(TIME_UNITS)})" if need == "time" else ""
         raise FormatError(
             path,

@@ -75,10 +75,12 @@ class Values:
         What could not be used.
     notes : list of str
         Doubts; whole once the times are understood.
+    unit_doubts : list of str
+        Columns whose numbers may be in another unit than they are read in, so that nothing can be shown until it is stated.
     """
 
     def __init__(self, path: Path, stem: str, mapping: Assignment, required: Sequence[str]) -> None:
-        self.tally, self.notes = Tally(), list[str]()
+        self.tally, self.notes, self.unit_doubts = Tally(), list[str](), list[str]()
         self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
         self._dated = position_time(mapping.unused)
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
@@ -270,17 +272,18 @@ class Values:
         return columns | {"time": ", ".join(units(self._mapping.times, self._unit))}
 
     def _look_like_radians(self) -> None:
-        """Note degrees that could be radians: a flight near 0 N 0 E and a wrong unit look alike, so a person must judge."""
+        """Doubt degrees that could be radians: a flight near 0 N 0 E and a wrong unit look alike, so a person must state the unit."""
         columns = self._mapping.columns
         if not set(POSITION) <= columns.keys():
             return
         lat, lon = (columns[name] for name in POSITION)
         largest = max(2 * self._largest["est_lat_rad"], self._largest["est_lon_rad"])
         if lat.unit == "deg" and lon.unit == "deg" and 0 < largest <= math.pi * UNITS["rad"]["deg"]:
-            self.notes.append(
+            doubt = (
                 f"{self._path.name}: “{lat.name}” and “{lon.name}” were read as degrees, but all values are small enough to be radians; "
-                f"if they are, declare est_lat_rad={lat.name}:rad and est_lon_rad={lon.name}:rad"
+                f"declare the unit: est_lat_rad={lat.name}:rad and est_lon_rad={lon.name}:rad, or :deg"
             )
+            (self.notes if lat.unit_stated and lon.unit_stated else self.unit_doubts).append(doubt)
         elif lat.unit == lon.unit == "deg" and 0 < self._largest["est_lat_rad"] <= math.pi / 2 * UNITS["rad"]["deg"]:
             # The longitude is no radian. Near the equator this is a doubt without a cause.
             self.notes.append(
