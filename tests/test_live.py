@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -15,8 +16,9 @@ import pytest
 from live_fixture import FLEET, Sent, fleet, frames, generator, recorded, transitions, truth
 from navbound import _core, live
 from navbound.errors import FormatError, InputError
-from navbound.live import journal, transition
+from navbound.live import journal, tables, transition
 from navbound.live.settings import Settings
+from navbound.live.source import File
 
 
 def reported_keys(folder: Path) -> tuple[list[str], list[str]]:
@@ -260,3 +262,43 @@ def test_a_command_that_is_ended_judges_what_it_has_and_can_be_resumed(tmp_path:
     assert transitions_reported[0]["transition"] == "raised"
     assert [t["key"] for t in transitions_reported if not t["replayed"]] == [t["key"] for t in transitions(out) if not t["replayed"]]
     assert len(_core.live_inputs(journal.read(out / journal.IN))) >= 4
+
+
+def lived_lines(tmp_path: Path, **more: object) -> tuple[set[str], set[str]]:
+    """Statuses and alerts of a minute of records with a good covariance, some keys changed or taken away (`...`)."""
+    record = {"v": 1, "track": "A", "est_lat_rad": 0.85, "est_lon_rad": 0.03, "cov_ee_m2": 64.0, "cov_en_m2": 0.0, "cov_nn_m2": 64.0}
+    record = {name: value for name, value in (record | more).items() if value is not ...}
+    tmp_path.mkdir(exist_ok=True)
+    log = tmp_path / "log.jsonl"
+    log.write_text("".join(json.dumps(record | {"time_ns": 1_317_644_000_000_000_000 + k * 1_000_000_000}) + "\n" for k in range(60)))
+    session = live.Session(tmp_path / "out", Settings(format="json", rnp_m=555.6))
+    with closing(File(log)) as source:
+        session.run(source)
+    epochs = tables.epochs(tmp_path / "out")
+    return set(epochs["status"]), set(epochs["alert"][10:])
+
+
+def test_a_record_without_position_and_without_deviation_is_no_input(tmp_path: Path) -> None:
+    assert lived_lines(tmp_path, est_lat_rad=..., est_lon_rad=...) == ({"invalid_input"}, {"unavailable"})
+
+
+def test_a_record_without_position_is_judged_by_its_deviation(tmp_path: Path) -> None:
+    assert lived_lines(tmp_path, est_lat_rad=..., est_lon_rad=..., fte_m=5.0, course_rad=0.5) == ({"ok"}, {"normal"})
+
+
+def test_of_a_covariance_and_a_deviation_the_larger_counts(tmp_path: Path) -> None:
+    assert lived_lines(tmp_path / "a", sigma_m=3000.0)[1] == {"warning"}
+    assert lived_lines(tmp_path / "b", sigma_m=1.0)[1] == {"normal"}
+    assert lived_lines(tmp_path / "c", sigma_m=None)[1] == {"warning"}
+
+
+def test_a_journal_that_was_cut_says_how_much_is_not_judged(tmp_path: Path) -> None:
+    content = frames(fleet(20, 30), heartbeats=True)
+    source = recorded(tmp_path / "in", content[:-7])
+    said = list[str]()
+    live.judge(source, tmp_path / "out", say=said.append)
+    assert len(said) == 1
+    assert "bytes at its end are no whole frame and are not judged" in said[0]
+    said.clear()
+    live.judge(recorded(tmp_path / "whole", content), tmp_path / "other", say=said.append)
+    assert said == []

@@ -177,3 +177,9 @@ def test_the_command_prints_a_table_and_json_and_refuses_in_a_sentence(shared_da
         assert refused.status == status, (arguments, refused.stdout, refused.stderr)
         assert named in refused.stderr, (arguments, refused.stderr)
         assert "Traceback" not in refused.stderr
+
+
+@pytest.mark.parametrize("date", ["0001-01-01", "2300-01-01", "9999-12-31"])
+def test_a_date_that_no_time_holds_is_refused(navbound: Callable[..., Ended], date: str) -> None:
+    ended = navbound("predict", "raim", "gps", "--at", "LFPG/08R", "--hours", "1", "--date", date)
+    assert (ended.status, "an instant of the years 1680 to 2259" in ended.stderr) == (USAGE, True)

@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 import numpy as np
 
 from navbound import _core
+from navbound.errors import InputError
 from navbound.table.arguments import checked
 
 GPS_EPOCH_UNIX_NS = 315_964_800_000_000_000
@@ -39,6 +40,9 @@ def utc_offset_s(time_ns: int) -> int:
     return round((time_ns + GPS_EPOCH_UNIX_NS - unix_ns) * 1e-9)
 
 
+_FIRST, _LAST = datetime(1680, 1, 1, tzinfo=UTC), datetime(2260, 1, 1, tzinfo=UTC)
+
+
 @checked
 def gps_ns(when: datetime) -> int:
     """GPS time of an instant of UTC, to the microsecond. [ns].
@@ -47,7 +51,15 @@ def gps_ns(when: datetime) -> int:
     ----------
     when : datetime
         With a time zone.
+
+    Raises
+    ------
+    InputError
+        An instant that 64 bits of nanoseconds do not hold.
     """
     since = when - datetime(1970, 1, 1, tzinfo=UTC)
     unix_ns = (since.days * 86_400 + since.seconds) * 1_000_000_000 + since.microseconds * 1000
+    # Leap seconds are added: half of the range leaves room for them.
+    if not _FIRST <= when < _LAST:
+        raise InputError("when", when.isoformat(), domain=f"an instant of the years {_FIRST.year} to {_LAST.year - 1}")
     return int(_core.gps_from_unix_ns(np.array([unix_ns], dtype=np.int64))[0])

@@ -108,7 +108,7 @@ def replay(
         raise InputError("speed", speed, "1", "[0, inf)")
     if group < 1:
         raise InputError("group", group, "1", "[1, inf)")
-    session = live.replay(journal, out, speed=speed, group=group, report=_report(json=json), stop=_stop())
+    session = live.replay(journal, out, speed=speed, group=group, report=_report(json=json), stop=_stop(), say=_say)
     _ended(session, settings_of(journal), json=json)
 
 
@@ -118,7 +118,7 @@ def judge(journal: Journal, out: SessionOut = Path("out/judged"), json: JsonLine
     from navbound import live  # noqa: PLC0415
     from navbound.live.replay import settings_of  # noqa: PLC0415
 
-    _ended(live.judge(journal, out), settings_of(journal), json=json)
+    _ended(live.judge(journal, out, say=_say), settings_of(journal), json=json)
 
 
 @app.command()

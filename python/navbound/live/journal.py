@@ -76,6 +76,11 @@ class Journal:
         self._file.close()
 
 
+def torn(path: Path) -> int:
+    """Bytes behind the last whole frame of a journal: it was cut, or its writer was killed or still writes. [B]."""
+    return path.stat().st_size - len(read(path))
+
+
 def read(path: Path) -> bytes:
     """Whole frames of a journal that nobody writes any more, or still does.
 

@@ -37,6 +37,7 @@ def replay(
     settings: Settings | None = None,
     report: Callable[[dict[str, Any]], None] = lambda _: None,
     stop: Callable[[], bool] = lambda: False,
+    say: Callable[[str], None] = lambda _: None,
 ) -> Session:
     """Read a journal through a new lane.
 
@@ -56,6 +57,8 @@ def replay(
         Takes each transition.
     stop : callable, optional
         Ends it early.
+    say : callable, optional
+        Takes a sentence on a journal that does not end with a whole frame.
 
     Returns
     -------
@@ -67,7 +70,10 @@ def replay(
     FormatError
         Not a journal, or the folder is not free.
     """
-    frames = journal.read(_journal(source))
+    frames, torn = journal.read(_journal(source)), journal.torn(_journal(source))
+    if torn:
+        name = _journal(source).name
+        say(f"{name}: {torn} bytes at its end are no whole frame and are not judged: it was cut, or its writer was killed or still writes")
     session = Session(out, settings or settings_of(source), report=report)
     ends, _ = _core.live_frames(frames)
     pace, begin = Pace(speed), 0
@@ -84,7 +90,7 @@ def replay(
     return session
 
 
-def judge(source: Path, out: Path) -> Session:
+def judge(source: Path, out: Path, *, say: Callable[[str], None] = lambda _: None) -> Session:
     """The causal batch: the whole journal judged at once.
 
     Raises
@@ -92,7 +98,7 @@ def judge(source: Path, out: Path) -> Session:
     FormatError
         As :func:`replay`.
     """
-    return replay(source, out, group=1 << 60)
+    return replay(source, out, group=1 << 60, say=say)
 
 
 @dataclass(frozen=True)

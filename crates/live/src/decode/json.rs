@@ -67,8 +67,8 @@ pub(super) fn position(line: &[u8]) -> Decoded {
     let position = Position {
         status,
         reason: (!status.usable()).then_some(Reason::Reported),
-        lat_rad: line.est_lat_rad,
-        lon_rad: line.est_lon_rad,
+        lat_rad: line.place(line.est_lat_rad),
+        lon_rad: line.place(line.est_lon_rad),
         h_m: line.est_h_m,
         fte_m: line.fte_m,
         course_rad: line.course_rad,
@@ -81,15 +81,23 @@ pub(super) fn position(line: &[u8]) -> Decoded {
 }
 
 impl Line<'_> {
-    /// The covariance, or that of one standard deviation in every direction. Terms that are absent beside others are not known.
+    /// A coordinate. Where the deviation from the path is not stated either, one that is absent is one that is not known.
+    fn place(&self, coordinate: Option<f64>) -> Option<f64> {
+        coordinate.or_else(|| self.fte_m.is_none().then_some(f64::NAN))
+    }
+
+    /// The covariance, or that of one standard deviation in every direction; where both are stated, no variance is below the deviation's.
+    /// Terms that are absent beside others are not known.
     fn covariance(&self) -> Option<[f64; 6]> {
         let terms = [self.cov_ee_m2, self.cov_en_m2, self.cov_nn_m2, self.cov_eu_m2, self.cov_nu_m2, self.cov_uu_m2];
-        if terms.iter().any(Option::is_some) {
-            return Some(terms.map(|term| term.unwrap_or(f64::NAN)));
-        }
         // A square would make a negative deviation look like a good one.
-        self.sigma_m
-            .map(|sigma| if sigma >= 0.0 { sigma * sigma } else { f64::NAN })
-            .map(|variance| [variance, 0.0, variance, 0.0, 0.0, variance])
+        let variance = self.sigma_m.map(|sigma| if sigma >= 0.0 { sigma * sigma } else { f64::NAN });
+        if !terms.iter().any(Option::is_some) {
+            return variance.map(|variance| [variance, 0.0, variance, 0.0, 0.0, variance]);
+        }
+        let [ee, en, nn, eu, nu, uu] = terms.map(|term| term.unwrap_or(f64::NAN));
+        // A NaN of either is a NaN: `max` would pass it over.
+        let least = |term: f64| variance.map_or(term, |least| if least <= term { term } else { least.max(least + 0.0 * term) });
+        Some([least(ee), en, least(nn), eu, nu, least(uu)])
     }
 }
