@@ -490,5 +490,5 @@ def test_positions_that_may_be_radians_show_nothing_until_the_unit_is_stated(
         (tmp_path / f"{name}.csv").write_text("\n".join([head, *rows]) + "\n")
     verdict = navbound.analyze(tmp_path / "a.csv", truth=tmp_path / "t.csv", columns=how or None).summary.verdict
     assert verdict.id == expected
-    assert bool(verdict.unit_doubts) == (expected == "not_shown")
-    assert ("Nothing is shown until the unit is stated" in verdict.words) == (expected == "not_shown")
+    assert bool(verdict.position_doubts) == (expected == "not_shown")
+    assert ("nothing is shown until it is stated" in verdict.words) == (expected == "not_shown")

@@ -235,8 +235,8 @@ def test_more_than_a_tenth_of_bad_rows_refuses_the_file(tmp_path: Path) -> None:
 def test_degrees_that_may_be_radians_are_said(tmp_path: Path) -> None:
     rows = [f"{1633608773 + i},0.8541,0.0447" for i in range(5)]
     reading = read(write(tmp_path, table(*rows, header="timestamp,latitude,longitude")))
-    assert any("small enough to be radians" in doubt for doubt in reading.unit_doubts)
-    assert not any("radians" in doubt for doubt in read(write(tmp_path, table(*ROWS))).unit_doubts)
+    assert any("small enough to be radians" in doubt for doubt in reading.position_doubts)
+    assert not any("radians" in doubt for doubt in read(write(tmp_path, table(*ROWS))).position_doubts)
 
 
 def test_state_vectors_in_si_are_not_taken_for_feet(tmp_path: Path) -> None:

@@ -416,8 +416,8 @@ export interface Verdict {
     n_stated_uncontained: number;
     /** Columns, or words of columns, that speak of integrity by their name and are not understood. */
     unread: string[];
-    /** Columns whose numbers may be in another unit than they are read in; the verdict cannot be "inside" beside one. */
-    unit_doubts: string[];
+    /** Why the positions may not be what they are read as (their unit, their motion); the verdict cannot be "inside" beside one. */
+    position_doubts: string[];
     /** Positions further from the line between their neighbours than their covariances and any manoeuvre explain. */
     n_apart: number;
     /** The largest of these distances. */

@@ -51,8 +51,8 @@ class Material:
         Tracks with a protection level anywhere, where the epochs are in pieces.
     unread : list of str
         Columns, or words of columns, that speak of integrity by their name and are not understood.
-    unit_doubts : list of str
-        Columns whose numbers may be in another unit than they are read in, so that nothing can be shown.
+    position_doubts : list of str
+        Why the positions may not be what they are read as (their unit, their motion), so that nothing can be shown.
     truth_doubts : TruthDoubts
         What speaks against the truth.
     limits_held : dict
@@ -80,5 +80,5 @@ class Material:
     frames: Frames | None = None
     with_levels: frozenset[str] = frozenset()
     unread: list[str] = field(default_factory=list)
-    unit_doubts: list[str] = field(default_factory=list)
+    position_doubts: list[str] = field(default_factory=list)
     truth_doubts: TruthDoubts = field(default_factory=TruthDoubts)

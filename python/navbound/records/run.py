@@ -133,8 +133,8 @@ class Verdict(Record):
     """The same where it states a containment radius (Rc, NIC) beyond twice RNP, or none."""
     unread: list[str] = Field(default_factory=list)
     """Columns, or words of columns, that speak of integrity by their name and are not understood."""
-    unit_doubts: list[str] = Field(default_factory=list)
-    """Columns whose numbers may be in another unit than they are read in; the verdict cannot be "inside" beside one."""
+    position_doubts: list[str] = Field(default_factory=list)
+    """Why the positions may not be what they are read as (their unit, their motion); the verdict cannot be "inside" beside one."""
     n_apart: int = 0
     """Positions further from the line between their neighbours than their covariances and any manoeuvre explain."""
     largest_apart_m: float | None = None

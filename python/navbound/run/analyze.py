@@ -14,6 +14,7 @@ from navbound.read.approaches import Approaches, Gates, find, statistics
 from navbound.read.checks.axes import doubts_of_axes
 from navbound.read.checks.plausible import Limits, check
 from navbound.read.checks.repeats import left_out, separate
+from navbound.read.checks.speeds import doubts_of_speeds
 from navbound.read.covariance import Claimed, claim
 from navbound.read.pieces import PIECE_ROWS
 from navbound.read.routes import Route, follow, load_route
@@ -149,13 +150,13 @@ def material(
     epochs, plausibility = check(claimed.epochs, limits if named.ecef_m is None else replace(limits, moving_mps=math.inf))
     origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
-    unit_doubts, truth_doubts = [each for r in readings for each in r.unit_doubts], TruthDoubts()
+    position_doubts, truth_doubts = [*(each for r in readings for each in r.position_doubts), *doubts_of_speeds(epochs)], TruthDoubts()
     assumptions = [of_covariance, plausibility.words, *doubts_of_axes(epochs)]
     if truth is not None:
         epochs, words, other, truth_doubts = with_truth(epochs, named, columns)
         assumptions.append(words)
         if other is not None:
-            inputs, rejected, unit_doubts = [*inputs, other.source], rejected + other.rejected, unit_doubts + other.unit_doubts
+            inputs, rejected, position_doubts = [*inputs, other.source], rejected + other.rejected, position_doubts + other.position_doubts
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
         epochs, truth_doubts = with_error(epochs)
         assumptions.append(f"Truth: from the file itself. {truth_doubts.words}".rstrip())
@@ -181,7 +182,7 @@ def material(
         cross_track=route.cross_track,
         settings=context.settings_with(readings),
         unread=list(dict.fromkeys(each for r in readings for each in r.unread)),
-        unit_doubts=unit_doubts,
+        position_doubts=position_doubts,
         truth_doubts=truth_doubts,
     )
 
@@ -237,7 +238,7 @@ def _in_pieces(recorded: InPieces, context: _Context) -> Material:
         settings=context.settings_with([reading]),
         with_levels=frozenset(reading.with_levels),
         unread=reading.unread,
-        unit_doubts=reading.unit_doubts,
+        position_doubts=[*reading.position_doubts, *recorded.position_doubts],
     )
 
 

@@ -45,7 +45,7 @@ class PiecedReading:
         Tracks with a protection level anywhere.
     unread : list of str
         Columns, or words of columns, that speak of integrity by their name and are not understood.
-    unit_doubts : list of str
+    position_doubts : list of str
         Columns whose numbers may be in another unit than they are read in.
     """
 
@@ -60,7 +60,7 @@ class PiecedReading:
     rejections: Rejections
     n_rows: int
     unread: list[str]
-    unit_doubts: list[str]
+    position_doubts: list[str]
 
     @property
     def rejected(self) -> list[Rejection]:
@@ -190,7 +190,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
     values.notes.extend(late.words(source.path, "line"))
     if n == 0:
         first.rejections.refuse_if_too_many(first.n_rows)
-        raise FormatError(source.path, "no row holds a time, a latitude and a longitude")
+        raise FormatError(source.path, f"no row holds a time, a latitude and a longitude{first.rejections.in_words()}")
     return PiecedReading(
         source=source.record(first.n_rows),
         unused=first.mapping.unused,
@@ -203,7 +203,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         rejections=first.rejections,
         n_rows=first.n_rows,
         unread=values.unread,
-        unit_doubts=values.unit_doubts,
+        position_doubts=values.position_doubts,
     )
 
 

@@ -49,7 +49,7 @@ class Reading:
     left_out : DataFrame
         ``track`` and ``time_ns`` of rows that were expected to hold a position and cannot be judged: without a position or a time, with a
         refused value in one of them, or with another position, bound or status at the time of another row. A null time is not known.
-    unit_doubts : list of str
+    position_doubts : list of str
         Columns whose numbers may be in another unit than they are read in.
     unread : list of str
         Columns, or words of columns, that speak of integrity by their name and are not understood.
@@ -63,7 +63,7 @@ class Reading:
     columns: dict[str, str] = field(default_factory=dict)
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     unread: list[str] = field(default_factory=list)
-    unit_doubts: list[str] = field(default_factory=list)
+    position_doubts: list[str] = field(default_factory=list)
 
 
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:
@@ -112,7 +112,7 @@ def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequenc
     _not_empty(source, out, rejections)
     lost = pl.concat([without, left_out(contradicting)])
     of_file = (source.record(found.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
-    return Reading(out.drop(LINE), *of_file, unread=values.unread, unit_doubts=values.unit_doubts)
+    return Reading(out.drop(LINE), *of_file, unread=values.unread, position_doubts=values.position_doubts)
 
 
 def _rtklib(source: Source) -> Reading:

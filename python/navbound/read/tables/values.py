@@ -75,12 +75,12 @@ class Values:
         What could not be used.
     notes : list of str
         Doubts; whole once the times are understood.
-    unit_doubts : list of str
+    position_doubts : list of str
         Columns whose numbers may be in another unit than they are read in, so that nothing can be shown until it is stated.
     """
 
     def __init__(self, path: Path, stem: str, mapping: Assignment, required: Sequence[str]) -> None:
-        self.tally, self.notes, self.unit_doubts = Tally(), list[str](), list[str]()
+        self.tally, self.notes, self.position_doubts = Tally(), list[str](), list[str]()
         self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
         self._dated = position_time(mapping.unused)
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
@@ -281,9 +281,9 @@ class Values:
         if lat.unit == "deg" and lon.unit == "deg" and 0 < largest <= math.pi * UNITS["rad"]["deg"]:
             doubt = (
                 f"{self._path.name}: “{lat.name}” and “{lon.name}” were read as degrees, but all values are small enough to be radians; "
-                f"declare the unit: est_lat_rad={lat.name}:rad and est_lon_rad={lon.name}:rad, or :deg"
+                f"declare the unit: est_lat_rad={lat.name}:rad and est_lon_rad={lon.name}:rad, or :deg; nothing is shown until it is stated"
             )
-            (self.notes if lat.unit_stated and lon.unit_stated else self.unit_doubts).append(doubt)
+            (self.notes if lat.unit_stated and lon.unit_stated else self.position_doubts).append(doubt)
         elif lat.unit == lon.unit == "deg" and 0 < self._largest["est_lat_rad"] <= math.pi / 2 * UNITS["rad"]["deg"]:
             # The longitude is no radian. Near the equator this is a doubt without a cause.
             self.notes.append(

@@ -12,6 +12,7 @@ import polars as pl
 from navbound import _core, status
 from navbound.read.checks.axes import Axes
 from navbound.read.checks.plausible import Checker, Limits, Plausibility
+from navbound.read.checks.speeds import Speeds
 from navbound.read.covariance import Claimed, Claims
 from navbound.read.pieces import Frames, PiecedReading, read_pieces
 from navbound.read.pieces.chunks import Chunks
@@ -73,6 +74,8 @@ class InPieces:
         Usual time between epochs of a track; 1 s where no track has two. [s]
     doubts : list of str
         That the positions do not move as the recording says.
+    position_doubts : list of str
+        That they do not travel as its speeds say.
     """
 
     reading: PiecedReading
@@ -82,6 +85,7 @@ class InPieces:
     labels: dict[str, str]
     period_s: float
     doubts: list[str]
+    position_doubts: list[str]
 
 
 def in_pieces(
@@ -96,7 +100,7 @@ def in_pieces(
     """
     reading = read_pieces(path, columns=columns, piece_rows=piece_rows)
     checker, claims, epochs = Checker(limits), Claims(sigma_m), Frames()
-    axes = Axes()
+    axes, speeds = Axes(), Speeds()
     steps, labels = _Steps(reading.n_rows), _Labels(reading.names)
     for part in reading.spread():
         checker.see(part)
@@ -104,11 +108,12 @@ def in_pieces(
         labels.see(piece)
         axes.see(piece)
         claimed = claims.claim(piece)
+        speeds.see(claimed.epochs)
         ready = covariance_status(without_path(checker.check(claimed.epochs, after))).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
         steps.see(ready)
         epochs.put(ready.drop(AUXILIARY, strict=False))
     reading.pieces.close()
-    return InPieces(reading, epochs, claimed, checker.plausibility(), labels.usual(), steps.median_s(), axes.words())
+    return InPieces(reading, epochs, claimed, checker.plausibility(), labels.usual(), steps.median_s(), axes.words(), speeds.doubts())
 
 
 def _with_the_next(pieces: Iterator[pl.DataFrame], n: int) -> Iterator[tuple[pl.DataFrame, pl.DataFrame]]:

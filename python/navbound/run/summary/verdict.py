@@ -96,7 +96,7 @@ def verdict_of(
         n_without_level=found.doubts.n_without_level,
         n_apart=0 if found.doubts.neighbours is None else found.doubts.neighbours.n,
         truth_lost=material.truth_doubts.n > 0 and found.n_truth == 0,
-        unit_doubted=bool(material.unit_doubts),
+        position_doubted=bool(material.position_doubts),
     )
     decided = rule.of_tracks(facts)
     verdict = Verdict(
@@ -119,7 +119,7 @@ def verdict_of(
         n_stated_worse=found.doubts.n_stated_worse,
         n_stated_uncontained=found.doubts.n_stated_uncontained,
         unread=material.unread,
-        unit_doubts=material.unit_doubts,
+        position_doubts=material.position_doubts,
         n_apart=facts.n_apart,
         largest_apart_m=found.doubts.neighbours.largest_m if found.doubts.neighbours is not None and facts.n_apart else None,
         n_without_level=found.doubts.n_without_level,

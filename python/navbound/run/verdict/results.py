@@ -38,7 +38,7 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
         parts += _not_shown(verdict)
     if verdict.worst_accuracy is not None:
         parts.append(_worst(verdict.worst_accuracy))
-    parts += [f"{doubt}. Nothing is shown until the unit is stated." for doubt in verdict.unit_doubts]
+    parts += [f"{doubt}." for doubt in verdict.position_doubts]
     if verdict.n_implausible:
         parts.append(
             f"{verdict.n_implausible} epochs cannot be true (see their reasons); what looks right beside them may be wrong as well."

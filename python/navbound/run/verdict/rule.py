@@ -56,8 +56,8 @@ class TrackFacts:
         Positions that contradict those beside them by more than their covariances allow.
     truth_lost : bool
         A truth was there, and none of it can be one.
-    unit_doubted : bool
-        Positions may be in another unit than they are read in.
+    position_doubted : bool
+        Positions may not be what they are read as: their unit, or their motion against the stated speed.
     """
 
     n_epochs: int
@@ -71,7 +71,7 @@ class TrackFacts:
     n_stated_against: int = 0
     n_without_level: int = 0
     truth_lost: bool = False
-    unit_doubted: bool = False
+    position_doubted: bool = False
     n_apart: int = 0
 
 
@@ -83,7 +83,9 @@ def of_tracks(facts: TrackFacts) -> VerdictId:
         return "nothing_judged"
     if facts.n_outside or facts.n_beyond_alert_limit:
         return "outside"
-    doubts = facts.n_implausible + facts.n_stated_against + facts.n_without_level + facts.n_apart + facts.truth_lost + facts.unit_doubted
+    doubts = (
+        facts.n_implausible + facts.n_stated_against + facts.n_without_level + facts.n_apart + facts.truth_lost + facts.position_doubted
+    )
     if doubts or facts.belief in UNSUPPORTED or not facts.n_judged >= LEAST_SHARE * facts.n_epochs:
         return "not_shown"
     return "inside"
