@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gzip
-import importlib
 import math
 import struct
 from pathlib import Path
@@ -14,7 +13,7 @@ import polars as pl
 import pytest
 
 import navbound
-from navbound import FormatError, InputError
+from navbound import FormatError
 from navbound.read import read
 from navbound.read.receivers import kind
 
@@ -225,29 +224,6 @@ def test_the_kind_is_told_from_the_content(logs: Path) -> None:
     assert kind((logs / "gpsd" / "ublox-zed-f9r.log").read_bytes()) == "ubx"
     with pytest.raises(FormatError, match="NAV-PVT"):
         read(logs / "gpsd" / "ublox-x20p.log")
-
-
-@pytest.mark.parametrize(
-    ("module", "content"),
-    [
-        ("pyubx2", nav_pvt(0)),
-        ("pysbf2", b"$@\x00\x00\xa7\x4f\x60\x00".ljust(96, b"\0")),
-        ("pynmeagps", sentence("GPGGA,000000.00,4715.0,N,00600.0,E,1,12,0.9,100.0,M,40.0,M,,")),
-    ],
-)
-def test_a_missing_decoder_is_named_with_its_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, module: str, content: bytes) -> None:
-    real = importlib.import_module
-
-    def absent(name: str) -> Any:
-        if name.startswith(module):
-            raise ImportError(name)
-        return real(name)
-
-    monkeypatch.setattr("navbound.read.receivers.log.import_module", absent)
-    path = tmp_path / "log.bin"
-    path.write_bytes(content)
-    with pytest.raises(InputError, match=rf"{module}.*navbound\[receivers\]"):
-        read(path)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
 import polars as pl
 
 from navbound import _core
@@ -66,8 +65,7 @@ class Reading:
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:
     """Read a recorded track: CSV, JSON, Parquet, an RTKLIB solution file, or the log of a receiver.
 
-    Each may be packed by gzip, compress (``.Z``) or zip. Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183; they need the
-    extra ``receivers``.
+    Each may be packed by gzip, compress (``.Z``) or zip. Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183.
 
     Parameters
     ----------
@@ -84,7 +82,7 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: S
     FormatError
         A file that cannot be interpreted, or of whose rows more than a tenth is malformed.
     InputError
-        A declared column that names no known quantity or unit; a log whose decoder is not installed.
+        A declared column that names no known quantity or unit.
     """
     source = load(path)
     if source.kind == "rtklib":
@@ -138,16 +136,11 @@ def _rtklib(source: Source) -> Reading:
 def _log(source: Source, kind: receivers.Kind) -> Reading:
     log = receivers.read(source, kind)
     rejections = Rejections(source.path, "record")
-    for reason, (count, first, example, damaged) in log.left_out.items():
+    for reason, damaged, count, first, example in log.left_out:
         rejections.add(reason, count, first, example, malformed=damaged)
     rejections.refuse_if_too_many(log.n_rows)
-    out = pl.DataFrame(log.rows, infer_schema_length=None)
-    _not_empty(source, out, rejections)
-    if "unix_ns" in out.columns:
-        gps = pl.Series("time_ns", _core.gps_from_unix_ns(np.ascontiguousarray(out["unix_ns"].fill_null(0).to_numpy(), dtype=np.int64)))
-        known = pl.coalesce("time_ns", gps) if "time_ns" in out.columns else gps
-        out = out.with_columns(known.alias("time_ns")).drop("unix_ns")
-    out = out.rename({"record": LINE}).with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
+    _not_empty(source, log.epochs, rejections)
+    out = log.epochs.rename({"record": LINE}).with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
     out, contradicting = _in_order(out, rejections, log.notes)
     empty = [c for c in out.columns if out[c].is_null().all()]
     lost = _left_out(contradicting)
