@@ -89,7 +89,7 @@ def main() -> None:
 
     out, *files = sys.argv[1:]
     start = time.perf_counter()
-    navbound.analyze(files, levels=LEVELS, period_s=1.0, out=out)
+    navbound.evaluate(files, levels=LEVELS, period_s=1.0, out=out)
     usage = resource.getrusage(resource.RUSAGE_SELF)
     figures = {"wall_s": time.perf_counter() - start, "cpu_s": usage.ru_utime + usage.ru_stime, "peak_mb": usage.ru_maxrss / 1024}
     print(json.dumps(figures))

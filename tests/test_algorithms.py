@@ -32,7 +32,7 @@ def test_a_toy_appears_in_help_and_in_the_list_of_methods() -> None:
         "with a.register(toy_algorithm.TOY):\n"
         "    from typer.testing import CliRunner\n"
         "    from navbound.cli.main import app\n"
-        "    for words in (['map', '--help'], ['predict', '--help'], ['analyze', '--help'], ['methods']):\n"
+        "    for words in (['map', '--help'], ['predict', '--help'], ['evaluate', '--help'], ['methods']):\n"
         "        print('toy' in CliRunner().invoke(app, words, terminal_width=200).output.lower())\n"
     )
     done = subprocess.run([sys.executable, "-c", program], cwd=TESTS, capture_output=True, text=True, check=True)
@@ -75,8 +75,8 @@ def test_a_toy_can_be_evaluated_and_stands_in_the_report(shared_data: Path, tmp_
     observations, navigation, truth = day(shared_data)
     arguments = {"levels": "NPA", "truth": ",".join(map(str, truth))}
     with algorithms.register(TOY):
-        navbound.analyze([observations, navigation], protection="toy", out=tmp_path / "toy", **arguments)  # type: ignore[arg-type]
-    navbound.analyze([observations, navigation], protection="raim", out=tmp_path / "raim", **arguments)  # type: ignore[arg-type]
+        navbound.evaluate([observations, navigation], protection="toy", out=tmp_path / "toy", **arguments)  # type: ignore[arg-type]
+    navbound.evaluate([observations, navigation], protection="raim", out=tmp_path / "raim", **arguments)  # type: ignore[arg-type]
     assert WORDS in (tmp_path / "toy" / "report.html").read_text(encoding="utf-8")
     doubled, usual = (pl.read_parquet(tmp_path / run / "epochs.parquet")["hpl_m"].to_numpy() for run in ("toy", "raim"))
     assert np.isfinite(usual).sum() > 2800

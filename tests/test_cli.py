@@ -36,8 +36,8 @@ def track(tmp_path: Path) -> Path:
     [
         (["fly", "nowhere"], USAGE, "beijing-shanghai"),
         (["fly", "beijing-shanghai", "--flights", "0"], USAGE, "[1, 1000]"),
-        (["analyze", "day.csv", "--levels", "APV-I", "--min-satellites", "5"], USAGE, "--stanford-esa"),
-        (["analyze", "day.csv", "--listed-from", "0.5"], USAGE, "--stanford-esa"),
+        (["evaluate", "day.csv", "--levels", "APV-I", "--min-satellites", "5"], USAGE, "--stanford-esa"),
+        (["analyze", "day.csv", "--listed-from", "0.5"], USAGE, "navbound evaluate"),
         (["analyze", "day.csv", "--mask", "90"], USAGE, "mask = 90.0 [deg]"),
         (["analyze", "day.csv", "--mask", "nan"], USAGE, "[0, 90)"),
         (["fly", "beijing-shanghai", "--flights", "many"], USAGE, "--flights"),

@@ -10,6 +10,7 @@ import numpy as np
 import polars as pl
 import pytest
 
+import navbound
 from navbound import FormatError, InputError, gnss, ins, rnp, status
 from navbound.read import read
 from navbound.read.source import load
@@ -436,3 +437,34 @@ def test_a_sentence_that_lost_the_mark_of_its_checksum_is_counted(tmp_path: Path
     reading = read(file)
     assert reading.epochs.height == 59
     assert [(r.reason, r.count) for r in reading.rejected] == [("damaged message", 1)]
+
+
+@pytest.mark.parametrize("apart_ms", [2, 6, 9])
+def test_a_truth_that_is_in_two_places_at_nearly_one_time_is_none(tmp_path: Path, apart_ms: int) -> None:
+    """A recording of truth alternates between the estimate and a place 3 km away, some milliseconds later."""
+    rows, truth = [HEAD_OF_TWO], ["time,lat,lon,h_m"]
+    for k in range(300):
+        lat = 49 + k * 7e-4
+        rows.append(f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}.000Z,{lat:.7f},2.5,100.0,64.0,0.0,64.0")
+        truth.append(f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}.001Z,{lat:.7f},2.5,100.0")
+        truth.append(f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}.{1 + apart_ms:03d}Z,{lat + 0.03:.7f},2.5,100.0")
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    (tmp_path / "t.csv").write_text("\n".join(truth) + "\n")
+    verdict = navbound.analyze(tmp_path / "a.csv", truth=tmp_path / "t.csv").summary.verdict
+    assert (verdict.n_truth, verdict.id) == (0, "not_shown")
+
+
+HEAD_OF_TWO = "time,lat,lon,h_m,cov_ee_m2,cov_en_m2,cov_nn_m2"
+
+
+@pytest.mark.parametrize(
+    ("eu", "nu", "expected"),
+    [("60.0", "60.0", "inside"), ("70.0", "0.0", "nothing_judged"), ("60.0", "-60.0", "nothing_judged"), ("", "", "inside")],
+)
+def test_a_vertical_that_cannot_belong_to_the_horizontal_makes_no_covariance(tmp_path: Path, eu: str, nu: str, expected: str) -> None:
+    """Variances of 64 m2 and a horizontal correlation of 0.9: the vertical cannot be with east and against north."""
+    rows = ["time,lat,lon,h_m,cov_ee_m2,cov_en_m2,cov_nn_m2,cov_eu_m2,cov_nu_m2,cov_uu_m2"]
+    rows += [f"2026-11-22T12:00:{k:02d}Z,{49 + k * 7e-4:.7f},2.5,100.0,64.0,57.6,64.0,{eu},{nu},64.0" for k in range(40)]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(rows) + "\n")
+    assert navbound.analyze(path).summary.verdict.id == expected

@@ -63,14 +63,14 @@ def test_navigation_of_another_day_is_named_with_both_dates(folder: Path, minute
     kinds: tuple[dict[str, Any], ...] = ({}, {"levels": "NPA"}, {"levels": "NPA", "protection": "raim"})
     for more in kinds:
         with pytest.raises(InputError, match=r"ephemerides of 2020-06-2[45] to 2020-06-2[56] for observations of 2024-06-24"):
-            navbound.analyze([minute, other], **more)
+            (navbound.evaluate if more else navbound.analyze)([minute, other], **more)
 
 
 @pytest.mark.parametrize("protection", ["raim", "araim"])
 def test_a_monitor_takes_signals_and_systems(folder: Path, minute: Path, tmp_path: Path, protection: str) -> None:
     out = tmp_path / "run"
     done = command(
-        "analyze",
+        "evaluate",
         minute,
         folder / "base.nav",
         "--levels",
@@ -88,7 +88,7 @@ def test_a_monitor_takes_signals_and_systems(folder: Path, minute: Path, tmp_pat
     words = " ".join(done.stdout.split())
     assert "ionosphere-free" in words or "dual" in words
     single = command(
-        "analyze", minute, folder / "base.nav", "--levels", "NPA", "--protection", protection, "--signals", "auto", "--out", out
+        "evaluate", minute, folder / "base.nav", "--levels", "NPA", "--protection", protection, "--signals", "auto", "--out", out
     )
     assert single.returncode == 2
     assert "single or dual with --protection" in " ".join(single.stderr.split())
@@ -112,19 +112,19 @@ def levels(path: Path, n: int = 200, **columns: object) -> Path:
 
 
 def test_a_level_whose_vertical_errors_are_unknown_says_so(tmp_path: Path) -> None:
-    verdict = navbound.analyze(levels(tmp_path / "a.csv"), levels="LPV-200").summary.verdict
+    verdict = navbound.evaluate(levels(tmp_path / "a.csv"), levels="LPV-200").summary.verdict
     assert verdict.id == "not_shown"
     assert "The vertical was not judged: no vertical error is known." in verdict.words
-    both = navbound.analyze(levels(tmp_path / "b.csv", vpe=np.full(200, 0.5)), levels="LPV-200").summary.verdict
+    both = navbound.evaluate(levels(tmp_path / "b.csv", vpe=np.full(200, 0.5)), levels="LPV-200").summary.verdict
     assert both.id == "inside"
     assert "not judged" not in both.words
-    lateral = navbound.analyze(levels(tmp_path / "c.csv"), levels="NPA").summary.verdict
+    lateral = navbound.evaluate(levels(tmp_path / "c.csv"), levels="NPA").summary.verdict
     assert (lateral.id, "not judged" in lateral.words) == ("inside", False)
 
 
 def test_errors_at_few_epochs_show_nothing_of_the_others(tmp_path: Path) -> None:
     few = [0.5 if k < 20 else None for k in range(200)]
-    verdict = navbound.analyze(levels(tmp_path / "a.csv", hpe=few), levels="NPA").summary.verdict
+    verdict = navbound.evaluate(levels(tmp_path / "a.csv", hpe=few), levels="NPA").summary.verdict
     assert verdict.id == "not_shown"
     assert "Errors are known: horizontal at 20 of 200 epochs with a protection level (10.0 %)." in verdict.words
 
@@ -133,7 +133,7 @@ def test_sizes_of_errors_stand_in_the_epochs(tmp_path: Path) -> None:
     n = 50
     east, up = np.full(n, 3.0), np.full(n, -2.0)
     path = levels(tmp_path / "a.csv", n, hpe=None, nse_e_m=east, nse_n_m=np.full(n, 4.0), nse_u_m=up)
-    navbound.analyze(path, levels="NPA", out=tmp_path / "run")
+    navbound.evaluate(path, levels="NPA", out=tmp_path / "run")
     epochs = pl.read_parquet(tmp_path / "run" / "epochs.parquet")
     assert (set(epochs["hpe_m"]), set(epochs["vpe_m"])) == ({5.0}, {2.0})
 
@@ -142,14 +142,14 @@ def test_truth_columns_of_a_level_table_are_used_or_named(tmp_path: Path) -> Non
     n = 60
     # 1e-5 degrees of latitude are 1.1 m.
     places = {"lat": np.full(n, 48.0), "lon": np.full(n, 2.0), "truth_lat": np.full(n, 48.00001), "truth_lon": np.full(n, 2.0)}
-    used = navbound.analyze(levels(tmp_path / "a.csv", n, hpe=None, **places), levels="NPA")
+    used = navbound.evaluate(levels(tmp_path / "a.csv", n, hpe=None, **places), levels="NPA")
     assert used.epochs["hpe_m"].to_list() == pytest.approx([1.11] * n, abs=0.01)
-    stated = navbound.analyze(levels(tmp_path / "b.csv", n, **places), levels="NPA").summary.assumptions
+    stated = navbound.evaluate(levels(tmp_path / "b.csv", n, **places), levels="NPA").summary.assumptions
     assert any("truth_lat_rad and truth_lon_rad are not used: the errors are those that the table states (hpe_m)" in s for s in stated)
     alone = {name: places[name] for name in ("truth_lat", "truth_lon")}
-    words = navbound.analyze(levels(tmp_path / "c.csv", n, hpe=None, **alone), levels="NPA").summary.assumptions
+    words = navbound.evaluate(levels(tmp_path / "c.csv", n, hpe=None, **alone), levels="NPA").summary.assumptions
     assert any("are not used: the table holds no estimated positions" in s for s in words)
-    other = navbound.analyze(levels(tmp_path / "d.csv", n, mystery=np.zeros(n)), levels="NPA").summary.assumptions
+    other = navbound.evaluate(levels(tmp_path / "d.csv", n, mystery=np.zeros(n)), levels="NPA").summary.assumptions
     assert any("columns not used: mystery" in s for s in other)
 
 
@@ -161,7 +161,7 @@ def test_a_smooth_error_is_few_independent_epochs(tmp_path: Path) -> None:
     noise = {"gps_time_s": 1.4e9 + t, "hpl": 20 + rng.random(n), "vpl": 25 + rng.random(n)}
 
     def independent(error: np.ndarray[Any, Any]) -> float:
-        run = navbound.analyze(levels(tmp_path / "a.csv", n, hpe=error, **noise), levels="NPA")
+        run = navbound.evaluate(levels(tmp_path / "a.csv", n, hpe=error, **noise), levels="NPA")
         assert run.summary.performance is not None
         (level,) = run.summary.performance.levels
         return level.n_effective

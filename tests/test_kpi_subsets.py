@@ -220,7 +220,7 @@ def test_the_stanford_esa_diagram_of_a_real_day_from_the_command_line(shared_dat
     # Started again it finds the part, its ranges too, and says the same.
     (part,) = (tmp_path / "run" / "parts").glob("*.ranges.parquet")
     written = part.stat().st_mtime_ns
-    again = navbound.analyze(
+    again = navbound.evaluate(
         files, levels="APV-I,NPA", truth=",".join(map(str, ESBC_TRUTH)), stanford_esa=kpi.SubsetOptions(), out=tmp_path / "run"
     )
     assert part.stat().st_mtime_ns == written
@@ -239,4 +239,4 @@ def test_a_table_holds_no_ranges(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
     path.write_text("time_ns,hpl_m\n0,1\n1000000000,1\n")
     with pytest.raises(InputError, match="a table holds no ranges"):
-        navbound.analyze(path, levels="NPA", stanford_esa=kpi.SubsetOptions())
+        navbound.evaluate(path, levels="NPA", stanford_esa=kpi.SubsetOptions())

@@ -31,6 +31,6 @@ def test_service_levels_have_the_same_rule(tmp_path: Path) -> None:
     path = tmp_path / "l.csv"
     rows = "".join(f"{1_600_000_000 + k},1.0,1.0,1.0,0,0\n" for k in range(60))
     path.write_text("time,nse_e_m,nse_n_m,nse_u_m,hpl_m,vpl_m\n" + rows)
-    done = command("analyze", path, "--levels", "LPV-200", "--out", tmp_path / "run")
+    done = command("evaluate", path, "--levels", "LPV-200", "--out", tmp_path / "run")
     assert done.returncode == 4, done.stderr
     assert "no epoch has a protection level" in " ".join(done.stdout.split())

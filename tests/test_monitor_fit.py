@@ -154,7 +154,7 @@ def test_the_verdict_of_a_run_says_where_the_model_does_not_fit(
     for name, change in (("quiet", None), ("noisy", noisy)):
         path = tmp_path / f"{name}.rnx"
         rinex_fixture.write(day[0], path, codes, until_s=7200.0, change=change)
-        runs[name] = navbound.analyze([path, navigation], levels="LPV-200", protection="araim").summary
+        runs[name] = navbound.evaluate([path, navigation], levels="LPV-200", protection="araim").summary
     assert DISBELIEF not in runs["quiet"].verdict.words
     assert runs["noisy"].verdict.words.startswith(f"The protection levels {DISBELIEF}")
     for summary in runs.values():

@@ -37,7 +37,7 @@ def days(folder: Path, n: int = 6) -> list[Path]:
 
 
 def command(files: list[Path], out: Path) -> list[str]:
-    return [sys.executable, "-m", "navbound", "analyze", *map(str, files), "--levels", LEVELS, "--period-s", "1", "--out", str(out)]
+    return [sys.executable, "-m", "navbound", "evaluate", *map(str, files), "--levels", LEVELS, "--period-s", "1", "--out", str(out)]
 
 
 def left(out: Path) -> dict[str, Any]:
@@ -76,7 +76,7 @@ def test_killed_in_the_middle_and_started_again_it_gives_the_same(tmp_path: Path
 
 def test_files_in_any_order_give_what_one_table_gives(tmp_path: Path) -> None:
     files = days(tmp_path)
-    run = navbound.analyze([files[k] for k in (4, 0, 5, 2, 1, 3)], levels=LEVELS, period_s=1.0)
+    run = navbound.evaluate([files[k] for k in (4, 0, 5, 2, 1, 3)], levels=LEVELS, period_s=1.0)
     expected = comparable(kpi.evaluate(series(6 * DAY), LEVELS, period_s=1.0))
     found = comparable(run.summary.performance)  # type: ignore[arg-type]
     for name in ("title", "notes"):
@@ -89,7 +89,7 @@ def test_files_in_any_order_give_what_one_table_gives(tmp_path: Path) -> None:
 def test_the_run_directory_holds_the_fields_columns(tmp_path: Path) -> None:
     files = days(tmp_path, 1)
     out = tmp_path / "run"
-    run = navbound.analyze(files, levels="APV-I", out=out)
+    run = navbound.evaluate(files, levels="APV-I", out=out)
     assert run.report.is_file()
     again = directory.load(out)
     assert again.summary == run.summary
@@ -121,7 +121,7 @@ def test_positions_with_levels_and_a_fixed_truth(tmp_path: Path) -> None:
         }
     )
     rows.write_parquet(tmp_path / "positions.parquet")
-    run = navbound.analyze(tmp_path / "positions.parquet", levels="LPV-200", truth=",".join(map(str, truth)))
+    run = navbound.evaluate(tmp_path / "positions.parquet", levels="LPV-200", truth=",".join(map(str, truth)))
     found = run.summary.performance
     assert found is not None
     h_error, v_error = found.axes[0].error_m, found.axes[1].error_m
@@ -174,13 +174,13 @@ def test_what_cannot_be_evaluated_is_refused(tmp_path: Path, content: str, optio
     path = tmp_path / "table.csv"
     path.write_text(content)
     with pytest.raises((InputError, FormatError), match=words):
-        navbound.analyze(path, levels="NPA", **options)
+        navbound.evaluate(path, levels="NPA", **options)
 
 
 def test_levels_of_error_extraction_say_everywhere_what_they_are(tmp_path: Path) -> None:
     path, out = tmp_path / "table.csv", tmp_path / "run"
     path.write_text("time_ns,ee_bound_h_m,ee_bound_v_m\n0,5,6\n1000000000,5,6\n2000000000,5,6\n")
-    run = navbound.analyze(path, levels="APV-I", columns={"hpl_m": "ee_bound_h_m", "vpl_m": "ee_bound_v_m"}, out=out)
+    run = navbound.evaluate(path, levels="APV-I", columns={"hpl_m": "ee_bound_h_m", "vpl_m": "ee_bound_v_m"}, out=out)
     label = "experimental, not integrity"
     assert run.summary.performance is not None
     assert run.summary.performance.experimental == label
@@ -190,8 +190,8 @@ def test_levels_of_error_extraction_say_everywhere_what_they_are(tmp_path: Path)
     assert all(f"{name} [{label}]" in header for name in ("HPL", "HSI", "VPL", "VSI"))
     # Words of the caller's own stand in the same places; a table without any has none.
     path.write_text("time_ns,hpl_m\n0,5\n1000000000,5\n")
-    assert navbound.analyze(path, levels="NPA", experimental="a trial").summary.performance.experimental == "a trial"  # type: ignore[union-attr]
-    assert navbound.analyze(path, levels="NPA").summary.performance.experimental == ""  # type: ignore[union-attr]
+    assert navbound.evaluate(path, levels="NPA", experimental="a trial").summary.performance.experimental == "a trial"  # type: ignore[union-attr]
+    assert navbound.evaluate(path, levels="NPA").summary.performance.experimental == ""  # type: ignore[union-attr]
 
 
 def test_other_files_in_the_directory_are_not_overwritten(tmp_path: Path) -> None:
@@ -199,22 +199,22 @@ def test_other_files_in_the_directory_are_not_overwritten(tmp_path: Path) -> Non
     out.mkdir()
     (out / "thesis.txt").write_text("mine")
     with pytest.raises(FormatError, match="thesis"):
-        navbound.analyze(days(tmp_path, 1), levels="NPA", out=out)
+        navbound.evaluate(days(tmp_path, 1), levels="NPA", out=out)
 
 
 def test_a_damaged_part_is_named(tmp_path: Path) -> None:
     files, out = days(tmp_path, 1), tmp_path / "run"
-    navbound.analyze(files, levels="NPA", out=out)
+    navbound.evaluate(files, levels="NPA", out=out)
     (record,) = (out / PARTS).glob("*.json")
     record.write_text("{")
     with pytest.raises(FormatError, match="delete it"):
-        navbound.analyze(files, levels="NPA", out=out)
+        navbound.evaluate(files, levels="NPA", out=out)
 
 
 @pytest.mark.parametrize("harm", ["level", "count", "digests"])
 def test_a_part_whose_content_was_changed_is_not_taken(tmp_path: Path, harm: str) -> None:
     (file,) = days(tmp_path, 1)
-    navbound.analyze(file, levels="NPA", period_s=1.0, out=tmp_path / "run")
+    navbound.evaluate(file, levels="NPA", period_s=1.0, out=tmp_path / "run")
     (table,) = (tmp_path / "run" / PARTS).glob("*.parquet")
     (record,) = (tmp_path / "run" / PARTS).glob("*.json")
     kept = json.loads(record.read_text())
@@ -226,12 +226,12 @@ def test_a_part_whose_content_was_changed_is_not_taken(tmp_path: Path, harm: str
         del kept["facts"]["digests"]
     record.write_text(json.dumps(kept))
     with pytest.raises(FormatError, match=r"is not what was kept.*to compute this part again"):
-        navbound.analyze(file, levels="NPA", period_s=1.0, out=tmp_path / "run")
+        navbound.evaluate(file, levels="NPA", period_s=1.0, out=tmp_path / "run")
 
 
 def test_observations_alone_are_refused(shared_data: Path) -> None:
     with pytest.raises(InputError, match="navigation file"):
-        navbound.analyze(shared_data / "sbas" / "virtual_user_2025046_17h.25O.gz", levels="NPA")
+        navbound.evaluate(shared_data / "sbas" / "virtual_user_2025046_17h.25O.gz", levels="NPA")
 
 
 def errors_and_levels(path: Path, *names: str) -> Path:
@@ -242,7 +242,7 @@ def errors_and_levels(path: Path, *names: str) -> Path:
 
 def test_errors_by_size_alone_are_errors(tmp_path: Path) -> None:
     path = errors_and_levels(tmp_path / "levels.csv", "hpe_m", "vpe_m", "hpl_m", "vpl_m")
-    run = navbound.analyze(path, levels="APV-I")
+    run = navbound.evaluate(path, levels="APV-I")
     assert run.summary.performance is not None
     assert run.summary.performance.truth_known
     (level,) = run.summary.performance.levels
@@ -254,9 +254,29 @@ def test_a_level_that_is_judged_and_absent_refuses_the_file(tmp_path: Path, leve
     held = [name for name in ("hpe_m", "vpe_m", "hpl_m", "vpl_m") if name != absent]
     path = errors_and_levels(tmp_path / "levels.csv", *held)
     with pytest.raises(FormatError, match=f"{absent}: no column holds it"):
-        navbound.analyze(path, levels=levels)
+        navbound.evaluate(path, levels=levels)
 
 
 def test_a_vertical_level_is_not_needed_where_no_level_has_a_vertical_limit(tmp_path: Path) -> None:
     path = errors_and_levels(tmp_path / "levels.csv", "hpe_m", "hpl_m")
-    assert navbound.analyze(path, levels="NPA").summary.performance is not None
+    assert navbound.evaluate(path, levels="NPA").summary.performance is not None
+
+
+def test_the_old_spelling_works_for_one_release_and_says_so(tmp_path: Path) -> None:
+    (file,) = days(tmp_path, 1)
+    with pytest.warns(DeprecationWarning, match=r"analyze\(levels=\.\.\.\) is evaluate\(levels=\.\.\.\)"):
+        old = navbound.analyze(file, levels="NPA", period_s=1.0).summary.performance
+    assert old == navbound.evaluate(file, levels="NPA", period_s=1.0).summary.performance
+    words = [sys.executable, "-m", "navbound", "analyze", str(file), "--levels", "NPA", "--out", str(tmp_path / "run")]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode in {0, 4}
+    assert "analyze --levels is navbound evaluate --levels" in done.stderr
+    help_text = subprocess.run([*words[:4], "--help"], capture_output=True, text=True, check=True).stdout
+    assert "--protection" not in help_text, "what it has no use for is not offered"
+
+
+def test_an_option_of_levels_without_levels_names_the_command_that_has_it(tmp_path: Path) -> None:
+    (file,) = days(tmp_path, 1)
+    words = [sys.executable, "-m", "navbound", "analyze", str(file), "--protection", "raim"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (done.returncode, "protection = raim" in done.stderr, "navbound evaluate" in done.stderr) == (2, True, True)

@@ -201,7 +201,7 @@ def day(shared_data: Path) -> tuple[Path, Path, list[float]]:
 def test_the_recorded_day_stays_inside_its_levels(shared_data: Path, tmp_path: Path) -> None:
     """Errors against levels, epoch by epoch, and what the run says of detection and exclusion."""
     observations, navigation, truth = day(shared_data)
-    run = navbound.analyze(
+    run = navbound.evaluate(
         [observations, navigation], levels=["NPA", "APV-I"], truth=",".join(map(str, truth)), protection="raim", out=tmp_path / "run"
     )
     epochs = run.summary.performance
@@ -267,7 +267,7 @@ def test_a_step_in_one_satellite_is_detected_excluded_and_the_levels_are_those_o
     assert (np.hypot(after["nse_e_m"], after["nse_n_m"]) < after["hpl_m"].to_numpy()).all()
     # What the run says of it.
     text = ",".join(map(str, truth))
-    run = navbound.analyze([tmp_path / "faulty.rnx", navigation], levels="NPA", truth=text, protection="raim")
+    run = navbound.evaluate([tmp_path / "faulty.rnx", navigation], levels="NPA", truth=text, protection="raim")
     words = " ".join(run.summary.assumptions)
     assert f"120 epochs: a fault detected at 60, excluded at 60 ({wrong} at 60), not to be excluded at 0" in words
     assert run.summary.performance is not None

@@ -177,7 +177,7 @@ def _keys(m: sbas.Messages) -> set[tuple[int, int, bytes]]:
 
 def test_levels_follow_from_a_log_alone(shared_data: Path, tmp_path: Path) -> None:
     log = shared_data / "sbas" / "ubx_20080526.ubx"
-    run = navbound.analyze(log, levels="APV-I", solve=True, prn=137, out=tmp_path / "run")
+    run = navbound.evaluate(log, levels="APV-I", solve=True, prn=137, out=tmp_path / "run")
     # Four minutes: masks, fast and slow corrections of both kinds are whole for the last seconds alone.
     assert run.summary.n_status["solution"] == 10
     assert run.epochs["hpl_m"].drop_nulls().is_between(5.0, 60.0).all()

@@ -314,3 +314,44 @@ def test_any_bytes_are_read_or_refused(tmp_path: Path, content: bytes) -> None:
     assert reading.source.n_rows is not None
     used_without = sum(r.count for r in reading.rejected if "used without" not in r.reason)
     assert reading.epochs.height + used_without == reading.source.n_rows
+
+
+def of_columns(tmp_path: Path, *names: str, value: str = "1.0") -> Path:
+    """A table with these columns beside time and position."""
+    rows = [",".join(("time", "lat", "lon", *names))]
+    rows += [f"2026-11-22T12:00:{k:02d}Z,{49 + k * 3e-4:.6f},2.5" + f",{value}" * len(names) for k in range(30)]
+    path = tmp_path / "units.csv"
+    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("name", "metres"),
+    [
+        ("HPL [NM]", 1852.0),
+        ("HPL [nmi]", 1852.0),
+        ("HPL / NM", 1852.0),
+        ("hpl_NM", 1852.0),
+        ("HPL (nautical miles)", 1852.0),
+        ("HPL [km]", 1000.0),
+        ("hpl_km", 1000.0),
+        ("HPL (kilometres)", 1000.0),
+        ("hpl [feet]", 0.3048),
+        ("hpl_cm", 0.01),
+        ("hpl", 1.0),
+        ("hpl ()", 1.0),
+    ],
+)
+def test_a_unit_in_the_name_of_a_column_is_the_unit(tmp_path: Path, name: str, metres: float) -> None:
+    assert read(of_columns(tmp_path, name)).epochs["hpl_m"].to_list() == [metres] * 30
+
+
+@pytest.mark.parametrize("name", ["HPL [furlong]", "sdn [95%]", "hpl (2 sigma)", "Height [hPa]", "sde [nmile]"])
+def test_a_unit_that_is_not_known_is_no_other(tmp_path: Path, name: str) -> None:
+    with pytest.raises(FormatError, match=r"its unit “.*” is not known \(known: m, metre"):
+        read(of_columns(tmp_path, name))
+
+
+def test_a_device_is_no_file() -> None:
+    with pytest.raises(FormatError, match="a device, not a file"):
+        read("/dev/zero")

@@ -44,6 +44,11 @@ def stating(tmp_path: Path, name: str, fine: object, bad: object, *, sigma_m: fl
         ("posValid", 1, 0),
         ("FixMode", 3, 1),
         ("Fix Type", "3D Fix", "No Fix"),
+        ("dead_reckoning", 0, 1),
+        ("isDeadReckoning", "false", "true"),
+        ("gps_denied", "no", "yes"),
+        ("coasting", 0, 12.5),
+        ("is_predicted", 0, 1),
     ],
 )
 def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Path, name: str, fine: object, bad: object) -> None:
@@ -85,7 +90,7 @@ def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine:
         ("NSE", "3000", "NSE"),
         ("err_h_m", "4000", "err_h_m"),
         ("HFOM", "2000", "HFOM"),
-        ("coasting", "1", "coasting"),
+        ("position_source", "2", "position_source"),
         ("age_s", "900", "age_s"),
         ("sat_count", "0", "sat_count"),
     ],

@@ -70,7 +70,7 @@ def test_the_rule_of_few_and_copied() -> None:
 def test_a_copied_truth_shows_nothing_of_protection_levels_either(tmp_path: Path, error_m: float, expected: str) -> None:
     rows = [f"{START_NS + k * 1_000_000_000},{error_m},{error_m},{error_m},15.0,20.0" for k in range(N)]
     (tmp_path / "a.csv").write_text("\n".join(["time_ns,nse_e_m,nse_n_m,nse_u_m,hpl_m,vpl_m", *rows]))
-    verdict = navbound.analyze(tmp_path / "a.csv", levels="APV-I").summary.verdict
+    verdict = navbound.evaluate(tmp_path / "a.csv", levels="APV-I").summary.verdict
     assert (verdict.id, "The truth is the estimate itself" in verdict.words) == (expected, expected == "not_shown")
 
 
@@ -78,4 +78,4 @@ def test_positions_with_their_own_copy_as_truth_show_nothing_of_levels(tmp_path:
     rows = [f"{START_NS + k * 1_000_000_000},{48 + k * 1e-5},2.0,100.0,{48 + k * 1e-5},2.0,100.0,15.0,20.0" for k in range(N)]
     header = "time_ns,lat_deg,lon_deg,height_m,truth_lat_deg,truth_lon_deg,truth_h_m,hpl_m,vpl_m"
     (tmp_path / "a.csv").write_text("\n".join([header, *rows]))
-    assert navbound.analyze(tmp_path / "a.csv", levels="APV-I").summary.verdict.id == "not_shown"
+    assert navbound.evaluate(tmp_path / "a.csv", levels="APV-I").summary.verdict.id == "not_shown"

@@ -466,7 +466,7 @@ def test_a_level_that_misleads_is_not_believable(tmp_path: Path) -> None:
     path = table(tmp_path / "levels.csv", n, error_en_m=error)
     frame = pl.read_csv(path).with_columns(hpl_m=pl.lit(10.0), vpl_m=pl.lit(15.0))
     frame.write_csv(path)
-    done = command("analyze", path, "--levels", "LPV-200", "--out", tmp_path / "run", "--json")
+    done = command("evaluate", path, "--levels", "LPV-200", "--out", tmp_path / "run", "--json")
     summary = json.loads(done.stdout)
     assert (summary["verdict"]["id"], done.returncode) == ("not_believable", 4)
     assert Performance.model_validate(summary["performance"]).n_mi_epochs == 10

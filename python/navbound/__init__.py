@@ -2,7 +2,8 @@
 
 The subject modules take and give arrays: :mod:`navbound.tse`, :mod:`navbound.anp`, :mod:`navbound.rnp`, :mod:`navbound.gnss`.
 Maps are made by :func:`navbound.maps.make`, long work is cut into tiles by :mod:`navbound.scale`. Whole jobs are functions that return a
-:class:`navbound.run.directory.Run`: :func:`fly`, :func:`analyze`, :func:`study`. Subjects and jobs are loaded when they are first used.
+:class:`navbound.run.directory.Run`: :func:`fly`, :func:`analyze`, :func:`evaluate`, :func:`study`. Subjects and jobs are loaded when they
+are first used.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from navbound._core import __version__
 from navbound.errors import FormatError, InputError, InternalError, NavboundError
 
 if TYPE_CHECKING:
-    from navbound.run.commands import analyze, fly
+    from navbound.run.commands import analyze, evaluate, fly
     from navbound.studies.run import study
 
 SUBJECTS = (
@@ -39,9 +40,9 @@ SUBJECTS = (
     *("algorithms", "maps", "methods", "scale", "scenario", "status", "time", "units", "verify", "write"),
 )
 """Modules that a caller uses, by name."""
-_JOBS = {"analyze": "navbound.run.commands", "fly": "navbound.run.commands", "study": "navbound.studies.run"}
+_JOBS = {**dict.fromkeys(("analyze", "evaluate", "fly"), "navbound.run.commands"), "study": "navbound.studies.run"}
 
-__all__ = ["SUBJECTS", "FormatError", "InputError", "InternalError", "NavboundError", "__version__", "analyze", "fly", "study"]
+__all__ = ["SUBJECTS", "FormatError", "InputError", "InternalError", "NavboundError", "__version__", "analyze", "evaluate", "fly", "study"]
 
 
 def __getattr__(name: str) -> object:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from navbound.errors import InputError
+from navbound.errors import InputError, NotFoundError
 from navbound.methods import ProtectionMethod, protection_methods
 from navbound.table.declare import unit_of
 
@@ -241,7 +241,7 @@ def entry(kind: type[E], argument: str, name: str) -> E:
     """
     known = entries(kind)
     if name not in known:
-        raise InputError(argument, name, domain=f"one of {', '.join(known)}")
+        raise NotFoundError(argument, name, "algorithm", known)
     return known[name]
 
 

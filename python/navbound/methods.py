@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Literal, cast
 
 from navbound import _core
-from navbound.errors import InputError
+from navbound.errors import NotFoundError
 from navbound.table.columns import HORIZONTAL, METHOD_INPUTS
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def method(method_id: str) -> Method:
     try:
         return methods()[method_id]
     except KeyError:
-        raise InputError("method", method_id, domain=", ".join(methods())) from None
+        raise NotFoundError("method", method_id, "method", methods()) from None
 
 
 _NSE = ("nse_e_m", "nse_n_m", "nse_u_m")

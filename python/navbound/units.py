@@ -8,3 +8,5 @@ METRES_PER_FT = 0.3048
 """International foot (ICAO Annex 5). [m]"""
 MPS_PER_KT = METRES_PER_NM / 3600.0
 """A nautical mile an hour. [m/s]"""
+EARTH_RADIUS_M = 6_371_000.0
+"""Mean radius of the Earth, for lengths on a sphere. [m]"""

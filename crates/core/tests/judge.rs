@@ -1,11 +1,12 @@
 //! One epoch, one step: what is decided of an epoch, against numbers that are known without it.
 #![allow(clippy::unwrap_used, reason = "a helper of tests may stop at the first surprise, too")]
 
+mod common;
+
 use navbound_core::bound::Alerting;
 use navbound_core::frame::Covariance;
 use navbound_core::judge::{Judge, Sample, Settings};
-use navbound_core::monitor::rnp::{Alert, Chain, Settings as MonitorSettings};
-use navbound_core::monitor::state::StateTable;
+use navbound_core::monitor::rnp::Alert;
 use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Risk, Status};
 
 /// Normal deviates of two-sided 5 % and 1e-5 (tables of the normal law).
@@ -13,23 +14,7 @@ const K95: f64 = 1.959_963_984_540_054;
 const K5: f64 = 4.417_173_413_469_023;
 
 fn settings() -> Settings {
-    let chain = Chain {
-        sample_period_s: 1.0,
-        sensor_latency_s: 0.0,
-        filter_s: 0.0,
-        computing_s: 0.0,
-        display_s: 0.0,
-        time_to_alert_s: f64::INFINITY,
-    };
-    let levels = [0.3, 1.0, 2.0, 5.0].map(|nm| Metres::new(1852.0 * nm));
-    Settings {
-        method: Alerting::of("tse-exact").unwrap(),
-        accuracy: Risk::ACCURACY,
-        integrity: Risk::new(1e-5).unwrap(),
-        states: Some(StateTable::new(&levels).unwrap()),
-        monitor: MonitorSettings { chain, raise_delay_s: 0.0, clear_delay_s: 10.0, clear_ratio: 0.95, stale_after_s: 2.0 },
-        with_levels: false,
-    }
+    common::settings("tse-exact", &[0.3, 1.0, 2.0, 5.0], 0.0, false)
 }
 
 /// On course north, ten metres of deviation to the east, the path under it.

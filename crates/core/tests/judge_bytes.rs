@@ -1,33 +1,16 @@
 //! The judge of one aircraft as bytes: what is read goes on as what was written, and nothing else is read.
 #![allow(clippy::unwrap_used, reason = "a helper of tests may stop at the first surprise, too")]
 
-use navbound_core::bound::Alerting;
+mod common;
+
 use navbound_core::frame::Covariance;
 use navbound_core::judge::{Judge, Sample, Settings};
-use navbound_core::monitor::rnp::{Chain, Settings as MonitorSettings};
-use navbound_core::monitor::state::StateTable;
 use navbound_core::quantity::encoding::{BadBytes, crc32c};
-use navbound_core::quantity::{GpsTime, Metres, Radians, Risk, Status};
+use navbound_core::quantity::{GpsTime, Metres, Radians, Status};
 use proptest::prelude::*;
 
 fn settings(method: &str, n_levels: usize, with_levels: bool) -> Settings {
-    let chain = Chain {
-        sample_period_s: 1.0,
-        sensor_latency_s: 0.0,
-        filter_s: 0.0,
-        computing_s: 0.0,
-        display_s: 0.0,
-        time_to_alert_s: f64::INFINITY,
-    };
-    let levels = [0.1, 0.3, 1.0, 2.0].map(|nm| Metres::new(1852.0 * nm));
-    Settings {
-        method: Alerting::of(method).unwrap(),
-        accuracy: Risk::ACCURACY,
-        integrity: Risk::new(1e-5).unwrap(),
-        states: (n_levels > 0).then(|| StateTable::new(&levels[..n_levels]).unwrap()),
-        monitor: MonitorSettings { chain, raise_delay_s: 3.0, clear_delay_s: 10.0, clear_ratio: 0.95, stale_after_s: 2.0 },
-        with_levels,
-    }
+    common::settings(method, &[0.1, 0.3, 1.0, 2.0][..n_levels], 3.0, with_levels)
 }
 
 fn maybe(value: impl Strategy<Value = f64> + 'static) -> impl Strategy<Value = Option<f64>> {

@@ -74,7 +74,7 @@ impl Lane {
         time(&mut to, self.event_time);
         time(&mut to, self.last_chunk);
         self.counters.write(&mut to);
-        write_past(&self.past, &mut to);
+        self.past.words().into_iter().for_each(|word| to.u64(word));
         to.u32(self.forgotten.len() as u32);
         for (id, (incarnation, last)) in &self.forgotten {
             id.write(&mut to);
@@ -121,7 +121,11 @@ impl Lane {
         lane.feed = Feed::read(&mut from)?;
         (lane.event_time, lane.last_chunk) = (read_time(&mut from)?, read_time(&mut from)?);
         lane.counters = Counters::read(&mut from)?;
-        lane.past = read_past(&mut from)?;
+        let mut past = [0; rnp::Counters::WORDS];
+        for word in &mut past {
+            *word = from.u64()?;
+        }
+        lane.past = rnp::Counters::from_words(past).map_err(|_| SnapshotRefused::Content("a time under watch that is none"))?;
         lane.read_tracks(&mut from)?;
         from.finish()?;
         Ok((lane, position, written))
@@ -146,27 +150,4 @@ impl Lane {
         }
         Ok(())
     }
-}
-
-fn write_past(past: &rnp::Counters, to: &mut Writer) {
-    let counts = [past.n_accepted, past.n_duplicate, past.n_late, past.n_clock_set_back, past.n_gaps, past.n_unusable, past.n_nan];
-    counts.into_iter().chain([past.n_withdrawn, past.n_cautions, past.n_warnings, past.n_unavailable]).for_each(|n| to.u64(n));
-    to.f64(past.watched_s);
-}
-
-fn read_past(from: &mut Reader<'_>) -> Result<rnp::Counters, Damaged> {
-    Ok(rnp::Counters {
-        n_accepted: from.u64()?,
-        n_duplicate: from.u64()?,
-        n_late: from.u64()?,
-        n_clock_set_back: from.u64()?,
-        n_gaps: from.u64()?,
-        n_unusable: from.u64()?,
-        n_nan: from.u64()?,
-        n_withdrawn: from.u64()?,
-        n_cautions: from.u64()?,
-        n_warnings: from.u64()?,
-        n_unavailable: from.u64()?,
-        watched_s: from.f64()?,
-    })
 }

@@ -98,6 +98,10 @@ impl Observations {
         self.0.n_refused
     }
     #[getter]
+    fn n_lost_epochs(&self) -> usize {
+        self.0.n_lost_epochs
+    }
+    #[getter]
     fn skipped(&self) -> BTreeMap<String, usize> {
         self.0.skipped.clone()
     }

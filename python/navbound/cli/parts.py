@@ -5,6 +5,7 @@ Nothing here needs numbers or tables: a command loads what it needs when it runs
 
 from __future__ import annotations
 
+import math
 import shlex
 import sys
 from pathlib import Path
@@ -13,7 +14,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
+from navbound.storage.packed import require_there
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,6 +34,41 @@ Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, no
 Backend = Annotated[str | None, typer.Option(help="Who works: serial (this process, on all cores), processes, dask. [default: serial]")]
 NWorkers = Annotated[int | None, typer.Option("--workers", help="Worker processes. [default: one a core]")]
 Cluster = Annotated[str | None, typer.Option(help="Address of a Dask scheduler. [default: one on this machine]")]
+Out = Annotated[Path | None, typer.Option("--out", help="Run directory to write. [default: out/<name>]")]
+Files = Annotated[
+    list[Path],
+    typer.Argument(
+        help="Tables (CSV, Parquet, JSON), RTKLIB .pos files, receiver logs (UBX, SBF, NMEA, NovAtel), RINEX observations with "
+        "navigation files; plain, gzip, compress (.Z) or zip."
+    ),
+]
+Truth = Annotated[
+    str | None, typer.Option(help="A file with true positions, joined by time; or X,Y,Z of a fixed point (Earth-fixed, metres).")
+]
+TruthTolerance = Annotated[float | None, typer.Option(help="How far apart in time a truth epoch may be. [default: 0.01]")]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--map",
+        help="What a column is, where its name does not say: sigma_n_m=sd_north, time=t:gps_s, est_lat_rad=lat:deg_e7; may be repeated. "
+        "Names and units: docs/notation.md.",
+    ),
+]
+Solve = Annotated[
+    bool, typer.Option("--solve", help="Solve positions from the raw measurements of receiver logs instead of taking the receiver's.")
+]
+Ionosphere = Annotated[
+    str | None,
+    typer.Option(
+        help="Model of single signals: broadcast (GPS message), galileo (NTCM-G by Galileo's message), climatology, none, or auto, the "
+        "first of these that the navigation files have. [default: auto]"
+    ),
+]
+Mask = Annotated[float | None, typer.Option(help="Lowest elevation of satellites to solve from, degrees, 0 to below 90. [default: 5]")]
+SIGNALS = (
+    "Measurements to solve: single (L1, E1, B1I), dual (ionosphere-free pairs), or auto, the smaller declared covariance. [default: {}]"
+)
+SYSTEMS = "Constellations to solve from: letters of GEC. [default: {}]"
 Checkpoint = Annotated[
     Path | None, typer.Option(help="Folder that keeps finished parts: started again, interrupted work goes on from there.")
 ]
@@ -42,13 +79,42 @@ def command_line() -> str:
     return shlex.join(["navbound", *sys.argv[1:]])
 
 
+def mapping(pairs: list[str] | None) -> dict[str, str]:
+    """`--map canonical=column[:unit]`, as often as it was given."""
+    split = [pair.partition("=") for pair in pairs or []]
+    for pair, (name, sign, column) in zip(pairs or [], split, strict=True):
+        if not (name and sign and column):
+            raise InputError("map", pair, domain="canonical=column or canonical=column:unit")
+    return {name: column for name, _, column in split}
+
+
+def mask_rad(mask_deg: float | None) -> float | None:
+    """The elevation mask; refused here in the unit that it was typed in."""
+    if mask_deg is None:
+        return None
+    if not 0 <= mask_deg < 90:
+        raise InputError("mask", mask_deg, "deg", "[0, 90)")
+    return math.radians(mask_deg)
+
+
+def tolerance(truth_tolerance_s: float | None) -> dict[str, float]:
+    """The tolerance of truth as an argument, where it was named."""
+    return {} if truth_tolerance_s is None else {"truth_tolerance_s": truth_tolerance_s}
+
+
+def run_folder(files: list[Path], out: Path | None) -> Path:
+    """Where a run is written; every file must be there first, before tables are loaded."""
+    require_there(files)
+    return out or Path("out") / files[0].name.split(".")[0]
+
+
 def work_of(backend: str | None, workers: int | None, cluster: str | None, checkpoint: Path | None) -> Work:
     """Who works and what is kept, as far as it was asked for; refused where it would mean nothing."""
     found: Work = {}
     if cluster is not None and backend != "dask":
-        raise InputError("cluster", cluster, domain="none without --backend dask")
+        raise ConflictError("cluster", needs=("backend",), because="dask")
     if workers is not None and backend in {None, "serial"}:
-        raise InputError("workers", workers, domain="none without --backend processes or dask")
+        raise ConflictError("workers", needs=("backend",), because="processes or dask")
     if backend is not None:
         found["backend"] = backend
     if workers is not None or cluster is not None:

@@ -14,7 +14,7 @@ import typer
 from rich.table import Table
 
 from navbound.cli.parts import Json, err_console, out_console
-from navbound.errors import FormatError, InputError
+from navbound.errors import ConflictError, FormatError, InputError
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
@@ -123,11 +123,12 @@ def check_command(
 def flown(name: str | None, database: Path | None, line: str | None, *, defaults: bool, missed: bool) -> Flown | None:
     """The procedure that `navbound analyze` judges against; options that would do nothing without it are refused."""
     if name is None:
-        if database is not None or line is not None or defaults or missed:
-            raise InputError("procedure", "none", domain="it together with --database, --line, --defaults and --missed")
+        for option, value in {"database": database, "line": line, "defaults": defaults or None, "missed": missed or None}.items():
+            if value is not None:
+                raise ConflictError(option, needs=("procedure",))
         return None
     if database is None:
-        raise InputError("database", "none", domain="a navigation database (ARINC 424) together with --procedure")
+        raise ConflictError("procedure", needs=("database",), because="a navigation database (ARINC 424)")
     from navbound.run.procedure import Flown  # noqa: PLC0415
 
     return Flown(database, name, line, defaults, missed)

@@ -17,14 +17,12 @@ from navbound.errors import FormatError, InputError
 from navbound.storage import packed
 from navbound.table.arguments import checked, checked_fields
 from navbound.table.arrays import flatten, shown, whole_numbers
-from navbound.units import METRES_PER_FT, METRES_PER_NM
+from navbound.units import EARTH_RADIUS_M, METRES_PER_FT, METRES_PER_NM
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
-
-EARTH_RADIUS_M = 6_371_000.0
 
 SERVICE_NM = {"LOW": 25.0, "MEDIUM": 40.0, "HIGH": 130.0}
 """Range that a word of power stands for; *inferred*: the source states power, not a service volume. Other words count as MEDIUM. [NM]"""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
-from navbound.errors import FormatError, InputError
+from navbound.errors import FormatError, InputError, NotFoundError
 from navbound.storage import packed
 from navbound.table.arguments import checked, checked_fields
 from navbound.table.arrays import flatten
@@ -148,7 +148,7 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
     else:
         path = Path(name)
         if not path.exists():
-            raise InputError("name", str(name), domain=f"one of {', '.join(shipped)}, or the path of an almanac")
+            raise NotFoundError("name", str(name), "file and no built-in constellation", shipped)
         content = packed.read(path)
         if _is_navigation(content):
             return _broadcast(content, path, near_ns)

@@ -59,6 +59,8 @@ class Observations:
         Satellites of systems that are not read, and event records, counted.
     n_refused : int
         Things that could not be read. [1]
+    n_lost_epochs : int
+        Whole epochs among them. [1]
     refused : list of Refused
         The first 1000 of them.
     """
@@ -78,6 +80,7 @@ class Observations:
         self.time_ns: NDArray[np.int64] = core.time_ns
         self.skipped = core.skipped
         self.n_refused = core.n_refused
+        self.n_lost_epochs = core.n_lost_epochs
         self.refused = [Refused(path, *r) for r in core.refused]
 
     def column(self, system: str, code: str) -> pl.DataFrame:

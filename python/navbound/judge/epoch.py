@@ -6,14 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
-
 from navbound import _core
 from navbound import status as status_list
 from navbound.errors import InputError
 from navbound.judge.settings import ALERTS
 from navbound.rnp import Acceptance, Alert, Counters, Event
-from navbound.table.arguments import number
+from navbound.table.arguments import nanoseconds, number_or_nan
 from navbound.table.arrays import shown
 
 if TYPE_CHECKING:
@@ -91,7 +89,7 @@ class Judge:
         InputError
             No time, a status that is none, or a value that is no number.
         """
-        time_ns, numbers = _time(epoch.get("time_ns")), [_number(name, epoch.get(name)) for name in _COLUMNS]
+        time_ns, numbers = nanoseconds("time_ns", epoch.get("time_ns")), [number_or_nan(name, epoch.get(name)) for name in _COLUMNS]
         code = _STATUS.get(cast("str", epoch.get("status", "ok")))
         if code is None:
             raise InputError("status", shown(epoch.get("status")), domain=", ".join(_STATUS))
@@ -121,7 +119,7 @@ class Judge:
         InputError
             A time that is no whole number of nanoseconds in 64 bits.
         """
-        alert, began = self._core.tick(_time(time_ns))
+        alert, began = self._core.tick(nanoseconds("time_ns", time_ns))
         return cast("Alert", alert), None if began is None else Event(*began)
 
     @property
@@ -164,17 +162,3 @@ class Judge:
         except ValueError as e:
             raise InputError("state", f"{len(state)} bytes", domain=f"a state that was written under these settings: {e}") from e
         return judge
-
-
-def _time(time_ns: object) -> int:
-    if isinstance(time_ns, bool) or not isinstance(time_ns, (int, np.integer)) or not -(2**63) <= time_ns < 2**63:
-        raise InputError("time_ns", shown(time_ns), "ns", "[-2^63, 2^63), whole")
-    return int(time_ns)
-
-
-def _number(name: str, value: object) -> float:
-    if value is None:
-        return math.nan
-    if type(value) is not float:
-        number(name, value)
-    return float(value)  # type: ignore[arg-type]

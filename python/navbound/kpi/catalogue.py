@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from navbound.errors import InputError
+from navbound.errors import InputError, NotFoundError
 from navbound.kpi import records
 from navbound.records.performance import Level
 from navbound.table.arguments import checked
@@ -36,7 +36,7 @@ def level(wanted: str | Level) -> Level:
         return known[wanted]
     value = re.fullmatch(r"RNP (\d+(?:\.\d+)?)", wanted.strip(), re.IGNORECASE)
     if value is None:
-        raise InputError("levels", wanted, domain=f"{', '.join(known)}, RNP 0.3 and the like")
+        raise NotFoundError("levels", wanted, "service level", known, "or RNP x with x in NM")
     found = rnp(float(value.group(1)), tta_s=RNP_TTA_S)
     source = "alert limit inferred from the RNP value; time to alert that of non-precision approach"
     return found.model_copy(update={"source": source, "provenance": {"hal_m": "inferred", "tta_s": "inferred"}})

@@ -14,7 +14,7 @@ import polars as pl
 
 from navbound import _core, scale
 from navbound.algorithms import Column
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError, NotFoundError
 from navbound.maps import files
 from navbound.maps.grid import Grid
 from navbound.maps.kinds import Kind, kinds
@@ -87,7 +87,7 @@ def make(
     """
     known = kinds()
     if kind not in known:
-        raise InputError("kind", kind, domain=f"one of {', '.join(known)}")
+        raise NotFoundError("kind", kind, "kind of map", known)
     chosen = known[kind]
     grid = grid or Grid()
     job = _options(chosen, options)
@@ -122,20 +122,20 @@ def make(
 
 def _options(kind: Kind, options: dict[str, object]) -> Any:
     known = [f.name for f in fields(kind.options)]  # type: ignore[arg-type]
-    for name, value in options.items():
+    for name in options:
         if name not in known:
-            raise InputError(name, str(value), domain=f"none: {kind.id} takes {', '.join(known)}")
+            raise ConflictError(name, because=f"{kind.id} takes {', '.join(known)}")
     return kind.options(**options)
 
 
 def _limits(kind: Kind, job: Any, limits: Mapping[str, float] | None, level: str | None) -> list[Limit]:
     names = [column.name for column in kind.columns]
     if limits and level:
-        raise InputError("level", level, domain="none beside limits")
+        raise ConflictError("level", excludes=("limits",))
     if level:
         asked = [one for one in limits_of(level) if one.column in names]
         if not asked:
-            raise InputError("level", level, domain=f"none: {kind.id} gives {', '.join(names)}")
+            raise ConflictError("level", because=f"{kind.id} gives {', '.join(names)}")
         return asked
     if not limits:
         return list(job.limits())

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from navbound.units import EARTH_RADIUS_M
+
 if TYPE_CHECKING:
     from navbound.procedures.legs import Leg, Procedure
 
-EARTH_M = 6_371_000.0
-"""Radius of the plan's sphere; a picture of 50 km is off by less than its line is wide. [m]"""
 ARC_STEP_M = 200.0
 OPEN_M = 5_000.0
 """Of a leg without an end so much is drawn (ours). [m]"""
@@ -96,7 +96,7 @@ def picture(procedure: Procedure) -> Picture:
     def plan(lat_rad: np.ndarray, lon_rad: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         # Longitudes across 180 degrees stay beside each other.
         east = (lon_rad - lon0 + math.pi) % math.tau - math.pi
-        return EARTH_M * math.cos(lat0) * east, EARTH_M * (lat_rad - lat0)
+        return EARTH_RADIUS_M * math.cos(lat0) * east, EARTH_RADIUS_M * (lat_rad - lat0)
 
     lines = []
     for k, leg in enumerate(procedure.legs):

@@ -12,7 +12,7 @@ import numpy as np
 import polars as pl
 
 from navbound import path
-from navbound.errors import InputError
+from navbound.errors import InputError, NotFoundError
 from navbound.units import METRES_PER_FT
 
 
@@ -99,10 +99,10 @@ def runway(name: str) -> Runway:
     ends = table().filter(pl.col("airport") == airport)
     if ends.is_empty():
         near = difflib.get_close_matches(airport, table()["airport"].unique().to_list(), 3, 0.6)
-        raise InputError("path", name, domain=f"the airports of the table (nearest: {', '.join(near) or 'none'})")
+        raise NotFoundError("path", name, "airport", more=f"nearest: {', '.join(near) or 'none'}")
     found = ends.filter(pl.col("end") == designator)
     if found.is_empty():
-        raise InputError("path", name, domain=f"the runways of {airport}: {', '.join(sorted(ends['end'].to_list()))}")
+        raise NotFoundError("path", name, f"runway of {airport}", sorted(ends["end"].to_list()))
     return _runway(found.row(0, named=True))
 
 

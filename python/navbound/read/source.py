@@ -123,6 +123,7 @@ def load(path: str | Path) -> Source:
     """
     path = Path(path)
     try:
+        packed.require_no_device(path)
         stored = path.read_bytes()
     except FileNotFoundError as e:
         raise FormatError(path, packed.NO_SUCH_FILE) from e

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
 
 from navbound import _core, gnss
-from navbound.errors import InputError
-from navbound.read.checks.established import established
+from navbound.errors import ConflictError, FormatError, InputError
+from navbound.read.checks.established import contradicting, established
 from navbound.read.tables.epochs import read
 from navbound.records.truth import TruthDoubts
+from navbound.time import utc_text
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
@@ -65,8 +67,12 @@ def truth_of(given: str | Path | None, tolerance_s: float) -> Truth:
     return Truth(text, point, tolerance_s)
 
 
-def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, Reading | None, TruthDoubts]:
+def with_truth(
+    epochs: pl.DataFrame, truth: Truth, columns: Mapping[str, str] | None = None
+) -> tuple[pl.DataFrame, str, Reading | None, TruthDoubts]:
     """Form the navigation error against a truth that was named; words about it, what was read of its file, what speaks against it.
+
+    Columns that the caller named for the estimates are those of the truth too, where its own names do not say what they are.
 
     Raises
     ------
@@ -74,9 +80,9 @@ def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, R
         Epochs without positions; a recording as in :func:`join`.
     """
     if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
-        raise InputError("truth", truth.given, domain="no truth: the table holds no positions to compare with it")
+        raise ConflictError("truth", because="the table holds no positions to compare with it")
     if truth.ecef_m is None:
-        other = read(str(truth.given))
+        other = _recorded(str(truth.given), columns)
         joined, words, doubts = join(epochs, other, truth.tolerance_s)
         return joined, words, other, doubts
     place = gnss.geodetic(truth.ecef_m)
@@ -84,6 +90,15 @@ def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, R
     fixed = epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True))
     found, doubts = with_error(fixed)
     return found, _sentences(f"Truth: the fixed point {truth.given} m, Earth-fixed.", doubts.words), None, doubts
+
+
+def _recorded(path: str, columns: Mapping[str, str] | None) -> Reading:
+    try:
+        return read(path)
+    except FormatError:
+        if not columns:
+            raise
+        return read(path, columns=columns)
 
 
 def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S) -> tuple[pl.DataFrame, str, TruthDoubts]:
@@ -117,6 +132,7 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
     wanted = {"est_lat_rad": "truth_lat_rad", "est_lon_rad": "truth_lon_rad", "est_h_m": "truth_h_m"}
     other = truth.epochs.rename({k: v for k, v in wanted.items() if k in truth.epochs.columns})
     other = other.select("track", "time_ns", *[v for v in wanted.values() if v in other.columns], truth_time_ns="time_ns")
+    other, jumps = contradicting(other.sort("track", "time_ns"))
     several = other["track"].n_unique() > 1
     joined = (
         epochs.drop([v for v in wanted.values() if v in epochs.columns])
@@ -134,17 +150,20 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
     apart = (joined["truth_time_ns"] - joined["time_ns"]).abs()
     known = len(apart) - apart.null_count()
     if known == 0:
-        raise InputError(
-            "truth",
-            f"{truth.source.path}: no epoch within {tolerance_s:g} s",
-            domain=f"recordings of the same time: estimates {_span(epochs)}, truth {_span(other)} (GPS time)",
-        )
+        of = Path(truth.source.path).name
+        because = f"no epoch of {of} is within {tolerance_s:g} s of one: it spans {_span(other)}, the estimates span {_span(epochs)} (UTC)"
+        raise ConflictError("truth", because=because)
     largest = apart.max()
     words = (
         f"Truth: {truth.source.path}, joined to the nearest epoch in time; {known} of {joined.height} epochs have one, at most "
         f"{float(largest) * 1e-6 if isinstance(largest, int) else 0.0:g} ms apart (allowed {tolerance_s * 1e3:g} ms)."
     )
-    epochs, doubts = with_error(joined.drop("truth_time_ns"))
+    kept = ~pl.col("contradicted")
+    n_contradicted = int(joined["contradicted"].sum())
+    joined = joined.with_columns(pl.when(kept).then(pl.col(name)).alias(name) for name in wanted.values() if name in joined.columns)
+    epochs, doubts = with_error(joined.drop("truth_time_ns", "contradicted"))
+    if n_contradicted:
+        doubts += TruthDoubts(n_contradicted, tuple(jumps))
     return epochs, _sentences(words, doubts.words), doubts
 
 
@@ -173,4 +192,4 @@ def _sentences(*words: str) -> str:
 
 def _span(frame: pl.DataFrame) -> str:
     times = frame["time_ns"].sort().to_list()
-    return f"{times[0]} to {times[-1]} ns"
+    return f"{utc_text(times[0])} to {utc_text(times[-1])}"

@@ -31,6 +31,12 @@ class TruthDoubts:
     n_standing: int = 0
     travelled_m: float = 0.0
 
+    def __add__(self, other: TruthDoubts) -> TruthDoubts:
+        """Of two parts of the same epochs."""
+        jumps = tuple(sorted({*self.jumps_ns, *other.jumps_ns}))
+        standing, travelled_m = self.n_standing + other.n_standing, max(self.travelled_m, other.travelled_m)
+        return TruthDoubts(self.n_jumping + other.n_jumping, jumps, standing, travelled_m)
+
     @property
     def n(self) -> int:
         """Epochs whose truth is not used."""

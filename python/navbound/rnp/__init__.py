@@ -19,8 +19,7 @@ from navbound.rnp.catalogue import Specification, specification, specifications
 from navbound.rnp.exposure import PER_EPOCH, ExposureBasis, PerEpoch, PerHour, per_epoch_risk, per_hour_risk
 from navbound.rnp.states import StateClassifier, StateOfError, StateOfErrors, nse_boundary, state_of_error, state_of_errors, states_of_track
 from navbound.sbas.gains import EXTRACTION_LABEL
-from navbound.table.arguments import checked, number
-from navbound.table.arrays import shown
+from navbound.table.arguments import checked, nanoseconds, number_or_nan
 from navbound.table.columns import EVENTS
 from navbound.table.declare import schema as schema_of
 
@@ -245,12 +244,12 @@ class Monitor:
         first, second = _alerting("accuracy", accuracy), _alerting("integrity", integrity or accuracy)
         try:
             time_ns = record["time_ns"]
-            accuracy_m, integrity_m, rnp_m = (_number(key, record[key]) for key in (first.column, second.integrity_column, "rnp_m"))
-            fte_m = _number("fte_m", record.get("fte_m"))
-            hpl_m = _number("hpl_m", record["hpl_m"]) if "hpl_m" in record else None
+            accuracy_m, integrity_m, rnp_m = (number_or_nan(key, record[key]) for key in (first.column, second.integrity_column, "rnp_m"))
+            fte_m = number_or_nan("fte_m", record.get("fte_m"))
+            hpl_m = number_or_nan("hpl_m", record["hpl_m"]) if "hpl_m" in record else None
         except KeyError as e:
             raise InputError("record", "a mapping without it", domain=f"records with {e.args[0]}") from e
-        _require_ns(time_ns)
+        nanoseconds("time_ns", time_ns)
         status = record.get("status", "ok")
         if not isinstance(status, str) or status not in USABLE + UNUSABLE:
             raise InputError("status", repr(status), domain=", ".join(USABLE + UNUSABLE))
@@ -270,7 +269,7 @@ class Monitor:
         InputError
             A time that is no whole number of nanoseconds in 64 bits.
         """
-        _require_ns(time_ns)
+        nanoseconds("time_ns", time_ns)
         return cast("Alert", self._core.tick(time_ns))
 
     @property
@@ -387,11 +386,6 @@ def _alerting(argument: str, method_id: str) -> Method:
     return method(method_id)
 
 
-def _require_ns(time_ns: int) -> None:
-    if isinstance(time_ns, bool) or not isinstance(time_ns, (int, np.integer)) or not -(2**63) <= time_ns < 2**63:
-        raise InputError("time_ns", shown(time_ns), "ns", "[-2^63, 2^63), whole")
-
-
 def _frame(table: pl.DataFrame | Mapping[str, Any]) -> pl.DataFrame:
     if isinstance(table, pl.DataFrame):
         return table
@@ -406,14 +400,6 @@ def _times(frame: pl.DataFrame) -> NDArray[np.int64]:
         return np.ascontiguousarray(frame["time_ns"].cast(pl.Int64).to_numpy())
     except pl.exceptions.PolarsError as e:
         raise InputError("time_ns", f"a column of {frame['time_ns'].dtype}", "ns", "[-2^63, 2^63), whole") from e
-
-
-def _number(name: str, value: object) -> float:
-    if value is None:
-        return math.nan
-    if type(value) is not float:
-        number(name, value)
-    return float(value)  # type: ignore[arg-type]
 
 
 def _numbers(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 from navbound import rnp
-from navbound.errors import InputError
+from navbound.errors import InputError, NotFoundError
 from navbound.units import METRES_PER_NM
 
 SHORT_NAMES = {"RNP AR": "RNP AR APCH"}
@@ -62,7 +62,7 @@ def requirement(spec: str, phase: str | None = None) -> Requirement:
         stem, chosen = text, None
     name = SHORT_NAMES.get(stem.upper(), stem.upper())
     if name not in names:
-        raise InputError("spec", repr(spec), domain=f"'RNP x' with x in NM, or one of {', '.join(sorted(names | set(SHORT_NAMES)))}")
+        raise NotFoundError("spec", spec, "specification", sorted(names | set(SHORT_NAMES)), "or RNP x with x in NM")
     cell = rnp.specification(name, phase or _phase(name), None if chosen is None else float(chosen) * METRES_PER_NM)
     words = f"{name} {cell.accuracy_m / METRES_PER_NM:g}" if cell.accuracy_least_m < cell.accuracy_most_m else name
     return Requirement(f"{words} ({cell.phase.replace('_', ' ')})", cell.accuracy_m, f"{cell.source} ({cell.provenance})")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.read.approaches import Approaches, Gates, find, statistics
 from navbound.read.checks.axes import doubts_of_axes
 from navbound.read.checks.plausible import Limits, check
@@ -108,7 +108,7 @@ def material(
     if not 0 < rnp_m < float("inf"):
         raise InputError("rnp_m", rnp_m, "m", "(0, inf)")
     if procedure is not None and path is not None:
-        raise InputError("path", str(path), domain="none beside a procedure")
+        raise ConflictError("path", excludes=("procedure",))
     gates, limits = gates or Gates(), limits or Limits()
     names = [files] if isinstance(files, str) or not hasattr(files, "__iter__") else list(files)
     if not names:
@@ -125,7 +125,9 @@ def material(
     context = _Context(requirement, settings, sigma_m, gates, limits, solve, solving)
     alone = len(names) == 1 and path is None and procedure is None and truth is None and not solve
     if piece_rows is not None and not alone:
-        raise InputError("piece_rows", piece_rows, domain="it with one text table, without path, procedure, truth and solve")
+        raise ConflictError(
+            "piece_rows", excludes=("path", "procedure", "truth", "solve"), because="only one text table alone is read in pieces"
+        )
     if alone and _is_large(Path(names[0]), columns, piece_rows):
         solving.refuse(_TO_SOLVE)
         piece_rows = piece_rows or PIECE_ROWS
@@ -149,7 +151,7 @@ def material(
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
     assumptions, truth_doubts = [of_covariance, plausibility.words, *doubts_of_axes(epochs)], TruthDoubts()
     if truth is not None:
-        epochs, words, other, truth_doubts = with_truth(epochs, named)
+        epochs, words, other, truth_doubts = with_truth(epochs, named, columns)
         inputs += [] if other is None else [other.source]
         rejected += [] if other is None else other.rejected
         assumptions.append(words)
@@ -210,7 +212,7 @@ def _is_large(table: Path, columns: Mapping[str, str] | None, piece_rows: int | 
     return is_text_table(table, LARGE_BYTES if piece_rows is None else 0) and not states_truth(table, columns)
 
 
-_TO_SOLVE = "it together with measurements to solve: RINEX observations, or --solve with a receiver's log"
+_TO_SOLVE = "there are no measurements to solve (RINEX observations, or a receiver's log with solve)"
 
 
 def _in_pieces(recorded: InPieces, context: _Context) -> Material:

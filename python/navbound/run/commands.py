@@ -1,7 +1,8 @@
-"""Two of the jobs as functions: fly and analyze. The command line is a thin skin over these."""
+"""Three of the jobs as functions: fly, analyze and evaluate. The command line is a thin skin over these."""
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -89,7 +90,7 @@ def analyze(
     command: str = "",
     **reading: object,
 ) -> Run:
-    """Read recorded tracks and judge every epoch; or, with ``levels``, evaluate the performance indicators of protection levels.
+    """Read recorded tracks and judge every epoch.
 
     Parameters
     ----------
@@ -97,16 +98,12 @@ def analyze(
         CSV, Parquet, JSON tables or RTKLIB ``.pos``, plain or gzip.
     spec, phase : str
         Navigation specification, as :func:`navbound.rnp.requirement.requirement` reads it.
-    levels : names or Level, optional
-        Service levels (:func:`navbound.kpi.levels`). The files are then tables with protection levels, or RINEX observations with
-        navigation files and SBAS messages; ``spec``, ``phase`` and ``settings`` have no part in it.
+    levels, progress
+        Former spelling of :func:`evaluate`; it goes with the next release.
     settings, out, command
         As in :func:`fly`.
-    progress : callable, optional
-        Called with (done, all) files of a performance run.
     **reading
-        See :func:`navbound.run.analyze.material`: ``path``, ``truth``, ``sigma_m``, ``columns``, ...; with ``levels`` the fields of
-        :class:`navbound.run.evaluate.performance.Options`.
+        See :func:`navbound.run.analyze.material`: ``path``, ``truth``, ``sigma_m``, ``columns``, ...
 
     Raises
     ------
@@ -116,11 +113,48 @@ def analyze(
         A file that cannot be read; the message names file, line, field and the text found.
     """
     if levels is not None:
-        named = [levels] if isinstance(levels, (str, Level)) else list(levels)
-        options = performance.Options(levels=named, **reading)  # type: ignore[arg-type]
-        return performance.evaluate_files(files, options, out=out, command=command, progress=progress)
+        warnings.warn("analyze(levels=...) is evaluate(levels=...); the old spelling goes with the next release", DeprecationWarning, 3)
+        return evaluate(files, levels=levels, out=out, progress=progress, command=command, **reading)
     with directory.own(out) as folder:
         wanted = requirement(spec, phase)
         material = recorded.material(files, requirement=wanted.words, rnp_m=wanted.rnp_m, **reading)  # type: ignore[arg-type]
         run = judge(material, settings, command)
         return directory.write(with_answers(run) if reading.get("procedure") is not None else run, folder)
+
+
+@checked
+def evaluate(
+    files: str | Path | Sequence[str | Path],
+    *,
+    levels: str | Level | Sequence[str | Level],
+    out: str | Path | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    command: str = "",
+    **reading: object,
+) -> Run:
+    """Evaluate errors and protection levels against service levels: accuracy, integrity, availability, continuity.
+
+    Parameters
+    ----------
+    files : sequence of paths
+        Tables with protection levels, any number, joined by time; or RINEX observations with navigation files and, where a service
+        corrects them, SBAS messages.
+    levels : names or Level
+        Service levels (:func:`navbound.kpi.levels`).
+    out, command
+        As in :func:`fly`. A run that was interrupted goes on where its directory ends.
+    progress : callable, optional
+        Called with (done, all) files.
+    **reading
+        Fields of :class:`navbound.run.evaluate.performance.Options`: ``truth``, ``columns``, ``prn``, ``protection``, ``signals``, ...
+
+    Raises
+    ------
+    InputError
+        An argument outside its domain.
+    FormatError
+        A file that cannot be read; the message names file, line, field and the text found.
+    """
+    named = [levels] if isinstance(levels, (str, Level)) else list(levels)
+    options = performance.Options(levels=named, **reading)  # type: ignore[arg-type]
+    return performance.evaluate_files(files, options, out=out, command=command, progress=progress)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypedDict, TypeVar
 
 import numpy as np
 
-from navbound.errors import InputError
+from navbound.errors import InputError, NotFoundError
 from navbound.scale.backends import BACKENDS, Workers
 from navbound.scale.checkpoint import Folder, Nothing
 
@@ -118,7 +118,7 @@ def map_tiles(
         What ``function`` raised, of the first tile that failed; finished tiles are kept.
     """
     if backend not in BACKENDS:
-        raise InputError("backend", backend, domain=f"one of {', '.join(BACKENDS)}")
+        raise NotFoundError("backend", backend, "back end", BACKENDS)
     kept = Nothing() if checkpoint is None else Folder(checkpoint, function)
     found = {index: result for index, tile in enumerate(tiles) if (result := kept.load(index, tile)) is not None}
     tell = progress or (lambda _done, _all: None)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from navbound import _core
-from navbound.errors import FormatError, InputError
+from navbound.errors import FormatError, InputError, NotFoundError
 from navbound.scenario import taxi
 from navbound.scenario.models import Scenario
 from navbound.scenario.sensors import grades, with_grade
@@ -51,8 +51,7 @@ def find(name_or_path: str | Path) -> Path:
         return _FOLDER / f"{name_or_path}.toml"
     path = Path(name_or_path)
     if not path.is_file():
-        names = ", ".join([*shipped(), *taxi.shipped()])
-        raise InputError("scenario", str(name_or_path), domain=f"shipped scenarios ({names}) and files that exist")
+        raise NotFoundError("scenario", str(name_or_path), "file and no shipped scenario", [*shipped(), *taxi.shipped()])
     return path
 
 

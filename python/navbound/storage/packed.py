@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,11 +33,36 @@ def require_there(paths: Iterable[str | Path]) -> None:
     Raises
     ------
     FormatError
-        The first path that does not exist.
+        The first path that does not exist, or is a device, which need not end.
     """
     for path in paths:
         if not os.path.lexists(path):
             raise FormatError(path, NO_SUCH_FILE)
+        require_no_device(path)
+
+
+def require_no_device(path: str | Path) -> None:
+    """Refuse a device (``/dev/zero``): nothing says that what it gives ends. A terminal or a pipe under ``/dev/stdin`` is none of these.
+
+    Raises
+    ------
+    FormatError
+        A character or block device that is no terminal.
+    """
+    try:
+        mode = os.stat(path).st_mode
+    except OSError:
+        return
+    if stat.S_ISBLK(mode) or (stat.S_ISCHR(mode) and not os.path.samefile(path, os.devnull) and not _is_terminal(path)):
+        raise FormatError(path, "a device, not a file")
+
+
+def _is_terminal(path: str | Path) -> bool:
+    try:
+        with open(path, "rb", buffering=0) as file:
+            return file.isatty()
+    except OSError:
+        return False
 
 
 def limit() -> tuple[int, int]:
@@ -59,6 +85,7 @@ def read(path: str | Path) -> bytes:
         A file that cannot be read, or as :func:`plain`.
     """
     place = Path(path)
+    require_no_device(place)
     try:
         stored = place.read_bytes()
     except OSError as e:

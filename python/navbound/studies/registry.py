@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.studies.anp_comparison import study as anp_comparison
 from navbound.studies.decorrelation_time import study as decorrelation_time
 from navbound.studies.error_extraction import study as error_extraction
@@ -64,7 +64,7 @@ def _in_one_piece(run: Callable[[Files], Study]) -> _Run:
 def _refuse_tiles(work: Work) -> None:
     for name in ("backend", "workers", "checkpoint"):
         if name in work:
-            raise InputError(name, str(work[name]), domain="none: this study is not cut into tiles")
+            raise ConflictError(name, because="this study runs in one process")
 
 
 def _anp_comparison(files: Files, **work: Unpack[Work]) -> Study:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from navbound.errors import InputError
+from navbound.errors import ConflictError, NotFoundError
 from navbound.run import directory
 from navbound.studies.registry import PAGES, REPORTS, STUDIES
 from navbound.table.arguments import checked
@@ -43,9 +43,9 @@ def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None
         A file that is not there or cannot be read, or a run directory that cannot be written.
     """
     if name not in STUDIES:
-        raise InputError("study", name, domain=", ".join(STUDIES))
+        raise NotFoundError("study", name, "study", STUDIES)
     if out is not None and name not in REPORTS and name not in PAGES:
-        raise InputError("out", str(out), domain=f"no directory: only {', '.join([*REPORTS, *sorted(PAGES)])} have something to report")
+        raise ConflictError("out", because=f"only the studies {', '.join([*REPORTS, *sorted(PAGES)])} write a directory")
     found = STUDIES[name](files, **work)
     if out is not None and name in REPORTS:
         with directory.own(out) as folder:

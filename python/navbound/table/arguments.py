@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import functools
 import inspect
+import math
 import types
 import typing
 from collections.abc import Callable, Mapping, Sequence
@@ -165,6 +166,34 @@ def number(name: str, value: Any) -> None:
     numbers(name, value, expected="a number")
     if np.ndim(value) != 0:
         raise InputError(name, f"shape {np.shape(value)}", domain="one number")
+
+
+def number_or_nan(name: str, value: Any) -> float:
+    """A real number as it is, NaN for None.
+
+    Raises
+    ------
+    InputError
+        As :func:`number`.
+    """
+    if value is None:
+        return math.nan
+    if type(value) is not float:
+        number(name, value)
+    return float(value)
+
+
+def nanoseconds(name: str, value: Any) -> int:
+    """A time as a whole number of nanoseconds.
+
+    Raises
+    ------
+    InputError
+        Anything else, or more than 64 bits.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not -(2**63) <= value < 2**63:
+        raise InputError(name, shown(value), "ns", "[-2^63, 2^63), whole")
+    return int(value)
 
 
 def _integer(name: str, value: Any) -> None:

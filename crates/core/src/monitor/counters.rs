@@ -1,5 +1,7 @@
 //! What the RNP monitor saw and did, in numbers.
 
+use crate::quantity::encoding::BadBytes;
+
 /// What happened so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Counters {
@@ -30,6 +32,81 @@ pub struct Counters {
 }
 
 impl Counters {
+    /// Numbers of a state: eleven counts and a time.
+    pub const WORDS: usize = 12;
+
+    /// The counts, and the bits of the time behind them.
+    pub fn words(&self) -> [u64; Self::WORDS] {
+        let Self {
+            n_accepted,
+            n_duplicate,
+            n_late,
+            n_clock_set_back,
+            n_gaps,
+            n_unusable,
+            n_nan,
+            n_withdrawn,
+            n_cautions,
+            n_warnings,
+            n_unavailable,
+            watched_s,
+        } = *self;
+        let time = watched_s.to_bits();
+        [
+            n_accepted,
+            n_duplicate,
+            n_late,
+            n_clock_set_back,
+            n_gaps,
+            n_unusable,
+            n_nan,
+            n_withdrawn,
+            n_cautions,
+            n_warnings,
+            n_unavailable,
+            time,
+        ]
+    }
+
+    /// The counters of [`Self::words`].
+    ///
+    /// # Errors
+    /// A time that is negative or not finite.
+    pub fn from_words(words: [u64; Self::WORDS]) -> Result<Self, BadBytes> {
+        let [
+            n_accepted,
+            n_duplicate,
+            n_late,
+            n_clock_set_back,
+            n_gaps,
+            n_unusable,
+            n_nan,
+            n_withdrawn,
+            n_cautions,
+            n_warnings,
+            n_unavailable,
+            time,
+        ] = words;
+        let watched_s = f64::from_bits(time);
+        if !(watched_s >= 0.0 && watched_s.is_finite()) {
+            return Err(BadBytes::Value("watched_s"));
+        }
+        Ok(Self {
+            n_accepted,
+            n_duplicate,
+            n_late,
+            n_clock_set_back,
+            n_gaps,
+            n_unusable,
+            n_nan,
+            n_withdrawn,
+            n_cautions,
+            n_warnings,
+            n_unavailable,
+            watched_s,
+        })
+    }
+
     /// Cautions and warnings per hour under watch: under nominal conditions the rate of false alerts, the other side of integrity.
     /// NaN when nothing was watched.
     pub fn alerts_per_hour(&self) -> f64 {

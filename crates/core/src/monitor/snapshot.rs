@@ -11,8 +11,8 @@ use crate::quantity::encoding::{BadBytes, Decoder, Encoder};
 
 /// Version of the layout below. A change of the layout or of what a field means is another version.
 const VERSION: u8 = 1;
-/// Ten numbers of the settings; clock; two latches, the loss, the flag; eleven counts and a time; version and checksum.
-const BYTES: usize = 1 + 10 * 8 + (3 * 9 + 4 + 8) + 2 * Latch::BYTES + Event::BYTES + 1 + 12 * 8 + 4;
+/// Ten numbers of the settings; clock; two latches, the loss, the flag; counters; version and checksum.
+const BYTES: usize = 1 + 10 * 8 + (3 * 9 + 4 + 8) + 2 * Latch::BYTES + Event::BYTES + 1 + Counters::WORDS * 8 + 4;
 
 impl Settings {
     fn write<const N: usize>(&self, to: &mut Encoder<N>) {
@@ -38,44 +38,15 @@ impl Settings {
 
 impl Counters {
     fn write<const N: usize>(&self, to: &mut Encoder<N>) {
-        let Self {
-            n_accepted,
-            n_duplicate,
-            n_late,
-            n_clock_set_back,
-            n_gaps,
-            n_unusable,
-            n_nan,
-            n_withdrawn,
-            n_cautions,
-            n_warnings,
-            n_unavailable,
-            watched_s,
-        } = *self;
-        let of_records = [n_accepted, n_duplicate, n_late, n_clock_set_back, n_gaps, n_unusable, n_nan];
-        of_records.into_iter().chain([n_withdrawn, n_cautions, n_warnings, n_unavailable]).for_each(|n| to.u64(n));
-        to.f64(watched_s);
+        self.words().into_iter().for_each(|word| to.u64(word));
     }
 
     fn read(from: &mut Decoder<'_>) -> Result<Self, BadBytes> {
-        let counters = Self {
-            n_accepted: from.u64()?,
-            n_duplicate: from.u64()?,
-            n_late: from.u64()?,
-            n_clock_set_back: from.u64()?,
-            n_gaps: from.u64()?,
-            n_unusable: from.u64()?,
-            n_nan: from.u64()?,
-            n_withdrawn: from.u64()?,
-            n_cautions: from.u64()?,
-            n_warnings: from.u64()?,
-            n_unavailable: from.u64()?,
-            watched_s: from.f64()?,
-        };
-        if !(counters.watched_s >= 0.0 && counters.watched_s.is_finite()) {
-            return Err(BadBytes::Value("watched_s"));
+        let mut words = [0; Self::WORDS];
+        for word in &mut words {
+            *word = from.u64()?;
         }
-        Ok(counters)
+        Self::from_words(words)
     }
 }
 

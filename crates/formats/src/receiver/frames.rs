@@ -64,3 +64,12 @@ impl<'a> Iterator for Frames<'a> {
         Some(Found { at, number: self.number, length: if frame.is_ok() { end - at } else { 0 }, frame })
     }
 }
+
+/// Whether what stands at a place calls itself a frame of measurements, be it whole or not.
+pub(super) fn measures(bytes: &[u8], at: usize) -> bool {
+    match bytes.get(at..at + 6) {
+        Some([0xb5, 0x62, class, id, ..]) => super::ubx::MEASUREMENTS.contains(&[*class, *id]),
+        Some([b'$', b'@', _, _, low, high]) => super::sbf::MEASUREMENTS.contains(&(u16::from_le_bytes([*low, *high]) & 0x1fff)),
+        _ => false,
+    }
+}

@@ -16,7 +16,7 @@ mod ubx;
 use crate::refusal::Unreadable;
 use crate::rinex::{Navigation, Observations};
 use crate::sbas::Received;
-use frames::{Frame, Frames};
+use frames::{Frame, Frames, measures};
 use subframes::Subframes;
 use table::Table;
 
@@ -55,6 +55,7 @@ pub fn read(bytes: &[u8]) -> Result<Recording, Unreadable> {
                     Frame::Sbf { block, body } => sbf::take(block, body, &mut table, &mut subframes),
                 }
             }
+            Err(reason) if measures(bytes, found.at) => table.lose(reason),
             Err(reason) => table.refuse("frame", reason),
         }
     }

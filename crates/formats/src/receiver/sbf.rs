@@ -15,6 +15,8 @@ const GEO_RAW_L1: u16 = 4020;
 const GAL_RAW_INAV: u16 = 4023;
 
 /// Blocks that are read.
+/// Those of measurements.
+pub(super) const MEASUREMENTS: [u16; 1] = [MEAS_EPOCH];
 pub(super) const RAW: [u16; 4] = [MEAS_EPOCH, GPS_RAW_CA, GEO_RAW_L1, GAL_RAW_INAV];
 
 /// Bytes of a block before its own fields: time of week and week; its body begins here.

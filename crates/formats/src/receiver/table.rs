@@ -43,6 +43,10 @@ impl Table {
     pub(super) fn refuse(&mut self, field: &str, reason: &str) {
         self.notes.refuse(self.frame.0, field, reason, format!("at byte {}", self.frame.1).as_bytes());
     }
+    /// A frame of measurements that cannot be read.
+    pub(super) fn lose(&mut self, reason: &str) {
+        self.notes.lose(self.frame.0, reason, format!("at byte {}", self.frame.1).as_bytes());
+    }
     pub(super) fn skip(&mut self, kind: &str) {
         self.notes.skip(kind, 1);
     }

@@ -15,6 +15,8 @@ const RAW_OLD: [u8; 2] = [0x02, 0x10];
 const SFRB_OLD: [u8; 2] = [0x02, 0x11];
 
 /// Messages that are read.
+/// Those of measurements.
+pub(super) const MEASUREMENTS: [[u8; 2]; 2] = [RAWX, RAW_OLD];
 pub(super) const RAW: [[u8; 2]; 4] = [RAWX, SFRBX, RAW_OLD, SFRB_OLD];
 
 /// A pseudorange beyond this is none \[m\]: three times the way to a geostationary satellite. Provenance: ours.

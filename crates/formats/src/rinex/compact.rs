@@ -136,13 +136,13 @@ pub(super) fn read(mut lines: Lines<'_>, kind: Kind, heading: &Heading, o: &mut 
             }
         });
         if let Err(reason) = outcome {
-            o.refuse(lines.number, "epoch", &format!("{reason}; everything up to the next fresh start is lost"), &state.epoch);
+            o.lose(lines.number, &format!("{reason}; everything up to the next fresh start is lost"), &state.epoch);
             o.abandon_epoch();
             state.epoch.clear();
             if follows && reason != ENDS {
                 // With a line too many or too few in it, its satellites have each other's numbers.
                 o.take_back_epoch();
-                o.refuse(lines.number, "epoch", "what follows is no epoch, so the one before it was left out as well", b"");
+                o.lose(lines.number, "what follows is no epoch, so the one before it was left out as well", b"");
             }
         }
         follows = o.n_epochs() > n_before;
@@ -153,7 +153,7 @@ pub(super) fn read(mut lines: Lines<'_>, kind: Kind, heading: &Heading, o: &mut 
 /// Count lines that belong to no epoch whose beginning was read.
 fn lost(waiting: &mut usize, since: usize, o: &mut Observations) {
     if *waiting > 0 {
-        o.refuse(since, "epoch", &format!("{waiting} lines before a fresh start, which nothing explains"), b"");
+        o.lose(since, &format!("{waiting} lines before a fresh start, which nothing explains"), b"");
         *waiting = 0;
     }
 }

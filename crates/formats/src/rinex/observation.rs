@@ -62,6 +62,9 @@ pub struct Observations {
     pub refused: Vec<Refusal>,
     /// How many there were.
     pub n_refused: usize,
+    /// Epochs among them: records of measurements whose time or satellites cannot be read, or that contradict another. Of compact files
+    /// those are counted whose beginning was read, not those up to the next fresh start.
+    pub n_lost_epochs: usize,
     /// One past the last satellite of each epoch.
     last_satellite: Vec<usize>,
     /// First value of each satellite.
@@ -175,6 +178,11 @@ impl Observations {
             self.refused.push(Refusal { line, field: field.to_owned(), reason: reason.to_owned(), text });
         }
     }
+    /// Refuse a whole epoch.
+    pub(crate) fn lose(&mut self, line: usize, reason: &str, found: &[u8]) {
+        self.n_lost_epochs += 1;
+        self.refuse(line, "epoch", reason, found);
+    }
     fn reserve(&mut self, values: usize) {
         self.value.reserve(values);
         self.indicator.reserve(values);
@@ -219,6 +227,8 @@ impl Observations {
         }
         for (epoch, reason) in wrong.iter().enumerate() {
             if let Some(reason) = reason {
+                // One that repeats another is not lost.
+                self.n_lost_epochs += usize::from(*reason != REPEATED);
                 self.refuse(self.line[epoch], "epoch", reason, format!("epoch {}", epoch + 1).as_bytes());
             }
         }

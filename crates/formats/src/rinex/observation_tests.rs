@@ -102,10 +102,21 @@ fn errors_name_line_field_and_text() {
 fn an_epoch_cut_short_is_left_out_and_told() {
     let cut = V3.replace("C11  22238239.302                3      -1212.376          20.000\n", "");
     let o = read(&cut);
-    assert_eq!((o.n_epochs(), o.n_refused, o.satellite.len()), (1, 1, 1));
+    assert_eq!((o.n_epochs(), o.n_refused, o.n_lost_epochs, o.satellite.len()), (1, 1, 1, 1));
     assert!(o.refused[0].reason.contains("3 of 4"), "{}", o.refused[0].reason);
     let ends = V2.lines().take(7).fold(String::new(), |s, l| s + l + "\n");
     assert_eq!(read(&ends).n_refused, 1);
+}
+
+#[test]
+fn an_epoch_whose_line_cannot_be_read_is_lost_once_whatever_follows_it() {
+    let n = read(V3).n_epochs();
+    let no_date = read(&V3.replacen("> 2019", "> 2O19", 1));
+    assert_eq!((no_date.n_epochs(), no_date.n_lost_epochs), (n - 1, 1));
+    assert!(no_date.n_refused > 1, "its satellites are refused beside it");
+    let no_mark = read(&V3.replacen("> 2019", "? 2019", 1));
+    assert_eq!((no_mark.n_epochs(), no_mark.n_lost_epochs), (n - 1, 1));
+    assert_eq!(read(V3).n_lost_epochs, 0);
 }
 
 #[test]

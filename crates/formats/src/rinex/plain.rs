@@ -88,17 +88,27 @@ pub(super) fn event(lines: &mut Lines<'_>, head: &Head, n_lines: usize, o: &mut 
 /// Body of version 3 and 4.
 pub(super) fn third(mut lines: Lines<'_>, heading: &Heading, o: &mut Observations) {
     let mut next = lines.next();
+    // Whether the epoch that the next line could belong to is refused already.
+    let mut refused = false;
     while let Some(line) = next {
         if line.first() != Some(&b'>') {
             if !line.trim_ascii().is_empty() {
-                o.refuse(lines.number, "epoch", "an epoch line, which begins with '>', was expected", line);
+                let reason = "an epoch line, which begins with '>', was expected";
+                if refused {
+                    o.refuse(lines.number, "epoch", reason, line)
+                } else {
+                    o.lose(lines.number, reason, line)
+                }
+                refused = true;
             }
             next = lines.next();
             continue;
         }
+        refused = false;
         match Head::third(line, heading.time) {
             Err(reason) => {
-                o.refuse(lines.number, "epoch", reason, line);
+                o.lose(lines.number, reason, line);
+                refused = true;
                 next = lines.next();
             }
             Ok(head) if !head.observes() => {
@@ -116,7 +126,7 @@ fn epoch<'a>(lines: &mut Lines<'a>, head: &Head, heading: &Heading, o: &mut Obse
         let line = lines.next();
         let Some(line) = line.filter(|l| l.first() != Some(&b'>')) else {
             let reason = format!("the epoch has {done} of {} satellites; it was left out", head.count);
-            o.refuse(lines.number, "epoch", &reason, line.unwrap_or_default());
+            o.lose(lines.number, &reason, line.unwrap_or_default());
             o.abandon_epoch();
             return line;
         };
@@ -228,7 +238,7 @@ fn second_epoch(lines: &mut Lines<'_>, head: &Head, satellites: &[Result<Satelli
         }
         for first in (0..n_codes).step_by(5) {
             let Some(line) = lines.next() else {
-                o.refuse(lines.number, "epoch", "the file ends within an epoch, which was left out", b"");
+                o.lose(lines.number, "the file ends within an epoch, which was left out", b"");
                 o.abandon_epoch();
                 return;
             };

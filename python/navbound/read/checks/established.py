@@ -80,6 +80,29 @@ def established(epochs: pl.DataFrame) -> tuple[pl.DataFrame, TruthDoubts]:
     return epochs.with_columns(pl.when(~without).then(pl.col(name)).alias(name) for name in names), doubts
 
 
+def contradicting(truth: pl.DataFrame) -> tuple[pl.DataFrame, list[int]]:
+    """Rows of a recorded truth that are no reference, by the motion of all its rows: also of those that no estimate is joined to.
+
+    Parameters
+    ----------
+    truth : DataFrame
+        ``track``, ``time_ns``, ``truth_lat_rad``, ``truth_lon_rad``, in the order of track and time.
+
+    Returns
+    -------
+    truth : DataFrame
+        With ``contradicted``.
+    jumps_ns : list of int
+        GPS times of its jumps. [ns]
+    """
+    parts, jumps = list[pl.DataFrame](), list[int]()
+    for group in truth.partition_by("track", maintain_order=True):
+        lost, at = _contradicting(group)
+        parts.append(group.with_columns(contradicted=lost))
+        jumps += at
+    return pl.concat(parts), sorted(jumps)
+
+
 def _contradicting(group: pl.DataFrame) -> tuple[pl.Series, list[int]]:
     """Which true positions of a track are no reference, and the times of its jumps."""
     jump, unsettled = unreachable(group, *_TRUE_PLACE, TRUTH)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from navbound.read.checks.repeats import EARTH_RADIUS_M
+from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError
+from navbound.read.checks.rejections import MAX_BAD_SHARE
 from navbound.records.run import Rejection
 
 if TYPE_CHECKING:
@@ -71,6 +72,23 @@ def without_epochs(observations: gnss.Observations) -> FormatError:
     first = observations.refused[0]
     what = f"no epoch can be used: {observations.n_refused} records are refused, the first for {first.reason}: “{first.text.strip()[:80]}”"
     return FormatError(observations.path, what, first.line, first.field)
+
+
+def require_most_epochs(observations: gnss.Observations) -> None:
+    """Refuse measurements for indicators over time where too many of their epochs cannot be read.
+
+    Raises
+    ------
+    FormatError
+        No epoch, or more than `MAX_BAD_SHARE` of them lost: nobody knows when they were, so no availability can be stated.
+    """
+    n_lost, n = observations.n_lost_epochs, observations.n_epochs + observations.n_lost_epochs
+    if not observations.n_epochs:
+        raise without_epochs(observations)
+    if n_lost > MAX_BAD_SHARE * n:
+        first = observations.refused[0]
+        what = f"{n_lost} of {n} epochs cannot be read, more than the {MAX_BAD_SHARE:.0%} that may be lost; the first: {first.reason}"
+        raise FormatError(observations.path, what, first.line, first.field)
 
 
 def skipped_words(name: str, skipped: Mapping[str, int]) -> list[str]:

@@ -9,11 +9,10 @@ import polars as pl
 from navbound import status
 from navbound.records.frames import LEFT_OUT
 from navbound.table.columns import COVARIANCE, VARIANCES
+from navbound.units import EARTH_RADIUS_M
 
 SAME_PLACE_M = 1.0
 """Distance up to which two positions of one time are one, written with other digits. [m] Provenance: ours; five decimals of a degree."""
-
-EARTH_RADIUS_M = 6_371_000.0
 
 
 SAME_BOUND = 0.01

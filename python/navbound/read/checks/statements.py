@@ -107,6 +107,18 @@ KINDS: tuple[Kind, ...] = (
         ),
     ),
     Kind(
+        "invalid",
+        _words(
+            "dead_reckoning is_dead_reckoning deadreckoning gps_denied gnss_denied gps_lost gnss_lost no_gps no_gnss no_fix fix_lost "
+            "estimated "
+            "is_estimated predicted is_predicted extrapolated is_extrapolated interpolated is_interpolated propagated coasted coasting "
+            "is_coasting simulated is_simulated inertial_only ins_only"
+        ),
+        _YES,
+        _NO - _words("v invalid not_valid bad unusable fail failed unhealthy unreliable"),
+        other_against=True,
+    ),
+    Kind(
         "alert",
         _words("spoofing_state spoof_state spoof_det_state jamming_state jam_state"),
         _words("2 3 indicated detected warning critical"),
@@ -148,7 +160,7 @@ _SPEAKS = _words(
     "spoofed spoof jamming jammed jam interference reliable reliability trust usable error errors uncertainty accuracy acc hacc "
     "vacc pacc sigma std stddev epu anp epe eph epv ehpe cep drms rms fom hfom vfom "
     "nse tse fte err coasting coast extrapolated age nsat nsats sats satellites sat "
-    "confidence outlier misleading degraded lost loss solution "
+    "confidence outlier misleading degraded lost loss solution denied reckoning estimated predicted propagated simulated source "
 )
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
 

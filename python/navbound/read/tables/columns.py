@@ -23,15 +23,26 @@ if TYPE_CHECKING:
 _DEG = math.pi / 180.0
 
 UNITS: dict[str, dict[str, float]] = {
-    "rad": {"rad": 1.0, "deg": _DEG, "°": _DEG},
-    "m": {"m": 1.0, "ft": METRES_PER_FT, "km": 1000.0, "nm": METRES_PER_NM},
+    "rad": {
+        **dict.fromkeys(("rad", "radian", "radians"), 1.0),
+        **dict.fromkeys(("deg", "°", "degree", "degrees"), _DEG),
+        **dict.fromkeys(("deg_e7", "1e-7 deg", "dege7"), 1e-7 * _DEG),
+    },
+    "m": {
+        **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
+        **dict.fromkeys(("ft", "foot", "feet"), METRES_PER_FT),
+        **dict.fromkeys(("km", "kilometre", "kilometres", "kilometer", "kilometers"), 1000.0),
+        **dict.fromkeys(("nm", "nmi", "nautical mile", "nautical miles"), METRES_PER_NM),
+        **dict.fromkeys(("cm", "centimetre", "centimetres"), 0.01),
+        **dict.fromkeys(("mm", "millimetre", "millimetres"), 0.001),
+    },
     "m2": {"m2": 1.0, "m^2": 1.0, "m²": 1.0},
     "mps": {
         "mps": 1.0,
         "m/s": 1.0,
         "kt": MPS_PER_KT,
         "kts": MPS_PER_KT,
-        "kn": MPS_PER_KT,
+        **dict.fromkeys(("kn", "knot", "knots"), MPS_PER_KT),
         "km/h": 1 / 3.6,
         "ft/min": METRES_PER_FT / 60,
         "fpm": METRES_PER_FT / 60,
@@ -113,9 +124,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("truth_lon_rad", -math.pi, 2 * math.pi, deg="truth_lon_deg truth_lon truth_lng truth_longitude"),
     _q("truth_h_m", -2e4, 1e8, m="truth_h truth_height truth_height_m"),
     *(_q(name, 0.0 if name in VARIANCES else -_INF, _INF) for name in COVARIANCE),
-    _q("sigma_e_m", 0.0, _INF, m="sde sde_m std_e std_e_m sigma_east_m"),
-    _q("sigma_n_m", 0.0, _INF, m="sdn sdn_m std_n std_n_m sigma_north_m"),
-    _q("sigma_u_m", 0.0, _INF, m="sdu sdu_m std_u std_u_m sigma_up_m"),
+    _q("sigma_e_m", 0.0, _INF, m="sde sde_m sd_e sd_e_m std_e std_e_m std_east std_east_m sigma_e sigma_east_m"),
+    _q("sigma_n_m", 0.0, _INF, m="sdn sdn_m sd_n sd_n_m std_n std_n_m std_north std_north_m sigma_n sigma_north_m"),
+    _q("sigma_u_m", 0.0, _INF, m="sdu sdu_m sd_u sd_u_m std_u std_u_m std_up std_up_m sigma_u sigma_up_m"),
     _q("epu_m", 0.0, _INF, m="epu anp_m", nm="epu_nm anp_nm"),
     _q("rc_m", 0.0, _INF, m="rc", nm="rc_nm"),
     _q("nac_p", 0.0, 15.0, **{"1": "nacp nac_p"}),
@@ -281,7 +292,7 @@ def assign(
         taken |= {c.name for c in states.values()}
     for quantity in quantities:
         if quantity.name not in columns:
-            found = _known(quantity, [n for n in names if n not in taken], own=own)
+            found = _known(quantity, [n for n in names if n not in taken], path, own=own)
             if found is not None:
                 columns[quantity.name] = found
                 taken.add(found.name)
@@ -307,9 +318,12 @@ def position_time(unused: list[str]) -> Column | None:
     return None
 
 
+_ALL_UNITS = frozenset(unit for units in UNITS.values() for unit in units if unit not in {"", "1"})
+
+
 @functools.lru_cache(maxsize=1024)
 def _plain(name: str) -> tuple[str, str | None]:
-    """``Latitude (deg)`` to ``latitude`` and ``deg``."""
+    """``Latitude (deg)`` and ``Latitude / deg`` to ``latitude`` and ``deg``."""
     stem, unit = name.strip(), None
     if stem.endswith((")", "]")):
         # By searches and no pattern: one with several runs of blanks takes quadratic time.
@@ -318,22 +332,68 @@ def _plain(name: str) -> tuple[str, str | None]:
         opened = [at for bracket in "([" if (at := inside.find(bracket, last_closed + 1)) >= 0]
         if opened:
             stem, unit = inside[: min(opened)], inside[min(opened) + 1 :].strip().lower()
+    elif (slash := stem.rfind("/")) > 0 and stem[slash + 1 :].strip().lower() in _ALL_UNITS:
+        stem, unit = stem[:slash], stem[slash + 1 :].strip().lower()
     return re.sub(r"[\s\-.]+", "_", stem.strip().lower()), unit
 
 
-def _known(quantity: Quantity, names: list[str], *, own: bool) -> Column | None:
+def _known(quantity: Quantity, names: list[str], path: Path, *, own: bool) -> Column | None:
     """Find the first known name, in the order of the aliases; ``own``: `track` is who flies, not whither, as in our own epoch table."""
     plain = {_plain(name)[0]: name for name in reversed(names)}
     if own and quantity.name in {"track", "ground_track_rad"}:
         plain = {k: v for k, v in plain.items() if (k == "track") == (quantity.name == "track")}
     elif quantity.name == "track":
         plain.pop("track", None)
+    units = UNITS[quantity.si]
     for alias, unit in quantity.aliases.items():
         if alias in plain:
-            name = plain[alias]
-            written = _plain(name)[1]
-            return Column(quantity.name, name, written if written in UNITS[quantity.si] else unit)
+            return Column(quantity.name, plain[alias], _written_unit(plain[alias], quantity, path) or unit)
+        # `hpl_nm` is `hpl` in nautical miles, whether or not the list names it so.
+        for ending in units if quantity.si not in {"1", "time", "text"} else ():
+            if f"{alias}_{ending}" in plain:
+                return Column(quantity.name, plain[f"{alias}_{ending}"], ending)
     return None
+
+
+_NO_UNIT = frozenset(
+    (
+        "",
+        "1",
+        "-",
+        "wgs84",
+        "wgs-84",
+        "wgs 84",
+        "ellipsoid",
+        "ellipsoidal",
+        "above ellipsoid",
+        "hae",
+        "geodetic",
+        "true",
+        "gps",
+        "utc",
+        "1s",
+        "1 sigma",
+    )
+)
+"""What stands in brackets behind a name and says nothing of its unit."""
+
+
+def _written_unit(name: str, quantity: Quantity, path: Path) -> str | None:
+    """The unit in brackets; None where there is none. One that is not known is no other: the number could be anything.
+
+    Raises
+    ------
+    FormatError
+        Naming the column and the units that are known.
+    """
+    written = _plain(name)[1]
+    if written is None or written in _NO_UNIT or quantity.si == "text":
+        return None
+    if written in UNITS[quantity.si]:
+        return written
+    known = ", ".join(u for u in UNITS[quantity.si] if u)
+    what = f"its unit “{written}” is not known (known: {known}); rename the column, or declare it: {quantity.name}={name}:UNIT"
+    raise FormatError(path, what, 1, name)
 
 
 def _times(names: list[str]) -> list[Column]:
@@ -362,11 +422,19 @@ def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Q
     if key not in quantities:
         raise InputError("columns", key, domain=f"known quantities: time, {', '.join(quantities)}")
     q = quantities[key]
-    plain, written = _plain(name)
-    unit = unit or (written if written in UNITS[q.si] else "") or q.aliases.get(plain, q.si)
+    unit = unit or _written_unit(name, q, path) or q.aliases.get(_plain(name)[0], q.si)
     if q.si != "text" and unit.lower() not in UNITS[q.si]:
         raise InputError("columns", value, domain=f"units of {key}: {', '.join(u for u in UNITS[q.si] if u)}")
     return Column(key, name, unit.lower())
+
+
+def _unit_of_time(name: str) -> str:
+    """The unit that the name of a column suggests."""
+    scale = "gps" if "gps" in name.lower() else "utc"
+    parts = set(_plain(name)[0].split("_"))
+    sizes = {"ns": {"ns", "nsec"}, "us": {"us", "usec", "micros"}, "ms": {"ms", "msec", "millis"}}
+    size = next((size for size, words in sizes.items() if words & parts), "s")
+    return f"{scale}_{size}" if f"{scale}_{size}" in TIME_UNITS else f"{scale}_s"
 
 
 def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, wanted: Sequence[str]) -> None:
@@ -377,14 +445,15 @@ def _require(columns: dict[str, Column], times: list[Column], names: list[str], 
     for need, (found, known) in needs.items():
         if found:
             continue
-        unit = {"time": "utc_s", "est_lat_rad": "deg", "est_lon_rad": "deg"}.get(need, "m")
         short = [n for n in names if len(n) <= _LONGEST_NAME][:_MOST_COMPARED]
         near = {n: max(difflib.SequenceMatcher(None, _plain(n)[0], a).ratio() for a in known) for n in short}
         best = sorted(short, key=lambda n: -near[n])[:5]
+        unit = {"time": _unit_of_time(best[0] if best else ""), "est_lat_rad": "deg", "est_lon_rad": "deg"}.get(need, "m")
+        more = f" (of {', '.join(TIME_UNITS)})" if need == "time" else ""
         raise FormatError(
             path,
             f"no column holds it (known names: {', '.join(known[:6])}, ...); the nearest of the {len(names)} found are "
-            f"{', '.join(best)}; if one of them is it, declare it: {need}=COLUMN:{unit}",
+            f"{', '.join(best)}; if one of them is it, declare it: {need}=COLUMN:{unit}{more}",
             1,
             need,
         )

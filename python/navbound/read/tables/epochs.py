@@ -85,10 +85,12 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: S
         A declared column that names no known quantity or unit.
     """
     source = load(path)
-    if source.kind == "rtklib":
-        return _rtklib(source)
-    if receivers.is_log(kind := source.kind):
-        return _log(source, kind)
+    kind = source.kind
+    if kind == "rtklib" or receivers.is_log(kind):
+        reading = _rtklib(source) if kind == "rtklib" else _log(source, kind)
+        if columns:
+            reading.notes.append(f"Columns named by the caller change nothing in {source.path.name}, whose format names its own.")
+        return reading
     found = table(source)
     mapping = assign(found.columns, columns, source.path, needs=needs, texts=texts(found.frame))
     return _epochs(source, found, mapping, [name for name in POSITION if name in needs])

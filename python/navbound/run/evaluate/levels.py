@@ -11,8 +11,8 @@ import numpy as np
 import polars as pl
 
 from navbound import gnss, sbas
-from navbound.errors import FormatError, InputError
-from navbound.read.checks.refusals import of_navigation, of_observations, rejections, skipped_words, without_epochs
+from navbound.errors import ConflictError, FormatError, InputError
+from navbound.read.checks.refusals import of_navigation, of_observations, rejections, require_most_epochs, skipped_words
 from navbound.read.tables.epochs import read
 from navbound.read.truth import Truth, with_error, with_truth
 from navbound.run.inputs.solving import Solving, require_same_time
@@ -213,8 +213,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
         Messages of several satellites and none chosen, no message of the time, or ranges wanted without truth or with messages.
     """
     observations = gnss.read_observations(path)
-    if not observations.n_epochs:
-        raise without_epochs(observations)
+    require_most_epochs(observations)
     require_same_time(observations, service.navigation)
     ranges = None
     if service.has_messages:
@@ -256,7 +255,7 @@ def _of_own(epochs: pl.DataFrame) -> pl.DataFrame:
 def _range_errors(ranges: pl.DataFrame, epochs: pl.DataFrame) -> pl.DataFrame:
     """Residuals at the estimated position become errors at the true one: the true range is longer by -u . nse."""
     if "nse_e_m" not in epochs.columns:
-        raise InputError("stanford_esa", "no truth", domain="it with --truth: a subset's error is that against the true position")
+        raise ConflictError("stanford_esa", needs=("truth",), because="the error of a subset is that against the true position")
     joined = ranges.join(epochs.select("time_ns", "nse_e_m", "nse_n_m", "nse_u_m"), on="time_ns", maintain_order="left")
     east, north = pl.col("el_rad").cos() * pl.col("az_rad").sin(), pl.col("el_rad").cos() * pl.col("az_rad").cos()
     moved = east * pl.col("nse_e_m") + north * pl.col("nse_n_m") + pl.col("el_rad").sin() * pl.col("nse_u_m")

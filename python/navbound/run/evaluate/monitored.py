@@ -8,9 +8,9 @@ import polars as pl
 
 from navbound import gnss
 from navbound.algorithms import Recorded, entries
-from navbound.errors import InputError
+from navbound.errors import InputError, NotFoundError
 from navbound.gnss.monitor_fit import DISBELIEF
-from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
+from navbound.read.checks.refusals import of_navigation, of_observations, require_most_epochs, skipped_words
 from navbound.read.truth import with_truth
 from navbound.run.evaluate.levels import Part, uniform
 from navbound.run.inputs.solving import Solving, require_same_time
@@ -54,7 +54,7 @@ def monitor_of(protection: str) -> Recorded | None:
     """
     known = entries(Recorded)
     if protection != GIVEN and protection not in known:
-        raise InputError("protection", protection, domain=f"one of {', '.join([GIVEN, *known])}")
+        raise NotFoundError("protection", protection, "algorithm", [GIVEN, *known])
     return known.get(protection)
 
 
@@ -83,8 +83,7 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Re
         A file that cannot be read, or without epochs.
     """
     observations = gnss.read_observations(path)
-    if not observations.n_epochs:
-        raise without_epochs(observations)
+    require_most_epochs(observations)
     require_same_time(observations, records)
     found = monitor(observations, records, truth_ecef_m=truth.ecef_m, **monitored(solving or Solving()))
     notes = [f"{path.name}: {words}" for words in decisions(found.epochs)]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound import __version__, kpi
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.read.source import load
 from navbound.read.truth import TOLERANCE_S, Truth, truth_of
 from navbound.records.run import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
@@ -147,12 +147,12 @@ def evaluate_files(
     wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
     truth = truth_of(options.truth, options.truth_tolerance_s)
     if monitor_of(options.protection) is not None and options.stanford_esa is not None:
-        raise InputError("protection", options.protection, domain="it without subsets of satellites, which are solved without monitoring")
+        raise ConflictError("protection", excludes=("stanford_esa",), because="subsets of satellites are solved without monitoring")
     sources = sort_out(names, solve=options.solve)
     if monitor_of(options.protection) is not None:
         monitored(options.solving)
     if not sources.observations or sources.messages:
-        options.solving.refuse("it together with observations that no service corrects")
+        options.solving.refuse("only observations that no service corrects are solved")
     sources.require_navigation()
     if options.stanford_esa is not None and (sources.tables or sources.messages):
         raise InputError(

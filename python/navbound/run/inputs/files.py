@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from navbound import _core
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.read.source import Source, load
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def sort_out(paths: Sequence[str | Path], *, solve: bool = False) -> Files:
         for kind in kinds:
             getattr(files, kind).append(kept)
     if solve and not files.observations:
-        raise InputError("solve", "True", domain="it together with a file of raw measurements (RINEX, UBX RXM-RAWX, SBF MeasEpoch)")
+        raise ConflictError("solve", needs=("files",), because="a file of raw measurements (RINEX, UBX RXM-RAWX, SBF MeasEpoch)")
     return files
 
 

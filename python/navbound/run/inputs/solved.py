@@ -63,6 +63,8 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     notes = [f"{source.path.name}: {name}: {words}" for name, words in found.models.items()]
     notes += skipped_words(source.path.name, observations.skipped)
     notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in found.unused.items()]
-    lost = pl.concat([left_out(without), left_out(repeats.contradicting)])
+    # Epochs that cannot be read were measured all the same; nobody knows when.
+    unread = pl.DataFrame({"track": [source.stem] * observations.n_lost_epochs, "time_ns": None})
+    lost = pl.concat([left_out(without), left_out(repeats.contradicting), left_out(unread)])
     columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in found.codes.values() for c in codes)}
     return Reading(known, source.record(observations.n_epochs), rejected, notes=notes, columns=columns, left_out=lost)

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from navbound import gnss
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
@@ -75,8 +75,8 @@ class Solving:
         InputError
             Something is named; ``why`` says what it goes with.
         """
-        for name, value in self.named.items():
-            raise InputError(name, value, domain=why)
+        for name in self.named:
+            raise ConflictError(name, because=why)
 
     def solve(self, observations: Observations, navigation: Navigation, *, signals: str, systems: str, **more: Any) -> Positions:
         """Positions by what is named, by the defaults elsewhere."""
