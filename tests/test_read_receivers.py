@@ -14,8 +14,7 @@ import pytest
 
 import navbound
 from navbound import FormatError
-from navbound.read import read
-from navbound.read.receivers import kind
+from navbound.read import formats, read
 
 NS = 1_000_000_000
 WEEK_NS = 604_800 * NS
@@ -217,11 +216,11 @@ def test_positions_that_nothing_dates_are_refused(tmp_path: Path) -> None:
 
 
 def test_the_kind_is_told_from_the_content(logs: Path) -> None:
-    assert kind(b"time,lat,lon\n1,2,3\n") is None
-    assert kind(b"\x00" * 1000) is None
+    assert formats.of(b"time,lat,lon\n1,2,3\n").id == "csv"
+    assert formats.of(b"\x00" * 1000).id == "csv"
     # UBX frames without a position beside NMEA with one.
-    assert kind((logs / "gpsd" / "ublox-zed-f9p_hpg1.11.log").read_bytes()) == "nmea"
-    assert kind((logs / "gpsd" / "ublox-zed-f9r.log").read_bytes()) == "ubx"
+    assert formats.of((logs / "gpsd" / "ublox-zed-f9p_hpg1.11.log").read_bytes()).id == "nmea"
+    assert formats.of((logs / "gpsd" / "ublox-zed-f9r.log").read_bytes()).id == "ubx"
     with pytest.raises(FormatError, match="NAV-PVT"):
         read(logs / "gpsd" / "ublox-x20p.log")
 

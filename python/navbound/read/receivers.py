@@ -5,9 +5,8 @@ What the fields mean stands in docs/methods/formats.md with its source.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeGuard
+from typing import TYPE_CHECKING, Any
 
 import polars as pl
 
@@ -16,43 +15,7 @@ from navbound.errors import FormatError
 from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from navbound.read.source import Source
-
-Kind = Literal["ubx", "sbf", "novatel", "nmea"]
-
-_LOOK_AT = 1 << 17
-_POSITIONS: dict[Kind, re.Pattern[bytes]] = {
-    "ubx": re.compile(rb"\xb5\x62\x01\x07"),
-    # Blocks 4006 and 4007, the revision in the upper three bits.
-    "sbf": re.compile(rb"\$@..[\xa6\xa7][\x0f\x2f\x4f\x6f\x8f\xaf\xcf\xef]", re.DOTALL),
-    "novatel": re.compile(rb"\xaa\x44\x12\x1c\x2a\x00|#BESTPOSA,"),
-    "nmea": re.compile(rb"\$[A-Z]{2}GGA,"),
-}
-"""Beginnings of messages that hold a position, in the order of preference: covariances first."""
-_FRAMES: dict[Kind, re.Pattern[bytes]] = {
-    "ubx": re.compile(rb"\xb5\x62[\x01-\x29][\x00-\x92]"),
-    "sbf": re.compile(rb"\$@..[\x00-\xff][\x0f-\xff].[\x00-\x1f]", re.DOTALL),
-    "novatel": re.compile(rb"\xaa\x44\x12\x1c|#[A-Z]+A,(COM|USB|FILE|ICOM)"),
-    "nmea": re.compile(rb"\$[A-Z]{2}[A-Z]{3},[^\r\n]*\*[0-9A-F]{2}(,\d+)?\r?\n"),
-}
-"""Beginnings of any message: the file is a log, whatever it holds."""
-
-
-def is_log(name: str) -> TypeGuard[Kind]:
-    """Whether this is the name of a receiver's log."""
-    return name in _FRAMES
-
-
-def kind(content: bytes) -> Kind | None:
-    """Tell which receiver's log this is, or None."""
-    start = content[:_LOOK_AT]
-    frames = next((name for name, sign in _FRAMES.items() if sign.search(start)), None)
-    if frames is None:
-        return None
-    return next((name for name, sign in _POSITIONS.items() if sign.search(content)), frames)
-
 
 MESSAGES: dict[str, str] = dict(_core.position_logs())
 """Kind of log to the messages that hold its positions."""
@@ -105,7 +68,7 @@ class Log:
     notes: list[str]
 
 
-def read(source: Source, name: Kind) -> Log:
+def read(source: Source, name: str) -> Log:
     """Positions of a log.
 
     Raises

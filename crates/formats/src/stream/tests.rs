@@ -180,7 +180,10 @@ fn novatel_logs_are_frames_and_a_turned_bit_is_damage() {
 #[test]
 fn a_sentence_that_breaks_off_is_damage_and_two_capitals_are_not() {
     let seen = |bytes: &[u8]| at_once(bytes);
-    assert_eq!(seen(b"$GPGGA,1\x80,2*00\r\n"), ["a sentence breaks off before its checksum"]);
+    assert_eq!(seen(b"$GPGGA,1,2\r\n"), ["a sentence breaks off before its checksum"]);
+    assert_eq!(seen(b"$GPGGA,1\x80,2*00\r\n"), ["the checksum of a sentence is wrong"]);
+    // A text in another alphabet is a sentence where its checksum is right.
+    assert!(seen(b"$GNTXT,\x80*FD\r\n")[0].contains("Nmea"));
     assert!(seen(b"$AB\x80\x01 $GP\r\n").is_empty());
 }
 

@@ -9,7 +9,6 @@ import polars as pl
 
 from navbound import _core
 from navbound.errors import FormatError
-from navbound.read import receivers
 from navbound.read.checks import levels
 from navbound.read.checks.rejections import Rejections, Tally
 from navbound.read.checks.repeats import left_out
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from navbound.read import receivers
     from navbound.records.run import InputFile, Rejection
 
 
@@ -85,9 +85,9 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: S
         A declared column that names no known quantity or unit.
     """
     source = load(path)
-    kind = source.kind
-    if kind == "rtklib" or receivers.is_log(kind):
-        reading = _rtklib(source) if kind == "rtklib" else _log(source, kind)
+    of = source.format
+    if of.id == "rtklib" or of.read is not None:
+        reading = _rtklib(source) if of.read is None else _log(source, of.read(source))
         if columns:
             reading.notes.append(f"Columns named by the caller change nothing in {source.path.name}, whose format names its own.")
         return reading
@@ -135,8 +135,7 @@ def _rtklib(source: Source) -> Reading:
     return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes, left_out=lost)
 
 
-def _log(source: Source, kind: receivers.Kind) -> Reading:
-    log = receivers.read(source, kind)
+def _log(source: Source, log: receivers.Log) -> Reading:
     rejections = Rejections(source.path, "record")
     for reason, damaged, count, first, example in log.left_out:
         rejections.add(reason, count, first, example, malformed=damaged)

@@ -100,11 +100,9 @@ impl Position {
         let Some(OfDay(of_day_ns)) = self.of_day else { return };
         self.time = gps_time(dated, of_day_ns);
         if self.time.is_none() && self.absent.is_none() {
-            let leap = of_day_ns.rem_euclid(MINUTE_NS) >= 60 * SECOND_NS;
-            let (reason, minutes) = (if leap { Reason::NoSuchLeapSecond } else { Reason::OutsideDomain }, of_day_ns / MINUTE_NS);
-            let second = of_day_ns.rem_euclid(MINUTE_NS) / SECOND_NS;
-            let stated =
-                format!("{:02}{:02}{second:02} near {}-{:02}-{:02}", minutes / 60, minutes % 60, dated.year, dated.month, dated.day);
+            let (minutes, second_s) = (of_day_ns / MINUTE_NS, (of_day_ns.rem_euclid(MINUTE_NS)) as f64 * 1e-9);
+            let reason = if second_s >= 60.0 { Reason::NoSuchLeapSecond } else { Reason::OutsideDomain };
+            let stated = format!("{:02}{:02}{second_s:05.2}", minutes / 60, minutes % 60);
             self.absent = Some(Absent { reason, stated });
         }
     }
