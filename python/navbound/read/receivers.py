@@ -39,7 +39,6 @@ _NOTES = {
     "risk_of_levels": "protection levels of NAV-PL, for a misleading-information risk of {0}e{1} an hour",
     "uncorrelated": "BESTPOS states standard deviations; axes taken as uncorrelated, which the file does not say",
 }
-_KEPT_NOTES = 8
 _COUNTS = ("n_rows", "n_outside", "undated", "fields", "notes", "left_out", "cov_m2")
 
 
@@ -93,7 +92,7 @@ def _epochs(found: dict[str, Any]) -> pl.DataFrame:
 
 
 def _notes(source: Source, found: dict[str, Any]) -> list[str]:
-    notes = [_NOTES[note].format(*numbers) for note, numbers in found["notes"][:_KEPT_NOTES]]
+    notes = [_NOTES[note].format(*numbers) for note, numbers in found["notes"]]
     if found["n_outside"]:
         passed_over = f"{found['n_outside']} of {len(source.content)} bytes"
         notes.append(f"{passed_over} belong to no message that is read (text, other protocols, or damage)")

@@ -10,6 +10,9 @@ use std::collections::BTreeMap;
 /// The id of a damaged message among the reasons.
 const DAMAGED: &str = "damaged_message";
 
+/// Doubts that are kept. Provenance: ours.
+const MOST_NOTES: usize = 8;
+
 /// Positions or messages that are not used, of one reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeftOut {
@@ -122,7 +125,7 @@ impl Log {
             }
         }
         for note in notes {
-            if !self.notes.contains(&note) {
+            if self.notes.len() < MOST_NOTES && !self.notes.contains(&note) {
                 self.notes.push(note);
             }
         }

@@ -6,6 +6,9 @@ use memchr::{memchr_iter, memmem};
 /// Bytes in which a message of a log must begin \[B\]. Provenance: ours.
 const LOOK_AT: usize = 1 << 17;
 
+/// Longest sentence with its line end and the time of its arrival \[B\]. Provenance: ours.
+const LONGEST_SENTENCE: usize = 1100;
+
 /// The receiver whose positions are read: of a mixed log the first of [`Kind::ALL`] with a message that holds a position, else the first
 /// with any message. Damaged messages count: a damaged log is a log.
 pub fn of(content: &[u8]) -> Option<Kind> {
@@ -53,10 +56,12 @@ fn named_log(rest: &[u8]) -> bool {
 
 /// A sentence of talker and name in five capitals, with a checksum and the end of its line, and perhaps the time of its arrival.
 fn whole_sentence(rest: &[u8]) -> bool {
-    let line = rest.get(..memchr::memchr(b'\n', rest).unwrap_or(0)).unwrap_or_default();
+    let addressed = rest.get(..5).is_some_and(|name| name.iter().all(u8::is_ascii_uppercase)) && rest.get(5) == Some(&b',');
+    // No search of all that follows for each sentence that has no end.
+    let begun = rest.get(..rest.len().min(LONGEST_SENTENCE)).unwrap_or_default();
+    let Some(line) = memchr::memchr(b'\n', begun).filter(|_| addressed).and_then(|end| begun.get(..end)) else { return false };
     let line = line.strip_suffix(b"\r").unwrap_or(line);
-    let addressed = line.get(..5).is_some_and(|name| name.iter().all(u8::is_ascii_uppercase)) && line.get(5) == Some(&b',');
-    addressed && !line.contains(&b'\r') && memchr_iter(b'*', line).filter_map(|at| line.get(at + 1..)).any(checksum_and_arrival)
+    !line.contains(&b'\r') && memchr_iter(b'*', line).filter_map(|at| line.get(at + 1..)).any(checksum_and_arrival)
 }
 
 fn checksum_and_arrival(tail: &[u8]) -> bool {
