@@ -74,6 +74,19 @@ def test_an_nmea_log_has_the_positions_and_bounds_of_the_batch_in_every_bit(shar
     assert differing(epochs, batch, pairs) == dict.fromkeys(pairs, 0)
 
 
+@pytest.mark.parametrize(("name", "form"), [("pysbf2/sbfdata.log", "sbf"), ("novatel/oemv_200911218.gps", "novatel")])
+def test_septentrio_and_novatel_logs_have_the_positions_and_bounds_of_the_batch(
+    shared_data: Path, tmp_path: Path, name: str, form: str
+) -> None:
+    log = shared_data / "rxlogs" / name
+    epochs = lived(log, tmp_path / "out", live.Settings(format=form, rnp_m=RNP_M), chunk=333)
+    batch = navbound.analyze([log], spec="RNP 0.3").epochs.with_columns(track=pl.lit("receiver"))
+    bounds = {"accuracy_bound_m": "anp_circle_m", "integrity_bound_m": "anp_circle_integrity_m"}
+    places = ("est_lat_rad", "est_lon_rad", "est_h_m")
+    assert differing(epochs, batch, bounds | dict(zip(places, places, strict=True))) == dict.fromkeys([*bounds, *places], 0)
+    assert batch.join(epochs, on="time_ns", how="anti").height == 0
+
+
 def test_recorded_approaches_have_the_bounds_alerts_and_events_of_the_batch(shared_data: Path, tmp_path: Path) -> None:
     tracks = shared_data / "aircraft/paris_tma_20211007/tracks.csv.gz"
     run = navbound.analyze([tracks], path="LFPG/08R", spec="RNP 0.3", sigma_m=30.0)
