@@ -44,7 +44,7 @@ pub(super) enum Step {
     /// It is of the epoch `key` and holds a date, or none.
     Date { key: i64, kind: u32, dated: Option<Dated> },
     /// It is an epoch of its own.
-    Whole(Position),
+    Whole(Box<Position>),
     /// It is none.
     Malformed(&'static str),
 }

@@ -46,7 +46,7 @@ pub(super) fn step(body: &[u8], record: u64) -> Step {
     let Some(kind) = address.map(name).filter(|kind| [GGA, GST, GBS, RMC, ZDA].contains(kind)) else { return Step::Passed };
     // A receiver without a fix leaves its fields empty.
     let Some(OfDay(key)) = fields.get(1).and_then(of_day) else {
-        return if kind == GGA { Step::Whole(Position::none(record, Reason::NoFix, fields.stated())) } else { Step::Passed };
+        return if kind == GGA { Step::Whole(Box::new(Position::none(record, Reason::NoFix, fields.stated()))) } else { Step::Passed };
     };
     match kind {
         GGA if !fields.sound(&GGA_NUMBERS) => Step::Malformed("a field of GGA is not a number"),

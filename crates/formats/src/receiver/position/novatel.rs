@@ -36,7 +36,7 @@ pub(super) fn binary(head: &[u8], body: &[u8], record: u64) -> Step {
         return Step::Passed;
     }
     let read = if body.len() >= SHORTEST { of_binary(head, body) } else { None };
-    read.map_or(Step::Malformed("BESTPOS is shorter than its definition"), |stated| Step::Whole(position(stated, record)))
+    read.map_or(Step::Malformed("BESTPOS is shorter than its definition"), |stated| Step::Whole(Box::new(position(stated, record))))
 }
 
 fn of_binary(head: &[u8], body: &[u8]) -> Option<Stated> {
@@ -58,8 +58,9 @@ pub(super) fn text(body: &[u8], record: u64) -> Step {
     if !body.starts_with(b"BESTPOSA,") {
         return Step::Passed;
     }
-    of_text(body)
-        .map_or(Step::Malformed("a field of BESTPOSA is not a number, or is missing"), |stated| Step::Whole(position(stated, record)))
+    of_text(body).map_or(Step::Malformed("a field of BESTPOSA is not a number, or is missing"), |stated| {
+        Step::Whole(Box::new(position(stated, record)))
+    })
 }
 
 fn of_text(body: &[u8]) -> Option<Stated> {
