@@ -1,6 +1,6 @@
 //! Any method of [`navbound_core::bound::METHODS`] over the columns of an epoch table.
 
-use navbound_core::bound::Method;
+use navbound_core::bound::{Bound, Method};
 use navbound_core::frame::{Covariance, Enu};
 use navbound_core::judge::Sample;
 use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Risk, Status, Unavailable};
@@ -82,11 +82,11 @@ pub struct Refused {
 }
 
 /// Bounds of every row by one method at one risk, on all cores. The result does not depend on their number.
-pub fn bounds(columns: &Columns<'_>, method: &Method, risk: Risk) -> BoundColumn {
+pub fn bounds(columns: &Columns<'_>, method: &'static Method, risk: Risk) -> BoundColumn {
     let results: Vec<Result<f64, Unavailable>> = (0..columns.len)
         .into_par_iter()
         .with_min_len(EPOCHS_PER_TASK)
-        .map(|row| (method.bound)(&columns.sample(row).epoch(), risk).map(Metres::m))
+        .map(|row| Bound::of(method, &columns.sample(row).epoch(), risk).map(|bound| bound.length().m()))
         .collect();
     let mut reasons: Vec<Refused> = Vec::new();
     let mut reason = Vec::with_capacity(results.len());

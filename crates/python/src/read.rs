@@ -227,6 +227,11 @@ fn rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bou
     rows.as_flattened().to_vec().into_pyarray(py).reshape([rows.len(), N])
 }
 
+/// A list of numbers: of bytes Python would make a text of bytes.
+fn numbers(bytes: &[u8]) -> Vec<u32> {
+    bytes.iter().map(|byte| u32::from(*byte)).collect()
+}
+
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(unpack, m)?)?;
     m.add_function(wrap_pyfunction!(read_rtklib, m)?)?;
@@ -237,7 +242,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(unix_from_gps_ns, m)?)?;
     m.add_function(wrap_pyfunction!(navigation_error, m)?)?;
     m.add("SPEEDS_BESIDE", SPEEDS_BESIDE)?;
-    m.add("GGA_QUALITIES", measured::GGA_QUALITIES.to_vec())?;
-    m.add("RTKLIB_QUALITIES", measured::RTKLIB_QUALITIES.to_vec())?;
+    m.add("GGA_QUALITIES", numbers(measured::GGA_QUALITIES))?;
+    m.add("RTKLIB_QUALITIES", numbers(measured::RTKLIB_QUALITIES))?;
     m.add_class::<PlausibleTrack>()
 }

@@ -17,6 +17,14 @@ impl Bound {
     /// # Errors
     /// [`Unavailable`] of the method.
     pub fn of(method: &'static Method, epoch: &Epoch, risk: Risk) -> Result<Self, Unavailable> {
+        if epoch.covariance.is_some_and(|covariance| !covariance.vertical_belongs()) {
+            return Err(Unavailable::Invalid {
+                field: "covariance",
+                value: epoch.covariance.map_or(f64::NAN, |covariance| covariance.matrix()[(2, 2)]),
+                unit: "m²",
+                domain: "a vertical that can belong to the horizontal",
+            });
+        }
         Ok(Self { length: (method.bound)(epoch, risk)?, method })
     }
 

@@ -1,7 +1,7 @@
 //! Displacements and covariances with their frame in the type.
 
 use crate::quantity::{Metres, OutOfDomain, Radians};
-use crate::special::float::sin_cos;
+use crate::special::float::{sin_cos, sqrt};
 use core::marker::PhantomData;
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
@@ -100,7 +100,27 @@ impl<F: Frame> Covariance<F> {
     }
 }
 
+/// How far a correlation may be beyond one: what four decimals of a standard deviation of a millimetre leave. Provenance: ours \[1\].
+const ROUNDED: f64 = 0.1;
+
 impl Covariance<Enu> {
+    /// Whether the vertical can belong to the horizontal: its correlations are within one, and the three are possible together. True where
+    /// a number of the vertical is not known: the horizontal then stands for itself.
+    pub fn vertical_belongs(&self) -> bool {
+        let m = &self.matrix;
+        let (ee, en, nn, eu, nu, uu) = (m[(0, 0)], m[(0, 1)], m[(1, 1)], m[(0, 2)], m[(1, 2)], m[(2, 2)]);
+        if !(eu.is_finite() && nu.is_finite() && uu.is_finite() && ee > 0.0 && nn > 0.0) {
+            return true;
+        }
+        if !(uu > 0.0) {
+            return uu == 0.0 && eu == 0.0 && nu == 0.0;
+        }
+        let (east, north, up) = (sqrt(ee), sqrt(nn), sqrt(uu));
+        let (a, b, c) = (en / east / north, eu / east / up, nu / north / up);
+        let determinant = 1.0 + 2.0 * a * b * c - a * a - b * b - c * c;
+        // The negation of "outside", so that a NaN of overflow is on the bad side.
+        b.abs() <= 1.0 + ROUNDED && c.abs() <= 1.0 + ROUNDED && determinant >= -3.0 * ROUNDED
+    }
     /// The east-north block \[m²\].
     pub fn horizontal(&self) -> Matrix2<f64> {
         self.matrix.fixed_view::<2, 2>(0, 0).into_owned()

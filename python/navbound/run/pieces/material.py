@@ -48,7 +48,6 @@ def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
     # 1e-9 of the squared largest variance: the sixteen digits of a double less those the determinant loses.
     determinant = ee * nn - en**2 >= -1e-9 * pl.max_horizontal(ee, nn) ** 2
     positive = pl.all_horizontal(ee.is_finite(), nn.is_finite(), en.is_finite(), ee >= 0, nn >= 0, determinant).fill_null(value=False)
-    positive &= _vertical_too()
     believed = pl.col("status").is_in(status.USABLE)
     fault = (
         pl.when(~believed).then(pl.lit(None, pl.String))
@@ -58,22 +57,6 @@ def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
     )  # fmt: skip
     epochs = status.overridden(epochs, epochs.select(fault.alias("reason_id"))["reason_id"])
     return epochs.with_columns(pl.when(pl.col("status").is_in(status.USABLE)).then(pl.col(c)).alias(c) for c in COVARIANCE)
-
-
-_ROUNDED = 0.1
-"""How far a correlation may be beyond one: four decimals of a standard deviation of a millimetre leave that. Provenance: ours. [1]"""
-
-
-def _vertical_too() -> pl.Expr:
-    """Whether the vertical can belong to the horizontal: correlations within one and together possible; true where there is no vertical."""
-    ee, en, nn, eu, nu, uu = (pl.col(name) for name in COVARIANCE)
-    a, b, c = en / (ee * nn).sqrt(), eu / (ee * uu).sqrt(), nu / (nn * uu).sqrt()
-    within = pl.all_horizontal(r.abs() <= 1 + _ROUNDED for r in (b, c))
-    possible = 1 + 2 * a * b * c - a**2 - b**2 - c**2 >= -3 * _ROUNDED
-    known = pl.all_horizontal(x.is_finite() for x in (eu, nu, uu)).fill_null(value=False) & (ee > 0) & (nn > 0)
-    return (
-        pl.when(known & (uu > 0)).then(within & possible).when(known).then((uu == 0) & (eu == 0) & (nu == 0)).otherwise(pl.lit(value=True))
-    )
 
 
 @dataclass(frozen=True)
