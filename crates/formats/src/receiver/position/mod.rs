@@ -231,7 +231,8 @@ impl Position {
     fn checked(mut self) -> Self {
         let on_earth = self.lat_rad.is_some_and(|lat| lat.abs() <= FRAC_PI_2) && self.lon_rad.is_some_and(|lon| lon.abs() <= TAU);
         let height = self.h_m.is_none_or(|h| h > LOWEST_M && h < HIGHEST_M);
-        let dated = self.time.is_none_or(|time| (0..LATEST_NS).contains(&time.nanoseconds()));
+        // A week beyond every time gives none.
+        let dated = self.time.map_or(self.of_day.is_some(), |time| (0..LATEST_NS).contains(&time.nanoseconds()));
         if self.absent.is_none() && !(on_earth && height && dated) {
             let time_ns = self.time.map(GpsTime::nanoseconds);
             let stated = format!("lat_rad {:?}, lon_rad {:?}, h_m {:?}, time_ns {time_ns:?}", self.lat_rad, self.lon_rad, self.h_m);

@@ -84,6 +84,22 @@ fn a_stream_has_the_positions_of_the_file() {
     }
 }
 
+/// PVTGeodetic in a week whose nanoseconds exceed 64 bits.
+#[test]
+fn a_week_beyond_every_time_is_outside_its_domain() {
+    for (week, usable) in [(2361_u16, true), (60_000, false)] {
+        let mut body = vec![0; 68];
+        body[4..6].copy_from_slice(&week.to_le_bytes());
+        body[6] = 1;
+        let mut out = Vec::new();
+        let mut decoder = Decoder::new(Kind::Sbf, Ends::WithNext);
+        decoder.take(&Frame::Sbf { block: 4007, body: &body }, 1, &mut out);
+        decoder.finish(&mut out);
+        let reasons: Vec<_> = positions(&out).iter().map(|p| p.absent.as_ref().map(|absent| absent.reason)).collect();
+        assert_eq!(reasons, [(!usable).then_some(Reason::OutsideDomain)], "week {week}");
+    }
+}
+
 fn sentence(body: &str) -> Vec<u8> {
     let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
     format!("${body}*{sum:02X}\r\n").into_bytes()
