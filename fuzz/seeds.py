@@ -83,9 +83,35 @@ def receivers() -> list[bytes]:
     ]
 
 
+def positions() -> list[bytes]:
+    """One epoch of each receiver as records of the target `positions`, and plain bytes of each."""
+
+    def whole(kind: int, content: bytes) -> bytes:
+        return bytes([kind]) + struct.pack("<H", len(content)) + content
+
+    pvt = struct.pack("<IHBBBBBBIiBBBB", 1000, 2024, 6, 23, 12, 0, 1, 7, 20, -5, 3, 1, 0, 17)
+    pvt += struct.pack("<iiiiII", 60_000_000, 472_500_000, 371_496, 323_000, 1_700, 2_500)
+    cov = struct.pack("<IBBB9x12f", 1000, 0, 1, 1, 4.0, 0.5, -0.25, 9.0, 1.5, 16.0, *([0.0] * 6))
+    level = struct.pack("<BBbBBBBB4xI7IHHI4x", 1, 5, -7, 1, 3, 0, 0, 0, 1000, 3000, 4000, 7000, 0, 0, 0, 0, 0, 0, 0)[:52]
+    u_blox = whole(0, pvt.ljust(92, b"\0")) + whole(12, cov) + whole(20, level)
+    head = struct.pack("<IHBB", 456_000_000, 2361, 1, 0)
+    place = head + struct.pack("<3d5fdfBBBB", 0.82, 0.1, 371.5, 47.0, 3.0, 4.0, -0.5, 90.0, 0.0, 0.0, 0, 0, 12, 0)
+    septentrio = whole(9, place) + whole(17, head + struct.pack("<10f", 4.0, 9.0, 16.0, 1.0, 0.5, -0.25, 0.0, 1.5, 0.0, 0.0))
+    axes = head + struct.pack("<3d", 4e6, 4e5, 4.9e6) + place[32:]
+    cartesian = whole(5, axes) + whole(13, head + struct.pack("<10f", 4.0, 9.0, 16.0, 1.0, 0.5, -0.25, 0.0, 1.5, 0.0, 0.0))
+    sentences = ("GPZDA,120000.00,23,06,2024,00,00", "GPGGA,120001.00,4715.0,N,00600.0,E,1,12,0.9,100.0,M,40.0,M,,")
+    text = b"".join(whole(2, s.encode()) for s in (*sentences, "GPGST,120001.00,1.0,4.0,2.0,45.0,3.0,3.0,5.0"))
+    best = struct.pack("<II3dfI3f12xBB6x", 0, 16, 51.0, -114.0, 1000.0, -16.0, 61, 1.5, 0.9, 2.1, 9, 9)
+    binary = whole(3, struct.pack("<13xBHI8x", 180, 1562, 515_265_000) + best)
+    words = "COM1,0,50.0,FINESTEERING,2445,100.000,00000000,0000,1000;SOL_COMPUTED,SINGLE,49.0,2.5,100.0,47.0,WGS84,1.0,1.0,2.0"
+    ascii_ = whole(7, f'{words},"",0.0,0.0,10,10,10,10,0,0,0,0'.encode())
+    made = [u_blox, septentrio, cartesian, text, binary, ascii_]
+    return [b"\x86" + each for each in made] + [b"\x01$GPGGA,,,,,,0,,,,,,,,*66\r\n", b"\x01#BESTPOSA,COM1", b"\x01\xaa\x44\x12\x1c"]
+
+
 def repeated(found: dict[str, list[bytes]]) -> list[bytes]:
     """A text for every reader, cut in a beginning and a piece; the generator takes lengths from the end of its input."""
-    kinds = ("observations", "navigation", "clocks", "orbits", "almanac", "sbas", "receivers", "packed", "rtklib")
+    kinds = ("observations", "navigation", "clocks", "orbits", "almanac", "sbas", "receivers", "packed", "rtklib", "positions", "positions")
     return [bytes([k]) + seed[:500] for k, kind in enumerate(kinds) for seed in found[kind][:2]]
 
 
@@ -138,7 +164,7 @@ def corpus() -> dict[str, list[bytes]]:
     }
     found = {target: [text.encode() for text in several] for target, several in plain.items()}
     found["packed"] = [gzip.compress(text, mtime=0) for text in (found["sbas"][0], b"", bytes(5000))] + [b"\x1f\x9d", b"PK\x03\x04"]
-    found["receivers"] = receivers()
+    found["receivers"], found["positions"] = receivers(), positions()
     found["solutions"] = [bytes(range(256)), struct.pack("<q10d", 10**18, 0.5, 1.0, 100.0, 4.0, 1.0, 4.0, 0.5, 0.5, 9.0, 0.0)]
     found["repeated"] = repeated(found)
     found["smoothing"] = [struct.pack("<d" + "q3dB" * 3, 100.0, *(v for k in range(3) for v in (k * 10**9, 2e7 + k, 2e7, 2e7, 0)))]

@@ -19,8 +19,8 @@ WEB = ROOT / "web"
 LISTS = ("A method", "A protection level", "A format", "A column", "A chart", "A study", "A scenario")
 PREAMBLE = """
 import sys
-import navbound, navbound.read.receivers, navbound.studies
-for package in (navbound.read.receivers, navbound.studies):
+import navbound, navbound.read, navbound.studies
+for package in (navbound.read, navbound.studies):
     package.__path__.append("/".join([sys.argv[1], "python", *package.__name__.split(".")]))
 """
 """Files of the examples lie beside those of the package, as if they had been added to it."""

@@ -418,7 +418,6 @@ def nmea() -> list[str]:
 
 
 def test_the_sentences_of_a_telephone_are_a_log(tmp_path: Path) -> None:
-    pytest.importorskip("pynmeagps")
     plain, logged = tmp_path / "plain.nmea", tmp_path / "logged.nmea"
     plain.write_text("".join(f"{line}\r\n" for line in nmea()))
     logged.write_text("".join(f"NMEA,{line},{1_719_230_400_000 + k}\n" for k, line in enumerate(nmea())))
@@ -431,7 +430,6 @@ def test_the_sentences_of_a_telephone_are_a_log(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("instead", ["+", "", " "])
 def test_a_sentence_that_lost_the_mark_of_its_checksum_is_counted(tmp_path: Path, instead: str) -> None:
-    pytest.importorskip("pynmeagps")
     lines = nmea()
     lines[41] = lines[41].replace("*", instead)
     file = tmp_path / "damaged.nmea"

@@ -1,5 +1,5 @@
 """Our readers against independent ones of the group `oracle` (./dev peers), value by value on real files: arinc424, georinex, hatanaka,
-sidereon.
+pynmeagps, pysbf2, pyubx2, sidereon.
 
 Skipped aloud where the group or the files are absent. docs/methods/formats.md says where they differ and who is right.
 """
@@ -7,6 +7,8 @@ Skipped aloud where the group or the files are absent. docs/methods/formats.md s
 from __future__ import annotations
 
 import gzip
+import io
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,6 +19,7 @@ import pytest
 
 import araim_peer
 from navbound import araim, gnss, procedures, sbas
+from navbound.read import read
 
 NS = 1_000_000_000
 WEEK_NS = 604_800 * NS
@@ -210,6 +213,74 @@ def test_advanced_raim_is_that_of_sidereon_where_faults_are_counted_alike() -> N
         # Horizontally it stays larger by up to 0.3 %, for a reason its interface does not show (no level of an axis); that ours solve the
         # equation is shown by vectors/araim.toml. Twice what was seen.
         assert 0.0 <= theirs.hpl_m - alike.hpl_m < 0.006 * alike.hpl_m
+
+
+def _columns(log: Path) -> pl.DataFrame:
+    return read(log).epochs
+
+
+def test_every_position_of_a_u_blox_log_is_that_of_pyubx2(shared_data: Path) -> None:
+    log = shared_data / "rxlogs" / "ubx_16dB" / "16dBatt_no_interference_coldstart.ubx.gz"
+    reader = peer("pyubx2").UBXReader(io.BytesIO(gzip.decompress(log.read_bytes())), protfilter=2, quitonerror=0)
+    fixes: dict[int, dict[str, Any]] = {}
+    for _, message in reader:
+        if message.identity == "NAV-PVT" and message.fixType in {3, 4} and message.gnssFixOk:
+            fixes[message.iTOW] = {"pvt": message}
+        elif message.identity in {"NAV-COV", "NAV-DOP"} and message.iTOW in fixes:
+            fixes[message.iTOW][message.identity] = message
+    ours = _columns(log)
+    assert ours.height == len(fixes) == 552
+    for row, parts in zip(ours.iter_rows(named=True), fixes.values(), strict=True):
+        pvt, cov = parts["pvt"], parts["NAV-COV"]
+        # Both divide whole numbers by a power of ten.
+        assert (row["est_lat_rad"], row["est_lon_rad"]) == (math.radians(pvt.lat), math.radians(pvt.lon))
+        assert (row["est_h_m"], row["n_sv"], row["vertical_rate_mps"]) == (pvt.height * 1e-3, pvt.numSV, -pvt.velD * 1e-3)
+        assert [row[f"cov_{k}_m2"] for k in ("ee", "en", "nn", "eu")] == [cov.posCovEE, cov.posCovNE, cov.posCovNN, -cov.posCovED]
+        if "NAV-DOP" in parts:
+            assert (row["hdop"], row["vdop"]) == (parts["NAV-DOP"].hDOP, parts["NAV-DOP"].vDOP)
+
+
+@pytest.mark.parametrize(("name", "n"), [("sbfdata.log", 58), ("pygpsdata_x5pvt.log", 16)])
+def test_every_position_of_a_septentrio_log_is_that_of_pysbf2(shared_data: Path, name: str, n: int) -> None:
+    log = shared_data / "rxlogs" / "pysbf2" / name
+    blocks = [block for _, block in peer("pysbf2").SBFReader(io.BytesIO(log.read_bytes()), quitonerror=0)]
+    places = [b for b in blocks if b is not None and b.identity in {"PVTGeodetic", "PVTCartesian"} and b.Type != 0 and b.Error == 0]
+    ours = _columns(log)
+    times = {b.WNc * WEEK_NS + b.TOW * 1_000_000: b for b in places}
+    assert ours["time_ns"].to_list() == sorted(times)
+    assert ours.height == n
+    for row in ours.iter_rows(named=True):
+        block = times[row["time_ns"]]
+        assert row["n_sv"] == block.NrSV
+        if block.identity == "PVTGeodetic":
+            assert (row["est_lat_rad"], row["est_lon_rad"], row["est_h_m"]) == (block.Latitude, block.Longitude, block.Height)
+        else:
+            # Closed form there and here; 1e-6 m is some hundred roundings of 6.4e6 m.
+            h, lat, lon = row["est_h_m"], row["est_lat_rad"], row["est_lon_rad"]
+            normal = 6_378_137.0 / math.sqrt(1 - E2 * math.sin(lat) ** 2)
+            axes = [(normal + h) * math.cos(lat) * math.cos(lon), (normal + h) * math.cos(lat) * math.sin(lon)]
+            axes.append((normal * (1 - E2) + h) * math.sin(lat))
+            assert np.abs(np.array(axes) - [block.X, block.Y, block.Z]).max() < 1e-6
+
+
+E2 = (2 - 1 / 298.257223563) / 298.257223563
+"""Squared eccentricity of WGS-84."""
+
+
+@pytest.mark.parametrize("name", ["ublox-zed-f9p-nmea.log", "nmea-rtk.log", "ublox-8.log"])
+def test_every_position_of_sentences_is_that_of_pynmeagps(shared_data: Path, name: str) -> None:
+    log = shared_data / "rxlogs" / "gpsd" / name
+    sentences = [s for _, s in peer("pynmeagps").NMEAReader(io.BytesIO(log.read_bytes()), quitonerror=0) if s is not None]
+    fixes = [s for s in sentences if s.msgID == "GGA" and s.quality not in {0, 6, 7, 8}]
+    ours = _columns(log)
+    assert ours.height == len(fixes) > 20
+    for row, gga in zip(ours.iter_rows(named=True), fixes, strict=True):
+        # It rounds degrees to ten decimals.
+        assert abs(math.degrees(row["est_lat_rad"]) - gga.lat) <= 0.51e-10
+        assert abs(math.degrees(row["est_lon_rad"]) - gga.lon) <= 0.51e-10
+        assert (row["est_h_m"], row["n_sv"], row["hdop"]) == (gga.alt + gga.sep, gga.numSV, gga.HDOP)
+        whole_s = row["time_ns"] // NS - 18
+        assert whole_s % 86_400 == (gga.time.hour * 60 + gga.time.minute) * 60 + gga.time.second
 
 
 LEG_FIELDS = {

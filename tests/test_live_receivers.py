@@ -65,15 +65,26 @@ def test_a_ubx_log_has_the_bounds_and_alerts_of_the_batch_in_every_bit(ubx: Path
     assert set(beyond["alert"]) == {"unavailable"}
 
 
-def test_an_nmea_log_has_the_bounds_of_the_batch_and_its_positions_to_its_rounding(shared_data: Path, tmp_path: Path) -> None:
+def test_an_nmea_log_has_the_positions_and_bounds_of_the_batch_in_every_bit(shared_data: Path, tmp_path: Path) -> None:
     log = shared_data / "rxlogs/gpsd/ublox-zed-f9p-nmea.log"
     epochs = lived(log, tmp_path / "out", live.Settings(format="nmea", rnp_m=RNP_M))
     batch = navbound.analyze([log], spec="RNP 0.3").epochs.with_columns(track=pl.lit("receiver"))
-    pairs = {"accuracy_bound_m": "anp_circle_m", "integrity_bound_m": "anp_circle_integrity_m", "alert": "alert", "status": "status"}
+    bounds = {"accuracy_bound_m": "anp_circle_m", "integrity_bound_m": "anp_circle_integrity_m"}
+    pairs = bounds | {name: name for name in ("est_lat_rad", "est_lon_rad", "est_h_m", "alert", "status")}
     assert differing(epochs, batch, pairs) == dict.fromkeys(pairs, 0)
-    both = epochs.join(batch, on="time_ns", suffix="_batch")
-    # The package behind the reader of files rounds degrees to ten decimals.
-    assert both.select((pl.col("est_lat_rad") - pl.col("est_lat_rad_batch")).abs().max()).item() <= 1e-10 * 0.0175
+
+
+@pytest.mark.parametrize(("name", "form"), [("pysbf2/sbfdata.log", "sbf"), ("novatel/oemv_200911218.gps", "novatel")])
+def test_septentrio_and_novatel_logs_have_the_positions_and_bounds_of_the_batch(
+    shared_data: Path, tmp_path: Path, name: str, form: str
+) -> None:
+    log = shared_data / "rxlogs" / name
+    epochs = lived(log, tmp_path / "out", live.Settings(format=form, rnp_m=RNP_M), chunk=333)
+    batch = navbound.analyze([log], spec="RNP 0.3").epochs.with_columns(track=pl.lit("receiver"))
+    bounds = {"accuracy_bound_m": "anp_circle_m", "integrity_bound_m": "anp_circle_integrity_m"}
+    places = ("est_lat_rad", "est_lon_rad", "est_h_m")
+    assert differing(epochs, batch, bounds | dict(zip(places, places, strict=True))) == dict.fromkeys([*bounds, *places], 0)
+    assert batch.join(epochs, on="time_ns", how="anti").height == 0
 
 
 def test_recorded_approaches_have_the_bounds_alerts_and_events_of_the_batch(shared_data: Path, tmp_path: Path) -> None:

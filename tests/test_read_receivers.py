@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gzip
-import importlib
 import math
 import struct
 from pathlib import Path
@@ -14,9 +13,8 @@ import polars as pl
 import pytest
 
 import navbound
-from navbound import FormatError, InputError
-from navbound.read import read
-from navbound.read.receivers import kind
+from navbound import FormatError
+from navbound.read import formats, read
 
 NS = 1_000_000_000
 WEEK_NS = 604_800 * NS
@@ -218,36 +216,13 @@ def test_positions_that_nothing_dates_are_refused(tmp_path: Path) -> None:
 
 
 def test_the_kind_is_told_from_the_content(logs: Path) -> None:
-    assert kind(b"time,lat,lon\n1,2,3\n") is None
-    assert kind(b"\x00" * 1000) is None
+    assert formats.of(b"time,lat,lon\n1,2,3\n").id == "csv"
+    assert formats.of(b"\x00" * 1000).id == "csv"
     # UBX frames without a position beside NMEA with one.
-    assert kind((logs / "gpsd" / "ublox-zed-f9p_hpg1.11.log").read_bytes()) == "nmea"
-    assert kind((logs / "gpsd" / "ublox-zed-f9r.log").read_bytes()) == "ubx"
+    assert formats.of((logs / "gpsd" / "ublox-zed-f9p_hpg1.11.log").read_bytes()).id == "nmea"
+    assert formats.of((logs / "gpsd" / "ublox-zed-f9r.log").read_bytes()).id == "ubx"
     with pytest.raises(FormatError, match="NAV-PVT"):
         read(logs / "gpsd" / "ublox-x20p.log")
-
-
-@pytest.mark.parametrize(
-    ("module", "content"),
-    [
-        ("pyubx2", nav_pvt(0)),
-        ("pysbf2", b"$@\x00\x00\xa7\x4f\x60\x00".ljust(96, b"\0")),
-        ("pynmeagps", sentence("GPGGA,000000.00,4715.0,N,00600.0,E,1,12,0.9,100.0,M,40.0,M,,")),
-    ],
-)
-def test_a_missing_decoder_is_named_with_its_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, module: str, content: bytes) -> None:
-    real = importlib.import_module
-
-    def absent(name: str) -> Any:
-        if name.startswith(module):
-            raise ImportError(name)
-        return real(name)
-
-    monkeypatch.setattr("navbound.read.receivers.log.import_module", absent)
-    path = tmp_path / "log.bin"
-    path.write_bytes(content)
-    with pytest.raises(InputError, match=rf"{module}.*navbound\[receivers\]"):
-        read(path)
 
 
 @pytest.mark.parametrize(

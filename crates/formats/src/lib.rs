@@ -8,6 +8,7 @@ pub mod packed;
 pub mod precise;
 pub mod receiver;
 pub mod refusal;
+pub mod registry;
 pub mod rinex;
 pub mod rtklib;
 pub mod sbas;

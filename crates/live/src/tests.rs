@@ -357,8 +357,8 @@ fn a_torn_frame_is_told_from_a_damaged_one() {
 
 proptest! {
     #[test]
-    fn any_bytes_are_taken_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..2000), format in 0..3_usize) {
-        let format = [Format::Json, Format::Ubx, Format::Nmea][format];
+    fn any_bytes_are_taken_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..2000), format in 0..5_usize) {
+        let format = Format::of(["json", "ubx", "sbf", "novatel", "nmea"][format]).unwrap();
         let mut lane = Lane::new(Settings { format, ..settings() }).unwrap();
         let mut out = Vec::new();
         lane.step(&Input::Chunk { arrival: Some(at(0.0)), bytes: &bytes }, &mut out);

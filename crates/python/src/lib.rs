@@ -26,6 +26,7 @@ mod procedures;
 mod radionav;
 mod raim;
 mod read;
+mod receivers;
 mod rnp;
 mod rraim;
 mod sbas;
@@ -76,5 +77,6 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     simulate::register(m)?;
     ins_simulate::register(m)?;
     subsets::register(m)?;
-    read::register(m)
+    read::register(m)?;
+    receivers::register(m)
 }

@@ -1,11 +1,9 @@
 //! Readers, and what recorded positions are checked for.
 
 use crate::error::{format_error, input_error};
-use nalgebra::Matrix3;
 use navbound_assess::error::navigation_errors;
 use navbound_assess::plausible::{Finding, Limits, Report, SPEEDS_BESIDE, Survey, Track};
-use navbound_core::frame::{Covariance, Ecef, LatLon};
-use navbound_core::quantity::{GpsTime, OutOfDomain, Radians};
+use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_formats::packed::{Limit, unpack_within};
 use navbound_formats::{measured, rtklib, time};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
@@ -86,25 +84,6 @@ fn gps_from_week_ns<'py>(
         .map(|(i, (w, tow))| time::from_week(*w, *tow).map(|t| t.nanoseconds()).ok_or_else(|| input_error(beyond(*w), Some(i))))
         .collect();
     Ok(times?.into_pyarray(py))
-}
-
-/// Covariances (n, 6) east-north-up as [ee, en, nn, eu, nu, uu] of Earth-fixed ones (n, 6) as [xx, xy, yy, xz, yz, zz] \[m²\], at places
-/// (n, 3): latitude, longitude \[rad\], height \[m\].
-#[pyfunction]
-fn enu_covariance<'py>(
-    py: Python<'py>,
-    ecef_m2: PyReadonlyArray2<'py, f64>,
-    place: PyReadonlyArray2<'py, f64>,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let (own, places) = (ecef_m2.as_slice()?.as_chunks::<6>().0, triples(&place)?);
-    let turn = |(index, (c, [lat, lon, _])): (usize, (&[f64; 6], &[f64; 3]))| {
-        let point = LatLon::new(Radians::new(*lat), Radians::new(*lon)).map_err(|e| input_error(e, Some(index)))?;
-        let [xx, xy, yy, xz, yz, zz] = *c;
-        let m = *Covariance::<Ecef>::claim_symmetric(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)).to_enu(&point).matrix();
-        Ok([m.m11, m.m12, m.m22, m.m13, m.m23, m.m33])
-    };
-    let turned: PyResult<Vec<[f64; 6]>> = own.iter().zip(places).enumerate().map(turn).collect();
-    rows(py, &turned?)
 }
 
 /// Positions as the text of an RTKLIB solution file; covariances as [ee, en, nn, eu, nu, uu].
@@ -256,7 +235,6 @@ fn numbers(bytes: &[u8]) -> Vec<u32> {
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(unpack, m)?)?;
     m.add_function(wrap_pyfunction!(read_rtklib, m)?)?;
-    m.add_function(wrap_pyfunction!(enu_covariance, m)?)?;
     m.add_function(wrap_pyfunction!(write_rtklib, m)?)?;
     m.add_function(wrap_pyfunction!(gps_from_unix_ns, m)?)?;
     m.add_function(wrap_pyfunction!(gps_of_leap_second_ns, m)?)?;
@@ -266,7 +244,5 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("SPEEDS_BESIDE", SPEEDS_BESIDE)?;
     m.add("GGA_QUALITIES", numbers(measured::GGA_QUALITIES))?;
     m.add("RTKLIB_QUALITIES", numbers(measured::RTKLIB_QUALITIES))?;
-    m.add("SBF_MODES", numbers(measured::SBF_MODES))?;
-    m.add("NOVATEL_TYPES", measured::NOVATEL_TYPES.to_vec())?;
     m.add_class::<PlausibleTrack>()
 }

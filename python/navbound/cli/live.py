@@ -41,7 +41,7 @@ def watch(
     out: SessionOut = Path("out/live"),
     spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3'.")] = "RNP 0.3",
     path: Annotated[str | None, typer.Option(help="Where the aircraft should be: a runway (LFPG/08R) or a route file.")] = None,
-    form: Annotated[str | None, typer.Option("--format", help="json, ubx or nmea. [default: by the first bytes of a file]")] = None,
+    form: Annotated[str | None, typer.Option("--format", help="json, ubx, sbf, novatel or nmea. [default: by a file's begin]")] = None,
     method: Annotated[
         str, typer.Option(help="tse-exact or anp-circle. [default: the first with --path or a run that has one, otherwise the second]")
     ] = "",
@@ -66,7 +66,7 @@ def watch(
 
     known = form or (None if "://" in source or source == "-" else format_of(source))
     if known is None and ("://" in source or source == "-"):
-        raise InputError("format", "none", domain="json, ubx or nmea with --format: a stream is not guessed")
+        raise InputError("format", "none", domain="json, ubx, sbf, novatel or nmea with --format: a stream is not guessed")
     settings = live.Settings(
         format=known or "json",
         rnp_m=requirement(spec).rnp_m,

@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from navbound import _core
 from navbound.errors import FormatError, InputError
+from navbound.read.receivers import MESSAGES
 from navbound.read.routes import load_route
 from navbound.read.runways import runway
 
 if TYPE_CHECKING:
     from navbound.path import Path
 
-FORMATS = ("json", "ubx", "nmea")
+FORMATS = ("json", *MESSAGES)
+"""Lines of JSON, or the messages of a receiver."""
 METHODS = ("tse-exact", "anp-circle")
 COMPUTING_S = 0.2
 """Share of the way to the crew: from the arrival of bytes to the alert. Provenance: inferred. [s]"""
@@ -28,7 +30,7 @@ class Settings:
 
     Attributes
     ----------
-    format : {"json", "ubx", "nmea"}
+    format : {"json", "ubx", "sbf", "novatel", "nmea"}
         What the source sends.
     rnp_m : float
         RNP value in force where a record states none. [m]

@@ -14,6 +14,8 @@ from urllib.parse import urlsplit
 
 from navbound.errors import FormatError, InputError
 from navbound.live.recording import Recording
+from navbound.live.settings import FORMATS
+from navbound.read import formats
 
 CHUNK = 32 * 1024
 """Bytes that are read at once. [B]"""
@@ -232,8 +234,5 @@ def format_of(name: str) -> str | None:
             start = file.read(1 << 16)
     except OSError:
         return None
-    if start.lstrip()[:1] == b"{":
-        return "json"
-    if b"\xb5\x62\x01\x07" in start:
-        return "ubx"
-    return "nmea" if b"GGA," in start else None
+    known = formats.of(start).id
+    return known if known in FORMATS else None

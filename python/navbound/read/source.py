@@ -5,20 +5,15 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, visible
-from navbound.read import receivers
-from navbound.read.tables import foreign
+from navbound.read import formats
 from navbound.records.run import InputFile
 from navbound.storage import packed
 
-Kind = Literal["csv", "json", "parquet", "rtklib", "ubx", "sbf", "novatel", "nmea"]
-
-
-PACKED = (b"\x1f\x8b", b"\x1f\x9d", b"PK\x03\x04", b"PK\x05\x06", b"BZh", b"\xfd7zXZ")
-"""Beginnings of packed files: those that are unpacked, and those that are named."""
-
+if TYPE_CHECKING:
+    from navbound.read.formats import Format
 
 _LOOK_AT = 1 << 16
 
@@ -48,16 +43,15 @@ class Source:
     open_end: bool = False
 
     @property
-    def kind(self) -> Kind:
-        """What the content is, told from the content and not from the name."""
-        if self.content.startswith(b"PAR1"):
-            return "parquet"
-        start = self.content[:4096].removeprefix(b"\xef\xbb\xbf").lstrip()
-        if start.startswith((b"{", b"[")):
-            return receivers.kind(_behind_banner(self.content)) or "json"
-        if start.startswith(b"%"):
-            return "rtklib"
-        return receivers.kind(self.content) or "csv"
+    def format(self) -> Format:
+        """What the content is; only where it has no sign of its own, what the name says."""
+        return formats.of(self.content, self.path.name)
+
+    @property
+    def kind(self) -> str:
+        """Id of the format of its positions; what holds none is taken for a text table, and refused as such."""
+        of = self.format
+        return of.id if "positions" in of.holds else "csv"
 
     @property
     def stem(self) -> str:
@@ -100,18 +94,6 @@ class Source:
         return InputFile(path=str(self.path), sha256=self.sha256, n_bytes=self.n_bytes, n_rows=n_rows)
 
 
-def _behind_banner(content: bytes) -> bytes:
-    """What follows the lines of JSON at the beginning, which a program writes that passes a receiver's log on."""
-    at = 0
-    while (line := content[at : at + 4096].lstrip()).startswith(b"{"):
-        end = content.find(b"\n", at + 1)
-        # An object over several lines is no banner.
-        if end < 0 or not content[at:end].rstrip().endswith(b"}"):
-            return b""
-        at = end + 1
-    return b"" if line.startswith((b"[", b"]", b"}", b'"')) else content[at:]
-
-
 def load(path: str | Path) -> Source:
     """Read a file, unpacking gzip, compress (``.Z``) and zip.
 
@@ -132,9 +114,9 @@ def load(path: str | Path) -> Source:
     content = packed.plain(path, stored)
     if not content.strip():
         raise FormatError(path, "the file is empty")
-    other = foreign.kind(content)
-    if other is not None:
-        raise FormatError(path, other)
+    of = formats.of(content, path.name)
+    if of.instead is not None:
+        raise FormatError(path, f"a {of.title}, which is not read: {of.instead}")
     return Source(path, content, hashlib.sha256(stored).hexdigest(), len(stored))
 
 
@@ -153,5 +135,5 @@ def is_text_table(path: str | Path, least_bytes: int = 0) -> bool:
     except OSError:
         # Whoever reads it says what is wrong.
         return False
-    packed = start.startswith(PACKED)
-    return not packed and bool(start.strip()) and foreign.kind(start) is None and Source(path, start, "", len(start)).kind == "csv"
+    of = formats.of(start, path.name)
+    return bool(start.strip()) and not {"packed", "nothing"} & {*of.holds} and Source(path, start, "", len(start)).kind == "csv"

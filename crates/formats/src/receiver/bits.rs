@@ -13,6 +13,10 @@ pub(super) fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
     array(bytes, at).map(u16::from_le_bytes)
 }
 
+pub(super) fn i16_at(bytes: &[u8], at: usize) -> Option<i16> {
+    array(bytes, at).map(i16::from_le_bytes)
+}
+
 pub(super) fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
     array(bytes, at).map(u32::from_le_bytes)
 }

@@ -1,7 +1,6 @@
-//! The frames of a log: the search of [`crate::stream`] over all its bytes. Sentences are passed over.
+//! The frames of a raw log: the search of [`crate::stream`] over all its bytes. Sentences are passed over.
 
-use crate::stream::{self, Look, look};
-use memchr::memchr2_iter;
+use crate::stream::{self, Among, Damage, Place};
 
 /// One frame, its checksum verified.
 #[derive(Debug, Clone, Copy)]
@@ -17,7 +16,7 @@ impl<'a> Frame<'a> {
         match frame {
             stream::Frame::Ubx { kind, payload } => Some(Self::Ubx { kind, payload }),
             stream::Frame::Sbf { block, body } => Some(Self::Sbf { block, body }),
-            stream::Frame::Nmea(_) | stream::Frame::Line(_) => None,
+            _ => None,
         }
     }
 
@@ -43,23 +42,13 @@ pub(super) struct Found<'a> {
 
 /// The frames of a log.
 pub(super) struct Frames<'a> {
-    bytes: &'a [u8],
-    at: usize,
+    places: stream::Frames<'a>,
     number: usize,
 }
 
 impl<'a> Frames<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0, number: 0 }
-    }
-
-    /// Frame at a place and its length; `None` where none begins.
-    fn look(&self, at: usize) -> Option<(usize, Result<Frame<'a>, &'static str>)> {
-        match look(self.bytes.get(at..)?, false, true) {
-            Look::Nothing | Look::NeedMore => None,
-            Look::Frame { length, frame } => Some((length, Ok(Frame::of(frame)?))),
-            Look::Damaged { reason, length } => Some((length, Err(reason))),
-        }
+        Self { places: stream::Frames::new(bytes, Among::Raw), number: 0 }
     }
 }
 
@@ -67,17 +56,12 @@ impl<'a> Iterator for Frames<'a> {
     type Item = Found<'a>;
 
     fn next(&mut self) -> Option<Found<'a>> {
-        let from = self.at;
-        for place in memchr2_iter(0xb5, b'$', self.bytes.get(from..)?) {
-            let at = from + place;
-            let Some((length, frame)) = self.look(at) else { continue };
-            self.number += 1;
-            // Behind a damaged frame the next one may begin anywhere.
-            self.at = at + if frame.is_ok() { length } else { 2 };
-            return Some(Found { at, number: self.number, length: if frame.is_ok() { length } else { 0 }, frame });
-        }
-        self.at = self.bytes.len();
-        None
+        let (Place { at, end, .. }, frame) = self.places.by_ref().find_map(|place| match place.frame {
+            Ok(frame) => Frame::of(frame).map(|frame| (place, Ok(frame))),
+            Err(Damage { reason, .. }) => Some((place, Err(reason))),
+        })?;
+        self.number += 1;
+        Some(Found { at, number: self.number, length: if frame.is_ok() { end - at } else { 0 }, frame })
     }
 }
 

@@ -7,6 +7,7 @@ mod bits;
 mod frames;
 mod inav;
 mod lnav;
+pub mod position;
 mod sbf;
 mod subframes;
 mod table;

@@ -19,13 +19,52 @@ pub enum Frame<'a> {
     },
     /// NMEA 0183: what is between `$` and `*`.
     Nmea(&'a [u8]),
+    /// NovAtel, binary: the header from its sync on, and the body.
+    NovatelBinary {
+        /// Header.
+        head: &'a [u8],
+        /// Body.
+        body: &'a [u8],
+    },
+    /// NovAtel, ASCII: what is between `#` and `*`.
+    NovatelText(&'a [u8]),
     /// A line without its end.
     Line(&'a [u8]),
+}
+
+/// Whose frames they are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// u-blox.
+    Ubx,
+    /// Septentrio.
+    Sbf,
+    /// NMEA 0183.
+    Nmea,
+    /// NovAtel.
+    Novatel,
+    /// Lines of text.
+    Lines,
+}
+
+impl Frame<'_> {
+    /// Whose frame it is.
+    pub const fn family(&self) -> Family {
+        match self {
+            Self::Ubx { .. } => Family::Ubx,
+            Self::Sbf { .. } => Family::Sbf,
+            Self::Nmea(_) => Family::Nmea,
+            Self::NovatelBinary { .. } | Self::NovatelText(_) => Family::Novatel,
+            Self::Line(_) => Family::Lines,
+        }
+    }
 }
 
 /// What began as a frame and is none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Damage {
+    /// Whose frame it would be.
+    pub family: Family,
     /// Why.
     pub reason: &'static str,
     /// Bytes of it that are known \[B\].

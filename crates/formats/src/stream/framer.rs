@@ -3,13 +3,12 @@
 use super::LONGEST_FRAME;
 use super::frame::{Damage, Frame};
 use super::lines;
-use super::search::{Look, look};
-use memchr::memchr2;
+use super::search::{Among, Look, SYNC, look, next};
 
 /// What a stream consists of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Protocol {
-    /// UBX, SBF and NMEA sentences, mixed, with anything between them.
+    /// UBX, SBF, NovAtel and NMEA sentences, mixed, with anything between them.
     Receiver,
     /// Lines of text.
     Lines,
@@ -18,9 +17,6 @@ pub enum Protocol {
 /// Kept bytes that no framer can have: more than the longest frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BadRest;
-
-/// Behind the sync of a damaged frame the next one may begin anywhere.
-const SYNC: usize = 2;
 
 /// Cuts a stream into frames. Between two pieces it keeps at most the bytes of one frame.
 #[derive(Debug, Clone)]
@@ -81,18 +77,18 @@ impl Framer {
 fn receiver(bytes: &[u8], ended: bool, out: &mut impl FnMut(Result<Frame<'_>, Damage>)) -> usize {
     let mut at = 0;
     while let Some(rest) = bytes.get(at..).filter(|rest| !rest.is_empty()) {
-        let Some(place) = memchr2(0xb5, b'$', rest) else { return bytes.len() };
+        let Some(place) = next(rest, Among::Receivers) else { return bytes.len() };
         let begun = rest.get(place..).unwrap_or_default();
         at += place;
-        match look(begun, true, ended) {
+        match look(begun, Among::Receivers, ended) {
             Look::Nothing => at += 1,
             Look::NeedMore => return at,
             Look::Frame { length, frame } => {
                 out(Ok(frame));
                 at += length;
             }
-            Look::Damaged { reason, length } => {
-                out(Err(Damage { reason, length }));
+            Look::Damaged(damage) => {
+                out(Err(damage));
                 at += SYNC;
             }
         }

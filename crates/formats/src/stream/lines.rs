@@ -1,6 +1,6 @@
 //! Lines of text, such as one JSON object each.
 
-use super::frame::{Damage, Frame};
+use super::frame::{Damage, Family, Frame};
 
 /// Longest line that is read \[B\]. Provenance: ours.
 pub(super) const LONGEST: usize = 16 * 1024;
@@ -16,7 +16,7 @@ pub(super) fn cut(bytes: &[u8], skipping: &mut bool, ended: bool, out: &mut impl
         }
         if !*skipping {
             if line.len() > LONGEST {
-                out(Err(Damage { reason: "a line longer than 16384 bytes", length: LONGEST }));
+                out(Err(Damage { family: Family::Lines, reason: "a line longer than 16384 bytes", length: LONGEST }));
             } else {
                 take(line, out);
             }

@@ -1,4 +1,4 @@
-//! Frames out of bytes that are still arriving: UBX, SBF, NMEA sentences and lines.
+//! Frames out of bytes that are still arriving: UBX, SBF, NovAtel, NMEA sentences and lines.
 //!
 //! [`Framer`] takes bytes in pieces of any size. A frame whose end has not arrived is *need more* and not damage; it becomes damage when the
 //! stream falls silent or ends ([`Framer::flush`]). **Chunk law**: any cutting of the bytes gives the same frames in the same order, and the
@@ -9,14 +9,17 @@ mod frame;
 mod framer;
 mod lines;
 mod nmea;
+mod novatel;
 mod sbf;
 mod search;
 mod ubx;
 
 #[cfg(test)]
 pub(crate) use check::crc16;
-pub use frame::{Damage, Frame};
+pub use frame::{Damage, Family, Frame};
 pub use framer::{BadRest, Framer, Protocol};
+pub use search::{Among, Frames, Place};
+#[cfg(test)]
 pub(crate) use search::{Look, look};
 
 /// Longest frame that is kept until its end arrives \[B\]. A length field above it is no length; the longest UBX frame that is believed has

@@ -2,7 +2,7 @@
 
 use super::LONGEST_FRAME;
 use super::check::crc16;
-use super::frame::Frame;
+use super::frame::{Family, Frame};
 use super::search::Look;
 
 /// Sync, check sum, block number, length.
@@ -17,10 +17,10 @@ pub(super) fn look(rest: &[u8], ended: bool) -> Look<'_> {
         return Look::Nothing;
     }
     let Some((checked, body)) = rest.get(4..length).zip(rest.get(HEAD..length)) else {
-        return Look::cut(ended, "the log ends within an SBF block", rest.len());
+        return Look::cut(ended, Family::Sbf, "the log ends within an SBF block", rest.len());
     };
     if crc16(checked) != u16::from_le_bytes([s0, s1]) {
-        return Look::damaged("the CRC of an SBF block is wrong", length);
+        return Look::damaged(Family::Sbf, "the CRC of an SBF block is wrong", length);
     }
     Look::Frame { length, frame: Frame::Sbf { block: u16::from_le_bytes([b0, b1]) & 0x1fff, body } }
 }

@@ -30,14 +30,14 @@ fn cut_by(protocol: Protocol, bytes: &[u8], mut next: impl FnMut() -> usize) -> 
 fn at_once(bytes: &[u8]) -> Vec<String> {
     let (mut seen, mut at) = (Vec::new(), 0);
     while at < bytes.len() {
-        match look(&bytes[at..], true, true) {
+        match look(&bytes[at..], Among::Receivers, true) {
             Look::Nothing | Look::NeedMore => at += 1,
             Look::Frame { length, frame } => {
                 seen.push(named(&Ok(frame)));
                 at += length;
             }
-            Look::Damaged { reason, .. } => {
-                seen.push(reason.to_owned());
+            Look::Damaged(damage) => {
+                seen.push(damage.reason.to_owned());
                 at += 2;
             }
         }
@@ -62,7 +62,7 @@ fn logs() -> Vec<PathBuf> {
         return Vec::new();
     };
     let files = folders.flatten().flat_map(|f| fs::read_dir(f.path()).into_iter().flatten().flatten().map(|e| e.path()));
-    files.filter(|path| path.extension().is_some_and(|e| e == "log" || e == "ubx")).collect()
+    files.filter(|path| path.extension().is_some_and(|e| e == "log" || e == "ubx" || e == "gps")).collect()
 }
 
 /// Cuttings of a log: `NAVBOUND_CUTTINGS` for more of them.
@@ -145,6 +145,48 @@ fn lines_may_end_anyhow_and_a_long_one_is_refused_once() {
     }
 }
 
+/// CRC-32 bit by bit, by the manual's own program.
+fn slow_crc32(bytes: &[u8]) -> u32 {
+    bytes
+        .iter()
+        .fold(0, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |c: u32, _| if c & 1 == 1 { c >> 1 ^ 0xEDB8_8320 } else { c >> 1 }))
+}
+
+fn novatel_binary(body: &[u8]) -> Vec<u8> {
+    let mut frame = vec![0; 28];
+    frame[..6].copy_from_slice(&[0xaa, 0x44, 0x12, 28, 42, 0]);
+    frame[8] = body.len() as u8;
+    frame.extend(body);
+    let crc = slow_crc32(&frame);
+    frame.extend(crc.to_le_bytes());
+    frame
+}
+
+fn novatel_text(body: &str) -> Vec<u8> {
+    format!("#{body}*{:08x}\r\n", slow_crc32(body.as_bytes())).into_bytes()
+}
+
+#[test]
+fn novatel_logs_are_frames_and_a_turned_bit_is_damage() {
+    for whole in [novatel_binary(b"some body"), novatel_text("BESTPOSA,COM1,0;SOL_COMPUTED,1.0")] {
+        assert!(at_once(&whole)[0].contains("Novatel"), "{:?}", at_once(&whole));
+        let mut damaged = whole.clone();
+        damaged[15] ^= 1;
+        assert_eq!(at_once(&damaged).len(), 1);
+        assert!(at_once(&damaged)[0].contains("CRC"));
+    }
+}
+
+#[test]
+fn a_sentence_that_breaks_off_is_damage_and_two_capitals_are_not() {
+    let seen = |bytes: &[u8]| at_once(bytes);
+    assert_eq!(seen(b"$GPGGA,1,2\r\n"), ["a sentence breaks off before its checksum"]);
+    assert_eq!(seen(b"$GPGGA,1\x80,2*00\r\n"), ["the checksum of a sentence is wrong"]);
+    // A text in another alphabet is a sentence where its checksum is right.
+    assert!(seen(b"$GNTXT,\x80*FD\r\n")[0].contains("Nmea"));
+    assert!(seen(b"$AB\x80\x01 $GP\r\n").is_empty());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 500, ..ProptestConfig::default() })]
 
@@ -154,6 +196,8 @@ proptest! {
             Just(vec![0xb5, 0x62]), Just(b"$@".to_vec()), Just(b"$GPGGA,".to_vec()), Just(b"*00".to_vec()), Just(b"\n".to_vec()),
             Just(vec![0xb5, 0x62, 0x05, 0x01, 2, 0, 0x06, 0x01, 0x0f, 0x38]),
             Just(b"$GPZDA,001924.00,13,04,2019,00,00*64\r\n".to_vec()),
+            Just(vec![0xaa, 0x44]), Just(vec![0xaa, 0x44, 0x12, 0x1c, 0x2a, 0, 0, 0, 4, 0]), Just(novatel_binary(b"body")),
+            Just(b"#BESTPOSA,".to_vec()), Just(novatel_text("BESTPOSA,COM1;x")), Just(b"*0123abcd".to_vec()),
             prop::collection::vec(any::<u8>(), 0..40),
         ], 0..30),
         seed: u64,

@@ -1,6 +1,6 @@
 //! Source: u-blox interface description, UBX frame structure; standard.
 
-use super::frame::Frame;
+use super::frame::{Family, Frame};
 use super::search::Look;
 
 /// Largest payload that is believed: RXM-RAWX with all its 255 measurements has 8176 bytes.
@@ -18,14 +18,14 @@ pub(super) fn look(rest: &[u8], ended: bool) -> Look<'_> {
     let end = HEAD + length;
     let whole = rest.get(HEAD..end).zip(rest.get(end..end + 2)).zip(rest.get(2..end));
     let Some(((payload, sum), summed)) = whole else {
-        return Look::cut(ended, "the log ends within a UBX frame", rest.len());
+        return Look::cut(ended, Family::Ubx, "the log ends within a UBX frame", rest.len());
     };
     let (a, b) = summed.iter().fold((0_u8, 0_u8), |(a, b), byte| {
         let a = a.wrapping_add(*byte);
         (a, b.wrapping_add(a))
     });
     if [a, b] != *sum {
-        return Look::damaged("the checksum of a UBX frame is wrong", end + 2);
+        return Look::damaged(Family::Ubx, "the checksum of a UBX frame is wrong", end + 2);
     }
     Look::Frame { length: end + 2, frame: Frame::Ubx { kind: [class, id], payload } }
 }

@@ -1,12 +1,12 @@
 //! Bytes of a source to position reports, one at a time.
 
 mod json;
-mod nmea;
-mod ubx;
+mod receiver;
 
 use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, TrackId};
+use navbound_formats::receiver::position::{self, Ends, Kind};
 use navbound_formats::stream::{Damage, Frame, Framer, Protocol};
 
 /// What a source sends.
@@ -14,10 +14,8 @@ use navbound_formats::stream::{Damage, Frame, Framer, Protocol};
 pub enum Format {
     /// One JSON object a line: docs/methods/live.md has the fields.
     Json,
-    /// u-blox: NAV-PVT with NAV-COV and NAV-TIMEGPS of the same epoch.
-    Ubx,
-    /// NMEA 0183: GGA with GST of the same time of day, dated by RMC or ZDA.
-    Nmea,
+    /// Messages of a receiver.
+    Receiver(Kind),
 }
 
 impl Format {
@@ -25,16 +23,21 @@ impl Format {
     pub fn of(id: &str) -> Option<Self> {
         match id {
             "json" => Some(Self::Json),
-            "ubx" => Some(Self::Ubx),
-            "nmea" => Some(Self::Nmea),
-            _ => None,
+            _ => Kind::of(id).map(Self::Receiver),
         }
     }
 
     const fn protocol(self) -> Protocol {
         match self {
             Self::Json => Protocol::Lines,
-            Self::Ubx | Self::Nmea => Protocol::Receiver,
+            Self::Receiver(_) => Protocol::Receiver,
+        }
+    }
+
+    fn epochs(self) -> Option<position::Decoder> {
+        match self {
+            Self::Json => None,
+            Self::Receiver(kind) => Some(position::Decoder::new(kind, Ends::WithLast)),
         }
     }
 }
@@ -46,33 +49,21 @@ pub(crate) type Decoded = Result<Position, Refused>;
 #[derive(Debug, Clone)]
 pub(crate) struct Decoder {
     framer: Framer,
-    epochs: Epochs,
+    /// The epoch that a receiver's messages build; lines are epochs of their own.
+    epochs: Option<position::Decoder>,
     /// Whose positions a receiver's are.
     track: TrackId,
 }
 
-/// The epoch that a receiver's messages build.
-#[derive(Debug, Clone)]
-enum Epochs {
-    Json,
-    Ubx(Box<ubx::Epochs>),
-    Nmea(Box<nmea::Epochs>),
-}
-
 impl Decoder {
     pub(crate) fn new(format: Format, track: TrackId) -> Self {
-        let epochs = match format {
-            Format::Json => Epochs::Json,
-            Format::Ubx => Epochs::Ubx(Box::default()),
-            Format::Nmea => Epochs::Nmea(Box::default()),
-        };
-        Self { framer: Framer::new(format.protocol()), epochs, track }
+        Self { framer: Framer::new(format.protocol()), epochs: format.epochs(), track }
     }
 
     /// The next bytes; how many frames or lines were whole.
     pub(crate) fn push(&mut self, bytes: &[u8], out: &mut Vec<Decoded>) -> u64 {
         let (epochs, track, mut n_frames) = (&mut self.epochs, self.track, 0);
-        self.framer.push(bytes, &mut |found| n_frames += u64::from(take(epochs, track, &found, out)));
+        self.framer.push(bytes, &mut |found| n_frames += u64::from(take(epochs.as_mut(), track, &found, out)));
         n_frames
     }
 
@@ -80,12 +71,12 @@ impl Decoder {
     pub(crate) fn flush(&mut self, out: &mut Vec<Decoded>) {
         let (epochs, track) = (&mut self.epochs, self.track);
         self.framer.flush(&mut |found| {
-            take(epochs, track, &found, out);
+            take(epochs.as_mut(), track, &found, out);
         });
-        match epochs {
-            Epochs::Json => {}
-            Epochs::Ubx(epochs) => out.extend(epochs.finish(track)),
-            Epochs::Nmea(epochs) => out.extend(epochs.finish(track)),
+        if let Some(epochs) = epochs {
+            let mut items = Vec::new();
+            epochs.finish(&mut items);
+            out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, track)));
         }
     }
 
@@ -93,10 +84,8 @@ impl Decoder {
         let (rest, skipping) = self.framer.rest();
         to.bytes(rest);
         to.flag(skipping);
-        match &self.epochs {
-            Epochs::Json => {}
-            Epochs::Ubx(epochs) => epochs.write(to),
-            Epochs::Nmea(epochs) => epochs.write(to),
+        if let Some(epochs) = &self.epochs {
+            receiver::write(epochs, to);
         }
     }
 
@@ -104,23 +93,25 @@ impl Decoder {
         let (rest, skipping) = (from.bytes()?, from.flag()?);
         let framer = Framer::with_rest(format.protocol(), rest, skipping).map_err(|_| Damaged("more bytes wait than a frame has"))?;
         let epochs = match format {
-            Format::Json => Epochs::Json,
-            Format::Ubx => Epochs::Ubx(Box::new(ubx::Epochs::read(from)?)),
-            Format::Nmea => Epochs::Nmea(Box::new(nmea::Epochs::read(from)?)),
+            Format::Json => None,
+            Format::Receiver(kind) => Some(receiver::read(kind, from)?),
         };
         Ok(Self { framer, epochs, track })
     }
 }
 
 /// One frame; whether it was whole.
-fn take(epochs: &mut Epochs, track: TrackId, found: &Result<Frame<'_>, Damage>, out: &mut Vec<Decoded>) -> bool {
+fn take(epochs: Option<&mut position::Decoder>, track: TrackId, found: &Result<Frame<'_>, Damage>, out: &mut Vec<Decoded>) -> bool {
     match (found, epochs) {
         (Err(_), _) => out.push(Err(Refused::DamagedFrame)),
-        (Ok(Frame::Line(line)), Epochs::Json) => out.push(json::position(line)),
-        (Ok(Frame::Ubx { kind, payload }), Epochs::Ubx(epochs)) => epochs.take(*kind, payload, track, out),
-        (Ok(Frame::Nmea(body)), Epochs::Nmea(epochs)) => epochs.take(body, track, out),
+        (Ok(Frame::Line(line)), None) => out.push(json::position(line)),
+        (Ok(_), None) => {}
         // Frames of other protocols between them are passed over.
-        (Ok(_), _) => {}
+        (Ok(frame), Some(epochs)) => {
+            let mut items = Vec::new();
+            epochs.take(frame, 0, &mut items);
+            out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, track)));
+        }
     }
     found.is_ok()
 }

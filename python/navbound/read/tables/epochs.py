@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
 import polars as pl
 
 from navbound import _core
 from navbound.errors import FormatError
-from navbound.read import receivers
 from navbound.read.checks import levels
 from navbound.read.checks.rejections import Rejections, Tally
 from navbound.read.checks.repeats import left_out
@@ -25,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from navbound.read import receivers
     from navbound.records.run import InputFile, Rejection
 
 
@@ -69,8 +68,7 @@ class Reading:
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:
     """Read a recorded track: CSV, JSON, Parquet, an RTKLIB solution file, or the log of a receiver.
 
-    Each may be packed by gzip, compress (``.Z``) or zip. Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183; they need the
-    extra ``receivers``.
+    Each may be packed by gzip, compress (``.Z``) or zip. Logs are those of u-blox, Septentrio, NovAtel and NMEA 0183.
 
     Parameters
     ----------
@@ -87,12 +85,12 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: S
     FormatError
         A file that cannot be interpreted, or of whose rows more than a tenth is malformed.
     InputError
-        A declared column that names no known quantity or unit; a log whose decoder is not installed.
+        A declared column that names no known quantity or unit.
     """
     source = load(path)
-    kind = source.kind
-    if kind == "rtklib" or receivers.is_log(kind):
-        reading = _rtklib(source) if kind == "rtklib" else _log(source, kind)
+    of = source.format
+    if of.id == "rtklib" or of.read is not None:
+        reading = _rtklib(source) if of.read is None else _log(source, of.read(source))
         if columns:
             reading.notes.append(f"Columns named by the caller change nothing in {source.path.name}, whose format names its own.")
         return reading
@@ -140,19 +138,13 @@ def _rtklib(source: Source) -> Reading:
     return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes, left_out=lost)
 
 
-def _log(source: Source, kind: receivers.Kind) -> Reading:
-    log = receivers.read(source, kind)
+def _log(source: Source, log: receivers.Log) -> Reading:
     rejections = Rejections(source.path, "record")
-    for reason, (count, first, example, damaged) in log.left_out.items():
+    for reason, damaged, count, first, example in log.left_out:
         rejections.add(reason, count, first, example, malformed=damaged)
     rejections.refuse_if_too_many(log.n_rows)
-    out = pl.DataFrame(log.rows, infer_schema_length=None)
-    _not_empty(source, out, rejections)
-    if "unix_ns" in out.columns:
-        gps = pl.Series("time_ns", _core.gps_from_unix_ns(np.ascontiguousarray(out["unix_ns"].fill_null(0).to_numpy(), dtype=np.int64)))
-        known = pl.coalesce("time_ns", gps) if "time_ns" in out.columns else gps
-        out = out.with_columns(known.alias("time_ns")).drop("unix_ns")
-    out = out.rename({"record": LINE}).with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
+    _not_empty(source, log.epochs, rejections)
+    out = log.epochs.rename({"record": LINE}).with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
     out, contradicting = _in_order(out, rejections, log.notes)
     empty = [c for c in out.columns if out[c].is_null().all()]
     lost = _left_out(contradicting)

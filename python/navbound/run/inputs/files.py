@@ -98,13 +98,13 @@ def _raw(source: Source) -> list[str] | None:
     return None if found is None else [k for k, n in zip(("observations", "navigation", "messages"), found, strict=True) if n]
 
 
+_LISTS = ("observations", "navigation", "messages")
+
+
 def _kind(source: Source) -> str:
-    first = source.content[:200].split(b"\n", 1)[0]
-    if b"CRINEX VERS" in first:
-        return "observations"
-    if b"RINEX VERSION / TYPE" in first:
-        if first[20:21] == b"O":
-            return "observations"
-        return "messages" if first[20:21] in {b"B", b"H"} and b"NAV" not in first[20:40] else "navigation"
-    name = source.path.name.lower().removesuffix(".gz").removesuffix(".z").removesuffix(".zip")
-    return "messages" if name.endswith((".ems", ".sbs")) else "tables"
+    """The list that a file of one content belongs to. A log of a receiver may hold all; its own positions are tables."""
+    holds = source.format.holds
+    if "clocks" in holds:
+        # Refused there, as no record of orbits stands in it.
+        return "navigation"
+    return next((name for name in _LISTS if holds == (name,)), "tables")

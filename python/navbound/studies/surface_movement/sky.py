@@ -12,7 +12,7 @@ import numpy as np
 from navbound import gnss
 from navbound.errors import FormatError, InputError
 from navbound.gnss import Orbits
-from navbound.read.source import PACKED
+from navbound.read import formats
 from navbound.scenario.models import GPS_EPOCH
 from navbound.storage import packed
 from navbound.studies.surface_movement import scenario as surface
@@ -186,6 +186,6 @@ def is_rinex(path: Path) -> bool:
             head = file.read(4096)
     except OSError as e:
         raise FormatError(path, e.strerror or str(e)) from e
-    if head.startswith(PACKED):
+    if "packed" in formats.of(head).holds:
         head = packed.read(path)[:4096]
-    return b"RINEX VERSION" in head[:200]
+    return formats.of(head).id.startswith("rinex-")

@@ -1,0 +1,138 @@
+//! Frames of a receiver to positions, one after the other.
+
+use super::epoch::{Ends, Epoch, Message, State};
+use super::nmea::Dated;
+use super::{Kind, Position, nmea, novatel, sbf, ubx};
+use crate::stream::Frame;
+
+/// A message that is shorter than its definition, or has a field that is none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Malformed {
+    /// Number of the message.
+    pub record: u64,
+    /// Which message, and what is wrong.
+    pub reason: &'static str,
+}
+
+/// What frames give.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Item {
+    /// An epoch.
+    Position(Box<Position>),
+    /// A date of sentences, which dates those around it.
+    Dated(Dated),
+    /// A message that is none.
+    Malformed(Malformed),
+}
+
+/// Decoder of one receiver's stream. Between two frames it keeps the messages of an unfinished epoch.
+#[derive(Debug, Clone)]
+pub struct Decoder {
+    kind: Kind,
+    epoch: Epoch,
+    dated: Option<Dated>,
+}
+
+/// What a message does to an epoch.
+pub(super) enum Step {
+    /// Nothing that is read.
+    Passed,
+    /// It belongs to the epoch `key`.
+    Part { key: i64, kind: u32 },
+    /// It ends the epoch `key`.
+    End { key: i64, kind: u32 },
+    /// It is of the epoch `key` and holds a date, or none.
+    Date { key: i64, kind: u32, dated: Option<Dated> },
+    /// It is an epoch of its own.
+    Whole(Box<Position>),
+    /// It is none.
+    Malformed(&'static str),
+}
+
+impl Decoder {
+    /// A decoder that has seen nothing yet.
+    pub fn new(kind: Kind, ends: Ends) -> Self {
+        Self { kind, epoch: Epoch { state: State::default(), ends }, dated: None }
+    }
+
+    /// The decoder that had this state: see [`Self::state`].
+    pub fn with_state(kind: Kind, ends: Ends, state: State, dated: Option<Dated>) -> Self {
+        Self { kind, epoch: Epoch { state, ends }, dated }
+    }
+
+    /// What it keeps between two frames: the unfinished epoch, and the last date of sentences.
+    pub fn state(&self) -> (&State, Option<Dated>) {
+        (&self.epoch.state, self.dated)
+    }
+
+    /// The next frame, with its number in the stream, or 0 where nobody counts. Those of other receivers are passed over.
+    pub fn take(&mut self, frame: &Frame<'_>, record: u64, out: &mut Vec<Item>) {
+        let (step, body) = match (self.kind, frame) {
+            (Kind::Ubx, Frame::Ubx { kind, payload }) => (ubx::step(*kind, payload), *payload),
+            (Kind::Sbf, Frame::Sbf { block, body }) => (sbf::step(*block, body), *body),
+            (Kind::Nmea, Frame::Nmea(body)) => (nmea::step(body, record), *body),
+            (Kind::Novatel, Frame::NovatelBinary { head, body }) => (novatel::binary(head, body, record), *body),
+            (Kind::Novatel, Frame::NovatelText(body)) => (novatel::text(body, record), *body),
+            _ => return,
+        };
+        match step {
+            Step::Passed => {}
+            Step::Malformed(reason) => out.push(Item::Malformed(Malformed { record, reason })),
+            Step::Whole(position) => {
+                self.finish(out);
+                out.push(Item::Position(Box::new(position.checked())));
+            }
+            Step::Part { key, kind } => {
+                let complete = self.epoch.put(key, Message { kind, record, body: body.to_vec() });
+                self.emit(&complete, out);
+                self.end_at_last(out);
+            }
+            Step::End { key, kind } => {
+                self.begin(key, kind, out);
+                if self.epoch.ends == Ends::WithLast {
+                    self.finish(out);
+                }
+            }
+            Step::Date { key, kind, dated } => {
+                self.begin(key, kind, out);
+                self.dated = dated.or(self.dated);
+                out.extend(dated.map(Item::Dated));
+                self.end_at_last(out);
+            }
+        }
+    }
+
+    /// No frame follows, or none came for a while: the epoch as it is.
+    pub fn finish(&mut self, out: &mut Vec<Item>) {
+        let complete = self.epoch.take();
+        self.emit(&complete, out);
+    }
+
+    fn begin(&mut self, key: i64, kind: u32, out: &mut Vec<Item>) {
+        if self.epoch.state.key != Some(key) {
+            self.finish(out);
+        }
+        self.epoch.pass(key, kind);
+    }
+
+    fn end_at_last(&mut self, out: &mut Vec<Item>) {
+        if self.epoch.at_last() {
+            self.finish(out);
+        }
+    }
+
+    fn emit(&self, messages: &[Message], out: &mut Vec<Item>) {
+        let position = match self.kind {
+            Kind::Ubx => ubx::position(messages),
+            Kind::Sbf => sbf::position(messages),
+            Kind::Nmea => nmea::position(messages),
+            Kind::Novatel => None,
+        };
+        let Some(mut position) = position else { return };
+        // The reader of a whole file knows the dates behind a sentence too.
+        if let (Ends::WithLast, Some(dated)) = (self.epoch.ends, self.dated) {
+            position.date(dated);
+        }
+        out.push(Item::Position(Box::new(position.checked())));
+    }
+}

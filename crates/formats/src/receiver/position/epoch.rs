@@ -1,0 +1,76 @@
+//! Messages of one epoch, until the last of them has come.
+
+/// When an epoch is complete.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ends {
+    /// At the first message of the next one: nothing that belongs to it is missed.
+    WithNext,
+    /// Also at the message that was the last of the epoch before it, for nobody waits for the next one.
+    WithLast,
+}
+
+/// A message that waits for the others of its epoch.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// Its number in the protocol.
+    pub kind: u32,
+    /// Its place in the stream, from 1.
+    pub record: u64,
+    /// Its content.
+    pub body: Vec<u8>,
+}
+
+/// What an unfinished epoch consists of.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct State {
+    /// What the messages of an epoch have in common: time of week, or time of day.
+    pub key: Option<i64>,
+    /// The messages so far, at most one of a kind.
+    pub messages: Vec<Message>,
+    /// Kind of the newest message of this epoch.
+    pub newest: u32,
+    /// Kind of the last message of the epoch before.
+    pub last: u32,
+}
+
+/// Messages of one epoch.
+#[derive(Debug, Clone)]
+pub(super) struct Epoch {
+    pub(super) state: State,
+    pub(super) ends: Ends,
+}
+
+impl Epoch {
+    /// A message of the epoch `key`; the messages of the epoch before it, if this begins another. A second message of a kind does.
+    pub(super) fn put(&mut self, key: i64, message: Message) -> Vec<Message> {
+        let state = &mut self.state;
+        let again = state.messages.iter().any(|each| each.kind == message.kind);
+        let complete = if state.key != Some(key) || again { std::mem::take(&mut state.messages) } else { Vec::new() };
+        self.pass(key, message.kind);
+        self.state.messages.push(message);
+        complete
+    }
+
+    /// A message of the epoch `key` that is not kept.
+    pub(super) fn pass(&mut self, key: i64, kind: u32) {
+        if self.state.key != Some(key) {
+            (self.state.key, self.state.last) = (Some(key), self.state.newest);
+        }
+        self.state.newest = kind;
+    }
+
+    /// Whether the newest message was the last by habit.
+    pub(super) fn at_last(&self) -> bool {
+        self.ends == Ends::WithLast && self.state.newest == self.state.last
+    }
+
+    /// What there is.
+    pub(super) fn take(&mut self) -> Vec<Message> {
+        std::mem::take(&mut self.state.messages)
+    }
+}
+
+/// The message of a kind.
+pub(super) fn of_kind(messages: &[Message], kind: u32) -> Option<&Message> {
+    messages.iter().find(|message| message.kind == kind)
+}

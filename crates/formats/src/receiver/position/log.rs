@@ -1,0 +1,162 @@
+//! The positions of a whole log, and a count of what did not become one.
+
+use super::decoder::{Decoder, Item};
+use super::epoch::Ends;
+use super::nmea::Dated;
+use super::{Kind, Note, Position};
+use crate::stream::{Among, Frame, Frames, Place};
+use std::collections::BTreeMap;
+
+/// The id of a damaged message among the reasons.
+const DAMAGED: &str = "damaged_message";
+
+/// Doubts that are kept. Provenance: ours.
+const MOST_NOTES: usize = 8;
+
+/// Positions or messages that are not used, of one reason.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeftOut {
+    /// The id of the reason.
+    pub reason: &'static str,
+    /// Whether a sound receiver never writes it.
+    pub damaged: bool,
+    /// How many.
+    pub count: usize,
+    /// Number of the first message, from 1.
+    pub first: u64,
+    /// What stands in it.
+    pub example: String,
+}
+
+/// What a log holds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Log {
+    /// Positions that are used, in the order of the log.
+    pub positions: Vec<Position>,
+    /// Positions of the log, used or not.
+    pub n_rows: usize,
+    /// What is not used.
+    pub left_out: Vec<LeftOut>,
+    /// Quantity to the message field that it was read from.
+    pub fields: BTreeMap<&'static str, &'static str>,
+    /// Doubts, each once.
+    pub notes: Vec<Note>,
+    /// Bytes of no message of this receiver.
+    pub n_outside: usize,
+    /// Message of the first position, where no message of the log dates any.
+    pub undated: Option<u64>,
+}
+
+/// Read a log, plain (see [`crate::packed::unpack`]).
+pub fn read(bytes: &[u8], kind: Kind) -> Log {
+    let (mut log, mut decoder, mut items) = (Log::default(), Decoder::new(kind, Ends::WithNext), Vec::new());
+    let (mut record, mut inside, mut sentences) = (0, 0, Sentences::default());
+    for Place { at, end, frame } in Frames::new(bytes, Among::Receivers) {
+        let family = frame.as_ref().map_or_else(|damage| damage.family, Frame::family);
+        if family != kind.family() {
+            continue;
+        }
+        record += 1;
+        match frame {
+            Ok(frame) => {
+                inside += with_line(bytes, at, end, &frame);
+                decoder.take(&frame, record, &mut items);
+            }
+            Err(damage) => log.damaged(record, format!("byte {at}: {}", damage.reason)),
+        }
+        items.drain(..).for_each(|item| log.take(item, record, &mut sentences));
+    }
+    decoder.finish(&mut items);
+    items.drain(..).for_each(|item| log.take(item, record, &mut sentences));
+    log.n_outside = bytes.len().saturating_sub(inside);
+    log.date(sentences);
+    log
+}
+
+/// Positions of sentences, which wait for a date, and the dates with the number of their message.
+#[derive(Default)]
+struct Sentences {
+    waiting: Vec<Position>,
+    dates: Vec<(u64, Dated)>,
+}
+
+impl Log {
+    fn take(&mut self, item: Item, record: u64, sentences: &mut Sentences) {
+        match item {
+            Item::Malformed(malformed) => self.damaged(malformed.record, malformed.reason.to_owned()),
+            Item::Dated(dated) => sentences.dates.push((record, dated)),
+            Item::Position(position) if position.awaits_date() => sentences.waiting.push(*position),
+            Item::Position(position) => self.position(*position),
+        }
+    }
+
+    /// Each by the nearest dated sentence before or after it.
+    fn date(&mut self, Sentences { waiting, dates }: Sentences) {
+        let mut place = 0;
+        let Some(first) = waiting.first() else { return };
+        if dates.is_empty() {
+            (self.undated, self.n_rows) = (Some(first.record), self.n_rows + waiting.len());
+            return;
+        }
+        for mut position in waiting {
+            let apart = |place: usize| dates.get(place).map_or(u64::MAX, |(record, _)| record.abs_diff(position.record));
+            while place + 1 < dates.len() && apart(place + 1) <= apart(place) {
+                place += 1;
+            }
+            if let Some((_, dated)) = dates.get(place) {
+                position.date(*dated);
+            }
+            self.position(position.checked());
+        }
+    }
+
+    fn position(&mut self, position: Position) {
+        self.n_rows += 1;
+        if let Some(absent) = position.absent {
+            self.leave_out(absent.reason.id(), absent.reason.damaged(), position.record, absent.stated);
+            return;
+        }
+        let notes: Vec<Note> = position.notes.into_iter().flatten().collect();
+        self.fields.extend(position.fields.iter().chain(position.levels_from).copied());
+        if let Some(from) = position.covariance_from {
+            let named = self.fields.entry("covariance").or_insert(from);
+            if !notes.iter().any(|note| note.of_substitute()) {
+                *named = from;
+            }
+        }
+        for note in notes {
+            if self.notes.len() < MOST_NOTES && !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
+        self.positions.push(position);
+    }
+
+    fn damaged(&mut self, record: u64, example: String) {
+        self.leave_out(DAMAGED, true, record, example);
+    }
+
+    fn leave_out(&mut self, reason: &'static str, damaged: bool, first: u64, example: String) {
+        match self.left_out.iter_mut().find(|each| each.reason == reason) {
+            Some(each) => each.count += 1,
+            None => self.left_out.push(LeftOut { reason, damaged, count: 1, first, example }),
+        }
+    }
+}
+
+/// Bytes of a frame; of one that is text with the end of its line, and with the word before it and the time of arrival behind it that the
+/// loggers of telephones write.
+fn with_line(bytes: &[u8], at: usize, end: usize, frame: &Frame<'_>) -> usize {
+    if !matches!(frame, Frame::Nmea(_) | Frame::NovatelText(_)) {
+        return end - at;
+    }
+    let (before, behind) = (bytes.get(..at).unwrap_or_default(), bytes.get(end..).unwrap_or_default());
+    let arrival = behind.strip_prefix(b",").map_or(0, |digits| 1 + digits.iter().take_while(|byte| byte.is_ascii_digit()).count());
+    let line_end =
+        |from: usize| behind.get(from..).unwrap_or_default().iter().take(2).take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+    let word = if before.ends_with(b"NMEA,") { 5 } else { 0 };
+    match (arrival, line_end(arrival)) {
+        (arrival, 1..) if arrival > 1 => end - at + arrival + line_end(arrival) + word,
+        _ => end - at + line_end(0),
+    }
+}

@@ -1,0 +1,72 @@
+//! Which receiver wrote a log, told from the beginnings of its messages.
+
+use super::Kind;
+use memchr::{memchr_iter, memmem};
+
+/// Bytes in which a message of a log must begin \[B\]. Provenance: ours.
+const LOOK_AT: usize = 1 << 17;
+
+/// Longest sentence with its line end and the time of its arrival \[B\]. Provenance: ours.
+const LONGEST_SENTENCE: usize = 1100;
+
+/// The receiver whose positions are read: of a mixed log the first of [`Kind::ALL`] with a message that holds a position, else the first
+/// with any message. Damaged messages count: a damaged log is a log.
+pub fn of(content: &[u8]) -> Option<Kind> {
+    let start = content.get(..content.len().min(LOOK_AT)).unwrap_or_default();
+    let any = Kind::ALL.into_iter().find(|kind| message(start, *kind))?;
+    Some(Kind::ALL.into_iter().find(|kind| position(content, *kind)).unwrap_or(any))
+}
+
+/// Whether a message with a position begins anywhere.
+fn position(bytes: &[u8], kind: Kind) -> bool {
+    match kind {
+        Kind::Ubx => memmem::find(bytes, b"\xb5\x62\x01\x07").is_some(),
+        // Blocks 4006 and 4007, the revision in the upper three bits.
+        Kind::Sbf => behind(bytes, b"$@").any(|rest| matches!(rest, [_, _, 0xa6 | 0xa7, high, ..] if high & 0x1f == 0x0f)),
+        Kind::Novatel => [b"\xaa\x44\x12\x1c\x2a\x00".as_slice(), b"#BESTPOSA,"].iter().any(|sign| memmem::find(bytes, sign).is_some()),
+        Kind::Nmea => behind(bytes, b"$").any(|rest| {
+            rest.first_chunk::<2>().is_some_and(|talker| talker.iter().all(u8::is_ascii_uppercase)) && rest[2..].starts_with(b"GGA,")
+        }),
+    }
+}
+
+/// Whether any message begins.
+fn message(bytes: &[u8], kind: Kind) -> bool {
+    match kind {
+        Kind::Ubx => behind(bytes, b"\xb5\x62").any(|rest| matches!(rest, [0x01..=0x29, 0x00..=0x92, ..])),
+        Kind::Sbf => behind(bytes, b"$@").any(|rest| matches!(rest, [_, _, _, 0x0f..=0xff, _, 0x00..=0x1f, ..])),
+        Kind::Novatel => memmem::find(bytes, b"\xaa\x44\x12\x1c").is_some() || behind(bytes, b"#").any(named_log),
+        Kind::Nmea => behind(bytes, b"$").any(whole_sentence),
+    }
+}
+
+/// What follows each place of a sign.
+fn behind<'a>(bytes: &'a [u8], sign: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
+    memmem::find_iter(bytes, sign).filter_map(move |at| bytes.get(at + sign.len()..))
+}
+
+/// A NovAtel log in ASCII: a name in capitals that ends with A, and a port.
+fn named_log(rest: &[u8]) -> bool {
+    let n = rest.iter().take_while(|byte| byte.is_ascii_uppercase()).count();
+    let (name, rest) = rest.split_at(n);
+    let port =
+        rest.strip_prefix(b",").is_some_and(|rest| ["COM", "USB", "FILE", "ICOM"].iter().any(|port| rest.starts_with(port.as_bytes())));
+    n > 1 && name.ends_with(b"A") && port
+}
+
+/// A sentence of talker and name in five capitals, with a checksum and the end of its line, and perhaps the time of its arrival.
+fn whole_sentence(rest: &[u8]) -> bool {
+    let addressed = rest.get(..5).is_some_and(|name| name.iter().all(u8::is_ascii_uppercase)) && rest.get(5) == Some(&b',');
+    // No search of all that follows for each sentence that has no end.
+    let begun = rest.get(..rest.len().min(LONGEST_SENTENCE)).unwrap_or_default();
+    let Some(line) = memchr::memchr(b'\n', begun).filter(|_| addressed).and_then(|end| begun.get(..end)) else { return false };
+    let line = line.strip_suffix(b"\r").unwrap_or(line);
+    !line.contains(&b'\r') && memchr_iter(b'*', line).filter_map(|at| line.get(at + 1..)).any(checksum_and_arrival)
+}
+
+fn checksum_and_arrival(tail: &[u8]) -> bool {
+    let sum = tail.first_chunk::<2>().is_some_and(|sum| sum.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'A'..=b'F')));
+    let arrival = tail.get(2..).unwrap_or_default();
+    sum && (arrival.is_empty()
+        || matches!(arrival, [b',', first, digits @ ..] if first.is_ascii_digit() && digits.iter().all(u8::is_ascii_digit)))
+}

@@ -1,0 +1,147 @@
+#![allow(clippy::print_stderr)] // A test that is skipped says so.
+use super::*;
+use crate::stream::{Among, Frame, Frames};
+use proptest::prelude::*;
+use std::fs;
+use std::path::Path;
+
+/// A log of each receiver, and the positions that another decoder counts in it (tests/test_read_receivers.py has the sources).
+const LOGS: [(&str, Kind, usize); 5] = [
+    ("gpsd/ublox-zed-f9r.log", Kind::Ubx, 30),
+    ("pysbf2/sbfdata.log", Kind::Sbf, 58),
+    ("pysbf2/pygpsdata_x5pvt.log", Kind::Sbf, 16),
+    ("novatel/oemv_200911218.gps", Kind::Novatel, 46),
+    ("gpsd/ublox-zed-f9p-nmea.log", Kind::Nmea, 29),
+];
+
+fn logs() -> impl Iterator<Item = (Vec<u8>, Kind, usize)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/rxlogs");
+    if !folder.exists() {
+        eprintln!("SKIPPED ALOUD: no receiver logs at {}", folder.display());
+    }
+    LOGS.into_iter().filter_map(move |(name, kind, n)| Some((fs::read(folder.join(name)).ok()?, kind, n)))
+}
+
+/// Items of a decoder that is written down and read again behind every frame, or never.
+fn items(frames: &[Frame<'_>], kind: Kind, ends: Ends, restored: bool) -> Vec<Item> {
+    let (mut decoder, mut out) = (Decoder::new(kind, ends), Vec::new());
+    for frame in frames {
+        decoder.take(frame, 0, &mut out);
+        if restored {
+            let (state, dated) = decoder.state();
+            decoder = Decoder::with_state(kind, ends, state.clone(), dated);
+        }
+    }
+    decoder.finish(&mut out);
+    out
+}
+
+fn positions(items: &[Item]) -> Vec<&Position> {
+    items.iter().filter_map(|item| if let Item::Position(position) = item { Some(position.as_ref()) } else { None }).collect()
+}
+
+#[test]
+fn a_kind_is_known_by_its_id() {
+    for kind in Kind::ALL {
+        assert_eq!(Kind::of(kind.id()), Some(kind));
+    }
+    assert_eq!(Kind::of("rtcm"), None);
+}
+
+#[test]
+fn a_log_has_the_positions_that_another_decoder_counts() {
+    for (bytes, kind, n) in logs() {
+        let log = log::read(&bytes, kind);
+        assert_eq!(log.positions.len(), n, "{kind:?}");
+        assert_eq!(log.n_rows, n + log.left_out.iter().filter(|l| !l.damaged).map(|l| l.count).sum::<usize>(), "{kind:?}");
+        assert!(log.positions.iter().all(|p| p.time.is_some() && p.absent.is_none()), "{kind:?}");
+    }
+}
+
+#[test]
+fn a_decoder_that_is_written_down_behind_every_frame_gives_the_same() {
+    for (bytes, kind, n) in logs() {
+        let frames: Vec<Frame<'_>> = Frames::new(&bytes, Among::Receivers).filter_map(|place| place.frame.ok()).collect();
+        for ends in [Ends::WithLast, Ends::WithNext] {
+            let whole = items(&frames, kind, ends, false);
+            assert_eq!(items(&frames, kind, ends, true), whole, "{kind:?}");
+            assert!(positions(&whole).len() >= n, "{kind:?}");
+        }
+    }
+}
+
+/// A live decoder ends an epoch by habit: after the first epochs it has learnt, and differs in nothing from the file's but the dates.
+#[test]
+fn a_stream_has_the_positions_of_the_file() {
+    for (bytes, kind, n) in logs() {
+        let frames: Vec<Frame<'_>> = Frames::new(&bytes, Among::Receivers).filter_map(|place| place.frame.ok()).collect();
+        let live = items(&frames, kind, Ends::WithLast, false);
+        let of_file = log::read(&bytes, kind).positions;
+        let undated = |p: &Position| Position { record: 0, of_day: None, ..p.clone() };
+        let of_file: Vec<Position> = of_file.iter().map(undated).collect();
+        let same = positions(&live).into_iter().map(undated).filter(|position| of_file.contains(position)).count();
+        assert!(same + 2 >= n, "{kind:?}: {same} of {n}");
+    }
+}
+
+/// PVTGeodetic in a week whose nanoseconds exceed 64 bits.
+#[test]
+fn a_week_beyond_every_time_is_outside_its_domain() {
+    for (week, usable) in [(2361_u16, true), (60_000, false)] {
+        let mut body = vec![0; 68];
+        body[4..6].copy_from_slice(&week.to_le_bytes());
+        body[6] = 1;
+        let mut out = Vec::new();
+        let mut decoder = Decoder::new(Kind::Sbf, Ends::WithNext);
+        decoder.take(&Frame::Sbf { block: 4007, body: &body }, 1, &mut out);
+        decoder.finish(&mut out);
+        let reasons: Vec<_> = positions(&out).iter().map(|p| p.absent.as_ref().map(|absent| absent.reason)).collect();
+        assert_eq!(reasons, [(!usable).then_some(Reason::OutsideDomain)], "week {week}");
+    }
+}
+
+fn sentence(body: &str) -> Vec<u8> {
+    let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+    format!("${body}*{sum:02X}\r\n").into_bytes()
+}
+
+fn read_sentences(bodies: &[&str]) -> log::Log {
+    log::read(&bodies.iter().flat_map(|body| sentence(body)).collect::<Vec<_>>(), Kind::Nmea)
+}
+
+#[test]
+fn an_angle_without_a_hemisphere_is_none() {
+    let zda = "GPZDA,120000.00,22,11,2026,00,00";
+    for (hemisphere, n) in [("N", 1), ("S", 1), ("", 0), ("E", 0)] {
+        let log = read_sentences(&[zda, &format!("GPGGA,120000.00,4900.0,{hemisphere},00230.0,E,1,08,1.0,100.0,M,47.0,M,,")]);
+        assert_eq!((log.positions.len(), log.n_rows), (n, 1), "{hemisphere}");
+    }
+}
+
+#[test]
+fn two_positions_of_one_time_are_two() {
+    let gga = |minutes: &str| format!("GPGGA,120000.00,{minutes},N,00230.0,E,1,08,1.0,100.0,M,47.0,M,,");
+    let log = read_sentences(&["GPZDA,120000.00,22,11,2026,00,00", &gga("4900.0"), &gga("4901.0")]);
+    assert_eq!(log.positions.len(), 2);
+}
+
+#[test]
+fn the_deviations_of_another_time_are_not_borrowed() {
+    let gga = "GPGGA,120000.00,4900.0,N,00230.0,E,1,08,1.0,100.0,M,47.0,M,,";
+    let zda = "GPZDA,120000.00,22,11,2026,00,00";
+    let beside = read_sentences(&[zda, "GPGST,120000.00,1.0,,,,2.0,3.0,4.0", gga]);
+    assert_eq!(beside.positions[0].covariance_m2, Some([9.0, 0.0, 4.0, 0.0, 0.0, 16.0]));
+    let apart = read_sentences(&[zda, gga, "GPGST,120001.00,1.0,,,,2.0,3.0,4.0"]);
+    assert_eq!(apart.positions[0].covariance_m2, None);
+}
+
+proptest! {
+    #[test]
+    fn any_bytes_are_read_and_every_position_is_sound(bytes in prop::collection::vec(any::<u8>(), 0..400), kind in 0..4_usize) {
+        let log = log::read(&bytes, Kind::ALL[kind]);
+        prop_assert!(log.n_outside <= bytes.len());
+        for p in &log.positions {
+            prop_assert!(p.lat_rad.is_some_and(|lat| lat.abs() <= FRAC_PI_2) && p.time.is_some());
+        }
+    }
+}

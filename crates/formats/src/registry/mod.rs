@@ -1,0 +1,141 @@
+//! The formats of files: one list of what is recognised, what it holds, and what is refused by name.
+//!
+//! A file is of the first format of [`FORMATS`] that recognises it. Most are told from their content; a few have no sign of their own and are
+//! told from the end of their name.
+
+mod foreign;
+mod signs;
+
+/// A file: its content, unpacked, and its name in small letters without the ending of its packing.
+#[derive(Debug, Clone, Copy)]
+pub struct File<'a> {
+    /// Content.
+    pub content: &'a [u8],
+    /// Name.
+    pub name: &'a str,
+}
+
+/// What a file may hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Holds {
+    /// Positions, or rows beside them.
+    Positions,
+    /// Measurements.
+    Observations,
+    /// Orbits and clocks as they are broadcast.
+    Navigation,
+    /// SBAS messages.
+    Messages,
+    /// Precise orbits.
+    Orbits,
+    /// Precise clocks.
+    Clocks,
+    /// Almanacs.
+    Almanac,
+    /// A packed file.
+    Packed,
+    /// Nothing that is read.
+    Nothing,
+}
+
+impl Holds {
+    /// The id of tables.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Positions => "positions",
+            Self::Observations => "observations",
+            Self::Navigation => "navigation",
+            Self::Messages => "messages",
+            Self::Orbits => "orbits",
+            Self::Clocks => "clocks",
+            Self::Almanac => "almanac",
+            Self::Packed => "packed",
+            Self::Nothing => "nothing",
+        }
+    }
+}
+
+/// One format.
+#[derive(Debug, Clone, Copy)]
+pub struct Format {
+    /// Id of commands and tables.
+    pub id: &'static str,
+    /// Name.
+    pub title: &'static str,
+    /// What it holds.
+    pub holds: &'static [Holds],
+    /// How it is recognised.
+    pub sign: &'static str,
+    /// Whether a file is of this format.
+    pub recognises: fn(&File<'_>) -> bool,
+    /// What to do instead, where it is recognised and not read.
+    pub instead: Option<&'static str>,
+}
+
+const RECEIVER: &[Holds] = &[Holds::Positions, Holds::Observations, Holds::Navigation, Holds::Messages];
+const POSITIONS: &[Holds] = &[Holds::Positions];
+const UNPACK: Option<&str> = Some("unpack it, or pack it by gzip or zip");
+
+const fn read(
+    id: &'static str,
+    title: &'static str,
+    holds: &'static [Holds],
+    sign: &'static str,
+    recognises: fn(&File<'_>) -> bool,
+) -> Format {
+    Format { id, title, holds, sign, recognises, instead: None }
+}
+
+const fn refused(
+    id: &'static str,
+    title: &'static str,
+    sign: &'static str,
+    recognises: fn(&File<'_>) -> bool,
+    instead: &'static str,
+) -> Format {
+    Format { id, title, holds: &[Holds::Nothing], sign, recognises, instead: Some(instead) }
+}
+
+/// Every format, in the order in which they are tried.
+pub const FORMATS: &[Format] = &[
+    read("gzip", "gzip", &[Holds::Packed], "1F 8B", |f| f.content.starts_with(b"\x1f\x8b")),
+    read("compress", "Unix compress", &[Holds::Packed], "1F 9D", |f| f.content.starts_with(b"\x1f\x9d")),
+    read("zip", "zip archive of one file", &[Holds::Packed], "PK and the number of a header", signs::zip),
+    Format { instead: UNPACK, ..read("bzip2", "bzip2", &[Holds::Packed], "BZh", |f| f.content.starts_with(b"BZh")) },
+    Format { instead: UNPACK, ..read("xz", "xz", &[Holds::Packed], "FD 7zXZ", |f| f.content.starts_with(b"\xfd7zXZ")) },
+    read("parquet", "Parquet", POSITIONS, "PAR1", |f| f.content.starts_with(b"PAR1")),
+    refused("ulog", "ULog of an autopilot", "ULog and its version", foreign::ulog, "export the positions with their UTC time as a table"),
+    read("rinex-observations", "RINEX observations", &[Holds::Observations], "first line, type O, or compact RINEX", signs::observations),
+    read("rinex-messages", "RINEX-B messages", &[Holds::Messages], "first line, type B or H", signs::messages),
+    read("rinex-clocks", "RINEX clocks", &[Holds::Clocks], "first line, type C", signs::clocks),
+    read("rinex-navigation", "RINEX navigation", &[Holds::Navigation], "first line, another type", signs::navigation),
+    read("ubx", "u-blox UBX log", RECEIVER, "B5 62, class and identifier of a message", signs::ubx),
+    read("sbf", "Septentrio SBF log", RECEIVER, "$@ and the number of a block", signs::sbf),
+    read("novatel", "NovAtel log", POSITIONS, "AA 44 12, or # and the name of a log", signs::novatel),
+    read("nmea", "NMEA 0183 log", POSITIONS, "$, five capitals, fields, a checksum", signs::nmea),
+    read("json", "JSON", POSITIONS, "{ or [", signs::json),
+    read("rtklib", "RTKLIB solutions", POSITIONS, "%", signs::rtklib),
+    read("sp3", "SP3", &[Holds::Orbits], "#, version, P or V, year", signs::sp3),
+    refused(
+        "rtcm3",
+        "stream of RTCM 3 messages",
+        "three frames one behind the other: D3, length, CRC-24Q",
+        foreign::rtcm3,
+        "convert it to RINEX observations and navigation data",
+    ),
+    refused("sirf", "log of a SiRF receiver", "three frames one behind the other: A0 A2, length, sum, B0 B3", foreign::sirf, CONVERT),
+    refused("tsip", "log in Trimble's TSIP", "three packets one behind the other: 10, identifier, 10 03", foreign::tsip, CONVERT),
+    read("ems", "EMS or RTKLIB messages", &[Holds::Messages], "the name ends with .ems or .sbs", |f| signs::named(f, &[".ems", ".sbs"])),
+    read("almanac", "YUMA or SEM almanac", &[Holds::Almanac], "the name ends with .alm or .al3", |f| signs::named(f, &[".alm", ".al3"])),
+    read("csv", "text table", POSITIONS, "anything else", |_| true),
+];
+
+const CONVERT: &str = "convert it to NMEA or RINEX";
+
+/// The first of `formats` that recognises a file.
+pub fn recognise<'a>(formats: &'a [Format], file: &File<'_>) -> Option<&'a Format> {
+    formats.iter().find(|format| (format.recognises)(file))
+}
+
+#[cfg(test)]
+mod tests;

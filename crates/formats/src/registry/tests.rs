@@ -1,0 +1,59 @@
+use super::*;
+
+fn id(content: &[u8], name: &str) -> &'static str {
+    recognise(FORMATS, &File { content, name }).unwrap().id
+}
+
+#[test]
+fn ids_are_unique_and_the_last_format_takes_everything() {
+    for (k, format) in FORMATS.iter().enumerate() {
+        assert!(FORMATS[..k].iter().all(|other| other.id != format.id), "{}", format.id);
+        assert!(!format.title.is_empty() && !format.sign.is_empty() && !format.holds.is_empty(), "{}", format.id);
+        assert_eq!(format.holds == [Holds::Nothing], format.instead.is_some() && format.holds != [Holds::Packed], "{}", format.id);
+    }
+    assert_eq!(id(b"", ""), "csv");
+}
+
+#[test]
+fn signs_name_their_format() {
+    let rinex = |kind: &str| format!("     3.04           {kind:<40}RINEX VERSION / TYPE\n").into_bytes();
+    let sentence = b"$GPGGA,000000.00,,,,,0,,,,,,,,*7A\r\n".as_slice();
+    let banner = [b"{\"class\":\"VERSION\"}\r\n".as_slice(), sentence].concat();
+    let cases: Vec<(Vec<u8>, &str, &str)> = vec![
+        (b"\x1f\x8b\x08".to_vec(), "", "gzip"),
+        (b"BZh9".to_vec(), "", "bzip2"),
+        (b"PAR1".to_vec(), "", "parquet"),
+        (b"ULog\x01\x12\x35\x01".to_vec(), "", "ulog"),
+        (rinex("OBSERVATION DATA"), "", "rinex-observations"),
+        (rinex("NAVIGATION DATA"), "", "rinex-navigation"),
+        (rinex("B"), "", "rinex-messages"),
+        (rinex("C"), "", "rinex-clocks"),
+        (b"\xb5\x62\x01\x07\x5c\x00".to_vec(), "", "ubx"),
+        (b"$@\0\0\xa7\x4f\x60\0".to_vec(), "", "sbf"),
+        (b"#BESTPOSA,COM1,0".to_vec(), "", "novatel"),
+        (sentence.to_vec(), "", "nmea"),
+        (banner, "", "nmea"),
+        (b"\xef\xbb\xbf [{\"a\": 1}]".to_vec(), "", "json"),
+        (b"{\"a\": 1,\n \"b\": 2}".to_vec(), "", "json"),
+        (b"% program : RTKPOST\n".to_vec(), "", "rtklib"),
+        (b"#cP2020  6 25".to_vec(), "", "sp3"),
+        (b"120 25 02 15 17 00 00 2 53".to_vec(), "day.ems", "ems"),
+        (b"time,lat,lon\n1,2,3\n".to_vec(), "day.csv", "csv"),
+        (b"\x10\x41abc\x10\x03\x10\x42a\x10\x10\x10\x03\x10\x43a\x10\x03".to_vec(), "", "tsip"),
+        (b"\x10\x41abc\x10\x03\x10\x42a\x10\x10\x10\x03\x10\x43a\x10\x04".to_vec(), "", "csv"),
+        (b"\xa0\xa2\x00\x02\x01\x02\x00\x03\xb0\xb3".to_vec(), "", "sirf"),
+        (b"\xa0\xa2\x00\x02\x01\x02\x00\x04\xb0\xb3".to_vec(), "", "csv"),
+    ];
+    for (content, name, expected) in cases {
+        assert_eq!(id(&content, name), expected, "{:?}", String::from_utf8_lossy(&content));
+    }
+}
+
+/// One entry makes a format known; those behind it stay what they are.
+#[test]
+fn a_toy_format_is_one_entry() {
+    let toy = read("toy", "Toy", POSITIONS, "#TOY", |file| file.content.starts_with(b"#TOY,"));
+    let formats: Vec<Format> = std::iter::once(toy).chain(FORMATS.iter().copied()).collect();
+    let of = |content: &[u8]| recognise(&formats, &File { content, name: "" }).unwrap().id;
+    assert_eq!((of(b"#TOY,1,2"), of(b"PAR1")), ("toy", "parquet"));
+}

@@ -1,0 +1,67 @@
+//! Positions of a receiver as reports, and the state of their decoder as bytes.
+
+use super::Decoded;
+use crate::codec::{Damaged, Reader, Writer};
+use crate::counters::Refused;
+use crate::position::{Position, TrackId};
+use navbound_core::quantity::{Reason, Status};
+use navbound_formats::receiver::position::{Dated, Decoder, Ends, Item, Kind, Message, OfDay, State};
+
+/// Most messages of an unfinished epoch: at most one of a kind. Provenance: ours.
+const MOST_MESSAGES: u32 = 8;
+
+/// A report, or why there is none; nothing for a date.
+pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
+    match item {
+        Item::Dated(_) => None,
+        Item::Malformed(_) => Some(Err(Refused::ShortMessage)),
+        Item::Position(position) => {
+            let Some(time) = position.time else { return Some(Err(Refused::Undated)) };
+            let usable = position.absent.is_none();
+            Some(Ok(Position {
+                lat_rad: position.lat_rad,
+                lon_rad: position.lon_rad,
+                h_m: position.h_m,
+                covariance_m2: position.covariance_m2,
+                hpl_m: position.hpl_m,
+                status: if usable { Status::Ok } else { Status::NotAvailable },
+                reason: (!usable).then_some(Reason::Reported),
+                ..Position::new(track, time)
+            }))
+        }
+    }
+}
+
+pub(super) fn write(decoder: &Decoder, to: &mut Writer) {
+    let (state, dated) = decoder.state();
+    to.option(state.key, Writer::i64);
+    to.u32(state.messages.len() as u32);
+    for message in &state.messages {
+        to.u32(message.kind);
+        to.u64(message.record);
+        to.bytes(&message.body);
+    }
+    to.u32(state.newest);
+    to.u32(state.last);
+    to.option(dated, |to, Dated { year, month, day, of_day: OfDay(of_day_ns) }| {
+        to.i64(i64::from(year));
+        to.u8(month);
+        to.u8(day);
+        to.i64(of_day_ns);
+    });
+}
+
+pub(super) fn read(kind: Kind, from: &mut Reader<'_>) -> Result<Decoder, Damaged> {
+    let (key, n) = (from.option(Reader::i64)?, from.u32()?);
+    if n > MOST_MESSAGES {
+        return Err(Damaged("more messages than an epoch has"));
+    }
+    let messages = (0..n).map(|_| Ok(Message { kind: from.u32()?, record: from.u64()?, body: from.bytes()?.to_vec() }));
+    let messages = messages.collect::<Result<_, _>>()?;
+    let state = State { key, messages, newest: from.u32()?, last: from.u32()? };
+    let dated = from.option(|from| {
+        let (year, month, day) = (i32::try_from(from.i64()?).map_err(|_| Damaged("not a year"))?, from.u8()?, from.u8()?);
+        Ok(Dated { year, month, day, of_day: OfDay(from.i64()?) })
+    })?;
+    Ok(Decoder::with_state(kind, Ends::WithLast, state, dated))
+}

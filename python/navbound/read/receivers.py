@@ -1,0 +1,109 @@
+"""Logs of receivers: their own positions, covariances and protection levels, decoded in Rust.
+
+What the fields mean stands in docs/methods/formats.md with its source.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import polars as pl
+
+from navbound import _core
+from navbound.errors import FormatError
+from navbound.table.columns import COVARIANCE
+
+if TYPE_CHECKING:
+    from navbound.read.source import Source
+
+MESSAGES: dict[str, str] = dict(_core.position_logs())
+"""Kind of log to the messages that hold its positions."""
+
+_REASONS = {
+    "damaged_message": "damaged message",
+    "marked_invalid": "position marked invalid",
+    "no_3d_fix": "no 3-D fix",
+    "no_fix": "no fix",
+    "no_position": "no position",
+    "no_such_leap_second": "second 60 on a day that had none",
+    "outside_domain": "position or time outside its domain",
+    "time_not_known": "time not known",
+    "time_not_valid": "time not valid",
+}
+_NOTES = {
+    "circular_covariance": "without NAV-COV the covariance is circular, of hAcc (root of both horizontal variances) and vAcc",
+    "datum": "datum {0} of the receiver is not WGS-84; positions are taken as they stand",
+    "expected_errors": "without GST the expected errors of GBS stand for standard deviations",
+    "no_separation": "GGA without the separation of the geoid: heights are left out",
+    "risk_of_levels": "protection levels of NAV-PL, for a misleading-information risk of {0}e{1} an hour",
+    "uncorrelated": "BESTPOS states standard deviations; axes taken as uncorrelated, which the file does not say",
+}
+_COUNTS = ("n_rows", "n_outside", "undated", "fields", "notes", "left_out", "cov_m2")
+
+
+@dataclass(frozen=True)
+class Log:
+    """Positions of a log and a count of what did not become one.
+
+    Attributes
+    ----------
+    epochs : DataFrame
+        Columns of docs/notation.md, with ``record``, the number of the message from 1.
+    n_rows : int
+        Positions in the log, used or not.
+    left_out : list of (str, bool, int, int, str)
+        Reason, whether the message is damaged, count, first record, example.
+    columns : dict
+        Quantity to the message and field it was read from.
+    notes : list of str
+        Doubts that a person should settle.
+    """
+
+    epochs: pl.DataFrame
+    n_rows: int
+    left_out: list[tuple[str, bool, int, int, str]]
+    columns: dict[str, str]
+    notes: list[str]
+
+
+def read(source: Source, name: str) -> Log:
+    """Positions of a log.
+
+    Raises
+    ------
+    FormatError
+        No message with a position, or positions that nothing dates.
+    """
+    found = _core.read_positions(source.content, name)
+    left_out = [(_REASONS[reason], *of) for reason, *of in found["left_out"]]
+    if found["undated"] is not None:
+        n_damaged = sum(count for _, damaged, count, _, _ in left_out if damaged)
+        raise FormatError(source.path, _undated(found["n_rows"], n_damaged), found["undated"], "date")
+    if found["n_rows"] == 0:
+        raise FormatError(source.path, f"a log of kind {name} without a message that holds a position ({MESSAGES[name]})")
+    return Log(_epochs(found), found["n_rows"], left_out, found["fields"], _notes(source, found))
+
+
+def _epochs(found: dict[str, Any]) -> pl.DataFrame:
+    plain = {name: column for name, column in found.items() if name not in _COUNTS}
+    out = pl.DataFrame(plain, schema_overrides={"n_sv": pl.Int64, "record": pl.Int64})
+    return out.with_columns(pl.Series(name, found["cov_m2"][:, k]) for k, name in enumerate(COVARIANCE))
+
+
+def _notes(source: Source, found: dict[str, Any]) -> list[str]:
+    notes = [_NOTES[note].format(*numbers) for note, numbers in found["notes"]]
+    if found["n_outside"]:
+        passed_over = f"{found['n_outside']} of {len(source.content)} bytes"
+        notes.append(f"{passed_over} belong to no message that is read (text, other protocols, or damage)")
+    return [f"{source.path.name}: {note}" for note in notes]
+
+
+def _undated(n_positions: int, n_damaged: int) -> str:
+    """GGA holds a time of day only: what is lacking, and what to do."""
+    damaged = f" ({n_damaged} sentences are damaged, perhaps those with the date: a wrong checksum refuses one)" if n_damaged else ""
+    return (
+        f"{n_positions} GGA sentences hold a time of day and no date, and no sound RMC or ZDA sentence gives one{damaged}; log RMC or ZDA "
+        "beside GGA, take out or mend damaged sentences and add one ZDA sentence of the day at the beginning "
+        "($GPZDA,hhmmss,dd,mm,yyyy,00,00*checksum), or convert the log to a table with a time"
+    )
