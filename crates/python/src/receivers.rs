@@ -27,6 +27,7 @@ fn read_positions<'py>(py: Python<'py>, content: &[u8], kind: &str) -> PyResult<
     let covariance: Vec<f64> = rows.iter().flat_map(|p| p.covariance_m2.unwrap_or([f64::NAN; 6])).collect();
     d.set_item("cov_m2", covariance.into_pyarray(py).reshape([n, 6])?)?;
     d.set_item("n_rows", found.n_rows)?;
+    d.set_item("absent_ns", found.absent.iter().map(|time| time.map(GpsTime::nanoseconds)).collect::<Vec<_>>())?;
     d.set_item("n_outside", found.n_outside)?;
     d.set_item("undated", found.undated)?;
     d.set_item("fields", found.fields)?;

@@ -22,6 +22,7 @@ MESSAGES: dict[str, str] = dict(_core.position_logs())
 
 _REASONS = {
     "damaged_message": "damaged message",
+    "damaged_other_message": "damaged message of no position",
     "marked_invalid": "position marked invalid",
     "no_3d_fix": "no 3-D fix",
     "no_fix": "no fix",
@@ -33,13 +34,14 @@ _REASONS = {
 }
 _NOTES = {
     "circular_covariance": "without NAV-COV the covariance is circular, of hAcc (root of both horizontal variances) and vAcc",
+    "worse_accuracy": "hAcc or vAcc is worse than NAV-COV beside it; the covariance was enlarged to it",
     "datum": "datum {0} of the receiver is not WGS-84; positions are taken as they stand",
     "expected_errors": "without GST the expected errors of GBS stand for standard deviations",
     "no_separation": "GGA without the separation of the geoid: heights are left out",
     "risk_of_levels": "protection levels of NAV-PL, for a misleading-information risk of {0}e{1} an hour",
     "uncorrelated": "BESTPOS states standard deviations; axes taken as uncorrelated, which the file does not say",
 }
-_COUNTS = ("n_rows", "n_outside", "undated", "fields", "notes", "left_out", "cov_m2")
+_COUNTS = ("n_rows", "absent_ns", "n_outside", "undated", "fields", "notes", "left_out", "cov_m2")
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,8 @@ class Log:
         Positions in the log, used or not.
     left_out : list of (str, bool, int, int, str)
         Reason, whether the message is damaged, count, first record, example.
+    absent_ns : list of int or None
+        GPS times of the epochs without a usable position, None where it is not known. [ns]
     columns : dict
         Quantity to the message and field it was read from.
     notes : list of str
@@ -63,6 +67,7 @@ class Log:
     epochs: pl.DataFrame
     n_rows: int
     left_out: list[tuple[str, bool, int, int, str]]
+    absent_ns: list[int | None]
     columns: dict[str, str]
     notes: list[str]
 
@@ -82,7 +87,7 @@ def read(source: Source, name: str) -> Log:
         raise FormatError(source.path, _undated(found["n_rows"], n_damaged), found["undated"], "date")
     if found["n_rows"] == 0:
         raise FormatError(source.path, f"a log of kind {name} without a message that holds a position ({MESSAGES[name]})")
-    return Log(_epochs(found), found["n_rows"], left_out, found["fields"], _notes(source, found))
+    return Log(_epochs(found), found["n_rows"], left_out, found["absent_ns"], found["fields"], _notes(source, found))
 
 
 def _epochs(found: dict[str, Any]) -> pl.DataFrame:

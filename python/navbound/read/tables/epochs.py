@@ -147,7 +147,9 @@ def _log(source: Source, log: receivers.Log) -> Reading:
     out = log.epochs.rename({"record": LINE}).with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
     out, contradicting = _in_order(out, rejections, log.notes)
     empty = [c for c in out.columns if out[c].is_null().all()]
-    lost = _left_out(contradicting)
+    # The receiver lived and had no position: a row of a table without one counts in the same way.
+    absent = pl.DataFrame({"track": [source.stem] * len(log.absent_ns), "time_ns": pl.Series(log.absent_ns, dtype=pl.Int64)})
+    lost = _left_out(absent, contradicting)
     return Reading(
         out.drop(LINE, *empty), source.record(log.n_rows), rejections.records, notes=log.notes, columns=log.columns, left_out=lost
     )

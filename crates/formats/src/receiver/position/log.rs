@@ -5,10 +5,12 @@ use super::epoch::Ends;
 use super::nmea::Dated;
 use super::{Kind, Note, Position};
 use crate::stream::{Among, Frame, Frames, Place};
+use navbound_core::quantity::GpsTime;
 use std::collections::BTreeMap;
 
-/// The id of a damaged message among the reasons.
+/// The ids of damaged messages among the reasons: of one that holds a position, and of any other.
 const DAMAGED: &str = "damaged_message";
+const DAMAGED_OTHER: &str = "damaged_other_message";
 
 /// Doubts that are kept. Provenance: ours.
 const MOST_NOTES: usize = 8;
@@ -35,6 +37,8 @@ pub struct Log {
     pub positions: Vec<Position>,
     /// Positions of the log, used or not.
     pub n_rows: usize,
+    /// Times of the epochs without a usable position, in the order of the log; `None` where it is not known.
+    pub absent: Vec<Option<GpsTime>>,
     /// What is not used.
     pub left_out: Vec<LeftOut>,
     /// Quantity to the message field that it was read from.
@@ -62,7 +66,9 @@ pub fn read(bytes: &[u8], kind: Kind) -> Log {
                 inside += with_line(bytes, at, end, &frame);
                 decoder.take(&frame, record, &mut items);
             }
-            Err(damage) => log.damaged(record, format!("byte {at}: {}", damage.reason)),
+            Err(damage) => {
+                log.damaged(record, format!("byte {at}: {}", damage.reason), kind.stands_at(bytes.get(at..).unwrap_or_default()))
+            }
         }
         items.drain(..).for_each(|item| log.take(item, record, &mut sentences));
     }
@@ -83,7 +89,7 @@ struct Sentences {
 impl Log {
     fn take(&mut self, item: Item, record: u64, sentences: &mut Sentences) {
         match item {
-            Item::Malformed(malformed) => self.damaged(malformed.record, malformed.reason.to_owned()),
+            Item::Malformed(malformed) => self.leave_out(DAMAGED, true, malformed.record, malformed.reason.to_owned()),
             Item::Dated(dated) => sentences.dates.push((record, dated)),
             Item::Position(position) if position.awaits_date() => sentences.waiting.push(*position),
             Item::Position(position) => self.position(*position),
@@ -113,6 +119,7 @@ impl Log {
     fn position(&mut self, position: Position) {
         self.n_rows += 1;
         if let Some(absent) = position.absent {
+            self.absent.push(position.time);
             self.leave_out(absent.reason.id(), absent.reason.damaged(), position.record, absent.stated);
             return;
         }
@@ -132,8 +139,13 @@ impl Log {
         self.positions.push(position);
     }
 
-    fn damaged(&mut self, record: u64, example: String) {
-        self.leave_out(DAMAGED, true, record, example);
+    /// A frame that cannot be read. One of a position was an epoch; any other takes no position away.
+    fn damaged(&mut self, record: u64, example: String, of_position: bool) {
+        if of_position {
+            self.n_rows += 1;
+            self.absent.push(None);
+        }
+        self.leave_out(if of_position { DAMAGED } else { DAMAGED_OTHER }, of_position, record, example);
     }
 
     fn leave_out(&mut self, reason: &'static str, damaged: bool, first: u64, example: String) {

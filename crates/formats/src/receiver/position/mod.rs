@@ -62,6 +62,16 @@ impl Kind {
         }
     }
 
+    /// Whether what begins with these bytes calls itself a message of a position, be it whole or not.
+    fn stands_at(self, bytes: &[u8]) -> bool {
+        match self {
+            Self::Ubx => bytes.get(2..4) == Some(&[0x01, 0x07]),
+            Self::Sbf => bytes.get(4..6).is_some_and(|id| [4006, 4007].contains(&(u16::from_le_bytes([id[0], id[1]]) & 0x1fff))),
+            Self::Novatel => bytes.starts_with(b"#BESTPOSA") || bytes.get(4..6) == Some(&[42, 0]),
+            Self::Nmea => bytes.get(3..6) == Some(b"GGA"),
+        }
+    }
+
     const fn family(self) -> Family {
         match self {
             Self::Ubx => Family::Ubx,
@@ -132,6 +142,8 @@ pub enum Note {
     ExpectedErrors,
     /// Standard deviations without correlations.
     Uncorrelated,
+    /// A stated accuracy worse than the covariance beside it; the covariance was enlarged to it.
+    WorseAccuracy,
     /// A datum that is not WGS-84.
     Datum(u8),
     /// The misleading-information risk of protection levels, coefficient and power of ten an hour.
@@ -147,6 +159,7 @@ impl Note {
             Self::CircularCovariance => ("circular_covariance", [0, 0]),
             Self::ExpectedErrors => ("expected_errors", [0, 0]),
             Self::Uncorrelated => ("uncorrelated", [0, 0]),
+            Self::WorseAccuracy => ("worse_accuracy", [0, 0]),
             Self::Datum(datum) => ("datum", [datum as i32, 0]),
             Self::RiskOfLevels(coefficient, exponent) => ("risk_of_levels", [coefficient as i32, exponent as i32]),
             Self::NoSeparation => ("no_separation", [0, 0]),

@@ -49,7 +49,8 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
     let (record, pvt) = of_kind(messages, PVT).map(|message| (message.record, message.body.as_slice()))?;
     let time = body(TIME_GPS).and_then(gps_time).or_else(|| utc(pvt));
     let levels = body(PL).and_then(levels);
-    let exact = body(COV).and_then(covariance);
+    let accuracies = of_accuracies(pvt);
+    let exact = body(COV).and_then(covariance).map(|exact| no_better(exact, accuracies));
     // Divided, a number of decimals is the nearest double to what the message says.
     let degrees = |at: usize, parts: f64| i32_at(pvt, at).map(|value| (f64::from(value) / parts).to_radians());
     let metres = |at: usize| i32_at(pvt, at).map(|mm| f64::from(mm) * 1e-3);
@@ -60,7 +61,7 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
         lat_rad: degrees(28, 1e7),
         lon_rad: degrees(24, 1e7),
         h_m: metres(32),
-        covariance_m2: exact.or_else(|| of_accuracies(pvt)),
+        covariance_m2: exact.map(|(covariance, _)| covariance).or(accuracies),
         ground_speed_mps: metres(60),
         ground_track_rad: degrees(64, 1e5),
         vertical_rate_mps: metres(56).map(|down| -down),
@@ -73,7 +74,13 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
         fields: FIELDS,
         covariance_from: Some(if exact.is_some() { "NAV-COV" } else { "NAV-PVT hAcc, vAcc" }),
         levels_from: if levels.is_some() { &[("hpl_m", "NAV-PL"), ("vpl_m", "NAV-PL")] } else { &[] },
-        notes: [exact.is_none().then_some(Note::CircularCovariance), levels.map(|(_, _, note)| note)],
+        notes: [
+            match exact {
+                None => Some(Note::CircularCovariance),
+                Some((_, enlarged)) => enlarged.then_some(Note::WorseAccuracy),
+            },
+            levels.map(|(_, _, note)| note),
+        ],
         ..Position::default()
     })
 }
@@ -127,6 +134,19 @@ fn covariance(message: &[u8]) -> Option<[f64; 6]> {
     let term = |at: usize| f32_at(message, at).map(f64::from);
     let [nn, ne, nd, ee, ed, dd] = [term(16)?, term(20)?, term(24)?, term(28)?, term(32)?, term(36)?];
     Some([ee, ne, nn, -ed, -nd, dd])
+}
+
+/// Ratio of variances up to which hAcc and vAcc say the same as NAV-COV: a tenth of the deviation. Provenance: ours \[1\].
+const SAME: f64 = 1.21;
+
+/// The covariance, enlarged where the accuracies of the same epoch are worse, and whether it was.
+fn no_better(exact: [f64; 6], accuracies: Option<[f64; 6]>) -> ([f64; 6], bool) {
+    let [ee, en, nn, eu, nu, uu] = exact;
+    let Some([east, _, north, _, _, up]) = accuracies else { return (exact, false) };
+    let factor = |stated: f64, own: f64| if own > 0.0 && stated > SAME * own { stated / own } else { 1.0 };
+    let (h, v) = (factor(east + north, ee + nn), factor(up, uu));
+    let both = libm::sqrt(h * v);
+    ([ee * h, en * h, nn * h, eu * both, nu * both, uu * v], h > 1.0 || v > 1.0)
 }
 
 /// A circle: hAcc is the root of both horizontal variances together.
