@@ -87,7 +87,7 @@ def test_a_taken_id_or_name_is_refused_and_the_session_forgets() -> None:
     with algorithms.register(TOY), pytest.raises(InputError, match="an id beside"), algorithms.register(TOY):
         pass
     assert "toy" not in algorithms.algorithms()
-    with pytest.raises(InputError, match="protection = toy is not"):
+    with pytest.raises(InputError, match="protection = toy: no algorithm"):
         algorithms.entry(algorithms.Recorded, "protection", "toy")
 
 

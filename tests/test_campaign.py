@@ -136,7 +136,7 @@ def test_the_drawn_row_of_the_coverage_study_is_kept_in_parts(monkeypatch: pytes
 def test_a_study_that_is_not_cut_refuses_who_should_work(name: str) -> None:
     refused: tuple[scale.Work, ...] = ({"backend": "processes"}, {"workers": scale.Workers(2)}, {"checkpoint": "x"})
     for work in refused:
-        with pytest.raises(InputError, match="not cut into tiles"):
+        with pytest.raises(InputError, match="this study runs in one process"):
             navbound.study(name, **work)
 
 

@@ -69,7 +69,7 @@ def test_a_wrong_call_is_a_sentence(arguments: list[str], status: int, named: st
         (["--spec", "RNP 0"], "(0, 20]"),
         (["--spec", "RNP AR 0.7"], "[185.2, 555.6]"),
         (["--path", "LFPG/99X"], "08R"),
-        (["--sigma-m", "-3"], "sigma_m"),
+        (["--sigma-m", "-3"], "--sigma-m = -3.0 [m]"),
         (["--map", "latitude"], "canonical=column"),
     ],
 )

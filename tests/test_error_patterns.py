@@ -38,7 +38,7 @@ def refusal(*words: object) -> str:
         (["--database", "x.dat"], "--database needs --procedure"),
         (["--missed"], "--missed needs --procedure"),
         (["--mask", "95"], "--mask = 95.0 [deg] is outside [0, 90)"),
-        (["--signals", "dual"], "--signals has no meaning here: there are no measurements to solve"),
+        (["--signals", "dual"], "--signals cannot be used here: there are no measurements to solve"),
         (["--sigma-m", "-3"], "--sigma-m = -3.0 [m] is outside (0, inf)"),
         (["--spec", "rnp-0.3"], "did you mean RNP 0.3?"),
         (["--path", "LFPG/08X"], "--path = LFPG/08X: no runway of LFPG of that name; there are 08H"),
@@ -49,11 +49,11 @@ def test_the_command_line_names_the_option_as_it_is_typed(track: Path, words: li
 
 
 def test_a_study_of_one_process_says_so() -> None:
-    assert "--backend has no meaning here: this study runs in one process" in refusal("study", "surface-movement", "--backend", "dask")
+    assert "--backend cannot be used here: this study runs in one process" in refusal("study", "surface-movement", "--backend", "dask")
 
 
 def test_python_names_the_argument(track: Path) -> None:
-    with pytest.raises(ConflictError, match=r"^signals has no meaning here"):
+    with pytest.raises(ConflictError, match=r"^signals cannot be used here"):
         navbound.analyze(track, signals="dual")
     with pytest.raises(NotFoundError, match=r"^spec = RNPAR: no specification of that name; .*did you mean RNP AR\?$"):
         navbound.analyze(track, spec="RNPAR")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import struct
 from pathlib import Path
 
 import pytest
@@ -54,3 +55,67 @@ def test_indicators_over_time_are_refused_where_a_tenth_of_the_epochs_is_lost(wh
         FormatError, match=r"\d+ of \d+ epochs cannot be read, more than the 10% that may be lost; the first: epoch is not a date"
     ):
         navbound.evaluate([damaged(path, 5), navigation], levels="NPA")
+
+
+def ubx(kind: bytes, payload: bytes) -> bytes:
+    body = kind + struct.pack("<H", len(payload)) + payload
+    a = b = 0
+    for byte in body:
+        a = (a + byte) & 0xFF
+        b = (b + a) & 0xFF
+    return b"\xb5\x62" + body + bytes((a, b))
+
+
+def pvt(second: int, *, fix: int = 3, accuracy_mm: int = 2000) -> bytes:
+    payload = bytearray(92)
+    struct.pack_into("<IHBBBBBB", payload, 0, 1000 * second, 2026, 11, 22, 12, second // 60, second % 60, 0b111)
+    payload[20], payload[21], payload[23] = fix, int(fix > 0), 12
+    struct.pack_into("<iiii", payload, 24, 25_000_000, 490_000_000 + 300 * second, 100_000, 60_000)
+    struct.pack_into("<II", payload, 40, accuracy_mm, accuracy_mm)
+    return ubx(b"\x01\x07", bytes(payload))
+
+
+def cov(second: int, variance: float = 2.0) -> bytes:
+    terms = struct.pack("<6f", variance, 0.0, 0.0, variance, 0.0, variance)
+    return ubx(b"\x01\x36", struct.pack("<IBBB9x", 1000 * second, 0, 1, 1) + terms + bytes(24))
+
+
+@pytest.mark.parametrize(
+    ("without", "expected"),
+    [(range(0), "inside"), (range(100), "not_shown"), (range(80, 200), "not_shown"), (range(0, 200, 2), "not_shown"), (range(5), "inside")],
+)
+def test_epochs_in_which_a_receiver_had_no_fix_are_not_judged(tmp_path: Path, without: range, expected: str) -> None:
+    path = tmp_path / "log.ubx"
+    path.write_bytes(b"".join(pvt(k, fix=0 if k in without else 3) + cov(k) for k in range(200)))
+    verdict = navbound.analyze(path).summary.verdict
+    assert (verdict.id, verdict.n_epochs, verdict.n_judged) == (expected, 200, 200 - len(without))
+
+
+def test_damage_of_other_messages_takes_no_position_away(tmp_path: Path) -> None:
+    raw = bytearray(ubx(b"\x02\x15", bytes(400)))
+    raw[50] ^= 1
+    path = tmp_path / "log.ubx"
+    path.write_bytes(b"".join(bytes(raw) + pvt(k) + cov(k) for k in range(100)))
+    run = navbound.analyze(path)
+    assert (run.summary.verdict.id, run.summary.verdict.n_judged) == ("inside", 100)
+    assert {r.reason: r.count for r in run.summary.rejected} == {"damaged message of no position": 100}
+
+
+def test_a_damaged_position_is_an_epoch_that_is_not_judged(tmp_path: Path) -> None:
+    frames = [bytearray(pvt(k)) for k in range(200)]
+    for frame in frames[190:]:
+        frame[40] ^= 1
+    path = tmp_path / "log.ubx"
+    path.write_bytes(b"".join(bytes(frame) + cov(k) for k, frame in enumerate(frames)))
+    verdict = navbound.analyze(path).summary.verdict
+    assert (verdict.n_epochs, verdict.n_judged) == (200, 190)
+
+
+def test_an_accuracy_that_is_worse_than_the_covariance_beside_it_counts(tmp_path: Path) -> None:
+    path = tmp_path / "log.ubx"
+    path.write_bytes(b"".join(pvt(k, accuracy_mm=20_000_000) + cov(k) for k in range(60)))
+    run = navbound.analyze(path)
+    assert run.summary.verdict.id == "outside"
+    assert any("hAcc or vAcc is worse than NAV-COV" in words for words in run.summary.assumptions)
+    # Half of 20 km squared on each axis.
+    assert run.epochs["cov_ee_m2"][0] == pytest.approx(2e8, rel=1e-6)

@@ -279,4 +279,4 @@ def test_an_option_of_levels_without_levels_names_the_command_that_has_it(tmp_pa
     (file,) = days(tmp_path, 1)
     words = [sys.executable, "-m", "navbound", "analyze", str(file), "--protection", "raim"]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
-    assert (done.returncode, "protection = raim" in done.stderr, "navbound evaluate" in done.stderr) == (2, True, True)
+    assert (done.returncode, "--protection needs --levels" in done.stderr, "navbound evaluate" in done.stderr) == (2, True, True)

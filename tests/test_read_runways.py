@@ -90,7 +90,8 @@ def test_thresholds_are_those_of_the_reference(name: str, lat_deg: float, lon_de
 
 
 @pytest.mark.parametrize(
-    ("name", "says"), [("LFPG/99", "LFPG: 08H, 08L"), ("LFPX/08", "nearest"), ("LFPG", "LFPG/08R"), ("/08", "LFPG/08R")]
+    ("name", "says"),
+    [("LFPG/99", "no runway of LFPG of that name; there are 08H, 08L"), ("LFPX/08", "nearest"), ("LFPG", "LFPG/08R"), ("/08", "LFPG/08R")],
 )
 def test_an_unknown_runway_is_refused_with_what_there_is(name: str, says: str) -> None:
     with pytest.raises(InputError, match="path = ") as refusal:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import navbound
-from navbound.read.checks.speeds import Speeds, doubts_of_speeds
+from navbound.read.speeds import Speeds, doubts_of_speeds
 
 N = 400
 M_PER_DEG = math.radians(1.0) * 6_371_000.0

@@ -83,7 +83,7 @@ class ConflictError(InputError):
     def words(self, name: Callable[[str], str]) -> str:
         """As :meth:`InputError.words`."""
         needs, excludes = (" or ".join(map(name, names)) for names in (self.needs, self.excludes))
-        rule = f"needs {needs}" if self.needs else f"cannot stand beside {excludes}" if self.excludes else "has no meaning here"
+        rule = f"needs {needs}" if self.needs else f"cannot stand beside {excludes}" if self.excludes else "cannot be used here"
         return f"{name(self.argument)} {rule}" + (f": {self.because}" if self.because else "")
 
     def __reduce__(self) -> tuple[object, ...]:

@@ -95,7 +95,7 @@ def _option(argument: str) -> str:
             break
         command = command.commands[word]
     names: dict[str, str] = {parameter.name: parameter.opts[0] for parameter in command.params}
-    return {"columns": "--map", "mask_rad": "--mask", "study": "name"}.get(argument, names.get(argument, argument))
+    return names.get({"columns": "column"}.get(argument, argument), argument)
 
 
 def _die(message: str, status: int) -> None:

@@ -148,7 +148,7 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
     else:
         path = Path(name)
         if not path.exists():
-            raise NotFoundError("name", str(name), "file and no built-in constellation", shipped)
+            raise NotFoundError("name", str(name), "file and no built-in constellation", shipped, "or the path of an almanac")
         content = packed.read(path)
         if _is_navigation(content):
             return _broadcast(content, path, near_ns)

@@ -83,7 +83,7 @@ def read(source: Source, name: str) -> Log:
     found = _core.read_positions(source.content, name)
     left_out = [(_REASONS[reason], *of) for reason, *of in found["left_out"]]
     if found["undated"] is not None:
-        n_damaged = sum(count for _, damaged, count, _, _ in left_out if damaged)
+        n_damaged = sum(count for reason, _, count, *_ in found["left_out"] if reason.startswith("damaged"))
         raise FormatError(source.path, _undated(found["n_rows"], n_damaged), found["undated"], "date")
     if found["n_rows"] == 0:
         raise FormatError(source.path, f"a log of kind {name} without a message that holds a position ({MESSAGES[name]})")

@@ -14,12 +14,12 @@ from navbound.read.approaches import Approaches, Gates, find, statistics
 from navbound.read.checks.axes import doubts_of_axes
 from navbound.read.checks.plausible import Limits, check
 from navbound.read.checks.repeats import left_out, separate
-from navbound.read.checks.speeds import doubts_of_speeds
 from navbound.read.covariance import Claimed, claim
 from navbound.read.pieces import PIECE_ROWS
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
 from navbound.read.source import LARGE_BYTES, is_text_table
+from navbound.read.speeds import doubts_of_speeds
 from navbound.read.tables.epochs import Reading, read
 from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
 from navbound.records.frames import LEFT_OUT

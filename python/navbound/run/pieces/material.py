@@ -12,10 +12,10 @@ import polars as pl
 from navbound import _core, status
 from navbound.read.checks.axes import Axes
 from navbound.read.checks.plausible import Checker, Limits, Plausibility
-from navbound.read.checks.speeds import Speeds
 from navbound.read.covariance import Claimed, Claims
 from navbound.read.pieces import Frames, PiecedReading, read_pieces
 from navbound.read.pieces.chunks import Chunks
+from navbound.read.speeds import Speeds
 from navbound.read.tables.columns import POSITION_TIME, assign
 from navbound.read.tables.table import layout_of
 from navbound.table.columns import COVARIANCE, HORIZONTAL
