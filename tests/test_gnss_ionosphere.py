@@ -276,3 +276,18 @@ def solution(status: str, variance_m2: float) -> Solution:
 def test_positions_that_nobody_vouches_for_are_not_taken_for_their_covariance(single: Solution, dual: Solution, taken: str) -> None:
     found = smaller_covariance({"single": single, "dual": dual}.__getitem__)  # type: ignore[arg-type]
     assert found.models["signals"].startswith(taken)
+
+
+@pytest.mark.parametrize(("shift_m", "said"), [(0.0, False), (5000.0, True)])
+def test_a_header_that_is_far_from_every_solved_position_is_said(shared_data: Path, tmp_path: Path, shift_m: float, said: bool) -> None:
+    folder = shared_data / "gnss" / "taroz_static"
+    text = gzip.decompress((folder / "rover.obs.gz").read_bytes()).decode("latin-1")
+    lines = text.splitlines(keepends=True)
+    at = next(k for k, line in enumerate(lines) if "APPROX POSITION XYZ" in line)
+    navigation = folder / "base.nav"
+    place = [float(word) for word in lines[at].split()[:3]]
+    lines[at] = f"{place[0] + shift_m:14.4f}{place[1]:14.4f}{place[2]:14.4f}{'':18}APPROX POSITION XYZ\n"
+    path = tmp_path / "rover.obs"
+    path.write_text("".join(lines), encoding="latin-1")
+    words = " ".join(navbound.analyze([path, navigation]).summary.assumptions)
+    assert ("the approximate position of the header is" in words) == said

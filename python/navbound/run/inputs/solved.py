@@ -9,6 +9,7 @@ import polars as pl
 from navbound import gnss
 from navbound.errors import FormatError
 from navbound.gnss.receivers import unused_words
+from navbound.read.checks.places import away_from_header
 from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.checks.repeats import left_out, separate
 from navbound.read.tables.epochs import Reading
@@ -61,6 +62,7 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     ]
     rejected += of_observations(observations)
     notes = [f"{source.path.name}: {name}: {words}" for name, words in found.models.items()]
+    notes += [f"{source.path.name}: {words}" for words in away_from_header(known, observations)]
     notes += skipped_words(source.path.name, observations.skipped)
     notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in found.unused.items()]
     # Epochs that cannot be read were measured all the same; nobody knows when.
