@@ -490,3 +490,19 @@ def test_positions_that_may_be_radians_show_nothing_until_the_unit_is_stated(
     assert verdict.id == expected
     assert bool(verdict.position_doubts) == (expected == "not_shown")
     assert ("nothing is shown until it is stated" in verdict.words) == (expected == "not_shown")
+
+
+def test_the_rest_of_a_truth_that_contradicts_itself_shows_nothing(tmp_path: Path) -> None:
+    """One true row in four is honest, 3 km from a lie that agrees with the estimate: an epoch or two keep a truth."""
+    rows, truth = [HEAD_OF_TWO], ["time,lat,lon,h_m"]
+    for k in range(300):
+        lat, stamp = 49 + k * 7e-4, f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}"
+        rows.append(f"{stamp}.000Z,{lat:.7f},2.5,100.0,64.0,0.0,64.0")
+        truth.append(f"{stamp}.001Z,{lat:.7f},2.5,100.0")
+        if k % 3 == 0:
+            truth.append(f"{stamp}.500Z,{lat + 0.03:.7f},2.5,100.0")
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    (tmp_path / "t.csv").write_text("\n".join(truth) + "\n")
+    verdict = navbound.analyze(tmp_path / "a.csv", truth=tmp_path / "t.csv").summary.verdict
+    assert verdict.n_truth < 10
+    assert verdict.id == "not_shown"

@@ -119,3 +119,10 @@ def test_an_accuracy_that_is_worse_than_the_covariance_beside_it_counts(tmp_path
     assert any("hAcc or vAcc is worse than NAV-COV" in words for words in run.summary.assumptions)
     # Half of 20 km squared on each axis.
     assert run.epochs["cov_ee_m2"][0] == pytest.approx(2e8, rel=1e-6)
+
+
+def test_a_refused_evaluation_leaves_nothing_behind(whole: tuple[Path, Path], tmp_path: Path) -> None:
+    path, navigation = whole
+    with pytest.raises(FormatError, match="cannot be read"):
+        navbound.evaluate([damaged(path, 5), navigation], levels="NPA", out=tmp_path / "run")
+    assert not (tmp_path / "run").exists() or not list((tmp_path / "run").iterdir())

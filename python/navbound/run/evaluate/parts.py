@@ -44,7 +44,6 @@ def finished_parts(
     sources: Files, options: Options, truth: Truth, folder: Path, progress: Callable[[int, int], None] | None
 ) -> list[Stored]:
     """Every part, computed or remembered, in the order of time."""
-    folder.mkdir(exist_ok=True)
     jobs = sources.tables + sources.observations
     shared = _shared_key(sources, options, truth)
     service = Service([s.path for s in sources.navigation], [s.path for s in sources.messages], options.prn)
@@ -114,6 +113,8 @@ def _remember(folder: Path, key: str, source: Source, part: Part) -> Stored:
         "experimental": part.experimental,
     }
     try:
+        # Not before: a run that is refused at its first file leaves nothing behind.
+        folder.mkdir(exist_ok=True)
         if part.ranges is not None:
             part.ranges.write_parquet(partial := _ranges_of(table).with_suffix(".partial"), compression="zstd")
             partial.replace(_ranges_of(table))

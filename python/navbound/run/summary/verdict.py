@@ -95,7 +95,7 @@ def verdict_of(
         n_stated_against=found.doubts.n_stated_against,
         n_without_level=found.doubts.n_without_level,
         n_apart=0 if found.doubts.neighbours is None else found.doubts.neighbours.n,
-        truth_lost=material.truth_doubts.n > 0 and found.n_truth == 0,
+        truth_lost=material.truth_doubts.n > 0 and found.n_truth <= material.truth_doubts.n,
         position_doubted=bool(material.position_doubts),
     )
     decided = rule.of_tracks(facts)

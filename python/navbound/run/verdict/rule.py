@@ -55,7 +55,7 @@ class TrackFacts:
     n_apart : int
         Positions that contradict those beside them by more than their covariances allow.
     truth_lost : bool
-        A truth was there, and none of it can be one.
+        A truth was there, and at half of its epochs or more it cannot be one.
     position_doubted : bool
         Positions may not be what they are read as: their unit, or their motion against the stated speed.
     """
