@@ -5,7 +5,7 @@
 - refused by an error of navbound that names it,
 - or read with the same numbers,
 - or read with losses that are counted or noted,
-- or, where the damaged bytes carry no check sum, read with another number in the records that these bytes belong to and in no other: a file
+- or, where the damaged bytes carry no checksum, read with another number in the records that these bytes belong to and in no other: a file
   that says 51 where it said 50 is a file that says 51.
 
 Anything else is a failure: another exception, more than 10 s of processor time, more than 2 GB, or a number that is wrong in silence. Which
@@ -133,12 +133,12 @@ class Bench:
         if not (lost or changed or new):
             return ("counted" if counted else "same"), ""
         if self.kind.protection == "file":
-            return "WRONG", f"{len(lost)} lost, {len(changed)} changed, {len(new)} new behind a check sum of the whole"
+            return "WRONG", f"{len(lost)} lost, {len(changed)} changed, {len(new)} new behind a checksum of the whole"
         if self.kind.protection == "parity" and d.words == "swapped":
             return ("counted" if counted else "data"), ""
         if self.kind.protection in {"record", "parity"}:
             if changed or new:
-                return "WRONG", f"changed {_some(changed)}, new {_some(new)} behind check sums"
+                return "WRONG", f"changed {_some(changed)}, new {_some(new)} behind checksums"
             # Between two frames a log may end.
             whole = d.words == "cut" and self.content[d.begin : d.begin + 2] in {b"$@", b"\xb5b", b"\xaa\x44"}
             return ("data" if whole else "counted", "") if counted or whole else ("SILENT", f"lost {_some(lost)}")

@@ -211,7 +211,7 @@ def zipped(content: bytes) -> bytes:
 class Kind:
     """A kind of file.
 
-    `protection`: ``none`` (every line is data), ``record`` (each record has a check sum: what is read was written), ``parity`` (a sum that
+    `protection`: ``none`` (every line is data), ``record`` (each record has a checksum: what is read was written), ``parity`` (a sum that
     does not see bytes change places), ``file`` (the whole has one). `beside`: files that are read with it, undamaged.
     """
 

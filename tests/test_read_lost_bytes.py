@@ -55,7 +55,7 @@ def test_a_time_whose_check_sum_is_wrong_dates_nothing(tmp_path: Path) -> None:
     reading = read(put(tmp_path, "a.ubx", bytes(wrong)))
     assert stated + 64 not in reading.epochs["time_ns"]
     assert stated not in reading.epochs["time_ns"]
-    assert [r.count for r in reading.rejected if "check sum" in (r.example or "") + r.reason] == [1]
+    assert [r.count for r in reading.rejected if "checksum" in (r.example or "") + r.reason] == [1]
 
 
 def test_novatel_bytes_outside_frames_are_stated(tmp_path: Path) -> None:

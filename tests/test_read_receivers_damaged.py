@@ -1,4 +1,4 @@
-"""Whole frames of receivers with wrong contents: right check sums around changed bytes. Frames are made here, by the makers' documents."""
+"""Whole frames of receivers with wrong contents: right checksums around changed bytes. Frames are made here, by the makers' documents."""
 
 from __future__ import annotations
 

@@ -41,6 +41,7 @@ _NOTES = {
     "risk_of_levels": "protection levels of NAV-PL, for a misleading-information risk of {0}e{1} an hour",
     "uncorrelated": "BESTPOS states standard deviations; axes taken as uncorrelated, which the file does not say",
 }
+_DAMAGED = ("damaged_message", "damaged_other_message")
 _COUNTS = ("n_rows", "absent_ns", "n_outside", "undated", "fields", "notes", "left_out", "cov_m2")
 
 
@@ -83,7 +84,7 @@ def read(source: Source, name: str) -> Log:
     found = _core.read_positions(source.content, name)
     left_out = [(_REASONS[reason], *of) for reason, *of in found["left_out"]]
     if found["undated"] is not None:
-        n_damaged = sum(count for reason, _, count, *_ in found["left_out"] if reason.startswith("damaged"))
+        n_damaged = sum(count for reason_id, _, count, *_ in found["left_out"] if reason_id in _DAMAGED)
         raise FormatError(source.path, _undated(found["n_rows"], n_damaged), found["undated"], "date")
     if found["n_rows"] == 0:
         raise FormatError(source.path, f"a log of kind {name} without a message that holds a position ({MESSAGES[name]})")

@@ -10,7 +10,7 @@ use navbound_core::quantity::GpsTime;
 use navbound_core::signal::sbas::crc24q;
 use navbound_core::signal::{Ephemeris, Health, Message, SatelliteId};
 
-/// Bits that the check sum covers: the even page without its tail, and 82 of the odd one; four zeros in front fill the byte.
+/// Bits that the checksum covers: the even page without its tail, and 82 of the odd one; four zeros in front fill the byte.
 const COVERED: usize = 114 + 82;
 
 /// The 128 bits of a word from its two pages, the odd one beginning at bit `odd`; `None` for an alert page.

@@ -5,7 +5,7 @@ use super::check::crc16;
 use super::frame::{Family, Frame};
 use super::search::Look;
 
-/// Sync, check sum, block number, length.
+/// Sync, checksum, block number, length.
 const HEAD: usize = 8;
 
 /// A block at the begin of `rest`, which begins with the sync.
