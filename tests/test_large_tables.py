@@ -202,15 +202,21 @@ def test_a_line_without_an_end_is_refused(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_a_table_beyond_the_memory_is_refused_before_it_is_taken_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    file = tmp_path / "large.csv"
-    file.write_text(as_text(GOOD))
-    n_bytes = file.stat().st_size
-    monkeypatch.setattr("navbound.read.tables.memory.free_bytes", lambda: 7 * n_bytes)
-    navbound.analyze(file)
-    monkeypatch.setattr("navbound.read.tables.memory.free_bytes", lambda: 7 * n_bytes - 1)
-    with pytest.raises(FormatError, match=r"large.csv: .* MB of text take about .* read in pieces"):
-        navbound.analyze(file, truth="4200000,170000,4780000")
-    navbound.analyze(file, piece_rows=7)
+    text = tmp_path / "large.csv"
+    text.write_text(as_text(GOOD))
+    table = pl.read_csv(text)
+    parquet, records = tmp_path / "large.parquet", tmp_path / "large.json"
+    table.write_parquet(parquet)
+    table.write_json(records)
+    # One row of text more than the table has: the line of names.
+    for file, n_rows in ((text, table.height + 1), (parquet, table.height), (records, table.height)):
+        needed = 900 * n_rows + 2 * file.stat().st_size
+        monkeypatch.setattr("navbound.read.tables.memory.free_bytes", lambda needed=needed: needed)
+        navbound.analyze(file)
+        monkeypatch.setattr("navbound.read.tables.memory.free_bytes", lambda needed=needed: needed - 1)
+        with pytest.raises(FormatError, match=rf"{file.name}: its {n_rows} rows take about .* read in pieces"):
+            navbound.analyze(file, truth="4200000,170000,4780000")
+    navbound.analyze(text, piece_rows=7)
 
 
 def test_a_full_disk_for_the_pieces_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -79,7 +79,7 @@ def table(source: Source) -> Table:
 
 def _csv(source: Source) -> Table:
     """Text lines with a separator; lines with another number of fields than the header are left out and counted."""
-    require_free(source)
+    require_free(source, source.content.count(b"\n"))
     lines = lines_of(source.text(), 1)
     if lines.is_empty():
         raise FormatError(source.path, "nothing but comments")
@@ -177,6 +177,7 @@ def _parquet(source: Source) -> Table:
         n_rows = stated.select(pl.len()).collect().item()
         # Eight bytes a field: a column of one value packs to nothing.
         packed.require_room(source.path, len(source.content), 8 * n_rows * n_columns)
+        require_free(source, n_rows)
         frame = pl.read_parquet(io.BytesIO(source.content))
     except (pl.exceptions.PolarsError, OSError) as e:
         raise FormatError(source.path, f"damaged Parquet file: {str(e).splitlines()[0]}") from e
@@ -184,6 +185,8 @@ def _parquet(source: Source) -> Table:
 
 
 def _json(source: Source) -> Table:
+    # A record is an object; a row of a table of columns, or of a trace, is some twenty fields between commas.
+    require_free(source, max(source.content.count(b"{"), source.content.count(b",") // 20))
     try:
         data = json.loads(source.text())
     except json.JSONDecodeError as e:
