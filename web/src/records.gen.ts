@@ -6,6 +6,12 @@ export type BeliefState = "unchecked" | "supported" | "partial" | "few" | "copie
 
 export type Outcome = "no alert needed" | "before" | "within the time to alert" | "late" | "missed";
 
+/** What happened at an instant of a fault. */
+export interface Moment {
+    time_ns: number;
+    words: string;
+}
+
 /** One fault on one flight. Times count from its begin, in seconds; None where it never came to that. */
 export interface FaultSummary {
     track: string;
@@ -34,6 +40,9 @@ export interface FaultSummary {
     nse_u_max_m: number | null;
     /** Of the alert against the error leaving RNP. */
     outcome: Outcome;
+    outcome_words: string;
+    /** The same in the order of time. */
+    moments: Moment[];
     words: string;
 }
 

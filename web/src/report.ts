@@ -14,7 +14,7 @@ import { states } from "./chart/states.ts";
 import { linkByTime, type Cursor } from "./data/link.ts";
 import { blockOf, groundTracks, type Ground } from "./data/others.ts";
 import type { Payload } from "./data/records.ts";
-import { indexAt } from "./data/events.ts";
+import { eventWindow, indexAt } from "./data/events.ts";
 import { scene, type AxisName, type Component, type Scene } from "./data/scene.ts";
 import { Store } from "./data/store.ts";
 import { Table, type NumberName } from "./data/table.ts";
@@ -105,6 +105,8 @@ class Page {
         this.ends = [...wanted.map(({ component, host }) => component(this[host], now)), declared(this.charts, now), cursorBar(this.bar, now)];
         const worst = payload.summary.verdict.worst_accuracy;
         now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));
+        // What happened is shown first; the whole is one key away.
+        now.window.set(eventWindow(now));
         if (this.series !== null) this.ends.push(linkByTime({ table, cursor: now.cursor, width_s: 0 }, this.series));
         this.trackTable.refresh();
     }

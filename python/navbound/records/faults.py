@@ -9,6 +9,13 @@ from navbound.records.base import Record
 Outcome = Literal["no alert needed", "before", "within the time to alert", "late", "missed"]
 
 
+class Moment(Record):
+    """What happened at an instant of a fault."""
+
+    time_ns: int
+    words: str
+
+
 class FaultSummary(Record):
     """One fault on one flight. Times count from its begin, in seconds; None where it never came to that."""
 
@@ -38,4 +45,7 @@ class FaultSummary(Record):
     nse_u_max_m: float | None
     outcome: Outcome
     """Of the alert against the error leaving RNP."""
+    outcome_words: str
+    moments: list[Moment]
+    """The same in the order of time."""
     words: str

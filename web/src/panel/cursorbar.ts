@@ -1,5 +1,6 @@
 // The cursor as text, always in view: where it is, what the values are, and a slider that the keyboard moves.
 
+import { eventWindow } from "../data/events.ts";
 import type { Scene } from "../data/scene.ts";
 import type { NumberName } from "../data/table.ts";
 import { button, choice, el, setValue, valueOf } from "../show/dom.ts";
@@ -15,10 +16,18 @@ export function cursorBar(host: HTMLElement, scene: Scene): () => void {
     const state = el("span", { class: "alert-word", "data-key": "alert" });
     const live = el("p", { class: "sr", "aria-live": "polite", id: "cursor-words" });
     const whole = button("All", { class: "reset", "aria-label": "Show all epochs" }, () => scene.window.set(null));
+    const happened = eventWindow(scene);
+    const event = happened === null ? null : button("Event (e)", { class: "reset", "aria-label": "Show the event, or all epochs" }, () => turn());
+    const turn = (): void => scene.window.set(scene.window.get() === null ? happened : null);
+    const onKey = (e: KeyboardEvent): void => {
+        const typing = e.target instanceof HTMLInputElement && e.target.type !== "range" || e.target instanceof HTMLSelectElement || e.target instanceof HTMLTextAreaElement;
+        if (e.key === "e" && !typing && !e.ctrlKey && !e.metaKey && !e.altKey) turn();
+    };
+    if (event !== null) document.addEventListener("keydown", onKey);
     const axis = table.alongIsAxis ? choice("Horizontal axis", [["time", "Time"], ["along", "Distance"]], scene.axis.get(), (a) => scene.axis.set(a)) : el("span", { class: "note", title: "The distance along the path is unknown or runs backwards" }, "time axis");
     const bar = el("div", { class: "cursor-bar", role: "region", "aria-label": "Values at the cursor" },
         el("div", { class: "cursor-fields" }, state, ...fields.map((f) => el("span", { class: "field" }, el("span", { class: "field-name" }, f.label), f.cell))),
-        el("div", { class: "cursor-tools" }, slider, axis, whole), live);
+        el("div", { class: "cursor-tools" }, slider, axis, event, whole), live);
     host.append(bar);
     slider.addEventListener("input", () => scene.cursor.set(Number(slider.value)));
     slider.addEventListener("keydown", (e) => {
@@ -50,6 +59,7 @@ export function cursorBar(host: HTMLElement, scene: Scene): () => void {
     const ends = [scene.cursor.watch(update), scene.window.watch((w) => { whole.disabled = w === null; })];
     return () => {
         clearTimeout(timer);
+        document.removeEventListener("keydown", onKey);
         ends.forEach((end) => end());
         bar.remove();
     };

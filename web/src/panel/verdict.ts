@@ -7,6 +7,10 @@ import { el, svg, valueOf } from "../show/dom.ts";
 import { asked, kpiVerdict } from "./kpi-verdict.ts";
 import { clock, count, date, level, limitName, nauticalMiles, place, plain, share, SHORT_M, signedMetres } from "../show/format.ts";
 
+/** Faults and moments on the first screen; the table below lists every fault. */
+const SHOWN_FAULTS = 4;
+const SHOWN_MOMENTS = 16;
+
 type Tone = "inside" | "caution" | "warning" | "unknown";
 
 const STATES: Record<VerdictId, { word: string; mark: string }> = {
@@ -34,6 +38,7 @@ export function verdict(host: HTMLElement, payload: Payload): void {
             v.n_judged < v.least_share * v.n_epochs ? el("span", { class: "tag" }, `${share((v.n_epochs - v.n_judged) / v.n_epochs)} of the epochs not ok or not judged`) : null),
         el("p", { class: "words" }, v.words),
         contradictions(v.belief),
+        story(payload),
         facts(payload, method?.risk),
         el("div", { class: "basis" },
             el("div", {}, el("p", {}, el("strong", {}, "Judged by "), method === undefined ? v.method : `${method.id}: ${about(method)}.`),
@@ -63,6 +68,19 @@ function facts(payload: Payload, risk: number | undefined): HTMLElement {
     if (v.worst_accuracy !== null) rows.push(worst("Worst margin to RNP", "worst_accuracy", v.worst_accuracy, payload));
     if (v.worst_integrity !== null) rows.push(worst("Worst margin to 2 RNP", "worst_integrity", v.worst_integrity, payload));
     return el("dl", { class: "facts" }, ...rows);
+}
+
+/** What the declared faults of the flights did, and when the monitor spoke: of the first flights, as many as are read. */
+function story(payload: Payload): HTMLElement | null {
+    const { faults, tracks } = payload.summary;
+    if (faults.length === 0) return null;
+    const several = tracks.length > 1;
+    const outcomes = faults.slice(0, SHOWN_FAULTS).map((f) => `${several ? `${f.track}, ` : ""}${f.kind}: ${f.outcome_words}.`);
+    const of = faults[0]!.track;
+    const moments = faults.filter((f) => f.track === of).flatMap((f) => f.moments).sort((a, b) => a.time_ns - b.time_ns).slice(0, SHOWN_MOMENTS);
+    return el("div", { class: "story" }, el("p", {}, el("strong", {}, several ? `What happened on ${of}` : "What happened")),
+        el("ol", {}, ...moments.map((m) => el("li", {}, el("time", {}, `${clock(utcOf(m.time_ns, payload), true)} UTC`), ` ${m.words}`))),
+        ...outcomes.map((words) => el("p", { class: "more" }, words)));
 }
 
 /** What truth contradicts, as tags that no reader of the first screen misses. */

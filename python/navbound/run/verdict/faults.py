@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import polars as pl
 
 from navbound import anp, rnp
 from navbound.methods import column_of
-from navbound.records.faults import FaultSummary, Outcome
+from navbound.records.faults import FaultSummary, Moment, Outcome
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,7 +23,9 @@ second at 1e-4 each, once in a hundred flights of two hours."""
 
 
 _AFTER_S = 600.0
+"""What happens so long after a fault is over is still put down to it, unless another fault has begun. Provenance: ours."""
 _SECOND_NS = 1_000_000_000
+_NEVER = 2**63 - 1
 
 
 def fault_summaries(scenario: Scenario, epochs: pl.DataFrame, events: pl.DataFrame) -> list[FaultSummary]:
@@ -45,20 +48,37 @@ def fault_summaries(scenario: Scenario, epochs: pl.DataFrame, events: pl.DataFra
     found = []
     for key, frame in epochs.group_by("track", maintain_order=True):
         alerts = events.filter(pl.col("track") == key[0]).sort("onset_ns").select("onset_ns", "kind").rows()
-        for fault in scenario.sensors.faults:
-            start = scenario.start_ns + round(fault.start_s * _SECOND_NS)
-            duration = getattr(fault, "duration_s", None)
-            end = None if duration is None else start + round(duration * _SECOND_NS)
-            found.append(_summary(fault.kind, (start, end), frame, alerts, (time_to_alert_s, scenario.filter.separation_risk)))
+        for window in _windows(scenario):
+            found.append(_summary(window, frame, alerts, (time_to_alert_s, scenario.filter.separation_risk)))
     return found
 
 
-def _summary(
-    kind: str, window: tuple[int, int | None], frame: pl.DataFrame, alerts: list[tuple[Any, ...]], limits: tuple[float, float]
-) -> FaultSummary:
-    (start, end), (time_to_alert_s, separation_risk) = window, limits
+@dataclass(frozen=True)
+class _Window:
+    """A fault, its begin and end, and until when what happens is put down to it. [GPS ns]."""
+
+    kind: str
+    start: int
+    end: int | None
+    last: int
+
+
+def _windows(scenario: Scenario) -> list[_Window]:
+    """Of the declared faults, in their order; what begins after one is over has effects of its own."""
+    faults = scenario.sensors.faults if scenario.sensors is not None else []
+    starts = [scenario.start_ns + round(fault.start_s * _SECOND_NS) for fault in faults]
+    windows = []
+    for fault, start in zip(faults, starts, strict=True):
+        duration = getattr(fault, "duration_s", None)
+        end = None if duration is None else start + round(duration * _SECOND_NS)
+        last = _NEVER if end is None else min([end + round(_AFTER_S * _SECOND_NS), *(other - 1 for other in starts if other > end)])
+        windows.append(_Window(fault.kind, start, end, last))
+    return windows
+
+
+def _summary(window: _Window, frame: pl.DataFrame, alerts: list[tuple[Any, ...]], limits: tuple[float, float]) -> FaultSummary:
+    (time_to_alert_s, separation_risk), start, last = limits, window.start, window.last
     time = frame["time_ns"].to_numpy()
-    last = int(time[-1]) if end is None else end + round(_AFTER_S * _SECOND_NS)
     during = (time >= start) & (time <= last)
 
     def first(flags: NDArray[np.bool_]) -> float | None:
@@ -88,11 +108,32 @@ def _summary(
         "nse_h_max_m": _largest(frame, "nse_h_m", during),
         "nse_u_max_m": _largest(frame, "nse_u_m", during),
         "outcome": outcome,
+        "outcome_words": _outcome_words(outcome, alert_after, outside, time_to_alert_s),
     }
-    words = _words(values, time_to_alert_s, compared=bool((np.isfinite(_values(frame, "separation_m")) & during).any()))
+    words = _words(values, compared=bool((np.isfinite(_values(frame, "separation_m")) & during).any()))
     return FaultSummary.model_validate(
-        {"track": frame["track"][0], "kind": kind, "start_ns": start, "end_ns": end, "words": words} | values
+        {"track": frame["track"][0], "kind": window.kind, "start_ns": start, "end_ns": window.end, "words": words}
+        | values
+        | {"moments": _moments(window, values)}
     )
+
+
+def _moments(window: _Window, values: dict[str, Any]) -> list[Moment]:
+    """Begin, effects, alert and end in the order of time."""
+    after_s = {
+        f"{window.kind} begins": 0.0,
+        f"the mode falls to {values['mode']}": values["mode_after_s"],
+        "the filters with and without satellites disagree": values["disagree_after_s"],
+        "the filter's gate rejects measurements": values["gate_after_s"],
+        "the innovations have memory": values["memory_after_s"],
+        f"first alert: {values['alert']}": values["alert_after_s"],
+        "the true error leaves RNP": values["outside_after_s"],
+        "the true error leaves twice RNP": values["outside_twice_after_s"],
+    }
+    moments = [Moment(time_ns=window.start + round(s * _SECOND_NS), words=words) for words, s in after_s.items() if s is not None]
+    if window.end is not None:
+        moments.append(Moment(time_ns=window.end, words=f"{window.kind} ends"))
+    return sorted(moments, key=lambda moment: moment.time_ns)
 
 
 def _values(frame: pl.DataFrame, name: str) -> NDArray[np.float64]:
@@ -115,7 +156,7 @@ def _outcome(alert_s: float | None, outside_s: float | None, time_to_alert_s: fl
     return "within the time to alert" if alert_s <= outside_s + time_to_alert_s else "late"
 
 
-def _words(v: dict[str, Any], time_to_alert_s: float, *, compared: bool) -> str:
+def _words(v: dict[str, Any], *, compared: bool) -> str:
     agreed = ["the filters with and without satellites agreed"] if compared else []
     spoke = [
         f"the filter's gate after {v['gate_after_s']:.0f} s" if v["gate_after_s"] is not None else "the filter's gate not at all",
@@ -124,11 +165,16 @@ def _words(v: dict[str, Any], time_to_alert_s: float, *, compared: bool) -> str:
         f"the mode fell to {v['mode']} after {v['mode_after_s']:.0f} s" if v["mode_after_s"] is not None else "the mode did not fall",
         f"the first alert ({v['alert']}) after {v['alert_after_s']:.0f} s" if v["alert_after_s"] is not None else "no alert",
     ]
-    outcome = {
+    return f"{', '.join(spoke)}; {v['outcome_words']}."
+
+
+def _outcome_words(outcome: Outcome, alert_s: float | None, outside_s: float | None, time_to_alert_s: float) -> str:
+    apart_s = abs((outside_s or 0.0) - (alert_s or 0.0))
+    return {
         "no alert needed": "the true error stayed inside RNP",
-        "before": f"before the true error left RNP ({v['outside_after_s'] or 0:.0f} s)",
-        "within the time to alert": f"within {time_to_alert_s:g} s of the true error leaving RNP",
-        "late": f"later than {time_to_alert_s:g} s after the true error left RNP ({v['outside_after_s'] or 0:.0f} s)",
-        "missed": f"though the true error left RNP after {v['outside_after_s'] or 0:.0f} s",
-    }
-    return f"{', '.join(spoke)}; {outcome[str(v['outcome'])]}."
+        "before": f"the first alert came {apart_s:.0f} s before the true error left RNP",
+        "within the time to alert": f"the first alert came {apart_s:.0f} s after the true error left RNP, within the {time_to_alert_s:g} s "
+        "to alert",
+        "late": f"the first alert came {apart_s:.0f} s after the true error left RNP, later than the {time_to_alert_s:g} s to alert",
+        "missed": "the true error left RNP without an alert",
+    }[outcome]

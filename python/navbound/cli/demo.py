@@ -1,0 +1,69 @@
+"""`navbound demo`: the first minutes with navbound."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import navbound
+from navbound.cli.parts import Bar, command_line, out_console
+
+if TYPE_CHECKING:
+    from navbound.run.directory import Run
+
+DISTURBED = "beijing-shanghai-interference"
+QUIET = "beijing-shanghai"
+QUIET_FLIGHTS = 12
+"""One flight has about one independent error: so many are needed before a report can show that the bounds hold."""
+
+
+def demo_command(out: Annotated[Path, typer.Option(help="Folder of the two runs.")] = Path("out/demo")) -> None:
+    """Fly an approach that is jammed and then spoofed, and twelve quiet flights beside it; say what happened and what to do next."""
+    _say("1 of 2: a flight whose satellites are jammed and then spoofed on the approach")
+    disturbed = navbound.fly(DISTURBED, out=out / "interference", command=command_line())
+    _print_moments(disturbed)
+    _say(f"2 of 2: {QUIET_FLIGHTS} flights on which nothing happens")
+    with Bar("flights") as progress:
+        quiet = navbound.fly(QUIET, flights=QUIET_FLIGHTS, out=out / "quiet", command=command_line(), progress=progress)
+    _print_coverage(quiet)
+    _say("What to do next")
+    _say_next(f"open {disturbed.report}", "in a browser: the page opens on the interference; the key e shows the whole flight")
+    _say_next('navbound analyze YOUR_FILE --spec "RNP 0.3"', "a recording of your own: table, receiver's log, or RINEX with orbits")
+    _say_next("navbound --help", "every command; `navbound methods` lists every bound with its source")
+
+
+def _say(heading: str) -> None:
+    out_console.print(f"\n{heading}", style="bold", markup=False, highlight=False)
+
+
+def _say_next(command: str, purpose: str) -> None:
+    out_console.print(f"  {command}\n      {purpose}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _print_moments(run: Run) -> None:
+    """What happened, against the time to alert."""
+    from navbound.time import utc_text  # noqa: PLC0415 - loads numbers
+
+    moments = sorted((moment for fault in run.summary.faults for moment in fault.moments), key=lambda moment: moment.time_ns)
+    for moment in moments:
+        out_console.print(f"  {utc_text(moment.time_ns)[11:19]} UTC  {moment.words}", markup=False, highlight=False)
+    for fault in run.summary.faults:
+        out_console.print(f"  Of the {fault.kind}: {fault.outcome_words}.", markup=False, highlight=False)
+    _print_report(run)
+
+
+def _print_coverage(run: Run) -> None:
+    """Whether the bounds contained the errors, and with which certainty."""
+    verdict = run.summary.verdict
+    out_console.print(f"  {verdict.words.partition('. ')[0]}.", markup=False, highlight=False)
+    for bound in [] if verdict.belief is None else verdict.belief.bounds:
+        interval = f"{100 * bound.coverage_low:.1f} to {100 * bound.coverage_high:.1f} % as from {bound.n_effective:.0f} independent ones"
+        contained = f"{100 * bound.coverage:.1f} % of {bound.n} errors ({interval})"
+        out_console.print(f"  {bound.method}, stated for {100 * (1 - bound.risk):g} %: contains {contained}", markup=False, highlight=False)
+    _print_report(run)
+
+
+def _print_report(run: Run) -> None:
+    out_console.print(f"  Report: {run.report.resolve()}", markup=False, highlight=False, soft_wrap=True)
