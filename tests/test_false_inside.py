@@ -489,7 +489,7 @@ def test_positions_that_may_be_radians_show_nothing_until_the_unit_is_stated(
     verdict = navbound.analyze(tmp_path / "a.csv", truth=tmp_path / "t.csv", columns=how or None).summary.verdict
     assert verdict.id == expected
     assert bool(verdict.position_doubts) == (expected == "not_shown")
-    assert ("nothing is shown until it is stated" in verdict.words) == (expected == "not_shown")
+    assert ("nothing is shown until the unit is stated" in verdict.words) == (expected == "not_shown")
 
 
 def test_the_rest_of_a_truth_that_contradicts_itself_shows_nothing(tmp_path: Path) -> None:

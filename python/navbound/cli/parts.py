@@ -51,7 +51,7 @@ Columns = Annotated[
     typer.Option(
         "--map",
         help="What a column is, where its name does not say: sigma_n_m=sd_north, time=t:gps_s, est_lat_rad=lat:deg_e7; may be repeated. "
-        "Names and units: docs/notation.md.",
+        "Columns of a truth file: truth_time, truth_lat_rad, truth_lon_rad, truth_h_m. Names and units: docs/notation.md.",
     ),
 ]
 Solve = Annotated[

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,9 +11,9 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, gnss
-from navbound.errors import ConflictError, FormatError, InputError
+from navbound.errors import ConflictError, InputError
 from navbound.read.checks.established import contradicting, established
-from navbound.read.tables.epochs import read
+from navbound.read.tables.epochs import read_beside
 from navbound.records.truth import TruthDoubts
 from navbound.time import utc_text
 
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.read.tables.epochs import Reading
+
+_OF_TRUTH = {"truth_time": "time", "truth_lat_rad": "est_lat_rad", "truth_lon_rad": "est_lon_rad", "truth_h_m": "est_h_m"}
+"""What is declared of a recorded truth, to what it is called in its file."""
 
 TOLERANCE_S = 0.01
 """How far apart in time an estimate and its truth may lie. At 70 m/s a hundredth of a second is 0.7 m."""
@@ -40,14 +43,24 @@ class Truth:
         A fixed point, Earth-fixed. [m]
     tolerance_s : float
         How far apart in time an estimate and its recorded truth may lie. [s]
+    columns : mapping
+        What the caller declares of columns, of the estimates and of the truth.
     """
 
     given: str | None
     ecef_m: NDArray[np.float64] | None
     tolerance_s: float
+    columns: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def columns_of_estimates(self) -> Mapping[str, str]:
+        """What is declared of the estimates' columns: with a recorded truth those of the truth are in its own file."""
+        if self.given is None or self.ecef_m is not None:
+            return self.columns
+        return {name: column for name, column in self.columns.items() if name not in _OF_TRUTH}
 
 
-def truth_of(given: str | Path | None, tolerance_s: float) -> Truth:
+def truth_of(given: str | Path | None, tolerance_s: float, columns: Mapping[str, str] | None = None) -> Truth:
     """Read ``X,Y,Z`` (Earth-fixed, metres), or take a file's name.
 
     Raises
@@ -56,23 +69,22 @@ def truth_of(given: str | Path | None, tolerance_s: float) -> Truth:
         Three numbers that are no place near the Earth's surface.
     """
     if given is None:
-        return Truth(None, None, tolerance_s)
+        return Truth(None, None, tolerance_s, columns or {})
     text = str(given)
     number = r"\s*[-+]?\d+(?:\.\d*)?\s*"
     if re.fullmatch(f"{number},{number},{number}", text) is None:
-        return Truth(text, None, tolerance_s)
+        return Truth(text, None, tolerance_s, columns or {})
     point = np.array([float(part) for part in text.split(",")])
     if not 6.3e6 < float(np.linalg.norm(point)) < 6.5e6:
         raise InputError("truth", text, "m", "X,Y,Z of a point within 100 km of the Earth's surface, or a file")
-    return Truth(text, point, tolerance_s)
+    return Truth(text, point, tolerance_s, columns or {})
 
 
-def with_truth(
-    epochs: pl.DataFrame, truth: Truth, columns: Mapping[str, str] | None = None
-) -> tuple[pl.DataFrame, str, Reading | None, TruthDoubts]:
+def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, Reading | None, TruthDoubts]:
     """Form the navigation error against a truth that was named; words about it, what was read of its file, what speaks against it.
 
-    Columns that the caller named for the estimates are those of the truth too, where it has them all.
+    What the caller declares of the estimates' columns counts for a recorded truth too, where it has them; ``truth_lat_rad``,
+    ``truth_lon_rad``, ``truth_h_m`` and ``truth_time`` are declared of its own.
 
     Raises
     ------
@@ -82,7 +94,7 @@ def with_truth(
     if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
         raise ConflictError("truth", because="the table holds no positions to compare with it")
     if truth.ecef_m is None:
-        other = _recorded(str(truth.given), columns)
+        other = _recorded(truth)
         joined, words, doubts = join(epochs, other, truth.tolerance_s)
         return joined, words, other, doubts
     place = gnss.geodetic(truth.ecef_m)
@@ -92,14 +104,9 @@ def with_truth(
     return found, _sentences(f"Truth: the fixed point {truth.given} m, Earth-fixed.", doubts.words), None, doubts
 
 
-def _recorded(path: str, columns: Mapping[str, str] | None) -> Reading:
-    if columns:
-        try:
-            return read(path, columns=columns)
-        except FormatError:
-            # It does not have these columns: its own names say what they are.
-            pass
-    return read(path)
+def _recorded(truth: Truth) -> Reading:
+    declared = {_OF_TRUTH[name]: column for name, column in truth.columns.items() if name in _OF_TRUTH}
+    return read_beside(str(truth.given), declared, truth.columns_of_estimates)
 
 
 def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S) -> tuple[pl.DataFrame, str, TruthDoubts]:

@@ -137,7 +137,10 @@ def material(
     found.require_navigation()
     if not found.observations:
         solving.refuse(_TO_SOLVE)
-    readings = [read(source.path, columns=columns) for source in found.tables] + (solved(found, solving) if found.observations else [])
+    named = truth_of(truth, truth_tolerance_s, columns)
+    readings = [read(source.path, columns=named.columns_of_estimates) for source in found.tables] + (
+        solved(found, solving) if found.observations else []
+    )
     _refuse_experimental(readings)
     inputs = [r.source for r in readings] + [source.record(None) for source in found.navigation if source not in found.observations]
     rejected = [x for r in readings for x in r.rejected]
@@ -145,7 +148,6 @@ def material(
     epochs, lost = _together(readings, rejected)
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
-    named = truth_of(truth, truth_tolerance_s)
     # A fixed truth says that the receiver stands: its position may repeat.
     epochs, plausibility = check(claimed.epochs, limits if named.ecef_m is None else replace(limits, moving_mps=math.inf))
     origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
@@ -153,7 +155,7 @@ def material(
     position_doubts, truth_doubts = [*(each for r in readings for each in r.position_doubts), *doubts_of_speeds(epochs)], TruthDoubts()
     assumptions = [of_covariance, plausibility.words, *doubts_of_axes(epochs)]
     if truth is not None:
-        epochs, words, other, truth_doubts = with_truth(epochs, named, columns)
+        epochs, words, other, truth_doubts = with_truth(epochs, named)
         assumptions.append(words)
         if other is not None:
             inputs, rejected, position_doubts = [*inputs, other.source], rejected + other.rejected, position_doubts + other.position_doubts

@@ -251,6 +251,7 @@ def assign(
     *,
     needs: Sequence[str] = POSITION,
     texts: Container[str] = (),
+    where_present: Mapping[str, str] | None = None,
 ) -> Assignment:
     """Find what each column is.
 
@@ -266,6 +267,8 @@ def assign(
         Quantities without which the file is refused, beside a time; other than a position they are those of errors and protection levels.
     texts : container of str
         Columns that hold words and no number: one named `track` is then a flight's name, not its direction.
+    where_present : mapping, optional
+        More of `declared`, each of which counts where the file has its column.
 
     Raises
     ------
@@ -279,7 +282,9 @@ def assign(
     own = {"time_ns", "est_lat_rad"} <= set(names) or any(_plain(name)[0] == "track" and name in texts for name in names)
     columns: dict[str, Column] = {}
     times: list[Column] = []
-    for key, value in (declared or {}).items():
+    known = {"time", "time_ns", *(q.name for q in quantities)}
+    beside = {key: value for key, value in (where_present or {}).items() if key in known and _column_named(value, names)[0] in names}
+    for key, value in (beside | dict(declared or {})).items():
         column = _declared(key, value, names, path, quantities)
         if column.quantity == "time":
             times.append(column)
@@ -395,7 +400,7 @@ def _written_unit(name: str, quantity: Quantity, path: Path) -> str | None:
     if written in UNITS[quantity.si]:
         return written
     known = ", ".join(u for u in UNITS[quantity.si] if u)
-    what = f"its unit “{written}” is not known (known: {known}); rename the column, or declare it: {quantity.name}={name}:UNIT"
+    what = f"its unit “{written}” is not known (known: {known}); rename the column, or {declare(f'{quantity.name}={name}:UNIT')}"
     raise FormatError(path, what, 1, name)
 
 
@@ -408,11 +413,17 @@ def _times(names: list[str]) -> list[Column]:
     return single or (week + tow if week and tow else [])
 
 
+def _column_named(value: str, names: list[str]) -> tuple[str, str]:
+    """``column:unit`` to both; a name may have a colon of its own."""
+    name, separator, unit = value.rpartition(":")
+    if value in names or not separator:
+        return value, ""
+    return name, unit
+
+
 def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Quantity, ...]) -> Column:
     quantities = {q.name: q for q in known}
-    name, separator, unit = value.rpartition(":")
-    if not separator or name not in names:
-        name, unit = (value, "") if value in names or not separator else (name, unit)
+    name, unit = _column_named(value, names)
     if name not in names:
         short = [n for n in names if len(n) <= _LONGEST_NAME]
         near = ", ".join(difflib.get_close_matches(name[:_LONGEST_NAME], short, 3, 0.5)) or ", ".join(short[:12])
@@ -441,6 +452,12 @@ def _unit_of_time(name: str) -> str:
     return f"{scale}_{size}" if f"{scale}_{size}" in TIME_UNITS else f"{scale}_s"
 
 
+def declare(*columns: str) -> str:
+    """How a person declares what a column is, from the command line and in Python."""
+    options = " ".join(f'--map "{column}"' for column in columns)
+    return f"declare it: {options} (in Python: columns)"
+
+
 def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, wanted: Sequence[str]) -> None:
     """Refuse a table without a time or a wanted quantity, and say what comes nearest."""
     aliases = {q.name: list(q.aliases) for q in QUANTITIES + LEVEL_QUANTITIES}
@@ -459,7 +476,7 @@ def _require(columns: dict[str, Column], times: list[Column], names: list[str], 
         raise FormatError(
             path,
             f"no column holds it (known names: {', '.join(known[:6])}, ...); the nearest of the {len(names)} found are "
-            f"{', '.join(best)}; if one of them is it, declare it: {need}=COLUMN:{unit}{more}",
+            f"{', '.join(best)}; if one of them is it, {declare(f'{need}=COLUMN:{unit}')}{more}",
             1,
             need,
         )

@@ -87,7 +87,21 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: S
     InputError
         A declared column that names no known quantity or unit.
     """
-    source = load(path)
+    return _read(load(path), columns, needs, {})
+
+
+def read_beside(path: str | Path, columns: Mapping[str, str], where_present: Mapping[str, str]) -> Reading:
+    """Read a recording beside another: what is declared of the other's columns counts for those that it has too.
+
+    Raises
+    ------
+    FormatError, InputError
+        As :func:`read`.
+    """
+    return _read(load(path), columns, POSITION, where_present)
+
+
+def _read(source: Source, columns: Mapping[str, str] | None, needs: Sequence[str], where_present: Mapping[str, str]) -> Reading:
     of = source.format
     if of.id == "rtklib" or of.read is not None:
         reading = _rtklib(source) if of.read is None else _log(source, of.read(source))
@@ -95,7 +109,7 @@ def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: S
             reading.notes.append(f"Columns named by the caller change nothing in {source.path.name}, whose format names its own.")
         return reading
     found = table(source)
-    mapping = assign(found.columns, columns, source.path, needs=needs, texts=texts(found.frame))
+    mapping = assign(found.columns, columns, source.path, needs=needs, texts=texts(found.frame), where_present=where_present)
     return _epochs(source, found, mapping, [name for name in POSITION if name in needs])
 
 

@@ -10,6 +10,7 @@ import polars as pl
 
 from navbound import _core
 from navbound.errors import FormatError
+from navbound.read.tables.columns import declare
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -127,7 +128,7 @@ def understand(facts: TimeFacts, columns: list[Column], dtype: pl.DataType, path
     if unit == "utc":
         unit = next((u for u, low in (("utc_ns", 1e17), ("utc_us", 1e14), ("utc_ms", 1e11), ("utc_s", 1e8)) if size >= low), "")
         if not unit and not since_start:
-            words = f"the values (median {size:g}) are not Unix times; declare the unit, e.g. time={name}:gps_s"
+            words = f"the values (median {size:g}) are not Unix times; {declare(f'time={name}:gps_s')}"
             raise FormatError(path, words, field=name)
     if since_start:
         raise FormatError(path, since_start, field=name)

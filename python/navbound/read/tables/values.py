@@ -21,6 +21,7 @@ from navbound.read.tables.columns import (
     UNITS,
     Assignment,
     Column,
+    declare,
     position_time,
 )
 from navbound.read.tables.table import LINE
@@ -170,7 +171,7 @@ class Values:
                 of, beside = columns[name], columns[other]
                 self.notes.append(
                     f"{self._path.name}: “{of.name}” was read as {of.unit}, and is 3.28 times “{beside.name}” ({beside.unit}) at {n} of "
-                    f"{self._n_heights} rows: one of them is in another unit than it is read in; declare it ({name}={of.name}:ft)"
+                    f"{self._n_heights} rows: one of them is in another unit than it is read in; {declare(f'{name}={of.name}:ft')}"
                 )
 
     def _reported(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
@@ -281,14 +282,15 @@ class Values:
         if lat.unit == "deg" and lon.unit == "deg" and 0 < largest <= math.pi * UNITS["rad"]["deg"]:
             doubt = (
                 f"{self._path.name}: “{lat.name}” and “{lon.name}” were read as degrees, but all values are small enough to be radians; "
-                f"declare the unit: est_lat_rad={lat.name}:rad and est_lon_rad={lon.name}:rad, or :deg; nothing is shown until it is stated"
+                f"{declare(f'est_lat_rad={lat.name}:rad', f'est_lon_rad={lon.name}:rad')}, or :deg; "
+                "nothing is shown until the unit is stated"
             )
             (self.notes if lat.unit_stated and lon.unit_stated else self.position_doubts).append(doubt)
         elif lat.unit == lon.unit == "deg" and 0 < self._largest["est_lat_rad"] <= math.pi / 2 * UNITS["rad"]["deg"]:
             # The longitude is no radian. Near the equator this is a doubt without a cause.
             self.notes.append(
                 f"{self._path.name}: “{lat.name}” was read as degrees, but all its values are small enough to be radians; if they are, "
-                f"declare est_lat_rad={lat.name}:rad"
+                f"{declare(f'est_lat_rad={lat.name}:rad')}"
             )
 
 

@@ -21,7 +21,7 @@ from navbound.table.declare import schema
 from navbound.table.lookup import named
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from navbound.records.run import Rejection
 
@@ -78,7 +78,7 @@ class Part:
     ranges: pl.DataFrame | None = None
 
 
-def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, needs: Sequence[str] = ("hpl_m",)) -> Part:
+def from_table(path: Path, truth: Truth, needs: Sequence[str] = ("hpl_m",)) -> Part:
     """Read a table of errors and protection levels, or of positions and protection levels with a truth.
 
     Parameters
@@ -86,9 +86,7 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, need
     path : Path
         The file.
     truth : Truth
-        Where the receiver really was.
-    columns : mapping, optional
-        What a column is, where its name does not say.
+        Where the receiver really was, and what the caller declares of columns.
     needs : sequence of str
         The protection levels that are judged; a file without one of them is refused: availability would be 0 for no fault of the system.
 
@@ -99,7 +97,7 @@ def from_table(path: Path, truth: Truth, columns: Mapping[str, str] | None, need
     InputError
         Several tracks in one file, or a truth without positions.
     """
-    reading = read(path, columns=columns, needs=needs)
+    reading = read(path, columns=truth.columns_of_estimates, needs=needs)
     for name in needs:
         if name not in reading.epochs.columns:
             raise FormatError(path, "no column holds this protection level, which the levels to be judged need", field=name)

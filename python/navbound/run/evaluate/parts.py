@@ -88,7 +88,7 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
 
 def _compute(source: Source, sources: Files, options: Options, truth: Truth, service: Service) -> Part:
     if source in sources.tables:
-        return from_table(source.path, truth, options.columns, _needs(options))
+        return from_table(source.path, truth, _needs(options))
     monitor = monitor_of(options.protection)
     if monitor is not None:
         return from_monitor(source.path, service.navigation, truth, monitor, options.solving)

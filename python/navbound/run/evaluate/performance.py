@@ -145,7 +145,7 @@ def evaluate_files(
     if not names:
         raise InputError("files", "nothing", domain="one file or more")
     wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
-    truth = truth_of(options.truth, options.truth_tolerance_s)
+    truth = truth_of(options.truth, options.truth_tolerance_s, options.columns)
     if monitor_of(options.protection) is not None and options.stanford_esa is not None:
         raise ConflictError("protection", excludes=("stanford_esa",), because="subsets of satellites are solved without monitoring")
     sources = sort_out(names, solve=options.solve)
