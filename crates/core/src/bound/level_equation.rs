@@ -351,4 +351,29 @@ mod tests {
         equation.clear();
         assert!(equation.is_empty() && equation.level(Risk::APPROACH_INTEGRITY).m() == 0.0);
     }
+
+    /// Every level against bisection of the plain sum, with hypotheses far out that are too light to count and such that just do.
+    #[test]
+    fn a_level_is_where_bisection_of_the_sum_ends() {
+        let mut state = 99_u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for case in 0..400 {
+            let q = 10.0_f64.powf(-9.0 + 8.0 * uniform());
+            let mut terms = vec![(2.0, 2.0 * uniform(), 0.1 + 3.0 * uniform())];
+            for _ in 0..case % 17 {
+                // Weights from a thousandth of the risk to a thousand times it, wherever they are.
+                terms.push((q * 10.0_f64.powf(-3.0 + 6.0 * uniform()), 60.0 * uniform(), 0.05 + 4.0 * uniform()));
+            }
+            let (mut low, mut high) = (0.0, 1e3);
+            for _ in 0..200 {
+                let middle = 0.5 * (low + high);
+                if sum(&terms, middle) > q { low = middle } else { high = middle }
+            }
+            let x = level(&terms, q);
+            assert!((x - high).abs() <= 2e-9_f64.max(2e-12 * high), "case {case}: {x} {high}");
+        }
+    }
 }

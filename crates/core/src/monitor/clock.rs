@@ -167,3 +167,55 @@ impl Clock {
         self.ticked_s = 0.0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::monitor::rnp::Chain;
+
+    fn settings() -> Settings {
+        let chain = Chain {
+            sample_period_s: 2.0,
+            sensor_latency_s: 0.0,
+            filter_s: 0.0,
+            computing_s: 0.0,
+            display_s: 0.0,
+            time_to_alert_s: f64::INFINITY,
+        };
+        Settings { chain, raise_delay_s: 0.0, clear_delay_s: 10.0, clear_ratio: 0.95, stale_after_s: 5.0 }
+    }
+
+    fn at(second: f64) -> GpsTime {
+        GpsTime::default().plus_seconds(second)
+    }
+
+    #[test]
+    fn stamps_that_crawl_take_a_period_and_others_their_own_time() {
+        let clock = Clock::new(&settings());
+        // Half of two seconds is no crawl; less is.
+        for (stamped_ns, arrived_ns) in [(1e9, 1e9), (0.999e9, 2e9), (1.0, 2e9), (3e9, 3e9)] {
+            assert_eq!(clock.arrival_ns(stamped_ns), arrived_ns);
+        }
+    }
+
+    #[test]
+    fn only_what_a_clock_can_be_is_read() {
+        let read = |last: Option<f64>, n_dropped: u32, late: Option<f64>, ticked_s: f64| {
+            // A version, three times with flags, a count, a number and a checksum.
+            let mut to = Encoder::<44>::new(1);
+            to.time_or_none(last.map(at));
+            to.u32(n_dropped);
+            to.time_or_none(late.map(at));
+            to.time_or_none(None);
+            to.f64(ticked_s);
+            Clock::read(&mut Decoder::new(&to.finish(), 44, 1).unwrap(), &settings()).is_ok()
+        };
+        assert!(read(None, 0, None, 0.0) && read(Some(10.0), 0, None, 1.0) && read(Some(10.0), 3, Some(4.0), 1.0));
+        // Nothing is dropped or late before a first record; what is late was dropped, and is earlier than the last record.
+        assert!(!read(None, 1, None, 0.0) && !read(None, 1, Some(4.0), 0.0) && !read(Some(10.0), 0, Some(4.0), 0.0));
+        assert!(!read(Some(10.0), 3, Some(10.0), 0.0) && !read(Some(10.0), 3, Some(11.0), 0.0));
+        for ticked_s in [-1.0, f64::NAN, f64::INFINITY] {
+            assert!(!read(Some(10.0), 0, None, ticked_s));
+        }
+    }
+}

@@ -67,3 +67,28 @@ impl Wait {
         self.over = self.full_ns == 0.0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_a_wait_can_be_is_read() {
+        let read = |level_ns: f64, over: bool, raise_delay_s: f64| {
+            // A version, a number, a flag and a checksum.
+            let mut to = Encoder::<14>::new(1);
+            to.f64(level_ns);
+            to.flag(over);
+            Wait::new(raise_delay_s, 10.0).read(&mut Decoder::new(&to.finish(), 14, 1).unwrap()).is_ok()
+        };
+        // Of three seconds: empty is not over, full is, between both are.
+        assert!(read(0.0, false, 3.0) && !read(0.0, true, 3.0));
+        assert!(read(3e9, true, 3.0) && !read(3e9, false, 3.0));
+        assert!(read(1e9, false, 3.0) && read(1e9, true, 3.0));
+        for level_ns in [-1.0, 3e9 + 1.0, f64::NAN, f64::INFINITY] {
+            assert!(!read(level_ns, false, 3.0) && !read(level_ns, true, 3.0), "{level_ns}");
+        }
+        // Of no time: over, always.
+        assert!(read(0.0, true, 0.0) && !read(0.0, false, 0.0));
+    }
+}

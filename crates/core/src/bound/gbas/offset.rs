@@ -108,4 +108,64 @@ mod tests {
         // As above: cancellations of the prior.
         assert!((filter / truth - 1.0).abs() < 1e-6, "{filter} {truth}");
     }
+
+    /// The filter of two states, the offset and the noise, written with whole matrices.
+    #[test]
+    fn the_filter_is_that_of_two_states() {
+        let noise = Coloured::new(Metres::new(0.8), [54.0, 2894.0], Form::Bound).unwrap();
+        let mut offset = Offset::new(noise, Metres::new(0.8), 100.0, Metres::new(0.6), Metres::new(3.0), 1.0);
+        let mut p = nalgebra::Matrix2::new(9.0, 0.0, 0.0, noise.initial_m2());
+        let h = nalgebra::Vector2::new(1.0, 1.0);
+        for second in 0..200 {
+            offset.measure();
+            let seen = (h.transpose() * p * h)[0] + 0.36;
+            p -= p * h * (h.transpose() * p) / seen;
+            assert!((offset.variances_m2().0 - p[(0, 0)]).abs() < 1e-12, "{second}: {} {}", offset.variances_m2().0, p[(0, 0)]);
+            offset.wait();
+            let map = nalgebra::Matrix2::new(1.0, 0.0, 0.0, noise.kept(1.0));
+            p = map * p * map.transpose() + nalgebra::Matrix2::new(0.0, 0.0, 0.0, noise.added_m2(1.0));
+        }
+    }
+
+    /// The true variance against the mean of drawn squares: the same filter, fed with noise of another constant.
+    #[test]
+    fn the_true_variance_is_that_of_draws() {
+        let noise = Coloured::new(Metres::new(0.8), [54.0, 2894.0], Form::Bound).unwrap();
+        let mut offset = Offset::new(noise, Metres::new(1.0), 100.0, Metres::new(0.6), Metres::new(3.0), 1.0);
+        let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut uniform = || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1_u64 << 53) as f64 + 1e-17
+        };
+        let mut normal = || (-2.0 * uniform().ln()).sqrt() * (core::f64::consts::TAU * uniform()).cos();
+        const RUNS: usize = 4000;
+        let kept = (-0.01_f64).exp();
+        // Error of the estimate, estimated noise, true noise, of each run.
+        let mut runs: Vec<[f64; 3]> = (0..RUNS).map(|_| [3.0 * normal(), 0.0, normal()]).collect();
+        let mut p = nalgebra::Matrix2::new(9.0, 0.0, 0.0, noise.initial_m2());
+        let h = nalgebra::Vector2::new(1.0, 1.0);
+        for _ in 0..40 {
+            offset.measure();
+            let gain = p * h / ((h.transpose() * p * h)[0] + 0.36);
+            p -= gain * (h.transpose() * p);
+            for [error, estimated, truth] in &mut runs {
+                let innovation = *error + *truth - *estimated + 0.6 * normal();
+                *error -= gain[0] * innovation;
+                *estimated += gain[1] * innovation;
+            }
+            offset.wait();
+            let map = nalgebra::Matrix2::new(1.0, 0.0, 0.0, noise.kept(1.0));
+            p = map * p * map.transpose() + nalgebra::Matrix2::new(0.0, 0.0, 0.0, noise.added_m2(1.0));
+            for [_, estimated, truth] in &mut runs {
+                *estimated *= noise.kept(1.0);
+                *truth = kept * *truth + (1.0 - kept * kept).sqrt() * normal();
+            }
+        }
+        let mean = runs.iter().map(|[error, ..]| error * error).sum::<f64>() / RUNS as f64;
+        let truth = offset.variances_m2().1;
+        // The mean of 4000 squares is good to 2.2 % of itself; four deviations.
+        assert!((mean / truth - 1.0).abs() < 0.09, "{mean} {truth}");
+    }
 }

@@ -244,3 +244,33 @@ impl Multipliers {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bound::gbas::snapshot::Range;
+    use crate::geometry::Direction;
+    use crate::quantity::Radians;
+    use crate::signal::Constellation;
+    use nalgebra::Matrix3;
+
+    /// A covariance from elsewhere is larger with a faulty receiver as the fix is: by the ratio of its two deviations.
+    #[test]
+    fn an_aided_fix_keeps_the_ratio_of_its_deviations() {
+        let range = |az: f64, el: f64, faulty: f64| {
+            let unit = Direction::new(Radians::degrees(az), Radians::degrees(el)).unwrap().unit();
+            Range::new(unit, Constellation::Gps, Metres::new(1.0), Metres::new(faulty)).unwrap()
+        };
+        let ranges =
+            [range(10.0, 70.0, 1.2), range(100.0, 30.0, 1.9), range(190.0, 20.0, 1.4), range(280.0, 50.0, 2.5), range(330.0, 12.0, 1.1)];
+        let snapshot = Snapshot::new(&ranges).unwrap();
+        let own = Covariance::<Enu>::claim_symmetric(Matrix3::new(4.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 9.0));
+        for form in [Form::Major, Form::Norm] {
+            let fix = Fix::aided(&snapshot, own, form);
+            let wider = form.deviation(snapshot.receiver_faulty()).m() / form.deviation(snapshot.covariance()).m();
+            let ratio = form.deviation(&fix.receiver_faulty).m() / form.deviation(&fix.covariance).m();
+            assert!(wider > 1.1 && (ratio / wider - 1.0).abs() < 1e-12, "{ratio} {wider}");
+            assert_eq!(fix.covariance, own);
+        }
+    }
+}

@@ -389,3 +389,31 @@ fn since_time_of_day(long_term: &LongTerm, now: GpsTime) -> f64 {
         since
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::sbas::LongTermRates;
+
+    /// Across both midnights, and on a day far from the first: the nearest day is meant.
+    #[test]
+    fn a_time_of_day_is_that_of_the_nearest_day() {
+        // A nanosecond: the time of day is made of nanoseconds.
+        let close = |time_of_day_s: u32, day: f64, second: f64, expected: f64| {
+            let rates = Some(LongTermRates { velocity_ecef_mps: [0.0; 3], drift: 0.0, time_of_day_s });
+            let long_term = LongTerm { position: 1, iodp: 0, iode: 0, position_ecef_m: [0.0; 3], clock_s: 0.0, rates };
+            let since = since_time_of_day(&long_term, GpsTime::default().plus_seconds(86_400.0 * day + second));
+            assert!((since - expected).abs() < 1e-9, "{time_of_day_s} {day} {second}: {since}");
+        };
+        for day in [0.0, 1.0, 16_000.0] {
+            close(3600, day, 3700.0, 100.0);
+            close(3600, day, 3500.0, -100.0);
+            close(86_000, day + 1.0, 100.0, 500.0);
+            close(100, day, 86_000.0, -500.0);
+            close(0, day, 43_000.0, 43_000.0);
+            close(43_000, day, 0.0, -43_000.0);
+        }
+        let without = LongTerm { position: 1, iodp: 0, iode: 0, position_ecef_m: [0.0; 3], clock_s: 0.0, rates: None };
+        assert_eq!(since_time_of_day(&without, GpsTime::default().plus_seconds(100.0)), 0.0);
+    }
+}

@@ -239,4 +239,32 @@ mod tests {
         c.judge(at(0.0), &position(f64::NAN, 0.0), true);
         assert!(c.is_raised());
     }
+
+    #[test]
+    fn motion_is_a_velocity_beyond_its_limit_or_a_square_that_is_large_or_no_number() {
+        let tests = |square: [f64; 4], exceeds: [bool; 4]| Tests { square, exceeds };
+        let (small, none) = ([0.0; 4], [false; 4]);
+        assert!(!tests(small, none).moved());
+        // A position alone is no motion; a velocity level or upwards is.
+        for (k, moved) in [false, true, false, true].into_iter().enumerate() {
+            let exceeds = core::array::from_fn(|j| j == k);
+            assert_eq!(tests(small, exceeds).moved(), moved, "{k}");
+            for large in [MOVED.0 + 0.1, f64::NAN] {
+                assert_eq!(tests(core::array::from_fn(|j| if j == k { large } else { 0.0 }), none).moved(), moved, "{k} {large}");
+            }
+            assert!(!tests(core::array::from_fn(|j| if j == k { MOVED.0 } else { 0.0 }), none).moved(), "{k}");
+        }
+    }
+
+    #[test]
+    fn a_contradiction_lasts_from_its_begin_or_from_the_last_start_after_which_it_failed_again() {
+        let mut c = Contradiction::default();
+        assert!(!c.lasts(at(100.0), 5.0), "nothing is contradicted");
+        (0..=3).for_each(|s| c.judge(at(f64::from(s)), &position(100.0, 0.0), true));
+        assert!(!c.lasts(at(4.9), 5.0) && c.lasts(at(5.0), 5.0));
+        c.started(at(6.0));
+        assert!(!c.lasts(at(20.0), 5.0), "it has not contradicted since the start");
+        c.judge(at(8.0), &position(100.0, 0.0), true);
+        assert!(!c.lasts(at(10.9), 5.0) && c.lasts(at(11.0), 5.0));
+    }
 }

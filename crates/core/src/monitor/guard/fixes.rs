@@ -121,3 +121,55 @@ fn square(d: &Difference) -> Option<f64> {
     let x = d.position.vector();
     Some(x.dot(&d.covariance.matrix().cholesky()?.solve(x))).filter(|s| s.is_finite())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Covariance, Displacement, Enu, Geodetic, LatLon};
+    use crate::quantity::{Metres, Radians};
+
+    fn snapshot(second: f64, east_m: f64, variance: f64) -> Snapshot {
+        let point = LatLon::new(Radians::new(0.7), Radians::new(2.0)).unwrap();
+        let start = Geodetic { point, height: Metres::new(1000.0) };
+        let moved = start.moved(&Displacement::<Enu>::from_vector(Vector3::new(east_m, 0.0, 0.0))).unwrap();
+        let covariance = Covariance::claim_symmetric(Matrix3::from_diagonal(&Vector3::new(variance, 2.0 * variance, 3.0 * variance)));
+        Snapshot::solved(GpsTime::default().plus_seconds(second), moved, covariance)
+    }
+
+    #[test]
+    fn the_velocity_between_two_positions_has_their_variances_and_the_acceleration() {
+        for dt in [0.5, 1.0, 2.0] {
+            let found = between(&snapshot(0.0, 0.0, 4.0), &snapshot(dt, 120.0 * dt, 5.0)).unwrap();
+            // The axes of the second place: 240 m turn them by 4e-5.
+            assert!((found.enu_mps - Vector3::new(120.0, 0.0, 0.0)).norm() < 0.02, "{}", found.enu_mps);
+            let turned = 0.5 * ACCELERATION_MPS2 * dt;
+            for (k, times) in [1.0, 2.0, 3.0].into_iter().enumerate() {
+                let expected = 9.0 * times / (dt * dt) + turned * turned;
+                assert!((found.covariance[(k, k)] - expected).abs() < 1e-12 * expected, "{dt} {k}: {}", found.covariance[(k, k)]);
+            }
+        }
+        let first = snapshot(0.0, 0.0, 4.0);
+        assert!(between(&first, &snapshot(STEP_MOST_S + 0.1, 0.0, 4.0)).is_none());
+        assert!(between(&first, &first).is_none() && between(&snapshot(1.0, 0.0, 4.0), &first).is_none());
+    }
+
+    #[test]
+    fn a_level_holds_for_the_age_that_is_declared() {
+        let s = snapshot(0.0, 0.0, 4.0);
+        let fix = |level_m: Option<[f64; 2]>| PositionFix {
+            position: s.position,
+            covariance: s.covariance,
+            velocity_ned_mps: Some((Vector3::new(30.0, 40.0, 5.0), Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0)))),
+            level_m,
+        };
+        let looked = seen(s.time, &fix(Some([10.0, 20.0])), None, 0.1);
+        // Three deviations of a tenth of a second at 50 m/s.
+        assert_eq!(looked.level_m, [25.0, 20.0]);
+        assert_eq!(looked.ranges_agree, RangesAgree::Yes);
+        let v = looked.velocity.unwrap();
+        assert_eq!(v.enu_mps, Vector3::new(40.0, 30.0, -5.0));
+        assert_eq!(v.covariance, Matrix3::from_diagonal(&Vector3::new(2.0, 1.0, 3.0)));
+        let without = seen(s.time, &fix(None), None, 0.1);
+        assert!(without.ranges_agree == RangesAgree::Untestable && without.level_m.iter().all(|l| l.is_nan()));
+    }
+}

@@ -76,3 +76,17 @@ impl Tally {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tally_has_the_sum_and_the_largest_of_each_square() {
+        let mut tally = Tally::default();
+        for square in [[1.0, 2.0, 3.0, 4.0], [5.0, 1.0, 0.5, 4.5]] {
+            tally.add(&Tests { square, exceeds: [false; 4] });
+        }
+        assert_eq!((tally.n, tally.sum, tally.most), (2, [6.0, 3.0, 3.5, 8.5], [5.0, 2.0, 3.0, 4.5]));
+    }
+}

@@ -1,10 +1,13 @@
 //! The covariance of the difference against draws, the risk of its test, and the unit's plausibility.
 
 use super::*;
+use crate::bound::araim::single::Requirement;
 use crate::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic, enu_from_ecef};
 use crate::quantity::{Metres, Radians};
 use crate::signal::{Aiding, Constellation, SatelliteRange};
 use crate::solution::ins::{Attitude, ErrorModel, ImuModel, NavState, SensorNoise, Settings as FilterSettings, StartSigma};
+use crate::solution::snapshot::{Snapshot, SnapshotVelocity};
+use crate::solution::wls::horizontal_axes;
 use nalgebra::Vector3;
 
 /// Uniform, then normal, by a generator whose period is beyond any test.
@@ -179,4 +182,69 @@ fn a_unit_is_doubted_for_what_it_delivers_and_a_healthy_one_is_not() {
     assert_eq!(seen_after(|_, _, _| (Vector3::zeros(), Vector3::zeros())).map(|k| k <= 10), Some(true));
     assert!(seen_after(|_, f, w| (Vector3::new(f.x, f.y, f.z.max(-2.0)), w)).is_some(), "a fifth of the weight");
     assert_eq!(seen_after(|_, f, w| (f * f64::NAN, w)), Some(0));
+}
+
+const SETTINGS: Settings = Settings {
+    envelope: Envelope::NONE,
+    requirement: Requirement::RAIM,
+    age_sigma_s: 0.1,
+    gap_most_s: 0.5,
+    age_most_s: 2.0,
+    restart_after_s: 5.0,
+};
+
+#[test]
+fn a_carried_level_grows_by_what_the_filter_lost_and_by_the_envelope_of_the_unit() {
+    let mut world = World::new(3);
+    let mut filter = world.filter();
+    filter.advance(&world.sample());
+    let time = world.time();
+    let solution = filter.solution(time).unwrap();
+    // What a second later a filter would state that has lost: three times the deviations.
+    let lost = Solution { covariance: Covariance::claim_symmetric(*solution.covariance.matrix() * 9.0), ..solution };
+    let sigma = [horizontal_axes(&solution.covariance).0.m(), solution.covariance.matrix()[(2, 2)].sqrt()];
+    for (most, [force, rate]) in [([0.5, 1e-3], [0.5, 1e-3]), ([f64::INFINITY; 2], [0.01, 1e-5])] {
+        let settings = Settings { envelope: Envelope { most, ..Envelope::NONE }, ..SETTINGS };
+        let mut guard = Guard::new(settings).unwrap();
+        assert!(guard.carry(time, None, Some(&solution)).is_none(), "no level has been");
+        let facts = SnapshotFacts { time, ranges_agree: RangesAgree::Yes, level_m: Some([10.0, 20.0]), distance_m: Some([1.5, 2.5]) };
+        let now = guard.carry(time, Some(&facts), Some(&solution)).unwrap();
+        assert_eq!((now.age_s, now.level_m), (0.0, [11.5, 22.5]));
+        for t in [1.0, 7.0] {
+            let q = settings.requirement.fault_free.q();
+            let factors = [crate::special::chi::chi_factor(2, q).unwrap(), crate::special::chi::chi_factor(1, q).unwrap()];
+            let fault = force * t * t + 9.8 * rate * t * t * t / 3.0;
+            let later = guard.carry(time.plus_seconds(t), None, Some(&lost)).unwrap();
+            for k in 0..2 {
+                let expected = [11.5, 22.5][k] + factors[k] * 2.0 * sigma[k] + fault;
+                assert!((later.level_m[k] - expected).abs() < 1e-9 * expected, "{t} {k}: {} {expected}", later.level_m[k]);
+            }
+            assert_eq!(later.age_s, t);
+        }
+        // What the tests contradict, or what has no level, changes nothing.
+        for facts in [SnapshotFacts { ranges_agree: RangesAgree::No, ..facts }, SnapshotFacts { level_m: None, ..facts }] {
+            let again = guard.carry(time, Some(&facts), Some(&solution)).unwrap();
+            assert_eq!(again.level_m, [11.5, 22.5]);
+        }
+    }
+}
+
+#[test]
+fn the_satellites_own_acceleration_is_the_change_of_their_velocity() {
+    let world = World::new(1);
+    let looked = |second: f64, east_mps: f64| {
+        let covariance = Covariance::<Enu>::claim_symmetric(nalgebra::Matrix3::identity());
+        let snapshot = Snapshot::solved(GpsTime::default().plus_seconds(second), world.position, covariance);
+        let velocity = SnapshotVelocity { enu_mps: Vector3::new(east_mps, 4.0, 0.0), covariance: nalgebra::Matrix3::identity() };
+        Looked { snapshot, velocity: Some(velocity), ranges_agree: RangesAgree::Yes, level_m: [1.0; 2] }
+    };
+    let mut guard = Guard::new(SETTINGS).unwrap();
+    guard.note_acceleration(Some(&looked(0.0, 100.0)), &looked(0.5, 103.0));
+    assert_eq!(guard.acceleration_mps2, Some(6.0));
+    guard.note_acceleration(Some(&looked(0.0, 100.0)), &looked(2.0, 103.0));
+    assert_eq!(guard.acceleration_mps2, None, "too long apart");
+    guard.note_acceleration(Some(&looked(0.0, 100.0)), &looked(1.5, 103.0));
+    assert_eq!(guard.acceleration_mps2, Some(2.0));
+    guard.note_acceleration(None, &looked(2.5, 103.0));
+    assert_eq!(guard.acceleration_mps2, None);
 }
