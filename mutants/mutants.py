@@ -80,17 +80,23 @@ def compiled(copy: Path, target: Path, what: tuple[str, ...]) -> tuple[list[Path
     return ([] if done.returncode else made), wrong, words or done.stderr[-3000:]
 
 
-def prepared(chosen: list[Mutant], copy: Path, target: Path) -> tuple[list[Mutant], list[Path]]:
-    """The mutants that can be switched, and the test programs that hold them."""
+def prepared(chosen: list[Mutant], copy: Path, target: Path) -> tuple[list[Mutant], list[Path], Path]:
+    """The mutants that can be switched, the test programs that hold them, and the Python module that does."""
     left_out: dict[int, str] = {}
     while True:
         stay = [m for m in chosen if m.number not in left_out]
         left_out |= written(stay, copy)
-        programs, wrong, words = compiled(copy, target, TESTS)
-        print(f"{len(stay)} mutants, {len(wrong)} do not compile, {len(programs)} programs", flush=True)
-        if programs:
+        # The module has more crates than the tests of the core.
+        builds = []
+        for what in (TESTS, MODULE):
+            made, wrong, words = compiled(copy, target, what)
+            print(f"{len(stay)} mutants, {len(wrong)} do not compile, {len(made)} {what[0]} products", flush=True)
+            builds.append(made)
+            if not made:
+                break
+        else:
             print(f"left out: {dict(Counter(left_out.values()))}")
-            return [m for m in chosen if m.number not in left_out], programs
+            return [m for m in chosen if m.number not in left_out], builds[0], builds[1][0]
         if not wrong:
             raise SystemExit(words[:6000])
         left_out |= dict.fromkeys(wrong, "does not compile")
@@ -139,15 +145,12 @@ def run(program: Path, test: str, folder: Path, variables: dict[str, str], secon
         return -1
 
 
-def packaged(copy: Path, work: Path, target: Path) -> Path:
+def packaged(module: Path, work: Path) -> Path:
     """The Python package with the module that holds the mutants."""
-    made, _, words = compiled(copy, target, MODULE)
-    if not made:
-        raise SystemExit(words[:6000])
     package = work / "package"
     shutil.rmtree(package, ignore_errors=True)
     shutil.copytree(ROOT / "python", package, ignore=shutil.ignore_patterns("__pycache__", "*.so"))
-    shutil.copy2(made[0], package / "navbound" / "_core.abi3.so")
+    shutil.copy2(module, package / "navbound" / "_core.abi3.so")
     return package
 
 
@@ -184,12 +187,11 @@ def main() -> int:
     a = parser.parse_args()
     every = json.loads(a.list.read_text()) if a.list else listed()
     copy = a.work / "copy"
-    stay, programs = prepared(sample(every, a.n, a.seed), copy, a.target)
-    with ThreadPoolExecutor(1) as pool:
-        package = pool.submit(packaged, copy, a.work, a.target)
-        killers = {} if a.only_python else killed_by_core(stay, programs, copy, a.work)
-        print(f"the tests of the core kill {len(killers)} of {len(stay)}", flush=True)
-        killers |= killed_by_python([m for m in stay if m.number not in killers], package.result(), a.work)
+    stay, programs, module = prepared(sample(every, a.n, a.seed), copy, a.target)
+    package = packaged(module, a.work)
+    killers = {} if a.only_python else killed_by_core(stay, programs, copy, a.work)
+    print(f"the tests of the core kill {len(killers)} of {len(stay)}", flush=True)
+    killers |= killed_by_python([m for m in stay if m.number not in killers], package, a.work)
     report(stay, killers, len(every))
     return 0
 
