@@ -22,7 +22,7 @@ def verify_command(json: Json = False) -> None:
     """Run the reference vectors on this machine; exit status 70 if one fails."""
     from navbound import verify as vectors  # noqa: PLC0415
 
-    files = vectors.files()
+    files = list(vectors.files())
     if not files:
         err_console.print(f"navbound: {vectors.VECTORS}: this installation has no reference vectors", markup=False, soft_wrap=True)
         raise typer.Exit(OUR_BUG)
