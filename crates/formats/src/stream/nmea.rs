@@ -13,8 +13,9 @@ const ADDRESS: usize = 5;
 pub(super) fn look(rest: &[u8], ended: bool) -> Look<'_> {
     let known = rest.get(1..rest.len().min(LONGEST)).unwrap_or_default();
     let addressed = known.iter().take(ADDRESS).all(u8::is_ascii_uppercase) && known.get(ADDRESS).is_none_or(|byte| *byte == b',');
-    // Text of a sentence may hold any letter; two capitals stand anywhere by chance.
-    let ends = |byte: &u8| matches!(byte, b'*' | b'\r' | b'\n') || !(addressed || matches!(byte, 0x20..=0x7e));
+    // Text of a sentence may hold any letter; two capitals stand anywhere by chance. A dollar sign begins the next one: eight bits of a
+    // checksum are right for two sentences together once in 256.
+    let ends = |byte: &u8| matches!(byte, b'*' | b'\r' | b'\n' | b'$') || !(addressed || matches!(byte, 0x20..=0x7e));
     if known.first().is_some_and(|byte| !byte.is_ascii_uppercase()) {
         return Look::Nothing;
     }

@@ -207,3 +207,18 @@ proptest! {
         prop_assert_eq!(cut_by(Protocol::Lines, &bytes, pieces(seed)), cut_by(Protocol::Lines, &bytes, || usize::MAX / 2));
     }
 }
+
+/// Of what is left of a sentence and the next one behind it the checksum of the next is right for both once in 256: every byte is tried.
+#[test]
+fn a_sentence_that_was_cut_does_not_swallow_the_next_one() {
+    let next = b"GPGGA,132821.80,4134.5,N,09345.0,W,2,09,1.0,278.8,M,-31.4,M,,";
+    let sum = next.iter().fold(0_u8, |sum, byte| sum ^ byte);
+    for byte in 0..=255_u8 {
+        let left = [b"$GPRMC,132821.70,A,", [byte].as_slice(), b"\0\0\0"].concat();
+        let log = [left.as_slice(), b"$", next, format!("*{sum:02X}\r\n").as_bytes()].concat();
+        let seen = at_once(&log);
+        assert_eq!(seen.last(), Some(&format!("{:?}", Frame::Nmea(next))), "{byte}");
+        assert!(seen[0].contains("breaks off") || seen[0].contains("checksum"), "{byte}: {seen:?}");
+        assert_eq!(cut_by(Protocol::Receiver, &log, || 1), seen, "{byte}");
+    }
+}
