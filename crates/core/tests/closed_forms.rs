@@ -9,7 +9,7 @@ use navbound_core::bound::gbas::bias::Ordering;
 use navbound_core::bound::gbas::detection::Hazard;
 use navbound_core::bound::gbas::range::carrier_sigma;
 use navbound_core::bound::sbas::model::broadcast_ionosphere_m2;
-use navbound_core::bound::tse::{farthest, rf_fte, sigma_budget};
+use navbound_core::bound::tse::{Component, Deviation, farthest, mixture, rf_fte, sigma_budget};
 use navbound_core::frame::{Covariance, Displacement, Enu};
 use navbound_core::monitor::consistency::{integral_transform, normalised_square, normalised_square_horizontal};
 use navbound_core::monitor::rnp::Counters;
@@ -278,4 +278,37 @@ fn the_budget_of_sigma_uses_up_the_risk() {
     }
     assert_eq!(sigma_budget(Metres::new(10.0), Metres::new(10.0), risk(0.05)).unwrap().unwrap().m(), 0.0);
     assert!(sigma_budget(Metres::new(10.0), Metres::new(11.0), risk(0.05)).unwrap().is_none());
+}
+
+#[test]
+fn a_mixture_of_errors_is_bounded_where_their_risks_together_are_the_risk() {
+    let part =
+        |weight: f64, fte: f64, sigma: f64| Component { weight, deviation: Deviation::new(Metres::new(fte), Metres::new(sigma)).unwrap() };
+    let cases: [&[Component]; 4] = [
+        &[part(0.7, 0.0, 10.0), part(0.3, 20.0, 30.0)],
+        &[part(0.5, -5.0, 4.0), part(0.25, 5.0, 8.0), part(0.25, 0.0, 16.0)],
+        // One without a spread: it counts whole below its place and not at all beyond.
+        &[part(0.9, 0.0, 10.0), part(0.1, 12.0, 0.0)],
+        &[part(0.0, 90.0, 0.0), part(1.0, 3.0, 5.0)],
+    ];
+    for (k, parts) in cases.into_iter().enumerate() {
+        for q in [0.3, 0.05, 1e-4] {
+            let bound = mixture(parts, risk(q)).unwrap().m();
+            let outside = |bound: f64| {
+                let one = |c: &Component| {
+                    let (fte, sigma) = (c.deviation.fte().m(), c.deviation.sigma().m());
+                    let beyond = if sigma > 0.0 {
+                        1.0 - inside_interval((-bound - fte) / sigma, (bound - fte) / sigma)
+                    } else {
+                        f64::from(u8::from(fte.abs() > bound))
+                    };
+                    c.weight * beyond
+                };
+                parts.iter().map(one).sum::<f64>()
+            };
+            let met = (outside(bound) - q).abs() < 1e-11;
+            let jumps = outside(bound * (1.0 - 1e-9)) >= q && outside(bound * (1.0 + 1e-9)) <= q;
+            assert!(met || jumps, "{k} {q}: {} at {bound}", outside(bound));
+        }
+    }
 }

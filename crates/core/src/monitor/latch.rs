@@ -253,3 +253,22 @@ impl Latch {
         Change::Cleared(event.ended(now))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_event_keeps_its_peak_and_the_limit_of_its_least_margin() {
+        let mut event = Event::begin(Kind::Caution, GpsTime::default(), GpsTime::default());
+        let m = Metres::new;
+        for (bound, limit) in [(700.0, 555.6), (2000.0, 1852.0), (1900.0, 1852.0), (f64::NAN, 555.6), (900.0, f64::NAN)] {
+            event.record(m(bound), m(limit));
+        }
+        // Margins -144.4, -148 and -48 m: the second is the least, and its limit is the one that stands.
+        assert_eq!((event.peak.m(), event.limit.m(), event.min_margin.m()), (2000.0, 1852.0, -148.0));
+        event.record(m(800.0), m(555.6));
+        assert_eq!((event.peak.m(), event.limit.m()), (2000.0, 555.6));
+        assert!((event.min_margin.m() + 244.4).abs() < 1e-9);
+    }
+}

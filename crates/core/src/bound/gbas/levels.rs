@@ -194,4 +194,13 @@ mod tests {
     fn accuracy_is_two_sided() {
         assert!((accuracy(Metres::new(1.0), Metres::new(0.5)).m() - 2.459_963_984_540_054).abs() < 1e-15);
     }
+
+    /// |sum of s B| of both horizontal components; upwards counts for nothing.
+    #[test]
+    fn a_receivers_shift_is_the_length_of_the_sum_of_its_effects() {
+        let rows = [(Vector3::new(0.5, -0.25, 9.0), 4.0), (Vector3::new(1.0, 0.5, -7.0), 1.0), (Vector3::new(0.0, 2.0, 1.0), -2.0)];
+        let shift = receiver_shift(rows.iter().map(|(s, b)| (s, Metres::new(*b)))).m();
+        // East 2 + 1, north -1 + 0.5 - 4.
+        assert!((shift - f64::hypot(3.0, -4.5)).abs() < 1e-15, "{shift}");
+    }
 }

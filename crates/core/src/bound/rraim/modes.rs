@@ -151,4 +151,12 @@ mod tests {
             assert_eq!(bad.check().unwrap_err().argument, argument);
         }
     }
+
+    #[test]
+    fn the_priors_of_the_satellites_followed_are_added() {
+        let mut priors = priors(0.0, 1e-4, 1e-10);
+        (priors.satellite[Constellation::Gps.index()], priors.satellite[Constellation::Galileo.index()]) = (1e-5, 3e-5);
+        let sum = priors.of_satellites(&coast(5, 3));
+        assert!((sum - 14e-5).abs() < 1e-18, "{sum}");
+    }
 }

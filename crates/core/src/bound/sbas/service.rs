@@ -416,4 +416,56 @@ mod tests {
         let without = LongTerm { position: 1, iodp: 0, iode: 0, position_ecef_m: [0.0; 3], clock_s: 0.0, rates: None };
         assert_eq!(since_time_of_day(&without, GpsTime::default().plus_seconds(100.0)), 0.0);
     }
+
+    const NONE: Degradation = Degradation {
+        rrc_m: 0.0,
+        ltc_lsb_m: 0.0,
+        ltc_v1_mps: 0.0,
+        ltc_v1_s: 0.0,
+        ltc_v0_m: 0.0,
+        ltc_v0_s: 0.0,
+        geo_lsb_m: 0.0,
+        geo_v_mps: 0.0,
+        geo_s: 0.0,
+        er_m: 0.0,
+        iono_step_m: 0.0,
+        iono_s: 0.0,
+        iono_ramp_mps: 0.0,
+        rss_udre: false,
+        rss_iono: false,
+        covariance: 0.0,
+    };
+
+    #[test]
+    fn a_range_rate_degrades_by_what_was_missed_or_by_the_alert() {
+        let d = Degradation { rrc_m: 0.3, ..NONE };
+        let rate =
+            RangeRate { mps: 0.1, age_s: 5.0, interval_s: 12.0, factor_mps2: 0.002, time_out_s: 60.0, consecutive: false, alert: false };
+        let close = |rate: RangeRate, expected: f64| assert!((rate.degradation_m(&d) - expected).abs() < 1e-12, "{expected}");
+        // One was missed: (a I / 4 + B / dt) t.
+        close(RangeRate { ..rate }, (0.002 * 60.0 / 4.0 + 0.3 / 12.0) * 5.0);
+        close(RangeRate { consecutive: true, ..rate }, 0.0);
+        // An alert 12 s after, off half of the time-out by 18 s; none where it is at half.
+        close(RangeRate { alert: true, ..rate }, (0.002 * 18.0 / 2.0 + 0.3 / 12.0) * 5.0);
+        close(RangeRate { alert: true, interval_s: 50.0, ..rate }, (0.002 * 20.0 / 2.0 + 0.3 / 50.0) * 5.0);
+        close(RangeRate { alert: true, interval_s: 30.0, ..rate }, 0.0);
+        close(RangeRate { interval_s: 0.0, ..rate }, 0.0);
+    }
+
+    #[test]
+    fn a_long_term_correction_degrades_outside_its_interval() {
+        let d = Degradation { ltc_lsb_m: 0.05, ltc_v1_mps: 0.001, ltc_v1_s: 120.0, ltc_v0_m: 0.2, ltc_v0_s: 100.0, ..NONE };
+        let rates = Some(LongTermRates { velocity_ecef_mps: [0.0; 3], drift: 0.0, time_of_day_s: 3600 });
+        let of = |rates: Option<LongTermRates>, second: f64| {
+            let long_term = LongTerm { position: 1, iodp: 0, iode: 0, position_ecef_m: [0.0; 3], clock_s: 0.0, rates };
+            long_term_degradation_m(&long_term, GpsTime::default().plus_seconds(3000.0), GpsTime::default().plus_seconds(second), &d)
+        };
+        for (second, expected) in [(3601.0, 0.0), (3719.0, 0.0), (3720.0, 0.05), (3820.0, 0.15), (3600.0, 0.05), (3500.0, 0.15)] {
+            assert!((of(rates, second) - expected).abs() < 1e-9, "{second}: {}", of(rates, second));
+        }
+        // Without rates: a step each hundred seconds since it was sent.
+        for (second, steps) in [(3050.0, 0.0), (3150.0, 1.0), (3950.0, 9.0)] {
+            assert!((of(None, second) - 0.2 * steps).abs() < 1e-12, "{second}");
+        }
+    }
 }
