@@ -36,6 +36,10 @@ pub(super) fn look(rest: &[u8], ended: bool) -> Look<'_> {
     if stated != Some(u32::from(sum)) {
         return Look::damaged(Family::Nmea, "the checksum of a sentence is wrong", length);
     }
+    // Zeros leave a checksum as it is: what they stand in has lost a part.
+    if body.iter().any(u8::is_ascii_control) {
+        return Look::damaged(Family::Nmea, "a sentence holds bytes that are no text", length);
+    }
     Look::Frame { length, frame: Frame::Nmea(body) }
 }
 

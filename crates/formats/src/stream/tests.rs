@@ -220,5 +220,9 @@ fn a_sentence_that_was_cut_does_not_swallow_the_next_one() {
         assert_eq!(seen.last(), Some(&format!("{:?}", Frame::Nmea(next))), "{byte}");
         assert!(seen[0].contains("breaks off") || seen[0].contains("checksum"), "{byte}: {seen:?}");
         assert_eq!(cut_by(Protocol::Receiver, &log, || 1), seen, "{byte}");
+        // Its begin is lost too: what is left of both is no sentence, whatever the checksum.
+        let log = [left.as_slice(), next, format!("*{sum:02X}\r\n").as_bytes()].concat();
+        let seen = at_once(&log);
+        assert!(!seen.is_empty() && seen.iter().all(|each| !each.contains("Nmea(")), "{byte}: {seen:?}");
     }
 }
