@@ -78,3 +78,23 @@ pub(super) fn apart(snapshot: &Snapshot, antenna: &EcefPosition) -> Option<[f64;
     let found = [hypot(d.vector().x, d.vector().y), d.vector().z.abs()];
     found.iter().all(|x| x.is_finite()).then_some(found)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Displacement, Geodetic, LatLon};
+    use crate::quantity::{Metres, Radians};
+    use nalgebra::{Matrix3, Vector3};
+
+    #[test]
+    fn the_distance_of_two_positions_is_level_and_upwards() {
+        let point = LatLon::new(Radians::new(0.7), Radians::new(2.0)).unwrap();
+        let place = Geodetic { point, height: Metres::new(1000.0) };
+        let snapshot = Snapshot::solved(GpsTime::default(), place, Covariance::claim_symmetric(Matrix3::identity()));
+        let at = |enu: Vector3<f64>| apart(&snapshot, &ecef_from_geodetic(&place.moved(&Displacement::<Enu>::from_vector(enu)).unwrap()));
+        let [h, v] = at(Vector3::new(30.0, -40.0, -7.0)).unwrap();
+        // Fifty metres of a sphere of 6400 km bend by 0.2 mm.
+        assert!((h - 50.0).abs() < 1e-3 && (v - 7.0).abs() < 1e-3, "{h} {v}");
+        assert!(apart(&snapshot, &EcefPosition::from_vector(Vector3::new(f64::NAN, 0.0, 0.0))).is_none());
+    }
+}

@@ -200,4 +200,41 @@ mod tests {
         // Heard too long ago.
         assert!(!heard(reading(1.0, 2.0), reading(800.0, 5.0)).rule_out_the_second(now.plus_seconds(6.0)));
     }
+
+    /// One station, a constant residual: both tails of the normal law of its bias, what is left of its noise, and the reading's own.
+    #[test]
+    fn a_chance_is_that_of_the_residual_in_its_deviations() {
+        for (x, sigma) in [(100.0, 5.0), (300.0, 5.0), (300.0, 200.0), (-250.0, 40.0)] {
+            let mut stations = Stations::<1>::default();
+            for second in 0..30 {
+                let time = GpsTime::default().plus_seconds(f64::from(second));
+                let position = EcefPosition::from_vector(Vector3::new(1e5, 0.0, 0.0));
+                let m = DmeRange {
+                    station: 1,
+                    position,
+                    slant: Metres::new(1e5),
+                    sigma_white: Metres::new(160.0),
+                    sigma_bias: Metres::new(93.0),
+                };
+                stations.hear(time, &m, &[reading(x, sigma)]);
+                // Nine are too few to say anything.
+                assert_eq!(stations.chance(time, 0, 1).is_some(), second >= 9, "{second}");
+            }
+            let now = GpsTime::default().plus_seconds(29.0);
+            // A moving average of weight a tenth leaves 0.1 / 1.9 of the variance of the noise.
+            let variance: f64 = 93.0 * 93.0 + 160.0 * 160.0 * 0.1 / 1.9 + sigma * sigma;
+            let expected = 2.0 * crate::special::normal::tail(f64::abs(x) / variance.sqrt());
+            let chance = stations.chance(now, 0, 1).unwrap();
+            assert!((chance / expected - 1.0).abs() < 1e-9, "{x} {sigma}: {chance} {expected}");
+            assert!(stations.chance(now, 0, 2).is_none());
+        }
+    }
+
+    #[test]
+    fn an_angle_is_wrapped_to_half_a_turn_either_way() {
+        use core::f64::consts::{PI, TAU};
+        for (angle, expected) in [(0.0, 0.0), (PI, PI), (-PI, -PI), (3.5, 3.5 - TAU), (-3.5, TAU - 3.5), (6.0, 6.0 - TAU)] {
+            assert_eq!(wrapped(angle), expected);
+        }
+    }
 }
