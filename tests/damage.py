@@ -24,8 +24,9 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, reduce
 from multiprocessing.connection import Connection
+from operator import xor
 from pathlib import Path
 
 import numpy as np
@@ -134,7 +135,7 @@ class Bench:
             return ("counted" if counted else "same"), ""
         if self.kind.protection == "file":
             return "WRONG", f"{len(lost)} lost, {len(changed)} changed, {len(new)} new behind a checksum of the whole"
-        if self.kind.protection == "parity" and d.words == "swapped":
+        if self.kind.protection == "parity" and self._keeps_parity(d):
             return ("counted" if counted else "data"), ""
         if self.kind.protection in {"record", "parity"}:
             if changed or new:
@@ -143,6 +144,13 @@ class Bench:
             whole = d.words == "cut" and self.content[d.begin : d.begin + 2] in {b"$@", b"\xb5b", b"\xaa\x44"}
             return ("data" if whole else "counted", "") if counted or whole else ("SILENT", f"lost {_some(lost)}")
         return self._unprotected(d, (lost, changed, new), counted=counted)
+
+    def _keeps_parity(self, d: Damage) -> bool:
+        """Whether the damage is of a kind that an exclusive or cannot see, within a sentence: bytes that changed places or came twice."""
+        after = d.content[d.begin : len(d.content) - (len(self.content) - d.end)]
+        before = self.content[d.begin : d.end]
+        same = reduce(xor, before, 0) == reduce(xor, after, 0)
+        return d.words in {"swapped", "twice"} and same and not {*b"$\r\n"} & {*before, *after}
 
     def _unprotected(self, d: Damage, cells: tuple[set[Cell], set[Cell], set[Cell]], *, counted: bool) -> tuple[str, str]:
         lost, changed, new = cells
@@ -163,8 +171,8 @@ class Bench:
         # A line belongs to its whole record: what it states may be what is assumed without it.
         keys = {key for key, _ in allowed}
         outside = {cell for cell in changed if cell[0] not in keys}
-        # A row that now states the time of another is one of two rows of that time, of which one is counted.
-        repeats = counted and len({key for key, _ in outside}) <= last - first + 1
+        # A row that now states the time of another is one of two rows of that time, of which one is counted or both are kept.
+        repeats = (counted or self.kind.keeps_repeats) and len({key for key, _ in outside}) <= last - first + 1
         if outside and d.words != "cut" and not repeats:
             return "WRONG", f"changed {_some(outside)}, which belong to other lines"
         n_records = len({key for key, _ in new} - keys)

@@ -214,7 +214,8 @@ class Kind:
     """A kind of file.
 
     `protection`: ``none`` (every line is data), ``record`` (each record has a checksum: what is read was written), ``parity`` (a sum that
-    does not see bytes change places), ``file`` (the whole has one). `beside`: files that are read with it, undamaged.
+    does not see bytes change places or come twice), ``file`` (the whole has one). `beside`: files that are read with it, undamaged.
+    `keeps_repeats`: of two records of one key both are read, as of a satellite whose number became another's.
     """
 
     make: Callable[[], bytes]
@@ -224,6 +225,7 @@ class Kind:
     binary: bool = False
     beside: tuple[str, ...] = ()
     weight: float = 1.0
+    keeps_repeats: bool = False
 
 
 CSV = "sbas/msas2025046_pl_1hz.csv"
@@ -249,9 +251,11 @@ KINDS: dict[str, Kind] = {
     "RINEX 3 observations": Kind(epochs(USER, 25, b">"), "a.rnx", observations),
     "RINEX 2 observations": Kind(head("gnss/ARLM_2015_200/arlm200x.15o", 16_000, b" 15  7"), "a.15o", observations),
     "RINEX 3 compact": Kind(head("gnss/ESBC_2020_177/ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz", 40_000, b" {12,}"), "a.crx", observations),
-    "RINEX 3 navigation": Kind(head(VILL, 16_000, b"[A-Z]"), "a.nav", navigation),
-    "RINEX 2 navigation": Kind(head("gnss/igs_2010_182/brdc1820.10n", 12_000, b"[ 0-9][0-9] 10 "), "a.10n", navigation),
-    "RINEX 4 navigation": Kind(fourth("gnss/rinex4_2023_071/BRD400DLR_S_20230710000_01D_MN.rnx.gz", 40), "b.rnx", navigation),
+    "RINEX 3 navigation": Kind(head(VILL, 16_000, b"[A-Z]"), "a.nav", navigation, keeps_repeats=True),
+    "RINEX 2 navigation": Kind(head("gnss/igs_2010_182/brdc1820.10n", 12_000, b"[ 0-9][0-9] 10 "), "a.10n", navigation, keeps_repeats=True),
+    "RINEX 4 navigation": Kind(
+        fourth("gnss/rinex4_2023_071/BRD400DLR_S_20230710000_01D_MN.rnx.gz", 40), "b.rnx", navigation, keeps_repeats=True
+    ),
     "SP3": Kind(epochs("gnss/igs_2010_182/igs15904.sp3", 12, b"\\* "), "a.sp3", orbits),
     "almanac, YUMA": Kind(head("gnss/almanacs/20160331.alm", 20_000), "a.alm", almanac),
     "almanac, SEM": Kind(head("gnss/almanacs/current.al3", 20_000), "a.al3", almanac),
