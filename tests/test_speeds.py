@@ -63,3 +63,45 @@ def test_pieces_of_any_length_give_the_same_words(tmp_path: Path, rows: int) -> 
     for begin in range(0, epochs.height, rows):
         speeds.see(epochs[begin : begin + rows])
     assert speeds.doubts() == doubts_of_speeds(epochs) != []
+
+
+def stand(path: Path, seconds: int, column: str, stated: float) -> Path:
+    """Noise of the stated size about one place."""
+    noise = np.random.default_rng(3).normal(0.0, 8.0, (seconds, 2)) / M_PER_DEG
+    rows = [
+        f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}Z,{49 + noise[k, 0]:.8f},{noise[k, 1]:.8f},8,8,{stated}"
+        for k in range(11, 11 + seconds - 11)
+    ]
+    path.write_text("\n".join([f"time,lat_deg,lon_deg,sigma_e_m,sigma_n_m,{column}", *rows]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("seconds", "column", "stated"),
+    [
+        (600, "speed_mps", 14.0),
+        (600, "ground_speed_kt", 28.0),
+        (600, "speed_kmh", 100.0),
+        (170, "speed_mps", 14.0),
+        (110, "speed_mps", 14.0),
+    ],
+)
+def test_a_stand_with_noise_while_the_recording_states_a_speed_shows_nothing(
+    tmp_path: Path, seconds: int, column: str, stated: float
+) -> None:
+    """The noise of each second adds up to ten metres a second of way, and is none."""
+    verdict = navbound.analyze(stand(tmp_path / "a.csv", seconds, column, stated)).summary.verdict
+    assert verdict.id == "not_shown"
+    assert "less far" in " ".join(verdict.position_doubts)
+
+
+def test_turns_of_an_aircraft_are_no_shorter_way(tmp_path: Path) -> None:
+    """A holding pattern and a circle at three degrees a second, twice the usual rate of a light aircraft's steep turn."""
+    rows = ["time,lat_deg,lon_deg,sigma_e_m,sigma_n_m,speed_mps"]
+    for k in range(600):
+        angle = math.radians(6.0 * k)
+        radius = 60.0 / math.radians(6.0)
+        lat, lon = radius * math.sin(angle) / M_PER_DEG, radius * math.cos(angle) / M_PER_DEG
+        rows.append(f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}Z,{lat:.8f},{lon:.8f},2,2,60")
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    assert navbound.analyze(tmp_path / "a.csv").summary.verdict.position_doubts == []

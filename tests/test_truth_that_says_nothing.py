@@ -79,3 +79,32 @@ def test_positions_with_their_own_copy_as_truth_show_nothing_of_levels(tmp_path:
     header = "time_ns,lat_deg,lon_deg,height_m,truth_lat_deg,truth_lon_deg,truth_h_m,hpl_m,vpl_m"
     (tmp_path / "a.csv").write_text("\n".join([header, *rows]))
     assert navbound.evaluate(tmp_path / "a.csv", levels="APV-I").summary.verdict.id == "not_shown"
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "words"),
+    [
+        ("status", "not_available", "its own recording states that it is not valid"),
+        ("fix", "0", "its own recording states that it is not valid"),
+        ("sigma_m", "5000", "its own standard deviation is no smaller than that of the position"),
+        ("sigma_m", "8", "its own standard deviation is no smaller than that of the position"),
+        ("sigma_m", "0.02", ""),
+        ("status", "ok", ""),
+    ],
+)
+def test_a_truth_that_states_against_itself_is_none(tmp_path: Path, column: str, value: str, words: str) -> None:
+    noise = np.random.default_rng(5).normal(0.0, 8.0, (N, 2)) / 111_000.0
+    names = {"sigma_m": "sigma_e_m,sigma_n_m"}.get(column, column)
+    values = {"sigma_m": f"{value},{value}"}.get(column, value)
+    own, truth = ["time,lat_deg,lon_deg,sigma_e_m,sigma_n_m"], [f"time,lat_deg,lon_deg,{names}"]
+    for k in range(N):
+        at = f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}Z"
+        own.append(f"{at},{7e-4 * k + noise[k, 0]:.9f},{noise[k, 1]:.9f},8,8")
+        truth.append(f"{at},{7e-4 * k:.9f},0.0,{values}")
+    (tmp_path / "a.csv").write_text("\n".join(own) + "\n")
+    (tmp_path / "t.csv").write_text("\n".join(truth) + "\n")
+    verdict = navbound.analyze(tmp_path / "a.csv", truth=tmp_path / "t.csv").summary.verdict
+    assert verdict.id == ("not_shown" if words else "inside")
+    assert (verdict.belief is not None and verdict.belief.state == "supported") == (not words)
+    assert words in verdict.words
+    assert verdict.n_truth_doubted == (N if words else 0)

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import polars as pl
 
 from navbound.read.checks.places import east_north_m
 from navbound.table.columns import HORIZONTAL
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
 _WINDOW_S = 60.0
 """Span over which ways are compared; Doppler speeds and positions agree over it to some metres. Provenance: ours. [s]"""
 _WINDOW_NS = 60_000_000_000
-_WHOLE = 0.9
+_WHOLE = 0.75
 """Least part of a window that steps must fill. [1]"""
 _LONGEST_STEP_S = 10.0
 """Over a longer step the speed may have been any. Provenance: ours. [s]"""
+_LEG_S = 10.0
+"""Span of a leg of the way that positions travel: the noise of each step would add up to a way of its own. A turn of three degrees a second
+shortens it by one in a hundred. Provenance: ours. [s]"""
 _OFFSET_MPS = 3.0
 """Difference of speeds that shows nothing: rounding, wind on a filtered track, a slow filter. Provenance: ours. [m/s]"""
 _LONGER, _SHORTER = 1.5, 0.6
@@ -22,7 +30,7 @@ _LONGER, _SHORTER = 1.5, 0.6
 _DEVIATIONS = 6.0
 """Noise of two positions, in standard deviations of the covariance. Provenance: ours."""
 _LEAST, _LEAST_SHARE = 3, 0.2
-"""Windows, and share of them, that must contradict. Provenance: ours."""
+"""Windows, and share of them, that must contradict; of fewer windows all. Provenance: ours."""
 
 
 class Speeds:
@@ -65,7 +73,8 @@ class Speeds:
             if sound[at].all() and step_s[at].sum() >= _WHOLE * _WINDOW_S:
                 apart_m = float(np.hypot(*east_north_m(place[[first]], place[[at.stop]])[0]))
                 noise_m = float(np.hypot(sigma[first], sigma[at.stop]))
-                self._compare(apart_m, float(step_m[at].sum()), float(stated_m[at].sum()), noise_m)
+                legs_m = _legs_m(time_s[first : at.stop + 1], place[first : at.stop + 1])
+                self._compare(apart_m, min(float(step_m[at].sum()), legs_m), float(stated_m[at].sum()), noise_m)
 
     def _compare(self, apart_m: float, way_m: float, stated_m: float, sigma_m: float) -> None:
         offset_m = _OFFSET_MPS * _WINDOW_S
@@ -84,13 +93,20 @@ class Speeds:
             self._waiting = None
         found = []
         for n, word in ((self._n_longer, "further"), (self._n_shorter, "less far")):
-            if n >= _LEAST and n >= _LEAST_SHARE * self._n:
+            if 0 < n == self._n or (n >= _LEAST and n >= _LEAST_SHARE * self._n):
                 way_m, stated_m = self._worst
                 found.append(
                     f"The positions travel {word} than the recording's own speeds say in {n} of {self._n} minutes (at worst {way_m:.0f} m "
                     f"for {stated_m:.0f} m): the positions are false, or they or the speeds are in another unit than they are read in"
                 )
         return found
+
+
+def _legs_m(time_s: NDArray[np.float64], place: NDArray[np.float64]) -> float:
+    """The way over legs of some seconds, the last as long as it is."""
+    begins = np.unique(np.searchsorted(time_s, np.arange(time_s[0], time_s[-1], _LEG_S)))
+    ends = np.append(begins, time_s.size - 1)
+    return float(np.hypot(*east_north_m(place[ends[:-1]], place[ends[1:]]).T).sum())
 
 
 def _stated(epochs: pl.DataFrame) -> pl.Expr | None:

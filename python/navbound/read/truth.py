@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound import _core, gnss
+from navbound import _core, gnss, status
 from navbound.errors import ConflictError, InputError
 from navbound.read.checks.established import contradicting, established
 from navbound.read.tables.epochs import read_beside
@@ -139,7 +139,8 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
         raise InputError("truth_tolerance_s", tolerance_s, "s", "[0, inf)")
     wanted = {"est_lat_rad": "truth_lat_rad", "est_lon_rad": "truth_lon_rad", "est_h_m": "truth_h_m"}
     other = truth.epochs.rename({k: v for k, v in wanted.items() if k in truth.epochs.columns})
-    other = other.select("track", "time_ns", *[v for v in wanted.values() if v in other.columns], truth_time_ns="time_ns")
+    places = [v for v in wanted.values() if v in other.columns]
+    other = other.select("track", "time_ns", *places, truth_time_ns="time_ns", invalid=_invalid(other), truth_sigma_m=_sigma_m(other))
     other, jumps = contradicting(other.sort("track", "time_ns"))
     several = other["track"].n_unique() > 1
     joined = (
@@ -166,13 +167,32 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
         f"Truth: {truth.source.path}, joined to the nearest epoch in time; {known} of {joined.height} epochs have one, at most "
         f"{float(largest) * 1e-6 if isinstance(largest, int) else 0.0:g} ms apart (allowed {tolerance_s * 1e3:g} ms)."
     )
-    kept = ~pl.col("contradicted")
-    n_contradicted = int(joined["contradicted"].sum())
+    # Each epoch is lost for one reason.
+    joined = joined.with_columns(contradicted=pl.col("contradicted") & ~pl.col("invalid"))
+    imprecise = (pl.col("truth_sigma_m") >= _sigma_m(joined)) & ~pl.col("invalid") & ~pl.col("contradicted")
+    joined = joined.with_columns(imprecise=imprecise.fill_null(value=False))
+    kept = ~pl.any_horizontal("contradicted", "invalid", "imprecise")
+    n_contradicted, n_invalid, n_imprecise = (int(joined[name].sum()) for name in ("contradicted", "invalid", "imprecise"))
     joined = joined.with_columns(pl.when(kept).then(pl.col(name)).alias(name) for name in wanted.values() if name in joined.columns)
-    epochs, doubts = with_error(joined.drop("truth_time_ns", "contradicted"))
-    if n_contradicted:
-        doubts += TruthDoubts(n_contradicted, tuple(jumps))
+    epochs, doubts = with_error(joined.drop("truth_time_ns", "contradicted", "invalid", "imprecise", "truth_sigma_m"))
+    doubts += TruthDoubts(n_contradicted, tuple(jumps) if n_contradicted else (), n_invalid=n_invalid, n_imprecise=n_imprecise)
     return epochs, _sentences(words, doubts.words), doubts
+
+
+def _invalid(truth: pl.DataFrame) -> pl.Expr:
+    """Rows of a recording that states itself that they are none."""
+    if "status" not in truth.columns:
+        return pl.lit(value=False)
+    return ~pl.col("status").is_in(status.USABLE).fill_null(value=True)
+
+
+def _sigma_m(epochs: pl.DataFrame) -> pl.Expr:
+    """Root of both horizontal variances as a recording states them; null where it does not. [m]."""
+    if {"cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
+        return (pl.col("cov_ee_m2") + pl.col("cov_nn_m2")).sqrt()
+    if {"sigma_e_m", "sigma_n_m"} <= set(epochs.columns):
+        return (pl.col("sigma_e_m") ** 2 + pl.col("sigma_n_m") ** 2).sqrt()
+    return pl.lit(None, pl.Float64)
 
 
 def with_error(epochs: pl.DataFrame) -> tuple[pl.DataFrame, TruthDoubts]:

@@ -24,23 +24,30 @@ class TruthDoubts:
         Epochs whose truth is not used since it stands while the positions travel.
     travelled_m : float
         The longest way between two such positions. [m]
+    n_invalid : int
+        Epochs whose truth is not used since its own recording says that it is not valid.
+    n_imprecise : int
+        Epochs whose truth is not used since its own standard deviation is no smaller than that of the position.
     """
 
     n_jumping: int = 0
     jumps_ns: tuple[int, ...] = ()
     n_standing: int = 0
     travelled_m: float = 0.0
+    n_invalid: int = 0
+    n_imprecise: int = 0
 
     def __add__(self, other: TruthDoubts) -> TruthDoubts:
         """Of two parts of the same epochs."""
         jumps = tuple(sorted({*self.jumps_ns, *other.jumps_ns}))
         standing, travelled_m = self.n_standing + other.n_standing, max(self.travelled_m, other.travelled_m)
-        return TruthDoubts(self.n_jumping + other.n_jumping, jumps, standing, travelled_m)
+        stated = (self.n_invalid + other.n_invalid, self.n_imprecise + other.n_imprecise)
+        return TruthDoubts(self.n_jumping + other.n_jumping, jumps, standing, travelled_m, *stated)
 
     @property
     def n(self) -> int:
         """Epochs whose truth is not used."""
-        return self.n_jumping + self.n_standing
+        return self.n_jumping + self.n_standing + self.n_invalid + self.n_imprecise
 
     @property
     def words(self) -> str:
@@ -59,5 +66,12 @@ class TruthDoubts:
                 f"Truth is not believable at {self.n_standing} epochs and is not used there: it stands still while the positions travel "
                 f"up to {self.travelled_m:.0f} m on a steady course, by more than their bounds allow. It is the truth of another receiver, "
                 "or the positions are wrong."
+            )
+        if self.n_invalid:
+            sentences.append(f"Truth is not used at {self.n_invalid} epochs, at which its own recording states that it is not valid.")
+        if self.n_imprecise:
+            sentences.append(
+                f"Truth is not used at {self.n_imprecise} epochs, at which its own standard deviation is no smaller than that of the "
+                "position."
             )
         return " ".join(sentences)
