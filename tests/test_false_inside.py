@@ -483,8 +483,8 @@ def test_positions_that_may_be_radians_show_nothing_until_the_unit_is_stated(
 ) -> None:
     """In radians the flight is at 49 N; read as degrees it creeps near 0 N 0 E, and so does a truth in radians."""
     head = ",".join(("time", *columns, "h_m", "cov_ee_m2", "cov_en_m2", "cov_nn_m2"))
-    for name, shift in (("a", 0.0), ("t", 1e-7)):
-        rows = [f"2026-11-22T12:00:{k:02d}Z,{0.855 + k * 1.2e-5 + shift:.9f},0.04,100.0,64.0,0.0,64.0" for k in range(60)]
+    for name, shift, m2 in (("a", 0.0, 64.0), ("t", 1e-7, 1e-4)):
+        rows = [f"2026-11-22T12:00:{k:02d}Z,{0.855 + k * 1.2e-5 + shift:.9f},0.04,100.0,{m2},0.0,{m2}" for k in range(60)]
         (tmp_path / f"{name}.csv").write_text("\n".join([head, *rows]) + "\n")
     verdict = navbound.analyze(tmp_path / "a.csv", truth=tmp_path / "t.csv", columns=how or None).summary.verdict
     assert verdict.id == expected

@@ -89,6 +89,9 @@ def test_positions_with_their_own_copy_as_truth_show_nothing_of_levels(tmp_path:
         ("sigma_m", "5000", "its own standard deviation is no smaller than that of the position"),
         ("sigma_m", "8", "its own standard deviation is no smaller than that of the position"),
         ("sigma_m", "0.02", ""),
+        ("epu", "5000", "its own standard deviation is no smaller than that of the position"),
+        ("hpl", "3000", "its own standard deviation is no smaller than that of the position"),
+        ("raim", "fault", "its own recording states that it is not valid"),
         ("status", "ok", ""),
     ],
 )
@@ -108,3 +111,21 @@ def test_a_truth_that_states_against_itself_is_none(tmp_path: Path, column: str,
     assert (verdict.belief is not None and verdict.belief.state == "supported") == (not words)
     assert words in verdict.words
     assert verdict.n_truth_doubted == (N if words else 0)
+
+
+@pytest.mark.parametrize(("decimals", "state"), [(4, "copied"), (5, "copied"), (6, "copied"), (9, "copied"), (None, "supported")])
+def test_a_truth_that_is_the_rounded_estimate_is_none(tmp_path: Path, decimals: int | None, state: str) -> None:
+    """Three kilometres beside the track, as any receiver may be: the truth is written from the same positions."""
+    noise = np.random.default_rng(6).normal(0.0, 8.0, (N, 2)) / 111_000.0
+    own, truth = ["time,lat_deg,lon_deg,sigma_e_m,sigma_n_m"], ["time,lat_deg,lon_deg"]
+    for k in range(N):
+        at = f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}Z"
+        lat, lon = 7e-4 * k + noise[k, 0], 0.027 + noise[k, 1]
+        own.append(f"{at},{lat:.9f},{lon:.9f},8,8")
+        truth.append(f"{at},{7e-4 * k:.9f},0.027" if decimals is None else f"{at},{lat:.{decimals}f},{lon:.{decimals}f}")
+    (tmp_path / "a.csv").write_text("\n".join(own) + "\n")
+    (tmp_path / "t.csv").write_text("\n".join(truth) + "\n")
+    verdict = navbound.analyze(tmp_path / "a.csv", truth=tmp_path / "t.csv").summary.verdict
+    assert verdict.belief is not None
+    assert verdict.belief.state == state
+    assert verdict.id == ("inside" if state == "supported" else "not_shown")

@@ -13,6 +13,7 @@ import polars as pl
 from navbound import _core, gnss, status
 from navbound.errors import ConflictError, InputError
 from navbound.read.checks.established import contradicting, established
+from navbound.read.checks.stated import ALERT, CONTAINMENT, LEVEL_SIGMAS, TWO_DRMS
 from navbound.read.tables.epochs import read_beside
 from navbound.records.truth import TruthDoubts
 from navbound.time import utc_text
@@ -140,7 +141,7 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
     wanted = {"est_lat_rad": "truth_lat_rad", "est_lon_rad": "truth_lon_rad", "est_h_m": "truth_h_m"}
     other = truth.epochs.rename({k: v for k, v in wanted.items() if k in truth.epochs.columns})
     places = [v for v in wanted.values() if v in other.columns]
-    other = other.select("track", "time_ns", *places, truth_time_ns="time_ns", invalid=_invalid(other), truth_sigma_m=_sigma_m(other))
+    other = other.select("track", "time_ns", *places, truth_time_ns="time_ns", invalid=_invalid(other), truth_sigma_m=_truth_sigma_m(other))
     other, jumps = contradicting(other.sort("track", "time_ns"))
     several = other["track"].n_unique() > 1
     joined = (
@@ -180,19 +181,27 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
 
 
 def _invalid(truth: pl.DataFrame) -> pl.Expr:
-    """Rows of a recording that states itself that they are none."""
-    if "status" not in truth.columns:
-        return pl.lit(value=False)
-    return ~pl.col("status").is_in(status.USABLE).fill_null(value=True)
+    """Rows of a recording that states itself that they are none, or an alert."""
+    against = [~pl.col("status").is_in(status.USABLE).fill_null(value=True)] if "status" in truth.columns else []
+    alerts = [pl.col(ALERT).is_not_null()] if ALERT in truth.columns else []
+    return pl.any_horizontal(*against, *alerts) if against or alerts else pl.lit(value=False)
 
 
 def _sigma_m(epochs: pl.DataFrame) -> pl.Expr:
     """Root of both horizontal variances as a recording states them; null where it does not. [m]."""
-    if {"cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
+    have = set(epochs.columns)
+    if {"cov_ee_m2", "cov_nn_m2"} <= have:
         return (pl.col("cov_ee_m2") + pl.col("cov_nn_m2")).sqrt()
-    if {"sigma_e_m", "sigma_n_m"} <= set(epochs.columns):
+    if {"sigma_e_m", "sigma_n_m"} <= have:
         return (pl.col("sigma_e_m") ** 2 + pl.col("sigma_n_m") ** 2).sqrt()
     return pl.lit(None, pl.Float64)
+
+
+def _truth_sigma_m(truth: pl.DataFrame) -> pl.Expr:
+    """The same of a truth, or what it is at least by the accuracy, level and containment radius that its recording states."""
+    bounds = {"epu_m": TWO_DRMS, "hpl_m": LEVEL_SIGMAS, CONTAINMENT: LEVEL_SIGMAS}
+    least = [pl.col(name) / factor for name, factor in bounds.items() if name in truth.columns]
+    return pl.max_horizontal(_sigma_m(truth), *least)
 
 
 def with_error(epochs: pl.DataFrame) -> tuple[pl.DataFrame, TruthDoubts]:

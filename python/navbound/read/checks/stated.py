@@ -28,6 +28,9 @@ TWO_DRMS = 2.0
 """Times the root of the sum of both variances: no ellipse has a 95 % circle as large
 (1.96 for a line, 1.73 for a circle). [1] Provenance: standard."""
 
+LEVEL_SIGMAS = 6.0
+"""Standard deviations in a protection level: 5.33 to 6 by the levels of SBAS (DO-229, standard). [1]"""
+
 _LENGTHS = ("nse_h_m", "nse_cross_m", "nse_along_m", "tse_m", "fte_m")
 
 

@@ -160,6 +160,7 @@ _SPEAKS = _words(
     "spoofed spoof jamming jammed jam interference reliable reliability trust usable error errors uncertainty accuracy acc hacc "
     "vacc pacc sigma std stddev epu anp epe eph epv ehpe cep drms rms fom hfom vfom "
     "nse tse fte err coasting coast extrapolated age nsat nsats sats satellites sat "
+    "epx epy epd hrms vrms 2drms cep50 cep95 r95 sd sdev ehe eve hdop pdop pl level major minor outage dr mlat tisb datum covariance type "
     "confidence outlier misleading degraded lost loss solution denied reckoning estimated predicted propagated simulated source "
 )
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""

@@ -83,6 +83,10 @@ class Quantity:
 _DECLARED = {column.name: column.unit for column in (*EPOCHS, *READ)}
 
 
+WRITTEN = "written"
+"""In the place of a unit: the name is known where its unit is written beside it."""
+
+
 def _q(name: str, low: float, high: float, **aliases: str) -> Quantity:
     si = _DECLARED[name]
     return Quantity(
@@ -117,6 +121,8 @@ QUANTITIES: tuple[Quantity, ...] = (
         kt="groundspeed ground_speed gs ground_speed_kt velocity_kt sog",
         mps="speed_mps vel_m_s",
         kmh="speed_kmh speed_km_h speed_kph ground_speed_kmh gs_kmh",
+        # Names that are in use for several units: with their unit alone.
+        written="speed velocity spd speed_over_ground",
     ),
     _q("vel_n_mps", -2e4, 2e4, mps="vel_n_m_s vn_mps vn_m_s vn velocity_n velocity_north vel_north north_velocity v_north"),
     _q("vel_e_mps", -2e4, 2e4, mps="vel_e_m_s ve_mps ve_m_s ve velocity_e velocity_east vel_east east_velocity v_east"),
@@ -362,6 +368,8 @@ def _known(quantity: Quantity, names: list[str], path: Path, *, own: bool) -> Co
     for alias, unit in quantity.aliases.items():
         if alias in plain:
             written = _written_unit(plain[alias], quantity, path)
+            if unit == WRITTEN and written is None:
+                continue
             return Column(quantity.name, plain[alias], written or unit, unit_stated=written is not None or alias.endswith(f"_{unit}"))
         # `hpl_nm` is `hpl` in nautical miles, whether or not the list names it so.
         for ending in units if quantity.si not in {"1", "time", "text"} else ():

@@ -10,6 +10,7 @@ import polars as pl
 
 from navbound import evaluation
 from navbound.methods import column_of, method
+from navbound.read.checks.stated import LEVEL_SIGMAS
 from navbound.records.run import Belief, BoundCheck, LevelCheck
 from navbound.run.verdict import rule
 from navbound.status import USABLE
@@ -181,10 +182,6 @@ def _outside(epochs: pl.DataFrame, bound: str, error: str) -> tuple[int, int]:
     return int((size[known] > limit[known]).sum()), int(known.sum())
 
 
-LEVEL_SIGMAS = 6.0
-"""Standard deviations in a protection level, where a copy is looked for: 5.33 to 6 by the levels of SBAS (DO-229, standard). [1]"""
-
-
 def copied(epochs: pl.DataFrame) -> tuple[int, int]:
     """Epochs of errors and levels at which the truth is the estimate, by a sixth of the level as sigma; and epochs with a true error."""
     size = np.fmax(np.abs(column_of(epochs, "hpe_m")), np.hypot(column_of(epochs, "nse_e_m"), column_of(epochs, "nse_n_m")))
@@ -204,7 +201,7 @@ def _copied_share(epochs: pl.DataFrame) -> float:
     known = np.isfinite(size)
     if not known.any():
         return 0.0
-    same = size == 0.0
+    same = (size == 0.0) | _rounded_copies(epochs)
     if {"cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
         # P(e' V^-1 e <= x) = 1 - exp(-x / 2); the smaller variance of both axes makes x largest, which is the careful side.
         variance = np.fmin(column_of(epochs, "cov_ee_m2"), column_of(epochs, "cov_nn_m2"))
@@ -212,6 +209,31 @@ def _copied_share(epochs: pl.DataFrame) -> float:
             improbable = -np.expm1(-0.5 * size**2 / variance) <= SAME_AT
         same |= (size <= SAME_M) & improbable
     return float(same[known].mean())
+
+
+_DECIMALS = range(3, 8)
+"""Decimals of a degree in which positions are written: 111 m to 1 cm. [1]"""
+_LEAST_COPIES, _LEAST_PLACES = 0.95, 10
+"""Share of the epochs whose truth is the rounded estimate, and places that such a truth must have: one that stands is near by chance.
+Provenance: ours."""
+
+
+def _rounded_copies(epochs: pl.DataFrame) -> NDArray[np.bool_]:
+    """Epochs whose truth is the estimate rounded to some decimals of a degree: to the resolution of such a truth there is no error."""
+    names = ("est_lat_rad", "truth_lat_rad", "est_lon_rad", "truth_lon_rad")
+    if not set(names) <= set(epochs.columns):
+        return np.zeros(epochs.height, dtype=np.bool_)
+    degrees = np.degrees([column_of(epochs, name) for name in names]).reshape(2, 2, -1)
+    known = np.isfinite(degrees).all(axis=(0, 1))
+    if np.unique(degrees[:, 1, known], axis=1).shape[1] < _LEAST_PLACES:
+        return np.zeros(epochs.height, dtype=np.bool_)
+    for decimals in _DECIMALS:
+        apart = np.abs(np.round(degrees[:, 0], decimals) - degrees[:, 1])
+        # A thousandth of the resolution: radians in between and back.
+        same: NDArray[np.bool_] = np.all(apart <= 10.0 ** -(decimals + 3), axis=0) & known
+        if same.sum() >= _LEAST_COPIES * known.sum():
+            return same
+    return np.zeros(epochs.height, dtype=np.bool_)
 
 
 def _magnitude(epochs: pl.DataFrame) -> evaluation.Magnitude | None:
