@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -130,3 +131,26 @@ def test_a_disk_that_takes_no_more_is_a_sentence_and_leaves_no_result(tmp_path: 
     assert "cannot be written" in done.stderr
     assert "bug" not in done.stderr
     assert list(out.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", [folders.MANIFEST, "run.json"])
+def test_a_pipe_in_the_place_of_a_file_is_refused_and_not_waited_for(tmp_path: Path, name: str) -> None:
+    write(tmp_path / "out", "new")
+    (tmp_path / "out" / name).unlink()
+    os.mkfifo(tmp_path / "out" / name)
+    with pytest.raises(FormatError, match=f"{name}: is not a file"):
+        folders.require_whole(tmp_path / "out", NAMES, "a run directory")
+
+
+def test_a_page_that_was_changed_after_the_job_is_refused(tmp_path: Path) -> None:
+    write(tmp_path / "out", "new")
+    (tmp_path / "out" / "report.html").write_text("")
+    with pytest.raises(FormatError, match=r"report.html: is not the file that the job wrote"):
+        folders.require_whole(tmp_path / "out", ("run.json",), "a run directory")
+
+
+def test_a_manifest_nested_too_deeply_is_damaged(tmp_path: Path) -> None:
+    write(tmp_path / "out", "new")
+    (tmp_path / "out" / folders.MANIFEST).write_text("[" * 100_000)
+    with pytest.raises(FormatError, match=f"{folders.MANIFEST}: is damaged"):
+        folders.require_whole(tmp_path / "out", NAMES, "a run directory")

@@ -355,3 +355,10 @@ def test_a_unit_that_is_not_known_is_no_other(tmp_path: Path, name: str) -> None
 def test_a_device_is_no_file() -> None:
     with pytest.raises(FormatError, match="a device, not a file"):
         read("/dev/zero")
+
+
+@pytest.mark.parametrize("text", ['[{"time": 1, "time": 2, "lat": 1, "lon": 2}]', '{"time": [1], "lat": [1], "lon": [2], "lat": [3]}'])
+def test_a_key_that_stands_twice_in_an_object_is_refused(tmp_path: Path, text: str) -> None:
+    (tmp_path / "a.json").write_text(text)
+    with pytest.raises(FormatError, match=r"a.json: (time|lat): an object has the key “(time|lat)” twice"):
+        read(tmp_path / "a.json")

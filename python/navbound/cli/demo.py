@@ -57,7 +57,9 @@ def _print_moments(run: Run) -> None:
 def _print_coverage(run: Run) -> None:
     """Whether the bounds contained the errors, and with which certainty."""
     verdict = run.summary.verdict
-    out_console.print(f"  {verdict.words.partition('. ')[0]}.", markup=False, highlight=False)
+    inside = "not known" if verdict.share_inside is None else f"{100 * verdict.share_inside:.2f} %"
+    judged = f"{verdict.n_judged} judged epochs of {verdict.n_epochs}"
+    out_console.print(f"  {verdict.requirement}: the 95 % bound is within it at {inside} of {judged}", markup=False, highlight=False)
     for bound in [] if verdict.belief is None else verdict.belief.bounds:
         interval = f"{100 * bound.coverage_low:.1f} to {100 * bound.coverage_high:.1f} % as from {bound.n_effective:.0f} independent ones"
         contained = f"{100 * bound.coverage:.1f} % of {bound.n} errors ({interval})"

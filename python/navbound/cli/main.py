@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Callable
@@ -57,6 +58,10 @@ app.add_typer(procedures.app, name="procedures")
 app.add_typer(live.app, name="live")
 
 
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""A disk that is full is no fault of ours, wherever it shows."""
+
+
 def main() -> None:
     """Entry point: every refusal is a sentence, every surprise is ours."""
     try:
@@ -81,11 +86,19 @@ def main() -> None:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (Exception, _core.PanicException) as e:
-        if hasattr(e, "format_message"):  # a usage error of the command-line parser
-            _die(e.format_message(), USAGE)
-        if os.environ.get("NAVBOUND_TRACEBACK"):
-            raise
-        _die(f"this is a bug in navbound, please report it: {type(e).__name__}: {e} (set NAVBOUND_TRACEBACK=1 for the traceback)", OUR_BUG)
+        _end_by(e)
+
+
+def _end_by(surprise: BaseException) -> None:
+    """A usage error of the parser, a full disk, or a fault of ours."""
+    if isinstance(surprise, OSError) and surprise.errno in _FULL:
+        _die(f"{surprise.filename or 'a file that was to be written'}: {surprise.strerror}", UNREADABLE)
+    if hasattr(surprise, "format_message"):
+        _die(surprise.format_message(), USAGE)
+    if os.environ.get("NAVBOUND_TRACEBACK"):
+        raise surprise
+    what = f"{type(surprise).__name__}: {surprise}"
+    _die(f"this is a bug in navbound, please report it: {what} (set NAVBOUND_TRACEBACK=1 for the traceback)", OUR_BUG)
 
 
 def _option(argument: str) -> str:

@@ -147,6 +147,7 @@ def require_whole(folder: Path, needed: Collection[str], what: str) -> None:
         No manifest, or one that does not agree with the files: the job that wrote here did not finish, or a file was changed after it.
     """
     try:
+        _require_file(folder / MANIFEST)
         content = json.loads((folder / MANIFEST).read_bytes())
         files = {str(name): str(digest) for name, digest in content["files"].items()}
     except FileNotFoundError as e:
@@ -154,18 +155,26 @@ def require_whole(folder: Path, needed: Collection[str], what: str) -> None:
         raise FormatError(folder, f"is not {what} ({missing})") from e
     except OSError as e:
         raise FormatError(folder, f"is not {what}: {e.strerror or e}") from e
-    except (ValueError, KeyError, TypeError, AttributeError) as e:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as e:
         raise FormatError(folder / MANIFEST, f"is damaged: {e}") from e
     absent = sorted(set(needed) - files.keys())
     if absent:
         raise FormatError(folder, f"is not {what}: its manifest lacks {', '.join(absent)}")
-    for name in needed:
+    # What lies in the folder itself, the page among it, is what people open.
+    for name in sorted({*needed, *(name for name in files if Path(name).name == name)}):
         try:
+            _require_file(folder / name)
             found = _digest(folder / name)
         except OSError as e:
             raise FormatError(folder / name, f"cannot be read: {e.strerror or e}") from e
         if found != files[name]:
             raise FormatError(folder / name, f"is not the file that the job wrote: its digest differs from the one in {MANIFEST}")
+
+
+def _require_file(path: Path) -> None:
+    """Refuse a pipe or a device in the place of a file: nothing says that reading it ends."""
+    if path.exists() and not path.is_file():
+        raise FormatError(path, "is not a file")
 
 
 def _digest(path: Path) -> str:

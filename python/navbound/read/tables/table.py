@@ -188,7 +188,7 @@ def _json(source: Source) -> Table:
     # A record is an object; a row of a table of columns, or of a trace, is some twenty fields between commas.
     require_free(source, max(source.content.count(b"{"), source.content.count(b",") // 20))
     try:
-        data = json.loads(source.text())
+        data = json.loads(source.text(), object_pairs_hook=lambda pairs: _unrepeated(source, pairs))
     except json.JSONDecodeError as e:
         raise FormatError(source.path, f"not JSON: {e.msg}", e.lineno) from e
     except RecursionError as e:
@@ -211,6 +211,15 @@ def _json(source: Source) -> Table:
         )
     frame = pl.DataFrame({name: _series(name, values) for name, values in columns.items()})
     return Table(_counted(frame), rejections, frame.height)
+
+
+def _unrepeated(source: Source, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Refuse an object that states a key twice: only one of the two would be read."""
+    content = dict(pairs)
+    if len(content) < len(pairs):
+        repeated = next(name for name, n in Counter(name for name, _ in pairs).items() if n > 1)
+        raise FormatError(source.path, f"an object has the key “{repeated}” twice", field=repeated)
+    return content
 
 
 def _counted(frame: pl.DataFrame) -> pl.DataFrame:
