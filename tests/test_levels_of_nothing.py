@@ -34,3 +34,17 @@ def test_service_levels_have_the_same_rule(tmp_path: Path) -> None:
     done = command("evaluate", path, "--levels", "LPV-200", "--out", tmp_path / "run")
     assert done.returncode == 4, done.stderr
     assert "no epoch has a protection level" in " ".join(done.stdout.split())
+
+
+@pytest.mark.parametrize(
+    ("column", "against", "fine"),
+    [("valid", "0", "1"), ("alert", "warning", "normal"), ("raim_alert", "yes", "no"), ("gps_ok", "false", "true")],
+)
+def test_what_a_table_of_levels_states_against_an_epoch_takes_its_level(tmp_path: Path, column: str, against: str, fine: str) -> None:
+    head = f"time,hpl_m,vpl_m,nse_e_m,nse_n_m,nse_u_m,{column}"
+    for word, expected in ((against, 0.5), (fine, 1.0)):
+        rows = [f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}Z,12,15,1,-1,{k % 3},{word if k % 2 else fine}" for k in range(600)]
+        (tmp_path / "a.csv").write_text("\n".join([head, *rows]) + "\n")
+        results = navbound.evaluate(tmp_path / "a.csv", levels=("APV-I",)).summary.performance
+        assert results is not None
+        assert results.levels[0].availability_expected == expected

@@ -24,7 +24,10 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     let point = position.lat_rad.zip(position.lon_rad).map(|(lat, lon)| LatLon::new(Radians::new(lat), Radians::new(lon)));
     let mut reason = position.reason;
     let mut refuse = |why: Reason| reason = reason.or(Some(why));
-    let (mut fte_m, mut course) = (position.fte_m, position.course_rad.or(position.fte_m.map(|_| 0.0)).map(Radians::new));
+    // A direction of several turns is none.
+    let stated = position.course_rad.map(|course| if course.abs() <= COURSE_MOST_RAD { course } else { f64::NAN });
+    let (mut fte_m, mut course) = (position.fte_m, stated.or(position.fte_m.map(|_| 0.0)).map(Radians::new));
+    let mut covariance_m2 = position.covariance_m2;
     match (&settings.path, point) {
         (_, Some(Err(_))) => refuse(Reason::InvalidNumber),
         (Some(path), Some(Ok(point))) => match path.project(&point, track.along) {
@@ -36,6 +39,8 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
         },
         // What another path deviates from says nothing of this one.
         (Some(_), None) => (fte_m, course) = (None, None),
+        // Across a path of unknown direction the error may be the largest of any.
+        (None, _) if stated.is_none() && fte_m.is_some() => covariance_m2 = covariance_m2.map(in_every_direction),
         (None, _) => {}
     }
     match position.covariance_m2 {
@@ -50,13 +55,22 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
         path_angle: None,
         fte_m,
         fte_v_m: None,
-        covariance: position.covariance_m2.map(Covariance::from_upper),
+        covariance: covariance_m2.map(Covariance::from_upper),
         nse_en_m: None,
         nse_u_m: None,
         rnp: Some(position.rnp_m.map_or(settings.rnp, Metres::new)),
         hpl: position.hpl_m.map(Metres::new),
     };
     (sample, reason)
+}
+
+/// Largest course that is one: headings are written from minus half a turn to a whole one \[rad\].
+const COURSE_MOST_RAD: f64 = core::f64::consts::TAU;
+
+/// The covariance with the largest horizontal variance of any direction in each; one that has the same in all stays as it is, to the bit.
+fn in_every_direction([ee, en, nn, eu, nu, uu]: [f64; 6]) -> [f64; 6] {
+    let largest = 0.5 * (ee + nn) + f64::hypot(0.5 * (ee - nn), en);
+    if ee == nn && en == 0.0 { [ee, en, nn, eu, nu, uu] } else { [largest, 0.0, largest, 0.0, 0.0, uu] }
 }
 
 /// Whether a number that a bound is made of is there and is no number.

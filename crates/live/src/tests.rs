@@ -369,3 +369,20 @@ proptest! {
         prop_assert!(Lane::restore(settings(), &with_crc).is_err());
     }
 }
+
+/// The largest variance of a direction counts where nobody says which direction is across: 300 m to the north, 1 m to the east.
+#[test]
+fn a_deviation_without_a_course_takes_the_largest_error_of_any_direction() {
+    let after = |more: &str| {
+        let mut lane = Lane::new(settings()).unwrap();
+        let one = |k: f64| line("t", k, &format!(",\"fte_m\":10.0,\"cov_ee_m2\":1.0,\"cov_en_m2\":0.0,\"cov_nn_m2\":90000.0{more}"));
+        let outputs: Vec<Output> = [0.0, 1.0, 2.0, 3.0].into_iter().flat_map(|k| chunk(&mut lane, k, &one(k))).collect();
+        let first = outputs.iter().find_map(|output| if let Output::Epoch(e) = output { Some((e.status, e.numbers[0])) } else { None });
+        first.unwrap()
+    };
+    // Northwards the eastern error is across; eastwards, and where nobody knows, the northern one is.
+    assert!(after(",\"course_rad\":0.0").1 < 13.0);
+    let east = after(",\"course_rad\":1.5707963267948966").1;
+    assert!((after("").1 - east).abs() < 1e-6 * east && east > 400.0, "{east}");
+    assert!(!after(",\"course_rad\":1e300").0.usable());
+}

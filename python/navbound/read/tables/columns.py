@@ -321,7 +321,7 @@ def assign(
         taken |= {c.name for c in times}
     _require(columns, times, names, path, needs)
     free = [n for n in names if n not in taken]
-    kinds = {name: kind_of(_plain(name)[0]) for name in free} if tuple(needs) == POSITION else {}
+    kinds = {name: kind_of(_plain(name)[0]) for name in free}
     if {_plain(name)[0] for name in names} & TRANSPONDER:
         kinds.pop("alert", None)
     statements = [(name, kind) for name, kind in kinds.items() if kind is not None]

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from navbound.read.checks.statements import Effect, Stated
+
 _QUANTITY = {q.name: q for q in STATED_QUANTITIES + QUANTITIES + LEVEL_QUANTITIES}
 _BAD, _EXAMPLE = "__bad", "__example"
 _RAW = "__raw "
@@ -127,7 +129,9 @@ class Values:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], _largest(part[name]))
         self._see_heights(part)
-        return self._reported(part, frame) if tuple(self._required) == POSITION else part
+        if tuple(self._required) == POSITION:
+            return self._reported(part, frame)
+        return stated.with_statements(part, self._statements(frame))
 
     def _check_kinds(self, frame: pl.DataFrame) -> None:
         names = [column.name for column in (*self._mapping.columns.values(), *self._mapping.times)]
@@ -179,10 +183,14 @@ class Values:
         if "status" in part.columns:
             known = pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)
             self._n_unknown += part.filter(~known).height
+        return stated.with_statements(status.recorded(stated.against_itself(part)), self._statements(frame))
+
+    def _statements(self, frame: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
+        """What columns of validity and of alerts state."""
         found = [(name, kind.effect, statements.stated(kind, frame[name])) for name, kind in self._mapping.statements]
         for name, _, each in found:
             self._unknown.setdefault(name, {}).update(dict.fromkeys(each.unknown))
-        return stated.with_statements(status.recorded(stated.against_itself(part)), found)
+        return found
 
     @property
     def unread(self) -> list[str]:

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polars as pl
 
-from navbound import gnss, sbas
+from navbound import gnss, sbas, status
 from navbound.errors import ConflictError, FormatError, InputError
 from navbound.read.checks.refusals import of_navigation, of_observations, rejections, require_most_epochs, skipped_words
+from navbound.read.checks.stated import ALERT
 from navbound.read.tables.epochs import read
 from navbound.read.truth import Truth, with_error, with_truth
 from navbound.run.inputs.solving import Solving, require_same_time
@@ -104,7 +105,7 @@ def from_table(path: Path, truth: Truth, needs: Sequence[str] = ("hpl_m",)) -> P
     tracks = reading.epochs["track"].unique().sort().to_list()
     if len(tracks) > 1:
         raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")
-    epochs, notes, refused = reading.epochs, list(reading.notes), list(reading.rejected)
+    epochs, notes, refused = _without_alerts(reading.epochs), list(reading.notes), list(reading.rejected)
     if truth.given is not None:
         epochs, words, other, _ = with_truth(epochs, truth)
         notes.append(words)
@@ -118,6 +119,15 @@ def from_table(path: Path, truth: Truth, needs: Sequence[str] = ("hpl_m",)) -> P
     # Columns of Error Extraction say in their own name what they are.
     of_extraction = any(reading.columns.get(name, "").startswith("ee_") for name in ("hpl_m", "vpl_m"))
     return Part(uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
+
+
+def _without_alerts(epochs: pl.DataFrame) -> pl.DataFrame:
+    """An epoch at which the recording states an alert has no navigation that is available."""
+    if ALERT not in epochs.columns:
+        return epochs
+    rows = epochs if "status" in epochs.columns else epochs.with_columns(pl.lit("ok").alias("status"))
+    fault = rows.select(pl.when(pl.col(ALERT).is_not_null()).then(pl.lit("reported")).alias("fault"))["fault"]
+    return status.overridden(rows, fault).drop(ALERT)
 
 
 def _with_own_truth(epochs: pl.DataFrame) -> tuple[pl.DataFrame, list[str]]:
