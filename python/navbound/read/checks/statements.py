@@ -97,8 +97,8 @@ KINDS: tuple[Kind, ...] = (
             "n e m s v none no_fix nofix not_valid invalid invalid_fix insufficient_obs no_convergence singularity cov_trace test_dist "
             "cold_start v_h_limit residuals integrity_warning pending unauthorized dr dead_reckoning coast coasting estimated extrapolated "
             "propagated predicted simulated simulator simulation manual fixedpos memory last_known lost degraded fail failed fault alert "
-            "alarm warning caution not_available unavailable denied reversion reversionary no_nav acquisition standby stopped halted frozen stale "
-            "jammed spoofed unreliable"
+            "alarm warning caution not_available unavailable denied reversion reversionary no_nav acquisition standby "
+            "stopped halted frozen stale jammed spoofed unreliable"
         ),
         _FIX - _words("2 3 4 5 6 9")
         | _words(
