@@ -290,13 +290,14 @@ def read_files(shared_data: Path) -> dict[str, Callable[..., Any]]:
     day = shared_data / "gnss" / "taroz_static"
     navigation, observations = gnss.read_navigation(day / "base.nav"), gnss.read_observations(day / "rover.obs.gz")
     orbits = gnss.read_orbits(shared_data / "gnss" / "igs_2010_182" / "igs15904.sp3")
-    time_ns = int(observations.time_ns[0])
-    first = orbits.satellites[0]
+    at: dict[str, Any] = {"system": "gps", "time_ns": int(observations.time_ns[0])}
+    code: dict[str, Any] = {"system": "G", "code": "C1C"}
+    state: dict[str, Any] = {"satellite": orbits.satellites[0], "time_ns": at["time_ns"]}
     return {
-        "Navigation.orbits": lambda **a: navigation.orbits(**{"system": "gps", "time_ns": time_ns} | a),
-        "Navigation.nearest_age_s": lambda **a: navigation.nearest_age_s(**{"system": "gps", "time_ns": time_ns} | a),
-        "Observations.column": lambda **a: observations.column(**{"system": "G", "code": "C1C"} | a),
-        "PreciseOrbits.states": lambda **a: orbits.states(**{"satellite": first, "time_ns": time_ns} | a),
+        "Navigation.orbits": lambda **a: navigation.orbits(**at | a),
+        "Navigation.nearest_age_s": lambda **a: navigation.nearest_age_s(**at | a),
+        "Observations.column": lambda **a: observations.column(**code | a),
+        "PreciseOrbits.states": lambda **a: orbits.states(**state | a),
     }
 
 
