@@ -362,3 +362,43 @@ def test_a_key_that_stands_twice_in_an_object_is_refused(tmp_path: Path, text: s
     (tmp_path / "a.json").write_text(text)
     with pytest.raises(FormatError, match=r"a.json: (time|lat): an object has the key “(time|lat)” twice"):
         read(tmp_path / "a.json")
+
+
+WEEK_ROWS = [[2300, 100.0 + k, 48.0 + 1e-5 * k, 2.0, 3.0, 3.0] for k in range(5)]
+
+
+@pytest.mark.parametrize(
+    ("names", "declared"),
+    [
+        (("GpsWeek", "GpsTow [s]"), {"gps_week": "GpsWeek", "gps_tow_s": "GpsTow [s]"}),
+        (("gps_week", "my_tow"), {"gps_tow_s": "my_tow"}),
+        (("my_week", "tow"), {"gps_week": "my_week"}),
+        (("my_week", "tow"), {"time": "my_week:gps_week"}),
+        (("week", "my_tow"), {"time": "my_tow:gps_tow_s"}),
+    ],
+)
+def test_week_and_time_of_week_are_declared_by_their_own_keys(tmp_path: Path, names: tuple[str, str], declared: dict[str, str]) -> None:
+    head = ",".join((*names, "lat", "lon", "sigma_e_m", "sigma_n_m"))
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join([head, *(",".join(map(str, row)) for row in WEEK_ROWS)]) + "\n", encoding="utf-8")
+    reading = read(path, columns=declared)
+    # 2300 weeks of 604 800 s and 100 s of the next one.
+    assert reading.epochs["time_ns"][0] == (2300 * 604_800 + 100) * 1_000_000_000
+
+
+@pytest.mark.parametrize("declared", [{"time": "a:gps_week"}, {"time": "a:gps_tow_s"}, {"gps_week": "a"}, {"gps_tow_s": "a"}])
+def test_a_week_without_a_time_of_week_is_refused_with_the_way_out(tmp_path: Path, declared: dict[str, str]) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("a,lat,lon\n2300,48,2\n2300,48,2\n", encoding="utf-8")
+    with pytest.raises(FormatError, match=r"no column is a (GPS week|time of week); declare it: --map \"gps_(week|tow_s)=COLUMN\""):
+        read(path, columns=declared)
+
+
+@pytest.mark.parametrize(("unit", "scale"), [("gps_s", 1), ("gps_ms", 10**3), ("gps_us", 10**6), ("gps_ns", 10**9)])
+def test_gps_times_are_read_in_every_unit_and_small_ones_are_doubted(tmp_path: Path, unit: str, scale: int) -> None:
+    for second, doubted in ((1_400_000_000, False), (7, True)):
+        path = tmp_path / f"{unit}_{second}.csv"
+        path.write_text("t,lat,lon\n" + "".join(f"{(second + k) * scale},48,2\n" for k in range(5)), encoding="utf-8")
+        reading = read(path, columns={"time": f"t:{unit}"})
+        assert reading.epochs["time_ns"].to_list() == [(second + k) * 10**9 for k in range(5)]
+        assert any("time since some start" in note for note in reading.notes) == doubted

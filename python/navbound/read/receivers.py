@@ -21,6 +21,7 @@ MESSAGES: dict[str, str] = dict(_core.position_logs())
 """Kind of log to the messages that hold its positions."""
 
 _REASONS = {
+    "accuracy_without_position": "accuracy of no position (GST or GBS without a GGA of its time)",
     "damaged_message": "damaged message",
     "damaged_other_message": "damaged message of no position",
     "marked_invalid": "position marked invalid",

@@ -22,7 +22,7 @@ const SHELL_MM: f64 = EARTH_MM + 0.35;
 /// ```text
 /// s_v^2 = (vertical_share I)^2 + (activity_share A)^2 (+ ntcm_floor^2 for NTCM-G)
 /// s_E^2 = (gradient_share I)^2 + (gradient_activity_share A)^2      per Mm of distance to the pierce point
-/// s_N^2 = the same, with the larger share near the magnetic equator
+/// s_N   = s_E, times anomaly_share / gradient_share near the magnetic equator
 /// s_T   = zenith_troposphere
 /// ```
 ///
@@ -93,9 +93,10 @@ impl CommonErrors {
         let activity = over.activity_m * if unknown { 1.0 + SPREAD_ACTIVITY_SFU / MEAN_ACTIVITY_SFU } else { 1.0 };
         let floor = if over.kind == Kind::Broadcast { 0.0 } else { self.ntcm_floor_m };
         let vertical = root_sum([self.vertical_share * delay, self.activity_share * activity, floor, spread, whole]);
-        let north = if over.magnetic_lat.abs() < self.anomaly_rad { self.anomaly_share } else { self.gradient_share };
-        let gradient = |share: f64| root_sum([share * delay, self.gradient_activity_share * activity]);
-        let (east, north) = (gradient(self.gradient_share), gradient(north));
+        // The crests stay when the modelled delay has gone down for the night: the larger share counts for the stated activity, too.
+        let steeper = if over.magnetic_lat.abs() < self.anomaly_rad { self.anomaly_share / self.gradient_share } else { 1.0 };
+        let east = root_sum([self.gradient_share * delay, self.gradient_activity_share * activity]);
+        let north = steeper * east;
         Sizes {
             sigma: self.factor * Vector4::new(vertical, east, north, self.zenith_troposphere_m),
             uneven_m: self.unevenness * vertical,

@@ -10,10 +10,10 @@ use navbound_formats::receiver::position::{Dated, Decoder, Ends, Item, Kind, Mes
 /// Most messages of an unfinished epoch: at most one of a kind. Provenance: ours.
 const MOST_MESSAGES: u32 = 8;
 
-/// A report, or why there is none; nothing for a date.
+/// A report, or why there is none; nothing for a date, or for an accuracy alone.
 pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
     match item {
-        Item::Dated(_) => None,
+        Item::Dated(_) | Item::Unpaired(_) => None,
         Item::Malformed(_) => Some(Err(Refused::ShortMessage)),
         Item::Position(position) => {
             let Some(time) = position.time else { return Some(Err(Refused::Undated)) };

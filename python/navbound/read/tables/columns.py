@@ -53,7 +53,7 @@ UNITS: dict[str, dict[str, float]] = {
 }
 """Units a column may be written in, by SI unit: factor to SI."""
 
-TIME_UNITS = ("gps_ns", "gps_s", "gps_week", "gps_tow_s", "utc", "utc_s", "utc_ms", "utc_us", "utc_ns", "utc_text")
+TIME_UNITS = ("gps_ns", "gps_us", "gps_ms", "gps_s", "gps_week", "gps_tow_s", "utc", "utc_s", "utc_ms", "utc_us", "utc_ns", "utc_text")
 """Ways to write a time; `utc` tells Unix seconds, milli-, micro- and nanoseconds apart by their size, and ISO 8601 text by its looks."""
 
 
@@ -189,6 +189,9 @@ TIME_NAMES: dict[str, str] = {
 }  # fmt: skip
 """Known names of time columns to the way they are written."""
 
+WEEK = {"gps_week": "a GPS week", "gps_tow_s": "a time of week"}
+"""The two columns that make a time together; each is declared by its own key."""
+
 POSITION_TIME = "position_time_ns"
 """When a position was valid, GPS time [ns]; the row's own time is that of the report."""
 
@@ -309,7 +312,7 @@ def assign(
     own = {"time_ns", "est_lat_rad"} <= set(names) or any(_plain(name)[0] == "track" and name in texts for name in names)
     columns: dict[str, Column] = {}
     times: list[Column] = []
-    known = {"time", "time_ns", *(q.name for q in quantities)}
+    known = {"time", "time_ns", *WEEK, *(q.name for q in quantities)}
     beside = {key: value for key, value in (where_present or {}).items() if key in known and _column_named(value, names)[0] in names}
     for key, value in (beside | dict(declared or {})).items():
         column = _declared(key, value, names, path, quantities)
@@ -333,6 +336,8 @@ def assign(
     if not times:
         times = _times([n for n in names if n not in taken])
         taken |= {c.name for c in times}
+    times = _whole_week(times, [n for n in names if n not in taken], path)
+    taken |= {c.name for c in times}
     _require(columns, times, names, path, needs)
     free = [n for n in names if n not in taken]
     kinds = {name: kind_of(_plain(name)[0]) for name in free}
@@ -442,6 +447,29 @@ def _times(names: list[str]) -> list[Column]:
     return single or (week + tow if week and tow else [])
 
 
+def _whole_week(times: list[Column], names: list[str], path: Path) -> list[Column]:
+    """A week with its time of week, whichever of both was declared; the other may have a known name.
+
+    Raises
+    ------
+    FormatError
+        One without the other.
+    """
+    have = {column.unit for column in times} & set(WEEK)
+    if not have:
+        return times
+    known = {_plain(name)[0]: name for name in reversed(names)}
+    for unit in WEEK:
+        if unit not in have:
+            other = next((known[alias] for alias, each in TIME_NAMES.items() if each == unit and alias in known), None)
+            if other is None:
+                (declared,) = have
+                words = f"“{times[0].name}” is {WEEK[declared]}, and no column is {WEEK[unit]}; {declare(f'{unit}=COLUMN')}"
+                raise FormatError(path, words, 1, "time")
+            times = [*times, Column("time", other, unit)]
+    return times
+
+
 def _column_named(value: str, names: list[str]) -> tuple[str, str]:
     """``column:unit`` to both; a name may have a colon of its own."""
     name, separator, unit = value.rpartition(":")
@@ -462,8 +490,10 @@ def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Q
         if unit not in TIME_UNITS:
             raise InputError("columns", value, domain=f"units of time: {', '.join(TIME_UNITS)}")
         return Column("time", name, unit)
+    if key in WEEK:
+        return Column("time", name, key)
     if key not in quantities:
-        raise InputError("columns", key, domain=f"known quantities: time, {', '.join(quantities)}")
+        raise InputError("columns", key, domain=f"known quantities: time, {', '.join((*WEEK, *quantities))}")
     q = quantities[key]
     stated = unit or _written_unit(name, q, path)
     unit = stated or q.aliases.get(_plain(name)[0], q.si)

@@ -25,6 +25,9 @@ _LAST_NS = 3_786_912_018_000_000_000
 """2100-01-01 in GPS time with today's leap seconds: the last time that is believed."""
 
 
+_FIRST_SATELLITES_NS = 2.8e17
+"""GPS time of November 1988: before it hardly a satellite of those that serve was in orbit. Provenance: ours."""
+
 _MAX_NS = 4e18
 """Unix times beyond 2096 do not fit 64 bits as nanoseconds for much longer; what is larger is no time."""
 
@@ -58,7 +61,10 @@ class TimeFacts:
             week = _plain_numbers(frame[next(c.name for c in columns if c.unit == "gps_week")])
             return cls(np.empty(0), 0, zoned=True, early=bool((week < 1024).all()))
         if unit.startswith("gps") or first.dtype in (pl.Datetime, pl.Date):
-            return cls(np.empty(0), 0, zoned=True, early=False)
+            known = _plain_numbers(first).max() if unit.startswith("gps") else None
+            # The largest number of all pieces says whether these can be dates.
+            largest = np.array([known], dtype=np.float64) if isinstance(known, float) else np.empty(0)
+            return cls(largest, 0, zoned=True, early=False)
         numbers = _plain_numbers(first) if unit != "utc_text" else pl.Series([None] * len(first), dtype=pl.Float64)
         n_text, zoned = 0, True
         if first.dtype == pl.String:
@@ -117,6 +123,8 @@ def understand(facts: TimeFacts, columns: list[Column], dtype: pl.DataType, path
             notes.append(f"{path.name}: every GPS week is below 1024; weeks are counted from 1980, so these are dates before August 1999")
         return unit
     if unit.startswith("gps"):
+        if len(facts.numbers) and 0 <= facts.numbers.max() * _SCALES_NS[unit] < _FIRST_SATELLITES_NS:
+            notes.append(f"{path.name}: “{name}” was declared as GPS time and ends before 1989: it may be the time since some start")
         return unit
     # Mostly text: an empty field is neither text nor a number.
     if unit == "utc_text" or (unit == "utc" and dtype == pl.String and facts.n_text > len(facts.numbers)):
@@ -135,7 +143,7 @@ def understand(facts: TimeFacts, columns: list[Column], dtype: pl.DataType, path
     return unit
 
 
-_SCALES_NS = {"utc_s": 1e9, "utc_ms": 1e6, "utc_us": 1e3, "utc_ns": 1.0}
+_SCALES_NS = {f"{scale}_{unit}": ns for scale in ("utc", "gps") for unit, ns in {"s": 1e9, "ms": 1e6, "us": 1e3, "ns": 1.0}.items()}
 
 
 def converted(frame: pl.DataFrame, columns: list[Column], unit: str) -> tuple[pl.Series, pl.Series]:
@@ -149,7 +157,7 @@ def converted(frame: pl.DataFrame, columns: list[Column], unit: str) -> tuple[pl
     elif unit.startswith("gps"):
         # Nineteen digits of nanoseconds do not pass through a double.
         exact = unit == "gps_ns" and first.dtype != pl.Float64
-        ns = first.cast(pl.Int64, strict=False) if exact else _ns(_plain_numbers(first) * (1.0 if unit == "gps_ns" else 1e9))
+        ns = first.cast(pl.Int64, strict=False) if exact else _ns(_plain_numbers(first) * _SCALES_NS[unit])
     else:
         ns = _with_leap_seconds(first, _iso(first)) if unit == "utc_text" else _from_unix(_unix_ns(first, unit))
     empty = first.is_null() | (first.cast(pl.String).str.strip_chars() == "").fill_null(value=True)

@@ -1,6 +1,6 @@
 //! Frames of a receiver to positions, one after the other.
 
-use super::epoch::{Ends, Epoch, Message, State};
+use super::epoch::{Ends, Epoch, Message, State, of_kind};
 use super::nmea::Dated;
 use super::{Kind, Position, nmea, novatel, sbf, ubx};
 use crate::stream::Frame;
@@ -23,6 +23,8 @@ pub enum Item {
     Dated(Dated),
     /// A message that is none.
     Malformed(Malformed),
+    /// Number of a message with an accuracy beside which no position stands.
+    Unpaired(u64),
 }
 
 /// Decoder of one receiver's stream. Between two frames it keeps the messages of an unfinished epoch.
@@ -41,8 +43,8 @@ pub(super) enum Step {
     Part { key: i64, kind: u32 },
     /// It ends the epoch `key`.
     End { key: i64, kind: u32 },
-    /// It is of the epoch `key` and holds a date, or none.
-    Date { key: i64, kind: u32, dated: Option<Dated> },
+    /// It is of the epoch `key` and holds a date, or none; whether it holds more.
+    Date { key: i64, kind: u32, dated: Option<Dated>, kept: bool },
     /// It is an epoch of its own.
     Whole(Box<Position>),
     /// It is none.
@@ -93,8 +95,15 @@ impl Decoder {
                     self.finish(out);
                 }
             }
-            Step::Date { key, kind, dated } => {
-                self.begin(key, kind, out);
+            Step::Date { key, kind, dated, kept } => {
+                let known = self.epoch.state.key == Some(key);
+                if kept && !(known && of_kind(&self.epoch.state.messages, kind).is_some()) {
+                    let complete = self.epoch.put(key, Message { kind, record, body: body.to_vec() });
+                    self.emit(&complete, out);
+                } else if known {
+                    self.epoch.pass(key, kind);
+                }
+                // A date of another time ends no epoch: some receivers write it between a position and its accuracy, a moment later.
                 self.dated = dated.or(self.dated);
                 out.extend(dated.map(Item::Dated));
                 self.end_at_last(out);
@@ -128,7 +137,12 @@ impl Decoder {
             Kind::Nmea => nmea::position(messages),
             Kind::Novatel => None,
         };
-        let Some(mut position) = position else { return };
+        let Some(mut position) = position else {
+            if self.kind == Kind::Nmea {
+                out.extend(nmea::accuracy_alone(messages).map(Item::Unpaired));
+            }
+            return;
+        };
         // The reader of a whole file knows the dates behind a sentence too.
         if let (Ends::WithLast, Some(dated)) = (self.epoch.ends, self.dated) {
             position.date(dated);

@@ -12,6 +12,9 @@ use std::collections::BTreeMap;
 const DAMAGED: &str = "damaged_message";
 const DAMAGED_OTHER: &str = "damaged_other_message";
 
+/// The id of an accuracy beside which no position stands.
+const UNPAIRED: &str = "accuracy_without_position";
+
 /// Doubts that are kept. Provenance: ours.
 const MOST_NOTES: usize = 8;
 
@@ -90,6 +93,7 @@ impl Log {
     fn take(&mut self, item: Item, record: u64, sentences: &mut Sentences) {
         match item {
             Item::Malformed(malformed) => self.leave_out(DAMAGED, true, malformed.record, malformed.reason.to_owned()),
+            Item::Unpaired(record) => self.leave_out(UNPAIRED, false, record, "no GGA of its time".to_owned()),
             Item::Dated(dated) => sentences.dates.push((record, dated)),
             Item::Position(position) if position.awaits_date() => sentences.waiting.push(*position),
             Item::Position(position) => self.position(*position),

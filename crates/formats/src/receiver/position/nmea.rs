@@ -1,4 +1,4 @@
-//! NMEA 0183: GGA with GST (or GBS) of the same time of day, dated by RMC or ZDA.
+//! NMEA 0183: GGA with GST (or GBS) and the speed of RMC of the same time of day, dated by RMC or ZDA.
 //!
 //! Source: NMEA 0183 version 4 as receivers' manuals give it; standard. GGA has no date, and its height stands above the geoid.
 
@@ -22,6 +22,16 @@ const ZDA: u32 = name(*b"ZDA");
 
 const FIELDS: Fields =
     &[("est_lat_rad", "GGA"), ("est_lon_rad", "GGA"), ("est_h_m", "GGA altitude + separation"), ("time", "GGA, dated by RMC or ZDA:utc")];
+const FIELDS_AND_SPEED: Fields = &[
+    ("est_lat_rad", "GGA"),
+    ("est_lon_rad", "GGA"),
+    ("est_h_m", "GGA altitude + separation"),
+    ("time", "GGA, dated by RMC or ZDA:utc"),
+    ("ground_speed_mps", "RMC"),
+    ("ground_track_rad", "RMC"),
+];
+/// Metres per second in a knot.
+const KNOT_MPS: f64 = 1852.0 / 3600.0;
 
 const fn name([a, b, c]: [u8; 3]) -> u32 {
     u32::from_be_bytes([0, a, b, c])
@@ -51,10 +61,10 @@ pub(super) fn step(body: &[u8], record: u64) -> Step {
     match kind {
         GGA if !fields.sound(&GGA_NUMBERS) => Step::Malformed("a field of GGA is not a number"),
         RMC if fields.get(2) == Some(b"A") => {
-            Step::Date { key, kind, dated: fields.get(9).and_then(short_date).and_then(|d| dated(d, key)) }
+            Step::Date { key, kind, dated: fields.get(9).and_then(short_date).and_then(|d| dated(d, key)), kept: true }
         }
-        RMC => Step::Date { key, kind, dated: None },
-        ZDA => Step::Date { key, kind, dated: fields.long_date().and_then(|d| dated(d, key)) },
+        RMC => Step::Date { key, kind, dated: None, kept: false },
+        ZDA => Step::Date { key, kind, dated: fields.long_date().and_then(|d| dated(d, key)), kept: false },
         _ => Step::Part { key, kind },
     }
 }
@@ -76,6 +86,9 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
     let (altitude, separation) = (gga.number(9), gga.number(11));
     let of_gst = sentence(GST).and_then(|gst| covariance(&gst));
     let of_gbs = if of_gst.is_some() { None } else { sentence(GBS).and_then(|gbs| expected_errors(&gbs)) };
+    // Only the sentence of the same time, and one that says it is valid, is kept.
+    let speed_mps = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
+    let track_rad = sentence(RMC).and_then(|rmc| rmc.number(8)).filter(|degrees| (0.0..=360.0).contains(degrees)).map(f64::to_radians);
     let usable = measured && lat_rad.is_some() && lon_rad.is_some();
     Some(Position {
         record,
@@ -84,14 +97,21 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
         lon_rad,
         h_m: altitude.zip(separation).map(|(altitude, separation)| altitude + separation),
         covariance_m2: of_gst.or(of_gbs),
+        ground_speed_mps: speed_mps,
+        ground_track_rad: track_rad,
         n_sv: gga.number(7).map(|count| count as u32),
         hdop: gga.number(8),
         absent: (!usable).then(|| Absent { reason: Reason::NoFix, stated: gga.stated() }),
-        fields: FIELDS,
+        fields: if speed_mps.is_some() { FIELDS_AND_SPEED } else { FIELDS },
         covariance_from: if of_gst.is_some() { Some("GST") } else { of_gbs.map(|_| "GBS") },
         notes: [(altitude.is_some() && separation.is_none()).then_some(Note::NoSeparation), of_gbs.map(|_| Note::ExpectedErrors)],
         ..Position::default()
     })
+}
+
+/// Number of the accuracy beside which no position stands.
+pub(super) fn accuracy_alone(messages: &[Message]) -> Option<u64> {
+    messages.iter().find(|message| [GST, GBS].contains(&message.kind)).map(|message| message.record)
 }
 
 impl Position {

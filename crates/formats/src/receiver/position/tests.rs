@@ -135,6 +135,56 @@ fn the_deviations_of_another_time_are_not_borrowed() {
     assert_eq!(apart.positions[0].covariance_m2, None);
 }
 
+/// The order and the times of a Trimble receiver: the date is of three hundredths of a second after the position.
+#[test]
+fn a_date_between_a_position_and_its_accuracy_takes_nothing_from_it() {
+    let second = |k: u32| {
+        [
+            format!("GPGGA,1405{k:02}.00,4846.84220217,N,00910.29559526,E,2,09,1.0,279.827,M,47.985,M,4.0,0123"),
+            format!("GPZDA,1405{k:02}.03,03,11,2022,00,00"),
+            format!("GPGST,1405{k:02}.00,0.510,0.800,0.588,0.0,0.799,0.590,1.331"),
+        ]
+    };
+    let bodies: Vec<String> = (10..40).flat_map(second).collect();
+    let log = read_sentences(&bodies.iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!((log.positions.len(), log.left_out.len()), (30, 0));
+    for p in &log.positions {
+        let variances = p.covariance_m2.unwrap();
+        assert!((variances[0] - 0.590_f64.powi(2)).abs() < 1e-12 && (variances[2] - 0.799_f64.powi(2)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn an_accuracy_beside_no_position_is_counted() {
+    let gga = "GPGGA,120000.00,4900.0,N,00230.0,E,1,08,1.0,100.0,M,47.0,M,,";
+    let zda = "GPZDA,120000.00,22,11,2026,00,00";
+    let log = read_sentences(&[zda, gga, "GPGST,120001.00,1.0,,,,2.0,3.0,4.0", "GPGST,120002.00,1.0,,,,2.0,3.0,4.0"]);
+    let unpaired = log.left_out.iter().find(|each| each.reason == "accuracy_without_position").unwrap();
+    assert_eq!((unpaired.count, unpaired.damaged, log.positions.len(), log.n_rows), (2, false, 1, 1));
+}
+
+#[test]
+fn the_speed_is_that_of_a_valid_rmc_of_the_same_time() {
+    let gga = |second: u32| format!("GPGGA,1200{second:02}.00,4900.0,N,00230.0,E,1,08,1.0,100.0,M,47.0,M,,");
+    let rmc =
+        |second: u32, state: &str, knots: &str| format!("GPRMC,1200{second:02}.00,{state},4900.0,N,00230.0,E,{knots},90.0,221126,,,A");
+    let of = |bodies: &[String]| {
+        let log = read_sentences(&bodies.iter().map(String::as_str).collect::<Vec<_>>());
+        log.positions.iter().map(|p| p.ground_speed_mps).collect::<Vec<_>>()
+    };
+    // 36 knots are 18.52 m/s.
+    for both in [[gga(1), rmc(1, "A", "36.0")], [rmc(1, "A", "36.0"), gga(1)]] {
+        assert!(matches!(of(&both)[..], [Some(speed)] if (speed - 18.52).abs() < 1e-12));
+    }
+    assert_eq!(of(&[gga(1), rmc(1, "A", "")]), [None]);
+    assert_eq!(of(&[gga(1), rmc(1, "A", "-5.0")]), [None]);
+    assert_eq!(of(&[rmc(0, "A", "36.0"), gga(1)]), [None]);
+    // Of two satellite systems: the second sentence of a time takes the position away from nobody.
+    let gst = "GPGST,120001.00,1.0,,,,2.0,3.0,4.0".to_owned();
+    let log = read_sentences(&[&gga(1), &rmc(1, "A", "36.0"), &rmc(1, "A", "37.0"), &gst].map(String::as_str));
+    assert!(log.positions.len() == 1 && log.positions[0].covariance_m2.is_some());
+}
+
 proptest! {
     #[test]
     fn any_bytes_are_read_and_every_position_is_sound(bytes in prop::collection::vec(any::<u8>(), 0..400), kind in 0..4_usize) {
