@@ -3,12 +3,13 @@
 use crate::araim_modes::Known;
 use crate::batch::CHUNK;
 use nalgebra::{Matrix3, Vector3};
-use navbound_core::bound::araim::exclusion::{self, Monitored, NoLevels};
+use navbound_core::bound::araim::exclusion::{self, Monitored};
 use navbound_core::bound::araim::modes::{MOST_SATELLITES, NoModes};
 use navbound_core::bound::araim::ranging::{Airborne, Beyond};
 use navbound_core::bound::araim::service::{Service, Support};
 use navbound_core::bound::araim::single::Requirement;
-use navbound_core::bound::araim::{Levels, Monitor, Sight};
+use navbound_core::bound::araim::{Levels, Monitor};
+use navbound_core::bound::{self, NoLevels, Sight};
 use navbound_core::frame::{Geodetic, ecef_from_geodetic, enu_from_ecef};
 use navbound_core::geometry::{Elements, Orbit};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Reason, Unavailable};
@@ -47,9 +48,9 @@ impl Outcome {
     /// The words of tables.
     pub const WORDS: [&'static str; 5] = ["ok", "too_few_satellites", "singular", "not_monitored", "too_many"];
 
-    /// Of levels: whether both are finite.
-    pub fn of(levels: &Levels) -> Self {
-        if levels.hpl.m().is_finite() && levels.vpl.m().is_finite() { Self::Ok } else { Self::NotMonitored }
+    /// Of levels: whether each is finite.
+    pub fn of<D>(levels: &bound::Levels<D>) -> Self {
+        if levels.finite() { Self::Ok } else { Self::NotMonitored }
     }
 }
 
@@ -157,6 +158,7 @@ impl Desk {
                 constellation: *constellation,
                 integrity_m2: squared(sights.sigma_int_m[i]),
                 accuracy_m2: squared(sights.sigma_acc_m[i]),
+                receiver_faulty_m2: squared(sights.sigma_int_m[i]),
                 bias: Metres::new(sights.bias_m[i]),
                 bias_continuity: Metres::new(sights.bias_continuity_m[i]),
                 p_sat: sights.p_sat[i],
@@ -265,6 +267,7 @@ impl Promise {
             constellation,
             integrity_m2: square(support.sigma_ura) + local,
             accuracy_m2: square(support.sigma_ure) + local,
+            receiver_faulty_m2: square(support.sigma_ura) + local,
             bias: support.bias,
             bias_continuity: support.bias_continuity,
             p_sat: support.p_sat,
@@ -382,7 +385,7 @@ fn seen(position: &Vector3<f64>, constellation: Constellation, place: &Place, si
 }
 
 /// A negative sigma stays negative, so that it is refused.
-fn squared(sigma: f64) -> f64 {
+pub(crate) fn squared(sigma: f64) -> f64 {
     sigma * sigma.abs()
 }
 

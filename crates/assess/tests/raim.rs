@@ -4,9 +4,9 @@
 use nalgebra::Vector3;
 use navbound_assess::araim::Outcome;
 use navbound_assess::raim::{Sights, levels, monitored};
+use navbound_core::bound::Sight;
 use navbound_core::bound::raim::{Monitor, Requirement};
 use navbound_core::signal::Constellation;
-use navbound_core::solution::wls::WeightedSight;
 
 const SATELLITES: usize = 12;
 const EPOCHS: usize = 700;
@@ -44,10 +44,9 @@ fn a_batch_is_its_epochs_one_by_one_and_names_the_column_of_the_excluded() {
     for row in 0..EPOCHS {
         let used = (row * SATELLITES..(row + 1) * SATELLITES).filter(|i| !unit[3 * i].is_nan());
         let one: Vec<_> = used
-            .map(|i| WeightedSight {
-                unit: Vector3::new(unit[3 * i], unit[3 * i + 1], unit[3 * i + 2]),
-                weight: 1.0 / (sigma[i] * sigma[i]),
-                constellation: systems[i % SATELLITES],
+            .map(|i| {
+                let unit = Vector3::new(unit[3 * i], unit[3 * i + 1], unit[3 * i + 2]);
+                Sight::plain(unit, systems[i % SATELLITES], sigma[i] * sigma[i])
             })
             .collect();
         let detection = monitor.levels(&one).unwrap();

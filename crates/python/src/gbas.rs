@@ -221,7 +221,8 @@ fn level_row(a: &gbas::Answer) -> [f64; LEVEL_COLUMNS.len()] {
     let l = &a.levels;
     let [major, norm, faulty] = a.deviations;
     let [exact, rss, sum] = a.gains;
-    let m = [l.fault_free, l.receiver_faulty, l.hpl, a.accuracy, l.deviation, l.bias, major, norm, faulty].map(Metres::m);
+    let d = &l.detail;
+    let m = [d.fault_free, d.receiver_faulty, l.hpl, a.accuracy, d.deviation, d.bias, major, norm, faulty].map(Metres::m);
     [m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], exact, rss, sum, a.worst_projection]
 }
 

@@ -14,6 +14,7 @@ mod protection;
 pub mod raim;
 pub mod rraim;
 pub mod sbas;
+mod sight;
 pub mod tse;
 
 pub use crate::quantity::Provenance;
@@ -21,6 +22,7 @@ pub use bound::{AlertBound, Alerting, Bound, MayNotAlert};
 pub use integrity::IntegrityComparison;
 pub use method::{Bounded, Method, Promises};
 pub use protection::Protection;
+pub use sight::{Levels, NoLevels, Sight};
 
 /// Every method, family by family. Command-line choices, report legends, the documentation page, `navbound methods` and the contract
 /// tests read this list; a method is one entry in its family's file.

@@ -62,15 +62,16 @@ impl Factors {
     }
 }
 
+/// The horizontal level, the larger of both hypotheses.
+pub type Levels = crate::bound::Levels<Detail>;
+
 /// Levels of both hypotheses and the parts they are made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levels {
+pub struct Detail {
     /// Nothing is faulty.
     pub fault_free: Metres,
     /// The worst reference receiver is faulty.
     pub receiver_faulty: Metres,
-    /// The larger.
-    pub hpl: Metres,
     /// Deviation behind the first.
     pub deviation: Metres,
     /// Effect of the nominal biases in both.
@@ -107,13 +108,9 @@ pub fn levels(snapshot: &Snapshot, aided: Option<&Covariance<Enu>>, receiver_shi
     let bias = snapshot.bias_gain(settings.ordering) * settings.bias.m();
     let fault_free = settings.factors.fault_free * deviation.m() + bias;
     let receiver_faulty = receiver_shift.m() + settings.factors.missed * faulty + bias;
-    Levels {
-        fault_free: Metres::new(fault_free),
-        receiver_faulty: Metres::new(receiver_faulty),
-        hpl: Metres::new(fault_free.max(receiver_faulty)),
-        deviation,
-        bias: Metres::new(bias),
-    }
+    let detail =
+        Detail { fault_free: Metres::new(fault_free), receiver_faulty: Metres::new(receiver_faulty), deviation, bias: Metres::new(bias) };
+    Levels::horizontal(Metres::new(fault_free.max(receiver_faulty)), detail)
 }
 
 /// Horizontal effect of one reference receiver's B-values: |sum of s_i B_i|.

@@ -47,14 +47,8 @@ pub const K_H_NPA: f64 = 6.18;
 /// Multiplier of the vertical level: 2Q(5.33) = 9.8e-8 (standard).
 pub const K_V: f64 = 5.33;
 
-/// Protection levels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levels {
-    /// Horizontal.
-    pub hpl: Metres,
-    /// Vertical, in precision approach only.
-    pub vpl: Option<Metres>,
-}
+/// Protection levels; the vertical one in precision approach only.
+pub type Levels = super::Levels;
 
 /// Protection levels of a covariance of the SBAS error model.
 ///
@@ -68,9 +62,9 @@ pub fn levels(covariance: &Covariance<Enu>, used_for: Use) -> Levels {
     match used_for {
         Use::PrecisionApproach => {
             let d_u = sqrt(covariance.matrix()[(2, 2)]);
-            Levels { hpl: Metres::new(K_H_PA * d_major.m()), vpl: Some(Metres::new(K_V * d_u)) }
+            Levels::of(Metres::new(K_H_PA * d_major.m()), Metres::new(K_V * d_u), ())
         }
-        Use::EnRoute => Levels { hpl: Metres::new(K_H_NPA * d_major.m()), vpl: None },
+        Use::EnRoute => Levels::horizontal(Metres::new(K_H_NPA * d_major.m()), ()),
     }
 }
 
