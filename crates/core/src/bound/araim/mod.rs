@@ -5,6 +5,7 @@
 
 mod ceiling;
 pub mod exclusion;
+pub mod listed;
 pub mod modes;
 pub mod ranging;
 mod separation;

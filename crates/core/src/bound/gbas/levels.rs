@@ -2,6 +2,7 @@
 
 use super::bias::Ordering;
 use super::snapshot::{Form, Snapshot};
+use crate::bound::{Algorithm, NoLevels, Protection, Sight};
 use crate::frame::{Covariance, Enu};
 use crate::quantity::{Metres, OutOfDomain, Risk};
 use crate::spec::surface::ErrorBudget;
@@ -111,6 +112,39 @@ pub fn levels(snapshot: &Snapshot, aided: Option<&Covariance<Enu>>, receiver_shi
     let detail =
         Detail { fault_free: Metres::new(fault_free), receiver_faulty: Metres::new(receiver_faulty), deviation, bias: Metres::new(bias) };
     Levels::horizontal(Metres::new(fault_free.max(receiver_faulty)), detail)
+}
+
+/// GBAS of one snapshot: no inertial system, no B-values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gbas {
+    settings: Settings,
+}
+
+impl Algorithm for Gbas {
+    const PROTECTION: Protection = super::PROTECTION;
+    const COLUMNS: &'static [&'static str] = &["hpl_h0_m", "hpl_h1_m", "sigma_m", "bias_hor_m"];
+    type Settings = Settings;
+    type Detail = Detail;
+
+    /// Category I with four reference receivers, no bias.
+    fn usual() -> Settings {
+        // RTCA DO-245A, M = 4, as printed; `factors_meet_the_published_ones` works them out.
+        let factors = Factors { fault_free: 5.847, missed: 2.878 };
+        Settings { factors, form: Form::Major, ordering: Ordering::Exact, bias: Metres::new(0.0) }
+    }
+
+    fn new(settings: &Settings) -> Self {
+        Self { settings: *settings }
+    }
+
+    fn levels(&mut self, sights: &[Sight]) -> Result<Levels, NoLevels> {
+        Ok(levels(&Snapshot::new(sights)?, None, Metres::new(0.0), &self.settings))
+    }
+
+    fn number(detail: &Detail, column: usize) -> f64 {
+        let numbers = [detail.fault_free, detail.receiver_faulty, detail.deviation, detail.bias].map(Metres::m);
+        numbers.get(column).copied().unwrap_or(f64::NAN)
+    }
 }
 
 /// Horizontal effect of one reference receiver's B-values: |sum of s_i B_i|.

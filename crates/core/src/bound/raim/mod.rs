@@ -8,7 +8,7 @@ pub mod exclusion;
 mod tests;
 
 pub use super::araim::single::Requirement;
-use super::{Protection, Provenance};
+use super::{Algorithm, NoLevels, Protection, Provenance, Sight};
 use crate::quantity::{Metres, Unavailable};
 use crate::solution::wls::{Normal, Row, WeightedSight, weighted_row};
 use crate::special::float::{hypot, sqrt};
@@ -233,6 +233,36 @@ impl Monitor {
         let [hpl, vpl] = held;
         let [hpl_slope, vpl_slope] = published.map(Metres::new);
         Levels::of(hpl, vpl, Detail { hpl_slope, vpl_slope, sigma: sigma.map(Metres::new), redundancy })
+    }
+}
+
+impl Algorithm for Monitor {
+    const PROTECTION: Protection = PROTECTION;
+    const COLUMNS: &'static [&'static str] =
+        &["hel_m", "vel_m", "hpl_slope_m", "vpl_slope_m", "sigma_e_m", "sigma_n_m", "sigma_u_m", "n_redundant"];
+    type Settings = Requirement;
+    /// Beside the levels of detection those after exclusion.
+    type Detail = (Detail, super::Levels);
+
+    fn usual() -> Requirement {
+        Requirement::RAIM
+    }
+
+    fn new(requirement: &Requirement) -> Self {
+        Self::new(requirement)
+    }
+
+    #[inline(always)]
+    fn levels(&mut self, sights: &[Sight]) -> Result<super::Levels<Self::Detail>, NoLevels> {
+        let Levels { hpl, vpl, detail } = self.levels_of(sights, &[])?;
+        let after = self.after_exclusion(&Levels { hpl, vpl, detail });
+        Ok(super::Levels { hpl, vpl, detail: (detail, after) })
+    }
+
+    fn number((detail, after): &Self::Detail, column: usize) -> f64 {
+        let [e, n, u] = detail.sigma.map(Metres::m);
+        let numbers = [after.hpl.m(), after.vpl_m(), detail.hpl_slope.m(), detail.vpl_slope.m(), e, n, u, detail.redundancy as f64];
+        numbers.get(column).copied().unwrap_or(f64::NAN)
     }
 }
 

@@ -1,7 +1,6 @@
 //! Against whole inversions, against the law of errors, and at the edges of a geometry.
 
 use super::*;
-use crate::bound::Sight;
 use crate::bound::araim::exclusion::Decision;
 use crate::signal::Constellation::{Galileo, Gps};
 use nalgebra::{SMatrix, SVector};
