@@ -1,6 +1,7 @@
 //! ARAIM on recorded observations: every epoch's ranges tested, wrong satellites excluded, levels of what is left.
 
-use crate::araim::{Desk, Outcome, Promise};
+use crate::araim::Desk;
+use crate::outlook::{Outcome, Promise};
 use crate::positions::{Job, Watch, each_epoch};
 use crate::receivers::ranges::{Tally, Unused};
 use navbound_core::bound::araim::exclusion::{Decision, Monitored};

@@ -1,13 +1,17 @@
 //! GBAS protection levels of many skies.
 
 use navbound_core::bound::Sight;
+use navbound_core::bound::gbas::aided::Tracked;
 use navbound_core::bound::gbas::bias::Ordering;
 use navbound_core::bound::gbas::levels::{self, Levels, Settings};
+use navbound_core::bound::gbas::noise::{self, Coloured};
+use navbound_core::bound::gbas::range::RangeError;
 use navbound_core::bound::gbas::snapshot::{Form, Snapshot};
 use navbound_core::frame::{Covariance, Enu};
 use navbound_core::geometry::Direction;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::Constellation;
+use navbound_core::spec::gbas::ErrorModel;
 use navbound_path::AtIndex;
 use rayon::prelude::*;
 
@@ -155,4 +159,15 @@ pub fn covariance(all: &[f64], sky: usize) -> Result<Covariance<Enu>, OutOfDomai
     let mut rows = [0.0; 9];
     rows.copy_from_slice(&all[9 * sky..9 * sky + 9]);
     Covariance::from_rows(rows)
+}
+
+/// A satellite as an inertial system is aided by it: noise of ground and aircraft coloured by multipath, troposphere and ionosphere white.
+///
+/// # Errors
+/// [`OutOfDomain`]: an elevation or a time constant.
+pub fn tracked(model: &ErrorModel, form: noise::Form, direction: &Direction, constellation: Constellation) -> Result<Tracked, OutOfDomain> {
+    let error = RangeError::new(model, direction.elevation())?;
+    let multipath = Coloured::new(Metres::new(error.ground.m().hypot(error.airborne.m())), model.multipath_s, form)?;
+    let white = Metres::new(error.troposphere.m().hypot(error.ionosphere.m()));
+    Ok(Tracked { unit: direction.unit(), constellation, multipath, white })
 }

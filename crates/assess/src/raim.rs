@@ -1,15 +1,16 @@
 //! RAIM of many epochs by the slope method: geometry given, users and orbits, or a receiver's file.
 
-use crate::araim::{Outcome, Outlook, Overhead, Promise, rows, squared};
+use crate::araim::squared;
 use crate::araim_watch::{Rules, taken};
+use crate::outlook::{self, Outcome, Outlook, Promise, refusal, rows};
 use crate::positions::{Job, Watch, each_epoch};
 use crate::receivers::ranges::Tally;
 use nalgebra::Vector3;
 use navbound_core::bound::araim::exclusion::Decision;
 use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::bound::raim::exclusion::Monitored;
-use navbound_core::bound::raim::{Levels, Monitor, Requirement};
-use navbound_core::bound::{self, Sight};
+use navbound_core::bound::raim::{Detail, Monitor, Requirement};
+use navbound_core::bound::{Algorithm, Levels, Sight};
 use navbound_core::frame::{Displacement, Geodetic};
 use navbound_core::quantity::{GpsTime, OutOfDomain, Reason, Unavailable};
 use navbound_core::signal::{Constellation, SatelliteId};
@@ -40,16 +41,8 @@ impl Sights<'_> {
     }
 }
 
-/// One epoch's result.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
-    /// Satellites used.
-    pub n_sv: usize,
-    /// Whether there are levels of detection.
-    pub outcome: Outcome,
-    /// Levels of detection, and after exclusion, where the geometry gives a position.
-    pub levels: Option<(Levels, bound::Levels)>,
-}
+/// One epoch's result: levels of detection, and beside them those after exclusion.
+pub type Row = outlook::Row<(Detail, Levels)>;
 
 /// One epoch after detection and exclusion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,14 +88,7 @@ impl Desk {
     }
 
     fn levels(&mut self) -> Result<Row, OutOfDomain> {
-        let n_sv = self.sights.len();
-        match self.monitor.levels(&self.sights) {
-            Ok(levels) => {
-                let excluding = self.monitor.after_exclusion(&levels);
-                Ok(Row { n_sv, outcome: Outcome::of(&levels), levels: Some((levels, excluding)) })
-            }
-            Err(e) => Ok(Row { n_sv, outcome: refusal(&e)?, levels: None }),
-        }
+        Row::of(self.sights.len(), Algorithm::levels(&mut *self.monitor, &self.sights))
     }
 
     fn tested(&mut self) -> Result<Tested, OutOfDomain> {
@@ -112,21 +98,8 @@ impl Desk {
                 let excluded = monitored.excluded.and_then(|i| self.columns.get(i).copied());
                 Ok(Tested { before, outcome: Outcome::of(&monitored.levels), monitored: Some(monitored), excluded })
             }
-            Err(e) => Ok(Tested { before, outcome: refusal(&e)?, monitored: None, excluded: None }),
+            Err(e) => refusal(e.into()).map_or_else(|outcome| Ok(Tested { before, outcome, monitored: None, excluded: None }), Err),
         }
-    }
-}
-
-/// Why there are no levels: a status.
-///
-/// # Errors
-/// The caller's mistake.
-fn refusal(e: &Unavailable) -> Result<Outcome, OutOfDomain> {
-    match *e {
-        Unavailable::Invalid { field: "n_sv", .. } => Ok(Outcome::TooMany),
-        Unavailable::Invalid { field, value, unit, domain } => Err(OutOfDomain { argument: field, value, unit, domain }),
-        Unavailable::TooFewSatellites { .. } => Ok(Outcome::TooFewSatellites),
-        _ => Ok(Outcome::Singular),
     }
 }
 
@@ -165,17 +138,7 @@ pub fn monitored(sights: &Sights<'_>, residual_m: &[f64], requirement: &Requirem
 /// # Errors
 /// [`AtIndex`]: the first orbit, instant, user or promise outside its domain.
 pub fn predict(outlook: &Outlook<'_>, requirement: &Requirement) -> Result<Vec<Row>, AtIndex> {
-    let overhead = Overhead::new(outlook)?;
-    rows(
-        overhead.len(),
-        || Desk::new(requirement),
-        #[inline(always)]
-        |desk, index| {
-            desk.sights.clear();
-            overhead.each(index, |sight| desk.sights.push(sight));
-            desk.levels()
-        },
-    )
+    outlook::predict::<Monitor>(outlook, requirement)
 }
 
 /// One epoch of a receiver's file.

@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used)] // A test may stop at the first surprise, in its helpers too.
 
 use nalgebra::Vector3;
-use navbound_assess::araim::{Outcome, Rule, Sights, levels};
+use navbound_assess::araim::{Rule, Sights, levels};
+use navbound_assess::outlook::Outcome;
 use navbound_core::bound::Sight;
 use navbound_core::bound::araim::service::Service;
 use navbound_core::bound::araim::{Levels, Monitor};

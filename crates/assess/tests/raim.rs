@@ -2,10 +2,10 @@
 #![allow(clippy::unwrap_used)] // A test may stop at the first surprise, in its helpers too.
 
 use nalgebra::Vector3;
-use navbound_assess::araim::Outcome;
+use navbound_assess::outlook::Outcome;
 use navbound_assess::raim::{Sights, levels, monitored};
-use navbound_core::bound::Sight;
 use navbound_core::bound::raim::{Monitor, Requirement};
+use navbound_core::bound::{Levels, Sight};
 use navbound_core::signal::Constellation;
 
 const SATELLITES: usize = 12;
@@ -50,7 +50,8 @@ fn a_batch_is_its_epochs_one_by_one_and_names_the_column_of_the_excluded() {
             })
             .collect();
         let detection = monitor.levels(&one).unwrap();
-        assert_eq!(rows[row].levels, Some((detection, monitor.after_exclusion(&detection))));
+        let beside = (detection.detail, monitor.after_exclusion(&detection));
+        assert_eq!(rows[row].levels, Some(Levels { hpl: detection.hpl, vpl: detection.vpl, detail: beside }));
         assert_eq!((rows[row].n_sv, rows[row].outcome), (one.len(), Outcome::Ok));
         assert_eq!(tested[row].before, rows[row]);
         if let Some(column) = tested[row].excluded {

@@ -4,8 +4,9 @@ use crate::error::input_error;
 use crate::gnss::orbit;
 use crate::positions::{Navigation, Observations, satellites};
 use crate::status;
-use navbound_assess::araim::{self, Outcome, Outlook, Promise, Row, Rule, Sights};
+use navbound_assess::araim::{self, Row, Rule, Sights};
 use navbound_assess::araim_watch::{Watched, reason, watch};
+use navbound_assess::outlook::{Outcome, Outlook, Promise, refusal};
 use navbound_assess::positions::{Job, Signals, Watch};
 use navbound_assess::smoothing::Form;
 use navbound_core::bound::NoLevels;
@@ -295,8 +296,8 @@ fn araim_watch<'py>(
     let watch = py.detach(|| watch(&observations.0, &navigation.records, &job, &promise, &service));
     let watched = &watch.epochs;
     let outcome = |w: &Result<Watched, NoLevels>| match w {
-        Ok(w) => (araim::Outcome::of(&w.monitored.levels), Some(w.monitored)),
-        Err(e) => (araim::refusal(*e).err().unwrap_or(araim::Outcome::Singular), None),
+        Ok(w) => (Outcome::of(&w.monitored.levels), Some(w.monitored)),
+        Err(e) => (refusal(*e).err().unwrap_or(Outcome::Singular), None),
     };
     let d = decisions(py, &watched.iter().map(outcome).collect::<Vec<_>>())?;
     let number = |f: fn(&Watched) -> f64| watched.iter().map(|w| w.as_ref().map_or(f64::NAN, f)).collect::<Vec<_>>().into_pyarray(py);

@@ -5,7 +5,7 @@ use crate::error::input_error;
 use crate::status;
 use navbound_assess::batch::rows;
 use navbound_assess::gbas::{self, Asked, Skies};
-use navbound_core::bound::gbas::aided::{Aided, Tracked};
+use navbound_core::bound::gbas::aided::Aided;
 use navbound_core::bound::gbas::bias::Ordering;
 use navbound_core::bound::gbas::detection::{self, Hazard};
 use navbound_core::bound::gbas::levels::{self, FactorRule, Factors, Settings};
@@ -306,7 +306,7 @@ fn gbas_aided_covariance<'py>(py: Python<'py>, job: FilterJob<'py>) -> PyResult<
                 continue;
             }
             let direction = Direction::new(Radians::new(az[at]), Radians::new(el[at]))?;
-            tracked.push(tracked_satellite(model, form, &direction, *constellation)?);
+            tracked.push(gbas::tracked(model, form, &direction, *constellation)?);
         }
         let mut filter = Aided::new(&tracked, latitude, &INERTIAL, 1.0)?;
         filter.run(seconds);
@@ -317,18 +317,6 @@ fn gbas_aided_covariance<'py>(py: Python<'py>, job: FilterJob<'py>) -> PyResult<
     let n = az.len().checked_div(width).unwrap_or(0);
     let out = py.detach(|| rows(n, one)).map_err(rejected)?;
     out.into_pyarray(py).reshape([n, 9])
-}
-
-fn tracked_satellite(
-    model: &ErrorModel,
-    form: NoiseForm,
-    direction: &Direction,
-    constellation: Constellation,
-) -> Result<Tracked, OutOfDomain> {
-    let error = RangeError::new(model, direction.elevation())?;
-    let multipath = Coloured::new(Metres::new(error.ground.m().hypot(error.airborne.m())), model.multipath_s, form)?;
-    let white = Metres::new(error.troposphere.m().hypot(error.ionosphere.m()));
-    Ok(Tracked { unit: direction.unit(), constellation, multipath, white })
 }
 
 /// Variance of a constant offset as a filter has it and as it is, after each of `n` seconds.

@@ -6,7 +6,7 @@ use crate::sbas::{Service, ignored, mode_code};
 use crate::status;
 use navbound_assess::sbas::positions::{self, Corrected, Fix, Used};
 use navbound_core::bound::sbas::NoLevel;
-use navbound_core::quantity::{Metres, OutOfDomain, Reason};
+use navbound_core::quantity::{OutOfDomain, Reason};
 use navbound_core::signal::smoothing::Smoothing;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
