@@ -18,6 +18,7 @@ pub mod rraim;
 pub mod sbas;
 mod sight;
 pub mod tse;
+pub mod vertical;
 
 pub use crate::quantity::Provenance;
 pub use algorithm::{Algorithm, Entry, Task};
