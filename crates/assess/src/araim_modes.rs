@@ -1,6 +1,6 @@
 //! Fault modes that were worked out once, for the epochs and exclusions that ask for them again.
 
-use navbound_core::bound::araim::Sight;
+use navbound_core::bound::Sight;
 use navbound_core::bound::araim::modes::{Book, FaultModes, MOST_SATELLITES, NoModes};
 use navbound_core::bound::araim::service::Service;
 use navbound_core::signal::Constellation;

@@ -1,19 +1,19 @@
 //! ARAIM on recorded observations: every epoch's ranges tested, wrong satellites excluded, levels of what is left.
 
-use crate::araim::{Desk, Outcome, Promise};
+use crate::araim::Desk;
+use crate::outlook::{Outcome, Promise};
 use crate::positions::{Job, Watch, each_epoch};
 use crate::receivers::ranges::{Tally, Unused};
-use navbound_core::bound::araim::Sight;
-use navbound_core::bound::araim::exclusion::{Decision, Monitored, NoLevels};
+use navbound_core::bound::araim::exclusion::{Decision, Monitored};
 use navbound_core::bound::araim::modes::MOST_SATELLITES;
 use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::bound::araim::service::Service;
+use navbound_core::bound::{NoLevels, Sight};
 use navbound_core::frame::{Displacement, Geodetic};
 use navbound_core::quantity::{GpsTime, Reason, Unavailable};
 use navbound_core::signal::SatelliteId;
 use navbound_core::solution::consistency::Consistency;
 use navbound_core::solution::point::{self, Fix, MOST_RANGES, Range, sighted};
-use navbound_core::solution::wls::WeightedSight;
 use navbound_formats::rinex::{Navigation, Observations};
 
 /// One epoch.
@@ -101,8 +101,7 @@ pub(crate) fn taken(
         sights.push(rules.promise.sight_beyond(seen.unit, satellite.constellation, &beyond[seen.index]));
     }
     tally.leave(Unused::BelowMask, ranges.len() - sights.len());
-    let nominal = |s: &Sight| WeightedSight { unit: s.unit, weight: 1.0 / s.accuracy_m2, constellation: s.constellation };
-    let consistency = Consistency::of(sights.iter().map(nominal).zip(residuals_m.iter().copied())).ok();
+    let consistency = Consistency::of(sights.iter().map(Sight::weighted_for_accuracy).zip(residuals_m.iter().copied())).ok();
     Ok(Taken { fix, residuals_m, satellites, consistency })
 }
 

@@ -32,6 +32,14 @@ pub struct Score {
     pub n_stopped: u64,
 }
 
+impl Score {
+    /// Root mean squares of the errors, and of the deviations that the filter stated, east, north, up \[m\].
+    pub fn rms_m(&self) -> [[f64; 3]; 2] {
+        let n = self.n as f64;
+        [self.sum_square_m2, self.sum_variance_m2].map(|sums| [0, 1, 2].map(|k| (sums[k] / n).sqrt()))
+    }
+}
+
 /// A flight judged.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Judged {

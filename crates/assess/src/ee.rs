@@ -6,7 +6,7 @@ use navbound_core::bound::ee::noise::{self, Meter};
 use navbound_core::bound::ee::{Both, NotIntegrity, bias};
 use navbound_core::frame::Displacement;
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain};
-use navbound_core::solution::extraction::{self, Extracted, Filter, Reset, Sample};
+use navbound_core::solution::extraction::{self, Extracted, Filter, Reset, Sample, gain};
 use navbound_core::solution::wls::{dilution, responses};
 use navbound_path::AtIndex;
 use rayon::prelude::*;
@@ -157,6 +157,16 @@ pub fn biases(sights: &Sights<'_>, mu: Metres, alpha: f64) -> Result<Solved<Bias
         let from_dop = bias::dop(d.horizontal, d.vertical, used.len(), mu, alpha)?;
         Ok(Bias { from_dop: metres(from_dop), exact: metres(bias::exact(responses(used.iter())?, mu)?) })
     })
+}
+
+/// Share beta of a Gauss-Markov error that passes the filter, and the deviation that is left of it after the correction, of one before.
+///
+/// # Errors
+/// As [`gain::gauss_markov`].
+pub fn gauss_markov_gains(rho: f64, period_s: f64, tau_s: f64) -> Result<[f64; 2], OutOfDomain> {
+    let passed = gain::gauss_markov(rho, period_s, tau_s)?;
+    let left = gain::corrected_gauss_markov(rho, period_s, tau_s)?;
+    Ok([gain::beta(passed), left.sqrt()])
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Whole flights through the navigation filter: inertial samples and measurements in the order of their times.
 
 use crate::judged::{Checks, Judged, StandIn};
+use nalgebra::Matrix3;
 use navbound_core::monitor::judgement::Decision;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{ImuIncrement, TimedAiding};
@@ -213,4 +214,9 @@ pub fn mechanize(start: NavState, imu: impl Iterator<Item = ImuIncrement>) -> Re
         states.push(*strapdown.state());
     }
     Ok(states)
+}
+
+/// Standard deviations of the three components of a covariance.
+pub fn deviations(covariance: &Matrix3<f64>) -> [f64; 3] {
+    [0, 1, 2].map(|k| covariance[(k, k)].sqrt())
 }

@@ -1,12 +1,17 @@
 //! GBAS protection levels of many skies.
 
+use navbound_core::bound::Sight;
+use navbound_core::bound::gbas::aided::Tracked;
 use navbound_core::bound::gbas::bias::Ordering;
 use navbound_core::bound::gbas::levels::{self, Levels, Settings};
-use navbound_core::bound::gbas::snapshot::{Form, Range, Snapshot};
+use navbound_core::bound::gbas::noise::{self, Coloured};
+use navbound_core::bound::gbas::range::RangeError;
+use navbound_core::bound::gbas::snapshot::{Form, Snapshot};
 use navbound_core::frame::{Covariance, Enu};
 use navbound_core::geometry::Direction;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Unavailable};
 use navbound_core::signal::Constellation;
+use navbound_core::spec::gbas::ErrorModel;
 use navbound_path::AtIndex;
 use rayon::prelude::*;
 
@@ -69,7 +74,7 @@ impl Skies<'_> {
     ///
     /// # Errors
     /// [`AtIndex`] with the place in the arrays.
-    pub fn ranges(&self, sky: usize) -> Result<Vec<(usize, Range)>, AtIndex> {
+    pub fn ranges(&self, sky: usize) -> Result<Vec<(usize, Sight)>, AtIndex> {
         let width = self.constellation.len();
         let used = (0..width).filter(|c| !(self.az_rad[sky * width + c].is_nan() && self.el_rad[sky * width + c].is_nan()));
         used.map(|column| {
@@ -79,9 +84,9 @@ impl Skies<'_> {
         .collect()
     }
 
-    fn range(&self, index: usize, constellation: Constellation) -> Result<Range, OutOfDomain> {
+    fn range(&self, index: usize, constellation: Constellation) -> Result<Sight, OutOfDomain> {
         let direction = Direction::new(Radians::new(self.az_rad[index]), Radians::new(self.el_rad[index]))?;
-        Range::new(direction.unit(), constellation, Metres::new(self.sigma_m[index]), Metres::new(self.sigma_h1_m[index]))
+        Sight::corrected(direction.unit(), constellation, Metres::new(self.sigma_m[index]), Metres::new(self.sigma_h1_m[index]))
     }
 }
 
@@ -102,14 +107,14 @@ fn one(skies: &Skies<'_>, asked: &Asked<'_>, sky: usize) -> Result<Counted, AtIn
     let aided = asked.aided_m2.map(|all| covariance(all, sky)).transpose().map_err(at)?;
     let bias = size_of_bias(asked.bias_m[sky]).map_err(at)?;
     let settings = Settings { bias, ..asked.settings };
-    let plain: Vec<Range> = ranges.iter().map(|r| r.1).collect();
+    let plain: Vec<Sight> = ranges.iter().map(|r| r.1).collect();
     let answer = Snapshot::new(&plain).map(|snapshot| {
         let shift = asked.b_values_m.map_or(Metres::new(0.0), |all| shift(all, skies, sky, &ranges, &snapshot));
         let levels = levels::levels(&snapshot, aided.as_ref(), shift, &settings);
         let covariance = aided.unwrap_or(*snapshot.covariance());
         Answer {
             levels,
-            accuracy: levels::accuracy(Form::Major.deviation(&covariance), levels.bias),
+            accuracy: levels::accuracy(Form::Major.deviation(&covariance), levels.detail.bias),
             covariance,
             deviations: [
                 Form::Major.deviation(snapshot.covariance()),
@@ -124,7 +129,7 @@ fn one(skies: &Skies<'_>, asked: &Asked<'_>, sky: usize) -> Result<Counted, AtIn
 }
 
 /// The largest effect of one receiver's B-values.
-fn shift(all: &[f64], skies: &Skies<'_>, sky: usize, ranges: &[(usize, Range)], snapshot: &Snapshot) -> Metres {
+fn shift(all: &[f64], skies: &Skies<'_>, sky: usize, ranges: &[(usize, Sight)], snapshot: &Snapshot) -> Metres {
     let width = skies.constellation.len();
     let each = all.len() / skies.len();
     let of_receiver = |b: &[f64]| {
@@ -154,4 +159,15 @@ pub fn covariance(all: &[f64], sky: usize) -> Result<Covariance<Enu>, OutOfDomai
     let mut rows = [0.0; 9];
     rows.copy_from_slice(&all[9 * sky..9 * sky + 9]);
     Covariance::from_rows(rows)
+}
+
+/// A satellite as an inertial system is aided by it: noise of ground and aircraft coloured by multipath, troposphere and ionosphere white.
+///
+/// # Errors
+/// [`OutOfDomain`]: an elevation or a time constant.
+pub fn tracked(model: &ErrorModel, form: noise::Form, direction: &Direction, constellation: Constellation) -> Result<Tracked, OutOfDomain> {
+    let error = RangeError::new(model, direction.elevation())?;
+    let multipath = Coloured::new(Metres::new(error.ground.m().hypot(error.airborne.m())), model.multipath_s, form)?;
+    let white = Metres::new(error.troposphere.m().hypot(error.ionosphere.m()));
+    Ok(Tracked { unit: direction.unit(), constellation, multipath, white })
 }

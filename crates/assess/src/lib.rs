@@ -22,6 +22,7 @@ pub mod judge;
 pub mod judged;
 pub mod kpi;
 pub mod monitor;
+pub mod outlook;
 pub mod plausible;
 pub mod positions;
 pub mod raim;

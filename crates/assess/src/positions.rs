@@ -315,3 +315,23 @@ fn codes(plans: &[Option<Plan>; SYSTEMS], observations: &Observations) -> BTreeM
     let all = Constellation::ALL.into_iter().filter_map(|c| Some((c, plans[c.index()].as_ref()?)));
     all.map(|(c, plan)| (c.letter(), plan.codes().map(|k| name(c, k)).collect())).collect()
 }
+
+/// Azimuth of a range's satellite, clockwise from true north, \[-pi, pi\] \[rad\].
+pub fn azimuth_rad(used: &Used) -> f64 {
+    used.unit.x.atan2(used.unit.y)
+}
+
+/// Its elevation \[rad\].
+pub fn elevation_rad(used: &Used) -> f64 {
+    used.unit.z.clamp(-1.0, 1.0).asin()
+}
+
+/// Standard deviation of the range \[m\].
+pub fn sigma_m(used: &Used) -> f64 {
+    1.0 / used.weight.sqrt()
+}
+
+/// Speed over the ground; NaN without a velocity \[m/s\].
+pub fn ground_speed_mps(fix: &Fix) -> f64 {
+    fix.velocity.map_or(f64::NAN, |(v, _)| v[0].hypot(v[1]))
+}

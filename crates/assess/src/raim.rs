@@ -1,21 +1,21 @@
 //! RAIM of many epochs by the slope method: geometry given, users and orbits, or a receiver's file.
 
-use crate::araim::{Outcome, Outlook, Overhead, Promise, rows};
+use crate::araim::squared;
 use crate::araim_watch::{Rules, taken};
+use crate::outlook::{self, Outcome, Outlook, Promise, refusal, rows};
 use crate::positions::{Job, Watch, each_epoch};
 use crate::receivers::ranges::Tally;
 use nalgebra::Vector3;
-use navbound_core::bound::araim::Sight;
 use navbound_core::bound::araim::exclusion::Decision;
 use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::bound::raim::exclusion::Monitored;
-use navbound_core::bound::raim::{ExclusionLevels, Levels, Monitor, Requirement};
+use navbound_core::bound::raim::{Detail, Monitor, Requirement};
+use navbound_core::bound::{Algorithm, Levels, Sight};
 use navbound_core::frame::{Displacement, Geodetic};
 use navbound_core::quantity::{GpsTime, OutOfDomain, Reason, Unavailable};
 use navbound_core::signal::{Constellation, SatelliteId};
 use navbound_core::solution::consistency::Consistency;
 use navbound_core::solution::point::Range;
-use navbound_core::solution::wls::WeightedSight;
 use navbound_formats::rinex::{Navigation, Observations};
 use navbound_path::AtIndex;
 
@@ -41,16 +41,8 @@ impl Sights<'_> {
     }
 }
 
-/// One epoch's result.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
-    /// Satellites used.
-    pub n_sv: usize,
-    /// Whether there are levels of detection.
-    pub outcome: Outcome,
-    /// Levels of detection, and after exclusion, where the geometry gives a position.
-    pub levels: Option<(Levels, ExclusionLevels)>,
-}
+/// One epoch's result: levels of detection, and beside them those after exclusion.
+pub type Row = outlook::Row<(Detail, Levels)>;
 
 /// One epoch after detection and exclusion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +60,7 @@ pub struct Tested {
 /// What a thread keeps from epoch to epoch.
 struct Desk {
     monitor: Box<Monitor>,
-    sights: Vec<WeightedSight>,
+    sights: Vec<Sight>,
     columns: Vec<usize>,
     residuals: Vec<f64>,
 }
@@ -89,23 +81,14 @@ impl Desk {
             if unit.iter().all(|x| x.is_nan()) {
                 continue;
             }
-            // A negative sigma stays negative, so that it is refused.
-            let weight = 1.0 / (sights.sigma_m[i] * sights.sigma_m[i].abs());
-            self.sights.push(WeightedSight { unit, weight, constellation: *constellation });
+            self.sights.push(Sight::plain(unit, *constellation, squared(sights.sigma_m[i])));
             self.columns.push(column);
             self.residuals.extend(residual_m.get(i));
         }
     }
 
     fn levels(&mut self) -> Result<Row, OutOfDomain> {
-        let n_sv = self.sights.len();
-        match self.monitor.levels(&self.sights) {
-            Ok(levels) => {
-                let excluding = self.monitor.after_exclusion(&levels);
-                Ok(Row { n_sv, outcome: outcome_of(&levels), levels: Some((levels, excluding)) })
-            }
-            Err(e) => Ok(Row { n_sv, outcome: refusal(&e)?, levels: None }),
-        }
+        Row::of(self.sights.len(), Algorithm::levels(&mut *self.monitor, &self.sights))
     }
 
     fn tested(&mut self) -> Result<Tested, OutOfDomain> {
@@ -113,27 +96,10 @@ impl Desk {
         match self.monitor.monitored(&self.sights, &self.residuals) {
             Ok(monitored) => {
                 let excluded = monitored.excluded.and_then(|i| self.columns.get(i).copied());
-                Ok(Tested { before, outcome: outcome_of(&monitored.levels), monitored: Some(monitored), excluded })
+                Ok(Tested { before, outcome: Outcome::of(&monitored.levels), monitored: Some(monitored), excluded })
             }
-            Err(e) => Ok(Tested { before, outcome: refusal(&e)?, monitored: None, excluded: None }),
+            Err(e) => refusal(e.into()).map_or_else(|outcome| Ok(Tested { before, outcome, monitored: None, excluded: None }), Err),
         }
-    }
-}
-
-fn outcome_of(levels: &Levels) -> Outcome {
-    if levels.hpl.m().is_finite() && levels.vpl.m().is_finite() { Outcome::Ok } else { Outcome::NotMonitored }
-}
-
-/// Why there are no levels: a status.
-///
-/// # Errors
-/// The caller's mistake.
-fn refusal(e: &Unavailable) -> Result<Outcome, OutOfDomain> {
-    match *e {
-        Unavailable::Invalid { field: "n_sv", .. } => Ok(Outcome::TooMany),
-        Unavailable::Invalid { field, value, unit, domain } => Err(OutOfDomain { argument: field, value, unit, domain }),
-        Unavailable::TooFewSatellites { .. } => Ok(Outcome::TooFewSatellites),
-        _ => Ok(Outcome::Singular),
     }
 }
 
@@ -172,22 +138,7 @@ pub fn monitored(sights: &Sights<'_>, residual_m: &[f64], requirement: &Requirem
 /// # Errors
 /// [`AtIndex`]: the first orbit, instant, user or promise outside its domain.
 pub fn predict(outlook: &Outlook<'_>, requirement: &Requirement) -> Result<Vec<Row>, AtIndex> {
-    let overhead = Overhead::new(outlook)?;
-    rows(
-        overhead.len(),
-        || Desk::new(requirement),
-        #[inline(always)]
-        |desk, index| {
-            desk.sights.clear();
-            overhead.each(index, |sight| desk.sights.push(weighted(&sight)));
-            desk.levels()
-        },
-    )
-}
-
-/// A range as RAIM takes it: the sigma for integrity, no bias and no prior.
-fn weighted(sight: &Sight) -> WeightedSight {
-    WeightedSight { unit: sight.unit, weight: 1.0 / sight.integrity_m2, constellation: sight.constellation }
+    outlook::predict::<Monitor>(outlook, requirement)
 }
 
 /// One epoch of a receiver's file.
@@ -226,22 +177,20 @@ pub fn watch(
     promise: &Promise,
     requirement: &Requirement,
 ) -> Watch<Result<Watched, Unavailable>> {
-    let desk = || (Desk::new(requirement), Vec::new());
+    let desk = || Desk::new(requirement);
     let rules = Rules { job, promise };
-    each_epoch(observations, navigation, job, desk, |(desk, sights), time, ranges, tally| epoch(desk, sights, time, ranges, tally, &rules))
+    each_epoch(observations, navigation, job, desk, |desk, time, ranges, tally| epoch(desk, time, ranges, tally, &rules))
 }
 
 fn epoch(
     desk: &mut Desk,
-    sights: &mut Vec<Sight>,
     time: GpsTime,
     ranges: (&[Range], &[Beyond]),
     tally: &mut Tally,
     rules: &Rules<'_>,
 ) -> Result<Watched, Unavailable> {
-    let taken = taken(ranges, time, rules, sights, tally)?;
-    desk.sights = sights.iter().map(weighted).collect();
-    desk.columns = (0..sights.len()).collect();
+    let taken = taken(ranges, time, rules, &mut desk.sights, tally)?;
+    desk.columns = (0..desk.sights.len()).collect();
     desk.residuals = taken.residuals_m;
     let tested = desk.tested().map_err(Unavailable::from)?;
     let position = match tested.monitored {

@@ -1,8 +1,9 @@
 //! RRAIM protection levels of many coasting phases.
 
 use crate::gbas::{Skies, covariance, size_of_bias};
+use navbound_core::bound::Sight;
 use navbound_core::bound::faults::NoModes;
-use navbound_core::bound::gbas::snapshot::{Form, Range, Snapshot};
+use navbound_core::bound::gbas::snapshot::{Form, Snapshot};
 use navbound_core::bound::level_equation::LevelEquation;
 use navbound_core::bound::rraim::coast::{Coast, Followed};
 use navbound_core::bound::rraim::modes::Priors;
@@ -121,7 +122,7 @@ pub fn protection_levels(coasting: &Coasting<'_>, asked: &Asked<'_>) -> Result<V
 ///
 /// # Errors
 /// [`AtIndex`] with the place in the arrays.
-pub fn followed(coasting: &Coasting<'_>, sky: usize, ranges: &[(usize, Range)]) -> Result<Vec<(usize, Followed)>, AtIndex> {
+pub fn followed(coasting: &Coasting<'_>, sky: usize, ranges: &[(usize, Sight)]) -> Result<Vec<(usize, Followed)>, AtIndex> {
     let width = coasting.fix.constellation.len();
     let mut kept = Vec::with_capacity(ranges.len());
     for (column, range) in ranges {

@@ -5,7 +5,7 @@
 
 pub mod positions;
 
-use navbound_core::bound::sbas::model::Airborne;
+use navbound_core::bound::sbas::model::{Airborne, RangeError};
 use navbound_core::bound::sbas::service::{Orbit, Service};
 use navbound_core::bound::sbas::terms::{RangeSigmas, RangeTerms};
 use navbound_core::bound::sbas::{self, Levels, NoLevel, Seen, Sky, User};
@@ -379,4 +379,9 @@ pub fn from_terms(terms: &[RangeTerms]) -> Result<FromTerms, TermsRefused> {
     let (d_major, _) = wls::horizontal_axes(&covariance);
     let [approach, en_route] = [Use::PrecisionApproach, Use::EnRoute].map(|u| sbas::levels(&covariance, u));
     Ok(FromTerms { ranges, covariance, hdop, vdop, d_major, approach, en_route })
+}
+
+/// Standard deviations of a range's error: corrections, ionosphere, troposphere, receiver, and of all together \[m\].
+pub fn sigmas_m(error: &RangeError) -> [f64; 5] {
+    [error.corrected_m2, error.ionosphere_m2, error.troposphere_m2, error.airborne_m2, error.variance_m2()].map(f64::sqrt)
 }

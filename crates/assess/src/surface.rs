@@ -96,7 +96,7 @@ fn places(
     grid: &Grid<'_>,
     time: usize,
     sky: usize,
-    ranges: &[(usize, navbound_core::bound::gbas::snapshot::Range)],
+    ranges: &[(usize, navbound_core::bound::Sight)],
 ) -> Result<Vec<(Followed, Radians)>, AtIndex> {
     let width = grid.fix.constellation.len();
     let start = (time * grid.fix.len() + sky) * width;

@@ -2,9 +2,11 @@
 #![allow(clippy::unwrap_used)] // A test may stop at the first surprise, in its helpers too.
 
 use nalgebra::Vector3;
-use navbound_assess::araim::{Outcome, Rule, Sights, levels};
+use navbound_assess::araim::{Rule, Sights, levels};
+use navbound_assess::outlook::Outcome;
+use navbound_core::bound::Sight;
 use navbound_core::bound::araim::service::Service;
-use navbound_core::bound::araim::{Levels, Monitor, Sight};
+use navbound_core::bound::araim::{Levels, Monitor};
 use navbound_core::quantity::Metres;
 use navbound_core::signal::Constellation;
 
@@ -45,6 +47,7 @@ fn alone(c: &Columns, epoch: usize) -> (usize, Levels) {
         constellation: c.systems[i % SATELLITES],
         integrity_m2: c.sigma[i] * c.sigma[i],
         accuracy_m2: 1.0,
+        receiver_faulty_m2: 1.0,
         bias: Metres::new(1.0),
         bias_continuity: Metres::new(1.0),
         p_sat: c.p_sat[i],
@@ -74,9 +77,9 @@ fn a_batch_has_the_bits_of_single_epochs_with_priors_alike_or_not() {
             let (n_sv, found) = alone(&c, epoch);
             assert_eq!((row.n_sv, row.outcome), (n_sv, Outcome::Ok));
             let batch = row.levels.unwrap();
-            assert_eq!(batch.vpl.m().to_bits(), found.vpl.m().to_bits(), "epoch {epoch}");
+            assert_eq!(batch.vpl_m().to_bits(), found.vpl_m().to_bits(), "epoch {epoch}");
             assert_eq!(batch.hpl.m().to_bits(), found.hpl.m().to_bits(), "epoch {epoch}");
-            assert_eq!(batch.p_unmonitored.to_bits(), found.p_unmonitored.to_bits(), "epoch {epoch}");
+            assert_eq!(batch.detail.p_unmonitored.to_bits(), found.detail.p_unmonitored.to_bits(), "epoch {epoch}");
         }
     }
 }

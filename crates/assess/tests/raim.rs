@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used)] // A test may stop at the first surprise, in its helpers too.
 
 use nalgebra::Vector3;
-use navbound_assess::araim::Outcome;
+use navbound_assess::outlook::Outcome;
 use navbound_assess::raim::{Sights, levels, monitored};
 use navbound_core::bound::raim::{Monitor, Requirement};
+use navbound_core::bound::{Levels, Sight};
 use navbound_core::signal::Constellation;
-use navbound_core::solution::wls::WeightedSight;
 
 const SATELLITES: usize = 12;
 const EPOCHS: usize = 700;
@@ -44,14 +44,14 @@ fn a_batch_is_its_epochs_one_by_one_and_names_the_column_of_the_excluded() {
     for row in 0..EPOCHS {
         let used = (row * SATELLITES..(row + 1) * SATELLITES).filter(|i| !unit[3 * i].is_nan());
         let one: Vec<_> = used
-            .map(|i| WeightedSight {
-                unit: Vector3::new(unit[3 * i], unit[3 * i + 1], unit[3 * i + 2]),
-                weight: 1.0 / (sigma[i] * sigma[i]),
-                constellation: systems[i % SATELLITES],
+            .map(|i| {
+                let unit = Vector3::new(unit[3 * i], unit[3 * i + 1], unit[3 * i + 2]);
+                Sight::plain(unit, systems[i % SATELLITES], sigma[i] * sigma[i])
             })
             .collect();
         let detection = monitor.levels(&one).unwrap();
-        assert_eq!(rows[row].levels, Some((detection, monitor.after_exclusion(&detection))));
+        let beside = (detection.detail, monitor.after_exclusion(&detection));
+        assert_eq!(rows[row].levels, Some(Levels { hpl: detection.hpl, vpl: detection.vpl, detail: beside }));
         assert_eq!((rows[row].n_sv, rows[row].outcome), (one.len(), Outcome::Ok));
         assert_eq!(tested[row].before, rows[row]);
         if let Some(column) = tested[row].excluded {

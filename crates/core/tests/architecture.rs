@@ -100,3 +100,57 @@ fn the_search_sees_a_use_in_braces_and_ignores_comments() {
         ["frame", "bound", "special"]
     );
 }
+
+/// What is mathematics in a source text: a call by method or by path.
+fn mathematics(text: &str) -> Vec<String> {
+    const FUNCTIONS: [&str; 27] = [
+        "sin",
+        "cos",
+        "tan",
+        "asin",
+        "acos",
+        "atan",
+        "atan2",
+        "sin_cos",
+        "sinh",
+        "cosh",
+        "tanh",
+        "sqrt",
+        "cbrt",
+        "hypot",
+        "exp",
+        "exp2",
+        "exp_m1",
+        "ln",
+        "ln_1p",
+        "log",
+        "log2",
+        "log10",
+        "powi",
+        "powf",
+        "to_degrees",
+        "to_radians",
+        "mul_add",
+    ];
+    let code = text.lines().map(|l| l.split("//").next().unwrap_or(""));
+    let calls = code.flat_map(|line| {
+        FUNCTIONS.iter().filter(move |f| {
+            [format!(".{f}("), format!("::{f}("), format!("f64::{f})"), format!("f64::{f},")].iter().any(|call| line.contains(call))
+        })
+    });
+    calls.map(|f| (*f).to_owned()).collect()
+}
+
+#[test]
+fn the_binding_makes_no_mathematics() {
+    for (line, function) in [("let x = y.sqrt();", "sqrt"), ("a.map(f64::sqrt)", "sqrt"), ("f64::atan2(y, x)", "atan2")] {
+        assert_eq!(mathematics(line), [function]);
+    }
+    assert!(mathematics("// y.sqrt() in a comment, and core.cosine(x), expect(x)").is_empty());
+    let sources = files(&root().join("crates/python/src"), "rs");
+    assert!(sources.len() > 20, "only {} files found: the search is broken", sources.len());
+    for file in sources {
+        let found = mathematics(&fs::read_to_string(&file).unwrap());
+        assert!(found.is_empty(), "{} calls {found:?}: that belongs into assess or core", file.display());
+    }
+}

@@ -4,12 +4,14 @@ use crate::error::input_error;
 use crate::gnss::orbit;
 use crate::positions::{Navigation, Observations, satellites};
 use crate::status;
-use navbound_assess::araim::{self, Outcome, Outlook, Promise, Row, Rule, Sights};
+use navbound_assess::araim::{self, Row, Rule, Sights};
 use navbound_assess::araim_watch::{Watched, reason, watch};
+use navbound_assess::outlook::{Outcome, Outlook, Promise, refusal};
 use navbound_assess::positions::{Job, Signals, Watch};
 use navbound_assess::smoothing::Form;
+use navbound_core::bound::NoLevels;
 use navbound_core::bound::araim::Levels;
-use navbound_core::bound::araim::exclusion::{Decision, Monitored, NoLevels};
+use navbound_core::bound::araim::exclusion::{Decision, Monitored};
 use navbound_core::bound::araim::ranging::Airborne;
 use navbound_core::bound::araim::service::{Service, Support, SupportMessage};
 use navbound_core::bound::araim::single::Requirement;
@@ -294,8 +296,8 @@ fn araim_watch<'py>(
     let watch = py.detach(|| watch(&observations.0, &navigation.records, &job, &promise, &service));
     let watched = &watch.epochs;
     let outcome = |w: &Result<Watched, NoLevels>| match w {
-        Ok(w) => (araim::Outcome::of(&w.monitored.levels), Some(w.monitored)),
-        Err(e) => (araim::refusal(*e).err().unwrap_or(araim::Outcome::Singular), None),
+        Ok(w) => (Outcome::of(&w.monitored.levels), Some(w.monitored)),
+        Err(e) => (refusal(*e).err().unwrap_or(Outcome::Singular), None),
     };
     let d = decisions(py, &watched.iter().map(outcome).collect::<Vec<_>>())?;
     let number = |f: fn(&Watched) -> f64| watched.iter().map(|w| w.as_ref().map_or(f64::NAN, f)).collect::<Vec<_>>().into_pyarray(py);
@@ -376,16 +378,16 @@ fn columns<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py, PyDict>> {
     let count = |f: fn(&Levels) -> usize| rows.iter().map(|r| r.levels.as_ref().map_or(0, f) as i64).collect::<Vec<_>>().into_pyarray(py);
     let d = PyDict::new(py);
     d.set_item("hpl_m", number(|l| l.hpl.m()))?;
-    d.set_item("vpl_m", number(|l| l.vpl.m()))?;
-    d.set_item("hpl_e_m", number(|l| l.axes[0].m()))?;
-    d.set_item("hpl_n_m", number(|l| l.axes[1].m()))?;
-    d.set_item("emt_m", number(|l| l.emt.m()))?;
-    d.set_item("sigma_acc_e_m", number(|l| l.sigma_accuracy[0].m()))?;
-    d.set_item("sigma_acc_n_m", number(|l| l.sigma_accuracy[1].m()))?;
-    d.set_item("sigma_acc_u_m", number(|l| l.sigma_accuracy[2].m()))?;
-    d.set_item("p_unmonitored", number(|l| l.p_unmonitored))?;
-    d.set_item("n_modes", count(|l| l.n_modes))?;
-    d.set_item("n_monitored", count(|l| l.n_monitored))?;
+    d.set_item("vpl_m", number(|l| l.vpl_m()))?;
+    d.set_item("hpl_e_m", number(|l| l.detail.axes[0].m()))?;
+    d.set_item("hpl_n_m", number(|l| l.detail.axes[1].m()))?;
+    d.set_item("emt_m", number(|l| l.detail.emt.m()))?;
+    d.set_item("sigma_acc_e_m", number(|l| l.detail.sigma_accuracy[0].m()))?;
+    d.set_item("sigma_acc_n_m", number(|l| l.detail.sigma_accuracy[1].m()))?;
+    d.set_item("sigma_acc_u_m", number(|l| l.detail.sigma_accuracy[2].m()))?;
+    d.set_item("p_unmonitored", number(|l| l.detail.p_unmonitored))?;
+    d.set_item("n_modes", count(|l| l.detail.n_modes))?;
+    d.set_item("n_monitored", count(|l| l.detail.n_monitored))?;
     d.set_item("n_sv", rows.iter().map(|r| r.n_sv as i64).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("outcome", rows.iter().map(|r| r.outcome as u8).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("words", Outcome::WORDS.to_vec())?;

@@ -141,11 +141,7 @@ fn ee_beta<'py>(
     tau_s: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let (rho, period, tau) = (rho.as_slice()?, period_s.as_slice()?, tau_s.as_slice()?);
-    table(py, rho.len(), |i| {
-        let passed = gain::gauss_markov(rho[i], period[i], tau[i])?;
-        let left = gain::corrected_gauss_markov(rho[i], period[i], tau[i])?;
-        Ok([gain::beta(passed), left.sqrt()])
-    })
+    table(py, rho.len(), |i| ee::gauss_markov_gains(rho[i], period[i], tau[i]))
 }
 
 /// beta from an autocorrelation at lags 0, T, 2T, ...

@@ -5,7 +5,7 @@ use crate::error::input_error;
 use crate::status;
 use navbound_assess::batch::rows;
 use navbound_assess::gbas::{self, Asked, Skies};
-use navbound_core::bound::gbas::aided::{Aided, Tracked};
+use navbound_core::bound::gbas::aided::Aided;
 use navbound_core::bound::gbas::bias::Ordering;
 use navbound_core::bound::gbas::detection::{self, Hazard};
 use navbound_core::bound::gbas::levels::{self, FactorRule, Factors, Settings};
@@ -221,7 +221,8 @@ fn level_row(a: &gbas::Answer) -> [f64; LEVEL_COLUMNS.len()] {
     let l = &a.levels;
     let [major, norm, faulty] = a.deviations;
     let [exact, rss, sum] = a.gains;
-    let m = [l.fault_free, l.receiver_faulty, l.hpl, a.accuracy, l.deviation, l.bias, major, norm, faulty].map(Metres::m);
+    let d = &l.detail;
+    let m = [d.fault_free, d.receiver_faulty, l.hpl, a.accuracy, d.deviation, d.bias, major, norm, faulty].map(Metres::m);
     [m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], exact, rss, sum, a.worst_projection]
 }
 
@@ -305,7 +306,7 @@ fn gbas_aided_covariance<'py>(py: Python<'py>, job: FilterJob<'py>) -> PyResult<
                 continue;
             }
             let direction = Direction::new(Radians::new(az[at]), Radians::new(el[at]))?;
-            tracked.push(tracked_satellite(model, form, &direction, *constellation)?);
+            tracked.push(gbas::tracked(model, form, &direction, *constellation)?);
         }
         let mut filter = Aided::new(&tracked, latitude, &INERTIAL, 1.0)?;
         filter.run(seconds);
@@ -316,18 +317,6 @@ fn gbas_aided_covariance<'py>(py: Python<'py>, job: FilterJob<'py>) -> PyResult<
     let n = az.len().checked_div(width).unwrap_or(0);
     let out = py.detach(|| rows(n, one)).map_err(rejected)?;
     out.into_pyarray(py).reshape([n, 9])
-}
-
-fn tracked_satellite(
-    model: &ErrorModel,
-    form: NoiseForm,
-    direction: &Direction,
-    constellation: Constellation,
-) -> Result<Tracked, OutOfDomain> {
-    let error = RangeError::new(model, direction.elevation())?;
-    let multipath = Coloured::new(Metres::new(error.ground.m().hypot(error.airborne.m())), model.multipath_s, form)?;
-    let white = Metres::new(error.troposphere.m().hypot(error.ionosphere.m()));
-    Ok(Tracked { unit: direction.unit(), constellation, multipath, white })
 }
 
 /// Variance of a constant offset as a filter has it and as it is, after each of `n` seconds.

@@ -32,10 +32,9 @@ fn score(s: &Score) -> [f64; SCORE] {
     let share = |count: u64| count as f64 / n;
     let mut row = [0.0; SCORE];
     row[..4].copy_from_slice(&[n, s.sum_nees / n, share(s.n_circle), share(s.n_sphere)]);
-    for k in 0..3 {
-        row[4 + k] = (s.sum_square_m2[k] / n).sqrt();
-        row[7 + k] = (s.sum_variance_m2[k] / n).sqrt();
-    }
+    let [error_m, deviation_m] = s.rms_m();
+    row[4..7].copy_from_slice(&error_m);
+    row[7..10].copy_from_slice(&deviation_m);
     for k in 0..5 {
         row[10 + k] = share(s.n_mode[k]);
     }

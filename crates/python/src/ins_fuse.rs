@@ -308,9 +308,9 @@ fn numbers(solution: &Option<Solution>) -> [f64; WIDTH] {
     let c = s.covariance.matrix();
     row[..9].copy_from_slice(&motion);
     row[9..15].copy_from_slice(&[c[(0, 0)], c[(0, 1)], c[(1, 1)], c[(0, 2)], c[(1, 2)], c[(2, 2)]]);
+    row[15..18].copy_from_slice(&fusion::deviations(&s.velocity_m2ps2));
+    row[18..21].copy_from_slice(&fusion::deviations(&s.attitude_rad2));
     for k in 0..3 {
-        row[15 + k] = s.velocity_m2ps2[(k, k)].sqrt();
-        row[18 + k] = s.attitude_rad2[(k, k)].sqrt();
         row[21 + k] = s.biases[0][k];
         row[24 + k] = s.biases[1][k];
     }
@@ -333,7 +333,8 @@ fn standing_in(s: &StandIn) -> [f64; WIDTH] {
     row[9..15].copy_from_slice(&[c[(0, 0)], c[(0, 1)], c[(1, 1)], c[(0, 2)], c[(1, 2)], c[(2, 2)]]);
     if let Some(v) = &s.velocity {
         row[3..6].copy_from_slice(&[v.enu_mps.y, v.enu_mps.x, -v.enu_mps.z]);
-        row[15..18].copy_from_slice(&[1, 0, 2].map(|k| v.covariance[(k, k)].sqrt()));
+        let [east, north, up] = fusion::deviations(&v.covariance);
+        row[15..18].copy_from_slice(&[north, east, up]);
     }
     row
 }

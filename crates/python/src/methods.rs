@@ -36,9 +36,10 @@ fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
 /// Every algorithm of protection levels: id, title, function, source, provenance, what it covers and assumes, whether integrity may rest on it.
 #[pyfunction]
 fn protection_methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    bound::PROTECTION
+    bound::ALGORITHMS
         .iter()
-        .map(|p| {
+        .map(|entry| {
+            let p = &entry.protection;
             let d = PyDict::new(py);
             d.set_item("id", p.id)?;
             d.set_item("title", p.title)?;

@@ -3,7 +3,7 @@
 use crate::error::{format_error, input_error, risk};
 use crate::orbits::PreciseOrbits;
 use crate::status;
-use navbound_assess::positions::{Job, Model, Positions, Signals, positions};
+use navbound_assess::positions::{Job, Model, Positions, Signals, azimuth_rad, elevation_rad, ground_speed_mps, positions, sigma_m};
 use navbound_assess::receivers::ranges::{Tally, Unused};
 use navbound_assess::smoothing::Form;
 use navbound_core::frame::{self, EcefPosition, Geodetic, LatLon};
@@ -344,9 +344,9 @@ fn kept_ranges<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, P
     d.set_item("epoch", rows.iter().map(|(i, _)| *i).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("sv", rows.iter().map(|(_, (satellite, _))| satellite.to_string()).collect::<Vec<_>>())?;
     let column = |f: fn(&Used) -> f64| rows.iter().map(|(_, (_, used))| f(used)).collect::<Vec<_>>().into_pyarray(py);
-    d.set_item("az_rad", column(|u| u.unit.x.atan2(u.unit.y)))?;
-    d.set_item("el_rad", column(|u| u.unit.z.clamp(-1.0, 1.0).asin()))?;
-    d.set_item("sigma_m", column(|u| 1.0 / u.weight.sqrt()))?;
+    d.set_item("az_rad", column(azimuth_rad))?;
+    d.set_item("el_rad", column(elevation_rad))?;
+    d.set_item("sigma_m", column(sigma_m))?;
     d.set_item("residual_m", column(|u| u.residual.m()))?;
     d.set_item("shared_1_m", column(|u| u.shared_m.x))?;
     d.set_item("shared_2_m", column(|u| u.shared_m.y))?;
@@ -383,7 +383,7 @@ fn table<'py>(py: Python<'py>, found: &Positions, weights: &str) -> PyResult<Bou
         ("vel_e_mps", |f| velocity(f, 0)),
         ("vel_n_mps", |f| velocity(f, 1)),
         ("vel_u_mps", |f| velocity(f, 2)),
-        ("ground_speed_mps", |f| velocity(f, 0).hypot(velocity(f, 1))),
+        ("ground_speed_mps", ground_speed_mps),
         ("p_residual", |f| f.residual_risk),
     ];
     for (name, value) in columns {

@@ -5,10 +5,11 @@ use crate::error::input_error;
 use crate::gnss::orbit;
 use crate::positions::{Navigation, Observations};
 use crate::status;
-use navbound_assess::araim::{Outcome, Outlook};
+use navbound_assess::outlook::{Outcome, Outlook};
 use navbound_assess::raim::{self, Row, Sights, Tested, Watched};
+use navbound_core::bound::Levels;
 use navbound_core::bound::raim::exclusion::Monitored;
-use navbound_core::bound::raim::{ExclusionLevels, Factors, Levels, MOST_SATELLITES, NOISE_SOURCE, SOURCE};
+use navbound_core::bound::raim::{Detail, Factors, MOST_SATELLITES, NOISE_SOURCE, SOURCE};
 use navbound_core::geometry::Elements;
 use navbound_core::quantity::{OutOfDomain, Radians, Unavailable};
 use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
@@ -140,7 +141,10 @@ fn decisions<'py>(py: Python<'py>, tests: &[Option<&Tested>]) -> PyResult<Bound<
     let none = Row { n_sv: 0, outcome: Outcome::Singular, levels: None };
     let row = |t: &Option<&Tested>| {
         t.map_or(none, |t| {
-            let left = t.monitored.zip(t.before.levels).map(|(m, (_, excluding))| (m.levels, excluding));
+            let left = t.monitored.zip(t.before.levels).map(|(m, before)| {
+                let Levels { hpl, vpl, detail } = m.levels;
+                Levels { hpl, vpl, detail: (detail, before.detail.1) }
+            });
             Row { n_sv: t.before.n_sv, outcome: t.outcome, levels: left }
         })
     };
@@ -160,20 +164,20 @@ fn decisions<'py>(py: Python<'py>, tests: &[Option<&Tested>]) -> PyResult<Bound<
 
 /// A dictionary of columns; NaN where an epoch has no position.
 fn columns<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py, PyDict>> {
-    let number = |f: fn(&(Levels, ExclusionLevels)) -> f64| {
+    let number = |f: fn(&Levels<(Detail, Levels)>) -> f64| {
         rows.iter().map(|r| r.levels.as_ref().map_or(f64::NAN, f)).collect::<Vec<_>>().into_pyarray(py)
     };
     let d = PyDict::new(py);
-    d.set_item("hpl_m", number(|l| l.0.hpl.m()))?;
-    d.set_item("vpl_m", number(|l| l.0.vpl.m()))?;
-    d.set_item("hel_m", number(|l| l.1.hel.m()))?;
-    d.set_item("vel_m", number(|l| l.1.vel.m()))?;
-    d.set_item("hpl_slope_m", number(|l| l.0.hpl_slope.m()))?;
-    d.set_item("vpl_slope_m", number(|l| l.0.vpl_slope.m()))?;
-    d.set_item("sigma_e_m", number(|l| l.0.sigma[0].m()))?;
-    d.set_item("sigma_n_m", number(|l| l.0.sigma[1].m()))?;
-    d.set_item("sigma_u_m", number(|l| l.0.sigma[2].m()))?;
-    let redundant = |r: &Row| r.levels.as_ref().map_or(0, |l| l.0.redundancy) as i64;
+    d.set_item("hpl_m", number(|l| l.hpl.m()))?;
+    d.set_item("vpl_m", number(|l| l.vpl_m()))?;
+    d.set_item("hel_m", number(|l| l.detail.1.hpl.m()))?;
+    d.set_item("vel_m", number(|l| l.detail.1.vpl_m()))?;
+    d.set_item("hpl_slope_m", number(|l| l.detail.0.hpl_slope.m()))?;
+    d.set_item("vpl_slope_m", number(|l| l.detail.0.vpl_slope.m()))?;
+    d.set_item("sigma_e_m", number(|l| l.detail.0.sigma[0].m()))?;
+    d.set_item("sigma_n_m", number(|l| l.detail.0.sigma[1].m()))?;
+    d.set_item("sigma_u_m", number(|l| l.detail.0.sigma[2].m()))?;
+    let redundant = |r: &Row| r.levels.as_ref().map_or(0, |l| l.detail.0.redundancy) as i64;
     d.set_item("n_redundant", rows.iter().map(redundant).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("n_sv", rows.iter().map(|r| r.n_sv as i64).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("outcome", rows.iter().map(|r| r.outcome as u8).collect::<Vec<_>>().into_pyarray(py))?;

@@ -208,11 +208,11 @@ fn sbas_satellites<'py>(py: Python<'py>, service: Service<'py>, places: Places<'
     d.set_item("clock_correction_s", column(|s| s.clock_s))?;
     d.set_item("iono_vertical_m", column(|s| s.vertical.delay_m))?;
     d.set_item("from_grid", rows.iter().map(|(_, s)| s.from_grid).collect::<Vec<_>>().into_pyarray(py))?;
-    d.set_item("sigma_flt_m", column(|s| s.error.corrected_m2.sqrt()))?;
-    d.set_item("sigma_uire_m", column(|s| s.error.ionosphere_m2.sqrt()))?;
-    d.set_item("sigma_tropo_m", column(|s| s.error.troposphere_m2.sqrt()))?;
-    d.set_item("sigma_air_m", column(|s| s.error.airborne_m2.sqrt()))?;
-    d.set_item("sigma_m", column(|s| s.error.variance_m2().sqrt()))?;
+    d.set_item("sigma_flt_m", column(|s| sbas::sigmas_m(&s.error)[0]))?;
+    d.set_item("sigma_uire_m", column(|s| sbas::sigmas_m(&s.error)[1]))?;
+    d.set_item("sigma_tropo_m", column(|s| sbas::sigmas_m(&s.error)[2]))?;
+    d.set_item("sigma_air_m", column(|s| sbas::sigmas_m(&s.error)[3]))?;
+    d.set_item("sigma_m", column(|s| sbas::sigmas_m(&s.error)[4]))?;
     Ok(d)
 }
 
@@ -304,13 +304,13 @@ fn terms_columns<'py>(py: Python<'py>, found: &FromTerms) -> PyResult<Bound<'py,
     let d = PyDict::new(py);
     d.set_item("e_fc_m", column(|r| r.fast_degradation_m))?;
     d.set_item("e_iono_m", column(|r| r.grid_degradation_m))?;
-    d.set_item("sigma_flt_m", column(|r| r.error.corrected_m2.sqrt()))?;
+    d.set_item("sigma_flt_m", column(|r| sbas::sigmas_m(&r.error)[0]))?;
     d.set_item("sigma_uive_m", column(|r| r.vertical_m))?;
     d.set_item("obliquity", column(|r| r.obliquity))?;
-    d.set_item("sigma_uire_m", column(|r| r.error.ionosphere_m2.sqrt()))?;
-    d.set_item("sigma_tropo_m", column(|r| r.error.troposphere_m2.sqrt()))?;
-    d.set_item("sigma_air_m", column(|r| r.error.airborne_m2.sqrt()))?;
-    d.set_item("sigma_m", column(|r| r.error.variance_m2().sqrt()))?;
+    d.set_item("sigma_uire_m", column(|r| sbas::sigmas_m(&r.error)[1]))?;
+    d.set_item("sigma_tropo_m", column(|r| sbas::sigmas_m(&r.error)[2]))?;
+    d.set_item("sigma_air_m", column(|r| sbas::sigmas_m(&r.error)[3]))?;
+    d.set_item("sigma_m", column(|r| sbas::sigmas_m(&r.error)[4]))?;
     let v = found.covariance.matrix();
     d.set_item("cov_ee_m2", v[(0, 0)])?;
     d.set_item("cov_en_m2", v[(0, 1)])?;

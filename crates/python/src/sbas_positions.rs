@@ -6,7 +6,7 @@ use crate::sbas::{Service, ignored, mode_code};
 use crate::status;
 use navbound_assess::sbas::positions::{self, Corrected, Fix, Used};
 use navbound_core::bound::sbas::NoLevel;
-use navbound_core::quantity::{Metres, OutOfDomain, Reason};
+use navbound_core::quantity::{OutOfDomain, Reason};
 use navbound_core::signal::smoothing::Smoothing;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -60,7 +60,7 @@ fn epochs<'py>(py: Python<'py>, found: &Corrected, false_alarm: f64) -> PyResult
         ("cov_nu_m2", |f| f.solution.covariance.matrix()[(1, 2)]),
         ("cov_uu_m2", |f| f.solution.covariance.matrix()[(2, 2)]),
         ("hpl_m", |f| f.solution.levels.hpl.m()),
-        ("vpl_m", |f| f.solution.levels.vpl.map_or(f64::NAN, Metres::m)),
+        ("vpl_m", |f| f.solution.levels.vpl_m()),
         ("hdop", |f| f.solution.dilution.horizontal),
         ("vdop", |f| f.solution.dilution.vertical),
         ("p_residual", |f| f.solution.residual_risk),

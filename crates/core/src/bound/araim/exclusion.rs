@@ -7,8 +7,11 @@
 use super::modes::{Book, FaultModes, MOST_SATELLITES, NoModes};
 use super::separation::Separation;
 use super::service::Service;
-use super::{Levels, Monitor, Sight, Solver, Terms};
-use crate::quantity::{Metres, Reason, Unavailable};
+use super::{Levels, Monitor, Solver, Terms};
+use crate::bound::{NoLevels, Sight};
+use crate::quantity::{Metres, Unavailable};
+use crate::signal::Constellation;
+use nalgebra::Vector3;
 
 /// How exclusion shares the risk; provenance *ours*.
 pub const SOURCE: &str = "navbound, docs/methods/araim.md: equal shares of the integrity risk for every decision (ours)";
@@ -17,27 +20,6 @@ pub const SOURCE: &str = "navbound, docs/methods/araim.md: equal shares of the i
 const MOST_TRIED: usize = 16;
 /// Fault modes that may be excluded at most: every satellite and some constellations.
 const MOST_DECISIONS: usize = MOST_SATELLITES + 8;
-
-/// Why an epoch has no levels.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum NoLevels {
-    /// The fault modes cannot be made.
-    #[error(transparent)]
-    Modes(#[from] NoModes),
-    /// The geometry does not serve.
-    #[error(transparent)]
-    Geometry(#[from] Unavailable),
-}
-
-impl NoLevels {
-    /// Its entry in the list of reasons.
-    pub const fn reason(&self) -> Reason {
-        match self {
-            Self::Modes(why) => why.reason(),
-            Self::Geometry(why) => why.reason_of_solution(),
-        }
-    }
-}
 
 /// What was decided about an epoch's ranges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -147,7 +129,7 @@ pub fn monitored(
         let Ok(modes) = some(book, sights, service) else { continue };
         let Ok(levels) = solver.levels(other, sights, residuals_m, &Terms { modes, service, share }) else { continue };
         // Where nothing is left to test with, agreement means nothing; the levels are infinite there.
-        let tested = levels.hpl.m().is_finite() && levels.vpl.m().is_finite();
+        let tested = levels.finite();
         if tested && Candidates::suspects(solver, other, modes, service).ratio[0] <= 1.0 {
             return Ok(Monitored { decision: Decision::Excluded, levels, step: other.step(), excluded: mask, worst_ratio });
         }
@@ -239,7 +221,8 @@ pub(super) struct Rest {
 
 impl Default for Rest {
     fn default() -> Self {
-        Self { sights: [Sight::NONE; MOST_SATELLITES], residuals_m: [0.0; MOST_SATELLITES] }
+        let none = Sight::plain(Vector3::new(0.0, 0.0, 1.0), Constellation::Gps, 1.0);
+        Self { sights: [none; MOST_SATELLITES], residuals_m: [0.0; MOST_SATELLITES] }
     }
 }
 

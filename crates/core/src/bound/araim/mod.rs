@@ -5,6 +5,7 @@
 
 mod ceiling;
 pub mod exclusion;
+pub mod listed;
 pub mod modes;
 pub mod ranging;
 mod separation;
@@ -13,7 +14,7 @@ pub mod single;
 mod subset;
 
 use super::level_equation::LevelEquation;
-use super::{Protection, Provenance};
+use super::{Protection, Provenance, Sight};
 use crate::quantity::{Metres, Risk, Unavailable};
 use crate::special::float::{hypot, sqrt};
 use crate::special::one_sided_factor;
@@ -21,7 +22,6 @@ use ceiling::Ceiling;
 use modes::{FaultMode, FaultModes, MOST_MODES, MOST_SATELLITES};
 use separation::Separation;
 use service::Service;
-pub use subset::Sight;
 use subset::Sums;
 
 /// Document of every formula here; provenance *standard*.
@@ -39,13 +39,13 @@ pub const PROTECTION: Protection = Protection {
     integrity: true,
 };
 
-/// Protection levels of one epoch.
+/// Protection levels of one epoch; infinite where the budget is spent on modes that cannot be monitored. The horizontal one is the root of
+/// the sum of the squares of both axes.
+pub type Levels = super::Levels<Detail>;
+
+/// What solution separation says beside its levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levels {
-    /// Horizontal: root of the sum of the squares of both axes; infinite where the budget is spent on modes that cannot be monitored.
-    pub hpl: Metres,
-    /// Vertical; infinite likewise.
-    pub vpl: Metres,
+pub struct Detail {
     /// East and north.
     pub axes: [Metres; 2],
     /// Effective monitor threshold: the largest vertical threshold of a mode that the service counts.
@@ -66,18 +66,18 @@ impl Levels {
         let infinite = Metres::new(f64::INFINITY);
         let larger = |a: Metres, b: Metres| if b > a { b } else { a };
         self.hpl = larger(self.hpl, other.map_or(infinite, |o| o.hpl));
-        self.vpl = larger(self.vpl, other.map_or(infinite, |o| o.vpl));
-        self.axes = [0, 1].map(|a| larger(self.axes[a], other.map_or(infinite, |o| o.axes[a])));
+        self.vpl = self.vpl.map(|vpl| larger(vpl, other.and_then(|o| o.vpl).unwrap_or(infinite)));
+        self.detail.axes = [0, 1].map(|a| larger(self.detail.axes[a], other.map_or(infinite, |o| o.detail.axes[a])));
     }
 
     /// Levels east, north and up that leave these unchanged when they are widened to them.
     #[inline(always)]
     fn limits(&self) -> [f64; 3] {
         // The axes may be those of different decisions: both together must stay within the horizontal level.
-        let [east, north] = self.axes.map(Metres::m);
+        let [east, north] = self.detail.axes.map(Metres::m);
         let both = hypot(east, north);
         let part = if both > self.hpl.m() { self.hpl.m() / both } else { 1.0 };
-        [part * east, part * north, self.vpl.m()]
+        [part * east, part * north, self.vpl_m()]
     }
 }
 
@@ -214,16 +214,15 @@ impl Solver {
         let factors = self.factors.of(terms.service, monitored.saturating_sub(1));
         let emt = effective_monitor_threshold(of, terms, &factors);
         let [east, north, up] = self.axis_levels(of, terms, &factors, terms.budgets(p_unmonitored));
-        Ok(Levels {
-            hpl: Metres::new(hypot(east, north)),
-            vpl: Metres::new(up),
+        let detail = Detail {
             axes: [Metres::new(east), Metres::new(north)],
             emt,
             sigma_accuracy: of.sigma_accuracy(),
             n_modes: terms.modes.len(),
             n_monitored: monitored,
             p_unmonitored,
-        })
+        };
+        Ok(Levels::of(Metres::new(hypot(east, north)), Metres::new(up), detail))
     }
 
     /// Separation of every monitored mode against its threshold, the largest of the axes, with the mode's satellites.

@@ -1,7 +1,7 @@
 //! The fault modes of advanced RAIM: those of [`crate::bound::faults`] under a service's budgets.
 
 use super::service::Service;
-use super::subset::Sight;
+use crate::bound::Sight;
 pub use crate::bound::faults::{FaultMode, FaultModes, MOST_MODES, MOST_SATELLITES, NoModes};
 use crate::bound::faults::{First, Prior, Watch};
 use crate::quantity::OutOfDomain;

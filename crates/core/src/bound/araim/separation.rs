@@ -1,7 +1,8 @@
 //! The solutions of one epoch: with all satellites, and without those of every fault mode.
 
 use super::modes::{FaultMode, FaultModes, MOST_MODES};
-use super::subset::{MOST_TOGETHER, NO_SOLUTION, Satellites, Sight, Solution, Sums};
+use super::subset::{MOST_TOGETHER, NO_SOLUTION, Satellites, Solution, Sums};
+use crate::bound::Sight;
 use crate::quantity::{Metres, Unavailable};
 use crate::signal::Constellation;
 use crate::special::float::sqrt;

@@ -1,8 +1,8 @@
 //! RAIM, the simple case: one satellite may be wrong at a time, and no prior is known.
 
 use super::modes::{self, NoModes};
-use super::{Levels, Monitor, Sight, checked, exclusion::NoLevels};
-use crate::bound::Protection;
+use super::{Detail, Levels, Monitor, checked};
+use crate::bound::{NoLevels, Protection, Sight};
 use crate::quantity::{Metres, OutOfDomain, Provenance, Risk, Unavailable};
 use crate::special::float::sqrt;
 use crate::special::one_sided_factor;
@@ -87,16 +87,15 @@ impl Monitor {
             up = up.max(level(s[2], v[2]));
             threshold_u = threshold_u.max(k_fa * sqrt(s[2]));
         }
-        Ok(Levels {
-            hpl: Metres::new(east_north),
-            vpl: Metres::new(up),
+        let detail = Detail {
             axes: axes.map(Metres::new),
             emt: Metres::new(threshold_u),
             sigma_accuracy: self.every.sigma_accuracy(),
             n_modes: modes.len(),
             n_monitored: monitored,
             p_unmonitored: 0.0,
-        })
+        };
+        Ok(Levels::of(Metres::new(east_north), Metres::new(up), detail))
     }
 
     /// The same where the faulty satellite must be found too: the largest level after any one exclusion.

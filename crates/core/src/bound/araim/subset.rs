@@ -11,7 +11,8 @@
 //! Woodbury's identity on the normal equation (standard).
 
 use super::modes::MOST_SATELLITES;
-use crate::quantity::{Metres, Unavailable};
+use crate::bound::Sight;
+use crate::quantity::Unavailable;
 use crate::signal::Constellation;
 use crate::solution::wls::CONDITION_LIMIT;
 use nalgebra::{Matrix3, Vector3};
@@ -23,38 +24,6 @@ const CLOCKS: usize = Constellation::ALL.len();
 const ESSENTIAL: f64 = 1e-9;
 /// Most satellites that fail one by one at a time.
 pub(super) const MOST_TOGETHER: usize = 4;
-
-/// A satellite of the solution.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight {
-    /// Unit vector from the receiver to the satellite, east-north-up.
-    pub unit: Vector3<f64>,
-    /// Whose clock.
-    pub constellation: Constellation,
-    /// Variance of the range for integrity; its inverse is the weight \[m²\].
-    pub integrity_m2: f64,
-    /// Variance of the range for accuracy and continuity \[m²\].
-    pub accuracy_m2: f64,
-    /// Nominal bias for integrity.
-    pub bias: Metres,
-    /// Nominal bias for continuity.
-    pub bias_continuity: Metres,
-    /// Probability that it is in fault.
-    pub p_sat: f64,
-}
-
-impl Sight {
-    /// A place for one.
-    pub(super) const NONE: Self = Self {
-        unit: Vector3::new(0.0, 0.0, 1.0),
-        constellation: Constellation::Gps,
-        integrity_m2: 1.0,
-        accuracy_m2: 1.0,
-        bias: Metres::new(0.0),
-        bias_continuity: Metres::new(0.0),
-        p_sat: 0.5,
-    };
-}
 
 /// Eight satellites abreast; places beyond the last have no weight.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,7 @@
-use super::exclusion::{NoLevels, detected, monitored, predicted};
+use super::exclusion::{detected, monitored, predicted};
 use super::modes::{Book, FaultModes, NoModes};
 use super::*;
+use crate::bound::NoLevels;
 use crate::signal::Constellation;
 use nalgebra::Vector3;
 
@@ -25,6 +26,7 @@ fn published(p_sat: f64) -> Vec<Sight> {
         constellation: if i < 5 { Constellation::Gps } else { Constellation::Galileo },
         integrity_m2: *integrity_m2,
         accuracy_m2: *accuracy_m2,
+        receiver_faulty_m2: *integrity_m2,
         bias: Metres::new(0.5),
         bias_continuity: Metres::new(0.0),
         p_sat,
@@ -46,7 +48,7 @@ fn constellations_of_the_published_example_are_met_to_the_printed_digit() {
     let (sights, service, mut monitor) = (published(1e-5), Service::LPV_200, Monitor::default());
     let modes = service.modes(&sights, &P_CONST).unwrap();
     let levels = monitor.levels(&sights, &modes, &service).unwrap();
-    assert_eq!((modes.len(), levels.n_monitored), (13, 13));
+    assert_eq!((modes.len(), levels.detail.n_monitored), (13, 13));
     let whole: Vec<_> = monitor.report(&modes, &service).filter(|r| r.mode.constellations != 0).collect();
     for (report, sigma, separation, bias) in [(whole[0], 2.576, 1.5307, 2.8935), (whole[1], 2.5577, 1.5292, 2.0875)] {
         // Half a unit of the last printed digit, and what the four digits of the printed geometry leave.
@@ -78,11 +80,7 @@ fn pairs_and_pairs_beyond_a_constellation_agree_with_a_new_solution() {
     let mut seen = 0;
     for report in monitor.report(&modes, &every).filter(|r| r.monitored && r.mode.satellites != 0) {
         let left: Vec<_> = (0..10).filter(|i| report.mode.satellites >> i & 1 == 0).map(|i| sights[i]).collect();
-        let weighted = left.iter().map(|s| crate::solution::wls::WeightedSight {
-            unit: s.unit,
-            weight: 1.0 / s.integrity_m2,
-            constellation: s.constellation,
-        });
+        let weighted = left.iter().map(Sight::weighted);
         let anew = crate::solution::wls::covariance_of_weighted(weighted).unwrap();
         for a in 0..3 {
             let sigma = sqrt(anew.matrix()[(a, a)]);
@@ -163,6 +161,7 @@ fn skies(seed: u64, plain: bool) -> impl Iterator<Item = Vec<Sight>> {
                 constellation: if k % 3 == 0 || i < n / 2 { Constellation::Gps } else { Constellation::Galileo },
                 integrity_m2,
                 accuracy_m2: if plain { integrity_m2 } else { integrity_m2 * (0.3 + 0.6 * uniform()) },
+                receiver_faulty_m2: integrity_m2,
                 bias: Metres::new(if plain { 0.0 } else { 0.75 * uniform() }),
                 bias_continuity: Metres::new(if plain { 0.0 } else { 0.2 * uniform() }),
                 p_sat: 1e-5,
@@ -201,8 +200,12 @@ fn the_promise_with_exclusion_is_the_largest_of_all_decisions() {
                 |of: fn(&Levels) -> f64| decisions.iter().map(|d| d.1.as_ref().map_or(f64::INFINITY, of)).fold(0.0, f64::max).to_bits();
             // The same numbers compared, so the same bits.
             assert_eq!(found.hpl.m().to_bits(), largest(|l| l.hpl.m()), "sky {k}");
-            assert_eq!(found.vpl.m().to_bits(), largest(|l| l.vpl.m()), "sky {k}");
-            assert_eq!(found.axes.map(|x| x.m().to_bits()), [largest(|l| l.axes[0].m()), largest(|l| l.axes[1].m())], "sky {k}");
+            assert_eq!(found.vpl_m().to_bits(), largest(|l| l.vpl_m()), "sky {k}");
+            assert_eq!(
+                found.detail.axes.map(|x| x.m().to_bits()),
+                [largest(|l| l.detail.axes[0].m()), largest(|l| l.detail.axes[1].m())],
+                "sky {k}"
+            );
         }
     }
 }
@@ -216,7 +219,7 @@ fn below(sights: &[Sight], out: u64, levels: &Levels, share: f64, factor: f64) -
     let left: Vec<_> = (0..sights.len()).filter(|i| out >> i & 1 == 0).map(|i| sights[i]).collect();
     let modes = service.modes(&left, &P_CONST).unwrap();
     let terms = Terms { modes: &modes, service, share };
-    let limits = [levels.axes[0].m(), levels.axes[1].m(), levels.vpl.m()].map(|x| factor * x);
+    let limits = [levels.detail.axes[0].m(), levels.detail.axes[1].m(), levels.vpl_m()].map(|x| factor * x);
     let mut holds = |limits| monitor.ceiling.holds(&mut monitor.every, &mut monitor.solver, out, &terms, &limits);
     let alone = |a: usize| core::array::from_fn(|b| if a == b { limits[b] } else { f64::INFINITY });
     ([holds(alone(0)), holds(alone(1)), holds(alone(2))], holds(limits))
@@ -228,7 +231,7 @@ fn a_ceiling_is_above_the_level_and_meets_it_where_variances_tell_all() {
     for (plain, sights) in skies(3, true).map(|s| (true, s)).chain(skies(4, false).map(|s| (false, s))) {
         let (share, decisions) = each_exclusion(&sights, &Service::LPV_200);
         for (out, levels) in decisions.iter().filter(|d| d.0.count_ones() == 1) {
-            let Some(levels) = levels.as_ref().filter(|l| l.hpl.m().is_finite() && l.vpl.m().is_finite()) else { continue };
+            let Some(levels) = levels.as_ref().filter(|l| l.finite()) else { continue };
             // Rounding of subsets is below 1e-9, and 1e-6 of the risk are less than 1e-7 of a level.
             assert_eq!(below(&sights, *out, levels, share, 1.0 - 1e-6).0, [false; 3], "{out:b}");
             seen += 1;

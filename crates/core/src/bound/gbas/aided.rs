@@ -233,8 +233,9 @@ fn cross(v: &Vector3<f64>) -> Matrix3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bound::Sight;
     use crate::bound::gbas::noise::Form;
-    use crate::bound::gbas::snapshot::{Range, Snapshot};
+    use crate::bound::gbas::snapshot::Snapshot;
     use crate::geometry::Direction;
     use crate::spec::gbas::INERTIAL;
 
@@ -256,7 +257,7 @@ mod tests {
         let mut filter = Aided::new(&satellites, Radians::degrees(41.3), &INERTIAL, 1.0).unwrap();
         filter.run(300.0);
         let sigma = Metres::new((0.35_f64 * 0.35 + 0.116 * 0.116).sqrt());
-        let ranges: Vec<_> = satellites.iter().map(|s| Range::new(s.unit, s.constellation, sigma, sigma).unwrap()).collect();
+        let ranges: Vec<_> = satellites.iter().map(|s| Sight::corrected(s.unit, s.constellation, sigma, sigma).unwrap()).collect();
         let snapshot = Snapshot::new(&ranges).unwrap();
         let norm = crate::bound::gbas::snapshot::Form::Major;
         norm.deviation(&filter.position()).m() / norm.deviation(snapshot.covariance()).m()
@@ -278,7 +279,7 @@ mod tests {
         filter.run(0.0);
         let noise = INERTIAL.receiver_noise.m();
         let sigma = Metres::new((0.35_f64 * 0.35 + 0.116 * 0.116 + noise * noise).sqrt());
-        let ranges: Vec<_> = satellites.iter().map(|s| Range::new(s.unit, s.constellation, sigma, sigma).unwrap()).collect();
+        let ranges: Vec<_> = satellites.iter().map(|s| Sight::corrected(s.unit, s.constellation, sigma, sigma).unwrap()).collect();
         let snapshot = Snapshot::new(&ranges).unwrap();
         let difference = (filter.position().matrix() - snapshot.covariance().matrix()).amax();
         // The prior of 100 m counts (0.5/100)^2, and the updates cancel 1e8 m² of clock: 1e-8.

@@ -2,6 +2,7 @@
 
 use super::bias::Ordering;
 use super::snapshot::{Form, Snapshot};
+use crate::bound::{Algorithm, NoLevels, Protection, Sight};
 use crate::frame::{Covariance, Enu};
 use crate::quantity::{Metres, OutOfDomain, Risk};
 use crate::spec::surface::ErrorBudget;
@@ -62,15 +63,16 @@ impl Factors {
     }
 }
 
+/// The horizontal level, the larger of both hypotheses.
+pub type Levels = crate::bound::Levels<Detail>;
+
 /// Levels of both hypotheses and the parts they are made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levels {
+pub struct Detail {
     /// Nothing is faulty.
     pub fault_free: Metres,
     /// The worst reference receiver is faulty.
     pub receiver_faulty: Metres,
-    /// The larger.
-    pub hpl: Metres,
     /// Deviation behind the first.
     pub deviation: Metres,
     /// Effect of the nominal biases in both.
@@ -107,12 +109,41 @@ pub fn levels(snapshot: &Snapshot, aided: Option<&Covariance<Enu>>, receiver_shi
     let bias = snapshot.bias_gain(settings.ordering) * settings.bias.m();
     let fault_free = settings.factors.fault_free * deviation.m() + bias;
     let receiver_faulty = receiver_shift.m() + settings.factors.missed * faulty + bias;
-    Levels {
-        fault_free: Metres::new(fault_free),
-        receiver_faulty: Metres::new(receiver_faulty),
-        hpl: Metres::new(fault_free.max(receiver_faulty)),
-        deviation,
-        bias: Metres::new(bias),
+    let detail =
+        Detail { fault_free: Metres::new(fault_free), receiver_faulty: Metres::new(receiver_faulty), deviation, bias: Metres::new(bias) };
+    Levels::horizontal(Metres::new(fault_free.max(receiver_faulty)), detail)
+}
+
+/// GBAS of one snapshot: no inertial system, no B-values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gbas {
+    settings: Settings,
+}
+
+impl Algorithm for Gbas {
+    const PROTECTION: Protection = super::PROTECTION;
+    const COLUMNS: &'static [&'static str] = &["hpl_h0_m", "hpl_h1_m", "sigma_m", "bias_hor_m"];
+    type Settings = Settings;
+    type Detail = Detail;
+
+    /// Category I with four reference receivers, no bias.
+    fn usual() -> Settings {
+        // RTCA DO-245A, M = 4, as printed; `factors_meet_the_published_ones` works them out.
+        let factors = Factors { fault_free: 5.847, missed: 2.878 };
+        Settings { factors, form: Form::Major, ordering: Ordering::Exact, bias: Metres::new(0.0) }
+    }
+
+    fn new(settings: &Settings) -> Self {
+        Self { settings: *settings }
+    }
+
+    fn levels(&mut self, sights: &[Sight]) -> Result<Levels, NoLevels> {
+        Ok(levels(&Snapshot::new(sights)?, None, Metres::new(0.0), &self.settings))
+    }
+
+    fn number(detail: &Detail, column: usize) -> f64 {
+        let numbers = [detail.fault_free, detail.receiver_faulty, detail.deviation, detail.bias].map(Metres::m);
+        numbers.get(column).copied().unwrap_or(f64::NAN)
     }
 }
 

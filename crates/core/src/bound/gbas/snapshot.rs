@@ -2,47 +2,12 @@
 
 use super::MOST_SATELLITES;
 use super::bias::Ordering;
+use crate::bound::Sight;
 use crate::frame::{Covariance, Enu};
-use crate::quantity::{Metres, OutOfDomain, Unavailable};
-use crate::signal::Constellation;
-use crate::solution::wls::{WeightedSight, horizontal_axes, responses_of_weighted};
+use crate::quantity::{Metres, Unavailable};
+use crate::solution::wls::{horizontal_axes, responses_of_weighted};
 use crate::special::float::sqrt;
 use nalgebra::{Matrix3, Vector3};
-
-/// One corrected pseudorange.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
-    /// Unit vector from the aircraft to the satellite, east-north-up.
-    pub unit: Vector3<f64>,
-    /// Whose clock.
-    pub constellation: Constellation,
-    /// Standard deviation.
-    pub sigma: Metres,
-    /// Standard deviation when one reference receiver is faulty.
-    pub sigma_receiver_faulty: Metres,
-}
-
-impl Range {
-    /// Checked.
-    ///
-    /// # Errors
-    /// [`OutOfDomain`] unless both sigmas are positive and finite, the second no smaller.
-    pub fn new(
-        unit: Vector3<f64>,
-        constellation: Constellation,
-        sigma: Metres,
-        sigma_receiver_faulty: Metres,
-    ) -> Result<Self, OutOfDomain> {
-        if !(sigma.m() > 0.0 && sigma.m().is_finite()) {
-            return Err(OutOfDomain { argument: "sigma_m", value: sigma.m(), unit: "m", domain: "(0, inf)" });
-        }
-        let faulty = sigma_receiver_faulty.m();
-        if !(faulty >= sigma.m() && faulty.is_finite()) {
-            return Err(OutOfDomain { argument: "sigma_h1_m", value: faulty, unit: "m", domain: "[sigma_m, inf)" });
-        }
-        Ok(Self { unit, constellation, sigma, sigma_receiver_faulty })
-    }
-}
 
 /// One number of metres for a horizontal covariance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,23 +42,17 @@ impl Snapshot {
     ///
     /// # Errors
     /// [`Unavailable::TooFewSatellites`], [`Unavailable::Singular`], [`Unavailable::Invalid`] for more than [`MOST_SATELLITES`].
-    pub fn new(ranges: &[Range]) -> Result<Self, Unavailable> {
+    pub fn new(ranges: &[Sight]) -> Result<Self, Unavailable> {
         if ranges.len() > MOST_SATELLITES {
             let value = ranges.len() as f64;
             return Err(Unavailable::Invalid { field: "n_sv", value, unit: "1", domain: "[0, 48]" });
         }
-        let weighted = ranges.iter().map(|r| WeightedSight {
-            unit: r.unit,
-            weight: 1.0 / (r.sigma.m() * r.sigma.m()),
-            constellation: r.constellation,
-        });
-        let (covariance, responses) = responses_of_weighted(weighted)?;
+        let (covariance, responses) = responses_of_weighted(ranges.iter().map(Sight::weighted))?;
         let mut response = [Vector3::zeros(); MOST_SATELLITES];
         let mut faulty = Matrix3::zeros();
         for ((slot, s), range) in response.iter_mut().zip(responses).zip(ranges) {
             *slot = s;
-            let sigma = range.sigma_receiver_faulty.m();
-            faulty += sigma * sigma * s * s.transpose();
+            faulty += range.receiver_faulty_m2 * s * s.transpose();
         }
         Ok(Self { count: ranges.len(), response, covariance, receiver_faulty: Covariance::claim_symmetric(faulty) })
     }

@@ -35,7 +35,7 @@ impl Monitor {
     ///
     /// # Errors
     /// As [`Monitor::levels`]; a residual that is no number.
-    pub fn monitored(&mut self, sights: &[WeightedSight], residuals_m: &[f64]) -> Result<Monitored, Unavailable> {
+    pub fn monitored(&mut self, sights: &[impl Copy + Into<WeightedSight>], residuals_m: &[f64]) -> Result<Monitored, Unavailable> {
         if residuals_m.len() != sights.len() {
             let (value, domain) = (residuals_m.len() as f64, "one a satellite");
             return Err(Unavailable::Invalid { field: "residual_m", value, unit: "1", domain });
@@ -45,7 +45,7 @@ impl Monitor {
         }
         let levels = self.levels_of(sights, residuals_m)?;
         let (square, fall, suspect) = self.residuals();
-        let redundancy = levels.redundancy;
+        let redundancy = levels.detail.redundancy;
         let ratio = if redundancy > 0 { sqrt(square) / self.factors(redundancy).threshold } else { 0.0 };
         let step = self.step();
         let all = Monitored { decision: Decision::Nothing, levels, step, excluded: None, ratio };

@@ -8,7 +8,7 @@ pub mod exclusion;
 mod tests;
 
 pub use super::araim::single::Requirement;
-use super::{Protection, Provenance};
+use super::{Algorithm, NoLevels, Protection, Provenance, Sight};
 use crate::quantity::{Metres, Unavailable};
 use crate::solution::wls::{Normal, Row, WeightedSight, weighted_row};
 use crate::special::float::{hypot, sqrt};
@@ -42,13 +42,12 @@ const ESSENTIAL: f64 = 1e-9;
 /// A satellite that moves the position by less than this a metre moves it by rounding alone \[1\].
 const UNMOVED: f64 = 1e-9;
 
-/// Protection levels of one epoch.
+/// Protection levels of one epoch, the noise of the position in them; infinite where a fault cannot be detected.
+pub type Levels = super::Levels<Detail>;
+
+/// What RAIM says beside its levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levels {
-    /// Horizontal, the noise of the position in it; infinite where a fault cannot be detected.
-    pub hpl: Metres,
-    /// Vertical, likewise.
-    pub vpl: Metres,
+pub struct Detail {
     /// The published form: the largest slope times the bias that the test misses, no noise.
     pub hpl_slope: Metres,
     /// Likewise.
@@ -57,15 +56,6 @@ pub struct Levels {
     pub sigma: [Metres; 3],
     /// Ranges beyond the unknowns.
     pub redundancy: usize,
-}
-
-/// Largest levels after the exclusion of any one satellite, never below those of detection; infinite where exclusion is not possible.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ExclusionLevels {
-    /// Horizontal.
-    pub hel: Metres,
-    /// Vertical.
-    pub vel: Metres,
 }
 
 /// What a redundancy and a requirement give for every geometry.
@@ -149,12 +139,12 @@ impl Monitor {
     ///
     /// # Errors
     /// [`Unavailable`]: too few satellites, a geometry that does not determine the position, a number that is none.
-    pub fn levels(&mut self, sights: &[WeightedSight]) -> Result<Levels, Unavailable> {
+    pub fn levels(&mut self, sights: &[impl Copy + Into<WeightedSight>]) -> Result<Levels, Unavailable> {
         self.levels_of(sights, &[])
     }
 
     /// The same with residuals for the test, where there are any.
-    fn levels_of(&mut self, sights: &[WeightedSight], residuals_m: &[f64]) -> Result<Levels, Unavailable> {
+    fn levels_of(&mut self, sights: &[impl Copy + Into<WeightedSight>], residuals_m: &[f64]) -> Result<Levels, Unavailable> {
         self.take(sights, residuals_m)?;
         let epoch = &self.epoch;
         let slopes = (0..epoch.count).fold([0.0; 2], |most, i| steeper(most, epoch.slope(i)));
@@ -169,26 +159,26 @@ impl Monitor {
     /// without i:  s_j - s_i Pi_ij / Pi_ii,   Pi_jj - Pi_ij^2 / Pi_ii,   V + s_i s_i' / Pi_ii          Pi_ij = -w_i coupling_ij
     /// ```
     ///
-    /// `detection` is what [`Self::levels`] gave last.
-    pub fn after_exclusion(&mut self, detection: &Levels) -> ExclusionLevels {
-        let mut worst = ExclusionLevels { hel: detection.hpl, vel: detection.vpl };
+    /// Never below those of detection; infinite where exclusion is not possible. `detection` is what [`Self::levels`] gave last.
+    pub fn after_exclusion(&mut self, detection: &Levels) -> super::Levels {
+        let mut worst = super::Levels { hpl: detection.hpl, vpl: detection.vpl, detail: () };
         for i in 0..self.epoch.count {
             // One that moves nothing is the only one of its clock: without it all stays as it is.
             if self.epoch.gain[i].iter().all(|metres| metres.abs() <= UNMOVED) {
                 continue;
             }
-            let (hel, vel) = self.without(i);
-            worst = ExclusionLevels { hel: larger(worst.hel, hel), vel: larger(worst.vel, vel) };
+            let (hpl, vpl) = self.without(i);
+            worst = super::Levels { hpl: larger(worst.hpl, hpl), vpl: worst.vpl.zip(vpl).map(|(a, b)| larger(a, b)), detail: () };
         }
         worst
     }
 
     /// Levels without one satellite that moves the position.
-    fn without(&mut self, i: usize) -> (Metres, Metres) {
+    fn without(&mut self, i: usize) -> (Metres, Option<Metres>) {
         let epoch = &self.epoch;
         let (row, left) = (&epoch.rows[i], epoch.left[i]);
         if epoch.redundancy < 2 || left <= ESSENTIAL * row.weight {
-            return (Metres::new(f64::INFINITY), Metres::new(f64::INFINITY));
+            return (Metres::new(f64::INFINITY), Some(Metres::new(f64::INFINITY)));
         }
         let mut slopes = [0.0; 2];
         for j in (0..epoch.count).filter(|j| *j != i) {
@@ -203,12 +193,16 @@ impl Monitor {
     }
 
     /// Take up an epoch.
-    fn take(&mut self, sights: &[WeightedSight], residuals_m: &[f64]) -> Result<(), Unavailable> {
-        checked(sights)?;
+    fn take(&mut self, sights: &[impl Copy + Into<WeightedSight>], residuals_m: &[f64]) -> Result<(), Unavailable> {
+        if sights.len() > MOST_SATELLITES {
+            let (value, domain) = (sights.len() as f64, "at most 64 satellites");
+            return Err(Unavailable::Invalid { field: "n_sv", value, unit: "1", domain });
+        }
         let epoch = &mut self.epoch;
         epoch.count = sights.len();
         for (i, (row, sight)) in epoch.rows.iter_mut().zip(sights).enumerate() {
-            *row = Row { residual: residuals_m.get(i).copied().unwrap_or(0.0), ..weighted_row(*sight) };
+            *row = Row { residual: residuals_m.get(i).copied().unwrap_or(0.0), ..weighted_row((*sight).into()) };
+            checked(row)?;
         }
         let rows = &epoch.rows[..epoch.count];
         epoch.normal = Normal::new(rows.iter().copied())?;
@@ -238,7 +232,37 @@ impl Monitor {
         let held = [0, 1].map(|k| Metres::new((published[k] + with_fault * noise[k]).max(without * noise[k])));
         let [hpl, vpl] = held;
         let [hpl_slope, vpl_slope] = published.map(Metres::new);
-        Levels { hpl, vpl, hpl_slope, vpl_slope, sigma: sigma.map(Metres::new), redundancy }
+        Levels::of(hpl, vpl, Detail { hpl_slope, vpl_slope, sigma: sigma.map(Metres::new), redundancy })
+    }
+}
+
+impl Algorithm for Monitor {
+    const PROTECTION: Protection = PROTECTION;
+    const COLUMNS: &'static [&'static str] =
+        &["hel_m", "vel_m", "hpl_slope_m", "vpl_slope_m", "sigma_e_m", "sigma_n_m", "sigma_u_m", "n_redundant"];
+    type Settings = Requirement;
+    /// Beside the levels of detection those after exclusion.
+    type Detail = (Detail, super::Levels);
+
+    fn usual() -> Requirement {
+        Requirement::RAIM
+    }
+
+    fn new(requirement: &Requirement) -> Self {
+        Self::new(requirement)
+    }
+
+    #[inline(always)]
+    fn levels(&mut self, sights: &[Sight]) -> Result<super::Levels<Self::Detail>, NoLevels> {
+        let Levels { hpl, vpl, detail } = self.levels_of(sights, &[])?;
+        let after = self.after_exclusion(&Levels { hpl, vpl, detail });
+        Ok(super::Levels { hpl, vpl, detail: (detail, after) })
+    }
+
+    fn number((detail, after): &Self::Detail, column: usize) -> f64 {
+        let [e, n, u] = detail.sigma.map(Metres::m);
+        let numbers = [after.hpl.m(), after.vpl_m(), detail.hpl_slope.m(), detail.vpl_slope.m(), e, n, u, detail.redundancy as f64];
+        numbers.get(column).copied().unwrap_or(f64::NAN)
     }
 }
 
@@ -265,20 +289,14 @@ fn larger(a: Metres, b: Metres) -> Metres {
     if b > a { b } else { a }
 }
 
-fn checked(sights: &[WeightedSight]) -> Result<(), Unavailable> {
-    if sights.len() > MOST_SATELLITES {
-        let (value, domain) = (sights.len() as f64, "at most 64 satellites");
-        return Err(Unavailable::Invalid { field: "n_sv", value, unit: "1", domain });
+fn checked(row: &Row) -> Result<(), Unavailable> {
+    let length = row.unit.norm();
+    if !((length - 1.0).abs() < 1e-3) {
+        return Err(Unavailable::Invalid { field: "unit_enu", value: length, unit: "1", domain: "vectors of length one" });
     }
-    for s in sights {
-        let length = s.unit.norm();
-        if !((length - 1.0).abs() < 1e-3) {
-            return Err(Unavailable::Invalid { field: "unit_enu", value: length, unit: "1", domain: "vectors of length one" });
-        }
-        if !(s.weight > 0.0 && s.weight < f64::INFINITY) {
-            let sigma = 1.0 / sqrt(s.weight);
-            return Err(Unavailable::Invalid { field: "sigma_m", value: sigma, unit: "m", domain: "(0, inf)" });
-        }
+    if !(row.weight > 0.0 && row.weight < f64::INFINITY) {
+        let sigma = 1.0 / sqrt(row.weight);
+        return Err(Unavailable::Invalid { field: "sigma_m", value: sigma, unit: "m", domain: "(0, inf)" });
     }
     Ok(())
 }

@@ -17,31 +17,32 @@ const SKY: [(f64, f64, f64); 8] = [
     (345.0, 25.0, 1.9),
 ];
 
-fn sight(&(az, el, sigma): &(f64, f64, f64), constellation: crate::signal::Constellation) -> WeightedSight {
+fn sight(&(az, el, sigma): &(f64, f64, f64), constellation: crate::signal::Constellation) -> Sight {
     let (az, el) = (f64::to_radians(az), f64::to_radians(el));
     let unit = Vector3::new(el.cos() * az.sin(), el.cos() * az.cos(), el.sin());
-    WeightedSight { unit, weight: 1.0 / (sigma * sigma), constellation }
+    Sight::plain(unit, constellation, sigma * sigma)
 }
 
-fn sky(n: usize) -> Vec<WeightedSight> {
+fn sky(n: usize) -> Vec<Sight> {
     SKY[..n].iter().map(|s| sight(s, Gps)).collect()
 }
 
 /// Slopes, horizontal and vertical, and sigmas by the whole normal equation with its clocks.
-fn whole(sights: &[WeightedSight]) -> (f64, f64, [f64; 3]) {
-    let row = |s: &WeightedSight| {
+fn whole(sights: &[Sight]) -> (f64, f64, [f64; 3]) {
+    let row = |s: &Sight| {
         let clock = f64::from(u8::from(s.constellation == Gps));
         SVector::<f64, 5>::new(-s.unit.x, -s.unit.y, -s.unit.z, clock, 1.0 - clock)
     };
-    let mut normal = sights.iter().fold(SMatrix::<f64, 5, 5>::zeros(), |sum, s| sum + s.weight * row(s) * row(s).transpose());
+    let mut normal = sights.iter().fold(SMatrix::<f64, 5, 5>::zeros(), |sum, s| sum + row(s) / s.integrity_m2 * row(s).transpose());
     // A clock that no satellite has is held.
     for clock in [3, 4] {
         normal[(clock, clock)] += f64::from(u8::from(normal[(clock, clock)] == 0.0));
     }
     let p = normal.try_inverse().unwrap();
-    let slope = |s: &WeightedSight| {
-        let gain = p * row(s) * s.weight;
-        let root = (s.weight - s.weight * row(s).dot(&gain)).sqrt();
+    let slope = |s: &Sight| {
+        let weight = 1.0 / s.integrity_m2;
+        let gain = p * row(s) * weight;
+        let root = (weight - weight * row(s).dot(&gain)).sqrt();
         (gain[0].hypot(gain[1]) / root, gain[2].abs() / root)
     };
     let most = sights.iter().map(slope).fold((0.0_f64, 0.0_f64), |m, x| (m.0.max(x.0), m.1.max(x.1)));
@@ -65,10 +66,10 @@ fn slopes_and_levels_are_those_of_whole_inversions_with_one_clock_and_two() {
     for sights in [sky(8), sky(5), two] {
         let (h, v, sigma) = whole(&sights);
         let levels = monitor.levels(&sights).unwrap();
-        let missed = Factors::new(&Requirement::RAIM, levels.redundancy).missed_bias;
-        assert!(close(levels.hpl_slope.m(), h * missed) && close(levels.vpl_slope.m(), v * missed));
+        let missed = Factors::new(&Requirement::RAIM, levels.detail.redundancy).missed_bias;
+        assert!(close(levels.detail.hpl_slope.m(), h * missed) && close(levels.detail.vpl_slope.m(), v * missed));
         let k = two_sided_factor(1e-3);
-        assert!(close(levels.hpl.m(), h * missed + k * sigma[0].hypot(sigma[1])) && close(levels.vpl.m(), v * missed + k * sigma[2]));
+        assert!(close(levels.hpl.m(), h * missed + k * sigma[0].hypot(sigma[1])) && close(levels.vpl_m(), v * missed + k * sigma[2]));
     }
 }
 
@@ -81,14 +82,14 @@ fn levels_after_exclusion_are_the_worst_of_every_geometry_without_one() {
     for sights in [sky(8), sky(6), two] {
         let detection = monitor.levels(&sights).unwrap();
         let found = monitor.after_exclusion(&detection);
-        let (mut hel, mut vel) = (detection.hpl.m(), detection.vpl.m());
+        let (mut hel, mut vel) = (detection.hpl.m(), detection.vpl_m());
         for out in 0..sights.len() {
             let mut rest = sights.clone();
             rest.remove(out);
             let levels = monitor.levels(&rest).unwrap();
-            (hel, vel) = (hel.max(levels.hpl.m()), vel.max(levels.vpl.m()));
+            (hel, vel) = (hel.max(levels.hpl.m()), vel.max(levels.vpl_m()));
         }
-        assert!(close(found.hel.m(), hel) && close(found.vel.m(), vel), "{found:?}, {hel}, {vel}");
+        assert!(close(found.hpl.m(), hel) && close(found.vpl_m(), vel), "{found:?}, {hel}, {vel}");
     }
 }
 
@@ -97,11 +98,11 @@ fn five_satellites_detect_six_exclude_and_four_do_neither() {
     let mut monitor = Monitor::new(&Requirement::RAIM);
     assert_eq!(monitor.levels(&sky(3)).unwrap_err(), Unavailable::TooFewSatellites { need: 4, have: 3 });
     let four = monitor.levels(&sky(4)).unwrap();
-    assert!(four.hpl.m() == f64::INFINITY && four.hpl_slope.m() == f64::INFINITY && four.sigma[0].m().is_finite());
+    assert!(four.hpl.m() == f64::INFINITY && four.detail.hpl_slope.m() == f64::INFINITY && four.detail.sigma[0].m().is_finite());
     let five = monitor.levels(&sky(5)).unwrap();
-    assert!(five.hpl.m().is_finite() && monitor.after_exclusion(&five).hel.m() == f64::INFINITY);
+    assert!(five.hpl.m().is_finite() && monitor.after_exclusion(&five).hpl.m() == f64::INFINITY);
     let six = monitor.levels(&sky(6)).unwrap();
-    assert!(monitor.after_exclusion(&six).hel.m().is_finite());
+    assert!(monitor.after_exclusion(&six).hpl.m().is_finite());
 }
 
 #[test]
@@ -112,8 +113,8 @@ fn a_lone_satellite_of_another_clock_changes_nothing() {
     let mut more = sky(6);
     more.push(sight(&SKY[7], Galileo));
     let with = monitor.levels(&more).unwrap();
-    assert!(close(with.hpl.m(), six.hpl.m()) && with.redundancy == six.redundancy);
-    assert!(close(monitor.after_exclusion(&with).hel.m(), excluding.hel.m()));
+    assert!(close(with.hpl.m(), six.hpl.m()) && with.detail.redundancy == six.detail.redundancy);
+    assert!(close(monitor.after_exclusion(&with).hpl.m(), excluding.hpl.m()));
 }
 
 #[test]
@@ -123,8 +124,8 @@ fn a_satellite_that_nothing_checks_leaves_no_level() {
     sights.push(sight(&(20.0, 80.0, 1.0), Gps));
     let mut monitor = Monitor::new(&Requirement::RAIM);
     let levels = monitor.levels(&sights).unwrap();
-    assert_eq!(levels.vpl.m(), f64::INFINITY);
-    assert_eq!(monitor.after_exclusion(&levels).vel.m(), f64::INFINITY);
+    assert_eq!(levels.vpl_m(), f64::INFINITY);
+    assert_eq!(monitor.after_exclusion(&levels).vpl_m(), f64::INFINITY);
 }
 
 #[test]
@@ -159,11 +160,11 @@ fn numbers_that_are_none_are_named() {
         other => panic!("{other:?}"),
     };
     let mut sights = sky(6);
-    sights[3].weight = f64::NAN;
+    sights[3].integrity_m2 = f64::NAN;
     assert_eq!(invalid(monitor.levels(&sights)), "sigma_m");
-    sights[3].weight = -1.0;
+    sights[3].integrity_m2 = -1.0;
     assert_eq!(invalid(monitor.levels(&sights)), "sigma_m");
-    sights[3] = WeightedSight { unit: Vector3::new(0.0, 0.0, 2.0), ..sky(1)[0] };
+    sights[3] = Sight { unit: Vector3::new(0.0, 0.0, 2.0), ..sky(1)[0] };
     assert_eq!(invalid(monitor.levels(&sights)), "unit_enu");
     assert_eq!(invalid(monitor.levels(&[sky(1)[0]; 65])), "n_sv");
     assert_eq!(invalid(monitor.monitored(&sky(6), &[f64::NAN; 6]).map(|m| m.levels)), "residual_m");

@@ -100,17 +100,18 @@ pub struct SingleFault {
     without: [Without; MOST_SATELLITES],
 }
 
+/// The horizontal level, the largest of the three hypotheses.
+pub type Levels = crate::bound::Levels<Detail>;
+
 /// Levels of the three hypotheses.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levels {
+pub struct Detail {
     /// H0: nothing is faulty.
     pub fault_free: Metres,
     /// H1: a reference receiver was faulty at the fix.
     pub receiver_faulty: Metres,
     /// H2c: a satellite becomes faulty while coasting.
     pub satellite_faulty: Metres,
-    /// The largest.
-    pub hpl: Metres,
 }
 
 impl SingleFault {
@@ -194,12 +195,12 @@ impl SingleFault {
             threshold.m() + multipliers.fault * w.deviation.m() + w.gain * b
         };
         let satellite_faulty = self.without().iter().map(one).fold(0.0, f64::max);
-        Levels {
+        let detail = Detail {
             fault_free: Metres::new(fault_free),
             receiver_faulty: Metres::new(receiver_faulty),
             satellite_faulty: Metres::new(satellite_faulty),
-            hpl: Metres::new(fault_free.max(receiver_faulty).max(satellite_faulty)),
-        }
+        };
+        Levels::horizontal(Metres::new(fault_free.max(receiver_faulty).max(satellite_faulty)), detail)
     }
 }
 
@@ -248,7 +249,7 @@ impl Multipliers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bound::gbas::snapshot::Range;
+    use crate::bound::Sight;
     use crate::geometry::Direction;
     use crate::quantity::Radians;
     use crate::signal::Constellation;
@@ -259,7 +260,7 @@ mod tests {
     fn an_aided_fix_keeps_the_ratio_of_its_deviations() {
         let range = |az: f64, el: f64, faulty: f64| {
             let unit = Direction::new(Radians::degrees(az), Radians::degrees(el)).unwrap().unit();
-            Range::new(unit, Constellation::Gps, Metres::new(1.0), Metres::new(faulty)).unwrap()
+            Sight::corrected(unit, Constellation::Gps, Metres::new(1.0), Metres::new(faulty)).unwrap()
         };
         let ranges =
             [range(10.0, 70.0, 1.2), range(100.0, 30.0, 1.9), range(190.0, 20.0, 1.4), range(280.0, 50.0, 2.5), range(330.0, 12.0, 1.1)];

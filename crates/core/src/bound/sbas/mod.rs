@@ -10,7 +10,7 @@ pub mod position;
 pub mod service;
 pub mod terms;
 
-use super::{Protection, Provenance};
+use super::{Algorithm, NoLevels, Protection, Provenance, Sight};
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, ecef_from_geodetic, enu_from_ecef};
 use crate::geometry::atmosphere::klobuchar_and_latitude;
 use crate::quantity::{Metres, OutOfDomain, Radians, Reason, Unavailable};
@@ -47,14 +47,8 @@ pub const K_H_NPA: f64 = 6.18;
 /// Multiplier of the vertical level: 2Q(5.33) = 9.8e-8 (standard).
 pub const K_V: f64 = 5.33;
 
-/// Protection levels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levels {
-    /// Horizontal.
-    pub hpl: Metres,
-    /// Vertical, in precision approach only.
-    pub vpl: Option<Metres>,
-}
+/// Protection levels; the vertical one in precision approach only.
+pub type Levels = super::Levels;
 
 /// Protection levels of a covariance of the SBAS error model.
 ///
@@ -68,9 +62,39 @@ pub fn levels(covariance: &Covariance<Enu>, used_for: Use) -> Levels {
     match used_for {
         Use::PrecisionApproach => {
             let d_u = sqrt(covariance.matrix()[(2, 2)]);
-            Levels { hpl: Metres::new(K_H_PA * d_major.m()), vpl: Some(Metres::new(K_V * d_u)) }
+            Levels::of(Metres::new(K_H_PA * d_major.m()), Metres::new(K_V * d_u), ())
         }
-        Use::EnRoute => Levels { hpl: Metres::new(K_H_NPA * d_major.m()), vpl: None },
+        Use::EnRoute => Levels::horizontal(Metres::new(K_H_NPA * d_major.m()), ()),
+    }
+}
+
+/// SBAS over satellites whose variances are those of the service's error model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sbas {
+    used_for: Use,
+}
+
+impl Algorithm for Sbas {
+    const PROTECTION: Protection = PROTECTION;
+    const COLUMNS: &'static [&'static str] = &[];
+    type Settings = Use;
+    type Detail = ();
+
+    fn usual() -> Use {
+        Use::PrecisionApproach
+    }
+
+    fn new(used_for: &Use) -> Self {
+        Self { used_for: *used_for }
+    }
+
+    #[inline(always)]
+    fn levels(&mut self, sights: &[Sight]) -> Result<Levels, NoLevels> {
+        Ok(levels(&wls::covariance_of_weighted(sights.iter().map(Sight::weighted))?, self.used_for))
+    }
+
+    fn number((): &(), _column: usize) -> f64 {
+        f64::NAN
     }
 }
 

@@ -33,9 +33,9 @@ impl Guard {
         let mut snapshot = self.solver.position(time, ranges)?;
         let (sights, residuals, n) = sights(&snapshot);
         let monitored = self.raim.monitored(&sights[..n], &residuals[..n])?;
-        let (mut level_m, mut excluded) = ([monitored.levels.hpl.m(), monitored.levels.vpl.m()], None);
+        let (mut level_m, mut excluded) = ([monitored.levels.hpl.m(), monitored.levels.vpl_m()], None);
         let ranges_agree = match monitored.decision {
-            Exclusion::Nothing if monitored.levels.redundancy > 0 => RangesAgree::Yes,
+            Exclusion::Nothing if monitored.levels.detail.redundancy > 0 => RangesAgree::Yes,
             Exclusion::Nothing => RangesAgree::Untestable,
             Exclusion::Excluded => {
                 excluded = monitored.excluded.and_then(|k| snapshot.members().nth(k)).map(|m| m.satellite);

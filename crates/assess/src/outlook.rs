@@ -1,0 +1,295 @@
+//! Protection levels of many users at many instants, from orbits, by any algorithm.
+
+use crate::batch::CHUNK;
+use nalgebra::{Matrix3, Vector3};
+use navbound_core::bound::araim::modes::NoModes;
+use navbound_core::bound::araim::ranging::{Airborne, Beyond};
+use navbound_core::bound::araim::service::Support;
+use navbound_core::bound::{Algorithm, Levels, NoLevels, Sight};
+use navbound_core::frame::{Geodetic, ecef_from_geodetic, enu_from_ecef};
+use navbound_core::geometry::{Elements, Orbit};
+use navbound_core::quantity::{Metres, OutOfDomain, Radians, Reason, Unavailable};
+use navbound_core::signal::Constellation;
+use navbound_path::AtIndex;
+use pulp::Arch;
+use rayon::prelude::*;
+
+/// Why an epoch has no finite levels; the order is that of [`Outcome::WORDS`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// It has.
+    Ok,
+    /// Fewer satellites than unknowns.
+    TooFewSatellites,
+    /// The satellites do not determine the position.
+    Singular,
+    /// The integrity risk is spent on fault modes that cannot be monitored: the levels are infinite.
+    NotMonitored,
+    /// More satellites, or more fault modes to monitor, than there is room for.
+    TooMany,
+}
+
+impl Outcome {
+    /// Its entry in the list of reasons.
+    pub const fn reason(self) -> Option<Reason> {
+        match self {
+            Self::Ok => None,
+            Self::TooFewSatellites => Some(Reason::TooFewSatellites),
+            Self::Singular => Some(Reason::Singular),
+            Self::NotMonitored => Some(Reason::NotMonitored),
+            Self::TooMany => Some(Reason::TooMany),
+        }
+    }
+
+    /// The words of tables.
+    pub const WORDS: [&'static str; 5] = ["ok", "too_few_satellites", "singular", "not_monitored", "too_many"];
+
+    /// Of levels: whether each is finite.
+    pub fn of<D>(levels: &Levels<D>) -> Self {
+        if levels.finite() { Self::Ok } else { Self::NotMonitored }
+    }
+}
+
+/// One epoch's result; `D` is what the algorithm says beside its levels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row<D> {
+    /// Satellites used.
+    pub n_sv: usize,
+    /// Why there are no finite levels.
+    pub outcome: Outcome,
+    /// The levels, where the geometry gives any; they may be infinite.
+    pub levels: Option<Levels<D>>,
+}
+
+impl<D> Row<D> {
+    /// Of levels asked for.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`]: the caller's mistake.
+    #[inline(always)]
+    pub(crate) fn of(n_sv: usize, levels: Result<Levels<D>, NoLevels>) -> Result<Self, OutOfDomain> {
+        match levels {
+            Ok(levels) => Ok(Self { n_sv, outcome: Outcome::of(&levels), levels: Some(levels) }),
+            Err(e) => refusal(e).map_or_else(|outcome| Ok(Self { n_sv, outcome, levels: None }), Err),
+        }
+    }
+}
+
+/// Why there are no levels: the caller's mistake, or a status.
+///
+/// # Errors
+/// The status.
+pub fn refusal(e: NoLevels) -> Result<OutOfDomain, Outcome> {
+    match e {
+        NoLevels::Modes(NoModes::OutOfDomain(e)) => Ok(e),
+        NoLevels::Modes(_) | NoLevels::Geometry(Unavailable::Invalid { field: "n_sv", .. }) => Err(Outcome::TooMany),
+        NoLevels::Geometry(Unavailable::Invalid { field, value, unit, domain }) => Ok(OutOfDomain { argument: field, value, unit, domain }),
+        NoLevels::Geometry(Unavailable::TooFewSatellites { .. }) => Err(Outcome::TooFewSatellites),
+        NoLevels::Geometry(_) => Err(Outcome::Singular),
+    }
+}
+
+/// What is promised of satellites, and how the user receives them.
+#[derive(Debug, Clone, Copy)]
+pub struct Promise {
+    /// By constellation.
+    pub support: [Support; Constellation::ALL.len()],
+    /// Receiver, multipath, atmosphere.
+    pub airborne: Airborne,
+}
+
+impl Promise {
+    /// A satellite with the error of a smoothed range.
+    #[inline(always)]
+    fn sight(&self, unit: Vector3<f64>, constellation: Constellation) -> Sight {
+        self.sight_beyond(unit, constellation, &Beyond::NOTHING)
+    }
+
+    /// A satellite with the error of a range that has something beyond a smoothed one.
+    #[inline(always)]
+    pub(crate) fn sight_beyond(&self, unit: Vector3<f64>, constellation: Constellation, beyond: &Beyond) -> Sight {
+        let support = &self.support[constellation.index()];
+        let local = self.airborne.variance_m2(unit.z.clamp(-1.0, 1.0).asin(), unit.z) + beyond.variance_m2(unit.z);
+        let square = |m: Metres| m.m() * m.m();
+        Sight {
+            unit,
+            constellation,
+            integrity_m2: square(support.sigma_ura) + local,
+            accuracy_m2: square(support.sigma_ure) + local,
+            receiver_faulty_m2: square(support.sigma_ura) + local,
+            bias: support.bias,
+            bias_continuity: support.bias_continuity,
+            p_sat: support.p_sat,
+        }
+    }
+}
+
+/// Users and instants whose levels are worked out from orbits: every user at every instant.
+#[derive(Debug, Clone, Copy)]
+pub struct Outlook<'a> {
+    /// Orbits.
+    pub orbits: &'a [Elements],
+    /// Constellation of each.
+    pub constellation: &'a [Constellation],
+    /// Instants since the orbits' reference instant \[s\].
+    pub time_s: &'a [f64],
+    /// Users.
+    pub users: &'a [Geodetic],
+    /// Lowest elevation.
+    pub mask: Radians,
+    /// What is promised of the satellites.
+    pub promise: Promise,
+}
+
+/// A user's place and axes.
+struct Place {
+    position_m: Vector3<f64>,
+    enu: Matrix3<f64>,
+}
+
+/// Satellites over users at instants, worked out once for all of them.
+struct Overhead<'a> {
+    outlook: &'a Outlook<'a>,
+    positions: Vec<Vector3<f64>>,
+    places: Vec<Place>,
+    sin_mask: f64,
+}
+
+impl<'a> Overhead<'a> {
+    /// # Errors
+    /// [`AtIndex`]: the first orbit, instant, user or promise outside its domain.
+    fn new(outlook: &'a Outlook<'a>) -> Result<Self, AtIndex> {
+        let at = |index| move |error| AtIndex { index, error };
+        for (index, support) in outlook.promise.support.iter().enumerate() {
+            support.checked().map_err(at(index))?;
+        }
+        if let Some(index) = outlook.time_s.iter().position(|t| !t.is_finite()) {
+            return Err(at(index)(OutOfDomain { argument: "time_s", value: outlook.time_s[index], unit: "s", domain: "finite times" }));
+        }
+        if let Some(index) = outlook.users.iter().position(|u| !u.height.m().is_finite()) {
+            let value = outlook.users[index].height.m();
+            return Err(at(index)(OutOfDomain { argument: "h_m", value, unit: "m", domain: "finite heights" }));
+        }
+        let orbits = outlook.orbits.iter().enumerate().map(|(k, e)| Orbit::new(*e).map_err(at(k))).collect::<Result<Vec<_>, _>>()?;
+        let sky = |t: &f64| orbits.iter().map(|orbit| *orbit.position(*t).vector()).collect::<Vec<_>>();
+        let place = |u: &Geodetic| Place { position_m: *ecef_from_geodetic(u).vector(), enu: enu_from_ecef(&u.point) };
+        Ok(Self {
+            outlook,
+            positions: outlook.time_s.par_iter().flat_map_iter(sky).collect(),
+            places: outlook.users.iter().map(place).collect(),
+            sin_mask: outlook.mask.rad().sin(),
+        })
+    }
+
+    /// Every user at every instant.
+    fn len(&self) -> usize {
+        self.outlook.time_s.len() * self.places.len()
+    }
+
+    /// Satellites of one user and instant, instants first.
+    #[inline(always)]
+    fn each(&self, index: usize, mut each: impl FnMut(Sight)) {
+        let (instant, user) = (index / self.places.len(), index % self.places.len());
+        let n = self.outlook.orbits.len();
+        for (position, constellation) in self.positions[instant * n..(instant + 1) * n].iter().zip(self.outlook.constellation) {
+            if let Some(sight) = seen(position, *constellation, &self.places[user], self.sin_mask, self.outlook) {
+                each(sight);
+            }
+        }
+    }
+}
+
+/// Levels of every user at every instant by an algorithm of the list: user after user, instant after instant.
+///
+/// # Errors
+/// [`AtIndex`]: the first orbit, instant, user or promise outside its domain.
+pub fn predict<A: Algorithm + Send>(outlook: &Outlook<'_>, settings: &A::Settings) -> Result<Vec<Row<A::Detail>>, AtIndex>
+where
+    A::Settings: Sync,
+    A::Detail: Send,
+{
+    predicted(
+        outlook,
+        || Box::new(A::new(settings)),
+        #[inline(always)]
+        |algorithm, sights| algorithm.levels(sights),
+    )
+}
+
+/// The same by anything that makes levels of satellites.
+#[inline(always)]
+pub(crate) fn predicted<M: Send, D: Send>(
+    outlook: &Outlook<'_>,
+    make: impl Fn() -> M + Sync + Send,
+    levels: impl Fn(&mut M, &[Sight]) -> Result<Levels<D>, NoLevels> + Sync,
+) -> Result<Vec<Row<D>>, AtIndex> {
+    let overhead = Overhead::new(outlook)?;
+    rows(
+        overhead.len(),
+        || (make(), Vec::new()),
+        #[inline(always)]
+        |(made, sights), index| {
+            sights.clear();
+            overhead.each(index, |sight| sights.push(sight));
+            Row::of(sights.len(), levels(made, sights))
+        },
+    )
+}
+
+/// A satellite above the mask, with its range's error.
+#[inline(always)]
+fn seen(position: &Vector3<f64>, constellation: Constellation, place: &Place, sin_mask: f64, outlook: &Outlook<'_>) -> Option<Sight> {
+    let apart = position - place.position_m;
+    // Half of the satellites are below the horizon, and most masks are not.
+    if sin_mask >= 0.0 && !(place.enu.row(2).tr_dot(&apart) >= 0.0) {
+        return None;
+    }
+    let enu = place.enu * apart;
+    let unit = enu / enu.norm();
+    if !(unit.z >= sin_mask) {
+        return None;
+    }
+    Some(outlook.promise.sight(unit, constellation))
+}
+
+/// Every epoch by chunks on all cores.
+pub(crate) fn rows<D: Send, T: Send>(
+    n: usize,
+    desk: impl Fn() -> D + Sync + Send,
+    epoch: impl Fn(&mut D, usize) -> Result<T, OutOfDomain> + Sync,
+) -> Result<Vec<T>, AtIndex> {
+    let arch = Arch::new();
+    let chunk = CHUNK.min(256);
+    let done: Result<Vec<Vec<T>>, AtIndex> = (0..n.div_ceil(chunk))
+        .into_par_iter()
+        .map_init(desk, |desk, k| {
+            let span = k * chunk..n.min((k + 1) * chunk);
+            arch.dispatch(Job { desk, span, epoch: &epoch })
+        })
+        .collect();
+    Ok(done?.into_iter().flatten().collect())
+}
+
+/// One chunk as a job for [`Arch::dispatch`], which compiles it once for each width of instructions.
+struct Job<'a, D, F> {
+    desk: &'a mut D,
+    span: std::ops::Range<usize>,
+    epoch: &'a F,
+}
+
+impl<D, T, F: Fn(&mut D, usize) -> Result<T, OutOfDomain>> pulp::NullaryFnOnce for Job<'_, D, F> {
+    type Output = Result<Vec<T>, AtIndex>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        // A plain loop: an iterator's closure would be compiled for the least processor.
+        let mut rows = Vec::with_capacity(self.span.len());
+        for index in self.span {
+            match (self.epoch)(self.desk, index) {
+                Ok(row) => rows.push(row),
+                Err(error) => return Err(AtIndex { index, error }),
+            }
+        }
+        Ok(rows)
+    }
+}
