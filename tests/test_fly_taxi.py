@@ -13,25 +13,31 @@ import polars as pl
 import pytest
 
 import navbound
-from navbound import FormatError, InputError, gbas, gnss
+from navbound import FormatError, InputError, gbas, gnss, scenario
 from navbound.run.directory import Run
+from navbound.run.fly import material
 from navbound.run.ground import errors
 from navbound.run.ground import flight as flown
 from navbound.run.ground.motion import move
 from navbound.run.ground.navigation import Navigator, moved_by
-from navbound.scenario import taxi
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 NETWORK = Path(__file__).parents[2] / "shared" / "data" / "infra" / "flightgear_airports" / "LEBL.groundnet.xml"
-BASE = taxi.FOLDER / "barcelona-taxi.toml"
+BASE = scenario.find("barcelona-taxi")
 SECOND_NS = 1_000_000_000
 
 
 @pytest.fixture(scope="module")
 def plain() -> Run:
     return navbound.fly("barcelona-taxi")
+
+
+def read(name_or_path: str | Path) -> scenario.Taxi:
+    found = scenario.read(name_or_path)
+    assert isinstance(found, scenario.Taxi)
+    return found
 
 
 def seconds_of(run: Run, kind: str) -> list[int]:
@@ -55,13 +61,13 @@ def test_the_route_follows_nodes_of_the_real_taxiways() -> None:
         for e in ElementTree.parse(NETWORK).getroot().find(tag)  # type: ignore[union-attr]
     ]
     # Five decimals of a degree are kept: half a unit of the last.
-    for point in taxi.load(BASE).points[1:]:
+    for point in read(BASE).points[1:]:
         away = np.abs(np.degrees([point.lat_rad, point.lon_rad]) - np.array(nodes)).max(axis=1).min()
         assert away <= 0.51e-5, point.name
 
 
 def test_speeds_keep_to_sub_phases_turns_and_brakes() -> None:
-    found = taxi.load(BASE)
+    found = read(BASE)
     asked = flown.limits()
     way = move(found, asked)
     assert list(dict.fromkeys(way.phase)) == ["RWY", "RET", "NTW", "ATW", "TL", "SLL"]
@@ -80,7 +86,7 @@ def test_speeds_keep_to_sub_phases_turns_and_brakes() -> None:
 
 
 def test_metres_of_a_radian_are_those_of_the_ellipsoid() -> None:
-    way = move(taxi.load(BASE), flown.limits())
+    way = move(read(BASE), flown.limits())
     lat, a, e2 = np.radians(41.2877), 6_378_137.0, 6.69437999014e-3
     root = np.sqrt(1 - e2 * np.sin(lat) ** 2)
     # The latitude of the test is that of the route to 0.01 degree: some 2e-4 of the east scale.
@@ -89,7 +95,7 @@ def test_metres_of_a_radian_are_those_of_the_ellipsoid() -> None:
 
 
 def navigator(**changes: object) -> Navigator:
-    found = taxi.load(BASE)
+    found = read(BASE)
     found = found.model_copy(update={"navigation": found.navigation.model_copy(update=changes)})
     asked = flown.limits()
     return Navigator(found, move(found, asked), asked)
@@ -186,12 +192,20 @@ def test_a_requirement_that_is_inferred_never_stands_without_the_word(plain: Run
     assert "inferred" in plain.summary.assumptions[0]
 
 
+def test_the_operation_is_that_of_the_scenario(plain: Run) -> None:
+    assert plain.summary.operation == "ground"
+    assert plain.record.scenario is not None
+    assert plain.record.scenario["operation"] == "ground"
+    # The levels of the state classifier are those of flight.
+    assert plain.summary.states == []
+
+
 def test_seeds_and_numbers_choose_the_flight(plain: Run) -> None:
     many = navbound.fly("barcelona-taxi", flights=2)
     first, second = (many.epochs.filter(pl.col("track") == f"flight-00{k}") for k in (0, 1))
     assert first.drop("track").equals(plain.epochs.drop("track"))
     assert not second["nse_e_m"].equals(first["nse_e_m"])
-    other = flown.material(BASE, seed=1)
+    other = material(BASE, seed=1)
     assert not other.epochs["nse_e_m"].equals(plain.epochs["nse_e_m"])
 
 
@@ -228,7 +242,7 @@ def test_a_fault_the_ground_misses_misleads_and_the_verdict_says_so(tmp_path: Pa
     assert misled == sum(p.n_misleading for p in run.summary.protection) > 100
     assert run.summary.verdict.inside is None
     assert f"At {misled} epochs the true error is above the protection level" in run.summary.verdict.words
-    text = (taxi.FOLDER / "barcelona-taxi-missed-fault.toml").read_text(encoding="utf-8")
+    text = scenario.find("barcelona-taxi-missed-fault").read_text(encoding="utf-8")
     quiet, aided = tmp_path / "quiet.toml", tmp_path / "aided.toml"
     quiet.write_text(text.split("[[faults]]", maxsplit=1)[0], encoding="utf-8")
     # What the aircraft believes is what it would believe without the fault.
@@ -301,7 +315,7 @@ def test_the_covariance_that_bounds_leaves_no_room_at_the_stand(tmp_path: Path, 
 def test_what_is_wrong_in_a_file_is_named(tmp_path: Path, old: str, new: str, said: str) -> None:
     file = changed(tmp_path, old, new)
     with pytest.raises(FormatError, match=re.escape(said)):
-        taxi.load(file)
+        read(file)
 
 
 def test_a_route_that_cannot_be_driven_and_a_satellite_that_is_not_there_are_refused(tmp_path: Path) -> None:
@@ -317,9 +331,9 @@ def test_a_route_that_cannot_be_driven_and_a_satellite_that_is_not_there_are_ref
     with pytest.raises(InputError, match="E99"):
         navbound.fly(file)
     with pytest.raises(InputError, match="flights"):
-        flown.material(BASE, flights=0)
+        material(BASE, flights=0)
     with pytest.raises(InputError, match="seed"):
-        flown.material(BASE, seed=-1)
+        material(BASE, seed=-1)
     with pytest.raises(InputError, match="barcelona-taxi"):
         navbound.fly("barcelona")
 
