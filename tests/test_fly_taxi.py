@@ -16,7 +16,6 @@ import navbound
 from navbound import FormatError, InputError, gbas, gnss, scenario
 from navbound.run.directory import Run
 from navbound.run.fly import material
-from navbound.run.ground import errors
 from navbound.run.ground import flight as flown
 from navbound.run.ground.motion import move
 from navbound.run.ground.navigation import Navigator, moved_by
@@ -69,7 +68,7 @@ def test_the_route_follows_nodes_of_the_real_taxiways() -> None:
 def test_speeds_keep_to_sub_phases_turns_and_brakes() -> None:
     found = read(BASE)
     asked = flown.limits()
-    way = move(found, asked)
+    way = move(found)
     assert list(dict.fromkeys(way.phase)) == ["RWY", "RET", "NTW", "ATW", "TL", "SLL"]
     for name, limit in asked.items():
         # The landing roll is limited by the speed of touching down alone.
@@ -86,7 +85,7 @@ def test_speeds_keep_to_sub_phases_turns_and_brakes() -> None:
 
 
 def test_metres_of_a_radian_are_those_of_the_ellipsoid() -> None:
-    way = move(read(BASE), flown.limits())
+    way = move(read(BASE))
     lat, a, e2 = np.radians(41.2877), 6_378_137.0, 6.69437999014e-3
     root = np.sqrt(1 - e2 * np.sin(lat) ** 2)
     # The latitude of the test is that of the route to 0.01 degree: some 2e-4 of the east scale.
@@ -98,7 +97,7 @@ def navigator(**changes: object) -> Navigator:
     found = read(BASE)
     found = found.model_copy(update={"navigation": found.navigation.model_copy(update=changes)})
     asked = flown.limits()
-    return Navigator(found, move(found, asked), asked)
+    return Navigator(found, move(found), asked)
 
 
 def test_simulated_errors_have_the_covariance_that_the_core_claims() -> None:
@@ -116,12 +115,12 @@ def test_simulated_errors_have_the_covariance_that_the_core_claims() -> None:
 
 def flights(shared: Navigator, n: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Horizontal errors and covariances of the filter in flights without a fault, shape (n, seconds, 2[, 2])."""
-    quiet = np.zeros(shared.sky.el_rad.shape)
+    none = np.zeros(shared.sky.el_rad.shape, dtype=bool)
     solved = []
     for track in range(n):
         assert shared.inertial is not None
-        phases = shared._phase_errors(7, track, quiet, quiet > 0)
-        ranges = shared._range_errors(7, track, quiet, quiet > 0)
+        phases = shared._phase_errors((7, track), none)
+        ranges = shared._range_errors((7, track), none)
         solved.append(shared.inertial.flight(7, track).solve(ranges, phases.error_m, phases.sigma_rate_mps))
     return np.stack([s.error_enu_m[:, :2] for s in solved]), np.stack([s.covariance_m2[:, :2, :2] for s in solved])
 
@@ -156,17 +155,13 @@ def test_the_real_filter_is_the_one_the_covariance_describes() -> None:
 
 
 def test_of_multipath_that_changes_quickly_only_the_bounding_form_bounds() -> None:
-    paper, bound = (flights(navigator(covariance=form, bias_m=0.0, code_time_s=54.0), N_FLIGHTS) for form in ("paper", "bound"))
-    # 2 for a filter that is right; a dozen flights with one slow draw each would be above 3.3 in one of 40 cases (chi-square).
-    assert nees(*(part[:, ::20] for part in paper)) > 3.3
+    paper, bound = (flights(navigator(covariance=form, bias_m=0.0, code_time_s=54.0), 4 * N_FLIGHTS) for form in ("paper", "bound"))
+    # 2 for a filter that is right; 48 flights with one slow draw each would be above 2.6 in one of 40 cases (chi-square of 96 degrees
+    # over 48). The paper's form has 3.6 and 4.1 over 96 flights of two sources of random numbers, each within 0.3.
+    assert nees(*(part[:, ::20] for part in paper)) > 2.6
     assert nees(*(part[:, ::20] for part in bound)) < 2.0
     # What bounds costs more than twice the deviation.
     assert np.sqrt(bound[1][0, -1, 0, 0] / paper[1][0, -1, 0, 0]) > 2.0
-
-
-def test_streams_of_satellites_do_not_disturb_one_another() -> None:
-    drawn = {errors.stream(7, track, use, k).uniform() for track in range(3) for use in range(9) for k in range(48)}
-    assert len(drawn) == 3 * 9 * 48
 
 
 def test_a_run_judges_every_second_and_nothing_misleads(plain: Run) -> None:
@@ -319,9 +314,9 @@ def test_what_is_wrong_in_a_file_is_named(tmp_path: Path, old: str, new: str, sa
 
 
 def test_a_route_that_cannot_be_driven_and_a_satellite_that_is_not_there_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="radius_m"):
+    with pytest.raises(FormatError, match="radius_m"):
         navbound.fly(changed(tmp_path, "radius_m = 28.0", "radius_m = 128.0"))
-    with pytest.raises(InputError, match="braking_mps2"):
+    with pytest.raises(FormatError, match=r"motion.braking_mps2: 1.5 is outside brakes that slow"):
         navbound.fly(changed(tmp_path, "braking_mps2 = 1.8", "braking_mps2 = 1.5"))
     file = tmp_path / "fault.toml"
     file.write_text(

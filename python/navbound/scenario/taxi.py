@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from datetime import datetime
 from typing import Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
 
+from navbound import _core
 from navbound.errors import InputError
 from navbound.scenario.models import GPS_EPOCH
 from navbound.scenario.part import Part
@@ -122,7 +124,21 @@ class Taxi(Part):
         return self
 
     def check(self) -> None:
-        """Nothing: what cannot be driven is refused on the way."""
+        """Refuse, with an :class:`InputError`, what cannot be driven."""
+        _core.Ground(self.core_json())
+
+    def core_json(self) -> str:
+        """Write what the core reads."""
+        kept = {"transition", "bias_m", "code_time_s", "phase_time_s"}
+        faults = {"satellite", "missed"}
+        return json.dumps(
+            {
+                "motion": self.motion.model_dump(),
+                "navigation": self.navigation.model_dump(include=kept),
+                "points": [p.model_dump() for p in self.points],
+                "faults": [f.model_dump(exclude=faults) for f in self.faults],
+            }
+        )
 
     @property
     def start_ns(self) -> int:

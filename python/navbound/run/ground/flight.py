@@ -13,7 +13,6 @@ from navbound import gbas
 from navbound.gbas.modes import K95
 from navbound.records.run import CovarianceOrigin, EventSummary, Waypoint
 from navbound.run.campaign import Context, track_name
-from navbound.run.ground import errors
 from navbound.run.ground.motion import move
 from navbound.run.ground.navigation import Navigated, Navigator
 from navbound.scenario import taxi as scenarios
@@ -51,9 +50,8 @@ class _Ground:
 def _ground(taxi: str) -> _Ground:
     """From a scenario as text, worked out once a process."""
     found, asked = scenarios.Taxi.model_validate_json(taxi), limits()
-    movement = move(found, asked)
+    movement = move(found)
     navigator = Navigator(found, movement, asked)
-    scenarios.check_satellites(found, navigator.sky.names)
     return _Ground(found, asked, movement, navigator)
 
 
@@ -100,9 +98,7 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
     n = len(movement.along_m)
     east_m, north_m = movement.per_radian_m
     budget = gbas.error_budget()
-    fte = budget.sigma_fte_m * errors.gauss_markov(
-        errors.stream(seed, track, errors.STEERING).standard_normal(n), taxi.motion.steering_time_s
-    )
+    fte = budget.sigma_fte_m * movement.core.steering((seed, track), n)
     # The aircraft steers by its estimate; where it really is lies an nse away.
     est_lat = movement.lat_rad - fte * np.sin(movement.course_rad) / north_m
     est_lon = movement.lon_rad + fte * np.cos(movement.course_rad) / east_m
