@@ -17,7 +17,7 @@ from navbound import FormatError, InputError
 from navbound.studies.error_extraction import day as recorded
 from navbound.studies.error_extraction import faults, risks, study
 from navbound.studies.error_extraction.records import Stage, Study
-from navbound.studies.series import gauss_markov
+from navbound.studies.gauss_markov import gauss_markov
 
 
 @cache
