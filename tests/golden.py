@@ -15,7 +15,6 @@ from navbound import ins, scenario
 from navbound.run import fly
 from navbound.run.directory import Run
 from navbound.run.judge import judge
-from navbound.scenario import taxi
 
 FOLDER = Path(__file__).parent / "golden"
 DIGITS = 10
@@ -69,19 +68,19 @@ _LAID_OVER = {
 
 def names() -> list[str]:
     """Every file that is kept."""
-    return [*sorted(set(scenario.shipped()) - _LAID_OVER), *FLOWN, *taxi.shipped()]
+    return [*sorted(set(scenario.shipped()) - _LAID_OVER), *FLOWN]
 
 
 def kept(name: str) -> dict[str, Any]:
     """What is kept of a scenario: its run; its measurements where it has sensors; a flight on them; its way to the stand."""
-    if name in taxi.shipped():
-        return taxied(navbound.fly(name))
     if name in FLOWN:
         found = scenario.load(FLOWN[name])
         assert found.sensors is not None
         slow = found.model_copy(update={"sensors": found.sensors.model_copy(update={"rate_hz": 10})})
         run = judge(fly.material(slow))
         return outcome(run) | {"nav_mode": run.epochs["nav_mode"].gather_every(590).to_list()}
+    if isinstance(scenario.read(name), scenario.Taxi):
+        return taxied(navbound.fly(name))
     found = scenario.load(name)
     return outcome(navbound.fly(name)) if found.sensors is None else sensed(ins.simulate(found))
 

@@ -12,14 +12,13 @@ import pytest
 import navbound
 from navbound import FormatError, InputError, scale, scenario
 from navbound.records.material import Material
-from navbound.run import campaign, fly
+from navbound.run import campaign, flight, fly
 from navbound.run.ground import flight as taxi
 from navbound.scenario import Scenario
-from navbound.scenario import taxi as taxi_scenarios
 from navbound.studies.anp_comparison import study as anp_comparison
 from navbound.studies.tse_coverage import study as tse_coverage
 
-TAXI = taxi_scenarios.FOLDER / "barcelona-taxi.toml"
+TAXI = "barcelona-taxi"
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +34,7 @@ def quick() -> Scenario:
 @pytest.fixture
 def one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """A tile a flight, so that few flights are many tiles."""
-    for module in (fly, taxi):
+    for module in (flight, taxi):
         for name in ("_FUSED_AT_ONCE", "_DRAWN_AT_ONCE", "_AT_ONCE"):
             if hasattr(module, name):
                 monkeypatch.setattr(module, name, 1)
@@ -66,8 +65,8 @@ def test_flights_have_the_same_bits_from_a_cluster() -> None:
 
 @pytest.mark.usefixtures("one_by_one")
 def test_taxiing_has_the_same_bits_from_processes() -> None:
-    alone = taxi.material(TAXI, flights=3)
-    assert same(taxi.material(TAXI, flights=3, backend="processes", workers=scale.Workers(2)), alone)
+    alone = fly.material(TAXI, flights=3)
+    assert same(fly.material(TAXI, flights=3, backend="processes", workers=scale.Workers(2)), alone)
     assert {e.track for e in alone.events} == {"flight-000", "flight-001", "flight-002"}
 
 
@@ -92,7 +91,7 @@ def test_an_interrupted_campaign_goes_on_where_it_was(tmp_path: Path) -> None:
 def test_a_tile_is_known_again_by_another_process(quick: Scenario) -> None:
     # The name of a kept tile is a digest of this; a set or a hash in it would differ from process to process.
     text = quick.model_dump_json()
-    assert fly._Flights(text, 1) == fly._Flights(Scenario.model_validate_json(text).model_dump_json(), 1)
+    assert flight.Flights(text, 1) == flight.Flights(Scenario.model_validate_json(text).model_dump_json(), 1)
     assert json.loads(text) == quick.model_dump(mode="json")
 
 
@@ -145,7 +144,6 @@ def test_a_directory_that_cannot_be_written_is_refused_before_the_flights(monkey
         pytest.fail("flown for nothing")
 
     monkeypatch.setattr(fly, "material", flown)
-    monkeypatch.setattr(taxi, "material", flown)
     (tmp_path / "letter.txt").write_text("dear")
     for name in ("beijing-shanghai", "barcelona-taxi"):
         with pytest.raises(FormatError, match=r"letter\.txt"):

@@ -22,7 +22,36 @@ def changed(tmp_path: Path, old: str, new: str) -> Path:
 
 @pytest.mark.parametrize("name", scenario.shipped())
 def test_every_shipped_scenario_can_be_read(name: str) -> None:
-    assert scenario.load(name).title
+    assert scenario.read(name).title
+
+
+def test_the_operation_comes_with_the_kind_and_can_be_stated(tmp_path: Path) -> None:
+    assert scenario.read("beijing-shanghai").operation == "en-route"
+    assert scenario.read("barcelona-taxi").operation == "ground"
+    file = tmp_path / "mine.toml"
+    file.write_text('base = "beijing-shanghai-drawn"\noperation = "approach"\n', encoding="utf-8")
+    assert scenario.read(file).operation == "approach"
+    # A flight does not roll, and what rolls does not fly.
+    for base, other in (("beijing-shanghai-drawn", "ground"), ("barcelona-taxi", "en-route")):
+        file.write_text(f'base = "{base}"\noperation = "{other}"\n', encoding="utf-8")
+        with pytest.raises(FormatError, match="operation"):
+            scenario.read(file)
+
+
+def test_a_reader_of_flights_refuses_another_kind(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="'taxi' is not a flight"):
+        scenario.load("barcelona-taxi")
+    file = tmp_path / "mine.toml"
+    for kind in ('"boat"', "3", "[]"):
+        file.write_text(f'base = "beijing-shanghai-drawn"\nkind = {kind}\n', encoding="utf-8")
+        with pytest.raises(FormatError, match="flight, taxi"):
+            scenario.read(file)
+
+
+def test_a_scenario_is_the_same_from_its_record() -> None:
+    for name in ("beijing-shanghai", "barcelona-taxi-ground-fault"):
+        found = scenario.read(name)
+        assert scenario.of_record(found.model_dump(mode="json")) == found
 
 
 def test_units_become_si() -> None:

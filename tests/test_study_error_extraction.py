@@ -14,10 +14,10 @@ from rich.console import Console
 
 import navbound
 from navbound import FormatError, InputError
-from navbound.run.ground.errors import gauss_markov
 from navbound.studies.error_extraction import day as recorded
 from navbound.studies.error_extraction import faults, risks, study
 from navbound.studies.error_extraction.records import Stage, Study
+from navbound.studies.gauss_markov import gauss_markov
 
 
 @cache

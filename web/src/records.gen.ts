@@ -315,6 +315,8 @@ export interface Performance {
     notes: string[];
 }
 
+export type Operation = "en-route" | "approach" | "ground";
+
 /** The epoch with the smallest margin between bound and limit. */
 export interface Worst {
     track: string;
@@ -621,6 +623,8 @@ export interface Waypoint {
 export interface Summary {
     schema_id: "navbound-summary-1";
     kind: "fly" | "analyze";
+    /** As the scenario, the caller or the kind of path states it; none where levels are evaluated. */
+    operation: Operation | null;
     title: string;
     verdict: Verdict;
     /** Which of the two kinds of coverage every `coverage` here is (docs/methods/coverage.md). */

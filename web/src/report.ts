@@ -28,7 +28,6 @@ import { verdict } from "./panel/verdict.ts";
 import { choice, el } from "./show/dom.ts";
 import { showWorld } from "./world/page.ts";
 import type { World } from "./world/records.ts";
-import { SHORT_M } from "./show/format.ts";
 import { choose, themeStore, type Choice } from "./show/theme.ts";
 
 /** The parts of the page that show one track, in order, and the columns of which one is needed to say anything. */
@@ -98,8 +97,8 @@ class Page {
         this.current = now;
         this.selector.value = head.track;
         // A performance report is not asked for a path; without one its page does not list what a path would give.
-        // What is asked for in metres rolls: that it has no vertical path and no specification of flight needs no words.
-        const rolls = table.column("rnp_m")?.every((v) => v < SHORT_M) ?? false;
+        // That a roll has no vertical path and no specification of flight needs no words.
+        const rolls = payload.summary.operation === "ground";
         const explained = (part: (typeof PARTS)[number]): boolean => this.series === null && part.component !== modes && !(rolls && part.aloft);
         const wanted = PARTS.filter((part) => explained(part) || part.needs.some((name) => table.has(name)));
         this.ends = [...wanted.map(({ component, host }) => component(this[host], now)), declared(this.charts, now), cursorBar(this.bar, now)];

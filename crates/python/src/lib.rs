@@ -11,6 +11,7 @@ mod error;
 mod evaluation;
 mod gbas;
 mod gnss;
+mod ground;
 mod ins_consistency;
 mod ins_fuse;
 mod ins_simulate;
@@ -62,6 +63,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     judge::register(m)?;
     evaluation::register(m)?;
     gnss::register(m)?;
+    ground::register(m)?;
     gbas::register(m)?;
     rraim::register(m)?;
     surface::register(m)?;

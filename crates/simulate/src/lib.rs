@@ -2,10 +2,12 @@
 //!
 //! A [`Scenario`] becomes an [`Outlook`] once (route, heights and speeds, satellite geometry: the same for every flight), and [`fly`] turns
 //! that into a flight for each number. A scenario with sensors becomes a [`Sensing`], whose [`SensedFlight`] delivers what an inertial unit,
-//! receivers and an altimeter would: records of `navbound_core::signal`. Random numbers are counted, not drawn in turn: a flight depends on scenario, seed and number only.
+//! receivers and an altimeter would: records of `navbound_core::signal`. A [`Taxi`] becomes a [`Driven`] route on the ground, and a
+//! [`GroundFlight`] draws the errors of each number on it. Random numbers are counted, not drawn in turn: a flight depends on scenario, seed and number only.
 
 mod aircraft;
 mod flight;
+mod ground;
 mod navigator;
 mod outlook;
 mod philox;
@@ -17,6 +19,7 @@ mod sensors;
 mod trajectory;
 
 pub use flight::{Doubt, FlownEpoch, Navigated, fly, fly_by};
+pub use ground::{Driven, GroundFlight, RangeFault, RouteMotion, RoutePoint, Taxi, TaxiNavigation};
 pub use navigator::{BelievedErrors, Coupling, Navigator};
 pub use outlook::Outlook;
 pub use plan::{PhaseRange, Plan, Refused};

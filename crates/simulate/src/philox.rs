@@ -53,6 +53,15 @@ pub(crate) enum Sensor {
     Baro,
     /// What the navigation filter starts with that is wrong.
     FilterStart,
+    /// On the ground, of the aircraft: how it steers.
+    Steering,
+    /// Of a satellite: smoothed and corrected code, its constant part, carrier phase, and its drift since a fix.
+    SmoothedCode,
+    RangeBias,
+    CarrierPhase,
+    CarrierDrift,
+    /// Of a fault: whether the ground monitors see it.
+    GroundMonitor,
 }
 
 /// A stream of random numbers for one sensor of one flight.
@@ -91,7 +100,7 @@ impl Stream {
     }
 
     /// 53 bits and a half, so neither 0 nor 1.
-    fn uniform(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
         ((self.word() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0
     }
 

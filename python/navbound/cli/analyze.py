@@ -55,6 +55,12 @@ def analyze_command(
     ] = False,
     missed: Annotated[bool, typer.Option("--missed", help="With --procedure: with the missed approach.")] = False,
     spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3', 'RNP AR 0.1' or 'RNP APCH'.")] = "RNP 0.3",
+    operation: Annotated[
+        str | None,
+        typer.Option(
+            help="en-route, approach or ground. Default: approach with runways or an approach procedure as the path, otherwise en-route."
+        ),
+    ] = None,
     truth: Truth = None,
     truth_tolerance_s: TruthTolerance = None,
     sigma_m: Annotated[
@@ -96,8 +102,8 @@ def analyze_command(
         "mask_rad": mask_rad(mask),
     }
     if levels is not None:
-        if flown is not None or path is not None or sigma_m is not None:
-            raise ConflictError("levels", excludes=("path", "procedure", "sigma_m"), because="they judge a track")
+        if flown is not None or path is not None or sigma_m is not None or operation is not None:
+            raise ConflictError("levels", excludes=("path", "procedure", "sigma_m", "operation"), because="they judge a track")
         err_console.print(f"navbound: {MOVED}", markup=False, highlight=False, soft_wrap=True)
         evaluate.run(files, levels, of_levels, reading, out, json=json)
         return
@@ -109,6 +115,7 @@ def analyze_command(
         path=path,
         spec=spec,
         sigma_m=sigma_m,
+        operation=operation,
         settings=settings_of(methods),
         out=folder,
         command=command_line(),

@@ -14,6 +14,7 @@ from navbound.records.frames import LEFT_OUT
 from navbound.records.truth import TruthDoubts
 
 if TYPE_CHECKING:
+    from navbound.records.operation import Operation
     from navbound.records.run import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
     from navbound.storage.frames import Frames
 
@@ -37,6 +38,8 @@ class Material:
         Nominal time between epochs of one track.
     assumptions : list of str
         Sentences for the verdict: where the covariance came from, what was not modelled.
+    operation : {"en-route", "approach", "ground"}
+        What is flown, as the scenario or the caller states it.
     labels : dict
         Track to a label a person recognises.
     events : list of EventSummary
@@ -66,6 +69,7 @@ class Material:
     sample_period_s: float
     assumptions: list[str]
     covariance: CovarianceOrigin
+    operation: Operation = "en-route"
     labels: dict[str, str] = field(default_factory=dict)
     waypoints: list[Waypoint] = field(default_factory=list)
     inputs: list[InputFile] = field(default_factory=list)

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from navbound.records.base import Record
 from navbound.records.faults import FaultSummary
+from navbound.records.operation import Operation
 from navbound.records.performance import Performance
 from navbound.records.verdict import LEAST_SHARE, BeliefState, VerdictId
 
@@ -341,6 +342,8 @@ class Summary(Record):
 
     schema_id: Literal["navbound-summary-1"] = "navbound-summary-1"
     kind: Literal["fly", "analyze"]
+    operation: Operation | None = None
+    """As the scenario, the caller or the kind of path states it; none where levels are evaluated."""
     title: str
     verdict: Verdict
     coverage_kind: str

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import polars as pl
 
@@ -24,6 +24,7 @@ from navbound.read.tables.epochs import Reading, read
 from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
 from navbound.records.frames import LEFT_OUT
 from navbound.records.material import Material
+from navbound.records.operation import Operation
 from navbound.records.run import CovarianceOrigin, Rejection, Waypoint
 from navbound.records.truth import TruthDoubts
 from navbound.run.inputs.files import sort_out
@@ -60,6 +61,7 @@ def material(
     systems: str | None = None,
     ionosphere: str | None = None,
     mask_rad: float | None = None,
+    operation: Operation | None = None,
     piece_rows: int | None = None,
 ) -> Material:
     """Make recorded tracks ready to be judged.
@@ -95,6 +97,8 @@ def material(
         How measurements are solved, see :func:`navbound.gnss.solve`; ``auto``, ``GEC`` and ``auto`` where they are not named.
     mask_rad : float, optional
         Lowest elevation of the satellites that positions are solved from; :data:`navbound.gnss.MASK_RAD` where it is not named. [rad]
+    operation : {"en-route", "approach", "ground"}, optional
+        What was flown. Without it a recording on the path to a runway or on an approach procedure is an approach, any other is en route.
     piece_rows : int, optional
         Read the one text table in pieces of about so many rows, whatever its size. Without it a table of 64 MiB or more is read so where
         it has neither path nor truth. Results are the same.
@@ -123,7 +127,7 @@ def material(
         "truth_tolerance_s": truth_tolerance_s,
         "sigma_m": sigma_m,
     }
-    context = _Context(requirement, settings, sigma_m, gates, limits, solve, solving)
+    context = _Context(requirement, settings, _stated(operation) or "en-route", sigma_m, gates, limits, solve, solving)
     alone = len(names) == 1 and path is None and procedure is None and truth is None and not solve
     if piece_rows is not None and not alone:
         raise ConflictError(
@@ -176,6 +180,7 @@ def material(
         sample_period_s=_period(epochs),
         assumptions=[*assumptions, *route.words, *notes],
         covariance=origin,
+        operation=operation or route.operation,
         labels={track: f"{labels[of]} {track.partition(' ')[2]}".strip() for track, of in route.tracks.items()} if route.tracks else labels,
         waypoints=route.waypoints,
         inputs=inputs + route.inputs,
@@ -195,6 +200,7 @@ class _Context:
 
     requirement: str
     settings: dict[str, object]
+    operation: Operation
     sigma_m: float | None
     gates: Gates
     limits: Limits
@@ -210,6 +216,12 @@ class _Context:
             "solve": self.solve,
             "solving": self.solving.named,
         }
+
+
+def _stated(operation: Operation | None) -> Operation | None:
+    if operation is not None and operation not in get_args(Operation):
+        raise InputError("operation", operation, domain=" or ".join(get_args(Operation)))
+    return operation
 
 
 def _is_large(table: Path, columns: Mapping[str, str] | None, piece_rows: int | None) -> bool:
@@ -233,6 +245,7 @@ def _in_pieces(recorded: InPieces, context: _Context) -> Material:
         sample_period_s=recorded.period_s,
         assumptions=[recorded.claimed.words, recorded.plausibility.words, *recorded.doubts, _NO_PATH, *reading.notes],
         covariance=_origin(recorded.claimed, context.sigma_m, solved_alone=False),
+        operation=context.operation,
         labels=recorded.labels,
         inputs=[reading.source],
         rejected=reading.rejected,
@@ -272,6 +285,7 @@ class _Path:
     cross_track: list[CrossTrack] = field(default_factory=list)
     tracks: dict[str, str] = field(default_factory=dict)
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
+    operation: Operation = "en-route"
 
 
 def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejected: list[Rejection]) -> _Path:
@@ -328,7 +342,8 @@ def _on_approach(found: Approaches, gates: Gates, n_recorded: int) -> _Path:
     waypoints = [Waypoint(name=r.name, lat_rad=r.lat_rad, lon_rad=r.lon_rad, kind="runway") for r in found.runways]
     heading = f"{n} recorded approaches to {runways if len(found.runways) <= 4 else f'{len(found.runways)} runways'}"
     words += [r.doubt for r in found.runways if r.doubt is not None]
-    return _Path(found.epochs, words + found.notes, heading, waypoints, cross_track=found.cross_track, tracks=found.tracks)
+    notes = words + found.notes
+    return _Path(found.epochs, notes, heading, waypoints, cross_track=found.cross_track, tracks=found.tracks, operation="approach")
 
 
 def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> tuple[pl.DataFrame, pl.DataFrame]:

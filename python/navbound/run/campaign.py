@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import polars as pl
@@ -22,12 +22,40 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from navbound.records.run import CovarianceOrigin, EventSummary, Waypoint
     from navbound.scale import Work
 
     Fly = Callable[[range], tuple[pl.DataFrame, list[Any]]]
 
 MAX_FLIGHTS = 1000
 """One process holds all epochs of a run; a thousand two-hour flights are 7 million rows (about 3 GB)."""
+
+
+@dataclass(frozen=True)
+class Context:
+    """What a simulator says of its epochs; the fields of :class:`navbound.records.material.Material`."""
+
+    requirement: str
+    assumptions: list[str]
+    covariance: CovarianceOrigin
+    waypoints: list[Waypoint]
+    settings: dict[str, object]
+    events: list[EventSummary] = field(default_factory=list)
+    limits_held: dict[str, str] = field(default_factory=dict)
+
+
+class Campaign(Protocol):
+    """All flights of one scenario with one seed. It depends on nothing else, and pickle takes it."""
+
+    @property
+    def at_once(self) -> int:
+        """Flights of one tile: worth at least 0.2 s, and enough to keep the threads of one process busy."""
+
+    def __call__(self, flights: range) -> tuple[pl.DataFrame, list[Any]]:
+        """Epochs of some flights, and whatever JSON holds besides."""
+
+    def context(self, flights: int, reported: list[Any]) -> Context:
+        """What is said of the epochs of all flights."""
 
 
 def check_flights(flights: int) -> None:

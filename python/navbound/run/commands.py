@@ -14,12 +14,10 @@ from navbound.run import analyze as recorded
 from navbound.run import directory
 from navbound.run import fly as simulated
 from navbound.run.evaluate import performance
-from navbound.run.ground import flight as taxiing
 from navbound.run.judge import judge
 from navbound.run.procedure import with_answers
 from navbound.run.settings import Settings
 from navbound.run.verdict.faults import fault_summaries
-from navbound.scenario import taxi as taxi_scenarios
 from navbound.table.arguments import checked
 
 if TYPE_CHECKING:
@@ -68,12 +66,10 @@ def fly(
         A scenario file that cannot be read, or a run directory that cannot be written.
     """
     with directory.own(out) as folder:
-        route = taxi_scenarios.route_file(scenario)
-        if route is not None:
-            return directory.write(judge(taxiing.material(route, flights=flights, seed=seed, **work), settings, command), folder)
-        found = scenarios.load(scenario)
-        run = judge(simulated.material(found, flights=flights, seed=seed, **work), settings, command)
-        summary = run.summary.model_copy(update={"faults": fault_summaries(found, run.epochs, run.events)})
+        material = simulated.material(scenario, flights=flights, seed=seed, **work)
+        run = judge(material, settings, command)
+        faults = [] if material.scenario is None else fault_summaries(scenarios.of_record(material.scenario), run.epochs, run.events)
+        summary = run.summary.model_copy(update={"faults": faults})
         return directory.write(replace(run, summary=summary), folder)
 
 

@@ -24,7 +24,6 @@ from navbound.run.directory import Run
 from navbound.run.settings import Settings
 from navbound.run.summary.summarise import summarise
 from navbound.storage.frames import Frames
-from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from navbound.records.material import Material
@@ -62,7 +61,7 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
     if material.epochs.height == 0:
         raise InputError("epochs", 0, "1", "at least one epoch")
     judging = WITH_PATH if _has_values(material.epochs, "fte_m") else WITHOUT_PATH
-    rules = _rules(material, settings, judging, states=_classifier(material.epochs) if judging == WITH_PATH else None)
+    rules = _rules(material, settings, judging, states=_classifier(material) if judging == WITH_PATH else None)
     judges = Judges(rules, with_levels(material.epochs))
     epochs = judges.judge(material.epochs)
     events, counters, _ = judges.decided()
@@ -98,10 +97,9 @@ def _rules(material: Material, settings: Settings, judging: str, states: rnp.Sta
     return Rules(monitor, method=judging, beside=settings.methods, risk_accuracy=settings.risk_accuracy, states=states)
 
 
-def _classifier(epochs: pl.DataFrame) -> rnp.StateClassifier | None:
-    # Where the limit is metres, everything is in the tightest level's band: on the ground the levels of flight say nothing.
-    in_flight = (10.0 * column_of(epochs, "rnp_m") >= STATE_LEVELS_NM[0] * METRES_PER_NM).any()
-    return rnp.StateClassifier(STATE_LEVELS_NM) if in_flight else None
+def _classifier(material: Material) -> rnp.StateClassifier | None:
+    # On the ground everything is in the tightest level's band: the levels of flight say nothing.
+    return None if material.operation == "ground" else rnp.StateClassifier(STATE_LEVELS_NM)
 
 
 def _record(material: Material, settings: Settings, shown: list[str], counters: dict[str, object], command: str) -> RunRecord:

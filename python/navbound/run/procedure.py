@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.procedures import Flight, LegResult, Procedure
+    from navbound.records.operation import Operation
     from navbound.records.run import CrossTrack
     from navbound.run.directory import Run
 
@@ -87,6 +88,7 @@ class OnProcedure:
     inputs: list[InputFile]
     cross_track: list[CrossTrack]
     tracks: dict[str, str] = field(default_factory=dict)
+    operation: Operation = "approach"
 
 
 def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
@@ -138,6 +140,7 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
             for (leg,), points in table.group_by("leg", maintain_order=True)
         ],
         tracks=tracks,
+        operation="approach" if procedure.kind == "approach" else "en-route",
     )
 
 

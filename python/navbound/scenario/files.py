@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
-from navbound import _core
 from navbound.errors import FormatError, InputError, NotFoundError
-from navbound.scenario import taxi
 from navbound.scenario.models import Scenario
 from navbound.scenario.sensors import grades, with_grade
+from navbound.scenario.taxi import Taxi
 from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
-_FOLDER = Path(__file__).parent / "shipped"
-_KINDS = {
+_SHIPPED = Path(__file__).parent / "shipped"
+KINDS: dict[str, type[Scenario] | type[Taxi]] = {"flight": Scenario, "taxi": Taxi}
+"""What ``kind`` of a scenario may be, and its shape; a file without one is a flight."""
+_FOLDERS = (_SHIPPED, _SHIPPED / "taxiing")
+_FAULT_KINDS = {
     "lateral-ramp",
     "degraded-ranging",
     "satellite-step",
@@ -30,13 +33,19 @@ _KINDS = {
     "imu-bias-jump",
     "imu-trouble",
     "baro-blockage",
+    "range-step",
+    "range-ramp",
 }
 """Kinds of faults; the checker puts them into its locations, where the file has nothing."""
 
 
 def shipped() -> list[str]:
     """Names of the scenarios that ship with navbound."""
-    return sorted(path.stem for path in _FOLDER.glob("*.toml"))
+    return sorted(_shipped())
+
+
+def _shipped() -> dict[str, Path]:
+    return {path.stem: path for folder in _FOLDERS for path in folder.glob("*.toml")}
 
 
 def find(name_or_path: str | Path) -> Path:
@@ -47,16 +56,31 @@ def find(name_or_path: str | Path) -> Path:
     InputError
         Neither a shipped name nor a file.
     """
-    if str(name_or_path) in shipped():
-        return _FOLDER / f"{name_or_path}.toml"
+    ours = _shipped().get(str(name_or_path))
+    if ours is not None:
+        return ours
     path = Path(name_or_path)
     if not path.is_file():
-        raise NotFoundError("scenario", str(name_or_path), "file and no shipped scenario", [*shipped(), *taxi.shipped()])
+        raise NotFoundError("scenario", str(name_or_path), "file and no shipped scenario", shipped())
     return path
 
 
 def load(name_or_path: str | Path) -> Scenario:
-    """Read a scenario.
+    """Read a scenario of a flight.
+
+    Raises
+    ------
+    InputError, FormatError
+        As :func:`read`; and a scenario of another kind.
+    """
+    found = read(name_or_path)
+    if not isinstance(found, Scenario):
+        raise FormatError(find(name_or_path), f"{found.kind!r} is not a flight", field="kind")
+    return found
+
+
+def read(name_or_path: str | Path) -> Scenario | Taxi:
+    """Read a scenario of any kind.
 
     Parameters
     ----------
@@ -65,8 +89,8 @@ def load(name_or_path: str | Path) -> Scenario:
 
     Returns
     -------
-    Scenario
-        In SI units, checked: it can be flown.
+    Scenario or Taxi
+        By its ``kind``, in SI units, checked.
 
     Raises
     ------
@@ -80,8 +104,8 @@ def load(name_or_path: str | Path) -> Scenario:
     written: dict[Place, Written] = {}
     try:
         table = to_si(_graded(path, _table(path)), written)
-        scenario = Scenario.model_validate(table)
-        _core.Outlook.check(scenario.core_json())
+        scenario = _kind(path, table).model_validate(table)
+        scenario.check()
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as e:
         raise FormatError(path, f"not TOML: {e}") from e
     except OSError as e:
@@ -95,15 +119,28 @@ def load(name_or_path: str | Path) -> Scenario:
     return scenario
 
 
+def of_record(record: dict[str, object]) -> Scenario | Taxi:
+    """The scenario of a run record, in SI units already."""
+    return KINDS[str(record["kind"])].model_validate_json(json.dumps(record))
+
+
+def _kind(path: Path, table: dict[str, Any]) -> type[Scenario] | type[Taxi]:
+    kind = table.get("kind", "flight")
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise FormatError(path, f"{kind!r} is not one of the kinds ({', '.join(KINDS)})", field="kind")
+    return KINDS[kind]
+
+
 def _table(path: Path) -> dict[str, Any]:
     """Table of a file, laid over the shipped scenario that it names as its ``base``."""
     table = tomllib.loads(path.read_text(encoding="utf-8"))
     base = table.pop("base", None)
     if base is None:
         return table
-    if base not in shipped():
-        raise FormatError(path, f"{base!r} is not one of the shipped scenarios ({', '.join(shipped())})", field="base")
-    return _laid_over(_table(_FOLDER / f"{base}.toml"), table)
+    ours = _shipped()
+    if base not in ours:
+        raise FormatError(path, f"{base!r} is not one of the shipped scenarios ({', '.join(sorted(ours))})", field="base")
+    return _laid_over(_table(ours[base]), table)
 
 
 def _graded(path: Path, table: dict[str, Any]) -> dict[str, Any]:
@@ -125,7 +162,7 @@ def _laid_over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
 
 
 def _explained(path: Path, error: ErrorDetails, written: dict[Place, Written]) -> FormatError:
-    place = tuple(part for part in error["loc"] if part not in _KINDS)
+    place = tuple(part for part in error["loc"] if part not in _FAULT_KINDS)
     found = written.get(place)
     key = found.key if found else ".".join(str(part) for part in place)
     if error["type"] == "missing":

@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, field_validator
 
+from navbound import _core
 from navbound.scenario.part import Part
 from navbound.scenario.sensors import Sensors
 
@@ -139,6 +140,9 @@ Fault = Annotated[LateralRamp | DegradedRanging, Field(discriminator="kind")]
 class Scenario(Part):
     """One simulated flight, or many of them."""
 
+    kind: Literal["flight"] = "flight"
+    operation: Literal["en-route", "approach"] = "en-route"
+    """What is flown; the epochs, the summary and the report take it from here."""
     title: str = Field(min_length=1)
     start_gps: datetime
     """GPS time of the first epoch, without a zone."""
@@ -169,8 +173,12 @@ class Scenario(Part):
         """GPS time of the first epoch, since 1980-01-06 [ns]."""
         return (self.start_gps - GPS_EPOCH) // timedelta(microseconds=1) * 1000
 
+    def check(self) -> None:
+        """Refuse, with an :class:`InputError`, what cannot be flown."""
+        _core.Outlook.check(self.core_json())
+
     def core_json(self) -> str:
         """Write what the core reads."""
-        data = self.model_dump(mode="json", exclude={"title", "start_gps", "seed", "assumptions", "waypoints"})
+        data = self.model_dump(mode="json", exclude={"kind", "operation", "title", "start_gps", "seed", "assumptions", "waypoints"})
         data["waypoints"] = [w.model_dump(exclude={"kind"}) for w in self.waypoints]
         return json.dumps(data | {"start_ns": self.start_ns})

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import tomllib
+import json
 from datetime import datetime
-from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
-from navbound.errors import FormatError, InputError
+from navbound import _core
+from navbound.errors import InputError
 from navbound.scenario.models import GPS_EPOCH
 from navbound.scenario.part import Part
 from navbound.scenario.sensors import Imu
-from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
-
-FOLDER = Path(__file__).parent / "shipped" / "taxiing"
 
 PhaseId = Literal["RWY", "RET", "NTW", "ATW", "TL", "SLL"]
 """The landing roll, and the sub-phases of :func:`navbound.gbas.sub_phases`."""
@@ -94,6 +91,7 @@ class Taxi(Part):
     """A landing and the way to the stand."""
 
     kind: Literal["taxi"]
+    operation: Literal["ground"] = "ground"
     title: str = Field(min_length=1)
     start_gps: datetime
     seed: int = Field(ge=0, lt=2**64)
@@ -125,6 +123,23 @@ class Taxi(Part):
             raise ValueError(f"navigation.transition {self.navigation.transition!r} is no point between the first and the last")
         return self
 
+    def check(self) -> None:
+        """Refuse, with an :class:`InputError`, what cannot be driven."""
+        _core.Ground(self.core_json())
+
+    def core_json(self) -> str:
+        """Write what the core reads."""
+        kept = {"transition", "bias_m", "code_time_s", "phase_time_s"}
+        faults = {"satellite", "missed"}
+        return json.dumps(
+            {
+                "motion": self.motion.model_dump(),
+                "navigation": self.navigation.model_dump(include=kept),
+                "points": [p.model_dump() for p in self.points],
+                "faults": [f.model_dump(exclude=faults) for f in self.faults],
+            }
+        )
+
     @property
     def start_ns(self) -> int:
         """GPS time of the first epoch, since 1980-01-06 [ns]."""
@@ -135,64 +150,6 @@ class Taxi(Part):
         """Of the first epoch [s]: the nominal constellations begin at midnight."""
         midnight = self.start_gps.replace(hour=0, minute=0, second=0, microsecond=0)
         return (self.start_gps - midnight).total_seconds()
-
-
-def shipped() -> list[str]:
-    """Names of the taxi scenarios that ship with navbound."""
-    return sorted(path.stem for path in FOLDER.glob("*.toml"))
-
-
-def is_taxi(path: Path) -> bool:
-    """Whether a scenario file says, itself or through its base, that it is of kind ``taxi``."""
-    try:
-        return _table(path).get("kind") == "taxi"
-    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError):
-        # The reader of flights says what is wrong with it.
-        return False
-
-
-def load(path: Path) -> Taxi:
-    """Read a taxi scenario.
-
-    Raises
-    ------
-    FormatError
-        Not TOML, a key that is unknown or missing, a value outside its domain.
-    """
-    written: dict[Place, Written] = {}
-    try:
-        return Taxi.model_validate(to_si(_table(path), written))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as e:
-        raise FormatError(path, f"not TOML: {e}") from e
-    except OSError as e:
-        raise FormatError(path, f"cannot be read: {e.strerror}") from e
-    except GivenTwiceError as e:
-        raise FormatError(path, f"{e.value!r} is outside {e.domain}", field=e.argument) from e
-    except ValidationError as e:
-        first = e.errors()[0]
-        place = tuple(part for part in first["loc"] if part not in {"range-step", "range-ramp"})
-        found = written.get(place)
-        shown = "" if found is None else f"{found.value!r}: "
-        raise FormatError(path, f"{shown}{first['msg']}", field=found.key if found else ".".join(map(str, place))) from e
-
-
-def route_file(name_or_path: str | Path) -> Path | None:
-    """File of a taxi scenario by its name or path; None for anything else."""
-    if str(name_or_path) in shipped():
-        return FOLDER / f"{name_or_path}.toml"
-    path = Path(name_or_path)
-    return path if path.is_file() and is_taxi(path) else None
-
-
-def _table(path: Path) -> dict[str, Any]:
-    """Table of a file, laid over the shipped scenario that it names as its ``base``."""
-    table = tomllib.loads(path.read_text(encoding="utf-8"))
-    base = table.pop("base", None)
-    if base not in shipped():
-        return table if base is None else table | {"base": base}
-    below = _table(FOLDER / f"{base}.toml")
-    both = {k for k in table if isinstance(table[k], dict) and isinstance(below.get(k), dict)}
-    return {**below, **table, **{k: {**below[k], **table[k]} for k in both}}
 
 
 def check_satellites(found: Taxi, names: tuple[str, ...]) -> None:

@@ -4,6 +4,8 @@ import type { Payload } from "../data/records.ts";
 import { el } from "../show/dom.ts";
 import { count, risk } from "../show/format.ts";
 
+const OPERATIONS: Record<NonNullable<Payload["summary"]["operation"]>, string> = { "en-route": "en route", approach: "approach", ground: "ground" };
+
 export function smallPrint(payload: Payload): HTMLElement {
     const { record } = payload;
     const entry = (name: string, value: string): HTMLElement[] => [el("dt", {}, name), el("dd", {}, value)];
@@ -11,7 +13,7 @@ export function smallPrint(payload: Payload): HTMLElement {
     const json = (name: string, value: unknown): HTMLElement => el("details", {}, el("summary", {}, name), el("pre", {}, JSON.stringify(value, null, 2)));
     return el("section", { class: "small-print", id: "run" }, el("h2", {}, "Run record"),
         el("dl", {},
-            ...entry("navbound", record.navbound_version), ...entry("Command", record.command), ...entry("Created", record.created_utc), ...entry("Seed", record.seed === null ? "none" : String(record.seed)),
+            ...entry("navbound", record.navbound_version), ...entry("Command", record.command), ...entry("Created", record.created_utc), ...(payload.summary.operation === null ? [] : entry("Operation", OPERATIONS[payload.summary.operation])), ...entry("Seed", record.seed === null ? "none" : String(record.seed)),
             // Without a method no bound was made at any risk, and no map drawn.
             ...(record.methods.length === 0 ? [] : [...entry("Risks", `accuracy ${risk(record.risk_accuracy)}, integrity ${risk(record.risk_integrity)}`), ...entry("Methods", record.methods.join(", "))]), ...entry("Platform", record.platform),
             ...entry("Time", `UTC is GPS time minus ${payload.utc_offset_s} s`),

@@ -53,7 +53,7 @@ export function limitName(value_m: number | null | undefined): string {
 
 /** RNP values are names as much as numbers: "RNP 0.3". */
 export function rnpName(value_m: number): string {
-    // On the ground a requirement is some metres, which no one says in miles.
+    // A requirement of some metres is not said in miles.
     if (value_m < SHORT_M) return `RNP ${wholeMetres(value_m)}`;
     return Number.isFinite(value_m) ? `RNP ${Number((value_m / METRES_PER_NM).toFixed(3))}` : NONE;
 }

@@ -22,11 +22,15 @@ pub(crate) struct ReceiverClock {
 impl ReceiverClock {
     pub(crate) fn new(settings: &Gnss, seed: u64, flight: u64) -> Self {
         let mut stream = Stream::new(seed, flight, Sensor::ReceiverClock);
-        let (s, b, d) = (settings.interval_s, settings.clock_density_m2ps, settings.drift_density_m2ps3);
+        let (offset_m, drift_mps) = (settings.clock_sigma_m * stream.normal(), settings.drift_sigma_mps * stream.normal());
+        Self::from([offset_m, drift_mps], stream, settings.interval_s, [settings.clock_density_m2ps, settings.drift_density_m2ps3])
+    }
+
+    /// From an offset and a drift on, with the densities of their noises.
+    pub(crate) fn from([offset_m, drift_mps]: [f64; 2], stream: Stream, s: f64, [b, d]: [f64; 2]) -> Self {
         let first = (b * s + d * s * s * s / 3.0).sqrt();
         let cross = if first > 0.0 { 0.5 * d * s * s / first } else { 0.0 };
         let second = (d * s - cross * cross).max(0.0).sqrt();
-        let (offset_m, drift_mps) = (settings.clock_sigma_m * stream.normal(), settings.drift_sigma_mps * stream.normal());
         Self { stream, offset_m, drift_mps, step_s: s, factor: [first, cross, second] }
     }
 

@@ -23,7 +23,8 @@ mod sky;
 mod stations;
 mod unit_faults;
 
-pub(crate) use markov::staying;
+pub(crate) use clock::ReceiverClock;
+pub(crate) use markov::{Markov, staying};
 
 pub use faults::{ReceiverFault, SensorFault, Trouble};
 pub use settings::{Baro, Coverage, Dme, Envelope, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};

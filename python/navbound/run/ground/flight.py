@@ -1,4 +1,4 @@
-"""A landing and the way to the stand as material for judging: estimate, truth, covariance, path and protection levels, second by second."""
+"""Flights of kind ``taxi``, a landing and the taxi-in: estimate, truth, covariance, path and protection levels, second by second."""
 
 from __future__ import annotations
 
@@ -11,10 +11,8 @@ import polars as pl
 
 from navbound import gbas
 from navbound.gbas.modes import K95
-from navbound.records.material import Material
 from navbound.records.run import CovarianceOrigin, EventSummary, Waypoint
-from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
-from navbound.run.ground import errors
+from navbound.run.campaign import Context, track_name
 from navbound.run.ground.motion import move
 from navbound.run.ground.navigation import Navigated, Navigator
 from navbound.scenario import taxi as scenarios
@@ -22,74 +20,20 @@ from navbound.status import USABLE
 from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
-    from pathlib import Path
-    from typing import Unpack
-
     from navbound.gbas import SubPhase
     from navbound.run.ground.motion import Movement
-    from navbound.scale import Work
     from navbound.scenario.taxi import Taxi
 
 _AT_ONCE = 4
 """Flights of one tile, of some tenths of a second each."""
 
-__all__ = ["limits", "material"]
+__all__ = ["Flights", "limits"]
 
 
 def limits() -> dict[str, SubPhase]:
     """What each sub-phase asks; the landing roll, for which nothing was found, what the rapid exit taxiway asks (inferred)."""
     phases = gbas.sub_phases()
     return {"RWY": replace(phases["RET"], id="RWY", title="landing roll")} | phases
-
-
-def material(file: Path, *, flights: int = 1, seed: int | None = None, **work: Unpack[Work]) -> Material:
-    """Land and taxi.
-
-    Parameters
-    ----------
-    file : Path
-        A scenario of kind ``taxi``.
-    flights : int, optional
-        How many; each has random streams of its own, chosen by its number.
-    seed : int, optional
-        In place of the scenario's.
-    **work
-        Who flies, what is kept, who is told: as in :func:`navbound.scale.map_tiles`; progress counts flights.
-
-    Returns
-    -------
-    Material
-        Tracks ``flight-000``, ...; the same scenario, seed and number give the same epochs, from any back end.
-
-    Raises
-    ------
-    InputError
-        Flights outside [1, 1000], a seed outside [0, 2^64), a fault of a satellite that is not there, a route that cannot be driven.
-    FormatError
-        A scenario file that cannot be read.
-    """
-    found = scenarios.load(file)
-    chosen = chosen_seed(flights, seed, found.seed)
-    fly = _Flights(found.model_dump_json(), chosen)
-    ground = _ground(fly.taxi)
-    epochs, events = fly_all(fly, flights, _AT_ONCE, **work)
-    return Material(
-        epochs=epochs,
-        kind="fly",
-        title=found.title,
-        requirement="surface movement: twice RNP is the total system containment of each sub-phase (inferred)",
-        sample_period_s=1.0,
-        assumptions=_assumptions(found, ground.navigator, ground.asked),
-        covariance=CovarianceOrigin(id="simulated"),
-        labels={track_name(i): f"Flight {i + 1}" for i in range(flights)},
-        waypoints=[Waypoint(name=p.name, lat_rad=p.lat_rad, lon_rad=p.lon_rad, kind="waypoint") for p in found.points],
-        inputs=[scenario_file(file)],
-        scenario=found.model_dump(mode="json"),
-        seed=chosen,
-        settings={"flights": flights, "length_m": float(ground.movement.along_m[-1]), "transition_s": ground.navigator.fixes},
-        events=[EventSummary.model_validate(event) for event in events],
-        limits_held={p.title: _held(p) for p in ground.asked.values()},
-    )
 
 
 @dataclass(frozen=True)
@@ -106,21 +50,21 @@ class _Ground:
 def _ground(taxi: str) -> _Ground:
     """From a scenario as text, worked out once a process."""
     found, asked = scenarios.Taxi.model_validate_json(taxi), limits()
-    movement = move(found, asked)
+    movement = move(found)
     navigator = Navigator(found, movement, asked)
-    scenarios.check_satellites(found, navigator.sky.names)
     return _Ground(found, asked, movement, navigator)
 
 
 @dataclass(frozen=True)
-class _Flights:
+class Flights:
     """Flights of a scenario by their numbers. The scenario is text: its bytes are the same in every process."""
 
-    taxi: str
+    scenario: str
     seed: int
 
     def __call__(self, flights: range) -> tuple[pl.DataFrame, list[Any]]:
-        ground = _ground(self.taxi)
+        """Epochs of some flights, and their events."""
+        ground = _ground(self.scenario)
         parts, events = [], []
         for track in flights:
             navigated = ground.navigator.fly(self.seed, track)
@@ -128,14 +72,33 @@ class _Flights:
             events += [event.model_dump(mode="json") for event in _events(ground.taxi, navigated, parts[-1])]
         return pl.concat(parts), events
 
+    @property
+    def at_once(self) -> int:
+        """Flights of one tile."""
+        # A scenario that cannot be driven is refused before any flight.
+        _ground(self.scenario)
+        return _AT_ONCE
+
+    def context(self, flights: int, events: list[Any]) -> Context:  # noqa: ARG002 - another kind counts its filters
+        """What is said of the epochs."""
+        ground = _ground(self.scenario)
+        found = ground.taxi
+        return Context(
+            requirement="surface movement: twice RNP is the total system containment of each sub-phase (inferred)",
+            assumptions=_assumptions(found, ground.navigator, ground.asked),
+            covariance=CovarianceOrigin(id="simulated"),
+            waypoints=[Waypoint(name=p.name, lat_rad=p.lat_rad, lon_rad=p.lon_rad, kind="waypoint") for p in found.points],
+            settings={"length_m": float(ground.movement.along_m[-1]), "transition_s": ground.navigator.fixes},
+            events=[EventSummary.model_validate(event) for event in events],
+            limits_held={p.title: _held(p) for p in ground.asked.values()},
+        )
+
 
 def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, SubPhase], seed: int, track: int) -> pl.DataFrame:  # noqa: PLR0917 - a scenario, its parts, and which flight
     n = len(movement.along_m)
     east_m, north_m = movement.per_radian_m
     budget = gbas.error_budget()
-    fte = budget.sigma_fte_m * errors.gauss_markov(
-        errors.stream(seed, track, errors.STEERING).standard_normal(n), taxi.motion.steering_time_s
-    )
+    fte = budget.sigma_fte_m * movement.core.steering((seed, track), n)
     # The aircraft steers by its estimate; where it really is lies an nse away.
     est_lat = movement.lat_rad - fte * np.sin(movement.course_rad) / north_m
     est_lon = movement.lon_rad + fte * np.cos(movement.course_rad) / east_m

@@ -14,8 +14,7 @@ import numpy as np
 
 from navbound import gbas, gnss, ins
 from navbound.ins.settings import STANDARD_GRAVITY_MPS2
-from navbound.run.ground import errors
-from navbound.run.ground.sky import STEPS, mode_of
+from navbound.run.ground.sky import STEPS, line, mode_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -91,37 +90,31 @@ class InertialFlight:
         columns = (("truth_lat_rad", "truth_lon_rad", "truth_h_m"), ("vel_n_mps", "vel_e_mps", "vel_d_mps"))
         self.truth, self.velocity = (rolled.truth.select(names).to_numpy() for names in columns)
         attitude = rolled.truth.select("roll_rad", "pitch_rad", "heading_rad").row(0)
-        self.start = self._start(seed, track, attitude)
-        self.clock_m, self.drift_mps = self._clock(seed, track, len(self.truth))
-        self.doppler_mps = shared.parts.doppler_mps * errors.normals(seed, track, errors.DOPPLER, range(wide), len(shared.flown.position))
+        draw, core, clock, n = (seed, track), shared.movement.core, ins.Clock(), len(shared.flown.position)
+        self.start = self._start(draw, attitude)
+        # The noise that the filter believes in.
+        self.clock_m, self.drift_mps = core.clock(draw, len(self.truth), (clock.frequency_m2ps, clock.walk_m2ps3))
+        self.doppler_mps = shared.parts.doppler_mps * core.doppler(draw, n, wide).reshape(n, wide)
         lat, lon, h = np.ascontiguousarray(self.truth.T)
         receiver, self.place = (gnss.places(lat, lon, h, shared.sky.az_rad, shared.sky.el_rad, away) for away in (0.0, AWAY_M))
         self.ray_mps = np.gradient(self.place - receiver, 1.0 / STEPS, axis=0)
 
-    def _start(self, seed: int, track: int, attitude: tuple[float, ...]) -> ins.Start:
+    def _start(self, draw: tuple[int, int], attitude: tuple[float, ...]) -> ins.Start:
         """A start that is as wrong as it says."""
-        draw = errors.stream(seed, track, errors.START)
-        offset = draw.standard_normal(3) * KNOWN.position_sigma_m
+        position, velocity, turn = np.reshape(self.shared.movement.core.start(draw), (3, 3))
+        offset = position * KNOWN.position_sigma_m
         east_m, north_m = self.shared.movement.per_radian_m
         lat, lon, h = self.truth[0]
         return ins.Start(
             self.shared.start_ns,
             (lat + offset[0] / north_m, lon + offset[1] / east_m, h - offset[2]),
-            tuple(self.velocity[0] + draw.standard_normal(3) * KNOWN.velocity_sigma_mps),
+            tuple(self.velocity[0] + velocity * KNOWN.velocity_sigma_mps),
             # At small roll and pitch a turn about the vertical is one of the heading.
-            tuple(np.asarray(attitude) + draw.standard_normal(3) * KNOWN.attitude_sigma_rad),
+            tuple(np.asarray(attitude) + turn * KNOWN.attitude_sigma_rad),
             position_sigma_m=KNOWN.position_sigma_m,
             velocity_sigma_mps=KNOWN.velocity_sigma_mps,
             attitude_sigma_rad=KNOWN.attitude_sigma_rad,
         )
-
-    @staticmethod
-    def _clock(seed: int, track: int, n: int) -> tuple[Floats, Floats]:
-        """Offset and drift of the receiver's clock at every instant: the noise that the filter believes in."""
-        model, step_s = ins.Clock(), 1.0 / STEPS
-        white = math.sqrt(step_s) * errors.normals(seed, track, errors.CLOCK, (0, 1), n)
-        drift = np.cumsum(math.sqrt(model.walk_m2ps3) * white[:, 0])
-        return np.cumsum(drift * step_s + math.sqrt(model.frequency_m2ps) * white[:, 1]), drift
 
     def solve(self, range_error_m: Floats, phase_error_m: Floats, sigma_rate_mps: Floats) -> Solved:
         """Run the filter.
@@ -159,7 +152,7 @@ class InertialFlight:
         used[0] = False
         second, number = np.nonzero(used)
         sky, instant = shared.sky, STEPS * second
-        line = errors.line(sky.az_rad[instant, number], sky.el_rad[instant, number])
+        towards = line(sky.az_rad[instant, number], sky.el_rad[instant, number])
         velocity_enu = self.velocity[:, [1, 0, 2]] * (1.0, 1.0, -1.0)
         multipath = shared.multipath_m[second, number]
         ratio = self.shared.longest_s / self.shared.shortest_s
@@ -176,7 +169,7 @@ class InertialFlight:
             "sigma_first_m": multipath * (math.sqrt(2.0 / (1.0 + 1.0 / ratio)) if bounds else 1.0),
             "correlation_time_s": np.full(second.size, shared.longest_s),
             # Towards a satellite that turns about the aircraft only the aircraft's own velocity counts.
-            "rate_mps": self.drift_mps[instant] + self.doppler_mps[second, number] - (line * velocity_enu[instant]).sum(axis=-1),
+            "rate_mps": self.drift_mps[instant] + self.doppler_mps[second, number] - (towards * velocity_enu[instant]).sum(axis=-1),
             "sigma_rate_mps": np.full(second.size, shared.parts.doppler_mps),
         }
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import gbas, gnss, rraim
-from navbound.run.ground import errors
 from navbound.run.ground.inertial import Inertial, InertialFlight, Solved
-from navbound.run.ground.sky import STEPS, Sky, look, mode_of, way
+from navbound.run.ground.sky import STEPS, Sky, line, look, mode_of, way
+from navbound.scenario.taxi import check_satellites
 from navbound.status import REASONS
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Angles = tuple[Floats, Floats]
+    Draw = tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -109,6 +110,8 @@ class Navigator:
         self.lead, fine = flown.lead, look(taxi, flown)
         self.approach = fine.rows(slice(None, None, STEPS))
         self.sky: Sky = self.approach.rows(slice(flown.lead, None))
+        check_satellites(taxi, self.sky.names)
+        self.faulty = [self.sky.names.index(fault.satellite) for fault in taxi.faults]
         self.mode = mode_of(taxi)
         self.shares = gbas.allocation()
         self.rates = gbas.fault_rates()[taxi.navigation.case]
@@ -119,7 +122,7 @@ class Navigator:
 
     def fly(self, seed: int, track: int) -> Navigated:
         """Navigate one flight."""
-        n, wide = self.sky.el_rad.shape
+        n = len(self.sky.el_rad)
         found = Navigated(
             np.full((n, 3), np.nan),
             np.full((n, 3, 3), np.nan),
@@ -132,53 +135,45 @@ class Navigator:
             np.full(n, None, dtype=object),
             [],
         )
-        faults = np.zeros((n, wide))
         for fault in self.taxi.faults:
-            number = self.sky.names.index(fault.satellite)
-            faults[:, number] += errors.size(fault, np.arange(float(n)))
             end = round(fault.start_s + fault.duration_s)
             words = f"range of {fault.satellite} begins to be wrong ({fault.kind})"
             found.happened.append(Happened("fault", int(np.ceil(fault.start_s)), end if end < n else None, words))
-        withdrawn = self._withdrawn(seed, track, found)
+        draw = (seed, track)
+        withdrawn = self._withdrawn(draw, found)
         flight = None if self.inertial is None else self.inertial.flight(seed, track)
-        ranges = self._range_errors(seed, track, faults, withdrawn)
-        phases = self._phase_errors(seed, track, faults, withdrawn)
+        ranges = self._range_errors(draw, withdrawn)
+        phases = self._phase_errors(draw, withdrawn)
         solved = None if flight is None else flight.solve(ranges, phases.error_m, phases.sigma_rate_mps)
         self._fix(ranges[self.lead :], solved, found)
         self._coast(ranges, phases, flight, solved, found)
         found.happened.append(Happened("transition", self.fixes, None, "the last fix is carried on by carrier phase: no code from here"))
         return found
 
-    def _withdrawn(self, seed: int, track: int, found: Navigated) -> NDArray[np.bool_]:
+    def _withdrawn(self, draw: Draw, found: Navigated) -> NDArray[np.bool_]:
         """Satellites that the ground monitors take away, from the second in which they see a fault."""
         gone = np.zeros(self.sky.el_rad.shape, dtype=bool)
-        for k, fault in enumerate(self.taxi.faults):
-            seconds = np.arange(float(self.fixes))
-            missed = gbas.missed_by_monitor(np.abs(errors.size(fault, seconds)), self.mode.service)
-            # One draw a fault: it is seen once the curve falls below.
-            draw = 0.0 if fault.missed else errors.stream(seed, track, errors.MONITOR, k).uniform()
-            seen = np.flatnonzero(missed < draw)
+        # One draw a fault: it is seen once the curve falls below.
+        for k, (fault, chance) in enumerate(zip(self.taxi.faults, self.movement.core.monitor(draw), strict=True)):
+            missed = gbas.missed_by_monitor(np.abs(self.movement.core.fault(k, self.fixes)), self.mode.service)
+            seen = np.flatnonzero(missed < (0.0 if fault.missed else chance))
             if seen.size:
-                gone[seen[0] :, self.sky.names.index(fault.satellite)] = True
+                gone[seen[0] :, self.faulty[k]] = True
                 words = f"the ground monitors see {fault.satellite}: it is withdrawn"
                 found.happened.append(Happened("withdrawn", int(seen[0]), None, words))
         return gone
 
-    def _range_errors(self, seed: int, track: int, faults: Floats, withdrawn: NDArray[np.bool_]) -> Floats:
+    def _range_errors(self, draw: Draw, withdrawn: NDArray[np.bool_]) -> Floats:
         """Errors of corrected, smoothed ranges from the begin of the approach to the last fix; NaN for one that is not used [m]."""
-        navigation, n = self.taxi.navigation, self.lead + self.fixes
-        el, wide = self.approach.el_rad[:n], len(self.sky.names)
-        used = el >= navigation.mask_rad
+        n = self.lead + self.fixes
+        el = self.approach.el_rad[:n]
+        used = el >= self.taxi.navigation.mask_rad
         used[self.lead :] &= ~withdrawn[: self.fixes]
         sigma = gbas.range_sigma(np.where(used, el, np.nan), self.mode.service).sigma_m
-        found = sigma * errors.slow(seed, track, errors.CODE, wide=wide, n=n, time_s=navigation.code_time_s)
-        most = navigation.bias_m
-        found += np.array([errors.stream(seed, track, errors.BIAS, k).uniform(-most, most) for k in range(wide)])
-        found[self.lead :] += faults[: self.fixes]
-        return found
+        return self.movement.core.range_errors(draw, sigma, self.lead, self.faulty).reshape(el.shape)
 
-    def _phase_errors(self, seed: int, track: int, faults: Floats, withdrawn: NDArray[np.bool_]) -> Phases:
-        """Errors of phase from the last fix on: two noises and a drift that together have the sigma of equation 20."""
+    def _phase_errors(self, draw: Draw, withdrawn: NDArray[np.bool_]) -> Phases:
+        """Errors of phase from the last fix on, of satellites that are followed; their sigma is that of equation 20."""
         navigation, sky, fix = self.taxi.navigation, self.sky, self.fixes - 1
         steps, wide = STEPS * (len(sky.el_rad) - self.fixes), len(sky.names)
         seconds = np.arange(1.0, steps + 1.0) / STEPS
@@ -189,16 +184,9 @@ class Navigator:
         along = np.interp(fix + seconds, np.arange(len(sky.el_rad)), self.movement.along_m)
         speed = (along - self.movement.along_m[fix]) / seconds
         sigma = gbas.carrier_sigma(el, speed[:, None], seconds[:, None], self.carrier)
-        stays_s = STEPS * navigation.phase_time_s
-        noise = errors.slow(seed, track, errors.PHASE, wide=wide, n=steps + 1, time_s=stays_s)
-        drift = np.array([errors.stream(seed, track, errors.DRIFT, k).standard_normal() for k in range(wide)])
-        grown = np.sqrt(np.maximum(sigma**2 - 2 * self.carrier.noise_m**2, 0.0))
-        wrong = np.stack([np.interp(fix + seconds, np.arange(len(sky.el_rad)), faults[:, k]) for k in range(wide)], axis=-1) - faults[fix]
-        start = np.where(at_fix, 0.0, np.nan)
-        error = np.vstack([start, self.carrier.noise_m * (noise[1:] - noise[0]) + grown * drift + wrong])
-        # Noise that stays for a while changes little from instant to instant.
-        fresh = self.carrier.noise_m * np.sqrt(2.0 * (1.0 - np.exp(-1.0 / stays_s)))
-        return Phases(at_fix, sigma[STEPS - 1 :: STEPS], error, STEPS * np.hypot(fresh, np.diff(np.vstack([start, grown]), axis=0)))
+        noise_and_fix = (self.carrier.noise_m, fix)
+        error, sigma_rate = self.movement.core.phase_errors(draw, sigma, at_fix.tolist(), noise_and_fix, self.faulty)
+        return Phases(at_fix, sigma[STEPS - 1 :: STEPS], error.reshape(-1, wide), sigma_rate.reshape(-1, wide))
 
     def _fix(self, ranges: Floats, solved: Solved | None, found: Navigated) -> None:
         """GBAS with an inertial system."""
@@ -305,7 +293,7 @@ class Navigator:
 
     def _propagate(self, error0: Floats, then: Angles, now: Angles, sigma: Floats, phase: Floats) -> tuple[Floats, Floats]:
         """Change of the error of a fix that phase alone carries on, and how far it moves without each satellite (equation 11)."""
-        turned = (errors.line(*then) - errors.line(*now)) @ error0
+        turned = (line(*then) - line(*now)) @ error0
         change = moved_by(gnss.responses(*now, sigma, self.sky.systems), phase - turned)
         moves = np.zeros(sigma.shape)
         for number in np.flatnonzero((~np.isnan(sigma)).any(axis=0)):

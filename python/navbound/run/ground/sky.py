@@ -85,3 +85,8 @@ def look(taxi: Taxi, flown: Way) -> Sky:
     az, el = gnss.directions(orbits, lat_rad, lon_rad, h_m, taxi.second_of_day - flown.lead + fine)
     up = el > 0
     return Sky(orbits.satellite, orbits.constellation, np.where(up, az, np.nan), np.where(up, el, np.nan))
+
+
+def line(az_rad: Floats, el_rad: Floats) -> Floats:
+    """Unit vectors to satellites, east, north, up; shape (..., 3)."""
+    return np.stack([np.cos(el_rad) * np.sin(az_rad), np.cos(el_rad) * np.cos(az_rad), np.sin(el_rad)], axis=-1)

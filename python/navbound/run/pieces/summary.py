@@ -143,6 +143,7 @@ def summary(material: Material, epochs: Frames, events: pl.DataFrame, ids: Seque
     )
     return Summary(
         kind=material.kind,
+        operation=material.operation,
         title=material.title,
         verdict=verdict_of(material, facts, accuracy, risks, []),
         coverage_kind=evaluation.REPEATED,

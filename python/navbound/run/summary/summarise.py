@@ -59,6 +59,7 @@ def summarise(
     verdict = verdict_of(material, facts_of(material, margins, accuracy, risks), accuracy, risks, protection)
     return Summary(
         kind=material.kind,
+        operation=material.operation,
         title=material.title,
         verdict=verdict,
         coverage_kind=coverage_kind,

@@ -11,11 +11,11 @@ import polars as pl
 from navbound import anp, rnp
 from navbound.methods import column_of
 from navbound.records.faults import FaultSummary, Moment, Outcome
+from navbound.scenario import Scenario, Taxi
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from navbound.scenario import Scenario
 
 PERSISTENT_S = 3
 """The gate throws away a good measurement now and then; measurements thrown away in as many seconds on end are no accident: of thirty a
@@ -28,13 +28,13 @@ _SECOND_NS = 1_000_000_000
 _NEVER = 2**63 - 1
 
 
-def fault_summaries(scenario: Scenario, epochs: pl.DataFrame, events: pl.DataFrame) -> list[FaultSummary]:
+def fault_summaries(scenario: Scenario | Taxi, epochs: pl.DataFrame, events: pl.DataFrame) -> list[FaultSummary]:
     """Every declared fault of the sensors, flight by flight.
 
     Parameters
     ----------
-    scenario : Scenario
-        Whose ``sensors.faults`` were flown.
+    scenario : Scenario or Taxi
+        Whose ``sensors.faults`` were flown; one that simulates no sensors has none.
     epochs, events : DataFrame
         After judging.
 
@@ -42,7 +42,7 @@ def fault_summaries(scenario: Scenario, epochs: pl.DataFrame, events: pl.DataFra
     -----
     An alert is in time that comes no later than the shortest time to alert of any RNP specification after the error left RNP.
     """
-    if scenario.sensors is None or scenario.filter is None:
+    if not isinstance(scenario, Scenario) or scenario.sensors is None or scenario.filter is None:
         return []
     time_to_alert_s = min(cell.time_to_alert_s for cell in rnp.specifications() if cell.containment_m is not None)
     found = []

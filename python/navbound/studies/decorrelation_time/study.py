@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound.records.base import Record
-from navbound.run.ground.errors import gauss_markov
+from navbound.studies.gauss_markov import gauss_markov
 from navbound.studies.series_memory import INVERSE_E, autocorrelation, first_crossing, one_or_none, read_series
 
 if TYPE_CHECKING:

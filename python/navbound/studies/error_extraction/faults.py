@@ -8,8 +8,8 @@ import numpy as np
 
 from navbound import sbas
 from navbound.errors import InputError
-from navbound.run.ground.errors import gauss_markov
 from navbound.studies.error_extraction.records import FaultEntry, HeldRisk, Spread
+from navbound.studies.gauss_markov import gauss_markov
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
