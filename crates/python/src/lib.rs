@@ -34,6 +34,7 @@ mod sbas_fields;
 mod sbas_positions;
 mod simulate;
 mod states;
+mod station;
 mod status;
 mod subsets;
 mod surface;
@@ -75,6 +76,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     positions::register(m)?;
     procedures::register(m)?;
     simulate::register(m)?;
+    station::register(m)?;
     ins_simulate::register(m)?;
     subsets::register(m)?;
     read::register(m)?;
