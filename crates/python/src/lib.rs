@@ -39,6 +39,7 @@ mod status;
 mod subsets;
 mod surface;
 mod tse;
+mod vertical;
 
 use pyo3::prelude::*;
 
@@ -50,6 +51,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     methods::register(m)?;
     status::register(m)?;
     tse::register(m)?;
+    vertical::register(m)?;
     anp::register(m)?;
     araim::register(m)?;
     raim::register(m)?;
