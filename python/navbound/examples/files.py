@@ -68,7 +68,7 @@ def _ubx(folder: Path) -> None:
 
 
 EXAMPLES: dict[str, Example] = {
-    "rinex": Example(("station.rnx", "broadcast.rnx"), "two hours of a station, with an outage and a satellite that ranges wrongly", _rinex),
+    "rinex": Example(("station.rnx", "broadcast.rnx"), "two hours of a station, an outage, a faulty satellite", _rinex),
     "ubx": Example(("receiver.ubx", "receiver-broadcast.rnx"), "three minutes of a u-blox receiver's raw measurements", _ubx),
 }
 """Examples by name."""
