@@ -16,7 +16,7 @@ fn an_epoch_is_written_in_the_columns_of_the_standard() {
     (o.marker, o.interval_s) = ("TEST".to_owned(), Some(30.0));
     o.codes[0] = vec![*b"C1C", *b"L1C"];
     let time = GpsTime::from_nanoseconds(BEGIN_NS + 30_500_000_000);
-    o.add_epoch(time, &[(satellite(Constellation::Gps, 5), vec![(21_600_712.0224, 0), (-113_512_506.8764, 0x17)])]).unwrap();
+    o.add_epoch(time, &[(satellite(Constellation::Gps, 5), vec![(21_600_712.022_4, 0), (-113_512_506.876_4, 0x17)])]).unwrap();
     let text = observation_file(&o, "navbound").unwrap();
     // Columns counted by hand from RINEX 3.05, table A3: F14.3, I1, I1 for each observation.
     assert!(text.contains("\n> 2024 03 01 00 00 30.5000000  0  1\nG05  21600712.022  -113512506.87617\n"), "{text}");
