@@ -8,6 +8,7 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import polars as pl
@@ -54,9 +55,9 @@ def test_the_antenna_stands_where_the_truth_says() -> None:
     assert np.abs(np.array(place) - examples.PLACE_ECEF_M).max() <= 0.51e-4
 
 
-def _positions(observations: str, navigation: str, **more: str) -> pl.DataFrame:
+def _positions(observations: str, navigation: str, signals: Literal["single", "dual"]) -> pl.DataFrame:
     read = gnss.read_observations(DATA / observations), gnss.read_navigation(DATA / navigation)
-    return gnss.solve(*read, truth_ecef_m=examples.PLACE_ECEF_M, **more).epochs
+    return gnss.solve(*read, truth_ecef_m=examples.PLACE_ECEF_M, signals=signals).epochs
 
 
 def _largest(epochs: pl.DataFrame) -> list[float]:
