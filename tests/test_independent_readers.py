@@ -345,3 +345,58 @@ def test_every_leg_of_a_navigation_database_is_that_of_arinc424(shared_data: Pat
         for key, value in _numbers(fields).items():
             # The same digits by another order of operations: the last of sixteen.
             assert leg[key] == (None if value is None else pytest.approx(value, rel=1e-14)), (number, key)
+
+
+EXAMPLES = Path(__file__).parents[1] / "examples" / "data"
+
+
+@pytest.mark.filterwarnings("ignore")  # The peer's own, as above.
+def test_georinex_reads_the_observations_that_we_write() -> None:
+    theirs = peer("georinex").load(EXAMPLES / "station.rnx", use={"G"}, meas=["C1C", "L2L"])
+    ours = gnss.read_observations(EXAMPLES / "station.rnx")
+    labels = theirs.time.values.astype("datetime64[ns]").astype(np.int64)
+    assert (ours.time_ns == labels - 315_964_800 * NS).all()
+    for code in ("C1C", "L2L"):
+        table = ours.column("G", code)
+        values = theirs[code].to_series().dropna()
+        assert len(values) == table.height > 1500
+        own = dict(zip(zip(table["time_ns"], table["satellite"], strict=True), table["value"], strict=True))
+        for (time, satellite), value in values.items():
+            assert own[int(np.datetime64(time, "ns").astype(np.int64)) - 315_964_800 * NS, satellite] == value
+
+
+def test_sidereon_reads_the_records_that_we_write() -> None:
+    theirs = {
+        (r.satellite, round(r.toe_tow_s)): r for r in peer("sidereon").parse_rinex_nav_records((EXAMPLES / "broadcast.rnx").read_text())
+    }
+    ours = gnss.read_navigation(EXAMPLES / "broadcast.rnx").records()
+    assert len(theirs) == ours.height > 100
+    for row in ours.iter_rows(named=True):
+        r = theirs[row["satellite"], row["orbit_time_ns"] % WEEK_NS // NS]
+        assert str(r.message).partition(".")[2] == {"G": "GPS_LNAV", "E": "GALILEO_INAV"}[row["satellite"][0]]
+        assert {name: row[name] for name in ELEMENTS} == {name: getattr(r.elements, theirs_name) for name, theirs_name in ELEMENTS.items()}
+        assert (row["clock_s"], row["accuracy_m"], r.toe_week) == (r.clock.af0, r.sv_accuracy_m, row["orbit_time_ns"] // WEEK_NS)
+
+
+def test_pyubx2_reads_the_log_that_we_write() -> None:
+    log = (EXAMPLES / "receiver.ubx").read_bytes()
+    frames = [message for _, message in peer("pyubx2").UBXReader(io.BytesIO(log), quitonerror=2)]
+    ours = gnss.read_observations(EXAMPLES / "receiver.ubx")
+    assert [message.identity for message in frames] == ["RXM-RAWX"] * 180
+    names = {(0, 0): ("G", "1C"), (0, 3): ("G", "2L"), (2, 0): ("E", "1C"), (2, 4): ("E", "5Q")}
+    columns = {(system, kind, signal): ours.column(system, kind + signal) for system, signal in names.values() for kind in "CLD"}
+    own = {
+        (key, time, satellite): value
+        for key, table in columns.items()
+        for time, satellite, value in table.select("time_ns", "satellite", "value").iter_rows()
+    }
+    n = 0
+    for message in frames:
+        time_ns = message.week * WEEK_NS + round(message.rcvTow * 1e9)
+        for k in range(1, message.numMeas + 1):
+            gnss_id, sv, signal = (getattr(message, f"{name}_{k:02d}") for name in ("gnssId", "svId", "sigId"))
+            system, code = names[gnss_id, signal]
+            for kind, field in (("C", "prMes"), ("L", "cpMes"), ("D", "doMes")):
+                assert own[(system, kind, code), time_ns, f"{system}{sv:02d}"] == getattr(message, f"{field}_{k:02d}")
+                n += 1
+    assert n == len(own) > 10_000

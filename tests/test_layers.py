@@ -33,6 +33,7 @@ LAYERS = (
     ("scale", "report"),
     ("maps", "run"),
     ("studies",),
+    ("examples",),
     ("live",),
     ("cli",),
 )

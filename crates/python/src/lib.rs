@@ -35,6 +35,7 @@ mod sbas_fields;
 mod sbas_positions;
 mod simulate;
 mod states;
+mod station;
 mod status;
 mod subsets;
 mod surface;
@@ -79,6 +80,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     positions::register(m)?;
     procedures::register(m)?;
     simulate::register(m)?;
+    station::register(m)?;
     ins_simulate::register(m)?;
     subsets::register(m)?;
     read::register(m)?;

@@ -101,7 +101,7 @@ impl PreciseOrbits {
 }
 
 /// `G01`.
-fn satellite_id(name: &str) -> Option<SatelliteId> {
+pub fn satellite_id(name: &str) -> Option<SatelliteId> {
     let constellation = Constellation::from_letter(*name.as_bytes().first()?)?;
     Some(SatelliteId { constellation, number: name.get(1..)?.parse().ok()? })
 }

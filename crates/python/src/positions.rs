@@ -37,7 +37,7 @@ type Kepler<'py> = (Vec<String>, Bound<'py, PyArray2<f64>>, Vec<f64>);
 pub struct Navigation {
     pub records: rinex::Navigation,
     /// Refused records with their file.
-    refused: Vec<(String, Refusal)>,
+    pub refused: Vec<(String, Refusal)>,
 }
 
 impl Navigation {

@@ -16,6 +16,7 @@ mod profile;
 mod ranging;
 mod scenario;
 mod sensors;
+mod station;
 mod trajectory;
 
 pub use flight::{Doubt, FlownEpoch, Navigated, fly, fly_by};
@@ -28,4 +29,5 @@ pub use sensors::{
     Baro, Coverage, Dme, Envelope, Gnss, Imu, PathFlown, RangeMode, RangeParts, ReceiverFault, SensedFlight, Sensing, SensorFault, Sensors,
     Station, StationKind, Step, Trouble, Vor,
 };
+pub use station::{Heard, IONOSPHERE, Measured, RawEpoch, RawStation, WrongRange, broadcast, carriers, hear};
 pub use trajectory::{Cursor, Motion, Trajectory};

@@ -12,7 +12,7 @@ import typer
 
 import navbound
 from navbound import _core
-from navbound.cli import analyze, demo, evaluate, fly, lists, live, maps, predict, procedures, show, study, verify
+from navbound.cli import analyze, demo, evaluate, example, fly, lists, live, maps, predict, procedures, show, study, verify
 from navbound.cli.parts import err_console
 from navbound.errors import FormatError, InputError, InternalError, NavboundError, visible
 from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed
@@ -41,6 +41,7 @@ def _about(
 
 _COMMANDS: dict[str, Callable[..., None]] = {
     "demo": demo.demo_command,
+    "example": example.example_command,
     "fly": fly.fly_command,
     "analyze": analyze.analyze_command,
     "evaluate": evaluate.evaluate_command,

@@ -1,4 +1,4 @@
-"""The epoch table to files of other programs."""
+"""The epoch table, measurements and broadcast records to files of other programs."""
 
 from __future__ import annotations
 
@@ -12,9 +12,12 @@ import polars as pl
 from navbound import _core
 from navbound.errors import InputError
 from navbound.table.columns import COVARIANCE
+from navbound.write.measurements import WrittenLog, navigation, observations, ubx
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+__all__ = ["Written", "WrittenLog", "navigation", "observations", "rtklib", "ubx"]
 
 _POSITION = ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m")
 

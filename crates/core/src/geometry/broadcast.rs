@@ -15,7 +15,7 @@ const MU_GPS: f64 = 3.986_005e14;
 /// Of Galileo and BeiDou.
 const MU_OTHERS: f64 = 3.986_004_418e14;
 /// Earth's rate of rotation: GPS and Galileo \[rad/s\].
-pub(super) const EARTH_RATE: f64 = 7.292_115_146_7e-5;
+pub const EARTH_RATE: f64 = 7.292_115_146_7e-5;
 /// BeiDou (CGCS2000).
 const EARTH_RATE_BEIDOU: f64 = 7.292_115_0e-5;
 /// Tilt of the frame in which BeiDou's geostationary orbits are fitted: -5 degrees.
@@ -57,6 +57,11 @@ pub struct Broadcast {
     relativity: f64,
 }
 
+/// Gravitational constant of the Earth in a constellation's interface document \[m³/s²\].
+pub const fn gravitation_m3ps2(constellation: Constellation) -> f64 {
+    if matches!(constellation, Constellation::Gps) { MU_GPS } else { MU_OTHERS }
+}
+
 /// State at a GPS time from a Keplerian record; for many times make the [`Broadcast`] once.
 ///
 /// # Errors
@@ -88,7 +93,7 @@ impl Broadcast {
     pub fn new(e: &Ephemeris) -> Result<Self, Unavailable> {
         check(e)?;
         let beidou = e.satellite.constellation == Constellation::BeiDou;
-        let mu = if e.satellite.constellation == Constellation::Gps { MU_GPS } else { MU_OTHERS };
+        let mu = gravitation_m3ps2(e.satellite.constellation);
         let earth_rate = if beidou { EARTH_RATE_BEIDOU } else { EARTH_RATE };
         let a = e.sqrt_a * e.sqrt_a;
         // Right ascension counts from the start of the week.

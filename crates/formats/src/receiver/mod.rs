@@ -12,6 +12,7 @@ mod sbf;
 mod subframes;
 mod table;
 mod ubx;
+mod write;
 
 use crate::refusal::Unreadable;
 use crate::rinex::{Navigation, Observations};
@@ -19,6 +20,7 @@ use crate::sbas::Received;
 use frames::{Frame, Frames, measures};
 use subframes::Subframes;
 use table::Table;
+pub use write::rawx_log;
 
 /// What a log of raw data holds. Any part may be empty.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -9,7 +9,7 @@ use crate::time::from_week;
 use navbound_core::quantity::GpsTime;
 use navbound_core::signal::{Constellation, SatelliteId};
 
-const RAWX: [u8; 2] = [0x02, 0x15];
+pub(super) const RAWX: [u8; 2] = [0x02, 0x15];
 const SFRBX: [u8; 2] = [0x02, 0x13];
 const RAW_OLD: [u8; 2] = [0x02, 0x10];
 const SFRB_OLD: [u8; 2] = [0x02, 0x11];
@@ -194,7 +194,7 @@ fn time(week: u16, tow_s: f64) -> Option<GpsTime> {
     from_week(i64::from(week), (tow_s * 1e9).round() as i64)
 }
 
-fn satellite(system: u8, number: u8) -> Option<SatelliteId> {
+pub(super) fn satellite(system: u8, number: u8) -> Option<SatelliteId> {
     let (constellation, numbers, less) = match system {
         0 => (Constellation::Gps, 1..=32, 0),
         1 => (Constellation::Sbas, 120..=158, 100),
@@ -212,7 +212,7 @@ fn satellite_by_prn(number: u8) -> Option<SatelliteId> {
 }
 
 /// Band and attribute of a signal.
-fn signal_of(system: u8, signal: u8) -> Option<[u8; 2]> {
+pub(super) fn signal_of(system: u8, signal: u8) -> Option<[u8; 2]> {
     let name = match (system, signal) {
         (0 | 1 | 2 | 6, 0) => b"1C",
         (0, 3) => b"2L",

@@ -6,12 +6,15 @@ pub mod clock;
 mod compact;
 pub(crate) mod header;
 mod heading;
+mod layout;
 pub mod navigation;
 pub(crate) mod number;
 pub mod observation;
 mod plain;
 mod value;
+mod write;
 
 pub use clock::read_clocks;
 pub use navigation::{Dated, Navigation, read_navigation};
 pub use observation::{Code, Observations, read_observations};
+pub use write::{navigation_file, observation_file};

@@ -5,7 +5,7 @@ use super::number::text;
 use super::{compact, heading, plain};
 use crate::order::most_rising;
 use crate::refusal::{Refusal, Unreadable};
-use navbound_core::quantity::GpsTime;
+use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{Constellation, SatelliteId};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -130,6 +130,32 @@ impl Observations {
     /// Position of a code among those of a constellation.
     pub fn column(&self, constellation: Constellation, code: &Code) -> Option<usize> {
         self.codes[constellation.index()].iter().position(|c| c == code)
+    }
+
+    /// Add an epoch: satellites with a value and an indicator for each of their codes.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] unless every satellite has as many values as its constellation has codes, and the time is later than the last.
+    pub fn add_epoch(&mut self, time: GpsTime, seen: &[(SatelliteId, Vec<(f64, u8)>)]) -> Result<(), OutOfDomain> {
+        for (satellite, values) in seen {
+            let codes = self.n_codes(satellite.constellation);
+            if values.len() != codes {
+                let domain = "as many as the constellation has codes";
+                return Err(OutOfDomain { argument: "values", value: values.len() as f64, unit: "1", domain });
+            }
+        }
+        if self.time.last().is_some_and(|last| *last >= time) {
+            let (value, domain) = (time.nanoseconds() as f64, "later than the epoch before");
+            return Err(OutOfDomain { argument: "time_ns", value, unit: "ns", domain });
+        }
+        for (satellite, values) in seen {
+            self.begin_satellite(*satellite);
+            for (value, indicator) in values {
+                self.push(*value, *indicator);
+            }
+        }
+        self.end_epoch(time, false, f64::NAN, self.time.len() + 1);
+        Ok(())
     }
 
     pub(super) fn n_codes(&self, constellation: Constellation) -> usize {

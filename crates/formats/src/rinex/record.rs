@@ -1,5 +1,6 @@
 //! One navigation record: its lines to an ephemeris.
 
+use super::super::layout as at;
 use super::super::number::{Field, columns, fixed, seconds_ns, text, whole};
 use super::nearest_week;
 use crate::refusal::Refusal;
@@ -44,9 +45,9 @@ impl<'a> Block<'a> {
             let Some(line) = self.lines.get(row) else {
                 return Err(self.refusal("record", "the record ends early"));
             };
-            let from = self.indent + 19 * column;
-            let field = fixed(line, from, from + 19);
-            *value = field.or_zero().ok_or_else(|| self.not_a_number(row, k, columns(line, from, from + 19)))?;
+            let from = self.indent + at::WIDTH * column;
+            let field = fixed(line, from, from + at::WIDTH);
+            *value = field.or_zero().ok_or_else(|| self.not_a_number(row, k, columns(line, from, from + at::WIDTH)))?;
         }
         Ok(values)
     }
@@ -113,10 +114,10 @@ impl<'a> Block<'a> {
         let v = self.numbers::<27>()?;
         // The last line is often cut by writers that leave out blanks.
         let [sent, last] = self.last_line()?;
-        let orbit_time = nearest_week(v[11], clock_time, behind).ok_or_else(|| self.refusal("toe", "not a time of week"))?;
+        let orbit_time = nearest_week(v[at::ORBIT_TIME], clock_time, behind).ok_or_else(|| self.refusal("toe", "not a time of week"))?;
         let unnamed = || self.refusal("data sources", "neither the clock of I/NAV nor that of F/NAV");
-        let message = kind(satellite, message, v[20]).ok_or_else(unnamed)?;
-        if let Some((field, reason)) = orbit_refusal(v[10], v[8]) {
+        let message = kind(satellite, message, v[at::SOURCES]).ok_or_else(unnamed)?;
+        if let Some((field, reason)) = orbit_refusal(v[at::SQRT_A], v[at::ECCENTRICITY]) {
             return Err(self.refusal(field, reason));
         }
         Ok(Ephemeris {
@@ -126,27 +127,27 @@ impl<'a> Block<'a> {
             clock: [v[0], v[1], v[2]],
             orbit_time,
             sent: sent.and_then(|s| nearest_week(s, orbit_time, behind)),
-            issue_orbit: small(v[3]),
+            issue_orbit: small(v[at::ISSUE]),
             issue_clock: if beidou {
                 small(last.unwrap_or(0.0))
             } else if message == Message::Lnav {
-                small(v[26])
+                small(v[at::DELAY_OR_ISSUE])
             } else {
-                small(v[3])
+                small(v[at::ISSUE])
             },
-            sqrt_a: v[10],
-            eccentricity: v[8],
-            inclination: [v[15], v[19]],
-            node: [v[13], v[18]],
-            perigee: v[17],
-            mean_anomaly: v[6],
-            delta_n: v[5],
-            latitude_harmonics: [v[7], v[9]],
-            radius_harmonics: [v[16], v[4]],
-            inclination_harmonics: [v[12], v[14]],
-            accuracy_m: v[23],
-            health: Health { word: small(v[24]) },
-            group_delay_s: [v[25], if message == Message::Lnav { 0.0 } else { v[26] }],
+            sqrt_a: v[at::SQRT_A],
+            eccentricity: v[at::ECCENTRICITY],
+            inclination: [v[at::INCLINATION], v[at::INCLINATION_RATE]],
+            node: [v[at::NODE], v[at::NODE_RATE]],
+            perigee: v[at::PERIGEE],
+            mean_anomaly: v[at::MEAN_ANOMALY],
+            delta_n: v[at::DELTA_N],
+            latitude_harmonics: [v[at::CUC], v[at::CUS]],
+            radius_harmonics: [v[at::CRC], v[at::CRS]],
+            inclination_harmonics: [v[at::CIC], v[at::CIS]],
+            accuracy_m: v[at::ACCURACY],
+            health: Health { word: small(v[at::HEALTH]) },
+            group_delay_s: [v[at::DELAY], if message == Message::Lnav { 0.0 } else { v[at::DELAY_OR_ISSUE] }],
             fit_interval_s: fit_interval(message, last.unwrap_or(0.0)),
         })
     }
@@ -156,11 +157,11 @@ impl<'a> Block<'a> {
         let line = self.lines.get(7).copied().unwrap_or_default();
         let mut values = [None; 2];
         for (k, value) in values.iter_mut().enumerate() {
-            let from = self.indent + 19 * k;
-            *value = match fixed(line, from, from + 19) {
+            let from = self.indent + at::WIDTH * k;
+            *value = match fixed(line, from, from + at::WIDTH) {
                 Field::Number(v) => Some(v),
                 Field::Blank => None,
-                Field::Bad => return Err(self.not_a_number(7, 27 + k, columns(line, from, from + 19))),
+                Field::Bad => return Err(self.not_a_number(7, at::SENT + k, columns(line, from, from + at::WIDTH))),
             };
         }
         Ok(values)

@@ -12,7 +12,7 @@ mod nmea;
 mod novatel;
 mod sbf;
 mod search;
-mod ubx;
+pub(crate) mod ubx;
 
 #[cfg(test)]
 pub(crate) use check::crc16;

@@ -25,6 +25,7 @@ mod unit_faults;
 
 pub(crate) use clock::ReceiverClock;
 pub(crate) use markov::{Markov, staying};
+pub(crate) use sky::Satellite;
 
 pub use faults::{ReceiverFault, SensorFault, Trouble};
 pub use settings::{Baro, Coverage, Dme, Envelope, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};
@@ -41,7 +42,6 @@ use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{Ephemeris, ImuIncrement, PhaseRange, TimedAiding};
 use receiver::Receiver;
 use receiver_faults::ReceiverFaults;
-use sky::Satellite;
 use stations::{Bearings, Interrogator};
 use unit_faults::UnitFaults;
 

@@ -47,6 +47,18 @@ impl Satellite {
         }
     }
 
+    /// Satellites of records that stand in the order of satellite and reference time; those that describe no orbit are left out.
+    pub(crate) fn of_records(records: &[Ephemeris]) -> Vec<Self> {
+        let mut all = Vec::new();
+        for own in records.chunk_by(|a, b| a.satellite == b.satellite) {
+            let orbits: Result<Vec<Broadcast>, _> = own.iter().map(Broadcast::new).collect();
+            all.extend(
+                orbits.ok().map(|orbits| Self { id: own[0].satellite, source: Source::Broadcast { records: own.to_vec(), orbits } }),
+            );
+        }
+        all
+    }
+
     /// How a receiver at a position sees it; `None` when no record covers the time.
     pub(crate) fn sent(&self, begin: GpsTime, time_s: f64, receiver: &Vector3<f64>) -> Option<Sent> {
         let mut way_s = WAY_S;
@@ -94,14 +106,8 @@ fn from_records(records: &[Ephemeris], systems: &[System], scenario: &Scenario) 
     let mut usable: Vec<Ephemeris> = records.iter().filter(|r| wanted.contains(&r.satellite.constellation) && usable(r)).copied().collect();
     usable.sort_by_key(|r| (r.satellite, r.orbit_time));
     let (begin, end) = (GpsTime::from_nanoseconds(scenario.start_ns), scenario.duration_s);
-    let mut found = Vec::new();
-    for own in usable.chunk_by(|a, b| a.satellite == b.satellite) {
-        let orbits: Result<Vec<Broadcast>, _> = own.iter().map(Broadcast::new).collect();
-        let within = own.iter().any(|r| r.covers(begin) || r.covers(begin.plus_seconds(end)));
-        if let (Ok(orbits), true) = (orbits, within) {
-            found.push(Satellite { id: own[0].satellite, source: Source::Broadcast { records: own.to_vec(), orbits } });
-        }
-    }
+    let covered = |id: SatelliteId| usable.iter().any(|r| r.satellite == id && (r.covers(begin) || r.covers(begin.plus_seconds(end))));
+    let found: Vec<Satellite> = Satellite::of_records(&usable).into_iter().filter(|s| covered(s.id)).collect();
     if found.is_empty() {
         let domain = "records of healthy satellites that cover the flight";
         return Err(OutOfDomain { argument: "navigation", value: records.len() as f64, unit: "records", domain });

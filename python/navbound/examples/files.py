@@ -1,0 +1,106 @@
+"""The example files: which there are, what is in them, and how each is made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from navbound import write
+from navbound.errors import InputError
+from navbound.examples.station import Station, measure
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+_HOUR_NS = 3600 * 10**9
+BEGIN_NS = (2408 * 168 + 9) * _HOUR_NS
+"""2026-03-01 09:00:00 of GPS time, a Sunday."""
+STATION = Station(
+    lat_rad=float(np.radians(48.99)),
+    lon_rad=float(np.radians(2.57)),
+    h_m=120.0,
+    begin_ns=BEGIN_NS,
+    step_s=30.0,
+    n_epochs=240,
+    seed=60,
+    outages_s=((2400.0, 2700.0),),
+    wrong=(("G10", (4500.0, 5400.0), 40.0, 0.1),),
+)
+"""Two hours at the airport of Paris; five minutes without a signal; a satellite whose ranges are 40 m and more too long."""
+LOG = replace(STATION, step_s=1.0, n_epochs=180, seed=61, outages_s=(), wrong=())
+"""Three minutes every second, on which nothing happens."""
+PLACE_ECEF_M = (4189135.1896, 188029.6189, 4789919.6247)
+"""The antenna of both, Earth-fixed: truth. [m]"""
+
+
+@dataclass(frozen=True)
+class Example:
+    """An example.
+
+    Attributes
+    ----------
+    files : tuple of str
+        Names of its files.
+    contents : str
+        What is in them, in a sentence.
+    make : callable
+        Writes them into a folder.
+    """
+
+    files: tuple[str, ...]
+    contents: str
+    make: Callable[[Path], None]
+
+
+def _rinex(folder: Path) -> None:
+    recording = measure(STATION, "PARIS")
+    write.observations(recording.observations, folder / "station.rnx")
+    write.navigation(recording.navigation, folder / "broadcast.rnx")
+
+
+def _ubx(folder: Path) -> None:
+    recording = measure(LOG, "PARIS")
+    write.ubx(recording.observations, folder / "receiver.ubx")
+    write.navigation(recording.navigation, folder / "receiver-broadcast.rnx")
+
+
+EXAMPLES: dict[str, Example] = {
+    "rinex": Example(("station.rnx", "broadcast.rnx"), "two hours of a station, an outage, a faulty satellite", _rinex),
+    "ubx": Example(("receiver.ubx", "receiver-broadcast.rnx"), "three minutes of a u-blox receiver's raw measurements", _ubx),
+}
+"""Examples by name."""
+
+
+def make(names: Sequence[str], folder: str | Path) -> list[Path]:
+    """Make examples in a folder.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of :data:`EXAMPLES`; none means all.
+    folder : str or Path
+        Where; made if it is not there.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    InputError
+        A name that is none.
+    """
+    for name in names:
+        if name not in EXAMPLES:
+            raise InputError("names", name, domain=f"one of {', '.join(EXAMPLES)}")
+    place = Path(folder)
+    place.mkdir(parents=True, exist_ok=True)
+    files = []
+    for name in names or EXAMPLES:
+        EXAMPLES[name].make(place)
+        files += [place / file for file in EXAMPLES[name].files]
+    return files
