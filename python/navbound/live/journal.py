@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 IN, OUT, SNAPSHOT, SETTINGS, EVENTS = "in.nvj", "out.nvj", "snapshot.bin", "live.json", "events.jsonl"
+ACKNOWLEDGED = "acknowledged.jsonl"
+"""What a person at the display has seen: written by the display, read by nobody."""
 
 
 class Journal:
