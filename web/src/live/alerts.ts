@@ -56,7 +56,7 @@ export function alerts(acknowledge: (alert: string) => void): Part & { newest: (
             if (t === undefined) continue;
             const isNew = !model.acknowledged.has(t.alert) && now_s - raised.get(t.alert)! < BLINK_S;
             item.classList.toggle("new", isNew);
-            say(item.querySelector<HTMLElement>(".alert-for")!, present(fresh) && Number.isFinite(utc) ? span(utc - t.annunciation_utc_s) : "");
+            say(item.querySelector<HTMLElement>(".alert-for")!, present(fresh) && Number.isFinite(utc) ? `(${span(utc - t.annunciation_utc_s)})` : "");
         }
         none.hidden = inForce.length > 0;
         const normal = present(fresh) && model.believed(now_s) && model.word("alert") === "normal";

@@ -33,7 +33,7 @@ interface Chart {
 }
 
 const DEVIATION: Chart = {
-    id: "deviation", title: "Lateral deviation, last ten minutes", height: 250, ribbon: true,
+    id: "deviation", title: "Lateral deviation in metres, last ten minutes", height: 250, ribbon: true,
     lines: [
         { name: "fte_m", label: "deviation", of: (m) => m.column("fte_m"), hue: "ink", width: 1.5 },
         { name: "accuracy_bound_m", label: "accuracy bound", of: (m) => m.column("accuracy_bound_m"), hue: "m1", mirror: true },
@@ -44,7 +44,7 @@ const DEVIATION: Chart = {
 };
 
 const LEVELS: Chart = {
-    id: "levels", title: "Protection levels, last ten minutes", height: 180,
+    id: "levels", title: "Protection levels in metres, last ten minutes", height: 180,
     lines: [
         { name: "hpl_m", label: "HPL", of: (m) => m.column("hpl_m"), hue: "m2", width: 1.5 },
         { name: "vpl_m", label: "VPL", of: (m) => m.column("vpl_m"), hue: "m3", width: 1.5, dash: [6, 2] },
