@@ -47,6 +47,7 @@ class Fed:
     def __init__(self, folder: Path, settings: live.Settings = SETTINGS, origin: live.Origin | None = None) -> None:
         self.folder, self.settings = folder, settings
         self.reported: list[dict[str, Any]] = []
+        self.ended = False
         origin = origin or live.Origin("live", "tcp://192.0.2.1:2000")
         self.session = live.Session(folder, settings, origin=origin, report=self.reported.append)
 
@@ -64,6 +65,13 @@ class Fed:
     def end(self) -> None:
         """The source has ended."""
         self.session.finish()
+        self.ended = True
+
+    def close(self) -> None:
+        """Leave the folder as a killed session would."""
+        if not self.ended:
+            self.session.close()
+            self.ended = True
 
 
 @contextmanager

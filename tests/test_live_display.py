@@ -12,6 +12,8 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -27,8 +29,10 @@ FOREIGN = "http://attacker.example"
 
 
 @pytest.fixture
-def fed(tmp_path: Path) -> Fed:
-    return Fed(tmp_path / "session")
+def fed(tmp_path: Path) -> Iterator[Fed]:
+    session = Fed(tmp_path / "session")
+    yield session
+    session.close()
 
 
 def test_without_the_token_nothing_is_told(fed: Fed) -> None:
@@ -338,6 +342,8 @@ def test_the_age_of_live_data_is_that_of_their_time_and_of_a_recording_that_of_i
     assert (settings.stale_s, seen.stale_s()) == (2.0, 4.0)
     clock.now_s += 60.0
     assert seen.feed() == "live", "a recording has no reader that could be silent"
+    for each in (now, old):
+        each.close()
 
 
 def test_a_damaged_journal_is_trouble_that_every_page_is_told(fed: Fed) -> None:
@@ -379,7 +385,7 @@ def test_late_records_are_not_the_present_and_a_clock_set_back_begins_anew(fed: 
         fed.position(time_ns=begin - 30_000_000_000 + k * 100_000_000, hpl_m=float(20 + k))
     seen.poll()
     rows = list(seen.tracks["F1"].rows)
-    assert all(later[0] > earlier[0] for earlier, later in zip(rows, rows[1:], strict=False))
+    assert all(later[0] > earlier[0] for earlier, later in pairwise(rows))
     assert rows[-1][hpl] == 59.0
 
 

@@ -279,6 +279,8 @@ def _bound(family: socket.AddressFamily, host: str, port: int) -> socket.socket:
         if family == socket.AF_INET6:
             made.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
         made.bind((host, port))
+        # Who reads the address may ask at once.
+        made.listen()
     except OSError:
         made.close()
         raise
