@@ -174,3 +174,33 @@ class Stream:
             match = re.fullmatch(r"event: (\w+)\ndata: (.*)", text)
             if match and match[1] == name:
                 return dict(json.loads(match[2]))
+
+
+class Feeder:
+    """Feeds a session ten times a second in a thread of its own."""
+
+    def __init__(self, fed: Fed, period_s: float = 0.1) -> None:
+        self.fed, self.period_s = fed, period_s
+        self.values: dict[str, Any] = {}
+        self.positions = self.heartbeats = True
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+
+    def _run(self) -> None:
+        turn = 0
+        while not self._stop.wait(self.period_s):
+            turn += 1
+            if self.positions:
+                self.fed.position(**self.values)
+            if self.heartbeats and turn % 5 == 0:
+                self.fed.heartbeat()
+
+    def __enter__(self) -> Feeder:
+        """Begin."""
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End."""
+        self._stop.set()
+        self._thread.join()
