@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import time
+import webbrowser
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -40,6 +41,7 @@ Spec = Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 
 Course = Annotated[str | None, typer.Option(help="Where the aircraft should be: a runway (LFPG/08R) or a route file.")]
 Form = Annotated[str | None, typer.Option("--format", help="json, ubx, sbf, novatel or nmea. [default: by a file's begin]")]
 Display = Annotated[bool, typer.Option("--display", help="Show it in a browser on this host: the address is printed. Ctrl-C ends both.")]
+OpenPage = Annotated[bool, typer.Option("--open", help="Show it, and open the page in the browser of this machine.")]
 Level = Annotated[str | None, typer.Option(help="Service level whose alert limits the display shows, such as LPV-200.")]
 Port = Annotated[int, typer.Option(help="Port of the display. [default: one that is free]", show_default=False)]
 
@@ -64,6 +66,7 @@ def watch(
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the session in --out.")] = False,
     display: Display = False,
     port: Port = 0,
+    open_page: OpenPage = False,
     level: Level = None,
     json: JsonLines = False,
 ) -> None:
@@ -84,16 +87,27 @@ def watch(
         lateness_s=lateness_s,
         expiry_s=expiry_s,
     )
-    _run(source, settings, _Ways(out, speed, port if display else None, limits=_limits(level), resume=resume, json=json))
+    _run(
+        source,
+        settings,
+        _Ways(
+            out,
+            speed,
+            _Screen(port if display or open_page else None, json=json, opened=open_page),
+            limits=_limits(level),
+            resume=resume,
+            json=json,
+        ),
+    )
 
 
 @dataclass(frozen=True)
 class _Ways:
-    """Where a session goes and who sees it; `port` is None where nobody does."""
+    """Where a session goes and who sees it."""
 
     out: Path
     speed: float
-    port: int | None
+    screen: _Screen
     limits: dict[str, Any] | None = None
     resume: bool = False
     json: bool = False
@@ -128,7 +142,7 @@ def _run(source: str, settings: Settings, ways: _Ways) -> None:
     kind: Any = "live" if opened.live else "replay" if ways.replay else "recording"
     origin = live.Origin(kind, source, None if opened.live else ways.speed, points(settings, source), ways.limits)
     session = live.Session(ways.out, settings, origin=origin, resume=ways.resume, report=_report(json=ways.json), say=_say)
-    with _Screen(ways.port, json=ways.json) as screen:
+    with ways.screen as screen:
         screen.show(session)
         try:
             session.run(opened, stop=stop, speed=ways.speed)
@@ -155,11 +169,11 @@ def _check_speed(speed: float) -> None:
 class _Screen:
     """The display beside a session, or none."""
 
-    def __init__(self, port: int | None, *, json: bool) -> None:
+    def __init__(self, port: int | None, *, json: bool, opened: bool) -> None:
         from navbound.live.display import Options  # noqa: PLC0415
 
         self._options = None if port is None else Options(port)
-        self._json = json
+        self._json, self._opened = json, opened
         self._child: Child | None = None
 
     def __enter__(self) -> _Screen:
@@ -177,6 +191,8 @@ class _Screen:
             return
         self._child = Child(session.folder, self._options)
         _address(self._child.address, json=self._json)
+        if self._opened and not webbrowser.open(self._child.address):
+            _say("no browser was found on this machine: open the address in one")
 
     def hold(self, stop: Callable[[], bool]) -> None:
         """Leave it open behind the end of the data, until the command is stopped."""
@@ -204,6 +220,7 @@ def replay(
     form: Form = None,
     display: Display = False,
     port: Port = 0,
+    open_page: OpenPage = False,
     level: Level = None,
     json: JsonLines = False,
 ) -> None:
@@ -214,16 +231,16 @@ def replay(
     _check_speed(speed)
     if group < 1:
         raise InputError("group", group, "1", "[1, inf)")
-    screen_port = port if display else None
+    shown = _Screen(port if display or open_page else None, json=json, opened=open_page)
     if not is_journal(recording):
         settings = _settings(str(recording), form, spec=spec or "RNP 0.3", path=path)
-        _run(str(recording), settings, _Ways(out, speed, screen_port, limits=_limits(level), json=json, replay=True))
+        _run(str(recording), settings, _Ways(out, speed, shown, limits=_limits(level), json=json, replay=True))
         return
     if spec is not None or path is not None or form is not None:
         one = "spec" if spec is not None else "path" if path is not None else "form"
         raise ConflictError(one, because="a journal is judged with the settings of its session")
     stop = _stop()
-    with _Screen(screen_port, json=json) as screen:
+    with shown as screen:
         session = live.replay(
             recording,
             out,
