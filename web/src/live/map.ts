@@ -124,8 +124,9 @@ export function map(): Part & { zoom: (factor: number) => void; focus: () => voi
         view.k = (magnified * height) / (CORRIDORS * rnp * unit);
         const at = put(last, of).track;
         [view.x, view.y] = [at[0] - moved[0] / view.k, at[1] - moved[1] / view.k];
-        const lines = linesOf(of, put);
-        const course = courseOf(of) ?? lines;
+        const known = courseOf(of);
+        const lines = linesOf(of, put, known === null);
+        const course = known ?? lines;
         stroke(pen, { colour: colour("limit"), width: 1, dash: [4, 4], alpha: 0.7 }, () => course.edges.slice(2).forEach((line) => trace(pen, view, line)));
         stroke(pen, { colour: colour("limit"), width: 1.5 }, () => course.edges.slice(0, 2).forEach((line) => trace(pen, view, line)));
         stroke(pen, { colour: colour("path"), width: 3, alpha: 0.7 }, () => trace(pen, view, course.path));
@@ -157,13 +158,15 @@ export function map(): Part & { zoom: (factor: number) => void; focus: () => voi
     return { element, show, zoom, focus: () => surface.focus() };
 }
 
-function linesOf(model: Model, put: (row: Row, of: Model) => Placed): Lines {
+/** The trail, and where no path is known ahead, the path and the corridor that were flown along. */
+function linesOf(model: Model, put: (row: Row, of: Model) => Placed, corridor: boolean): Lines {
     const n = model.rows.length;
     const make = (): Float64Array => new Float64Array(2 * n);
     const [track, path, edges] = [make(), make(), [make(), make(), make(), make()]];
     model.rows.forEach((row, i) => {
         const at = put(row, model);
         [track[2 * i], track[2 * i + 1]] = at.track;
+        if (!corridor) return;
         [path[2 * i], path[2 * i + 1]] = at.path;
         at.edges.forEach((edge, k) => { [edges[k]![2 * i], edges[k]![2 * i + 1]] = edge; });
     });

@@ -117,5 +117,5 @@ export function levelBars(): Part {
     return bars("Protection levels", "Against the alert limits of the record, else of the level named to the command; without one there is no margin.", [
         { key: "hpl_m", name: "HPL", limitName: "HAL", of: (m) => m.number("hpl_m"), limit: (m) => m.limit("hal_m"), kind: null },
         { key: "vpl_m", name: "VPL", limitName: "VAL", of: (m) => m.number("vpl_m"), limit: (m) => m.limit("val_m"), kind: null },
-    ], (model) => !["hpl_m", "vpl_m"].some((name) => model.rows.some((row) => Number.isFinite(model.number(name, row)))));
+    ], (model) => !model.known("hpl_m") && !model.known("vpl_m"));
 }

@@ -192,6 +192,11 @@ export class Model {
         return typeof value === "number" ? value : NaN;
     }
 
+    /** Whether a number was ever stated in the epochs that are kept; the newest are looked at first. */
+    known(name: string): boolean {
+        return this.rows.findLast((row) => Number.isFinite(this.number(name, row))) !== undefined;
+    }
+
     /** An alert limit: the record's own, else that of the level that the command names. */
     limit(name: "hal_m" | "val_m", row: Row | undefined = this.rows.at(-1)): number {
         const own = this.number(name, row);

@@ -51,7 +51,7 @@ const LEVELS: Chart = {
         { name: "hal_m", label: "HAL", of: (m) => Float64Array.from(m.rows, (row) => m.limit("hal_m", row)), hue: "limit", dash: [5, 4] },
         { name: "val_m", label: "VAL", of: (m) => Float64Array.from(m.rows, (row) => m.limit("val_m", row)), hue: "limit", dash: [2, 3] },
     ],
-    hidden: (model) => !["hpl_m", "vpl_m"].some((name) => model.column(name).some(Number.isFinite)),
+    hidden: (model) => !model.known("hpl_m") && !model.known("vpl_m"),
 };
 
 const FONT = '11px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
@@ -76,6 +76,7 @@ function strip(chart: Chart): Part {
     let hues = "";
     let current: Model | null = null;
     let end = 0;
+    let drawn = "";
     const show = (model: Model, now_s: number): void => {
         current = model;
         element.hidden = chart.hidden?.(model) ?? false;
@@ -85,9 +86,13 @@ function strip(chart: Chart): Part {
         // What came last stays to be read: the hatch takes at most a third, and what has ended is a record.
         const since = Math.min(model.age_s(now_s) * (speed || 1), WINDOW_S / 3);
         end = (model.rows.at(-1)![0] as number) + (present(fresh) || fresh === "ended" ? 0 : since);
+        const width = Math.max(240, plot.clientWidth);
+        // A pixel is about half a second: between two of them there is nothing new to see.
+        const picture = `${Math.floor((end * width) / WINDOW_S)} ${fresh} ${model.word("alert")} ${model.holes.length} ${model.snapshot!.client} ${colour("ink")} ${width}`;
+        if (picture === drawn) return;
+        drawn = picture;
         const data = dataOf(chart, model);
         const usual = usualSize(chart, model);
-        const width = Math.max(240, plot.clientWidth);
         const wanted = `${colour("ink")} ${width} ${usual}`;
         if (u === null || wanted !== hues) {
             hues = wanted;
@@ -97,8 +102,7 @@ function strip(chart: Chart): Part {
         } else u.setData(data);
         element.dataset.rows = String(model.rows.length);
         element.dataset.holes = String(model.holes.length);
-        const last = chart.lines.map((line) => `${line.label} ${plain(line.of(model).at(-1) ?? NaN, 1)} m`);
-        const text = `Last epoch at ${clock(model.number("utc_s"))} UTC: ${last.join(", ")}. The numbers of the events stand in the table below.`;
+        const text = `Ten minutes up to ${clock(model.number("utc_s"))} UTC: ${chart.lines.map((line) => line.label).join(", ")}. The numbers of now stand in the panels above, those of events in the table below.`;
         if (words.textContent !== text) words.textContent = text;
     };
     return { element, show };

@@ -15,6 +15,7 @@ from navbound.live import journal, transition
 from navbound.live.session import now_ns
 from navbound.live.settings import COMPUTING_S, load
 from navbound.status import REASONS
+from navbound.table.columns import HORIZONTAL
 from navbound.time import utc_offset_s
 
 if TYPE_CHECKING:
@@ -46,9 +47,7 @@ NUMBERS = (
     "est_h_m",
     "fte_v_m",
     "course_rad",
-    "cov_ee_m2",
-    "cov_en_m2",
-    "cov_nn_m2",
+    *HORIZONTAL,
     "anp_cross_m",
     "anp_circle_m",
     "anp_vertical_m",
