@@ -142,7 +142,7 @@ def page(packages: list[Package], notices: str) -> str:
         "",
         "## In the bundles of the pages",
         "",
-        "These libraries are part of `python/navbound/_web/report.js`, some of `live.js` too; their notices stand in `third-party.md` beside them.",
+        "These libraries are part of `python/navbound/_web/report.js`, some of `live.js`; their notices stand in `third-party.md` beside it.",
         "",
         "| library | version | licence |",
         "|---|---|---|",

@@ -9,6 +9,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -122,6 +123,8 @@ def test_the_spoofed_approach_is_replayed_on_the_flight_display(tmp_path: Path) 
         while not (said and said[-1].startswith("Display: http://127.0.0.1:")):
             said.append(process.stdout.readline())
             assert said[-1], "it ended before the display was there"
+        # A minute of the flight.
+        time.sleep(2.0)
         process.send_signal(signal.SIGINT)
         rest, trouble = process.communicate(timeout=30)
     assert process.returncode == 0, trouble
