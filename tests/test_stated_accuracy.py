@@ -22,3 +22,43 @@ def test_an_epu_beyond_the_covariance_is_against_it(tmp_path: Path, epu_m: float
     assert summary.verdict.id == expected
     assert summary.verdict.n_stated_worse == (N if expected == "not_shown" else 0)
     assert any("Stated beside it and not used: EPU" in words for words in summary.assumptions)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "expected"),
+    [
+        # Read as metres, as nothing states a unit: worse than the covariance allows, or not.
+        ("hAcc", 1.01 * TWO_DRMS_M, "not_shown"),
+        ("hAcc", 0.99 * TWO_DRMS_M, "inside"),
+        ("hAcc (mm)", 990.0 * TWO_DRMS_M, "inside"),
+        ("hAcc (mm)", 1010.0 * TWO_DRMS_M, "not_shown"),
+        ("eph_ft", 0.99 * TWO_DRMS_M / 0.3048, "inside"),
+        ("eph_ft", 1.01 * TWO_DRMS_M / 0.3048, "not_shown"),
+        ("horizontal_accuracy", -300.0, "not_shown"),
+        ("CEP50", math.inf, "not_shown"),
+        ("NSE", 3000.0, "not_shown"),
+        # No lengths, or none of the position across the ground.
+        ("speed_accuracy", 300.0, "inside"),
+        ("vAcc", 300.0, "inside"),
+        ("headAcc", 300.0, "inside"),
+        ("acc_x", 300.0, "inside"),
+        ("error_code", 300.0, "inside"),
+        ("std_yaw", 300.0, "inside"),
+        ("accuracy (deg)", 300.0, "inside"),
+    ],
+)
+def test_a_column_of_accuracy_that_nothing_reads_is_compared(tmp_path: Path, name: str, value: float, expected: str) -> None:
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={name: np.full(N, value)})).summary.verdict
+    assert (verdict.id, verdict.n_stated_worse) == (expected, N if expected == "not_shown" else 0)
+    assert ("--map" in verdict.words and name in verdict.words) == (expected == "not_shown")
+
+
+@pytest.mark.parametrize("sigma_m", [None, SIGMA_M])
+def test_it_is_compared_with_a_sigma_that_is_typed(tmp_path: Path, sigma_m: float | None) -> None:
+    values = np.full(N, 4.0)
+    values[150] = 900.0
+    path = table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={"accuracy": values})
+    whole = navbound.analyze(path, sigma_m=sigma_m).summary.verdict
+    assert (whole.id, whole.n_stated_worse) == ("not_shown", 1)
+    declared = navbound.analyze(path, sigma_m=sigma_m, columns={"epu_m": "accuracy:mm"}).summary.verdict
+    assert declared.id == "inside"

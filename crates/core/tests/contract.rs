@@ -291,3 +291,25 @@ fn an_impossible_covariance_is_refused() {
         }
     }
 }
+
+/// The fits of a centred error refuse a mean that is none of zero, in any component, and say so; a mean of zero is no mean.
+#[test]
+fn a_fit_without_a_mean_refuses_one() {
+    let mut e = epochs()[1];
+    let ids = ["anp-circle-fit", "anp-circle-geodesy", "anp-circle-fit-as-printed", "anp-sphere-grubbs-as-printed"];
+    let fits: Vec<_> = methods().filter(|m| ids.contains(&m.id)).collect();
+    assert_eq!(fits.len(), ids.len());
+    for method in fits {
+        e.mean = None;
+        let without = (method.bound)(&e, Risk::ACCURACY).unwrap();
+        e.mean = Some(Displacement::from_vector(Vector3::zeros()));
+        assert_eq!((method.bound)(&e, Risk::ACCURACY), Ok(without), "{}", method.id);
+        for k in 0..3 {
+            let mut mean = Vector3::zeros();
+            mean[k] = 0.5;
+            e.mean = Some(Displacement::from_vector(mean));
+            let refused = (method.bound)(&e, Risk::ACCURACY).unwrap_err();
+            assert!(matches!(refused, Unavailable::Invalid { field: "mean", value: 0.5, .. }), "{} {k}: {refused:?}", method.id);
+        }
+    }
+}

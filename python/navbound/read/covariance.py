@@ -121,7 +121,7 @@ def _typed(epochs: pl.DataFrame, sigma_m: float) -> Claimed:
 
 def _least_radii(epochs: pl.DataFrame) -> list[pl.Expr]:
     """The least 95 % radius by each accuracy of the file; an indicator stands for a class of radii, of which its lower limit. [m]."""
-    radii = [pl.col("epu_m")] if "epu_m" in epochs.columns else []
+    radii = [pl.col(name) for name in ("epu_m", "unread_accuracy_m") if name in epochs.columns]
     if {"sigma_e_m", "sigma_n_m"} <= set(epochs.columns):
         radii.append(((pl.col("sigma_e_m") ** 2 + pl.col("sigma_n_m") ** 2) / 2).sqrt() / circular_sigma(0.05))
     if "nac_p" in epochs.columns:

@@ -189,6 +189,12 @@ EPOCHS: tuple[Column, ...] = (
 READ: tuple[Column, ...] = (
     *row("sigma_e_m sigma_n_m sigma_u_m", f"standard deviation of the position as a recording states it; {_READ}", "source"),
     *row("epu_m", f"95 % horizontal radius as a recording states it; {_READ}", "source"),
+    *row(
+        "unread_accuracy_m",
+        "the largest number of columns that nothing reads though their names speak of a horizontal accuracy or error, read as metres "
+        f"where their names state no unit; {_READ}",
+        "source",
+    ),
     *row("rc_m", f"horizontal containment radius that a transponder states; {_READ}", "source"),
     *row("nac_p nic", f"accuracy and integrity category that a transponder states; {_READ}", "source", kind="number"),
     *row("callsign", f"callsign of the aircraft; {_READ}", "source", kind="text"),

@@ -98,7 +98,7 @@ KINDS: tuple[Kind, ...] = (
             "cold_start v_h_limit residuals integrity_warning pending unauthorized dr dead_reckoning coast coasting estimated extrapolated "
             "propagated predicted simulated simulator simulation manual fixedpos memory last_known lost degraded fail failed fault alert "
             "alarm warning caution not_available unavailable denied reversion reversionary no_nav acquisition standby "
-            "jammed spoofed unreliable"
+            "stopped halted frozen stale jammed spoofed unreliable"
         ),
         _FIX - _words("2 3 4 5 6 9")
         | _words(
@@ -171,10 +171,35 @@ def kind_of(plain_name: str) -> Kind | None:
     return _BY_NAME.get(plain_name.replace("_", ""))
 
 
+_ACCURACY = _words(
+    "acc hacc pacc accuracy uncertainty sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms rms hrms hfom "
+    "fom nse tse fte err error errors"
+)
+"""Parts of names of a horizontal accuracy or error, a length. Provenance: ours."""
+_NO_POSITION = _words(
+    "v vert vertical u up down alt altitude height z vel velocity speed sog rate climb track heading head hdg course cog bearing yaw roll "
+    "pitch attitude angle t time clock clk bias drift gyro accel acceleration imu mag lin linear ang angular range doppler phase code id "
+    "flag flags count counter n num number type message mode status state percent pct ratio mps mps2 s ns us ms deg rad dps kt kts hz db"
+)
+"""Parts of names of something else. Provenance: ours."""
+
+
+def _parts(name: str) -> list[str]:
+    return re.split(r"[^a-z0-9]+", re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name[:_LONGEST]).lower())
+
+
 def speaks_of_integrity(name: str) -> bool:
     """Whether the name of a column that nothing reads, as the file writes it, is one of a statement of integrity."""
-    parts = re.split(r"[^a-z0-9]+", re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name[:_LONGEST]).lower())
-    return not _SPEAKS.isdisjoint([*parts, name.lower()])
+    return not _SPEAKS.isdisjoint([*_parts(name), name.lower()])
+
+
+def speaks_of_accuracy(name: str) -> bool:
+    """Whether the name is one of a horizontal accuracy or error, so that its numbers are lengths."""
+    parts = {*_parts(name), name.lower()}
+    # `acc_x` is an acceleration.
+    if "acc" in parts and parts & {"x", "y", "body", "g"}:
+        return False
+    return not _ACCURACY.isdisjoint(parts) and _NO_POSITION.isdisjoint(parts)
 
 
 @dataclass(frozen=True)

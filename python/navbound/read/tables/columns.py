@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, InputError
-from navbound.read.checks.statements import kind_of, speaks_of_integrity
+from navbound.read.checks.statements import kind_of, speaks_of_accuracy, speaks_of_integrity
 from navbound.table.columns import COVARIANCE, EPOCHS, READ, VARIANCES
 from navbound.units import METRES_PER_FT, METRES_PER_NM, MPS_PER_KT
 
@@ -251,6 +251,20 @@ class Assignment:
         plain = {name: _plain(name)[0] for name in self.unused}
         transponders = bool(TRANSPONDER & set(plain.values()))
         return [name for name, each in plain.items() if speaks_of_integrity(name) and not (transponders and each == "alert")]
+
+    @property
+    def accuracies(self) -> dict[str, float]:
+        """Those of them that are lengths of a horizontal accuracy or error: the factor to metres of the unit in the name, otherwise 1."""
+        lengths = {name: _length_in(name) for name in self.unread if speaks_of_accuracy(name)}
+        return {name: factor for name, factor in lengths.items() if factor is not None}
+
+
+def _length_in(name: str) -> float | None:
+    """The unit of length in brackets or at the end of a name, metres where there is none; None where it is a unit of something else."""
+    stem, written = _plain(name)
+    if written is not None and written not in _NO_UNIT:
+        return UNITS["m"].get(written)
+    return UNITS["m"].get(stem.rsplit("_", 1)[-1], 1.0)
 
 
 POSITION = ("est_lat_rad", "est_lon_rad")

@@ -124,6 +124,7 @@ class Values:
             self.tally.add(
                 LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet"
             )
+        part = self._with_accuracy(part, frame)
         part = _with_speed(part).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
             if name in part.columns:
@@ -132,6 +133,15 @@ class Values:
         if tuple(self._required) == POSITION:
             return self._reported(part, frame)
         return stated.with_statements(part, self._statements(frame))
+
+    def _with_accuracy(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
+        """The largest number of the columns that nothing reads though they speak of an accuracy; it bounds nothing."""
+        lengths = self._mapping.accuracies if tuple(self._required) == POSITION else {}
+        known = {name: frame[name] for name in lengths if not _no_field(frame.schema[name])}
+        values = [(raw.cast(pl.Float64, strict=False).abs().fill_nan(None) * lengths[name]).alias(name) for name, raw in known.items()]
+        if not values:
+            return part
+        return part.with_columns(pl.DataFrame(values).max_horizontal().alias("unread_accuracy_m"))
 
     def _check_kinds(self, frame: pl.DataFrame) -> None:
         names = [column.name for column in (*self._mapping.columns.values(), *self._mapping.times)]

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
+from navbound.read.checks.statements import speaks_of_accuracy
+from navbound.read.tables.columns import declare
 from navbound.run.verdict.numbers import length, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS
 from navbound.run.verdict.words import COPIED, contradicted_words, covered_words, refuted_words, truth_words
@@ -132,7 +134,7 @@ def _not_shown(verdict: Verdict) -> list[str]:
     if verdict.n_stated_worse:
         why.append(
             f"The recording itself states an accuracy (95 % radius: EPU, NACp, sigma) at {verdict.n_stated_worse} epochs that is worse "
-            "than the covariance allows."
+            f"than the covariance allows.{_read_as_metres(verdict.unread)}"
         )
     if verdict.n_stated_uncontained:
         why.append(
@@ -150,6 +152,15 @@ def _not_shown(verdict: Verdict) -> list[str]:
             "integrity was compared without a level."
         )
     return why
+
+
+def _read_as_metres(unread: Sequence[str]) -> str:
+    """What was compared though nothing says what it is, and how a person says it."""
+    names = [f"“{name}”" for name in unread if speaks_of_accuracy(name)]
+    if not names:
+        return ""
+    which = f"Compared, too, as a length of the unit that its name states, or metres: {', '.join(names)}."
+    return f" {which} {declare('epu_m=COLUMN:UNIT')} where it is a 95 % radius in another unit."
 
 
 def _contradicted(verdict: Verdict) -> list[str]:

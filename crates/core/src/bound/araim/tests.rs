@@ -119,6 +119,21 @@ fn satellites_that_cannot_be_tested_are_no_agreement() {
     assert_eq!((found.decision, found.excluded), (exclusion::Decision::NotExcluded, 0));
 }
 
+/// The list of fault modes is worked out with six satellites, so that only the number of sights can refuse.
+#[test]
+fn sixty_four_satellites_are_served_and_more_are_refused() {
+    let modes = Service::LPV_200.modes(&published(1e-5)[..6], &P_CONST).unwrap();
+    let one = published(1e-5)[0];
+    for n in [65_usize, 66, 200] {
+        let many: Vec<_> = (0..n).map(|_| one).collect();
+        let refused = Monitor::default().levels(&many, &modes, &Service::LPV_200).unwrap_err();
+        assert!(matches!(refused, Unavailable::Invalid { field: "n_sv", value, .. } if value == n as f64), "{n}: {refused:?}");
+    }
+    let most: Vec<_> = skies(11, false).flatten().take(64).collect();
+    let refused = Monitor::default().levels(&most, &modes, &Service::LPV_200).err();
+    assert!(!matches!(refused, Some(Unavailable::Invalid { field: "n_sv", .. })), "{refused:?}");
+}
+
 #[test]
 fn what_there_is_no_room_for_is_said() {
     let one = published(1e-5)[0];

@@ -393,7 +393,7 @@ fn since_time_of_day(long_term: &LongTerm, now: GpsTime) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::sbas::LongTermRates;
+    use crate::signal::sbas::{LongTermRates, Region};
 
     /// Across both midnights, and on a day far from the first: the nearest day is meant.
     #[test]
@@ -467,5 +467,23 @@ mod tests {
         for (second, steps) in [(3050.0, 0.0), (3150.0, 1.0), (3950.0, 9.0)] {
             assert!((of(None, second) - 0.2 * steps).abs() < 1e-12, "{second}");
         }
+    }
+
+    /// Of regions that overlap the highest priority counts, of equals the smaller factor, in whatever order they stand.
+    #[test]
+    fn the_factor_of_overlapping_regions_is_that_of_the_highest_priority_and_then_the_smaller() {
+        let of = |sets: [(u8, f64); 3]| {
+            let mut service = Service::new(Use::EnRoute, None);
+            for (slot, (priority, inside)) in service.regions.iter_mut().zip(sets) {
+                let region = Region { first_deg: [40, 0], second_deg: [60, 20], rectangle: true };
+                let regions = core::array::from_fn(|k| (k == 0).then_some(region));
+                *slot = Some(ServiceRegions { iods: 0, messages: 3, number: 1, priority, inside, outside: 10.0, regions });
+            }
+            service.region_factor(50.0, 10.0)
+        };
+        assert_eq!(of([(1, 3.0), (1, 2.0), (0, 1.0)]), 2.0);
+        assert_eq!(of([(1, 2.0), (1, 3.0), (0, 1.0)]), 2.0);
+        assert_eq!(of([(0, 1.0), (1, 2.0), (2, 5.0)]), 5.0);
+        assert_eq!(of([(2, 5.0), (0, 1.0), (1, 2.0)]), 5.0);
     }
 }

@@ -122,6 +122,14 @@ impl<const N: usize> Stations<N> {
     }
 }
 
+#[cfg(test)]
+impl<const N: usize> Stations<N> {
+    /// Stations with a record.
+    pub(super) fn n_known(&self) -> usize {
+        self.record.iter().flatten().count()
+    }
+}
+
 impl Stations<2> {
     /// Whether the stations agree with the first reading and rule out the second.
     pub fn rule_out_the_second(&self, now: GpsTime) -> bool {

@@ -4,7 +4,7 @@ use super::*;
 use crate::bound::araim::single::Requirement;
 use crate::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic, enu_from_ecef};
 use crate::quantity::{Metres, Radians};
-use crate::signal::{Aiding, Constellation, SatelliteRange};
+use crate::signal::{Aiding, Constellation, DmeRange, PositionFix, SatelliteRange};
 use crate::solution::ins::{Attitude, ErrorModel, ImuModel, NavState, SensorNoise, Settings as FilterSettings, StartSigma};
 use crate::solution::snapshot::{Snapshot, SnapshotVelocity};
 use crate::solution::wls::horizontal_axes;
@@ -247,4 +247,84 @@ fn the_satellites_own_acceleration_is_the_change_of_their_velocity() {
     assert_eq!(guard.acceleration_mps2, Some(2.0));
     guard.note_acceleration(None, &looked(2.5, 103.0));
     assert_eq!(guard.acceleration_mps2, None);
+}
+
+/// A solved position east of the antenna of the world.
+fn fix(world: &World, east_m: f64, variance_m2: f64) -> TimedAiding {
+    let position = world.position.moved(&Displacement::<Enu>::from_vector(Vector3::new(east_m, 0.0, 0.0))).unwrap();
+    let covariance = Covariance::claim_symmetric(nalgebra::Matrix3::identity() * variance_m2);
+    let fix = PositionFix { position, covariance, velocity_ned_mps: None, level_m: None };
+    TimedAiding { time: world.time(), aiding: Aiding::Fix(fix) }
+}
+
+/// The deviation of the filter from a solved position is taken with 1.6 times its covariance and a twentieth of the position's, as the
+/// description of the method says; the filter may use the position where no test fails.
+#[test]
+fn a_solved_position_is_used_where_it_agrees_with_the_filter() {
+    for (east_m, usable) in [(0.0, true), (10.0, true), (400.0, false), (-4000.0, false)] {
+        let mut world = World::new(5);
+        let (mut filter, mut guard) = (world.filter(), Guard::new(SETTINGS).unwrap());
+        filter.advance(&world.sample());
+        let timed = fix(&world, east_m, 9.0);
+        let Aiding::Fix(m) = &timed.aiding else { unreachable!() };
+        let d = filter.against(&Snapshot::solved(world.time(), m.position, m.covariance)).unwrap();
+        assert_eq!(guard.admit_fix(&mut filter, world.time(), &timed, 0.0), usable, "{east_m}");
+        let (time, tests) = guard.tests().unwrap();
+        assert_eq!(*time, world.time());
+        let wide = d.covariance.matrix() * 1.6 + nalgebra::Matrix3::identity() * (0.05 * 9.0);
+        let (v, x) = (wide.fixed_view::<2, 2>(0, 0).into_owned(), d.position.vector().xy());
+        let expected = [x.dot(&(v.try_inverse().unwrap() * x)), d.position.vector().z.powi(2) / wide[(2, 2)]];
+        for (square, expected) in [tests.square[0], tests.square[2]].into_iter().zip(expected) {
+            assert!((square - expected).abs() < 1e-9 * expected, "{east_m}: {square} {expected}");
+        }
+        assert_eq!(tests.fail(), !usable);
+    }
+}
+
+#[test]
+fn what_is_no_number_is_no_witness_and_what_is_late_is_counted() {
+    let mut world = World::new(5);
+    let (mut filter, mut guard) = (world.filter(), Guard::new(SETTINGS).unwrap());
+    filter.advance(&world.sample());
+    // The filter refuses it itself; nothing is compared.
+    assert!(guard.admit_fix(&mut filter, world.time(), &fix(&world, 0.0, f64::NAN), 0.0));
+    assert!(guard.tests().is_none() && guard.looked().is_none());
+    let late = world.time().plus_seconds(SETTINGS.age_most_s + 0.1);
+    guard.admit_fix(&mut filter, late, &fix(&world, 0.0, 9.0), 0.0);
+    assert_eq!(guard.late, 1);
+    guard.admit_fix(&mut filter, world.time(), &fix(&world, 0.0, 9.0), 0.0);
+    assert_eq!(guard.late, 0);
+}
+
+/// Where ranges agree, the stations hear the snapshot and the filter without satellites together; where they could not be tested, only the
+/// snapshot.
+#[test]
+fn stations_are_witnesses_of_the_unit_only_where_the_ranges_agree() {
+    for (ranges_agree, n) in [(RangesAgree::Yes, 1), (RangesAgree::Untestable, 0)] {
+        let mut world = World::new(7);
+        let perfect = SensorNoise { white: 1e-12, bias: 1e-12, bias_time_s: 3600.0 };
+        let mut settings = FilterSettings::of(ImuModel { gyroscope: perfect, accelerometer: perfect });
+        // With a filter without satellites beside.
+        settings.reversion = true;
+        let level = Attitude { roll: Radians::new(0.0), pitch: Radians::new(0.0), heading: Radians::new(0.0) };
+        let sigma = StartSigma { position: [Metres::new(5.0); 3], velocity_mps: 0.01, attitude: [Radians::new(1e-9); 3] };
+        let start = NavState::new(world.time(), &world.position, Vector3::zeros(), &level).unwrap();
+        let mut filter = Fusion::new(start, &sigma, settings).unwrap();
+        filter.advance(&world.sample());
+        let covariance = Covariance::<Enu>::claim_symmetric(nalgebra::Matrix3::identity());
+        let snapshot = Snapshot::solved(world.time(), world.position, covariance);
+        let mut guard = Guard::new(SETTINGS).unwrap();
+        guard.looked = Some(Looked { snapshot, velocity: None, ranges_agree, level_m: [10.0; 2] });
+        let here = *ecef_from_geodetic(&world.position).vector();
+        let station = EcefPosition::from_vector(here + Vector3::new(5e4, 0.0, 0.0));
+        let m = DmeRange {
+            station: 3,
+            position: station,
+            slant: Metres::new(5e4),
+            sigma_white: Metres::new(100.0),
+            sigma_bias: Metres::new(50.0),
+        };
+        guard.hear(&mut filter, &[TimedAiding { time: world.time(), aiding: Aiding::Dme(m) }]);
+        assert_eq!((guard.alone.n_known(), guard.stations.n_known()), (1, n));
+    }
 }
