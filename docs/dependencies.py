@@ -142,7 +142,7 @@ def page(packages: list[Package], notices: str) -> str:
         "",
         "## In the bundles of the pages",
         "",
-        "These libraries are part of `python/navbound/_web/report.js`, some of `live.js`; their notices stand in `third-party.md` beside it.",
+        "These libraries are part of `python/navbound/_web/report.js`, some of `live.js`; `third-party.md` beside it has their notices.",
         "",
         "| library | version | licence |",
         "|---|---|---|",

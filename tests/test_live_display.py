@@ -7,6 +7,7 @@ import ipaddress
 import json
 import math
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -126,6 +127,13 @@ def test_every_answer_has_the_headers_that_keep_a_page_to_itself(fed: Fed) -> No
             assert (answer.headers["x-content-type-options"], answer.headers["referrer-policy"]) == ("nosniff", "no-referrer")
             assert answer.headers["cache-control"] == "no-store"
             assert not any(name.startswith("access-control") for name in answer.headers)
+
+
+def test_no_script_of_the_page_takes_text_for_markup_or_program() -> None:
+    served_scripts = [content for path, (content, _) in server._files().items() if path.endswith(".js")]
+    assert len(served_scripts) == 2
+    for script in served_scripts:
+        assert not re.search(rb"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(|new Function", script)
 
 
 def test_only_this_host_is_listened_on(fed: Fed) -> None:
