@@ -20,7 +20,7 @@ from pathlib import Path
 import pytest
 
 from display_fixture import SETTINGS, Browser, Fed, served
-from navbound import live
+from navbound import _core, live
 from navbound.errors import FormatError, InputError
 from navbound.live import journal, tables
 from navbound.live.display import Child, Options, Watch, hub, request, server, watch
@@ -363,6 +363,19 @@ def test_a_damaged_journal_is_trouble_that_every_page_is_told(fed: Fed) -> None:
     seen.poll()
     assert seen.feed() == "lost"
     assert "damaged" in str(seen.status()["trouble"])
+
+
+def test_a_journal_out_of_another_version_is_refused_with_what_to_do(fed: Fed) -> None:
+    fed.position()
+    fed.end()
+    # A frame whose payload begins with the version of journals in, which is 1.
+    (fed.folder / journal.OUT).write_bytes(_core.live_input("end", None, b""))
+    with pytest.raises(FormatError, match=r"another version.*navbound live judge"):
+        tables.epochs(fed.folder)
+    with pytest.raises(FormatError, match=r"another version.*navbound live judge"):
+        live.Session(fed.folder, SETTINGS, resume=True)
+    live.judge(fed.folder, fed.folder.parent / "anew")
+    assert tables.epochs(fed.folder.parent / "anew").height == 1
 
 
 def test_a_frame_that_is_not_whole_yet_is_waited_for(fed: Fed) -> None:

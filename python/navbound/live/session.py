@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import time
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -111,7 +112,13 @@ class Session:
         _prepare(out, settings, origin or Origin(), resume=resume)
         self._lock = journal.alone(out)
         self._lock.__enter__()
-        self._in, self._out = journal.Journal(out / journal.IN), journal.Journal(out / journal.OUT)
+        with ExitStack() as opened:
+            opened.push(self._lock)
+            self._in = journal.Journal(out / journal.IN)
+            opened.callback(self._in.close)
+            self._out = journal.Journal(out / journal.OUT)
+            # What is open stays open; before that it was given back.
+            opened.pop_all()
         for written in (self._in, self._out):
             if written.torn:
                 say(f"{written.path.name}: {written.torn} bytes of an unfinished frame were cut off")

@@ -32,8 +32,9 @@ export function statusBar(choose: (track: string) => void): Part {
     const at = Object.fromEntries(cells) as Record<string, HTMLElement>;
     const tracks = el("select", { "aria-label": "Aircraft shown" });
     const single = el("span", { class: "track-name" });
+    const hidden = el("span", { class: "note" });
     tracks.addEventListener("change", () => choose(tracks.value));
-    const element = el("header", { class: "status-bar" }, el("div", { class: "who" }, el("span", { class: "beat-box", title: "turns with each message" }, square), word, single, tracks),
+    const element = el("header", { class: "status-bar" }, el("div", { class: "who" }, el("span", { class: "beat-box", title: "turns with each message" }, square), word, single, tracks, hidden),
         el("dl", { class: "status-cells" }, ...cells.map(([name, cell]) => el("div", {}, el("dt", {}, name), el("dd", {}, cell)))));
     let listed = "";
     const show = (model: Model, now_s: number): void => {
@@ -52,6 +53,9 @@ export function statusBar(choose: (track: string) => void): Part {
             tracks.hidden = snapshot.tracks.length < 2;
             single.hidden = !tracks.hidden;
         }
+        // Alerts of all stand in the list, whether or not their epochs are kept.
+        const n = model.status?.n_hidden ?? 0;
+        say(hidden, n > 0 ? `more aircraft than are shown: ${n} epochs left out` : "");
         if (snapshot.track !== null) {
             tracks.value = snapshot.track;
             say(single, plainName(snapshot.track));
@@ -63,8 +67,8 @@ export function statusBar(choose: (track: string) => void): Part {
         setValue(at.Age!, age, Number.isFinite(age) ? (age < 60 ? `${plain(age, 1)} s` : span(age)) : DASHES);
         const mode = believed ? model.word("nav_mode") : null;
         setValue(at.Mode!, mode, believed ? (mode === null ? "not stated" : MODES[mode]?.words ?? plainName(mode)) : DASHES);
-        const n = believed ? model.number("n_sv") : NaN;
-        setValue(at.Satellites!, n, Number.isFinite(n) ? plain(n, 0) : DASHES);
+        const used = believed ? model.number("n_sv") : NaN;
+        setValue(at.Satellites!, used, Number.isFinite(used) ? plain(used, 0) : DASHES);
         const rnp = model.number("rnp_m");
         const required = believed && Number.isFinite(rnp) ? rnp : NaN;
         setValue(at.Required!, required, Number.isFinite(required) ? rnpName(required) : DASHES);
