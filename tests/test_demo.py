@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
+import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
 import navbound
+from navbound.live.display.watch import origin_of
 from navbound.run.directory import load
 
 CHROMIUM = shutil.which("chromium")
@@ -106,3 +111,27 @@ def test_a_fault_that_lasts_keeps_what_follows() -> None:
     (fault,) = run.summary.faults
     assert fault.moments[0].words == "spoofing begins"
     assert [m.time_ns for m in fault.moments] == sorted(m.time_ns for m in fault.moments)
+
+
+def test_the_spoofed_approach_is_replayed_on_the_flight_display(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "navbound", "demo", "--live", "--out", str(tmp_path)]
+    # No browser is opened on the machine of the test.
+    quiet = {**os.environ, "BROWSER": "true"}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=quiet) as process:
+        assert process.stdout is not None
+        said = list[str]()
+        while not (said and said[-1].startswith("Display: http://127.0.0.1:")):
+            said.append(process.stdout.readline())
+            assert said[-1], "it ended before the display was there"
+        # A minute of the flight.
+        time.sleep(2.0)
+        process.send_signal(signal.SIGINT)
+        rest, trouble = process.communicate(timeout=30)
+    assert process.returncode == 0, trouble
+    assert "spoofing begins" in "".join(said)
+    assert "epochs of 1 tracks" in rest
+    origin = origin_of(tmp_path / "session")
+    assert (origin["kind"], origin["speed"]) == ("replay", 60.0)
+    # The path ahead is that of the flight: from Beijing (40 N, 117 E) to Shanghai (31 N, 121 E), to a degree.
+    (first, last) = (origin["points"][0], origin["points"][-1])
+    assert [round(math.degrees(x)) for x in (*first[:2], *last[:2])] == [40, 117, 31, 121]

@@ -1,14 +1,24 @@
 import { defineConfig } from "vite";
 
-// One script and one style sheet with fixed names: the report puts both into the page, and CI compares them byte for byte.
-export default defineConfig({
-    build: {
-        outDir: "../python/navbound/_web",
-        emptyOutDir: false,
-        target: "es2022",
-        cssCodeSplit: false,
-        reportCompressedSize: false,
-        license: { fileName: "third-party.md" },
-        lib: { entry: "src/report.ts", formats: ["iife"], name: "navbound", fileName: () => "report.js", cssFileName: "report" },
-    },
+// What is built, by mode: the report (the default), the live display, and the worker that keeps its time. Each is one script and at most one
+// style sheet with fixed names: pages take them as they are, and CI compares them byte for byte. The report's notices hold those of all.
+const BUNDLES = {
+    production: { entry: "src/report.ts", name: "report", license: { fileName: "third-party.md" } },
+    live: { entry: "src/live/main.ts", name: "live" },
+    clock: { entry: "src/live/clock.ts", name: "clock" },
+};
+
+export default defineConfig(({ mode }) => {
+    const { entry, name, license } = BUNDLES[mode];
+    return {
+        build: {
+            outDir: "../python/navbound/_web",
+            emptyOutDir: false,
+            target: "es2022",
+            cssCodeSplit: false,
+            reportCompressedSize: false,
+            ...(license ? { license } : {}),
+            lib: { entry, formats: ["iife"], name: name === "report" ? "navbound" : name, fileName: () => `${name}.js`, cssFileName: name },
+        },
+    };
 });

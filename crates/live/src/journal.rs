@@ -12,8 +12,10 @@ use crate::codec::{Damaged, Reader, Writer};
 use navbound_core::quantity::GpsTime;
 use navbound_core::quantity::encoding::crc32c;
 
-/// Version of the payloads.
+/// Version of the payloads of a journal in.
 pub(crate) const VERSION: u8 = 1;
+/// Version of the payloads of a journal out.
+const VERSION_OUT: u8 = 2;
 /// Length and checksum before a payload \[B\].
 pub const HEAD: usize = 8;
 /// Longest payload that is believed \[B\]: no memory is taken for a damaged length.
@@ -57,7 +59,7 @@ pub fn next(bytes: &[u8]) -> Next<'_> {
 /// Outputs of one input as they stand in the journal out: the position of the journal in behind that input, when they were written, and they.
 pub fn outputs(position: u64, emitted: GpsTime, outputs: &[u8]) -> Vec<u8> {
     let mut to = Writer::default();
-    to.u8(VERSION);
+    to.u8(VERSION_OUT);
     to.u64(position);
     to.i64(emitted.nanoseconds());
     to.0.extend(outputs);
@@ -70,7 +72,7 @@ pub fn outputs(position: u64, emitted: GpsTime, outputs: &[u8]) -> Vec<u8> {
 /// [`Damaged`] for another version and for bytes that end early.
 pub fn outputs_of(payload: &[u8]) -> Result<(u64, GpsTime, &[u8]), Damaged> {
     let mut from = Reader(payload);
-    if from.u8()? != VERSION {
+    if from.u8()? != VERSION_OUT {
         return Err(Damaged("another version of the journal"));
     }
     Ok((from.u64()?, GpsTime::from_nanoseconds(from.i64()?), from.0))

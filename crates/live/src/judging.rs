@@ -5,7 +5,7 @@ use crate::output::{EpochOut, Kind, Output, Transition, Turn};
 use crate::position::{Position, TrackId};
 use crate::settings::Settings;
 use crate::track::Track;
-use navbound_core::bound::AlertBound;
+use navbound_core::bound::{AlertBound, anp};
 use navbound_core::frame::{Covariance, LatLon};
 use navbound_core::judge::{Evaluated, Judged, Sample};
 use navbound_core::monitor::rnp::{Acceptance, Event};
@@ -109,7 +109,8 @@ pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived
         (track.stepped, track.last) = (next == Some(position.time), Some(position.time));
         track.silent = false;
     }
-    out.push(Output::Epoch(epoch(arrived, &seen, &judged, reason)));
+    let caution_in_s = track.judge.monitor().caution_in_s();
+    out.push(Output::Epoch(epoch(settings, arrived, &seen, &Ended { judged, reason, caution_in_s })));
     let cause = Cause { event: position.time, arrival: arrived.arrival };
     let [caution, warning, lost] = judged.step.began;
     begin(id, track, lost, cause, out);
@@ -119,18 +120,39 @@ pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived
     failed
 }
 
-fn epoch(arrived: &Arrived, seen: &Sample, judged: &Judged, reason: Option<Reason>) -> EpochOut {
+/// What became of a record.
+struct Ended {
+    judged: Judged,
+    reason: Option<Reason>,
+    caution_in_s: Option<f64>,
+}
+
+/// Bounds of the navigation error at the accuracy risk across the path, in the plane and upwards \[m\]; NaN where there is none.
+const ANP: [&str; 3] = ["anp-cross", "anp-circle", "anp-vertical"];
+
+fn performance(settings: &Settings, seen: &Sample) -> [f64; 3] {
+    let epoch = seen.epoch();
+    ANP.map(|id| {
+        let method = anp::METHODS.iter().find(|method| method.id == id);
+        method.and_then(|method| (method.bound)(&epoch, settings.judge.accuracy).ok()).map_or(f64::NAN, Metres::m)
+    })
+}
+
+fn epoch(settings: &Settings, arrived: &Arrived, seen: &Sample, ended: &Ended) -> EpochOut {
+    let Ended { judged, reason, caution_in_s } = ended;
     let of = &judged.evaluated;
     let bound = |bound: &Option<Result<AlertBound, Unavailable>>| bound.and_then(Result::ok).map_or(f64::NAN, |b| b.length().m());
     let none = of.accuracy.and_then(Result::err).map(|why| why.reason());
     let known = |number: Option<f64>| number.unwrap_or(f64::NAN);
-    let position = &arrived.position;
+    let (position, shown) = (&arrived.position, &arrived.position.shown);
+    let [ee, en, nn] = seen.covariance.map_or([f64::NAN; 3], |c| [(0, 0), (0, 1), (1, 1)].map(|at| c.matrix()[at]));
+    let [across, circle, upwards] = performance(settings, seen);
     EpochOut {
         track: position.track,
         time: position.time,
         arrival: arrived.arrival,
         status: of.status,
-        reason: reason.or(none),
+        reason: (*reason).or(none),
         acceptance: judged.step.acceptance,
         alert: judged.step.alert,
         numbers: [
@@ -144,7 +166,22 @@ fn epoch(arrived: &Arrived, seen: &Sample, judged: &Judged, reason: Option<Reaso
             known(position.lat_rad),
             known(position.lon_rad),
             known(position.h_m),
+            // Height above another path says nothing of this one.
+            known(shown.fte_v_m.filter(|_| settings.path.is_none())),
+            known(seen.course.map(Radians::rad)),
+            ee,
+            en,
+            nn,
+            across,
+            circle,
+            upwards,
+            known(shown.vpl_m),
+            known(shown.hal_m),
+            known(shown.val_m),
+            known(shown.n_sv),
+            known(*caution_in_s),
         ],
+        nav_mode: shown.nav_mode,
     }
 }
 

@@ -31,7 +31,7 @@ pub use decode::Format;
 pub use input::Input;
 pub use lane::Lane;
 pub use output::{EpochOut, Kind, NUMBERS, Output, Transition, Turn};
-pub use position::{Position, TrackId};
+pub use position::{Position, Shown, TrackId};
 pub use settings::{Course, Settings};
 pub use snapshot::SnapshotRefused;
 

@@ -152,12 +152,15 @@ pub struct EpochOut {
     /// The alert in force after it.
     pub alert: Alert,
     /// Bound at the accuracy risk, bound at the integrity risk, what was compared with twice RNP, RNP, flight technical error, standard
-    /// deviation across the path, horizontal protection level \[m\]; latitude, longitude \[rad\], height \[m\]; NaN where there is none.
-    pub numbers: [f64; 10],
+    /// deviation across the path, horizontal protection level \[m\]; latitude, longitude \[rad\], height \[m\]; then what is shown beside
+    /// the judgement: [`NUMBERS`]. NaN where there is none.
+    pub numbers: [f64; NUMBERS.len()],
+    /// What keeps the position, in the source's word.
+    pub nav_mode: Option<TrackId>,
 }
 
 /// Names of [`EpochOut::numbers`].
-pub const NUMBERS: [&str; 10] = [
+pub const NUMBERS: [&str; 23] = [
     "accuracy_bound_m",
     "integrity_bound_m",
     "integrity_compared_m",
@@ -168,6 +171,19 @@ pub const NUMBERS: [&str; 10] = [
     "est_lat_rad",
     "est_lon_rad",
     "est_h_m",
+    "fte_v_m",
+    "course_rad",
+    "cov_ee_m2",
+    "cov_en_m2",
+    "cov_nn_m2",
+    "anp_cross_m",
+    "anp_circle_m",
+    "anp_vertical_m",
+    "vpl_m",
+    "hal_m",
+    "val_m",
+    "n_sv",
+    "caution_in_s",
 ];
 
 /// One output.
@@ -208,6 +224,7 @@ impl Output {
                 to.u8(code(&ACCEPTANCES, &e.acceptance));
                 to.u8(code(&ALERTS, &e.alert));
                 e.numbers.iter().for_each(|number| to.f64(*number));
+                to.option(e.nav_mode, |to, mode| mode.write(to));
             }
             Self::Transition(t) => {
                 to.u8(1);
@@ -243,6 +260,7 @@ impl Output {
                     }
                     numbers
                 },
+                nav_mode: from.option(TrackId::read)?,
             })),
             1 => Ok(Self::Transition(Transition {
                 track: from.option(TrackId::read)?,

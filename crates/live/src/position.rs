@@ -61,6 +61,40 @@ pub struct Position {
     pub hpl_m: Option<f64>,
     /// RNP value in force \[m\].
     pub rnp_m: Option<f64>,
+    /// What is shown beside the judgement.
+    pub shown: Shown,
+}
+
+/// What the source states and nothing is judged by: it goes to the journal out as it came.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Shown {
+    /// Flight technical error above the path \[m\].
+    pub fte_v_m: Option<f64>,
+    /// Vertical protection level \[m\].
+    pub vpl_m: Option<f64>,
+    /// Horizontal alert limit \[m\].
+    pub hal_m: Option<f64>,
+    /// Vertical alert limit \[m\].
+    pub val_m: Option<f64>,
+    /// Satellites used.
+    pub n_sv: Option<f64>,
+    /// What keeps the position, in a word of the alphabet of tracks.
+    pub nav_mode: Option<TrackId>,
+}
+
+impl Shown {
+    fn write(&self, to: &mut Writer) {
+        for number in [self.fte_v_m, self.vpl_m, self.hal_m, self.val_m, self.n_sv] {
+            to.option(number, Writer::f64);
+        }
+        to.option(self.nav_mode, |to, mode| mode.write(to));
+    }
+
+    fn read(from: &mut Reader<'_>) -> Result<Self, Damaged> {
+        let mut number = || from.option(Reader::f64);
+        let (fte_v_m, vpl_m, hal_m, val_m, n_sv) = (number()?, number()?, number()?, number()?, number()?);
+        Ok(Self { fte_v_m, vpl_m, hal_m, val_m, n_sv, nav_mode: from.option(TrackId::read)? })
+    }
 }
 
 impl Position {
@@ -79,6 +113,7 @@ impl Position {
             covariance_m2: None,
             hpl_m: None,
             rnp_m: None,
+            shown: Shown { fte_v_m: None, vpl_m: None, hal_m: None, val_m: None, n_sv: None, nav_mode: None },
         }
     }
 
@@ -107,6 +142,7 @@ impl Position {
             to.option(number, Writer::f64);
         }
         to.option(self.covariance_m2, |to, covariance| covariance.into_iter().for_each(|term| to.f64(term)));
+        self.shown.write(to);
     }
 
     pub(crate) fn read(from: &mut Reader<'_>) -> Result<Self, Damaged> {
@@ -123,7 +159,8 @@ impl Position {
             }
             Ok(terms)
         })?;
-        Ok(Self { track, time, status, reason, lat_rad, lon_rad, h_m, fte_m, course_rad, covariance_m2, hpl_m, rnp_m })
+        let shown = Shown::read(from)?;
+        Ok(Self { track, time, status, reason, lat_rad, lon_rad, h_m, fte_m, course_rad, covariance_m2, hpl_m, rnp_m, shown })
     }
 }
 

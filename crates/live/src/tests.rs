@@ -386,3 +386,56 @@ fn a_deviation_without_a_course_takes_the_largest_error_of_any_direction() {
     assert!((after("").1 - east).abs() < 1e-6 * east && east > 400.0, "{east}");
     assert!(!after(",\"course_rad\":1e300").0.usable());
 }
+
+fn epochs_of(outputs: &[Output], name: &str) -> Vec<EpochOut> {
+    let of = |o: &Output| if let Output::Epoch(e) = o { (e.track.name() == name).then_some(*e) } else { None };
+    outputs.iter().filter_map(of).collect()
+}
+
+fn number(epoch: &EpochOut, name: &str) -> f64 {
+    epoch.numbers[NUMBERS.iter().position(|each| *each == name).unwrap()]
+}
+
+#[test]
+fn the_wait_to_the_caution_is_counted_down_in_time_outside_and_is_none_otherwise() {
+    let mut lane = Lane::new(settings()).unwrap();
+    // Outside RNP (555.6 m) and inside twice RNP from 10 to 19 s.
+    let all = flown(&mut lane, 40, |k| {
+        let fte_m = if (10..20).contains(&k) { 600.0 } else { 20.0 };
+        line("d", f64::from(k), &format!(",\"fte_m\":{fte_m},\"sigma_m\":10.0,\"rnp_m\":555.6"))
+    });
+    let left: Vec<_> = epochs_of(&all, "d").iter().map(|e| number(e, "caution_in_s")).collect();
+    assert_eq!(left[10..13], [3.0, 2.0, 1.0]);
+    assert!(left.iter().enumerate().all(|(k, left)| left.is_nan() || (10..13).contains(&k)), "{left:?}");
+    assert_eq!(epochs_of(&all, "d")[13].alert, rnp::Alert::Caution);
+}
+
+#[test]
+fn what_is_shown_beside_the_judgement_goes_through_as_it_came() {
+    let mut lane = Lane::new(settings()).unwrap();
+    let rest = ",\"fte_m\":20.0,\"course_rad\":0.0,\"cov_ee_m2\":9.0,\"cov_en_m2\":0.0,\"cov_nn_m2\":16.0,\"cov_eu_m2\":0.0,\"cov_nu_m2\":0.0,\"cov_uu_m2\":25.0";
+    let shown = ",\"fte_v_m\":-3.5,\"vpl_m\":20.5,\"hal_m\":40.0,\"val_m\":35.0,\"n_sv\":9,\"nav_mode\":\"gnss\"";
+    let all = flown(&mut lane, 3, |k| line("d", f64::from(k), &format!("{rest}{}", if k == 1 { shown } else { "" })));
+    let epochs = epochs_of(&all, "d");
+    let names = ["fte_v_m", "vpl_m", "hal_m", "val_m", "n_sv"];
+    assert_eq!(names.map(|name| number(&epochs[1], name)), [-3.5, 20.5, 40.0, 35.0, 9.0]);
+    assert_eq!(epochs[1].nav_mode.map(|mode| mode.name().to_owned()).as_deref(), Some("gnss"));
+    // What is not stated is not kept from the record before.
+    assert!(names.iter().all(|name| number(&epochs[2], name).is_nan()) && epochs[2].nav_mode.is_none());
+    // Two-sided normal quantile at 0.05, of 3 m across a northern course and of 5 m upwards.
+    let quantile = 1.959_963_984_540_054;
+    assert!((number(&epochs[1], "anp_cross_m") - 3.0 * quantile).abs() < 1e-9);
+    assert!((number(&epochs[1], "anp_vertical_m") - 5.0 * quantile).abs() < 1e-9);
+    assert_eq!(["cov_ee_m2", "cov_en_m2", "cov_nn_m2"].map(|name| number(&epochs[1], name)), [9.0, 0.0, 16.0]);
+    let mut bytes = Vec::new();
+    all.iter().for_each(|output| output.append(&mut bytes));
+    assert_eq!(format!("{:?}", Output::all(&bytes).unwrap()), format!("{all:?}"));
+}
+
+#[test]
+fn a_mode_that_no_word_can_have_costs_no_position() {
+    let mut lane = Lane::new(settings()).unwrap();
+    let all = flown(&mut lane, 3, |k| line("d", f64::from(k), ",\"fte_m\":20.0,\"sigma_m\":10.0,\"nav_mode\":\"<img onerror>\""));
+    assert_eq!(epochs_of(&all, "d").len(), 3);
+    assert!(epochs_of(&all, "d").iter().all(|e| e.nav_mode.is_none() && e.alert == rnp::Alert::Normal));
+}

@@ -92,6 +92,7 @@ fn live_epochs<'py>(py: Python<'py>, frames: &[u8]) -> PyResult<Bound<'py, PyDic
     d.set_item("reason_id", epochs.iter().map(|e| e.reason.map(Reason::id)).collect::<Vec<_>>())?;
     d.set_item("accepted", epochs.iter().map(|e| e.acceptance == Acceptance::Accepted).collect::<Vec<_>>())?;
     d.set_item("alert", epochs.iter().map(|e| e.alert.word()).collect::<Vec<_>>())?;
+    d.set_item("nav_mode", epochs.iter().map(|e| e.nav_mode.map(|mode| mode.name().to_owned())).collect::<Vec<_>>())?;
     for (k, name) in NUMBERS.into_iter().enumerate() {
         d.set_item(name, epochs.iter().map(|e| e.numbers[k]).collect::<Vec<_>>().into_pyarray(py))?;
     }

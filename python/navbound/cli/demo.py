@@ -14,13 +14,24 @@ if TYPE_CHECKING:
     from navbound.run.directory import Run
 
 DISTURBED = "beijing-shanghai-interference"
+SPOOFED = "beijing-shanghai-spoofed-approach"
+REPLAY_SPEED = 60.0
+"""Of the flight of two hours: two minutes."""
 QUIET = "beijing-shanghai"
 QUIET_FLIGHTS = 12
 """One flight has about one independent error: so many are needed before a report can show that the bounds hold."""
 
 
-def demo_command(out: Annotated[Path, typer.Option(help="Folder of the two runs.")] = Path("out/demo")) -> None:
+def demo_command(
+    out: Annotated[Path, typer.Option(help="Folder of the runs.")] = Path("out/demo"),
+    live: Annotated[
+        bool, typer.Option("--live", help="Fly a spoofed approach and replay it on the flight display, 60 times as fast.")
+    ] = False,
+) -> None:
     """Fly an approach that is jammed and then spoofed, and twelve quiet flights beside it; say what happened and what to do next."""
+    if live:
+        _live(out)
+        return
     _say("1 of 2: a flight whose satellites are jammed and then spoofed on the approach")
     disturbed = navbound.fly(DISTURBED, out=out / "interference", command=command_line())
     _print_moments(disturbed)
@@ -32,6 +43,22 @@ def demo_command(out: Annotated[Path, typer.Option(help="Folder of the two runs.
     _say_next(f"open {disturbed.report}", "in a browser: the page opens on the interference; the key e shows the whole flight")
     _say_next('navbound analyze YOUR_FILE --spec "RNP 0.3"', "a recording of your own: table, receiver's log, or RINEX with orbits")
     _say_next("navbound --help", "every command; `navbound methods` lists every bound with its source")
+
+
+def _live(out: Path) -> None:
+    """A flight of two hours in two minutes, with a spoofed approach at its end."""
+    from navbound.cli.live import replay  # noqa: PLC0415 - the other demonstration needs none of it
+
+    _say("1 of 2: a flight of two hours whose satellites are spoofed on the approach")
+    flown = navbound.fly(SPOOFED, out=out / "spoofed-approach", command=command_line())
+    _print_moments(flown)
+    _say(f"2 of 2: the same flight on the flight display, {REPLAY_SPEED:g} times as fast: spoofing begins after 110 s; Ctrl-C ends it")
+    replay(flown.path or out / "spoofed-approach", out=_free(out / "session"), speed=REPLAY_SPEED, level="NPA", open_page=True)
+
+
+def _free(folder: Path) -> Path:
+    """The folder, or one beside it: a session is never written over another."""
+    return next(each for n in range(1, 10_000) if not (each := folder if n == 1 else folder.with_name(f"{folder.name}-{n}")).exists())
 
 
 def _say(heading: str) -> None:

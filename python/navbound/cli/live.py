@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import signal
 import sys
+import time
+import webbrowser
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,13 +14,14 @@ import typer
 from typer.core import TyperGroup
 
 from navbound.cli.parts import err_console, out_console
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.exit_status import OUR_BUG
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from navbound.live import Session, Settings
+    from navbound.live.display import Child
 
 
 class SourceFirst(TyperGroup):
@@ -33,15 +37,22 @@ app = typer.Typer(cls=SourceFirst, help="Judge data that are still arriving: nav
 JsonLines = Annotated[bool, typer.Option("--json", help="Print one JSON object a transition, nothing else.")]
 SessionOut = Annotated[Path, typer.Option("--out", help="Folder of the session: journal in and out, events, tables.")]
 Journal = Annotated[Path, typer.Argument(help="Folder of a session, or its journal in (in.nvj).")]
+Spec = Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3'.")]
+Course = Annotated[str | None, typer.Option(help="Where the aircraft should be: a runway (LFPG/08R) or a route file.")]
+Form = Annotated[str | None, typer.Option("--format", help="json, ubx, sbf, novatel or nmea. [default: by a file's begin]")]
+Display = Annotated[bool, typer.Option("--display", help="Show it in a browser on this host: the address is printed. Ctrl-C ends both.")]
+OpenPage = Annotated[bool, typer.Option("--open", help="Show it, and open the page in the browser of this machine.")]
+Level = Annotated[str | None, typer.Option(help="Service level whose alert limits the display shows, such as LPV-200.")]
+Port = Annotated[int, typer.Option(help="Port of the display. [default: one that is free]", show_default=False)]
 
 
 @app.command()
 def watch(
     source: Annotated[str, typer.Argument(help="A file, a run directory, - (standard input), tcp://host:port or udp://host:port.")],
     out: SessionOut = Path("out/live"),
-    spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3'.")] = "RNP 0.3",
-    path: Annotated[str | None, typer.Option(help="Where the aircraft should be: a runway (LFPG/08R) or a route file.")] = None,
-    form: Annotated[str | None, typer.Option("--format", help="json, ubx, sbf, novatel or nmea. [default: by a file's begin]")] = None,
+    spec: Spec = "RNP 0.3",
+    path: Course = None,
+    form: Form = None,
     method: Annotated[
         str, typer.Option(help="tse-exact or anp-circle. [default: the first with --path or a run that has one, otherwise the second]")
     ] = "",
@@ -53,25 +64,22 @@ def watch(
     expiry_s: Annotated[float | None, typer.Option(help="Silence after which a track is forgotten. [default: never]")] = None,
     speed: Annotated[float, typer.Option(help="Of a file: times its own pace; 0 as fast as it goes.")] = 0.0,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the session in --out.")] = False,
+    display: Display = False,
+    port: Port = 0,
+    open_page: OpenPage = False,
+    level: Level = None,
     json: JsonLines = False,
 ) -> None:
     """Judge a source until it ends or the command is stopped; alerts are reported as they are raised.
 
     A file keeps no time of arrival, so no latency is claimed for it. A connection that is lost later is an event and is opened again.
     """
-    from navbound import live  # noqa: PLC0415
-    from navbound.live.recording import has_path  # noqa: PLC0415
-    from navbound.live.source import CHUNK, format_of  # noqa: PLC0415
-    from navbound.rnp.requirement import requirement  # noqa: PLC0415
-
-    known = form or (None if "://" in source or source == "-" else format_of(source))
-    if known is None and ("://" in source or source == "-"):
-        raise InputError("format", "none", domain="json, ubx, sbf, novatel or nmea with --format: a stream is not guessed")
-    settings = live.Settings(
-        format=known or "json",
-        rnp_m=requirement(spec).rnp_m,
+    settings = _settings(
+        source,
+        form,
+        spec=spec,
         path=path,
-        method=method or ("tse-exact" if has_path(Path(source)) else ""),
+        method=method,
         track=track,
         sample_period_s=period_s,
         time_to_alert_s=time_to_alert_s,
@@ -79,37 +87,184 @@ def watch(
         lateness_s=lateness_s,
         expiry_s=expiry_s,
     )
+    _run(
+        source,
+        settings,
+        _Ways(
+            out,
+            speed,
+            _Screen(port if display or open_page else None, json=json, opened=open_page),
+            limits=_limits(level),
+            resume=resume,
+            json=json,
+        ),
+    )
+
+
+@dataclass(frozen=True)
+class _Ways:
+    """Where a session goes and who sees it."""
+
+    out: Path
+    speed: float
+    screen: _Screen
+    limits: dict[str, Any] | None = None
+    resume: bool = False
+    json: bool = False
+    replay: bool = False
+
+
+def _settings(source: str, form: str | None, *, spec: str, path: str | None, method: str = "", **others: Any) -> Settings:
+    """What a session of a source is set to, checked."""
+    from navbound import live  # noqa: PLC0415
+    from navbound.live.recording import has_path  # noqa: PLC0415
+    from navbound.live.source import format_of  # noqa: PLC0415
+    from navbound.rnp.requirement import requirement  # noqa: PLC0415
+
+    known = form or (None if "://" in source or source == "-" else format_of(source))
+    if known is None and ("://" in source or source == "-"):
+        raise InputError("format", "none", domain="json, ubx, sbf, novatel or nmea with --format: a stream is not guessed")
+    chosen = method or ("tse-exact" if has_path(Path(source)) else "")
+    settings = live.Settings(format=known or "json", rnp_m=requirement(spec).rnp_m, path=path, method=chosen, **others)
     settings.core()
+    return settings
+
+
+def _run(source: str, settings: Settings, ways: _Ways) -> None:
+    """Judge a source until it ends or the command is stopped."""
+    from navbound import live  # noqa: PLC0415
+    from navbound.live.course import points  # noqa: PLC0415
+    from navbound.live.source import CHUNK  # noqa: PLC0415
+
+    _check_speed(ways.speed)
+    opened = live.open_source(source, lines=settings.format == "json", chunk=512 if ways.speed else CHUNK)
+    stop = _stop()
+    kind: Any = "live" if opened.live else "replay" if ways.replay else "recording"
+    origin = live.Origin(kind, source, None if opened.live else ways.speed, points(settings, source), ways.limits)
+    session = live.Session(ways.out, settings, origin=origin, resume=ways.resume, report=_report(json=ways.json), say=_say)
+    with ways.screen as screen:
+        screen.show(session)
+        try:
+            session.run(opened, stop=stop, speed=ways.speed)
+        finally:
+            opened.close()
+        _ended(session, settings, json=ways.json)
+        screen.hold(stop)
+
+
+def _limits(name: str | None) -> dict[str, Any] | None:
+    from navbound.kpi import level  # noqa: PLC0415
+
+    if name is None:
+        return None
+    known = level(name)
+    return {"name": known.id, "hal_m": known.hal_m, "val_m": known.val_m}
+
+
+def _check_speed(speed: float) -> None:
     if not 0 <= speed < float("inf"):
         raise InputError("speed", speed, "1", "[0, inf)")
-    opened = live.open_source(source, lines=settings.format == "json", chunk=512 if speed else CHUNK)
-    stop = _stop()
-    session = live.Session(out, settings, resume=resume, report=_report(json=json), say=_say)
-    try:
-        session.run(opened, stop=stop, speed=speed)
-    finally:
-        opened.close()
-    _ended(session, settings, json=json)
+
+
+class _Screen:
+    """The display beside a session, or none."""
+
+    def __init__(self, port: int | None, *, json: bool, opened: bool) -> None:
+        from navbound.live.display import Options  # noqa: PLC0415
+
+        self._options = None if port is None else Options(port)
+        self._json, self._opened = json, opened
+        self._child: Child | None = None
+
+    def __enter__(self) -> _Screen:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._child is not None:
+            self._child.end()
+
+    def show(self, session: Session) -> None:
+        """Open it."""
+        from navbound.live.display import Child  # noqa: PLC0415
+
+        if self._options is None:
+            return
+        self._child = Child(session.folder, self._options)
+        _address(self._child.address, json=self._json)
+        if self._opened and not webbrowser.open(self._child.address):
+            _say("no browser was found on this machine: open the address in one")
+
+    def hold(self, stop: Callable[[], bool]) -> None:
+        """Leave it open behind the end of the data, until the command is stopped."""
+        if self._child is not None and not stop():
+            _say("the data have ended; the display stays open until Ctrl-C")
+            while not stop():
+                time.sleep(0.1)
+
+
+def _address(address: str, *, json: bool) -> None:
+    if json:
+        _say(f"display: {address}")
+    else:
+        out_console.print(f"Display: {address}", markup=False, highlight=False, soft_wrap=True)
 
 
 @app.command()
 def replay(
-    journal: Journal,
+    recording: Annotated[Path, typer.Argument(help="Folder of a session or its journal in (in.nvj); a run directory; a log.")],
     out: SessionOut = Path("out/replay"),
     speed: Annotated[float, typer.Option(help="Times the pace of the data; 0 as fast as it goes.")] = 1.0,
-    group: Annotated[int, typer.Option(help="Inputs that are judged at once.")] = 1,
+    group: Annotated[int, typer.Option(help="Inputs of a journal that are judged at once.")] = 1,
+    spec: Annotated[str | None, typer.Option(help="Of a run or a log: as of `navbound live`. [default: RNP 0.3]")] = None,
+    path: Course = None,
+    form: Form = None,
+    display: Display = False,
+    port: Port = 0,
+    open_page: OpenPage = False,
+    level: Level = None,
     json: JsonLines = False,
 ) -> None:
-    """Read a journal again, at any speed: the same bounds and alerts in every bit."""
+    """Read a journal again, at any speed: the same bounds and alerts in every bit. A run or a log is judged as if it arrived."""
     from navbound import live  # noqa: PLC0415
-    from navbound.live.replay import settings_of  # noqa: PLC0415
+    from navbound.live.replay import is_journal, settings_of  # noqa: PLC0415
 
-    if not 0 <= speed < float("inf"):
-        raise InputError("speed", speed, "1", "[0, inf)")
+    _check_speed(speed)
     if group < 1:
         raise InputError("group", group, "1", "[1, inf)")
-    session = live.replay(journal, out, speed=speed, group=group, report=_report(json=json), stop=_stop(), say=_say)
-    _ended(session, settings_of(journal), json=json)
+    shown = _Screen(port if display or open_page else None, json=json, opened=open_page)
+    if not is_journal(recording):
+        settings = _settings(str(recording), form, spec=spec or "RNP 0.3", path=path)
+        _run(str(recording), settings, _Ways(out, speed, shown, limits=_limits(level), json=json, replay=True))
+        return
+    if spec is not None or path is not None or form is not None:
+        one = "spec" if spec is not None else "path" if path is not None else "form"
+        raise ConflictError(one, because="a journal is judged with the settings of its session")
+    stop = _stop()
+    with shown as screen:
+        session = live.replay(
+            recording,
+            out,
+            speed=speed,
+            group=group,
+            report=_report(json=json),
+            stop=stop,
+            say=_say,
+            started=screen.show,
+            limits=_limits(level),
+        )
+        _ended(session, settings_of(recording), json=json)
+        screen.hold(stop)
+
+
+@app.command()
+def display(
+    folder: Annotated[Path, typer.Argument(help="Folder of a session that runs, or ran.")],
+    port: Port = 0,
+) -> None:
+    """Show a session in a browser on this host, from its journals alone; Ctrl-C ends the display and not the session."""
+    from navbound.live.display import Options, serve  # noqa: PLC0415
+
+    serve(folder, Options(port), ready=lambda server: _address(server.address, json=False), stop=_stop())
 
 
 @app.command()

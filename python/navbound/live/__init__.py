@@ -1,12 +1,12 @@
 """Data that are still arriving: sources, journal, loop. The judgement is the lane of `crates/live`; nothing here computes.
 
 `settings` says how; `source` reads bytes; `journal` keeps what came in and what came out; `session` joins them and survives being killed;
-`replay` reads a journal again and compares two runs; `transition` is an alert as JSON; `faults` damages journals on purpose.
+`replay` reads a journal again and compares two runs; `transition` is an alert as JSON; `display` shows a session in a browser.
 """
 
 from navbound.live.replay import compare, judge, replay
-from navbound.live.session import Session
+from navbound.live.session import Origin, Session
 from navbound.live.settings import Settings
 from navbound.live.source import open_source
 
-__all__ = ["Session", "Settings", "compare", "judge", "open_source", "replay"]
+__all__ = ["Origin", "Session", "Settings", "compare", "judge", "open_source", "replay"]

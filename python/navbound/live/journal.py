@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 IN, OUT, SNAPSHOT, SETTINGS, EVENTS = "in.nvj", "out.nvj", "snapshot.bin", "live.json", "events.jsonl"
+ACKNOWLEDGED = "acknowledged.jsonl"
+"""What a person at the display has seen: written by the display, read by nobody."""
 
 
 class Journal:
@@ -38,6 +40,7 @@ class Journal:
         self.length = ends[-1] if ends else 0
         if behind == "damaged":
             raise FormatError(path, f"a frame is damaged at byte {self.length}; move the file away to begin anew")
+        _require_version(path, content[: ends[0]] if ends else b"")
         self._last = content[ends[-2] if len(ends) > 1 else 0 : self.length]
         self.torn = len(content) - self.length
         self._file = path.open("ab", buffering=0)
@@ -76,6 +79,16 @@ class Journal:
         self._file.close()
 
 
+def _require_version(path: Path, first: bytes) -> None:
+    """Refuse a journal out that another version wrote; what came in is read by all."""
+    if path.name != OUT or not first:
+        return
+    try:
+        _core.live_last_position(first)
+    except ValueError as e:
+        raise FormatError(path, f"{e}; navbound live judge makes a new one of the journal in") from e
+
+
 def torn(path: Path) -> int:
     """Bytes behind the last whole frame of a journal: it was cut, or its writer was killed or still writes. [B]."""
     return path.stat().st_size - len(read(path))
@@ -96,6 +109,7 @@ def read(path: Path) -> bytes:
     ends, behind = _core.live_frames(content)
     if behind == "damaged" or not ends:
         raise FormatError(path, f"not a journal, or damaged at byte {ends[-1] if ends else 0}")
+    _require_version(path, content[: ends[0]])
     return content[: ends[-1]]
 
 

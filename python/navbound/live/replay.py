@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from navbound import _core
 from navbound.errors import FormatError
 from navbound.live import journal
-from navbound.live.session import Pace, Session
+from navbound.live.course import points
+from navbound.live.session import Origin, Pace, Session
 from navbound.live.settings import load
 
 if TYPE_CHECKING:
@@ -21,6 +22,11 @@ if TYPE_CHECKING:
 
 def _journal(source: Path) -> Path:
     return source / journal.IN if source.is_dir() else source
+
+
+def is_journal(source: Path) -> bool:
+    """Whether this is a session's folder or its journal, and not a run or a log."""
+    return (source / journal.IN).is_file() if source.is_dir() else source.suffix == ".nvj"
 
 
 def settings_of(source: Path) -> Settings:
@@ -38,6 +44,8 @@ def replay(
     report: Callable[[dict[str, Any]], None] = lambda _: None,
     stop: Callable[[], bool] = lambda: False,
     say: Callable[[str], None] = lambda _: None,
+    started: Callable[[Session], None] = lambda _: None,
+    limits: dict[str, Any] | None = None,
 ) -> Session:
     """Read a journal through a new lane.
 
@@ -59,6 +67,10 @@ def replay(
         Ends it early.
     say : callable, optional
         Takes a sentence on a journal that does not end with a whole frame.
+    started : callable, optional
+        Takes the new session before it reads.
+    limits : dict, optional
+        Alert limits that the display shows.
 
     Returns
     -------
@@ -74,7 +86,10 @@ def replay(
     if torn:
         name = _journal(source).name
         say(f"{name}: {torn} bytes at its end are no whole frame and are not judged: it was cut, or its writer was killed or still writes")
-    session = Session(out, settings or settings_of(source), report=report)
+    chosen = settings or settings_of(source)
+    origin = Origin("replay", str(source), speed, points(chosen, ""), limits)
+    session = Session(out, chosen, origin=origin, report=report)
+    started(session)
     ends, _ = _core.live_frames(frames)
     pace, begin = Pace(speed), 0
     for place, end in enumerate(ends, 1):

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import json
 import time
-from typing import TYPE_CHECKING
+from contextlib import ExitStack
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -21,7 +23,6 @@ from navbound.live.settings import load
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
-    from typing import Any
 
     from navbound.live.settings import Settings
     from navbound.live.source import Source
@@ -38,6 +39,31 @@ def now_ns() -> int:
     return int(_core.gps_from_unix_ns(np.array([time.time_ns()], dtype=np.int64))[0])
 
 
+@dataclass(frozen=True)
+class Origin:
+    """Where the data of a session come from: for people and pages, nothing is judged by it.
+
+    Attributes
+    ----------
+    kind : {"live", "recording", "replay"}
+        Data that arrive now, a file or run that is read, or a journal that is read again.
+    source : str
+        Its name.
+    speed : float, optional
+        Times the pace of the data; 0 as fast as it goes; None: the data have their own. [1]
+    points : list of lists
+        Latitude, longitude, course [rad] and RNP [m] along the path.
+    limits : dict, optional
+        Alert limits beside which protection levels are shown: ``name``, ``hal_m``, ``val_m``.
+    """
+
+    kind: Literal["live", "recording", "replay"] = "recording"
+    source: str = ""
+    speed: float | None = None
+    points: list[list[float]] = field(default_factory=list)
+    limits: dict[str, Any] | None = None
+
+
 class Session:
     """A lane between two journals.
 
@@ -47,6 +73,8 @@ class Session:
         Folder of the session.
     settings : Settings
         How it judges.
+    origin : Origin, optional
+        Kept in the folder, for the display.
     resume : bool
         Go on with what stands in the folder; otherwise it must be empty.
     report : callable, optional
@@ -71,6 +99,7 @@ class Session:
         out: Path,
         settings: Settings,
         *,
+        origin: Origin | None = None,
         resume: bool = False,
         report: Callable[[dict[str, Any]], None] = lambda _: None,
         say: Callable[[str], None] = lambda _: None,
@@ -80,10 +109,16 @@ class Session:
         self._report, self._say, self._passed = report, say, passed
         self._core = settings.core()
         self.n_epochs = self.n_transitions = 0
-        _prepare(out, settings, resume=resume)
+        _prepare(out, settings, origin or Origin(), resume=resume)
         self._lock = journal.alone(out)
         self._lock.__enter__()
-        self._in, self._out = journal.Journal(out / journal.IN), journal.Journal(out / journal.OUT)
+        with ExitStack() as opened:
+            opened.push(self._lock)
+            self._in = journal.Journal(out / journal.IN)
+            opened.callback(self._in.close)
+            self._out = journal.Journal(out / journal.OUT)
+            # What is open stays open; before that it was given back.
+            opened.pop_all()
         for written in (self._in, self._out):
             if written.torn:
                 say(f"{written.path.name}: {written.torn} bytes of an unfinished frame were cut off")
@@ -282,9 +317,17 @@ def _slices(frames: bytes) -> list[bytes]:
     return cuts
 
 
-def _prepare(out: Path, settings: Settings, *, resume: bool) -> None:
+def _prepare(out: Path, settings: Settings, origin: Origin, *, resume: bool) -> None:
     """A folder of this session: empty, or one with the same settings where it is resumed."""
-    ours = {journal.IN, journal.OUT, journal.SNAPSHOT, journal.SETTINGS, journal.EVENTS, f"{journal.SNAPSHOT}.partial"}
+    ours = {
+        journal.IN,
+        journal.OUT,
+        journal.SNAPSHOT,
+        journal.SETTINGS,
+        journal.EVENTS,
+        journal.ACKNOWLEDGED,
+        f"{journal.SNAPSHOT}.partial",
+    }
     ours |= {"epochs.parquet", "events.parquet"}
     try:
         out.mkdir(parents=True, exist_ok=True)
@@ -298,8 +341,7 @@ def _prepare(out: Path, settings: Settings, *, resume: bool) -> None:
         if kept != settings:
             differing = sorted(name for name in vars(kept) if getattr(kept, name) != getattr(settings, name))
             raise InputError("resume", str(out), domain=f"a session of the same settings; these differ: {', '.join(differing)}")
-        return
-    if present:
+    elif present:
         raise FormatError(out, "holds a session already; go on with --resume, or choose another --out")
-    record = {"navbound_version": __version__, "settings": json.loads(settings.text())}
+    record = {"navbound_version": __version__, "settings": json.loads(settings.text()), "origin": asdict(origin)}
     journal.put(out / journal.SETTINGS, json.dumps(record, indent=1).encode())

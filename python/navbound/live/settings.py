@@ -116,7 +116,7 @@ class Settings:
         chain = [self.sample_period_s, 0.0, 0.0, computing_s, self.display_s, self.time_to_alert_s]
         nanoseconds = (_ns(self.lateness_s), _ns(self.ahead_s), _ns(self.retention_s))
         text = self.text()
-        path = None if self.path is None else _path(self.path)
+        path = None if self.path is None else path_of(self.path)
         try:
             return _core.LiveSettings(
                 (self.format, self.track, self.method),
@@ -155,7 +155,8 @@ def _ns(seconds: float) -> int:
     return round(seconds * 1e9)
 
 
-def _path(name: str) -> Path:
+def path_of(name: str) -> Path:
+    """The path of a runway's name or a route file."""
     if FilePath(name).suffix.lower() in {".toml", ".csv"}:
         return load_route(name).path
     return runway(name).centreline

@@ -10,7 +10,7 @@ import { hatch } from "./decorate.ts";
 import { strip, type Line } from "./strip.ts";
 
 /** Green is a normal state, amber one to look at, red none at all. */
-const MODES: Record<string, { words: string; hue: Colour }> = {
+export const MODES: Record<string, { words: string; hue: Colour }> = {
     gnss: { words: "GNSS/INS", hue: "normal" },
     dme_dme: { words: "DME/DME/INS", hue: "s1" },
     vor_dme: { words: "VOR/DME/INS", hue: "s3" },

@@ -7,17 +7,22 @@ import { el, setValue, svg, valueOf } from "../show/dom.ts";
 import { level, limitName, metres, nauticalMiles, rnpName, SHORT_M, signedMetres } from "../show/format.ts";
 import { columnOf } from "./methods.ts";
 
-interface Gauge {
+/** Values of one epoch; NaN where there is none. */
+export type Read<K extends string> = (name: K) => number;
+
+export interface Gauge<K extends string = NumberName> {
     title: string;
     vertical: boolean;
     /** The ends are a required limit, not only the ends of the scale. */
     required: boolean;
-    deviation: NumberName;
-    limit: (i: number) => number;
+    deviation: K;
+    /** Whether there can be a deviation. */
+    pointed: boolean;
+    limit: (read: Read<K>) => number;
     limitWords: (limit_m: number) => string;
     /** Column of the 95 % navigation error bound along this direction. */
-    anp: NumberName | null;
-    rows: [key: NumberName, label: string, show: (v: number) => string][];
+    anp: K | null;
+    rows: [key: K, label: string, show: (v: number) => string][];
 }
 
 const LENGTH = 280;
@@ -27,9 +32,9 @@ export function performance(host: HTMLElement, scene: Scene): () => void {
     const section = el("section", { class: "scales", "aria-label": "Navigation performance scales at the cursor" }, el("h3", {}, "Navigation performance at the cursor"));
     const gauges = [lateralGauge(scene), verticalGauge(scene)].filter((g): g is Gauge => g !== null);
     const updates = gauges.map((gauge) => {
-        const built = draw(gauge, scene);
+        const built = drawGauge(gauge);
         section.append(built.element);
-        return built.update;
+        return (i: number) => built.update((name) => scene.table.value(name, i));
     });
     if (gauges.length === 0) section.append(el("p", { class: "note" }, "Neither a path nor a limit was given: there is no scale to show."));
     host.append(section);
@@ -49,7 +54,7 @@ function lateralGauge(scene: Scene): Gauge | null {
     if (anp !== null) rows.push([anp, `ANP 95 %, ${anp === "anp_cross_m" ? "across track" : "circle"}`, metres]);
     if (table.has("fte_m")) rows.push(["fte_m", "FTE", signedMetres]);
     if (bound !== undefined && bound.error_column === "tse_m" && table.has(columnOf(bound, false))) rows.push([columnOf(bound, false), `TSE bound ${level(bound.risk)}, ${bound.id}`, metres]);
-    return { title: "Lateral", vertical: false, required: true, deviation: "fte_m", limit: (i) => table.value("rnp_m", i), limitWords: rnpName, anp, rows };
+    return { title: "Lateral", vertical: false, required: true, deviation: "fte_m", pointed: table.has("fte_m"), limit: (read) => read("rnp_m"), limitWords: rnpName, anp, rows };
 }
 
 function verticalGauge(scene: Scene): Gauge | null {
@@ -65,10 +70,10 @@ function verticalGauge(scene: Scene): Gauge | null {
     const largest = Math.max(1, ...Array.from(table.column("fte_v_m")!, (v) => (Number.isFinite(v) ? Math.abs(v) : 0)));
     const step = 10 ** Math.floor(Math.log10(largest));
     const end = [1, 2, 5, 10].map((f) => f * step).find((v) => v >= largest) ?? 10 * step;
-    return { title: "Vertical", vertical: true, required: false, deviation: "fte_v_m", limit: () => end, limitWords: (v) => `${metres(v)}, scale only: no vertical limit`, anp, rows };
+    return { title: "Vertical", vertical: true, required: false, deviation: "fte_v_m", pointed: true, limit: () => end, limitWords: (v) => `${metres(v)}, scale only: no vertical limit`, anp, rows };
 }
 
-function draw(gauge: Gauge, scene: Scene): { element: HTMLElement; update: (i: number) => void } {
+export function drawGauge<K extends string>(gauge: Gauge<K>): { element: HTMLElement; update: (read: Read<K>) => void } {
     const middle = LENGTH / 2;
     const bars = [svg("rect", { class: "anp-bar", y: 9, height: 18 }), svg("rect", { class: "anp-bar", y: 9, height: 18 })];
     const pointer = svg("path", { class: "pointer", d: "M0 6 L7 18 L0 30 L-7 18 Z" });
@@ -80,13 +85,13 @@ function draw(gauge: Gauge, scene: Scene): { element: HTMLElement; update: (i: n
     const cells = gauge.rows.map(([key, label, show]) => ({ key, show, cell: valueOf(key, null, ""), label }));
     const list = el("dl", { class: "digits" }, ...cells.flatMap(({ label, cell }) => [el("dt", {}, label), el("dd", {}, cell)]));
     const sides = gauge.vertical ? ["below", "above"] : ["left", "right"];
-    const none = scene.table.has(gauge.deviation) ? null : el("p", { class: "note" }, "No path was given: there is no deviation to point at.");
+    const none = gauge.pointed ? null : el("p", { class: "note" }, "No path was given: there is no deviation to point at.");
     const element = el("div", { class: "gauge-box" }, el("div", { class: "gauge-head" }, el("h4", {}, gauge.title), ends), picture,
         el("div", { class: "gauge-sides", "aria-hidden": "true" }, el("span", {}, sides[0]!), el("span", {}, sides[1]!)), none, list);
-    const update = (i: number): void => {
-        const limit = gauge.limit(i);
-        const deviation = scene.table.value(gauge.deviation, i);
-        const anp = gauge.anp === null ? NaN : scene.table.value(gauge.anp, i);
+    const update = (read: Read<K>): void => {
+        const limit = gauge.limit(read);
+        const deviation = read(gauge.deviation);
+        const anp = gauge.anp === null ? NaN : read(gauge.anp);
         const share = Math.min(1, anp / limit);
         const width = Number.isFinite(share) ? Math.max(share * HALF, 3) : 0;
         bars[0]!.setAttribute("x", String(middle - HALF));
@@ -94,10 +99,12 @@ function draw(gauge: Gauge, scene: Scene): { element: HTMLElement; update: (i: n
         bars.forEach((bar) => bar.setAttribute("width", String(width)));
         const off = Math.max(-1.12, Math.min(1.12, deviation / limit));
         pointer.setAttribute("transform", `translate(${Number.isFinite(off) ? middle + off * HALF : middle} 0)`);
+        // Beyond the scale the pointer stands at its end and is hollow: its number says how far.
+        pointer.classList.toggle("parked", Math.abs(deviation / limit) > 1);
         pointer.setAttribute("visibility", Number.isFinite(off) ? "visible" : "hidden");
         ends.textContent = `ends ±${gauge.limitWords(limit)}`;
         for (const { key, show, cell } of cells) {
-            const v = scene.table.value(key, i);
+            const v = read(key);
             setValue(cell, v, show(v));
         }
         const words = `${gauge.title} deviation ${Number.isFinite(deviation) ? signedMetres(deviation) : "unknown"} of a limit of ${metres(limit)}; actual navigation performance ${metres(anp)}`;

@@ -128,7 +128,7 @@ function nearest(shapes: Shapes, view: View, px: number, py: number): number | n
     return best;
 }
 
-function scaleBar(bar: HTMLElement, view: View, shapes: Shapes): void {
+export function scaleBar(bar: HTMLElement, view: View, shapes: Pick<Shapes, "plane">): void {
     const a = shapes.plane.back(view.x - 50 / view.k, view.y);
     const b = shapes.plane.back(view.x + 50 / view.k, view.y);
     const middle = shapes.plane.back(view.x, view.y);

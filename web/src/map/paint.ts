@@ -26,7 +26,7 @@ export function toScreen(view: View, x: number, y: number): [number, number] {
     return [(x - view.x) * view.k + view.width / 2, (y - view.y) * view.k + view.height / 2];
 }
 
-function trace(pen: CanvasRenderingContext2D, view: View, line: Line, from = 0, to = line.length / 2 - 1): void {
+export function trace(pen: CanvasRenderingContext2D, view: View, line: Line, from = 0, to = line.length / 2 - 1): void {
     let drawn: [number, number] | null = null;
     let pen_at: [number, number] | null = null;
     for (let i = from; i <= to; i++) {
@@ -49,7 +49,7 @@ function trace(pen: CanvasRenderingContext2D, view: View, line: Line, from = 0, 
     }
 }
 
-function stroke(pen: CanvasRenderingContext2D, style: { colour: string; width: number; dash?: number[]; alpha?: number }, draw: () => void): void {
+export function stroke(pen: CanvasRenderingContext2D, style: { colour: string; width: number; dash?: number[]; alpha?: number }, draw: () => void): void {
     pen.save();
     pen.strokeStyle = style.colour;
     pen.lineWidth = style.width;
@@ -195,7 +195,7 @@ function paintError(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, s
 }
 
 /** 1, 2 or 5 times a power of ten that makes a length in pixels visible. */
-function enlarge(px: number): number {
+export function enlarge(px: number): number {
     for (let decade = 1; decade < 1e9; decade *= 10) {
         const factor = [1, 2, 5].find((f) => px * f * decade >= SMALLEST_PX);
         if (factor !== undefined) return factor * decade;
@@ -217,7 +217,8 @@ function heading(track: Line, i: number): number | null {
     return Number.isFinite(dx + dy) && dx * dx + dy * dy > 0 ? Math.atan2(dx, -dy) : null;
 }
 
-function paintAircraft(pen: CanvasRenderingContext2D, at: [number, number], heading_rad: number): void {
+/** Filled where it is; hollow where it was. */
+export function paintAircraft(pen: CanvasRenderingContext2D, at: [number, number], heading_rad: number, hollow = false): void {
     pen.save();
     pen.translate(...at);
     pen.rotate(Number.isFinite(heading_rad) ? heading_rad : 0);
@@ -230,6 +231,12 @@ function paintAircraft(pen: CanvasRenderingContext2D, at: [number, number], head
     outline.forEach(([x, y], n) => (n === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
     pen.closePath();
     pen.stroke();
-    pen.fill();
+    if (hollow) {
+        pen.fillStyle = colour("ground");
+        pen.fill();
+        pen.strokeStyle = colour("ink");
+        pen.lineWidth = 1;
+        pen.stroke();
+    } else pen.fill();
     pen.restore();
 }

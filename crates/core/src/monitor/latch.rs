@@ -155,6 +155,11 @@ impl Latch {
         self.event.as_ref().filter(|_| self.annunciated)
     }
 
+    /// Time outside that is left until the alert, where the last epoch was outside and no alert is in force yet \[s\].
+    pub(super) fn raises_in_s(&self) -> Option<f64> {
+        (self.event.is_some() && !self.annunciated && !self.inside).then(|| self.wait.left_s())
+    }
+
     /// Time passed since the last epoch; `lost` where nothing was known of the bound meanwhile. Time outside is that of arrival, which is
     /// never less than that of the stamps; time inside is that of the stamps.
     pub(super) fn pass(&mut self, stamped_ns: f64, arrived_ns: f64, lost: bool) {

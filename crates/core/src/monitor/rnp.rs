@@ -136,6 +136,11 @@ impl Monitor {
         }
     }
 
+    /// Time outside that is left until the caution \[s\]: from the last epoch, which was outside. `None` where no caution is waited for.
+    pub fn caution_in_s(&self) -> Option<f64> {
+        self.caution.raises_in_s().filter(|_| self.loss.is_none())
+    }
+
     /// What happened so far.
     pub fn counters(&self) -> &Counters {
         &self.counters

@@ -41,6 +41,11 @@ impl Wait {
         self.over
     }
 
+    /// Time outside that is left until it is over \[s\].
+    pub(super) fn left_s(&self) -> f64 {
+        if self.over { 0.0 } else { (self.full_ns - self.level_ns) * 1e-9 }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.level_ns == 0.0
     }

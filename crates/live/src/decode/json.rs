@@ -2,7 +2,7 @@
 
 use super::Decoded;
 use crate::counters::Refused;
-use crate::position::{Position, TrackId};
+use crate::position::{Position, Shown, TrackId};
 use navbound_core::quantity::{GpsTime, Reason, Status};
 use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
@@ -47,6 +47,18 @@ struct Line<'a> {
     hpl_m: Option<f64>,
     #[serde(default, deserialize_with = "number")]
     rnp_m: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    fte_v_m: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    vpl_m: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    hal_m: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    val_m: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
+    n_sv: Option<f64>,
+    #[serde(default, borrow)]
+    nav_mode: Option<Cow<'a, str>>,
 }
 
 /// A number, NaN for `null`. A key that is absent does not come here.
@@ -75,6 +87,14 @@ pub(super) fn position(line: &[u8]) -> Decoded {
         covariance_m2: line.covariance(),
         hpl_m: line.hpl_m,
         rnp_m: line.rnp_m,
+        shown: Shown {
+            fte_v_m: line.fte_v_m,
+            vpl_m: line.vpl_m,
+            hal_m: line.hal_m,
+            val_m: line.val_m,
+            n_sv: line.n_sv,
+            nav_mode: line.nav_mode.as_deref().and_then(TrackId::new),
+        },
         ..Position::new(track, GpsTime::from_nanoseconds(line.time_ns))
     };
     Ok(position)

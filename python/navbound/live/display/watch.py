@@ -1,0 +1,335 @@
+"""What the journals of a session say, followed while they grow. Nothing here is judged: it is read, kept for a while, and handed on."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections import deque
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from navbound import _core
+from navbound.errors import FormatError
+from navbound.live import journal, transition
+from navbound.live.session import now_ns
+from navbound.live.settings import COMPUTING_S, load
+from navbound.status import REASONS
+from navbound.table.columns import HORIZONTAL
+from navbound.time import utc_offset_s
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+GPS_EPOCH_UNIX_S = 315_964_800
+"""Unix time of 1980-01-06 00:00:00 UTC. [s]"""
+FEED_LOST_S = 2.5
+"""Time without any input of a live source, whose reader says each second that it is alive, after which the reader counts as lost. [s]"""
+HISTORY_S = 600.0
+HISTORY_ROWS = 6000
+MOST_TRACKS = 64
+MOST_EVENTS = 500
+SLICE = 1 << 20
+"""Bytes of a journal that are read at once. [B]"""
+
+WORDS = ("status", "reason_id", "alert", "nav_mode")
+NUMBERS = (
+    "accuracy_bound_m",
+    "integrity_bound_m",
+    "integrity_compared_m",
+    "rnp_m",
+    "fte_m",
+    "sigma_cross_m",
+    "hpl_m",
+    "est_lat_rad",
+    "est_lon_rad",
+    "est_h_m",
+    "fte_v_m",
+    "course_rad",
+    *HORIZONTAL,
+    "anp_cross_m",
+    "anp_circle_m",
+    "anp_vertical_m",
+    "vpl_m",
+    "hal_m",
+    "val_m",
+    "n_sv",
+    "caution_in_s",
+)
+FIELDS = ("utc_s", *WORDS, *NUMBERS)
+"""What a row of an epoch holds, in this order. A number that is none is null."""
+Row = list[Any]
+
+
+class Tail:
+    """Whole frames at the end of a file that another process writes.
+
+    Attributes
+    ----------
+    behind : bool
+        Whether there is more to read at once.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path, self._at, self._left, self.behind = path, 0, b"", False
+
+    def frames(self) -> bytes:
+        """Whole frames that were added.
+
+        Raises
+        ------
+        FormatError
+            A frame is damaged, or the file became shorter: it is another session's.
+        """
+        try:
+            with self.path.open("rb") as file:
+                size = file.seek(0, 2)
+                if size < self._at:
+                    raise FormatError(self.path, "became shorter while it was read: another session writes it")
+                file.seek(self._at)
+                read = file.read(SLICE)
+        except FileNotFoundError:
+            return b""
+        self._at += len(read)
+        self.behind = self._at < size
+        content = self._left + read
+        ends, behind = _core.live_frames(content)
+        end = ends[-1] if ends else 0
+        if behind == "damaged":
+            raise FormatError(self.path, f"a frame is damaged at byte {self._at - len(content) + end}")
+        self._left = content[end:]
+        return content[:end]
+
+
+@dataclass
+class Track:
+    """What is kept of one aircraft."""
+
+    rows: deque[Row] = field(default_factory=lambda: deque(maxlen=HISTORY_ROWS))
+    time_ns: int = 0
+    arrival_ns: int | None = None
+    read_s: float = 0.0
+
+    def add(self, row: Row) -> None:
+        """Keep an epoch, and forget what is older than the history. A clock that was set back begins a new one."""
+        if self.rows and row[0] <= self.rows[-1][0]:
+            self.rows.clear()
+        self.rows.append(row)
+        while self.rows[0][0] < row[0] - HISTORY_S:
+            self.rows.popleft()
+
+
+@dataclass(frozen=True)
+class News:
+    """What came since the last look: rows by track, transitions."""
+
+    rows: dict[str, list[Row]]
+    transitions: list[dict[str, Any]]
+
+    def __bool__(self) -> bool:
+        """Whether there is any."""
+        return bool(self.rows or self.transitions)
+
+
+class Watch:
+    """The journals of a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Of a session that runs, or ran.
+    clock : callable
+        Time that never goes back. [s]
+
+    Raises
+    ------
+    FormatError
+        Not the folder of a session.
+    """
+
+    def __init__(self, folder: Path, clock: Callable[[], float] = time.monotonic) -> None:
+        self.folder, self._clock = folder, clock
+        self.settings = load(folder / journal.SETTINGS)
+        self.origin = origin_of(folder)
+        self._in, self._out = Tail(folder / journal.IN), Tail(folder / journal.OUT)
+        self.tracks: dict[str, Track] = {}
+        self.n_hidden = 0
+        self.open: dict[str, dict[str, Any]] = {}
+        self.events: deque[dict[str, Any]] = deque(maxlen=MOST_EVENTS)
+        self.n_transitions = 0
+        self.acknowledged: set[str] = set()
+        self.ended = False
+        self.trouble: str | None = None
+        self._input_s = clock()
+        self._offset: tuple[int, int] | None = None
+
+    def poll(self) -> News:
+        """Read on. A journal that cannot be read is trouble that every page shows."""
+        rows: dict[str, list[Row]] = {}
+        transitions: list[dict[str, Any]] = []
+        try:
+            self._inputs(self._in.frames())
+            frames = self._out.frames()
+            if frames:
+                self._epochs(_core.live_epochs(frames), rows)
+                transitions = self._transitions(frames)
+        except (FormatError, OSError, ValueError) as e:
+            self.trouble = str(e)
+        return News(rows, transitions)
+
+    @property
+    def behind(self) -> bool:
+        """Whether more is there than was read at once."""
+        return self._out.behind or self._in.behind
+
+    def _inputs(self, frames: bytes) -> None:
+        if not frames:
+            return
+        self._input_s = self._clock()
+        self.ended = _core.live_inputs(frames)[-1][0] == "end"
+
+    def _epochs(self, columns: dict[str, Any], rows: dict[str, list[Row]]) -> None:
+        numbers = [columns[name] for name in NUMBERS]
+        words = [columns[name] for name in WORDS]
+        now = self._clock()
+        for i, name in enumerate(columns["track"]):
+            if not columns["accepted"][i]:
+                # What the monitor did not take in order has no place on an axis of time, nor is it the present.
+                continue
+            track = self.tracks.get(name)
+            if track is None:
+                if len(self.tracks) >= MOST_TRACKS:
+                    self.n_hidden += 1
+                    continue
+                track = self.tracks[name] = Track()
+            time_ns = int(columns["time_ns"][i])
+            row = [self._utc_s(time_ns), *(word[i] for word in words), *(_number(x[i]) for x in numbers)]
+            rows.setdefault(name, []).append(row)
+            track.time_ns, track.arrival_ns, track.read_s = time_ns, columns["arrival_ns"][i], now
+            track.add(row)
+
+    def _utc_s(self, time_ns: int) -> float:
+        hour = time_ns // 3_600_000_000_000
+        if self._offset is None or self._offset[0] != hour:
+            self._offset = (hour, utc_offset_s(time_ns))
+        return time_ns / 1e9 + GPS_EPOCH_UNIX_S - self._offset[1]
+
+    def _transitions(self, frames: bytes) -> list[dict[str, Any]]:
+        replayed = self.origin["kind"] != "live"
+        records = [
+            transition.record(row, time_to_alert_s=self.settings.time_to_alert_s, replayed=replayed)
+            for row in _core.live_transitions(frames)
+        ]
+        shown = [self._shown(record) for record in records]
+        for each in shown:
+            self.n_transitions += 1
+            self.events.append(each)
+            if each["transition"] == "raised":
+                self.open[each["alert"]] = each
+            else:
+                self.open.pop(each["alert"], None)
+                self.acknowledged.discard(each["alert"])
+        return shown
+
+    def _shown(self, record: dict[str, Any]) -> dict[str, Any]:
+        """A transition as a page needs it: times in UTC seconds, and the name that raise and clear share."""
+        times = {f"{name}_utc_s": None if record[f"{name}_ns"] is None else self._utc_s(record[f"{name}_ns"]) for name in _TIMES}
+        lengths = {name: _number(record[name]) for name in ("peak_m", "limit_m", "min_margin_m", "latency_s")}
+        kept = {name: record[name] for name in ("key", "track", "kind", "transition", "within_time_to_alert", "position")}
+        return {**kept, **times, **lengths, "alert": alert_of(record["key"])}
+
+    def status(self) -> dict[str, Any]:
+        """How old everything is now, by the clock of this host."""
+        return {
+            "feed": self.feed(),
+            "ages_s": {name: self._age_s(track) for name, track in self.tracks.items()},
+            "silent_s": round(self._clock() - self._input_s, 2),
+            "trouble": self.trouble,
+            "n_hidden": self.n_hidden,
+        }
+
+    def feed(self) -> str:
+        """``live``, ``ended``, or ``lost``: the reader of a live source does not even say that it is alive."""
+        if self.trouble is not None:
+            return "lost"
+        if self.ended:
+            return "ended"
+        silent = self.origin["kind"] == "live" and self._clock() - self._input_s > FEED_LOST_S
+        return "lost" if silent else "live"
+
+    def _age_s(self, track: Track) -> float:
+        """Of a live source the time since the data were true; of a recording the time since they were read."""
+        if self.origin["kind"] == "live" and track.arrival_ns is not None:
+            return round(max(0.0, (now_ns() - track.time_ns) / 1e9), 3)
+        return round(self._clock() - track.read_s, 3)
+
+    def stale_s(self) -> float:
+        """Age from which data are stale on a page [s]. A recording that is read slowly sends slowly."""
+        speed = self.origin.get("speed") or 1.0
+        return self.settings.stale_s / min(1.0, speed)
+
+    def session(self) -> dict[str, Any]:
+        """What does not change while the session runs."""
+        s = self.settings
+        chain = {
+            "sample period": s.sample_period_s,
+            "transport": s.transport_s,
+            "order": s.lateness_s,
+            "computing": COMPUTING_S,
+            "wait": s.raise_delay_s,
+            "display": s.display_s,
+        }
+        return {
+            "run": f"{self.folder.name}",
+            "fields": FIELDS,
+            "origin": self.origin,
+            "rnp_m": s.rnp_m,
+            "path": s.path,
+            "method": s.method,
+            "risk_accuracy": s.risk_accuracy,
+            "risk_integrity": s.risk_integrity,
+            "sample_period_s": s.sample_period_s,
+            "stale_s": self.stale_s(),
+            "monitor_stale_s": s.stale_s,
+            "time_to_alert_s": s.time_to_alert_s,
+            "chain": chain,
+            "reasons": {name: reason.words for name, reason in REASONS.items()},
+        }
+
+    def snapshot(self, wanted: str | None) -> dict[str, Any]:
+        """Everything a page shows of one aircraft, and the alerts of all."""
+        name = wanted if wanted in self.tracks else next(iter(self.tracks), None)
+        return {
+            "session": self.session(),
+            "track": name,
+            "tracks": list(self.tracks),
+            "rows": list(self.tracks[name].rows) if name is not None else [],
+            "open": list(self.open.values()),
+            "events": list(self.events),
+            "n_transitions": self.n_transitions,
+            "acknowledged": sorted(self.acknowledged),
+            "status": self.status(),
+        }
+
+
+_TIMES = ("annunciation", "onset", "clear", "event")
+
+
+def alert_of(key: str) -> str:
+    """What raise and clear of one alert have in common: the key without its last part."""
+    return key.rpartition("/")[0]
+
+
+def _number(value: float | None) -> float | None:
+    """Twelve digits; what is no number is null."""
+    return float(f"{value:.12g}") if value is not None and math.isfinite(value) else None
+
+
+def origin_of(folder: Path) -> dict[str, Any]:
+    """Where the data of a session come from, as its folder says."""
+    try:
+        kept = json.loads((folder / journal.SETTINGS).read_text(encoding="utf-8")).get("origin")
+    except (OSError, ValueError) as e:
+        raise FormatError(folder / journal.SETTINGS, f"not the settings of a live session: {e}") from e
+    return {"kind": "recording", "source": "", "speed": None, "points": [], "limits": None} | (kept if isinstance(kept, dict) else {})

@@ -1,0 +1,110 @@
+// The connection to the server: token to session, one stream, signs of life, acknowledgements, and a clock of the page's own.
+
+import { Model, type Snapshot, type State, type Transition } from "./state.ts";
+
+const ALIVE_MS = 5000;
+const AGAIN_MS = 1000;
+
+export interface Heard {
+    /** Something changed. */
+    changed: () => void;
+    /** Time passed, whether or not anything came. */
+    ticked: () => void;
+    alert: (transition: Transition) => void;
+    /** The server does not know this browser. */
+    stranger: () => void;
+}
+
+export function now_s(): number {
+    return performance.now() / 1000;
+}
+
+function post(path: string, body: object): Promise<Response> {
+    return fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body), cache: "no-store" });
+}
+
+/** A worker needs an address that the page vouches for. */
+function clockWorker(): Worker {
+    const types = (globalThis as { trustedTypes?: { createPolicy: (name: string, rules: object) => { createScriptURL: (url: string) => string } } }).trustedTypes;
+    const policy = types?.createPolicy("navbound-clock", { createScriptURL: (url: string) => (url === "/clock.js" ? url : "about:blank") });
+    return new Worker(policy?.createScriptURL("/clock.js") ?? "/clock.js");
+}
+
+export class Link {
+    private stream: EventSource | null = null;
+    private again: ReturnType<typeof setTimeout> | null = null;
+    private wanted: string | null = null;
+    private readonly model: Model;
+    private readonly heard: Heard;
+
+    constructor(model: Model, heard: Heard) {
+        this.model = model;
+        this.heard = heard;
+        const tick = (): void => {
+            if (this.model.tick(now_s())) this.connect();
+            heard.ticked();
+        };
+        clockWorker().addEventListener("message", tick);
+        document.addEventListener("visibilitychange", tick);
+        addEventListener("pageshow", tick);
+        setInterval(() => this.alive(), ALIVE_MS);
+    }
+
+    /** The token stands behind the # of the address that the command printed; the cookie that it buys stays. */
+    async begin(): Promise<void> {
+        const token = location.hash.slice(1);
+        if (token !== "") {
+            history.replaceState(null, "", location.pathname);
+            await post("/session", { token });
+        }
+        this.connect();
+    }
+
+    connect(track: string | null = this.wanted): void {
+        this.wanted = track;
+        this.stream?.close();
+        if (this.again !== null) clearTimeout(this.again);
+        const stream = new EventSource(track === null ? "/events" : `/events?track=${encodeURIComponent(track)}`);
+        this.stream = stream;
+        const on = <T>(name: string, take: (data: T) => void): void => stream.addEventListener(name, (event) => {
+            if (stream !== this.stream) return;
+            take(JSON.parse((event as MessageEvent<string>).data) as T);
+            this.heard.changed();
+        });
+        on<Snapshot>("snapshot", (snapshot) => this.model.take(snapshot, now_s()));
+        on<State>("state", (state) => this.model.add(state, now_s()));
+        on<Transition>("alert", (transition) => {
+            this.model.alert(transition, now_s());
+            this.heard.alert(transition);
+        });
+        on<{ alert: string }>("acknowledged", ({ alert }) => {
+            this.model.acknowledged.add(alert);
+            this.model.hear(now_s());
+        });
+        // The stream comes again with a whole snapshot; a browser that gives up on it is made to try.
+        stream.addEventListener("error", () => {
+            if (stream !== this.stream) return;
+            stream.close();
+            this.again = setTimeout(() => void this.ask(), AGAIN_MS);
+        });
+    }
+
+    private async ask(): Promise<void> {
+        try {
+            const answer = await fetch("/session", { cache: "no-store" });
+            if (answer.status === 401) this.heard.stranger();
+        } catch {
+            // Nobody answers: the page says so already.
+        }
+        this.connect();
+    }
+
+    private alive(): void {
+        const client = this.model.snapshot?.client;
+        if (client !== undefined) void post("/alive", { client }).catch(() => undefined);
+    }
+
+    acknowledge(alert: string): void {
+        void post("/acknowledge", { alert }).catch(() => undefined);
+    }
+}
