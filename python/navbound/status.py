@@ -75,9 +75,9 @@ def status_of(reason_id: pl.Expr) -> pl.Expr:
     return reason_id.replace_strict(table, default="ok", return_dtype=pl.String)
 
 
-def reasons_of(found: dict[str, Any], shape: tuple[int, ...]) -> tuple[NDArray[np.str_], NDArray[np.str_]]:
+def reasons_of(states: dict[str, Any], shape: tuple[int, ...]) -> tuple[NDArray[np.str_], NDArray[np.str_]]:
     """Sentences and ids of results of the core, taken out of them."""
-    sentences, ids = (np.array(found.pop(name), dtype=np.str_).reshape(shape) for name in ("reason", "reason_id"))
+    sentences, ids = (np.array(states.pop(name), dtype=np.str_).reshape(shape) for name in ("reason", "reason_id"))
     return sentences, ids
 
 
@@ -142,10 +142,10 @@ def recorded(epochs: pl.DataFrame) -> pl.DataFrame:
         .then(pl.lit("ok"))
         .otherwise(named.replace_strict({id_: entry.status for id_, entry in REASONS.items()}, default=None, return_dtype=pl.String))
     )
-    found = epochs.select(status=worse(stated if "status" in epochs.columns else pl.lit("ok"), by_reason), reason_id=named)
+    worst = epochs.select(status=worse(stated if "status" in epochs.columns else pl.lit("ok"), by_reason), reason_id=named)
     unknown = pl.col("status").is_null() | ((pl.col("status") != "ok") & pl.col("reason_id").is_null())
     return epochs.with_columns(
-        found.select(
+        worst.select(
             pl.col("status").fill_null(reason("reported").status),
             pl.when(unknown).then(pl.lit("reported")).otherwise("reason_id").alias("reason_id"),
         )

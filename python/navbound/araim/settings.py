@@ -86,9 +86,9 @@ class Support:
 
 
 def _support() -> Support:
-    found = _core.araim_support()
-    ura, ure, bias, continuity, p_sat, p_const = zip(*found["support"], strict=True)
-    return Support(ura, ure, bias, continuity, p_sat, p_const, found["source"], found["provenance"])
+    defaults = _core.araim_support()
+    ura, ure, bias, continuity, p_sat, p_const = zip(*defaults["support"], strict=True)
+    return Support(ura, ure, bias, continuity, p_sat, p_const, defaults["source"], defaults["provenance"])
 
 
 SERVICES: dict[str, Service] = {name: Service(**numbers) for name, numbers in _core.araim_services().items()}

@@ -124,14 +124,14 @@ def _instant(text: str) -> int:
 
 
 def _limits(pairs: list[str]) -> dict[str, float]:
-    found = {}
+    limits = {}
     for pair in pairs:
         name, _, number = pair.partition("=")
         try:
-            found[name] = float(number)
+            limits[name] = float(number)
         except ValueError as e:
             raise InputError("limit", pair, domain="column=number, as hpl_m=40") from e
-    return found
+    return limits
 
 
 def _show(made: Map, *, json: bool) -> None:

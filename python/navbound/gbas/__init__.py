@@ -279,7 +279,7 @@ def protection_levels(
     width, leading = width_of(shape), shape[:-1]
     sigma, sigma_h1 = _sigmas(np.reshape(el, shape), service, sigma_m, sigma_h1_m)
     multipliers = k or factors(integrity_risk)
-    found = _core.gbas_levels(
+    levels = _core.gbas_levels(
         {
             "az_rad": az,
             "el_rad": el,
@@ -295,9 +295,9 @@ def protection_levels(
             "form": named("form", form, ("major", "norm")),
         }
     )
-    reason, reason_id = reasons_of(found, leading)
-    covariance = found.pop("cov_enu_m2").reshape(*leading, 3, 3)
-    columns: dict[str, Any] = {name: unflatten(values, leading) for name, values in found.items()}
+    reason, reason_id = reasons_of(levels, leading)
+    covariance = levels.pop("cov_enu_m2").reshape(*leading, 3, 3)
+    columns: dict[str, Any] = {name: unflatten(values, leading) for name, values in levels.items()}
     status = availability(reason_id)
     return Levels(covariance_enu_m2=covariance, status=status, reason=reason, reason_id=reason_id, **columns)
 

@@ -207,7 +207,7 @@ def solve(
             )
         )
     try:
-        found = _core.solve_positions(
+        positions = _core.solve_positions(
             observations._core,
             navigation._core,
             systems,
@@ -226,12 +226,12 @@ def solve(
     except LookupError as e:
         domain = "auto, climatology, none, dual signals, or navigation files with that message within two days of the observations"
         raise InputError("ionosphere", ionosphere, domain=domain) from e
-    kept = found.pop("ranges")
-    used = used_satellites(found.pop("used"))
-    unused, codes, weights = found.pop("unused"), found.pop("codes"), found.pop("weights")
-    share, model = found.pop("smoothed_share"), found.pop("ionosphere")
+    kept = positions.pop("ranges")
+    used = used_satellites(positions.pop("used"))
+    unused, codes, weights = positions.pop("unused"), positions.pop("codes"), positions.pop("weights")
+    share, model = positions.pop("smoothed_share"), positions.pop("ionosphere")
     name = track or observations.marker or observations.path.name
-    columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **found}
+    columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **positions}
     epochs = pl.DataFrame(columns).with_columns(pl.col("reason", "reason_id").replace({"": None}))
     floats = [c for c, kind in epochs.schema.items() if kind == pl.Float64]
     epochs = epochs.with_columns(pl.col(floats).fill_nan(None))

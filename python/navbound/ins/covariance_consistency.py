@@ -62,17 +62,17 @@ def consistency(
     InputError
         A scenario that has no sensors, or settings outside their domain.
     """
-    found = scenario if isinstance(scenario, Scenario) else load(scenario)
+    loaded = scenario if isinstance(scenario, Scenario) else load(scenario)
     for name, value, least in (("flights", flights, 1), ("first", first, 0)):
         if not value >= least:
             raise InputError(name, value, "1", f"[{least}, inf)")
     if not skip_s >= 0.0:
         raise InputError("skip_s", skip_s, "s", "[0, inf)")
-    chosen = found.seed if seed is None else seed
+    chosen = loaded.seed if seed is None else seed
     # One generator a flight, by seed and number: the same flight has the same start errors in any batch.
     normals = np.array([np.random.default_rng([chosen, number]).normal(size=9) for number in range(first, first + flights)])
     words = told(imu_model or ImuModel(), settings or FilterSettings(), start or StartSigma(), (1.0, 0.0), None)
-    table = _core.ins_consistency(found.core_json(), chosen, first, normals, words, skip_s)
+    table = _core.ins_consistency(loaded.core_json(), chosen, first, normals, words, skip_s)
     how = settings or FilterSettings()
     declared = (*CONSISTENCY, *REVERSION) if how.reversion or how.form == "federated" else CONSISTENCY
     numbers = np.column_stack([np.arange(first, first + flights), table])

@@ -72,8 +72,8 @@ class Slots:
 
     def _slots(self, time_ns: NDArray[np.int64]) -> NDArray[np.int64]:
         """The nearest epoch of the grid, as the core rounds."""
-        found: NDArray[np.int64] = (time_ns - self._origin_ns + self._period_ns // 2) // self._period_ns
-        return found
+        slots: NDArray[np.int64] = (time_ns - self._origin_ns + self._period_ns // 2) // self._period_ns
+        return slots
 
     def _ranks(self, columns: Mapping[str, NDArray[Any]]) -> list[NDArray[Any]]:
         """How bad each row is, the gravest measure first; an unknown error or level is in none of them."""

@@ -29,9 +29,9 @@ class _DmeLevels:
 
     def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
         rnp_m, fte_m, sigma_altitude_m = self.numbers
-        found = dme.coverage(lat_rad, lon_rad, self.h_m, self.network, rnp_m=rnp_m, fte_m=fte_m, sigma_altitude_m=sigma_altitude_m)
+        coverage = dme.coverage(lat_rad, lon_rad, self.h_m, self.network, rnp_m=rnp_m, fte_m=fte_m, sigma_altitude_m=sigma_altitude_m)
         columns: dict[str, NDArray[Any]] = {
-            name: np.asarray(getattr(found, name), dtype=np.float64)[:, None] for name in ("nse_best_m", "nse_all_m")
+            name: np.asarray(getattr(coverage, name), dtype=np.float64)[:, None] for name in ("nse_best_m", "nse_all_m")
         }
         return columns | {"p_too_few": np.isnan(columns["nse_best_m"])}
 

@@ -30,11 +30,11 @@ def limits_of(level: str, *, vertical: bool = True) -> list[Limit]:
     InputError
         No such level.
     """
-    found = kpi.level(level)
+    required = kpi.level(level)
     # The source of a level of the table speaks of its other demands too.
     sources = {row["id"]: row["limits_source"] for row in _core.service_levels()}
-    source = f"{found.id}: {sources.get(found.id, found.source)}"
-    limits = [Limit("hpl_m", found.hal_m, source, found.provenance["hal_m"])]
-    if vertical and found.val_m is not None:
-        limits.append(Limit("vpl_m", found.val_m, source, found.provenance["val_m"]))
+    source = f"{required.id}: {sources.get(required.id, required.source)}"
+    limits = [Limit("hpl_m", required.hal_m, source, required.provenance["hal_m"])]
+    if vertical and required.val_m is not None:
+        limits.append(Limit("vpl_m", required.val_m, source, required.provenance["val_m"]))
     return limits

@@ -206,9 +206,9 @@ def _outcomes(kind: Kind, points: pl.DataFrame, weights: np.ndarray[Any, np.dtyp
     shares = {name: float(np.clip((weights * points[name].to_numpy()).sum(), 0.0, 1.0)) for name in named}
     # What is left has a number; a rounding of the shares is none of it.
     beyond = 1.0 - sum(shares.values())
-    found = [map_records.MapOutcome(name=name, title=title, share=shares[name]) for name, title in named.items()]
+    outcomes = [map_records.MapOutcome(name=name, title=title, share=shares[name]) for name, title in named.items()]
     rest = map_records.MapOutcome(name="beyond", title="Beyond the limits", share=beyond if beyond > _ROUNDING else 0.0)
-    return [found[0], rest, *found[1:]]
+    return [outcomes[0], rest, *outcomes[1:]]
 
 
 def _column(column: Column, points: pl.DataFrame, weights: np.ndarray[Any, np.dtype[np.float64]]) -> map_records.MapColumn:
@@ -222,8 +222,8 @@ def _half(values: np.ndarray[Any, np.dtype[np.float64]], weights: np.ndarray[Any
     """The number that half of the area is within."""
     order = np.argsort(values, kind="stable")
     place = min(int(np.searchsorted(np.cumsum(weights[order]), 0.5)), len(values) - 1)
-    found = float(values[order[place]])
-    return found if math.isfinite(found) else None
+    value = float(values[order[place]])
+    return value if math.isfinite(value) else None
 
 
 def _words(kind: Kind, asked: list[Limit], coverage: list[map_records.MapCoverage], worst: map_records.MapWorst, n_epochs: int) -> str:

@@ -77,9 +77,9 @@ class _DopLevels:
 
     def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
         s = self.sky
-        found = gnss.dop_map(s.orbits, lat_rad, lon_rad, s.h_m, s.time_s, mask_rad=s.mask_rad)
-        columns = {name: getattr(found, name) for name in ("hdop", "vdop", "pdop", "gdop", "n_sv")}
-        return columns | {"p_too_few": np.isnan(found.pdop)}
+        dilutions = gnss.dop_map(s.orbits, lat_rad, lon_rad, s.h_m, s.time_s, mask_rad=s.mask_rad)
+        columns = {name: getattr(dilutions, name) for name in ("hdop", "vdop", "pdop", "gdop", "n_sv")}
+        return columns | {"p_too_few": np.isnan(dilutions.pdop)}
 
 
 @dataclass(frozen=True)

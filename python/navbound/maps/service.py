@@ -44,7 +44,7 @@ class _SbasLevels:
     sender: gnss.Orbits | None
 
     def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
-        found = sbas.protection_levels(
+        levels = sbas.protection_levels(
             sources.messages(self.messages, self.prn),
             [file.path for file in self.navigation],
             self.time_ns[:, None],
@@ -54,7 +54,7 @@ class _SbasLevels:
             mode=self.mode,
             mask_rad=self.mask_rad,
         )
-        columns = {name: np.ascontiguousarray(getattr(found, name).T, dtype=np.float64) for name in ("hpl_m", "vpl_m", "n_sv")}
+        columns = {name: np.ascontiguousarray(getattr(levels, name).T, dtype=np.float64) for name in ("hpl_m", "vpl_m", "n_sv")}
         deaf = ~self._hears(lat_rad, lon_rad)
         columns["hpl_m"][deaf] = columns["vpl_m"][deaf] = np.nan
         columns["n_sv"][deaf] = 0
@@ -186,9 +186,9 @@ def _sender(heard: sbas.Messages) -> gnss.Orbits | None:
     own = sbas.Messages(heard.time_ns[at], heard.prn[at], heard.data[at], heard.format, heard.tag, [])
     places = [
         place["position_ecef_m"]
-        for found in sorted(sbas.decode(own), key=lambda one: one.type)
-        for place in found.fields.get("entries", [found.fields])
-        if place.get("prn", found.prn) == found.prn
+        for message in sorted(sbas.decode(own), key=lambda one: one.type)
+        for place in message.fields.get("entries", [message.fields])
+        if place.get("prn", message.prn) == message.prn
     ]
     return _standing(places[0]) if places else None
 

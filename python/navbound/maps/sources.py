@@ -151,13 +151,13 @@ def messages(log: File, prn: int | None) -> sbas.Messages:
     FormatError
         Not a message log.
     """
-    found = _read(log.path, log.sha256)
-    senders = ", ".join(map(str, np.unique(found.prn)))
+    messages_read = _read(log.path, log.sha256)
+    senders = ", ".join(map(str, np.unique(messages_read.prn)))
     if not senders:
         raise InputError("messages", log.path, domain="a log that holds a message")
     if prn is None and "," in senders:
         raise InputError("prn", "none", domain=f"one of {senders}: the log holds the messages of several satellites")
-    chosen = found if prn is None else found.of(prn)
+    chosen = messages_read if prn is None else messages_read.of(prn)
     if len(chosen.prn) == 0:
         raise InputError("prn", prn, domain=f"one of {senders}, whose messages the log holds")
     return chosen

@@ -106,17 +106,17 @@ def _typed(epochs: pl.DataFrame, sigma_m: float) -> Claimed:
     """The caller's standard deviation; where the file's own is larger, that speaks against it."""
     own = claim(epochs)
     words = f"Covariance: circular with sigma = {sigma_m:g} m in each axis, as stated by the user."
-    found = _circle(epochs, pl.lit(sigma_m), words, "typed")
+    typed = _circle(epochs, pl.lit(sigma_m), words, "typed")
     own_m = own.epochs.select(((pl.col("cov_ee_m2") + pl.col("cov_nn_m2")) / 2).sqrt().alias("own")).to_series()
     stated_m = own.epochs.select(pl.max_horizontal(own_m / circular_sigma(0.05), *_least_radii(own.epochs)).alias("m")).to_series()
     worse_m = pl.select(pl.when(stated_m > (1.0 + 1e-9) * sigma_m / circular_sigma(0.05)).then(stated_m)).to_series().alias(WORSE)
     stated = [worse_m, *([own.epochs[CONTAINMENT]] if CONTAINMENT in own.epochs.columns else [])]
     known = own_m.filter(own_m.is_finite().fill_null(value=False))
     if known.is_empty():
-        return replace(found, epochs=found.epochs.with_columns(stated))
+        return replace(typed, epochs=typed.epochs.with_columns(stated))
     low, high = float(known.min()), float(known.max())  # type: ignore[arg-type]
     more = f" The file's own accuracies, sigma {low:.3g} to {high:.3g} m, are overruled."
-    return Claimed(found.epochs.with_columns(stated), f"{words}{more}", "typed", (low, high))
+    return Claimed(typed.epochs.with_columns(stated), f"{words}{more}", "typed", (low, high))
 
 
 def _least_radii(epochs: pl.DataFrame) -> list[pl.Expr]:

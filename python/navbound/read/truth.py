@@ -101,8 +101,8 @@ def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, R
     place = gnss.geodetic(truth.ecef_m)
     names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m")
     fixed = epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True))
-    found, doubts = with_error(fixed)
-    return found, _sentences(f"Truth: the fixed point {truth.given} m, Earth-fixed.", doubts.words), None, doubts
+    compared, doubts = with_error(fixed)
+    return compared, _sentences(f"Truth: the fixed point {truth.given} m, Earth-fixed.", doubts.words), None, doubts
 
 
 def _recorded(truth: Truth) -> Reading:

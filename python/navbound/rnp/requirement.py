@@ -55,8 +55,8 @@ def requirement(spec: str, phase: str | None = None) -> Requirement:
     plain = re.fullmatch(r"RNP (\d+(?:\.\d+)?)", text, re.IGNORECASE)
     if plain:
         return _value(text.upper(), float(plain.group(1)))
-    found = re.fullmatch(r"(.*?)(?: (\d+(?:\.\d+)?))?", text)
-    stem, chosen = (found.group(1), found.group(2)) if found else (text, None)
+    match = re.fullmatch(r"(.*?)(?: (\d+(?:\.\d+)?))?", text)
+    stem, chosen = (match.group(1), match.group(2)) if match else (text, None)
     names = {s.name for s in rnp.specifications()}
     if text.upper() in names:
         stem, chosen = text, None

@@ -45,10 +45,10 @@ def chosen_seed(flights: int, seed: int | None, own: int) -> int:
         Flights outside [1, 1000], a seed outside [0, 2^64).
     """
     check_flights(flights)
-    found = own if seed is None else seed
-    if not (isinstance(found, int) and 0 <= found < 2**64):
-        raise InputError("seed", found, "1", "[0, 2^64)")
-    return found
+    seed_in_force = own if seed is None else seed
+    if not (isinstance(seed_in_force, int) and 0 <= seed_in_force < 2**64):
+        raise InputError("seed", seed_in_force, "1", "[0, 2^64)")
+    return seed_in_force
 
 
 def track_name(number: int) -> str:

@@ -71,9 +71,9 @@ def fly(
         route = taxi_scenarios.route_file(scenario)
         if route is not None:
             return directory.write(judge(taxiing.material(route, flights=flights, seed=seed, **work), settings, command), folder)
-        found = scenarios.load(scenario)
-        run = judge(simulated.material(found, flights=flights, seed=seed, **work), settings, command)
-        summary = run.summary.model_copy(update={"faults": fault_summaries(found, run.epochs, run.events)})
+        loaded = scenarios.load(scenario)
+        run = judge(simulated.material(loaded, flights=flights, seed=seed, **work), settings, command)
+        summary = run.summary.model_copy(update={"faults": fault_summaries(loaded, run.epochs, run.events)})
         return directory.write(replace(run, summary=summary), folder)
 
 

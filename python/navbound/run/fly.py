@@ -76,24 +76,24 @@ def material(
     FormatError
         A scenario file that cannot be flown, a folder that cannot keep tiles.
     """
-    found = scenario if isinstance(scenario, Scenario) else load(scenario)
-    chosen = chosen_seed(flights, seed, found.seed)
-    plan = _core.Outlook(found.core_json()).plan()
-    fly = _Flights(found.model_dump_json(), chosen)
-    epochs, verdicts = fly_all(fly, flights, _DRAWN_AT_ONCE if found.filter is None else _FUSED_AT_ONCE, **work)
+    loaded = scenario if isinstance(scenario, Scenario) else load(scenario)
+    chosen = chosen_seed(flights, seed, loaded.seed)
+    plan = _core.Outlook(loaded.core_json()).plan()
+    fly = _Flights(loaded.model_dump_json(), chosen)
+    epochs, verdicts = fly_all(fly, flights, _DRAWN_AT_ONCE if loaded.filter is None else _FUSED_AT_ONCE, **work)
     told = {"filter": filter_verdict(verdicts) | {"restarts": len(verdicts) - flights}} if verdicts else {}
     return Material(
         epochs=epochs,
         kind="fly",
-        title=found.title,
+        title=loaded.title,
         requirement="RNP by phase of flight",
         sample_period_s=1.0,
-        assumptions=_assumptions(found),
-        covariance=CovarianceOrigin(id="simulated" if found.filter is None else "filter"),
+        assumptions=_assumptions(loaded),
+        covariance=CovarianceOrigin(id="simulated" if loaded.filter is None else "filter"),
         labels={track_name(i): f"Flight {i + 1}" for i in range(flights)},
-        waypoints=[Waypoint(name=w.name, lat_rad=w.lat_rad, lon_rad=w.lon_rad, kind=w.kind) for w in found.waypoints],
+        waypoints=[Waypoint(name=w.name, lat_rad=w.lat_rad, lon_rad=w.lon_rad, kind=w.kind) for w in loaded.waypoints],
         inputs=[] if isinstance(scenario, Scenario) else [scenario_file(find(scenario))],
-        scenario=found.model_dump(mode="json"),
+        scenario=loaded.model_dump(mode="json"),
         seed=chosen,
         settings={"flights": flights, **{key: plan[key] for key in ("length_m", "cruise_speed_mps", "top_of_climb_s", "top_of_descent_s")}}
         | told,
@@ -108,18 +108,18 @@ class _Flights:
     seed: int
 
     def __call__(self, flights: range) -> tuple[pl.DataFrame, list[Any]]:
-        found, flyer = _opened(self.scenario)
+        loaded, flyer = _opened(self.scenario)
         if isinstance(flyer, _core.Outlook):
-            return _table(flyer.fly(self.seed, flights.start, len(flights)), found), []
+            return _table(flyer.fly(self.seed, flights.start, len(flights)), loaded), []
         columns, verdicts = flyer.navigate(self.seed, flights.start, len(flights))
-        return _table(columns, found), verdicts
+        return _table(columns, loaded), verdicts
 
 
 @lru_cache(maxsize=1)
 def _opened(scenario: str) -> tuple[Scenario, _core.Outlook | _core.Sensors]:
     """What all flights of a scenario share, worked out once a process."""
-    found = Scenario.model_validate_json(scenario)
-    return found, _core.Outlook(found.core_json()) if found.filter is None else _core.Sensors(found.core_json(), None)
+    loaded = Scenario.model_validate_json(scenario)
+    return loaded, _core.Outlook(loaded.core_json()) if loaded.filter is None else _core.Sensors(loaded.core_json(), None)
 
 
 def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
@@ -178,11 +178,11 @@ def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
     ``mean_square`` is the mean squared normalised innovation (NIS), ``lag_one`` the correlation with the one before it of the same source,
     both over all flights.
     """
-    found: dict[str, Any] = {}
+    counts: dict[str, Any] = {}
     for kind in (key for key in verdicts[0] if key not in _COUNTS):
         used, gated, refused, square, lag, pairs = np.array([v[kind] for v in verdicts], dtype=float).T
         if used.sum() + gated.sum() + refused.sum() > 0:
-            found[kind] = {
+            counts[kind] = {
                 "n_used": int(used.sum()),
                 "n_gated": int(gated.sum()),
                 "n_refused": int(refused.sum()),
@@ -192,7 +192,7 @@ def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
     samples = np.sum([v["samples"] for v in verdicts], axis=0).tolist()
     words = ("done", "bridged", "adrift", "late", "refused", "stopped")
     jumps = sum(v["clock_jumps"] for v in verdicts)
-    return found | {"samples": dict(zip(words, samples, strict=True)), "clock_jumps": jumps, "snapshot_tests": _tests(verdicts)}
+    return counts | {"samples": dict(zip(words, samples, strict=True)), "clock_jumps": jumps, "snapshot_tests": _tests(verdicts)}
 
 
 def _tests(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
@@ -200,10 +200,10 @@ def _tests(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
     n = sum(v["snapshot_tests"][0] for v in verdicts)
     sums = np.sum([v["snapshot_tests"][2] for v in verdicts], axis=0)
     most = np.max([v["snapshot_tests"][3] for v in verdicts], axis=0)
-    found: dict[str, Any] = {"n": n, "n_raised": sum(v["snapshot_tests"][1] for v in verdicts)}
+    tests: dict[str, Any] = {"n": n, "n_raised": sum(v["snapshot_tests"][1] for v in verdicts)}
     for name, freedom, total, largest in zip(_TESTS, (2, 2, 1, 1), sums, most, strict=True):
-        found[name] = {"mean_square": float(total / n / freedom) if n else None, "largest": float(largest)}
-    return found
+        tests[name] = {"mean_square": float(total / n / freedom) if n else None, "largest": float(largest)}
+    return tests
 
 
 def _weighted(values: np.ndarray[Any, Any], weights: np.ndarray[Any, Any]) -> float | None:

@@ -80,10 +80,10 @@ def place(text: str) -> PredictedPlace:
     """
     if "/" in text:
         try:
-            found = runway(text)
+            threshold = runway(text)
         except InputError as e:
             raise InputError("at", text, domain=e.domain) from e
-        return PredictedPlace(name=found.name, lat_rad=[found.lat_rad], lon_rad=[found.lon_rad], h_m=[found.elevation_m])
+        return PredictedPlace(name=threshold.name, lat_rad=[threshold.lat_rad], lon_rad=[threshold.lon_rad], h_m=[threshold.elevation_m])
     domain = "LAT,LON or LAT,LON,H in degrees and metres, latitude within 90 and longitude within 180; or a runway, as LFPG/08R"
     try:
         numbers = [float(part) for part in text.split(",")]
@@ -103,10 +103,10 @@ def route(file: str | Path) -> PredictedPlace:
     FormatError
         Not a route.
     """
-    found = load_route(file)
-    count = 1 + max(1, math.ceil(found.path.length_m / ROUTE_STEP_M))
-    points = found.path.at(np.linspace(0.0, found.path.length_m, count))
-    name = f"route {found.name}, {count} points of {found.path.length_m / METRES_PER_NM:.0f} NM"
+    loaded = load_route(file)
+    count = 1 + max(1, math.ceil(loaded.path.length_m / ROUTE_STEP_M))
+    points = loaded.path.at(np.linspace(0.0, loaded.path.length_m, count))
+    name = f"route {loaded.name}, {count} points of {loaded.path.length_m / METRES_PER_NM:.0f} NM"
     return PredictedPlace(name=name, lat_rad=points.lat_rad.tolist(), lon_rad=points.lon_rad.tolist(), h_m=[0.0] * count)
 
 
@@ -199,8 +199,8 @@ def limit(name: str) -> PredictedLimit:
     InputError
         No such limit.
     """
-    found = kpi.level(name)
-    return PredictedLimit(id=found.id, hal_m=found.hal_m, source=found.source, provenance=found.provenance["hal_m"])
+    required = kpi.level(name)
+    return PredictedLimit(id=required.id, hal_m=required.hal_m, source=required.source, provenance=required.provenance["hal_m"])
 
 
 @dataclass(frozen=True)
@@ -259,7 +259,7 @@ def _runs(out: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 def _holes(kind: _Kind, level_m: Floats, n_sv: NDArray[np.int64], when: _Instants) -> list[Hole]:
     """Every time that the level is outside the limit."""
-    found = []
+    holes = []
     for first, last in _runs(level_m > kind.limit.hal_m):
         start_s, end_s = float(when.offsets_s[first]), float(when.offsets_s[last]) + when.step_s
         largest = float(level_m[first : last + 1].max())
@@ -275,8 +275,8 @@ def _holes(kind: _Kind, level_m: Floats, n_sv: NDArray[np.int64], when: _Instant
             n_sv_least=int(n_sv[first : last + 1].min()),
             level_max_m=largest if math.isfinite(largest) else None,
         )
-        found.append(hole)
-    return found
+        holes.append(hole)
+    return holes
 
 
 def _unhealthy(asked: Asked, sky: Satellites) -> list[str]:

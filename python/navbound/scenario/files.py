@@ -126,13 +126,13 @@ def _laid_over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
 
 def _explained(path: Path, error: ErrorDetails, written: dict[Place, Written]) -> FormatError:
     place = tuple(part for part in error["loc"] if part not in _KINDS)
-    found = written.get(place)
-    key = found.key if found else ".".join(str(part) for part in place)
+    entry = written.get(place)
+    key = entry.key if entry else ".".join(str(part) for part in place)
     if error["type"] == "missing":
         return FormatError(path, "is missing (it may end in another unit of the same kind)", field=key)
     if error["type"] == "extra_forbidden":
-        return FormatError(path, f"{_shown(found)} is not a key of a scenario", field=key)
-    return FormatError(path, f"{_shown(found)}: {error['msg']}", field=key)
+        return FormatError(path, f"{_shown(entry)} is not a key of a scenario", field=key)
+    return FormatError(path, f"{_shown(entry)}: {error['msg']}", field=key)
 
 
 def _refused(path: Path, error: InputError, written: dict[Place, Written]) -> FormatError:
@@ -154,5 +154,5 @@ def _is_at(place: Place, error: InputError) -> bool:
     return error.index is None or error.index in indices
 
 
-def _shown(found: Written | None) -> str:
-    return "the value" if found is None else repr(found.value)[:80]
+def _shown(entry: Written | None) -> str:
+    return "the value" if entry is None else repr(entry.value)[:80]

@@ -171,9 +171,9 @@ def load(path: Path) -> Taxi:
     except ValidationError as e:
         first = e.errors()[0]
         place = tuple(part for part in first["loc"] if part not in {"range-step", "range-ramp"})
-        found = written.get(place)
-        shown = "" if found is None else f"{found.value!r}: "
-        raise FormatError(path, f"{shown}{first['msg']}", field=found.key if found else ".".join(map(str, place))) from e
+        entry = written.get(place)
+        shown = "" if entry is None else f"{entry.value!r}: "
+        raise FormatError(path, f"{shown}{first['msg']}", field=entry.key if entry else ".".join(map(str, place))) from e
 
 
 def route_file(name_or_path: str | Path) -> Path | None:
@@ -195,8 +195,8 @@ def _table(path: Path) -> dict[str, Any]:
     return {**below, **table, **{k: {**below[k], **table[k]} for k in both}}
 
 
-def check_satellites(found: Taxi, names: tuple[str, ...]) -> None:
+def check_satellites(taxi: Taxi, names: tuple[str, ...]) -> None:
     """Refuse a fault of a satellite that is not there."""
-    for k, fault in enumerate(found.faults):
+    for k, fault in enumerate(taxi.faults):
         if fault.satellite not in names:
             raise InputError(f"faults[{k}].satellite", fault.satellite, domain=f"{names[0]} to {names[-1]}")

@@ -159,7 +159,7 @@ class Checker:
             # Rows are in the order of tracks: only the last one may go on.
             self._tracks = {name: track} | {k: v for k, v in self._tracks.items() if k > name}
         names = ("finding", "step_m", "too_fast_mps", "speed_doubted")
-        code, step, fast, doubted = (np.concatenate([found[name] for found in judged]) for name in names)
+        code, step, fast, doubted = (np.concatenate([one[name] for one in judged]) for name in names)
         self._n_doubted += int(doubted.sum())
         self._count(code, step, fast, columns)
         return _marked(epochs, code)

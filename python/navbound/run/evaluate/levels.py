@@ -256,8 +256,8 @@ def _corrected(observations: gnss.Observations, service: Service, truth: Truth) 
 
 def _of_own(epochs: pl.DataFrame) -> pl.DataFrame:
     """Levels of the positions' own covariances."""
-    found = sbas.covariance_levels(np.column_stack([epochs[name].fill_null(np.nan).to_numpy() for name in COVARIANCE]))
-    return epochs.with_columns(hpl_m=pl.Series(found[0], nan_to_null=True), vpl_m=pl.Series(found[1], nan_to_null=True))
+    levels = sbas.covariance_levels(np.column_stack([epochs[name].fill_null(np.nan).to_numpy() for name in COVARIANCE]))
+    return epochs.with_columns(hpl_m=pl.Series(levels[0], nan_to_null=True), vpl_m=pl.Series(levels[1], nan_to_null=True))
 
 
 def _range_errors(ranges: pl.DataFrame, epochs: pl.DataFrame) -> pl.DataFrame:

@@ -85,18 +85,22 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Re
     observations = gnss.read_observations(path)
     require_most_epochs(observations)
     require_same_time(observations, records)
-    found = monitor(observations, records, truth_ecef_m=truth.ecef_m, **monitored(solving or Solving()))
-    notes = [f"{path.name}: {words}" for words in decisions(found.epochs)]
-    notes += [f"{path.name}: {name}: {words}" if name in OF_FILE else f"{name}: {words}" for name, words in found.models.items()]
+    monitored_epochs = monitor(observations, records, truth_ecef_m=truth.ecef_m, **monitored(solving or Solving()))
+    notes = [f"{path.name}: {words}" for words in decisions(monitored_epochs.epochs)]
+    notes += [f"{path.name}: {name}: {words}" if name in OF_FILE else f"{name}: {words}" for name, words in monitored_epochs.models.items()]
     refused = [*of_observations(observations), *of_navigation(records)]
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", records.skipped)]
-    epochs = found.epochs
+    epochs = monitored_epochs.epochs
     if truth.given is not None and truth.ecef_m is None:
         epochs, words, other, _ = with_truth(epochs, truth)
         refused += [] if other is None else other.rejected
         notes.append(words)
     return Part(
-        uniform(epochs), observations.n_epochs, [one.model_dump() for one in refused], notes, "" if found.fit.believable else CONTRADICTED
+        uniform(epochs),
+        observations.n_epochs,
+        [one.model_dump() for one in refused],
+        notes,
+        "" if monitored_epochs.fit.believable else CONTRADICTED,
     )
 
 

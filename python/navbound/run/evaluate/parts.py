@@ -50,10 +50,10 @@ def finished_parts(
     stored = []
     for done, source in enumerate(jobs):
         key = hashlib.sha256(f"{source.sha256} {shared}".encode()).hexdigest()[:24]
-        found = _remembered(folder, key, source)
-        if found is None:
-            found = _remember(folder, key, source, _compute(source, sources, options, truth, service))
-        stored.append(found)
+        finished = _remembered(folder, key, source)
+        if finished is None:
+            finished = _remember(folder, key, source, _compute(source, sources, options, truth, service))
+        stored.append(finished)
         if progress is not None:
             progress(done + 1, len(jobs))
     filled = [part for part in stored if part.n_epochs]

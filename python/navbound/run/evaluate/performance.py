@@ -227,7 +227,7 @@ def _run(
         risk_accuracy=None,
         risk_integrity=None,
         settings={
-            "levels": [found.level.id for found in result.levels],
+            "levels": [each.level.id for each in result.levels],
             "truth": None if options.truth is None else str(options.truth),
             "truth_tolerance_s": options.truth_tolerance_s,
             "columns": dict(options.columns or {}),
@@ -261,9 +261,9 @@ def _honesty(parts: list[Stored]) -> tuple[Honesty | None, list[str]]:
 
 
 def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) -> Summary:
-    names = ", ".join(found.level.id for found in result.levels)
+    names = ", ".join(each.level.id for each in result.levels)
     is_copied = _copied(parts)
-    decided = rule.of_levels([_facts(found, result, is_copied=is_copied) for found in result.levels])
+    decided = rule.of_levels([_facts(each, result, is_copied=is_copied) for each in result.levels])
     verdict = Verdict(
         id=decided,
         # A service level is no RNP: what its id says stands in the words.
@@ -284,8 +284,8 @@ def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) 
         experimental=result.experimental != "",
     )
     by_source: dict[str, list[str]] = {}
-    for found in result.levels:
-        by_source.setdefault(found.level.source, []).append(found.level.id)
+    for each in result.levels:
+        by_source.setdefault(each.level.source, []).append(each.level.id)
     sources = [f"{', '.join(ids)}: {source}." for source, ids in by_source.items()]
     return Summary(
         kind="analyze",
@@ -309,12 +309,12 @@ def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) 
 
 def _rejected(parts: list[Stored]) -> list[Rejection]:
     """Of all parts; what they have in common, navigation data and messages, once."""
-    found: list[Rejection] = []
+    rejections: list[Rejection] = []
     for fields in (fields for part in parts for fields in part.rejected):
         one = Rejection(**fields)
-        if one not in found:
-            found.append(one)
-    return found
+        if one not in rejections:
+            rejections.append(one)
+    return rejections
 
 
 def _copied(parts: list[Stored]) -> bool:
@@ -323,23 +323,23 @@ def _copied(parts: list[Stored]) -> bool:
     return bool(n_known > 0 and n_same >= rule.COPIED_SHARE * n_known)
 
 
-def _facts(found: LevelResult, result: Performance, *, is_copied: bool) -> rule.LevelFacts:
+def _facts(level: LevelResult, result: Performance, *, is_copied: bool) -> rule.LevelFacts:
     return rule.LevelFacts(
-        n_expected=found.n_expected,
-        n_solution=found.n_solution,
-        n_available=found.n_available,
-        n_misleading_events=found.n_mi_events + found.n_hazard_events,
-        p_misleading=of_level(found, result.period_s),
-        truth_known=_errors_known(found, result),
+        n_expected=level.n_expected,
+        n_solution=level.n_solution,
+        n_available=level.n_available,
+        n_misleading_events=level.n_mi_events + level.n_hazard_events,
+        p_misleading=of_level(level, result.period_s),
+        truth_known=_errors_known(level, result),
         copied=is_copied,
     )
 
 
-def _errors_known(found: LevelResult, result: Performance) -> bool:
+def _errors_known(level: LevelResult, result: Performance) -> bool:
     """Whether the errors are known in every axis that the level limits, at enough epochs with a protection level to speak of all."""
-    axes = result.axes[: 1 if found.level.val_m is None else 2]
+    axes = result.axes[: 1 if level.level.val_m is None else 2]
     n = [0 if axis.error_m is None else axis.error_m.n for axis in axes]
-    return found.truth_known and min(n) >= LEAST_SHARE * found.n_solution
+    return level.truth_known and min(n) >= LEAST_SHARE * level.n_solution
 
 
 def _write(run: Run, parts: list[Stored], folder: folders.Writer) -> Run:

@@ -167,7 +167,7 @@ class _Labels:
 
     def usual(self) -> dict[str, str]:
         """Of several that are as frequent the first of the alphabet."""
-        return {track: _most(found) or track for track, found in self._counts.items()}
+        return {track: _most(counts) or track for track, counts in self._counts.items()}
 
 
 def _most(counts: Counter[str]) -> str | None:

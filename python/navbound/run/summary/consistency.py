@@ -69,11 +69,11 @@ def _regions(error: NDArray[np.float64], covariance: NDArray[np.float64], track:
     sizes = {"circle": (np.hypot(error[:, 0], error[:, 1]), anp.circle(np.ascontiguousarray(covariance[:, :2, :2]), REGION_RISK))}
     if error.shape[1] == 3:
         sizes["sphere"] = (np.linalg.norm(error, axis=1), anp.sphere(covariance, REGION_RISK))
-    found = []
+    regions = []
     for region, (size, radius) in sizes.items():
         low, high = evaluation.bootstrap_coverage(size, radius, track)
-        found.append(Held.model_validate({"region": region, "share": float((size <= radius).mean()), "low": low, "high": high}))
-    return found
+        regions.append(Held.model_validate({"region": region, "share": float((size <= radius).mean()), "low": low, "high": high}))
+    return regions
 
 
 def codes(epochs: pl.DataFrame) -> NDArray[np.int64]:

@@ -79,8 +79,8 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
     accuracy, integrity = (level(risk) for risk in risks)
     shares = _shares(verdict)
     if verdict.id == "nothing_judged" or verdict.share_inside is None or verdict.share_contained is None:
-        found = f" {verdict.n_outside} epochs that are not ok have a bound beyond its limit." if verdict.n_outside else ""
-        return f"{HEADLINES[verdict.id]} {verdict.requirement}: {shares}.{found}"
+        outside = f" {verdict.n_outside} epochs that are not ok have a bound beyond its limit." if verdict.n_outside else ""
+        return f"{HEADLINES[verdict.id]} {verdict.requirement}: {shares}.{outside}"
     if verdict.id == "not_believable":
         n = verdict.n_known_beyond
         beyond = f"at {n} ok epochs the known error is beyond twice RNP though the bound is within it" if n else ""
@@ -196,11 +196,11 @@ def protection_words(protection: list[ProtectionSummary]) -> str:
 
 def honesty_words(nees: Nees, pit: Pit, regions: Sequence[Held] = ()) -> str:
     """Whether the covariance may be believed, with the factor by which it is off, and on how much evidence."""
-    found = (
+    opening = (
         f"NEES {nees.nees_mean:.3g}, {nees.dimension} for an honest covariance, "
         f"limits {nees.nees_low:.3g} to {nees.nees_high:.3g} for {nees.n_effective:.0f} effective epochs"
     )
-    return f"{found}{_judgement(nees, pit)}{_regions(regions)}"
+    return f"{opening}{_judgement(nees, pit)}{_regions(regions)}"
 
 
 def _judgement(nees: Nees, pit: Pit) -> str:

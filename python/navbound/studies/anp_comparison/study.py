@@ -274,7 +274,7 @@ def _entries(case: Case) -> list[Entry]:
     """The published numbers that we hold, beside those of the case with the published sensors."""
     errors = {a.axis: a for a in case.axes}
     rows = {(b.evaluation, b.axis): b for b in case.bounds}
-    found = [
+    entries = [
         Entry(
             table="3",
             quantity=f"RMSE of the error, {axis} [m]",
@@ -286,7 +286,7 @@ def _entries(case: Case) -> list[Entry]:
         )
         for axis, value, why in _RMSE
     ]
-    found += [
+    entries += [
         Entry(
             table="3",
             quantity=f"RMS of the {which}, {axis} [m]",
@@ -298,7 +298,7 @@ def _entries(case: Case) -> list[Entry]:
         )
         for which, axis, value, verdict, why in _RMS
     ]
-    found += [
+    entries += [
         Entry(
             table="4",
             quantity=f"share within the {which}, altitude [%]",
@@ -310,7 +310,7 @@ def _entries(case: Case) -> list[Entry]:
         )
         for which, value, why in _SHARES
     ]
-    found += [
+    entries += [
         Entry(
             table="5",
             quantity=f"MAPE of the {which}, {axis}, as a ratio to the error",
@@ -323,7 +323,7 @@ def _entries(case: Case) -> list[Entry]:
         )
         for which, axis, value in _SCORES
     ]
-    return found
+    return entries
 
 
 SIZE_FACTOR = 1.5

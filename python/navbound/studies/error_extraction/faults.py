@@ -86,8 +86,8 @@ def overshoot_m(step_m: float = 10.0) -> float:
     """Largest corrected error after a step of an error that is otherwise nothing."""
     position = np.zeros((2 * ONSET, 3))
     position[ONSET:, 2] = step_m
-    found = sbas.error_extraction(np.arange(2 * ONSET) * 1_000_000_000, position, np.zeros(3))
-    return float(np.abs(found.ee_position_enu_m[:, 2]).max())
+    extraction = sbas.error_extraction(np.arange(2 * ONSET) * 1_000_000_000, position, np.zeros(3))
+    return float(np.abs(extraction.ee_position_enu_m[:, 2]).max())
 
 
 def held_risks(*, seed: int = 2012) -> list[HeldRisk]:
@@ -100,7 +100,7 @@ def held_risks(*, seed: int = 2012) -> list[HeldRisk]:
     """
     generator = np.random.Generator(np.random.Philox(seed))
     times = np.arange(HELD_LENGTH) * 1_000_000_000
-    found = []
+    risks = []
     for tau_s, stated, half_digit in HELD:
         position = np.zeros((HELD_RUNS, HELD_LENGTH, 3))
         position[..., 2] = gauss_markov(generator.standard_normal((HELD_RUNS, HELD_LENGTH)), tau_s)
@@ -109,7 +109,7 @@ def held_risks(*, seed: int = 2012) -> list[HeldRisk]:
         shares = np.mean((error > bound)[:, HELD_LENGTH // 3 :], axis=1)
         mean, standard_error = float(shares.mean()), float(shares.std(ddof=1) / np.sqrt(HELD_RUNS))
         again = abs(mean - stated) <= 4.0 * standard_error + half_digit
-        found.append(
+        risks.append(
             HeldRisk(
                 tau_s=tau_s,
                 risk=HELD_RISK,
@@ -119,13 +119,13 @@ def held_risks(*, seed: int = 2012) -> list[HeldRisk]:
                 verdict="reproducible" if again else "not reproducible",
             )
         )
-    return found
+    return risks
 
 
 def _entries(fault: str, stated: tuple[float | None, ...], position: Floats, velocity: Floats) -> list[FaultEntry]:
     times = np.arange(position.shape[1]) * 1_000_000_000
-    found = sbas.error_extraction(times, position, velocity, bias_h_m=BIAS_BOUND_M, bias_v_m=BIAS_BOUND_M)
-    bound, error = found.ee_bound_v_m[:, ONSET:], np.abs(found.ee_position_enu_m[:, ONSET:, 2])
+    extraction = sbas.error_extraction(times, position, velocity, bias_h_m=BIAS_BOUND_M, bias_v_m=BIAS_BOUND_M)
+    bound, error = extraction.ee_bound_v_m[:, ONSET:], np.abs(extraction.ee_position_enu_m[:, ONSET:, 2])
     numbers = (
         bound.max(axis=1),
         _first(error > bound),

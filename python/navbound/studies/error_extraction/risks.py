@@ -104,7 +104,7 @@ def held_laws(*, seed: int = 2012) -> list[HeldLaw]:
     list of HeldLaw
         ``reproducible`` where what was stated before is within four standard errors, from independent windows, and half its last digit.
     """
-    found = []
+    laws = []
     for index, law in enumerate(LAWS):
         sizes = law.draw(np.random.Generator(np.random.Philox([seed, index])), (DRAWS, WINDOW))
         weights = np.repeat([law.weight, 2.0 - law.weight], WINDOW // 2)
@@ -116,8 +116,8 @@ def held_laws(*, seed: int = 2012) -> list[HeldLaw]:
             again = abs(mean - stated) <= 4.0 * error + half_digit
             verdict = "reproducible" if again else "not reproducible"
             one = {"law": law.name, "risk": risk, "stated": stated, "found": mean, "standard_error": error, "verdict": verdict}
-            found.append(HeldLaw.model_validate(one))
-    return found
+            laws.append(HeldLaw.model_validate(one))
+    return laws
 
 
 def held_small(*, seed: int = 2012) -> list[HeldRisk]:
@@ -133,7 +133,7 @@ def held_small(*, seed: int = 2012) -> list[HeldRisk]:
     k = sbas.extraction_factor(SMALL_RISK, window=WINDOW, weight=WEIGHT).k
     weights = BETA * np.repeat([WEIGHT, 2.0 - WEIGHT], WINDOW // 2)
     lags = np.abs(np.subtract.outer(np.arange(rows.shape[1]), np.arange(rows.shape[1])))
-    found = []
+    risks = []
     for tau_s, stated, half_digit in HELD_SMALL:
         joint = rows @ np.exp(-lags / tau_s) @ rows.T
         window, across, own = joint[:-1, :-1], joint[:-1, -1], joint[-1, -1]
@@ -144,16 +144,16 @@ def held_small(*, seed: int = 2012) -> list[HeldRisk]:
         again = abs(mean - stated) <= 4.0 * error + half_digit
         verdict = "reproducible" if again else "not reproducible"
         one = {"tau_s": tau_s, "risk": SMALL_RISK, "stated": stated, "found": mean, "standard_error": error, "verdict": verdict}
-        found.append(HeldRisk.model_validate(one))
-    return found
+        risks.append(HeldRisk.model_validate(one))
+    return risks
 
 
 def _responses() -> Floats:
     """Rows that make the last 50 extracted errors of the errors before, by the filter's response; beneath them the last corrected one."""
     position = np.zeros((2 * RESPONSE, 3))
     position[RESPONSE, 2] = 1.0
-    found = sbas.error_extraction(np.arange(2 * RESPONSE) * 1_000_000_000, position, np.zeros(3))
-    response = found.ee_error_enu_m[RESPONSE:, 2]
+    extraction = sbas.error_extraction(np.arange(2 * RESPONSE) * 1_000_000_000, position, np.zeros(3))
+    response = extraction.ee_error_enu_m[RESPONSE:, 2]
     rows = np.zeros((WINDOW + 1, RESPONSE + WINDOW))
     for i in range(WINDOW):
         rows[i, i + 1 : i + 1 + RESPONSE] = response[::-1]

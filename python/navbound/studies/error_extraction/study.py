@@ -194,7 +194,7 @@ def _range(values: list[float]) -> tuple[float, float]:
 
 def _extract(day: Day, bias: tuple[Floats, Floats], velocity: Floats, beta: float, *, printed: bool = False) -> _Extracted:
     """Filter and bound of the day; the station stands, so its velocity is the noise of a receiver, or nothing."""
-    found = sbas.error_extraction(
+    extraction = sbas.error_extraction(
         day.time_ns,
         day.error_m,
         velocity,
@@ -205,7 +205,7 @@ def _extract(day: Day, bias: tuple[Floats, Floats], velocity: Floats, beta: floa
         beta=beta,
         noise_bound="as_printed" if printed else "cfar_sum",
     )
-    return _Extracted(found.ee_position_enu_m, found.ee_bound_h_m, found.ee_bound_v_m)
+    return _Extracted(extraction.ee_position_enu_m, extraction.ee_bound_h_m, extraction.ee_bound_v_m)
 
 
 def _split(stages: list[Stage]) -> list[Cause]:
@@ -279,8 +279,8 @@ def _claims(stages: list[Stage], share_higher: float, remembered: list[Correlati
     ]
 
 
-def _levels(found: Stage) -> str:
-    a = found.availability
+def _levels(stage: Stage) -> str:
+    a = stage.availability
     return f"{100 * a.apv_i:.1f}/{100 * a.apv_ii:.1f}/{100 * a.cat_i_12:.1f} %"
 
 

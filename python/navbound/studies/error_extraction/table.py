@@ -36,8 +36,8 @@ def _titled(study: Study, title: str, *headings: str) -> Table:
     return table
 
 
-def _shares(found: Availability, *, signed: bool = False) -> list[str]:
-    values = (found.apv_i, found.lpv_200, found.apv_ii, found.cat_i_12)
+def _shares(availability: Availability, *, signed: bool = False) -> list[str]:
+    values = (availability.apv_i, availability.lpv_200, availability.apv_ii, availability.cat_i_12)
     digits = "+.1f" if signed else ".1f"
     return ["" if v is None else f"{100 * v:{digits}}" for v in values]
 
@@ -104,8 +104,8 @@ def _held_laws(study: Study) -> Table:
     return table
 
 
-def _spread(found: Spread) -> str:
-    if found.least is None or found.median is None or found.most is None:
+def _spread(spread: Spread) -> str:
+    if spread.least is None or spread.median is None or spread.most is None:
         return "never"
-    never = f", never in {found.share_never:.0%}" if found.share_never else ""
-    return f"{found.least:.0f} / {found.median:.0f} / {found.most:.0f}{never}"
+    never = f", never in {spread.share_never:.0%}" if spread.share_never else ""
+    return f"{spread.least:.0f} / {spread.median:.0f} / {spread.most:.0f}{never}"

@@ -101,8 +101,8 @@ def before(config: SurfaceMovement, mode: Mode, sky: Sky, risk: float, covarianc
 
 def gain(config: SurfaceMovement, levels: Levels) -> Floats:
     """Gain of the bias in the configured ordering."""
-    found: Floats = getattr(levels, f"bias_gain_{config.method.ordering}")
-    return found
+    gains: Floats = getattr(levels, f"bias_gain_{config.method.ordering}")
+    return gains
 
 
 def fault_probability(mode: Mode, rates: FaultRates) -> float:

@@ -206,8 +206,8 @@ def _with_posteriors(epochs: pl.DataFrame, classifier: rnp.StateClassifier) -> p
 
 
 def _matrices(flown: scene.Flight) -> dict[str, Floats]:
-    found = flown.selection
-    return {scene.PAIR: found.used_en_m2, scene.ALL: found.all_en_m2, scene.VOR: found.vor_en_m2}
+    selection = flown.selection
+    return {scene.PAIR: selection.used_en_m2, scene.ALL: selection.all_en_m2, scene.VOR: selection.vor_en_m2}
 
 
 def _across(flown: scene.Flight, matrix: Floats) -> Floats:
