@@ -204,11 +204,11 @@ def main() -> None:
     for wheels in (True, False):
         judged = []
         for part, other in (PARTS, PARTS[::-1]):
-            found = tuned(drive, *part, wheels=wheels)
-            judged.append(drive.in_outages(found, *other))
-            print(found, drive.likelihood(found, *part))
+            result = tuned(drive, *part, wheels=wheels)
+            judged.append(drive.in_outages(result, *other))
+            print(result, drive.likelihood(result, *part))
             print("held out", words(*judged[-1]))
-            print("own part", words(*drive.in_outages(found, *part)), flush=True)
+            print("own part", words(*drive.in_outages(result, *part)), flush=True)
         h, inside = (np.concatenate(x) for x in zip(*judged, strict=True))
         print("both", words(h, inside), flush=True)
 

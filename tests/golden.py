@@ -77,13 +77,13 @@ def kept(name: str) -> dict[str, Any]:
     if name in taxi.shipped():
         return taxied(navbound.fly(name))
     if name in FLOWN:
-        found = scenario.load(FLOWN[name])
-        assert found.sensors is not None
-        slow = found.model_copy(update={"sensors": found.sensors.model_copy(update={"rate_hz": 10})})
+        loaded = scenario.load(FLOWN[name])
+        assert loaded.sensors is not None
+        slow = loaded.model_copy(update={"sensors": loaded.sensors.model_copy(update={"rate_hz": 10})})
         run = judge(fly.material(slow))
         return outcome(run) | {"nav_mode": run.epochs["nav_mode"].gather_every(590).to_list()}
-    found = scenario.load(name)
-    return outcome(navbound.fly(name)) if found.sensors is None else sensed(ins.simulate(found))
+    loaded = scenario.load(name)
+    return outcome(navbound.fly(name)) if loaded.sensors is None else sensed(ins.simulate(loaded))
 
 
 def _short(value: Any) -> Any:

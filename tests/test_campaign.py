@@ -25,11 +25,11 @@ TAXI = taxi_scenarios.FOLDER / "barcelona-taxi.toml"
 @pytest.fixture(scope="module")
 def quick() -> Scenario:
     """Sensors and a filter, few of both: ranges of one constellation and ten samples a second."""
-    found = scenario.load("beijing-shanghai")
-    assert found.sensors is not None
-    assert found.sensors.gnss is not None
-    sensors = found.sensors.model_copy(update={"rate_hz": 10, "gnss": found.sensors.gnss.model_copy(update={"constellations": ["gps"]})})
-    return found.model_copy(update={"sensors": sensors})
+    loaded = scenario.load("beijing-shanghai")
+    assert loaded.sensors is not None
+    assert loaded.sensors.gnss is not None
+    sensors = loaded.sensors.model_copy(update={"rate_hz": 10, "gnss": loaded.sensors.gnss.model_copy(update={"constellations": ["gps"]})})
+    return loaded.model_copy(update={"sensors": sensors})
 
 
 @pytest.fixture
@@ -80,9 +80,11 @@ def test_an_interrupted_campaign_goes_on_where_it_was(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         fly.material("beijing-shanghai-drawn", flights=4, checkpoint=tmp_path, progress=interrupt)
     told: list[tuple[int, int]] = []
-    found = fly.material("beijing-shanghai-drawn", flights=4, checkpoint=tmp_path, progress=lambda done, total: told.append((done, total)))
+    material = fly.material(
+        "beijing-shanghai-drawn", flights=4, checkpoint=tmp_path, progress=lambda done, total: told.append((done, total))
+    )
     assert told == [(2, 4), (3, 4), (4, 4)]
-    assert same(found, fly.material("beijing-shanghai-drawn", flights=4))
+    assert same(material, fly.material("beijing-shanghai-drawn", flights=4))
     # Another seed is another campaign.
     told.clear()
     fly.material("beijing-shanghai-drawn", flights=4, seed=1, checkpoint=tmp_path, progress=lambda done, total: told.append((done, total)))

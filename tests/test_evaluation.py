@@ -82,10 +82,10 @@ def test_no_constant_bound_scores_better_than_the_quantile() -> None:
 @pytest.mark.parametrize("memory", [0.0, 0.9, 0.99])
 def test_the_effective_size_of_a_gauss_markov_error_is_known(memory: float) -> None:
     n = 400_000
-    found = evaluation.effective_size(gauss_markov((n,), memory))
+    result = evaluation.effective_size(gauss_markov((n,), memory))
     # Four standard errors of a sum over five correlation times, as in the core's test.
     tolerance = 4 * math.sqrt(2 * (10 / (1 - memory) + 1) / n)
-    assert found / n == pytest.approx((1 - memory) / (1 + memory), rel=tolerance)
+    assert result / n == pytest.approx((1 - memory) / (1 + memory), rel=tolerance)
 
 
 def test_the_effective_size_is_the_plain_sum_over_all_lags() -> None:
@@ -143,8 +143,8 @@ def test_what_is_no_covariance_is_counted_and_not_used() -> None:
     covariance[2, 0, 1] = 0.5
     covariance[3, 1, 1] = math.nan
     error[4, 0] = math.nan
-    found = evaluation.nees(error, covariance)
-    assert (found.n, found.n_unusable, found.nees_mean) == (1, 4, 2.0)
+    statistics = evaluation.nees(error, covariance)
+    assert (statistics.n, statistics.n_unusable, statistics.nees_mean) == (1, 4, 2.0)
 
 
 def test_the_bootstrap_resamples_tracks() -> None:

@@ -61,21 +61,21 @@ def test_the_route_follows_nodes_of_the_real_taxiways() -> None:
 
 
 def test_speeds_keep_to_sub_phases_turns_and_brakes() -> None:
-    found = taxi.load(BASE)
+    loaded = taxi.load(BASE)
     asked = flown.limits()
-    way = move(found, asked)
+    way = move(loaded, asked)
     assert list(dict.fromkeys(way.phase)) == ["RWY", "RET", "NTW", "ATW", "TL", "SLL"]
     for name, limit in asked.items():
         # The landing roll is limited by the speed of touching down alone.
-        most = found.motion.touchdown_speed_mps if name == "RWY" else limit.speed_mps
+        most = loaded.motion.touchdown_speed_mps if name == "RWY" else limit.speed_mps
         assert way.speed_mps[way.phase == name].max() <= most + 1e-9
     gained = np.diff(way.speed_mps)
     # Between whole seconds speed is interpolated over a metre of way: a hundredth covers it.
-    assert gained.max() <= found.motion.acceleration_mps2 + 0.01
-    assert gained.min() >= -found.motion.braking_mps2 - 0.01
+    assert gained.max() <= loaded.motion.acceleration_mps2 + 0.01
+    assert gained.min() >= -loaded.motion.braking_mps2 - 0.01
     turned = np.abs(np.angle(np.exp(1j * np.diff(way.course_rad))))
     # Lateral acceleration is speed times turn rate; a second's mean is below its largest.
-    assert (turned * np.minimum(way.speed_mps[1:], way.speed_mps[:-1])).max() <= found.motion.lateral_acceleration_mps2 * 1.05
+    assert (turned * np.minimum(way.speed_mps[1:], way.speed_mps[:-1])).max() <= loaded.motion.lateral_acceleration_mps2 * 1.05
     assert (np.diff(way.along_m) > 0).all()
 
 
@@ -89,10 +89,10 @@ def test_metres_of_a_radian_are_those_of_the_ellipsoid() -> None:
 
 
 def navigator(**changes: object) -> Navigator:
-    found = taxi.load(BASE)
-    found = found.model_copy(update={"navigation": found.navigation.model_copy(update=changes)})
+    loaded = taxi.load(BASE)
+    loaded = loaded.model_copy(update={"navigation": loaded.navigation.model_copy(update=changes)})
     asked = flown.limits()
-    return Navigator(found, move(found, asked), asked)
+    return Navigator(loaded, move(loaded, asked), asked)
 
 
 def test_simulated_errors_have_the_covariance_that_the_core_claims() -> None:
@@ -102,10 +102,10 @@ def test_simulated_errors_have_the_covariance_that_the_core_claims() -> None:
     n = 40_000
     noise = sigma * np.random.Generator(np.random.Philox(3)).standard_normal((n, 7))
     own = gnss.covariance(az, el, sigma, systems).enu_m2
-    found = np.cov(moved_by(gnss.responses(az, el, sigma, systems), noise), rowvar=False)
+    sampled = np.cov(moved_by(gnss.responses(az, el, sigma, systems), noise), rowvar=False)
     # Elements of a sample covariance of 40 000 draws scatter by 0.7 %; four times that, against the variances.
     scale = np.sqrt(np.outer(np.diag(own), np.diag(own)))
-    assert (np.abs(found - own) / scale).max() < 0.03
+    assert (np.abs(sampled - own) / scale).max() < 0.03
 
 
 def flights(shared: Navigator, n: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -345,7 +345,7 @@ def test_the_page_draws_route_levels_and_limits_with_their_word(tmp_path: Path) 
         rows = page.locator("#alert-limits tbody tr").all_inner_texts()
         assert [row.split("\t")[1] for row in rows] == [f"{p.hal_m:.2f} m (inferred)" for p in run.summary.protection]
         # The protection circle is drawn: its colour is on the moving layer of the map.
-        found = page.evaluate(
+        result = page.evaluate(
             """() => {
                 const canvas = document.querySelectorAll("#map canvas")[1];
                 const hue = getComputedStyle(document.documentElement).getPropertyValue("--m2").trim();
@@ -358,6 +358,6 @@ def test_the_page_draws_route_levels_and_limits_with_their_word(tmp_path: Path) 
                 return n;
             }"""
         )
-        assert found > 100
+        assert result > 100
         assert not failures
         browser.close()

@@ -26,8 +26,8 @@ RATE_HZ = 10
 
 
 def quick(name: str, faults: list[dict[str, Any]] | None = None, constellations: list[str] | None = None) -> Scenario:
-    found = scenario.load(name)
-    data = found.model_dump()
+    loaded = scenario.load(name)
+    data = loaded.model_dump()
     data["sensors"]["rate_hz"] = RATE_HZ
     if constellations is not None:
         data["sensors"]["gnss"]["constellations"] = constellations
@@ -103,9 +103,9 @@ def test_the_mode_falls_back_without_satellites_and_returns() -> None:
 
 def summary(name: str, faults: list[dict[str, Any]] | None = None) -> tuple[Run, list[FaultSummary]]:
     # Fewer satellites are faster, and enough where none of them is at fault.
-    found = quick(name, faults, ["gps", "beidou"] if "satellite" in name or "approach" in name else ["gps"])
-    run = judge(fly.material(found), Settings(methods=()))
-    return run, fault_summaries(found, run.epochs, run.events)
+    result = quick(name, faults, ["gps", "beidou"] if "satellite" in name or "approach" in name else ["gps"])
+    run = judge(fly.material(result), Settings(methods=()))
+    return run, fault_summaries(result, run.epochs, run.events)
 
 
 @pytest.mark.parametrize(
@@ -121,16 +121,16 @@ def summary(name: str, faults: list[dict[str, Any]] | None = None) -> tuple[Run,
     ],
 )
 def test_every_shipped_fault_is_flown_and_summed_up(name: str, kinds: list[str]) -> None:
-    run, found = summary(name)
-    assert [f.kind for f in found] == kinds
+    run, summaries = summary(name)
+    assert [f.kind for f in summaries] == kinds
     # Loss of monitoring, and any alert, ends in normal only at an epoch inside.
     shown, outside = run.epochs["alert"], (run.epochs["tse_exact_m"] > run.epochs["rnp_m"]).fill_null(value=False)
     assert run.epochs["track"].n_unique() == 1
     assert not ((shown == "normal") & (shown.shift(1) != "normal") & outside).any()
-    for fault in found:
+    for fault in summaries:
         assert fault.nse_h_max_m is not None
         assert fault.words.endswith(".")
-    by_kind = {f.kind: f for f in found}
+    by_kind = {f.kind: f for f in summaries}
     if "satellite-step" in by_kind:
         # A hundred metres against a deviation of some metres: gated from the first second, said after three.
         assert by_kind["satellite-step"].gate_after_s == pytest.approx(2.0, abs=1.0)
@@ -154,9 +154,9 @@ def test_every_shipped_fault_is_flown_and_summed_up(name: str, kinds: list[str])
 
 
 def test_a_wrong_unit_without_a_second_filter_is_said_by_the_stations_that_contradict_it() -> None:
-    found = quick("beijing-shanghai-imu-jump", constellations=["gps"])
-    assert found.filter is not None
-    alone = found.model_copy(update={"filter": found.filter.model_copy(update={"reversion": False})})
+    result = quick("beijing-shanghai-imu-jump", constellations=["gps"])
+    assert result.filter is not None
+    alone = result.model_copy(update={"filter": result.filter.model_copy(update={"reversion": False})})
     said = fly.material(alone).epochs
     contradicted = said.filter(pl.col("reason").str.starts_with("several stations contradict"))
     assert contradicted["status"].unique().to_list() == ["not_available"]
@@ -186,7 +186,7 @@ def test_a_short_trouble_of_the_inertial_unit_is_bridged_and_counted(what: str) 
 
 @pytest.mark.parametrize(("what", "duration_s"), [("silent", 5.0), ("not-a-number", 5.0), ("silent", 60.0)])
 def test_an_inertial_unit_that_was_lost_is_aligned_in_flight(what: str, duration_s: float) -> None:
-    run, found = summary("beijing-shanghai", fault("imu-trouble", duration_s=duration_s, what=what))
+    run, summaries = summary("beijing-shanghai", fault("imu-trouble", duration_s=duration_s, what=what))
     end = 3000 + round(duration_s)
     lost = run.epochs[3000:end]
     # The ranges of each instant alone, with less behind them for ten seconds, which is longer than most holes.
@@ -195,7 +195,7 @@ def test_an_inertial_unit_that_was_lost_is_aligned_in_flight(what: str, duration
     assert set(lost["status"][10:]) <= {"ok"}
     assert lost["nav_mode"].unique().to_list() == ["stopped"]
     assert lost["nse_h_m"].max() < 15.0  # type: ignore[operator]
-    assert found[0].alert is None
+    assert summaries[0].alert is None
     # The satellites of the first second after it give a position; the attitude takes some minutes at the most.
     after = run.epochs[end + 1 :]
     assert "not_available" not in after["status"].to_list()
@@ -248,11 +248,11 @@ def test_a_wrong_station_without_satellites_is_left_out_before_it_takes_the_heig
 
 
 def test_samples_whose_times_run_a_second_behind_give_no_position_until_they_are_right_again() -> None:
-    run, found = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=30.0, what="late")])
+    run, summaries = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=30.0, what="late")])
     status = run.epochs["status"].to_list()
     assert set(status[3000:3030]) == {"not_available"}
     assert "not_available" not in status[3031:]
-    assert found[1].alert == "unavailable"
+    assert summaries[1].alert == "unavailable"
 
 
 @pytest.mark.parametrize(

@@ -121,8 +121,8 @@ def test_without_satellites_nothing_is_ok() -> None:
 def test_a_spoofer_whose_rates_agree_is_never_ok_beyond_the_level(name: str) -> None:
     data = scenario.load(name)
     assert data.sensors is not None
-    found = flown([fault.model_dump() for fault in data.sensors.faults], name, systems=("gps", "beidou"))
-    assert beyond(with_errors(found.epochs)) == 0
+    result = flown([fault.model_dump() for fault in data.sensors.faults], name, systems=("gps", "beidou"))
+    assert beyond(with_errors(result.epochs)) == 0
 
 
 @pytest.fixture(scope="module")

@@ -93,11 +93,11 @@ def test_the_covariance_grows_as_the_dense_exponential_says() -> None:
     blocks = expm(np.block([[-f, q], [np.zeros_like(f), f.T]]) * 300.0)
     phi = blocks[15:, 15:].T
     p = phi @ p @ phi.T + phi @ blocks[:15, 15:]
-    found = free.covariance_enu_m2[-1]
+    covariance = free.covariance_enu_m2[-1]
     expected = p[:3, :3][np.ix_([1, 0, 2], [1, 0, 2])] * np.outer([1, 1, -1], [1, 1, -1])
     # The unit does not quite rest: its wrong start velocity turns the axes, its noise tilts them by 1e-5. An element may miss 1e-4 of
     # itself, and one that is a difference of large ones 1e-5 of those.
-    np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5 * expected.max())
+    np.testing.assert_allclose(covariance, expected, rtol=1e-4, atol=1e-5 * expected.max())
     np.testing.assert_allclose(free.velocity_sigma_mps[-1], np.sqrt(np.diag(p)[3:6]), rtol=1e-4)
     np.testing.assert_allclose(free.attitude_sigma_rad[-1], np.sqrt(np.diag(p)[6:9]), rtol=1e-4)
 

@@ -60,8 +60,8 @@ def test_without_the_wheels_the_accuracy_of_the_peer_is_not_reached_held_out(dri
 
 def test_the_tuning_is_what_its_own_part_finds_likeliest(drive: Drive) -> None:
     """One number of it again, from the innovations after silences of the first part; all of it by `python tests/drive_fixture.py`."""
-    found = FOLDS[True][0]
-    assert likeliest(drive, found, "gyroscope_white", *PARTS[0]) == found
+    result = FOLDS[True][0]
+    assert likeliest(drive, result, "gyroscope_white", *PARTS[0]) == result
 
 
 def test_the_car_with_its_receiver_follows_it(drive: Drive) -> None:

@@ -38,9 +38,9 @@ def run(log: Path, out: Path, **hooks: Any) -> None:
 
 def undisturbed(log: Path, out: Path) -> list[tuple[int, bytes]]:
     run(log, out)
-    found = outputs(out)
-    assert len(found) > 1000
-    return found
+    outputs_now = outputs(out)
+    assert len(outputs_now) > 1000
+    return outputs_now
 
 
 def killed(log: Path, out: Path, point: str, passes: int) -> bool:

@@ -55,24 +55,24 @@ EIGHT_HOURS = Times(None, 8 * 3600.0, 300.0)
 def test_holes_are_where_the_levels_are_outside_the_limit() -> None:
     """Counted again from the levels; six satellites out of service so that there are holes."""
     gone = ("G01", "G05", "G09", "G13", "G17", "G21")
-    found = predict(Asked(["gps"], EIGHT_HOURS, ("RNP 0.1",), gone), [place("55.5,8.45,60"), place("10,10")])
+    result = predict(Asked(["gps"], EIGHT_HOURS, ("RNP 0.1",), gone), [place("55.5,8.45,60"), place("10,10")])
     orbits = gnss.constellation("gps").without(gone)
-    for line in found.lines:
-        here = next(p for p in found.places if p.name == line.place)
+    for line in result.lines:
+        here = next(p for p in result.places if p.name == line.place)
         levels = raim.predict(orbits, here.lat_rad[0], here.lon_rad[0], here.h_m[0], EIGHT_HOURS.offsets_s())
         for function, level in (("detection", levels.hpl_m), ("exclusion", levels.hel_m)):
             outside = ~(level <= 0.1 * 1852.0)
-            holes = [h for h in found.holes if h.place == line.place and h.function == function]
+            holes = [h for h in result.holes if h.place == line.place and h.function == function]
             assert sum(h.end_s - h.start_s for h in holes) == 300.0 * outside.sum()
             inside = [(h.start_s, h.end_s) for h in holes]
             assert all(any(a <= t < b for a, b in inside) == out for t, out in zip(EIGHT_HOURS.offsets_s(), outside, strict=True))
         assert line.p_exclusion == float((levels.hel_m <= 0.1 * 1852.0).mean())
         assert line.p_exclusion is not None
         assert line.p_detection >= line.p_exclusion
-    assert any(line.n_holes_exclusion for line in found.lines)
-    assert found.satellites == list(orbits.satellite)
-    assert any("inferred" in words for words in found.assumptions)
-    assert found.limits[0].provenance == "inferred"
+    assert any(line.n_holes_exclusion for line in result.lines)
+    assert result.satellites == list(orbits.satellite)
+    assert any("inferred" in words for words in result.assumptions)
+    assert result.limits[0].provenance == "inferred"
 
 
 def test_a_satellite_out_of_service_never_helps() -> None:
@@ -131,10 +131,10 @@ def test_an_almanac_serves_its_own_week(shared_data: Path) -> None:
     file, day_ns = shared_data / "gnss" / "almanacs" / "20160331.alm", 86_400_000_000_000
     start_ns = gps_ns(datetime(2016, 4, 1, tzinfo=UTC))
     asked = Asked([file], Times(start_ns, 3600.0, 300.0), ("NPA",), ("G05",))
-    found = predict(asked, [place("50,8")])
-    assert found.times.start_utc == "2016-04-01 00:00:00"
-    assert "G05" not in found.satellites
-    assert len(found.satellites) > 25
+    prediction = predict(asked, [place("50,8")])
+    assert prediction.times.start_utc == "2016-04-01 00:00:00"
+    assert "G05" not in prediction.satellites
+    assert len(prediction.satellites) > 25
     with pytest.raises(InputError, match=r"date = 2016-04-21 00:00:00 UTC.*within a week of the almanac, which is of 2016-04-02 19:50:07"):
         predict(Asked([file], Times(start_ns + 20 * day_ns, 3600.0, 300.0)), [place("50,8")])
 

@@ -148,8 +148,8 @@ def test_septentrio_covariances_are_turned_from_earth_fixed_axes(logs: Path) -> 
     sl, cl, sp, cp = math.sin(lon), math.cos(lon), math.sin(lat), math.cos(lat)
     turn = np.array([[-sl, cl, 0.0], [-sp * cl, -sp * sl, cp], [cp * cl, cp * sl, sp]])
     enu = turn @ c @ turn.T
-    found = [[first[f"cov_{k}_m2"] for k in row] for row in (("ee", "en", "eu"), ("en", "nn", "nu"), ("eu", "nu", "uu"))]
-    np.testing.assert_allclose(found, enu, rtol=1e-6, atol=1e-5)
+    result = [[first[f"cov_{k}_m2"] for k in row] for row in (("ee", "en", "eu"), ("en", "nn", "nu"), ("eu", "nu", "uu"))]
+    np.testing.assert_allclose(result, enu, rtol=1e-6, atol=1e-5)
     # Week 2367; the independent decoder shows 12:38:05 UTC, which is 18 s behind GPS time.
     assert first["time_ns"] % (86_400 * NS) == (12 * 3600 + 38 * 60 + 5 + 18) * NS
     assert first["time_ns"] // WEEK_NS == 2367
@@ -249,12 +249,12 @@ def test_damaged_logs_are_read_or_refused(logs: Path, tmp_path: Path, name: str)
             damaged[at] = random.integers(0, 256)
         path.write_bytes(bytes(damaged[: random.integers(1, len(damaged))]))
         try:
-            found = read(path).epochs
+            reading = read(path).epochs
         except FormatError:
             continue
         # What is read passed its checksum: it is near the receiver, a fixed place.
-        assert found["est_lat_rad"].abs().max() < math.pi / 2  # type: ignore[operator]
-        assert found["time_ns"].is_sorted()
+        assert reading["est_lat_rad"].abs().max() < math.pi / 2  # type: ignore[operator]
+        assert reading["time_ns"].is_sorted()
 
 
 @pytest.mark.parametrize(

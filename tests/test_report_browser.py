@@ -286,9 +286,9 @@ def test_the_keyboard_reaches_everything_that_can_be_pressed(page: Page) -> None
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_text_has_contrast_in_both_themes(browser: Browser, report: Path, scheme: str) -> None:
     page = _open(browser, report, scheme=scheme)
-    found = _probe(page, "texts()")
-    assert found["n"] > 200
-    assert found["bad"] == []
+    result = _probe(page, "texts()")
+    assert result["n"] > 200
+    assert result["bad"] == []
     # Names at the lines' ends have the lines' colours, so these count as text.
     lines = _probe(page, "lines()")
     assert len(lines) == 12

@@ -166,10 +166,10 @@ def test_the_gravest_subsets_are_listed_with_their_satellites(page: Page, record
     assert record.subsets is not None
     rows = page.locator("#subsets tbody tr")
     assert rows.count() == len(record.subsets.listed) == 2
-    for i, found in enumerate(record.subsets.listed):
+    for i, value in enumerate(record.subsets.listed):
         for key in ("time_ns", "safety_index", "hpe_m", "hpl_m", "vpe_m"):
-            assert float(rows.nth(i).locator(f'[data-key="{key}"]').get_attribute("data-value") or "nan") == getattr(found, key)
-        assert rows.nth(i).locator('[data-key="satellites"]').inner_text() == " ".join(found.satellites)
+            assert float(rows.nth(i).locator(f'[data-key="{key}"]').get_attribute("data-value") or "nan") == getattr(value, key)
+        assert rows.nth(i).locator('[data-key="satellites"]').inner_text() == " ".join(value.satellites)
     said = page.locator("#subsets-section").inner_text()
     assert "One is misleading" in said
     assert "the gravest 2 of 7" in said
@@ -287,9 +287,9 @@ def test_the_series_and_the_epochs_share_one_time(browser: Browser, record: Perf
 def test_the_performance_part_is_readable_in_both_themes(browser: Browser, report: Path, scheme: str) -> None:
     page = _open(browser, report, scheme=scheme)
     probes = (Path(__file__).parent / "report_probes.js").read_text(encoding="utf-8").split("\n", 1)[1].strip()
-    found = page.evaluate(f"() => {probes}.texts()")
-    assert found["n"] > 400
-    assert found["bad"] == []
+    result = page.evaluate(f"() => {probes}.texts()")
+    assert result["n"] > 400
+    assert result["bad"] == []
     page.context.close()
 
 

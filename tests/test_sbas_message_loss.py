@@ -57,9 +57,9 @@ def test_the_indicators_in_force_are_those_of_the_reference_series(log: sbas.Mes
     case = cases()[which]
     lost = without(log, *case["missing_messages_end_tow"])
     rows = np.array(case["rows"])
-    found = _core.sbas_indicators(lost.time_ns, lost.data, WEEK_NS + rows[:, 0] * NS)
+    result = _core.sbas_indicators(lost.time_ns, lost.data, WEEK_NS + rows[:, 0] * NS)
     mask = next(d.fields["prn"] for d in sbas.decode(log) if d.type == 1)
-    for k, use in enumerate(found):
+    for k, use in enumerate(result):
         for message in range(3):
             # Thirteen satellites of the mask a message.
             own = mask[13 * message : 13 * message + 13]

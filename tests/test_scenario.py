@@ -26,11 +26,11 @@ def test_every_shipped_scenario_can_be_read(name: str) -> None:
 
 
 def test_units_become_si() -> None:
-    found = scenario.load("beijing-shanghai")
-    assert found.phases[3].rnp_m == 0.3 * 1852
-    assert found.navigation.mask_rad == math.radians(7)
-    assert found.gusts.length_m == pytest.approx(533.4, rel=1e-15)  # 1750 ft of 0.3048 m
-    assert found.turns.rate_max_radps == math.radians(3)
+    loaded = scenario.load("beijing-shanghai")
+    assert loaded.phases[3].rnp_m == 0.3 * 1852
+    assert loaded.navigation.mask_rad == math.radians(7)
+    assert loaded.gusts.length_m == pytest.approx(533.4, rel=1e-15)  # 1750 ft of 0.3048 m
+    assert loaded.turns.rate_max_radps == math.radians(3)
 
 
 def test_one_quantity_may_be_written_in_another_unit(tmp_path: Path) -> None:

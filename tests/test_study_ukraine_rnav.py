@@ -58,14 +58,14 @@ def test_drawn_errors_keep_to_the_stated_covariance() -> None:
             continue
         covariance = np.array([[rows[f"cov_{a}_m2"] for a in ("ee", "en")], [rows[f"cov_{a}_m2"] for a in ("en", "nn")]]).transpose(2, 0, 1)
         error = rows.select("nse_e_m", "nse_n_m").to_numpy()
-        found = evaluation.nees(error, covariance)
+        statistics = evaluation.nees(error, covariance)
         low, high = stats.chi2.ppf([5e-5, 1 - 5e-5], 2 * rows.height) / rows.height
-        assert low < found.nees_mean < high, (track, found.nees_mean)
+        assert low < statistics.nees_mean < high, (track, statistics.nees_mean)
 
 
 def test_the_pair_is_available_where_two_stations_are_and_better_than_a_bearing() -> None:
-    found = {m.track: m for m in result().means}
-    pair, every, vor = (found[name] for name in (scene.PAIR, scene.ALL, scene.VOR))
+    by_name = {m.track: m for m in result().means}
+    pair, every, vor = (by_name[name] for name in (scene.PAIR, scene.ALL, scene.VOR))
     assert 0.7 < pair.share_available <= every.share_available < vor.share_available
     assert pair.nse95_median_m is not None
     assert every.nse95_median_m is not None
