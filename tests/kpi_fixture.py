@@ -17,11 +17,11 @@ from navbound.records.performance import (
     KpiSeries,
     Level,
     LevelResult,
+    ListedSubset,
     Performance,
     Spread,
     StanfordBins,
     StanfordCounts,
-    SubsetFound,
     Subsets,
 )
 
@@ -280,7 +280,7 @@ def _events(e: dict[str, Floats], truth: bool) -> list[KpiEvent]:
 
 def _subsets(levels: list[LevelResult]) -> Subsets:
     """Counts that differ from those of the epochs, so that the page cannot show one for the other."""
-    one = SubsetFound(
+    one = ListedSubset(
         time_ns=START_NS + 60 * 10**9,
         satellites=["G01", "G02", "G03", "G05"],
         left_out=["G07"],

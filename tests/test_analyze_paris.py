@@ -139,7 +139,7 @@ def test_a_runway_nobody_lands_on_is_refused() -> None:
         material(TRACKS, path="LFPO/24", requirement="RNP 0.3", rnp_m=555.6)
 
 
-def test_positions_that_were_held_are_counted_and_not_judged() -> None:
+def test_positions_that_repeat_are_counted_and_not_judged() -> None:
     """Of 2473 points on 08R four in ten repeat an earlier position; without them the spread is larger, not smaller."""
     by_name = {c.path: c for c in paris().cross_track}
     every, fresh = by_name["LFPG/08R"], by_name["LFPG/08R, held and implausible positions left out"]
@@ -157,9 +157,9 @@ def test_positions_that_were_held_are_counted_and_not_judged() -> None:
     assert points.join(repeated, on=["icao24", "time_ns"], how="anti").height == fresh.n_points
     assert fresh.n_points < 0.6 * every.n_points
     assert fresh.abs95_m > every.abs95_m
-    held = paris().epochs.filter(pl.col("status") == "not_available")
-    assert set(held["reason"]) == {"position held too long"}
-    assert held["cov_ee_m2"].null_count() == held.height
+    frozen = paris().epochs.filter(pl.col("status") == "not_available")
+    assert set(frozen["reason"]) == {"position held too long"}
+    assert frozen["cov_ee_m2"].null_count() == frozen.height
 
 
 def test_the_material_is_complete() -> None:

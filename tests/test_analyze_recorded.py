@@ -69,7 +69,7 @@ def test_the_monitor_raises_at_every_large_step() -> None:
 
 @needs_data
 @pytest.mark.parametrize("flight", ["ajaccio", "brussels_ils", "kiruna", "munich", "nice", "vienna"])
-def test_an_honest_flight_has_no_jumps(flight: str) -> None:
+def test_a_sound_flight_has_no_jumps(flight: str) -> None:
     """Navaid inspection flights: arcs, holds and steep turns at 5 s or 10 s, with the delays of a network of receivers."""
     m = material(SHARED / "aircraft" / "calibration" / f"{flight}.json.gz", requirement="RNP 1", rnp_m=1852, sigma_m=10)
     assert any(a.startswith("Plausibility: 0 position jumps") for a in m.assumptions)
@@ -171,8 +171,8 @@ def test_the_callers_sigma_goes_before_the_file_and_the_covariance_before_the_ca
 
 
 def test_a_category_counts_for_five_minutes_and_zero_means_unknown() -> None:
-    held = claim(epoch_table(nac_p=[9.0, None, None, None, None, None, None, 0.0, None])).epochs["cov_ee_m2"]
-    assert held.is_not_null().to_list() == [True] * 6 + [False] * 3
+    in_force = claim(epoch_table(nac_p=[9.0, None, None, None, None, None, None, 0.0, None])).epochs["cov_ee_m2"]
+    assert in_force.is_not_null().to_list() == [True] * 6 + [False] * 3
 
 
 def make_track(folder: Path, line: path.Path, offsets_m: list[float], step_m: float, start_m: float) -> Path:

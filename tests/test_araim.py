@@ -88,9 +88,9 @@ def independent(unit: NDArray[np.float64], systems: NDArray[np.int64], sigma: ND
     none = math.prod(1 - p for p, _ in events)
     modes: dict[frozenset[int], float] = {frozenset(): none}
     for size in (1, 2):
-        for chosen in combinations(range(len(events)), size):
-            out = frozenset().union(*(events[k][1] for k in chosen))
-            modes[out] = modes.get(out, 0.0) + none * math.prod(odds[k] for k in chosen)
+        for selected in combinations(range(len(events)), size):
+            out = frozenset().union(*(events[k][1] for k in selected))
+            modes[out] = modes.get(out, 0.0) + none * math.prod(odds[k] for k in selected)
     rest = 1 - math.fsum(modes.values())
     for _, whole in events[n:]:
         limit = 0.01 * modes[whole]
@@ -222,7 +222,7 @@ def test_what_cannot_be_meant_is_refused_by_name() -> None:
         assert refusal.value.argument == name
 
 
-def test_a_refusal_shows_the_number_that_was_given() -> None:
+def test_a_refusal_shows_the_number_of_the_input() -> None:
     unit = sky(8)
 
     def refused(**change: Any) -> InputError:
@@ -240,7 +240,7 @@ def test_a_refusal_shows_the_number_that_was_given() -> None:
     assert refused(unit_enu=np.zeros((0, 3)), constellation=[]).argument == "unit_enu"
 
 
-def test_more_decisions_than_can_be_weighed_are_said() -> None:
+def test_more_decisions_than_can_be_weighed_are_reported() -> None:
     # 16 satellites of which any two fail together more often than the integrity risk: 136 decisions, and room for 72.
     levels = araim.protection_levels(sky(16), [GPS] * 16, 1.0, 1.0, p_sat=1e-3, exclusion=True)
     assert levels.status == "too_many"
@@ -251,12 +251,12 @@ def test_only_faults_with_a_share_of_the_risk_are_excluded() -> None:
     residual = np.where(np.arange(16) < 8, np.random.default_rng(13).normal(0, 60, 16), 0.0)
     # Little may be left unmonitored, so that the fault of all GPS is a mode in both cases, and its separation is the largest.
     service = replace(araim.SERVICES["lpv-200"], unmonitored=1e-9)
-    given: dict[str, Any] = {"sigma_int_m": 1.0, "sigma_acc_m": 1.0, "p_sat": 1e-6, "service": service}
-    likely = araim.monitor(unit, systems, residual, p_const=[1e-4, 1e-9, 1e-9, 1e-9, 1e-9], **given)
+    settings: dict[str, Any] = {"sigma_int_m": 1.0, "sigma_acc_m": 1.0, "p_sat": 1e-6, "service": service}
+    likely = araim.monitor(unit, systems, residual, p_const=[1e-4, 1e-9, 1e-9, 1e-9, 1e-9], **settings)
     assert likely.decision == "excluded"
     assert likely.excluded.tolist() == [True] * 8 + [False] * 8
     # Less likely than the integrity risk of 1e-7: more modes, so a little more false-alarm multiplier, and no share for this decision.
-    rare = araim.monitor(unit, systems, residual, p_const=[9e-8, 1e-9, 1e-9, 1e-9, 1e-9], **given)
+    rare = araim.monitor(unit, systems, residual, p_const=[9e-8, 1e-9, 1e-9, 1e-9, 1e-9], **settings)
     assert abs(rare.worst_ratio / likely.worst_ratio - 1.0) < 0.01
     assert rare.decision == "not_excluded"
 
@@ -264,9 +264,9 @@ def test_only_faults_with_a_share_of_the_risk_are_excluded() -> None:
 def test_shipped_configurations_say_where_they_come_from() -> None:
     assert set(araim.SERVICES) == {"lpv-200", "horizontal"}
     configurations: list[araim.Service | araim.Support] = [*araim.SERVICES.values(), araim.SUPPORT]
-    for held in configurations:
-        assert held.source
-        assert held.provenance in {"standard", "inferred"}
+    for configured in configurations:
+        assert configured.source
+        assert configured.provenance in {"standard", "inferred"}
     assert len(araim.SUPPORT.p_const) == len(gnss.CONSTELLATIONS)
 
 
@@ -299,7 +299,7 @@ def test_the_published_equation_of_raim_is_met_by_whole_inversions() -> None:
     assert excluding.status == "not_monitored"
 
 
-def test_a_faulty_satellite_is_found_and_the_error_stays_inside_the_levels() -> None:
+def test_a_faulty_satellite_is_identified_and_the_error_stays_inside_the_levels() -> None:
     """Seeded noise of half the integrity sigma; a fault of 60 m on every satellite in turn, then on a whole constellation."""
     unit, systems = sky(18, 11), np.repeat([GPS, GALILEO], 9)
     rng = np.random.default_rng(7)
@@ -345,11 +345,11 @@ def test_a_prediction_is_that_of_its_geometry_and_exclusion_costs(service: str) 
     a, b, scale = model.noise
     local = (a + b * np.exp(-el / scale)) ** 2 + (0.12 * 1.001) ** 2 / (0.002001 + np.sin(el) ** 2)
     sigma = [np.sqrt(np.array(c)[orbits.constellation] ** 2 + local) for c in (araim.SUPPORT.sigma_ura_m, araim.SUPPORT.sigma_ure_m)]
-    given = araim.protection_levels(unit, orbits.constellation, *sigma, service=service)
+    computed = araim.protection_levels(unit, orbits.constellation, *sigma, service=service)
     # Angles and back cost a few units in the last place of vectors of 1, and gains up to 10.
-    np.testing.assert_allclose(levels.vpl_m, given.vpl_m, rtol=1e-9)
-    np.testing.assert_allclose(levels.hpl_m, given.hpl_m, rtol=1e-9)
-    assert np.array_equal(levels.n_sv, given.n_sv)
+    np.testing.assert_allclose(levels.vpl_m, computed.vpl_m, rtol=1e-9)
+    np.testing.assert_allclose(levels.hpl_m, computed.hpl_m, rtol=1e-9)
+    assert np.array_equal(levels.n_sv, computed.n_sv)
     with_exclusion = araim.predict(orbits, lat, lon, 0.0, time, service=service, exclusion=True)
     assert (with_exclusion.hpl_m > levels.hpl_m).all()
     assert (with_exclusion.vpl_m > levels.vpl_m).all()

@@ -162,7 +162,7 @@ def test_series_broadcast_over_leading_axes() -> None:
     assert np.array_equal(extraction.ee_bound_h_m[1, 2], alone.ee_bound_h_m, equal_nan=True)
 
 
-def test_new_satellites_are_logged_and_reset_only_where_asked() -> None:
+def test_new_satellites_are_logged_and_reset_only_where_requested() -> None:
     sets = np.where(np.arange(400) < 200, 0b1111, 0b0111)
     assert np.flatnonzero(still(satellites=sets).new_satellites).tolist() == [200]
     assert still(satellites=sets).n_resets == 1

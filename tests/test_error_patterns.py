@@ -81,7 +81,7 @@ def test_a_refusal_crosses_from_a_worker_unchanged(error: InputError) -> None:
     assert (type(copy), str(copy), vars(copy)) == (type(error), str(error), vars(error))
 
 
-def test_a_mapping_of_columns_that_changes_nothing_is_said(tmp_path: Path) -> None:
+def test_a_mapping_of_columns_that_changes_nothing_is_reported(tmp_path: Path) -> None:
     head = "%  GPST  latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) sdeu(m) sdun(m) age(s) ratio\n"
     rows = "".join(f"2026/11/22 12:00:{k:02d}.000 {49 + k * 3e-4:.9f} 2.5 150.0 5 10 1.0 1.0 2.0 0.0 0.0 0.0 0.0 0.0\n" for k in range(30))
     path = tmp_path / "a.pos"

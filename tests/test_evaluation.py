@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from navbound import InputError, evaluation
-from navbound.run.verdict.results import honesty_words
+from navbound.run.verdict.results import consistency_words
 
 SEED = 20261121
 
@@ -60,14 +60,14 @@ def test_the_median_of_an_even_count_is_the_mean_of_the_middle_two() -> None:
 def test_the_interval_of_an_exact_bound_holds_the_truth_as_often_as_it_says() -> None:
     """400 correlated tracks; a 95 % interval on a conservative size must hold 0.95 in at least the 99.9 % binomial limit of 95 %."""
     tracks = gauss_markov((1500, 400), 0.9)
-    held = 0
+    n_inside = 0
     for k in range(400):
         score = evaluation.bound(tracks[:, k], np.full(1500, 1.959963984540054), 0.05)
-        held += score.coverage_low <= 0.95 <= score.coverage_high
-    assert held >= stats.binom.ppf(0.001, 400, 0.95)
+        n_inside += score.coverage_low <= 0.95 <= score.coverage_high
+    assert n_inside >= stats.binom.ppf(0.001, 400, 0.95)
 
 
-def test_too_small_a_bound_is_found_out() -> None:
+def test_too_small_a_bound_is_refuted() -> None:
     error = gauss_markov((20000,), 0.5)
     assert evaluation.bound(error, np.full(20000, 1.7), 0.05).coverage_high < 0.95
 
@@ -105,7 +105,7 @@ def test_tracks_do_not_follow_each_other() -> None:
     assert apart.n_effective == pytest.approx(2.0, rel=0.02)
 
 
-def test_an_honest_covariance_is_inside_its_limits_and_another_outside() -> None:
+def test_a_consistent_covariance_is_inside_its_limits_and_another_outside() -> None:
     root = np.array([[2.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.3, 0.2, 3.0]])
     error = gauss_markov((20000, 3), 0.8) @ root.T
     covariance = np.broadcast_to(root @ root.T, (20000, 3, 3))
@@ -121,7 +121,7 @@ def test_an_honest_covariance_is_inside_its_limits_and_another_outside() -> None
         assert evaluation.nees(e, 1.25 * v).nees_mean < honest.nees_low
 
 
-def test_the_transform_is_flat_for_an_honest_covariance_only() -> None:
+def test_the_transform_is_flat_for_a_consistent_covariance_only() -> None:
     n = 40000
     error, covariance = gauss_markov((n, 2), 0.0), np.broadcast_to(np.eye(2), (n, 2, 2))
     flat = evaluation.pit(error, covariance, n_bins=10)
@@ -186,14 +186,14 @@ def test_what_cannot_be_scored_is_refused(call: object, named: str) -> None:
         call()
 
 
-def test_a_histogram_outside_its_band_is_said_though_the_mean_is_right() -> None:
+def test_a_histogram_outside_its_band_is_reported_though_the_mean_is_right() -> None:
     nees = evaluation.Nees(n=400, n_unusable=0, n_effective=80.0, dimension=3, nees_mean=3.0, nees_low=2.5, nees_high=3.5)
     flat = evaluation.Pit(n=400, n_effective=80.0, counts=[20] * 20, low=5.0, high=40.0)
-    assert honesty_words(nees, flat).endswith("no reason to doubt the covariance.")
+    assert consistency_words(nees, flat).endswith("no reason to doubt the covariance.")
     heaped = evaluation.Pit(n=400, n_effective=80.0, counts=[120, *[10] * 18, 100], low=5.0, high=40.0)
-    said = honesty_words(nees, heaped)
-    assert "2 of the 20 bins" in said
-    assert "6 times its share" in said
+    sentence = consistency_words(nees, heaped)
+    assert "2 of the 20 bins" in sentence
+    assert "6 times its share" in sentence
 
 
 @pytest.mark.parametrize(
@@ -204,7 +204,7 @@ def test_a_few_effective_epochs_decide_nothing_that_one_might_have(mean: float, 
     flat = evaluation.Pit(n=400, n_effective=4.0, counts=[20] * 20, low=0.0, high=400.0)
 
     def said(n_effective: float) -> str:
-        return honesty_words(evaluation.Nees(400, 0, n_effective, 3, mean, 1.1, 5.8), flat)
+        return consistency_words(evaluation.Nees(400, 0, n_effective, 3, mean, 1.1, 5.8), flat)
 
     # Chi-square with three degrees of freedom: 95 % between 0.216 and 9.35.
     assert says in said(4.0)

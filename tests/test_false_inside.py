@@ -148,8 +148,8 @@ def test_the_graver_of_the_recorded_status_and_ours_stands(tmp_path: Path) -> No
     # Held for a second at 70 m/s: degraded by our rule, not available by the file's.
     lat = np.array(columns()["lat"])
     lat[301] = lat[300]
-    said = ["not_available" if k == 301 else "ok" for k in range(N)]
-    result = run(tmp_path, lat=lat, speed_mps=np.full(N, 70.0), status=said)
+    declared = ["not_available" if k == 301 else "ok" for k in range(N)]
+    result = run(tmp_path, lat=lat, speed_mps=np.full(N, 70.0), status=declared)
     assert result.epochs["status"][301] == "not_available"
     without = run(tmp_path, lat=lat, speed_mps=np.full(N, 70.0))
     assert without.epochs["status"][301] == "degraded"

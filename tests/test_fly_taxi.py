@@ -62,10 +62,10 @@ def test_the_route_follows_nodes_of_the_real_taxiways() -> None:
 
 def test_speeds_keep_to_sub_phases_turns_and_brakes() -> None:
     loaded = taxi.load(BASE)
-    asked = flown.limits()
-    way = move(loaded, asked)
+    limits = flown.limits()
+    way = move(loaded, limits)
     assert list(dict.fromkeys(way.phase)) == ["RWY", "RET", "NTW", "ATW", "TL", "SLL"]
-    for name, limit in asked.items():
+    for name, limit in limits.items():
         # The landing roll is limited by the speed of touching down alone.
         most = loaded.motion.touchdown_speed_mps if name == "RWY" else limit.speed_mps
         assert way.speed_mps[way.phase == name].max() <= most + 1e-9
@@ -91,8 +91,8 @@ def test_metres_of_a_radian_are_those_of_the_ellipsoid() -> None:
 def navigator(**changes: object) -> Navigator:
     loaded = taxi.load(BASE)
     loaded = loaded.model_copy(update={"navigation": loaded.navigation.model_copy(update=changes)})
-    asked = flown.limits()
-    return Navigator(loaded, move(loaded, asked), asked)
+    limits = flown.limits()
+    return Navigator(loaded, move(loaded, limits), limits)
 
 
 def test_simulated_errors_have_the_covariance_that_the_core_claims() -> None:
@@ -135,11 +135,11 @@ def test_the_real_filter_is_the_one_the_covariance_describes() -> None:
     fix = shared.fixes - 1
     used = sky.el_rad[fix] >= shared.taxi.navigation.mask_rad
     az, el = np.where(used, sky.az_rad[fix], np.nan), np.where(used, sky.el_rad[fix], np.nan)
-    told = gbas.aided_covariance(
+    described = gbas.aided_covariance(
         az, el, sky.systems, lat_rad=float(shared.movement.lat_rad[0]), service="F", noise="paper", seconds=shared.lead + shared.fixes
     )
     # Equation 3 has satellites and aircraft that neither move nor turn; theirs change the deviations by some hundredths.
-    ratio = np.sqrt(np.diagonal(covariance[0, fix]) / np.diagonal(told)[:2])
+    ratio = np.sqrt(np.diagonal(covariance[0, fix]) / np.diagonal(described)[:2])
     assert (np.abs(ratio - 1.0) < 0.06).all()
     # A dozen flights with one slow draw each: chi-square of 24 degrees over 12, from 0.5 to 99.5 %.
     assert 0.82 < nees(error[:, fix], covariance[:, fix]) < 3.8
@@ -224,10 +224,10 @@ def test_a_fault_the_ground_sees_is_withdrawn_before_the_fix() -> None:
 
 def test_a_fault_the_ground_misses_misleads_and_the_verdict_says_so(tmp_path: Path) -> None:
     run = navbound.fly("barcelona-taxi-missed-fault")
-    misled = (run.epochs["nse_h_m"] > run.epochs["hpl_m"]).sum()
-    assert misled == sum(p.n_misleading for p in run.summary.protection) > 100
+    misleading = (run.epochs["nse_h_m"] > run.epochs["hpl_m"]).sum()
+    assert misleading == sum(p.n_misleading for p in run.summary.protection) > 100
     assert run.summary.verdict.inside is None
-    assert f"At {misled} epochs the true error is above the protection level" in run.summary.verdict.words
+    assert f"At {misleading} epochs the true error is above the protection level" in run.summary.verdict.words
     text = (taxi.FOLDER / "barcelona-taxi-missed-fault.toml").read_text(encoding="utf-8")
     quiet, aided = tmp_path / "quiet.toml", tmp_path / "aided.toml"
     quiet.write_text(text.split("[[faults]]", maxsplit=1)[0], encoding="utf-8")
@@ -298,9 +298,9 @@ def test_the_covariance_that_bounds_leaves_no_room_at_the_stand(tmp_path: Path, 
         ('kind = "taxi"', 'kind = "taxi"\nkind = 3', "not TOML"),
     ],
 )
-def test_what_is_wrong_in_a_file_is_named(tmp_path: Path, old: str, new: str, said: str) -> None:
+def test_what_is_wrong_in_a_file_is_named(tmp_path: Path, old: str, new: str, message: str) -> None:
     file = changed(tmp_path, old, new)
-    with pytest.raises(FormatError, match=re.escape(said)):
+    with pytest.raises(FormatError, match=re.escape(message)):
         taxi.load(file)
 
 

@@ -73,11 +73,11 @@ def test_a_filter_that_takes_all_errors_for_white_is_caught_by_nees_and_pit_but_
     assert honesty.nees_mean > 10 * honesty.nees_high
     assert honesty.pit_counts[-1] > 5 * honesty.pit_high
     assert "claims too little" in honesty.words
-    told = white.record.settings["filter"]
-    assert isinstance(told, dict)
+    reported = white.record.settings["filter"]
+    assert isinstance(reported, dict)
     # The mean squared innovation looks healthy. What gives the filter away is that each innovation knows the one before.
-    assert told["range"]["mean_square"] < 1.2
-    assert told["range"]["lag_one"] > 0.3
+    assert reported["range"]["mean_square"] < 1.2
+    assert reported["range"]["lag_one"] > 0.3
 
 
 def test_flights_do_not_depend_on_the_company_they_keep(real: Material) -> None:
@@ -153,15 +153,15 @@ def test_every_shipped_fault_is_flown_and_summed_up(name: str, kinds: list[str])
         assert by_kind["interference"].mode_after_s == pytest.approx(6.0, abs=2.0)
 
 
-def test_a_wrong_unit_without_a_second_filter_is_said_by_the_stations_that_contradict_it() -> None:
+def test_a_wrong_unit_without_a_second_filter_is_reported_by_the_stations_that_contradict_it() -> None:
     result = quick("beijing-shanghai-imu-jump", constellations=["gps"])
     assert result.filter is not None
     alone = result.model_copy(update={"filter": result.filter.model_copy(update={"reversion": False})})
-    said = fly.material(alone).epochs
-    contradicted = said.filter(pl.col("reason").str.starts_with("several stations contradict"))
+    epochs = fly.material(alone).epochs
+    contradicted = epochs.filter(pl.col("reason").str.starts_with("several stations contradict"))
     assert contradicted["status"].unique().to_list() == ["not_available"]
     # The jump is at 2700 s, the satellites come back at 3600 s.
-    second = (contradicted["time_ns"] - said["time_ns"].min()) / 1e9
+    second = (contradicted["time_ns"] - epochs["time_ns"].min()) / 1e9
     assert 2700.0 < second.min() < 3600.0  # type: ignore[operator]
 
 
@@ -176,9 +176,9 @@ WITHOUT_SATELLITES = {"kind": "interference", "start_s": 0.0, "duration_s": 8000
 @pytest.mark.parametrize("what", ["silent", "not-a-number", "late"])
 def test_a_short_trouble_of_the_inertial_unit_is_bridged_and_counted(what: str) -> None:
     run, _ = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=0.5, what=what)])
-    told = run.record.settings["filter"]
-    assert isinstance(told, dict)
-    assert told["samples"]["bridged"] == 1
+    reported = run.record.settings["filter"]
+    assert isinstance(reported, dict)
+    assert reported["samples"]["bridged"] == 1
     # At the very second of the trouble there is no state of that instant.
     assert run.epochs.with_row_index().filter(pl.col("status") == "not_available")["index"].to_list() == [3000]
     assert run.epochs["reason"][3000] == "the navigation filter needs inertial samples up to it, which this epoch lacks"
@@ -205,10 +205,10 @@ def test_an_inertial_unit_that_was_lost_is_aligned_in_flight(what: str, duration
     assert set(after["status"][:settled].to_list()) == {"degraded"}
     assert set(mode[settled:]) == {"gnss"}
     assert 10 < settled < 600
-    told = run.record.settings["filter"]
-    assert isinstance(told, dict)
-    assert told["samples"]["adrift"] > 0
-    assert told["samples"]["stopped"] == 0
+    reported = run.record.settings["filter"]
+    assert isinstance(reported, dict)
+    assert reported["samples"]["adrift"] > 0
+    assert reported["samples"]["stopped"] == 0
 
 
 @pytest.mark.parametrize("duration_s", [5.0, 60.0])

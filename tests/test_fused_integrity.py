@@ -141,8 +141,8 @@ def test_a_healthy_flight_is_ok_and_its_level_holds_the_error(healthy: Any) -> N
 
 
 def test_filter_and_snapshot_differ_by_what_is_expected(healthy: Any) -> None:
-    told = healthy.settings["filter"]["snapshot_tests"]
-    assert told["n_raised"] == 0
+    reported = healthy.settings["filter"]["snapshot_tests"]
+    assert reported["n_raised"] == 0
     # The covariance of the difference is widened by 1.6, so that its mean square lies below one.
-    assert 0.3 <= told["position_horizontal"]["mean_square"] <= 1.2
-    assert 0.8 <= told["velocity_horizontal"]["mean_square"] <= 1.1
+    assert 0.3 <= reported["position_horizontal"]["mean_square"] <= 1.2
+    assert 0.8 <= reported["velocity_horizontal"]["mean_square"] <= 1.1

@@ -114,9 +114,9 @@ def test_only_the_papers_noise_gains_from_an_inertial_system() -> None:
 
 def test_every_inferred_number_carries_its_mark() -> None:
     for phase in gbas.sub_phases().values():
-        held = {m.name: m.held for m in phase.marks}
-        assert held["containment"] == held["hal"] == held["integrity"] == held["continuity"] == "inferred"
-        assert held["speed"] == "ours"
+        provenance = {m.name: m.held for m in phase.marks}
+        assert provenance["containment"] == provenance["hal"] == provenance["integrity"] == provenance["continuity"] == "inferred"
+        assert provenance["speed"] == "ours"
     assert {m.name: m.held for m in gbas.monitor_curves()["F"].marks}["curve"] == "inferred"
     assert {m.name: m.held for m in gbas.carriers()["dual"].marks}["clock"] == "inferred"
     assert {m.name: m.held for m in gbas.allocation().marks}["coasting"] == "inferred"

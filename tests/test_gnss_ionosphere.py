@@ -97,9 +97,9 @@ def test_without_any_message_of_the_ionosphere_the_bounds_still_hold(shared_data
     assert "ok" not in set(positions.epochs["status"])
     assert positions.epochs["reason"].drop_nulls().len() == positions.epochs.height
     assert "climatology, no message" in positions.models["ionosphere"]
-    held = coverage(positions.epochs.drop_nulls("est_lat_rad"))
-    assert min(held["circle"], held["height"]) >= 0.93, held
-    assert min(held["circle 1e-5"], held["height 1e-5"]) >= 0.999, held
+    share = coverage(positions.epochs.drop_nulls("est_lat_rad"))
+    assert min(share["circle"], share["height"]) >= 0.93, share
+    assert min(share["circle 1e-5"], share["height 1e-5"]) >= 0.999, share
 
 
 @pytest.mark.parametrize(("name", "systems"), [c for c in CASES if c[0] != "ARLM"])
@@ -109,9 +109,9 @@ def test_without_the_message_of_gps_that_of_galileo_serves(shared_data: Path, tm
     assert "NTCM-G, Galileo message" in positions.models["ionosphere"]
     # Galileo of 2020 alone has often fewer than three ranges to spare: a fault could not be seen, and the position is doubted for that.
     assert positions.epochs["status"].to_list().count("ok") > (0.9 if systems == "E" else 0.99) * positions.epochs.height
-    held = coverage(positions.epochs)
-    assert min(held["circle"], held["height"]) >= 0.93, held
-    assert min(held["circle 1e-5"], held["height 1e-5"]) >= 0.999, held
+    share = coverage(positions.epochs)
+    assert min(share["circle"], share["height"]) >= 0.93, share
+    assert min(share["circle 1e-5"], share["height 1e-5"]) >= 0.999, share
     assert nees(positions.epochs) < 4.0
 
 
@@ -121,11 +121,11 @@ def test_without_the_message_of_gps_that_of_galileo_serves(shared_data: Path, tm
 def test_the_covariance_covers_the_errors(shared_data: Path, name: str, systems: str) -> None:
     observations, navigation, truth = recording(shared_data, name)
     positions = gnss.solve(observations, gnss.read_navigation(navigation), systems=systems, truth_ecef_m=truth)
-    held = coverage(positions.epochs)
+    share = coverage(positions.epochs)
     # With few ranges to spare the covariance holds readings of them that are not true; it is then too large, never too small.
     assert (0.3 if systems == "E" else 1.0) <= nees(positions.epochs) <= 4.0
-    assert min(held["circle"], held["height"]) >= 0.93, held
-    assert min(held["circle 1e-5"], held["height 1e-5"]) >= 0.999, held
+    assert min(share["circle"], share["height"]) >= 0.93, share
+    assert min(share["circle 1e-5"], share["height 1e-5"]) >= 0.999, share
 
 
 @pytest.mark.parametrize("name", ["ESBC", "Taroz"])
@@ -279,7 +279,9 @@ def test_positions_that_nobody_vouches_for_are_not_taken_for_their_covariance(si
 
 
 @pytest.mark.parametrize(("shift_m", "said"), [(0.0, False), (5000.0, True)])
-def test_a_header_that_is_far_from_every_solved_position_is_said(shared_data: Path, tmp_path: Path, shift_m: float, said: bool) -> None:
+def test_a_header_that_is_far_from_every_solved_position_is_reported(
+    shared_data: Path, tmp_path: Path, shift_m: float, noted: bool
+) -> None:
     folder = shared_data / "gnss" / "taroz_static"
     text = gzip.decompress((folder / "rover.obs.gz").read_bytes()).decode("latin-1")
     lines = text.splitlines(keepends=True)
@@ -290,4 +292,4 @@ def test_a_header_that_is_far_from_every_solved_position_is_said(shared_data: Pa
     path = tmp_path / "rover.obs"
     path.write_text("".join(lines), encoding="latin-1")
     words = " ".join(navbound.analyze([path, navigation]).summary.assumptions)
-    assert ("the approximate position of the header is" in words) == said
+    assert ("the approximate position of the header is" in words) == noted

@@ -185,7 +185,7 @@ def test_the_mode_falls_back_and_returns_with_patience() -> None:
     assert np.all(np.diff(sigma[62:90]) > 0)
 
 
-def test_rates_alone_hold_what_ranges_have_found() -> None:
+def test_rates_alone_hold_what_ranges_have_estimated() -> None:
     """Ranges for half a minute, then carrier phase: the position stays, and what the filter says of it grows as slowly."""
     still = body.standing(6, 120.0)
     second = still.time_ns[9::10]
@@ -238,7 +238,7 @@ def silent(still: body.Standing, first: int, after: int) -> ins.Imu:
     return ins.Imu(time_ns, angle, velocity, 0.1)
 
 
-def test_after_a_hole_nothing_is_said_without_a_measurement_and_it_is_said_when() -> None:
+def test_after_a_hole_nothing_is_reported_without_a_measurement_and_the_time_is_reported() -> None:
     still = body.standing(8, 60.0)
     fused = ins.fuse(silent(still, 300, 330), ins.Aiding(), still.start)
     ((time_ns, since_s),) = fused.holes

@@ -50,7 +50,7 @@ def test_the_outages_of_one_part_are_bridged_with_what_the_other_part_says_of_th
     assert 0.93 <= np.mean(inside) <= 0.98
 
 
-def test_without_the_wheels_the_accuracy_of_the_peer_is_not_reached_held_out(drive: Drive) -> None:
+def test_without_the_wheels_the_accuracy_of_the_peer_is_not_reached_on_unseen_data(drive: Drive) -> None:
     """What does not come out stays visible: 3.15 m, 6.97 m, 99.8 % inside; the peer has 3.09 m and 6.79 m, its tuning unknown."""
     h, inside = judged_apart(drive, wheels=False)
     assert 3.09 < np.sqrt(np.mean(h**2)) < 3.3

@@ -152,7 +152,7 @@ def test_nothing_is_heard_while_jammed() -> None:
     assert seconds.tolist() == [*range(1, 2400), *range(3600, 7082)]
 
 
-def test_the_seed_is_the_scenarios_unless_given() -> None:
+def test_the_seed_is_the_scenarios_unless_stated() -> None:
     flown = short("beijing-shanghai-seed", gnss=None, dme=None, vor=None)
     a, b = ins.simulate(flown), ins.simulate(flown, 0, flown.seed)
     assert a.imu.equals(b.imu)
@@ -211,12 +211,12 @@ def test_what_cannot_be_sensed_is_refused(arguments: dict[str, object], argument
         ),
     ],
 )
-def test_a_wrong_sensor_is_explained(tmp_path: Path, text: str, field: str | None, said: str) -> None:
+def test_a_wrong_sensor_is_explained(tmp_path: Path, text: str, field: str | None, message: str) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(f'base = "beijing-shanghai-real"\n{text}\n', encoding="utf-8")
     with pytest.raises(FormatError) as caught:
         scenario.load(file)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
     if field is not None:
         assert caught.value.field == field
 

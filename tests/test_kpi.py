@@ -122,8 +122,10 @@ def _check_level(result: Performance, actual: Any, expected: dict[str, Any]) -> 
     risk = expected["continuity_risk"]
     assert actual.continuity_risk is None if risk is None else close(actual.continuity_risk, risk)
     for axis, counts in zip("HV", actual.stanford, strict=False):
-        wanted = expected[f"stanford_{axis}"]
-        assert [counts.n_nominal, counts.n_mi, counts.n_hmi, counts.n_unavailable, counts.n_unavailable_mi] == list(wanted.values())
+        counts_expected = expected[f"stanford_{axis}"]
+        assert [counts.n_nominal, counts.n_mi, counts.n_hmi, counts.n_unavailable, counts.n_unavailable_mi] == list(
+            counts_expected.values()
+        )
     assert len(actual.stanford) == (1 if expected["stanford_V"] is None else 2)
     assert runs(result, actual.level.id, "hazard") == expected["hazard_runs_start_len"]
     assert actual.n_hazard_events == len(expected["hazard_runs_start_len"])

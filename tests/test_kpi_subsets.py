@@ -113,7 +113,7 @@ def test_a_good_geometry_hides_what_a_subset_shows() -> None:
     assert all("G03" in row.satellites for row in diagram.listed)
 
 
-def test_limits_of_the_subsets_are_kept_and_told() -> None:
+def test_limits_of_the_subsets_are_kept_and_reported() -> None:
     table = ranges(3, 12)
     # Of twelve: 495 + 792 + 924 + 792 + 495 + 220 + 66 + 12 + 1.
     assert kpi.stanford_esa(table, LEVELS).subsets.n_subsets == 3 * 3797

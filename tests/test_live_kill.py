@@ -124,7 +124,7 @@ def test_a_damaged_snapshot_is_refused_aloud_and_the_state_built_anew(log: Path,
         else:
             content[int(g.integers(len(content)))] ^= 1 << int(g.integers(8))
         (out / journal.SNAPSHOT).write_bytes(content)
-        said = list[str]()
-        run(log, out, say=said.append)
-        assert any("refused" in sentence for sentence in said), said
+        messages = list[str]()
+        run(log, out, say=messages.append)
+        assert any("refused" in sentence for sentence in messages), messages
         assert outputs(out) == expected

@@ -328,7 +328,7 @@ def test_every_loss_reaches_summary_terminal_and_report(damaged_run: tuple[Path,
     own = [r for r in rejected if loss in r["reason"]]
     assert [(Path(r["file"]).name, r["count"]) for r in own] == [(name, count)], rejected
     assert own[0]["first_line"] > 0
-    said = next(line for line in terminal.replace("\n    ", " ").splitlines() if loss in line)
-    assert said.strip().startswith(f"{count} x ")
+    line_of_loss = next(line for line in terminal.replace("\n    ", " ").splitlines() if loss in line)
+    assert line_of_loss.strip().startswith(f"{count} x ")
     assert name in terminal
     assert loss in (folder / "report.html").read_text()

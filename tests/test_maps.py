@@ -113,10 +113,10 @@ def test_a_fine_map_leaves_out_what_its_page_cannot_hold(written: maps.Map, tmp_
 
 def test_a_strange_folder_is_not_written_to(written: maps.Map, tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").touch()
-    told: list[int] = []
+    reported: list[int] = []
     with pytest.raises(FormatError, match=r"thesis\.txt"):
-        maps.make("dop", grid=COARSE, times=SIX_HOURS, out=tmp_path, progress=lambda done, _all: told.append(done))
-    assert told == [], "it was refused after the work"
+        maps.make("dop", grid=COARSE, times=SIX_HOURS, out=tmp_path, progress=lambda done, _all: reported.append(done))
+    assert reported == [], "it was refused after the work"
     with pytest.raises(FormatError, match="not the folder of a map"):
         maps.load(tmp_path)
 

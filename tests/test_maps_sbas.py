@@ -95,7 +95,7 @@ def test_a_log_serves_from_its_warm_up_to_its_end(more: Path) -> None:
     assert levels.status.tolist() == ["not_available", "ok"], "the warm-up is not long enough, or not needed"
 
 
-def test_what_a_log_lacks_is_said(more: Path) -> None:
+def test_what_a_log_lacks_is_reported(more: Path) -> None:
     lossy = " ".join(made(more, "prn137_loss_2025046_17h.ems.gz").summary.assumptions)
     assert "5 gaps of more than 4 s, the longest 21 s" in lossy
     assert "5 lines of the log refused as damaged" in lossy
@@ -119,7 +119,7 @@ def test_instants_beyond_the_log_have_no_level_and_are_counted(more: Path) -> No
 
 
 @pytest.mark.parametrize(("prn", "named"), [(None, "one of 120, 126"), (129, "one of 120, 126")])
-def test_whose_messages_is_asked_where_there_are_several(more: Path, prn: int | None, named: str) -> None:
+def test_where_there_are_several_senders_one_has_to_be_named(more: Path, prn: int | None, named: str) -> None:
     with pytest.raises(InputError, match=named):
         made(more, "egnos_2012299.ems", prn=prn)
 

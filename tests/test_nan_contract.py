@@ -98,8 +98,8 @@ def reassuring(name: str, argument: str, bad: float) -> list[str]:
                 depends |= differs(first(other[place]), before)
         if at.dtype.kind == "f" and (np.isfinite(at) & depends).any():
             listed.append(place)
-    said = [a for place, array in result.items() if place.endswith(".status") for a in np.atleast_1d(first(array)).tolist()]
-    return [] if said and not set(said) & set(USABLE) else listed
+    declared = [a for place, array in result.items() if place.endswith(".status") for a in np.atleast_1d(first(array)).tolist()]
+    return [] if declared and not set(declared) & set(USABLE) else listed
 
 
 _SERIES = "a statistic of a series: epochs without an error or a bound are left out, and their number is in the result"

@@ -251,8 +251,8 @@ def test_errors_by_size_alone_are_errors(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("levels", "absent"), [("APV-I", "vpl_m"), ("NPA,APV-I", "vpl_m"), ("NPA", "hpl_m")])
 def test_a_level_that_is_judged_and_absent_refuses_the_file(tmp_path: Path, levels: str, absent: str) -> None:
-    held = [name for name in ("hpe_m", "vpe_m", "hpl_m", "vpl_m") if name != absent]
-    path = errors_and_levels(tmp_path / "levels.csv", *held)
+    columns = [name for name in ("hpe_m", "vpe_m", "hpl_m", "vpl_m") if name != absent]
+    path = errors_and_levels(tmp_path / "levels.csv", *columns)
     with pytest.raises(FormatError, match=f"{absent}: no column holds it"):
         navbound.evaluate(path, levels=levels)
 

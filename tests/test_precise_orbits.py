@@ -85,15 +85,15 @@ def test_precise_orbits_take_horizontal_error_away(
     observed: tuple[gnss.Observations, gnss.Navigation], orbits: gnss.PreciseOrbits, truth: Any, how: Any, share: float
 ) -> None:
     h95 = {}
-    for name, given in (("broadcast", None), ("precise", orbits)):
-        error = errors(gnss.solve(*observed, orbits=given, truth_ecef_m=truth, **how).epochs)
+    for name, precise in (("broadcast", None), ("precise", orbits)):
+        error = errors(gnss.solve(*observed, orbits=precise, truth_ecef_m=truth, **how).epochs)
         h95[name] = np.quantile(np.hypot(error[:, 0], error[:, 1]), 0.95)
     # Galileo's broadcast orbits are as good as this receiver can tell: no worse is all that can be asked.
     assert h95["precise"] < share * h95["broadcast"]
 
 
 @pytest.mark.parametrize(("systems", "signals"), [("G", "single"), ("E", "single"), ("GE", "single"), ("E", "dual"), ("GE", "dual")])
-def test_precise_orbits_keep_an_honest_covariance(
+def test_precise_orbits_keep_a_consistent_covariance(
     observed: tuple[gnss.Observations, gnss.Navigation], orbits: gnss.PreciseOrbits, truth: Any, systems: str, signals: Any
 ) -> None:
     positions = gnss.solve(*observed, systems=systems, signals=signals, orbits=orbits, truth_ecef_m=truth)
@@ -179,7 +179,7 @@ def test_a_week_that_may_have_rolled_over_is_not_guessed(shared_data: Path, tmp_
     assert gnss.constellation(rolled, near_ns=week_ns(1000)).reference_ns == week_ns(1011) + 589_824 * NS
 
 
-def test_unhealthy_satellites_are_left_out_unless_wanted(shared_data: Path, tmp_path: Path) -> None:
+def test_unhealthy_satellites_are_left_out_unless_requested(shared_data: Path, tmp_path: Path) -> None:
     text = (shared_data / "gnss" / "almanacs" / "20160331.alm").read_text(encoding="ascii")
     path = tmp_path / "sick.alm"
     path.write_text(text.replace("Health:                     000", "Health:                     063", 1), encoding="ascii")

@@ -78,7 +78,7 @@ def test_all_in_view_is_better_than_the_pair_and_a_wrong_range_is_seen() -> None
 
 
 @pytest.mark.parametrize(("column", "deviations", "least"), [(0, 15, 0.0), (1, 30, 0.75), (2, 15, 0.85), (3, 15, 0.85)])
-def test_one_wrong_range_of_four_is_left_out_or_said_not_to_be_found(column: int, deviations: int, least: float) -> None:
+def test_one_wrong_range_of_four_is_left_out_or_reported_unidentified(column: int, deviations: int, least: float) -> None:
     """The first two stations lie in nearly the same direction: which of them is wrong shows at larger errors only, and is not guessed."""
     n = 2000
     stations, ranges, h = drawn(n, seed=20 + column)
@@ -185,9 +185,9 @@ def test_what_cannot_be_solved_is_a_status() -> None:
     ],
 )
 def test_wrong_arguments_are_refused_by_name(change: dict[str, object], named: str) -> None:
-    given: dict[str, object] = {"slant_m": [6e4, 1.2e5, 6e4, 4e4], "stations": network().only(*NEAR), "h_m": H, "sigma_altitude_m": 0.0}
+    arguments: dict[str, object] = {"slant_m": [6e4, 1.2e5, 6e4, 4e4], "stations": network().only(*NEAR), "h_m": H, "sigma_altitude_m": 0.0}
     with pytest.raises(InputError, match=named):
-        dme.solve(**(given | change))  # type: ignore[arg-type]
+        dme.solve(**(arguments | change))  # type: ignore[arg-type]
 
 
 def test_a_network_of_nothing_gives_nothing() -> None:
@@ -291,9 +291,9 @@ def test_selection_refuses_what_does_not_fit() -> None:
 def test_a_map_is_its_tiles_and_says_what_the_selection_says() -> None:
     stations = network()
     lat, lon = np.meshgrid(np.radians(np.linspace(48.0, 51.5, 15)), np.radians(np.linspace(29.0, 37.0, 17)), indexing="ij")
-    asked = {"rnp_m": NM, "fte_m": 0.5 * NM, "sigma_altitude_m": SIGMA_H}
-    whole = dme.coverage(lat, lon, 9000.0, stations, **asked)
-    tiles = [dme.coverage(lat[rows], lon[rows], 9000.0, stations, **asked) for rows in (slice(0, 6), slice(6, None))]
+    requested = {"rnp_m": NM, "fte_m": 0.5 * NM, "sigma_altitude_m": SIGMA_H}
+    whole = dme.coverage(lat, lon, 9000.0, stations, **requested)
+    tiles = [dme.coverage(lat[rows], lon[rows], 9000.0, stations, **requested) for rows in (slice(0, 6), slice(6, None))]
     for name in ("n_stations", "best", "nse_best_m", "nse_all_m", "nse_vor_m", "supports_best", "supports_vor"):
         np.testing.assert_array_equal(np.concatenate([getattr(t, name) for t in tiles]), getattr(whole, name))
     assert whole.nse_limit_m == pytest.approx(np.sqrt(0.75) * NM, rel=1e-12)

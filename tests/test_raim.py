@@ -53,7 +53,7 @@ def at_least(count: int, n: int) -> float:
     return float(stats.beta.ppf(1e-3, count, n - count + 1)) if count else 0.0
 
 
-def test_the_held_level_bounds_a_missed_fault_of_any_size_and_the_published_one_does_not() -> None:
+def test_the_guaranteed_level_bounds_a_missed_fault_of_any_size_and_the_published_one_does_not() -> None:
     """Seeded ranges at a risk that can be counted; the fault on the satellite with the steepest slope, sizes up to beyond detection."""
     n, n_sv, needs = 20_000, 30, raim.Requirement(false_alarm=1e-3, missed_detection=0.05, fault_free=1e-3)
     unit, of, sigma = sky(n_sv, 4), [GPS] * n_sv, np.linspace(1.0, 2.0, n_sv)
@@ -64,26 +64,26 @@ def test_the_held_level_bounds_a_missed_fault_of_any_size_and_the_published_one_
         moved = raim.monitor(unit, of, np.eye(n_sv)[i] * 1e-3, sigma, requirement=needs)
         slope = float(np.abs(moved.step_enu_m[2]) / moved.ratio)
         steepest, worst = (i, slope) if slope > worst else (steepest, worst)
-    published, held = [], []
+    published, guaranteed = [], []
     for size in np.linspace(0.0, 14.0, 8):
         noise = rng.normal(size=(n, n_sv)) * sigma
         noise[:, steepest] += size
         tested = raim.monitor(unit, of, noise, sigma, requirement=needs)
         error, missed = np.abs(tested.step_enu_m[:, 2]), tested.decision == "none"
-        held.append(at_least(int((missed & (error > levels.vpl_m)).sum()), n))
+        guaranteed.append(at_least(int((missed & (error > levels.vpl_m)).sum()), n))
         published.append(at_least(int((missed & (error > levels.vpl_slope_m)).sum()), n))
-    assert max(held) <= 0.05
+    assert max(guaranteed) <= 0.05
     assert max(published) > 0.05, "the geometry no longer shows what the page says"
 
 
 @pytest.mark.parametrize(("slope", "published", "held"), [(0.3, 0.094, 1e-5), (1.0, 0.0035, 1e-6), (2.0, 7.5e-4, 3e-6)])
-def test_the_risks_of_the_page_come_out(slope: float, published: float, held: float) -> None:
+def test_the_risks_of_the_page_come_out(slope: float, published: float, risk: float) -> None:
     """docs/methods/raim.md: five redundant ranges, sigma of the position one metre."""
     _, bias = raim.factors(5)
     noise = float(stats.norm.isf(raim.RAIM.missed_detection / 2))
     # Two digits are printed.
     assert abs(raim_scipy.worst_joint(5, slope * float(bias), slope, 1.0) / published - 1) <= 0.05
-    assert raim_scipy.worst_joint(5, slope * float(bias) + noise, slope, 1.0) <= held
+    assert raim_scipy.worst_joint(5, slope * float(bias) + noise, slope, 1.0) <= risk
 
 
 def test_the_published_level_holds_where_the_slope_is_steep() -> None:
@@ -143,11 +143,11 @@ def test_a_prediction_is_that_of_its_geometry() -> None:
     a, b, scale = raim.ERROR_MODELS["dual-frequency"].noise
     local = (a + b * np.exp(-el / scale)) ** 2 + (0.12 * 1.001) ** 2 / (0.002001 + np.sin(el) ** 2)
     sigma = np.sqrt(np.array(raim.SUPPORT.sigma_ura_m)[orbits.constellation] ** 2 + local)
-    given = raim.protection_levels(unit, orbits.constellation, sigma)
+    computed = raim.protection_levels(unit, orbits.constellation, sigma)
     for name in ("hpl_m", "vpl_m", "hel_m", "vel_m"):
         # Angles and back cost a few units in the last place of vectors of 1, and gains up to 10.
-        np.testing.assert_allclose(getattr(levels, name), getattr(given, name), rtol=1e-9)
-    assert np.array_equal(levels.n_sv, given.n_sv)
+        np.testing.assert_allclose(getattr(levels, name), getattr(computed, name), rtol=1e-9)
+    assert np.array_equal(levels.n_sv, computed.n_sv)
     assert (levels.hel_m >= levels.hpl_m).all()
 
 
@@ -213,8 +213,8 @@ def test_the_recorded_day_stays_inside_its_levels(shared_data: Path, tmp_path: P
     assert npa.availability_expected > 0.999
     assert apv.availability_expected < npa.availability_expected
     words = " ".join(run.summary.assumptions)
-    for said in ("a fault detected at", "detection and exclusion (HEL) 100 %, 100 %, 100 %", "inferred", "slope"):
-        assert said in words
+    for phrase in ("a fault detected at", "detection and exclusion (HEL) 100 %, 100 %, 100 %", "inferred", "slope"):
+        assert phrase in words
     assert (tmp_path / "run" / "report.html").is_file()
 
 

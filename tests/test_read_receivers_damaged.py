@@ -66,8 +66,8 @@ def test_septentrio_geodetic_blocks_make_a_row(tmp_path: Path) -> None:
     assert row["time_ns"] == (2361 * 604_800 + 456_000) * 1_000_000_000
     assert (row["ground_speed_mps"], row["vertical_rate_mps"]) == (5.0, -0.5)
     # The block's order: latitude, longitude, height, clock; then latitude with longitude, height, clock; longitude with height.
-    wanted = {"nn": 4.0, "ee": 9.0, "uu": 16.0, "en": 0.5, "nu": -0.25, "eu": 1.5}
-    assert {k: row[f"cov_{k}_m2"] for k in wanted} == wanted
+    expected = {"nn": 4.0, "ee": 9.0, "uu": 16.0, "en": 0.5, "nu": -0.25, "eu": 1.5}
+    assert {k: row[f"cov_{k}_m2"] for k in expected} == expected
     assert reading.columns["covariance"] == "PosCovGeodetic"
 
 

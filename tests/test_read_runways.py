@@ -99,7 +99,7 @@ def test_an_unknown_runway_is_refused_with_what_there_is(name: str, says: str) -
     assert says in str(refusal.value)
 
 
-def test_runways_near_a_position_are_found_beside_the_date_line_too() -> None:
+def test_runways_near_a_position_include_those_beyond_the_date_line() -> None:
     at_paris = near(np.radians([48.96]), np.radians([2.5]))
     assert {"LFPG/08R", "LFPB/27"} <= {r.name for r in at_paris}
     assert "KJFK/04L" not in {r.name for r in at_paris}

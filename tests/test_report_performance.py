@@ -170,20 +170,20 @@ def test_the_gravest_subsets_are_listed_with_their_satellites(page: Page, record
         for key in ("time_ns", "safety_index", "hpe_m", "hpl_m", "vpe_m"):
             assert float(rows.nth(i).locator(f'[data-key="{key}"]').get_attribute("data-value") or "nan") == getattr(value, key)
         assert rows.nth(i).locator('[data-key="satellites"]').inner_text() == " ".join(value.satellites)
-    said = page.locator("#subsets-section").inner_text()
-    assert "One is misleading" in said
-    assert "the gravest 2 of 7" in said
-    assert "At 2 epochs with many satellites" in said
+    text = page.locator("#subsets-section").inner_text()
+    assert "One is misleading" in text
+    assert "the gravest 2 of 7" in text
+    assert "At 2 epochs with many satellites" in text
 
 
 @pytest.mark.parametrize("experimental", ["", "experimental, not integrity"])
-def test_where_only_indicators_were_asked_the_page_leads_with_them(
+def test_where_only_indicators_were_requested_the_page_leads_with_them(
     browser: Browser, record: Performance, tmp_path: Path, experimental: str
 ) -> None:
     fixture = report_fixture.flight(1, n=200)
-    asked = record.model_copy(update={"experimental": experimental})
+    indicators_only = record.model_copy(update={"experimental": experimental})
     changes = {
-        "performance": asked,
+        "performance": indicators_only,
         "accuracy": [],
         "integrity": [],
         "honesty": None,
@@ -195,11 +195,11 @@ def test_where_only_indicators_were_asked_the_page_leads_with_them(
     page = _open(browser, render(summary, fixture.record, fixture.epochs.head(0), fixture.events.head(0), [], tmp_path / "report.html"))
     panel = page.locator("#verdict")
     assert panel.get_attribute("data-tone") == "warning"
-    said = panel.inner_text()
-    assert said.startswith("Hazardous")
-    assert all(result.level.id in said for result in record.levels)
-    assert "RNP" not in said.replace("RNP 0.3", "")
-    assert ("experimental, not integrity" in said) == (experimental != "")
+    text = panel.inner_text()
+    assert text.startswith("Hazardous")
+    assert all(result.level.id in text for result in record.levels)
+    assert "RNP" not in text.replace("RNP 0.3", "")
+    assert ("experimental, not integrity" in text) == (experimental != "")
     for i, result in enumerate(record.levels):
         value = panel.locator('[data-key="verdict.availability_expected"]').nth(i).get_attribute("data-value")
         assert float(value or "nan") == result.availability_expected
@@ -253,7 +253,7 @@ def test_an_experimental_level_says_so_at_every_title_axis_and_column(browser: B
     page.context.close()
 
 
-def test_without_truth_nothing_is_said_of_integrity(browser: Browser, tmp_path: Path) -> None:
+def test_without_truth_nothing_is_stated_of_integrity(browser: Browser, tmp_path: Path) -> None:
     page = _open(browser, _write(kpi_fixture.performance(truth=False), tmp_path))
     assert "Integrity unknown" in page.locator(".performance-words").inner_text()
     assert page.locator("#levels [data-key=n_hazard_epochs]").count() == 0

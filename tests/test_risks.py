@@ -20,8 +20,8 @@ ONLY_95 = {"anp.circle_fit", "anp.circle_fit_as_printed", "anp.circle_geodesy", 
 
 
 def with_risk(name: str, argument: str, value: float) -> Any:
-    given = CALLS[name].numbers[argument]
-    return CALLS[name](**{argument: value if isinstance(given, float) else np.full(np.shape(given), value)})
+    numbers = CALLS[name].numbers[argument]
+    return CALLS[name](**{argument: value if isinstance(numbers, float) else np.full(np.shape(numbers), value)})
 
 
 def test_many_functions_take_a_risk() -> None:

@@ -66,7 +66,7 @@ def test_b4_the_printed_bivariate_form_is_too_good_off_the_diagonal() -> None:
     assert 100 * np.mean(grid.paper_state > grid.threshold_state) == pytest.approx(1.2, abs=0.2)
 
 
-def test_b5_a_narrow_last_state_loses_far_outside_unless_it_is_held() -> None:
+def test_b5_a_narrow_last_state_loses_far_outside_unless_it_is_guarded() -> None:
     states = rnp.StateClassifier([0.3, 1.0, 5.0, 5.5], require_order=False)
     x = np.array([7.0, 8.0, 10.0, 20.0]) * NM
     assert np.argmax(states.log_posterior_as_printed(x), axis=-1).tolist() == [2] * 4
@@ -93,7 +93,7 @@ def test_an_independent_transcription_agrees(levels: list[float], fte: list[floa
             assert value == pytest.approx(oracle.log_posterior(boundaries, float(x), guarded=guarded), rel=1e-11, abs=1e-10)
 
 
-def test_honest_probabilities_are_the_mass_between_the_boundaries() -> None:
+def test_probabilities_are_the_mass_between_the_boundaries() -> None:
     states = rnp.StateClassifier(LEVELS)
     for offset, sigma in [(0.0, 200.0), (400.0, 150.0), (-400.0, 150.0), (1e4, 30.0), (0.0, 5000.0)]:
         probabilities = states.probabilities(offset, sigma)

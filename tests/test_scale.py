@@ -89,8 +89,8 @@ def test_every_kind_of_map_has_the_same_bits_whoever_works_it_off(
 @pytest.mark.parametrize("backend", ["serial", "processes"])
 def test_a_command_that_was_killed_goes_on_and_leaves_no_worker(backend: str, tmp_path: Path) -> None:
     workers = ["--workers", "1"] if backend == "processes" else []
-    asked = ["--step-deg", "5", "--every-s", "600", "--backend", backend, *workers, "--checkpoint", str(tmp_path / "kept")]
-    command = [sys.executable, "-m", "navbound", "map", "araim", *asked, "--out", str(tmp_path / "map"), "--json"]
+    options = ["--step-deg", "5", "--every-s", "600", "--backend", backend, *workers, "--checkpoint", str(tmp_path / "kept")]
+    command = [sys.executable, "-m", "navbound", "map", "araim", *options, "--out", str(tmp_path / "map"), "--json"]
     run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + 120.0
     while not list((tmp_path / "kept").glob("*.npz")) and time.monotonic() < deadline:
@@ -193,14 +193,14 @@ def test_a_job_that_was_killed_goes_on(tmp_path: Path) -> None:
     assert 3 <= finished < 60, "the job was not killed in the middle"
     for call in log.iterdir():
         call.unlink()
-    told: list[tuple[int, int]] = []
+    reported: list[tuple[int, int]] = []
     # The pause is part of the function and so of the job.
     results = scale.map_tiles(
-        tiles_fixture.Logged(str(log), 0.05), list(range(60)), checkpoint=kept, progress=lambda done, all_: told.append((done, all_))
+        tiles_fixture.Logged(str(log), 0.05), list(range(60)), checkpoint=kept, progress=lambda done, all_: reported.append((done, all_))
     )
     assert len(list(log.iterdir())) == 60 - finished
-    assert told[0] == (finished, 60)
-    assert told[-1] == (60, 60)
+    assert reported[0] == (finished, 60)
+    assert reported[-1] == (60, 60)
     assert same(results, [tiles_fixture.numbers(t) for t in range(60)])
 
 

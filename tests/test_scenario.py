@@ -83,13 +83,13 @@ def test_a_file_may_say_only_what_differs(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_wrong_file_is_explained(tmp_path: Path, old: str, new: str, field: str | None, said: str) -> None:
+def test_a_wrong_file_is_explained(tmp_path: Path, old: str, new: str, field: str | None, message: str) -> None:
     file = changed(tmp_path, old, new)
     with pytest.raises(FormatError) as caught:
         scenario.load(file)
     assert caught.value.path == file
     assert caught.value.field == field
-    assert said in str(caught.value)
+    assert message in str(caught.value)
     assert str(file) in str(caught.value)
 
 

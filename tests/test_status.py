@@ -134,12 +134,12 @@ def _watched(sentences: dict[str, str]) -> pl.DataFrame:
 def test_a_sentence_of_another_wording_changes_no_count() -> None:
     """The counts of the monitor: three faults detected, two excluded, one not; one epoch where none could be detected."""
     sentences = {id_: entry.words for id_, entry in status.REASONS.items()}
-    told = decisions(_watched(sentences))
-    assert "a fault detected at 3, excluded at 2 (G05 at 2), not to be excluded at 1" in told[0]
-    assert "no way to detect a fault at 1" in told[0]
+    decided = decisions(_watched(sentences))
+    assert "a fault detected at 3, excluded at 2 (G05 at 2), not to be excluded at 1" in decided[0]
+    assert "no way to detect a fault at 1" in decided[0]
     for changed in sentences:
         other = decisions(_watched(sentences | {changed: "reworded"}))
-        assert other == told, changed
+        assert other == decided, changed
 
 
 def test_a_sentence_of_another_wording_changes_no_status(monkeypatch: pytest.MonkeyPatch) -> None:

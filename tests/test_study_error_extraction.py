@@ -112,19 +112,19 @@ def test_every_number_of_the_fault_table_comes_out_again() -> None:
     assert slow.found.share_never == 1.0
 
 
-def test_a_stated_risk_is_held_only_by_fast_errors() -> None:
-    held = {h.tau_s: h for h in result().held}
-    assert all(h.verdict == "reproducible" for h in held.values()), held
-    assert held[30.0].found < 1e-3 < held[60.0].found
-    assert held[1800.0].found > 0.3
+def test_a_stated_risk_is_met_only_by_fast_errors() -> None:
+    by_tau = {h.tau_s: h for h in result().held}
+    assert all(h.verdict == "reproducible" for h in by_tau.values()), by_tau
+    assert by_tau[30.0].found < 1e-3 < by_tau[60.0].found
+    assert by_tau[1800.0].found > 0.3
 
 
 def test_a_small_stated_risk_is_broken_by_errors_that_last() -> None:
     """Specification 1.8(b) at 5e-8: 14 to 1.7 million times the stated risk."""
-    held = {h.tau_s: h for h in result().held_small}
-    assert all(h.verdict == "reproducible" for h in held.values()), held
-    assert held[60.0].found > 10 * 5e-8
-    assert held[1800.0].found > 1e6 * 5e-8
+    by_tau = {h.tau_s: h for h in result().held_small}
+    assert all(h.verdict == "reproducible" for h in by_tau.values()), by_tau
+    assert by_tau[60.0].found > 10 * 5e-8
+    assert by_tau[1800.0].found > 1e6 * 5e-8
 
 
 def test_independent_errors_hold_the_risk_of_their_own_law_alone() -> None:

@@ -75,7 +75,7 @@ def dated(reference: Reference) -> Study:
     return reference.study()
 
 
-def test_the_claims_come_out_as_the_specification_found_them(dated: Study) -> None:
+def test_the_claims_come_out_as_in_the_specification(dated: Study) -> None:
     verdicts = {c.id: c.verdict for c in dated.claims}
     assert {i for i, v in verdicts.items() if v == "reproduced"} == REPRODUCED
     assert verdicts["C15"] == verdicts["C16"] == "not reproduced"
@@ -227,7 +227,7 @@ def test_errors_stay_below_their_levels(nominal: Study) -> None:
         assert np.all(np.array(errors.hpe_m) < np.array(errors.hpl_m))
 
 
-def test_a_table_of_ones_own_is_marked_given(tmp_path: Path) -> None:
+def test_a_table_of_ones_own_is_marked_as_input(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text(
         "title = 'Own'\n[geometry]\nduration_s = 3600.0\n[grid]\ncoasting_s = [60.0]\nbias_m = [0.0]\n[[requirement]]\nid = 'X'\n"
         "title = 'one'\ncontainment_m = 5.0\nhal_m = 5.0\nintegrity_risk = 1e-7\ncontinuity_risk = 1e-4\n"

@@ -51,8 +51,8 @@ def test_drawn_errors_keep_to_the_stated_covariance() -> None:
     """Errors are drawn anew at every epoch, so epochs are independent: exact binomial and chi-square limits at 1e-4."""
     for track in (scene.PAIR, scene.ALL, scene.VOR):
         rows = flown().epochs.filter(pl.col("track") == track, pl.col("nse_cross_m").is_not_null(), pl.col("anp_cross_m").is_not_null())
-        held = int((rows["nse_cross_m"].abs() <= rows["anp_cross_m"]).sum())
-        assert stats.binomtest(held, rows.height, 0.95).pvalue > 1e-4, (track, held / rows.height)
+        n_inside = int((rows["nse_cross_m"].abs() <= rows["anp_cross_m"]).sum())
+        assert stats.binomtest(n_inside, rows.height, 0.95).pvalue > 1e-4, (track, n_inside / rows.height)
         if track == scene.VOR:
             # A bearing's arc bends: at 60 NM two deviations of it are 350 m short along the radial, more than the range's own error.
             continue

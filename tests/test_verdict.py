@@ -209,7 +209,7 @@ def test_a_few_independent_epochs_below_the_claim_are_not_shown(tmp_path: Path) 
     assert "are within the 95 % circle (95 % intervals as from 1 independent epochs)" in verdict.words
 
 
-def test_an_honest_bound_leaves_the_verdict(tmp_path: Path) -> None:
+def test_a_bound_that_covers_leaves_the_verdict(tmp_path: Path) -> None:
     error = 3.0 * np.random.default_rng(20261122).standard_normal((400, 2))
     verdict = navbound.analyze(table(tmp_path / "a.csv", error_en_m=error)).summary.verdict
     assert verdict.id == "inside"

@@ -174,9 +174,9 @@ def bounds(epochs: pl.DataFrame, method_id: str, risk: float) -> BoundColumn:
     InputError
         Unknown method, or a risk outside [1e-300, 0.5].
     """
-    wanted = method(method_id)
+    selected = method(method_id)
     columns = {name: column_of(epochs, name) for name in METHOD_INPUTS if name in epochs.columns}
-    bound_m, reason, reasons = _core.bounds_of(wanted.id, risk, epochs.height, columns)
+    bound_m, reason, reasons = _core.bounds_of(selected.id, risk, epochs.height, columns)
     return BoundColumn(bound_m, reason, reasons)
 
 

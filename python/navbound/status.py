@@ -158,9 +158,9 @@ def _text(name: str) -> pl.Expr:
 
 def with_reason_id(epochs: pl.DataFrame) -> pl.DataFrame:
     """An epoch table whose ``reason_id`` exists: a sentence without an id is ``reported``."""
-    given = pl.col("reason_id") if "reason_id" in epochs.columns else pl.lit(None, pl.String)
+    declared = pl.col("reason_id") if "reason_id" in epochs.columns else pl.lit(None, pl.String)
     if "reason" in epochs.columns:
         stated = pl.col("reason").is_not_null() & (pl.col("reason").str.len_chars() > 0)
-        given = pl.when(stated & given.is_null()).then(pl.lit("reported")).otherwise(given)
+        declared = pl.when(stated & declared.is_null()).then(pl.lit("reported")).otherwise(declared)
     sentence = [] if "reason" in epochs.columns else [pl.lit(None, pl.String).alias("reason")]
-    return epochs.with_columns(given.alias("reason_id"), *sentence)
+    return epochs.with_columns(declared.alias("reason_id"), *sentence)

@@ -183,7 +183,7 @@ export interface StanfordBins {
 }
 
 /** One subset of an epoch's satellites whose safety index is high. */
-export interface SubsetFound {
+export interface ListedSubset {
     time_ns: number;
     /** Used. */
     satellites: string[];
@@ -221,7 +221,7 @@ export interface Subsets {
     /** How many reach it. */
     n_listed: number;
     /** The gravest of them, at most 500. */
-    listed: SubsetFound[];
+    listed: ListedSubset[];
     /** By level id: subsets in the regions; horizontal first, vertical where the level has a vertical limit. */
     stanford: Record<string, StanfordCounts[]>;
 }

@@ -132,8 +132,8 @@ impl Desk {
         let levels = match (rule, exclusion) {
             (Rule::Araim(service), false) => exclusion::detected(monitor, known, sights, service),
             (Rule::Araim(service), true) => exclusion::predicted(monitor, known, sights, service),
-            (Rule::Raim(wanted), false) => monitor.single_levels(sights, wanted),
-            (Rule::Raim(wanted), true) => monitor.single_levels_after_exclusion(sights, wanted),
+            (Rule::Raim(requirement), false) => monitor.single_levels(sights, requirement),
+            (Rule::Raim(requirement), true) => monitor.single_levels_after_exclusion(sights, requirement),
         };
         match levels {
             Ok(levels) => Ok(row(Outcome::of(&levels), Some(levels))),

@@ -281,7 +281,7 @@ impl Task<'_> {
             }
             let user = User::new(place, self.settings.mask, self.settings.airborne).map_err(|e| (*i, e))?;
             match self.users.get_mut(k) {
-                Some(held) => *held = user,
+                Some(kept) => *kept = user,
                 None => self.users.push(user),
             }
         }

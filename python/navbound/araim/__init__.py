@@ -291,14 +291,14 @@ def _columns(
     unit_enu: ArrayLike,
     constellation: Sequence[int] | NDArray[np.int64],
     sigmas_m: tuple[ArrayLike, ArrayLike],
-    given: tuple[ArrayLike | None, ArrayLike | None, ArrayLike | None],
+    stated: tuple[ArrayLike | None, ArrayLike | None, ArrayLike | None],
     p_const: Sequence[float] | None,
 ) -> tuple[tuple[int, ...], list[NDArray[np.float64]], list[int], list[float]]:
     """Shape with the satellites, flat columns, constellation of each satellite, priors of constellations."""
     of = systems_of(unit_enu, constellation)
     bias, continuity, prior = (
         np.asarray(column)[of] if own is None else own
-        for own, column in zip(given, (SUPPORT.bias_m, SUPPORT.bias_continuity_m, SUPPORT.p_sat), strict=True)
+        for own, column in zip(stated, (SUPPORT.bias_m, SUPPORT.bias_continuity_m, SUPPORT.p_sat), strict=True)
     )
     shape, (unit, *columns) = flatten(
         unit_enu=(unit_enu, (3,)),

@@ -69,7 +69,7 @@ def watch(
     InputError
         Systems that are not there, single signals without a broadcast ionosphere, numbers outside their domain.
     """
-    chosen = checked_model(navigation, systems, signals, model, mask_rad)
+    selected = checked_model(navigation, systems, signals, model, mask_rad)
     numbers = rule_numbers(service)
     if len(numbers) != 7:
         raise InputError("service", service, domain=f"one of {', '.join(SERVICES)}, or a Service")
@@ -80,7 +80,7 @@ def watch(
         signals == "dual",
         mask_rad,
         support_rows(support),
-        airborne_numbers(chosen),
+        airborne_numbers(selected),
         numbers,
         checked_smoothing(smoothing_s),
     )
@@ -97,7 +97,7 @@ def watch(
     name = service if isinstance(service, str) else "the caller's"
     models = {
         "protection levels": f"ARAIM with exclusion, {name}: {stated(budgets)}",
-        **range_models(support, chosen, signals),
+        **range_models(support, selected, signals),
         "exclusion": "equal shares of the integrity risk for every decision (ours)",
     }
     recorded["decision_words"] = np.where(decision == "excluded", columns["excluded_sv"], decision)

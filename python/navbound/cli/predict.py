@@ -55,7 +55,7 @@ def predict_command(
     entry(Place, "kind", kind)
     if model not in raim.ERROR_MODELS:
         raise InputError("model", model, domain=f"one of {', '.join(raim.ERROR_MODELS)}")
-    asked = predict_raim.Asked(
+    request = predict_raim.Request(
         constellation=tuple(constellation),
         times=_times(date, hours, every_s),
         limits=tuple(spec) if spec else ("RNP 0.3", "RNP 1"),
@@ -66,7 +66,7 @@ def predict_command(
         kind=kind,
     )
     places = [predict_raim.place(text) for text in at or ()] + [predict_raim.route(file) for file in route or ()]
-    prediction = predict_raim.predict(asked, places, command=command_line())
+    prediction = predict_raim.predict(request, places, command=command_line())
     if json:
         sys.stdout.write(prediction.model_dump_json(indent=1) + "\n")
         return
@@ -104,7 +104,7 @@ def _show(prediction: Prediction) -> None:
     table = Table()
     for heading in ("where", "asked", "alert limit", "detection", "holes", "longest", "exclusion", "holes", "longest"):
         table.add_column(heading, overflow="fold")
-    limits = {asked.id: asked for asked in prediction.limits}
+    limits = {limit.id: limit for limit in prediction.limits}
     for line in prediction.lines:
         hal = limits[line.limit]
         table.add_row(

@@ -113,8 +113,8 @@ def solve(
     shape, arrays = flatten(**arguments)
     flat = dict(zip(arguments, arrays, strict=True))
     prior = (flat["prior_lat_rad"], flat["prior_lon_rad"]) if "prior_lat_rad" in flat else None
-    given = (flat["slant_m"], flat.get("sigma_m"), _points(network), flat["h_m"])
-    solution = _core.dme_solve(*given, sigma_altitude_m, prior, prior_within_m, residual_risk)
+    inputs = (flat["slant_m"], flat.get("sigma_m"), _points(network), flat["h_m"])
+    solution = _core.dme_solve(*inputs, sigma_altitude_m, prior, prior_within_m, residual_risk)
     return _positions(solution, shape)
 
 

@@ -311,8 +311,8 @@ def _sigmas(
         return model.sigma_m.reshape(-1), model.sigma_h1_m.reshape(-1)
     if sigma_m is None or sigma_h1_m is None:
         raise InputError("sigma_h1_m" if sigma_h1_m is None else "sigma_m", "none", domain="both sigmas, or neither")
-    given = [spread(name, value, el.shape, ()) for name, value in (("sigma_m", sigma_m), ("sigma_h1_m", sigma_h1_m))]
-    return np.asarray(given[0]), np.asarray(given[1])
+    sigmas = [spread(name, value, el.shape, ()) for name, value in (("sigma_m", sigma_m), ("sigma_h1_m", sigma_h1_m))]
+    return np.asarray(sigmas[0]), np.asarray(sigmas[1])
 
 
 def _b_values(value: ArrayLike | None, leading: tuple[int, ...], width: int) -> NDArray[np.float64] | None:

@@ -121,11 +121,11 @@ def checked_smoothing(smoothing_s: float | None) -> float | None:
     return smoothing_s
 
 
-def range_models(support: Support, chosen: ErrorModel, signals: str) -> dict[str, str]:
+def range_models(support: Support, selected: ErrorModel, signals: str) -> dict[str, str]:
     """What is believed of the ranges, for the record."""
     return {
         "promises of satellites": stated(support),
-        "range errors": f"{stated(chosen)}; beside it the code noise that smoothing leaves, 0.13 m at the zenith for one pseudorange, and "
-        "constants that the broadcast clock does not cover: 0.4 m of GPS C/A where no P(Y) is observed, 2 m of BeiDou's pairs (inferred)",
+        "range errors": f"{stated(selected)}; beside it the code noise that smoothing leaves, 0.13 m at the zenith for one pseudorange, "
+        "and constants outside the broadcast clock: 0.4 m of GPS C/A where no P(Y) is observed, 2 m of BeiDou's pairs (inferred)",
         "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange, Klobuchar",
     }

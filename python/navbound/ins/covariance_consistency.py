@@ -68,11 +68,11 @@ def consistency(
             raise InputError(name, value, "1", f"[{least}, inf)")
     if not skip_s >= 0.0:
         raise InputError("skip_s", skip_s, "s", "[0, inf)")
-    chosen = loaded.seed if seed is None else seed
+    seed_used = loaded.seed if seed is None else seed
     # One generator a flight, by seed and number: the same flight has the same start errors in any batch.
-    normals = np.array([np.random.default_rng([chosen, number]).normal(size=9) for number in range(first, first + flights)])
+    normals = np.array([np.random.default_rng([seed_used, number]).normal(size=9) for number in range(first, first + flights)])
     words = told(imu_model or ImuModel(), settings or FilterSettings(), start or StartSigma(), (1.0, 0.0), None)
-    table = _core.ins_consistency(loaded.core_json(), chosen, first, normals, words, skip_s)
+    table = _core.ins_consistency(loaded.core_json(), seed_used, first, normals, words, skip_s)
     how = settings or FilterSettings()
     declared = (*CONSISTENCY, *REVERSION) if how.reversion or how.form == "federated" else CONSISTENCY
     numbers = np.column_stack([np.arange(first, first + flights), table])

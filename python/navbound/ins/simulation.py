@@ -103,17 +103,17 @@ def simulate(
     loaded = scenario if isinstance(scenario, Scenario) else load(scenario)
     if loaded.sensors is None:
         raise InputError("scenario", loaded.title, domain="a scenario with a [sensors] part")
-    chosen = loaded.seed if seed is None else seed
-    for name, value in (("flight", flight), ("seed", chosen)):
+    seed_used = loaded.seed if seed is None else seed
+    for name, value in (("flight", flight), ("seed", seed_used)):
         if not (isinstance(value, int) and 0 <= value < 2**64):
             raise InputError(name, value, domain="[0, 2^64)")
     samples = _samples(truth_interval_s, loaded.sensors.rate_hz)
     prepared = _core.Sensors(loaded.core_json(), None if navigation is None else navigation._core)
-    tables = prepared.fly(chosen, flight, samples)
+    tables = prepared.fly(seed_used, flight, samples)
     names = np.array([station.name for station in loaded.sensors.stations], dtype=object)
     for kind in ("dme", "vor"):
         tables[kind]["station"] = names[tables[kind]["station"]].tolist()
-    return Sensed(**{name: _frame(columns) for name, columns in tables.items()}, scenario=loaded, seed=chosen, flight=flight)
+    return Sensed(**{name: _frame(columns) for name, columns in tables.items()}, scenario=loaded, seed=seed_used, flight=flight)
 
 
 def _samples(interval_s: float, rate_hz: int) -> int:

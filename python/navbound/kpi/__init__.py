@@ -15,7 +15,7 @@ import polars as pl
 from navbound import _core
 from navbound.errors import InputError
 from navbound.kpi import records
-from navbound.kpi.catalogue import chosen_levels, level, levels, rnp
+from navbound.kpi.catalogue import level, levels, rnp, selected_levels
 from navbound.kpi.slots import Slots
 from navbound.kpi.subsets import RangeTable, StanfordEsa, SubsetOptions, n_bins, stanford_esa, with_subsets
 from navbound.kpi.tables import FLOATS, Table, codes_of, frame_of, period_of
@@ -247,7 +247,7 @@ class Campaign:
         title: str = "",
         experimental: str = "",
     ) -> None:
-        self.levels = chosen_levels(levels)
+        self.levels = selected_levels(levels)
         times = frame_of(first)["time_ns"]
         self.period_s = period_of(times) if period_s is None else float(period_s)
         if not 1e-9 <= self.period_s < float("inf"):
@@ -319,8 +319,8 @@ class Campaign:
         percentiles = self._percentiles(tables)
         both = records.axes(outcome["axes"], percentiles[:6])
         results = [
-            records.level_result(wanted, each, whole=outcome, all_axes=both, percentiles=percentiles[6 * k + 6 : 6 * k + 12], grid=self)
-            for k, (wanted, each) in enumerate(zip(self.levels, outcome["levels"], strict=True))
+            records.level_result(level, each, whole=outcome, all_axes=both, percentiles=percentiles[6 * k + 6 : 6 * k + 12], grid=self)
+            for k, (level, each) in enumerate(zip(self.levels, outcome["levels"], strict=True))
         ]
         totals = [sum(each["runs"][kind][0] for each in outcome["levels"]) for kind in range(3)]
         return Performance(

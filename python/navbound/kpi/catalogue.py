@@ -83,10 +83,10 @@ def rnp(rnp_nm: float, *, tta_s: float, containment: int = 1) -> Level:
     )
 
 
-def chosen_levels(wanted: str | Level | Sequence[str | Level]) -> list[Level]:
+def selected_levels(wanted: str | Level | Sequence[str | Level]) -> list[Level]:
     """One level or more, each once; names may be joined by commas."""
-    given = [wanted] if isinstance(wanted, (str, Level)) else list(wanted)
-    names = [part for item in given for part in ([p.strip() for p in item.split(",")] if isinstance(item, str) else [item])]
+    levels = [wanted] if isinstance(wanted, (str, Level)) else list(wanted)
+    names = [part for item in levels for part in ([p.strip() for p in item.split(",")] if isinstance(item, str) else [item])]
     required = [level(name) for name in names if name != ""]
     if not required:
         raise InputError("levels", "nothing", domain="one level or more")

@@ -44,8 +44,8 @@ def table_of_levels() -> list[Level]:
 def _listed(row: dict[str, Any]) -> Level:
     limits, rest = row.pop("limits"), row.pop("rest")
     sources = (row.pop("limits_source"), row.pop("rest_source"))
-    held = {name: limits if name in {"hal_m", "val_m"} else rest for name in row if name.endswith(("_m", "_s", "_risk"))}
-    return Level(source=f"alert limits: {sources[0]}; the rest: {sources[1]}", provenance=held, **row)
+    provenance = {name: limits if name in {"hal_m", "val_m"} else rest for name in row if name.endswith(("_m", "_s", "_risk"))}
+    return Level(source=f"alert limits: {sources[0]}; the rest: {sources[1]}", provenance=provenance, **row)
 
 
 def axes(counts: list[dict[str, Any]], percentiles: list[list[float]]) -> list[AxisResult]:
@@ -67,7 +67,7 @@ def level_result(
     """One level; `whole` holds the counts of all levels, `all_axes` what every solution had."""
     n_available, n_solution, n_expected = outcome["n_available"], whole["n_solution"], whole["n_expected"]
     n_events = outcome["n_continuity_events"]
-    _, hazards, misled = outcome["runs"]
+    _, hazards, misleading = outcome["runs"]
     rate = _PER / n_available if n_available else None
     low, high = outcome["continuity_event_limits"]
     limits = [level.hal_m] if level.val_m is None else [level.hal_m, level.val_m]
@@ -102,9 +102,9 @@ def level_result(
         n_hazard_over_tta=hazards[1],
         longest_hazard_s=hazards[2],
         n_mi_epochs=outcome["n_mi_epochs"],
-        n_mi_events=misled[0],
-        n_mi_over_tta=misled[1],
-        longest_mi_s=misled[2],
+        n_mi_events=misleading[0],
+        n_mi_over_tta=misleading[1],
+        longest_mi_s=misleading[2],
         stanford=counts,
         available=axes(outcome["available"], percentiles),
     )
@@ -112,10 +112,10 @@ def level_result(
 
 def _accuracy_met(level: Level, both: list[AxisResult]) -> bool | None:
     demands = [(level.accuracy_h_m, both[0].error_m), (level.accuracy_v_m, both[1].error_m)]
-    wanted = [(limit, error) for limit, error in demands if limit is not None]
-    if not wanted or any(error is None for _, error in wanted):
+    required = [(limit, error) for limit, error in demands if limit is not None]
+    if not required or any(error is None for _, error in required):
         return None
-    return all(error is not None and error.p95 <= limit for limit, error in wanted)
+    return all(error is not None and error.p95 <= limit for limit, error in required)
 
 
 def stanford_bins(
@@ -155,7 +155,7 @@ def events(table: dict[str, Any], levels: Sequence[Level], modes: dict[str, int]
     why = {code: text for text, code in reasons.items()} | {0: ""}
     before, onset = ([words[code] for code in table[f"mode_{at}"]] for at in ("before", "onset"))
     causes = [why[code] for code in table["reason_onset"]]
-    told = [
+    sentences = [
         _words(kind, text, pair_sv, pair_mode)
         for kind, text, pair_sv, pair_mode in zip(
             table["kind"],
@@ -167,7 +167,7 @@ def events(table: dict[str, Any], levels: Sequence[Level], modes: dict[str, int]
     ]
     columns = {name: values for name, values in table.items() if name in EVENT_SCHEMA}
     columns["level"] = [levels[index].id for index in table["level"]]
-    columns |= {"reason": told, "mode_before": before, "mode_onset": onset}
+    columns |= {"reason": sentences, "mode_before": before, "mode_onset": onset}
     columns["over_tta"] = [
         None if kind == "loss" else duration > levels[index].tta_s
         for kind, duration, index in zip(table["kind"], table["duration_s"], table["level"], strict=True)
@@ -178,12 +178,12 @@ def events(table: dict[str, Any], levels: Sequence[Level], modes: dict[str, int]
 def _words(kind: str, reason: str, n_sv: tuple[int | None, int | None], mode: tuple[str | None, str | None]) -> str:
     if kind != "loss":
         return ""
-    said = [reason] if reason else []
+    words = [reason] if reason else []
     if None not in n_sv and n_sv[0] != n_sv[1]:
-        said.append(f"satellites {n_sv[0]} to {n_sv[1]}")
+        words.append(f"satellites {n_sv[0]} to {n_sv[1]}")
     if None not in mode and mode[0] != mode[1]:
-        said.append(f"mode {mode[0]} to {mode[1]}")
-    return "; ".join(said)
+        words.append(f"mode {mode[0]} to {mode[1]}")
+    return "; ".join(words)
 
 
 def gravest(table: pl.DataFrame, most: int) -> pl.DataFrame:

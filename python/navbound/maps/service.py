@@ -114,8 +114,8 @@ class Sbas:
         warm_up_ns = round(WARM_UP_S * sources.NS)
         usual = first + (warm_up_ns if last - first >= 2 * warm_up_ns else 0)
         start = usual if self.times.start_ns is None else self.times.start_ns
-        asked_s = 0.0 if self.times.duration_s is None else self.times.duration_s
-        if start > last or start + asked_s * sources.NS < first:
+        requested_s = 0.0 if self.times.duration_s is None else self.times.duration_s
+        if start > last or start + requested_s * sources.NS < first:
             raise InputError("start_ns", start, "ns", f"[{first}, {last}], the time of the messages")
         offsets_s = self.times.offsets_s(max(self.times.step_s, (last - start) / sources.NS))
         time_ns = start + np.rint(offsets_s * sources.NS).astype(np.int64)

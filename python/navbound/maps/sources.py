@@ -157,10 +157,10 @@ def messages(log: File, prn: int | None) -> sbas.Messages:
         raise InputError("messages", log.path, domain="a log that holds a message")
     if prn is None and "," in senders:
         raise InputError("prn", "none", domain=f"one of {senders}: the log holds the messages of several satellites")
-    chosen = messages_read if prn is None else messages_read.of(prn)
-    if len(chosen.prn) == 0:
+    selected = messages_read if prn is None else messages_read.of(prn)
+    if len(selected.prn) == 0:
         raise InputError("prn", prn, domain=f"one of {senders}, whose messages the log holds")
-    return chosen
+    return selected
 
 
 @lru_cache(maxsize=2)

@@ -71,9 +71,9 @@ def watch(
     InputError
         Systems that are not there, single signals without a broadcast ionosphere, numbers outside their domain.
     """
-    chosen = checked_model(navigation, systems, signals, model, mask_rad)
+    selected = checked_model(navigation, systems, signals, model, mask_rad)
     numbers = requirement_numbers(requirement)
-    promises, airborne = support_rows(support), airborne_numbers(chosen)
+    promises, airborne = support_rows(support), airborne_numbers(selected)
     smoothing = checked_smoothing(smoothing_s)
     recorded = _core.raim_watch(
         observations._core, navigation._core, systems, signals == "dual", mask_rad, promises, airborne, numbers, smoothing
@@ -97,7 +97,7 @@ def watch(
         "risks": f"false alarm {requirement.false_alarm:g}, missed detection {requirement.missed_detection:g}, without a fault "
         f"{requirement.fault_free:g}: {requirement.source}; together {requirement.provenance}",
         "use": "the risks are those of en route to non-precision approach; vertical levels at them promise nothing for vertical guidance",
-        **range_models(support, chosen, signals),
+        **range_models(support, selected, signals),
         "satellites": f"{systems}, elevation {np.degrees(mask_rad):g} deg and more",
     }
     recorded["decision_words"] = np.where(decision == "excluded", columns["excluded_sv"], decision)

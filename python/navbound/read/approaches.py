@@ -160,19 +160,19 @@ def _missing_rules(epochs: pl.DataFrame, gates: Gates) -> list[str]:
 
 def _gate(points: _Points, runway: Runway, index: int, gates: Gates) -> pl.DataFrame:
     """Points inside the gates of one runway: row of the epoch table, distance before the threshold, cross-track distance."""
-    chosen = _roughly(points, runway, gates)
-    feet = runway.centreline.project(points.lat_rad[chosen], points.lon_rad[chosen])
+    selected = _roughly(points, runway, gates)
+    feet = runway.centreline.project(points.lat_rad[selected], points.lon_rad[selected])
     before = -feet.along_m
-    turn = np.abs((points.ground_track_rad[chosen] - feet.course_rad + np.pi) % (2 * np.pi) - np.pi)
+    turn = np.abs((points.ground_track_rad[selected] - feet.course_rad + np.pi) % (2 * np.pi) - np.pi)
     ceiling = max(gates.altitude_max_m, runway.elevation_m + gates.above_runway_m)
     inside = (before > gates.before_min_m) & (before < gates.before_max_m) & (np.abs(feet.cross_m) < gates.cross_max_m)
     inside &= _holds(turn < gates.track_max_rad, points.ground_track_rad)
-    inside &= _holds(points.altitude_m[chosen] < ceiling, points.altitude_m)
+    inside &= _holds(points.altitude_m[selected] < ceiling, points.altitude_m)
     if gates.descending:
-        inside &= _holds(points.vertical_rate_mps[chosen] < 0, points.vertical_rate_mps)
+        inside &= _holds(points.vertical_rate_mps[selected] < 0, points.vertical_rate_mps)
     return pl.DataFrame(
         {
-            "row": pl.Series(chosen[inside], dtype=pl.UInt32),
+            "row": pl.Series(selected[inside], dtype=pl.UInt32),
             "runway": pl.Series([index] * int(inside.sum()), dtype=pl.Int64),
             "before_m": before[inside],
             "cross_m": feet.cross_m[inside],

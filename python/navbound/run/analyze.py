@@ -324,8 +324,8 @@ def _on_approach(approaches: Approaches, gates: Gates, n_recorded: int) -> _Path
         f"Path: the centreline through the runway ends of the shipped table (OurAirports), {gates.before_max_m / METRES_PER_NM:g} to "
         f"{gates.before_min_m / METRES_PER_NM:g} NM before the landing threshold; {n} approaches.",
         f"Judged are all epochs from the first to the last point of an approach, {approaches.epochs.height} of {n_recorded} recorded; "
-        "what came before the first point is not. The path is the extended centreline, not a coded procedure: its own error counts as flight "
-        "technical error.",
+        "what came before the first point is not. The path is the extended centreline, not a coded procedure: its own error counts as "
+        "flight technical error.",
     ]
     waypoints = [Waypoint(name=r.name, lat_rad=r.lat_rad, lon_rad=r.lon_rad, kind="runway") for r in approaches.runways]
     heading = f"{n} recorded approaches to {runways if len(approaches.runways) <= 4 else f'{len(approaches.runways)} runways'}"

@@ -36,7 +36,7 @@ def check_flights(flights: int) -> None:
         raise InputError("flights", flights, "1", f"[1, {MAX_FLIGHTS}]")
 
 
-def chosen_seed(flights: int, seed: int | None, own: int) -> int:
+def seed_in_force(flights: int, seed: int | None, own: int) -> int:
     """The seed of a campaign that can be flown: the one given, or the scenario's own.
 
     Raises
@@ -69,10 +69,10 @@ class _Packed:
     fly: Fly
 
     def __call__(self, flights: range) -> dict[str, NDArray[np.generic]]:
-        epochs, told = self.fly(flights)
+        epochs, reported = self.fly(flights)
         table = io.BytesIO()
         epochs.write_ipc(table)
-        return {"epochs": _bytes(table.getvalue()), "told": _bytes(json.dumps(told).encode())}
+        return {"epochs": _bytes(table.getvalue()), "told": _bytes(json.dumps(reported).encode())}
 
 
 def _bytes(content: bytes) -> NDArray[np.uint8]:
@@ -106,7 +106,7 @@ def fly_all(fly: Fly, flights: int, at_once: int, **work: Unpack[Work]) -> tuple
     if tell is not None:
         work["progress"] = lambda done, _tiles: tell(min(done * at_once, flights), flights)
     parts = map_tiles(_Packed(fly), tiles, **work)
-    told = [item for part in parts for item in json.loads(part["told"].tobytes())]
+    reported = [item for part in parts for item in json.loads(part["told"].tobytes())]
     # Each part is given up as soon as it is read: only one copy of a long campaign stays.
     tables = [pl.read_ipc(parts.pop(0)["epochs"].tobytes()) for _ in range(len(parts))]
-    return pl.concat(tables), told
+    return pl.concat(tables), reported

@@ -13,7 +13,7 @@ import polars as pl
 from navbound import _core, status
 from navbound.records.material import Material
 from navbound.records.run import CovarianceOrigin, Waypoint
-from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
+from navbound.run.campaign import fly_all, scenario_file, seed_in_force, track_name
 from navbound.scenario import Scenario, find, load
 
 if TYPE_CHECKING:
@@ -77,11 +77,11 @@ def material(
         A scenario file that cannot be flown, a folder that cannot keep tiles.
     """
     loaded = scenario if isinstance(scenario, Scenario) else load(scenario)
-    chosen = chosen_seed(flights, seed, loaded.seed)
+    seed_used = seed_in_force(flights, seed, loaded.seed)
     plan = _core.Outlook(loaded.core_json()).plan()
-    fly = _Flights(loaded.model_dump_json(), chosen)
+    fly = _Flights(loaded.model_dump_json(), seed_used)
     epochs, verdicts = fly_all(fly, flights, _DRAWN_AT_ONCE if loaded.filter is None else _FUSED_AT_ONCE, **work)
-    told = {"filter": filter_verdict(verdicts) | {"restarts": len(verdicts) - flights}} if verdicts else {}
+    reported = {"filter": filter_verdict(verdicts) | {"restarts": len(verdicts) - flights}} if verdicts else {}
     return Material(
         epochs=epochs,
         kind="fly",
@@ -94,9 +94,9 @@ def material(
         waypoints=[Waypoint(name=w.name, lat_rad=w.lat_rad, lon_rad=w.lon_rad, kind=w.kind) for w in loaded.waypoints],
         inputs=[] if isinstance(scenario, Scenario) else [scenario_file(find(scenario))],
         scenario=loaded.model_dump(mode="json"),
-        seed=chosen,
+        seed=seed_used,
         settings={"flights": flights, **{key: plan[key] for key in ("length_m", "cruise_speed_mps", "top_of_climb_s", "top_of_descent_s")}}
-        | told,
+        | reported,
     )
 
 
@@ -216,19 +216,21 @@ def _words(words: Sequence[str | None], codes: np.ndarray[Any, Any]) -> pl.Serie
 
 
 def _assumptions(scenario: Scenario) -> list[str]:
-    said = list(scenario.assumptions)
+    assumptions = list(scenario.assumptions)
     if scenario.filter is not None:
-        said.append(
+        assumptions.append(
             "The position comes from simulated sensors through a navigation filter that is told their statistics; guidance follows the "
             "filter's error, worked out on a first flight of the same number."
         )
         if scenario.filter.mode == "white":
-            said.append("The filter takes errors that stay for new at every measurement: it is wrong about itself on purpose.")
+            assumptions.append("The filter takes errors that stay for new at every measurement: it is wrong about itself on purpose.")
     if scenario.sensors is not None and scenario.sensors.faults:
-        said.append(f"Sensors fail: {', '.join(f'{f.kind} from {f.start_s:g} s' for f in scenario.sensors.faults)}.")
+        assumptions.append(f"Sensors fail: {', '.join(f'{f.kind} from {f.start_s:g} s' for f in scenario.sensors.faults)}.")
     scale = scenario.navigation.claimed_sigma_scale
     if scale != 1.0:
-        said.append(f"The covariance claims {scale:g} times the true standard deviation: it is dishonest on purpose.")
+        assumptions.append(f"The covariance claims {scale:g} times the true standard deviation: it is dishonest on purpose.")
     if scenario.faults:
-        said.append(f"Faults are injected: {', '.join(f'{f.kind} from {f.start_s:g} s for {f.duration_s:g} s' for f in scenario.faults)}.")
-    return said
+        assumptions.append(
+            f"Faults are injected: {', '.join(f'{f.kind} from {f.start_s:g} s for {f.duration_s:g} s' for f in scenario.faults)}."
+        )
+    return assumptions

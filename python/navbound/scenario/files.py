@@ -13,7 +13,7 @@ from navbound.errors import FormatError, InputError, NotFoundError
 from navbound.scenario import taxi
 from navbound.scenario.models import Scenario
 from navbound.scenario.sensors import grades, with_grade
-from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
+from navbound.scenario.units import Place, RepeatedKeyError, Written, to_si
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -88,7 +88,7 @@ def load(name_or_path: str | Path) -> Scenario:
         raise FormatError(path, f"cannot be read: {e.strerror}") from e
     except ValidationError as e:
         raise _explained(path, e.errors()[0], written) from e
-    except GivenTwiceError as e:
+    except RepeatedKeyError as e:
         raise FormatError(path, f"{e.value!r} is outside {e.domain}", field=e.argument) from e
     except InputError as e:
         raise _refused(path, e, written) from e

@@ -13,7 +13,7 @@ from navbound.errors import FormatError, InputError
 from navbound.scenario.models import GPS_EPOCH
 from navbound.scenario.part import Part
 from navbound.scenario.sensors import Imu
-from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
+from navbound.scenario.units import Place, RepeatedKeyError, Written, to_si
 
 FOLDER = Path(__file__).parent / "shipped" / "taxiing"
 
@@ -166,7 +166,7 @@ def load(path: Path) -> Taxi:
         raise FormatError(path, f"not TOML: {e}") from e
     except OSError as e:
         raise FormatError(path, f"cannot be read: {e.strerror}") from e
-    except GivenTwiceError as e:
+    except RepeatedKeyError as e:
         raise FormatError(path, f"{e.value!r} is outside {e.domain}", field=e.argument) from e
     except ValidationError as e:
         first = e.errors()[0]

@@ -1,7 +1,7 @@
 // The gravest satellite subsets of the Stanford-ESA diagram.
 
 import { utcOf } from "../data/events.ts";
-import type { Performance, SubsetFound } from "../records.gen.ts";
+import type { Performance, ListedSubset } from "../records.gen.ts";
 import type { Payload } from "../data/records.ts";
 import { el } from "../show/dom.ts";
 import { clock, count, date, metres, plain } from "../show/format.ts";
@@ -18,9 +18,9 @@ export function subsetTable(record: Performance, payload: Payload): HTMLElement 
     if (found.listed.length === 0) return el("section", { id: "subsets-section" }, heading, said, el("p", { class: "note" }, `No subset reaches a safety index of ${plain(found.listed_from, 2)}.`));
     const mark = record.experimental === "" ? "" : ", experimental";
     const when = (ns: number): string => `${date(utcOf(ns, payload))} ${clock(utcOf(ns, payload), true)}`;
-    const length = (head: string, key: "hpe_m" | "hpl_m" | "vpe_m" | "vpl_m"): Column<SubsetFound> => ({ head, key, of: (s) => s[key], show: (s) => metres(s[key]) });
-    const names = (head: string, key: "satellites" | "left_out"): Column<SubsetFound> => ({ head, key, words: true, of: (s) => s[key].join(" "), show: (s) => (s[key].length === 0 ? "none" : s[key].join(" ")) });
-    const columns: Column<SubsetFound>[] = [
+    const length = (head: string, key: "hpe_m" | "hpl_m" | "vpe_m" | "vpl_m"): Column<ListedSubset> => ({ head, key, of: (s) => s[key], show: (s) => metres(s[key]) });
+    const names = (head: string, key: "satellites" | "left_out"): Column<ListedSubset> => ({ head, key, words: true, of: (s) => s[key].join(" "), show: (s) => (s[key].length === 0 ? "none" : s[key].join(" ")) });
+    const columns: Column<ListedSubset>[] = [
         { head: "Epoch, UTC", key: "time_ns", of: (s) => s.time_ns, show: (s) => when(s.time_ns) }, { head: `Safety index${mark}`, key: "safety_index", of: (s) => s.safety_index, show: (s) => plain(s.safety_index, 3) },
         names("Satellites used", "satellites"), names("Left out", "left_out"), length("HPE", "hpe_m"), length(`HPL${mark}`, "hpl_m"), length("VPE", "vpe_m"), length(`VPL${mark}`, "vpl_m"),
     ];

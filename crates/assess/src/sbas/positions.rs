@@ -95,14 +95,14 @@ pub fn positions(
         (fixes, task.unused)
     };
     let parts: Vec<_> = epochs.par_chunks(size).map(work).collect();
-    let mut found = Corrected { smoothed_share: smoothed.as_ref().map(Smoothed::share), ..Corrected::default() };
+    let mut corrected = Corrected { smoothed_share: smoothed.as_ref().map(Smoothed::share), ..Corrected::default() };
     for (fixes, unused) in parts {
-        found.fixes.extend(fixes);
+        corrected.fixes.extend(fixes);
         for (why, n) in unused {
-            *found.unused.entry(why).or_default() += n;
+            *corrected.unused.entry(why).or_default() += n;
         }
     }
-    found
+    corrected
 }
 
 /// What the receiver recorded.

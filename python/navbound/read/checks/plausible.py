@@ -65,7 +65,7 @@ class Plausibility:
 
     Attributes
     ----------
-    n_held, n_stale, n_jump, n_unsettled, n_late : int
+    n_repeated, n_stale, n_jump, n_unsettled, n_late : int
         Epochs by finding.
     n_fast : int
         Steps faster than the aircraft's own speed allows in the time between the positions.
@@ -81,7 +81,7 @@ class Plausibility:
         The same as a sentence.
     """
 
-    n_held: int
+    n_repeated: int
     n_stale: int
     n_jump: int
     n_unsettled: int
@@ -198,8 +198,8 @@ class Checker:
             words += (
                 f" {self._n_dated} of {self._n_rows} rows say when their position was valid; between those, steps are judged by that time."
             )
-        held, stale, jump, unsettled, late = (int(k) for k in n[1:])
-        return Plausibility(held, stale, jump, unsettled, late, self._n_fast, fastest, self._n_doubted, n_steps, largest, words)
+        repeated, stale, jump, unsettled, late = (int(k) for k in n[1:])
+        return Plausibility(repeated, stale, jump, unsettled, late, self._n_fast, fastest, self._n_doubted, n_steps, largest, words)
 
 
 def _columns(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -240,5 +240,5 @@ def _marked(epochs: pl.DataFrame, code: NDArray[np.uint8]) -> pl.DataFrame:
     believed = pl.col("status").is_in(status.USABLE)
     marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COVARIANCE if c in epochs.columns)
     # One order of columns, whether the recording had a status or not.
-    said = ("reason_id", "status", "reason")
-    return marked.select(pl.exclude(*said), *said)
+    columns = ("reason_id", "status", "reason")
+    return marked.select(pl.exclude(*columns), *columns)

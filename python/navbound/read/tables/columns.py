@@ -487,11 +487,11 @@ def declare(*columns: str) -> str:
     return f"declare it: {options} (in Python: columns)"
 
 
-def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, wanted: Sequence[str]) -> None:
+def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, required: Sequence[str]) -> None:
     """Refuse a table without a time or a wanted quantity, and say what comes nearest."""
     aliases = {q.name: list(q.aliases) for q in QUANTITIES + LEVEL_QUANTITIES}
     needs = {"time": ([*times], list(TIME_NAMES))}
-    needs |= {name: ([columns[name]] if name in columns else [], aliases[name]) for name in wanted}
+    needs |= {name: ([columns[name]] if name in columns else [], aliases[name]) for name in required}
     for need, (present, known) in needs.items():
         if present:
             continue

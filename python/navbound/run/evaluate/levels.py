@@ -106,7 +106,7 @@ def from_table(path: Path, truth: Truth, needs: Sequence[str] = ("hpl_m",)) -> P
     if len(tracks) > 1:
         raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")
     epochs, notes, refused = _without_alerts(reading.epochs), list(reading.notes), list(reading.rejected)
-    if truth.given is not None:
+    if truth.stated is not None:
         epochs, words, other, _ = with_truth(epochs, truth)
         notes.append(words)
         refused += [] if other is None else other.rejected
@@ -205,8 +205,8 @@ class Service:
             raise InputError("files", ", ".join(map(str, self._logs))[:200], domain="message logs of the time of the observations")
         senders = np.unique(near.prn).tolist()
         if len(senders) > 1 if self._prn is None else self._prn not in senders:
-            wanted = "none" if self._prn is None else self._prn
-            raise InputError("prn", wanted, domain=f"one of the satellites of the logs: {', '.join(map(str, senders))}")
+            prn = "none" if self._prn is None else self._prn
+            raise InputError("prn", prn, domain=f"one of the satellites of the logs: {', '.join(map(str, senders))}")
         return near if self._prn is None else near.of(self._prn)
 
 
@@ -233,7 +233,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
         ranges = positions.ranges
     refused = [*of_observations(observations), *service.rejected()]
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", service.navigation.skipped)]
-    if truth.given is not None and truth.ecef_m is None:
+    if truth.stated is not None and truth.ecef_m is None:
         epochs, words, other, _ = with_truth(epochs, truth)
         refused += [] if other is None else other.rejected
         notes.append(words)

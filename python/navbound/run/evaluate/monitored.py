@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from navbound.read.truth import Truth
 
-GIVEN = "given"
+DECLARED_LEVELS = "given"
 """Protection levels of the files: a table's, those of an augmentation service's messages."""
 
 RNP_NM = (0.3, 1.0, 2.0)
@@ -53,8 +53,8 @@ def monitor_of(protection: str) -> Recorded | None:
         No such source.
     """
     known = entries(Recorded)
-    if protection != GIVEN and protection not in known:
-        raise NotFoundError("protection", protection, "algorithm", [GIVEN, *known])
+    if protection != DECLARED_LEVELS and protection not in known:
+        raise NotFoundError("protection", protection, "algorithm", [DECLARED_LEVELS, *known])
     return known.get(protection)
 
 
@@ -91,7 +91,7 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Re
     refused = [*of_observations(observations), *of_navigation(records)]
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", records.skipped)]
     epochs = monitored_epochs.epochs
-    if truth.given is not None and truth.ecef_m is None:
+    if truth.stated is not None and truth.ecef_m is None:
         epochs, words, other, _ = with_truth(epochs, truth)
         refused += [] if other is None else other.rejected
         notes.append(words)

@@ -21,12 +21,12 @@ from navbound.records.run import Honesty, InputFile, Rejection, RunRecord, Summa
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run import directory
 from navbound.run.directory import Run
-from navbound.run.evaluate.monitored import GIVEN, monitor_of, monitored
+from navbound.run.evaluate.monitored import DECLARED_LEVELS, monitor_of, monitored
 from navbound.run.evaluate.parts import Stored, finished_parts, ranges_of_parts, tables_of
 from navbound.run.evaluate.words import levels_verdict, performance_words
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
-from navbound.run.summary.consistency import honesty_of
+from navbound.run.summary.consistency import consistency_of
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import copied, of_level
 from navbound.run.verdict.words import COPIED
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 PARTS = "parts"
 """Folder of the run directory that remembers the finished parts."""
-MOST_HONESTY = 1_000_000
+MOST_CONSISTENCY = 1_000_000
 """Epochs whose covariances are compared with their errors: eleven days at 1 Hz, 100 MB."""
 CSV = "epochs.csv"
 """The epochs under the field's column names."""
@@ -95,7 +95,7 @@ class Options:
     stanford_esa: kpi.SubsetOptions | None = None
     experimental: str = ""
     solve: bool = False
-    protection: str = GIVEN
+    protection: str = DECLARED_LEVELS
     signals: str | None = None
     systems: str | None = None
     ionosphere: str | None = None
@@ -144,7 +144,7 @@ def evaluate_files(
     names = [files] if isinstance(files, (str, Path)) else list(files)
     if not names:
         raise InputError("files", "nothing", domain="one file or more")
-    wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
+    levels = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
     truth = truth_of(options.truth, options.truth_tolerance_s, options.columns)
     if monitor_of(options.protection) is not None and options.stanford_esa is not None:
         raise ConflictError("protection", excludes=("stanford_esa",), because="subsets of satellites are solved without monitoring")
@@ -164,7 +164,7 @@ def evaluate_files(
         writer = None if out is None else stack.enter_context(folders.own(Path(out), _OWN, "a run's"))
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) if writer is None else writer.folder
         parts = finished_parts(sources, options, truth, folder / PARTS, progress)
-        campaign, events = _add_all(parts, wanted, options)
+        campaign, events = _add_all(parts, levels, options)
         result = campaign.finish(lambda: tables_of(parts), events.append)
         if options.stanford_esa is not None:
             ranges = kpi.stanford_esa(lambda: ranges_of_parts(parts), campaign.levels, options.stanford_esa)
@@ -206,7 +206,7 @@ def _inputs(sources: Files, truth: Truth, parts: list[Stored]) -> list[InputFile
     """Every file that went in, a recorded truth among them."""
     n_rows = {part.source.path: part.n_rows for part in parts}
     files = sources.tables + sources.observations + sources.navigation + sources.messages
-    recorded = [load(truth.given)] if truth.given is not None and truth.ecef_m is None else []
+    recorded = [load(truth.stated)] if truth.stated is not None and truth.ecef_m is None else []
     return [source.record(n_rows.get(source.path)) for source in files + recorded]
 
 
@@ -242,22 +242,26 @@ def _run(
     )
     joined = pl.concat(events).sort("onset_ns", "level", "kind", maintain_order=True)
     first = next(tables_of(parts)).head(1)
-    honesty, notes = _honesty(parts)
+    honesty, notes = _consistency(parts)
     return Run(_summary(result.model_copy(update={"notes": [*result.notes, *notes]}), parts, honesty), record, first, joined, [])
 
 
-def _honesty(parts: list[Stored]) -> tuple[Honesty | None, list[str]]:
+def _consistency(parts: list[Stored]) -> tuple[Honesty | None, list[str]]:
     """Whether the covariances agree with the errors, where the files hold both; of the first epochs, so that memory has a limit."""
     columns = ["track", "time_ns", "status", "nse_e_m", "nse_n_m", "nse_u_m", *COVARIANCE]
-    held: list[pl.DataFrame] = []
+    kept: list[pl.DataFrame] = []
     for table in tables_of(parts):
         known = table.select(columns).drop_nulls(["nse_e_m", "cov_ee_m2"])
-        held.append(known.with_columns(pl.col("status").fill_null("ok")))
-        if sum(part.height for part in held) > MOST_HONESTY:
+        kept.append(known.with_columns(pl.col("status").fill_null("ok")))
+        if sum(part.height for part in kept) > MOST_CONSISTENCY:
             break
-    together = pl.concat(held)
-    note = f"The covariances were compared with the errors at the first {MOST_HONESTY} epochs." if together.height > MOST_HONESTY else ""
-    return honesty_of(together.head(MOST_HONESTY)), [note] if note else []
+    together = pl.concat(kept)
+    note = (
+        f"The covariances were compared with the errors at the first {MOST_CONSISTENCY} epochs."
+        if together.height > MOST_CONSISTENCY
+        else ""
+    )
+    return consistency_of(together.head(MOST_CONSISTENCY)), [note] if note else []
 
 
 def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) -> Summary:

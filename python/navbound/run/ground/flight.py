@@ -13,7 +13,7 @@ from navbound import gbas
 from navbound.gbas.modes import K95
 from navbound.records.material import Material
 from navbound.records.run import CovarianceOrigin, EventSummary, Waypoint
-from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
+from navbound.run.campaign import fly_all, scenario_file, seed_in_force, track_name
 from navbound.run.ground import errors
 from navbound.run.ground.motion import move
 from navbound.run.ground.navigation import Navigated, Navigator
@@ -69,7 +69,7 @@ def material(file: Path, *, flights: int = 1, seed: int | None = None, **work: U
         A scenario file that cannot be read.
     """
     found = scenarios.load(file)
-    chosen = chosen_seed(flights, seed, found.seed)
+    chosen = seed_in_force(flights, seed, found.seed)
     fly = _Flights(found.model_dump_json(), chosen)
     ground = _ground(fly.taxi)
     epochs, events = fly_all(fly, flights, _AT_ONCE, **work)

@@ -10,7 +10,7 @@ import polars as pl
 from navbound import anp, evaluation
 from navbound.methods import column_of
 from navbound.records.run import Held, Honesty
-from navbound.run.verdict.results import honesty_words
+from navbound.run.verdict.results import consistency_words
 from navbound.status import USABLE
 from navbound.table.columns import COVARIANCE
 
@@ -25,7 +25,7 @@ TRACKS_TO_DRAW = 10
 REGION_RISK = 0.05
 
 
-def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
+def consistency_of(epochs: pl.DataFrame) -> Honesty | None:
     """NEES and PIT in three dimensions where the vertical is known, otherwise in two."""
     vertical = {"nse_u_m", "cov_uu_m2"} <= set(epochs.columns)
     errors = ("nse_e_m", "nse_n_m", "nse_u_m") if vertical else ("nse_e_m", "nse_n_m")
@@ -58,7 +58,7 @@ def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
         pit_low=pit.low,
         pit_high=pit.high,
         regions=regions,
-        words=honesty_words(nees, pit, regions),
+        words=consistency_words(nees, pit, regions),
     )
 
 

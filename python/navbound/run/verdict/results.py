@@ -188,13 +188,13 @@ def protection_words(protection: list[ProtectionSummary]) -> str:
         return ""
     n = sum(p.n_epochs for p in protection)
     available = share(sum(p.share_available * p.n_epochs for p in protection) / n)
-    held = ", ".join(sorted({p.hal_held for p in protection}))
-    misled = sum(p.n_misleading for p in protection)
-    truth = f" At {misled} epochs the true error is above the protection level: misleading information." if misled else ""
-    return f" Protection level within the alert limit ({held}) at {available} of {n} epochs.{truth}"
+    provenance = ", ".join(sorted({p.hal_held for p in protection}))
+    misleading = sum(p.n_misleading for p in protection)
+    truth = f" At {misleading} epochs the true error is above the protection level: misleading information." if misleading else ""
+    return f" Protection level within the alert limit ({provenance}) at {available} of {n} epochs.{truth}"
 
 
-def honesty_words(nees: Nees, pit: Pit, regions: Sequence[Held] = ()) -> str:
+def consistency_words(nees: Nees, pit: Pit, regions: Sequence[Held] = ()) -> str:
     """Whether the covariance may be believed, with the factor by which it is off, and on how much evidence."""
     opening = (
         f"NEES {nees.nees_mean:.3g}, {nees.dimension} for an honest covariance, "
@@ -231,5 +231,5 @@ def _judgement(nees: Nees, pit: Pit) -> str:
 
 
 def _regions(regions: Sequence[Held]) -> str:
-    held = [f"the 95 % {r.region} held {share(r.share)} of the epochs ({share(r.low)} to {share(r.high)})" for r in regions]
-    return f" Over all tracks {', '.join(held)}; limits from drawing whole tracks again." if held else ""
+    shares = [f"the 95 % {r.region} held {share(r.share)} of the epochs ({share(r.low)} to {share(r.high)})" for r in regions]
+    return f" Over all tracks {', '.join(shares)}; limits from drawing whole tracks again." if shares else ""

@@ -371,16 +371,16 @@ _SCORES = (
 
 
 def _words(cases: list[Case]) -> list[str]:
-    said = [
+    words = [
         "Tables 6 and 7 of the paper repeat tables 4 and 5 digit by digit: its Monte Carlo values are lost, nothing is compared with them.",
         "A bound is better only if its Winkler score is lower; the ellipsoid read by axis holds more than 95 % and pays for it in width.",
     ]
     for case in cases:
         off = case.nees_over_3 > case.nees_high_over_3 or case.nees_over_3 < case.nees_low_over_3
         bins = sum(not case.pit_low <= count <= case.pit_high for count in case.pit_counts)
-        said.append(
+        words.append(
             f"{case.name}: NEES/3 {case.nees_over_3:.3g}, {'outside' if off else 'inside'} its limits {case.nees_low_over_3:.3g} to "
             f"{case.nees_high_over_3:.3g}; {bins} of {len(case.pit_counts)} bins of the PIT outside their band; mean squared innovation "
             f"{case.nis:.3g}, correlation of successive ones {case.lag_one:.2g}."
         )
-    return said
+    return words

@@ -68,11 +68,11 @@ def find(files: Sequence[str | Path]) -> tuple[Path, Path, Path]:
     FormatError
         A file that is not there.
     """
-    given = [Path(f) for f in files]
-    if len(given) not in {0, 1, 3}:
-        raise InputError("files", f"{len(given)} files", domain="positions, or positions, observations and navigation")
-    positions = given[0] if given else next((f / DAY for f in FOLDERS if (f / DAY).exists()), FOLDERS[0] / DAY)
-    observations, navigation = given[1:] or [positions.parent / name for name in RAW]
+    paths = [Path(f) for f in files]
+    if len(paths) not in {0, 1, 3}:
+        raise InputError("files", f"{len(paths)} files", domain="positions, or positions, observations and navigation")
+    positions = paths[0] if paths else next((f / DAY for f in FOLDERS if (f / DAY).exists()), FOLDERS[0] / DAY)
+    observations, navigation = paths[1:] or [positions.parent / name for name in RAW]
     for path in (positions, observations, navigation):
         if not path.exists():
             message = "not there; give the files as arguments: positions with protection levels (.pos), observations, navigation"

@@ -121,7 +121,7 @@ def _share(frame: pl.DataFrame, wrong: str, of: str) -> Share:
 def _row(key: tuple[str, str, str, float], frame: pl.DataFrame) -> Row:
     delays = frame["delay_s"].to_numpy()
     finite = delays[np.isfinite(delays)]
-    told = Counter(reason for cell in frame["reasons"] for reason in cell.split("|") if reason)
+    reported = Counter(reason for cell in frame["reasons"] for reason in cell.split("|") if reason)
     kind, family, unit, size = key
     return Row(
         kind=kind,
@@ -137,7 +137,7 @@ def _row(key: tuple[str, str, str, float], frame: pl.DataFrame) -> Row:
         delay_median_s=float(np.median(finite)) if finite.size else None,
         delay_most_s=float(finite.max()) if finite.size else None,
         error_most_m=float(frame["error_most_m"].to_numpy().max()),
-        reasons=[reason for reason, _ in told.most_common(REASONS_SHOWN)],
+        reasons=[reason for reason, _ in reported.most_common(REASONS_SHOWN)],
     )
 
 

@@ -126,8 +126,8 @@ def load(path: Path | None = None) -> SurfaceMovement:
         return SurfaceMovement.model_validate(table)
     except ValidationError as e:
         first = e.errors()[0]
-        said = "is missing" if first["type"] == "missing" else f"{first['input']!r}: {first['msg']}"
-        raise FormatError(path or SHIPPED, said, field=_place(table, first["loc"])) from e
+        problem = "is missing" if first["type"] == "missing" else f"{first['input']!r}: {first['msg']}"
+        raise FormatError(path or SHIPPED, problem, field=_place(table, first["loc"])) from e
 
 
 def _place(table: dict[str, Any], location: tuple[str | int, ...]) -> str:

@@ -106,7 +106,7 @@ def configured(files: list[Path]) -> SurfaceMovement:
     return config.model_copy(update={"geometry": config.geometry.model_copy(update=geometry)})
 
 
-class _Found:
+class _ModeResults:
     """Everything about one mode."""
 
     def __init__(self, mode: Mode) -> None:
@@ -119,8 +119,8 @@ class _Found:
         self.levels_of_cells: dict[str, Floats] = {}
 
 
-def _mode(config: SurfaceMovement, rules: Rules, mode: Mode, sky: Sky) -> _Found:
-    result = _Found(mode)
+def _mode(config: SurfaceMovement, rules: Rules, mode: Mode, sky: Sky) -> _ModeResults:
+    result = _ModeResults(mode)
     covariance = grid.aided(config, mode, sky)
     first = next(iter(rules.phases.values()))
     levels = grid.before(config, mode, sky, first.integrity_risk, covariance)
@@ -256,9 +256,9 @@ def _curve(rules: Rules, mode: Mode, case: str, name: str, sigma_m: float) -> Cu
 
 def _phase(rules: Rules, name: str) -> Phase:
     p = rules.phases[name]
-    held = min((m.held for m in p.marks), key=WEAKEST.index)
+    provenance = min((m.held for m in p.marks), key=WEAKEST.index)
     if any(m.held == "inferred" for m in p.marks):
-        held = "inferred"
+        provenance = "inferred"
     return Phase(
         id=p.id,
         title=p.title,
@@ -268,7 +268,7 @@ def _phase(rules: Rules, name: str) -> Phase:
         integrity_risk=p.integrity_risk,
         continuity_risk=p.continuity_risk,
         speed_mps=p.speed_mps,
-        held=held,
+        held=provenance,
     )
 
 

@@ -111,7 +111,7 @@ def material(flown: Flight, seed: int) -> Material:
     measured = seen.slant_m + dme.range_sigma(seen.slant_m) * generator.standard_normal(seen.slant_m.shape)
     bearings = seen.bearing_rad + dme.VOR_SIGMA_RAD * generator.standard_normal(seen.bearing_rad.shape)
     h_m = flown.h_m + SIGMA_ALTITUDE_M * generator.standard_normal(flown.h_m.shape)
-    both = _chosen(flown.selection.used, len(flown.stations))
+    both = _selected(flown.selection.used, len(flown.stations))
     vor = flown.selection.vor
     row, column = np.arange(len(vor)), np.maximum(vor, 0)
     station = np.column_stack((flown.stations.lat_rad, flown.stations.lon_rad, flown.stations.h_m))[column]
@@ -152,7 +152,7 @@ def _assumptions() -> list[str]:
     ]
 
 
-def _chosen(pairs: NDArray[np.int64], m: int) -> NDArray[np.bool_]:
+def _selected(pairs: NDArray[np.int64], m: int) -> NDArray[np.bool_]:
     """Pairs as places of their stations to a mask of shape (n, m)."""
     mask: NDArray[np.bool_] = (pairs[:, :, None] == np.arange(m)).any(axis=1)
     return mask

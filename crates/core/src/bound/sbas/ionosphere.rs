@@ -91,7 +91,7 @@ impl Grid {
         let degradation = store.degradation(used_for, now);
         for held in store.grid(used_for, now) {
             let Some(cell) = held.point.cell().and_then(|i| self.0.get_mut(i)) else { continue };
-            *cell = match held.held {
+            *cell = match held.in_force {
                 None if *cell == Point::Absent => Point::NotMonitored,
                 None => continue,
                 Some((GridDelay { delay_m: None, .. }, _)) => Point::DoNotUse,

@@ -232,7 +232,7 @@ fn of_the_filter(reasons: Reasons, facts: &Facts, filter: &FilterFacts) -> Reaso
 /// The levels of the position that is given, or why there are none.
 fn level(facts: &Facts, source: Source, snapshot: Option<&SnapshotFacts>) -> (Option<[f64; 2]>, Option<Reason>) {
     let tested = snapshot.filter(|s| s.ranges_agree == RangesAgree::Yes);
-    let found = match (tested, source) {
+    let bounded = match (tested, source) {
         (_, Source::None) => return (None, Some(Reason::SnapshotMissing)),
         (Some(s), Source::Snapshot) => s.level_m.map(|l| disputed(facts, l)),
         (Some(s), Source::Filter) => {
@@ -247,7 +247,7 @@ fn level(facts: &Facts, source: Source, snapshot: Option<&SnapshotFacts>) -> (Op
         }
         (None, Source::Snapshot) => return (None, Some(Reason::SnapshotMissing)),
     };
-    match found.filter(|l| l.iter().all(is_level)) {
+    match bounded.filter(|l| l.iter().all(is_level)) {
         Some(level) => (Some(level), None),
         None => (None, Some(Reason::LevelMissing)),
     }

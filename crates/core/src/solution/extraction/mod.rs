@@ -236,13 +236,13 @@ mod tests {
 
     #[test]
     fn new_satellites_are_seen_and_reset_only_where_asked() {
-        for asked in [false, true] {
-            let mut filter = Filter::new(Settings::new(0.98, 1.0, 3.0, asked).unwrap());
+        for reset in [false, true] {
+            let mut filter = Filter::new(Settings::new(0.98, 1.0, 3.0, reset).unwrap());
             filter.step(&Sample { satellites: Some(7), ..sample(0, 0.0, 0.0) }).unwrap();
             let next = filter.step(&Sample { satellites: Some(3), ..sample(1, 10.0, 0.0) }).unwrap();
             assert!(next.new_satellites);
-            assert_eq!(next.reset, asked.then_some(Reset::Satellites));
-            assert_eq!(next.error.vector()[0], if asked { 0.0 } else { 10.0 });
+            assert_eq!(next.reset, reset.then_some(Reset::Satellites));
+            assert_eq!(next.error.vector()[0], if reset { 0.0 } else { 10.0 });
         }
     }
 

@@ -33,18 +33,18 @@ type Joint = SMatrix<f64, NAV, NAV>;
 pub(super) fn shared(sigma: &StartSigma, settings: &Settings) -> (StartSigma, Settings) {
     let wider = 1.0 / sqrt(SHARE);
     let noise = |n: &SensorNoise| SensorNoise { white: n.white * wider, bias: n.bias * wider, bias_time_s: n.bias_time_s };
-    let mut told = *settings;
-    told.imu.gyroscope = noise(&settings.imu.gyroscope);
-    told.imu.accelerometer = noise(&settings.imu.accelerometer);
-    told.gap_acceleration_mps2 *= wider;
-    told.gap_rate_radps *= wider;
-    told.resumption = settings.resumption.wider(wider);
+    let mut shared_settings = *settings;
+    shared_settings.imu.gyroscope = noise(&settings.imu.gyroscope);
+    shared_settings.imu.accelerometer = noise(&settings.imu.accelerometer);
+    shared_settings.gap_acceleration_mps2 *= wider;
+    shared_settings.gap_rate_radps *= wider;
+    shared_settings.resumption = settings.resumption.wider(wider);
     let start = StartSigma {
         position: sigma.position.map(|s| Metres::new(s.m() * wider)),
         velocity_mps: sigma.velocity_mps * wider,
         attitude: sigma.attitude.map(|s| Radians::new(s.rad() * wider)),
     };
-    (start, told)
+    (start, shared_settings)
 }
 
 /// What both say together. The first alone where the sum of both covariances is not positive, which no filter that runs leaves behind.

@@ -1,6 +1,6 @@
 //! What the filter is told: noise of the sensors, first uncertainty, gates, patience.
 
-use super::adrift::Resumption;
+use super::after_gap::Resumption;
 use super::state::finite;
 use crate::quantity::{Metres, OutOfDomain, Radians, Risk};
 use nalgebra::Vector3;

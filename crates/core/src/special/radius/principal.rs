@@ -81,9 +81,9 @@ mod tests {
             [s[0] * s[1] * (l[0] - l[1]), s[1] * s[1] * l[0] + s[0] * s[0] * l[1], 0.0],
             [0.0, 0.0, 1e-20],
         ];
-        let (found, _) = principal_axes(&v);
-        assert!((found[0] - 1.0).abs() < 4.0 * f64::EPSILON);
-        assert!((found[1] / 1e-8 - 1.0).abs() < 1e8 * 4.0 * f64::EPSILON);
-        assert_eq!(found[2], 1e-20);
+        let (axes, _) = principal_axes(&v);
+        assert!((axes[0] - 1.0).abs() < 4.0 * f64::EPSILON);
+        assert!((axes[1] / 1e-8 - 1.0).abs() < 1e8 * 4.0 * f64::EPSILON);
+        assert_eq!(axes[2], 1e-20);
     }
 }
