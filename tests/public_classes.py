@@ -63,6 +63,14 @@ RAIM: dict[str, Any] = {"unit_enu": UNIT, "constellation": SYSTEM, "sigma_m": SI
 ARAIM: dict[str, Any] = {"unit_enu": UNIT, "constellation": SYSTEM, "sigma_int_m": SIGMA, "sigma_acc_m": SIGMA}
 LINE = path.line(0.7, 0.3, 0.71, 0.31)
 PREDICTED: dict[str, Any] = {"lat_rad": 0.7, "lon_rad": 0.3, "h_m": 0.0, "time_s": np.array([0.0, 600.0])}
+LEVELS: dict[str, Any] = {
+    "time_ns": 1_000_000_000 * np.arange(N),
+    "hpl_m": np.full(N, 10.0),
+    "vpl_m": np.full(N, 12.0),
+    "nse_e_m": np.full(N, 1.0),
+    "nse_n_m": np.full(N, -1.0),
+    "nse_u_m": np.full(N, 2.0),
+}
 STEP: dict[str, Any] = {
     "time_ns": 1_000_000_000,
     "rnp_m": 555.6,
@@ -138,6 +146,13 @@ CLASSES: dict[str, Call] = {
         **{
             name: getattr(araim.SUPPORT, name) for name in ("sigma_ura_m", "sigma_ure_m", "bias_m", "bias_continuity_m", "p_sat", "p_const")
         },
+    ),
+    "kpi.Campaign": of_class(
+        functools.partial(kpi.Campaign, "APV-I", first=LEVELS),
+        lambda campaign: (campaign.add(LEVELS), campaign.finish(lambda: [LEVELS])),
+        period_s=1.0,
+        bin_m=0.1,
+        limit_m=50.0,
     ),
     "kpi.SubsetOptions": of_class(
         kpi.SubsetOptions,

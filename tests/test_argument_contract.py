@@ -18,6 +18,7 @@ from test_nan_contract import changed, differs, outputs, public
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
 ARGUMENTS = {name: set(inspect.signature(call.function).parameters) for name, call in CALLS.items()}
 """Columns of a table are no arguments: what a table may hold is the table's own contract."""
@@ -100,8 +101,9 @@ def test_an_abused_argument_brings_no_foreign_exception(name: str, argument: str
 NONE_ALLOWED = {
     *(("rnp.Monitor.step", name) for name in ("rnp_m", "tse_exact_m", "tse_exact_integrity_m", "fte_m", "hpl_m")),
     ("ins.Imu", "interval_s"),
+    ("kpi.Campaign", "period_s"),
 }
-"""An absent number of a record is a NaN, which alerts; an absent interval is that of the times."""
+"""An absent number of a record is a NaN, which alerts; an absent interval or period is that of the times."""
 
 
 @pytest.mark.parametrize(("name", "argument"), [(name, argument) for name, call in CLASSES.items() for argument in call.numbers])
@@ -280,3 +282,46 @@ def test_what_is_no_time_is_refused(record: str, what: str) -> None:
         TIMED[record](NO_TIMES[what])
     assert refusal.value.argument == "time_ns"
     TIMED[record]([0.0, 1e9])
+
+
+@pytest.fixture(scope="module")
+def read_files(shared_data: Path) -> dict[str, Callable[..., Any]]:
+    """Methods of what was read from files, with their arguments."""
+    day = shared_data / "gnss" / "taroz_static"
+    navigation, observations = gnss.read_navigation(day / "base.nav"), gnss.read_observations(day / "rover.obs.gz")
+    orbits = gnss.read_orbits(shared_data / "gnss" / "igs_2010_182" / "igs15904.sp3")
+    at: dict[str, Any] = {"system": "gps", "time_ns": int(observations.time_ns[0])}
+    code: dict[str, Any] = {"system": "G", "code": "C1C"}
+    state: dict[str, Any] = {"satellite": orbits.satellites[0], "time_ns": at["time_ns"]}
+    return {
+        "Navigation.orbits": lambda **a: navigation.orbits(**at | a),
+        "Navigation.nearest_age_s": lambda **a: navigation.nearest_age_s(**at | a),
+        "Observations.column": lambda **a: observations.column(**code | a),
+        "PreciseOrbits.states": lambda **a: orbits.states(**state | a),
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "argument", "text"),
+    [
+        ("Navigation.orbits", "system", True),
+        ("Navigation.orbits", "time_ns", False),
+        ("Navigation.nearest_age_s", "system", True),
+        ("Navigation.nearest_age_s", "time_ns", False),
+        ("Observations.column", "system", True),
+        ("Observations.column", "code", True),
+        ("PreciseOrbits.states", "satellite", True),
+        ("PreciseOrbits.states", "time_ns", False),
+    ],
+)
+def test_an_abused_argument_of_what_was_read_is_refused(
+    read_files: dict[str, Callable[..., Any]], name: str, argument: str, *, text: bool
+) -> None:
+    read_files[name]()
+    value = 1_000_000_000
+    abuses = NO_NUMBERS | (NUMBERS_OF_ANY_SIZE if text else {})
+    with np.errstate(all="ignore"):
+        results = {abuse: outcome(read_files[name], argument, abused(value)) for abuse, abused in abuses.items()}
+        sized = {abuse: outcome(read_files[name], argument, abused(value)) for abuse, abused in NUMBERS_OF_ANY_SIZE.items()}
+    assert {abuse: result for abuse, result in results.items() if result != "refused"} == {}
+    assert {abuse: result for abuse, result in sized.items() if result not in {"ok", "refused"}} == {}

@@ -108,6 +108,7 @@ class Stations:
         ident, kind, country = (tuple(column[i] for i in k) for column in (self.ident, self.kind, self.country))
         return Stations(ident, kind, country, self.lat_rad[k], self.lon_rad[k], self.h_m[k], self.service_m[k], self.frequency_khz[k])
 
+    @checked
     def without(self, *idents: str) -> Stations:
         """All but these: facilities that are out of service or excluded.
 
@@ -119,6 +120,7 @@ class Stations:
         self._known(idents)
         return self.take([k for k, ident in enumerate(self.ident) if ident not in idents])
 
+    @checked
     def only(self, *idents: str) -> Stations:
         """Only these.
 

@@ -83,6 +83,7 @@ class Observations:
         self.n_lost_epochs = core.n_lost_epochs
         self.refused = [Refused(path, *r) for r in core.refused]
 
+    @checked
     def column(self, system: str, code: str) -> pl.DataFrame:
         """Every value of one code.
 
@@ -150,6 +151,7 @@ class Navigation:
         """
         return pl.DataFrame(self._core.records())
 
+    @checked
     def orbits(self, system: str, time_ns: int) -> Orbits:
         """Kepler orbits of a constellation from each healthy satellite's nearest record, without harmonics: for the geometry of a day.
 
@@ -170,6 +172,7 @@ class Navigation:
         index = np.full(len(names), _system_index(system), dtype=np.int64)
         return Orbits(tuple(names), index, a, e, i, node, perigee, anomaly, rate, time_ns)
 
+    @checked
     def nearest_age_s(self, system: str, time_ns: int) -> float:
         """How far the nearest healthy record of a constellation is from a GPS time [s]; infinite without one."""
         _, _, ages = self._core.orbits(_system_index(system), time_ns)

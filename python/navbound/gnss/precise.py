@@ -54,6 +54,7 @@ class PreciseOrbits:
         self.skipped = core.skipped
         self.refused = [Refused(Path(r[0]), *r[1:]) for r in core.refused]
 
+    @checked
     def states(self, satellite: str, time_ns: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Mass centre, velocity and clock of a satellite.
 

@@ -222,6 +222,10 @@ def evaluate(
     return with_subsets(result, stanford_esa(several, campaign.levels, subsets, bin_m=bin_m, limit_m=limit_m))
 
 
+LONGEST_PERIOD_S = 1e9
+"""Thirty years: in nanoseconds it has room in a time. [s]"""
+
+
 class Campaign:
     """Tables one after the other, any number of them, in memory that depends on the levels alone.
 
@@ -235,6 +239,7 @@ class Campaign:
         As in :func:`evaluate`.
     """
 
+    @checked
     def __init__(
         self,
         levels: str | Level | Sequence[str | Level],
@@ -250,8 +255,8 @@ class Campaign:
         self.levels = selected_levels(levels)
         times = frame_of(first)["time_ns"]
         self.period_s = period_of(times) if period_s is None else float(period_s)
-        if not 1e-9 <= self.period_s < float("inf"):
-            raise InputError("period_s", self.period_s, "s", "[1e-9, inf)")
+        if not 1e-9 <= self.period_s <= LONGEST_PERIOD_S:
+            raise InputError("period_s", self.period_s, "s", f"[1e-9, {LONGEST_PERIOD_S:g}]")
         self.window_s = WINDOW_S
         self.n_window_epochs = max(1, round(WINDOW_S / self.period_s))
         self._bins = (bin_m, limit_m)
@@ -274,6 +279,7 @@ class Campaign:
             }
         )
 
+    @checked
     def add(self, table: Table) -> pl.DataFrame:
         """Add the next table, later than those before.
 
