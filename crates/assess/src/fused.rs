@@ -251,8 +251,8 @@ impl Watch {
         self.led_astray |= satellites;
         // Filters that fall out without satellites and still lie within what is said anyhow need no alarm: the longer these are lost the
         // smaller is what the two may differ by.
-        let said_anyhow = circle(&beside.solution.covariance, None, Risk::ACCURACY)?;
-        let far = separation.is_some_and(|s| s.distance > said_anyhow);
+        let stated_radius = circle(&beside.solution.covariance, None, Risk::ACCURACY)?;
+        let far = separation.is_some_and(|s| s.distance > stated_radius);
         if satellites || (!self.led_astray && far) {
             navigated.doubt = Some(Doubt::Filters);
         }

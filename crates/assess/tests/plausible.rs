@@ -43,7 +43,7 @@ fn steady_flight_is_plausible() {
 }
 
 #[test]
-fn a_repeated_position_is_held_and_then_stale_and_ends_with_the_next() {
+fn a_repeated_position_is_degraded_and_then_stale_and_ends_with_the_next() {
     use Finding::{Plausible, Repeated, Stale};
     let judged = judge(&track(&[0.0, 100.0, 100.0, 100.0, 100.0, 100.0, 600.0], 100.0), &LIMITS).unwrap();
     let findings: Vec<Finding> = judged.iter().map(|j| j.finding).collect();

@@ -62,7 +62,7 @@ fn what_is_left_to_a_satellite_grows_by_the_square_of_its_distance() {
 }
 
 #[test]
-fn the_less_is_said_of_the_ionosphere_the_larger_its_error() {
+fn the_less_is_known_of_the_ionosphere_the_larger_its_error() {
     let size = |ionosphere| CommonErrors::CALIBRATED.sizes(&over(45.0, ionosphere)).sigma;
     let (level, climate, nothing) =
         (size(Ionosphere::galileo([130.0, 0.0, 0.0]).unwrap()), size(Ionosphere::Climatology), size(Ionosphere::Uncorrected));

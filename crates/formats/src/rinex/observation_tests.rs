@@ -99,7 +99,7 @@ fn errors_name_line_field_and_text() {
 }
 
 #[test]
-fn an_epoch_cut_short_is_left_out_and_told() {
+fn an_epoch_cut_short_is_left_out_and_reported() {
     let cut = V3.replace("C11  22238239.302                3      -1212.376          20.000\n", "");
     let o = read(&cut);
     assert_eq!((o.n_epochs(), o.n_refused, o.n_lost_epochs, o.satellite.len()), (1, 1, 1, 1));

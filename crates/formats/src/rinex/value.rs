@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_found_in_files() {
+    fn forms_seen_in_files() {
         for (text, value) in [
             ("  21600712.022", 21_600_712.022),
             (" 113512506.876", 113_512_506.876),

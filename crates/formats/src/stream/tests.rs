@@ -124,7 +124,7 @@ fn an_unfinished_frame_is_kept_and_is_damage_only_at_the_end() {
 }
 
 #[test]
-fn a_length_that_never_fills_is_given_up() {
+fn a_length_that_never_fills_is_abandoned() {
     // SBF may state 65,535 bytes; a false sync must not hold up more than the longest frame.
     let mut bytes = b"$@\0\0\xa7\x0f\xfc\xff".to_vec();
     bytes.extend(b"$GPZDA,001924.00,13,04,2019,00,00*64\r\n");

@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn new_satellites_are_seen_and_reset_only_where_asked() {
+    fn new_satellites_are_seen_and_reset_only_where_requested() {
         for reset in [false, true] {
             let mut filter = Filter::new(Settings::new(0.98, 1.0, 3.0, reset).unwrap());
             filter.step(&Sample { satellites: Some(7), ..sample(0, 0.0, 0.0) }).unwrap();

@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn late_positions_are_found_in_a_turn_and_their_delay_with_them() {
+    fn late_positions_are_detected_in_a_turn_and_their_delay_with_them() {
         for delay_s in [1.0, 2.0, -1.0] {
             let (late, estimate) = circled(delay_s, 180, true);
             assert!(late, "{delay_s}");

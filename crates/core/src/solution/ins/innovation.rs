@@ -202,7 +202,7 @@ mod tests {
     /// White: five deviations either way. A share of 0.3 among 10 * 60 / 2 pairs that weigh: 0.3 sqrt of their sum over that of their squares,
     /// 0.3 * 600 / sqrt(300) = 10.4 ± 1.2.
     #[test]
-    fn innovations_that_remember_are_found_within_a_minute() {
+    fn correlated_innovations_are_detected_within_a_minute() {
         let (_, most) = memory_of(0.0);
         assert!(most < 5.0, "{most}");
         let (memory, _) = memory_of(0.3);
