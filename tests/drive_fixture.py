@@ -35,7 +35,7 @@ def gps_ns(unix_like_s: Floats) -> NDArray[np.int64]:
 
 @dataclass(frozen=True)
 class Tuning:
-    """What the filter is told of the unit: white noise and biases (of 1000 s), delay of its time tags, slip of the wheels (none: free)."""
+    """Declared of the unit: white noise and biases (of 1000 s), delay of its time tags, slip of the wheels (none: free)."""
 
     delay_s: float
     gyroscope_white: float

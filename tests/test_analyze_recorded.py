@@ -79,7 +79,7 @@ def test_a_sound_flight_has_no_jumps(flight: str) -> None:
 @needs_data
 @pytest.mark.parametrize(("solution", "epochs", "expected", "tolerance"), [("spp", 550, 4.21, 0.005), ("rtk", 531, 6955.0, 0.5)])
 def test_the_drive_has_the_error_statistics_of_the_catalogue(solution: str, epochs: int, expected: float, tolerance: float) -> None:
-    """README of the data: mean NEES 4.21 and 6955, to the digits printed; an honest covariance has 3."""
+    """README of the data: mean NEES 4.21 and 6955, to the digits printed; a consistent covariance has 3."""
     m = material(DRIVE / f"rover_1Hz_{solution}.pos", truth=DRIVE / "reference_1Hz.pos", requirement="RNP 0.3", rnp_m=555.6)
     assert m.epochs.height == epochs
     assert abs(nees(m) - expected) <= tolerance

@@ -40,7 +40,7 @@ def turned(sigma: tuple[float, ...], seed: int) -> np.ndarray:
 def test_probabilities_agree_with_nested_quadrature(sigma: tuple[float, ...], mean: tuple[float, ...], radius: float) -> None:
     v = turned(sigma, 3)
     law = (anp.circle_law if len(sigma) == 2 else anp.sphere_law)(v, radius, mean)
-    # What the oracle's integrator is asked for, in two and in three dimensions.
+    # The tolerances of the oracle's integrator, in two and in three dimensions.
     assert law.inside == pytest.approx(anp_scipy.ball(v, np.array(mean), radius), abs=1e-9 if len(sigma) == 2 else 1e-7)
 
 

@@ -50,7 +50,7 @@ def test_the_commands_of_the_page_make_maps(page: str, shared_data: Path, tmp_pa
         # The stations of dme know no time.
         seldom = [] if "dme" in words else ["--every-s", "1200"]
         coarse = ["--step-deg", "15", *seldom, "--backend", "serial", "--out", f"map-{number}", "--json"]
-        # A cluster belongs to Dask, which is not asked here.
+        # A cluster belongs to Dask, which is not used here.
         at = words.index("--cluster") if "--cluster" in words else len(words)
         run = CliRunner().invoke(cli.app, [ours.get(word, word) for word in words[:at] + words[at + 2 :]] + coarse)
         assert run.exit_code == 0, (words, run.output, run.exception)

@@ -1,4 +1,4 @@
-"""Evaluation of bounds and covariances: known answers, and verdicts on data made to be honest or not."""
+"""Evaluation of bounds and covariances: known answers, and verdicts on data made to be consistent or not."""
 
 from __future__ import annotations
 
@@ -111,14 +111,14 @@ def test_a_consistent_covariance_is_inside_its_limits_and_another_outside() -> N
     covariance = np.broadcast_to(root @ root.T, (20000, 3, 3))
     for dimension in (2, 3):
         e, v = error[:, :dimension], covariance[:, :dimension, :dimension]
-        honest = evaluation.nees(e, v)
-        assert honest.nees_low < honest.nees_mean < honest.nees_high
-        assert honest.nees_mean == pytest.approx(np.mean(np.einsum("ni,nij,nj->n", e, np.linalg.inv(v), e)), rel=1e-10)
-        dof = honest.n_effective * dimension
-        assert honest.nees_low == pytest.approx(stats.chi2.ppf(0.025, dof) / honest.n_effective, rel=1e-9)
-        assert honest.nees_high == pytest.approx(stats.chi2.ppf(0.975, dof) / honest.n_effective, rel=1e-9)
-        assert evaluation.nees(e, 0.8 * v).nees_mean > honest.nees_high
-        assert evaluation.nees(e, 1.25 * v).nees_mean < honest.nees_low
+        consistency = evaluation.nees(e, v)
+        assert consistency.nees_low < consistency.nees_mean < consistency.nees_high
+        assert consistency.nees_mean == pytest.approx(np.mean(np.einsum("ni,nij,nj->n", e, np.linalg.inv(v), e)), rel=1e-10)
+        dof = consistency.n_effective * dimension
+        assert consistency.nees_low == pytest.approx(stats.chi2.ppf(0.025, dof) / consistency.n_effective, rel=1e-9)
+        assert consistency.nees_high == pytest.approx(stats.chi2.ppf(0.975, dof) / consistency.n_effective, rel=1e-9)
+        assert evaluation.nees(e, 0.8 * v).nees_mean > consistency.nees_high
+        assert evaluation.nees(e, 1.25 * v).nees_mean < consistency.nees_low
 
 
 def test_the_transform_is_flat_for_a_consistent_covariance_only() -> None:

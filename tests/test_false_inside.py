@@ -493,7 +493,7 @@ def test_positions_that_may_be_radians_show_nothing_until_the_unit_is_stated(
 
 
 def test_the_rest_of_a_truth_that_contradicts_itself_shows_nothing(tmp_path: Path) -> None:
-    """One true row in four is honest, 3 km from a lie that agrees with the estimate: an epoch or two keep a truth."""
+    """One row in four is true, 3 km from a false one that agrees with the estimate: an epoch or two keep a truth."""
     rows, truth = [HEAD_OF_TWO], ["time,lat,lon,h_m"]
     for k in range(300):
         lat, stamp = 49 + k * 7e-4, f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}"

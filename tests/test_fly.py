@@ -102,16 +102,16 @@ def test_flights_are_tracks_and_seeds_matter() -> None:
 
 def test_circle_and_sphere_of_many_flights_come_with_their_uncertainty() -> None:
     run = judge(material(DRAWN, flights=12), Settings(methods=("anp-circle", "anp-sphere")))
-    honesty = run.summary.honesty
-    assert honesty is not None
+    consistency = run.summary.honesty
+    assert consistency is not None
     scored = {m.id: m.coverage for m in run.summary.accuracy}
-    for region in honesty.regions:
+    for region in consistency.regions:
         assert region.share == pytest.approx(scored[f"anp-{region.region}"], abs=1e-12)
         # Errors are drawn from the covariance: some 400 independent epochs, a deviation of a point.
         assert region.low < 0.95 < region.high
         assert region.high - region.low < 0.1
-        assert f"the 95 % {region.region} held" in honesty.words
-    assert [region.region for region in honesty.regions] == ["circle", "sphere"]
+        assert f"the 95 % {region.region} held" in consistency.words
+    assert [region.region for region in consistency.regions] == ["circle", "sphere"]
     few = judge(material(DRAWN, flights=9), Settings(methods=())).summary.honesty
     assert few is not None
     assert few.regions == []

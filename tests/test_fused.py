@@ -1,4 +1,4 @@
-"""Flights that navigate by their sensors: whether the filter is as good as it says, what faults do, and what is said of them."""
+"""Flights that navigate by their sensors: whether the filter is as good as it says, what faults do, and what is stated of them."""
 
 from __future__ import annotations
 
@@ -67,12 +67,12 @@ def test_the_filter_is_as_good_as_it_says_where_errors_stay(real: Material) -> N
 
 
 def test_a_filter_that_takes_all_errors_for_white_is_caught_by_nees_and_pit_but_not_by_its_innovations(white: Run) -> None:
-    honesty = white.summary.honesty
-    assert honesty is not None
+    consistency = white.summary.honesty
+    assert consistency is not None
     # Claimed 0.7 m where the errors are 4 m and more (specification 7, case C): 100 times in the mean; ten is far beyond chance.
-    assert honesty.nees_mean > 10 * honesty.nees_high
-    assert honesty.pit_counts[-1] > 5 * honesty.pit_high
-    assert "claims too little" in honesty.words
+    assert consistency.nees_mean > 10 * consistency.nees_high
+    assert consistency.pit_counts[-1] > 5 * consistency.pit_high
+    assert "claims too little" in consistency.words
     reported = white.record.settings["filter"]
     assert isinstance(reported, dict)
     # The mean squared innovation looks healthy. What gives the filter away is that each innovation knows the one before.
@@ -170,7 +170,7 @@ def fault(kind: str, **more: object) -> list[dict[str, Any]]:
 
 
 WITHOUT_SATELLITES = {"kind": "interference", "start_s": 0.0, "duration_s": 8000.0}
-"""Ranges take most of the time, and nothing is asked of them here."""
+"""Ranges take most of the time, and nothing is required of them here."""
 
 
 @pytest.mark.parametrize("what", ["silent", "not-a-number", "late"])

@@ -115,7 +115,7 @@ def test_without_the_message_of_gps_that_of_galileo_serves(shared_data: Path, tm
     assert nees(positions.epochs) < 4.0
 
 
-# Which of these set a number stands in docs/methods/what-is-believable.md. The ESBC day is of the sun's minimum: 1 to 4 is asked of it;
+# Which of these set a number stands in docs/methods/what-is-believable.md. The ESBC day is of the sun's minimum: 1 to 4 is required of it;
 # five minutes or an hour are one draw of an ionosphere, which may as well be a good one.
 @pytest.mark.parametrize(("name", "systems"), CASES)
 def test_the_covariance_covers_the_errors(shared_data: Path, name: str, systems: str) -> None:

@@ -139,10 +139,10 @@ def test_whiteness_speaks_where_the_mean_square_does_not() -> None:
     still = body.standing(3, 400.0)
     aiding = ins.Aiding(satellites=body.satellites(3, still.time_ns[9::10], white_m=1.0, slow_m=5.0, tau_s=60.0))
     white = ins.fuse(still.imu, aiding, still.start, settings=ins.FilterSettings(errors="white")).innovations["range"]
-    honest = ins.fuse(still.imu, aiding, still.start).innovations["range"]
+    healthy = ins.fuse(still.imu, aiding, still.start).innovations["range"]
     assert white.lag_one > 0.5
     # Within three deviations of none.
-    assert abs(honest.lag_one) < 3 / np.sqrt(honest.n_pairs)
+    assert abs(healthy.lag_one) < 3 / np.sqrt(healthy.n_pairs)
 
 
 def radio(time_ns: np.ndarray) -> tuple[ins.DmeRanges, ins.VorBearings]:

@@ -20,7 +20,7 @@ def drive(shared_data: Path) -> Drive:
 
 @pytest.mark.parametrize("wheels", [True, False])
 def test_outages_of_the_car_are_bridged_better_than_by_the_peer_and_honestly(drive: Drive, wheels: bool) -> None:
-    """In-sample: what the filter is told was chosen on the whole drive."""
+    """In-sample: the settings of the filter were selected on the whole drive."""
     tuning = WHOLE if wheels else WHOLE.without_wheels()
     h, inside = drive.in_outages(tuning, 0.0, END_S)
     judged = drive.outage & (drive.since_s < END_S)
@@ -35,7 +35,7 @@ def test_outages_of_the_car_are_bridged_better_than_by_the_peer_and_honestly(dri
 
 
 def judged_apart(drive: Drive, wheels: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Every outage judged by a filter that was told nothing of its part of the drive."""
+    """Every outage judged by a filter whose settings have nothing of its part of the drive."""
     parts = [drive.in_outages(tuning, *other) for tuning, other in zip(FOLDS[wheels], PARTS[::-1], strict=True)]
     h, inside = (np.concatenate(x) for x in zip(*parts, strict=True))
     assert h.size == 660

@@ -88,7 +88,7 @@ def test_precise_orbits_take_horizontal_error_away(
     for name, precise in (("broadcast", None), ("precise", orbits)):
         error = errors(gnss.solve(*observed, orbits=precise, truth_ecef_m=truth, **how).epochs)
         h95[name] = np.quantile(np.hypot(error[:, 0], error[:, 1]), 0.95)
-    # Galileo's broadcast orbits are as good as this receiver can tell: no worse is all that can be asked.
+    # Galileo's broadcast orbits are as good as this receiver can tell: no worse is all that can be required.
     assert h95["precise"] < share * h95["broadcast"]
 
 

@@ -150,7 +150,7 @@ def test_the_command_prints_a_table_and_json_and_refuses_in_a_sentence(shared_da
     assert data["without"] == ["G05"]
     assert "G05" not in data["satellites"]
     assert data["times"]["n"] == 24
-    # RAIM receivers use GPS; more only where it is asked for.
+    # RAIM receivers use GPS; more only where it is requested.
     assert {name[0] for name in data["satellites"]} == {"G"}
     more = json.loads(navbound(*common, "--date", "2020-06-25T06:00", "--systems", "GE", "--json").stdout)
     assert {name[0] for name in more["satellites"]} == {"G", "E"}

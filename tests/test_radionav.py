@@ -55,7 +55,7 @@ def test_the_covariance_is_that_of_the_errors(n_ranges: int) -> None:
     if n_ranges == 2:
         assert np.isnan(solution.p_residual).all()
         return
-    # Residual risks of honest ranges are level on [0, 1].
+    # Residual risks of ranges without a fault are level on [0, 1].
     assert stats.kstest(solution.p_residual, "uniform").pvalue > 1e-4
     degraded = np.count_nonzero(solution.status == "degraded")
     assert stats.binomtest(degraded, n, 1e-3).pvalue > 1e-4

@@ -312,7 +312,7 @@ def test_epochs_that_cannot_be_true_make_the_verdict_doubtful(browser: Browser, 
     assert box.get_attribute("data-tone") == "caution"
     assert box.locator(".state").inner_text().startswith("Not shown")
     assert _value(page, '#verdict [data-key="n_implausible"]') == "17"
-    # The sentence of the honesty stands once.
+    # The sentence of the consistency stands once.
     assert page.locator("#honesty").inner_text().count("2.11") == 0
     assert float(_value(page, '#honesty [data-key="nees_mean"]')) == fixture.summary.honesty.nees_mean  # type: ignore[union-attr]
     page.context.close()

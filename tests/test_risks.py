@@ -1,4 +1,4 @@
-"""An allowed risk is at most one half and at least 1e-300, in every function that takes one; a confidence in its place is asked for."""
+"""An allowed risk is at most one half and at least 1e-300, in every function that takes one; a confidence is refused."""
 
 from __future__ import annotations
 

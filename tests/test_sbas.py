@@ -83,7 +83,7 @@ def test_the_msas_hour_is_that_of_the_independent_engine(approach: sbas.Levels, 
     assert (approach.mode[rows] == "pa").all()
     for name in ("hpl_m", "vpl_m"):
         relative = np.abs(getattr(approach, name)[rows] / oracle[name] - 1)
-        # Asked: 0.1 % on 99 %, 5 % on all, 1 cm in the median. Met: the oracle's print rounding (5e-5 m of 11.8 m) on every epoch.
+        # Required: 0.1 % on 99 %, 5 % on all, 1 cm in the median. Met: the oracle's print rounding (5e-5 m of 11.8 m) on every epoch.
         assert relative.max() < 1.5e-5
         assert np.median(np.abs(getattr(approach, name)[rows] - oracle[name])) < 1e-4
     assert (approach.n_sv[rows] == oracle["n_used"]).all()

@@ -131,7 +131,7 @@ def test_real_egnos_is_smoothed_and_stays_far_inside_its_levels(egnos: Recording
     solved = [p.epochs.filter(pl.col("mode") == "pa") for p in (rough, smooth)]
     assert solved[0].height == solved[1].height > 500
     spread = [positions(s).std(axis=0) for s in solved]
-    # White noise through 100 s at 3 s leaves sqrt(0.03 / 1.97) = 0.12 of itself; multipath of minutes stays. Half is asked.
+    # White noise through 100 s at 3 s leaves sqrt(0.03 / 1.97) = 0.12 of itself; multipath of minutes stays. Half is required.
     assert (spread[1] < 0.5 * spread[0]).all()
     # No truth is known: the median of the solutions stands for it, which cannot see what all have in common.
     middle = np.median(positions(solved[1]), axis=0)

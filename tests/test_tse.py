@@ -35,7 +35,7 @@ def test_prepared_and_iterative_bounds_meet_fifty_digits(risk: float) -> None:
 
 
 def test_the_one_dimensional_law_is_the_two_dimensional_one() -> None:
-    """The risk of the two-dimensional law outside the strip, by quadrature, is the risk asked for."""
+    """The risk of the two-dimensional law outside the strip, by quadrature, is the requested risk."""
     for offset, course, risk in [((3.0, -4.0), 0.2333, 0.05), ((-12.0, 2.0), 2.1, 1e-5), ((0.5, 30.0), 4.4, 1e-3)]:
         fte, _, sigma = tse.project(offset, COVARIANCE, course)
         bound = float(tse.exact(fte, sigma, risk))

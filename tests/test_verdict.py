@@ -178,7 +178,7 @@ def test_the_rule_of_levels(changed: dict[str, object], expected: str) -> None:
 
 
 def test_a_bound_that_contains_nothing_withdraws_the_verdict(tmp_path: Path) -> None:
-    """One error that never changes, six times its sigma: no independent epochs to count, and still no honest sigma."""
+    """One error that never changes, six times its sigma: no independent epochs to count, and still no sigma that is large enough."""
     path = table(tmp_path / "a.csv", 536, sigma_m=2.0, error_en_m=np.tile([12.0, 0.0], (536, 1)))
     done = command("analyze", path, "--out", tmp_path / "run")
     assert done.returncode == 4
@@ -194,7 +194,7 @@ def test_a_bound_that_contains_nothing_withdraws_the_verdict(tmp_path: Path) -> 
 
 
 def test_a_few_independent_epochs_below_the_claim_are_not_shown(tmp_path: Path) -> None:
-    """One draw of 2.6 sigma: an honest sigma does it in 3 % of flights, so nothing is refuted and nothing is shown."""
+    """One draw of 2.6 sigma: a sigma that is right does it in 3 % of flights, so nothing is refuted and nothing is shown."""
     path = table(tmp_path / "a.csv", 400, sigma_m=2.0, error_en_m=np.tile([5.2, 0.0], (400, 1)))
     verdict = navbound.analyze(path).summary.verdict
     assert verdict.id == "not_shown"

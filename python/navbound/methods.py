@@ -182,7 +182,7 @@ def bounds(epochs: pl.DataFrame, method_id: str, risk: float) -> BoundColumn:
 
 def column_of(epochs: pl.DataFrame, name: str) -> NDArray[np.float64]:
     """A numeric column as float64, null as NaN."""
-    import numpy as np  # noqa: PLC0415  (the list of methods is asked for without tables too)
+    import numpy as np  # noqa: PLC0415  (the list of methods is used without tables too)
     import polars as pl  # noqa: PLC0415
 
     values = epochs.get_column(name).cast(pl.Float64).fill_null(float("nan")).to_numpy()

@@ -549,7 +549,7 @@ export interface Held {
 }
 
 /** May the covariance be believed? Only where truth is known. */
-export interface Honesty {
+export interface CovarianceConsistency {
     n: number;
     n_effective: number;
     dimension: number;
@@ -632,7 +632,7 @@ export interface Summary {
     tracks: TrackSummary[];
     accuracy: MethodResult[];
     integrity: MethodResult[];
-    honesty: Honesty | null;
+    honesty: CovarianceConsistency | null;
     /** Names of the states behind `p_state_1`, `p_state_2`, ... */
     states: string[];
     events: EventSummary[];

@@ -25,7 +25,7 @@ pub struct Skies<'a> {
     pub constellation: &'a [Constellation],
 }
 
-/// What levels are asked for; each array has one item a sky.
+/// What levels are requested; each array has one item a sky.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'a> {
     /// Largest nominal bias of a range \[m\].

@@ -44,7 +44,7 @@ pub enum Model {
 const MESSAGE_LASTS_S: f64 = 2.0 * 86_400.0;
 
 impl Model {
-    /// The ionosphere at a time by the messages of a file; `None` where a message is wanted by name and none is near.
+    /// The ionosphere at a time by the messages of a file; `None` where a message is requested by name and none is near.
     pub fn of(self, navigation: &Navigation, time: GpsTime) -> Option<Ionosphere> {
         let broadcast = || Dated::nearest(&navigation.ionosphere_gps, time, MESSAGE_LASTS_S).and_then(Ionosphere::broadcast);
         let galileo = || Dated::nearest(&navigation.ionosphere_galileo, time, MESSAGE_LASTS_S).and_then(Ionosphere::galileo);
@@ -84,7 +84,7 @@ pub struct Positions {
     pub undescribed: bool,
     /// The ranges of each position, where they are kept; weights and shared errors widened as the covariance is.
     pub ranges: Vec<Vec<(SatelliteId, Used)>>,
-    /// Satellite-epochs of the wanted constellations that were used, and that were not.
+    /// Satellite-epochs of the requested constellations that were used, and that were not.
     pub tally: Tally,
     /// Signals of each constellation.
     pub signals: BTreeMap<char, &'static str>,

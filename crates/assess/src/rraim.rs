@@ -27,7 +27,7 @@ pub struct Coasting<'a> {
     pub sigma_td_m: &'a [f64],
 }
 
-/// What levels are asked for; each array has one item a sky.
+/// What levels are requested; each array has one item a sky.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'a> {
     /// Largest nominal bias of a range \[m\].

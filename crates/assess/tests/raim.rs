@@ -1,4 +1,4 @@
-//! Batches of RAIM: the bits of one epoch at a time, satellites that are not used left out, columns told apart.
+//! Batches of RAIM: the bits of one epoch at a time, satellites that are not used left out, columns kept apart.
 #![allow(clippy::unwrap_used)] // A test may stop at the first surprise, in its helpers too.
 
 use nalgebra::Vector3;

@@ -220,7 +220,7 @@ impl Tables<'_> {
     }
 }
 
-/// Everything the filter is told.
+/// Everything declared to the filter.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Declared {

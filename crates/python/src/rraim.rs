@@ -53,7 +53,7 @@ impl Rule {
     }
 }
 
-/// The satellites now, and what is asked.
+/// The satellites now, and what is required.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Job<'py> {

@@ -25,7 +25,7 @@ struct Ranges<'py> {
     shared_m: PyReadonlyArray2<'py, f64>,
 }
 
-/// What is asked of the subsets, as it comes from Python.
+/// What is required of the subsets, as it comes from Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Options {

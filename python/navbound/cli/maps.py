@@ -44,7 +44,7 @@ def map_command(
     prn: Annotated[int | None, typer.Option(help="Whose SBAS messages, where a log holds several.")] = None,
     mode: Annotated[str | None, typer.Option(help="Of sbas: pa, npa, auto.")] = None,
     stations: Annotated[Path | None, typer.Option(help="Table of stations of dme. [default: the shipped one]")] = None,
-    rnp_nm: Annotated[float | None, typer.Option(help="Lateral accuracy asked of dme. [default: 1]")] = None,
+    rnp_nm: Annotated[float | None, typer.Option(help="Lateral accuracy required of dme. [default: 1]")] = None,
     fte_nm: Annotated[float | None, typer.Option(help="Flight technical error of dme, 95 %. [default: 0.5]")] = None,
     limit: Annotated[list[str] | None, typer.Option(help="Limit instead: column=number; may be repeated.")] = None,
     level: Annotated[str | None, typer.Option(help="Limit instead: alert limits of a service level; see `navbound levels`.")] = None,

@@ -109,7 +109,7 @@ def run_folder(files: list[Path], out: Path | None) -> Path:
 
 
 def work_of(backend: str | None, workers: int | None, cluster: str | None, checkpoint: Path | None) -> Work:
-    """Who works and what is kept, as far as it was asked for; refused where it would mean nothing."""
+    """Who works and what is kept, as far as it was requested; refused where it would mean nothing."""
     options: Work = {}
     if cluster is not None and backend != "dask":
         raise ConflictError("cluster", needs=("backend",), because="dask")

@@ -102,7 +102,7 @@ def _show(prediction: Prediction) -> None:
     )
     out.print(f"{prediction.times.duration_s / 3600:g} h {span}, every {prediction.times.step_s:g} s", markup=False, highlight=False)
     table = Table()
-    for heading in ("where", "asked", "alert limit", "detection", "holes", "longest", "exclusion", "holes", "longest"):
+    for heading in ("where", "required", "alert limit", "detection", "holes", "longest", "exclusion", "holes", "longest"):
         table.add_column(heading, overflow="fold")
     limits = {limit.id: limit for limit in prediction.limits}
     for line in prediction.lines:

@@ -9,7 +9,7 @@ import numpy as np
 
 from navbound import _core
 from navbound.dme.station_table import Stations
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.status import sentences, statuses
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten, unflatten
@@ -104,7 +104,8 @@ def solve(
     if m == 0:
         raise InputError("stations", 0, "1", "at least one station")
     if (prior_lat_rad is None) != (prior_lon_rad is None):
-        raise InputError("prior_lat_rad, prior_lon_rad", "one of them", domain="both or neither")
+        stated, lacking = ("prior_lat_rad", "prior_lon_rad") if prior_lon_rad is None else ("prior_lon_rad", "prior_lat_rad")
+        raise ConflictError(stated, needs=(lacking,))
     arguments: dict[str, tuple[ArrayLike, tuple[int, ...]]] = {"slant_m": (slant_m, (m,)), "h_m": (h_m, ())}
     if sigma_m is not None:
         arguments["sigma_m"] = (sigma_m, (m,))
@@ -313,7 +314,7 @@ def coverage(
     stations : Stations, or mapping of identifier to (lat_rad, lon_rad, h_m)
         The network.
     rnp_m, fte_m : float
-        Lateral accuracy asked for and flight technical error, both 95 %: ``sqrt(rnp² - fte²)`` is left for navigation. [m]
+        Lateral accuracy required and flight technical error, both 95 %: ``sqrt(rnp² - fte²)`` is left for navigation. [m]
     sigma_altitude_m, sigma_bearing_rad : float
         Standard deviations of altitude and VOR bearing. [m, rad]
     risk : float

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from navbound import _core
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.gbas.arguments import named, spread, systems, width_of
 from navbound.gbas.detection import fault_probability, missed_by_monitor, missed_detection_limit, monitor_margin
 from navbound.gbas.filter import aided_covariance, offset_variances
@@ -310,7 +310,7 @@ def _sigmas(
         model = range_sigma(el, service)
         return model.sigma_m.reshape(-1), model.sigma_h1_m.reshape(-1)
     if sigma_m is None or sigma_h1_m is None:
-        raise InputError("sigma_h1_m" if sigma_h1_m is None else "sigma_m", "none", domain="both sigmas, or neither")
+        raise ConflictError("sigma_m", needs=("sigma_h1_m",)) if sigma_h1_m is None else ConflictError("sigma_h1_m", needs=("sigma_m",))
     sigmas = [spread(name, value, el.shape, ()) for name, value in (("sigma_m", sigma_m), ("sigma_h1_m", sigma_h1_m))]
     return np.asarray(sigmas[0]), np.asarray(sigmas[1])
 

@@ -53,7 +53,7 @@ class Positions:
         ``ground_speed_mps``, ``n_sv``, ``hdop``, ``vdop``, ``status``, ``reason``, with truth also ``truth_*`` and ``nse_*``; beyond it
         ``vel_e_mps``, ``vel_n_mps``, ``vel_u_mps``, ``n_excluded``, ``n_redundant``, ``p_residual``. Null where there is none.
     unused : dict of str to int
-        Satellite-epochs of the wanted systems that were not used, by the id of the reason in :data:`UNUSED`.
+        Satellite-epochs of the requested systems that were not used, by the id of the reason in :data:`UNUSED`.
     codes : dict of str to list of str
         Pseudoranges used, by system, in order of preference.
     models : dict of str to str
@@ -62,7 +62,7 @@ class Positions:
         The ranges of each position: ``time_ns``, ``sv``, ``az_rad``, ``el_rad``, ``sigma_m`` (of the covariance in force: a failed
         test and contradicting surroundings have widened it), ``residual_m`` (measured less computed at the position, receiver clock
         included), ``shared_1_m`` to ``shared_4_m`` (errors that all ranges have in common: the vertical ionosphere, its gradient east and
-        north, the zenith troposphere). Where it was asked for.
+        north, the zenith troposphere). Where it was requested.
     used : DataFrame, optional
         Ranges by satellite: ``sv``, ``signals`` (``E1-E5a``), ``message`` whose orbit and clock were used, ``n_ranges``; those below the
         mask and those excluded afterwards are among them.

@@ -50,7 +50,7 @@ class Watched:
 
 
 def checked_model(navigation: Navigation, systems: str, signals: str, model: str | ErrorModel | None, mask_rad: float) -> ErrorModel:
-    """The error model of a receiver's signals, after a look at what else was asked.
+    """The error model of a receiver's signals, after a check of the other options.
 
     Raises
     ------

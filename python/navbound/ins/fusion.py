@@ -9,7 +9,7 @@ import numpy as np
 
 from navbound import _core
 from navbound.ins.aiding import Aiding, rows
-from navbound.ins.settings import FilterSettings, Imu, ImuModel, Start, Wheels, told
+from navbound.ins.settings import FilterSettings, Imu, ImuModel, Start, Wheels, declared_to_core
 from navbound.table.arguments import checked
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ class Fused(Track):
     n_states : ndarray of int, shape (n,)
         States in the filter, with those of the one beside it. [1]
     samples : dict of str to int
-        Inertial samples done, bridged, adrift (heard only, after a hole), late, refused, stopped; since the last new start of the filter
+        Inertial samples done, bridged, `adrift` (after a gap), late, refused, stopped; since the last new start of the filter
         (docs/methods/fused-integrity.md).
     stopped, refused : tuple of (int, str), or None
         Time and reason of the stop, and of the first refused sample. [ns]
@@ -265,7 +265,7 @@ def fuse(
     """
     model, how = imu_model or ImuModel(), settings or FilterSettings()
     periods = (output_period_s, update_period_s)
-    return _fused(_core.ins_fuse(_start(start), imu.columns(), aiding.tables(), told(model, how, start, periods, wheels)))
+    return _fused(_core.ins_fuse(_start(start), imu.columns(), aiding.tables(), declared_to_core(model, how, start, periods, wheels)))
 
 
 def _covariance(table: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -83,9 +83,9 @@ def rnp(rnp_nm: float, *, tta_s: float, containment: int = 1) -> Level:
     )
 
 
-def selected_levels(wanted: str | Level | Sequence[str | Level]) -> list[Level]:
+def selected_levels(named: str | Level | Sequence[str | Level]) -> list[Level]:
     """One level or more, each once; names may be joined by commas."""
-    levels = [wanted] if isinstance(wanted, (str, Level)) else list(wanted)
+    levels = [named] if isinstance(named, (str, Level)) else list(named)
     names = [part for item in levels for part in ([p.strip() for p in item.split(",")] if isinstance(item, str) else [item])]
     required = [level(name) for name in names if name != ""]
     if not required:

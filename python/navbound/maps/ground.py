@@ -45,7 +45,7 @@ class Dme:
     stations : str or Path, optional
         A table of stations; without it the shipped one.
     rnp_m, fte_m : float
-        Lateral accuracy asked for, and flight technical error, both 95 %. [m]
+        Lateral accuracy required, and flight technical error, both 95 %. [m]
     sigma_altitude_m, h_m : float
         Standard deviation of the altitude, and height of the users. [m]
     """
@@ -68,7 +68,7 @@ class Dme:
         return 1
 
     def limits(self) -> list[Limit]:
-        """What is asked without a word of the caller."""
+        """What is required without a word of the caller."""
         left = float(_core.nse_boundary(np.array([self.rnp_m], dtype=np.float64), np.array([self.fte_m], dtype=np.float64))[0])
         nm = f"RNP {self.rnp_m / METRES_PER_NM:g} with a flight technical error of {self.fte_m / METRES_PER_NM:g} NM"
         return [Limit("nse_best_m", left, f"what {nm} leaves for navigation", "ours")]

@@ -1,4 +1,4 @@
-"""What is asked of a column of a map."""
+"""What is required of a column of a map."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from navbound.errors import InputError
 
 @dataclass(frozen=True)
 class Limit:
-    """What is asked of a column: at most this, with where the number comes from and how it is held."""
+    """What is required of a column: at most this, with where the number comes from and how it is held."""
 
     column: str
     limit: float

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 COVERAGE_AT = (0.95, 0.99, 0.995, 0.999)
-"""Availabilities at which the share of the area is told."""
+"""Availabilities at which the share of the area is reported."""
 _ROUNDING = 1e-12
 """Less than this is left of shares that make one: some millions of additions of weights below one. [1]"""
 _RESULT_BYTES = 80.0
@@ -61,7 +61,7 @@ def make(
     grid : Grid, optional
         Users; without it the world in cells of five degrees.
     limits : mapping of column to float, optional
-        What is asked, in the unit of the column; without it that of the kind.
+        What is required, in the unit of the column; without it that of the kind.
     level : str, optional
         A service level of `navbound.kpi.levels` instead: its alert limits.
     backend, checkpoint, workers, progress

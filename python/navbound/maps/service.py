@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from navbound import gnss, sbas
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.maps import sources
 from navbound.maps.limits import Limit, limits_of
 from navbound.maps.sources import File, Times
@@ -104,8 +104,10 @@ class Sbas:
     h_m: float = 0.0
 
     def _heard(self) -> sbas.Messages:
-        if not (self.messages and self.navigation):
-            raise InputError("messages, navigation", "none", domain="a message log and the navigation files of its day")
+        if not self.messages:
+            raise ConflictError("kind", needs=("messages",), because="sbas takes the levels of a message log", value="sbas")
+        if not self.navigation:
+            raise ConflictError("messages", needs=("navigation",), because="the orbits are those of the log's day")
         return sources.messages(File.of(self.messages), self.prn)
 
     def _instants(self) -> NDArray[np.int64]:
@@ -132,7 +134,7 @@ class Sbas:
         return len(self._instants())
 
     def limits(self) -> list[Limit]:
-        """What is asked without a word of the caller."""
+        """What is required without a word of the caller."""
         return limits_of("NPA", vertical=False) if self.mode == "npa" else limits_of("APV-I")
 
     def assumptions(self) -> list[str]:

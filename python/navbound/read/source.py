@@ -125,7 +125,7 @@ LARGE_BYTES = 64 << 20
 
 
 def is_text_table(path: str | Path, least_bytes: int = 0) -> bool:
-    """Whether this is a plain text table of at least this size, told from its beginning."""
+    """Whether this is a plain text table of at least this size, recognised by its beginning."""
     path = Path(path)
     try:
         if path.stat().st_size < least_bytes:

@@ -287,7 +287,7 @@ class Performance(Record):
     """Hazards and misleading information first, then losses, longest first; at most 500 of all in events.parquet."""
     days: list[DayResult]
     subsets: Subsets | None
-    """Where the Stanford-ESA diagram was asked for."""
+    """Where the Stanford-ESA diagram was requested."""
     experimental: str
     """Words that must stand beside every number of an experimental level; empty for integrity levels."""
     notes: list[str]

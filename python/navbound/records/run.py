@@ -261,19 +261,19 @@ class Held(Record):
     """95 % limits from drawing whole tracks again."""
 
 
-class Honesty(Record):
+class CovarianceConsistency(Record):
     """May the covariance be believed? Only where truth is known."""
 
     n: int
     n_effective: float
     dimension: int
     nees_mean: float
-    """Mean of e' V^-1 e; `dimension` for an honest covariance."""
+    """Mean of e' V^-1 e; `dimension` for a consistent covariance."""
     nees_low: float
     nees_high: float
     """Chi-square limits (95 %) for the effective sample size."""
     pit_counts: list[int]
-    """Histogram of the probability integral transform in equal bins; flat for an honest covariance."""
+    """Histogram of the probability integral transform in equal bins; flat for a consistent covariance."""
     pit_low: float
     pit_high: float
     """Band (95 %) of one bin."""
@@ -352,7 +352,7 @@ class Summary(Record):
     tracks: list[TrackSummary]
     accuracy: list[MethodResult]
     integrity: list[MethodResult]
-    honesty: Honesty | None
+    honesty: CovarianceConsistency | None
     states: list[str]
     """Names of the states behind `p_state_1`, `p_state_2`, ..."""
     events: list[EventSummary]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from navbound import _core
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.gbas import Factors, Form, Ordering, factors, range_sigma
 from navbound.gbas.arguments import spread, systems
 from navbound.gbas.models import Service
@@ -225,7 +225,7 @@ def fix(
 ) -> dict[str, Any]:
     """The skies at the fix as the core takes them."""
     if (sigma_m is None) != (sigma_h1_m is None):
-        raise InputError("sigma_h1_m" if sigma_h1_m is None else "sigma_m", "none", domain="both sigmas, or neither")
+        raise ConflictError("sigma_m", needs=("sigma_h1_m",)) if sigma_h1_m is None else ConflictError("sigma_h1_m", needs=("sigma_m",))
     if sigma_m is None:
         model = range_sigma(el, service)
         sigma, sigma_h1 = model.sigma_m, model.sigma_h1_m

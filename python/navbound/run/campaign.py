@@ -98,8 +98,8 @@ def fly_all(fly: Fly, flights: int, at_once: int, **work: Unpack[Work]) -> tuple
     -------
     epochs : DataFrame
         Of all flights, in order; the same bits whoever flew them.
-    told : list
-        What was told besides, in order.
+    reported : list
+        What was reported besides, in order.
     """
     tiles = [range(first, min(first + at_once, flights)) for first in range(0, flights, at_once)]
     tell = work.get("progress")

@@ -61,7 +61,7 @@ def material(
     seed : int, optional
         In place of the scenario's.
     **work
-        Who flies, what is kept, who is told: as in :func:`navbound.scale.map_tiles`; progress counts flights.
+        Who flies, what is kept, who follows the progress: as in :func:`navbound.scale.map_tiles`; progress counts flights.
 
     Returns
     -------
@@ -219,16 +219,18 @@ def _assumptions(scenario: Scenario) -> list[str]:
     assumptions = list(scenario.assumptions)
     if scenario.filter is not None:
         assumptions.append(
-            "The position comes from simulated sensors through a navigation filter that is told their statistics; guidance follows the "
+            "The position comes from simulated sensors through a navigation filter that has their statistics; guidance follows the "
             "filter's error, worked out on a first flight of the same number."
         )
         if scenario.filter.mode == "white":
-            assumptions.append("The filter takes errors that stay for new at every measurement: it is wrong about itself on purpose.")
+            assumptions.append(
+                "The filter takes correlated errors as new each time: its covariance is overconfident on purpose."
+            )
     if scenario.sensors is not None and scenario.sensors.faults:
         assumptions.append(f"Sensors fail: {', '.join(f'{f.kind} from {f.start_s:g} s' for f in scenario.sensors.faults)}.")
     scale = scenario.navigation.claimed_sigma_scale
     if scale != 1.0:
-        assumptions.append(f"The covariance claims {scale:g} times the true standard deviation: it is dishonest on purpose.")
+        assumptions.append(f"The covariance claims {scale:g} times the true standard deviation: it is mismodelled on purpose.")
     if scenario.faults:
         assumptions.append(
             f"Faults are injected: {', '.join(f'{f.kind} from {f.start_s:g} s for {f.duration_s:g} s' for f in scenario.faults)}."

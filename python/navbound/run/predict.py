@@ -37,7 +37,7 @@ MOST_POINTS = 20_000_000
 
 @dataclass(frozen=True)
 class Request:
-    """What a prediction is asked.
+    """What is requested of a prediction.
 
     Attributes
     ----------
@@ -289,9 +289,7 @@ def _unhealthy(request: Request, sky: Satellites) -> list[str]:
 
 
 def _assumptions(request: Request, unhealthy: list[str], start_ns: int | None) -> list[str]:
-    dated = (
-        "Orbits of no date: times count from their reference instant." if start_ns is None else "Orbits of the files at the times asked."
-    )
+    dated = "Orbits of no date: times count from their reference instant." if start_ns is None else "Orbits of the files at those times."
     return [
         f"{dated} {'Unhealthy by the almanac and not used: ' + ', '.join(unhealthy) + '.' if unhealthy else 'None is called unhealthy.'}",
         f"Satellites are tracked above {math.degrees(request.mask_rad):g}°. Terrain, bank and interference are not modelled.",

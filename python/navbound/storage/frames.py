@@ -109,7 +109,7 @@ class Frames:
         """Write one file, a row group for each piece."""
 
         def pieces(*_: object) -> Iterator[pl.DataFrame]:
-            # All columns and rows are asked for: nothing stands between the pieces and the file.
+            # All columns and rows are requested: nothing stands between the pieces and the file.
             yield from self
 
         register_io_source(pieces, schema=self.schema).sink_parquet(path, compression=compression, metadata=metadata, engine="streaming")

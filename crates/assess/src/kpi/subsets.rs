@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 /// Fewest epochs in one task of the pool: a few milliseconds of work with ten satellites.
 const LEAST_TASK: usize = 64;
 
-/// What is asked of the subsets.
+/// What is required of the subsets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Job {
     /// Which multipliers make a level of a covariance.

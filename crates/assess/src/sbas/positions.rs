@@ -191,7 +191,7 @@ impl Task<'_> {
             if range.is_none() {
                 count("no C/A pseudorange on L1".to_owned(), 1);
             } else if service.satellite(prn).is_none() {
-                // Only who is not served is asked why.
+                // Only who is not served is examined for the reason.
                 let why = ranging(store, prn, used_for, now, |prn, iode| orbits.at(prn, iode, now)).err();
                 count(why.map_or_else(|| service.serves().err().map_or_else(String::new, |e| e.to_string()), |w| w.to_string()), 1);
             }

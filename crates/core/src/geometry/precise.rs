@@ -84,7 +84,7 @@ fn nearer_before(orbit: &[OrbitNode], after: usize, time: GpsTime) -> bool {
 /// Position and velocity at `time` in axes that stand still and agree with the Earth-fixed ones at that instant.
 ///
 /// ```text
-/// P[i..j](0) = (x_j P[i..j-1] - x_i P[i+1..j]) / (x_j - x_i)       Neville, x counted from the time wanted
+/// P[i..j](0) = (x_j P[i..j-1] - x_i P[i+1..j]) / (x_j - x_i)       Neville, x counted from the time requested
 /// ```
 fn position(nodes: &[OrbitNode], time: GpsTime) -> (Vector3<f64>, Vector3<f64>) {
     let (mut x, mut p, mut v) = ([0.0; NODES], [Vector3::zeros(); NODES], [Vector3::zeros(); NODES]);

@@ -42,7 +42,7 @@ pub struct Subset {
     pub covariance: Covariance<Enu>,
 }
 
-/// How many subsets were asked for, and how many determine no position.
+/// How many subsets were requested, and how many determine no position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Walked {
     /// All.

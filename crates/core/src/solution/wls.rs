@@ -389,7 +389,7 @@ mod tests {
 
     #[test]
     fn satellites_on_one_cone_are_singular() {
-        // All at one elevation: height and clock cannot be told apart.
+        // All at one elevation: height and clock cannot be distinguished.
         let cone: [LineOfSight; 6] = core::array::from_fn(|i| sight(60.0 * i as f64, 30.0, 1.0, Constellation::Gps));
         assert!(matches!(covariance(cone.iter()), Err(Unavailable::Singular { .. })));
     }

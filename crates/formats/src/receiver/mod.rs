@@ -69,7 +69,7 @@ pub fn read(bytes: &[u8]) -> Result<Recording, Unreadable> {
     Ok(Recording { observations: table.finish(), navigation, messages })
 }
 
-/// Measurements of an observation file or of a raw log, told apart by their content.
+/// Measurements of an observation file or of a raw log, distinguished by their content.
 ///
 /// # Errors
 /// [`Unreadable`] as [`crate::rinex::read_observations`] and [`read`], and for a log without one epoch.
@@ -84,7 +84,7 @@ pub fn read_observations(bytes: &[u8]) -> Result<Observations, Unreadable> {
     Ok(observations)
 }
 
-/// Orbits and clocks of a navigation file or of the subframes in a raw log, told apart by their content.
+/// Orbits and clocks of a navigation file or of the subframes in a raw log, distinguished by their content.
 ///
 /// # Errors
 /// [`Unreadable`] as [`crate::rinex::read_navigation`] and [`read`].

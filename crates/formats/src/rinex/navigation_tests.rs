@@ -47,7 +47,7 @@ fn a_gps_record_arrives_whole() {
     assert_eq!((n.leap_seconds, n.refused.len()), (Some(18), 0));
 }
 
-/// Version 3: a header does not say when, the orbits beneath it do. Version 4 dates each message; the nearest serves, within the time asked.
+/// Version 3: a header does not say when, the orbits beneath it do. Version 4 dates each message; the nearest serves, within the time requested.
 #[test]
 fn messages_of_the_ionosphere_are_dated() {
     let galileo = "GAL    2.8250e+01  7.8125e-03  1.0071e-02  0.0000E+00       IONOSPHERIC CORR    \n";

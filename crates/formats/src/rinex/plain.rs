@@ -73,7 +73,7 @@ impl Head {
     }
 }
 
-/// Lines of an event, or satellites of a cycle-slip record: counted. Codes that change in the middle of a file are told.
+/// Lines of an event, or satellites of a cycle-slip record: counted. Codes that change in the middle of a file are reported.
 pub(super) fn event(lines: &mut Lines<'_>, head: &Head, n_lines: usize, o: &mut Observations) {
     o.skip(&format!("event {}", head.flag), 1);
     for _ in 0..n_lines {

@@ -40,7 +40,7 @@ pub struct Layout {
     pub levels: Option<[usize; 2]>,
 }
 
-/// Fields are separated by blanks, tabs, commas or semicolons, whatever the writer was told; none of them occurs inside a field.
+/// Fields are separated by blanks, tabs, commas or semicolons, whatever the settings of the writer; none of them occurs inside a field.
 pub(super) fn fields(line: &str) -> impl Iterator<Item = &str> {
     line.split([' ', '\t', ',', ';']).filter(|f| !f.is_empty())
 }

@@ -1,6 +1,6 @@
 //! SBAS message logs to 250-bit blocks: EMS text, RTKLIB `.sbs`, RINEX-B, raw logs of receivers; plain or packed by gzip.
 //!
-//! Logs differ in the instant they write beside a message. A reader is told ([`Tag`]), says what it assumed ([`Log::tag`]), and hands on one
+//! Logs differ in the instant they write beside a message. A reader takes it as input ([`Tag`]), says what it assumed ([`Log::tag`]), and hands on one
 //! thing only: when the message ended.
 
 mod line;

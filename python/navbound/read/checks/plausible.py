@@ -1,4 +1,4 @@
-"""Can the recorded positions have been flown? Every recorded track is asked before any bound is formed."""
+"""Can the recorded positions have been flown? Every recorded track is checked before any bound is formed."""
 
 from __future__ import annotations
 

@@ -488,7 +488,7 @@ def declare(*columns: str) -> str:
 
 
 def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, required: Sequence[str]) -> None:
-    """Refuse a table without a time or a wanted quantity, and say what comes nearest."""
+    """Refuse a table without a time or a required quantity, and say what comes nearest."""
     aliases = {q.name: list(q.aliases) for q in QUANTITIES + LEVEL_QUANTITIES}
     needs = {"time": ([*times], list(TIME_NAMES))}
     needs |= {name: ([columns[name]] if name in columns else [], aliases[name]) for name in required}

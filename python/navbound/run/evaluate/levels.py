@@ -204,9 +204,11 @@ class Service:
         if not near.time_ns.size:
             raise InputError("files", ", ".join(map(str, self._logs))[:200], domain="message logs of the time of the observations")
         senders = np.unique(near.prn).tolist()
-        if len(senders) > 1 if self._prn is None else self._prn not in senders:
-            prn = "none" if self._prn is None else self._prn
-            raise InputError("prn", prn, domain=f"one of the satellites of the logs: {', '.join(map(str, senders))}")
+        listed = ", ".join(map(str, senders))
+        if self._prn is None and len(senders) > 1:
+            raise ConflictError("files", needs=("prn",), because=f"the logs hold the messages of several satellites, {listed}")
+        if self._prn is not None and self._prn not in senders:
+            raise InputError("prn", self._prn, domain=f"one of the satellites of the logs: {listed}")
         return near if self._prn is None else near.of(self._prn)
 
 
@@ -218,7 +220,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     FormatError
         A file that cannot be read.
     InputError
-        Messages of several satellites and none chosen, no message of the time, or ranges wanted without truth or with messages.
+        Messages of several satellites and none selected, no message of the time, or ranges requested without truth or with messages.
     """
     observations = gnss.read_observations(path)
     require_most_epochs(observations)

@@ -17,7 +17,7 @@ from navbound import __version__, kpi
 from navbound.errors import ConflictError, InputError
 from navbound.read.source import load
 from navbound.read.truth import TOLERANCE_S, Truth, truth_of
-from navbound.records.run import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
+from navbound.records.run import CovarianceConsistency, InputFile, Rejection, RunRecord, Summary, Verdict
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run import directory
 from navbound.run.directory import Run
@@ -155,11 +155,9 @@ def evaluate_files(
         options.solving.refuse("only observations that no service corrects are solved")
     sources.require_navigation()
     if options.stanford_esa is not None and (sources.tables or sources.messages):
-        raise InputError(
-            "stanford_esa",
-            str((sources.tables or sources.messages)[0].path),
-            domain="it with observations and navigation data alone: a table holds no ranges, and ranges are not corrected by SBAS messages",
-        )
+        because = "a table holds no ranges" if sources.tables else "subsets are solved without the corrections of SBAS messages"
+        named = str((sources.tables or sources.messages)[0].path)
+        raise ConflictError("stanford_esa", because=f"{because} ({named}); observations and navigation data are enough", value=named)
     with ExitStack() as stack:
         writer = None if out is None else stack.enter_context(folders.own(Path(out), _OWN, "a run's"))
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) if writer is None else writer.folder
@@ -246,7 +244,7 @@ def _run(
     return Run(_summary(result.model_copy(update={"notes": [*result.notes, *notes]}), parts, honesty), record, first, joined, [])
 
 
-def _consistency(parts: list[Stored]) -> tuple[Honesty | None, list[str]]:
+def _consistency(parts: list[Stored]) -> tuple[CovarianceConsistency | None, list[str]]:
     """Whether the covariances agree with the errors, where the files hold both; of the first epochs, so that memory has a limit."""
     columns = ["track", "time_ns", "status", "nse_e_m", "nse_n_m", "nse_u_m", *COVARIANCE]
     kept: list[pl.DataFrame] = []
@@ -264,7 +262,7 @@ def _consistency(parts: list[Stored]) -> tuple[Honesty | None, list[str]]:
     return consistency_of(together.head(MOST_CONSISTENCY)), [note] if note else []
 
 
-def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) -> Summary:
+def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsistency | None) -> Summary:
     names = ", ".join(each.level.id for each in result.levels)
     is_copied = _copied(parts)
     decided = rule.of_levels([_facts(each, result, is_copied=is_copied) for each in result.levels])

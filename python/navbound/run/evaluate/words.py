@@ -22,7 +22,7 @@ def levels_verdict(verdict: VerdictId) -> list[str]:
 
 
 def performance_words(result: Performance) -> list[str]:
-    """What was asked: integrity first, then availability, continuity and accuracy."""
+    """What was required: integrity first, then availability, continuity and accuracy."""
     words = [f"The protection levels {_predicate(result.experimental)}."] if result.experimental else []
     words += [_integrity(result), _availability(result), _continuity(result)]
     both = [axis.error_m for axis in result.axes]
@@ -92,7 +92,7 @@ def _continuity(result: Performance) -> str:
         return f"{losses}, risk {level.continuity_risk:.2g}" if level.window_meaningful else losses
 
     first = result.levels[0]
-    head = f"Continuity in {first.window_s:g} s" if first.window_meaningful else "Continuity (no risk can be told at this sampling period)"
+    head = f"Continuity in {first.window_s:g} s" if first.window_meaningful else "Continuity (no risk at this sampling period)"
     return f"{head}: {', '.join(one(each) for each in result.levels)}."
 
 

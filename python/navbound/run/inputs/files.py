@@ -1,4 +1,4 @@
-"""Files of one run, told apart by what they hold."""
+"""Files of one run, distinguished by what they hold."""
 
 from __future__ import annotations
 

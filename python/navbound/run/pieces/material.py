@@ -29,7 +29,7 @@ AUXILIARY = ("callsign", "nac_p", "nic", "rc_m", "epu_m", "sigma_e_m", "sigma_n_
 
 
 def states_truth(path: Path, columns: Mapping[str, str] | None) -> bool:
-    """Whether a text table has columns of the true position, told from its header."""
+    """Whether a text table has columns of the true position, recognised by its header."""
     for lines in Chunks(path):
         if not lines.is_empty():
             names = [name for name in layout_of(path, lines).names if name]

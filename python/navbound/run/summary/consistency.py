@@ -9,7 +9,7 @@ import polars as pl
 
 from navbound import anp, evaluation
 from navbound.methods import column_of
-from navbound.records.run import Held, Honesty
+from navbound.records.run import CovarianceConsistency, Held
 from navbound.run.verdict.results import consistency_words
 from navbound.status import USABLE
 from navbound.table.columns import COVARIANCE
@@ -25,7 +25,7 @@ TRACKS_TO_DRAW = 10
 REGION_RISK = 0.05
 
 
-def consistency_of(epochs: pl.DataFrame) -> Honesty | None:
+def consistency_of(epochs: pl.DataFrame) -> CovarianceConsistency | None:
     """NEES and PIT in three dimensions where the vertical is known, otherwise in two."""
     vertical = {"nse_u_m", "cov_uu_m2"} <= set(epochs.columns)
     errors = ("nse_e_m", "nse_n_m", "nse_u_m") if vertical else ("nse_e_m", "nse_n_m")
@@ -47,7 +47,7 @@ def consistency_of(epochs: pl.DataFrame) -> Honesty | None:
     nees = evaluation.nees(error[known], covariance, track=track)
     pit = evaluation.pit(error[known], covariance, track=track)
     regions = _regions(error[known], covariance, track)
-    return Honesty(
+    return CovarianceConsistency(
         n=nees.n,
         n_effective=nees.n_effective,
         dimension=nees.dimension,

@@ -183,7 +183,7 @@ def _worst(worst: Worst) -> str:
 
 
 def protection_words(protection: list[ProtectionSummary]) -> str:
-    """How protection levels stood against alert limits, and whether they told the truth; nothing where there are none."""
+    """How protection levels stood against alert limits, and whether they bounded the true errors; nothing where there are none."""
     if not protection:
         return ""
     n = sum(p.n_epochs for p in protection)
@@ -197,7 +197,7 @@ def protection_words(protection: list[ProtectionSummary]) -> str:
 def consistency_words(nees: Nees, pit: Pit, regions: Sequence[Held] = ()) -> str:
     """Whether the covariance may be believed, with the factor by which it is off, and on how much evidence."""
     opening = (
-        f"NEES {nees.nees_mean:.3g}, {nees.dimension} for an honest covariance, "
+        f"NEES {nees.nees_mean:.3g}, {nees.dimension} for a consistent covariance, "
         f"limits {nees.nees_low:.3g} to {nees.nees_high:.3g} for {nees.n_effective:.0f} effective epochs"
     )
     return f"{opening}{_judgement(nees, pit)}{_regions(regions)}"

@@ -145,7 +145,7 @@ def run(*, flights: int = 50, **work: Unpack[Work]) -> Study:
     flights : int
         Monte Carlo flights of each case, a fifth of them for the one that fails. [1]
     **work
-        Who flies, what is kept, who is told: as in :func:`navbound.scale.map_tiles`; progress counts the flights of all cases.
+        Who flies, what is kept, who follows the progress: as in :func:`navbound.scale.map_tiles`; progress counts the flights of all cases.
 
     Raises
     ------

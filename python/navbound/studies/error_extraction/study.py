@@ -163,7 +163,7 @@ def _compute(day: Day, seed: int, runs: int, exact_beta: float) -> _Computed:
     every = _extract(day, bias, noise, BETA)
     summed = _Extracted(every.error_m[0], every.bound_h_m[0], every.bound_v_m[0])
     printed = _extract(day, bias, noise[0], BETA, printed=True)
-    honest = _extract(day, bias, noise[0], exact_beta)
+    exact = _extract(day, bias, noise[0], exact_beta)
     perfect = _extract(day, bias, np.zeros(3), BETA)
     late, settled = slice(SETTLED, None), day.after(SETTLED)
 
@@ -178,7 +178,7 @@ def _compute(day: Day, seed: int, runs: int, exact_beta: float) -> _Computed:
             judged("corrected, bias bound alone", "variances dropped", summed.error_m, bias_h, bias_v),
             judged("EE bound, cfar_sum", "noise bound added", summed.error_m, summed.bound_h_m, summed.bound_v_m),
             judged("EE bound, as_printed", "noise bound over M", printed.error_m, printed.bound_h_m, printed.bound_v_m),
-            judged(f"EE bound, beta {exact_beta:.2f}", "cfar_sum, beta as measured", honest.error_m, honest.bound_h_m, honest.bound_v_m),
+            judged(f"EE bound, beta {exact_beta:.2f}", "cfar_sum, beta as measured", exact.error_m, exact.bound_h_m, exact.bound_v_m),
         ],
         noiseless=judged("EE bound, perfect velocity", "cfar_sum", perfect.error_m, perfect.bound_h_m, perfect.bound_v_m),
         share_higher=float(np.mean(np.abs(summed.error_m[late, 2]) > np.abs(day.error_m[late, 2]))),

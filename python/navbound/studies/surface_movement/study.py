@@ -220,7 +220,7 @@ def _cells_coasting(
 
 
 def _slope(accuracy: Floats, biases: Floats) -> Floats:
-    """Metres of accuracy for a metre of bias; 0 where only one size is asked for."""
+    """Metres of accuracy for a metre of bias; 0 where only one size is requested."""
     spread = float(biases[-1] - biases[0])
     return (accuracy[:, -1] - accuracy[:, 0]) / spread if spread else np.zeros(len(accuracy))
 

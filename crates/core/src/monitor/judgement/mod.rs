@@ -311,7 +311,7 @@ fn status(facts: &Facts, source: Source, reasons: Reasons, with_level: bool) -> 
 
 /// Reasons that say something of the filter and nothing of the snapshot, once the unit is known to be out.
 ///
-/// Filters and stations that fall out are among them: where the unit is not the cause the epoch is not available before this is asked.
+/// Filters and stations that fall out are among them: where the unit is not the cause the epoch is not available before this is examined.
 const OF_THE_FILTER_ALONE: [Reason; 8] = [
     Reason::StateStale,
     Reason::ImuMissing,

@@ -10,7 +10,7 @@ use crate::quantity::{GpsTime, OutOfDomain};
 use crate::special::float::{exp, ln};
 use nalgebra::Vector3;
 
-/// Longest step, in nominal periods, that the filter carries its state over, unless told otherwise.
+/// Longest step, in nominal periods, that the filter carries its state over, unless declared otherwise.
 pub const GAP_PERIODS: f64 = 3.0;
 
 /// Position and velocity of one instant.

@@ -76,7 +76,7 @@ impl Wheels {
 const KNOWN_SIGMAS: f64 = 3.0;
 
 impl Aided {
-    /// Why it was not used, where no gate was asked.
+    /// Why it was not used, where no gate was examined.
     pub const fn refusal(&self) -> Option<Refusal> {
         match self {
             Self::Used { .. } | Self::Gated { .. } => None,

@@ -11,7 +11,7 @@
 //!
 //! Where velocities come, by Doppler, the same with their first difference, which is far less noisy.
 //!
-//! An offset, a drift or a slow error of either drops out of the second difference, so the filter's own state is not asked but for the axes.
+//! An offset, a drift or a slow error of either drops out of the second difference, so the filter's own state is not used but for the axes.
 //! The delay is where S is least; it counts where S at no delay is larger by far more than chance makes it. Provenance: ours.
 
 use crate::quantity::GpsTime;
