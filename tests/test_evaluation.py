@@ -203,9 +203,9 @@ def test_a_histogram_outside_its_band_is_reported_though_the_mean_is_right() -> 
 def test_a_few_effective_epochs_decide_nothing_that_one_might_have(mean: float, says: str) -> None:
     flat = evaluation.Pit(n=400, n_effective=4.0, counts=[20] * 20, low=0.0, high=400.0)
 
-    def said(n_effective: float) -> str:
+    def sentence_of(n_effective: float) -> str:
         return consistency_words(evaluation.Nees(400, 0, n_effective, 3, mean, 1.1, 5.8), flat)
 
     # Chi-square with three degrees of freedom: 95 % between 0.216 and 9.35.
-    assert says in said(4.0)
-    assert "claims" in said(40.0)
+    assert says in sentence_of(4.0)
+    assert "claims" in sentence_of(40.0)

@@ -224,7 +224,7 @@ class Outcome:
     """What became of a run: its refusal, or its epochs with what it says."""
 
     refusal: str
-    said: tuple[str, ...]
+    words: tuple[str, ...]
     epochs: pl.DataFrame | None
 
 
@@ -238,14 +238,14 @@ def outcome(kind: Kind, content: bytes, folder: Path) -> Outcome:
     try:
         if len(files) == 3:
             run = evaluate_files(files, Options(levels=["LPV-200"]))
-            return Outcome("", said(own, run.summary.rejected, run.summary.assumptions), run.epochs)
+            return Outcome("", stated(own, run.summary.rejected, run.summary.assumptions), run.epochs)
         judged_material = material(files, requirement="RNP 2", rnp_m=3704, sigma_m=10)
     except (FormatError, InputError) as e:
         return Outcome(str(e), (), None)
-    return Outcome("", said(own, judged_material.rejected, judged_material.assumptions), judged_material.epochs)
+    return Outcome("", stated(own, judged_material.rejected, judged_material.assumptions), judged_material.epochs)
 
 
-def said(own: Path, rejected: list, notes: list[str]) -> tuple[str, ...]:  # type: ignore[type-arg]
+def stated(own: Path, rejected: list, notes: list[str]) -> tuple[str, ...]:  # type: ignore[type-arg]
     of_own = [f"{r.count} x {r.reason} (line {r.first_line})" for r in rejected if Path(r.file) == own]
     words = ("after a later one", "belong to no message", "has no end")
     return (*of_own, *(note for note in notes if own.name in note and any(w in note for w in words)))
@@ -263,7 +263,7 @@ def verdict(name: str, damage: Callable[[bytes, Kind], bytes], tmp: Path) -> tup
     assert whole.epochs is not None, whole.refusal
     if result.epochs is None:
         return ("refused" if kind.name in result.refusal and "sound-" not in result.refusal else "WRONG FILE"), result.refusal
-    if new := [words for words in result.said if words not in whole.said]:
+    if new := [one for one in result.words if one not in whole.words]:
         return "counted", "; ".join(new)
     numbers = [c for c in ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m", "hpl_m", "vpl_m") if c in whole.epochs.columns]
     same = result.epochs.height == whole.epochs.height and result.epochs.select(numbers).equals(whole.epochs.select(numbers))

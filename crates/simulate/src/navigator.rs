@@ -5,7 +5,7 @@
 use crate::philox::{Sensor, Stream};
 use crate::plan::GRAVITY;
 use crate::scenario::{Rule, positive, within};
-use crate::sensors::{Imu, Sensors, staying};
+use crate::sensors::{Imu, Sensors, correlated_error};
 use navbound_core::bound::araim::single::Requirement;
 use navbound_core::monitor::guard;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
@@ -182,6 +182,6 @@ fn times(model: ImuModel, factor: f64) -> ImuModel {
 }
 
 fn noise(white: f64, constant: f64, process: f64, time_s: f64) -> SensorNoise {
-    let (bias, bias_time_s) = staying(constant, process, time_s);
+    let (bias, bias_time_s) = correlated_error(constant, process, time_s);
     SensorNoise { white, bias, bias_time_s }
 }

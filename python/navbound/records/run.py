@@ -251,7 +251,7 @@ class MethodResult(Record):
     pinball_m: float | None
 
 
-class Held(Record):
+class RegionCoverage(Record):
     """Share of epochs within a region that claims 95 %, over many tracks."""
 
     region: Literal["circle", "sphere"]
@@ -277,7 +277,7 @@ class CovarianceConsistency(Record):
     pit_low: float
     pit_high: float
     """Band (95 %) of one bin."""
-    regions: list[Held] = Field(default_factory=list)
+    regions: list[RegionCoverage] = Field(default_factory=list)
     """Circle and sphere, where there are at least ten tracks."""
     words: str
 

@@ -223,9 +223,7 @@ def _assumptions(scenario: Scenario) -> list[str]:
             "filter's error, worked out on a first flight of the same number."
         )
         if scenario.filter.mode == "white":
-            assumptions.append(
-                "The filter takes correlated errors as new each time: its covariance is overconfident on purpose."
-            )
+            assumptions.append("The filter takes correlated errors as new each time: its covariance is overconfident on purpose.")
     if scenario.sensors is not None and scenario.sensors.faults:
         assumptions.append(f"Sensors fail: {', '.join(f'{f.kind} from {f.start_s:g} s' for f in scenario.sensors.faults)}.")
     scale = scenario.navigation.claimed_sigma_scale

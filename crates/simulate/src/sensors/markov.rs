@@ -36,7 +36,7 @@ impl Markov {
 /// ```text
 /// sigma^2 = constant^2 + process^2        2 sigma^2 / tau = 2 process^2 / tau_process
 /// ```
-pub(crate) fn staying(constant: f64, process: f64, time_s: f64) -> (f64, f64) {
+pub(crate) fn correlated_error(constant: f64, process: f64, time_s: f64) -> (f64, f64) {
     let sigma = constant.hypot(process);
     let slower = if process > 0.0 { (sigma / process) * (sigma / process) } else { f64::INFINITY };
     (sigma, (time_s * slower).min(CONSTANT_S))

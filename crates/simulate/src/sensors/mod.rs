@@ -23,7 +23,7 @@ mod sky;
 mod stations;
 mod unit_faults;
 
-pub(crate) use markov::staying;
+pub(crate) use markov::correlated_error;
 
 pub use faults::{ReceiverFault, SensorFault, Trouble};
 pub use settings::{Baro, Coverage, Dme, Envelope, Gnss, Imu, PathFlown, RangeMode, RangeParts, Sensors, Station, StationKind, Vor};

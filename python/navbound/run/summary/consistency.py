@@ -9,7 +9,7 @@ import polars as pl
 
 from navbound import anp, evaluation
 from navbound.methods import column_of
-from navbound.records.run import CovarianceConsistency, Held
+from navbound.records.run import CovarianceConsistency, RegionCoverage
 from navbound.run.verdict.results import consistency_words
 from navbound.status import USABLE
 from navbound.table.columns import COVARIANCE
@@ -62,7 +62,7 @@ def consistency_of(epochs: pl.DataFrame) -> CovarianceConsistency | None:
     )
 
 
-def _regions(error: NDArray[np.float64], covariance: NDArray[np.float64], track: NDArray[np.int64]) -> list[Held]:
+def _regions(error: NDArray[np.float64], covariance: NDArray[np.float64], track: NDArray[np.int64]) -> list[RegionCoverage]:
     """The 95 % circle and sphere against the error, where there are tracks enough to draw again."""
     if len(np.unique(track)) < TRACKS_TO_DRAW:
         return []
@@ -72,7 +72,7 @@ def _regions(error: NDArray[np.float64], covariance: NDArray[np.float64], track:
     regions = []
     for region, (size, radius) in sizes.items():
         low, high = evaluation.bootstrap_coverage(size, radius, track)
-        regions.append(Held.model_validate({"region": region, "share": float((size <= radius).mean()), "low": low, "high": high}))
+        regions.append(RegionCoverage.model_validate({"region": region, "share": float((size <= radius).mean()), "low": low, "high": high}))
     return regions
 
 

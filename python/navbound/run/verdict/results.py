@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from navbound.evaluation import Nees, Pit
-    from navbound.records.run import CovarianceOrigin, Held, MethodResult, ProtectionSummary, Verdict, Worst
+    from navbound.records.run import CovarianceOrigin, MethodResult, ProtectionSummary, RegionCoverage, Verdict, Worst
     from navbound.records.verdict import VerdictId
 
 HEADLINES: dict[VerdictId, str] = {
@@ -194,7 +194,7 @@ def protection_words(protection: list[ProtectionSummary]) -> str:
     return f" Protection level within the alert limit ({provenance}) at {available} of {n} epochs.{truth}"
 
 
-def consistency_words(nees: Nees, pit: Pit, regions: Sequence[Held] = ()) -> str:
+def consistency_words(nees: Nees, pit: Pit, regions: Sequence[RegionCoverage] = ()) -> str:
     """Whether the covariance may be believed, with the factor by which it is off, and on how much evidence."""
     opening = (
         f"NEES {nees.nees_mean:.3g}, {nees.dimension} for a consistent covariance, "
@@ -230,6 +230,6 @@ def _judgement(nees: Nees, pit: Pit) -> str:
     )
 
 
-def _regions(regions: Sequence[Held]) -> str:
+def _regions(regions: Sequence[RegionCoverage]) -> str:
     shares = [f"the 95 % {r.region} held {share(r.share)} of the epochs ({share(r.low)} to {share(r.high)})" for r in regions]
     return f" Over all tracks {', '.join(shares)}; limits from drawing whole tracks again." if shares else ""

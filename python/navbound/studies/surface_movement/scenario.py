@@ -62,7 +62,7 @@ class Method(Part):
     covariance: Literal["snapshot", "paper", "bound"]
 
 
-class Given(Part):
+class OwnNumbers(Part):
     """Numbers of the user's instead of the rebuilt ones."""
 
     clock_mps: float | None = Field(default=None, ge=0)
@@ -94,7 +94,7 @@ class SurfaceMovement(Part):
     geometry: Geometry
     grid: Grid
     method: Method
-    given: Given = Given()
+    given: OwnNumbers = OwnNumbers()
     requirement: list[Requirement] = Field(default_factory=list)
     only: list[str] = Field(default_factory=list)
     """Sub-phases to look at, by name; all without it."""

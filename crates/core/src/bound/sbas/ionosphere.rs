@@ -444,7 +444,10 @@ mod tests {
                 let vertical = grid.vertical(at(lat, lon)).unwrap();
                 let expected = between_75_and_85(lat, lon);
                 // A few roundings of values below ten.
-                assert!((vertical.delay_m - expected).abs() < 1e-12 && (vertical.variance_m2 - 2.0 * expected).abs() < 1e-11, "{lat} {lon}");
+                assert!(
+                    (vertical.delay_m - expected).abs() < 1e-12 && (vertical.variance_m2 - 2.0 * expected).abs() < 1e-11,
+                    "{lat} {lon}"
+                );
                 let lat = sign * (85.1 + 0.5 * f64::from(k));
                 let vertical = grid.vertical(at(lat, lon)).unwrap();
                 assert!((vertical.delay_m - around_the_pole(lat, lon)).abs() < 1e-12, "{lat} {lon}");
