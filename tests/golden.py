@@ -49,7 +49,7 @@ def sensed(flown: ins.Sensed) -> dict[str, Any]:
 
 
 def taxied(run: Run) -> dict[str, Any]:
-    """The numbers of a landing and the way to the stand."""
+    """The numbers of a landing and the taxi-in."""
     columns = ("est_lat_rad", "est_lon_rad", "ground_speed_mps", "fte_m", "nse_e_m", "nse_n_m", "hpl_m", "hpl_multi_m", "tse_exact_m")
     rows = run.epochs.gather_every(20)
     return {
@@ -73,7 +73,7 @@ def names() -> list[str]:
 
 
 def kept(name: str) -> dict[str, Any]:
-    """What is kept of a scenario: its run; its measurements where it has sensors; a flight on them; its way to the stand."""
+    """What is kept of a scenario: its run; its measurements where it has sensors; a flight on them; its taxi-in."""
     if name in taxi.shipped():
         return taxied(navbound.fly(name))
     if name in FLOWN:

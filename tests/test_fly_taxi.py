@@ -1,4 +1,4 @@
-"""The landing and the way to the stand at Barcelona: the route, what is simulated, what the monitors do, what is refused."""
+"""The landing and the taxi-in at Barcelona: the route, what is simulated, what the monitors do, what is refused."""
 
 from __future__ import annotations
 

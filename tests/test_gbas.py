@@ -132,7 +132,7 @@ def test_every_inferred_number_carries_its_mark() -> None:
         (lambda: gbas.protection_levels(AZ, EL, bias_m=[0.1, 0.2]), "bias_m"),
         (lambda: gbas.protection_levels(AZ, EL, ordering="best"), "ordering"),  # type: ignore[arg-type]
         (lambda: gbas.protection_levels(AZ, EL, form="best"), "form"),  # type: ignore[arg-type]
-        (lambda: gbas.protection_levels(AZ, EL, sigma_m=0.3), "sigma_h1_m"),
+        (lambda: gbas.protection_levels(AZ, EL, sigma_m=0.3), "sigma_m"),
         (lambda: gbas.protection_levels(AZ, EL, sigma_m=0.3, sigma_h1_m=0.2), "sigma_h1_m"),
         (lambda: gbas.protection_levels(AZ, EL, sigma_m=0.0, sigma_h1_m=0.2), "sigma_m"),
         (lambda: gbas.protection_levels(AZ, EL, b_values_m=np.zeros(7)), "b_values_m"),

@@ -169,7 +169,7 @@ def test_too_few_satellites_and_a_budget_that_cannot_be_met_are_results() -> Non
         ({"bias_m": -1.0}, "bias_m"),
         ({"ordering": "best"}, "ordering"),
         ({"form": "best"}, "form"),
-        ({"sigma_m": 0.3}, "sigma_h1_m"),
+        ({"sigma_m": 0.3}, "sigma_m"),
         ({"constellation": [0, 1]}, "constellation"),
     ],
 )

@@ -1,6 +1,6 @@
-//! The navigation filter on board: the `[filter]` part of a scenario, and what it is told of the sensors.
+//! The navigation filter on board: the `[filter]` part of a scenario, and what is declared to it of the sensors.
 //!
-//! It is told what a maker would declare, the standard deviations and correlation times of the `[sensors]` part, and never what was drawn.
+//! Declared is what a maker would declare, the standard deviations and correlation times of the `[sensors]` part, and never what was drawn.
 
 use crate::philox::{Sensor, Stream};
 use crate::plan::GRAVITY;
@@ -96,7 +96,7 @@ impl Navigator {
         rules
     }
 
-    /// What the filter is told.
+    /// What is declared to the filter.
     ///
     /// # Errors
     /// [`OutOfDomain`] for a gate that is no risk.
@@ -127,7 +127,7 @@ impl Navigator {
         Ok(settings)
     }
 
-    /// How wrong the start may be, as the filter is told.
+    /// How wrong the start may be, as it is declared to the filter.
     pub fn start_sigma(&self) -> StartSigma {
         StartSigma {
             position: self.position_sigma_m.map(Metres::new),

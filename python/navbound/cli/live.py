@@ -136,7 +136,7 @@ def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: 
 
 
 def _stop() -> Callable[[], bool]:
-    """Whether the command was asked to end; asked twice it ends at once."""
+    """Whether an end was requested; requested twice, the command ends at once."""
     requested = list[int]()
 
     def ask(number: int, _: object) -> None:

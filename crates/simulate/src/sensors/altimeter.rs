@@ -61,7 +61,7 @@ impl<'a> Altimeter<'a> {
         self.bias.step();
         let climbed = self.lagged_m - self.departure_m;
         let slow = s.bias_sigma_m * self.bias.now() + s.temperature_share * self.temperature_k * climbed;
-        // At one height the air's error is a constant; where the height changes, so does the deviation that is told.
+        // At one height the air's error is a constant; where the height changes, so does the declared deviation.
         let (sigma, correlation_time_s) =
             correlated_error(s.temperature_share * s.temperature_sigma_k * climbed, s.bias_sigma_m, s.bias_time_s);
         let height = BaroHeight {

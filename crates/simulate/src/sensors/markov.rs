@@ -30,7 +30,7 @@ impl Markov {
     }
 }
 
-/// A constant and a process told as one process, its deviation and its correlation time: the variance is that of both, and it moves as the
+/// A constant and a process declared as one process, its deviation and its correlation time: the variance is that of both, and it moves as the
 /// process alone does.
 ///
 /// ```text
