@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from navbound import anp, araim, dme, evaluation, gbas, gnss, ins, kpi, path, raim, rnp, rraim, sbas, tse
+from navbound import anp, araim, dme, evaluation, gbas, gnss, ins, kpi, path, raim, rnp, rraim, sbas, tse, vertical
 from navbound.scenario.sensors import Imu
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-MODULES = {m.__name__.rpartition(".")[2]: m for m in (tse, anp, rnp, gnss, sbas, raim, araim, gbas, rraim, dme, ins, kpi, evaluation, path)}
+_SUBJECTS = (tse, anp, rnp, gnss, sbas, raim, araim, gbas, rraim, dme, ins, kpi, evaluation, path, vertical)
+MODULES = {m.__name__.rpartition(".")[2]: m for m in _SUBJECTS}
 
 
 @dataclass(frozen=True)
@@ -349,6 +350,39 @@ CALLS: dict[str, Call] = {
     "path.line": Call(path.line, {"lat0_rad": 0.7, "lon0_rad": 0.3, "lat1_rad": 0.71, "lon1_rad": 0.31}),
     "path.from_azimuth": Call(path.from_azimuth, {"lat_rad": 0.7, "lon_rad": 0.3, "course_rad": 0.4}),
     "path.route": Call(path.route, {"lat_rad": np.array([0.7, 0.71]), "lon_rad": np.array([0.3, 0.31])}),
+}
+
+_AIR = {"station_m": 500.0 * TWO, "deviation_k": -20.0 * TWO}
+_SLOPE = {"crossing_m": 100.0 * TWO, "angle_rad": 0.05 * TWO}
+_PLACE = {"rnp_m": 300.0 * TWO, "angle_rad": 0.05 * TWO, "altitude_m": 900.0 * TWO}
+CALLS |= {
+    "vertical.barometric_altitude": Call(vertical.barometric_altitude, {"distance_m": 9000.0 * TWO, **_SLOPE}),
+    "vertical.barometric_distance": Call(vertical.barometric_distance, {"altitude_m": 900.0 * TWO, **_SLOPE}),
+    "vertical.budget": Call(
+        vertical.budget, {**_PLACE, "threshold_m": 300.0 * TWO, "isad_m": -20.0 * TWO, "body_geometry_m": 7.6 * TWO}, {"constants": "feet"}
+    ),
+    "vertical.cold_correction": Call(vertical.cold_correction, {"true_m": 300.0 * TWO, **_AIR}),
+    "vertical.cold_correction_doc8168": Call(vertical.cold_correction_doc8168, {"height_m": 300.0 * TWO, **_AIR}),
+    "vertical.indicated_height": Call(vertical.indicated_height, {"true_m": 300.0 * TWO, **_AIR}),
+    "vertical.isa_deviation": Call(vertical.isa_deviation, {"station_m": 500.0 * TWO, "temperature_k": 240.0 * TWO}),
+    "vertical.off_path_sigma": Call(
+        vertical.off_path_sigma,
+        {"sigma_along_m": 20.0 * TWO, "sigma_up_m": 8.0 * TWO, "correlation": 0.2 * TWO, "angle_rad": 0.05 * TWO},
+    ),
+    "vertical.requirement": Call(vertical.requirement, _PLACE, {"constants": "feet"}),
+    "vertical.risk_below": Call(vertical.risk_below, {"fte_m": 3.0 * TWO, "sigma_m": 8.0 * TWO, "limit_m": 22.86 * TWO}),
+    "vertical.setting_error": Call(vertical.setting_error, {"qnh_hpa": 950.0 * TWO, "setting_hpa": 960.0 * TWO}),
+    "vertical.setting_line": Call(
+        vertical.setting_line, {"height_m": np.array([0.0, 300.0, 900.0]), "difference_m": np.array([5.0, 1.0, 2.0])}
+    ),
+    "vertical.setting_offset": Call(vertical.setting_offset, {"setting_hpa": 950.0 * TWO}),
+    "vertical.setting_test": Call(
+        vertical.setting_test,
+        {"sigma_m": 10.0 * TWO, "false_alarm": 1e-3 * TWO, "error_m": 50.0 * TWO, "probability": 0.8 * TWO},
+    ),
+    "vertical.straight_altitude": Call(vertical.straight_altitude, {"distance_m": 9000.0 * TWO, **_SLOPE}),
+    "vertical.true_height": Call(vertical.true_height, {"indicated_m": 300.0 * TWO, **_AIR}),
+    "vertical.turn_geometry": Call(vertical.turn_geometry, {"semispan_m": 20.0 * TWO, "bank_rad": 0.3 * TWO}),
 }
 
 WITHOUT: dict[str, str] = {

@@ -27,6 +27,7 @@ LAYERS = (
         "sbas",
         "tse",
         "verify",
+        "vertical",
     ),
     ("judge", "read", "write"),
     ("scale", "report"),

@@ -36,6 +36,7 @@ SUBJECTS = (
         "rraim",
         "sbas",
         "tse",
+        "vertical",
     ),
     *("algorithms", "maps", "methods", "scale", "scenario", "status", "time", "units", "verify", "write"),
 )

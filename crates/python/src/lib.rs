@@ -38,6 +38,7 @@ mod status;
 mod subsets;
 mod surface;
 mod tse;
+mod vertical;
 
 use pyo3::prelude::*;
 
@@ -49,6 +50,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     methods::register(m)?;
     status::register(m)?;
     tse::register(m)?;
+    vertical::register(m)?;
     anp::register(m)?;
     araim::register(m)?;
     raim::register(m)?;

@@ -18,7 +18,7 @@ def study_command(
         typer.Argument(
             help="anp-comparison, decorrelation-time, error-extraction, fault-campaign, healthy-flights, "
             "multipath-time-constants, surface-movement, "
-            "tse-coverage, ukraine-rnav"
+            "tse-coverage, ukraine-rnav, vertical-budget"
         ),
     ],
     files: Annotated[list[Path] | None, typer.Argument(help="Recorded data or a configuration, for a study that takes some.")] = None,

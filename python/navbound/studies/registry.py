@@ -14,6 +14,7 @@ from navbound.studies.multipath_time_constants import study as multipath_time_co
 from navbound.studies.surface_movement import study as surface_movement
 from navbound.studies.tse_coverage import study as tse_coverage
 from navbound.studies.ukraine_rnav import study as ukraine_rnav
+from navbound.studies.vertical_budget import study as vertical_budget
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -97,6 +98,11 @@ def _ukraine_rnav(files: Files) -> Study:
     return ukraine_rnav.run()
 
 
+def _vertical_budget(files: Files) -> Study:
+    _alone(files)
+    return vertical_budget.run()
+
+
 STUDIES: dict[str, _Run] = {
     "anp-comparison": _anp_comparison,
     "decorrelation-time": _in_one_piece(decorrelation_time.run),
@@ -107,6 +113,7 @@ STUDIES: dict[str, _Run] = {
     "surface-movement": _surface_movement,
     "tse-coverage": _tse_coverage,
     "ukraine-rnav": _in_one_piece(_ukraine_rnav),
+    "vertical-budget": _in_one_piece(_vertical_budget),
 }
 """Every study by its command-line name."""
 

@@ -15,6 +15,7 @@ pub mod raim;
 pub mod rraim;
 pub mod sbas;
 pub mod tse;
+pub mod vertical;
 
 pub use crate::quantity::Provenance;
 pub use bound::{AlertBound, Alerting, Bound, MayNotAlert};

@@ -1,6 +1,7 @@
 //! Where the signals came from: nominal orbits, lines of sight, dilution of precision.
 
 pub mod atmosphere;
+pub mod barometric;
 pub mod broadcast;
 pub mod ionosphere;
 mod nominal;
