@@ -103,22 +103,22 @@ def satisfied(expression: str, allowed: set[str]) -> bool:
 
 def refusals(packages: list[Package], manifest: dict[str, Any]) -> list[str]:
     """What is not as this page says."""
-    said = []
+    refused = []
     for p in packages:
         if not p.source.startswith(REGISTRIES[p.kind]):
-            said.append(f"{p.kind} {p.name}: comes from {p.source or 'nowhere'}, not from {REGISTRIES[p.kind]}")
+            refused.append(f"{p.kind} {p.name}: comes from {p.source or 'nowhere'}, not from {REGISTRIES[p.kind]}")
         named = any(p.name == name or p.name.startswith(f"{name}-") for name in NAMED)
         if p.kind != "Python" and not satisfied(p.licence or "none", ALLOWED | ({"MPL-2.0"} if named else set())):
-            said.append(f"{p.kind} {p.name}: its licence is {p.licence}; allowed are {', '.join(sorted(ALLOWED))}, and MPL-2.0 by name")
+            refused.append(f"{p.kind} {p.name}: its licence is {p.licence}; allowed are {', '.join(sorted(ALLOWED))}, and MPL-2.0 by name")
     versions = defaultdict(set)
     for p in packages:
         if p.kind == "Rust":
             versions[p.name].add(p.version)
     several = {name for name, of in versions.items() if len(of) > 1}
-    said += [f"Rust {name}: {len(versions[name])} versions" for name in sorted(several - SEVERAL.keys())]
-    said += [f"Rust {name}: has one version; take it off the list" for name in sorted(SEVERAL.keys() - several)]
+    refused += [f"Rust {name}: {len(versions[name])} versions" for name in sorted(several - SEVERAL.keys())]
+    refused += [f"Rust {name}: has one version; take it off the list" for name in sorted(SEVERAL.keys() - several)]
     declared = {**manifest.get("dependencies", {}), **manifest.get("devDependencies", {})}
-    return said + [
+    return refused + [
         f"npm {name}: {version} is no exact version" for name, version in declared.items() if not re.fullmatch(r"\d+\.\d+\.\d+", version)
     ]
 
@@ -187,8 +187,8 @@ def main() -> int:
         *npm(json.loads((ROOT / "web" / "package-lock.json").read_text(encoding="utf-8"))),
         *python(tomllib.loads((ROOT / "uv.lock").read_text(encoding="utf-8"))),
     ]
-    said = refusals(packages, json.loads((ROOT / "web" / "package.json").read_text(encoding="utf-8")))
-    for refusal in said:
+    refused = refusals(packages, json.loads((ROOT / "web" / "package.json").read_text(encoding="utf-8")))
+    for refusal in refused:
         sys.stderr.write(f"dependencies: {refusal}\n")
     text = page(packages, (ROOT / "python" / "navbound" / "_web" / "third-party.md").read_text(encoding="utf-8"))
     if "--check" not in sys.argv:
@@ -196,7 +196,7 @@ def main() -> int:
     elif not PAGE.is_file() or PAGE.read_text(encoding="utf-8") != text:
         sys.stderr.write(f"{PAGE} differs from the lock files: run ./dev docs\n")
         return 1
-    return 1 if said else 0
+    return 1 if refused else 0
 
 
 if __name__ == "__main__":

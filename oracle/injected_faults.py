@@ -1,6 +1,6 @@
 """Faults added to real pseudoranges: how often an epoch is ``ok``, and how often its error is outside its own circle of risk 1e-5.
 
-A recording in the open is cut down to a few satellites an epoch, chosen at random, and one or two of the ranges are made wrong. The cut
+A recording in the open is cut down to a few satellites an epoch, selected at random, and one or two of the ranges are made wrong. The cut
 recording is written as RINEX 3 and solved through the public functions, so that nothing of the solution is known here. Epochs are minutes
 apart: the memory of surroundings has no part in it.
 
@@ -80,7 +80,7 @@ def prepared(recording: Recording, systems: str) -> Open:
     return Open(recording, values, solved.ranges.select("time_ns", "sv", "az_rad", "el_rad").join(usable, on=["time_ns", "sv"]))
 
 
-def chosen(sky: pl.DataFrame, cell: Cell, epochs: int, rng: np.random.Generator) -> dict[int, dict[str, float]]:
+def selected(sky: pl.DataFrame, cell: Cell, epochs: int, rng: np.random.Generator) -> dict[int, dict[str, float]]:
     """Satellites of each epoch with the fault of each."""
     times = np.array(sky["time_ns"].unique().sort())
     need = 3 + len(cell.systems) + cell.spare
@@ -136,7 +136,7 @@ def write(path: Path, source: Open, picked: dict[int, dict[str, float]]) -> None
 def run(source: Open, cell: Cell, epochs: int = 100, seed: int = 2026) -> Outcome:
     """One cell of the table."""
     rng = np.random.default_rng([seed, cell.faults, int(cell.fault_m), cell.spare, *cell.systems.encode()])
-    picked = chosen(source.sky, cell, epochs, rng)
+    picked = selected(source.sky, cell, epochs, rng)
     if not picked:
         return Outcome(0, 0, 0, 0, float("nan"), float("nan"))
     with tempfile.TemporaryDirectory() as folder:

@@ -83,11 +83,11 @@ def damage(random: np.random.Generator, content: bytes, *, binary: bool) -> Dama
     return Damage(kind, content[:at] + made + content[end:], at, end)
 
 
-def differing(clean: Cells, found: Cells) -> tuple[set[Cell], set[Cell], set[Cell]]:
+def differing(clean: Cells, cells: Cells) -> tuple[set[Cell], set[Cell], set[Cell]]:
     """Cells that are lost, changed, and new."""
-    lost = {k for k in clean if k not in found}
-    changed = {k for k, v in clean.items() if k in found and found[k] != v}
-    return lost, changed, {k for k in found if k not in clean}
+    lost = {k for k in clean if k not in cells}
+    changed = {k for k, v in clean.items() if k in cells and cells[k] != v}
+    return lost, changed, {k for k in cells if k not in clean}
 
 
 class Bench:
@@ -117,19 +117,19 @@ class Bench:
         begin = self.lines[line]
         end = self.lines[line + 1] if line + 1 < len(self.lines) else len(self.content)
         try:
-            found, _ = self.read(self.content[:begin] + self.content[end:])
+            reading, _ = self.read(self.content[:begin] + self.content[end:])
         except (FormatError, InputError):
             return None
-        lost, changed, new = differing(self.clean[0], found)
+        lost, changed, new = differing(self.clean[0], reading)
         return frozenset(lost | changed | new)
 
     def verdict(self, d: Damage) -> tuple[str, str]:  # noqa: PLR0911
         """What became of a damaged file, and the words."""
         try:
-            found, stated = self.read(d.content)
+            reading, stated = self.read(d.content)
         except (FormatError, InputError) as e:
             return ("refused" if self.path.name in str(e) else "WRONG FILE"), str(e)
-        lost, changed, new = differing(self.clean[0], found)
+        lost, changed, new = differing(self.clean[0], reading)
         counted = stated != self.clean[1]
         if not (lost or changed or new):
             return ("counted" if counted else "same"), ""

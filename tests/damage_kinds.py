@@ -34,12 +34,12 @@ Result = tuple[Cells, Counter[str]]
 def cells(frame: pl.DataFrame, keys: list[str]) -> Cells:
     """Every number of a table by its row's key; what is not there has no cell."""
     names = [c for c in frame.columns if c not in keys]
-    found: Cells = {}
+    by_name: Cells = {}
     for row in frame.iter_rows(named=True):
         key = tuple(row[k] for k in keys)
-        found[key, "is there"] = True
-        found |= {(key, name): row[name] for name in names if row[name] is not None and row[name] == row[name]}
-    return found
+        by_name[key, "is there"] = True
+        by_name |= {(key, name): row[name] for name in names if row[name] is not None and row[name] == row[name]}
+    return by_name
 
 
 def tracks(path: Path) -> Result:
@@ -55,17 +55,17 @@ def tracks(path: Path) -> Result:
 
 def observations(path: Path) -> Result:
     o = gnss.read_observations(path)
-    found: Cells = {((int(t),), "is there"): True for t in o.time_ns}
+    by_name: Cells = {((int(t),), "is there"): True for t in o.time_ns}
     for system, codes in o.codes.items():
         for code in codes:
             column = o.column(system, code)
             keys = zip(column["time_ns"], column["satellite"], strict=True)
             rows = zip(keys, column["value"], column["loss_of_lock"], strict=True)
-            found |= {((*key, code), "value"): value for key, value, _ in rows if value is not None and not math.isnan(value)}
+            by_name |= {((*key, code), "value"): value for key, value, _ in rows if value is not None and not math.isnan(value)}
     stated = Counter(r.reason for r in o.refused) + Counter({f"skipped {k}": v for k, v in o.skipped.items()})
     stated[f"refused {o.n_refused}"] = 1
     stated += _ends(path)
-    return found, stated
+    return by_name, stated
 
 
 def _ends(path: Path) -> Counter[str]:
@@ -88,19 +88,19 @@ def orbits(path: Path) -> Result:
     # At the records of the file, from its second hour on: a polynomial of order 10 has to stand around each.
     first, step = _sp3_times(path.with_name(f"sound-{path.name}"))
     times = first + step * np.arange(0, 12)
-    found: Cells = {}
+    by_name: Cells = {}
     for satellite in p.satellites:
         ecef, _, clock = p.states(satellite, times)
         for t, position, c in zip(times, ecef, clock, strict=True):
             # A satellite's table is one record: its polynomial goes through the neighbours of an epoch too.
-            found |= {
+            by_name |= {
                 ((satellite,), f"{axis} at {t}"): round(v, 3) for axis, v in zip("xyz", position.tolist(), strict=True) if not math.isnan(v)
             }
             if not math.isnan(c):
-                found[(satellite,), f"clock at {t}"] = round(float(c), 12)
+                by_name[(satellite,), f"clock at {t}"] = round(float(c), 12)
     stated = Counter(r.reason for r in p.refused) + Counter({f"skipped {k}": v for k, v in p.skipped.items()})
     stated[f"positions {p.n_positions}, clocks {p.n_clocks}"] = 1
-    return found, stated
+    return by_name, stated
 
 
 @cache
@@ -113,10 +113,10 @@ def _sp3_times(path: Path) -> tuple[int, int]:
 def almanac(path: Path) -> Result:
     o = gnss.constellation(path, near_ns=1_467_000_000_000_000_000)
     columns = ("semi_major_m", "eccentricity", "inclination_rad", "node_rad", "perigee_rad", "mean_anomaly_rad", "node_rate_radps")
-    found: Cells = {
+    by_name: Cells = {
         ((satellite,), name): float(getattr(o, name)[k]) for k, satellite in enumerate(o.satellite) for name in columns if hasattr(o, name)
     }
-    return found | {(("reference",), "time"): o.reference_ns}, Counter()
+    return by_name | {(("reference",), "time"): o.reference_ns}, Counter()
 
 
 def messages(path: Path) -> Result:

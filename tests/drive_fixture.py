@@ -35,7 +35,7 @@ def gps_ns(unix_like_s: Floats) -> NDArray[np.int64]:
 
 @dataclass(frozen=True)
 class Tuning:
-    """What the filter is told of the unit: white noise and biases (of 1000 s), delay of its time tags, slip of the wheels (none: free)."""
+    """Declared of the unit: white noise and biases (of 1000 s), delay of its time tags, slip of the wheels (none: free)."""
 
     delay_s: float
     gyroscope_white: float
@@ -204,11 +204,11 @@ def main() -> None:
     for wheels in (True, False):
         judged = []
         for part, other in (PARTS, PARTS[::-1]):
-            found = tuned(drive, *part, wheels=wheels)
-            judged.append(drive.in_outages(found, *other))
-            print(found, drive.likelihood(found, *part))
+            result = tuned(drive, *part, wheels=wheels)
+            judged.append(drive.in_outages(result, *other))
+            print(result, drive.likelihood(result, *part))
             print("held out", words(*judged[-1]))
-            print("own part", words(*drive.in_outages(found, *part)), flush=True)
+            print("own part", words(*drive.in_outages(result, *part)), flush=True)
         h, inside = (np.concatenate(x) for x in zip(*judged, strict=True))
         print("both", words(h, inside), flush=True)
 

@@ -48,7 +48,7 @@ def sensed(flown: ins.Sensed) -> dict[str, Any]:
 
 
 def taxied(run: Run) -> dict[str, Any]:
-    """The numbers of a landing and the way to the stand."""
+    """The numbers of a landing and the taxi-in."""
     columns = ("est_lat_rad", "est_lon_rad", "ground_speed_mps", "fte_m", "nse_e_m", "nse_n_m", "hpl_m", "hpl_multi_m", "tse_exact_m")
     rows = run.epochs.gather_every(20)
     return {
@@ -74,9 +74,9 @@ def names() -> list[str]:
 def kept(name: str) -> dict[str, Any]:
     """What is kept of a scenario: its run; its measurements where it has sensors; a flight on them; its way to the stand."""
     if name in FLOWN:
-        found = scenario.load(FLOWN[name])
-        assert found.sensors is not None
-        slow = found.model_copy(update={"sensors": found.sensors.model_copy(update={"rate_hz": 10})})
+        loaded = scenario.load(FLOWN[name])
+        assert loaded.sensors is not None
+        slow = loaded.model_copy(update={"sensors": loaded.sensors.model_copy(update={"rate_hz": 10})})
         run = judge(fly.material(slow))
         return outcome(run) | {"nav_mode": run.epochs["nav_mode"].gather_every(590).to_list()}
     if isinstance(scenario.read(name), scenario.Taxi):

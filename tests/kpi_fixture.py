@@ -17,11 +17,11 @@ from navbound.records.performance import (
     KpiSeries,
     Level,
     LevelResult,
+    ListedSubset,
     Performance,
     Spread,
     StanfordBins,
     StanfordCounts,
-    SubsetFound,
     Subsets,
 )
 
@@ -115,15 +115,15 @@ def _bins(axis: Literal["h", "v"], error: Floats, level: Floats, variant: Litera
     known = np.isfinite(level)
     last = round(LIMIT_M / BIN_M)
     pairs = np.minimum(np.floor(np.stack([error[known], level[known]]) / BIN_M).astype(int), last)
-    found, count = np.unique(pairs, axis=1, return_counts=True)
+    result, count = np.unique(pairs, axis=1, return_counts=True)
     return StanfordBins(
         axis=axis,
         variant=variant,
         bin_m=BIN_M,
         limit_m=LIMIT_M,
         n=int(known.sum()),
-        error_bin=found[0].tolist(),
-        level_bin=found[1].tolist(),
+        error_bin=result[0].tolist(),
+        level_bin=result[1].tolist(),
         count=count.tolist(),
     )
 
@@ -213,8 +213,8 @@ def _series(e: dict[str, Floats]) -> KpiSeries:
 
     def most(values: Floats, pick: Literal["max", "min"]) -> list[float | None]:
         fill = -np.inf if pick == "max" else np.inf
-        found = getattr(np.where(np.isnan(values), fill, values).reshape(n, WIDTH_S), pick)(axis=1)
-        return [float(v) if np.isfinite(v) else None for v in found]
+        result = getattr(np.where(np.isnan(values), fill, values).reshape(n, WIDTH_S), pick)(axis=1)
+        return [float(v) if np.isfinite(v) else None for v in result]
 
     def frequent(causes: list[str]) -> list[str]:
         out = []
@@ -241,7 +241,7 @@ def _series(e: dict[str, Floats]) -> KpiSeries:
 
 
 def _events(e: dict[str, Floats], truth: bool) -> list[KpiEvent]:
-    found: list[KpiEvent] = []
+    listed: list[KpiEvent] = []
     for name, (hal, val) in _LIMITS.items():
         available, causes = _available(e, name), _cause(name, e)
         hazard = available & ((e["hpe"] > hal) | (e["vpe"] > val if val is not None else False))
@@ -254,7 +254,7 @@ def _events(e: dict[str, Floats], truth: bool) -> list[KpiEvent]:
                     part = values[a:b]
                     return float(np.nanmax(part)) if np.isfinite(part).any() else None
 
-                found.append(
+                listed.append(
                     KpiEvent(
                         level=name,
                         kind=kind,
@@ -275,12 +275,12 @@ def _events(e: dict[str, Floats], truth: bool) -> list[KpiEvent]:
                         mode_onset="PA",
                     )
                 )
-    return sorted(found, key=lambda event: (event.kind != "hazard", -event.duration_s))
+    return sorted(listed, key=lambda event: (event.kind != "hazard", -event.duration_s))
 
 
 def _subsets(levels: list[LevelResult]) -> Subsets:
     """Counts that differ from those of the epochs, so that the page cannot show one for the other."""
-    one = SubsetFound(
+    one = ListedSubset(
         time_ns=START_NS + 60 * 10**9,
         satellites=["G01", "G02", "G03", "G05"],
         left_out=["G07"],

@@ -14,9 +14,9 @@ import numpy as np
 import polars as pl
 
 from navbound.records.run import (
+    CovarianceConsistency,
     CrossTrack,
     EventSummary,
-    Honesty,
     InputFile,
     MethodResult,
     PhaseSummary,
@@ -332,7 +332,7 @@ def flight(n_tracks: int = 1, truth: bool = True, n: int = N) -> Fixture:
         ],
         accuracy=accuracy,
         integrity=[_method("tse-exact", "TSE, exact folded normal", "tse_m", frame, risk=1e-5, provenance="re-derived")],
-        honesty=Honesty(
+        honesty=CovarianceConsistency(
             n=frame.height,
             n_effective=240.5,
             dimension=2,

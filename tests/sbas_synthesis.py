@@ -25,12 +25,12 @@ Vector = np.ndarray[Any, np.dtype[np.float64]]
 def records(path: Path) -> dict[tuple[int, int], list[float]]:
     """Numbers of every GPS record of a version 3 file by (PRN, IODE): the clock line, then the seven orbit lines."""
     lines = path.read_text().split("END OF HEADER")[1].splitlines()[1:]
-    found = {}
+    by_name = {}
     for k in range(0, len(lines) - 7, 8):
         block = [lines[k][23:], *(line[4:] for line in lines[k + 1 : k + 8])]
         numbers = [float(line[19 * i : 19 * i + 19].strip() or 0) for j, line in enumerate(block) for i in range(3 if j == 0 else 4)]
-        found[int(lines[k][1:3]), round(numbers[3])] = numbers
-    return found
+        by_name[int(lines[k][1:3]), round(numbers[3])] = numbers
+    return by_name
 
 
 def satellite(n: list[float], tow: float) -> tuple[Vector, float]:
@@ -92,7 +92,7 @@ def pseudoranges(  # noqa: PLR0917
 ) -> dict[int, float]:
     """What a receiver at the place measures [m], its clock fast by ``clock_m``, if the service's corrections are perfect."""
     seen = sbas.satellites(log, navigation, np.array([time_ns]), **place, mode="pa")
-    found, data = {}, records(navigation)
+    by_name, data = {}, records(navigation)
     tow = time_ns // 1_000_000_000 % 604_800 - clock_m / C
     day = (EPOCH + timedelta(seconds=time_ns // 1_000_000_000)).timetuple().tm_yday
     above = zenith(math.degrees(place["lat_rad"]), place["h_m"], day)
@@ -110,8 +110,8 @@ def pseudoranges(  # noqa: PLR0917
         obliquity = 1 / math.sqrt(1 - (6378136.3 / (6378136.3 + 350000) * math.cos(seen.el_rad[k])) ** 2)
         delays = obliquity * seen.iono_vertical_m[k] + above * 1.001 / math.sqrt(0.002001 + sin_el**2)
         offset = clock + seen.clock_correction_s[k] - numbers[25]
-        found[prn] = way + clock_m + delays - C * offset - float(seen.fast_correction_m[k])
-    return found
+        by_name[prn] = way + clock_m + delays - C * offset - float(seen.fast_correction_m[k])
+    return by_name
 
 
 def rinex(ranges: dict[int, dict[int, float]]) -> str:

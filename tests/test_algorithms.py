@@ -17,7 +17,7 @@ import navbound
 from navbound import InputError, algorithms, maps
 from navbound.cli.main import app
 from navbound.maps.sources import Times
-from navbound.run.predict import Asked, place, predict
+from navbound.run.predict import Request, place, predict
 from test_raim import day
 from toy_algorithm import TOY, WORDS
 
@@ -62,13 +62,13 @@ def test_a_toy_can_be_mapped(tmp_path: Path) -> None:
 
 def test_a_toy_can_be_predicted() -> None:
     with algorithms.register(TOY):
-        found = predict(Asked(["gps"], HOURS, ("RNP 0.3",), kind="toy"), [place("50,8")])
+        result = predict(Request(["gps"], HOURS, ("RNP 0.3",), kind="toy"), [place("50,8")])
         printed = CliRunner().invoke(app, ["predict", "toy", "gps", "--at", "50,8", "--hours", "2", "--every-s", "600", "--json"])
-    usual = predict(Asked(["gps"], HOURS, ("RNP 0.3",)), [place("50,8")])
-    assert found.kind == json.loads(printed.output)["kind"] == "toy"
-    assert found.lines[0].p_exclusion is None
-    assert found.lines[0].p_detection <= usual.lines[0].p_detection
-    assert WORDS in found.assumptions
+    usual = predict(Request(["gps"], HOURS, ("RNP 0.3",)), [place("50,8")])
+    assert result.kind == json.loads(printed.output)["kind"] == "toy"
+    assert result.lines[0].p_exclusion is None
+    assert result.lines[0].p_detection <= usual.lines[0].p_detection
+    assert WORDS in result.assumptions
 
 
 def test_a_toy_can_be_evaluated_and_stands_in_the_report(shared_data: Path, tmp_path: Path) -> None:

@@ -28,8 +28,8 @@ GROUPS = ["LFPB/07", "LFPB/27", "LFPG/08R", "LFPG/26L", "LFPG/09R", "LFPO/06", "
 
 @functools.cache
 def reference() -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(REFERENCE.read_text(encoding="utf-8"))
-    return found
+    data: dict[str, Any] = json.loads(REFERENCE.read_text(encoding="utf-8"))
+    return data
 
 
 @functools.cache
@@ -72,23 +72,23 @@ AGREE_M = 0.05
 @pytest.mark.parametrize("group", GROUPS)
 def test_statistics_of_a_runway_agree_with_the_reference(group: str) -> None:
     expected = reference()["runways"][group.replace("/", "_")]
-    (found,) = [c for c in paris().cross_track if c.path == group]
-    assert found.n_tracks == expected["aircraft"]
-    assert found.n_points == expected["points"]
-    assert abs(found.mean_m - expected["mean_m"]) <= AGREE_M
-    assert abs(found.std_m - expected["std_m"]) <= AGREE_M
-    assert abs(found.abs95_m - expected["abs95_m"]) <= AGREE_M
-    assert found.between_tracks_std_m is not None
-    assert abs(found.between_tracks_std_m - expected["between_aircraft_std_m"]) <= AGREE_M
+    (statistics,) = [c for c in paris().cross_track if c.path == group]
+    assert statistics.n_tracks == expected["aircraft"]
+    assert statistics.n_points == expected["points"]
+    assert abs(statistics.mean_m - expected["mean_m"]) <= AGREE_M
+    assert abs(statistics.std_m - expected["std_m"]) <= AGREE_M
+    assert abs(statistics.abs95_m - expected["abs95_m"]) <= AGREE_M
+    assert statistics.between_tracks_std_m is not None
+    assert abs(statistics.between_tracks_std_m - expected["between_aircraft_std_m"]) <= AGREE_M
 
 
 @pytest.mark.parametrize("group", GROUPS)
 def test_every_approach_agrees_with_the_reference(group: str) -> None:
-    found = {str(name).partition(" ")[0]: part for (name,), part in gated(group).group_by("track")}
+    by_name = {str(name).partition(" ")[0]: part for (name,), part in gated(group).group_by("track")}
     expected = reference()["runways"][group.replace("/", "_")]["per_aircraft"]
-    assert set(found) == {e["icao"] for e in expected}
+    assert set(by_name) == {e["icao"] for e in expected}
     for e in expected:
-        fte = found[e["icao"]]["fte_m"].to_numpy()
+        fte = by_name[e["icao"]]["fte_m"].to_numpy()
         assert len(fte) == e["points"]
         assert abs(fte.mean() - e["mean_m"]) <= AGREE_M
         assert abs(fte.std() - e["std_m"]) <= AGREE_M
@@ -100,11 +100,11 @@ VARIANTS = {"along_1_5nm": Gates(before_min_m=1852, before_max_m=5 * 1852), "gat
 
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_other_gates_agree_with_the_reference_too(variant: str) -> None:
-    found = {c.path: c for c in paris(VARIANTS[variant]).cross_track}
+    by_name = {c.path: c for c in paris(VARIANTS[variant]).cross_track}
     for group in GROUPS:
         expected = reference()["runways"][group.replace("/", "_")]["variants"][variant]
-        assert (found[group].n_tracks, found[group].n_points) == (expected["aircraft"], expected["points"])
-        assert abs(found[group].abs95_m - expected["abs95_m"]) <= AGREE_M
+        assert (by_name[group].n_tracks, by_name[group].n_points) == (expected["aircraft"], expected["points"])
+        assert abs(by_name[group].abs95_m - expected["abs95_m"]) <= AGREE_M
 
 
 def test_a_flat_map_fails_where_the_geodesic_does_not() -> None:
@@ -127,8 +127,8 @@ def test_a_flat_map_fails_where_the_geodesic_does_not() -> None:
 
 def test_a_named_runway_gives_the_same_as_auto() -> None:
     named = material(TRACKS, path="LFPO/06", requirement="RNP 0.3", rnp_m=555.6)
-    (found,) = [c for c in named.cross_track if c.path == "LFPO/06"]
-    assert found == next(c for c in paris().cross_track if c.path == "LFPO/06")
+    (statistics,) = [c for c in named.cross_track if c.path == "LFPO/06"]
+    assert statistics == next(c for c in paris().cross_track if c.path == "LFPO/06")
     assert [w.name for w in named.waypoints] == ["LFPO/06"]
     # The file states no accuracy and none was given: nothing can be judged, and every epoch says so.
     assert set(named.epochs["status"]) <= {"not_available"}
@@ -139,10 +139,10 @@ def test_a_runway_nobody_lands_on_is_refused() -> None:
         material(TRACKS, path="LFPO/24", requirement="RNP 0.3", rnp_m=555.6)
 
 
-def test_positions_that_were_held_are_counted_and_not_judged() -> None:
+def test_positions_that_repeat_are_counted_and_not_judged() -> None:
     """Of 2473 points on 08R four in ten repeat an earlier position; without them the spread is larger, not smaller."""
-    found = {c.path: c for c in paris().cross_track}
-    every, fresh = found["LFPG/08R"], found["LFPG/08R, held and implausible positions left out"]
+    by_name = {c.path: c for c in paris().cross_track}
+    every, fresh = by_name["LFPG/08R"], by_name["LFPG/08R, held and implausible positions left out"]
     repeated = (
         pl.read_csv(TRACKS)
         .sort("icao24", "timestamp")
@@ -157,9 +157,9 @@ def test_positions_that_were_held_are_counted_and_not_judged() -> None:
     assert points.join(repeated, on=["icao24", "time_ns"], how="anti").height == fresh.n_points
     assert fresh.n_points < 0.6 * every.n_points
     assert fresh.abs95_m > every.abs95_m
-    held = paris().epochs.filter(pl.col("status") == "not_available")
-    assert set(held["reason"]) == {"position held too long"}
-    assert held["cov_ee_m2"].null_count() == held.height
+    frozen = paris().epochs.filter(pl.col("status") == "not_available")
+    assert set(frozen["reason"]) == {"position held too long"}
+    assert frozen["cov_ee_m2"].null_count() == frozen.height
 
 
 def test_the_material_is_complete() -> None:

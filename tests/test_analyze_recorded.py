@@ -69,7 +69,7 @@ def test_the_monitor_raises_at_every_large_step() -> None:
 
 @needs_data
 @pytest.mark.parametrize("flight", ["ajaccio", "brussels_ils", "kiruna", "munich", "nice", "vienna"])
-def test_an_honest_flight_has_no_jumps(flight: str) -> None:
+def test_a_sound_flight_has_no_jumps(flight: str) -> None:
     """Navaid inspection flights: arcs, holds and steep turns at 5 s or 10 s, with the delays of a network of receivers."""
     m = material(SHARED / "aircraft" / "calibration" / f"{flight}.json.gz", requirement="RNP 1", rnp_m=1852, sigma_m=10)
     assert any(a.startswith("Plausibility: 0 position jumps") for a in m.assumptions)
@@ -79,7 +79,7 @@ def test_an_honest_flight_has_no_jumps(flight: str) -> None:
 @needs_data
 @pytest.mark.parametrize(("solution", "epochs", "expected", "tolerance"), [("spp", 550, 4.21, 0.005), ("rtk", 531, 6955.0, 0.5)])
 def test_the_drive_has_the_error_statistics_of_the_catalogue(solution: str, epochs: int, expected: float, tolerance: float) -> None:
-    """README of the data: mean NEES 4.21 and 6955, to the digits printed; an honest covariance has 3."""
+    """README of the data: mean NEES 4.21 and 6955, to the digits printed; a consistent covariance has 3."""
     m = material(DRIVE / f"rover_1Hz_{solution}.pos", truth=DRIVE / "reference_1Hz.pos", requirement="RNP 0.3", rnp_m=555.6)
     assert m.epochs.height == epochs
     assert abs(nees(m) - expected) <= tolerance
@@ -171,8 +171,8 @@ def test_the_callers_sigma_goes_before_the_file_and_the_covariance_before_the_ca
 
 
 def test_a_category_counts_for_five_minutes_and_zero_means_unknown() -> None:
-    held = claim(epoch_table(nac_p=[9.0, None, None, None, None, None, None, 0.0, None])).epochs["cov_ee_m2"]
-    assert held.is_not_null().to_list() == [True] * 6 + [False] * 3
+    in_force = claim(epoch_table(nac_p=[9.0, None, None, None, None, None, None, 0.0, None])).epochs["cov_ee_m2"]
+    assert in_force.is_not_null().to_list() == [True] * 6 + [False] * 3
 
 
 def make_track(folder: Path, line: path.Path, offsets_m: list[float], step_m: float, start_m: float) -> Path:
@@ -304,14 +304,14 @@ def test_an_epoch_in_two_files_counts_once(tmp_path: Path) -> None:
 def test_the_shared_falsified_flight_has_two_impossible_steps_by_the_time_of_position() -> None:
     """Rows of 09:39:43 and 09:58:11 UTC, reached from those a second earlier; the catalogue gives the larger as 563 km on the sphere."""
     reading = read(SPOOFED)
-    epochs, found = check(reading.epochs)
+    epochs, doubts = check(reading.epochs)
     jumps = epochs.filter(pl.col("reason_id") == "position_jump")
     # GPS time is 18 s ahead of UTC.
     of_day = [(t // 1_000_000_000 - 18) % 86_400 for t in jumps["time_ns"]]
     assert of_day == [9 * 3600 + 39 * 60 + 43, 9 * 3600 + 58 * 60 + 11]
     # The chord on the ellipsoid: the flattening (1/298) bounds what a sphere differs by.
-    assert abs(found.largest_step_m / 563_000 - 1) < 1 / 298
-    assert (found.n_jump, found.n_late) == (2, 0)
+    assert abs(doubts.largest_step_m / 563_000 - 1) < 1 / 298
+    assert (doubts.n_jump, doubts.n_late) == (2, 0)
     assert epochs["position_time_ns"].null_count() == 0
     assert not any("last_position" in note for note in reading.notes)
 
@@ -323,10 +323,10 @@ def test_a_fast_step_is_never_silent_and_the_time_of_position_decides_it(tmp_pat
     table = pl.DataFrame(rows, schema=["timestamp", "latitude", "longitude", "groundspeed", "last_position"], orient="row")
     (dated := tmp_path / "dated.csv").write_text(table.write_csv())
     (undated := tmp_path / "undated.csv").write_text(table.drop("last_position").write_csv())
-    epochs, found = check(read(undated).epochs)
+    epochs, doubts = check(read(undated).epochs)
     assert epochs["reason_id"].to_list() == [None] * 3 + ["position_late"] + [None] * 2
     assert epochs["status"][3] == "degraded"
-    assert "1 steps are faster than the aircraft's own speed" in found.words
+    assert "1 steps are faster than the aircraft's own speed" in doubts.words
     assert check(read(dated).epochs)[0]["reason_id"][3] == "position_jump"
     # A time of position that is later than its row is no such time.
     (wrong := tmp_path / "wrong.csv").write_text(table.with_columns(last_position=pl.col("last_position") + 500).write_csv())

@@ -40,7 +40,7 @@ def turned(sigma: tuple[float, ...], seed: int) -> np.ndarray:
 def test_probabilities_agree_with_nested_quadrature(sigma: tuple[float, ...], mean: tuple[float, ...], radius: float) -> None:
     v = turned(sigma, 3)
     law = (anp.circle_law if len(sigma) == 2 else anp.sphere_law)(v, radius, mean)
-    # What the oracle's integrator is asked for, in two and in three dimensions.
+    # The tolerances of the oracle's integrator, in two and in three dimensions.
     assert law.inside == pytest.approx(anp_scipy.ball(v, np.array(mean), radius), abs=1e-9 if len(sigma) == 2 else 1e-7)
 
 
@@ -55,17 +55,17 @@ def test_a_round_error_with_a_mean_is_non_central_chi_square() -> None:
 
 def test_a_biased_line_agrees_with_the_two_tails() -> None:
     for bias, risk in [(0.0, 0.05), (0.3, 0.05), (-4.0, 1e-5), (50.0, 1e-9), (1e-9, 0.5), (3.0, 0.4)]:
-        found = anp.along(4.0 * np.eye(3), [0.0, 1.0, 0.0], risk, [7.0, bias, 7.0])
-        assert found == pytest.approx(anp_scipy.folded_half_width(bias, 2.0, risk), rel=1e-12)
+        bounds = anp.along(4.0 * np.eye(3), [0.0, 1.0, 0.0], risk, [7.0, bias, 7.0])
+        assert bounds == pytest.approx(anp_scipy.folded_half_width(bias, 2.0, risk), rel=1e-12)
 
 
 def test_imhof_agrees_where_it_converges() -> None:
     variances, delta = np.array([4.0, 2.0, 0.5]), np.array([0.5, 1.0, 0.2])
     mean = np.sqrt(variances) * delta
     for x in (4.0, 12.0, 25.0):
-        found = anp.sphere_risk(np.diag(variances), np.sqrt(x), mean)
+        result = anp.sphere_risk(np.diag(variances), np.sqrt(x), mean)
         # The truncated oscillation of the integral decays as u^(-5/2).
-        assert found == pytest.approx(anp_scipy.imhof_outside(variances, delta**2, x), abs=1e-6)
+        assert result == pytest.approx(anp_scipy.imhof_outside(variances, delta**2, x), abs=1e-6)
 
 
 def test_correlated_boxes_agree_with_the_multivariate_normal() -> None:

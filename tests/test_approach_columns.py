@@ -45,6 +45,6 @@ ABSENT = [
 def test_an_absent_column_is_unknown_at_every_epoch(absent: list[str]) -> None:
     of = runway(NAME)
     whole = find(_landing(), [of])
-    found = find(_landing().drop(absent), [of])
-    assert found.epochs.height == whole.epochs.height > N // 2
-    assert len(found.notes) == len(absent), "each rule without its column is named"
+    approaches = find(_landing().drop(absent), [of])
+    assert approaches.epochs.height == whole.epochs.height > N // 2
+    assert len(approaches.notes) == len(absent), "each rule without its column is named"

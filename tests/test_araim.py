@@ -40,7 +40,7 @@ def test_the_simulator_and_the_published_example_are_met() -> None:
         p_const = [1e-8] * 5
         for system, p in zip((GPS, GALILEO), case["p_const"], strict=False):
             p_const[system] = p
-        found = araim.protection_levels(
+        levels = araim.protection_levels(
             -g[:, :3],
             systems,
             np.sqrt(case["sig2_int"]),
@@ -52,17 +52,17 @@ def test_the_simulator_and_the_published_example_are_met() -> None:
             service="lpv-200" if case["settings"]["name"].startswith("LPV") else "horizontal",
         )
         maast = case["expected_maast"]
-        assert found.n_modes == maast["n_modes"], case["id"]
+        assert levels.n_modes == maast["n_modes"], case["id"]
         # Printed to ten digits, and found there by subtracting from one.
-        assert abs(found.p_unmonitored - maast["p_not_monitored"]) <= 1e-9 * maast["p_not_monitored"] + 4e-15, case["id"]
+        assert abs(levels.p_unmonitored - maast["p_not_monitored"]) <= 1e-9 * maast["p_not_monitored"] + 4e-15, case["id"]
         if maast["vpl"] is None:
-            assert np.isposinf(found.vpl_m)
-            assert np.isposinf(found.hpl_m)
-            assert found.status == "not_monitored"
+            assert np.isposinf(levels.vpl_m)
+            assert np.isposinf(levels.hpl_m)
+            assert levels.status == "not_monitored"
             continue
         # Its ten bisections leave up to 4 mm; the specification allows 10.
         for name, key in (("vpl_m", "vpl"), ("hpl_m", "hpl"), ("emt_m", "emt"), ("sigma_acc_u_m", "sig_acc_v")):
-            assert abs(float(getattr(found, name)) - maast[key]) <= 0.01, (case["id"], name)
+            assert abs(float(getattr(levels, name)) - maast[key]) <= 0.01, (case["id"], name)
 
 
 def independent(unit: NDArray[np.float64], systems: NDArray[np.int64], sigma: NDArray[np.float64], bias: float, p_sat: float) -> float:
@@ -88,9 +88,9 @@ def independent(unit: NDArray[np.float64], systems: NDArray[np.int64], sigma: ND
     none = math.prod(1 - p for p, _ in events)
     modes: dict[frozenset[int], float] = {frozenset(): none}
     for size in (1, 2):
-        for chosen in combinations(range(len(events)), size):
-            out = frozenset().union(*(events[k][1] for k in chosen))
-            modes[out] = modes.get(out, 0.0) + none * math.prod(odds[k] for k in chosen)
+        for selected in combinations(range(len(events)), size):
+            out = frozenset().union(*(events[k][1] for k in selected))
+            modes[out] = modes.get(out, 0.0) + none * math.prod(odds[k] for k in selected)
     rest = 1 - math.fsum(modes.values())
     for _, whole in events[n:]:
         limit = 0.01 * modes[whole]
@@ -140,9 +140,9 @@ def test_downdates_agree_with_a_new_inversion_for_every_mode(n: int, p_sat: floa
     unit = sky(n, seed=n)
     systems = np.where(np.arange(n) < n // 2, GPS, GALILEO)
     sigma = np.linspace(0.8, 2.5, n)
-    found = araim.protection_levels(unit, systems, sigma, sigma, bias_m=0.5, p_sat=p_sat)
+    levels = araim.protection_levels(unit, systems, sigma, sigma, bias_m=0.5, p_sat=p_sat)
     # Bisection to 1000 / 2^60 m; conditions of these geometries are below 1e4, so the gains agree to 1e-11.
-    assert abs(float(found.vpl_m) - independent(unit, systems, sigma, 0.5, p_sat)) <= 1e-7 * float(found.vpl_m)
+    assert abs(float(levels.vpl_m) - independent(unit, systems, sigma, 0.5, p_sat)) <= 1e-7 * float(levels.vpl_m)
 
 
 def test_levels_grow_with_noise_bias_and_priors_and_ignore_the_order_of_epochs() -> None:
@@ -182,11 +182,11 @@ def test_what_the_sky_cannot_give_is_a_status() -> None:
     cone = np.linspace(0, 2 * math.pi, 8, endpoint=False)
     unit[2] = np.stack([np.cos(cone) * 0.8, np.sin(cone) * 0.8, np.full(8, 0.6)], axis=-1)
     unit[3, :4] = sky(4)
-    found = araim.protection_levels(unit, [GPS] * 8, 1.0, 1.0, p_const=[1e-8] * 5)
-    assert found.status.tolist() == ["too_few_satellites", "ok", "singular", "not_monitored"]
-    assert np.isnan(found.hpl_m[[0, 2]]).all()
-    assert np.isposinf(found.hpl_m[3])
-    assert found.n_sv.tolist() == [3, 8, 8, 4]
+    levels = araim.protection_levels(unit, [GPS] * 8, 1.0, 1.0, p_const=[1e-8] * 5)
+    assert levels.status.tolist() == ["too_few_satellites", "ok", "singular", "not_monitored"]
+    assert np.isnan(levels.hpl_m[[0, 2]]).all()
+    assert np.isposinf(levels.hpl_m[3])
+    assert levels.n_sv.tolist() == [3, 8, 8, 4]
     many = araim.protection_levels(sky(70), [GPS] * 70, 1.0, 1.0)
     assert many.status == "too_many"
     assert np.isnan(many.hpl_m)
@@ -222,7 +222,7 @@ def test_what_cannot_be_meant_is_refused_by_name() -> None:
         assert refusal.value.argument == name
 
 
-def test_a_refusal_shows_the_number_that_was_given() -> None:
+def test_a_refusal_shows_the_number_of_the_input() -> None:
     unit = sky(8)
 
     def refused(**change: Any) -> InputError:
@@ -240,10 +240,10 @@ def test_a_refusal_shows_the_number_that_was_given() -> None:
     assert refused(unit_enu=np.zeros((0, 3)), constellation=[]).argument == "unit_enu"
 
 
-def test_more_decisions_than_can_be_weighed_are_said() -> None:
+def test_more_decisions_than_can_be_weighed_are_reported() -> None:
     # 16 satellites of which any two fail together more often than the integrity risk: 136 decisions, and room for 72.
-    found = araim.protection_levels(sky(16), [GPS] * 16, 1.0, 1.0, p_sat=1e-3, exclusion=True)
-    assert found.status == "too_many"
+    levels = araim.protection_levels(sky(16), [GPS] * 16, 1.0, 1.0, p_sat=1e-3, exclusion=True)
+    assert levels.status == "too_many"
 
 
 def test_only_faults_with_a_share_of_the_risk_are_excluded() -> None:
@@ -251,12 +251,12 @@ def test_only_faults_with_a_share_of_the_risk_are_excluded() -> None:
     residual = np.where(np.arange(16) < 8, np.random.default_rng(13).normal(0, 60, 16), 0.0)
     # Little may be left unmonitored, so that the fault of all GPS is a mode in both cases, and its separation is the largest.
     service = replace(araim.SERVICES["lpv-200"], unmonitored=1e-9)
-    given: dict[str, Any] = {"sigma_int_m": 1.0, "sigma_acc_m": 1.0, "p_sat": 1e-6, "service": service}
-    likely = araim.monitor(unit, systems, residual, p_const=[1e-4, 1e-9, 1e-9, 1e-9, 1e-9], **given)
+    settings: dict[str, Any] = {"sigma_int_m": 1.0, "sigma_acc_m": 1.0, "p_sat": 1e-6, "service": service}
+    likely = araim.monitor(unit, systems, residual, p_const=[1e-4, 1e-9, 1e-9, 1e-9, 1e-9], **settings)
     assert likely.decision == "excluded"
     assert likely.excluded.tolist() == [True] * 8 + [False] * 8
     # Less likely than the integrity risk of 1e-7: more modes, so a little more false-alarm multiplier, and no share for this decision.
-    rare = araim.monitor(unit, systems, residual, p_const=[9e-8, 1e-9, 1e-9, 1e-9, 1e-9], **given)
+    rare = araim.monitor(unit, systems, residual, p_const=[9e-8, 1e-9, 1e-9, 1e-9, 1e-9], **settings)
     assert abs(rare.worst_ratio / likely.worst_ratio - 1.0) < 0.01
     assert rare.decision == "not_excluded"
 
@@ -264,15 +264,15 @@ def test_only_faults_with_a_share_of_the_risk_are_excluded() -> None:
 def test_shipped_configurations_say_where_they_come_from() -> None:
     assert set(araim.SERVICES) == {"lpv-200", "horizontal"}
     configurations: list[araim.Service | araim.Support] = [*araim.SERVICES.values(), araim.SUPPORT]
-    for held in configurations:
-        assert held.source
-        assert held.provenance in {"standard", "inferred"}
+    for configured in configurations:
+        assert configured.source
+        assert configured.provenance in {"standard", "inferred"}
     assert len(araim.SUPPORT.p_const) == len(gnss.CONSTELLATIONS)
 
 
 def test_the_published_equation_of_raim_is_met_by_whole_inversions() -> None:
     unit, sigma = sky(9, 3), np.linspace(1.0, 3.0, 9)
-    found = araim.protection_levels(unit, [GPS] * 9, sigma, sigma, service="raim")
+    computed = araim.protection_levels(unit, [GPS] * 9, sigma, sigma, service="raim")
     h = np.column_stack([-unit, np.ones(9)])
 
     def gains(kept: list[int]) -> NDArray[np.float64]:
@@ -290,8 +290,8 @@ def test_the_published_equation_of_raim_is_met_by_whole_inversions() -> None:
             separation = np.sqrt(((s[axes] - full[axes]) ** 2 * sigma**2).sum())
             levels.append(k_fa * separation + k_md * np.sqrt((s[axes] ** 2 * sigma**2).sum()))
     # Bisections of the quantiles to 1e-12, and inversions of matrices whose condition is below 1e3.
-    assert abs(found.hpl_m - max(hpl)) <= 1e-9 * max(hpl)
-    assert abs(found.vpl_m - max(vpl)) <= 1e-9 * max(vpl)
+    assert abs(computed.hpl_m - max(hpl)) <= 1e-9 * max(hpl)
+    assert abs(computed.vpl_m - max(vpl)) <= 1e-9 * max(vpl)
     # Five satellites detect and cannot exclude.
     five = araim.protection_levels(sky(5, 2), [GPS] * 5, 1.0, 1.0, service="raim")
     excluding = araim.protection_levels(sky(5, 2), [GPS] * 5, 1.0, 1.0, service="raim", exclusion=True)
@@ -299,20 +299,20 @@ def test_the_published_equation_of_raim_is_met_by_whole_inversions() -> None:
     assert excluding.status == "not_monitored"
 
 
-def test_a_faulty_satellite_is_found_and_the_error_stays_inside_the_levels() -> None:
+def test_a_faulty_satellite_is_identified_and_the_error_stays_inside_the_levels() -> None:
     """Seeded noise of half the integrity sigma; a fault of 60 m on every satellite in turn, then on a whole constellation."""
     unit, systems = sky(18, 11), np.repeat([GPS, GALILEO], 9)
     rng = np.random.default_rng(7)
     noise = rng.normal(0.0, 0.5, (19, 18)) + np.where(systems == GPS, 1234.5, -321.0)
     fault = np.vstack([60.0 * np.eye(18), np.zeros(18)])
-    found = araim.monitor(unit, systems, noise + fault, 1.0, 0.7)
-    assert found.decision.tolist() == ["excluded"] * 18 + ["none"]
-    assert np.array_equal(found.excluded[:18], np.eye(18, dtype=bool))
-    assert (np.hypot(found.step_enu_m[:, 0], found.step_enu_m[:, 1]) < found.levels.hpl_m).all()
-    assert (np.abs(found.step_enu_m[:, 2]) < found.levels.vpl_m).all()
-    assert (found.worst_ratio[:18] > 1).all()
-    assert found.worst_ratio[18] <= 1
-    assert found.levels.n_sv.tolist() == [18] * 19
+    levels = araim.monitor(unit, systems, noise + fault, 1.0, 0.7)
+    assert levels.decision.tolist() == ["excluded"] * 18 + ["none"]
+    assert np.array_equal(levels.excluded[:18], np.eye(18, dtype=bool))
+    assert (np.hypot(levels.step_enu_m[:, 0], levels.step_enu_m[:, 1]) < levels.levels.hpl_m).all()
+    assert (np.abs(levels.step_enu_m[:, 2]) < levels.levels.vpl_m).all()
+    assert (levels.worst_ratio[:18] > 1).all()
+    assert levels.worst_ratio[18] <= 1
+    assert levels.levels.n_sv.tolist() == [18] * 19
     # Errors of a constellation that no clock explains: a shift of the position that all its ranges share.
     shared = noise[18] + np.where(systems == GALILEO, unit @ np.array([40.0, -30.0, 60.0]), 0.0)
     whole = araim.monitor(unit, systems, shared, 1.0, 0.7)
@@ -336,8 +336,8 @@ def test_residuals_that_are_none_are_refused() -> None:
 def test_a_prediction_is_that_of_its_geometry_and_exclusion_costs(service: str) -> None:
     orbits = gnss.constellation("gps") + gnss.constellation("galileo")
     lat, lon, time = np.radians([-60.0, 5.0, 47.0]), np.radians([10.0, 100.0, -120.0]), np.array([0.0, 9000.0])
-    found = araim.predict(orbits, lat, lon, 0.0, time, service=service)
-    assert found.hpl_m.shape == (2, 3)
+    levels = araim.predict(orbits, lat, lon, 0.0, time, service=service)
+    assert levels.hpl_m.shape == (2, 3)
     az, el = gnss.directions(orbits, lat, lon, 0.0, time[:, None])
     seen = el >= math.radians(5)
     unit = np.where(seen[..., None], np.stack([np.cos(el) * np.sin(az), np.cos(el) * np.cos(az), np.sin(el)], axis=-1), np.nan)
@@ -345,14 +345,14 @@ def test_a_prediction_is_that_of_its_geometry_and_exclusion_costs(service: str) 
     a, b, scale = model.noise
     local = (a + b * np.exp(-el / scale)) ** 2 + (0.12 * 1.001) ** 2 / (0.002001 + np.sin(el) ** 2)
     sigma = [np.sqrt(np.array(c)[orbits.constellation] ** 2 + local) for c in (araim.SUPPORT.sigma_ura_m, araim.SUPPORT.sigma_ure_m)]
-    given = araim.protection_levels(unit, orbits.constellation, *sigma, service=service)
+    computed = araim.protection_levels(unit, orbits.constellation, *sigma, service=service)
     # Angles and back cost a few units in the last place of vectors of 1, and gains up to 10.
-    np.testing.assert_allclose(found.vpl_m, given.vpl_m, rtol=1e-9)
-    np.testing.assert_allclose(found.hpl_m, given.hpl_m, rtol=1e-9)
-    assert np.array_equal(found.n_sv, given.n_sv)
+    np.testing.assert_allclose(levels.vpl_m, computed.vpl_m, rtol=1e-9)
+    np.testing.assert_allclose(levels.hpl_m, computed.hpl_m, rtol=1e-9)
+    assert np.array_equal(levels.n_sv, computed.n_sv)
     with_exclusion = araim.predict(orbits, lat, lon, 0.0, time, service=service, exclusion=True)
-    assert (with_exclusion.hpl_m > found.hpl_m).all()
-    assert (with_exclusion.vpl_m > found.vpl_m).all()
+    assert (with_exclusion.hpl_m > levels.hpl_m).all()
+    assert (with_exclusion.vpl_m > levels.vpl_m).all()
 
 
 def test_the_recorded_day_stays_inside_its_levels(shared_data: Path) -> None:
@@ -360,14 +360,14 @@ def test_the_recorded_day_stays_inside_its_levels(shared_data: Path) -> None:
     observations = gnss.read_observations(folder / "ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz")
     navigation = gnss.read_navigation(folder / "ESBC00DNK_R_20201770000_01D_MN.rnx.gz")
     truth = json.loads((shared_data / "baselines.json").read_text(encoding="utf-8"))["ESBC_2020_177"]["reference_ecef_m"]
-    found = araim.watch(observations, navigation, truth_ecef_m=truth)
-    epochs = found.epochs
+    levels = araim.watch(observations, navigation, truth_ecef_m=truth)
+    epochs = levels.epochs
     assert epochs.height == 2880
     with_levels = epochs.drop_nulls(["hpl_m", "nse_e_m"])
     assert with_levels.height > 0.99 * 2880
     hpe = np.hypot(with_levels["nse_e_m"].to_numpy(), with_levels["nse_n_m"].to_numpy())
     assert (hpe < with_levels["hpl_m"].to_numpy()).all()
     assert (with_levels["nse_u_m"].abs() < with_levels["vpl_m"]).all()
-    assert "inferred" in found.models["promises of satellites"]
+    assert "inferred" in levels.models["promises of satellites"]
     with pytest.raises(InputError, match="systems"):
         araim.watch(observations, navigation, systems="X")

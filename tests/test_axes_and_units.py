@@ -38,33 +38,33 @@ def words(tmp_path: Path, **changed: object) -> str:
 
 
 def test_a_sound_table_has_no_doubt(tmp_path: Path) -> None:
-    said = words(tmp_path)
-    assert not any(each in said for each in ("exchanged", "radians", "3.28 times", "reported track"))
+    doubts = words(tmp_path)
+    assert not any(each in doubts for each in ("exchanged", "radians", "3.28 times", "reported track"))
 
 
 def test_exchanged_axes_move_where_nobody_flies(tmp_path: Path) -> None:
     k = np.arange(N)
     lat, lon = 0.84 + 60.0 * k / M_PER_RAD, 0.035 + 5.0 * k / (M_PER_RAD * math.cos(0.84))
-    said = words(tmp_path, lat_deg=np.degrees(lon), lon_deg=np.degrees(lat), track_deg=np.full(N, math.degrees(math.atan2(5.0, 60.0))))
-    assert "with latitude and longitude exchanged at 199" in said
+    doubts = words(tmp_path, lat_deg=np.degrees(lon), lon_deg=np.degrees(lat), track_deg=np.full(N, math.degrees(math.atan2(5.0, 60.0))))
+    assert "with latitude and longitude exchanged at 199" in doubts
 
 
 def test_a_latitude_in_radians_beside_degrees(tmp_path: Path) -> None:
     k = np.arange(N)
-    said = words(tmp_path, lat_deg=0.84 + 50.0 * k / M_PER_RAD, lon_deg=np.degrees(0.2) + 0.0003 * k)
-    assert "“lat_deg” was read as degrees, but all its values are small enough to be radians" in said
+    doubts = words(tmp_path, lat_deg=0.84 + 50.0 * k / M_PER_RAD, lon_deg=np.degrees(0.2) + 0.0003 * k)
+    assert "“lat_deg” was read as degrees, but all its values are small enough to be radians" in doubts
 
 
 @pytest.mark.parametrize(("name", "metres"), [("height_m", 3000.0), ("alt_m", 2950.0)])
 def test_feet_in_a_column_of_metres(tmp_path: Path, name: str, metres: float) -> None:
-    said = words(tmp_path, **{name: np.full(N, metres / 0.3048)})
-    assert f"“{name}” was read as m, and is 3.28 times" in said
+    doubts = words(tmp_path, **{name: np.full(N, metres / 0.3048)})
+    assert f"“{name}” was read as m, and is 3.28 times" in doubts
 
 
 def test_longitudes_from_0_to_360_are_the_same_places(tmp_path: Path) -> None:
     """Through the meridian of Greenwich westwards: 0.01 becomes 359.99."""
     k = np.arange(N)
     lon = 0.02 - 0.0004 * k
-    said = words(tmp_path, lon_deg=lon % 360.0, lat_deg=np.full(N, 48.0), track_deg=np.full(N, 270.0))
-    assert "0 position jumps that cannot be flown" in said
-    assert "reported track" not in said
+    doubts = words(tmp_path, lon_deg=lon % 360.0, lat_deg=np.full(N, 48.0), track_deg=np.full(N, 270.0))
+    assert "0 position jumps that cannot be flown" in doubts
+    assert "reported track" not in doubts

@@ -24,11 +24,11 @@ TAXI = "barcelona-taxi"
 @pytest.fixture(scope="module")
 def quick() -> Scenario:
     """Sensors and a filter, few of both: ranges of one constellation and ten samples a second."""
-    found = scenario.load("beijing-shanghai")
-    assert found.sensors is not None
-    assert found.sensors.gnss is not None
-    sensors = found.sensors.model_copy(update={"rate_hz": 10, "gnss": found.sensors.gnss.model_copy(update={"constellations": ["gps"]})})
-    return found.model_copy(update={"sensors": sensors})
+    loaded = scenario.load("beijing-shanghai")
+    assert loaded.sensors is not None
+    assert loaded.sensors.gnss is not None
+    sensors = loaded.sensors.model_copy(update={"rate_hz": 10, "gnss": loaded.sensors.gnss.model_copy(update={"constellations": ["gps"]})})
+    return loaded.model_copy(update={"sensors": sensors})
 
 
 @pytest.fixture
@@ -49,11 +49,11 @@ def same(first: Material, second: Material) -> bool:
 def test_fused_flights_have_the_same_bits_from_processes(quick: Scenario) -> None:
     alone = fly.material(quick, flights=2)
     assert same(fly.material(quick, flights=2, backend="processes", workers=scale.Workers(2)), alone)
-    told = alone.settings["filter"]
-    assert isinstance(told, dict)
+    reported = alone.settings["filter"]
+    assert isinstance(reported, dict)
     # One restart more or less would be a filter more: two flights, two filters.
-    assert told["restarts"] == 0
-    assert told["samples"]["done"] == 2 * 70_800
+    assert reported["restarts"] == 0
+    assert reported["samples"]["done"] == 2 * 70_800
 
 
 @pytest.mark.usefixtures("one_by_one")
@@ -78,14 +78,18 @@ def test_an_interrupted_campaign_goes_on_where_it_was(tmp_path: Path) -> None:
 
     with pytest.raises(KeyboardInterrupt):
         fly.material("beijing-shanghai-drawn", flights=4, checkpoint=tmp_path, progress=interrupt)
-    told: list[tuple[int, int]] = []
-    found = fly.material("beijing-shanghai-drawn", flights=4, checkpoint=tmp_path, progress=lambda done, total: told.append((done, total)))
-    assert told == [(2, 4), (3, 4), (4, 4)]
-    assert same(found, fly.material("beijing-shanghai-drawn", flights=4))
+    reported: list[tuple[int, int]] = []
+    material = fly.material(
+        "beijing-shanghai-drawn", flights=4, checkpoint=tmp_path, progress=lambda done, total: reported.append((done, total))
+    )
+    assert reported == [(2, 4), (3, 4), (4, 4)]
+    assert same(material, fly.material("beijing-shanghai-drawn", flights=4))
     # Another seed is another campaign.
-    told.clear()
-    fly.material("beijing-shanghai-drawn", flights=4, seed=1, checkpoint=tmp_path, progress=lambda done, total: told.append((done, total)))
-    assert told[0] == (0, 4)
+    reported.clear()
+    fly.material(
+        "beijing-shanghai-drawn", flights=4, seed=1, checkpoint=tmp_path, progress=lambda done, total: reported.append((done, total))
+    )
+    assert reported[0] == (0, 4)
 
 
 def test_a_tile_is_known_again_by_another_process(quick: Scenario) -> None:
@@ -97,10 +101,10 @@ def test_a_tile_is_known_again_by_another_process(quick: Scenario) -> None:
 
 def test_progress_of_the_comparison_counts_the_flights_of_all_cases(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(anp_comparison, "CASES", (("a", "x", 1), ("b", "y", 2)))
-    asked: list[tuple[str, int]] = []
+    requested: list[tuple[str, int]] = []
 
     def case(name: str, scenario: str, flights: int, **work: Any) -> Any:
-        asked.append((name, flights))
+        requested.append((name, flights))
         work["progress"](flights, flights)
         return SimpleNamespace(flights=flights)
 
@@ -108,10 +112,10 @@ def test_progress_of_the_comparison_counts_the_flights_of_all_cases(monkeypatch:
     monkeypatch.setattr(anp_comparison, "Study", lambda **_: None)
     for part in ("_entries", "_words"):
         monkeypatch.setattr(anp_comparison, part, lambda _: [])
-    told: list[tuple[int, int]] = []
-    anp_comparison.run(flights=6, progress=lambda done, total: told.append((done, total)))
-    assert asked == [("a", 6), ("b", 3)]
-    assert told == [(6, 9), (9, 9)]
+    reported: list[tuple[int, int]] = []
+    anp_comparison.run(flights=6, progress=lambda done, total: reported.append((done, total)))
+    assert requested == [("a", 6), ("b", 3)]
+    assert reported == [(6, 9), (9, 9)]
     with pytest.raises(InputError, match="flights"):
         anp_comparison.run(flights=0)
 
@@ -123,10 +127,12 @@ def test_the_drawn_row_of_the_coverage_study_is_kept_in_parts(monkeypatch: pytes
     assert drawn.n_samples == 10_000
     # Five laws and three parts of the drawn row.
     assert len(list(tmp_path.glob("*.npz"))) == 8
-    told: list[tuple[int, int]] = []
-    again = tse_coverage.run(step_s=3600, monte_carlo=10_000, checkpoint=tmp_path, progress=lambda done, total: told.append((done, total)))
+    reported: list[tuple[int, int]] = []
+    again = tse_coverage.run(
+        step_s=3600, monte_carlo=10_000, checkpoint=tmp_path, progress=lambda done, total: reported.append((done, total))
+    )
     assert again == first
-    assert told == [(8, 8)]
+    assert reported == [(8, 8)]
     # Each part has a stream of its own: the first part alone says something else.
     assert tse_coverage.run(step_s=3600, monte_carlo=4_000).rows[2].accuracy != drawn.accuracy
 
@@ -153,11 +159,11 @@ def test_a_directory_that_cannot_be_written_is_refused_before_the_flights(monkey
 @pytest.mark.parametrize("flights", [0, 1001, -3, 2.5])
 def test_a_campaign_of_no_flights_or_too_many_is_refused(flights: int) -> None:
     with pytest.raises(InputError, match=r"flights = .* outside \[1, 1000\]"):
-        campaign.chosen_seed(flights, None, 7)
+        campaign.seed_in_force(flights, None, 7)
 
 
-def test_the_scenarios_seed_counts_where_none_is_given() -> None:
-    assert campaign.chosen_seed(1, None, 7) == 7
-    assert campaign.chosen_seed(1, 0, 7) == 0
+def test_the_scenarios_seed_counts_where_the_input_has_none() -> None:
+    assert campaign.seed_in_force(1, None, 7) == 7
+    assert campaign.seed_in_force(1, 0, 7) == 0
     with pytest.raises(InputError, match="seed"):
-        campaign.chosen_seed(1, 2**64, 7)
+        campaign.seed_in_force(1, 2**64, 7)

@@ -56,7 +56,7 @@ def test_off_a_terminal_there_is_no_bar(monkeypatch: pytest.MonkeyPatch) -> None
     assert kept.getvalue() == ""
 
 
-def test_what_was_not_asked_for_is_left_to_the_job() -> None:
+def test_what_was_not_requested_is_left_to_the_job() -> None:
     assert parts.work_of(None, None, None, None) == {}
     assert parts.work_of("processes", 2, None, None) == {"backend": "processes", "workers": scale.Workers(2)}
 
@@ -70,7 +70,7 @@ def test_what_was_not_asked_for_is_left_to_the_job() -> None:
         (None, None, "tcp://a:1", "cluster"),
     ],
 )
-def test_workers_that_would_not_be_asked_are_refused(backend: str | None, workers: int | None, cluster: str | None, named: str) -> None:
+def test_workers_that_would_not_be_used_are_refused(backend: str | None, workers: int | None, cluster: str | None, named: str) -> None:
     with pytest.raises(InputError, match=named):
         parts.work_of(backend, workers, cluster, None)
 

@@ -104,10 +104,10 @@ def stated(path: Path) -> dict[str, dict[str, str]]:
 def test_a_written_run_has_the_declared_types_and_units(flown: Run) -> None:
     assert flown.path is not None
     written = pl.read_parquet_schema(flown.path / EPOCHS)
-    found = {name: lookup.declaration(name, methods()) for name in written}
-    assert len(found) > 60
-    assert [name for name, column in found.items() if column is None] == []
-    declared = {name: next(iter(schema([column]).values())) for name, column in found.items() if column is not None}
+    by_name = {name: lookup.declaration(name, methods()) for name in written}
+    assert len(by_name) > 60
+    assert [name for name, column in by_name.items() if column is None] == []
+    declared = {name: next(iter(schema([column]).values())) for name, column in by_name.items() if column is not None}
     assert dict(written) == declared
     units = stated(flown.path / EPOCHS)
     assert set(units) == set(written)
@@ -120,12 +120,12 @@ def test_a_written_run_has_the_declared_types_and_units(flown: Run) -> None:
 
 def collections(text: str) -> list[set[str]]:
     """The texts in each collection literal, the keys of a dictionary among them."""
-    found = []
+    listed = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Tuple | ast.List | ast.Set | ast.Dict):
             parts = node.keys if isinstance(node, ast.Dict) else node.elts
-            found.append({part.value for part in parts if isinstance(part, ast.Constant) and isinstance(part.value, str)})
-    return found
+            listed.append({part.value for part in parts if isinstance(part, ast.Constant) and isinstance(part.value, str)})
+    return listed
 
 
 def test_the_covariance_is_spelled_once() -> None:

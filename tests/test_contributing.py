@@ -29,8 +29,8 @@ for package in (navbound.read, navbound.studies):
 def blocks(heading: str, language: str) -> dict[str, str]:
     """Examples of one section by the file that each stands for."""
     section = PAGE.split(f"### {heading}\n")[1].split("\n### ")[0].split("\n## ")[0]
-    found = re.findall(rf"```{language}\n(.*?)```", section, re.DOTALL)
-    return {text.splitlines()[0].removeprefix("//").removeprefix("#").strip(): text for text in found}
+    matches = re.findall(rf"```{language}\n(.*?)```", section, re.DOTALL)
+    return {text.splitlines()[0].removeprefix("//").removeprefix("#").strip(): text for text in matches}
 
 
 @pytest.mark.parametrize("heading", LISTS)
@@ -80,7 +80,7 @@ def test_the_chart_of_the_page_passes_the_type_check(tmp_path: Path) -> None:
         "files": ["chart.ts"],
     }
     (tmp_path / "tsconfig.json").write_text(json.dumps(settings), encoding="utf-8")
-    placed = re.sub(r'from "(\.\.?/[^"]+)"', lambda found: f'from "{(folder / found.group(1)).resolve()}"', text)
+    placed = re.sub(r'from "(\.\.?/[^"]+)"', lambda result: f'from "{(folder / result.group(1)).resolve()}"', text)
     # A column that no report carries shows that the check looks at the columns.
     for column, passes in (("hdop", True), ("altitude_m", False)):
         (tmp_path / "chart.ts").write_text(placed.replace('column("hdop")', f'column("{column}")'), encoding="utf-8")

@@ -19,9 +19,9 @@ def test_no_file_of_a_slice_is_wrong_in_silence(tmp_path: Path) -> None:
     if not (SHARED / "data").is_dir():
         pytest.skip(f"SKIPPED ALOUD: no real data at {SHARED / 'data'}")
     quick = [name for name, kind in KINDS.items() if kind.weight == 1.0]
-    found = list(run(N, 2026, tmp_path, quick))
-    verdicts = Counter(verdict for _, verdict, _, _ in found)
-    assert not [(name, verdict, words) for name, verdict, words, _ in found if verdict in FAILURES]
+    result = list(run(N, 2026, tmp_path, quick))
+    verdicts = Counter(verdict for _, verdict, _, _ in result)
+    assert not [(name, verdict, words) for name, verdict, words, _ in result if verdict in FAILURES]
     # Not one answer to everything.
     assert min(verdicts["refused"], verdicts["counted"], verdicts["same"]) > 5
 

@@ -19,12 +19,12 @@ DOCS = Path(__file__).parents[1] / "docs"
 def test_the_program_of_the_page_prints_what_it_says(tmp_path: Path) -> None:
     pytest.importorskip("distributed", reason="SKIPPED ALOUD: Dask is not installed")
     page = (DOCS / "scale-out.md").read_text(encoding="utf-8")
-    found = re.search(r"```python\n(.*?)```\n\nprints\n\n    (.*)\n", page, re.S)
-    assert found
+    match = re.search(r"```python\n(.*?)```\n\nprints\n\n    (.*)\n", page, re.S)
+    assert match
     program = tmp_path / "program.py"
-    program.write_text(found.group(1), encoding="utf-8")
+    program.write_text(match.group(1), encoding="utf-8")
     done = subprocess.run([sys.executable, str(program)], capture_output=True, text=True, check=True, timeout=120.0)
-    assert done.stdout.strip() == found.group(2).strip()
+    assert done.stdout.strip() == match.group(2).strip()
 
 
 def commands(page: str) -> list[list[str]]:
@@ -50,7 +50,7 @@ def test_the_commands_of_the_page_make_maps(page: str, shared_data: Path, tmp_pa
         # The stations of dme know no time.
         seldom = [] if "dme" in words else ["--every-s", "1200"]
         coarse = ["--step-deg", "15", *seldom, "--backend", "serial", "--out", f"map-{number}", "--json"]
-        # A cluster belongs to Dask, which is not asked here.
+        # A cluster belongs to Dask, which is not used here.
         at = words.index("--cluster") if "--cluster" in words else len(words)
         run = CliRunner().invoke(cli.app, [ours.get(word, word) for word in words[:at] + words[at + 2 :]] + coarse)
         assert run.exit_code == 0, (words, run.output, run.exception)

@@ -19,12 +19,12 @@ PAGE = (ROOT / "docs" / "methods" / "procedures.md").read_text(encoding="utf-8")
 
 
 def test_the_program_of_the_page_prints_what_it_says(tmp_path: Path) -> None:
-    found = re.search(r"```python\n(.*?)```\n\nprints\n\n((?:    [^\n]*\n)+)", PAGE, re.S)
-    assert found
+    match = re.search(r"```python\n(.*?)```\n\nprints\n\n((?:    [^\n]*\n)+)", PAGE, re.S)
+    assert match
     program = tmp_path / "program.py"
-    program.write_text(found.group(1), encoding="utf-8")
+    program.write_text(match.group(1), encoding="utf-8")
     done = subprocess.run([sys.executable, str(program)], capture_output=True, text=True, check=True, timeout=120.0, cwd=ROOT)
-    assert done.stdout == re.sub(r"(?m)^    ", "", found.group(2))
+    assert done.stdout == re.sub(r"(?m)^    ", "", match.group(2))
 
 
 COMMANDS = re.findall(r"(?m)^    navbound (procedures .*)$", PAGE)

@@ -55,8 +55,8 @@ def run(params: dict[str, Any], keep: Any = slice(None), **settings: Any) -> sba
     )
 
 
-def close(found: Any, expected: float | None, tolerance: float = METRE) -> bool:
-    return bool(np.isnan(found)) if expected is None else abs(float(found) - expected) <= tolerance
+def close(actual: Any, expected: float | None, tolerance: float = METRE) -> bool:
+    return bool(np.isnan(actual)) if expected is None else abs(float(actual) - expected) <= tolerance
 
 
 def test_the_generator_begins_as_stated() -> None:
@@ -100,17 +100,17 @@ def test_every_row_of_the_filter_reference_is_met(case: dict[str, Any]) -> None:
     _check_summary(case["summary"], params, outside)
 
 
-def _check_summary(summary: dict[str, Any], params: dict[str, Any], found: sbas.ErrorExtraction) -> None:
+def _check_summary(summary: dict[str, Any], params: dict[str, Any], extraction: sbas.ErrorExtraction) -> None:
     series, late = made(params["seed"]), slice(params["M"], None)
     raw = (series.position_m - series.truth_m)[late]
-    corrected = (found.ee_position_enu_m - series.truth_m)[late]
+    corrected = (extraction.ee_position_enu_m - series.truth_m)[late]
     # The summary is printed to eight digits.
-    assert np.allclose(np.sqrt((found.ee_error_enu_m[late] ** 2).mean(axis=0)), summary["rms_u"], rtol=5e-8, atol=0)
+    assert np.allclose(np.sqrt((extraction.ee_error_enu_m[late] ** 2).mean(axis=0)), summary["rms_u"], rtol=5e-8, atol=0)
     assert np.allclose(raw.std(axis=0), summary["sd_raw_err"], rtol=5e-8, atol=0)
     assert np.allclose(corrected.std(axis=0), summary["sd_corrected_err"], rtol=5e-8, atol=0)
     assert np.abs(corrected[:, 2]).max() == pytest.approx(summary["max_abs_corrected_err_U"], rel=5e-8)
     assert np.abs(raw[:, 2]).max() == pytest.approx(summary["max_abs_raw_err_U"], rel=5e-8)
-    assert np.nanmax(found.ee_noise_v_m) == pytest.approx(summary["max_VPLnoise_sum"], rel=5e-8)
+    assert np.nanmax(extraction.ee_noise_v_m) == pytest.approx(summary["max_VPLnoise_sum"], rel=5e-8)
 
 
 @pytest.mark.parametrize("as_nan", [False, True], ids=["removed", "nan"])
@@ -124,16 +124,16 @@ def test_gaps_are_carried_over_or_begin_anew_as_in_the_reference(case: dict[str,
         series = made(params["seed"])
         holes = ee_series.Made(np.where(present[:, None], series.position_m, np.nan), series.velocity_mps, series.truth_m)
         monkeypatch.setattr(sys.modules[__name__], "made", lambda _seed: holes)
-        found, place = run(params, gap_most_s=params["gap_max"]), np.arange(params["n"])
-        assert np.array_equal(found.status == "not_available", ~present)
+        result, place = run(params, gap_most_s=params["gap_max"]), np.arange(params["n"])
+        assert np.array_equal(result.status == "not_available", ~present)
     else:
-        found, place = run(params, present, gap_most_s=params["gap_max"]), np.cumsum(present) - 1
+        result, place = run(params, present, gap_most_s=params["gap_max"]), np.cumsum(present) - 1
     for row in case["rows"]:
         i = place[row["i"]]
-        assert close(found.ee_error_enu_m[i, 2], row["u"])
-        assert found.n_ee_age[i] == row["age"]
-        assert close(found.ee_noise_v_m[i], row["VPLnoise_sum"])
-    assert found.n_resets == case["resets"]
+        assert close(result.ee_error_enu_m[i, 2], row["u"])
+        assert result.n_ee_age[i] == row["age"]
+        assert close(result.ee_noise_v_m[i], row["VPLnoise_sum"])
+    assert result.n_resets == case["resets"]
 
 
 def still(n: int = 400, **settings: Any) -> sbas.ErrorExtraction:
@@ -156,13 +156,13 @@ def test_what_scales_what_shifts_and_what_warms_up() -> None:
 def test_series_broadcast_over_leading_axes() -> None:
     position = np.random.Generator(np.random.Philox(8)).standard_normal((2, 3, 100, 3))
     times = np.arange(100) * SECOND_NS
-    found = sbas.error_extraction(times, position, np.zeros(3), bias_h_m=1.0, bias_v_m=1.0)
-    assert found.ee_bound_h_m.shape == (2, 3, 100)
+    extraction = sbas.error_extraction(times, position, np.zeros(3), bias_h_m=1.0, bias_v_m=1.0)
+    assert extraction.ee_bound_h_m.shape == (2, 3, 100)
     alone = sbas.error_extraction(times, position[1, 2], np.zeros(3), bias_h_m=1.0, bias_v_m=1.0)
-    assert np.array_equal(found.ee_bound_h_m[1, 2], alone.ee_bound_h_m, equal_nan=True)
+    assert np.array_equal(extraction.ee_bound_h_m[1, 2], alone.ee_bound_h_m, equal_nan=True)
 
 
-def test_new_satellites_are_logged_and_reset_only_where_asked() -> None:
+def test_new_satellites_are_logged_and_reset_only_where_requested() -> None:
     sets = np.where(np.arange(400) < 200, 0b1111, 0b0111)
     assert np.flatnonzero(still(satellites=sets).new_satellites).tolist() == [200]
     assert still(satellites=sets).n_resets == 1
@@ -252,11 +252,11 @@ def test_wrong_series_are_refused_by_name() -> None:
 
 
 def test_a_sky_without_a_solution_is_a_status() -> None:
-    found = sbas.extraction_bias([[0.0, 1.0, 2.0], [0.0, 1.0, np.nan]], [[0.5, 0.6, 0.7], [0.5, 0.6, np.nan]], 1.0)
-    assert found.status.tolist() == ["not_available"] * 2
-    assert found.n_sv.tolist() == [3, 2]
-    assert np.isnan(found.exact_h_m).all()
-    assert all("satellites are needed" in r for r in found.reason)
+    biases = sbas.extraction_bias([[0.0, 1.0, 2.0], [0.0, 1.0, np.nan]], [[0.5, 0.6, 0.7], [0.5, 0.6, np.nan]], 1.0)
+    assert biases.status.tolist() == ["not_available"] * 2
+    assert biases.n_sv.tolist() == [3, 2]
+    assert np.isnan(biases.exact_h_m).all()
+    assert all("satellites are needed" in r for r in biases.reason)
 
 
 def test_every_column_carries_the_mark() -> None:
@@ -271,9 +271,9 @@ def test_every_column_carries_the_mark() -> None:
 @pytest.mark.parametrize("keys", [("ee_bound_h_m", "tse_exact_m"), ("tse_exact_m", "ee_bound_h_m"), ("ee_noise_v_m", "ee_noise_v_m")])
 def test_no_bound_of_it_reaches_an_alert(keys: tuple[str, str]) -> None:
     """The monitor is offered the bound as accuracy and as integrity, epoch by epoch and as a table, and refuses each time."""
-    found = still(bias_h_m=1.0, bias_v_m=1.0)
-    assert found.may_alert is False
-    table = found.table().with_columns(
+    extraction = still(bias_h_m=1.0, bias_v_m=1.0)
+    assert extraction.may_alert is False
+    table = extraction.table().with_columns(
         pl.Series("time_ns", np.arange(400) * SECOND_NS), pl.lit(1.0).alias("tse_exact_m"), pl.lit(0.5).alias("rnp_m")
     )
     accuracy, integrity = keys

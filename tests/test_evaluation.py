@@ -1,4 +1,4 @@
-"""Evaluation of bounds and covariances: known answers, and verdicts on data made to be honest or not."""
+"""Evaluation of bounds and covariances: known answers, and verdicts on data made to be consistent or not."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from navbound import InputError, evaluation
-from navbound.run.verdict.results import honesty_words
+from navbound.run.verdict.results import consistency_words
 
 SEED = 20261121
 
@@ -60,14 +60,14 @@ def test_the_median_of_an_even_count_is_the_mean_of_the_middle_two() -> None:
 def test_the_interval_of_an_exact_bound_holds_the_truth_as_often_as_it_says() -> None:
     """400 correlated tracks; a 95 % interval on a conservative size must hold 0.95 in at least the 99.9 % binomial limit of 95 %."""
     tracks = gauss_markov((1500, 400), 0.9)
-    held = 0
+    n_inside = 0
     for k in range(400):
         score = evaluation.bound(tracks[:, k], np.full(1500, 1.959963984540054), 0.05)
-        held += score.coverage_low <= 0.95 <= score.coverage_high
-    assert held >= stats.binom.ppf(0.001, 400, 0.95)
+        n_inside += score.coverage_low <= 0.95 <= score.coverage_high
+    assert n_inside >= stats.binom.ppf(0.001, 400, 0.95)
 
 
-def test_too_small_a_bound_is_found_out() -> None:
+def test_too_small_a_bound_is_refuted() -> None:
     error = gauss_markov((20000,), 0.5)
     assert evaluation.bound(error, np.full(20000, 1.7), 0.05).coverage_high < 0.95
 
@@ -82,10 +82,10 @@ def test_no_constant_bound_scores_better_than_the_quantile() -> None:
 @pytest.mark.parametrize("memory", [0.0, 0.9, 0.99])
 def test_the_effective_size_of_a_gauss_markov_error_is_known(memory: float) -> None:
     n = 400_000
-    found = evaluation.effective_size(gauss_markov((n,), memory))
+    result = evaluation.effective_size(gauss_markov((n,), memory))
     # Four standard errors of a sum over five correlation times, as in the core's test.
     tolerance = 4 * math.sqrt(2 * (10 / (1 - memory) + 1) / n)
-    assert found / n == pytest.approx((1 - memory) / (1 + memory), rel=tolerance)
+    assert result / n == pytest.approx((1 - memory) / (1 + memory), rel=tolerance)
 
 
 def test_the_effective_size_is_the_plain_sum_over_all_lags() -> None:
@@ -105,23 +105,23 @@ def test_tracks_do_not_follow_each_other() -> None:
     assert apart.n_effective == pytest.approx(2.0, rel=0.02)
 
 
-def test_an_honest_covariance_is_inside_its_limits_and_another_outside() -> None:
+def test_a_consistent_covariance_is_inside_its_limits_and_another_outside() -> None:
     root = np.array([[2.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.3, 0.2, 3.0]])
     error = gauss_markov((20000, 3), 0.8) @ root.T
     covariance = np.broadcast_to(root @ root.T, (20000, 3, 3))
     for dimension in (2, 3):
         e, v = error[:, :dimension], covariance[:, :dimension, :dimension]
-        honest = evaluation.nees(e, v)
-        assert honest.nees_low < honest.nees_mean < honest.nees_high
-        assert honest.nees_mean == pytest.approx(np.mean(np.einsum("ni,nij,nj->n", e, np.linalg.inv(v), e)), rel=1e-10)
-        dof = honest.n_effective * dimension
-        assert honest.nees_low == pytest.approx(stats.chi2.ppf(0.025, dof) / honest.n_effective, rel=1e-9)
-        assert honest.nees_high == pytest.approx(stats.chi2.ppf(0.975, dof) / honest.n_effective, rel=1e-9)
-        assert evaluation.nees(e, 0.8 * v).nees_mean > honest.nees_high
-        assert evaluation.nees(e, 1.25 * v).nees_mean < honest.nees_low
+        consistency = evaluation.nees(e, v)
+        assert consistency.nees_low < consistency.nees_mean < consistency.nees_high
+        assert consistency.nees_mean == pytest.approx(np.mean(np.einsum("ni,nij,nj->n", e, np.linalg.inv(v), e)), rel=1e-10)
+        dof = consistency.n_effective * dimension
+        assert consistency.nees_low == pytest.approx(stats.chi2.ppf(0.025, dof) / consistency.n_effective, rel=1e-9)
+        assert consistency.nees_high == pytest.approx(stats.chi2.ppf(0.975, dof) / consistency.n_effective, rel=1e-9)
+        assert evaluation.nees(e, 0.8 * v).nees_mean > consistency.nees_high
+        assert evaluation.nees(e, 1.25 * v).nees_mean < consistency.nees_low
 
 
-def test_the_transform_is_flat_for_an_honest_covariance_only() -> None:
+def test_the_transform_is_flat_for_a_consistent_covariance_only() -> None:
     n = 40000
     error, covariance = gauss_markov((n, 2), 0.0), np.broadcast_to(np.eye(2), (n, 2, 2))
     flat = evaluation.pit(error, covariance, n_bins=10)
@@ -143,8 +143,8 @@ def test_what_is_no_covariance_is_counted_and_not_used() -> None:
     covariance[2, 0, 1] = 0.5
     covariance[3, 1, 1] = math.nan
     error[4, 0] = math.nan
-    found = evaluation.nees(error, covariance)
-    assert (found.n, found.n_unusable, found.nees_mean) == (1, 4, 2.0)
+    statistics = evaluation.nees(error, covariance)
+    assert (statistics.n, statistics.n_unusable, statistics.nees_mean) == (1, 4, 2.0)
 
 
 def test_the_bootstrap_resamples_tracks() -> None:
@@ -186,14 +186,14 @@ def test_what_cannot_be_scored_is_refused(call: object, named: str) -> None:
         call()
 
 
-def test_a_histogram_outside_its_band_is_said_though_the_mean_is_right() -> None:
+def test_a_histogram_outside_its_band_is_reported_though_the_mean_is_right() -> None:
     nees = evaluation.Nees(n=400, n_unusable=0, n_effective=80.0, dimension=3, nees_mean=3.0, nees_low=2.5, nees_high=3.5)
     flat = evaluation.Pit(n=400, n_effective=80.0, counts=[20] * 20, low=5.0, high=40.0)
-    assert honesty_words(nees, flat).endswith("no reason to doubt the covariance.")
+    assert consistency_words(nees, flat).endswith("no reason to doubt the covariance.")
     heaped = evaluation.Pit(n=400, n_effective=80.0, counts=[120, *[10] * 18, 100], low=5.0, high=40.0)
-    said = honesty_words(nees, heaped)
-    assert "2 of the 20 bins" in said
-    assert "6 times its share" in said
+    sentence = consistency_words(nees, heaped)
+    assert "2 of the 20 bins" in sentence
+    assert "6 times its share" in sentence
 
 
 @pytest.mark.parametrize(
@@ -203,9 +203,9 @@ def test_a_histogram_outside_its_band_is_said_though_the_mean_is_right() -> None
 def test_a_few_effective_epochs_decide_nothing_that_one_might_have(mean: float, says: str) -> None:
     flat = evaluation.Pit(n=400, n_effective=4.0, counts=[20] * 20, low=0.0, high=400.0)
 
-    def said(n_effective: float) -> str:
-        return honesty_words(evaluation.Nees(400, 0, n_effective, 3, mean, 1.1, 5.8), flat)
+    def sentence_of(n_effective: float) -> str:
+        return consistency_words(evaluation.Nees(400, 0, n_effective, 3, mean, 1.1, 5.8), flat)
 
     # Chi-square with three degrees of freedom: 95 % between 0.216 and 9.35.
-    assert says in said(4.0)
-    assert "claims" in said(40.0)
+    assert says in sentence_of(4.0)
+    assert "claims" in sentence_of(40.0)

@@ -148,8 +148,8 @@ def test_the_graver_of_the_recorded_status_and_ours_stands(tmp_path: Path) -> No
     # Held for a second at 70 m/s: degraded by our rule, not available by the file's.
     lat = np.array(columns()["lat"])
     lat[301] = lat[300]
-    said = ["not_available" if k == 301 else "ok" for k in range(N)]
-    result = run(tmp_path, lat=lat, speed_mps=np.full(N, 70.0), status=said)
+    declared = ["not_available" if k == 301 else "ok" for k in range(N)]
+    result = run(tmp_path, lat=lat, speed_mps=np.full(N, 70.0), status=declared)
     assert result.epochs["status"][301] == "not_available"
     without = run(tmp_path, lat=lat, speed_mps=np.full(N, 70.0))
     assert without.epochs["status"][301] == "degraded"
@@ -493,7 +493,7 @@ def test_positions_that_may_be_radians_show_nothing_until_the_unit_is_stated(
 
 
 def test_the_rest_of_a_truth_that_contradicts_itself_shows_nothing(tmp_path: Path) -> None:
-    """One true row in four is honest, 3 km from a lie that agrees with the estimate: an epoch or two keep a truth."""
+    """One row in four is true, 3 km from a false one that agrees with the estimate: an epoch or two keep a truth."""
     rows, truth = [HEAD_OF_TWO], ["time,lat,lon,h_m"]
     for k in range(300):
         lat, stamp = 49 + k * 7e-4, f"2026-11-22T12:{k // 60:02d}:{k % 60:02d}"

@@ -63,7 +63,7 @@ def test_there_are_as_many_kinds_as_the_page_says() -> None:
     assert all(len(kind.sizes) == 6 and list(kind.sizes) == sorted(kind.sizes) for kind in KINDS)
 
 
-def test_counts_of_a_recording_that_promises_too_much(still: Recording) -> None:
+def test_counts_of_a_recording_that_declares_too_much(still: Recording) -> None:
     """The truth is moved 15 m to the east: every `ok` epoch with a level of 10 m is wrong, and an error of 5 m is inside."""
     healthy = recorded.counts(still, 0.0)
     assert healthy["n_ok"] == healthy["n_epochs"]

@@ -102,16 +102,16 @@ def test_flights_are_tracks_and_seeds_matter() -> None:
 
 def test_circle_and_sphere_of_many_flights_come_with_their_uncertainty() -> None:
     run = judge(material(DRAWN, flights=12), Settings(methods=("anp-circle", "anp-sphere")))
-    honesty = run.summary.honesty
-    assert honesty is not None
+    consistency = run.summary.honesty
+    assert consistency is not None
     scored = {m.id: m.coverage for m in run.summary.accuracy}
-    for held in honesty.regions:
-        assert held.share == pytest.approx(scored[f"anp-{held.region}"], abs=1e-12)
+    for region in consistency.regions:
+        assert region.share == pytest.approx(scored[f"anp-{region.region}"], abs=1e-12)
         # Errors are drawn from the covariance: some 400 independent epochs, a deviation of a point.
-        assert held.low < 0.95 < held.high
-        assert held.high - held.low < 0.1
-        assert f"the 95 % {held.region} held" in honesty.words
-    assert [held.region for held in honesty.regions] == ["circle", "sphere"]
+        assert region.low < 0.95 < region.high
+        assert region.high - region.low < 0.1
+        assert f"the 95 % {region.region} held" in consistency.words
+    assert [region.region for region in consistency.regions] == ["circle", "sphere"]
     few = judge(material(DRAWN, flights=9), Settings(methods=())).summary.honesty
     assert few is not None
     assert few.regions == []
@@ -125,12 +125,12 @@ def test_context_says_what_was_assumed_and_read(flown: Material) -> None:
     assert flown.inputs[0].sha256 == hashlib.sha256(file.read_bytes()).hexdigest()
     assert [w.name for w in flown.waypoints][::20] == ["ZBAA", "ZSSS"]
     assert any("nominal" in sentence for sentence in flown.assumptions)
-    led = material("beijing-shanghai-misled")
+    led = material("beijing-shanghai-misleading")
     assert "lateral-ramp from 6700 s" in led.assumptions[-1]
 
 
 def test_interference_is_admitted_and_a_ramp_is_not() -> None:
-    plain, poor, led = (material(name).epochs for name in (DRAWN, "beijing-shanghai-degraded", "beijing-shanghai-misled"))
+    plain, poor, led = (material(name).epochs for name in (DRAWN, "beijing-shanghai-degraded", "beijing-shanghai-misleading"))
     at = 6_900
     assert poor["cov_ee_m2"][at] == pytest.approx(250**2 * plain["cov_ee_m2"][at], rel=1e-12)
     assert led["cov_ee_m2"][at] == plain["cov_ee_m2"][at]

@@ -1,4 +1,4 @@
-"""The landing and the way to the stand at Barcelona: the route, what is simulated, what the monitors do, what is refused."""
+"""The landing and the taxi-in at Barcelona: the route, what is simulated, what the monitors do, what is refused."""
 
 from __future__ import annotations
 
@@ -70,17 +70,17 @@ def test_speeds_keep_to_sub_phases_turns_and_brakes() -> None:
     asked = flown.limits()
     way = move(found)
     assert list(dict.fromkeys(way.phase)) == ["RWY", "RET", "NTW", "ATW", "TL", "SLL"]
-    for name, limit in asked.items():
+    for name, limit in limits.items():
         # The landing roll is limited by the speed of touching down alone.
-        most = found.motion.touchdown_speed_mps if name == "RWY" else limit.speed_mps
+        most = loaded.motion.touchdown_speed_mps if name == "RWY" else limit.speed_mps
         assert way.speed_mps[way.phase == name].max() <= most + 1e-9
     gained = np.diff(way.speed_mps)
     # Between whole seconds speed is interpolated over a metre of way: a hundredth covers it.
-    assert gained.max() <= found.motion.acceleration_mps2 + 0.01
-    assert gained.min() >= -found.motion.braking_mps2 - 0.01
+    assert gained.max() <= loaded.motion.acceleration_mps2 + 0.01
+    assert gained.min() >= -loaded.motion.braking_mps2 - 0.01
     turned = np.abs(np.angle(np.exp(1j * np.diff(way.course_rad))))
     # Lateral acceleration is speed times turn rate; a second's mean is below its largest.
-    assert (turned * np.minimum(way.speed_mps[1:], way.speed_mps[:-1])).max() <= found.motion.lateral_acceleration_mps2 * 1.05
+    assert (turned * np.minimum(way.speed_mps[1:], way.speed_mps[:-1])).max() <= loaded.motion.lateral_acceleration_mps2 * 1.05
     assert (np.diff(way.along_m) > 0).all()
 
 
@@ -107,10 +107,10 @@ def test_simulated_errors_have_the_covariance_that_the_core_claims() -> None:
     n = 40_000
     noise = sigma * np.random.Generator(np.random.Philox(3)).standard_normal((n, 7))
     own = gnss.covariance(az, el, sigma, systems).enu_m2
-    found = np.cov(moved_by(gnss.responses(az, el, sigma, systems), noise), rowvar=False)
+    sampled = np.cov(moved_by(gnss.responses(az, el, sigma, systems), noise), rowvar=False)
     # Elements of a sample covariance of 40 000 draws scatter by 0.7 %; four times that, against the variances.
     scale = np.sqrt(np.outer(np.diag(own), np.diag(own)))
-    assert (np.abs(found - own) / scale).max() < 0.03
+    assert (np.abs(sampled - own) / scale).max() < 0.03
 
 
 def flights(shared: Navigator, n: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -140,11 +140,11 @@ def test_the_real_filter_is_the_one_the_covariance_describes() -> None:
     fix = shared.fixes - 1
     used = sky.el_rad[fix] >= shared.taxi.navigation.mask_rad
     az, el = np.where(used, sky.az_rad[fix], np.nan), np.where(used, sky.el_rad[fix], np.nan)
-    told = gbas.aided_covariance(
+    described = gbas.aided_covariance(
         az, el, sky.systems, lat_rad=float(shared.movement.lat_rad[0]), service="F", noise="paper", seconds=shared.lead + shared.fixes
     )
     # Equation 3 has satellites and aircraft that neither move nor turn; theirs change the deviations by some hundredths.
-    ratio = np.sqrt(np.diagonal(covariance[0, fix]) / np.diagonal(told)[:2])
+    ratio = np.sqrt(np.diagonal(covariance[0, fix]) / np.diagonal(described)[:2])
     assert (np.abs(ratio - 1.0) < 0.06).all()
     # A dozen flights with one slow draw each: chi-square of 24 degrees over 12, from 0.5 to 99.5 %.
     assert 0.82 < nees(error[:, fix], covariance[:, fix]) < 3.8
@@ -233,8 +233,8 @@ def test_a_fault_the_ground_sees_is_withdrawn_before_the_fix() -> None:
 
 def test_a_fault_the_ground_misses_misleads_and_the_verdict_says_so(tmp_path: Path) -> None:
     run = navbound.fly("barcelona-taxi-missed-fault")
-    misled = (run.epochs["nse_h_m"] > run.epochs["hpl_m"]).sum()
-    assert misled == sum(p.n_misleading for p in run.summary.protection) > 100
+    misleading = (run.epochs["nse_h_m"] > run.epochs["hpl_m"]).sum()
+    assert misleading == sum(p.n_misleading for p in run.summary.protection) > 100
     assert run.summary.verdict.inside is None
     assert f"At {misled} epochs the true error is above the protection level" in run.summary.verdict.words
     text = scenario.find("barcelona-taxi-missed-fault").read_text(encoding="utf-8")
@@ -307,7 +307,7 @@ def test_the_covariance_that_bounds_leaves_no_room_at_the_stand(tmp_path: Path, 
         ('kind = "taxi"', 'kind = "taxi"\nkind = 3', "not TOML"),
     ],
 )
-def test_what_is_wrong_in_a_file_is_named(tmp_path: Path, old: str, new: str, said: str) -> None:
+def test_what_is_wrong_in_a_file_is_named(tmp_path: Path, old: str, new: str, message: str) -> None:
     file = changed(tmp_path, old, new)
     with pytest.raises(FormatError, match=re.escape(said)):
         read(file)
@@ -354,7 +354,7 @@ def test_the_page_draws_route_levels_and_limits_with_their_word(tmp_path: Path) 
         rows = page.locator("#alert-limits tbody tr").all_inner_texts()
         assert [row.split("\t")[1] for row in rows] == [f"{p.hal_m:.2f} m (inferred)" for p in run.summary.protection]
         # The protection circle is drawn: its colour is on the moving layer of the map.
-        found = page.evaluate(
+        result = page.evaluate(
             """() => {
                 const canvas = document.querySelectorAll("#map canvas")[1];
                 const hue = getComputedStyle(document.documentElement).getPropertyValue("--m2").trim();
@@ -367,6 +367,6 @@ def test_the_page_draws_route_levels_and_limits_with_their_word(tmp_path: Path) 
                 return n;
             }"""
         )
-        assert found > 100
+        assert result > 100
         assert not failures
         browser.close()

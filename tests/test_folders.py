@@ -99,7 +99,7 @@ def test_a_link_in_the_folder_is_not_followed(tmp_path: Path, suffix: str) -> No
     assert words(out) == {"new job"}
 
 
-def test_a_file_changed_after_the_job_is_found(tmp_path: Path) -> None:
+def test_a_file_changed_after_the_job_is_detected(tmp_path: Path) -> None:
     write(tmp_path, "first")
     report = tmp_path / "report.html"
     report.write_bytes(report.read_bytes().replace(b"first", b"other"))

@@ -1,4 +1,4 @@
-"""Flights that navigate by their sensors: whether the filter is as good as it says, what faults do, and what is said of them."""
+"""Flights that navigate by their sensors: whether the filter is as good as it says, what faults do, and what is stated of them."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ RATE_HZ = 10
 
 
 def quick(name: str, faults: list[dict[str, Any]] | None = None, constellations: list[str] | None = None) -> Scenario:
-    found = scenario.load(name)
-    data = found.model_dump()
+    loaded = scenario.load(name)
+    data = loaded.model_dump()
     data["sensors"]["rate_hz"] = RATE_HZ
     if constellations is not None:
         data["sensors"]["gnss"]["constellations"] = constellations
@@ -67,17 +67,17 @@ def test_the_filter_is_as_good_as_it_says_where_errors_stay(real: Material) -> N
 
 
 def test_a_filter_that_takes_all_errors_for_white_is_caught_by_nees_and_pit_but_not_by_its_innovations(white: Run) -> None:
-    honesty = white.summary.honesty
-    assert honesty is not None
+    consistency = white.summary.honesty
+    assert consistency is not None
     # Claimed 0.7 m where the errors are 4 m and more (specification 7, case C): 100 times in the mean; ten is far beyond chance.
-    assert honesty.nees_mean > 10 * honesty.nees_high
-    assert honesty.pit_counts[-1] > 5 * honesty.pit_high
-    assert "claims too little" in honesty.words
-    told = white.record.settings["filter"]
-    assert isinstance(told, dict)
+    assert consistency.nees_mean > 10 * consistency.nees_high
+    assert consistency.pit_counts[-1] > 5 * consistency.pit_high
+    assert "claims too little" in consistency.words
+    reported = white.record.settings["filter"]
+    assert isinstance(reported, dict)
     # The mean squared innovation looks healthy. What gives the filter away is that each innovation knows the one before.
-    assert told["range"]["mean_square"] < 1.2
-    assert told["range"]["lag_one"] > 0.3
+    assert reported["range"]["mean_square"] < 1.2
+    assert reported["range"]["lag_one"] > 0.3
 
 
 def test_flights_do_not_depend_on_the_company_they_keep(real: Material) -> None:
@@ -103,9 +103,9 @@ def test_the_mode_falls_back_without_satellites_and_returns() -> None:
 
 def summary(name: str, faults: list[dict[str, Any]] | None = None) -> tuple[Run, list[FaultSummary]]:
     # Fewer satellites are faster, and enough where none of them is at fault.
-    found = quick(name, faults, ["gps", "beidou"] if "satellite" in name or "approach" in name else ["gps"])
-    run = judge(fly.material(found), Settings(methods=()))
-    return run, fault_summaries(found, run.epochs, run.events)
+    result = quick(name, faults, ["gps", "beidou"] if "satellite" in name or "approach" in name else ["gps"])
+    run = judge(fly.material(result), Settings(methods=()))
+    return run, fault_summaries(result, run.epochs, run.events)
 
 
 @pytest.mark.parametrize(
@@ -121,16 +121,16 @@ def summary(name: str, faults: list[dict[str, Any]] | None = None) -> tuple[Run,
     ],
 )
 def test_every_shipped_fault_is_flown_and_summed_up(name: str, kinds: list[str]) -> None:
-    run, found = summary(name)
-    assert [f.kind for f in found] == kinds
+    run, summaries = summary(name)
+    assert [f.kind for f in summaries] == kinds
     # Loss of monitoring, and any alert, ends in normal only at an epoch inside.
     shown, outside = run.epochs["alert"], (run.epochs["tse_exact_m"] > run.epochs["rnp_m"]).fill_null(value=False)
     assert run.epochs["track"].n_unique() == 1
     assert not ((shown == "normal") & (shown.shift(1) != "normal") & outside).any()
-    for fault in found:
+    for fault in summaries:
         assert fault.nse_h_max_m is not None
         assert fault.words.endswith(".")
-    by_kind = {f.kind: f for f in found}
+    by_kind = {f.kind: f for f in summaries}
     if "satellite-step" in by_kind:
         # A hundred metres against a deviation of some metres: gated from the first second, said after three.
         assert by_kind["satellite-step"].gate_after_s == pytest.approx(2.0, abs=1.0)
@@ -153,15 +153,15 @@ def test_every_shipped_fault_is_flown_and_summed_up(name: str, kinds: list[str])
         assert by_kind["interference"].mode_after_s == pytest.approx(6.0, abs=2.0)
 
 
-def test_a_wrong_unit_without_a_second_filter_is_said_by_the_stations_that_contradict_it() -> None:
-    found = quick("beijing-shanghai-imu-jump", constellations=["gps"])
-    assert found.filter is not None
-    alone = found.model_copy(update={"filter": found.filter.model_copy(update={"reversion": False})})
-    said = fly.material(alone).epochs
-    contradicted = said.filter(pl.col("reason").str.starts_with("several stations contradict"))
+def test_a_wrong_unit_without_a_second_filter_is_reported_by_the_stations_that_contradict_it() -> None:
+    result = quick("beijing-shanghai-imu-jump", constellations=["gps"])
+    assert result.filter is not None
+    alone = result.model_copy(update={"filter": result.filter.model_copy(update={"reversion": False})})
+    epochs = fly.material(alone).epochs
+    contradicted = epochs.filter(pl.col("reason").str.starts_with("several stations contradict"))
     assert contradicted["status"].unique().to_list() == ["not_available"]
     # The jump is at 2700 s, the satellites come back at 3600 s.
-    second = (contradicted["time_ns"] - said["time_ns"].min()) / 1e9
+    second = (contradicted["time_ns"] - epochs["time_ns"].min()) / 1e9
     assert 2700.0 < second.min() < 3600.0  # type: ignore[operator]
 
 
@@ -170,15 +170,15 @@ def fault(kind: str, **more: object) -> list[dict[str, Any]]:
 
 
 WITHOUT_SATELLITES = {"kind": "interference", "start_s": 0.0, "duration_s": 8000.0}
-"""Ranges take most of the time, and nothing is asked of them here."""
+"""Ranges take most of the time, and nothing is required of them here."""
 
 
 @pytest.mark.parametrize("what", ["silent", "not-a-number", "late"])
 def test_a_short_trouble_of_the_inertial_unit_is_bridged_and_counted(what: str) -> None:
     run, _ = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=0.5, what=what)])
-    told = run.record.settings["filter"]
-    assert isinstance(told, dict)
-    assert told["samples"]["bridged"] == 1
+    reported = run.record.settings["filter"]
+    assert isinstance(reported, dict)
+    assert reported["samples"]["bridged"] == 1
     # At the very second of the trouble there is no state of that instant.
     assert run.epochs.with_row_index().filter(pl.col("status") == "not_available")["index"].to_list() == [3000]
     assert run.epochs["reason"][3000] == "the navigation filter needs inertial samples up to it, which this epoch lacks"
@@ -186,7 +186,7 @@ def test_a_short_trouble_of_the_inertial_unit_is_bridged_and_counted(what: str) 
 
 @pytest.mark.parametrize(("what", "duration_s"), [("silent", 5.0), ("not-a-number", 5.0), ("silent", 60.0)])
 def test_an_inertial_unit_that_was_lost_is_aligned_in_flight(what: str, duration_s: float) -> None:
-    run, found = summary("beijing-shanghai", fault("imu-trouble", duration_s=duration_s, what=what))
+    run, summaries = summary("beijing-shanghai", fault("imu-trouble", duration_s=duration_s, what=what))
     end = 3000 + round(duration_s)
     lost = run.epochs[3000:end]
     # The ranges of each instant alone, with less behind them for ten seconds, which is longer than most holes.
@@ -195,7 +195,7 @@ def test_an_inertial_unit_that_was_lost_is_aligned_in_flight(what: str, duration
     assert set(lost["status"][10:]) <= {"ok"}
     assert lost["nav_mode"].unique().to_list() == ["stopped"]
     assert lost["nse_h_m"].max() < 15.0  # type: ignore[operator]
-    assert found[0].alert is None
+    assert summaries[0].alert is None
     # The satellites of the first second after it give a position; the attitude takes some minutes at the most.
     after = run.epochs[end + 1 :]
     assert "not_available" not in after["status"].to_list()
@@ -205,10 +205,10 @@ def test_an_inertial_unit_that_was_lost_is_aligned_in_flight(what: str, duration
     assert set(after["status"][:settled].to_list()) == {"degraded"}
     assert set(mode[settled:]) == {"gnss"}
     assert 10 < settled < 600
-    told = run.record.settings["filter"]
-    assert isinstance(told, dict)
-    assert told["samples"]["adrift"] > 0
-    assert told["samples"]["stopped"] == 0
+    reported = run.record.settings["filter"]
+    assert isinstance(reported, dict)
+    assert reported["samples"]["adrift"] > 0
+    assert reported["samples"]["stopped"] == 0
 
 
 @pytest.mark.parametrize("duration_s", [5.0, 60.0])
@@ -248,11 +248,11 @@ def test_a_wrong_station_without_satellites_is_left_out_before_it_takes_the_heig
 
 
 def test_samples_whose_times_run_a_second_behind_give_no_position_until_they_are_right_again() -> None:
-    run, found = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=30.0, what="late")])
+    run, summaries = summary("beijing-shanghai", [WITHOUT_SATELLITES, *fault("imu-trouble", duration_s=30.0, what="late")])
     status = run.epochs["status"].to_list()
     assert set(status[3000:3030]) == {"not_available"}
     assert "not_available" not in status[3031:]
-    assert found[1].alert == "unavailable"
+    assert summaries[1].alert == "unavailable"
 
 
 @pytest.mark.parametrize(

@@ -121,8 +121,8 @@ def test_without_satellites_nothing_is_ok() -> None:
 def test_a_spoofer_whose_rates_agree_is_never_ok_beyond_the_level(name: str) -> None:
     data = scenario.load(name)
     assert data.sensors is not None
-    found = flown([fault.model_dump() for fault in data.sensors.faults], name, systems=("gps", "beidou"))
-    assert beyond(with_errors(found.epochs)) == 0
+    result = flown([fault.model_dump() for fault in data.sensors.faults], name, systems=("gps", "beidou"))
+    assert beyond(with_errors(result.epochs)) == 0
 
 
 @pytest.fixture(scope="module")
@@ -141,8 +141,8 @@ def test_a_healthy_flight_is_ok_and_its_level_holds_the_error(healthy: Any) -> N
 
 
 def test_filter_and_snapshot_differ_by_what_is_expected(healthy: Any) -> None:
-    told = healthy.settings["filter"]["snapshot_tests"]
-    assert told["n_raised"] == 0
+    reported = healthy.settings["filter"]["snapshot_tests"]
+    assert reported["n_raised"] == 0
     # The covariance of the difference is widened by 1.6, so that its mean square lies below one.
-    assert 0.3 <= told["position_horizontal"]["mean_square"] <= 1.2
-    assert 0.8 <= told["velocity_horizontal"]["mean_square"] <= 1.1
+    assert 0.3 <= reported["position_horizontal"]["mean_square"] <= 1.2
+    assert 0.8 <= reported["velocity_horizontal"]["mean_square"] <= 1.1

@@ -29,14 +29,14 @@ def tail(x: float) -> float:
 def test_levels_are_those_of_the_whole_normal_equation() -> None:
     s = responses()
     sigma = gbas.range_sigma(EL, "D")
-    found = gbas.protection_levels(AZ, EL, bias_m=0.3)
+    levels = gbas.protection_levels(AZ, EL, bias_m=0.3)
     p = (s * sigma.sigma_m**2) @ s.T
-    assert np.abs(found.covariance_enu_m2 - p).max() < 1e-13  # two ways of solving four equations of condition 1e2
+    assert np.abs(levels.covariance_enu_m2 - p).max() < 1e-13  # two ways of solving four equations of condition 1e2
     signs = np.array(list(itertools.product((-1, 1), repeat=len(AZ))))
     worst = np.linalg.norm(signs @ s[:2].T, axis=1).max()
-    assert abs(found.bias_gain_exact - worst) < 1e-13
+    assert abs(levels.bias_gain_exact - worst) < 1e-13
     k = gbas.factors(1.25e-9)
-    assert abs(found.hpl_h0_m - (k.k_ffmd * np.sqrt(np.linalg.eigvalsh(p[:2, :2])[-1]) + 0.3 * worst)) < 1e-12
+    assert abs(levels.hpl_h0_m - (k.k_ffmd * np.sqrt(np.linalg.eigvalsh(p[:2, :2])[-1]) + 0.3 * worst)) < 1e-12
 
 
 def test_b_values_move_the_level_of_a_faulty_receiver_only() -> None:
@@ -65,13 +65,13 @@ def test_the_literal_sum_is_never_smaller() -> None:
 def test_skies_broadcast_and_a_poor_one_is_a_status() -> None:
     az, el = np.tile(AZ, (3, 1)), np.tile(EL, (3, 1))
     az[1, 3:], el[1, 3:] = np.nan, np.nan
-    found = gbas.protection_levels(az, el, bias_m=[0.0, 0.1, 0.2])
-    assert found.status.tolist() == ["ok", "not_available", "ok"]
-    assert "4 satellites are needed, 3 are usable" in found.reason[1]
-    assert np.isnan(found.hpl_m[1])
-    assert found.hpl_m[2] > found.hpl_m[0]
-    assert found.n_sv.tolist() == [7, 3, 7]
-    assert found.covariance_enu_m2.shape == (3, 3, 3)
+    levels = gbas.protection_levels(az, el, bias_m=[0.0, 0.1, 0.2])
+    assert levels.status.tolist() == ["ok", "not_available", "ok"]
+    assert "4 satellites are needed, 3 are usable" in levels.reason[1]
+    assert np.isnan(levels.hpl_m[1])
+    assert levels.hpl_m[2] > levels.hpl_m[0]
+    assert levels.n_sv.tolist() == [7, 3, 7]
+    assert levels.covariance_enu_m2.shape == (3, 3, 3)
 
 
 def test_two_constellations_pay_for_two_clocks() -> None:
@@ -114,9 +114,9 @@ def test_only_the_papers_noise_gains_from_an_inertial_system() -> None:
 
 def test_every_inferred_number_carries_its_mark() -> None:
     for phase in gbas.sub_phases().values():
-        held = {m.name: m.held for m in phase.marks}
-        assert held["containment"] == held["hal"] == held["integrity"] == held["continuity"] == "inferred"
-        assert held["speed"] == "ours"
+        provenance = {m.name: m.held for m in phase.marks}
+        assert provenance["containment"] == provenance["hal"] == provenance["integrity"] == provenance["continuity"] == "inferred"
+        assert provenance["speed"] == "ours"
     assert {m.name: m.held for m in gbas.monitor_curves()["F"].marks}["curve"] == "inferred"
     assert {m.name: m.held for m in gbas.carriers()["dual"].marks}["clock"] == "inferred"
     assert {m.name: m.held for m in gbas.allocation().marks}["coasting"] == "inferred"
@@ -132,7 +132,7 @@ def test_every_inferred_number_carries_its_mark() -> None:
         (lambda: gbas.protection_levels(AZ, EL, bias_m=[0.1, 0.2]), "bias_m"),
         (lambda: gbas.protection_levels(AZ, EL, ordering="best"), "ordering"),  # type: ignore[arg-type]
         (lambda: gbas.protection_levels(AZ, EL, form="best"), "form"),  # type: ignore[arg-type]
-        (lambda: gbas.protection_levels(AZ, EL, sigma_m=0.3), "sigma_h1_m"),
+        (lambda: gbas.protection_levels(AZ, EL, sigma_m=0.3), "sigma_m"),
         (lambda: gbas.protection_levels(AZ, EL, sigma_m=0.3, sigma_h1_m=0.2), "sigma_h1_m"),
         (lambda: gbas.protection_levels(AZ, EL, sigma_m=0.0, sigma_h1_m=0.2), "sigma_m"),
         (lambda: gbas.protection_levels(AZ, EL, b_values_m=np.zeros(7)), "b_values_m"),

@@ -74,16 +74,16 @@ def plain(
 @pytest.mark.parametrize("second", [[0] * 7, [0, 1, 0, 1, 0, 1, 0]])
 def test_the_filter_is_the_plain_one(second: list[int], service: Literal["D", "F"], noise: Literal["paper", "bound"]) -> None:
     for seconds in (0, 1, 60):
-        found = gbas.aided_covariance(AZ, EL, second, lat_rad=0.72, service=service, noise=noise, seconds=seconds)
+        solution = gbas.aided_covariance(AZ, EL, second, lat_rad=0.72, service=service, noise=noise, seconds=seconds)
         expected = plain(AZ, EL, np.array(second) > 0, lat=0.72, service=service, noise=noise, seconds=seconds)
         # The updates cancel 1e8 m² of clock variance down to 0.1 m², which leaves 1e-7; the exponential's fourth order is smaller.
-        assert np.abs(found - expected).max() < 3e-7 * np.abs(expected).max(), seconds
+        assert np.abs(solution - expected).max() < 3e-7 * np.abs(expected).max(), seconds
 
 
 def test_the_inertial_system_alone_drifts_as_the_plain_one() -> None:
     """Two ranges cannot hold the position: what gravity, the Earth's turning and the gyros do to it shows."""
     az, el = AZ[:2], EL[:2]
-    found = gbas.aided_covariance(az, el, lat_rad=-0.9, noise="bound", seconds=600)
+    solution = gbas.aided_covariance(az, el, lat_rad=-0.9, noise="bound", seconds=600)
     expected = plain(az, el, np.zeros(2), lat=-0.9, service="D", noise="bound", seconds=600)
     # Without the bounds of other ranges the clock's 1e8 m² of variance stays in every element.
-    assert np.abs(found / expected - 1.0).max() < 1e-4
+    assert np.abs(solution / expected - 1.0).max() < 1e-4

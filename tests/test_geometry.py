@@ -33,16 +33,16 @@ def test_the_coverage_study_sees_the_published_geometry() -> None:
     sky = gnss.geometry(gnss.constellation("gps"), 30.43 * DEG, 103.45 * DEG, 800.0, t, mask_rad=5 * DEG)
     assert (sky.n_sv.min(), sky.n_sv.max()) == (6, 11)
     assert abs(sky.n_sv.mean() - 7.6) < 0.05
-    found = gnss.covariance(sky.az_rad, sky.el_rad, 12.5)
-    assert set(found.status.tolist()) == {"ok"}
+    solution = gnss.covariance(sky.az_rad, sky.el_rad, 12.5)
+    assert set(solution.status.tolist()) == {"ok"}
     course = 13.369 * DEG
     right = np.array([np.cos(course), -np.sin(course)])
-    s = np.sqrt(np.einsum("i,tij,j->t", right, found.enu_m2[:, :2, :2], right))
+    s = np.sqrt(np.einsum("i,tij,j->t", right, solution.enu_m2[:, :2, :2], right))
     assert abs(s.mean() / 8.51 - 1) < 0.002
     assert abs(s.min() / 5.73 - 1) < 0.002
-    assert abs(found.sigma_major_m.mean() / 10.30 - 1) < 0.002
-    assert abs((found.sigma_major_m / s).mean() / 1.215 - 1) < 0.002
-    assert abs((found.sigma_major_m / s).max() / 2.255 - 1) < 0.002
+    assert abs(solution.sigma_major_m.mean() / 10.30 - 1) < 0.002
+    assert abs((solution.sigma_major_m / s).mean() / 1.215 - 1) < 0.002
+    assert abs((solution.sigma_major_m / s).max() / 2.255 - 1) < 0.002
 
 
 def test_covariance_agrees_with_an_independent_least_squares() -> None:
@@ -56,8 +56,8 @@ def test_covariance_agrees_with_an_independent_least_squares() -> None:
         h = np.stack([-np.cos(el) * np.sin(az), -np.cos(el) * np.cos(az), -np.sin(el), system == 0, system == 3], axis=-1)
         pinv = np.linalg.pinv(h / sigma[:, None])
         expected = (pinv @ pinv.T)[:3, :3]
-        found = gnss.covariance(az, el, sigma, system)
-        np.testing.assert_allclose(found.enu_m2, expected, rtol=1e-8, atol=1e-10 * np.abs(expected).max())
+        solution = gnss.covariance(az, el, sigma, system)
+        np.testing.assert_allclose(solution.enu_m2, expected, rtol=1e-8, atol=1e-10 * np.abs(expected).max())
         unweighted = np.linalg.pinv(h)
         q = np.diag(unweighted @ unweighted.T)
         dop = gnss.dop(az, el, system)
@@ -83,20 +83,20 @@ def test_route_geometry_is_near_the_published_averages() -> None:
     sky = gnss.geometry(both, (40.07 - 8.87 * share) * DEG, (116.6 + 4.74 * share) * DEG, 8_900.0, t, mask_rad=7 * DEG)
     dop = gnss.dop(sky.az_rad, sky.el_rad, both.constellation)
     n_gps = sky.visible[:, both.constellation == 0].sum(axis=1)
-    found = [sky.n_sv.mean(), n_gps.mean(), dop.ndop.mean(), dop.edop.mean(), dop.vdop.mean()]
-    np.testing.assert_allclose(found, [19.6, 7.3, 0.480, 0.451, 0.962], rtol=0.1)
+    result = [sky.n_sv.mean(), n_gps.mean(), dop.ndop.mean(), dop.edop.mean(), dop.vdop.mean()]
+    np.testing.assert_allclose(result, [19.6, 7.3, 0.480, 0.451, 0.962], rtol=0.1)
 
 
 def test_too_few_and_singular_are_statuses_with_reasons() -> None:
     az = np.array([[0, 60, 120, 180, 240], [0, 60, 120, np.nan, np.nan], [0, 60, 120, 180, 250]]) * DEG
     el = np.array([[30.0] * 5, [30, 40, 50, np.nan, np.nan], [30, 40, 50, 60, 20]]) * DEG
-    found = gnss.covariance(az, el, 1.0)
-    assert found.status.tolist() == ["not_available", "not_available", "ok"]
-    assert "singular" in found.reason[0]
-    assert found.reason[1] == "4 satellites are needed, 3 are usable"
-    assert np.isnan(found.enu_m2[:2]).all()
-    assert np.isfinite(found.enu_m2[2]).all()
-    assert found.n_sv.tolist() == [5, 3, 5]
+    solution = gnss.covariance(az, el, 1.0)
+    assert solution.status.tolist() == ["not_available", "not_available", "ok"]
+    assert "singular" in solution.reason[0]
+    assert solution.reason[1] == "4 satellites are needed, 3 are usable"
+    assert np.isnan(solution.enu_m2[:2]).all()
+    assert np.isfinite(solution.enu_m2[2]).all()
+    assert solution.n_sv.tolist() == [5, 3, 5]
 
 
 def test_own_elements_give_the_shipped_constellation_back() -> None:
@@ -131,8 +131,8 @@ def test_the_satellites_of_a_year_stand_in_the_expanded_slots(shared_data: Path)
     def away(along: float, nodes: float) -> NDArray[np.float64]:
         # A satellite of another plane is none of this slot.
         off = turned(np.degrees(node)[:, None] - np.degrees(slots.node_rad) - nodes)
-        found = np.abs(turned(latitude[:, None] - np.degrees(slots.mean_anomaly_rad) - along))
-        return np.asarray(np.where(np.abs(off) < 25.0, found, 180.0).min(axis=0))
+        result = np.abs(turned(latitude[:, None] - np.degrees(slots.mean_anomaly_rad) - along))
+        return np.asarray(np.where(np.abs(off) < 25.0, result, 180.0).min(axis=0))
 
     best = min((away(a, n) for a in range(0, 360, 2) for n in range(0, 360, 8)), key=lambda d: float(np.minimum(d, 20.0).sum()))
     split = [slots.satellite.index(name) for name in ("G05", "G06", "G15", "G16", "G24", "G25")]
@@ -149,7 +149,7 @@ def test_responses_are_the_rows_of_least_squares() -> None:
     az[1, 4] = el[1, 4] = np.nan
     az[3, 3:] = el[3, 3:] = np.nan
     systems = np.array([0] * 6 + [2] * 6)
-    found = gnss.responses(az, el, sigma, systems)
+    responses = gnss.responses(az, el, sigma, systems)
     for k in range(3):
         used = ~np.isnan(az[k])
         line = np.stack([np.cos(el[k]) * np.sin(az[k]), np.cos(el[k]) * np.cos(az[k]), np.sin(el[k])], axis=-1)[used]
@@ -157,8 +157,8 @@ def test_responses_are_the_rows_of_least_squares() -> None:
         expected = np.zeros((3, 12))
         expected[:, used] = np.linalg.pinv(h)[:3] / sigma[k, used]
         # Rounding of a five by five system of condition some hundreds.
-        np.testing.assert_allclose(found[k], expected, atol=1e-11)
-    assert np.isnan(found[3]).all()
+        np.testing.assert_allclose(responses[k], expected, atol=1e-11)
+    assert np.isnan(responses[3]).all()
 
 
 def test_places_along_sights_are_seen_where_they_were_put() -> None:

@@ -55,7 +55,7 @@ def test_an_ok_position_holds_faults_that_agree(station: faults.Open, systems: s
 def test_two_spare_ranges_give_no_ok_circle_that_is_of_no_use(station: faults.Open, tmp_path: Path) -> None:
     rng = np.random.default_rng(11)
     gps = only(station, "G")
-    picked = faults.chosen(gps.sky, faults.Cell("G", 0, 0.0, 2), 100, rng)
+    picked = faults.selected(gps.sky, faults.Cell("G", 0, 0.0, 2), 100, rng)
     epochs = solved(gps, picked, tmp_path / "six.rnx", "G").epochs
     circle = bounds(epochs, "anp-circle", 0.05).bound_m
     ok, wide = (epochs["status"] == "ok").to_numpy(), epochs["reason_id"].eq_missing("wide_circle").to_numpy()

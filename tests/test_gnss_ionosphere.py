@@ -93,39 +93,39 @@ def test_without_any_message_of_the_ionosphere_the_bounds_still_hold(shared_data
     observations, navigation, truth = recording(shared_data, name)
     absent = ("GPS",) if name == "ARLM" else ("GPS", "Galileo")
     messages = gnss.read_navigation(without(navigation, tmp_path, *absent))
-    found = gnss.solve(observations, messages, systems=systems, truth_ecef_m=truth)
-    assert "ok" not in set(found.epochs["status"])
-    assert found.epochs["reason"].drop_nulls().len() == found.epochs.height
-    assert "climatology, no message" in found.models["ionosphere"]
-    held = coverage(found.epochs.drop_nulls("est_lat_rad"))
-    assert min(held["circle"], held["height"]) >= 0.93, held
-    assert min(held["circle 1e-5"], held["height 1e-5"]) >= 0.999, held
+    positions = gnss.solve(observations, messages, systems=systems, truth_ecef_m=truth)
+    assert "ok" not in set(positions.epochs["status"])
+    assert positions.epochs["reason"].drop_nulls().len() == positions.epochs.height
+    assert "climatology, no message" in positions.models["ionosphere"]
+    share = coverage(positions.epochs.drop_nulls("est_lat_rad"))
+    assert min(share["circle"], share["height"]) >= 0.93, share
+    assert min(share["circle 1e-5"], share["height 1e-5"]) >= 0.999, share
 
 
 @pytest.mark.parametrize(("name", "systems"), [c for c in CASES if c[0] != "ARLM"])
 def test_without_the_message_of_gps_that_of_galileo_serves(shared_data: Path, tmp_path: Path, name: str, systems: str) -> None:
     observations, navigation, truth = recording(shared_data, name)
-    found = gnss.solve(observations, gnss.read_navigation(without(navigation, tmp_path, "GPS")), systems=systems, truth_ecef_m=truth)
-    assert "NTCM-G, Galileo message" in found.models["ionosphere"]
+    positions = gnss.solve(observations, gnss.read_navigation(without(navigation, tmp_path, "GPS")), systems=systems, truth_ecef_m=truth)
+    assert "NTCM-G, Galileo message" in positions.models["ionosphere"]
     # Galileo of 2020 alone has often fewer than three ranges to spare: a fault could not be seen, and the position is doubted for that.
-    assert found.epochs["status"].to_list().count("ok") > (0.9 if systems == "E" else 0.99) * found.epochs.height
-    held = coverage(found.epochs)
-    assert min(held["circle"], held["height"]) >= 0.93, held
-    assert min(held["circle 1e-5"], held["height 1e-5"]) >= 0.999, held
-    assert nees(found.epochs) < 4.0
+    assert positions.epochs["status"].to_list().count("ok") > (0.9 if systems == "E" else 0.99) * positions.epochs.height
+    share = coverage(positions.epochs)
+    assert min(share["circle"], share["height"]) >= 0.93, share
+    assert min(share["circle 1e-5"], share["height 1e-5"]) >= 0.999, share
+    assert nees(positions.epochs) < 4.0
 
 
-# Which of these set a number stands in docs/methods/what-is-believable.md. The ESBC day is of the sun's minimum: 1 to 4 is asked of it;
+# Which of these set a number stands in docs/methods/what-is-believable.md. The ESBC day is of the sun's minimum: 1 to 4 is required of it;
 # five minutes or an hour are one draw of an ionosphere, which may as well be a good one.
 @pytest.mark.parametrize(("name", "systems"), CASES)
 def test_the_covariance_covers_the_errors(shared_data: Path, name: str, systems: str) -> None:
     observations, navigation, truth = recording(shared_data, name)
-    found = gnss.solve(observations, gnss.read_navigation(navigation), systems=systems, truth_ecef_m=truth)
-    held = coverage(found.epochs)
+    positions = gnss.solve(observations, gnss.read_navigation(navigation), systems=systems, truth_ecef_m=truth)
+    share = coverage(positions.epochs)
     # With few ranges to spare the covariance holds readings of them that are not true; it is then too large, never too small.
-    assert (0.3 if systems == "E" else 1.0) <= nees(found.epochs) <= 4.0
-    assert min(held["circle"], held["height"]) >= 0.93, held
-    assert min(held["circle 1e-5"], held["height 1e-5"]) >= 0.999, held
+    assert (0.3 if systems == "E" else 1.0) <= nees(positions.epochs) <= 4.0
+    assert min(share["circle"], share["height"]) >= 0.93, share
+    assert min(share["circle 1e-5"], share["height 1e-5"]) >= 0.999, share
 
 
 @pytest.mark.parametrize("name", ["ESBC", "Taroz"])
@@ -141,11 +141,11 @@ def test_more_satellites_do_not_make_the_covariance_less_believable(shared_data:
 
 def test_no_correction_counts_as_error_with_its_whole_size(shared_data: Path) -> None:
     observations, navigation, truth = recording(shared_data, "Taroz")
-    found = gnss.solve(observations, gnss.read_navigation(navigation), ionosphere="none", truth_ecef_m=truth)
-    assert "ok" not in set(found.epochs["status"])
+    positions = gnss.solve(observations, gnss.read_navigation(navigation), ionosphere="none", truth_ecef_m=truth)
+    assert "ok" not in set(positions.epochs["status"])
     # At noon of a year of an active sun a height is wrong by more than ten metres, and says so.
-    assert float(np.median(np.abs(found.epochs["nse_u_m"].to_numpy()))) > 5.0
-    assert min(coverage(found.epochs).values()) >= 0.93
+    assert float(np.median(np.abs(positions.epochs["nse_u_m"].to_numpy()))) > 5.0
+    assert min(coverage(positions.epochs).values()) >= 0.93
 
 
 def test_a_message_of_another_time_does_not_serve(shared_data: Path, tmp_path: Path) -> None:
@@ -169,19 +169,19 @@ def test_messages_of_zeros_are_no_messages(shared_data: Path, tmp_path: Path) ->
     empty = [line[:5] + zero + line[53:] if line[:4] in {b"GPSA", b"GAL "} else line for line in lines]
     path = tmp_path / "zeros.nav"
     path.write_bytes(b"\n".join(empty))
-    found = gnss.solve(observations, gnss.read_navigation(path))
-    assert "climatology" in found.models["ionosphere"]
-    assert "ok" not in set(found.epochs["status"])
+    positions = gnss.solve(observations, gnss.read_navigation(path))
+    assert "climatology" in positions.models["ionosphere"]
+    assert "ok" not in set(positions.epochs["status"])
 
 
 def test_two_frequencies_are_taken_where_they_state_the_smaller_covariance(shared_data: Path, tmp_path: Path) -> None:
     observations, navigation, truth = recording(shared_data, "Taroz")
     messages = gnss.read_navigation(navigation)
     # At the sun's maximum the pair is the better one, and the better one is taken.
-    found = gnss.solve(observations, messages, systems="GE", signals="auto", truth_ecef_m=truth)
+    positions = gnss.solve(observations, messages, systems="GE", signals="auto", truth_ecef_m=truth)
     single, dual = (gnss.solve(observations, messages, systems="GE", signals=s, truth_ecef_m=truth) for s in ("single", "dual"))
-    assert found.models["signals"].startswith("ionosphere-free pairs: median sigma")
-    assert found.epochs.equals(dual.epochs)
+    assert positions.models["signals"].startswith("ionosphere-free pairs: median sigma")
+    assert positions.epochs.equals(dual.epochs)
     error = [np.sqrt((p.epochs.select("nse_e_m", "nse_n_m", "nse_u_m").to_numpy() ** 2).sum(axis=1).mean()) for p in (single, dual)]
     assert error[1] < error[0]
     # At its minimum one frequency is.
@@ -199,8 +199,8 @@ def test_where_the_file_has_one_frequency_auto_says_so(shared_data: Path) -> Non
     folder = shared_data / "gnss" / "HK_TST_2019_118"
     observations = gnss.read_observations(folder / "COM3_190428_124409.obs")
     messages = gnss.read_navigation([folder / "hksc1180.19n", folder / "hksc1180.19b"])
-    found = gnss.solve(observations, messages, systems="GC", signals="auto")
-    assert found.models["signals"].startswith("one pseudorange; ionosphere-free pairs give 0 of its")
+    positions = gnss.solve(observations, messages, systems="GC", signals="auto")
+    assert positions.models["signals"].startswith("one pseudorange; ionosphere-free pairs give 0 of its")
 
 
 def test_the_run_states_what_was_used(shared_data: Path, tmp_path: Path) -> None:
@@ -274,12 +274,14 @@ def solution(status: str, variance_m2: float) -> Solution:
     ],
 )
 def test_positions_that_nobody_vouches_for_are_not_taken_for_their_covariance(single: Solution, dual: Solution, taken: str) -> None:
-    found = smaller_covariance({"single": single, "dual": dual}.__getitem__)  # type: ignore[arg-type]
-    assert found.models["signals"].startswith(taken)
+    selected_positions = smaller_covariance({"single": single, "dual": dual}.__getitem__)  # type: ignore[arg-type]
+    assert selected_positions.models["signals"].startswith(taken)
 
 
 @pytest.mark.parametrize(("shift_m", "said"), [(0.0, False), (5000.0, True)])
-def test_a_header_that_is_far_from_every_solved_position_is_said(shared_data: Path, tmp_path: Path, shift_m: float, said: bool) -> None:
+def test_a_header_that_is_far_from_every_solved_position_is_reported(
+    shared_data: Path, tmp_path: Path, shift_m: float, noted: bool
+) -> None:
     folder = shared_data / "gnss" / "taroz_static"
     text = gzip.decompress((folder / "rover.obs.gz").read_bytes()).decode("latin-1")
     lines = text.splitlines(keepends=True)
@@ -290,4 +292,4 @@ def test_a_header_that_is_far_from_every_solved_position_is_said(shared_data: Pa
     path = tmp_path / "rover.obs"
     path.write_text("".join(lines), encoding="latin-1")
     words = " ".join(navbound.analyze([path, navigation]).summary.assumptions)
-    assert ("the approximate position of the header is" in words) == said
+    assert ("the approximate position of the header is" in words) == noted

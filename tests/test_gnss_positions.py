@@ -46,8 +46,8 @@ def ecef(lat: Floats, lon: Floats, h: Floats) -> Floats:
 @pytest.mark.parametrize("systems", ["G", "GE", "GEC"])
 def test_a_station_day_is_as_accurate_as_the_peer_and_says_how_wrong_it_is(day: Day, systems: str) -> None:
     observations, navigation, baseline = day
-    found = gnss.solve(observations, navigation, systems=systems, truth_ecef_m=baseline["reference_ecef_m"])
-    epochs = found.epochs
+    positions = gnss.solve(observations, navigation, systems=systems, truth_ecef_m=baseline["reference_ecef_m"])
+    epochs = positions.epochs
     assert epochs["status"].to_list() == ["ok"] * 2880
     error = errors(epochs)
     h95 = float(np.quantile(np.hypot(error[:, 0], error[:, 1]), 0.95))
@@ -71,10 +71,10 @@ def test_the_mask_is_five_degrees_unless_another_is_named(day: Day) -> None:
     observations, navigation, _ = day
     lowest: list[float] = []
     for named in ({}, {"mask_rad": np.radians(5.0)}, {"mask_rad": np.radians(10.0)}):
-        found = gnss.solve(observations, navigation, systems="G", keep_ranges=True, **named)
-        assert found.ranges is not None
-        lowest.append(float(np.degrees(found.ranges["el_rad"].min())))  # type: ignore[arg-type]
-        assert found.models["mask"] == f"elevation {10 if lowest[-1] > 9 else 5} deg and more"
+        positions = gnss.solve(observations, navigation, systems="G", keep_ranges=True, **named)
+        assert positions.ranges is not None
+        lowest.append(float(np.degrees(positions.ranges["el_rad"].min())))  # type: ignore[arg-type]
+        assert positions.models["mask"] == f"elevation {10 if lowest[-1] > 9 else 5} deg and more"
     assert 5.0 <= lowest[0] == lowest[1] < 5.1
     assert 10.0 <= lowest[2] < 10.1
 
@@ -139,11 +139,11 @@ def test_another_station_is_solved_without_having_been_calibrated_on(shared_data
     folder = shared_data / "gnss" / "ARLM_2015_200"
     observations = gnss.read_observations(folder / "arlm200x.15o")
     # Truth is the header here (catalogue: surveyed monitor station).
-    found = gnss.solve(
+    positions = gnss.solve(
         observations, gnss.read_navigation(folder / "arlm2000.15n"), systems="G", truth_ecef_m=observations.approximate_ecef_m
     )
-    assert found.epochs["status"].is_in(["ok", "degraded"]).all()
-    nees = evaluation.nees(errors(found.epochs), covariances(found.epochs))
+    assert positions.epochs["status"].is_in(["ok", "degraded"]).all()
+    nees = evaluation.nees(errors(positions.epochs), covariances(positions.epochs))
     # One hour: a share of the errors that last longer than it.
     assert 1.0 < nees.nees_mean < 4.0
 
@@ -154,11 +154,11 @@ def test_a_surveyed_receiver_is_no_further_off_than_the_peer(shared_data: Path) 
     baseline = json.loads((shared_data / "baselines.json").read_text(encoding="utf-8"))["taroz_static"]["rover_GEC"]
     lat, lon, h = (float(v) for v in (folder / "rover_position.txt").read_text().split())
     truth = ecef(np.radians([lat]), np.radians([lon]), np.array([h]))[0]
-    found = gnss.solve(gnss.read_observations(folder / "rover.obs.gz"), gnss.read_navigation(folder / "base.nav"), truth_ecef_m=truth)
-    error = errors(found.epochs)
+    positions = gnss.solve(gnss.read_observations(folder / "rover.obs.gz"), gnss.read_navigation(folder / "base.nav"), truth_ecef_m=truth)
+    error = errors(positions.epochs)
     assert float(np.quantile(np.hypot(error[:, 0], error[:, 1]), 0.95)) <= baseline["h95_m"]
     # Five minutes are one ionosphere, whose errors are covered.
-    assert 0.3 < evaluation.nees(error, covariances(found.epochs)).nees_mean < 4.0
+    assert 0.3 < evaluation.nees(error, covariances(positions.epochs)).nees_mean < 4.0
 
 
 # Nothing was set by this drive. Without the memory of surroundings, 268 epochs were "ok" with a mean of 777.

@@ -198,15 +198,15 @@ def test_advanced_raim_is_that_of_sidereon_where_faults_are_counted_alike() -> N
         sigma_int = rng.uniform(1.1, 1.8, n)
         sigma_acc = sigma_int * rng.uniform(0.6, 0.9, n)
         sky = (unit, systems, sigma_int, sigma_acc)
-        theirs, found = sidereon.araim(*araim_peer.arguments(sidereon, *sky)), araim_peer.ours(*sky)
-        assert len(theirs.fault_modes) == found.n_modes
+        theirs, result = sidereon.araim(*araim_peer.arguments(sidereon, *sky)), araim_peer.ours(*sky)
+        assert len(theirs.fault_modes) == result.n_modes
         # Some hundred operations on numbers up to a few metres, in geometries of condition below 1e3.
-        assert abs(theirs.emt_m - found.emt_m) < 1e-9
-        assert abs(theirs.sigma_acc_v_m - found.sigma_acc_u_m) < 1e-9
-        assert theirs.p_unmonitored > found.p_unmonitored
-        assert theirs.vpl_m >= found.vpl_m
-        assert theirs.hpl_m >= found.hpl_m
-        part = 1 - (theirs.p_unmonitored - float(found.p_unmonitored)) / 1e-7
+        assert abs(theirs.emt_m - result.emt_m) < 1e-9
+        assert abs(theirs.sigma_acc_v_m - result.sigma_acc_u_m) < 1e-9
+        assert theirs.p_unmonitored > result.p_unmonitored
+        assert theirs.vpl_m >= result.vpl_m
+        assert theirs.hpl_m >= result.hpl_m
+        part = 1 - (theirs.p_unmonitored - float(result.p_unmonitored)) / 1e-7
         service = replace(base, integrity_v=base.integrity_v * part, integrity_h=base.integrity_h * part, unmonitored=6e-8)
         alike = araim_peer.ours(*sky, service)
         # Its modes have p, ours P_0 p / (1 - p) and what is consolidated: 5e-4 of the risk at 4 sigmas of some 3 m are below a millimetre.

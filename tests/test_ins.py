@@ -93,11 +93,11 @@ def test_the_covariance_grows_as_the_dense_exponential_says() -> None:
     blocks = expm(np.block([[-f, q], [np.zeros_like(f), f.T]]) * 300.0)
     phi = blocks[15:, 15:].T
     p = phi @ p @ phi.T + phi @ blocks[:15, 15:]
-    found = free.covariance_enu_m2[-1]
+    covariance = free.covariance_enu_m2[-1]
     expected = p[:3, :3][np.ix_([1, 0, 2], [1, 0, 2])] * np.outer([1, 1, -1], [1, 1, -1])
     # The unit does not quite rest: its wrong start velocity turns the axes, its noise tilts them by 1e-5. An element may miss 1e-4 of
     # itself, and one that is a difference of large ones 1e-5 of those.
-    np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5 * expected.max())
+    np.testing.assert_allclose(covariance, expected, rtol=1e-4, atol=1e-5 * expected.max())
     np.testing.assert_allclose(free.velocity_sigma_mps[-1], np.sqrt(np.diag(p)[3:6]), rtol=1e-4)
     np.testing.assert_allclose(free.attitude_sigma_rad[-1], np.sqrt(np.diag(p)[6:9]), rtol=1e-4)
 
@@ -139,10 +139,10 @@ def test_whiteness_speaks_where_the_mean_square_does_not() -> None:
     still = body.standing(3, 400.0)
     aiding = ins.Aiding(satellites=body.satellites(3, still.time_ns[9::10], white_m=1.0, slow_m=5.0, tau_s=60.0))
     white = ins.fuse(still.imu, aiding, still.start, settings=ins.FilterSettings(errors="white")).innovations["range"]
-    honest = ins.fuse(still.imu, aiding, still.start).innovations["range"]
+    healthy = ins.fuse(still.imu, aiding, still.start).innovations["range"]
     assert white.lag_one > 0.5
     # Within three deviations of none.
-    assert abs(honest.lag_one) < 3 / np.sqrt(honest.n_pairs)
+    assert abs(healthy.lag_one) < 3 / np.sqrt(healthy.n_pairs)
 
 
 def radio(time_ns: np.ndarray) -> tuple[ins.DmeRanges, ins.VorBearings]:
@@ -185,7 +185,7 @@ def test_the_mode_falls_back_and_returns_with_patience() -> None:
     assert np.all(np.diff(sigma[62:90]) > 0)
 
 
-def test_rates_alone_hold_what_ranges_have_found() -> None:
+def test_rates_alone_hold_what_ranges_have_estimated() -> None:
     """Ranges for half a minute, then carrier phase: the position stays, and what the filter says of it grows as slowly."""
     still = body.standing(6, 120.0)
     second = still.time_ns[9::10]
@@ -238,7 +238,7 @@ def silent(still: body.Standing, first: int, after: int) -> ins.Imu:
     return ins.Imu(time_ns, angle, velocity, 0.1)
 
 
-def test_after_a_hole_nothing_is_said_without_a_measurement_and_it_is_said_when() -> None:
+def test_after_a_hole_nothing_is_reported_without_a_measurement_and_the_time_is_reported() -> None:
     still = body.standing(8, 60.0)
     fused = ins.fuse(silent(still, 300, 330), ins.Aiding(), still.start)
     ((time_ns, since_s),) = fused.holes

@@ -20,7 +20,7 @@ def drive(shared_data: Path) -> Drive:
 
 @pytest.mark.parametrize("wheels", [True, False])
 def test_outages_of_the_car_are_bridged_better_than_by_the_peer_and_honestly(drive: Drive, wheels: bool) -> None:
-    """In-sample: what the filter is told was chosen on the whole drive."""
+    """In-sample: the settings of the filter were selected on the whole drive."""
     tuning = WHOLE if wheels else WHOLE.without_wheels()
     h, inside = drive.in_outages(tuning, 0.0, END_S)
     judged = drive.outage & (drive.since_s < END_S)
@@ -35,7 +35,7 @@ def test_outages_of_the_car_are_bridged_better_than_by_the_peer_and_honestly(dri
 
 
 def judged_apart(drive: Drive, wheels: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Every outage judged by a filter that was told nothing of its part of the drive."""
+    """Every outage judged by a filter whose settings have nothing of its part of the drive."""
     parts = [drive.in_outages(tuning, *other) for tuning, other in zip(FOLDS[wheels], PARTS[::-1], strict=True)]
     h, inside = (np.concatenate(x) for x in zip(*parts, strict=True))
     assert h.size == 660
@@ -50,7 +50,7 @@ def test_the_outages_of_one_part_are_bridged_with_what_the_other_part_says_of_th
     assert 0.93 <= np.mean(inside) <= 0.98
 
 
-def test_without_the_wheels_the_accuracy_of_the_peer_is_not_reached_held_out(drive: Drive) -> None:
+def test_without_the_wheels_the_accuracy_of_the_peer_is_not_reached_on_unseen_data(drive: Drive) -> None:
     """What does not come out stays visible: 3.15 m, 6.97 m, 99.8 % inside; the peer has 3.09 m and 6.79 m, its tuning unknown."""
     h, inside = judged_apart(drive, wheels=False)
     assert 3.09 < np.sqrt(np.mean(h**2)) < 3.3
@@ -60,8 +60,8 @@ def test_without_the_wheels_the_accuracy_of_the_peer_is_not_reached_held_out(dri
 
 def test_the_tuning_is_what_its_own_part_finds_likeliest(drive: Drive) -> None:
     """One number of it again, from the innovations after silences of the first part; all of it by `python tests/drive_fixture.py`."""
-    found = FOLDS[True][0]
-    assert likeliest(drive, found, "gyroscope_white", *PARTS[0]) == found
+    result = FOLDS[True][0]
+    assert likeliest(drive, result, "gyroscope_white", *PARTS[0]) == result
 
 
 def test_the_car_with_its_receiver_follows_it(drive: Drive) -> None:

@@ -24,9 +24,9 @@ TABLES = ("truth", "imu", "satellites", "dme", "vor", "baro", "clock")
 
 def short(name: str = "beijing-shanghai", **sensors: object) -> scenario.Scenario:
     """Ten samples a second are enough to look at."""
-    found = scenario.load(name)
-    assert found.sensors is not None
-    return found.model_copy(update={"sensors": found.sensors.model_copy(update={"rate_hz": 10} | sensors)})
+    loaded = scenario.load(name)
+    assert loaded.sensors is not None
+    return loaded.model_copy(update={"sensors": loaded.sensors.model_copy(update={"rate_hz": 10} | sensors)})
 
 
 @pytest.fixture(scope="module")
@@ -64,12 +64,12 @@ def test_rows_come_when_they_should(sensed: ins.Sensed) -> None:
 
 
 def test_ranges_are_distances_clock_and_errors_of_the_stated_size(sensed: ins.Sensed) -> None:
-    found = (
+    result = (
         sensed.satellites.filter(pl.col("satellite").str.starts_with("G")).join(ecef(sensed), on="time_ns").join(sensed.clock, on="time_ns")
     )
-    line = found.select(pl.col("sv_x_m") - pl.col("x"), pl.col("sv_y_m") - pl.col("y"), pl.col("sv_z_m") - pl.col("z")).to_numpy()
-    residual = found["range_m"].to_numpy() - np.linalg.norm(line, axis=1) - found["clock_m"].to_numpy()
-    sigma = np.hypot(found["sigma_white_m"].to_numpy(), found["sigma_correlated_m"].to_numpy())
+    line = result.select(pl.col("sv_x_m") - pl.col("x"), pl.col("sv_y_m") - pl.col("y"), pl.col("sv_z_m") - pl.col("z")).to_numpy()
+    residual = result["range_m"].to_numpy() - np.linalg.norm(line, axis=1) - result["clock_m"].to_numpy()
+    sigma = np.hypot(result["sigma_white_m"].to_numpy(), result["sigma_correlated_m"].to_numpy())
     # Some 30 satellites rise, the slow parts of 1 m and 2 m at the zenith forget in half an hour to two hours: about 60 independent errors.
     assert abs(np.mean((residual / sigma) ** 2) - 1) < 4 * np.sqrt(2 / 60)
     assert np.abs(residual / sigma).max() < 6
@@ -90,10 +90,10 @@ def test_an_error_free_run_of_the_mechanization_closes_to_a_metre_in_two_hours(t
         velocity_mps=flown.imu.select("velocity_x_mps", "velocity_y_mps", "velocity_z_mps").to_numpy(),
         interval_s=flown.imu["interval_s"].to_numpy(),
     )
-    found = ins.mechanize(imu, start).position[199::200]
+    result = ins.mechanize(imu, start).position[199::200]
     truth = flown.truth[1:].select("truth_lat_rad", "truth_lon_rad", "truth_h_m").to_numpy()
     # Metres on a sphere: a per cent of a metre at most.
-    apart = (found - truth) * np.array([6.37e6, 6.37e6 * np.cos(0.6), 1.0])
+    apart = (result - truth) * np.array([6.37e6, 6.37e6 * np.cos(0.6), 1.0])
     assert np.abs(apart).max() < 1.0
 
 
@@ -152,7 +152,7 @@ def test_nothing_is_heard_while_jammed() -> None:
     assert seconds.tolist() == [*range(1, 2400), *range(3600, 7082)]
 
 
-def test_the_seed_is_the_scenarios_unless_given() -> None:
+def test_the_seed_is_the_scenarios_unless_stated() -> None:
     flown = short("beijing-shanghai-seed", gnss=None, dme=None, vor=None)
     a, b = ins.simulate(flown), ins.simulate(flown, 0, flown.seed)
     assert a.imu.equals(b.imu)
@@ -167,12 +167,12 @@ def test_broadcast_orbits_serve_as_well(shared_data: Path) -> None:
     navigation = gnss.read_navigation(path)
     base = short("beijing-shanghai", path="planned", dme=None, vor=None, baro=None)
     day = base.model_copy(update={"start_gps": base.start_gps.replace(year=2020, month=6, day=25, hour=10)})
-    found = ins.simulate(day, navigation=navigation)
-    counts = found.satellites.group_by("time_ns").len()["len"]
+    result = ins.simulate(day, navigation=navigation)
+    counts = result.satellites.group_by("time_ns").len()["len"]
     # Full constellations of 2020 over East Asia above 7 degrees: some 8 to 12 of GPS and Galileo, 12 to 22 of BeiDou.
     assert counts.min() >= 20  # type: ignore[operator]
     assert counts.max() <= 50  # type: ignore[operator]
-    assert {s[0] for s in found.satellites["satellite"].unique()} == {"G", "E", "C"}
+    assert {s[0] for s in result.satellites["satellite"].unique()} == {"G", "E", "C"}
     with pytest.raises(InputError, match="navigation"):
         ins.simulate(base, navigation=navigation)
 
@@ -211,12 +211,12 @@ def test_what_cannot_be_sensed_is_refused(arguments: dict[str, object], argument
         ),
     ],
 )
-def test_a_wrong_sensor_is_explained(tmp_path: Path, text: str, field: str | None, said: str) -> None:
+def test_a_wrong_sensor_is_explained(tmp_path: Path, text: str, field: str | None, message: str) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(f'base = "beijing-shanghai-real"\n{text}\n', encoding="utf-8")
     with pytest.raises(FormatError) as caught:
         scenario.load(file)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
     if field is not None:
         assert caught.value.field == field
 

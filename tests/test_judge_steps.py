@@ -126,10 +126,10 @@ def assert_same_steps(table: pl.DataFrame, steps: list[Judged]) -> None:
 
 
 def assert_same_events(events: pl.DataFrame, by_track: dict[str, list[rnp.Event]]) -> None:
-    for track, found in by_track.items():
+    for track, value in by_track.items():
         rows = events.filter(pl.col("track") == track).drop("track").rows()
         # Text, in which every bit of a number is seen; the table has a null for a NaN.
-        stated = [tuple(None if isinstance(x, float) and math.isnan(x) else x for x in event) for event in found]
+        stated = [tuple(None if isinstance(x, float) and math.isnan(x) else x for x in event) for event in value]
         assert sorted(map(repr, rows)) == sorted(map(repr, stated))
 
 

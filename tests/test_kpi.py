@@ -25,8 +25,8 @@ PRINTED = 5e-10
 def reference() -> dict[str, Any]:
     if not REFERENCE.is_file():
         pytest.skip(f"SKIPPED ALOUD: no reference at {REFERENCE}")
-    found: dict[str, Any] = json.loads(REFERENCE.read_text())
-    return found
+    data: dict[str, Any] = json.loads(REFERENCE.read_text())
+    return data
 
 
 def normals(seed: int) -> Iterator[float]:
@@ -81,13 +81,13 @@ def test_the_generator_is_the_specification_s(reference: dict[str, Any]) -> None
     assert math.isclose(next(draw), -1.06561764841, rel_tol=1e-11)
 
 
-def close(found: float | None, expected: float) -> bool:
-    return found is not None and math.isclose(found, expected, rel_tol=PRINTED)
+def close(actual: float | None, expected: float) -> bool:
+    return actual is not None and math.isclose(actual, expected, rel_tol=PRINTED)
 
 
 def runs(result: Performance, level: str, kind: str) -> list[list[int]]:
-    found = [e for e in result.events if e.level == level and e.kind == kind]
-    return sorted([[e.onset_ns // 10**9, e.n_epochs] for e in found])
+    outcome = [e for e in result.events if e.level == level and e.kind == kind]
+    return sorted([[e.onset_ns // 10**9, e.n_epochs] for e in outcome])
 
 
 def test_every_count_of_the_reference_is_exact(reference: dict[str, Any]) -> None:
@@ -109,32 +109,34 @@ def test_every_count_of_the_reference_is_exact(reference: dict[str, Any]) -> Non
             assert axis.safety_index.max_time_ns == case[f"{letter}SI_max_at"] * 10**9
             assert axis.n_potential_mi == case[f"n_{letter}_potential_MI"]
             assert axis.n_mi == case[f"n_{letter}_MI"]
-        for found in result.levels:
-            _check_level(result, found, case["levels"][found.level.id])
+        for level in result.levels:
+            _check_level(result, level, case["levels"][level.level.id])
 
 
-def _check_level(result: Performance, found: Any, expected: dict[str, Any]) -> None:
-    assert (found.level.hal_m, found.level.val_m, found.level.tta_s) == (expected["HAL"], expected["VAL"], expected["TTA_s"])
-    assert found.n_available == expected["n_available"]
-    assert close(found.availability_expected, expected["availability_expected"])
-    assert close(found.availability_solution, expected["availability_solution"])
-    assert (found.n_continuity_events, found.n_at_risk) == (expected["continuity_events"], expected["n_at_risk"])
+def _check_level(result: Performance, actual: Any, expected: dict[str, Any]) -> None:
+    assert (actual.level.hal_m, actual.level.val_m, actual.level.tta_s) == (expected["HAL"], expected["VAL"], expected["TTA_s"])
+    assert actual.n_available == expected["n_available"]
+    assert close(actual.availability_expected, expected["availability_expected"])
+    assert close(actual.availability_solution, expected["availability_solution"])
+    assert (actual.n_continuity_events, actual.n_at_risk) == (expected["continuity_events"], expected["n_at_risk"])
     risk = expected["continuity_risk"]
-    assert found.continuity_risk is None if risk is None else close(found.continuity_risk, risk)
-    for axis, counts in zip("HV", found.stanford, strict=False):
-        wanted = expected[f"stanford_{axis}"]
-        assert [counts.n_nominal, counts.n_mi, counts.n_hmi, counts.n_unavailable, counts.n_unavailable_mi] == list(wanted.values())
-    assert len(found.stanford) == (1 if expected["stanford_V"] is None else 2)
-    assert runs(result, found.level.id, "hazard") == expected["hazard_runs_start_len"]
-    assert found.n_hazard_events == len(expected["hazard_runs_start_len"])
-    assert found.n_hazard_over_tta == expected["hazard_runs_over_TTA"]
-    assert (found.n_mi_events, found.n_mi_over_tta) == (expected["mi_runs"], expected["mi_runs_over_TTA"])
+    assert actual.continuity_risk is None if risk is None else close(actual.continuity_risk, risk)
+    for axis, counts in zip("HV", actual.stanford, strict=False):
+        counts_expected = expected[f"stanford_{axis}"]
+        assert [counts.n_nominal, counts.n_mi, counts.n_hmi, counts.n_unavailable, counts.n_unavailable_mi] == list(
+            counts_expected.values()
+        )
+    assert len(actual.stanford) == (1 if expected["stanford_V"] is None else 2)
+    assert runs(result, actual.level.id, "hazard") == expected["hazard_runs_start_len"]
+    assert actual.n_hazard_events == len(expected["hazard_runs_start_len"])
+    assert actual.n_hazard_over_tta == expected["hazard_runs_over_TTA"]
+    assert (actual.n_mi_events, actual.n_mi_over_tta) == (expected["mi_runs"], expected["mi_runs_over_TTA"])
 
 
 def test_the_continuity_pattern(reference: dict[str, Any]) -> None:
     case = reference["continuity_pattern"]
-    found = kpi.continuity([c == "X" for c in case["pattern_X_available"]], case["window_epochs"])
-    assert (found.n_at_risk, found.n_available) == (case["n_at_risk"], case["n_available"])
+    result = kpi.continuity([c == "X" for c in case["pattern_X_available"]], case["window_epochs"])
+    assert (result.n_at_risk, result.n_available) == (case["n_at_risk"], case["n_available"])
 
 
 def series(n: int, seed: int = 3) -> pl.DataFrame:
@@ -168,8 +170,8 @@ def comparable(result: Performance) -> dict[str, Any]:
             return {k: rounded(v) for k, v in value.items()}
         return [rounded(v) for v in value] if isinstance(value, list) else value
 
-    found: dict[str, Any] = rounded(result.model_dump())
-    return found
+    by_name: dict[str, Any] = rounded(result.model_dump())
+    return by_name
 
 
 def test_any_cut_into_tables_gives_the_same_record() -> None:
@@ -193,9 +195,9 @@ def test_percentiles_are_the_nearest_rank_of_the_sorted_values() -> None:
         spread = axes[0].error_m
         assert spread is not None
         assert spread.n == len(error)
-        for share, found in ((0.5, spread.p50), (0.95, spread.p95), (0.99, spread.p99), (0.999, spread.p999)):
+        for share, value in ((0.5, spread.p50), (0.95, spread.p95), (0.99, spread.p99), (0.999, spread.p999)):
             # hypot and the root of the sum of squares differ in the last digit.
-            assert math.isclose(found, error[math.ceil(share * len(error)) - 1], rel_tol=1e-15)
+            assert math.isclose(value, error[math.ceil(share * len(error)) - 1], rel_tol=1e-15)
         ratio = np.sort((rows["nse_u_m"].abs() / rows["vpl_m"]).drop_nulls().to_numpy())
         index = axes[1].safety_index
         assert index is not None
@@ -204,15 +206,15 @@ def test_percentiles_are_the_nearest_rank_of_the_sorted_values() -> None:
 
 def test_availability_is_monotone_in_the_limit_and_hazards_are_misleading() -> None:
     result = kpi.evaluate(series(5_000), ["NPA", "APV-I", "LPV-200", "APV-II", "CAT-I-12", "CAT-I"])
-    shares = [found.availability_expected for found in result.levels]
+    shares = [level.availability_expected for level in result.levels]
     assert shares == sorted(shares, reverse=True)
     assert shares[0] > shares[-1]
-    for found in result.levels:
-        assert found.n_hazard_epochs <= found.n_mi_epochs
-        assert found.availability_low <= found.availability_expected <= found.availability_high
-        assert found.n_at_risk >= found.n_continuity_events
+    for level in result.levels:
+        assert level.n_hazard_epochs <= level.n_mi_epochs
+        assert level.availability_low <= level.availability_expected <= level.availability_high
+        assert level.n_at_risk >= level.n_continuity_events
         # Days add up.
-        assert sum(day.n_available[found.level.id] for day in result.days) == found.n_available
+        assert sum(day.n_available[level.level.id] for day in result.days) == level.n_available
     assert sum(day.n_expected for day in result.days) == result.n_expected
     assert sum(result.series.n_expected) == result.n_expected
 
@@ -230,8 +232,8 @@ def test_losses_say_why() -> None:
         pl.when(at.is_between(20, 21)).then(pl.lit("message 10 has timed out")).alias("reason"),
     ).filter(~at.is_between(30, 33))
     result = kpi.evaluate(table, "APV-I")
-    found = sorted((e.onset_ns // 10**9, e.n_epochs, e.cause, e.reason) for e in result.events)
-    assert found == [
+    outcome = sorted((e.onset_ns // 10**9, e.n_epochs, e.cause, e.reason) for e in result.events)
+    assert outcome == [
         (5, 2, "hpl", ""),
         (10, 1, "vpl", "satellites 9 to 7"),
         (15, 3, "no vertical level", "mode pa to npa"),
@@ -254,20 +256,20 @@ def test_full_availability_leaves_a_lower_limit_below_one() -> None:
     rng = np.random.default_rng(1)
     n = 20_000
     table = {"time_ns": np.arange(n) * 10**9, "hpl_m": 10 + rng.random(n), "vpl_m": 20 + rng.random(n)}
-    found = kpi.evaluate(table, "APV-I").levels[0]
-    assert (found.availability_expected, found.availability_high) == (1.0, 1.0)
+    result = kpi.evaluate(table, "APV-I").levels[0]
+    assert (result.availability_expected, result.availability_high) == (1.0, 1.0)
     # White levels: all epochs count; Wilson's lower limit is then n / (n + z²), z = 1.96. The size is estimated to some 10 %.
-    assert n / 1.5 < found.n_effective <= n
-    assert math.isclose(1 - found.availability_low, 1.96**2 / (found.n_effective + 1.96**2), rel_tol=1e-3)
+    assert n / 1.5 < result.n_effective <= n
+    assert math.isclose(1 - result.availability_low, 1.96**2 / (result.n_effective + 1.96**2), rel_tol=1e-3)
 
 
 def test_stanford_counts_hmi_apart() -> None:
     error = [1.0, 6.0, 60.0, -1.0, 80.0, float("nan"), 5.0]
     bound = [5.0, 5.0, 5.0, 55.0, 55.0, 5.0, 5.0]
-    found = kpi.stanford(error, bound, 50.0)
-    counts = found.counts
+    diagram = kpi.stanford(error, bound, 50.0)
+    counts = diagram.counts
     assert [counts.n, counts.n_nominal, counts.n_mi, counts.n_hmi, counts.n_unavailable, counts.n_unavailable_mi] == [6, 2, 1, 1, 1, 1]
-    bins = set(zip(found.bins.error_bin, found.bins.level_bin, found.bins.count, strict=True))
+    bins = set(zip(diagram.bins.error_bin, diagram.bins.level_bin, diagram.bins.count, strict=True))
     assert bins == {(10, 50, 1), (60, 50, 1), (500, 50, 1), (10, 500, 1), (500, 500, 1), (50, 50, 1)}
 
 
@@ -275,7 +277,7 @@ def test_levels_carry_their_provenance() -> None:
     table = kpi.levels()
     assert table["APV-I"].provenance["hal_m"] == "standard"
     assert table["CAT-I-12"].provenance["val_m"] == "printed"
-    assert all("Doc 9849" in found.source for found in table.values() if found.provenance["hal_m"] == "standard")
+    assert all("Doc 9849" in value.source for value in table.values() if value.provenance["hal_m"] == "standard")
     assert table["APV-I"].provenance["tta_s"] == "inferred"
     own = kpi.rnp(0.3, tta_s=10.0)
     assert (own.hal_m, own.provenance["hal_m"]) == (0.3 * 1852.0, "inferred")

@@ -29,18 +29,18 @@ GOOD_S = [float(k) for k in range(60)]
 
 def test_a_misleading_row_off_the_grid_is_counted() -> None:
     table = series([*GOOD_S, *(k + 0.4 for k in range(10, 20))], [1.0] * 60 + [500.0] * 10)
-    found = kpi.evaluate(table, "LPV-200", period_s=1.0)
-    assert found.n_expected == 60
-    assert found.n_repeated == 10
-    assert found.levels[0].n_hazard_epochs == 10
-    assert any("10 rows share an epoch" in note for note in found.notes)
+    result = kpi.evaluate(table, "LPV-200", period_s=1.0)
+    assert result.n_expected == 60
+    assert result.n_repeated == 10
+    assert result.levels[0].n_hazard_epochs == 10
+    assert any("10 rows share an epoch" in note for note in result.notes)
 
 
 @pytest.mark.parametrize("offset", range(5))
 def test_a_longer_period_hides_nothing(offset: int) -> None:
     table = series(GOOD_S, [500.0 if k % 5 == offset else 1.0 for k in range(60)])
-    found = kpi.evaluate(table, "LPV-200", period_s=5.0)
-    assert found.levels[0].n_hazard_epochs == 12, "each bad second in an epoch of its own"
+    result = kpi.evaluate(table, "LPV-200", period_s=5.0)
+    assert result.levels[0].n_hazard_epochs == 12, "each bad second in an epoch of its own"
 
 
 def test_a_hazard_counts_before_a_larger_ratio() -> None:

@@ -65,15 +65,15 @@ def point(nse: Floats, covariance: Floats) -> tuple[float, float, float, float]:
 @pytest.mark.parametrize("shared", [True, False])
 def test_every_subset_is_that_of_the_textbook(shared: bool) -> None:
     table = ranges(12, 8, shared=shared)
-    found = kpi.stanford_esa(table, LEVELS).subsets
+    diagram = kpi.stanford_esa(table, LEVELS).subsets
     points: list[tuple[int, tuple[int, ...], tuple[float, float, float, float]]] = []
     for epoch in table.partition_by("time_ns", maintain_order=True):
         for size in range(4, 9):
             points += [(epoch["time_ns"][0], c, point(*solved(epoch, c))) for c in itertools.combinations(range(8), size)]
-    assert (found.n_epochs, found.n_subsets, found.n_singular) == (12, len(points), 0)
+    assert (diagram.n_epochs, diagram.n_subsets, diagram.n_singular) == (12, len(points), 0)
     values = np.array([p[2] for p in points])
     hpe, hpl, vpe, vpl = values.T
-    regions = found.stanford["APV-I"]
+    regions = diagram.stanford["APV-I"]
     for counts, error, level, limit in ((regions[0], hpe, hpl, 40.0), (regions[1], vpe, vpl, 50.0)):
         below, within = level < limit, error <= level
         assert counts.n_nominal == int((below & within).sum())
@@ -81,19 +81,19 @@ def test_every_subset_is_that_of_the_textbook(shared: bool) -> None:
         assert counts.n_hmi == int((below & ~within & (error > limit)).sum())
         assert counts.n_unavailable == int((~below & within).sum())
         assert counts.n_unavailable_mi == int((~below & ~within).sum())
-    assert [c.axis for c in found.stanford["NPA"]] == ["h"]
+    assert [c.axis for c in diagram.stanford["NPA"]] == ["h"]
     index = np.maximum(hpe / hpl, vpe / vpl)
-    assert found.n_listed == int((index >= 0.7).sum()) > 20
-    assert found.n_mi == int((index > 1.0).sum()) > 0
+    assert diagram.n_listed == int((index >= 0.7).sum()) > 20
+    assert diagram.n_mi == int((index > 1.0).sum()) > 0
     # Worst subsets, their satellites and epoch; sixteen digits less the condition of subsets whose levels are below kilometres.
-    for k, row in enumerate(found.listed[:20]):
+    for k, row in enumerate(diagram.listed[:20]):
         at = np.argsort(-index)[k]
         assert row.time_ns == points[at][0]
         assert row.satellites == [f"G{i + 1:02d}" for i in points[at][1]]
         assert sorted(row.satellites + row.left_out) == [f"G{i + 1:02d}" for i in range(8)]
         assert (row.hpe_m, row.hpl_m, row.vpe_m, row.vpl_m) == pytest.approx(tuple(values[at]), rel=1e-8)
         assert row.safety_index == pytest.approx(index[at], rel=1e-8)
-    assert found.safety_index_h_max == pytest.approx((hpe / hpl).max(), rel=1e-8)
+    assert diagram.safety_index_h_max == pytest.approx((hpe / hpl).max(), rel=1e-8)
 
 
 def test_a_good_geometry_hides_what_a_subset_shows() -> None:
@@ -107,13 +107,13 @@ def test_a_good_geometry_hides_what_a_subset_shows() -> None:
     whole = point(*solved(table, tuple(range(10))))
     assert whole[0] / whole[1] < 0.7
     assert whole[2] / whole[3] < 0.7
-    found = kpi.stanford_esa(table, LEVELS).subsets
-    assert found.n_listed > 0
-    assert max(found.safety_index_h_max, found.safety_index_v_max) > 1.3 * max(whole[0] / whole[1], whole[2] / whole[3])
-    assert all("G03" in row.satellites for row in found.listed)
+    diagram = kpi.stanford_esa(table, LEVELS).subsets
+    assert diagram.n_listed > 0
+    assert max(diagram.safety_index_h_max, diagram.safety_index_v_max) > 1.3 * max(whole[0] / whole[1], whole[2] / whole[3])
+    assert all("G03" in row.satellites for row in diagram.listed)
 
 
-def test_limits_of_the_subsets_are_kept_and_told() -> None:
+def test_limits_of_the_subsets_are_kept_and_reported() -> None:
     table = ranges(3, 12)
     # Of twelve: 495 + 792 + 924 + 792 + 495 + 220 + 66 + 12 + 1.
     assert kpi.stanford_esa(table, LEVELS).subsets.n_subsets == 3 * 3797
@@ -174,14 +174,14 @@ def test_the_whole_set_of_a_real_day_is_the_position_itself(shared_data: Path) -
     folder = shared_data / "gnss" / "ESBC_2020_177"
     observations = gnss.read_observations(folder / "ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz")
     navigation = gnss.read_navigation(folder / "ESBC00DNK_R_20201770000_01D_MN.rnx.gz")
-    found = gnss.solve(observations, navigation, systems="G", truth_ecef_m=ESBC_TRUTH, keep_ranges=True)
-    assert found.ranges is not None
+    positions = gnss.solve(observations, navigation, systems="G", truth_ecef_m=ESBC_TRUTH, keep_ranges=True)
+    assert positions.ranges is not None
     from navbound.run.evaluate.levels import _range_errors  # noqa: PLC0415 - the step under test
 
-    table = _range_errors(found.ranges, found.epochs)
-    assert table.group_by("time_ns").len().join(found.epochs, on="time_ns").select((pl.col("len") == pl.col("n_sv")).all()).item()
+    table = _range_errors(positions.ranges, positions.epochs)
+    assert table.group_by("time_ns").len().join(positions.epochs, on="time_ns").select((pl.col("len") == pl.col("n_sv")).all()).item()
     for k in (0, 700, 1500, 2879):
-        epoch = found.epochs.row(k, named=True)
+        epoch = positions.epochs.row(k, named=True)
         nse, covariance = solved(table.filter(pl.col("time_ns") == epoch["time_ns"]), tuple(range(epoch["n_sv"])))
         # Ranges are straight to 3e-8 m over some metres; delays that are held over a metre move 1.5 mm.
         assert nse == pytest.approx([epoch[f"nse_{axis}_m"] for axis in "enu"], abs=2e-3)
@@ -212,11 +212,11 @@ def test_the_stanford_esa_diagram_of_a_real_day_from_the_command_line(shared_dat
     ]
     done = subprocess.run([sys.executable, "-m", "navbound", "analyze", *files, *arguments], capture_output=True, check=True)
     summary = json.loads(done.stdout)
-    found = summary["performance"]
+    result = summary["performance"]
     n_sv = pl.read_parquet(tmp_path / "run" / "epochs.parquet")["n_sv"].to_numpy()
     choices = sum(int(np.prod(np.arange(n - k + 1, n + 1)) // np.prod(np.arange(1, k + 1))) for n in n_sv.tolist() for k in range(4, n + 1))
-    assert found["subsets"]["n_subsets"] == choices
-    assert found["subsets"]["n_cut"] == 0
+    assert result["subsets"]["n_subsets"] == choices
+    assert result["subsets"]["n_cut"] == 0
     # Started again it finds the part, its ranges too, and says the same.
     (part,) = (tmp_path / "run" / "parts").glob("*.ranges.parquet")
     written = part.stat().st_mtime_ns
@@ -225,9 +225,9 @@ def test_the_stanford_esa_diagram_of_a_real_day_from_the_command_line(shared_dat
     )
     assert part.stat().st_mtime_ns == written
     assert again.summary.performance is not None
-    assert again.summary.performance.model_dump(mode="json") == found
+    assert again.summary.performance.model_dump(mode="json") == result
     # Nobody monitors these levels: every place says so.
-    assert found["experimental"] == "experimental, not integrity"
+    assert result["experimental"] == "experimental, not integrity"
     assert summary["verdict"]["experimental"] is True
     header = (tmp_path / "run" / "epochs.csv").read_text().splitlines()[0]
     assert all(f"{name} [experimental, not integrity]" in header for name in ("HPL", "HSI", "VPL", "VSI"))

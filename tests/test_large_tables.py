@@ -219,7 +219,7 @@ def test_a_table_beyond_the_memory_is_refused_before_it_is_taken_apart(tmp_path:
     navbound.analyze(text, piece_rows=7)
 
 
-def test_a_full_disk_for_the_pieces_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_for_the_pieces_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.TemporaryFile", lambda **_: Path("/dev/full").open("w+b", buffering=0))  # noqa: SIM115 - the spool closes it
     file = tmp_path / "full.csv"
     file.write_text(as_text(GOOD))

@@ -67,13 +67,13 @@ def test_every_second_of_a_day_counts_once(tmp_path: Path, name: str) -> None:
     ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode in {0, 4}, done.stderr
-    found = json.loads((tmp_path / "run" / "summary.json").read_text())["performance"]
-    counts = {key: found[key] for key in ("period_s", "n_expected", "n_missing", "n_no_solution", "n_solution", "n_repeated")}
+    data = json.loads((tmp_path / "run" / "summary.json").read_text())["performance"]
+    counts = {key: data[key] for key in ("period_s", "n_expected", "n_missing", "n_no_solution", "n_solution", "n_repeated")}
     assert counts == {
         "period_s": 1.0, "n_expected": n, "n_missing": 0, "n_no_solution": N_OUTAGE, "n_solution": n - N_OUTAGE, "n_repeated": 0
     }  # fmt: skip
-    assert found["last_ns"] - found["first_ns"] == (n - 1) * 1_000_000_000
-    (level,) = found["levels"]
+    assert data["last_ns"] - data["first_ns"] == (n - 1) * 1_000_000_000
+    (level,) = data["levels"]
     assert level["n_available"] == n - N_OUTAGE - N_ABOVE
     # Twice a second with the service is followed by one without: 600 s without a level, 900 s with one that is too large.
     assert level["n_continuity_events"] == 2

@@ -89,10 +89,10 @@ def test_faults_within_the_lateness_change_nothing_and_later_ones_are_counted(tm
     assert faulty["n_duplicate"] + faulty["n_waiting_duplicate"] == repeated.sum()
     assert faulty["n_late"] == counters["n_late"] == 0
     # Beyond the lateness: the second after it was judged long ago.
-    chosen = set(range(500, len(sent), 211))
-    beyond = sorted((t + (5_000_000_000 if k in chosen else 0), line) for k, (t, line) in enumerate(sent))
+    selected = set(range(500, len(sent), 211))
+    beyond = sorted((t + (5_000_000_000 if k in selected else 0), line) for k, (t, line) in enumerate(sent))
     late = judged(tmp_path, "late", beyond)[1]
-    assert late["n_late"] == len(chosen) > 5
+    assert late["n_late"] == len(selected) > 5
 
 
 def test_what_is_dropped_for_longer_than_the_stale_time_is_raised_once_at_its_time(tmp_path: Path) -> None:
@@ -295,10 +295,10 @@ def test_of_a_covariance_and_a_deviation_the_larger_counts(tmp_path: Path) -> No
 def test_a_journal_that_was_cut_says_how_much_is_not_judged(tmp_path: Path) -> None:
     content = frames(fleet(20, 30), heartbeats=True)
     source = recorded(tmp_path / "in", content[:-7])
-    said = list[str]()
-    live.judge(source, tmp_path / "out", say=said.append)
-    assert len(said) == 1
-    assert "bytes at its end are no whole frame and are not judged" in said[0]
-    said.clear()
-    live.judge(recorded(tmp_path / "whole", content), tmp_path / "other", say=said.append)
-    assert said == []
+    messages = list[str]()
+    live.judge(source, tmp_path / "out", say=messages.append)
+    assert len(messages) == 1
+    assert "bytes at its end are no whole frame and are not judged" in messages[0]
+    messages.clear()
+    live.judge(recorded(tmp_path / "whole", content), tmp_path / "other", say=messages.append)
+    assert messages == []

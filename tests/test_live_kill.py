@@ -38,9 +38,9 @@ def run(log: Path, out: Path, **hooks: Any) -> None:
 
 def undisturbed(log: Path, out: Path) -> list[tuple[int, bytes]]:
     run(log, out)
-    found = outputs(out)
-    assert len(found) > 1000
-    return found
+    outputs_now = outputs(out)
+    assert len(outputs_now) > 1000
+    return outputs_now
 
 
 def killed(log: Path, out: Path, point: str, passes: int) -> bool:
@@ -124,7 +124,7 @@ def test_a_damaged_snapshot_is_refused_aloud_and_the_state_built_anew(log: Path,
         else:
             content[int(g.integers(len(content)))] ^= 1 << int(g.integers(8))
         (out / journal.SNAPSHOT).write_bytes(content)
-        said = list[str]()
-        run(log, out, say=said.append)
-        assert any("refused" in sentence for sentence in said), said
+        messages = list[str]()
+        run(log, out, say=messages.append)
+        assert any("refused" in sentence for sentence in messages), messages
         assert outputs(out) == expected

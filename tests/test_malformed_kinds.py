@@ -224,7 +224,7 @@ class Outcome:
     """What became of a run: its refusal, or its epochs with what it says."""
 
     refusal: str
-    said: tuple[str, ...]
+    words: tuple[str, ...]
     epochs: pl.DataFrame | None
 
 
@@ -238,14 +238,14 @@ def outcome(kind: Kind, content: bytes, folder: Path) -> Outcome:
     try:
         if len(files) == 3:
             run = evaluate_files(files, Options(levels=["LPV-200"]))
-            return Outcome("", said(own, run.summary.rejected, run.summary.assumptions), run.epochs)
-        found = material(files, requirement="RNP 2", rnp_m=3704, sigma_m=10)
+            return Outcome("", stated(own, run.summary.rejected, run.summary.assumptions), run.epochs)
+        judged_material = material(files, requirement="RNP 2", rnp_m=3704, sigma_m=10)
     except (FormatError, InputError) as e:
         return Outcome(str(e), (), None)
-    return Outcome("", said(own, found.rejected, found.assumptions), found.epochs)
+    return Outcome("", stated(own, judged_material.rejected, judged_material.assumptions), judged_material.epochs)
 
 
-def said(own: Path, rejected: list, notes: list[str]) -> tuple[str, ...]:  # type: ignore[type-arg]
+def stated(own: Path, rejected: list, notes: list[str]) -> tuple[str, ...]:  # type: ignore[type-arg]
     of_own = [f"{r.count} x {r.reason} (line {r.first_line})" for r in rejected if Path(r.file) == own]
     words = ("after a later one", "belong to no message", "has no end")
     return (*of_own, *(note for note in notes if own.name in note and any(w in note for w in words)))
@@ -259,14 +259,14 @@ def sound(name: str, folder: Path) -> Outcome:
 def verdict(name: str, damage: Callable[[bytes, Kind], bytes], tmp: Path) -> tuple[str, str]:
     """``refused``, ``counted``, ``same`` or ``SILENT``, and the words."""
     kind = KINDS[name]
-    whole, found = sound(name, tmp / "sound"), outcome(kind, damage(kind.make(), kind), tmp / "damaged")
+    whole, result = sound(name, tmp / "sound"), outcome(kind, damage(kind.make(), kind), tmp / "damaged")
     assert whole.epochs is not None, whole.refusal
-    if found.epochs is None:
-        return ("refused" if kind.name in found.refusal and "sound-" not in found.refusal else "WRONG FILE"), found.refusal
-    if new := [words for words in found.said if words not in whole.said]:
+    if result.epochs is None:
+        return ("refused" if kind.name in result.refusal and "sound-" not in result.refusal else "WRONG FILE"), result.refusal
+    if new := [one for one in result.words if one not in whole.words]:
         return "counted", "; ".join(new)
     numbers = [c for c in ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m", "hpl_m", "vpl_m") if c in whole.epochs.columns]
-    same = found.epochs.height == whole.epochs.height and found.epochs.select(numbers).equals(whole.epochs.select(numbers))
+    same = result.epochs.height == whole.epochs.height and result.epochs.select(numbers).equals(whole.epochs.select(numbers))
     return ("same" if same else "SILENT"), ""
 
 
@@ -278,13 +278,13 @@ def test_damage_is_refused_or_counted(name: str, damage: Callable[[bytes, Kind],
     kind = KINDS[name]
     if damage(kind.make(), kind) == kind.make():
         pytest.skip("frames of a binary log are not taken apart here")
-    found, words = verdict(name, damage, tmp_path)
+    verdict_id, words = verdict(name, damage, tmp_path)
     if kind.name == "a.parquet" and damage in (bad_field, one_bit, zero_bytes):
         # The file as it is written has no checksum: another number is a number.
-        assert found in {"refused", "counted", "SILENT"}
+        assert verdict_id in {"refused", "counted", "SILENT"}
         pytest.skip("SKIPPED ALOUD: a number changed inside a Parquet page cannot be seen")
-    assert found in {"refused", "counted", "same"}, words
-    if found == "same":
+    assert verdict_id in {"refused", "counted", "same"}, words
+    if verdict_id == "same":
         # To JSON every line end is a blank.
         assert damage.__name__ in BENIGN | ({"old_line_ends"} if kind.name == "a.json" else set())
 
@@ -328,7 +328,7 @@ def test_every_loss_reaches_summary_terminal_and_report(damaged_run: tuple[Path,
     own = [r for r in rejected if loss in r["reason"]]
     assert [(Path(r["file"]).name, r["count"]) for r in own] == [(name, count)], rejected
     assert own[0]["first_line"] > 0
-    said = next(line for line in terminal.replace("\n    ", " ").splitlines() if loss in line)
-    assert said.strip().startswith(f"{count} x ")
+    line_of_loss = next(line for line in terminal.replace("\n    ", " ").splitlines() if loss in line)
+    assert line_of_loss.strip().startswith(f"{count} x ")
     assert name in terminal
     assert loss in (folder / "report.html").read_text()

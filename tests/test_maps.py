@@ -70,9 +70,9 @@ def test_coverage_is_a_share_of_area(written: maps.Map) -> None:
     # The area between two parallels is the difference of their sines; a cell's midpoint rule has the same share of its row.
     lat = points["lat_rad"].to_numpy()
     cells = np.cos(lat)
-    for found in summary.coverage:
-        good = points["p_available"].to_numpy() >= found.available
-        assert found.share == pytest.approx(cells[good].sum() / cells.sum(), abs=1e-12)
+    for coverage in summary.coverage:
+        good = points["p_available"].to_numpy() >= coverage.available
+        assert coverage.share == pytest.approx(cells[good].sum() / cells.sum(), abs=1e-12)
     worst = points.row(int(points["p_available"].to_numpy().argmin()), named=True)
     assert summary.worst.available == worst["p_available"]
     assert f"{100 * worst['p_available']:.2f} % of the time" in summary.words
@@ -113,10 +113,10 @@ def test_a_fine_map_leaves_out_what_its_page_cannot_hold(written: maps.Map, tmp_
 
 def test_a_strange_folder_is_not_written_to(written: maps.Map, tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").touch()
-    told: list[int] = []
+    reported: list[int] = []
     with pytest.raises(FormatError, match=r"thesis\.txt"):
-        maps.make("dop", grid=COARSE, times=SIX_HOURS, out=tmp_path, progress=lambda done, _all: told.append(done))
-    assert told == [], "it was refused after the work"
+        maps.make("dop", grid=COARSE, times=SIX_HOURS, out=tmp_path, progress=lambda done, _all: reported.append(done))
+    assert reported == [], "it was refused after the work"
     with pytest.raises(FormatError, match="not the folder of a map"):
         maps.load(tmp_path)
 
@@ -213,11 +213,11 @@ def test_protection_levels_of_a_map_are_those_of_its_subject(shared_data: Path) 
     region = maps.Grid.degrees(10.0, (30.0, 40.0, 130.0, 150.0))
     lat, lon = region.points()
     made = maps.make("araim", grid=region, times=SIX_HOURS)
-    found = araim.predict(gnss.constellation("gps") + gnss.constellation("galileo"), lat, lon, 0.0, SIX_HOURS.offsets_s())
-    assert made.points["vpl_p999_m"].to_list() == np.nan_to_num(found.vpl_m, nan=np.inf).max(axis=0).tolist()
+    computed = araim.predict(gnss.constellation("gps") + gnss.constellation("galileo"), lat, lon, 0.0, SIX_HOURS.offsets_s())
+    assert made.points["vpl_p999_m"].to_list() == np.nan_to_num(computed.vpl_m, nan=np.inf).max(axis=0).tolist()
     made = maps.make("raim", grid=region, times=SIX_HOURS)
-    found = araim.predict(gnss.constellation("gps"), lat, lon, 0.0, SIX_HOURS.offsets_s(), service="raim", model="single-frequency")
-    assert made.points["p_available"].to_list() == (found.hpl_m <= 556.0).mean(axis=0).tolist()
+    computed = araim.predict(gnss.constellation("gps"), lat, lon, 0.0, SIX_HOURS.offsets_s(), service="raim", model="single-frequency")
+    assert made.points["p_available"].to_list() == (computed.hpl_m <= 556.0).mean(axis=0).tolist()
     made = maps.make("dme", grid=region)
     covered = dme.coverage(lat, lon, 6_000.0, dme.stations(), rnp_m=1852.0, fte_m=926.0, sigma_altitude_m=30.0)
     assert made.points["p_available"].to_list() == covered.supports_best.astype(float).tolist()

@@ -50,8 +50,8 @@ def value(page: Page, key: str) -> float:
 
 
 def test_the_numbers_of_the_page_are_those_of_the_records(page: Page, made: maps.Map) -> None:
-    for found in made.summary.coverage:
-        assert value(page, f"coverage_{found.available:g}") == found.share
+    for coverage in made.summary.coverage:
+        assert value(page, f"coverage_{coverage.available:g}") == coverage.share
     for column in made.summary.columns:
         for percentile, typical in column.typical.items():
             assert value(page, f"{column.name}_{percentile}") == typical

@@ -37,16 +37,16 @@ def more(shared_data: Path) -> Path:
     return shared_data / "sbas" / "more"
 
 
-def outcomes(found: maps.Map) -> dict[str, float]:
-    return {one.name: one.share for one in found.summary.outcomes}
+def outcomes(made_map: maps.Map) -> dict[str, float]:
+    return {one.name: one.share for one in made_map.summary.outcomes}
 
 
 def test_a_user_hears_a_satellite_above_the_mask(more: Path) -> None:
     """The elevation of a geostationary satellite over a sphere: tan e = (cos c - r/R) / sin c, c the angle at the Earth's centre."""
-    found = made(more, "prn137_2025046_17h.ems.gz", mode="npa").points
+    made_map = made(more, "prn137_2025046_17h.ems.gz", mode="npa").points
     # Message 9 of the log puts PRN 137 at 127.03° E; here it is worked out from the numbers of the message.
     x, y, z = -25397444.16, 33665308.96, -19613.2
-    lat, lon = found["lat_rad"].to_numpy(), found["lon_rad"].to_numpy()
+    lat, lon = made_map["lat_rad"].to_numpy(), made_map["lon_rad"].to_numpy()
     up = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)])
     cosine = np.array([x, y, z]) / math.hypot(x, y, z) @ up
     elevation = np.arctan2(cosine - 6_371_000.0 / RADIUS_M, np.sqrt(1 - cosine**2))
@@ -54,26 +54,26 @@ def test_a_user_hears_a_satellite_above_the_mask(more: Path) -> None:
     clear = np.abs(elevation - math.radians(5.0)) > math.radians(0.3)
     assert clear.sum() > 250
     heard = elevation > math.radians(5.0)
-    assert (found["p_no_signal"].to_numpy() == 1.0)[clear & ~heard].all()
-    assert (found["p_no_signal"].to_numpy() == 0.0)[clear & heard].all()
-    assert (found["n_sv_least"].to_numpy() == 0)[clear & ~heard].all()
+    assert (made_map["p_no_signal"].to_numpy() == 1.0)[clear & ~heard].all()
+    assert (made_map["p_no_signal"].to_numpy() == 0.0)[clear & heard].all()
+    assert (made_map["n_sv_least"].to_numpy() == 0)[clear & ~heard].all()
 
 
 @pytest.mark.parametrize("log", ["prn137_2025046_17h.ems.gz", "prn137_loss_2025046_17h.ems.gz", "prn130_2025046_17h.ems.gz"])
 def test_every_user_and_instant_has_one_outcome(more: Path, log: str) -> None:
-    found = made(more, log, mode="pa")
-    shares = outcomes(found)
+    made_map = made(more, log, mode="pa")
+    shares = outcomes(made_map)
     assert sum(shares.values()) == pytest.approx(1.0, abs=1e-12)
     causes = [c.name for c in maps.KINDS["sbas"].causes]
-    assert (found.points.select("p_available", *causes).sum_horizontal() <= 1 + 1e-12).all()
+    assert (made_map.points.select("p_available", *causes).sum_horizontal() <= 1 + 1e-12).all()
     assert shares["p_no_signal"] > 0.5, "more than half of the Earth does not see a geostationary satellite"
 
 
 def test_the_service_area_of_egnos_is_the_one_its_messages_declare(more: Path) -> None:
     """Message 27 of the log: outside 20..70° N, 40° W..40° E every error bound of a satellite is a hundred times as large."""
-    found = made(more, "egnos_2012299.ems", prn=120, grid=EUROPE)
-    lat, lon = np.degrees(found.points["lat_rad"].to_numpy()), np.degrees(found.points["lon_rad"].to_numpy())
-    available = found.points["p_available"].to_numpy()
+    made_map = made(more, "egnos_2012299.ems", prn=120, grid=EUROPE)
+    lat, lon = np.degrees(made_map.points["lat_rad"].to_numpy()), np.degrees(made_map.points["lon_rad"].to_numpy())
+    available = made_map.points["p_available"].to_numpy()
     inside = (lat > 20) & (lat < 70) & (lon > -40) & (lon < 40)
     assert available[~inside].max() == 0.0
     # The core of the service: from Lisbon to Warsaw, from Sicily to southern Norway.
@@ -95,7 +95,7 @@ def test_a_log_serves_from_its_warm_up_to_its_end(more: Path) -> None:
     assert levels.status.tolist() == ["not_available", "ok"], "the warm-up is not long enough, or not needed"
 
 
-def test_what_a_log_lacks_is_said(more: Path) -> None:
+def test_what_a_log_lacks_is_reported(more: Path) -> None:
     lossy = " ".join(made(more, "prn137_loss_2025046_17h.ems.gz").summary.assumptions)
     assert "5 gaps of more than 4 s, the longest 21 s" in lossy
     assert "5 lines of the log refused as damaged" in lossy
@@ -111,15 +111,15 @@ def test_instants_beyond_the_log_have_no_level_and_are_counted(more: Path) -> No
     last = int(sbas.read(log).time_ns.max())
     late = Times(last - 300 * 10**9, duration_s=1_800.0, step_s=300.0)
     place = maps.Grid.degrees(5.0, (33.0, 38.0, 137.0, 142.0))
-    found = maps.make("sbas", grid=place, messages=log, navigation=(more / "gps_2025046_17h.25N",), times=late)
+    made_map = maps.make("sbas", grid=place, messages=log, navigation=(more / "gps_2025046_17h.25N",), times=late)
     # Instants at -300 and 0 s of the end are within; of the four after it each comes later than any correction may be old.
-    assert "4 of the instants are outside the log" in " ".join(found.summary.assumptions)
-    assert outcomes(found)["p_available"] == pytest.approx(2 / 6, abs=1e-12)
-    assert outcomes(found)["p_no_service"] == pytest.approx(4 / 6, abs=1e-12)
+    assert "4 of the instants are outside the log" in " ".join(made_map.summary.assumptions)
+    assert outcomes(made_map)["p_available"] == pytest.approx(2 / 6, abs=1e-12)
+    assert outcomes(made_map)["p_no_service"] == pytest.approx(4 / 6, abs=1e-12)
 
 
 @pytest.mark.parametrize(("prn", "named"), [(None, "one of 120, 126"), (129, "one of 120, 126")])
-def test_whose_messages_is_asked_where_there_are_several(more: Path, prn: int | None, named: str) -> None:
+def test_where_there_are_several_senders_one_has_to_be_named(more: Path, prn: int | None, named: str) -> None:
     with pytest.raises(InputError, match=named):
         made(more, "egnos_2012299.ems", prn=prn)
 
@@ -138,9 +138,9 @@ def test_without_a_place_of_the_satellite_everyone_hears_it_and_the_map_says_so(
     assert len(kept) == 1255 - 13 - 6
     log = tmp_path / "egnos_no_place.ems"
     log.write_text("\n".join(kept) + "\n", encoding="ascii")
-    found = maps.make("sbas", grid=EUROPE, messages=log, navigation=(more / "gps_2012299_12h.12N",), mode="npa")
-    assert outcomes(found)["p_no_signal"] == 0.0
-    assert "does not say where its satellite is" in " ".join(found.summary.assumptions)
+    made_map = maps.make("sbas", grid=EUROPE, messages=log, navigation=(more / "gps_2012299_12h.12N",), mode="npa")
+    assert outcomes(made_map)["p_no_signal"] == 0.0
+    assert "does not say where its satellite is" in " ".join(made_map.summary.assumptions)
 
 
 def test_a_higher_mask_narrows_the_footprint(more: Path) -> None:

@@ -21,14 +21,14 @@ Vector = tuple[float, float, float]
 
 def satellites(orbits: gnss.Orbits, t: float) -> list[Vector]:
     """Circular orbits in the frame that turns with the Earth."""
-    found = []
+    listed = []
     for k in range(len(orbits.satellite)):
         a, i, node = float(orbits.semi_major_m[k]), float(orbits.inclination_rad[k]), float(orbits.node_rad[k])
         u = float(orbits.perigee_rad[k]) + float(orbits.mean_anomaly_rad[k]) + math.sqrt(MU / a**3) * t
         lon = node - OMEGA * t
         x, y, z = a * math.cos(u), a * math.sin(u) * math.cos(i), a * math.sin(u) * math.sin(i)
-        found.append((x * math.cos(lon) - y * math.sin(lon), x * math.sin(lon) + y * math.cos(lon), z))
-    return found
+        listed.append((x * math.cos(lon) - y * math.sin(lon), x * math.sin(lon) + y * math.cos(lon), z))
+    return listed
 
 
 def pdop_and_hdop(lat: float, lon: float, seen: list[Vector]) -> tuple[float, float]:
@@ -78,7 +78,7 @@ def test_a_map_is_what_counting_gives() -> None:
     assert len(set(shares)) > 2, "the limit parts nothing"
     # The area between two parallels is the difference of the sines of their latitudes, and each row here has two cells.
     rows = [math.sin(math.radians(b)) - math.sin(math.radians(a)) for a, b in pairwise((0.0, 30.0, 60.0, 90.0))]
-    for found in made.summary.coverage:
-        area = sum(rows[k // 2] / 2 for k, share in enumerate(shares) if share >= found.available)
+    for coverage in made.summary.coverage:
+        area = sum(rows[k // 2] / 2 for k, share in enumerate(shares) if share >= coverage.available)
         # Cosines of the middle of rows of 30 degrees stand for the differences of sines: the same but for one factor.
-        assert found.share == pytest.approx(area, abs=1e-12)
+        assert coverage.share == pytest.approx(area, abs=1e-12)

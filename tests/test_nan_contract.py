@@ -89,7 +89,7 @@ def reassuring(name: str, argument: str, bad: float) -> list[str]:
     except InputError:
         return []
     base, moved = outputs(call()), nudged(call, argument)
-    found = []
+    listed = []
     for place, array in result.items():
         at, before = first(array), first(base[place]) if place in base else first(array)
         depends = np.zeros(at.shape, dtype=bool)
@@ -97,9 +97,9 @@ def reassuring(name: str, argument: str, bad: float) -> list[str]:
             if place in other and first(other[place]).shape == at.shape == before.shape:
                 depends |= differs(first(other[place]), before)
         if at.dtype.kind == "f" and (np.isfinite(at) & depends).any():
-            found.append(place)
-    said = [a for place, array in result.items() if place.endswith(".status") for a in np.atleast_1d(first(array)).tolist()]
-    return [] if said and not set(said) & set(USABLE) else found
+            listed.append(place)
+    declared = [a for place, array in result.items() if place.endswith(".status") for a in np.atleast_1d(first(array)).tolist()]
+    return [] if declared and not set(declared) & set(USABLE) else listed
 
 
 _SERIES = "a statistic of a series: epochs without an error or a bound are left out, and their number is in the result"

@@ -78,10 +78,10 @@ def test_files_in_any_order_give_what_one_table_gives(tmp_path: Path) -> None:
     files = days(tmp_path)
     run = navbound.evaluate([files[k] for k in (4, 0, 5, 2, 1, 3)], levels=LEVELS, period_s=1.0)
     expected = comparable(kpi.evaluate(series(6 * DAY), LEVELS, period_s=1.0))
-    found = comparable(run.summary.performance)  # type: ignore[arg-type]
+    result = comparable(run.summary.performance)  # type: ignore[arg-type]
     for name in ("title", "notes"):
-        expected.pop(name), found.pop(name)
-    assert found == expected
+        expected.pop(name), result.pop(name)
+    assert result == expected
     assert run.events.height == sum(expected["n_events"].values())
     assert run.epochs.height == series(6 * DAY).height
 
@@ -122,15 +122,15 @@ def test_positions_with_levels_and_a_fixed_truth(tmp_path: Path) -> None:
     )
     rows.write_parquet(tmp_path / "positions.parquet")
     run = navbound.evaluate(tmp_path / "positions.parquet", levels="LPV-200", truth=",".join(map(str, truth)))
-    found = run.summary.performance
-    assert found is not None
-    h_error, v_error = found.axes[0].error_m, found.axes[1].error_m
+    result = run.summary.performance
+    assert result is not None
+    h_error, v_error = result.axes[0].error_m, result.axes[1].error_m
     assert h_error is not None
     assert v_error is not None
     # 2 m on a sphere of 6370 km; the meridian's radius is within 1 % of it.
     assert h_error.p95 == pytest.approx(2.0, rel=0.01)
     assert v_error.p95 == pytest.approx(3.0, abs=1e-6)
-    assert found.levels[0].availability_expected == 1.0
+    assert result.levels[0].availability_expected == 1.0
 
 
 def test_observations_navigation_and_messages_from_the_command_line(shared_data: Path, tmp_path: Path) -> None:
@@ -140,18 +140,18 @@ def test_observations_navigation_and_messages_from_the_command_line(shared_data:
     done = subprocess.run(
         [sys.executable, "-m", "navbound", "analyze", *(str(sbas / name) for name in names), *arguments], capture_output=True, check=True
     )
-    found = json.loads(done.stdout)["performance"]
+    data = json.loads(done.stdout)["performance"]
     # The specification: the messages allow precision approach 143 s after the first, and nothing after it is lost.
-    assert (found["n_expected"], found["n_no_solution"]) == (3600, 143)
-    level = found["levels"][0]
+    assert (data["n_expected"], data["n_no_solution"]) == (3600, 143)
+    level = data["levels"][0]
     assert (level["n_available"], level["n_continuity_events"]) == (3600 - 143, 0)
-    assert found["events"][0]["cause"] == "no solution"
+    assert data["events"][0]["cause"] == "no solution"
     # The oracle's levels over its own 3239 epochs, of which ours are a superset: HPL 11.8 to 15.2 m, VPL 20.6 to 34.0 m.
     oracle = pl.read_csv(sbas / "msas2025046_pl_1hz.csv", comment_prefix="#")
     ours = pl.read_parquet(tmp_path / "run" / directory.EPOCHS)["hpl_m"].drop_nulls()
     assert oracle.height == 3239
     assert ours.tail(3239).median() == pytest.approx(13.0, abs=0.05)
-    assert any("belong to the same solutions" in note for note in found["notes"])
+    assert any("belong to the same solutions" in note for note in data["notes"])
     # Positions are the service's: the covariance of each is that of its level, and none stands where the service gives none.
     epochs = pl.read_parquet(tmp_path / "run" / directory.EPOCHS)
     assert epochs.filter(pl.col("hpl_m").is_null())["est_lat_rad"].is_null().all()
@@ -251,8 +251,8 @@ def test_errors_by_size_alone_are_errors(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("levels", "absent"), [("APV-I", "vpl_m"), ("NPA,APV-I", "vpl_m"), ("NPA", "hpl_m")])
 def test_a_level_that_is_judged_and_absent_refuses_the_file(tmp_path: Path, levels: str, absent: str) -> None:
-    held = [name for name in ("hpe_m", "vpe_m", "hpl_m", "vpl_m") if name != absent]
-    path = errors_and_levels(tmp_path / "levels.csv", *held)
+    columns = [name for name in ("hpe_m", "vpe_m", "hpl_m", "vpl_m") if name != absent]
+    path = errors_and_levels(tmp_path / "levels.csv", *columns)
     with pytest.raises(FormatError, match=f"{absent}: no column holds it"):
         navbound.evaluate(path, levels=levels)
 

@@ -41,8 +41,8 @@ def truth(shared_data: Path) -> Any:
 
 
 def errors(epochs: pl.DataFrame) -> Any:
-    found = epochs.select("nse_e_m", "nse_n_m", "nse_u_m").to_numpy()
-    return found[np.isfinite(found[:, 0])]
+    result = epochs.select("nse_e_m", "nse_n_m", "nse_u_m").to_numpy()
+    return result[np.isfinite(result[:, 0])]
 
 
 def test_tables_come_back_at_their_nodes(orbits: gnss.PreciseOrbits) -> None:
@@ -85,30 +85,30 @@ def test_precise_orbits_take_horizontal_error_away(
     observed: tuple[gnss.Observations, gnss.Navigation], orbits: gnss.PreciseOrbits, truth: Any, how: Any, share: float
 ) -> None:
     h95 = {}
-    for name, given in (("broadcast", None), ("precise", orbits)):
-        error = errors(gnss.solve(*observed, orbits=given, truth_ecef_m=truth, **how).epochs)
+    for name, precise in (("broadcast", None), ("precise", orbits)):
+        error = errors(gnss.solve(*observed, orbits=precise, truth_ecef_m=truth, **how).epochs)
         h95[name] = np.quantile(np.hypot(error[:, 0], error[:, 1]), 0.95)
-    # Galileo's broadcast orbits are as good as this receiver can tell: no worse is all that can be asked.
+    # Galileo's broadcast orbits are as good as this receiver can tell: no worse is all that can be required.
     assert h95["precise"] < share * h95["broadcast"]
 
 
 @pytest.mark.parametrize(("systems", "signals"), [("G", "single"), ("E", "single"), ("GE", "single"), ("E", "dual"), ("GE", "dual")])
-def test_precise_orbits_keep_an_honest_covariance(
+def test_precise_orbits_keep_a_consistent_covariance(
     observed: tuple[gnss.Observations, gnss.Navigation], orbits: gnss.PreciseOrbits, truth: Any, systems: str, signals: Any
 ) -> None:
-    found = gnss.solve(*observed, systems=systems, signals=signals, orbits=orbits, truth_ecef_m=truth)
+    positions = gnss.solve(*observed, systems=systems, signals=signals, orbits=orbits, truth_ecef_m=truth)
     # The signals of 00:00:00 left the day before, of which there is no clock; the orbits end at 23:45, 29 epochs before the last.
-    absent = np.flatnonzero((found.epochs["status"] == "not_available").to_numpy())
+    absent = np.flatnonzero((positions.epochs["status"] == "not_available").to_numpy())
     assert absent.tolist() == [0, *range(2851, 2880)]
-    assert found.unused["not_tabulated"] > 0
-    epochs = found.epochs[1:-29]
+    assert positions.unused["not_tabulated"] > 0
+    epochs = positions.epochs[1:-29]
     c = {k: epochs[f"cov_{k}_m2"].to_numpy() for k in ("ee", "en", "nn", "eu", "nu", "uu")}
     rows = [[c["ee"], c["en"], c["eu"]], [c["en"], c["nn"], c["nu"]], [c["eu"], c["nu"], c["uu"]]]
-    nees = evaluation.nees(errors(found.epochs), np.moveaxis(np.array(rows), -1, 0))
+    nees = evaluation.nees(errors(positions.epochs), np.moveaxis(np.array(rows), -1, 0))
     # Not calibrated: cautious, never short.
     # With few ranges to spare the covariance covers readings that are not true: larger than this quiet day needs.
     assert 0.2 < nees.nees_mean < 3.0
-    assert "GRG" in found.models["orbits and clocks"]
+    assert "GRG" in positions.models["orbits and clocks"]
 
 
 @pytest.mark.parametrize("smoothing", ["hatch", "divergence-free"])
@@ -120,8 +120,8 @@ def test_smoothing_takes_noise_away_and_says_what_it_did(
         # From one epoch to the next only noise and multipath change.
         return float(np.std(np.diff(error, axis=0)))
 
-    found = gnss.solve(*observed, systems="GE", smoothing_s=300.0, smoothing=smoothing)
-    assert found.models["smoothing"].startswith(f"{smoothing}, 300 s; 9")
+    positions = gnss.solve(*observed, systems="GE", smoothing_s=300.0, smoothing=smoothing)
+    assert positions.models["smoothing"].startswith(f"{smoothing}, 300 s; 9")
     # Ten epochs in the window: differences of successive means are ten times smaller than those of single codes, less multipath.
     assert noise(smoothing_s=300.0, smoothing=smoothing) < 0.35 * noise()
 
@@ -179,7 +179,7 @@ def test_a_week_that_may_have_rolled_over_is_not_guessed(shared_data: Path, tmp_
     assert gnss.constellation(rolled, near_ns=week_ns(1000)).reference_ns == week_ns(1011) + 589_824 * NS
 
 
-def test_unhealthy_satellites_are_left_out_unless_wanted(shared_data: Path, tmp_path: Path) -> None:
+def test_unhealthy_satellites_are_left_out_unless_requested(shared_data: Path, tmp_path: Path) -> None:
     text = (shared_data / "gnss" / "almanacs" / "20160331.alm").read_text(encoding="ascii")
     path = tmp_path / "sick.alm"
     path.write_text(text.replace("Health:                     000", "Health:                     063", 1), encoding="ascii")

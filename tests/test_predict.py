@@ -17,7 +17,7 @@ from navbound import gnss, kpi, raim
 from navbound.cli import main as cli
 from navbound.errors import InputError
 from navbound.maps.sources import Times
-from navbound.run.predict import Asked, place, predict, route
+from navbound.run.predict import Request, place, predict, route
 from navbound.time import gps_ns
 
 if TYPE_CHECKING:
@@ -55,30 +55,30 @@ EIGHT_HOURS = Times(None, 8 * 3600.0, 300.0)
 def test_holes_are_where_the_levels_are_outside_the_limit() -> None:
     """Counted again from the levels; six satellites out of service so that there are holes."""
     gone = ("G01", "G05", "G09", "G13", "G17", "G21")
-    found = predict(Asked(["gps"], EIGHT_HOURS, ("RNP 0.1",), gone), [place("55.5,8.45,60"), place("10,10")])
+    result = predict(Request(["gps"], EIGHT_HOURS, ("RNP 0.1",), gone), [place("55.5,8.45,60"), place("10,10")])
     orbits = gnss.constellation("gps").without(gone)
-    for line in found.lines:
-        here = next(p for p in found.places if p.name == line.place)
+    for line in result.lines:
+        here = next(p for p in result.places if p.name == line.place)
         levels = raim.predict(orbits, here.lat_rad[0], here.lon_rad[0], here.h_m[0], EIGHT_HOURS.offsets_s())
         for function, level in (("detection", levels.hpl_m), ("exclusion", levels.hel_m)):
             outside = ~(level <= 0.1 * 1852.0)
-            holes = [h for h in found.holes if h.place == line.place and h.function == function]
+            holes = [h for h in result.holes if h.place == line.place and h.function == function]
             assert sum(h.end_s - h.start_s for h in holes) == 300.0 * outside.sum()
             inside = [(h.start_s, h.end_s) for h in holes]
             assert all(any(a <= t < b for a, b in inside) == out for t, out in zip(EIGHT_HOURS.offsets_s(), outside, strict=True))
         assert line.p_exclusion == float((levels.hel_m <= 0.1 * 1852.0).mean())
         assert line.p_exclusion is not None
         assert line.p_detection >= line.p_exclusion
-    assert any(line.n_holes_exclusion for line in found.lines)
-    assert found.satellites == list(orbits.satellite)
-    assert any("inferred" in words for words in found.assumptions)
-    assert found.limits[0].provenance == "inferred"
+    assert any(line.n_holes_exclusion for line in result.lines)
+    assert result.satellites == list(orbits.satellite)
+    assert any("inferred" in words for words in result.assumptions)
+    assert result.limits[0].provenance == "inferred"
 
 
 def test_a_satellite_out_of_service_never_helps() -> None:
-    asked = Asked(["gps"], EIGHT_HOURS, ("NPA",))
-    whole = predict(asked, [place("55.5,8.45")]).lines[0]
-    less = predict(Asked(["gps"], EIGHT_HOURS, ("NPA",), ("G01", "G02", "G03", "G04", "G05")), [place("55.5,8.45")]).lines[0]
+    request = Request(["gps"], EIGHT_HOURS, ("NPA",))
+    whole = predict(request, [place("55.5,8.45")]).lines[0]
+    less = predict(Request(["gps"], EIGHT_HOURS, ("NPA",), ("G01", "G02", "G03", "G04", "G05")), [place("55.5,8.45")]).lines[0]
     assert less.p_exclusion is not None
     assert whole.p_exclusion is not None
     assert less.p_exclusion < whole.p_exclusion
@@ -110,8 +110,8 @@ def test_a_route_fails_where_one_of_its_points_fails(tmp_path: Path) -> None:
     along = route(file)
     assert len(along.lat_rad) >= 40  # 1200 NM by at most 30
     gone = ("G01", "G05", "G09", "G13")
-    asked = Asked(["gps"], EIGHT_HOURS, ("RNP 0.1",), gone)
-    whole = predict(asked, [along]).lines[0]
+    request = Request(["gps"], EIGHT_HOURS, ("RNP 0.1",), gone)
+    whole = predict(request, [along]).lines[0]
     orbits = gnss.constellation("gps").without(gone)
     levels = raim.predict(orbits, along.lat_rad, along.lon_rad, 0.0, EIGHT_HOURS.offsets_s())
     assert whole.p_exclusion == float((levels.hel_m <= 185.2).all(axis=-1).mean())
@@ -130,13 +130,13 @@ def test_places_are_coordinates_or_runways() -> None:
 def test_an_almanac_serves_its_own_week(shared_data: Path) -> None:
     file, day_ns = shared_data / "gnss" / "almanacs" / "20160331.alm", 86_400_000_000_000
     start_ns = gps_ns(datetime(2016, 4, 1, tzinfo=UTC))
-    asked = Asked([file], Times(start_ns, 3600.0, 300.0), ("NPA",), ("G05",))
-    found = predict(asked, [place("50,8")])
-    assert found.times.start_utc == "2016-04-01 00:00:00"
-    assert "G05" not in found.satellites
-    assert len(found.satellites) > 25
+    request = Request([file], Times(start_ns, 3600.0, 300.0), ("NPA",), ("G05",))
+    prediction = predict(request, [place("50,8")])
+    assert prediction.times.start_utc == "2016-04-01 00:00:00"
+    assert "G05" not in prediction.satellites
+    assert len(prediction.satellites) > 25
     with pytest.raises(InputError, match=r"date = 2016-04-21 00:00:00 UTC.*within a week of the almanac, which is of 2016-04-02 19:50:07"):
-        predict(Asked([file], Times(start_ns + 20 * day_ns, 3600.0, 300.0)), [place("50,8")])
+        predict(Request([file], Times(start_ns + 20 * day_ns, 3600.0, 300.0)), [place("50,8")])
 
 
 def test_the_command_prints_a_table_and_json_and_refuses_in_a_sentence(shared_data: Path, navbound: Callable[..., Ended]) -> None:
@@ -144,13 +144,13 @@ def test_the_command_prints_a_table_and_json_and_refuses_in_a_sentence(shared_da
     common = ("predict", "raim", navigation, "--at", "55.5,8.45", "--hours", "2", "--every-s", "300")
     shown = navbound(*common, "--date", "2020-06-25T06:00", "--spec", "RNP 0.3", "--spec", "NPA")
     assert shown.status == 0, shown.stderr
-    for said in ("RNP 0.3", "NPA", "2020-06-25 06:00:00 UTC", "inferred", "exclusion"):
-        assert said in shown.stdout
+    for words in ("RNP 0.3", "NPA", "2020-06-25 06:00:00 UTC", "inferred", "exclusion"):
+        assert words in shown.stdout
     data = json.loads(navbound(*common, "--date", "2020-06-25T06:00", "--without", "G05", "--json").stdout)
     assert data["without"] == ["G05"]
     assert "G05" not in data["satellites"]
     assert data["times"]["n"] == 24
-    # RAIM receivers use GPS; more only where it is asked for.
+    # RAIM receivers use GPS; more only where it is requested.
     assert {name[0] for name in data["satellites"]} == {"G"}
     more = json.loads(navbound(*common, "--date", "2020-06-25T06:00", "--systems", "GE", "--json").stdout)
     assert {name[0] for name in more["satellites"]} == {"G", "E"}

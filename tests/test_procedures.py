@@ -85,9 +85,9 @@ def test_every_field_of_a_record_is_that_of_the_reference(case: dict[str, Any], 
         "vertical_angle_deg": (leg["vertical_angle_rad"], 180 / math.pi),
     }
     for name, (value, unit) in scaled.items():
-        wanted = expected.pop(name)
-        assert (value is None) == (wanted is None), name
-        assert value is None or value * unit == pytest.approx(wanted, rel=1e-12), name
+        reference = expected.pop(name)
+        assert (value is None) == (reference is None), name
+        assert value is None or value * unit == pytest.approx(reference, rel=1e-12), name
     assert {k: v.rstrip() if isinstance(v, str) else v for k, v in expected.items()} == ours
 
 

@@ -36,7 +36,7 @@ def test_only_levels_that_integrity_may_rest_on_say_so() -> None:
 
 def test_the_command_lists_both() -> None:
     table = CliRunner().invoke(app, ["methods"]).output
-    found = json.loads(CliRunner().invoke(app, ["methods", "--json"]).output)
-    assert [m["id"] for m in found["methods"]] == list(methods())
-    assert [p["id"] for p in found["protection_levels"]] == list(protection_methods())
+    data = json.loads(CliRunner().invoke(app, ["methods", "--json"]).output)
+    assert [m["id"] for m in data["methods"]] == list(methods())
+    assert [p["id"] for p in data["protection_levels"]] == list(protection_methods())
     assert "Protection levels" in table

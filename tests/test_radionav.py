@@ -32,10 +32,10 @@ def drawn(n: int, seed: int) -> tuple[dme.Stations, NDArray[np.float64], NDArray
     return stations, ranges, H + SIGMA_H * generator.standard_normal(n)
 
 
-def error_en(found: dme.Positions) -> NDArray[np.float64]:
+def error_en(positions: dme.Positions) -> NDArray[np.float64]:
     """Truth minus estimate: the radii of 6 383 km at this latitude are exact to 1e-3 of an error of some hundred metres."""
-    north = (LAT - found.lat_rad) * 6_373_000.0
-    east = (LON - found.lon_rad) * 6_399_700.0 * np.cos(LAT)
+    north = (LAT - positions.lat_rad) * 6_373_000.0
+    east = (LON - positions.lon_rad) * 6_399_700.0 * np.cos(LAT)
     return np.column_stack((east, north))
 
 
@@ -44,20 +44,20 @@ def test_the_covariance_is_that_of_the_errors(n_ranges: int) -> None:
     n = 20_000
     stations, ranges, h = drawn(n, seed=4)
     ranges[:, n_ranges:] = np.nan
-    found = dme.solve(ranges, stations, h, sigma_altitude_m=SIGMA_H, prior_lat_rad=LAT, prior_lon_rad=LON)
-    usable = found.status != "not_available"
+    solution = dme.solve(ranges, stations, h, sigma_altitude_m=SIGMA_H, prior_lat_rad=LAT, prior_lon_rad=LON)
+    usable = solution.status != "not_available"
     assert usable.all()
-    nse = np.column_stack((error_en(found), H - h))
-    nees = np.einsum("ni,nij,nj->n", nse, np.linalg.inv(found.covariance_enu_m2), nse)
+    nse = np.column_stack((error_en(solution), H - h))
+    nees = np.einsum("ni,nij,nj->n", nse, np.linalg.inv(solution.covariance_enu_m2), nse)
     # A mean of n chi-square numbers with 3 degrees: 3 +- 4 sqrt(6 / n); the radii and the bend of the ranges add 1 %.
     assert nees.mean() == pytest.approx(3.0, abs=4 * np.sqrt(6 / n) + 0.03)
-    assert (found.n_ranges == n_ranges).all()
+    assert (solution.n_ranges == n_ranges).all()
     if n_ranges == 2:
-        assert np.isnan(found.p_residual).all()
+        assert np.isnan(solution.p_residual).all()
         return
-    # Residual risks of honest ranges are level on [0, 1].
-    assert stats.kstest(found.p_residual, "uniform").pvalue > 1e-4
-    degraded = np.count_nonzero(found.status == "degraded")
+    # Residual risks of ranges without a fault are level on [0, 1].
+    assert stats.kstest(solution.p_residual, "uniform").pvalue > 1e-4
+    degraded = np.count_nonzero(solution.status == "degraded")
     assert stats.binomtest(degraded, n, 1e-3).pvalue > 1e-4
 
 
@@ -78,27 +78,27 @@ def test_all_in_view_is_better_than_the_pair_and_a_wrong_range_is_seen() -> None
 
 
 @pytest.mark.parametrize(("column", "deviations", "least"), [(0, 15, 0.0), (1, 30, 0.75), (2, 15, 0.85), (3, 15, 0.85)])
-def test_one_wrong_range_of_four_is_left_out_or_said_not_to_be_found(column: int, deviations: int, least: float) -> None:
+def test_one_wrong_range_of_four_is_left_out_or_reported_unidentified(column: int, deviations: int, least: float) -> None:
     """The first two stations lie in nearly the same direction: which of them is wrong shows at larger errors only, and is not guessed."""
     n = 2000
     stations, ranges, h = drawn(n, seed=20 + column)
     ranges[:, column] += deviations * 182.6
     prior = {"prior_lat_rad": LAT, "prior_lon_rad": LON}
-    found = dme.solve(ranges, stations, h, sigma_altitude_m=SIGMA_H, **prior)
-    out = found.excluded == column
+    solution = dme.solve(ranges, stations, h, sigma_altitude_m=SIGMA_H, **prior)
+    out = solution.excluded == column
     assert out.mean() >= least
     # Another is blamed at the most as often as the odds of a thousand allow, with room for the draw.
-    wrong = np.count_nonzero((found.excluded >= 0) & ~out)
+    wrong = np.count_nonzero((solution.excluded >= 0) & ~out)
     assert stats.binomtest(wrong, n, 1e-3, alternative="greater").pvalue > 1e-4
     # Nearly none goes unseen, and what is not found is said.
-    assert (found.status[~out] == "degraded").mean() > 0.95
-    assert set(found.status[out].tolist()) <= {"ok"}
-    assert (found.n_ranges[out] == 3).all()
+    assert (solution.status[~out] == "degraded").mean() > 0.95
+    assert set(solution.status[out].tolist()) <= {"ok"}
+    assert (solution.n_ranges[out] == 3).all()
     others = np.where(np.arange(4) == column, np.nan, ranges)
     alone = dme.solve(others, stations, h, sigma_altitude_m=SIGMA_H, **prior)
     # The same sums in another order, to the end of the iteration at a micrometre.
-    np.testing.assert_allclose(found.lat_rad[out], alone.lat_rad[out], rtol=0, atol=1e-12)
-    np.testing.assert_allclose(found.covariance_enu_m2[out], alone.covariance_enu_m2[out], rtol=1e-9)
+    np.testing.assert_allclose(solution.lat_rad[out], alone.lat_rad[out], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(solution.covariance_enu_m2[out], alone.covariance_enu_m2[out], rtol=1e-9)
 
 
 def bearing_error(distance_nm: float, n: int) -> tuple[NDArray[np.float64], dme.Positions]:
@@ -111,24 +111,24 @@ def bearing_error(distance_nm: float, n: int) -> tuple[NDArray[np.float64], dme.
     seen = dme.sights(lat, lon, H, station)
     slant, bearing = seen.slant_m[0], seen.bearing_rad[0]
     h = H + SIGMA_H * generator.standard_normal(n)
-    found = dme.solve_vor(
+    solution = dme.solve_vor(
         slant + dme.range_sigma(slant) * generator.standard_normal(n),
         bearing + dme.VOR_SIGMA_RAD * generator.standard_normal(n),
         [station.lat_rad[0], station.lon_rad[0], station.h_m[0]],
         h,
         sigma_altitude_m=SIGMA_H,
     )
-    assert set(found.status.tolist()) == {"ok"}
+    assert set(solution.status.tolist()) == {"ok"}
     # Differences of Cartesian places in the axes at the truth: an error of 10 km turns the axes by 1.6e-3.
-    east = (lon - found.lon_rad) * 6_399_700.0 * np.cos(lat)
-    return np.column_stack((east, (lat - found.lat_rad) * 6_373_000.0)), found
+    east = (lon - solution.lon_rad) * 6_399_700.0 * np.cos(lat)
+    return np.column_stack((east, (lat - solution.lat_rad) * 6_373_000.0)), solution
 
 
 @pytest.mark.parametrize("distance_nm", [10.0, 30.0, 60.0, 120.0])
 def test_a_position_by_a_bearing_is_as_good_as_it_says_at_any_distance(distance_nm: float) -> None:
     n = 20_000
-    error, found = bearing_error(distance_nm, n)
-    level = found.covariance_enu_m2[:, :2, :2]
+    error, solution = bearing_error(distance_nm, n)
+    level = solution.covariance_enu_m2[:, :2, :2]
     nees = np.einsum("ni,nij,nj->n", error, np.linalg.inv(level), error)
     # Four standard errors of the mean; radii and turned axes bring 1 % at the most.
     assert nees.mean() == pytest.approx(2.0, abs=4 * nees.std() / np.sqrt(n) + 0.02)
@@ -139,8 +139,8 @@ def test_a_position_by_a_bearing_is_as_good_as_it_says_at_any_distance(distance_
 
 def test_the_bend_of_the_arc_is_what_a_straight_line_leaves_out() -> None:
     """At 60 NM, against the first order of `dme.vor_dme`, which is the printed one."""
-    error, found = bearing_error(60.0, 20_000)
-    level = found.covariance_enu_m2[:, :2, :2]
+    error, solution = bearing_error(60.0, 20_000)
+    level = solution.covariance_enu_m2[:, :2, :2]
     first = dme.vor_dme(60 * NM, np.hypot(60 * NM, H), dme.VOR_SIGMA_RAD, dme.range_sigma(60 * NM))
     # The same directions, which are those of the largest and the smallest deviation.
     _, axes = np.linalg.eigh(level)
@@ -157,12 +157,12 @@ def test_what_cannot_be_solved_is_a_status() -> None:
     stations, ranges, h = drawn(3, seed=6)
     ranges[0, 2:] = np.nan
     ranges[1, 1:] = np.nan
-    found = dme.solve(ranges, stations, h, sigma_altitude_m=SIGMA_H)
-    assert found.status.tolist() == ["not_available", "not_available", "ok"]
-    assert "mirror" in found.reason[0]
-    assert "two ranges" in found.reason[1]
-    assert np.isnan(found.lat_rad[:2]).all()
-    assert np.isnan(found.covariance_enu_m2[:2]).all()
+    solution = dme.solve(ranges, stations, h, sigma_altitude_m=SIGMA_H)
+    assert solution.status.tolist() == ["not_available", "not_available", "ok"]
+    assert "mirror" in solution.reason[0]
+    assert "two ranges" in solution.reason[1]
+    assert np.isnan(solution.lat_rad[:2]).all()
+    assert np.isnan(solution.covariance_enu_m2[:2]).all()
     far = dme.solve(ranges[2], stations, h[2], sigma_altitude_m=SIGMA_H, prior_lat_rad=LAT + 0.02, prior_lon_rad=LON, prior_within_m=1e4)
     assert (str(far.status), int(far.n_ranges)) == ("not_available", 0)
 
@@ -185,17 +185,17 @@ def test_what_cannot_be_solved_is_a_status() -> None:
     ],
 )
 def test_wrong_arguments_are_refused_by_name(change: dict[str, object], named: str) -> None:
-    given: dict[str, object] = {"slant_m": [6e4, 1.2e5, 6e4, 4e4], "stations": network().only(*NEAR), "h_m": H, "sigma_altitude_m": 0.0}
+    arguments: dict[str, object] = {"slant_m": [6e4, 1.2e5, 6e4, 4e4], "stations": network().only(*NEAR), "h_m": H, "sigma_altitude_m": 0.0}
     with pytest.raises(InputError, match=named):
-        dme.solve(**(given | change))  # type: ignore[arg-type]
+        dme.solve(**(arguments | change))  # type: ignore[arg-type]
 
 
 def test_a_network_of_nothing_gives_nothing() -> None:
     nothing = dme.Stations.of({})
     with pytest.raises(InputError, match="at least one station"):
         dme.solve(np.empty((2, 0)), nothing, H, sigma_altitude_m=0.0)
-    found = dme.coverage([LAT], [LON], H, nothing, rnp_m=NM, fte_m=0.0, sigma_altitude_m=0.0)
-    assert (found.n_stations.tolist(), found.supports_all.tolist()) == ([0], [False])
+    coverage = dme.coverage([LAT], [LON], H, nothing, rnp_m=NM, fte_m=0.0, sigma_altitude_m=0.0)
+    assert (coverage.n_stations.tolist(), coverage.supports_all.tolist()) == ([0], [False])
     assert dme.sights([LAT], [LON], [H], nothing).slant_m.shape == (1, 0)
     with pytest.raises(InputError, match="lat_rad"):
         dme.coverage([np.nan], [LON], H, nothing, rnp_m=NM, fte_m=0.0, sigma_altitude_m=0.0)
@@ -210,7 +210,7 @@ def test_the_best_pair_is_that_of_the_flat_search() -> None:
     """Against `best_pair`, on the station's places as the aircraft's own axes show them: another route to the same figures."""
     stations = network().only(*NEAR, "KVR", "KVH")
     time, lat, lon, h = track(40)
-    found = dme.select(time, lat, lon, h, stations, sigma_altitude_m=SIGMA_H)
+    selection = dme.select(time, lat, lon, h, stations, sigma_altitude_m=SIGMA_H)
     seen = dme.sights(lat, lon, h, stations)
     compared = 0
     for k in range(40):
@@ -224,10 +224,10 @@ def test_the_best_pair_is_that_of_the_flat_search() -> None:
             for i in usable
         }
         best = dme.best_pair((0.0, 0.0, 0.0), places, sigma_altitude_m=SIGMA_H)
-        if best is None or best.drms_m is None or found.best[k, 0] < 0:
+        if best is None or best.drms_m is None or selection.best[k, 0] < 0:
             continue
         compared += 1
-        assert np.sqrt(np.trace(found.best_en_m2[k])) == pytest.approx(best.drms_m, rel=0.1)
+        assert np.sqrt(np.trace(selection.best_en_m2[k])) == pytest.approx(best.drms_m, rel=0.1)
     assert compared > 30
 
 
@@ -256,8 +256,8 @@ def test_across_the_leg_another_pair_may_be_best_and_an_excluded_facility_is_not
     course = np.full(len(lat), np.radians(91.0))
     across = np.array([np.cos(course[0]), -np.sin(course[0])])
 
-    def sigma(found: dme.Selection) -> NDArray[np.float64]:
-        deviation: NDArray[np.float64] = np.sqrt(np.einsum("i,nij,j->n", across, found.best_en_m2, across))
+    def sigma(selection: dme.Selection) -> NDArray[np.float64]:
+        deviation: NDArray[np.float64] = np.sqrt(np.einsum("i,nij,j->n", across, selection.best_en_m2, across))
         return deviation
 
     by_drms = dme.select(time, lat, lon, h, stations, sigma_altitude_m=SIGMA_H)
@@ -291,9 +291,9 @@ def test_selection_refuses_what_does_not_fit() -> None:
 def test_a_map_is_its_tiles_and_says_what_the_selection_says() -> None:
     stations = network()
     lat, lon = np.meshgrid(np.radians(np.linspace(48.0, 51.5, 15)), np.radians(np.linspace(29.0, 37.0, 17)), indexing="ij")
-    asked = {"rnp_m": NM, "fte_m": 0.5 * NM, "sigma_altitude_m": SIGMA_H}
-    whole = dme.coverage(lat, lon, 9000.0, stations, **asked)
-    tiles = [dme.coverage(lat[rows], lon[rows], 9000.0, stations, **asked) for rows in (slice(0, 6), slice(6, None))]
+    requested = {"rnp_m": NM, "fte_m": 0.5 * NM, "sigma_altitude_m": SIGMA_H}
+    whole = dme.coverage(lat, lon, 9000.0, stations, **requested)
+    tiles = [dme.coverage(lat[rows], lon[rows], 9000.0, stations, **requested) for rows in (slice(0, 6), slice(6, None))]
     for name in ("n_stations", "best", "nse_best_m", "nse_all_m", "nse_vor_m", "supports_best", "supports_vor"):
         np.testing.assert_array_equal(np.concatenate([getattr(t, name) for t in tiles]), getattr(whole, name))
     assert whole.nse_limit_m == pytest.approx(np.sqrt(0.75) * NM, rel=1e-12)
@@ -329,16 +329,16 @@ def test_coverage_grows_with_height_and_shrinks_with_the_demand() -> None:
 def test_pairs_of_equal_figures_are_taken_in_order() -> None:
     """Two stations on one mast: the pair with the first of them, at every epoch."""
     double = dme.Stations.of({"AAA": [LAT, LON, 100.0], "BBB": [LAT, LON, 100.0], "CCC": [LAT + 0.01, LON + 0.014, 100.0]})
-    found = dme.select(np.zeros(1, dtype=np.int64), [LAT + 0.012], [LON - 0.002], [6000.0], double, sigma_altitude_m=0.0)
-    assert found.best.tolist() == [[0, 2]]
+    selection = dme.select(np.zeros(1, dtype=np.int64), [LAT + 0.012], [LON - 0.002], [6000.0], double, sigma_altitude_m=0.0)
+    assert selection.best.tolist() == [[0, 2]]
 
 
 def test_one_station_gives_a_position_by_bearing_and_a_pair_none() -> None:
     alone = network().only("BRP")
-    found = dme.select(np.zeros(1, dtype=np.int64), [LAT], [LON], [6000.0], alone, sigma_altitude_m=0.0)
-    assert found.best.tolist() == [[-1, -1]]
-    assert np.isnan(found.all_en_m2).all()
-    assert found.vor.tolist() == [0]
+    selection = dme.select(np.zeros(1, dtype=np.int64), [LAT], [LON], [6000.0], alone, sigma_altitude_m=0.0)
+    assert selection.best.tolist() == [[-1, -1]]
+    assert np.isnan(selection.all_en_m2).all()
+    assert selection.vor.tolist() == [0]
     overhead = dme.solve_vor(5000.0, 0.3, [LAT, LON, 0.0], 4500.0, sigma_altitude_m=0.0)
     assert (str(overhead.status), str(overhead.reason)) == ("not_available", "the aircraft is in the cone above the VOR")
     short = dme.solve_vor(4000.0, 0.3, [LAT, LON, 0.0], 4500.0, sigma_altitude_m=0.0)
@@ -370,11 +370,11 @@ def inspected(folder: Path, name: str) -> tuple[NDArray[np.int64], NDArray[np.fl
 def test_real_flights_have_pairs_where_the_network_is_dense(shared_data: Path, name: str, least: float, most: float) -> None:
     time, lat, lon, h = inspected(shared_data, name)
     stations = dme.stations().near(lat[::50], lon[::50], 350e3)
-    found = dme.select(time, lat, lon, h, stations, sigma_altitude_m=30.0)
-    known = found.used[:, 0] >= 0
+    selection = dme.select(time, lat, lon, h, stations, sigma_altitude_m=30.0)
+    known = selection.used[:, 0] >= 0
     assert least <= known[h > 300.0].mean() <= most
-    drms = np.sqrt(np.trace(found.used_en_m2[known], axis1=1, axis2=2))
-    every = np.sqrt(np.trace(found.all_en_m2[known], axis1=1, axis2=2))
+    drms = np.sqrt(np.trace(selection.used_en_m2[known], axis1=1, axis2=2))
+    every = np.sqrt(np.trace(selection.all_en_m2[known], axis1=1, axis2=2))
     # Two ranges of at best 182.6 m at right angles; the worst admitted, 315 m at 130 NM meeting at 30 degrees.
     assert drms.min() >= 258.0
     assert drms.max() <= np.sqrt(2) * 315.0 / np.sin(np.radians(30.0)) * 1.02

@@ -53,7 +53,7 @@ def at_least(count: int, n: int) -> float:
     return float(stats.beta.ppf(1e-3, count, n - count + 1)) if count else 0.0
 
 
-def test_the_held_level_bounds_a_missed_fault_of_any_size_and_the_published_one_does_not() -> None:
+def test_the_guaranteed_level_bounds_a_missed_fault_of_any_size_and_the_published_one_does_not() -> None:
     """Seeded ranges at a risk that can be counted; the fault on the satellite with the steepest slope, sizes up to beyond detection."""
     n, n_sv, needs = 20_000, 30, raim.Requirement(false_alarm=1e-3, missed_detection=0.05, fault_free=1e-3)
     unit, of, sigma = sky(n_sv, 4), [GPS] * n_sv, np.linspace(1.0, 2.0, n_sv)
@@ -64,26 +64,26 @@ def test_the_held_level_bounds_a_missed_fault_of_any_size_and_the_published_one_
         moved = raim.monitor(unit, of, np.eye(n_sv)[i] * 1e-3, sigma, requirement=needs)
         slope = float(np.abs(moved.step_enu_m[2]) / moved.ratio)
         steepest, worst = (i, slope) if slope > worst else (steepest, worst)
-    published, held = [], []
+    published, guaranteed = [], []
     for size in np.linspace(0.0, 14.0, 8):
         noise = rng.normal(size=(n, n_sv)) * sigma
         noise[:, steepest] += size
         tested = raim.monitor(unit, of, noise, sigma, requirement=needs)
         error, missed = np.abs(tested.step_enu_m[:, 2]), tested.decision == "none"
-        held.append(at_least(int((missed & (error > levels.vpl_m)).sum()), n))
+        guaranteed.append(at_least(int((missed & (error > levels.vpl_m)).sum()), n))
         published.append(at_least(int((missed & (error > levels.vpl_slope_m)).sum()), n))
-    assert max(held) <= 0.05
+    assert max(guaranteed) <= 0.05
     assert max(published) > 0.05, "the geometry no longer shows what the page says"
 
 
 @pytest.mark.parametrize(("slope", "published", "held"), [(0.3, 0.094, 1e-5), (1.0, 0.0035, 1e-6), (2.0, 7.5e-4, 3e-6)])
-def test_the_risks_of_the_page_come_out(slope: float, published: float, held: float) -> None:
+def test_the_risks_of_the_page_come_out(slope: float, published: float, risk: float) -> None:
     """docs/methods/raim.md: five redundant ranges, sigma of the position one metre."""
     _, bias = raim.factors(5)
     noise = float(stats.norm.isf(raim.RAIM.missed_detection / 2))
     # Two digits are printed.
     assert abs(raim_scipy.worst_joint(5, slope * float(bias), slope, 1.0) / published - 1) <= 0.05
-    assert raim_scipy.worst_joint(5, slope * float(bias) + noise, slope, 1.0) <= held
+    assert raim_scipy.worst_joint(5, slope * float(bias) + noise, slope, 1.0) <= risk
 
 
 def test_the_published_level_holds_where_the_slope_is_steep() -> None:
@@ -135,20 +135,20 @@ def test_solution_separation_and_slopes_see_the_same_satellite_and_differ_by_the
 def test_a_prediction_is_that_of_its_geometry() -> None:
     orbits = gnss.constellation("gps") + gnss.constellation("galileo")
     lat, lon, time = np.radians([-60.0, 5.0, 47.0]), np.radians([10.0, 100.0, -120.0]), np.array([0.0, 9000.0])
-    found = raim.predict(orbits, lat, lon, 0.0, time, model="dual-frequency")
-    assert found.hpl_m.shape == (2, 3)
+    levels = raim.predict(orbits, lat, lon, 0.0, time, model="dual-frequency")
+    assert levels.hpl_m.shape == (2, 3)
     az, el = gnss.directions(orbits, lat, lon, 0.0, time[:, None])
     unit = np.stack([np.cos(el) * np.sin(az), np.cos(el) * np.cos(az), np.sin(el)], axis=-1)
     unit[el < math.radians(5)] = np.nan
     a, b, scale = raim.ERROR_MODELS["dual-frequency"].noise
     local = (a + b * np.exp(-el / scale)) ** 2 + (0.12 * 1.001) ** 2 / (0.002001 + np.sin(el) ** 2)
     sigma = np.sqrt(np.array(raim.SUPPORT.sigma_ura_m)[orbits.constellation] ** 2 + local)
-    given = raim.protection_levels(unit, orbits.constellation, sigma)
+    computed = raim.protection_levels(unit, orbits.constellation, sigma)
     for name in ("hpl_m", "vpl_m", "hel_m", "vel_m"):
         # Angles and back cost a few units in the last place of vectors of 1, and gains up to 10.
-        np.testing.assert_allclose(getattr(found, name), getattr(given, name), rtol=1e-9)
-    assert np.array_equal(found.n_sv, given.n_sv)
-    assert (found.hel_m >= found.hpl_m).all()
+        np.testing.assert_allclose(getattr(levels, name), getattr(computed, name), rtol=1e-9)
+    assert np.array_equal(levels.n_sv, computed.n_sv)
+    assert (levels.hel_m >= levels.hpl_m).all()
 
 
 def test_what_cannot_be_meant_is_refused_by_name() -> None:
@@ -183,11 +183,11 @@ def test_what_the_sky_cannot_give_is_a_status() -> None:
     unit[0, :3], unit[1, :4], unit[2] = sky(3, 1), sky(4, 1), sky(8, 1)
     cone = np.linspace(0, 2 * math.pi, 8, endpoint=False)
     unit[3] = np.stack([np.cos(cone) * 0.8, np.sin(cone) * 0.8, np.full(8, 0.6)], axis=-1)
-    found = raim.protection_levels(unit, [GPS] * 8, 1.0)
-    assert found.status.tolist() == ["too_few_satellites", "not_monitored", "ok", "singular"]
-    assert np.isnan(found.hpl_m[[0, 3]]).all()
-    assert np.isposinf(found.hpl_m[1])
-    assert found.n_sv.tolist() == [3, 4, 8, 8]
+    levels = raim.protection_levels(unit, [GPS] * 8, 1.0)
+    assert levels.status.tolist() == ["too_few_satellites", "not_monitored", "ok", "singular"]
+    assert np.isnan(levels.hpl_m[[0, 3]]).all()
+    assert np.isposinf(levels.hpl_m[1])
+    assert levels.n_sv.tolist() == [3, 4, 8, 8]
     tested = raim.monitor(unit, [GPS] * 8, np.zeros((4, 8)), 1.0)
     assert tested.decision.tolist() == ["", "none", "none", ""]
 
@@ -208,13 +208,13 @@ def test_the_recorded_day_stays_inside_its_levels(shared_data: Path, tmp_path: P
     assert epochs is not None
     assert epochs.n_expected == 2880
     assert epochs.n_mi_epochs == 0
-    assert all(found.n_hazard_epochs == 0 for found in epochs.levels)
+    assert all(level.n_hazard_epochs == 0 for level in epochs.levels)
     npa, apv = epochs.levels
     assert npa.availability_expected > 0.999
     assert apv.availability_expected < npa.availability_expected
     words = " ".join(run.summary.assumptions)
-    for said in ("a fault detected at", "detection and exclusion (HEL) 100 %, 100 %, 100 %", "inferred", "slope"):
-        assert said in words
+    for phrase in ("a fault detected at", "detection and exclusion (HEL) 100 %, 100 %, 100 %", "inferred", "slope"):
+        assert phrase in words
     assert (tmp_path / "run" / "report.html").is_file()
 
 
@@ -254,8 +254,8 @@ def test_a_step_in_one_satellite_is_detected_excluded_and_the_levels_are_those_o
     lasting = ranges.group_by("sv").agg(pl.len(), pl.col("el_rad").mean()).filter(pl.col("len") == 120).sort("el_rad", descending=True)
     wrong, also = lasting["sv"][1], lasting["sv"][2]
     faulty = first_hour(read, tmp_path / "faulty.rnx", {wrong: 300.0})
-    found = raim.watch(faulty, records, truth_ecef_m=truth, track="a").epochs
-    before, after = found[:60], found[60:]
+    levels = raim.watch(faulty, records, truth_ecef_m=truth, track="a").epochs
+    before, after = levels[:60], levels[60:]
     assert before.equals(seen[:60])
     assert set(after["decision"]) == {"excluded"}
     assert set(after["reason"]) == {f"excluded {wrong}"}
@@ -288,13 +288,13 @@ def test_watching_refuses_what_it_cannot_do(shared_data: Path) -> None:
             raim.watch(read, records, **change)
 
 
-def sigma_of(found: raim.Levels) -> NDArray[np.float64]:
-    return np.hypot(found.sigma_e_m, found.sigma_n_m)
+def sigma_of(levels: raim.Levels) -> NDArray[np.float64]:
+    return np.hypot(levels.sigma_e_m, levels.sigma_n_m)
 
 
 def test_without_a_fault_the_level_is_never_below_the_fault_free_one() -> None:
     """Thirty satellites have slopes so small that the noise decides."""
-    found = raim.protection_levels(sky(30, 9), [GPS] * 30, 1.0)
-    floor = float(stats.norm.isf(raim.RAIM.fault_free / 2)) * sigma_of(found)
-    assert found.hpl_m >= floor
-    assert found.hpl_slope_m < floor
+    levels = raim.protection_levels(sky(30, 9), [GPS] * 30, 1.0)
+    floor = float(stats.norm.isf(raim.RAIM.fault_free / 2)) * sigma_of(levels)
+    assert levels.hpl_m >= floor
+    assert levels.hpl_slope_m < floor

@@ -85,9 +85,9 @@ def test_strengths_of_septentrio_are_as_another_decoder_of_the_block_reads_them(
     # Signal 0 is L1 C/A; the decoder gives a quarter of a dB a unit, without the 10 dB-Hz that the guide adds.
     fields = [[getattr(block, f"{name}_{k:02d}") for name in ("SVID", "SigIdxLo", "CN0")] for k in range(1, block.N1 + 1)]
     plain = {f"G{number:02d}": cn0 + 10.0 for number, signal, cn0 in fields if number <= 37 and signal == 0}
-    found = dict(zip(ours["satellite"], ours["value"], strict=True))
-    assert len(found) >= 9
-    assert found == plain
+    result = dict(zip(ours["satellite"], ours["value"], strict=True))
+    assert len(result) >= 9
+    assert result == plain
 
 
 def test_a_cold_start_has_the_rinex_values_that_came_with_it(u_blox: Path) -> None:
@@ -142,11 +142,11 @@ def test_positions_solved_from_a_log_agree_with_the_receiver_s_own(u_blox: Path,
 # No message of the ionosphere is read from this log, and its antenna stands still: the median of the receiver's own positions, which
 # it states to 1.7 m, stands for the truth.
 def test_positions_without_a_message_of_the_ionosphere_are_degraded_and_cover_their_errors(u_blox: Path) -> None:
-    found = gnss.solve(gnss.read_observations(u_blox), gnss.read_navigation(u_blox), signals="auto")
-    table = found.epochs.drop_nulls("est_lat_rad")
+    positions = gnss.solve(gnss.read_observations(u_blox), gnss.read_navigation(u_blox), signals="auto")
+    table = positions.epochs.drop_nulls("est_lat_rad")
     assert table.height > 500
     assert set(table["status"]) == {"degraded"}
-    assert "climatology, no message" in found.models["ionosphere"]
+    assert "climatology, no message" in positions.models["ionosphere"]
     own = read(u_blox).epochs.select(pl.col("est_lat_rad", "est_lon_rad", "est_h_m").median()).row(0)
     north = (table["est_lat_rad"].to_numpy() - own[0]) * 6.37e6
     east = (table["est_lon_rad"].to_numpy() - own[1]) * 6.387e6 * np.cos(own[0])

@@ -144,9 +144,9 @@ def test_second_60_of_a_sentence_is_a_second_of_its_own(tmp_path: Path) -> None:
     ordinary = [line.replace("311216", "311215") for line in NMEA]
     more = [NMEA[3].replace("000000.00", f"0000{k:02d}.00") for k in range(1, 31)]
     path.write_bytes(sentences(ordinary + more))
-    found = read(path)
-    assert found.epochs.height == 32
-    assert [(r.count, r.example) for r in found.rejected if "second 60" in r.reason] == [(1, "record 3: 235960.00")]
+    reading = read(path)
+    assert reading.epochs.height == 32
+    assert [(r.count, r.example) for r in reading.rejected if "second 60" in r.reason] == [(1, "record 3: 235960.00")]
 
 
 def test_a_log_behind_a_banner_of_json_is_the_log(tmp_path: Path) -> None:

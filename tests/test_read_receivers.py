@@ -86,8 +86,8 @@ def test_ubx_fields_become_columns_in_si(tmp_path: Path) -> None:
     assert (row["est_lat_rad"], row["est_lon_rad"]) == pytest.approx((math.radians(47.25), math.radians(6.0)), abs=1e-15)
     assert (row["est_h_m"], row["n_sv"], row["ground_speed_mps"], row["vertical_rate_mps"]) == (371.496, 17, 0.005, 1.5)
     # North-east-down to east-north-up: down terms change sign, north and east their places.
-    wanted = {"ee": 9.0, "en": 0.5, "nn": 4.0, "eu": -1.5, "nu": 0.25, "uu": 16.0}
-    assert {k: row[f"cov_{k}_m2"] for k in wanted} == wanted
+    expected = {"ee": 9.0, "en": 0.5, "nn": 4.0, "eu": -1.5, "nu": 0.25, "uu": 16.0}
+    assert {k: row[f"cov_{k}_m2"] for k in expected} == expected
     # Along the axes of the ellipse the larger; 7 m vertical.
     assert (row["hpl_m"], row["vpl_m"]) == (4.0, 7.0)
     assert only(tmp_path, nav_pvt(0) + nav_pl(0, frame=1))["hpl_m"] == 5.0
@@ -148,8 +148,8 @@ def test_septentrio_covariances_are_turned_from_earth_fixed_axes(logs: Path) -> 
     sl, cl, sp, cp = math.sin(lon), math.cos(lon), math.sin(lat), math.cos(lat)
     turn = np.array([[-sl, cl, 0.0], [-sp * cl, -sp * sl, cp], [cp * cl, cp * sl, sp]])
     enu = turn @ c @ turn.T
-    found = [[first[f"cov_{k}_m2"] for k in row] for row in (("ee", "en", "eu"), ("en", "nn", "nu"), ("eu", "nu", "uu"))]
-    np.testing.assert_allclose(found, enu, rtol=1e-6, atol=1e-5)
+    result = [[first[f"cov_{k}_m2"] for k in row] for row in (("ee", "en", "eu"), ("en", "nn", "nu"), ("eu", "nu", "uu"))]
+    np.testing.assert_allclose(result, enu, rtol=1e-6, atol=1e-5)
     # Week 2367; the independent decoder shows 12:38:05 UTC, which is 18 s behind GPS time.
     assert first["time_ns"] % (86_400 * NS) == (12 * 3600 + 38 * 60 + 5 + 18) * NS
     assert first["time_ns"] // WEEK_NS == 2367
@@ -218,7 +218,7 @@ def test_positions_that_nothing_dates_are_refused(tmp_path: Path) -> None:
 # --- all ------------------------------------------------------------------------------------------------------------------------------
 
 
-def test_the_kind_is_told_from_the_content(logs: Path) -> None:
+def test_the_kind_follows_from_the_content(logs: Path) -> None:
     assert formats.of(b"time,lat,lon\n1,2,3\n").id == "csv"
     assert formats.of(b"\x00" * 1000).id == "csv"
     # UBX frames without a position beside NMEA with one.
@@ -249,12 +249,12 @@ def test_damaged_logs_are_read_or_refused(logs: Path, tmp_path: Path, name: str)
             damaged[at] = random.integers(0, 256)
         path.write_bytes(bytes(damaged[: random.integers(1, len(damaged))]))
         try:
-            found = read(path).epochs
+            reading = read(path).epochs
         except FormatError:
             continue
         # What is read passed its checksum: it is near the receiver, a fixed place.
-        assert found["est_lat_rad"].abs().max() < math.pi / 2  # type: ignore[operator]
-        assert found["time_ns"].is_sorted()
+        assert reading["est_lat_rad"].abs().max() < math.pi / 2  # type: ignore[operator]
+        assert reading["time_ns"].is_sorted()
 
 
 @pytest.mark.parametrize(

@@ -66,8 +66,8 @@ def test_septentrio_geodetic_blocks_make_a_row(tmp_path: Path) -> None:
     assert row["time_ns"] == (2361 * 604_800 + 456_000) * 1_000_000_000
     assert (row["ground_speed_mps"], row["vertical_rate_mps"]) == (5.0, -0.5)
     # The block's order: latitude, longitude, height, clock; then latitude with longitude, height, clock; longitude with height.
-    wanted = {"nn": 4.0, "ee": 9.0, "uu": 16.0, "en": 0.5, "nu": -0.25, "eu": 1.5}
-    assert {k: row[f"cov_{k}_m2"] for k in wanted} == wanted
+    expected = {"nn": 4.0, "ee": 9.0, "uu": 16.0, "en": 0.5, "nu": -0.25, "eu": 1.5}
+    assert {k: row[f"cov_{k}_m2"] for k in expected} == expected
     assert reading.columns["covariance"] == "PosCovGeodetic"
 
 
@@ -116,15 +116,15 @@ def test_whole_frames_with_wrong_contents_are_read_counted_or_refused(tmp_path: 
     for _ in range(150):
         path.write_bytes(b"".join(make(random) for _ in range(int(random.integers(1, 4)))))
         try:
-            found = read(path).epochs
+            reading = read(path).epochs
         except FormatError:
             n_refused += 1
             continue
         n_read += 1
-        assert found["time_ns"].is_sorted()
+        assert reading["time_ns"].is_sorted()
         for name in ("est_lat_rad", "est_lon_rad"):
-            assert found[name].is_finite().all()
-        assert found["est_lat_rad"].abs().max() <= math.pi / 2  # type: ignore[operator]
+            assert reading[name].is_finite().all()
+        assert reading["est_lat_rad"].abs().max() <= math.pi / 2  # type: ignore[operator]
     # Both happen, so neither answer is given to everything.
     assert n_read > 20
     assert n_read + n_refused == 150

@@ -80,13 +80,13 @@ def test_every_runway_has_two_ends_and_each_end_its_opposite() -> None:
     ],
 )
 def test_thresholds_are_those_of_the_reference(name: str, lat_deg: float, lon_deg: float, course_deg: float, displaced_m: float) -> None:
-    found = runway(name)
+    threshold = runway(name)
     # Half of the last digit printed, for two roundings: 1e-7 deg.
-    assert abs(math.degrees(found.lat_rad) - lat_deg) <= 1e-7
-    assert abs(math.degrees(found.lon_rad) - lon_deg) <= 1e-7
+    assert abs(math.degrees(threshold.lat_rad) - lat_deg) <= 1e-7
+    assert abs(math.degrees(threshold.lon_rad) - lon_deg) <= 1e-7
     # The table's coordinates are rounded to 1 cm; over a runway of 2.4 km that turns the course by 2.4e-4 deg at most.
-    assert abs((math.degrees(found.course_rad) - course_deg + 180) % 360 - 180) <= 3e-4
-    assert abs(found.displaced_m - displaced_m) <= 0.05
+    assert abs((math.degrees(threshold.course_rad) - course_deg + 180) % 360 - 180) <= 3e-4
+    assert abs(threshold.displaced_m - displaced_m) <= 0.05
 
 
 @pytest.mark.parametrize(
@@ -99,7 +99,7 @@ def test_an_unknown_runway_is_refused_with_what_there_is(name: str, says: str) -
     assert says in str(refusal.value)
 
 
-def test_runways_near_a_position_are_found_beside_the_date_line_too() -> None:
+def test_runways_near_a_position_include_those_beyond_the_date_line() -> None:
     at_paris = near(np.radians([48.96]), np.radians([2.5]))
     assert {"LFPG/08R", "LFPB/27"} <= {r.name for r in at_paris}
     assert "KJFK/04L" not in {r.name for r in at_paris}

@@ -117,7 +117,7 @@ def test_a_declared_column_goes_before_a_known_name(tmp_path: Path) -> None:
         read(write(tmp_path, text), columns=declared | {"est_lat_rad": "breit:rad"})
 
 
-def test_a_missing_column_is_named_with_the_nearest_found(tmp_path: Path) -> None:
+def test_a_missing_column_is_named_with_the_nearest_present(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match=r"est_lat_rad: no column holds it .* lattitude, ") as refusal:
         read(write(tmp_path, "time_utc,lattitude,longitude\n2021-10-07T12:00:00Z,48,2\n"))
     assert refusal.value.field == "est_lat_rad"
@@ -218,7 +218,7 @@ def test_a_sixty_first_second_where_none_was_is_no_time(tmp_path: Path) -> None:
     assert (rejection.reason, rejection.example) == ("time: not a time", "2021-10-07T12:20:60Z")
 
 
-def test_rows_out_of_order_are_put_in_order_and_said(tmp_path: Path) -> None:
+def test_rows_out_of_order_are_put_in_order_and_reported(tmp_path: Path) -> None:
     reading = read(write(tmp_path, table(ROWS[1], ROWS[0], *ROWS[2:])))
     assert same(reading, read(write(tmp_path, table(*ROWS), "sorted.csv")))
     assert any("1 rows stood after a later one" in note and "line 3" in note for note in reading.notes)
@@ -232,7 +232,7 @@ def test_more_than_a_tenth_of_bad_rows_refuses_the_file(tmp_path: Path) -> None:
     assert (refusal.value.line, refusal.value.field) == (2, "latitude")
 
 
-def test_degrees_that_may_be_radians_are_said(tmp_path: Path) -> None:
+def test_degrees_that_may_be_radians_are_reported(tmp_path: Path) -> None:
     rows = [f"{1633608773 + i},0.8541,0.0447" for i in range(5)]
     reading = read(write(tmp_path, table(*rows, header="timestamp,latitude,longitude")))
     assert any("small enough to be radians" in doubt for doubt in reading.position_doubts)

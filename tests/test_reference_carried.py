@@ -39,12 +39,12 @@ def is_a_bound(case: dict[str, object]) -> bool:
 
 def groups(reference: dict[str, object]) -> dict[str, list[dict[str, object]]]:
     """The lists of cases, whatever else a reference file holds."""
-    found = {}
+    by_name = {}
     for name, group in reference.items():
         cases = group.get("cases") if isinstance(group, dict) else group
         if isinstance(cases, list) and cases and all(isinstance(case, dict) for case in cases):
-            found[name] = cases
-    return found
+            by_name[name] = cases
+    return by_name
 
 
 def digits(value: object) -> Iterator[str]:
@@ -75,15 +75,15 @@ def test_every_case_is_carried(name: str) -> None:
     files = [f for f in verify.VECTORS.glob("*.toml") if f.stem.startswith(CARRIERS[name])]
     text = "\n".join(f.read_text() for f in files)
     ids = {case.id for f in files for case in verify.load(f).cases}
-    found = groups(json.loads(path.read_text()))
-    for group in CONVERTED.keys() & found.keys():
-        assert len(verify.load(verify.VECTORS / f"{CONVERTED[group]}.toml").cases) >= len(found.pop(group)), group
+    data = groups(json.loads(path.read_text()))
+    for group in CONVERTED.keys() & data.keys():
+        assert len(verify.load(verify.VECTORS / f"{CONVERTED[group]}.toml").cases) >= len(data.pop(group)), group
     missing = {
         group: lost
-        for group, cases in found.items()
+        for group, cases in data.items()
         if (lost := [str(c.get("id", k)) for k, c in enumerate(cases, 1) if is_a_bound(c) and not carried(c, f"{group}-{k}", ids, text)])
     }
-    assert sum(map(len, found.values())) > 50, "the search is broken"
+    assert sum(map(len, data.values())) > 50, "the search is broken"
     assert not missing
 
 

@@ -102,7 +102,7 @@ def test_nan_in_a_record_becomes_null() -> None:
 
 
 @pytest.mark.parametrize(("utc", "offset_s"), [("2016-12-31T12:00:00", 17), ("2017-01-01T12:00:00", 18)])
-def test_the_page_is_given_the_leap_seconds_of_the_flight(utc: str, offset_s: int) -> None:
+def test_the_page_has_the_leap_seconds_of_the_flight(utc: str, offset_s: int) -> None:
     fixture = report_fixture.flight(n=20)
     gps_ns = (int(np.datetime64(utc, "s").astype(np.int64)) - 315_964_800 + offset_s) * 1_000_000_000
     moved = fixture.epochs.with_columns(pl.lit(gps_ns, dtype=pl.Int64).alias("time_ns") + pl.int_range(20) * 1_000_000_000)

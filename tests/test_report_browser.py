@@ -70,14 +70,14 @@ def _open(browser: Browser, report: Path, width: int = 1440, scheme: str = "ligh
     context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme, offline=True, has_touch=touch)  # type: ignore[arg-type]
     page = context.new_page()
     problems: list[str] = []
-    asked: list[str] = []
+    requested: list[str] = []
     page.on("console", lambda message: problems.append(message.text) if message.type in ("error", "warning") else None)
     page.on("pageerror", lambda error: problems.append(str(error)))
-    page.on("request", lambda request: asked.append(request.url))
+    page.on("request", lambda request: requested.append(request.url))
     page.goto(report.as_uri())
     page.wait_for_selector("#report[data-ready]")
     assert problems == []
-    assert asked == [report.as_uri()]
+    assert requested == [report.as_uri()]
     return page
 
 
@@ -274,21 +274,21 @@ def test_pressing_an_event_goes_to_it(page: Page, one: report_fixture.Fixture) -
 
 
 def test_the_keyboard_reaches_everything_that_can_be_pressed(page: Page) -> None:
-    wanted = _probe(page, "markReachable()")
+    reachable = _probe(page, "markReachable()")
     reached = set()
-    for _ in range(wanted + 40):
+    for _ in range(reachable + 40):
         page.keyboard.press("Tab")
         reached.add(page.evaluate("document.activeElement.dataset.reach ?? null"))
-    assert wanted > 30
-    assert {str(i) for i in range(wanted)} <= reached
+    assert reachable > 30
+    assert {str(i) for i in range(reachable)} <= reached
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_text_has_contrast_in_both_themes(browser: Browser, report: Path, scheme: str) -> None:
     page = _open(browser, report, scheme=scheme)
-    found = _probe(page, "texts()")
-    assert found["n"] > 200
-    assert found["bad"] == []
+    result = _probe(page, "texts()")
+    assert result["n"] > 200
+    assert result["bad"] == []
     # Names at the lines' ends have the lines' colours, so these count as text.
     lines = _probe(page, "lines()")
     assert len(lines) == 12
@@ -343,7 +343,7 @@ def test_touch_moves_the_cursor(browser: Browser, report: Path, one: report_fixt
     page.context.close()
 
 
-def test_tracks_sort_and_are_chosen(browser: Browser, tmp_path: Path) -> None:
+def test_tracks_sort_and_are_selected(browser: Browser, tmp_path: Path) -> None:
     fixture = report_fixture.flight(6, n=200)
     page = _open(browser, _write(fixture, tmp_path / "report.html"))
     head = page.locator("#tracks th", has_text="FTE std")

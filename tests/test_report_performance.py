@@ -166,24 +166,24 @@ def test_the_gravest_subsets_are_listed_with_their_satellites(page: Page, record
     assert record.subsets is not None
     rows = page.locator("#subsets tbody tr")
     assert rows.count() == len(record.subsets.listed) == 2
-    for i, found in enumerate(record.subsets.listed):
+    for i, value in enumerate(record.subsets.listed):
         for key in ("time_ns", "safety_index", "hpe_m", "hpl_m", "vpe_m"):
-            assert float(rows.nth(i).locator(f'[data-key="{key}"]').get_attribute("data-value") or "nan") == getattr(found, key)
-        assert rows.nth(i).locator('[data-key="satellites"]').inner_text() == " ".join(found.satellites)
-    said = page.locator("#subsets-section").inner_text()
-    assert "One is misleading" in said
-    assert "the gravest 2 of 7" in said
-    assert "At 2 epochs with many satellites" in said
+            assert float(rows.nth(i).locator(f'[data-key="{key}"]').get_attribute("data-value") or "nan") == getattr(value, key)
+        assert rows.nth(i).locator('[data-key="satellites"]').inner_text() == " ".join(value.satellites)
+    text = page.locator("#subsets-section").inner_text()
+    assert "One is misleading" in text
+    assert "the gravest 2 of 7" in text
+    assert "At 2 epochs with many satellites" in text
 
 
 @pytest.mark.parametrize("experimental", ["", "experimental, not integrity"])
-def test_where_only_indicators_were_asked_the_page_leads_with_them(
+def test_where_only_indicators_were_requested_the_page_leads_with_them(
     browser: Browser, record: Performance, tmp_path: Path, experimental: str
 ) -> None:
     fixture = report_fixture.flight(1, n=200)
-    asked = record.model_copy(update={"experimental": experimental})
+    indicators_only = record.model_copy(update={"experimental": experimental})
     changes = {
-        "performance": asked,
+        "performance": indicators_only,
         "accuracy": [],
         "integrity": [],
         "honesty": None,
@@ -195,11 +195,11 @@ def test_where_only_indicators_were_asked_the_page_leads_with_them(
     page = _open(browser, render(summary, fixture.record, fixture.epochs.head(0), fixture.events.head(0), [], tmp_path / "report.html"))
     panel = page.locator("#verdict")
     assert panel.get_attribute("data-tone") == "warning"
-    said = panel.inner_text()
-    assert said.startswith("Hazardous")
-    assert all(result.level.id in said for result in record.levels)
-    assert "RNP" not in said.replace("RNP 0.3", "")
-    assert ("experimental, not integrity" in said) == (experimental != "")
+    text = panel.inner_text()
+    assert text.startswith("Hazardous")
+    assert all(result.level.id in text for result in record.levels)
+    assert "RNP" not in text.replace("RNP 0.3", "")
+    assert ("experimental, not integrity" in text) == (experimental != "")
     for i, result in enumerate(record.levels):
         value = panel.locator('[data-key="verdict.availability_expected"]').nth(i).get_attribute("data-value")
         assert float(value or "nan") == result.availability_expected
@@ -253,7 +253,7 @@ def test_an_experimental_level_says_so_at_every_title_axis_and_column(browser: B
     page.context.close()
 
 
-def test_without_truth_nothing_is_said_of_integrity(browser: Browser, tmp_path: Path) -> None:
+def test_without_truth_nothing_is_stated_of_integrity(browser: Browser, tmp_path: Path) -> None:
     page = _open(browser, _write(kpi_fixture.performance(truth=False), tmp_path))
     assert "Integrity unknown" in page.locator(".performance-words").inner_text()
     assert page.locator("#levels [data-key=n_hazard_epochs]").count() == 0
@@ -287,9 +287,9 @@ def test_the_series_and_the_epochs_share_one_time(browser: Browser, record: Perf
 def test_the_performance_part_is_readable_in_both_themes(browser: Browser, report: Path, scheme: str) -> None:
     page = _open(browser, report, scheme=scheme)
     probes = (Path(__file__).parent / "report_probes.js").read_text(encoding="utf-8").split("\n", 1)[1].strip()
-    found = page.evaluate(f"() => {probes}.texts()")
-    assert found["n"] > 400
-    assert found["bad"] == []
+    result = page.evaluate(f"() => {probes}.texts()")
+    assert result["n"] > 400
+    assert result["bad"] == []
     page.context.close()
 
 
@@ -312,7 +312,7 @@ def test_epochs_that_cannot_be_true_make_the_verdict_doubtful(browser: Browser, 
     assert box.get_attribute("data-tone") == "caution"
     assert box.locator(".state").inner_text().startswith("Not shown")
     assert _value(page, '#verdict [data-key="n_implausible"]') == "17"
-    # The sentence of the honesty stands once.
+    # The sentence of the consistency stands once.
     assert page.locator("#honesty").inner_text().count("2.11") == 0
     assert float(_value(page, '#honesty [data-key="nees_mean"]')) == fixture.summary.honesty.nees_mean  # type: ignore[union-attr]
     page.context.close()

@@ -1,4 +1,4 @@
-"""An allowed risk is at most one half and at least 1e-300, in every function that takes one; a confidence in its place is asked for."""
+"""An allowed risk is at most one half and at least 1e-300, in every function that takes one; a confidence is refused."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ ONLY_95 = {"anp.circle_fit", "anp.circle_fit_as_printed", "anp.circle_geodesy", 
 
 
 def with_risk(name: str, argument: str, value: float) -> Any:
-    given = CALLS[name].numbers[argument]
-    return CALLS[name](**{argument: value if isinstance(given, float) else np.full(np.shape(given), value)})
+    numbers = CALLS[name].numbers[argument]
+    return CALLS[name](**{argument: value if isinstance(numbers, float) else np.full(np.shape(numbers), value)})
 
 
 def test_many_functions_take_a_risk() -> None:

@@ -31,10 +31,10 @@ def test_an_approach_asks_for_three_tenths_of_a_mile_and_an_alert_within_ten_sec
     assert (cell.accuracy_risk, cell.containment_risk) == (0.05, 1e-5)
 
 
-def test_a_range_stands_at_its_tightest_unless_a_value_is_chosen() -> None:
+def test_a_range_stands_at_its_tightest_unless_a_value_is_selected() -> None:
     assert rnp.specification("RNP AR APCH", "final").accuracy_m == pytest.approx(185.2, rel=1e-15)
-    chosen = rnp.specification("RNP AR APCH", "final", 370.4)
-    assert (chosen.accuracy_m, chosen.containment_m) == (370.4, 740.8)
+    selected = rnp.specification("RNP AR APCH", "final", 370.4)
+    assert (selected.accuracy_m, selected.containment_m) == (370.4, 740.8)
     with pytest.raises(InputError, match=r"accuracy_m.*\[185\.2, 555\.6\]"):
         rnp.specification("RNP AR APCH", "final", 600.0)
     with pytest.raises(InputError, match="accuracy_m"):

@@ -56,9 +56,9 @@ def test_b3_a_wide_state_that_is_no_neighbour_wins_in_between() -> None:
 
 def test_b4_the_printed_bivariate_form_is_too_good_off_the_diagonal() -> None:
     lateral, longitudinal = np.zeros(3), np.array([0.5, 1.2, 7.0]) * NM
-    found = rnp.state_of_errors(LEVELS, lateral, longitudinal)
-    assert found.paper_state.tolist() == [0, 1, 3]
-    assert found.state.tolist() == found.threshold_state.tolist() == [1, 2, 4]
+    result = rnp.state_of_errors(LEVELS, lateral, longitudinal)
+    assert result.paper_state.tolist() == [0, 1, 3]
+    assert result.state.tolist() == result.threshold_state.tolist() == [1, 2, 4]
     # Grid of the specification; its percentages carry one digit after the point.
     axis = np.linspace(0.0, 6.0, 121) * NM
     grid = rnp.state_of_errors(LEVELS, *np.meshgrid(axis, axis))
@@ -66,7 +66,7 @@ def test_b4_the_printed_bivariate_form_is_too_good_off_the_diagonal() -> None:
     assert 100 * np.mean(grid.paper_state > grid.threshold_state) == pytest.approx(1.2, abs=0.2)
 
 
-def test_b5_a_narrow_last_state_loses_far_outside_unless_it_is_held() -> None:
+def test_b5_a_narrow_last_state_loses_far_outside_unless_it_is_guarded() -> None:
     states = rnp.StateClassifier([0.3, 1.0, 5.0, 5.5], require_order=False)
     x = np.array([7.0, 8.0, 10.0, 20.0]) * NM
     assert np.argmax(states.log_posterior_as_printed(x), axis=-1).tolist() == [2] * 4
@@ -89,16 +89,16 @@ def test_an_independent_transcription_agrees(levels: list[float], fte: list[floa
     assert states.mean_m == pytest.approx([float(m) for m in mean], rel=1e-12)
     assert states.sigma_m == pytest.approx([float(s) for s in sigma], rel=1e-14)
     for x in np.linspace(0.013, 1.7, 23) * boundaries[-1]:
-        for guarded, found in ((True, states.log_posterior(x)), (False, states.log_posterior_as_printed(x))):
-            assert found == pytest.approx(oracle.log_posterior(boundaries, float(x), guarded=guarded), rel=1e-11, abs=1e-10)
+        for guarded, value in ((True, states.log_posterior(x)), (False, states.log_posterior_as_printed(x))):
+            assert value == pytest.approx(oracle.log_posterior(boundaries, float(x), guarded=guarded), rel=1e-11, abs=1e-10)
 
 
-def test_honest_probabilities_are_the_mass_between_the_boundaries() -> None:
+def test_probabilities_are_the_mass_between_the_boundaries() -> None:
     states = rnp.StateClassifier(LEVELS)
     for offset, sigma in [(0.0, 200.0), (400.0, 150.0), (-400.0, 150.0), (1e4, 30.0), (0.0, 5000.0)]:
-        found = states.probabilities(offset, sigma)
-        assert found == pytest.approx(oracle.probabilities(states.boundary_m.tolist(), offset, sigma), rel=1e-11, abs=1e-300)
-        assert found.sum() == pytest.approx(1.0, abs=1e-15)
+        probabilities = states.probabilities(offset, sigma)
+        assert probabilities == pytest.approx(oracle.probabilities(states.boundary_m.tolist(), offset, sigma), rel=1e-11, abs=1e-300)
+        assert probabilities.sum() == pytest.approx(1.0, abs=1e-15)
     for offset, sigma, named in [(math.nan, 1.0, "offset_m"), (0.0, 0.0, "sigma_m"), (0.0, math.nan, "sigma_m")]:
         with pytest.raises(InputError, match=named):
             states.probabilities(offset, sigma)
@@ -107,19 +107,19 @@ def test_honest_probabilities_are_the_mass_between_the_boundaries() -> None:
 def test_residuals_give_the_posterior_of_the_error_itself() -> None:
     states = rnp.StateClassifier(LEVELS)
     sum_of_squares, n = 12 * 260.0**2, 12
-    found = states.probabilities_from_residuals(sum_of_squares, n)
+    probabilities = states.probabilities_from_residuals(sum_of_squares, n)
     within = [oracle.probability_within(b, sum_of_squares, n) for b in states.boundary_m]
-    assert np.cumsum(found)[:-1] == pytest.approx(within, rel=1e-9)
-    assert 0.1 < found[0] < 0.9
+    assert np.cumsum(probabilities)[:-1] == pytest.approx(within, rel=1e-9)
+    assert 0.1 < probabilities[0] < 0.9
 
 
 def test_a_lost_error_is_out_of_rnp_and_leaves_the_memory_alone() -> None:
     states = rnp.StateClassifier(LEVELS)
     assert states.classify([math.nan, 0.1]).tolist() == [4, 0]
     x = np.array([0.1, math.nan, 0.5]) * NM
-    found = states.remember(x)
-    assert np.isnan(found[1]).all()
-    assert found[2] == pytest.approx(states.remember(x[[0, 2]])[1], rel=1e-15)
+    result = states.remember(x)
+    assert np.isnan(result[1]).all()
+    assert result[2] == pytest.approx(states.remember(x[[0, 2]])[1], rel=1e-15)
 
 
 def test_priors_and_stay_outside_their_domain_are_refused() -> None:
@@ -138,5 +138,5 @@ def test_the_best_dme_pair_of_every_place() -> None:
     stations_m = {name: np.asarray(place) * NM for name, place in stations.items()}
     # ref-bayes.json, dme_dme.
     for place, best in [((20, 25, 5), "AC"), ((20, 60, 6), "AC"), ((-10, -40, 3), "BD"), ((300, 300, 6), None), ((24, 4, 5), "BE")]:
-        found = dme.best_pair(np.asarray(place) * NM, stations_m)
-        assert (None if found is None else "".join(found.stations)) == best
+        result = dme.best_pair(np.asarray(place) * NM, stations_m)
+        assert (None if result is None else "".join(result.stations)) == best

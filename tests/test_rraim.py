@@ -65,7 +65,7 @@ def test_ramps_that_hurt_are_detected_as_often_as_allotted(size: float) -> None:
     fault[np.arange(n), drawn.generator.integers(len(AZ), size=n)] = size * drawn.generator.choice([-1.0, 1.0], n)
     k = gbas.Factors(k_ffmd=float(stats.norm.isf(risk / 2)), k_md=0.0)
     settings = {"k": k, "continuity_risk": continuity, "allotted_risk": risk, "p_sat": {0: 1.0 / len(AZ) * 0.999999}}
-    found = levels(**settings)
+    computed = levels(**settings)
     every = np.ones(len(AZ), dtype=bool)
     whole = drawn.travelled(every, fault)
     alarm = np.zeros(n, dtype=bool)
@@ -74,10 +74,10 @@ def test_ramps_that_hurt_are_detected_as_often_as_allotted(size: float) -> None:
         kept = every.copy()
         kept[i] = False
         apart = np.linalg.norm(drawn.travelled(kept, fault) - whole, axis=1)
-        alarm |= apart > found.subset_threshold_m[i]
+        alarm |= apart > computed.subset_threshold_m[i]
         # SciPy's tail, to the digits of both.
-        assert found.subset_threshold_m[i] == pytest.approx(k_false * found.subset_separation_m[i], rel=1e-12)
-    hurt = (np.linalg.norm(whole, axis=1) > found.hpl_m) & ~alarm
+        assert computed.subset_threshold_m[i] == pytest.approx(k_false * computed.subset_separation_m[i], rel=1e-12)
+    hurt = (np.linalg.norm(whole, axis=1) > computed.hpl_m) & ~alarm
     low = stats.binomtest(int(hurt.sum()), n).proportion_ci(0.99).low
     assert low <= risk, f"{hurt.mean()} of {n}"
     assert size < 1.0 or alarm.mean() > 0.3, "ramps that no monitor sees would prove nothing"
@@ -114,7 +114,7 @@ def test_more_faults_cost_more() -> None:
 def test_the_multi_fault_level_solves_its_equation() -> None:
     """Summed term by term from covariances of the whole normal equations, with the exact tail."""
     p_sat, allotted, continuity, bias = 1e-7, 2.34375e-10, 1.25e-5, 0.1
-    found = levels(p_sat={0: p_sat}, bias_m=bias)
+    computed = levels(p_sat={0: p_sat}, bias_m=bias)
     sigma = gbas.range_sigma(EL, "F").sigma_m
     s0 = solution(rows(AZ, EL), sigma)
     p0 = (s0 * sigma**2) @ s0.T
@@ -130,7 +130,7 @@ def test_the_multi_fault_level_solves_its_equation() -> None:
     alarm = float(stats.norm.isf(continuity / (4 * len(AZ))))
     n = len(AZ)
     rest = n * (n - 1) / 2 * p_sat**2 + (n * p_sat) ** 3 / 6
-    for axis, level in ((0, float(found.hpl_multi_e_m)), (1, float(found.hpl_multi_n_m))):
+    for axis, level in ((0, float(computed.hpl_multi_e_m)), (1, float(computed.hpl_multi_n_m))):
 
         def spread(a: np.ndarray, b: np.ndarray) -> float:
             return float(np.sqrt((a @ p0 @ a.T + TD**2 * b @ b.T)[axis, axis]))  # noqa: B023 - called at once
@@ -169,7 +169,7 @@ def test_too_few_satellites_and_a_budget_that_cannot_be_met_are_results() -> Non
         ({"bias_m": -1.0}, "bias_m"),
         ({"ordering": "best"}, "ordering"),
         ({"form": "best"}, "form"),
-        ({"sigma_m": 0.3}, "sigma_h1_m"),
+        ({"sigma_m": 0.3}, "sigma_m"),
         ({"constellation": [0, 1]}, "constellation"),
     ],
 )

@@ -83,7 +83,7 @@ def test_the_msas_hour_is_that_of_the_independent_engine(approach: sbas.Levels, 
     assert (approach.mode[rows] == "pa").all()
     for name in ("hpl_m", "vpl_m"):
         relative = np.abs(getattr(approach, name)[rows] / oracle[name] - 1)
-        # Asked: 0.1 % on 99 %, 5 % on all, 1 cm in the median. Met: the oracle's print rounding (5e-5 m of 11.8 m) on every epoch.
+        # Required: 0.1 % on 99 %, 5 % on all, 1 cm in the median. Met: the oracle's print rounding (5e-5 m of 11.8 m) on every epoch.
         assert relative.max() < 1.5e-5
         assert np.median(np.abs(getattr(approach, name)[rows] - oracle[name])) < 1e-4
     assert (approach.n_sv[rows] == oracle["n_used"]).all()
@@ -97,8 +97,8 @@ def test_every_term_is_that_of_the_independent_engine(msas: sbas.Messages, navig
     with (folder / "msas2025046_sigma_every60s.csv").open() as f:
         rows = list(csv.DictReader(f))
     instants = sorted({int(r["tow_s"]) for r in rows})
-    found = sbas.satellites(msas, navigation, (WEEK_S + np.array(instants)) * 1_000_000_000, **MSAS_USER, mode="pa")
-    at = {(instants[e], p): i for i, (e, p) in enumerate(zip(found.epoch.tolist(), found.prn.tolist(), strict=True))}
+    result = sbas.satellites(msas, navigation, (WEEK_S + np.array(instants)) * 1_000_000_000, **MSAS_USER, mode="pa")
+    at = {(instants[e], p): i for i, (e, p) in enumerate(zip(result.epoch.tolist(), result.prn.tolist(), strict=True))}
     assert set(at) == {(int(r["tow_s"]), int(r["prn"])) for r in rows}
     names = {
         "sigma_total": "sigma_m",
@@ -109,19 +109,19 @@ def test_every_term_is_that_of_the_independent_engine(msas: sbas.Messages, navig
     }
     for r in rows:
         i = at[(int(r["tow_s"]), int(r["prn"]))]
-        assert np.degrees(found.el_rad[i]) == pytest.approx(float(r["el_deg"]), abs=6e-4)  # three decimals
-        assert np.degrees(found.az_rad[i]) == pytest.approx(float(r["az_deg"]), abs=6e-3)
-        assert found.delta_udre[i] == pytest.approx(float(r["delta_udre"]), abs=6e-4)
+        assert np.degrees(result.el_rad[i]) == pytest.approx(float(r["el_deg"]), abs=6e-4)  # three decimals
+        assert np.degrees(result.az_rad[i]) == pytest.approx(float(r["az_deg"]), abs=6e-3)
+        assert result.delta_udre[i] == pytest.approx(float(r["delta_udre"]), abs=6e-4)
         for theirs, ours in names.items():
             # Four decimals; at the horizon the oracle's solved position, centimetres to metres off, moves the obliquity by 2e-4 m.
-            assert getattr(found, ours)[i] == pytest.approx(float(r[theirs]), abs=3e-4), (r, ours)
+            assert getattr(result, ours)[i] == pytest.approx(float(r[theirs]), abs=3e-4), (r, ours)
 
 
 def test_a_second_in_the_tags_is_noticed(folder: Path, navigation: Path, oracle: dict[str, NDArray[np.float64]]) -> None:
     late = sbas.read(folder / "msas137_2025046_17h.ems", tag="start")
     rows = oracle["tow_s"].astype(int) - FIRST
-    found = sbas.protection_levels(late, navigation, seconds(), **MSAS_USER, mode="pa")
-    assert (np.abs(found.vpl_m[rows] / oracle["vpl_m"] - 1) < 0.01).mean() < 0.9
+    levels = sbas.protection_levels(late, navigation, seconds(), **MSAS_USER, mode="pa")
+    assert (np.abs(levels.vpl_m[rows] / oracle["vpl_m"] - 1) < 0.01).mean() < 0.9
 
 
 def test_three_logs_of_one_hour_hold_the_same_messages(folder: Path, msas: sbas.Messages) -> None:
@@ -232,8 +232,8 @@ def test_real_egnos_with_a_third_of_the_messages_missing(folder: Path) -> None:
     start, end = int(log.time_ns[0]), int(log.time_ns[-1])
     instants = np.arange(start, end, 3_000_000_000, dtype=np.int64)
     place = geodetic(4245466.5, 701695.0, 4692747.5)  # of the observation file, a solution of its own
-    found = {p: sbas.protection_levels(log.of(p), folder / "more" / "gps_2012299_12h.12N", instants, **place) for p in (120, 126)}
-    for p, levels in found.items():
+    computed = {p: sbas.protection_levels(log.of(p), folder / "more" / "gps_2012299_12h.12N", instants, **place) for p in (120, 126)}
+    for p, levels in computed.items():
         heard = log.of(p).time_ns
         with_level = instants[levels.mode != ""]
         assert with_level.size > 0, p

@@ -57,9 +57,9 @@ def test_the_indicators_in_force_are_those_of_the_reference_series(log: sbas.Mes
     case = cases()[which]
     lost = without(log, *case["missing_messages_end_tow"])
     rows = np.array(case["rows"])
-    found = _core.sbas_indicators(lost.time_ns, lost.data, WEEK_NS + rows[:, 0] * NS)
+    result = _core.sbas_indicators(lost.time_ns, lost.data, WEEK_NS + rows[:, 0] * NS)
     mask = next(d.fields["prn"] for d in sbas.decode(log) if d.type == 1)
-    for k, use in enumerate(found):
+    for k, use in enumerate(result):
         for message in range(3):
             # Thirteen satellites of the mask a message.
             own = mask[13 * message : 13 * message + 13]
@@ -67,7 +67,7 @@ def test_the_indicators_in_force_are_those_of_the_reference_series(log: sbas.Mes
             assert in_force == rows[:, 1 + 2 * message + k].tolist(), (k, 2 + message)
 
 
-def test_the_level_is_gone_for_the_silence_and_its_reason_is_said(log: sbas.Messages, folder: Path) -> None:
+def test_the_level_is_gone_for_the_silence_and_its_reason_is_reported(log: sbas.Messages, folder: Path) -> None:
     navigation = folder / "gps_2025046_17h_rinex3.nav"
     instants = seconds(581_000, 581_030)
     mode = {n: sbas.protection_levels(without(log, 581_003, 581_002 + n), navigation, instants, **USER, mode="pa") for n in (0, 3, 4)}

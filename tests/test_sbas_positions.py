@@ -57,19 +57,19 @@ def test_ranges_made_with_the_services_corrections_lead_back_to_their_place(msas
     # A clock fast by 100 µs: taken for the satellites' clocks' or orbits' time it would cost 0.3 m of orbit.
     made = {t: pseudoranges(log, source, t, MSAS_USER, MSAS_ECEF, 30_000.0) for t in instants}
     (tmp_path / "made.rnx").write_text(rinex(made))
-    found = sbas.solve(gnss.read_observations(tmp_path / "made.rnx"), navigation, log, mode="pa", truth_ecef_m=MSAS_ECEF)
-    assert found.epochs["status"].to_list() == ["ok"] * len(instants)
-    error = found.epochs.select("nse_e_m", "nse_n_m", "nse_u_m").to_numpy()
+    solved = sbas.solve(gnss.read_observations(tmp_path / "made.rnx"), navigation, log, mode="pa", truth_ecef_m=MSAS_ECEF)
+    assert solved.epochs["status"].to_list() == ["ok"] * len(instants)
+    error = solved.epochs.select("nse_e_m", "nse_n_m", "nse_u_m").to_numpy()
     # Ranges are written to the millimetre; dilutions are below 3.
     assert np.abs(error).max() < 3e-3
-    assert found.satellites["residual_m"].abs().max() < 2e-3  # type: ignore[operator]
+    assert solved.satellites["residual_m"].abs().max() < 2e-3  # type: ignore[operator]
 
 
 def test_levels_of_a_solution_are_those_of_its_place(msas: Recording) -> None:
     observations, navigation, log = msas
-    found = sbas.solve(observations, navigation, log)
-    assert found.epochs["mode"].to_list() == [m or None for m in sbas.protection_levels(log, navigation, seconds(), **MSAS_USER).mode]
-    solved = found.epochs.filter(pl.col("mode") == "pa")
+    result = sbas.solve(observations, navigation, log)
+    assert result.epochs["mode"].to_list() == [m or None for m in sbas.protection_levels(log, navigation, seconds(), **MSAS_USER).mode]
+    solved = result.epochs.filter(pl.col("mode") == "pa")
     place: dict[str, Any] = dict(
         zip(("lat_rad", "lon_rad", "h_m"), (solved[f"est_{n}"].to_numpy() for n in ("lat_rad", "lon_rad", "h_m")), strict=True)
     )
@@ -88,11 +88,11 @@ def test_a_satellite_that_is_not_measured_is_in_neither(msas: Recording, shared_
     made = pseudoranges(log, shared_data / "sbas" / "gps_2025046_17h_rinex3.nav", t, MSAS_USER, MSAS_ECEF, 0.0)
     lost = max(made)
     (tmp_path / "less.rnx").write_text(rinex({t: {prn: p for prn, p in made.items() if prn != lost}}))
-    found = sbas.solve(gnss.read_observations(tmp_path / "less.rnx"), navigation, log, mode="pa", truth_ecef_m=MSAS_ECEF)
+    solved = sbas.solve(gnss.read_observations(tmp_path / "less.rnx"), navigation, log, mode="pa", truth_ecef_m=MSAS_ECEF)
     whole = sbas.protection_levels(log, navigation, [t], **MSAS_USER, mode="pa")
-    assert set(found.satellites["prn"]) == set(made) - {lost}
-    assert found.epochs["vpl_m"][0] > whole.vpl_m[0]
-    assert abs(found.epochs["nse_u_m"][0]) < 5e-3
+    assert set(solved.satellites["prn"]) == set(made) - {lost}
+    assert solved.epochs["vpl_m"][0] > whole.vpl_m[0]
+    assert abs(solved.epochs["nse_u_m"][0]) < 5e-3
 
 
 def peer(folder: Path, prn: int, data: Path) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -115,10 +115,10 @@ def peer(folder: Path, prn: int, data: Path) -> tuple[NDArray[np.int64], NDArray
 def test_real_egnos_beside_an_independent_engine(egnos: Recording, shared_data: Path, tmp_path: Path) -> None:
     times, theirs = peer(tmp_path, 120, shared_data / "sbas" / "more")
     observations, navigation, log = egnos
-    found = sbas.solve(observations, navigation, log.of(120), smoothing_s=None).epochs.filter(pl.col("mode") == "pa")
-    _, a, b = np.intersect1d(found["time_ns"].to_numpy() // 10**9, times, return_indices=True)
+    solved = sbas.solve(observations, navigation, log.of(120), smoothing_s=None).epochs.filter(pl.col("mode") == "pa")
+    _, a, b = np.intersect1d(solved["time_ns"].to_numpy() // 10**9, times, return_indices=True)
     assert a.size > 400
-    difference = positions(found)[a] - theirs[b]
+    difference = positions(solved)[a] - theirs[b]
     # Other weights, each with a noise of a metre or so of a receiver of 2012 unsmoothed: their mean over 20 minutes is common to a
     # fraction of it. Without corrections the mean is 11 m away.
     assert np.linalg.norm(difference.mean(axis=0)) < 0.4
@@ -131,7 +131,7 @@ def test_real_egnos_is_smoothed_and_stays_far_inside_its_levels(egnos: Recording
     solved = [p.epochs.filter(pl.col("mode") == "pa") for p in (rough, smooth)]
     assert solved[0].height == solved[1].height > 500
     spread = [positions(s).std(axis=0) for s in solved]
-    # White noise through 100 s at 3 s leaves sqrt(0.03 / 1.97) = 0.12 of itself; multipath of minutes stays. Half is asked.
+    # White noise through 100 s at 3 s leaves sqrt(0.03 / 1.97) = 0.12 of itself; multipath of minutes stays. Half is required.
     assert (spread[1] < 0.5 * spread[0]).all()
     # No truth is known: the median of the solutions stands for it, which cannot see what all have in common.
     middle = np.median(positions(solved[1]), axis=0)
@@ -163,20 +163,20 @@ def test_en_route_without_a_grid_the_broadcast_ionosphere_serves(shared_data: Pa
     # Approaches never lean on it.
     assert sbas.satellites(log, with_model, instant, **guam, mode="pa").from_grid.all()
     observations = gnss.read_observations(folder / "PGUM0460.25O.gz")
-    found = sbas.solve(observations, gnss.read_navigation(with_model), log, mode="npa")
-    assert (found.epochs["mode"] == "npa").sum() > 3000
-    assert found.epochs["vpl_m"].is_null().all()
-    assert "Klobuchar" in found.models["ionosphere"]
+    solved = sbas.solve(observations, gnss.read_navigation(with_model), log, mode="npa")
+    assert (solved.epochs["mode"] == "npa").sum() > 3000
+    assert solved.epochs["vpl_m"].is_null().all()
+    assert "Klobuchar" in solved.models["ionosphere"]
 
 
 def test_message_0_obeyed_leaves_not_one_position(shared_data: Path) -> None:
     folder = shared_data / "sbas" / "more"
     log = sbas.read(folder / "prn122_2025046_17h.ems.gz")
     observations = gnss.read_observations(folder / "YPDN0460.25O.gz")
-    found = sbas.solve(observations, folder / "gps_2025046_17h.25N", log)
-    assert (found.epochs["status"] == "not_available").all()
-    assert found.epochs["est_lat_rad"].is_null().all()
-    assert found.epochs["reason"].str.contains("do not use").any()
+    solved = sbas.solve(observations, folder / "gps_2025046_17h.25N", log)
+    assert (solved.epochs["status"] == "not_available").all()
+    assert solved.epochs["est_lat_rad"].is_null().all()
+    assert solved.epochs["reason"].str.contains("do not use").any()
     tested = sbas.solve(observations, folder / "gps_2025046_17h.25N", log, test_signal=True)
     assert tested.test_signal
     assert set(tested.epochs["status"]) == {"degraded", "not_available"}
@@ -187,10 +187,10 @@ def test_ranges_of_geostationary_satellites_are_counted_not_used(egnos: Recordin
     first = int(log.of(120).time_ns[0]) + 600_000_000_000
     text = rinex({first: {3: 2.0e7}}).replace("G03", "S20").replace("G    1 C1C", "S    1 C1C")
     (tmp_path / "geo.rnx").write_text(text)
-    found = sbas.solve(gnss.read_observations(tmp_path / "geo.rnx"), navigation, log.of(120))
-    assert found.epochs["status"].to_list() == ["not_available"]
+    solved = sbas.solve(gnss.read_observations(tmp_path / "geo.rnx"), navigation, log.of(120))
+    assert solved.epochs["status"].to_list() == ["not_available"]
     # Every message 9 of every recorded service carries URA index 15.
-    assert [why for why in found.unused if "URA index 15" in why]
+    assert [why for why in solved.unused if "URA index 15" in why]
     assert observations.n_epochs == 1165
 
 

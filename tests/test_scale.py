@@ -66,13 +66,13 @@ def jobs(shared_data: Path) -> list[tuple[Evaluate, Tile]]:
     options |= {"dme": {}, "sbas": {"messages": shared_data / "sbas" / "msas137_2025046_17h.ems", "navigation": navigation}}
     lat, lon = maps.Grid.degrees(4.0, (28.0, 44.0, 128.0, 144.0)).points()
     tiles = [Tile(lat[s], lon[s]) for s in (slice(0, 7), slice(7, None))]
-    found = []
+    listed = []
     for kind in maps.KINDS.values():
         job = kind.options(**options[kind.id])
         causes, columns = tuple(c.name for c in kind.causes), tuple(c.name for c in kind.columns)
         evaluate = Evaluate(job.levels(), columns, tuple((one.column, one.limit) for one in job.limits()), causes)
-        found += [(evaluate, tile) for tile in tiles]
-    return found
+        listed += [(evaluate, tile) for tile in tiles]
+    return listed
 
 
 @pytest.mark.parametrize("backend", ["processes", "dask"])
@@ -89,8 +89,8 @@ def test_every_kind_of_map_has_the_same_bits_whoever_works_it_off(
 @pytest.mark.parametrize("backend", ["serial", "processes"])
 def test_a_command_that_was_killed_goes_on_and_leaves_no_worker(backend: str, tmp_path: Path) -> None:
     workers = ["--workers", "1"] if backend == "processes" else []
-    asked = ["--step-deg", "5", "--every-s", "600", "--backend", backend, *workers, "--checkpoint", str(tmp_path / "kept")]
-    command = [sys.executable, "-m", "navbound", "map", "araim", *asked, "--out", str(tmp_path / "map"), "--json"]
+    options = ["--step-deg", "5", "--every-s", "600", "--backend", backend, *workers, "--checkpoint", str(tmp_path / "kept")]
+    command = [sys.executable, "-m", "navbound", "map", "araim", *options, "--out", str(tmp_path / "map"), "--json"]
     run = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + 120.0
     while not list((tmp_path / "kept").glob("*.npz")) and time.monotonic() < deadline:
@@ -110,10 +110,10 @@ def test_a_command_that_was_killed_goes_on_and_leaves_no_worker(backend: str, tm
     after = {file.name: file.stat().st_mtime_ns for file in (tmp_path / "kept").glob("*.npz")}
     assert len(after) == 3
     assert after.items() >= before.items(), "finished tiles were done again"
-    found = maps.load(tmp_path / "map")
+    loaded = maps.load(tmp_path / "map")
     whole = maps.make("araim", times=Times(step_s=600.0))
-    assert found.points.equals(whole.points)
-    assert found.summary == whole.summary
+    assert loaded.points.equals(whole.points)
+    assert loaded.summary == whole.summary
 
 
 def _lives(pid: int) -> bool:
@@ -132,9 +132,9 @@ def _children(pid: int) -> list[int]:
 @pytest.mark.parametrize("backend", ["processes", "dask"])
 def test_a_worker_lost_in_mid_run_loses_nothing(backend: str, workers: dict[str, scale.Workers], tmp_path: Path) -> None:
     function = tiles_fixture.LosesWorker(str(tmp_path), tile=3)
-    found = scale.map_tiles(function, TILES, backend=backend, workers=workers[backend])
+    results = scale.map_tiles(function, TILES, backend=backend, workers=workers[backend])
     assert (tmp_path / "lost").exists(), "no worker was lost: this test tests nothing"
-    assert same(found, [tiles_fixture.numbers(t) for t in TILES])
+    assert same(results, [tiles_fixture.numbers(t) for t in TILES])
 
 
 def test_a_tile_that_loses_every_worker_is_an_error(workers: dict[str, scale.Workers], tmp_path: Path) -> None:
@@ -193,15 +193,15 @@ def test_a_job_that_was_killed_goes_on(tmp_path: Path) -> None:
     assert 3 <= finished < 60, "the job was not killed in the middle"
     for call in log.iterdir():
         call.unlink()
-    told: list[tuple[int, int]] = []
+    reported: list[tuple[int, int]] = []
     # The pause is part of the function and so of the job.
-    found = scale.map_tiles(
-        tiles_fixture.Logged(str(log), 0.05), list(range(60)), checkpoint=kept, progress=lambda done, all_: told.append((done, all_))
+    results = scale.map_tiles(
+        tiles_fixture.Logged(str(log), 0.05), list(range(60)), checkpoint=kept, progress=lambda done, all_: reported.append((done, all_))
     )
     assert len(list(log.iterdir())) == 60 - finished
-    assert told[0] == (finished, 60)
-    assert told[-1] == (60, 60)
-    assert same(found, [tiles_fixture.numbers(t) for t in range(60)])
+    assert reported[0] == (finished, 60)
+    assert reported[-1] == (60, 60)
+    assert same(results, [tiles_fixture.numbers(t) for t in range(60)])
 
 
 def resaved(file: Path, change: Callable[[dict[str, np.ndarray[Any, Any]]], object]) -> None:
@@ -301,5 +301,5 @@ def test_nothing_to_cut_is_refused(n: int, each_s: float) -> None:
 def test_arrays_that_start_at_any_byte_are_taken() -> None:
     shifted = np.frombuffer(b"\0" + np.array([0.1, 0.2]).tobytes(), dtype=np.uint8)[1:].view(np.float64)
     assert not shifted.flags.aligned
-    found = maps.KINDS["dop"].options(times=Times(step_s=43_200.0)).levels()(shifted, shifted)
-    assert found["pdop"].shape == (2, 2)
+    levels = maps.KINDS["dop"].options(times=Times(step_s=43_200.0)).levels()(shifted, shifted)
+    assert levels["pdop"].shape == (2, 2)

@@ -55,11 +55,11 @@ def test_a_scenario_is_the_same_from_its_record() -> None:
 
 
 def test_units_become_si() -> None:
-    found = scenario.load("beijing-shanghai")
-    assert found.phases[3].rnp_m == 0.3 * 1852
-    assert found.navigation.mask_rad == math.radians(7)
-    assert found.gusts.length_m == pytest.approx(533.4, rel=1e-15)  # 1750 ft of 0.3048 m
-    assert found.turns.rate_max_radps == math.radians(3)
+    loaded = scenario.load("beijing-shanghai")
+    assert loaded.phases[3].rnp_m == 0.3 * 1852
+    assert loaded.navigation.mask_rad == math.radians(7)
+    assert loaded.gusts.length_m == pytest.approx(533.4, rel=1e-15)  # 1750 ft of 0.3048 m
+    assert loaded.turns.rate_max_radps == math.radians(3)
 
 
 def test_one_quantity_may_be_written_in_another_unit(tmp_path: Path) -> None:
@@ -112,13 +112,13 @@ def test_a_file_may_say_only_what_differs(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_wrong_file_is_explained(tmp_path: Path, old: str, new: str, field: str | None, said: str) -> None:
+def test_a_wrong_file_is_explained(tmp_path: Path, old: str, new: str, field: str | None, message: str) -> None:
     file = changed(tmp_path, old, new)
     with pytest.raises(FormatError) as caught:
         scenario.load(file)
     assert caught.value.path == file
     assert caught.value.field == field
-    assert said in str(caught.value)
+    assert message in str(caught.value)
     assert str(file) in str(caught.value)
 
 

@@ -50,9 +50,9 @@ def judged(settings: Settings) -> Any:
 def stated(value: object, where: str = "") -> list[tuple[str, float | str]]:
     """Every number and text of a record, with its place."""
     if isinstance(value, dict):
-        return [found for key, part in value.items() for found in stated(part, f"{where}.{key}")]
+        return [each for key, part in value.items() for each in stated(part, f"{where}.{key}")]
     if isinstance(value, list):
-        return [found for key, part in enumerate(value) for found in stated(part, f"{where}[{key}]")]
+        return [each for key, part in enumerate(value) for each in stated(part, f"{where}[{key}]")]
     return [(where, value)] if isinstance(value, float | str) else []
 
 

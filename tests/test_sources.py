@@ -28,8 +28,8 @@ def test_no_number_is_printed_from_memory(place: str) -> None:
     root = ROOT / place
     files = [root] if root.is_file() else [p for p in root.rglob("*") if p.suffix in TEXT and "_web" not in p.parts]
     assert files
-    found = {str(p.relative_to(ROOT)): words for p in files if (words := remembered(p.read_text(encoding="utf-8")))}
-    assert found == {}
+    by_name = {str(p.relative_to(ROOT)): words for p in files if (words := remembered(p.read_text(encoding="utf-8")))}
+    assert by_name == {}
 
 
 def test_a_limit_of_the_standard_names_two_texts() -> None:

@@ -96,18 +96,18 @@ def read(folder: Path, text: str) -> dme.Stations:
 
 
 def test_a_table_of_ones_own(tmp_path: Path) -> None:
-    found = read(tmp_path, "# a comment\n" + GOOD)
-    assert found.ident == ("AAA", "BBB")
-    assert found.service_m.tolist() == [130 * 1852.0, np.inf]
-    assert found.without("AAA").ident == ("BBB",)
-    assert found.only("AAA").ident == ("AAA",)
+    reading = read(tmp_path, "# a comment\n" + GOOD)
+    assert reading.ident == ("AAA", "BBB")
+    assert reading.service_m.tolist() == [130 * 1852.0, np.inf]
+    assert reading.without("AAA").ident == ("BBB",)
+    assert reading.only("AAA").ident == ("AAA",)
     packed = tmp_path / "stations.csv.gz"
     packed.write_bytes(gzip.compress(GOOD.encode()))
-    assert dme.read_stations(packed).ident == found.ident
+    assert dme.read_stations(packed).ident == reading.ident
     with pytest.raises(InputError, match="'CCC'"):
-        found.without("CCC")
+        reading.without("CCC")
     with pytest.raises(InputError, match="distance_m"):
-        found.near(0.8, 0.5, float("nan"))
+        reading.near(0.8, 0.5, float("nan"))
 
 
 @pytest.mark.parametrize(

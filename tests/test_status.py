@@ -108,8 +108,8 @@ def test_nothing_decides_by_a_sentence() -> None:
     files = {str(p.relative_to(PACKAGE)): p for p in PACKAGE.rglob("*.py") if "_web" not in p.parts}
     assert len(files) > 50
     lines = {name: decisions_by_sentence(p.read_text(encoding="utf-8")) for name, p in files.items()}
-    assert {name: found for name, found in lines.items() if found and name not in UNUSED_ROWS} == {}
-    assert {name for name, found in lines.items() if found} >= UNUSED_ROWS, "an exception that is no longer needed"
+    assert {name: value for name, value in lines.items() if value and name not in UNUSED_ROWS} == {}
+    assert {name for name, value in lines.items() if value} >= UNUSED_ROWS, "an exception that is no longer needed"
 
 
 def _watched(sentences: dict[str, str]) -> pl.DataFrame:
@@ -134,12 +134,12 @@ def _watched(sentences: dict[str, str]) -> pl.DataFrame:
 def test_a_sentence_of_another_wording_changes_no_count() -> None:
     """The counts of the monitor: three faults detected, two excluded, one not; one epoch where none could be detected."""
     sentences = {id_: entry.words for id_, entry in status.REASONS.items()}
-    told = decisions(_watched(sentences))
-    assert "a fault detected at 3, excluded at 2 (G05 at 2), not to be excluded at 1" in told[0]
-    assert "no way to detect a fault at 1" in told[0]
+    decided = decisions(_watched(sentences))
+    assert "a fault detected at 3, excluded at 2 (G05 at 2), not to be excluded at 1" in decided[0]
+    assert "no way to detect a fault at 1" in decided[0]
     for changed in sentences:
         other = decisions(_watched(sentences | {changed: "reworded"}))
-        assert other == told, changed
+        assert other == decided, changed
 
 
 def test_a_sentence_of_another_wording_changes_no_status(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -174,8 +174,8 @@ def test_levels_without_a_result_carry_the_id_of_their_reason() -> None:
     az = np.radians([[0.0, 120.0, 240.0, np.nan], [0.0, 90.0, 180.0, 270.0], [0.0, 120.0, 240.0, 60.0]])
     el = np.radians([[40.0, 50.0, 60.0, np.nan], [30.0, 30.0, 30.0, 30.0], [20.0, 30.0, 40.0, 85.0]])
     of = {"too_few_satellites": "not_available", "singular": "not_available", "": "ok"}
-    found = gnss.covariance(az, el, 1.0)
-    assert dict(zip(found.reason_id.tolist(), found.status.tolist(), strict=True)) == of
+    solution = gnss.covariance(az, el, 1.0)
+    assert dict(zip(solution.reason_id.tolist(), solution.status.tolist(), strict=True)) == of
     dilution = gnss.dop(az, el)
     assert dict(zip(dilution.reason_id.tolist(), dilution.status.tolist(), strict=True)) == of
     levels = gbas.protection_levels(az, el, sigma_m=1.0, sigma_h1_m=1.0)

@@ -32,10 +32,10 @@ def test_the_autocorrelation_is_the_plain_sum() -> None:
 
 def test_a_crossing_lies_on_the_line_between_two_samples() -> None:
     rows = np.array([[1.0, 0.6, 0.2, -0.2], [1.0, 0.9, 0.8, 0.7], [0.1, 0.0, 0.0, 0.0]])
-    found = first_crossing(rows, 0.4)
-    assert found[0] == pytest.approx(1.5, rel=1e-15)
-    assert np.isnan(found[1])
-    assert found[2] == 0.0
+    result = first_crossing(rows, 0.4)
+    assert result[0] == pytest.approx(1.5, rel=1e-15)
+    assert np.isnan(result[1])
+    assert result[2] == 0.0
 
 
 @pytest.mark.parametrize(("tau", "ts"), [(5.0, 30.0), (5.0, 100.0), (14.0, 100.0), (60.0, 30.0)])
@@ -55,19 +55,19 @@ def test_smoothed_multipath_remembers_as_long_as_its_law_says(tau: float, ts: fl
 
 
 def test_the_law_of_time_constants_meets_its_percentiles() -> None:
-    found = multipath.time_constants(np.random.Generator(np.random.Philox(7)), 200_000)
+    result = multipath.time_constants(np.random.Generator(np.random.Philox(7)), 200_000)
     # The 5 % and 50 % points of 2e5 draws scatter by 1 % and less; the 95 % one stands where a steep part begins.
     for share, expected, tolerance in ((5, 7.0, 0.02), (50, 14.0, 0.02), (95, 170.0, 0.05)):
-        assert abs(np.percentile(found, share) / expected - 1.0) < tolerance
-    assert found.min() == 5.0
-    assert found.max() <= 900.0
+        assert abs(np.percentile(result, share) / expected - 1.0) < tolerance
+    assert result.min() == 5.0
+    assert result.max() <= 900.0
 
 
 def test_the_study_of_multipath_agrees_with_the_law_and_the_published_least() -> None:
-    found = multipath.run(draws=400)
+    result = multipath.run(draws=400)
     generator = np.random.Generator(np.random.Philox(673))
     tau = multipath.time_constants(generator, 400)
-    for row in found.smoothed:
+    for row in result.smoothed:
         exact = np.median([exact_crossing(t, row.smoothing_s) for t in tau])
         # A time constant from two hours scatters by a tenth, the median of 400 by a twentieth of the law's width; steps last a second.
         assert abs(row.median_s / exact - 1.0) < 0.08
@@ -86,11 +86,11 @@ def test_the_zero_of_a_divergence_monitor_is_the_specifications() -> None:
 
 
 def test_drawn_monitors_agree_with_their_spectrum() -> None:
-    found = decorrelation.run()
-    for row in found.divergence:
+    result = decorrelation.run()
+    for row in result.divergence:
         # Sixteen series of four hours; filters in steps of a second.
         assert abs(row.simulated_s / row.zero_s - 1.0) < 0.08
-    assert found.effective_s == 100.0
+    assert result.effective_s == 100.0
 
 
 def table(path: Path, columns: dict[str, np.ndarray]) -> Path:
@@ -103,8 +103,8 @@ def table(path: Path, columns: dict[str, np.ndarray]) -> Path:
 def test_a_series_of_ones_own_is_read(tmp_path: Path) -> None:
     x = multipath.markov(np.random.Generator(np.random.Philox(2)), np.full(3, 40.0))
     path = table(tmp_path / "series.csv", {"time_s": np.arange(x.shape[1]) * 2.0, "G01": x[0], "G02": x[1], "G03": x[2]})
-    found = study("multipath-time-constants", [path])
-    constants = [s.time_constant_s for s in found.series]  # type: ignore[attr-defined]
+    result = study("multipath-time-constants", [path])
+    constants = [s.time_constant_s for s in result.series]  # type: ignore[attr-defined]
     # Samples 2 s apart of a memory of 40 samples; a time constant from 195 of them scatters by a fifth.
     assert all(c is not None and 40.0 < c < 130.0 for c in constants)
     memory = study("decorrelation-time", [path]).measured  # type: ignore[attr-defined]
@@ -159,10 +159,10 @@ def test_the_multipath_of_a_real_satellite_is_remembered_as_the_law_says(shared_
     assert whole > 20_000
     path = tmp_path / "multipath.csv"
     pl.DataFrame({"time_s": second[:whole], "G03": multipath_m[:whole] - multipath_m[:whole].mean()}).write_csv(path)
-    found, again = study("multipath-time-constants", [path]), study("decorrelation-time", [path])
-    assert isinstance(found, multipath.Study)
+    result, again = study("multipath-time-constants", [path]), study("decorrelation-time", [path])
+    assert isinstance(result, multipath.Study)
     assert isinstance(again, decorrelation.Study)
-    constant = found.series[0].time_constant_s
+    constant = result.series[0].time_constant_s
     assert constant is not None
     # The published percentiles of raw multipath, 5 and 95 %.
     assert 7.0 < constant < 170.0

@@ -44,30 +44,30 @@ def test_the_day_itself_is_the_one_described() -> None:
     assert day.safety_h_max == pytest.approx(0.068, abs=5e-4)
     assert day.safety_v_max == pytest.approx(0.087, abs=5e-4)
     assert day.n_misleading == 0
-    found = day.availability
-    assert [round(100 * (v or 0), 1) for v in (found.apv_i, found.lpv_200, found.apv_ii, found.cat_i_12)] == [86.7, 52.7, 1.0, 0.0]
+    outcome = day.availability
+    assert [round(100 * (v or 0), 1) for v in (outcome.apv_i, outcome.lpv_200, outcome.apv_ii, outcome.cat_i_12)] == [86.7, 52.7, 1.0, 0.0]
 
 
 def test_the_error_remembers_as_described() -> None:
     """Autocorrelation at 60, 300 and 600 s: E 0.85/0.56/0.48, N and U 0.80/0.47/0.30; another estimator may differ by 0.02."""
-    for found, expected in zip(result().correlations, [(0.85, 0.56, 0.48), (0.80, 0.47, 0.32), (0.80, 0.47, 0.30)], strict=True):
-        assert (found.r_60_s, found.r_300_s, found.r_600_s) == pytest.approx(expected, abs=0.02)
-        assert 3.0 < found.beta_1_hz < 5.0
+    for correlation, expected in zip(result().correlations, [(0.85, 0.56, 0.48), (0.80, 0.47, 0.32), (0.80, 0.47, 0.30)], strict=True):
+        assert (correlation.r_60_s, correlation.r_300_s, correlation.r_600_s) == pytest.approx(expected, abs=0.02)
+        assert 3.0 < correlation.beta_1_hz < 5.0
 
 
 def test_stages_stand_where_a_prototype_had_them() -> None:
     """Over the epochs after the first 400. The prototype's velocity noise is another draw, its geometry that of all satellites in view."""
     before, summed, printed, alone = stage("DO-229"), stage("EE bound, cfar_sum"), stage("EE bound, as_printed"), stage("corrected, bias")
     # No noise enters: to the digit printed, and one epoch of 2465 for where the span begins.
-    for found, expected in zip(before.availability.model_dump().values(), (0.869, 0.478, 0.012, 0.0), strict=True):
-        assert found == pytest.approx(expected, abs=0.0005 + 1 / 2465)
+    for share, expected in zip(before.availability.model_dump().values(), (0.869, 0.478, 0.012, 0.0), strict=True):
+        assert share == pytest.approx(expected, abs=0.0005 + 1 / 2465)
     # Sixty draws range over 99.1 to 100, 96.7 to 99.8, 62 to 79 and 2.2 to 9.1 %.
-    for found, expected, width in zip(
+    for share, expected, width in zip(
         summed.availability.model_dump().values(), (0.997, 0.972, 0.745, 0.037), (0.01, 0.02, 0.09, 0.06), strict=True
     ):
-        assert found == pytest.approx(expected, abs=width)
-    for found, expected in zip(printed.availability.model_dump().values(), (1.0, 1.0, 0.999, 0.968), strict=True):
-        assert found == pytest.approx(expected, abs=0.01)
+        assert share == pytest.approx(expected, abs=width)
+    for share, expected in zip(printed.availability.model_dump().values(), (1.0, 1.0, 0.999, 0.968), strict=True):
+        assert share == pytest.approx(expected, abs=0.01)
     assert alone.availability.cat_i_12 == pytest.approx(0.971, abs=0.01)
 
 
@@ -89,8 +89,8 @@ def test_the_exact_bias_of_the_recorded_hour_is_the_one_described() -> None:
     """Specification 2.1: eq. 7 median 6.3, at most 8.3 m; exact median 5.3 m, at most 3.6 % above mu sqrt(N) VDOP."""
     bias = result().bias
     assert bias is not None
-    found = (bias.from_dop_m_median, bias.from_dop_m_max, bias.exact_m_median)
-    assert found == pytest.approx((6.3, 8.3, 5.3), abs=0.05)
+    biases = (bias.from_dop_m_median, bias.from_dop_m_max, bias.exact_m_median)
+    assert biases == pytest.approx((6.3, 8.3, 5.3), abs=0.05)
     assert bias.worst_ratio == pytest.approx(1.036, abs=0.0005)
 
 
@@ -104,38 +104,38 @@ def test_verdicts_on_the_paper() -> None:
 
 
 def test_every_number_of_the_fault_table_comes_out_again() -> None:
-    found = result().faults
-    assert len(found) == 28
-    assert [f.fault for f in found if f.verdict != "reproducible"] == []
+    outcome = result().faults
+    assert len(outcome) == 28
+    assert [f.fault for f in outcome if f.verdict != "reproducible"] == []
     # The bound recovers while the error passes the limit: never an alarm on the slow ramp, at any run.
-    slow = next(f for f in found if (f.fault, f.quantity) == ("ramp 0.05 m/s", "first bound >= VAL [s]"))
+    slow = next(f for f in outcome if (f.fault, f.quantity) == ("ramp 0.05 m/s", "first bound >= VAL [s]"))
     assert slow.found.share_never == 1.0
 
 
-def test_a_stated_risk_is_held_only_by_fast_errors() -> None:
-    held = {h.tau_s: h for h in result().held}
-    assert all(h.verdict == "reproducible" for h in held.values()), held
-    assert held[30.0].found < 1e-3 < held[60.0].found
-    assert held[1800.0].found > 0.3
+def test_a_stated_risk_is_met_only_by_fast_errors() -> None:
+    by_tau = {h.tau_s: h for h in result().held}
+    assert all(h.verdict == "reproducible" for h in by_tau.values()), by_tau
+    assert by_tau[30.0].found < 1e-3 < by_tau[60.0].found
+    assert by_tau[1800.0].found > 0.3
 
 
 def test_a_small_stated_risk_is_broken_by_errors_that_last() -> None:
     """Specification 1.8(b) at 5e-8: 14 to 1.7 million times the stated risk."""
-    held = {h.tau_s: h for h in result().held_small}
-    assert all(h.verdict == "reproducible" for h in held.values()), held
-    assert held[60.0].found > 10 * 5e-8
-    assert held[1800.0].found > 1e6 * 5e-8
+    by_tau = {h.tau_s: h for h in result().held_small}
+    assert all(h.verdict == "reproducible" for h in by_tau.values()), by_tau
+    assert by_tau[60.0].found > 10 * 5e-8
+    assert by_tau[1800.0].found > 1e6 * 5e-8
 
 
 def test_independent_errors_hold_the_risk_of_their_own_law_alone() -> None:
     """Specification 1.8(a). With equal weights, outside the window, exponential errors hold it exactly: (1 + k)^-M."""
-    found = {(h.law, h.risk): h for h in result().held_laws}
-    assert all(h.verdict == "reproducible" for h in found.values()), found
+    by_name = {(h.law, h.risk): h for h in result().held_laws}
+    assert all(h.verdict == "reproducible" for h in by_name.values()), by_name
     for risk in (1e-3, 1e-5, 5e-8):
-        exact = found["exponential, outside the window, equal weights", risk]
+        exact = by_name["exponential, outside the window, equal weights", risk]
         assert abs(exact.found - risk) <= 4 * exact.standard_error
-    assert found["Student, 4 degrees of freedom", 5e-8].found > 20 * 5e-8
-    assert found["exponential", 1e-5].found < 1e-7
+    assert by_name["Student, 4 degrees of freedom", 5e-8].found > 20 * 5e-8
+    assert by_name["exponential", 1e-5].found < 1e-7
 
 
 def test_another_law_is_not_reproducible(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -175,8 +175,8 @@ def test_a_file_is_enough_and_a_missing_one_is_named(tmp_path: Path, shared_data
     sbas = shared_data / "sbas"
     for name in (recorded.DAY, *recorded.RAW):
         (tmp_path / name).symlink_to(sbas / name)
-    found = navbound.study("error-extraction", [tmp_path / recorded.DAY])
-    assert json.loads(found.model_dump_json())["bias"] is None, "the recorded hour is not beside it"
+    outcome = navbound.study("error-extraction", [tmp_path / recorded.DAY])
+    assert json.loads(outcome.model_dump_json())["bias"] is None, "the recorded hour is not beside it"
     (tmp_path / recorded.RAW[1]).unlink()
     with pytest.raises(FormatError, match=r"Uslo3610\.06N\.gz.*give the files as arguments"):
         navbound.study("error-extraction", [tmp_path / recorded.DAY])

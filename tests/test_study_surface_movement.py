@@ -75,7 +75,7 @@ def dated(reference: Reference) -> Study:
     return reference.study()
 
 
-def test_the_claims_come_out_as_the_specification_found_them(dated: Study) -> None:
+def test_the_claims_come_out_as_in_the_specification(dated: Study) -> None:
     verdicts = {c.id: c.verdict for c in dated.claims}
     assert {i for i, v in verdicts.items() if v == "reproduced"} == REPRODUCED
     assert verdicts["C15"] == verdicts["C16"] == "not reproduced"
@@ -83,8 +83,8 @@ def test_the_claims_come_out_as_the_specification_found_them(dated: Study) -> No
     assert verdicts["C17"] == "by construction"
     # The specification has geometries 30 minutes apart, by which the clock drift was chosen; over those 10 minutes apart F1 fails.
     assert verdicts["C18"] == "not reproduced"
-    found = next(c.found for c in dated.claims if c.id == "C18")
-    assert "D 0, F1 none, F2 0.5 over all geometries; D 0.3, F1 0.2, F2 0.5 over those 30 min apart" in found
+    result = next(c.found for c in dated.claims if c.id == "C18")
+    assert "D 0, F1 none, F2 0.5 over all geometries; D 0.3, F1 0.2, F2 0.5 over those 30 min apart" in result
     assert "gps31.alm" in dated.constellation
 
 
@@ -118,8 +118,8 @@ AT_600_S = {
 }
 
 
-def largest_biases(found: Study) -> dict[tuple[str, str, str, float], float | None]:
-    return {(c.phase, c.quantity, c.mode, c.coasting_s): c.bias_m for c in found.cells if c.case == "A"}
+def largest_biases(result: Study) -> dict[tuple[str, str, str, float], float | None]:
+    return {(c.phase, c.quantity, c.mode, c.coasting_s): c.bias_m for c in result.cells if c.case == "A"}
 
 
 def rows(text: str) -> list[tuple[str, list[float | None]]]:
@@ -129,8 +129,8 @@ def rows(text: str) -> list[tuple[str, list[float | None]]]:
 def test_coasting_under_stress_is_the_specifications_table(reference: Reference, tmp_path: Path) -> None:
     table = "[geometry]\nstep_s = 1800.0\n[grid]\ncoasting_s = [10.0, 60.0, 120.0, 300.0, 600.0]\n[given]\nclock_mps = 0.00085\n"
     (tmp_path / "stress.toml").write_text(table, encoding="utf-8")
-    found = reference.study(tmp_path / "stress.toml")
-    cells = largest_biases(found)
+    result = reference.study(tmp_path / "stress.toml")
+    cells = largest_biases(result)
     checked = 0
     for (phase, quantity), modes in STRESS.items():
         for mode, values in rows(modes):
@@ -139,19 +139,19 @@ def test_coasting_under_stress_is_the_specifications_table(reference: Reference,
                 assert own == expected, f"{phase} {quantity} {mode} {seconds:g} s: {own}, expected {expected}"
                 checked += 1
     assert checked == 120
-    assert any(n.held == "given" and "clock_mps" in n.name for n in found.numbers)
+    assert any(n.held == "given" and "clock_mps" in n.name for n in result.numbers)
 
 
 def test_long_coasting_is_the_specifications_row(reference: Reference, tmp_path: Path) -> None:
     table = "[geometry]\nstep_s = 1800.0\n[grid]\ncoasting_s = [600.0]\n"
     (tmp_path / "long.toml").write_text(table, encoding="utf-8")
     cells = largest_biases(reference.study(tmp_path / "long.toml"))
-    found = {
+    by_name = {
         (phase, mode): [cells[phase, quantity, mode, 600.0] for quantity in ("accuracy", "single", "multi")]
         for phase, text in AT_600_S.items()
         for mode, _ in rows(text)
     }
-    assert found == {(phase, mode): values for phase, text in AT_600_S.items() for mode, values in rows(text)}
+    assert by_name == {(phase, mode): values for phase, text in AT_600_S.items() for mode, values in rows(text)}
 
 
 def test_by_the_worst_epoch_the_taxiway_needs_two_centimetres_more_with_gast_d(reference: Reference, tmp_path: Path) -> None:
@@ -159,8 +159,8 @@ def test_by_the_worst_epoch_the_taxiway_needs_two_centimetres_more_with_gast_d(r
     rest = "continuity_risk = 1.25e-5\nspeed_mps = 10.0\nexposure_s = 120.0\n"
     table = "[grid]\ncoasting_s = [10.0]\n[method]\nmissed_detection = 'worst'\n" + "".join(row.format(c) + rest for c in (4.50, 4.53))
     (tmp_path / "worst.toml").write_text(table, encoding="utf-8")
-    found = reference.study(tmp_path / "worst.toml")
-    margins = {m.phase: m.decades[0] for m in found.margins if (m.mode, m.case) == ("D", "A")}
+    result = reference.study(tmp_path / "worst.toml")
+    margins = {m.phase: m.decades[0] for m in result.margins if (m.mode, m.case) == ("D", "A")}
     # The specification: 4.52 m, printed to the centimetre.
     assert margins["4.5"] < 0 < margins["4.53"]
 
@@ -170,18 +170,18 @@ def test_a_covariance_that_bounds_costs_and_the_papers_gains(tmp_path: Path) -> 
     for form in ("snapshot", "paper", "bound"):
         table = f"only = ['NTW']\n[geometry]\nduration_s = 1200.0\n[grid]\ncoasting_s = [10.0]\n[method]\ncovariance = '{form}'\n"
         (tmp_path / "form.toml").write_text(table, encoding="utf-8")
-        found = surface_movement.run([tmp_path / "form.toml"])
-        worst[form] = {c.mode: c.worst_m or np.nan for c in found.cells if (c.quantity, c.case, c.coasting_s) == ("single", "A", 10.0)}
-        assert any("nothing shows to bound" in words for words in found.words) is (form == "paper")
+        result = surface_movement.run([tmp_path / "form.toml"])
+        worst[form] = {c.mode: c.worst_m or np.nan for c in result.cells if (c.quantity, c.case, c.coasting_s) == ("single", "A", 10.0)}
+        assert any("nothing shows to bound" in words for words in result.words) is (form == "paper")
     for mode in ("D", "F1", "F2"):
         assert worst["paper"][mode] < worst["snapshot"][mode] < worst["bound"][mode] / 1.5
 
 
 @pytest.fixture(scope="module")
 def nominal() -> Study:
-    found = study("surface-movement")
-    assert isinstance(found, Study)
-    return found
+    result = study("surface-movement")
+    assert isinstance(result, Study)
+    return result
 
 
 def test_the_shipped_satellites_are_nominal_and_expanded(nominal: Study) -> None:
@@ -194,10 +194,10 @@ def test_the_shipped_satellites_are_nominal_and_expanded(nominal: Study) -> None
 
 def test_the_24_fail_where_the_specification_says(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text("[geometry]\ngps = 'nominal'\n[grid]\ncoasting_s = [10.0]\n", encoding="utf-8")
-    found = surface_movement.run([tmp_path / "own.toml"])
-    assert "24 nominal GPS satellites" in found.constellation
+    result = surface_movement.run([tmp_path / "own.toml"])
+    assert "24 nominal GPS satellites" in result.constellation
     # The specification finds 5.63 m at an hour of its own; claim C01 asks 4.5 m.
-    assert {b.mode: b.hpl_max_m[-1] for b in found.before}["D"] > 5.0
+    assert {b.mode: b.hpl_max_m[-1] for b in result.before}["D"] > 5.0
 
 
 def test_no_requirement_is_shown_without_its_mark(nominal: Study) -> None:
@@ -227,18 +227,18 @@ def test_errors_stay_below_their_levels(nominal: Study) -> None:
         assert np.all(np.array(errors.hpe_m) < np.array(errors.hpl_m))
 
 
-def test_a_table_of_ones_own_is_marked_given(tmp_path: Path) -> None:
+def test_a_table_of_ones_own_is_marked_as_input(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text(
         "title = 'Own'\n[geometry]\nduration_s = 3600.0\n[grid]\ncoasting_s = [60.0]\nbias_m = [0.0]\n[[requirement]]\nid = 'X'\n"
         "title = 'one'\ncontainment_m = 5.0\nhal_m = 5.0\nintegrity_risk = 1e-7\ncontinuity_risk = 1e-4\n"
         "speed_mps = 5.0\nexposure_s = 60.0\n",
         encoding="utf-8",
     )
-    found = surface_movement.run([tmp_path / "own.toml"])
-    assert [(p.id, p.held) for p in found.phases] == [("X", "given")]
-    assert {c.verdict for c in found.claims} == {"not judged"}
-    assert all(c.coasting_s in {0.0, 60.0} for c in found.cells)
-    assert abs(found.phases[0].accuracy_m - gbas.accuracy_limit(5.0)) < 1e-15
+    result = surface_movement.run([tmp_path / "own.toml"])
+    assert [(p.id, p.held) for p in result.phases] == [("X", "given")]
+    assert {c.verdict for c in result.claims} == {"not judged"}
+    assert all(c.coasting_s in {0.0, 60.0} for c in result.cells)
+    assert abs(result.phases[0].accuracy_m - gbas.accuracy_limit(5.0)) < 1e-15
 
 
 @pytest.mark.parametrize(
@@ -294,12 +294,12 @@ def test_a_navigation_file_gives_both_constellations(shared_data: Path, tmp_path
         pytest.skip(f"{path} is not here")
     table = tmp_path / "esbc.toml"
     table.write_text("[geometry]\nduration_s = 7200.0\n[grid]\ncoasting_s = [10.0]\n", encoding="utf-8")
-    found = surface_movement.run([table, path])
-    assert "GPS satellites of ESBC" in found.constellation
-    assert "Galileo satellites of ESBC" in found.constellation
+    result = surface_movement.run([table, path])
+    assert "GPS satellites of ESBC" in result.constellation
+    assert "Galileo satellites of ESBC" in result.constellation
     # 2020-06-25: 31 GPS and 22 Galileo satellites in service; at Barcelona some ten and seven are above 5 degrees.
-    assert 7 <= found.before[0].n_sv_mean <= 13
-    assert 13 <= found.before[2].n_sv_mean <= 22
+    assert 7 <= result.before[0].n_sv_mean <= 13
+    assert 13 <= result.before[2].n_sv_mean <= 22
     table.write_text("[geometry]\nstart = 2020-07-25T00:00:00\n", encoding="utf-8")
     with pytest.raises(InputError, match="a day that"):
         surface_movement.run([table, path])

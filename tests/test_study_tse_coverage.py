@@ -37,13 +37,13 @@ def test_rows_stand_where_they_were_computed_before(assumption: str) -> None:
 
 
 def test_the_sky_is_the_one_described() -> None:
-    found = result()
-    assert (found.n_sv_min, found.n_sv_max) == (6, 11)
+    outcome = result()
+    assert (outcome.n_sv_min, outcome.n_sv_max) == (6, 11)
     # Means as printed in the specification, to the last digit printed and the choice of the first epoch.
-    assert found.n_sv_mean == pytest.approx(7.6, abs=0.05)
-    assert found.sigma_cross_m_mean == pytest.approx(8.51, abs=0.02)
-    assert found.sigma_major_m_mean == pytest.approx(10.30, abs=0.02)
-    assert found.ratio_mean == pytest.approx(1.215, abs=0.005)
+    assert outcome.n_sv_mean == pytest.approx(7.6, abs=0.05)
+    assert outcome.sigma_cross_m_mean == pytest.approx(8.51, abs=0.02)
+    assert outcome.sigma_major_m_mean == pytest.approx(10.30, abs=0.02)
+    assert outcome.ratio_mean == pytest.approx(1.215, abs=0.005)
 
 
 def test_the_verdicts_are_those_of_the_specification() -> None:

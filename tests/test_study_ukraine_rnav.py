@@ -51,21 +51,21 @@ def test_drawn_errors_keep_to_the_stated_covariance() -> None:
     """Errors are drawn anew at every epoch, so epochs are independent: exact binomial and chi-square limits at 1e-4."""
     for track in (scene.PAIR, scene.ALL, scene.VOR):
         rows = flown().epochs.filter(pl.col("track") == track, pl.col("nse_cross_m").is_not_null(), pl.col("anp_cross_m").is_not_null())
-        held = int((rows["nse_cross_m"].abs() <= rows["anp_cross_m"]).sum())
-        assert stats.binomtest(held, rows.height, 0.95).pvalue > 1e-4, (track, held / rows.height)
+        n_inside = int((rows["nse_cross_m"].abs() <= rows["anp_cross_m"]).sum())
+        assert stats.binomtest(n_inside, rows.height, 0.95).pvalue > 1e-4, (track, n_inside / rows.height)
         if track == scene.VOR:
             # A bearing's arc bends: at 60 NM two deviations of it are 350 m short along the radial, more than the range's own error.
             continue
         covariance = np.array([[rows[f"cov_{a}_m2"] for a in ("ee", "en")], [rows[f"cov_{a}_m2"] for a in ("en", "nn")]]).transpose(2, 0, 1)
         error = rows.select("nse_e_m", "nse_n_m").to_numpy()
-        found = evaluation.nees(error, covariance)
+        statistics = evaluation.nees(error, covariance)
         low, high = stats.chi2.ppf([5e-5, 1 - 5e-5], 2 * rows.height) / rows.height
-        assert low < found.nees_mean < high, (track, found.nees_mean)
+        assert low < statistics.nees_mean < high, (track, statistics.nees_mean)
 
 
 def test_the_pair_is_available_where_two_stations_are_and_better_than_a_bearing() -> None:
-    found = {m.track: m for m in result().means}
-    pair, every, vor = (found[name] for name in (scene.PAIR, scene.ALL, scene.VOR))
+    by_name = {m.track: m for m in result().means}
+    pair, every, vor = (by_name[name] for name in (scene.PAIR, scene.ALL, scene.VOR))
     assert 0.7 < pair.share_available <= every.share_available < vor.share_available
     assert pair.nse95_median_m is not None
     assert every.nse95_median_m is not None

@@ -20,8 +20,8 @@ COVARIANCE = np.array([[60.0, 12.0], [12.0, 110.0]])
 RNG = np.random.Generator(np.random.Philox(7))
 
 
-def relative(found: object, expected: object) -> float:
-    return float(abs(mp.mpf(float(np.asarray(found))) / mp.mpf(expected) - 1))
+def relative(actual: object, expected: object) -> float:
+    return float(abs(mp.mpf(float(np.asarray(actual))) / mp.mpf(expected) - 1))
 
 
 @pytest.mark.parametrize("risk", [1e-9, 3e-8, 1e-5, 7e-4, 0.05, 0.21, 0.5])
@@ -35,7 +35,7 @@ def test_prepared_and_iterative_bounds_meet_fifty_digits(risk: float) -> None:
 
 
 def test_the_one_dimensional_law_is_the_two_dimensional_one() -> None:
-    """The risk of the two-dimensional law outside the strip, by quadrature, is the risk asked for."""
+    """The risk of the two-dimensional law outside the strip, by quadrature, is the requested risk."""
     for offset, course, risk in [((3.0, -4.0), 0.2333, 0.05), ((-12.0, 2.0), 2.1, 1e-5), ((0.5, 30.0), 4.4, 1e-3)]:
         fte, _, sigma = tse.project(offset, COVARIANCE, course)
         bound = float(tse.exact(fte, sigma, risk))
@@ -55,8 +55,8 @@ def test_box_risks_meet_quadrature() -> None:
         sigma, sigma_v = RNG.uniform(2, 20, 2)
         rho = RNG.uniform(-0.98, 0.98)
         limit, limit_v = abs(fte) + RNG.uniform(0, 5) * sigma, abs(fte_v) + RNG.uniform(0, 5) * sigma_v
-        found = tse.box_risk(fte, sigma, fte_v, sigma_v, limit_m=limit, limit_v_m=limit_v, correlation=rho)
-        assert relative(found.risk, oracle.box_risk(fte, sigma, fte_v, sigma_v, rho=rho, limit_l=limit, limit_v=limit_v)) <= 1e-11
+        result = tse.box_risk(fte, sigma, fte_v, sigma_v, limit_m=limit, limit_v_m=limit_v, correlation=rho)
+        assert relative(result.risk, oracle.box_risk(fte, sigma, fte_v, sigma_v, rho=rho, limit_l=limit, limit_v=limit_v)) <= 1e-11
 
 
 def test_ctem_is_the_largest_root_of_the_quartic() -> None:
@@ -64,9 +64,9 @@ def test_ctem_is_the_largest_root_of_the_quartic() -> None:
         offset = RNG.uniform(-40, 40, 2)
         a, b = RNG.uniform(0.5, 30, 2)
         k = float(tse.factors(0.05).two_sided)
-        found = tse.ctem(offset, np.diag([a * a, b * b]), 0.05)
+        result = tse.ctem(offset, np.diag([a * a, b * b]), 0.05)
         # The half axes are products of doubles.
-        assert relative(found, oracle.farthest(offset[0], offset[1], k * a, k * b)) <= 2e-15
+        assert relative(result, oracle.farthest(offset[0], offset[1], k * a, k * b)) <= 2e-15
 
 
 def test_arrays_broadcast_and_single_numbers_stay_single() -> None:

@@ -178,7 +178,7 @@ def test_the_rule_of_levels(changed: dict[str, object], expected: str) -> None:
 
 
 def test_a_bound_that_contains_nothing_withdraws_the_verdict(tmp_path: Path) -> None:
-    """One error that never changes, six times its sigma: no independent epochs to count, and still no honest sigma."""
+    """One error that never changes, six times its sigma: no independent epochs to count, and still no sigma that is large enough."""
     path = table(tmp_path / "a.csv", 536, sigma_m=2.0, error_en_m=np.tile([12.0, 0.0], (536, 1)))
     done = command("analyze", path, "--out", tmp_path / "run")
     assert done.returncode == 4
@@ -194,7 +194,7 @@ def test_a_bound_that_contains_nothing_withdraws_the_verdict(tmp_path: Path) -> 
 
 
 def test_a_few_independent_epochs_below_the_claim_are_not_shown(tmp_path: Path) -> None:
-    """One draw of 2.6 sigma: an honest sigma does it in 3 % of flights, so nothing is refuted and nothing is shown."""
+    """One draw of 2.6 sigma: a sigma that is right does it in 3 % of flights, so nothing is refuted and nothing is shown."""
     path = table(tmp_path / "a.csv", 400, sigma_m=2.0, error_en_m=np.tile([5.2, 0.0], (400, 1)))
     verdict = navbound.analyze(path).summary.verdict
     assert verdict.id == "not_shown"
@@ -209,7 +209,7 @@ def test_a_few_independent_epochs_below_the_claim_are_not_shown(tmp_path: Path) 
     assert "are within the 95 % circle (95 % intervals as from 1 independent epochs)" in verdict.words
 
 
-def test_an_honest_bound_leaves_the_verdict(tmp_path: Path) -> None:
+def test_a_bound_that_covers_leaves_the_verdict(tmp_path: Path) -> None:
     error = 3.0 * np.random.default_rng(20261122).standard_normal((400, 2))
     verdict = navbound.analyze(table(tmp_path / "a.csv", error_en_m=error)).summary.verdict
     assert verdict.id == "inside"
@@ -389,9 +389,9 @@ def test_a_false_covariance_is_withdrawn(shape: str, scale: float) -> None:
 def test_the_probability_without_independence_is_that_of_one_draw() -> None:
     """exp(1 - m/2) bounds the mean of any series of unit errors; for one draw of square m the exact tail is exp(-m/2)."""
     for k in (1.0, 2.0, 4.0, 4.7):
-        found = evaluation.magnitude(np.tile([k, 0.0], (50, 1)), np.tile(np.eye(2), (50, 1, 1)))
-        assert found.p_value == pytest.approx(min(1.0, math.exp(1 - k * k / 2)), rel=1e-12)
-        assert found.p_value >= math.exp(-k * k / 2)
+        statistics = evaluation.magnitude(np.tile([k, 0.0], (50, 1)), np.tile(np.eye(2), (50, 1, 1)))
+        assert statistics.p_value == pytest.approx(min(1.0, math.exp(1 - k * k / 2)), rel=1e-12)
+        assert statistics.p_value >= math.exp(-k * k / 2)
     # One epoch whose truth is wrong by kilometres is one epoch.
     error = np.zeros((50, 2))
     error[7] = 1e6
@@ -452,8 +452,8 @@ def test_help_and_documentation_list_every_status() -> None:
 
 
 def test_every_verdict_has_its_status() -> None:
-    found = {verdict: exit_status.of_verdict(verdict) for verdict in rule.MEANS_INSIDE}
-    assert found == {"inside": 0, "outside": 0, "not_shown": 0, "not_believable": 4, "nothing_judged": 4}
+    exit_codes = {verdict: exit_status.of_verdict(verdict) for verdict in rule.MEANS_INSIDE}
+    assert exit_codes == {"inside": 0, "outside": 0, "not_shown": 0, "not_believable": 4, "nothing_judged": 4}
     of_belief = {state: exit_status.of_verdict("not_shown", state) for state in get_args(BeliefState)}
     assert of_belief == {"unchecked": 0, "supported": 0, "partial": 0, "few": 0, "copied": 0, "short": 0, "contradicted": 4, "refuted": 4}
 

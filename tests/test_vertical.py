@@ -39,9 +39,9 @@ TERMS = ("anpe", "wpr", "fte", "ase", "vae", "atis", "root_sum_square")
 def test_every_term_of_the_budget_is_that_of_the_reference(unit: str) -> None:
     """To 1e-10, the tolerance of the reference."""
     metres, constants, total = {"ft": (FT, "feet", "veb_ft"), "m": (1.0, "metres", "moc_m")}[unit]
-    chosen = [*cases(f"veb_{unit}"), *(cases("veb_faa_example") if unit == "ft" else [])]
-    assert len(chosen) >= 14
-    for case in chosen:
+    selected = [*cases(f"veb_{unit}"), *(cases("veb_faa_example") if unit == "ft" else [])]
+    assert len(selected) >= 14
+    for case in selected:
         budget = vertical.budget(
             case["rnp_nm"] * NM,
             math.radians(case["angle_deg"]),
@@ -179,8 +179,8 @@ def trace(case: dict[str, Any]) -> np.ndarray:
     """Time, barometric and geometric height [s, m, m] of the airborne rows of a recording that have both."""
     rows = json.loads(gzip.decompress((SHARED / "data" / "aircraft" / "other" / "trace_full_ac671b.json.gz").read_bytes()))["trace"]
     first, last = case["time_window_s"]
-    chosen = [(r[0], r[3], r[10]) for r in rows if first <= r[0] <= last and isinstance(r[3], int) and r[10] is not None]
-    return np.array(chosen, dtype=np.float64) * [1.0, FT, FT]
+    selected = [(r[0], r[3], r[10]) for r in rows if first <= r[0] <= last and isinstance(r[3], int) and r[10] is not None]
+    return np.array(selected, dtype=np.float64) * [1.0, FT, FT]
 
 
 @here

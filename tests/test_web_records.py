@@ -14,15 +14,15 @@ from navbound.records.base import Record
 
 SOURCE = Path(__file__).parents[1] / "web" / "src" / "records.gen.ts"
 RECORDS = {
-    name: found
-    for name, found in vars(kpi_records).items()
-    if isinstance(found, type) and issubclass(found, Record) and found is not Record
+    name: value
+    for name, value in vars(kpi_records).items()
+    if isinstance(value, type) and issubclass(value, Record) and value is not Record
 }
 
 
 def interfaces() -> dict[str, dict[str, str]]:
-    found = re.findall(r"export interface (\w+) \{\n(.*?)\n\}", SOURCE.read_text(), re.DOTALL)
-    return {name: dict(re.findall(r"^ {4}(\w+): (.*);$", body, re.MULTILINE)) for name, body in found if name in RECORDS}
+    matches = re.findall(r"export interface (\w+) \{\n(.*?)\n\}", SOURCE.read_text(), re.DOTALL)
+    return {name: dict(re.findall(r"^ {4}(\w+): (.*);$", body, re.MULTILINE)) for name, body in matches if name in RECORDS}
 
 
 def written(kind: object) -> str:

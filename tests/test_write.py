@@ -45,9 +45,9 @@ def test_a_table_comes_back_from_its_file(tmp_path: Path) -> None:
     for column, tolerance in (("est_lat_rad", np.radians(0.6e-9)), ("est_lon_rad", np.radians(0.6e-9)), ("est_h_m", 0.6e-4)):
         np.testing.assert_allclose(back.epochs[column].to_numpy(), epochs[column].to_numpy(), rtol=0, atol=tolerance)
     for column in ("cov_ee_m2", "cov_en_m2", "cov_nn_m2", "cov_eu_m2", "cov_nu_m2", "cov_uu_m2"):
-        wanted = epochs[column].to_numpy()
+        original = epochs[column].to_numpy()
         # A root r is rounded to 5e-5, its square so to 2 r times that.
-        assert (np.abs(back.epochs[column].to_numpy() - wanted) <= 1.1e-4 * np.sqrt(np.abs(wanted)) + 1e-8).all(), column
+        assert (np.abs(back.epochs[column].to_numpy() - original) <= 1.1e-4 * np.sqrt(np.abs(original)) + 1e-8).all(), column
 
 
 def test_the_text_is_what_the_program_writes(tmp_path: Path) -> None:

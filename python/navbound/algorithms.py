@@ -134,7 +134,7 @@ class Grid(Entry):
     options : mapping
         Names and defaults of what a caller may set.
     demand : str or callable
-        (options) -> limits asked without another word: a service level's name, or (name, whether its vertical limit counts, more limits as
+        (options) -> limits required by default: a service level's name, or (name, whether its vertical limit counts, more limits as
         (column, limit, source, provenance)).
     words : str
         Sentence on what the levels rest on; options in braces.
@@ -152,7 +152,7 @@ class Grid(Entry):
     user_epoch_s: float = 8e-6
 
     def limits(self, **options: Any) -> tuple[str, bool, tuple[tuple[str, float, str, str], ...]]:
-        """The service level asked, whether its vertical limit counts, and further limits."""
+        """The service level required, whether its vertical limit counts, and further limits."""
         name, vertical, more = _loaded(self.demand)(**options)
         return name, vertical, more
 

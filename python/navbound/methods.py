@@ -174,15 +174,15 @@ def bounds(epochs: pl.DataFrame, method_id: str, risk: float) -> BoundColumn:
     InputError
         Unknown method, or a risk outside [1e-300, 0.5].
     """
-    wanted = method(method_id)
+    selected = method(method_id)
     columns = {name: column_of(epochs, name) for name in METHOD_INPUTS if name in epochs.columns}
-    bound_m, reason, reasons = _core.bounds_of(wanted.id, risk, epochs.height, columns)
+    bound_m, reason, reasons = _core.bounds_of(selected.id, risk, epochs.height, columns)
     return BoundColumn(bound_m, reason, reasons)
 
 
 def column_of(epochs: pl.DataFrame, name: str) -> NDArray[np.float64]:
     """A numeric column as float64, null as NaN."""
-    import numpy as np  # noqa: PLC0415  (the list of methods is asked for without tables too)
+    import numpy as np  # noqa: PLC0415  (the list of methods is used without tables too)
     import polars as pl  # noqa: PLC0415
 
     values = epochs.get_column(name).cast(pl.Float64).fill_null(float("nan")).to_numpy()

@@ -75,9 +75,9 @@ def status_of(reason_id: pl.Expr) -> pl.Expr:
     return reason_id.replace_strict(table, default="ok", return_dtype=pl.String)
 
 
-def reasons_of(found: dict[str, Any], shape: tuple[int, ...]) -> tuple[NDArray[np.str_], NDArray[np.str_]]:
+def reasons_of(states: dict[str, Any], shape: tuple[int, ...]) -> tuple[NDArray[np.str_], NDArray[np.str_]]:
     """Sentences and ids of results of the core, taken out of them."""
-    sentences, ids = (np.array(found.pop(name), dtype=np.str_).reshape(shape) for name in ("reason", "reason_id"))
+    sentences, ids = (np.array(states.pop(name), dtype=np.str_).reshape(shape) for name in ("reason", "reason_id"))
     return sentences, ids
 
 
@@ -142,10 +142,10 @@ def recorded(epochs: pl.DataFrame) -> pl.DataFrame:
         .then(pl.lit("ok"))
         .otherwise(named.replace_strict({id_: entry.status for id_, entry in REASONS.items()}, default=None, return_dtype=pl.String))
     )
-    found = epochs.select(status=worse(stated if "status" in epochs.columns else pl.lit("ok"), by_reason), reason_id=named)
+    worst = epochs.select(status=worse(stated if "status" in epochs.columns else pl.lit("ok"), by_reason), reason_id=named)
     unknown = pl.col("status").is_null() | ((pl.col("status") != "ok") & pl.col("reason_id").is_null())
     return epochs.with_columns(
-        found.select(
+        worst.select(
             pl.col("status").fill_null(reason("reported").status),
             pl.when(unknown).then(pl.lit("reported")).otherwise("reason_id").alias("reason_id"),
         )
@@ -158,9 +158,9 @@ def _text(name: str) -> pl.Expr:
 
 def with_reason_id(epochs: pl.DataFrame) -> pl.DataFrame:
     """An epoch table whose ``reason_id`` exists: a sentence without an id is ``reported``."""
-    given = pl.col("reason_id") if "reason_id" in epochs.columns else pl.lit(None, pl.String)
+    declared = pl.col("reason_id") if "reason_id" in epochs.columns else pl.lit(None, pl.String)
     if "reason" in epochs.columns:
         stated = pl.col("reason").is_not_null() & (pl.col("reason").str.len_chars() > 0)
-        given = pl.when(stated & given.is_null()).then(pl.lit("reported")).otherwise(given)
+        declared = pl.when(stated & declared.is_null()).then(pl.lit("reported")).otherwise(declared)
     sentence = [] if "reason" in epochs.columns else [pl.lit(None, pl.String).alias("reason")]
-    return epochs.with_columns(given.alias("reason_id"), *sentence)
+    return epochs.with_columns(declared.alias("reason_id"), *sentence)

@@ -32,14 +32,14 @@ class Tolerance:
     relative: float = 0.0
     absolute: float = 0.0
 
-    def share(self, expected: float, found: float) -> float:
+    def share(self, expected: float, actual: float) -> float:
         """Difference as a share of what is allowed; 1 is the limit, NaN only where one was expected."""
-        if math.isnan(expected) or math.isnan(found):
-            return 0.0 if math.isnan(expected) and math.isnan(found) else math.inf
-        if expected == found:
+        if math.isnan(expected) or math.isnan(actual):
+            return 0.0 if math.isnan(expected) and math.isnan(actual) else math.inf
+        if expected == actual:
             return 0.0
         allowed = self.absolute + self.relative * abs(expected)
-        return abs(found - expected) / allowed if allowed > 0 else math.inf
+        return abs(actual - expected) / allowed if allowed > 0 else math.inf
 
 
 @dataclass(frozen=True)
@@ -146,13 +146,13 @@ def _expect_error(outcome: Outcome, case: Case, function: Any, arguments: dict[s
         outcome.failures.append(f"{case.id}: accepted, expected a refusal naming “{case.expect['error']}”")
 
 
-def _compare(outcome: Outcome, case: Case, key: str, expected: Any, found: Any) -> None:
+def _compare(outcome: Outcome, case: Case, key: str, expected: Any, actual: Any) -> None:
     if isinstance(expected, (bool, int)) or (isinstance(expected, str) and not _is_number(expected)):
-        if found != expected:
-            outcome.failures.append(f"{case.id}: {key} = {found!r}, expected {expected!r}")
+        if actual != expected:
+            outcome.failures.append(f"{case.id}: {key} = {actual!r}, expected {expected!r}")
         return
     want = np.asarray(_argument(expected), dtype=np.float64)
-    have = np.asarray(found, dtype=np.float64)
+    have = np.asarray(actual, dtype=np.float64)
     if want.shape != have.shape:
         outcome.failures.append(f"{case.id}: {key} has shape {have.shape}, expected {want.shape}")
         return

@@ -183,7 +183,7 @@ export interface StanfordBins {
 }
 
 /** One subset of an epoch's satellites whose safety index is high. */
-export interface SubsetFound {
+export interface ListedSubset {
     time_ns: number;
     /** Used. */
     satellites: string[];
@@ -221,7 +221,7 @@ export interface Subsets {
     /** How many reach it. */
     n_listed: number;
     /** The gravest of them, at most 500. */
-    listed: SubsetFound[];
+    listed: ListedSubset[];
     /** By level id: subsets in the regions; horizontal first, vertical where the level has a vertical limit. */
     stanford: Record<string, StanfordCounts[]>;
 }
@@ -308,7 +308,7 @@ export interface Performance {
     /** Hazards and misleading information first, then losses, longest first; at most 500 of all in events.parquet. */
     events: KpiEvent[];
     days: DayResult[];
-    /** Where the Stanford-ESA diagram was asked for. */
+    /** Where the Stanford-ESA diagram was requested. */
     subsets: Subsets | null;
     /** Words that must stand beside every number of an experimental level; empty for integrity levels. */
     experimental: string;
@@ -542,7 +542,7 @@ export interface MethodResult {
 }
 
 /** Share of epochs within a region that claims 95 %, over many tracks. */
-export interface Held {
+export interface RegionCoverage {
     region: "circle" | "sphere";
     share: number;
     low: number;
@@ -551,22 +551,22 @@ export interface Held {
 }
 
 /** May the covariance be believed? Only where truth is known. */
-export interface Honesty {
+export interface CovarianceConsistency {
     n: number;
     n_effective: number;
     dimension: number;
-    /** Mean of e' V^-1 e; `dimension` for an honest covariance. */
+    /** Mean of e' V^-1 e; `dimension` for a consistent covariance. */
     nees_mean: number;
     nees_low: number;
     /** Chi-square limits (95 %) for the effective sample size. */
     nees_high: number;
-    /** Histogram of the probability integral transform in equal bins; flat for an honest covariance. */
+    /** Histogram of the probability integral transform in equal bins; flat for a consistent covariance. */
     pit_counts: number[];
     pit_low: number;
     /** Band (95 %) of one bin. */
     pit_high: number;
     /** Circle and sphere, where there are at least ten tracks. */
-    regions: Held[];
+    regions: RegionCoverage[];
     words: string;
 }
 
@@ -636,7 +636,7 @@ export interface Summary {
     tracks: TrackSummary[];
     accuracy: MethodResult[];
     integrity: MethodResult[];
-    honesty: Honesty | null;
+    honesty: CovarianceConsistency | null;
     /** Names of the states behind `p_state_1`, `p_state_2`, ... */
     states: string[];
     events: EventSummary[];
@@ -678,7 +678,7 @@ export interface MapColumn {
     typical: Record<string, number | null>;
 }
 
-/** What was asked of a column. */
+/** What was required of a column. */
 export interface MapLimit {
     column: string;
     limit: number;
@@ -688,7 +688,7 @@ export interface MapLimit {
 
 /** Share of the area where the limits are met for at least a share of the time. */
 export interface MapCoverage {
-    /** Share of the time asked for. */
+    /** Share of the time required. */
     available: number;
     /** Share of the area, cells weighted by the cosine of their latitude. */
     share: number;

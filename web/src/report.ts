@@ -20,7 +20,7 @@ import { Store } from "./data/store.ts";
 import { Table, type NumberName } from "./data/table.ts";
 import { map } from "./map/map.ts";
 import { cursorBar } from "./panel/cursorbar.ts";
-import { asked } from "./panel/kpi-verdict.ts";
+import { indicatorsOf } from "./panel/kpi-verdict.ts";
 import { performance as performanceReport } from "./panel/performance.ts";
 import { smallPrint } from "./panel/smallprint.ts";
 import { alertLimits, crossTrack, events, faults, methods, phases, rejections, tracks } from "./panel/tables.ts";
@@ -73,7 +73,7 @@ class Page {
         this.series = performanceReport(this.measured, payload, this.theme);
         honesty(root, summary);
         // A run that judged no track has no tracks and no methods to list.
-        const alone = asked(payload) !== null;
+        const alone = indicatorsOf(payload) !== null;
         const heading = alone ? "The input" : summary.tracks.length === 1 ? "The flight in numbers" : "The tracks in numbers";
         const tables = el("section", { id: "tables" }, el("h2", {}, heading), alone ? null : this.trackTable.element);
         if (summary.phases.length > 0) tables.append(phases(payload));
@@ -100,8 +100,8 @@ class Page {
         // That a roll has no vertical path and no specification of flight needs no words.
         const rolls = payload.summary.operation === "ground";
         const explained = (part: (typeof PARTS)[number]): boolean => this.series === null && part.component !== modes && !(rolls && part.aloft);
-        const wanted = PARTS.filter((part) => explained(part) || part.needs.some((name) => table.has(name)));
-        this.ends = [...wanted.map(({ component, host }) => component(this[host], now)), declared(this.charts, now), cursorBar(this.bar, now)];
+        const drawn = PARTS.filter((part) => explained(part) || part.needs.some((name) => table.has(name)));
+        this.ends = [...drawn.map(({ component, host }) => component(this[host], now)), declared(this.charts, now), cursorBar(this.bar, now)];
         const worst = payload.summary.verdict.worst_accuracy;
         now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));
         // What happened is shown first; the whole is one key away.

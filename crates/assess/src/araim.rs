@@ -100,7 +100,7 @@ impl Desk {
         exclusion::monitored(monitor, known, &self.sights, residuals_m, service)
     }
 
-    /// Take up a row's satellites; `each` is told the column of every one.
+    /// Take up a row's satellites; `each` receives the column of every one.
     #[inline(always)]
     fn take(&mut self, sights: &Sights<'_>, row: usize, mut each: impl FnMut(usize)) {
         self.sights.clear();

@@ -12,7 +12,7 @@ pub(crate) struct Known {
     uniform: bool,
     places: HashMap<Key, usize>,
     modes: Vec<FaultModes>,
-    /// What was asked for last: exclusions of one constellation's satellites ask for the same again and again.
+    /// What was requested last: exclusions of one constellation's satellites ask for the same again and again.
     last: Option<(Key, usize)>,
 }
 

@@ -132,10 +132,10 @@ fn ranges(filter: &Fusion) -> &Innovations {
 impl Agreement {
     fn add(&mut self, verdict: &mut Verdict, time: GpsTime, beside: &Beside) -> Result<(), OutOfDomain> {
         let before = verdict.disagree();
-        if let Some(found) = verdict.judge(time, &beside.difference, &beside.covariance, &beside.solution.covariance)? {
+        if let Some(separation) = verdict.judge(time, &beside.difference, &beside.covariance, &beside.solution.covariance)? {
             self.n += 1;
-            self.sum_square += found.square;
-            self.most = self.most.max(found.square);
+            self.sum_square += separation.square;
+            self.most = self.most.max(separation.square);
         }
         self.n_raised += u64::from(verdict.disagree() && !before);
         Ok(())

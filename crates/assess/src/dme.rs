@@ -109,7 +109,7 @@ fn one(job: &Ranges, i: usize) -> Result<Checked, NoFix> {
     for (k, (station, slant)) in job.stations.iter().zip(&job.slant[row.clone()]).enumerate().filter(|(_, (_, s))| !s.is_nan()) {
         let slant = Metres::new(*slant);
         let sigma = match job.sigma {
-            Some(given) => Metres::new(given[row.start + k]),
+            Some(course) => Metres::new(course[row.start + k]),
             None => RangeModel::STANDARD.sigma(slant)?,
         };
         ranges.push(Range { station: *station.ecef(), slant, sigma });
@@ -123,11 +123,11 @@ fn one(job: &Ranges, i: usize) -> Result<Checked, NoFix> {
         }
         _ => None,
     };
-    let mut found = solve_checked(&mut ranges, &altitude, prior.as_ref(), job.residual_risk)?;
-    if let Verdict::Excluded(place) = &mut found.verdict {
+    let mut solution = solve_checked(&mut ranges, &altitude, prior.as_ref(), job.residual_risk)?;
+    if let Verdict::Excluded(place) = &mut solution.verdict {
         *place = columns[*place];
     }
-    Ok(found)
+    Ok(solution)
 }
 
 /// Bearings and ranges of many epochs.
@@ -234,10 +234,10 @@ fn offered(sights: &[Option<Sight>], stations: &[Station], figure: Figure, model
         let Some(sight) = sight else { continue };
         // At the edges of the cone the level part of a unit vector rounds: a ground distance never exceeds the slant range.
         let ground = Metres::new((sight.slant.m() * sight.unit.xy().norm()).min(sight.slant.m()));
-        if let Some(found) = vor_dme(ground, sight.slant, models.sigma_bearing, models.range.sigma(sight.slant)?)?
-            && vor.is_none_or(|(_, drms, _)| found.drms < drms)
+        if let Some(bearing) = vor_dme(ground, sight.slant, models.sigma_bearing, models.range.sigma(sight.slant)?)?
+            && vor.is_none_or(|(_, drms, _)| bearing.drms < drms)
         {
-            vor = Some((k, found.drms, found.covariance(sight, models.sigma_altitude)));
+            vor = Some((k, bearing.drms, bearing.covariance(sight, models.sigma_altitude)));
         }
     }
     let n_stations = sights.iter().flatten().count();

@@ -168,11 +168,11 @@ impl Row<'_> {
     #[inline(always)]
     fn put(&mut self, t: usize, desk: &Desk) {
         self.n_sv[t] = desk.used.len() as u16;
-        if let Ok(found) = wls::dilution_of_units(desk.used.iter().copied()) {
-            self.hdop[t] = found.dilution.horizontal;
-            self.vdop[t] = found.dilution.vertical;
-            self.pdop[t] = found.dilution.position;
-            self.gdop[t] = found.geometric;
+        if let Ok(dilution) = wls::dilution_of_units(desk.used.iter().copied()) {
+            self.hdop[t] = dilution.dilution.horizontal;
+            self.vdop[t] = dilution.dilution.vertical;
+            self.pdop[t] = dilution.dilution.position;
+            self.gdop[t] = dilution.geometric;
         }
     }
 }
@@ -194,7 +194,7 @@ mod tests {
     fn dilutions_are_those_of_the_way_through_angles() {
         let mask = 0.1;
         let (lat, lon, time) = ([0.7, -1.2, 0.0], [2.0, -3.0, 0.5], [0.0, 3000.0, 41_000.0, 86_000.0]);
-        let found = dops(&orbits(), &Users { lat_rad: &lat, lon_rad: &lon, h_m: &[9000.0; 3] }, &time, Radians::new(mask)).unwrap();
+        let map = dops(&orbits(), &Users { lat_rad: &lat, lon_rad: &lon, h_m: &[9000.0; 3] }, &time, Radians::new(mask)).unwrap();
         for user in 0..3 {
             let elements: Vec<Elements> = orbits().iter().map(|o| o.0).collect();
             let at = Receivers { lat_rad: &[lat[user]; 4], lon_rad: &[lon[user]; 4], h_m: &[9000.0; 4], time_s: &time };
@@ -209,13 +209,13 @@ mod tests {
             let sights = Sights { az_rad: &sky.az_rad, el_rad: &sky.el_rad, sigma_m: &sigma, constellation: &constellation };
             for (t, (n_sv, dilution)) in dilutions(&sights).unwrap().into_iter().enumerate() {
                 let (k, expected) = (user * 4 + t, dilution.unwrap());
-                assert_eq!(usize::from(found.n_sv[k]), n_sv);
-                for (got, wanted) in
-                    [(found.hdop[k], expected.horizontal), (found.vdop[k], expected.vertical), (found.pdop[k], expected.position)]
+                assert_eq!(usize::from(map.n_sv[k]), n_sv);
+                for (got, reference) in
+                    [(map.hdop[k], expected.horizontal), (map.vdop[k], expected.vertical), (map.pdop[k], expected.position)]
                 {
-                    assert!((got - wanted).abs() < 1e-9 * wanted, "{got} {wanted}");
+                    assert!((got - reference).abs() < 1e-9 * reference, "{got} {reference}");
                 }
-                assert!(found.gdop[k] > found.pdop[k]);
+                assert!(map.gdop[k] > map.pdop[k]);
             }
         }
     }
@@ -233,8 +233,8 @@ mod tests {
     #[test]
     fn too_few_satellites_leave_no_number() {
         let few = &orbits()[..3];
-        let found = dops(few, &Users { lat_rad: &[0.0], lon_rad: &[0.0], h_m: &[0.0] }, &[0.0], Radians::new(0.0)).unwrap();
-        assert!(found.hdop[0].is_nan() && found.n_sv[0] <= 3);
+        let dilutions = dops(few, &Users { lat_rad: &[0.0], lon_rad: &[0.0], h_m: &[0.0] }, &[0.0], Radians::new(0.0)).unwrap();
+        assert!(dilutions.hdop[0].is_nan() && dilutions.n_sv[0] <= 3);
     }
 
     #[test]

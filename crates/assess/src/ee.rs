@@ -197,7 +197,7 @@ mod tests {
         let (velocity_xyz, bias) = (vec![[0.0; 3]; 2 * n], vec![[6.0, 7.0]; 2 * n]);
         let both =
             Series { epochs: n, time_ns: &time_ns, position_xyz: &position, velocity_xyz: &velocity_xyz, satellites: &[], bias: &bias };
-        let found = extract(&both, &settings()).unwrap();
+        let extraction = extract(&both, &settings()).unwrap();
         let kept: Vec<usize> = (0..n).filter(|i| *i != 7).collect();
         let pick = |s: &[[f64; 3]]| kept.iter().map(|i| s[*i]).collect::<Vec<_>>();
         let without = Series {
@@ -208,13 +208,13 @@ mod tests {
             ..both
         };
         let alone = extract(&without, &settings()).unwrap();
-        assert!(found[7].age.is_none() && found[7].error[0].is_nan() && found[7].bound[0].is_nan());
+        assert!(extraction[7].age.is_none() && extraction[7].error[0].is_nan() && extraction[7].bound[0].is_nan());
         for (row, i) in alone.iter().zip(kept) {
-            assert_eq!(format!("{row:?}"), format!("{:?}", found[i]));
+            assert_eq!(format!("{row:?}"), format!("{:?}", extraction[i]));
         }
         let second = Series { time_ns: &times(n), position_xyz: &position[n..], ..both };
-        assert_eq!(format!("{:?}", extract(&second, &settings()).unwrap()), format!("{:?}", &found[n..]));
-        assert_eq!(found[3].bound[1], found[3].noise[1] + 7.0);
+        assert_eq!(format!("{:?}", extract(&second, &settings()).unwrap()), format!("{:?}", &extraction[n..]));
+        assert_eq!(extraction[3].bound[1], extraction[3].noise[1] + 7.0);
     }
 
     #[test]

@@ -59,20 +59,20 @@ mod tests {
         for (lat, lon) in [(0.6, 2.3), (-1.0, -3.1), (0.0, 0.0)] {
             let est = [lat, lon, 90.0];
             let tru = [lat + 2e-6, lon - 3e-6, 95.0];
-            let found = navigation_errors(&[est], &[tru]).unwrap()[0];
+            let error = navigation_errors(&[est], &[tru]).unwrap()[0];
             let (e, t) = (geodetic(&est).unwrap(), geodetic(&tru).unwrap());
             let direct = ecef_from_geodetic(&t).minus(&ecef_from_geodetic(&e)).to_enu(&e.point);
             for i in 0..3 {
-                assert!((found[i] - direct.vector()[i]).abs() < 2e-4, "{found:?} {:?}", direct.vector());
+                assert!((error[i] - direct.vector()[i]).abs() < 2e-4, "{error:?} {:?}", direct.vector());
             }
         }
     }
 
     #[test]
     fn the_date_line_is_no_wall() {
-        let found = navigation_errors(&[[0.0, PI - 1e-6, 0.0]], &[[0.0, -PI + 1e-6, 0.0]]).unwrap()[0];
+        let error = navigation_errors(&[[0.0, PI - 1e-6, 0.0]], &[[0.0, -PI + 1e-6, 0.0]]).unwrap()[0];
         // 2e-6 rad on the equator of 6378137 m.
-        assert!((found[0] - 12.756_274).abs() < 1e-6, "{found:?}");
+        assert!((error[0] - 12.756_274).abs() < 1e-6, "{error:?}");
     }
 
     #[test]

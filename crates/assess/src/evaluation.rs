@@ -4,13 +4,13 @@
 //! is the caller's knowledge; docs/methods/coverage.md says why the two shares differ.
 
 mod bootstrap;
+mod consistency;
 mod correlation;
-mod honesty;
 mod refutation;
 
 pub use bootstrap::coverage_interval;
+pub use consistency::{Consistency, Errors, Pit, nees, pit};
 pub use correlation::{effective_size, effective_size_about_zero};
-pub use honesty::{Errors, Honesty, Pit, nees, pit};
 pub use refutation::{Containment, Magnitude, containment, magnitude};
 
 use navbound_core::quantity::{OutOfDomain, Risk};
@@ -164,13 +164,13 @@ fn median(values: &mut [f64]) -> f64 {
     if even { 0.5 * (middle + below.iter().copied().fold(f64::NEG_INFINITY, f64::max)) } else { middle }
 }
 
-fn same_length(argument: &'static str, found: usize, wanted: usize) -> Result<(), (Option<usize>, OutOfDomain)> {
-    if found == wanted {
+fn same_length(argument: &'static str, actual: usize, expected: usize) -> Result<(), (Option<usize>, OutOfDomain)> {
+    if actual == expected {
         return Ok(());
     }
-    Err((None, OutOfDomain { argument, value: found as f64, unit: "rows", domain: "the number of errors" }))
+    Err((None, OutOfDomain { argument, value: actual as f64, unit: "rows", domain: "the number of errors" }))
 }
 
-fn track_length(track: &[u32], wanted: usize) -> Result<(), (Option<usize>, OutOfDomain)> {
-    if track.is_empty() { Ok(()) } else { same_length("track", track.len(), wanted) }
+fn track_length(track: &[u32], expected: usize) -> Result<(), (Option<usize>, OutOfDomain)> {
+    if track.is_empty() { Ok(()) } else { same_length("track", track.len(), expected) }
 }

@@ -188,7 +188,7 @@ impl Watch {
         }
         self.heard = heard;
         let dop = if self.n_sv == 0 { [f64::NAN; 2] } else { sensing.outlook().dop(second) };
-        let mut said = Navigated {
+        let mut navigated = Navigated {
             error_enu_m: self.last_error,
             covariance: Err(Unavailable::Missing { method: "the navigation filter", field: "inertial samples up to it" }),
             n_sv: self.n_sv,
@@ -200,49 +200,49 @@ impl Watch {
             doubt: None,
             decision: None,
         };
-        let given = match filter.solution(time) {
+        let output = match filter.solution(time) {
             // Numbers that cannot be compared are those of no solution: the flight goes on and says so.
-            Some(main) => self.given(time, main, &mut said).ok(),
+            Some(main) => self.output_of(time, main, &mut navigated).ok(),
             None => None,
         };
-        said.mode = given.map(|s| s.mode);
-        let stations = given.is_some_and(|s| s.mode != Mode::Gnss) && self.stations.doubts(time);
+        navigated.mode = output.map(|s| s.mode);
+        let stations = output.is_some_and(|s| s.mode != Mode::Gnss) && self.stations.doubts(time);
         let witnesses = Witnesses {
-            filters_disagree: Some(said.doubt == Some(Doubt::Filters)),
+            filters_disagree: Some(navigated.doubt == Some(Doubt::Filters)),
             stations_contradict: Some(stations),
             ..Witnesses::NONE
         };
-        if stations && said.doubt.is_none() {
-            said.doubt = Some(Doubt::Stations);
+        if stations && navigated.doubt.is_none() {
+            navigated.doubt = Some(Doubt::Stations);
         }
-        let facts = self.guard.facts(&mut self.driver.filter, time, given.as_ref(), witnesses);
+        let facts = self.guard.facts(&mut self.driver.filter, time, output.as_ref(), witnesses);
         let decision = decide(&facts);
         let snapshot = self.guard.looked().map(|l| &l.snapshot);
         let position = match decision.source {
-            Source::Filter => given.and_then(|s| Some((s.state.position().ok()?, s.covariance))),
+            Source::Filter => output.and_then(|s| Some((s.state.position().ok()?, s.covariance))),
             Source::Snapshot => snapshot.map(|s| (s.position, s.covariance)),
             Source::None => None,
         };
         if decision.source == Source::Snapshot {
-            said.n_sv = snapshot.map_or(0, |s| s.members().count() as u32);
-            said.dop = sensing.outlook().dop(second);
+            navigated.n_sv = snapshot.map_or(0, |s| s.members().count() as u32);
+            navigated.dop = sensing.outlook().dop(second);
         }
         if let Some((position, covariance)) = position {
             self.last_error = *navigation_error(&position, &truth.position).vector();
-            (said.error_enu_m, said.covariance) = (self.last_error, Ok(self.guard.stated(&decision, &covariance)?));
+            (navigated.error_enu_m, navigated.covariance) = (self.last_error, Ok(self.guard.stated(&decision, &covariance)?));
         }
-        said.decision = Some(decision);
-        Ok(said)
+        navigated.decision = Some(decision);
+        Ok(navigated)
     }
 
     /// The solution that is given. While both filters disagree and the satellites keep the position, nobody knows which of them is right,
     /// and that is said. When the satellites are lost after that, what the main filter remembers of them is not believed either. Filters
     /// that fall out without satellites share the inertial unit and the stations: one of these is wrong, and neither filter is believed.
-    fn given(&mut self, time: GpsTime, main: Solution, said: &mut Navigated) -> Result<Solution, OutOfDomain> {
+    fn output_of(&mut self, time: GpsTime, main: Solution, navigated: &mut Navigated) -> Result<Solution, OutOfDomain> {
         let filter = &mut self.driver.filter;
         let Some(beside) = filter.beside(time) else { return Ok(main) };
-        let found = self.verdict.judge(time, &beside.difference, &beside.covariance, &beside.solution.covariance)?;
-        said.separation_m = found.map(|s| [s.distance.m(), s.limit.m()]);
+        let separation = self.verdict.judge(time, &beside.difference, &beside.covariance, &beside.solution.covariance)?;
+        navigated.separation_m = separation.map(|s| [s.distance.m(), s.limit.m()]);
         if !self.verdict.disagree() {
             self.led_astray = false;
             return Ok(main);
@@ -251,10 +251,10 @@ impl Watch {
         self.led_astray |= satellites;
         // Filters that fall out without satellites and still lie within what is said anyhow need no alarm: the longer these are lost the
         // smaller is what the two may differ by.
-        let said_anyhow = circle(&beside.solution.covariance, None, Risk::ACCURACY)?;
-        let far = found.is_some_and(|s| s.distance > said_anyhow);
+        let stated_radius = circle(&beside.solution.covariance, None, Risk::ACCURACY)?;
+        let far = separation.is_some_and(|s| s.distance > stated_radius);
         if satellites || (!self.led_astray && far) {
-            said.doubt = Some(Doubt::Filters);
+            navigated.doubt = Some(Doubt::Filters);
         }
         Ok(if satellites { main } else { beside.solution })
     }

@@ -112,7 +112,7 @@ pub(crate) struct Driver {
     due: GpsTime,
     stopped: Option<(GpsTime, Stop)>,
     holes: Vec<(GpsTime, f64)>,
-    adrift: bool,
+    after_gap: bool,
     refused: Option<(GpsTime, OutOfDomain)>,
 }
 
@@ -127,19 +127,19 @@ impl Driver {
             due,
             stopped: None,
             holes: Vec::new(),
-            adrift: false,
+            after_gap: false,
             refused: None,
         }
     }
 
     pub(crate) fn sample(&mut self, sample: &ImuIncrement) -> Advance {
         let outcome = self.filter.advance(sample);
-        if let (Advance::Adrift { since_s }, false) = (outcome, self.adrift) {
+        if let (Advance::AfterGap { since_s }, false) = (outcome, self.after_gap) {
             self.holes.push((sample.time, since_s));
         }
         match outcome {
-            Advance::Adrift { .. } => self.adrift = true,
-            Advance::Done => self.adrift = false,
+            Advance::AfterGap { .. } => self.after_gap = true,
+            Advance::Done => self.after_gap = false,
             Advance::Refused(why) => {
                 self.refused.get_or_insert((sample.time, why));
             }

@@ -30,9 +30,9 @@ pub struct Skies<'a> {
     pub constellation: &'a [Constellation],
 }
 
-/// What levels are asked for; each array has one item a sky.
+/// What levels are requested; each array has one item a sky.
 #[derive(Debug, Clone, Copy)]
-pub struct Asked<'a> {
+pub struct Request<'a> {
     /// Largest nominal bias of a range \[m\].
     pub bias_m: &'a [f64],
     /// Covariance with an inertial system, nine numbers \[m²\].
@@ -94,14 +94,14 @@ impl Skies<'_> {
 ///
 /// # Errors
 /// [`AtIndex`] for the first number outside its domain, counted through all rows.
-pub fn protection_levels(skies: &Skies<'_>, asked: &Asked<'_>) -> Result<Vec<Counted>, AtIndex> {
-    (0..skies.len()).into_par_iter().map(|sky| one(skies, asked, sky)).collect()
+pub fn protection_levels(skies: &Skies<'_>, request: &Request<'_>) -> Result<Vec<Counted>, AtIndex> {
+    (0..skies.len()).into_par_iter().map(|sky| one(skies, request, sky)).collect()
 }
 
 /// Satellites used, and the answer.
 pub type Counted = (usize, Result<Answer, Unavailable>);
 
-fn one(skies: &Skies<'_>, asked: &Asked<'_>, sky: usize) -> Result<Counted, AtIndex> {
+fn one(skies: &Skies<'_>, request: &Request<'_>, sky: usize) -> Result<Counted, AtIndex> {
     let at = |error| AtIndex { index: sky, error };
     let ranges = skies.ranges(sky)?;
     let aided = asked.aided_m2.map(|all| covariance(all, sky)).transpose().map_err(at)?;
@@ -109,7 +109,7 @@ fn one(skies: &Skies<'_>, asked: &Asked<'_>, sky: usize) -> Result<Counted, AtIn
     let settings = Settings { bias, ..asked.settings };
     let plain: Vec<Sight> = ranges.iter().map(|r| r.1).collect();
     let answer = Snapshot::new(&plain).map(|snapshot| {
-        let shift = asked.b_values_m.map_or(Metres::new(0.0), |all| shift(all, skies, sky, &ranges, &snapshot));
+        let shift = request.b_values_m.map_or(Metres::new(0.0), |all| shift(all, skies, sky, &ranges, &snapshot));
         let levels = levels::levels(&snapshot, aided.as_ref(), shift, &settings);
         let covariance = aided.unwrap_or(*snapshot.covariance());
         Answer {

@@ -78,7 +78,7 @@ impl Judged {
     pub(crate) fn sample(&mut self, sample: &ImuIncrement, outcome: &Advance) -> GpsTime {
         let interval_s = if sample.interval_s > 0.0 && sample.interval_s < 1.0 { sample.interval_s } else { 0.0 };
         let next = self.due.map_or(sample.time, |d| d.plus_seconds(interval_s));
-        let accepted = matches!(outcome, Advance::Done | Advance::Bridged { .. } | Advance::Adrift { .. });
+        let accepted = matches!(outcome, Advance::Done | Advance::Bridged { .. } | Advance::AfterGap { .. });
         let near = sample.time.seconds_since(next).abs() <= if accepted { 1.5 } else { 0.5 } * interval_s;
         let due = if near || sample.time > next { sample.time } else { next };
         self.due = Some(due);
@@ -160,8 +160,8 @@ impl Judged {
             let (position, covariance) = (l.snapshot.position, l.snapshot.covariance);
             StandIn { position, covariance, velocity: l.velocity }
         });
-        let given = solution.as_mut().map(|s| &mut s.covariance).filter(|_| decision.source == Source::Filter);
-        if let Some(covariance) = stand_in.as_mut().map(|s| &mut s.covariance).or(given) {
+        let filtered = solution.as_mut().map(|s| &mut s.covariance).filter(|_| decision.source == Source::Filter);
+        if let Some(covariance) = stand_in.as_mut().map(|s| &mut s.covariance).or(filtered) {
             *covariance = self.guard.stated(&decision, covariance)?;
         }
         Ok((decision, stand_in))

@@ -1,6 +1,6 @@
 //! Can the recorded positions have been flown? Held and jumping positions, before any bound is believed.
 //!
-//! A position report says nothing about its own honesty: a decoder or a receiver repeats the last position when none arrives, and a falsified
+//! A position report does not show whether it is true: a decoder or a receiver repeats the last position when none arrives, and a falsified
 //! receiver jumps. Both leave a track that no bound of the navigation error covers, so they are found here, first.
 
 mod way;
@@ -54,7 +54,7 @@ pub enum Finding {
     /// Nothing against it.
     Plausible,
     /// The position of an earlier report, repeated, not yet stale.
-    Held,
+    Repeated,
     /// The same, too old.
     Stale,
     /// Reachable only from a position that was older than a stale one.
@@ -241,7 +241,7 @@ impl Track {
         let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
         let step_m = here.minus(&from).vector().norm();
         let mut too_fast_mps = 0.0;
-        let (mut finding, mut age_s) = if unchanged { (held(report, fix.time, limits), elapsed) } else { (Finding::Plausible, 0.0) };
+        let (mut finding, mut age_s) = if unchanged { (repeated(report, fix.time, limits), elapsed) } else { (Finding::Plausible, 0.0) };
         if !unchanged {
             let flown = self.window.as_mut().is_none_or(|w| w.reaches(report, &here, limits));
             let between = Between::new(&fix, report, limits);
@@ -261,13 +261,13 @@ impl Track {
             }
             self.last = Some((*report, here));
         }
-        let returned = held(report, repeated_since, limits) == Finding::Stale && report.speed_mps.is_nan();
+        let returned = repeated(report, repeated_since, limits) == Finding::Stale && report.speed_mps.is_nan();
         if finding != Finding::Jump && (behind.is_some() || returned) {
             finding = Finding::Stale;
             age_s = age_s.max(behind.unwrap_or_else(|| report.time.seconds_since(repeated_since)));
         }
         let settling = self.jumped.is_some_and(|t| within(report.time, t, limits.settle_s));
-        if settling && matches!(finding, Finding::Plausible | Finding::Held | Finding::Late) {
+        if settling && matches!(finding, Finding::Plausible | Finding::Repeated | Finding::Late) {
             finding = Finding::Unsettled;
         }
         Ok(Judged { finding, age_s, step_m, too_fast_mps, speed_doubted })
@@ -310,12 +310,12 @@ impl Window {
 
 /// An unchanged position is held where the aircraft says it moves; a parked one repeats itself rightly. Where no speed is reported a repeat may
 /// be a slow one's rounded position, until it lasts.
-fn held(report: &Report, since: GpsTime, limits: &Limits) -> Finding {
+fn repeated(report: &Report, since: GpsTime, limits: &Limits) -> Finding {
     let silent = report.speed_mps.is_nan();
     let may_move = if silent { limits.moving_mps.is_finite() } else { report.speed_mps > limits.moving_mps };
     match (may_move, within(report.time, since, limits.stale_after_s)) {
         (true, false) => Finding::Stale,
-        (true, true) if !silent => Finding::Held,
+        (true, true) if !silent => Finding::Repeated,
         _ => Finding::Plausible,
     }
 }

@@ -44,7 +44,7 @@ pub enum Model {
 const MESSAGE_LASTS_S: f64 = 2.0 * 86_400.0;
 
 impl Model {
-    /// The ionosphere at a time by the messages of a file; `None` where a message is wanted by name and none is near.
+    /// The ionosphere at a time by the messages of a file; `None` where a message is requested by name and none is near.
     pub fn of(self, navigation: &Navigation, time: GpsTime) -> Option<Ionosphere> {
         let broadcast = || Dated::nearest(&navigation.ionosphere_gps, time, MESSAGE_LASTS_S).and_then(Ionosphere::broadcast);
         let galileo = || Dated::nearest(&navigation.ionosphere_galileo, time, MESSAGE_LASTS_S).and_then(Ionosphere::galileo);
@@ -84,7 +84,7 @@ pub struct Positions {
     pub undescribed: bool,
     /// The ranges of each position, where they are kept; weights and shared errors widened as the covariance is.
     pub ranges: Vec<Vec<(SatelliteId, Used)>>,
-    /// Satellite-epochs of the wanted constellations that were used, and that were not.
+    /// Satellite-epochs of the requested constellations that were used, and that were not.
     pub tally: Tally,
     /// Signals of each constellation.
     pub signals: BTreeMap<char, &'static str>,
@@ -129,15 +129,15 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
     let smoothed_share = smoothed.as_ref().map(Smoothed::share);
     let undescribed = job.signals == Signals::Single && !job.settings.ionosphere.is_described();
     let (codes, signals) = (codes(&plans, observations), names(&plans));
-    let mut found = Positions { codes, signals, smoothed_share, undescribed, ..Positions::default() };
+    let mut solution = Positions { codes, signals, smoothed_share, undescribed, ..Positions::default() };
     let mut solved = Vec::with_capacity(epochs.len());
     for (part, tally) in outcomes {
         solved.extend(part);
-        found.tally.add(&tally);
+        solution.tally.add(&tally);
     }
-    found.tally.leave(Unused::ConstellationLeftOut, solver.treat(&mut solved));
-    declare(&observations.time, solved, job.keep_ranges, &mut found);
-    found
+    solution.tally.leave(Unused::ConstellationLeftOut, solver.treat(&mut solved));
+    declare(&observations.time, solved, job.keep_ranges, &mut solution);
+    solution
 }
 
 /// What came of one epoch's ranges by themselves.
@@ -222,14 +222,14 @@ impl Solver<'_> {
 const FEW: usize = 3;
 
 /// Statuses and covariances, which the receiver's past has a part in, through the file in its order.
-fn declare(times: &[GpsTime], solved: Vec<Solved>, keep: bool, found: &mut Positions) {
+fn declare(times: &[GpsTime], solved: Vec<Solved>, keep: bool, out: &mut Positions) {
     let mut declarations = Declarations::default();
     for (time, Solved { fix, mixture, mut kept }) in times.iter().zip(solved) {
         let own = fix.as_ref().map_or(1.0, |f| f.inflation);
         let (fix, doubt) = match fix {
             Ok(mut fix) => {
                 let doubt = declarations.declare(*time, &mut fix, mixture.as_deref());
-                let doubt = doubt.or(found.undescribed.then_some(Doubt::IonosphereUndescribed));
+                let doubt = doubt.or(out.undescribed.then_some(Doubt::IonosphereUndescribed));
                 (doubt.and_then(|d| d.refusal(&fix)).map_or(Ok(fix), Err), doubt)
             }
             Err(why) => (Err(why), Doubt::of(&why)),
@@ -241,10 +241,10 @@ fn declare(times: &[GpsTime], solved: Vec<Solved>, keep: bool, found: &mut Posit
             u.shared_m *= (whole / own).sqrt();
         }
         if keep {
-            found.ranges.push(if fix.is_ok() { kept } else { Vec::new() });
+            out.ranges.push(if fix.is_ok() { kept } else { Vec::new() });
         }
-        found.fixes.push(fix);
-        found.doubts.push(doubt);
+        out.fixes.push(fix);
+        out.doubts.push(doubt);
     }
 }
 

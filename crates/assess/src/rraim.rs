@@ -28,9 +28,9 @@ pub struct Coasting<'a> {
     pub sigma_td_m: &'a [f64],
 }
 
-/// What levels are asked for; each array has one item a sky.
+/// What levels are requested; each array has one item a sky.
 #[derive(Debug, Clone, Copy)]
-pub struct Asked<'a> {
+pub struct Request<'a> {
     /// Largest nominal bias of a range \[m\].
     pub bias_m: &'a [f64],
     /// Covariance of the fix with an inertial system, nine numbers \[m²\].
@@ -114,8 +114,8 @@ impl Room {
 ///
 /// # Errors
 /// [`AtIndex`] for the first number outside its domain.
-pub fn protection_levels(coasting: &Coasting<'_>, asked: &Asked<'_>) -> Result<Vec<Result<Answer, Unavailable>>, AtIndex> {
-    (0..coasting.fix.len()).into_par_iter().map_init(Room::default, |room, sky| one(coasting, asked, sky, room)).collect()
+pub fn protection_levels(coasting: &Coasting<'_>, request: &Request<'_>) -> Result<Vec<Result<Answer, Unavailable>>, AtIndex> {
+    (0..coasting.fix.len()).into_par_iter().map_init(Room::default, |room, sky| one(coasting, request, sky, room)).collect()
 }
 
 /// Satellites of a sky that were followed until now, by their columns.
@@ -138,29 +138,29 @@ pub fn followed(coasting: &Coasting<'_>, sky: usize, ranges: &[(usize, Sight)]) 
     Ok(kept)
 }
 
-fn one(coasting: &Coasting<'_>, asked: &Asked<'_>, sky: usize, room: &mut Room) -> Result<Result<Answer, Unavailable>, AtIndex> {
+fn one(coasting: &Coasting<'_>, request: &Request<'_>, sky: usize, room: &mut Room) -> Result<Result<Answer, Unavailable>, AtIndex> {
     let at = |error| AtIndex { index: sky, error };
     let ranges = coasting.fix.ranges(sky)?;
     let kept = followed(coasting, sky, &ranges)?;
     let plain: Vec<Followed> = kept.iter().map(|k| k.1).collect();
     let coast = Coast::new(&plain).map_err(at)?;
-    let bias = size_of_bias(asked.bias_m[sky]).map_err(at)?;
-    let aided = asked.aided_m2.map(|all| covariance(all, sky)).transpose().map_err(at)?;
+    let bias = size_of_bias(request.bias_m[sky]).map_err(at)?;
+    let aided = request.aided_m2.map(|all| covariance(all, sky)).transpose().map_err(at)?;
     let snapshot = match Snapshot::new(&ranges.iter().map(|r| r.1).collect::<Vec<_>>()) {
         Ok(snapshot) => snapshot,
         Err(why) => return Ok(Err(why)),
     };
-    let form: Form = asked.single.form;
+    let form: Form = request.single.form;
     let fix = aided.map_or_else(|| Fix::of(&snapshot), |p| Fix::aided(&snapshot, p, form));
-    let single = match SingleFault::new(&fix, &coast, form, asked.single.ordering) {
+    let single = match SingleFault::new(&fix, &coast, form, request.single.ordering) {
         Ok(single) => single,
         Err(why) => return Ok(Err(why)),
     };
-    if let Err(why) = room.fill(&fix, &coast, &asked.priors) {
+    if let Err(why) = room.fill(&fix, &coast, &request.priors) {
         return Ok(Err(why));
     }
-    let biased = asked.single.biased_threshold;
-    let multipliers = Multipliers::new(&asked.single, coast.len(), asked.priors.of_satellites(&coast)).map_err(at)?;
+    let biased = request.single.biased_threshold;
+    let multipliers = Multipliers::new(&request.single, coast.len(), request.priors.of_satellites(&coast)).map_err(at)?;
     let (n_modes, not_monitored) = room.monitored();
     Ok(Ok(Answer {
         n_sv: coast.len(),
@@ -169,7 +169,7 @@ fn one(coasting: &Coasting<'_>, asked: &Asked<'_>, sky: usize, room: &mut Room) 
         gain: single.gain(),
         accuracy: single.accuracy(bias),
         single: single.levels(bias, Metres::new(0.0), &multipliers, biased),
-        multiple: room.levels(bias, &asked.budget),
+        multiple: room.levels(bias, &request.budget),
         n_modes,
         not_monitored,
         without: kept.iter().zip(single.without()).map(|(k, w)| (k.0, *w, multipliers.threshold(w, bias, biased))).collect(),

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 /// Fewest users and epochs that a task gets: below, replaying the messages costs more than the second core saves.
 const LEAST_TASK: usize = 256;
 
-/// What is asked of a service.
+/// What is required of a service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
     /// Precision approach, and en route where that has no level.
@@ -243,7 +243,7 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// Everyone at one instant; who has no level in the first use is asked again in the second.
+    /// Everyone at one instant; who has no level in the first use is served again by the second.
     fn instant(
         &mut self,
         requests: &[Request],
@@ -281,7 +281,7 @@ impl Task<'_> {
             }
             let user = User::new(place, self.settings.mask, self.settings.airborne).map_err(|e| (*i, e))?;
             match self.users.get_mut(k) {
-                Some(held) => *held = user,
+                Some(kept) => *kept = user,
                 None => self.users.push(user),
             }
         }

@@ -65,7 +65,7 @@ pub fn smooth(observations: &Observations, codes: &[Vec<usize>; SYSTEMS], form: 
     let tracks: Vec<Vec<Track>> =
         (0..SYSTEMS).map(|system| codes[system].iter().filter_map(|c| track(observations, system, *c)).collect()).collect();
     let mut states: Vec<Vec<State>> = tracks.iter().map(|t| vec![State::default(); NUMBERS * t.len()]).collect();
-    let mut found =
+    let mut smoothed =
         Smoothed { noise_share: vec![1.0; observations.value.len()], value: observations.value.clone(), n_smoothed: 0, n_codes: 0 };
     for epoch in 0..observations.n_epochs() {
         for k in observations.satellites(epoch) {
@@ -74,11 +74,11 @@ pub fn smooth(observations: &Observations, codes: &[Vec<usize>; SYSTEMS], form: 
             let n = tracks[system].len();
             for (j, track) in tracks[system].iter().enumerate() {
                 let Some(state) = states[system].get_mut(slot(satellite) * n + j) else { continue };
-                found.step(observations, (epoch, k), track, state, form, how);
+                smoothed.step(observations, (epoch, k), track, state, form, how);
             }
         }
     }
-    found
+    smoothed
 }
 
 fn slot(satellite: SatelliteId) -> usize {
@@ -88,8 +88,8 @@ fn slot(satellite: SatelliteId) -> usize {
 fn track(observations: &Observations, system: usize, code: usize) -> Option<Track> {
     let constellation = Constellation::from_index(system)?;
     let [_, band, attribute] = *observations.codes[system].get(code)?;
-    let phases = |wanted: fn(&Code, u8, u8) -> bool| {
-        let of_band = observations.codes[system].iter().enumerate().filter(move |(_, c)| c[0] == b'L' && wanted(c, band, attribute));
+    let phases = |serves: fn(&Code, u8, u8) -> bool| {
+        let of_band = observations.codes[system].iter().enumerate().filter(move |(_, c)| c[0] == b'L' && serves(c, band, attribute));
         of_band.map(|(k, c)| (k, c[1]))
     };
     // The same signal's phase first, then any of the carrier.

@@ -125,11 +125,11 @@ fn of_demand(
     let threshold = demand.unmonitored * demand.budget.allotted.q();
     let priors = Priors { satellite: during(grid.rates.0), constellation: during(grid.rates.1), threshold }.check()?;
     let settings = &demand.single;
-    let found = SingleFault::new(fix, coast, settings.form, settings.ordering).and_then(|single| {
+    let bound = SingleFault::new(fix, coast, settings.form, settings.ordering).and_then(|single| {
         room.fill(fix, coast, &priors)?;
         Ok(single)
     });
-    let Ok(single) = found else {
+    let Ok(single) = bound else {
         cells.resize(cells.len() + grid.bias_m.len(), [f64::NAN; 3]);
         return Ok(());
     };

@@ -74,7 +74,7 @@ fn a_batch_has_the_bits_of_single_epochs_with_priors_alike_or_not() {
         let rows = levels(&sights, &Rule::Araim(Service::LPV_200), false).unwrap();
         assert_eq!(rows.len(), 300);
         for (epoch, row) in rows.iter().enumerate() {
-            let (n_sv, found) = alone(&c, epoch);
+            let (n_sv, single) = alone(&c, epoch);
             assert_eq!((row.n_sv, row.outcome), (n_sv, Outcome::Ok));
             let batch = row.levels.unwrap();
             assert_eq!(batch.vpl_m().to_bits(), found.vpl_m().to_bits(), "epoch {epoch}");

@@ -43,14 +43,14 @@ fn steady_flight_is_plausible() {
 }
 
 #[test]
-fn a_repeated_position_is_held_and_then_stale_and_ends_with_the_next() {
-    use Finding::{Held, Plausible, Stale};
-    let found = judge(&track(&[0.0, 100.0, 100.0, 100.0, 100.0, 100.0, 600.0], 100.0), &LIMITS).unwrap();
-    let findings: Vec<Finding> = found.iter().map(|j| j.finding).collect();
-    assert_eq!(findings, [Plausible, Plausible, Held, Held, Stale, Stale, Plausible]);
-    assert_eq!(found[5].age_s, 4.0);
+fn a_repeated_position_is_degraded_and_then_stale_and_ends_with_the_next() {
+    use Finding::{Plausible, Repeated, Stale};
+    let judged = judge(&track(&[0.0, 100.0, 100.0, 100.0, 100.0, 100.0, 600.0], 100.0), &LIMITS).unwrap();
+    let findings: Vec<Finding> = judged.iter().map(|j| j.finding).collect();
+    assert_eq!(findings, [Plausible, Plausible, Repeated, Repeated, Stale, Stale, Plausible]);
+    assert_eq!(judged[5].age_s, 4.0);
     // 500 m along the meridian; the chord is shorter by 1e-7 of it.
-    assert!((found[6].step_m - 500.0).abs() < 1e-3, "{}", found[6].step_m);
+    assert!((judged[6].step_m - 500.0).abs() < 1e-3, "{}", judged[6].step_m);
 }
 
 #[test]
@@ -63,10 +63,10 @@ fn a_flight_in_hardly_any_time_is_a_jump_however_small_its_steps() {
         lon_rad: 0.3,
         speed_mps: f64::NAN,
     };
-    let found = findings(&(0..1200).map(crawl).collect::<Vec<_>>());
+    let verdicts = findings(&(0..1200).map(crawl).collect::<Vec<_>>());
     // 400 m/s for two seconds of latency and 0.1 km of noise are 0.9 km: thirteen steps.
-    assert_eq!(found.iter().position(|f| *f == Finding::Jump), Some(13));
-    assert!(found[13..].iter().all(|f| matches!(f, Finding::Jump | Finding::Unsettled)));
+    assert_eq!(verdicts.iter().position(|f| *f == Finding::Jump), Some(13));
+    assert!(verdicts[13..].iter().all(|f| matches!(f, Finding::Jump | Finding::Unsettled)));
 }
 
 #[test]
@@ -93,20 +93,20 @@ fn a_parked_aircraft_may_repeat_its_position() {
 /// Twenty minutes of the last fix, from the begin and in flight; up to the stale time a slow one's position may round to the same.
 #[test]
 fn without_a_speed_a_position_that_repeats_its_bits_is_stale_in_time() {
-    let found = findings(&track(&[5.0; 1200], f64::NAN));
-    assert!(found[..=2].iter().all(|f| *f == Finding::Plausible), "{:?}", &found[..4]);
-    assert!(found[3..].iter().all(|f| *f == Finding::Stale));
+    let verdicts = findings(&track(&[5.0; 1200], f64::NAN));
+    assert!(verdicts[..=2].iter().all(|f| *f == Finding::Plausible), "{:?}", &verdicts[..4]);
+    assert!(verdicts[3..].iter().all(|f| *f == Finding::Stale));
     let positions: Vec<f64> = (0..1300).map(|k| 70.0 * f64::from(k.min(100))).collect();
-    let found = findings(&track(&positions, f64::NAN));
-    assert!(found[..=102].iter().all(|f| *f == Finding::Plausible));
-    assert!(found[103..].iter().all(|f| *f == Finding::Stale));
+    let verdicts = findings(&track(&positions, f64::NAN));
+    assert!(verdicts[..=102].iter().all(|f| *f == Finding::Plausible));
+    assert!(verdicts[103..].iter().all(|f| *f == Finding::Stale));
 }
 
 #[test]
 fn a_receiver_that_is_known_to_stand_may_repeat_its_position() {
     let standing = Limits { moving_mps: f64::INFINITY, ..LIMITS };
-    let found = judge(&track(&[5.0; 1200], f64::NAN), &standing).unwrap();
-    assert!(found.iter().all(|j| j.finding == Finding::Plausible));
+    let judged = judge(&track(&[5.0; 1200], f64::NAN), &standing).unwrap();
+    assert!(judged.iter().all(|j| j.finding == Finding::Plausible));
 }
 
 /// A centimetre of noise, at once a second and at ten times a second.
@@ -121,12 +121,16 @@ fn a_position_that_stands_with_noise_while_the_aircraft_says_it_moves_is_stale()
             .collect();
         let mut reports = track(&flown, speed_mps);
         reports.iter_mut().enumerate().for_each(|(k, r)| r.time = GpsTime::from_nanoseconds(1_000_000_000 / i64::from(per_s) * k as i64));
-        let found = findings(&reports);
+        let verdicts = findings(&reports);
         let before = (100 * per_s) as usize;
-        assert!(found[..=before].iter().all(|f| *f == Finding::Plausible));
+        assert!(verdicts[..=before].iter().all(|f| *f == Finding::Plausible));
         // 400 m by the reported speed, and one second more between two places.
         let seen = before + ((400.0 / speed_mps).ceil() as usize + 1) * per_s as usize;
-        assert!(found[seen..].iter().all(|f| *f == Finding::Stale), "{per_s} a second, {speed_mps} m/s: {:?}", &found[before..seen + 3]);
+        assert!(
+            verdicts[seen..].iter().all(|f| *f == Finding::Stale),
+            "{per_s} a second, {speed_mps} m/s: {:?}",
+            &verdicts[before..seen + 3]
+        );
     }
 }
 
@@ -155,17 +159,17 @@ fn a_circle_goes_as_far_as_a_straight_flight() {
 fn a_flight_that_goes_on_after_a_stand_is_believed_again() {
     let flown: Vec<f64> =
         (0..100).map(|k| 70.0 * f64::from(if k < 20 { k } else { (k - 20).max(20) }) + 0.001 * f64::from(k % 3)).collect();
-    let found = findings(&track(&flown, 70.0));
-    assert_eq!(found[30], Finding::Stale);
-    assert!(found[47..].iter().all(|f| *f == Finding::Plausible), "{found:?}");
+    let verdicts = findings(&track(&flown, 70.0));
+    assert_eq!(verdicts[30], Finding::Stale);
+    assert!(verdicts[47..].iter().all(|f| *f == Finding::Plausible), "{verdicts:?}");
 }
 
 #[test]
 fn without_a_speed_positions_that_take_turns_are_stale_in_time() {
     let turns: Vec<f64> = (0..100).map(|k| f64::from(k % 2)).collect();
-    let found = findings(&track(&turns, f64::NAN));
-    assert!(found[..=3].iter().all(|f| *f == Finding::Plausible), "{:?}", &found[..4]);
-    assert!(found[4..].iter().all(|f| *f == Finding::Stale));
+    let verdicts = findings(&track(&turns, f64::NAN));
+    assert!(verdicts[..=3].iter().all(|f| *f == Finding::Plausible), "{:?}", &verdicts[..4]);
+    assert!(verdicts[4..].iter().all(|f| *f == Finding::Stale));
 }
 
 /// Frozen with a centimetre of noise for 5 s, and on from where the flight is by then: 350 m in a second; 212.5 m need no latency.
@@ -173,10 +177,10 @@ fn without_a_speed_positions_that_take_turns_are_stale_in_time() {
 fn without_a_speed_the_step_after_a_stand_is_a_jump() {
     let flown: Vec<f64> =
         (0..200).map(|k| if (50..55).contains(&k) { 3500.0 + 0.01 * f64::from(k % 3) } else { 70.0 * f64::from(k) }).collect();
-    let found = findings(&track(&flown, f64::NAN));
-    assert_eq!(found[55], Finding::Jump);
-    assert!(found[56..=85].iter().all(|f| *f == Finding::Unsettled));
-    assert_eq!(found[86], Finding::Plausible);
+    let verdicts = findings(&track(&flown, f64::NAN));
+    assert_eq!(verdicts[55], Finding::Jump);
+    assert!(verdicts[56..=85].iter().all(|f| *f == Finding::Unsettled));
+    assert_eq!(verdicts[86], Finding::Plausible);
 }
 
 #[test]
@@ -193,9 +197,9 @@ fn one_wild_speed_lets_no_step_pass() {
     for wild in [0, 1, 4] {
         let mut reports = track(&flown, 70.0);
         reports[50..50 + wild].iter_mut().for_each(|r| r.speed_mps = 200.0);
-        let found = judge(&reports, &LIMITS).unwrap();
-        assert_eq!(found[50].finding, Finding::Jump, "{wild} wild");
-        assert_eq!(found.iter().filter(|j| j.speed_doubted).count(), wild);
+        let judged = judge(&reports, &LIMITS).unwrap();
+        assert_eq!(judged[50].finding, Finding::Jump, "{wild} wild");
+        assert_eq!(judged.iter().filter(|j| j.speed_doubted).count(), wild);
     }
 }
 
@@ -218,8 +222,8 @@ fn a_speed_that_grows_is_believed() {
             report.speed_mps = speed;
             report.time = GpsTime::from_nanoseconds(1_000_000_000 * i64::from(every) * k as i64);
         }
-        let found = judge(&reports, &LIMITS).unwrap();
-        assert!(found.iter().all(|j| j.finding == Finding::Plausible && !j.speed_doubted), "every {every} s");
+        let judged = judge(&reports, &LIMITS).unwrap();
+        assert!(judged.iter().all(|j| j.finding == Finding::Plausible && !j.speed_doubted), "every {every} s");
     }
 }
 
@@ -255,10 +259,10 @@ fn a_track_that_reports_no_speed_is_judged_by_its_own() {
 fn after_a_jump_nothing_is_believed_until_it_has_settled() {
     let mut positions = vec![0.0];
     positions.extend((0..40).map(|i| 50_000.0 + 100.0 * f64::from(i)));
-    let found = findings(&track(&positions, 100.0));
-    assert_eq!(found[1], Finding::Jump);
-    assert!(found[2..=31].iter().all(|f| *f == Finding::Unsettled), "{found:?}");
-    assert!(found[32..].iter().all(|f| *f == Finding::Plausible), "{found:?}");
+    let verdicts = findings(&track(&positions, 100.0));
+    assert_eq!(verdicts[1], Finding::Jump);
+    assert!(verdicts[2..=31].iter().all(|f| *f == Finding::Unsettled), "{verdicts:?}");
+    assert!(verdicts[32..].iter().all(|f| *f == Finding::Plausible), "{verdicts:?}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Batches of RAIM: the bits of one epoch at a time, satellites that are not used left out, columns told apart.
+//! Batches of RAIM: the bits of one epoch at a time, satellites that are not used left out, columns kept apart.
 #![allow(clippy::unwrap_used)] // A test may stop at the first surprise, in its helpers too.
 
 use nalgebra::Vector3;
@@ -63,7 +63,7 @@ fn a_batch_is_its_epochs_one_by_one_and_names_the_column_of_the_excluded() {
 }
 
 #[test]
-fn the_first_bad_number_is_told_with_its_epoch() {
+fn the_first_bad_number_is_reported_with_its_epoch() {
     let (unit, mut sigma, systems) = columns();
     sigma[300 * SATELLITES + 2] = -1.0;
     let sights = Sights { unit_enu: &unit, sigma_m: &sigma, constellation: &systems };

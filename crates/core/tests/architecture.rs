@@ -21,16 +21,16 @@ fn root() -> PathBuf {
 }
 
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
-    let mut found = Vec::new();
+    let mut paths = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            found.extend(files(&path, extension));
+            paths.extend(files(&path, extension));
         } else if path.extension().is_some_and(|e| e == extension) {
-            found.push(path);
+            paths.push(path);
         }
     }
-    found
+    paths
 }
 
 /// The stages of core that a source text names after `crate::`, one by one or in braces.

@@ -145,9 +145,9 @@ proptest! {
             .map(|k| core::f64::consts::TAU * f64::from(k) / 40_000.0)
             .map(|t| f64::hypot(x + a * t.cos(), y + b * t.sin()))
             .fold(0.0, f64::max);
-        let found = farthest(Metres::new(x), Metres::new(y), Metres::new(a), Metres::new(b)).m();
+        let distance = farthest(Metres::new(x), Metres::new(y), Metres::new(a), Metres::new(b)).m();
         // Half a step of the walk is 8e-5: it falls short by at most its square times the radius of curvature's share.
-        prop_assert!(found >= walk - 1e-12 && found <= walk + 1e-7 * (1.0 + walk), "{} {}", found, walk);
+        prop_assert!(distance >= walk - 1e-12 && distance <= walk + 1e-7 * (1.0 + walk), "{} {}", distance, walk);
     }
 }
 

@@ -116,9 +116,9 @@ proptest! {
         let v = Covariance::<Enu>::claim_symmetric(v);
         let (cross, q) = (Vector3::new(course.cos(), -course.sin(), 0.0), Risk::new(q).unwrap());
         let sigma = v.to_track(Radians::new(course)).matrix()[(1, 1)].sqrt();
-        let found = directional(&v, &cross, None, q).unwrap().sigma.m();
+        let along = directional(&v, &cross, None, q).unwrap().sigma.m();
         // The thin direction of an ellipse of ratio 300 loses five digits to cancellation.
-        prop_assert!((found / sigma - 1.0).abs() < 1e-10, "{found} {sigma}");
+        prop_assert!((along / sigma - 1.0).abs() < 1e-10, "{along} {sigma}");
     }
 }
 

@@ -194,13 +194,13 @@ fn the_wrong_range_of_four_is_named_and_three_do_not_tell() {
     for wrong in 0..4 {
         let mut ranges = clean;
         ranges[wrong].slant = Metres::new(ranges[wrong].slant.m() + 15.0 * 182.6);
-        let given = ranges;
-        let found = checked(&mut ranges);
-        assert_eq!((found.verdict, found.fix.used), (Verdict::Excluded(wrong), 3));
-        assert_eq!(ranges, given, "the list comes back in its order");
+        let original = ranges;
+        let outcome = checked(&mut ranges);
+        assert_eq!((outcome.verdict, outcome.fix.used), (Verdict::Excluded(wrong), 3));
+        assert_eq!(ranges, original, "the list comes back in its order");
         // Error-free ranges are left: a micrometre on the ground, magnified by the geometry.
-        assert!((found.fix.position.point.lat().rad() - truth.point.lat().rad()).abs() < 1e-11);
-        let mut three: Vec<Range> = (0..4).filter(|k| *k != (wrong + 1) % 4).map(|k| given[k]).collect();
+        assert!((outcome.fix.position.point.lat().rad() - truth.point.lat().rad()).abs() < 1e-11);
+        let mut three: Vec<Range> = (0..4).filter(|k| *k != (wrong + 1) % 4).map(|k| original[k]).collect();
         assert_eq!(checked(&mut three).verdict, Verdict::TooFew);
     }
     let mut two = clean;
@@ -241,16 +241,16 @@ fn a_better_pair_waits_and_a_lost_one_goes_at_once() {
 fn the_optimal_pair_is_admissible_and_the_first_of_equals() {
     let place = Place::new(geodetic(49.6, 31.4, 9000.0)).unwrap();
     let sights = STATIONS.map(|s| Sight::between(&place, &Place::new(geodetic(s.0, s.1, s.2)).unwrap()));
-    let found = |sights: &[Option<Sight>], figure| {
+    let best = |sights: &[Option<Sight>], figure| {
         best_pair(sights, figure, &RangeModel::STANDARD, &Admission::STANDARD, Metres::new(0.0)).unwrap()
     };
-    let optimal = found(&sights, Figure::Drms).unwrap();
+    let optimal = best(&sights, Figure::Drms).unwrap();
     assert!(optimal.pair.admissible);
-    assert_eq!(found(&[sights[0], sights[2], sights[0], sights[2]], Figure::Drms).unwrap().stations, [0, 1]);
-    assert_eq!(found(&[sights[0], None, None, None], Figure::Drms), None);
+    assert_eq!(best(&[sights[0], sights[2], sights[0], sights[2]], Figure::Drms).unwrap().stations, [0, 1]);
+    assert_eq!(best(&[sights[0], None, None, None], Figure::Drms), None);
     // Across a course the best may be another pair, never a worse one.
     let course = Radians::degrees(70.0);
-    let across = found(&sights, Figure::Across(course)).unwrap();
+    let across = best(&sights, Figure::Across(course)).unwrap();
     assert!(across.figure <= optimal.pair.lateral_sigma(course).unwrap());
 }
 

@@ -46,7 +46,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn the_risk_at_the_bound_is_the_risk_asked_for(m in ratios(), sigma in 1e-3..1e3_f64, q in risks()) {
+    fn the_risk_at_the_bound_is_the_risk_requested(m in ratios(), sigma in 1e-3..1e3_f64, q in risks()) {
         let bound = exact(m * sigma, sigma, q);
         let u = (bound - m * sigma) / sigma;
         // The bound is rounded by half an ulp, (m + u) eps / 2 deviations; the logarithm of a tail falls by at most u + 0.8 a deviation

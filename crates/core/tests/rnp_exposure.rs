@@ -12,12 +12,12 @@ fn a_risk_per_epoch_is_not_a_risk_per_hour() {
     let table = [(1.0, 0.52, 6.4e-11), (10.0, 7.1e-2, 7.1e-10), (60.0, 1.2e-2, 4.7e-9), (360.0, 2.1e-3, 3.2e-8), (3600.0, 2.1e-4, 3.6e-7)];
     for (tau, hourly, epoch) in table {
         let exposure = HourlyExposure::new(tau, 0.0).unwrap();
-        let found = exposure.per_hour(Risk::INTEGRITY);
-        assert!((found / hourly - 1.0).abs() <= 0.025, "tau {tau}: {found}");
-        let found = exposure.per_epoch(Risk::new(1e-5).unwrap()).unwrap();
-        assert!((found.q() / epoch - 1.0).abs() <= 0.016, "tau {tau}: {}", found.q());
+        let risk = exposure.per_hour(Risk::INTEGRITY);
+        assert!((risk / hourly - 1.0).abs() <= 0.025, "tau {tau}: {risk}");
+        let risk = exposure.per_epoch(Risk::new(1e-5).unwrap()).unwrap();
+        assert!((risk.q() / epoch - 1.0).abs() <= 0.016, "tau {tau}: {}", risk.q());
         // The level is found to an ulp, and u^2 of about 40 multiplies it.
-        let back = exposure.per_hour(found);
+        let back = exposure.per_hour(risk);
         assert!((back / 1e-5 - 1.0).abs() <= 1e-12, "tau {tau}: {back}");
     }
 }
@@ -52,8 +52,8 @@ const EXACT_PER_HOUR: [(f64, f64, f64); 21] = [
 #[test]
 fn the_risk_of_an_hour_is_never_short_of_the_exact_one() {
     for (tau, u, exact) in EXACT_PER_HOUR {
-        let found = HourlyExposure::new(tau, 1.0).unwrap().per_hour(Risk::new(2.0 * tail(u)).unwrap());
-        assert!(found >= 0.98 * exact && found <= 2.3 * exact, "tau {tau}, level {u}: {found} for {exact}");
+        let hourly = HourlyExposure::new(tau, 1.0).unwrap().per_hour(Risk::new(2.0 * tail(u)).unwrap());
+        assert!(hourly >= 0.98 * exact && hourly <= 2.3 * exact, "tau {tau}, level {u}: {hourly} for {exact}");
     }
 }
 

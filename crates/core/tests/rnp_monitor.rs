@@ -141,8 +141,8 @@ fn a_warning_ends_in_caution_while_the_accuracy_bound_is_outside() {
     let mut monitor = Monitor::new(settings()).unwrap();
     monitor.step(&at(0, INSIDE, 0.0));
     monitor.step(&at(1, INSIDE, 1300.0));
-    let found: Vec<_> = (2..14).map(|second| monitor.step(&at(second, if second < 12 { INSIDE } else { OUTSIDE }, 900.0)).alert).collect();
-    assert!(found[..10].iter().all(|a| *a == Alert::Warning) && found[10..].iter().all(|a| *a == Alert::Caution), "{found:?}");
+    let states: Vec<_> = (2..14).map(|second| monitor.step(&at(second, if second < 12 { INSIDE } else { OUTSIDE }, 900.0)).alert).collect();
+    assert!(states[..10].iter().all(|a| *a == Alert::Warning) && states[10..].iter().all(|a| *a == Alert::Caution), "{states:?}");
 }
 
 #[test]
@@ -189,9 +189,9 @@ fn within_the_limit_but_not_calm_restarts_the_wait() {
     bounds.extend([INSIDE; 9]);
     bounds.push(NEAR);
     bounds.extend([INSIDE; 10]);
-    let found = alerts(&bounds);
+    let raised = alerts(&bounds);
     // Calm again from second 14; ten seconds of it end at 24, beyond the sequence.
-    assert!(found.iter().all(|a| *a == Alert::Caution), "{found:?}");
+    assert!(raised.iter().all(|a| *a == Alert::Caution), "{raised:?}");
     bounds.push(INSIDE);
     assert_eq!(alerts(&bounds)[24], Alert::Normal);
 }
@@ -347,9 +347,9 @@ fn late_epochs_longer_than_the_permitted_silence_are_a_clock_set_back() {
     let steps: Vec<_> = (0..5).map(|second| monitor.step(&at(second, INSIDE, INSIDE))).collect();
     use Acceptance::{Accepted, ClockSetBack, Late};
     use Alert::{Normal, Unavailable};
-    let found: Vec<_> = steps.iter().map(|s| (s.acceptance, s.alert)).collect();
+    let steps_taken: Vec<_> = steps.iter().map(|s| (s.acceptance, s.alert)).collect();
     // The third dropped epoch is the third second of silence; two are permitted.
-    assert_eq!(found, [(Late, Normal), (Late, Normal), (Late, Unavailable), (ClockSetBack, Unavailable), (Accepted, Normal)]);
+    assert_eq!(steps_taken, [(Late, Normal), (Late, Normal), (Late, Unavailable), (ClockSetBack, Unavailable), (Accepted, Normal)]);
     assert_eq!(monitor.counters().n_clock_set_back, 1);
     assert_eq!(began(&steps[2]), [Kind::Unavailable]);
     let event = ended(&steps[4])[0];
@@ -372,9 +372,9 @@ fn time_that_stands_or_runs_backwards_is_silence() {
         ("to and fro", (0..1000).map(|k| 10 + k % 2).collect()),
     ];
     for (what, times) in cases {
-        let (found, monitor) = outside_at(5000, times.into_iter());
+        let (raised, monitor) = outside_at(5000, times.into_iter());
         // Two dropped epochs are the permitted two seconds.
-        assert!(found[2..].iter().all(|a| *a == Alert::Unavailable), "{what}: {:?}", &found[..8]);
+        assert!(raised[2..].iter().all(|a| *a == Alert::Unavailable), "{what}: {:?}", &raised[..8]);
         let open: Vec<_> = monitor.open_events().map(|e| (e.kind, seconds(e.onset), seconds(e.annunciation))).collect();
         // Repeats of the first time, and those shortly before it, are outside and contradict it.
         let contradicted = ["stuck", "backwards"].contains(&what).then_some((Kind::Warning, 5000, 5000));
@@ -387,14 +387,14 @@ fn a_stamp_far_ahead_does_not_hide_a_silence_from_the_arrival_clock() {
     let tick = |monitor: &mut Monitor, second: i64| monitor.tick(GpsTime::from_nanoseconds(second * 1_000_000_000)).alert;
     let mut monitor = Monitor::new(settings()).unwrap();
     monitor.step(&at(1000, INSIDE, INSIDE));
-    let found: Vec<_> = (1..=1100).map(|second| tick(&mut monitor, second)).collect();
+    let states: Vec<_> = (1..=1100).map(|second| tick(&mut monitor, second)).collect();
     // The first tick may be the moment of arrival; two more seconds are permitted.
-    assert!(found[..3].iter().all(|a| *a == Alert::Normal) && found[3..].iter().all(|a| *a == Alert::Unavailable));
+    assert!(states[..3].iter().all(|a| *a == Alert::Normal) && states[3..].iter().all(|a| *a == Alert::Unavailable));
     // An arrival clock that is itself set back has not undone the time that passed.
     let mut monitor = Monitor::new(settings()).unwrap();
     monitor.step(&at(1000, INSIDE, INSIDE));
-    let found: Vec<_> = [1, 2, 3, 1, 2].map(|second| tick(&mut monitor, second)).into();
-    assert_eq!(found[4], Alert::Unavailable);
+    let states: Vec<_> = [1, 2, 3, 1, 2].map(|second| tick(&mut monitor, second)).into();
+    assert_eq!(states[4], Alert::Unavailable);
     // Healthy epochs between ticks are never a silence, however rare the ticks are.
     let mut monitor = Monitor::new(settings()).unwrap();
     for second in 0..100 {

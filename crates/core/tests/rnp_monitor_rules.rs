@@ -171,7 +171,7 @@ impl<'a> Judge<'a> {
         false
     }
 
-    /// Where the alert now in force was raised; `None` when there is none. Every counted record is asked in order, each by the whole history.
+    /// Where the alert now in force was raised; `None` when there is none. Every counted record is examined in order, each by the whole history.
     fn raised(&self, caution: bool) -> Option<usize> {
         let (mut raised, mut cleared) = (None, None);
         for k in 0..self.records.len() {

@@ -53,7 +53,7 @@ pub fn reference(week: i64, time_of_week_s: f64, near: Option<GpsTime>) -> Optio
     crate::time::from_week(full, of_week)
 }
 
-/// Read an almanac, YUMA or SEM, told from its content; plain (see [`crate::packed::unpack`]).
+/// Read an almanac, YUMA or SEM, recognised by its content; plain (see [`crate::packed::unpack`]).
 ///
 /// # Errors
 /// [`Unreadable`] with line and field: an almanac is short, and one with a damaged satellite is not used at all.

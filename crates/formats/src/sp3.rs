@@ -33,8 +33,8 @@ pub fn read(bytes: &[u8]) -> Result<Precise, Unreadable> {
     let mut lines = Lines::new(bytes);
     let first = lines.next().ok_or_else(|| Unreadable::whole("the file is empty"))?;
     if !matches!(first, [b'#', b'a'..=b'd', b'P' | b'V', ..]) {
-        let found = text(first, 0, 60);
-        return Err(Unreadable::at(1, format!("not an SP3 file: its first line is '{found}', not '#', a version a to d, and P or V")));
+        let heading = text(first, 0, 60);
+        return Err(Unreadable::at(1, format!("not an SP3 file: its first line is '{heading}', not '#', a version a to d, and P or V")));
     }
     let mut p = Precise::default();
     p.frames.insert(text(first, 46, 51));
@@ -62,8 +62,8 @@ pub fn read(bytes: &[u8]) -> Result<Precise, Unreadable> {
     Ok(p)
 }
 
-fn refuse(p: &mut Precise, line: usize, field: &str, reason: &str, found: &[u8]) {
-    p.refused.push(Refusal { line, field: field.to_owned(), reason: reason.to_owned(), text: text(found, 0, 80) });
+fn refuse(p: &mut Precise, line: usize, field: &str, reason: &str, bytes: &[u8]) {
+    p.refused.push(Refusal { line, field: field.to_owned(), reason: reason.to_owned(), text: text(bytes, 0, 80) });
 }
 
 /// Scale of the epochs, and what it is ahead of that; versions a and b write `ccc` and mean GPS time.

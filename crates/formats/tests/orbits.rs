@@ -39,18 +39,18 @@ fn every_position_and_clock_arrives() {
         let Some(bytes) = file(name) else { return };
         let p = sp3::read(&bytes).unwrap();
         let count = |n: Vec<usize>| n.iter().sum::<usize>();
-        let found =
+        let position =
             (p.orbits.len(), count(p.orbits.values().map(Vec::len).collect()), count(p.orbit_clocks.values().map(Vec::len).collect()));
-        assert_eq!((found, p.refused.len()), ((satellites, positions, clocks), 0), "{name}: {:?}", p.refused.first());
+        assert_eq!((position, p.refused.len()), ((satellites, positions, clocks), 0), "{name}: {:?}", p.refused.first());
     }
     for (name, clocks, step_s) in
         [("gnss/ESBC_2020_177/GRG0MGXFIN_20201770000_01D_30S_CLK.CLK.gz", 215_999, 30.0), ("gnss/igs_2010_182/igs15904.clk", 360, 300.0)]
     {
         let Some(bytes) = file(name) else { return };
         let p = read_clocks(&bytes).unwrap();
-        let found: usize = p.clocks.values().map(Vec::len).sum();
+        let position: usize = p.clocks.values().map(Vec::len).sum();
         assert_eq!(p.refused.len(), 0, "{name}: {:?}", p.refused.first());
-        assert_eq!((found, p.clock_step_s().map(f64::round)), (clocks, Some(step_s)), "{name}");
+        assert_eq!((position, p.clock_step_s().map(f64::round)), (clocks, Some(step_s)), "{name}");
     }
 }
 
@@ -102,8 +102,8 @@ fn a_thinned_orbit_gives_back_the_nodes_left_out() {
         let thinned: Vec<OrbitNode> = nodes.iter().step_by(3).copied().collect();
         // Five intervals from the ends the polynomial is centred.
         for node in &nodes[15..nodes.len() - 18] {
-            let found = state(&thinned, &p.orbit_clocks[satellite], 300.0, node.time).unwrap();
-            inside = inside.max(found.position.minus(&node.position).vector().norm());
+            let node_state = state(&thinned, &p.orbit_clocks[satellite], 300.0, node.time).unwrap();
+            inside = inside.max(node_state.position.minus(&node.position).vector().norm());
             n += 1;
         }
     }

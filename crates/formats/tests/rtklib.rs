@@ -56,8 +56,8 @@ fn a_row_of_degrees_is_read_as_it_stands() {
     assert!((s.h_m[0] - 41.391).abs() < 1e-12);
     // East first, and the sign of a covariance is the sign of its root.
     let expected = [16.0, 2.25, 9.0, -1.44, 0.64, 49.0];
-    for (found, expected) in s.cov_m2[0].iter().zip(expected) {
-        assert!((found - expected).abs() < 1e-12, "{:?}", s.cov_m2[0]);
+    for (variance, expected) in s.cov_m2[0].iter().zip(expected) {
+        assert!((variance - expected).abs() < 1e-12, "{:?}", s.cov_m2[0]);
     }
     assert!(s.ground_speed_mps[0].is_nan());
 }
@@ -86,8 +86,8 @@ fn one_place_written_four_ways_is_one_place() {
         assert!((s.lon_rad[0] - expected.lon_rad[0]).abs() < 3.2e-11, "{text}");
         assert!((s.h_m[0] - expected.h_m[0]).abs() < 2e-4, "{text}");
         // Roots of up to 7 m with eight decimals, through two rotations.
-        for (found, expected) in s.cov_m2[0].iter().zip(expected.cov_m2[0]) {
-            assert!((found - expected).abs() < 1e-6, "{text}: {:?}", s.cov_m2[0]);
+        for (variance, expected) in s.cov_m2[0].iter().zip(expected.cov_m2[0]) {
+            assert!((variance - expected).abs() < 1e-6, "{text}: {:?}", s.cov_m2[0]);
         }
     }
 }

@@ -94,7 +94,7 @@ fn a_silence_is_raised_once_at_last_plus_stale_and_one_of_exactly_stale_is_none(
 }
 
 #[test]
-fn a_silence_is_told_while_it_lasts_and_by_heartbeats_alone() {
+fn a_silence_is_reported_while_it_lasts_and_by_heartbeats_alone() {
     let mut lane = Lane::new(settings()).unwrap();
     flown(&mut lane, 3, |_| String::new());
     let mut out = Vec::new();
@@ -344,7 +344,7 @@ fn a_damaged_snapshot_is_refused() {
 }
 
 #[test]
-fn a_torn_frame_is_told_from_a_damaged_one() {
+fn a_torn_frame_is_distinct_from_a_damaged_one() {
     let frame = journal::frame(b"payload");
     assert_eq!(journal::next(&frame), journal::Next::Payload(b"payload", frame.len()));
     for end in 0..frame.len() {

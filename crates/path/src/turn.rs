@@ -102,7 +102,7 @@ impl Arc {
     pub(crate) fn project(&self, position: &LatLon) -> Result<Foot, OutOfDomain> {
         let between = inverse(&self.centre, position);
         let azimuth = between.departure.rad();
-        // Measured from the middle of the arc, so that before the begin and after the end are told apart on both sides.
+        // Measured from the middle of the arc, so that before the begin and after the end are distinguished on both sides.
         let middle = 0.5 * self.angle.rad();
         let turned = middle + half_turn(self.sense * (azimuth - self.start.rad()) - middle);
         let place = self.place(azimuth, turned)?;

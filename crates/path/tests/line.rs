@@ -72,7 +72,7 @@ proptest! {
     // Constructed by the direct problem, found by the inverse one. Degrees resolve some 3 nm, a dozen conversions 0.1 um; along the line
     // the same angle error acts over a distance of up to 300 km, an order more.
     #[test]
-    fn a_position_built_beside_the_line_is_found_again(
+    fn a_position_built_beside_the_line_projects_onto_itself(
         lat in -70.0..70.0f64, lon in -180.0..180.0f64, course in 0.0..360.0f64, along in -1.0e6..1.0e6f64, cross in -3.0e5..3.0e5f64,
     ) {
         let line = Line::from_azimuth(at(lat, lon), Radians::degrees(course)).unwrap();

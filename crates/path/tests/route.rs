@@ -100,7 +100,7 @@ fn outside_a_corner_the_foot_stays_at_the_waypoint() {
 }
 
 #[test]
-fn after_a_long_gap_the_route_is_found_again() {
+fn after_a_long_gap_the_route_is_matched_again() {
     // The last turn is sharper than a right angle: from the leg before it a position late on the last leg has a foot, 30 km away.
     let route = zigzag(8_500.0);
     let along = 0.8356 * route.length().m();
@@ -113,7 +113,7 @@ proptest! {
     // Without a hint, with a hint 5 km off (twenty seconds of flight), in turns and on legs. Beside an arc the distance comes from its centre, which is placed to
     // a few micrometres; 2 km inside a turn an error across is an along error 8.5/6.5 times as large.
     #[test]
-    fn a_position_built_beside_the_route_is_found_again(share in 0.001..0.999f64, cross in -2.0e3..2.0e3f64, off in -5.0e3..5.0e3f64) {
+    fn a_position_built_beside_the_route_projects_onto_itself(share in 0.001..0.999f64, cross in -2.0e3..2.0e3f64, off in -5.0e3..5.0e3f64) {
         let route = zigzag(8_500.0);
         let along = share * route.length().m();
         let position = beside(&route.at(Metres::new(along)).unwrap(), cross);

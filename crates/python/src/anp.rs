@@ -120,13 +120,13 @@ fn anp_directional<'py>(
 ) -> PyResult<Rows<'py>> {
     let (v, u, q) = (flat(&covariance_enu_m2)?, flat(&direction)?, flat(&risk)?);
     let m = optional(mean_enu_m.as_ref())?;
-    let found = py.detach(|| {
+    let radii = py.detach(|| {
         each(q.len(), |i| {
             let d = anp::directional(&covariance(v, i)?, &vector(u, i).into(), displacement(m, i).as_ref(), Risk::new(q[i])?)?;
             Ok([d.bias.m(), d.sigma.m(), d.half_width.m()])
         })
     });
-    Ok(rows(py, found.map_err(|r| refused(r, SPATIAL))?))
+    Ok(rows(py, radii.map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Columns support, intercept (NaN where singular) along directions.
@@ -138,13 +138,13 @@ fn anp_extents<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Rows<'py>> {
     let (v, u, q) = (flat(&covariance_enu_m2)?, flat(&direction)?, flat(&risk)?);
-    let found = py.detach(|| {
+    let radii = py.detach(|| {
         each(q.len(), |i| {
             let (v, u, q) = (covariance(v, i)?, vector(u, i).into(), Risk::new(q[i])?);
             Ok([anp::support(&v, &u, q)?.m(), anp::intercept(&v, &u, q)?.map_or(f64::NAN, Metres::m)])
         })
     });
-    Ok(rows(py, found.map_err(|r| refused(r, SPATIAL))?))
+    Ok(rows(py, radii.map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Columns factor, 3 semi-axes, 9 axes row by row, 3 supports, 3 intercepts (NaN where singular), volume.
@@ -155,7 +155,7 @@ fn anp_ellipsoid<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Rows<'py>> {
     let (v, q) = (flat(&covariance_enu_m2)?, flat(&risk)?);
-    let found = py.detach(|| {
+    let radii = py.detach(|| {
         each(q.len(), |i| {
             let e = anp::ellipsoid(&covariance(v, i)?, Risk::new(q[i])?)?;
             let mut row = [0.0; 20];
@@ -168,32 +168,32 @@ fn anp_ellipsoid<'py>(
             Ok(row)
         })
     });
-    Ok(rows(py, found.map_err(|r| refused(r, SPATIAL))?))
+    Ok(rows(py, radii.map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Standard deviations along the principal axes, largest first.
 #[pyfunction]
 fn anp_principal_sigmas<'py>(py: Python<'py>, covariance_enu_m2: PyReadonlyArray3<'py, f64>) -> PyResult<Rows<'py>> {
     let v = flat(&covariance_enu_m2)?;
-    let found = py.detach(|| each(v.len() / 9, |i| anp::principal_sigmas(&covariance(v, i)?).map(|s| s.map(Metres::m))));
-    Ok(rows(py, found.map_err(|r| refused(r, SPATIAL))?))
+    let radii = py.detach(|| each(v.len() / 9, |i| anp::principal_sigmas(&covariance(v, i)?).map(|s| s.map(Metres::m))));
+    Ok(rows(py, radii.map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Factors of the length of a standard normal vector.
 #[pyfunction]
 fn chi_factor<'py>(py: Python<'py>, dimension: usize, risk: PyReadonlyArray1<'py, f64>) -> PyResult<Numbers<'py>> {
     let q = flat(&risk)?;
-    let found =
+    let radii =
         each(q.len(), |i| Risk::new(q[i]).and_then(|risk| chi::chi_factor(dimension, risk.q()))).map_err(|r| refused(r, SPATIAL))?;
-    Ok(found.into_pyarray(py))
+    Ok(radii.into_pyarray(py))
 }
 
 /// What the length of a standard normal vector exceeds with a probability, anywhere in (0, 1).
 #[pyfunction]
 fn chi_quantile<'py>(py: Python<'py>, dimension: usize, risk: PyReadonlyArray1<'py, f64>) -> PyResult<Numbers<'py>> {
     let q = flat(&risk)?;
-    let found = each(q.len(), |i| chi::chi_factor(dimension, q[i])).map_err(|r| refused(r, SPATIAL))?;
-    Ok(found.into_pyarray(py))
+    let radii = each(q.len(), |i| chi::chi_factor(dimension, q[i])).map_err(|r| refused(r, SPATIAL))?;
+    Ok(radii.into_pyarray(py))
 }
 
 /// A horizontal closed form.
@@ -206,8 +206,8 @@ fn horizontal_fit<'py>(
     risk: &PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, q) = (flat(covariance_en_m2)?, flat(risk)?);
-    let found = py.detach(|| each(q.len(), |i| fit(&horizontal(v, i)?, Risk::new(q[i])?).map(Metres::m)));
-    Ok(found.map_err(|r| refused(r, HORIZONTAL))?.into_pyarray(py))
+    let radii = py.detach(|| each(q.len(), |i| fit(&horizontal(v, i)?, Risk::new(q[i])?).map(Metres::m)));
+    Ok(radii.map_err(|r| refused(r, HORIZONTAL))?.into_pyarray(py))
 }
 
 /// The published cubic, corrected.
@@ -249,9 +249,9 @@ fn anp_sphere_grubbs<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, m, q) = (flat(&covariance_enu_m2)?, optional(mean_enu_m.as_ref())?, flat(&risk)?);
-    let found = py
+    let radii = py
         .detach(|| each(q.len(), |i| anp::sphere_grubbs(&covariance(v, i)?, displacement(m, i).as_ref(), Risk::new(q[i])?).map(Metres::m)));
-    Ok(found.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
+    Ok(radii.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
 }
 
 /// Grubbs' sphere as printed.
@@ -262,8 +262,8 @@ fn anp_sphere_grubbs_as_printed<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, q) = (flat(&covariance_enu_m2)?, flat(&risk)?);
-    let found = py.detach(|| each(q.len(), |i| anp::sphere_grubbs_as_printed(&covariance(v, i)?, Risk::new(q[i])?).map(Metres::m)));
-    Ok(found.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
+    let radii = py.detach(|| each(q.len(), |i| anp::sphere_grubbs_as_printed(&covariance(v, i)?, Risk::new(q[i])?).map(Metres::m)));
+    Ok(radii.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
 }
 
 fn pair(flat: &[f64], i: usize) -> [f64; 2] {
@@ -285,8 +285,8 @@ fn anp_rectangle<'py>(
     half_up_m: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Rows<'py>> {
     let (v, m, a, b) = (flat(&covariance_cu_m2)?, flat(&mean_cu_m)?, flat(&half_cross_m)?, flat(&half_up_m)?);
-    let found = py.detach(|| each(a.len(), |i| anp::rectangle(triple(v, i)?, pair(m, i), [a[i], b[i]]).map(|s| [s.inside, s.outside])));
-    Ok(rows(py, found.map_err(|r| refused(r, TUNNEL))?))
+    let radii = py.detach(|| each(a.len(), |i| anp::rectangle(triple(v, i)?, pair(m, i), [a[i], b[i]]).map(|s| [s.inside, s.outside])));
+    Ok(rows(py, radii.map_err(|r| refused(r, TUNNEL))?))
 }
 
 /// Stretch of rectangles that meets a risk.
@@ -300,8 +300,8 @@ fn anp_rectangle_scale<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, m, a, b, q) = (flat(&covariance_cu_m2)?, flat(&mean_cu_m)?, flat(&half_cross_m)?, flat(&half_up_m)?, flat(&risk)?);
-    let found = py.detach(|| each(q.len(), |i| anp::rectangle_scale(triple(v, i)?, pair(m, i), [a[i], b[i]], Risk::new(q[i])?)));
-    Ok(found.map_err(|r| refused(r, TUNNEL))?.into_pyarray(py))
+    let radii = py.detach(|| each(q.len(), |i| anp::rectangle_scale(triple(v, i)?, pair(m, i), [a[i], b[i]], Risk::new(q[i])?)));
+    Ok(radii.map_err(|r| refused(r, TUNNEL))?.into_pyarray(py))
 }
 
 /// Columns inside, outside of cylinders.
@@ -314,9 +314,9 @@ fn anp_cylinder<'py>(
     half_height_m: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Rows<'py>> {
     let (v, m, a, b) = (flat(&covariance_enu_m2)?, flat(&mean_enu_m)?, flat(&radius_m)?, flat(&half_height_m)?);
-    let found =
+    let radii =
         py.detach(|| each(a.len(), |i| anp::cylinder(triangle::<3>(v, i)?, vector(m, i), a[i], b[i]).map(|s| [s.inside, s.outside])));
-    Ok(rows(py, found.map_err(|r| refused(r, SPATIAL))?))
+    Ok(rows(py, radii.map_err(|r| refused(r, SPATIAL))?))
 }
 
 /// Stretch of cylinders that meets a risk.
@@ -330,8 +330,8 @@ fn anp_cylinder_scale<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, m, a, b, q) = (flat(&covariance_enu_m2)?, flat(&mean_enu_m)?, flat(&radius_m)?, flat(&half_height_m)?, flat(&risk)?);
-    let found = py.detach(|| each(q.len(), |i| anp::cylinder_scale(triangle::<3>(v, i)?, vector(m, i), a[i], b[i], Risk::new(q[i])?)));
-    Ok(found.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
+    let radii = py.detach(|| each(q.len(), |i| anp::cylinder_scale(triangle::<3>(v, i)?, vector(m, i), a[i], b[i], Risk::new(q[i])?)));
+    Ok(radii.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
 }
 
 /// Factors of simultaneous boxes.
@@ -342,8 +342,8 @@ fn anp_box_factor<'py>(
     risk: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Numbers<'py>> {
     let (v, q) = (flat(&covariance_enu_m2)?, flat(&risk)?);
-    let found = py.detach(|| each(q.len(), |i| anp::box_factor(triangle::<3>(v, i)?, Risk::new(q[i])?)));
-    Ok(found.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
+    let radii = py.detach(|| each(q.len(), |i| anp::box_factor(triangle::<3>(v, i)?, Risk::new(q[i])?)));
+    Ok(radii.map_err(|r| refused(r, SPATIAL))?.into_pyarray(py))
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

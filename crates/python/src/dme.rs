@@ -54,15 +54,15 @@ fn dme_pairs<'py>(
     let place = |[e, n, u]: [f64; 3]| Displacement::<Enu>::new(Metres::new(e), Metres::new(n), Metres::new(u));
     let aircraft = place(aircraft_enu_m);
     let stations: Vec<_> = stations_enu_m.into_iter().map(place).collect();
-    let mut found = Vec::new();
+    let mut pairs = Vec::new();
     for (i, a) in stations.iter().enumerate() {
         for (j, b) in stations.iter().enumerate().skip(i + 1) {
             let sigma_altitude = Metres::new(sigma_altitude_m);
             let pair = Pair::seen(&aircraft, [a, b], &RangeModel::STANDARD, &Admission::STANDARD, sigma_altitude).map_err(refused)?;
-            found.push(pair_dict(py, (i, j), &pair, course_rad)?);
+            pairs.push(pair_dict(py, (i, j), &pair, course_rad)?);
         }
     }
-    Ok(found)
+    Ok(pairs)
 }
 
 fn pair_dict<'py>(py: Python<'py>, stations: (usize, usize), pair: &Pair, course_rad: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
@@ -95,8 +95,8 @@ fn vor_dme<'py>(
     let mut parts = [vec![f64::NAN; n], vec![f64::NAN; n], vec![f64::NAN; n]];
     for i in 0..n {
         let [ground, slant, vor, dme] = columns.map(|c| c[i]);
-        let found = dme::vor_dme(Metres::new(ground), Metres::new(slant), Radians::new(vor), Metres::new(dme));
-        if let Some(s) = found.map_err(|e| input_error(e, Some(i)))? {
+        let bound = dme::vor_dme(Metres::new(ground), Metres::new(slant), Radians::new(vor), Metres::new(dme));
+        if let Some(s) = bound.map_err(|e| input_error(e, Some(i)))? {
             [parts[0][i], parts[1][i], parts[2][i]] = [s.radial.m(), s.cross.m(), s.drms.m()];
         }
     }

@@ -147,8 +147,8 @@ fn ee_beta<'py>(
 /// beta from an autocorrelation at lags 0, T, 2T, ...
 #[pyfunction]
 fn ee_beta_autocorrelation(rho: f64, autocorrelation_m2: PyReadonlyArray1<'_, f64>) -> PyResult<f64> {
-    let found = gain::from_autocorrelation(rho, autocorrelation_m2.as_slice()?);
-    found.map(gain::beta).map_err(|e| input_error(e, None))
+    let series = gain::from_autocorrelation(rho, autocorrelation_m2.as_slice()?);
+    series.map(gain::beta).map_err(|e| input_error(e, None))
 }
 
 /// beta from a spectral density.
@@ -203,13 +203,13 @@ fn ee_bias_sights<'py>(
     let sights = Sights { az_rad: az.as_slice()?, el_rad: el.as_slice()?, sigma_m: sigma.as_slice()?, constellation: &constellation };
     let solved = py.detach(|| ee::biases(&sights, Metres::new(mu_most_m), alpha)).map_err(|e| input_error(e.error, Some(e.index)))?;
     let (mut from_dop, mut exact, mut n_sv, mut reason, mut ids) = (vec![], vec![], vec![], vec![], vec![]);
-    for (n, found) in solved {
-        let bias = found.as_ref().ok();
+    for (n, solution) in solved {
+        let bias = solution.as_ref().ok();
         from_dop.extend(bias.map_or([f64::NAN; 2], |b| b.from_dop));
         exact.extend(bias.map_or([f64::NAN; 2], |b| b.exact));
         n_sv.push(n as i64);
-        ids.push(status::id(found.as_ref().err().map(Unavailable::reason)));
-        reason.push(found.err().map_or(String::new(), |e| e.to_string()));
+        ids.push(status::id(solution.as_ref().err().map(Unavailable::reason)));
+        reason.push(solution.err().map_or(String::new(), |e| e.to_string()));
     }
     let n = n_sv.len();
     let d = PyDict::new(py);

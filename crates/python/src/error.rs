@@ -5,7 +5,7 @@ use navbound_formats::Unreadable;
 use pyo3::prelude::*;
 
 /// `navbound.InputError`, with `.argument`, `.value`, `.unit`, `.domain` and, for arrays, `.index`. A confidence in the place of a risk is
-/// asked for in the domain.
+/// named in the domain.
 pub fn input_error(e: OutOfDomain, index: Option<usize>) -> PyErr {
     let domain = e.confidence().map_or_else(|| e.domain.to_owned(), |confidence| format!("{}: {confidence}", e.domain));
     Python::attach(|py| {

@@ -50,15 +50,15 @@ fn evaluate_nees<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (error_m, covariance_m2, track) = (error_m.as_slice()?, covariance_m2.as_slice()?, track.as_slice()?);
     let errors = Errors { dimension, error_m, covariance_m2, track };
-    let honesty = py.detach(|| evaluation::nees(&errors)).map_err(refused)?;
+    let consistency = py.detach(|| evaluation::nees(&errors)).map_err(refused)?;
     let d = PyDict::new(py);
-    d.set_item("n", honesty.n)?;
-    d.set_item("n_unusable", honesty.n_unusable)?;
-    d.set_item("n_effective", honesty.n_effective)?;
-    d.set_item("dimension", honesty.dimension)?;
-    d.set_item("nees_mean", honesty.nees_mean)?;
-    d.set_item("nees_low", honesty.nees_low)?;
-    d.set_item("nees_high", honesty.nees_high)?;
+    d.set_item("n", consistency.n)?;
+    d.set_item("n_unusable", consistency.n_unusable)?;
+    d.set_item("n_effective", consistency.n_effective)?;
+    d.set_item("dimension", consistency.dimension)?;
+    d.set_item("nees_mean", consistency.nees_mean)?;
+    d.set_item("nees_low", consistency.nees_low)?;
+    d.set_item("nees_high", consistency.nees_high)?;
     Ok(d)
 }
 

@@ -70,11 +70,11 @@ fn model(service: &str) -> PyResult<&'static ErrorModel> {
 
 /// A monitor curve by its name, with another stretch.
 fn curve(service: &str, stretch: f64) -> PyResult<MonitorCurve> {
-    let found = MONITOR_CURVES.iter().find(|m| m.id == service).ok_or_else(|| PyValueError::new_err(service.to_owned()))?;
+    let entry = MONITOR_CURVES.iter().find(|m| m.id == service).ok_or_else(|| PyValueError::new_err(service.to_owned()))?;
     if !(stretch > 0.0 && stretch.is_finite()) {
         return Err(refusal(OutOfDomain { argument: "stretch", value: stretch, unit: "1", domain: "(0, inf)" }));
     }
-    Ok(MonitorCurve { stretch, ..*found })
+    Ok(MonitorCurve { stretch, ..*entry })
 }
 
 /// Noise, troposphere, clock, ionosphere (NaN for none), as Python holds them.
@@ -119,8 +119,8 @@ fn gbas_carrier_sigma<'py>(
 fn gbas_factors(risk: f64, share: f64, axes: u8, receivers: u8, receiver_fault: f64) -> PyResult<(f64, f64)> {
     let rule = FactorRule { share, axes, receivers, receiver_fault };
     let risk = Risk::new(risk).map_err(|e| OutOfDomain { argument: "integrity_risk", ..e });
-    let found = risk.and_then(|risk| Factors::new(risk, &rule)).map_err(refusal)?;
-    Ok((found.fault_free, found.missed))
+    let factors = risk.and_then(|risk| Factors::new(risk, &rule)).map_err(refusal)?;
+    Ok((factors.fault_free, factors.missed))
 }
 
 /// Accuracy (95 %) left by a containment.
@@ -169,16 +169,16 @@ fn gbas_levels<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDic
     };
     let factors = Factors { fault_free: job.k_ffmd, missed: job.k_md };
     let settings = Settings { factors, form: form(&job.form)?, ordering: ordering(&job.ordering)?, bias: Metres::new(0.0) };
-    let asked = Asked {
+    let request = Request {
         bias_m: job.bias_m.as_slice()?,
         aided_m2: job.aided_m2.as_ref().map(|a| a.as_slice()).transpose()?,
         b_values_m: job.b_values_m.as_ref().map(|a| a.as_slice()).transpose()?,
         settings,
     };
-    let found = py.detach(|| gbas::protection_levels(&skies, &asked)).map_err(refused)?;
-    let mut columns = vec![Vec::with_capacity(found.len()); LEVEL_COLUMNS.len()];
+    let levels = py.detach(|| gbas::protection_levels(&skies, &request)).map_err(refused)?;
+    let mut columns = vec![Vec::with_capacity(levels.len()); LEVEL_COLUMNS.len()];
     let (mut matrices, mut n_sv, mut reasons, mut ids) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (n, answer) in &found {
+    for (n, answer) in &levels {
         n_sv.push(*n as i64);
         ids.push(status::id(answer.as_ref().err().map(Unavailable::reason)));
         reasons.push(answer.as_ref().err().map(ToString::to_string).unwrap_or_default());

@@ -161,13 +161,13 @@ fn dop_map<'py>(
     let orbits: Vec<(Elements, usize)> = elements.zip(constellation).collect();
     let users = Users { lat_rad: users.0.as_slice()?, lon_rad: users.1.as_slice()?, h_m: users.2.as_slice()? };
     let time_s = time_s.as_slice()?;
-    let found = py.detach(|| dops(&orbits, &users, time_s, Radians::new(mask_rad))).map_err(refused)?;
+    let dilutions = py.detach(|| dops(&orbits, &users, time_s, Radians::new(mask_rad))).map_err(refused)?;
     let d = PyDict::new(py);
-    d.set_item("hdop", found.hdop.into_pyarray(py))?;
-    d.set_item("vdop", found.vdop.into_pyarray(py))?;
-    d.set_item("pdop", found.pdop.into_pyarray(py))?;
-    d.set_item("gdop", found.gdop.into_pyarray(py))?;
-    d.set_item("n_sv", found.n_sv.into_pyarray(py))?;
+    d.set_item("hdop", dilutions.hdop.into_pyarray(py))?;
+    d.set_item("vdop", dilutions.vdop.into_pyarray(py))?;
+    d.set_item("pdop", dilutions.pdop.into_pyarray(py))?;
+    d.set_item("gdop", dilutions.gdop.into_pyarray(py))?;
+    d.set_item("n_sv", dilutions.n_sv.into_pyarray(py))?;
     Ok(d)
 }
 

@@ -1,7 +1,7 @@
 //! The filter judged on simulated flights.
 
 use crate::error::input_error;
-use crate::ins_fuse::Told;
+use crate::ins_fuse::Declared;
 use crate::simulate::{read, refused};
 use navbound_assess::consistency::{Judged, Score, Trial, flights};
 use navbound_simulate::Sensing;
@@ -50,10 +50,10 @@ fn ins_consistency<'py>(
     seed: u64,
     first: u64,
     normals: PyReadonlyArray2<'py, f64>,
-    told: Told,
+    declared: Declared,
     skip_s: f64,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let trial = Trial { settings: told.settings()?, sigma: told.sigma(), plan: told.plan(), skip_s };
+    let trial = Trial { settings: declared.settings()?, sigma: declared.sigma(), plan: declared.plan(), skip_s };
     let scenario = read(scenario)?;
     let starts: &[[f64; 9]] = normals.as_slice()?.as_chunks().0;
     let sensing = py.detach(|| Sensing::new(scenario, None)).map_err(refused)?;

@@ -220,10 +220,10 @@ impl Tables<'_> {
     }
 }
 
-/// Everything the filter is told.
+/// Everything declared to the filter.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Told {
+pub struct Declared {
     /// White, bias, its time: gyroscopes, accelerometers.
     gyroscope: [f64; 3],
     accelerometer: [f64; 3],
@@ -259,7 +259,7 @@ fn unknown_form(form: usize) -> OutOfDomain {
     OutOfDomain { argument: "form", value: form as f64, unit: "1", domain: "{0, 1, 2}" }
 }
 
-impl Told {
+impl Declared {
     pub fn settings(&self) -> PyResult<Settings> {
         let noise = |[white, bias, bias_time_s]: [f64; 3]| SensorNoise { white, bias, bias_time_s };
         let [bias_m, drift_mps, frequency_m2ps, walk_m2ps3, inter_system_m] = self.clock;
@@ -318,7 +318,7 @@ fn numbers(solution: &Option<Solution>) -> [f64; WIDTH] {
 }
 
 /// What is given: the filter's solution, or the position that stands in for it, which has no attitude and no biases; NaN for none.
-fn given(moment: &Moment) -> [f64; WIDTH] {
+fn row_of(moment: &Moment) -> [f64; WIDTH] {
     match (moment.decision.source, &moment.stand_in) {
         (Source::Filter, _) => numbers(&moment.solution),
         (Source::Snapshot, Some(position)) => standing_in(position),
@@ -367,11 +367,11 @@ fn further_word(further: Further) -> String {
 
 /// A whole flight through the filter.
 #[pyfunction]
-fn ins_fuse<'py>(py: Python<'py>, start: Start, imu: Imu<'py>, tables: Tables<'py>, told: Told) -> PyResult<Bound<'py, PyDict>> {
+fn ins_fuse<'py>(py: Python<'py>, start: Start, imu: Imu<'py>, tables: Tables<'py>, declared: Declared) -> PyResult<Bound<'py, PyDict>> {
     let (state, samples, (aiding, unreadable)) = (start.state()?, imu.samples()?, tables.aiding()?);
-    let (settings, sigma, plan) = (told.settings()?, told.sigma(), told.plan());
-    let [range_age_sigma_s, fix_age_sigma_s] = told.age_sigma_s;
-    let checks = Checks { guarded: told.guarded, range_age_sigma_s, fix_age_sigma_s };
+    let (settings, sigma, plan) = (declared.settings()?, declared.sigma(), declared.plan());
+    let [range_age_sigma_s, fix_age_sigma_s] = declared.age_sigma_s;
+    let checks = Checks { guarded: declared.guarded, range_age_sigma_s, fix_age_sigma_s };
     let flight = py.detach(|| fusion::run(state, &sigma, settings, &plan, checks, samples.iter(), &aiding)).map_err(refused)?;
     let d = flight_dict(py, &flight)?;
     let mut refusals = flight.filter.refusals();
@@ -398,8 +398,8 @@ fn reversion<'py>(
     let solutions: Vec<_> = flight.moments.iter().map(|m| m.beside.map(|b| b.solution)).collect();
     let apart = |m: &Moment| -> Result<[f64; 2], OutOfDomain> {
         let Some(b) = &m.beside else { return Ok([f64::NAN; 2]) };
-        let found = Separation::of(&b.difference, &b.covariance, &b.solution.covariance, risk)?;
-        Ok(found.map_or([f64::NAN; 2], |s| [s.distance.m(), s.limit.m()]))
+        let separation = Separation::of(&b.difference, &b.covariance, &b.solution.covariance, risk)?;
+        Ok(separation.map_or([f64::NAN; 2], |s| [s.distance.m(), s.limit.m()]))
     };
     let separations = flight.moments.iter().map(apart).collect::<Result<Vec<_>, _>>().map_err(refused)?;
     let rows = solutions.iter().flat_map(numbers).collect::<Vec<_>>().into_pyarray(py).reshape([n, WIDTH])?;
@@ -411,7 +411,7 @@ fn flight_dict<'py>(py: Python<'py>, flight: &Flight) -> PyResult<Bound<'py, PyD
     let d = PyDict::new(py);
     let moments = &flight.moments;
     d.set_item("time_ns", moments.iter().map(|m| m.time.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
-    let rows = moments.iter().flat_map(given).collect::<Vec<_>>().into_pyarray(py);
+    let rows = moments.iter().flat_map(row_of).collect::<Vec<_>>().into_pyarray(py);
     d.set_item("rows", rows.reshape([moments.len(), WIDTH])?)?;
     d.set_item("mode", moments.iter().map(|m| mode(&m.solution)).collect::<Vec<_>>())?;
     let decisions = || moments.iter().map(|m| &m.decision);
@@ -422,7 +422,7 @@ fn flight_dict<'py>(py: Python<'py>, flight: &Flight) -> PyResult<Bound<'py, PyD
     d.set_item("vpl_m", decisions().map(|d| d.vpl_m.unwrap_or(f64::NAN)).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("n_states", moments.iter().map(|m| m.n_states as i64).collect::<Vec<_>>().into_pyarray(py))?;
     let s = &flight.samples;
-    d.set_item("samples", [s.n_done, s.n_bridged, s.n_adrift, s.n_late, s.n_refused, s.n_stopped])?;
+    d.set_item("samples", [s.n_done, s.n_bridged, s.n_after_gap, s.n_late, s.n_refused, s.n_stopped])?;
     d.set_item("stopped", flight.stopped.as_ref().map(|(t, why)| (t.nanoseconds(), stop_words(why))))?;
     d.set_item("holes", flight.holes.iter().map(|(t, since_s)| (t.nanoseconds(), *since_s)).collect::<Vec<_>>())?;
     d.set_item("clock_jumps", flight.filter.clock_jumps())?;

@@ -107,7 +107,7 @@ fn verdict<'py>(py: Python<'py>, verdict: &Verdict) -> PyResult<Bound<'py, PyDic
         d.set_item(kind.word(), (i.n_used, i.n_gated, i.n_refused, i.mean_square(), i.lag_one(), i.n_pairs()))?;
     }
     let s = &verdict.samples;
-    d.set_item("samples", [s.n_done, s.n_bridged, s.n_adrift, s.n_late, s.n_refused, s.n_stopped])?;
+    d.set_item("samples", [s.n_done, s.n_bridged, s.n_after_gap, s.n_late, s.n_refused, s.n_stopped])?;
     d.set_item("clock_jumps", verdict.clock_jumps)?;
     let t = &verdict.tally;
     d.set_item("snapshot_tests", (t.n, t.n_raised, t.sum, t.most))?;

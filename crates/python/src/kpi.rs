@@ -73,7 +73,7 @@ impl Table<'_> {
 /// Settings as they come from Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Wanted {
+struct Options {
     origin_ns: i64,
     period_ns: i64,
     demands: Vec<(f64, Option<f64>, f64)>,
@@ -90,15 +90,15 @@ struct KpiCampaign(Campaign);
 #[pymethods]
 impl KpiCampaign {
     #[new]
-    fn new(wanted: Wanted) -> PyResult<Self> {
+    fn new(options: Options) -> PyResult<Self> {
         let demand = |(hal_m, val_m, tta_s)| Demand { hal_m, val_m, tta_s };
         let settings = Settings {
-            grid: Grid { origin_ns: wanted.origin_ns, period_ns: wanted.period_ns },
-            demands: wanted.demands.into_iter().map(demand).collect(),
-            window: wanted.window,
-            bin_m: wanted.bin_m,
-            n_bins: wanted.n_bins,
-            exclude_missing: wanted.exclude_missing,
+            grid: Grid { origin_ns: options.origin_ns, period_ns: options.period_ns },
+            demands: options.demands.into_iter().map(demand).collect(),
+            window: options.window,
+            bin_m: options.bin_m,
+            n_bins: options.n_bins,
+            exclude_missing: options.exclude_missing,
         };
         Campaign::new(settings).map(Self).map_err(|e| input_error(e, None))
     }
@@ -238,9 +238,9 @@ fn kpi_stanford<'py>(
 /// Events and epochs at risk of a pattern.
 #[pyfunction]
 fn kpi_continuity(available: PyReadonlyArray1<'_, bool>, window: u64) -> PyResult<(u64, u64)> {
-    let mut found = Continuity::default();
-    available.as_slice()?.iter().for_each(|a| found.push(*a, 1, window));
-    Ok((found.events(), found.at_risk(window)))
+    let mut continuity = Continuity::default();
+    available.as_slice()?.iter().for_each(|a| continuity.push(*a, 1, window));
+    Ok((continuity.events(), continuity.at_risk(window)))
 }
 
 pub fn regions<'py>(py: Python<'py>, counts: &Regions) -> PyResult<Bound<'py, PyDict>> {
@@ -309,10 +309,10 @@ fn event_columns<'py>(py: Python<'py>, events: &[Event], grid: &Grid) -> PyResul
 }
 
 fn states(d: &Bound<'_, PyDict>, events: &[Event], name: &str, state: impl Fn(&Event) -> Option<State>) -> PyResult<()> {
-    let found: Vec<_> = events.iter().map(state).collect();
-    d.set_item(format!("n_sv_{name}"), found.iter().map(|s| s.map(|s| s.n_sv).filter(|n| *n >= 0)).collect::<Vec<_>>())?;
-    d.set_item(format!("mode_{name}"), found.iter().map(|s| s.map_or(0, |s| s.mode)).collect::<Vec<_>>())?;
-    d.set_item(format!("reason_{name}"), found.iter().map(|s| s.map_or(0, |s| s.reason)).collect::<Vec<_>>())
+    let states: Vec<_> = events.iter().map(state).collect();
+    d.set_item(format!("n_sv_{name}"), states.iter().map(|s| s.map(|s| s.n_sv).filter(|n| *n >= 0)).collect::<Vec<_>>())?;
+    d.set_item(format!("mode_{name}"), states.iter().map(|s| s.map_or(0, |s| s.mode)).collect::<Vec<_>>())?;
+    d.set_item(format!("reason_{name}"), states.iter().map(|s| s.map_or(0, |s| s.reason)).collect::<Vec<_>>())
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

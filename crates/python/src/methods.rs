@@ -68,8 +68,8 @@ fn checked_risk(q: f64) -> PyResult<f64> {
 fn bounds_of<'py>(py: Python<'py>, method: &str, risk: f64, n_epochs: usize, columns: &Bound<'py, PyDict>) -> PyResult<Column<'py>> {
     let method = bound::method(method).ok_or_else(|| PyKeyError::new_err(method.to_owned()))?;
     let risk = Risk::new(risk).map_err(|e| input_error(e, None))?;
-    let held = Table::of(n_epochs, columns)?;
-    let (table, ..) = held.parts()?;
+    let stored = Table::of(n_epochs, columns)?;
+    let (table, ..) = stored.parts()?;
     let column = py.detach(|| bounds::bounds(&table, method, risk));
     let reasons = column.reasons.into_iter().map(|r| (r.reason.id(), r.words)).collect();
     Ok((column.bound_m.into_pyarray(py), column.reason.into_pyarray(py), reasons))
@@ -78,7 +78,7 @@ fn bounds_of<'py>(py: Python<'py>, method: &str, risk: f64, n_epochs: usize, col
 /// Columns of an epoch table, kept from the collector while they are read.
 pub(crate) struct Table<'py> {
     len: usize,
-    held: Vec<Option<PyReadonlyArray1<'py, f64>>>,
+    stored: Vec<Option<PyReadonlyArray1<'py, f64>>>,
 }
 
 /// Columns that methods read, then those of the navigation error, then the protection level.
@@ -112,7 +112,7 @@ pub(crate) fn parts(len: usize, slices: [Option<&[f64]>; COLUMNS.len()]) -> Part
 
 impl<'py> Table<'py> {
     pub(crate) fn of(len: usize, columns: &Bound<'py, PyDict>) -> PyResult<Self> {
-        let held = COLUMNS.iter().map(|name| {
+        let stored = COLUMNS.iter().map(|name| {
             let Some(value) = columns.get_item(name)? else { return Ok(None) };
             let array: PyReadonlyArray1<'py, f64> = value.extract()?;
             if array.as_array().len() != len {
@@ -120,12 +120,12 @@ impl<'py> Table<'py> {
             }
             Ok(Some(array))
         });
-        Ok(Self { len, held: held.collect::<PyResult<_>>()? })
+        Ok(Self { len, stored: stored.collect::<PyResult<_>>()? })
     }
 
     pub(crate) fn parts(&self) -> PyResult<Parts<'_>> {
         let mut slices = [None; COLUMNS.len()];
-        for (slot, column) in slices.iter_mut().zip(&self.held) {
+        for (slot, column) in slices.iter_mut().zip(&self.stored) {
             *slot = column.as_ref().map(|a| a.as_slice()).transpose()?;
         }
         Ok(parts(self.len, slices))
@@ -135,8 +135,8 @@ impl<'py> Table<'py> {
 /// Errors of every epoch along the axes of its path: a column each, NaN where a part is unknown.
 #[pyfunction]
 fn errors_of<'py>(py: Python<'py>, n_epochs: usize, columns: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
-    let held = Table::of(n_epochs, columns)?;
-    let (table, nse_m, _) = held.parts()?;
+    let stored = Table::of(n_epochs, columns)?;
+    let (table, nse_m, _) = stored.parts()?;
     let errors = py.detach(|| judge::errors(&table, nse_m));
     let d = PyDict::new(py);
     for (name, of) in ERRORS {

@@ -28,7 +28,7 @@ impl PreciseOrbits {
 
 #[pymethods]
 impl PreciseOrbits {
-    /// Read from the bytes of files, plain or gzip, each with its path for messages; SP3 is told from its first character.
+    /// Read from the bytes of files, plain or gzip, each with its path for messages; SP3 is recognised by its first character.
     #[new]
     fn new(py: Python<'_>, files: Vec<(Vec<u8>, String)>) -> PyResult<Self> {
         let (mut tables, mut refused) = (Precise::default(), Vec::new());

@@ -120,8 +120,10 @@ impl Observations {
     }
     /// Every value of one code: epoch, satellite, value, loss of lock, strength; None where the file lacks the code.
     fn column<'py>(&self, py: Python<'py>, system: char, code: &str) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let found = u8::try_from(system).ok().and_then(Constellation::from_letter).zip(Code::try_from(code.as_bytes()).ok());
-        let Some((constellation, column)) = found.and_then(|(c, code)| Some((c, self.0.column(c, &code)?))) else { return Ok(None) };
+        let code_of_system = u8::try_from(system).ok().and_then(Constellation::from_letter).zip(Code::try_from(code.as_bytes()).ok());
+        let Some((constellation, column)) = code_of_system.and_then(|(c, code)| Some((c, self.0.column(c, &code)?))) else {
+            return Ok(None);
+        };
         let (mut time, mut satellite, mut value, mut lock, mut strength) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for epoch in 0..self.0.n_epochs() {
             for k in self.0.satellites(epoch).filter(|k| self.0.satellite[*k].constellation == constellation) {
@@ -224,8 +226,8 @@ impl Navigation {
     }
     /// Broadcast ionosphere of "G" or "C": alpha, beta.
     fn klobuchar(&self, system: char) -> Option<([f64; 4], [f64; 4])> {
-        let found = if system == 'C' { self.records.klobuchar_beidou } else { self.records.klobuchar_gps };
-        found.map(|k: Klobuchar| (k.alpha, k.beta))
+        let model = if system == 'C' { self.records.klobuchar_beidou } else { self.records.klobuchar_gps };
+        model.map(|k: Klobuchar| (k.alpha, k.beta))
     }
     /// Kepler orbits of a constellation at an instant, from each healthy satellite's nearest record: names, seven elements a row, ages [s].
     fn orbits<'py>(&self, py: Python<'py>, system: usize, time_ns: i64) -> PyResult<Kepler<'py>> {
@@ -304,17 +306,17 @@ fn solve_positions<'py>(
         settings,
         keep_ranges,
     };
-    let found = py.detach(|| positions(&observations.0, &navigation.records, precise.map(PreciseOrbits::tables), &job));
-    let d = table(py, &found, errors.name)?;
-    d.set_item("smoothed_share", found.smoothed_share)?;
+    let solved = py.detach(|| positions(&observations.0, &navigation.records, precise.map(PreciseOrbits::tables), &job));
+    let d = table(py, &solved, errors.name)?;
+    d.set_item("smoothed_share", solved.smoothed_share)?;
     d.set_item("ionosphere", model_name(&model))?;
-    d.set_item("ranges", if keep_ranges { Some(kept_ranges(py, &found)?) } else { None })?;
+    d.set_item("ranges", if keep_ranges { Some(kept_ranges(py, &solved)?) } else { None })?;
     Ok(d)
 }
 
 /// The model by its name, at the middle of the observations.
 fn ionosphere_model(name: &str, observations: &Observations, navigation: &Navigation) -> PyResult<Ionosphere> {
-    let wanted = match name {
+    let model = match name {
         "auto" => Model::Auto,
         "broadcast" => Model::Broadcast,
         "galileo" => Model::Galileo,
@@ -324,7 +326,7 @@ fn ionosphere_model(name: &str, observations: &Observations, navigation: &Naviga
     };
     let middle = observations.0.time.get(observations.0.n_epochs() / 2).copied().unwrap_or_default();
     let none = || PyLookupError::new_err(format!("no message of the ionosphere: {name}"));
-    wanted.of(&navigation.records, middle).ok_or_else(none)
+    model.of(&navigation.records, middle).ok_or_else(none)
 }
 
 /// Name of a model, and the solar activity that it counts on \[sfu\].
@@ -338,8 +340,8 @@ fn model_name(model: &Ionosphere) -> (&'static str, f64) {
 }
 
 /// The ranges of every position, one row each: index of the epoch, and what the range was.
-fn kept_ranges<'py>(py: Python<'py>, found: &Positions) -> PyResult<Bound<'py, PyDict>> {
-    let rows: Vec<_> = found.ranges.iter().enumerate().flat_map(|(i, used)| used.iter().map(move |u| (i as i64, u))).collect();
+fn kept_ranges<'py>(py: Python<'py>, solved: &Positions) -> PyResult<Bound<'py, PyDict>> {
+    let rows: Vec<_> = solved.ranges.iter().enumerate().flat_map(|(i, used)| used.iter().map(move |u| (i as i64, u))).collect();
     let d = PyDict::new(py);
     d.set_item("epoch", rows.iter().map(|(i, _)| *i).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("sv", rows.iter().map(|(_, (satellite, _))| satellite.to_string()).collect::<Vec<_>>())?;
@@ -366,7 +368,7 @@ fn within(argument: &'static str, value: f64, unit: &'static str, domain: &'stat
 /// One number of a position.
 type Number = fn(&Fix) -> f64;
 
-fn table<'py>(py: Python<'py>, found: &Positions, weights: &str) -> PyResult<Bound<'py, PyDict>> {
+fn table<'py>(py: Python<'py>, solved: &Positions, weights: &str) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
     let columns: [(&str, Number); 16] = [
         ("est_lat_rad", |f| f.position.point.lat().rad()),
@@ -387,23 +389,23 @@ fn table<'py>(py: Python<'py>, found: &Positions, weights: &str) -> PyResult<Bou
         ("p_residual", |f| f.residual_risk),
     ];
     for (name, value) in columns {
-        let values: Vec<f64> = found.fixes.iter().map(|f| f.as_ref().map_or(f64::NAN, value)).collect();
+        let values: Vec<f64> = solved.fixes.iter().map(|f| f.as_ref().map_or(f64::NAN, value)).collect();
         d.set_item(name, values.into_pyarray(py))?;
     }
-    let count = |value: fn(&Fix) -> usize| found.fixes.iter().map(|f| f.as_ref().map_or(0, |f| value(f) as i64)).collect::<Vec<_>>();
+    let count = |value: fn(&Fix) -> usize| solved.fixes.iter().map(|f| f.as_ref().map_or(0, |f| value(f) as i64)).collect::<Vec<_>>();
     d.set_item("n_sv", count(|f| f.n_used).into_pyarray(py))?;
     d.set_item("n_excluded", count(|f| f.n_excluded).into_pyarray(py))?;
     d.set_item("n_redundant", count(|f| f.redundancy).into_pyarray(py))?;
-    let words = |(i, f): (usize, &Result<Fix, Unavailable>)| match (f, found.doubts.get(i)) {
+    let words = |(i, f): (usize, &Result<Fix, Unavailable>)| match (f, solved.doubts.get(i)) {
         (Err(why), None | Some(None)) => why.to_string(),
-        _ => found.reason(i).map_or_else(String::new, |r| r.words().to_owned()),
+        _ => solved.reason(i).map_or_else(String::new, |r| r.words().to_owned()),
     };
-    let reasons: Vec<_> = (0..found.fixes.len()).map(|i| found.reason(i)).collect();
+    let reasons: Vec<_> = (0..solved.fixes.len()).map(|i| solved.reason(i)).collect();
     d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
     d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
-    d.set_item("reason", found.fixes.iter().enumerate().map(words).collect::<Vec<_>>())?;
-    satellites(&d, &found.tally, &found.signals)?;
-    d.set_item("codes", found.codes.clone())?;
+    d.set_item("reason", solved.fixes.iter().enumerate().map(words).collect::<Vec<_>>())?;
+    satellites(&d, &solved.tally, &solved.signals)?;
+    d.set_item("codes", solved.codes.clone())?;
     d.set_item("weights", weights)?;
     Ok(d)
 }
@@ -438,8 +440,8 @@ fn geodetic_from_ecef<'py>(py: Python<'py>, ecef_m: PyReadonlyArray2<'py, f64>) 
         if row.iter().any(|v| v.is_nan()) {
             return Ok([f64::NAN; 3]);
         }
-        let found = frame::geodetic_from_ecef(&EcefPosition::from_vector((*row).into())).map_err(|e| input_error(e, Some(index)))?;
-        Ok([found.point.lat().rad(), found.point.lon().rad(), found.height.m()])
+        let position = frame::geodetic_from_ecef(&EcefPosition::from_vector((*row).into())).map_err(|e| input_error(e, Some(index)))?;
+        Ok([position.point.lat().rad(), position.point.lon().rad(), position.height.m()])
     };
     let rows: PyResult<Vec<[f64; 3]>> = ecef_m.as_slice()?.as_chunks::<3>().0.iter().enumerate().map(convert).collect();
     let rows = rows?;

@@ -20,9 +20,9 @@ struct Points<'py>(Numbers<'py>, Numbers<'py>, Numbers<'py>);
 
 impl Points<'_> {
     fn places(&self, lat: &'static str) -> PyResult<Places<'_>> {
-        let (found, lon, h) = (self.0.as_slice()?, self.1.as_slice()?, self.2.as_slice()?);
-        alike(lat, found.len(), &[lon.len(), h.len()])?;
-        Ok(Places { lat: found, lon, h })
+        let (latitudes, lon, h) = (self.0.as_slice()?, self.1.as_slice()?, self.2.as_slice()?);
+        alike(lat, latitudes.len(), &[lon.len(), h.len()])?;
+        Ok(Places { lat: latitudes, lon, h })
     }
 }
 
@@ -55,18 +55,18 @@ fn rows(covariance: &Covariance<Enu>) -> [f64; 9] {
     [m.m11, m.m12, m.m13, m.m21, m.m22, m.m23, m.m31, m.m32, m.m33]
 }
 
-fn positions<'py>(py: Python<'py>, found: &[Result<Fix, NoFix>]) -> PyResult<Bound<'py, PyDict>> {
+fn positions<'py>(py: Python<'py>, solutions: &[Result<Fix, NoFix>]) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
-    let number = |f: fn(&Fix) -> f64| -> Vec<f64> { found.iter().map(|r| r.as_ref().map_or(f64::NAN, f)).collect() };
+    let number = |f: fn(&Fix) -> f64| -> Vec<f64> { solutions.iter().map(|r| r.as_ref().map_or(f64::NAN, f)).collect() };
     d.set_item("lat_rad", number(|f| f.position.point.lat().rad()).into_pyarray(py))?;
     d.set_item("lon_rad", number(|f| f.position.point.lon().rad()).into_pyarray(py))?;
     d.set_item("drms_m", number(|f| f.drms().m()).into_pyarray(py))?;
     d.set_item("p_residual", number(|f| f.p_residual.unwrap_or(f64::NAN)).into_pyarray(py))?;
-    let covariances: Vec<f64> = found.iter().flat_map(|r| r.as_ref().map_or([f64::NAN; 9], |f| rows(&f.covariance))).collect();
-    d.set_item("covariance_enu_m2", covariances.into_pyarray(py).reshape([found.len(), 3, 3])?)?;
-    let used: Vec<i64> = found.iter().map(|r| r.as_ref().map_or(0, |f| f.used as i64)).collect();
+    let covariances: Vec<f64> = solutions.iter().flat_map(|r| r.as_ref().map_or([f64::NAN; 9], |f| rows(&f.covariance))).collect();
+    d.set_item("covariance_enu_m2", covariances.into_pyarray(py).reshape([solutions.len(), 3, 3])?)?;
+    let used: Vec<i64> = solutions.iter().map(|r| r.as_ref().map_or(0, |f| f.used as i64)).collect();
     d.set_item("n_ranges", used.into_pyarray(py))?;
-    d.set_item("reason_id", found.iter().map(|r| status::id(r.as_ref().err().map(NoFix::reason))).collect::<Vec<_>>())?;
+    d.set_item("reason_id", solutions.iter().map(|r| status::id(r.as_ref().err().map(NoFix::reason))).collect::<Vec<_>>())?;
     Ok(d)
 }
 
@@ -113,11 +113,11 @@ fn dme_solve<'py>(
     let sigma_altitude = Metres::new(sigma_altitude_m);
     let residual_risk = Risk::new(residual_risk).map_err(|e| refused(OutOfDomain { argument: "residual_risk", ..e }))?;
     let job = Ranges { stations: &places, slant, sigma, h, sigma_altitude, prior, residual_risk };
-    let found = py.detach(|| dme::fixes(&job)).map_err(rejected)?;
-    let fixes: Vec<_> = found.iter().map(|r| r.as_ref().map(|checked| checked.fix).map_err(|e| *e)).collect();
+    let solutions = py.detach(|| dme::fixes(&job)).map_err(rejected)?;
+    let fixes: Vec<_> = solutions.iter().map(|r| r.as_ref().map(|checked| checked.fix).map_err(|e| *e)).collect();
     let d = positions(py, &fixes)?;
-    d.set_item("excluded", found.iter().map(|r| r.as_ref().map_or(-1, excluded)).collect::<Vec<i64>>().into_pyarray(py))?;
-    d.set_item("reason_id", found.iter().map(|r| status::id(reason(r))).collect::<Vec<_>>())?;
+    d.set_item("excluded", solutions.iter().map(|r| r.as_ref().map_or(-1, excluded)).collect::<Vec<i64>>().into_pyarray(py))?;
+    d.set_item("reason_id", solutions.iter().map(|r| status::id(reason(r))).collect::<Vec<_>>())?;
     Ok(d)
 }
 
@@ -137,8 +137,8 @@ fn dme_solve_vor<'py>(
     alike("slant_m", slant.len(), &[bearing.len(), h.len(), stations.len()])?;
     let models = Models::standard(Radians::new(sigma_bearing_rad), Metres::new(sigma_altitude_m));
     let job = Bearings { stations, slant, bearing, h };
-    let found = py.detach(|| dme::vor_fixes(&job, &models)).map_err(rejected)?;
-    positions(py, &found)
+    let solutions = py.detach(|| dme::vor_fixes(&job, &models)).map_err(rejected)?;
+    positions(py, &solutions)
 }
 
 fn en(c: Option<[f64; 3]>) -> [f64; 4] {
@@ -154,15 +154,15 @@ fn of_space(covariance: Option<Covariance<Enu>>) -> Option<[f64; 3]> {
 }
 
 /// Columns of offers: pairs as places of their stations (-1: none), covariances (n, 2, 2), counts.
-fn offers<'py>(py: Python<'py>, d: &Bound<'py, PyDict>, found: &[&Offer]) -> PyResult<()> {
-    let n = found.len();
+fn offers<'py>(py: Python<'py>, d: &Bound<'py, PyDict>, offers: &[&Offer]) -> PyResult<()> {
+    let n = offers.len();
     let place = |best: Option<&Best>| best.map_or([-1, -1], |b| b.stations.map(|k| k as i64));
-    let matrices = |f: &dyn Fn(&Offer) -> Option<[f64; 3]>| -> Vec<f64> { found.iter().flat_map(|o| en(f(o))).collect() };
-    d.set_item("n_stations", found.iter().map(|o| o.n_stations as i64).collect::<Vec<_>>().into_pyarray(py))?;
-    d.set_item("best", found.iter().flat_map(|o| place(o.best.as_ref())).collect::<Vec<i64>>().into_pyarray(py).reshape([n, 2])?)?;
+    let matrices = |f: &dyn Fn(&Offer) -> Option<[f64; 3]>| -> Vec<f64> { offers.iter().flat_map(|o| en(f(o))).collect() };
+    d.set_item("n_stations", offers.iter().map(|o| o.n_stations as i64).collect::<Vec<_>>().into_pyarray(py))?;
+    d.set_item("best", offers.iter().flat_map(|o| place(o.best.as_ref())).collect::<Vec<i64>>().into_pyarray(py).reshape([n, 2])?)?;
     d.set_item("best_en_m2", matrices(&|o| of_pair(o.best.as_ref())).into_pyarray(py).reshape([n, 2, 2])?)?;
     d.set_item("all_en_m2", matrices(&|o| of_space(o.all)).into_pyarray(py).reshape([n, 2, 2])?)?;
-    d.set_item("vor", found.iter().map(|o| o.vor.map_or(-1, |(k, _)| k as i64)).collect::<Vec<_>>().into_pyarray(py))?;
+    d.set_item("vor", offers.iter().map(|o| o.vor.map_or(-1, |(k, _)| k as i64)).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("vor_en_m2", matrices(&|o| of_space(o.vor.map(|v| v.1))).into_pyarray(py).reshape([n, 2, 2])?)
 }
 
@@ -175,8 +175,8 @@ fn dme_sights<'py>(
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let (stations, points) = (stations(&network.0, &network.1, &network.2)?, points.places("lat_rad")?);
     let models = models((0.0, 0.0))?;
-    let found = py.detach(|| dme::sights(&points, &stations, &models)).map_err(rejected)?;
-    found.concat().into_pyarray(py).reshape([points.len(), stations.len(), 4])
+    let views = py.detach(|| dme::sights(&points, &stations, &models)).map_err(rejected)?;
+    views.concat().into_pyarray(py).reshape([points.len(), stations.len(), 4])
 }
 
 /// What a flight has, epoch by epoch.
@@ -196,13 +196,13 @@ fn dme_along<'py>(
     alike("lat_rad", track.len(), &[time.len(), course.len()])?;
     let models = models(sigmas)?;
     let switching = Switching { share: switching.0, hold_s: switching.1 };
-    let found = py.detach(|| dme::along(&track, time, course, &stations, &models, switching)).map_err(rejected)?;
+    let series = py.detach(|| dme::along(&track, time, course, &stations, &models, switching)).map_err(rejected)?;
     let d = PyDict::new(py);
-    offers(py, &d, &found.iter().collect::<Vec<_>>())?;
+    offers(py, &d, &series.iter().collect::<Vec<_>>())?;
     let used = |o: &Offer| o.used.map_or([-1, -1], |b| b.stations.map(|k| k as i64));
-    d.set_item("used", found.iter().flat_map(used).collect::<Vec<i64>>().into_pyarray(py).reshape([found.len(), 2])?)?;
-    let covariances: Vec<f64> = found.iter().flat_map(|o| en(of_pair(o.used.as_ref()))).collect();
-    d.set_item("used_en_m2", covariances.into_pyarray(py).reshape([found.len(), 2, 2])?)?;
+    d.set_item("used", series.iter().flat_map(used).collect::<Vec<i64>>().into_pyarray(py).reshape([series.len(), 2])?)?;
+    let covariances: Vec<f64> = series.iter().flat_map(|o| en(of_pair(o.used.as_ref()))).collect();
+    d.set_item("used_en_m2", covariances.into_pyarray(py).reshape([series.len(), 2, 2])?)?;
     Ok(d)
 }
 
@@ -217,11 +217,11 @@ fn dme_coverage<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (stations, points) = (stations(&network.0, &network.1, &network.2)?, points.places("lat_rad")?);
     let (models, risk) = (models(sigmas)?, Risk::new(risk).map_err(refused)?);
-    let found = py.detach(|| dme::coverage(&points, &stations, &models, risk)).map_err(rejected)?;
+    let coverage = py.detach(|| dme::coverage(&points, &stations, &models, risk)).map_err(rejected)?;
     let d = PyDict::new(py);
-    offers(py, &d, &found.iter().map(|c| &c.offer).collect::<Vec<_>>())?;
+    offers(py, &d, &coverage.iter().map(|c| &c.offer).collect::<Vec<_>>())?;
     for (k, name) in ["nse_best_m", "nse_all_m", "nse_vor_m"].iter().enumerate() {
-        let nse: Vec<f64> = found.iter().map(|c| c.nse[k].map_or(f64::NAN, Metres::m)).collect();
+        let nse: Vec<f64> = coverage.iter().map(|c| c.nse[k].map_or(f64::NAN, Metres::m)).collect();
         d.set_item(name, nse.into_pyarray(py))?;
     }
     Ok(d)

@@ -30,8 +30,8 @@ fn raim_factors(n_redundant: Vec<i64>, numbers: [f64; 3]) -> PyResult<Vec<(f64, 
         let domain = "[1, 60]: ranges beyond the unknowns";
         let wrong = || input_error(OutOfDomain { argument: "n_redundant", value: *n as f64, unit: "1", domain }, Some(index));
         let redundancy = usize::try_from(*n).ok().filter(|n| (1..=MOST_SATELLITES - 4).contains(n)).ok_or_else(wrong)?;
-        let found = Factors::new(&requirement, redundancy);
-        Ok((found.threshold, found.missed_bias))
+        let computed = Factors::new(&requirement, redundancy);
+        Ok((computed.threshold, computed.missed_bias))
     };
     n_redundant.iter().enumerate().map(factors).collect()
 }

@@ -198,7 +198,7 @@ impl PlausibleTrack {
         let judged = track.judge(&reports_of(&reports)?, &after_mps).map_err(|(index, e)| input_error(e, Some(index)))?;
         let code = |finding| match finding {
             Finding::Plausible => 0_u8,
-            Finding::Held => 1,
+            Finding::Repeated => 1,
             Finding::Stale => 2,
             Finding::Jump => 3,
             Finding::Unsettled => 4,
@@ -214,12 +214,12 @@ impl PlausibleTrack {
 }
 
 fn triples<'a>(array: &'a PyReadonlyArray2<'_, f64>) -> PyResult<&'a [[f64; 3]]> {
-    let (found, rest) = array.as_slice()?.as_chunks::<3>();
+    let (rows, rest) = array.as_slice()?.as_chunks::<3>();
     if !rest.is_empty() || array.as_array().ncols() != 3 {
         let value = array.as_array().ncols() as f64;
         return Err(input_error(OutOfDomain { argument: "positions", value, unit: "columns", domain: "3 columns" }, None));
     }
-    Ok(found)
+    Ok(rows)
 }
 
 fn rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bound<'py, PyArray2<f64>>> {

@@ -14,9 +14,9 @@ use pyo3::types::PyDict;
 fn read_positions<'py>(py: Python<'py>, content: &[u8], kind: &str) -> PyResult<Bound<'py, PyDict>> {
     let unknown = OutOfDomain { argument: "kind", value: f64::NAN, unit: "id", domain: "ubx, sbf, novatel, nmea" };
     let kind = Kind::of(kind).ok_or_else(|| input_error(unknown, None))?;
-    let found = py.detach(|| log::read(content, kind));
+    let log = py.detach(|| log::read(content, kind));
     let d = PyDict::new(py);
-    let (rows, n) = (&found.positions, found.positions.len());
+    let (rows, n) = (&log.positions, log.positions.len());
     let column = |of: fn(&Position) -> Option<f64>| rows.iter().map(|p| of(p).unwrap_or(f64::NAN)).collect::<Vec<_>>().into_pyarray(py);
     d.set_item("record", rows.iter().map(|p| p.record).collect::<Vec<_>>().into_pyarray(py))?;
     d.set_item("time_ns", rows.iter().map(|p| p.time.map_or(0, GpsTime::nanoseconds)).collect::<Vec<_>>().into_pyarray(py))?;
@@ -26,13 +26,13 @@ fn read_positions<'py>(py: Python<'py>, content: &[u8], kind: &str) -> PyResult<
     d.set_item("n_sv", rows.iter().map(|p| p.n_sv).collect::<Vec<_>>())?;
     let covariance: Vec<f64> = rows.iter().flat_map(|p| p.covariance_m2.unwrap_or([f64::NAN; 6])).collect();
     d.set_item("cov_m2", covariance.into_pyarray(py).reshape([n, 6])?)?;
-    d.set_item("n_rows", found.n_rows)?;
-    d.set_item("absent_ns", found.absent.iter().map(|time| time.map(GpsTime::nanoseconds)).collect::<Vec<_>>())?;
-    d.set_item("n_outside", found.n_outside)?;
-    d.set_item("undated", found.undated)?;
-    d.set_item("fields", found.fields)?;
-    d.set_item("notes", found.notes.iter().map(|note| note.id()).collect::<Vec<_>>())?;
-    let left_out: Vec<_> = found.left_out.into_iter().map(|l| (l.reason, l.damaged, l.count, l.first, l.example)).collect();
+    d.set_item("n_rows", log.n_rows)?;
+    d.set_item("absent_ns", log.absent.iter().map(|time| time.map(GpsTime::nanoseconds)).collect::<Vec<_>>())?;
+    d.set_item("n_outside", log.n_outside)?;
+    d.set_item("undated", log.undated)?;
+    d.set_item("fields", log.fields)?;
+    d.set_item("notes", log.notes.iter().map(|note| note.id()).collect::<Vec<_>>())?;
+    let left_out: Vec<_> = log.left_out.into_iter().map(|l| (l.reason, l.damaged, l.count, l.first, l.example)).collect();
     d.set_item("left_out", left_out)?;
     Ok(d)
 }

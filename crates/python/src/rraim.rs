@@ -3,7 +3,7 @@
 use crate::gbas::{carrier, constellations, form, ordering, refusal, refused};
 use crate::status;
 use navbound_assess::gbas::Skies;
-use navbound_assess::rraim::{self, Answer, Asked, Coasting};
+use navbound_assess::rraim::{self, Answer, Coasting, Request};
 use navbound_assess::surface::{self, Demand, Grid};
 use navbound_core::bound::gbas::levels::Factors;
 use navbound_core::bound::rraim::modes::Priors;
@@ -53,7 +53,7 @@ impl Rule {
     }
 }
 
-/// The satellites now, and what is asked.
+/// The satellites now, and what is required.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Job<'py> {
@@ -83,19 +83,19 @@ fn rraim_levels<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDi
         Coasting { fix, az_rad: job.az_now_rad.as_slice()?, el_rad: job.el_now_rad.as_slice()?, sigma_td_m: job.sigma_td_m.as_slice()? };
     let (single, budget) = job.rule.read()?;
     let priors = Priors { satellite: job.p_sat, constellation: job.p_const, threshold: job.p_threshold }.check().map_err(refusal)?;
-    let asked = Asked {
+    let request = Request {
         bias_m: job.bias_m.as_slice()?,
         aided_m2: job.fix.aided_m2.as_ref().map(|a| a.as_slice()).transpose()?,
         single,
         budget,
         priors,
     };
-    let found = py.detach(|| rraim::protection_levels(&coasting, &asked)).map_err(refused)?;
+    let levels = py.detach(|| rraim::protection_levels(&coasting, &request)).map_err(refused)?;
     let width = constellation.len();
-    let mut columns = vec![Vec::with_capacity(found.len()); COLUMNS.len()];
+    let mut columns = vec![Vec::with_capacity(levels.len()); COLUMNS.len()];
     let (mut matrices, mut subsets) = (Vec::new(), Vec::new());
     let (mut reasons, mut multi_reasons, mut ids, mut multi_ids) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for answer in &found {
+    for answer in &levels {
         let row = answer.as_ref().map_or([f64::NAN; COLUMNS.len()], level_row);
         columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
         let matrix = answer.as_ref().map_or([f64::NAN; 9], |a| std::array::from_fn(|i| a.covariance.matrix()[(i / 3, i % 3)]));
@@ -117,7 +117,7 @@ fn rraim_levels<'py>(py: Python<'py>, job: Job<'py>) -> PyResult<Bound<'py, PyDi
         d.set_item(name, column.into_pyarray(py))?;
     }
     d.set_item("cov_enu_m2", matrices.into_pyarray(py))?;
-    d.set_item("subsets", subsets.into_pyarray(py).reshape([found.len(), width, 4])?)?;
+    d.set_item("subsets", subsets.into_pyarray(py).reshape([levels.len(), width, 4])?)?;
     d.set_item("reason", reasons)?;
     d.set_item("reason_id", ids)?;
     d.set_item("multi_reason_id", multi_ids)?;

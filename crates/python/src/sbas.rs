@@ -149,8 +149,8 @@ fn sbas_indicators<'py>(
 
 /// Messages that changed nothing: time, why.
 pub fn ignored(py: Python<'_>, feed: &Feed, settings: &Settings) -> Vec<(i64, String)> {
-    let found = py.detach(|| sbas::ignored(feed, settings.obedience));
-    found.into_iter().map(|(t, why)| (t.nanoseconds(), why.to_string())).collect()
+    let dropped = py.detach(|| sbas::ignored(feed, settings.obedience));
+    dropped.into_iter().map(|(t, why)| (t.nanoseconds(), why.to_string())).collect()
 }
 
 /// What a level is good for: 0 none, 1 precision approach, 2 en route.
@@ -238,11 +238,11 @@ fn sbas_from_terms<'py>(py: Python<'py>, terms: PyReadonlyArray2<'py, f64>) -> P
         return Err(PyValueError::new_err(format!("{} columns, not {TERMS}", terms.as_array().ncols())));
     }
     let terms: PyResult<Vec<_>> = rows.iter().enumerate().map(|(i, row)| range_terms(i, row)).collect();
-    let found = sbas::from_terms(&terms?).map_err(|refused| match refused {
+    let levels = sbas::from_terms(&terms?).map_err(|refused| match refused {
         TermsRefused::Term(index, e) => input_error(e, Some(index)),
         TermsRefused::Geometry(why) => PyValueError::new_err(why.to_string()),
     })?;
-    terms_columns(py, &found)
+    terms_columns(py, &levels)
 }
 
 const TERMS: usize = 24;
@@ -298,9 +298,9 @@ fn range_terms(index: usize, row: &[f64; TERMS]) -> PyResult<RangeTerms> {
     })
 }
 
-fn terms_columns<'py>(py: Python<'py>, found: &FromTerms) -> PyResult<Bound<'py, PyDict>> {
+fn terms_columns<'py>(py: Python<'py>, levels: &FromTerms) -> PyResult<Bound<'py, PyDict>> {
     let column =
-        |f: fn(&navbound_core::bound::sbas::terms::RangeSigmas) -> f64| found.ranges.iter().map(f).collect::<Vec<_>>().into_pyarray(py);
+        |f: fn(&navbound_core::bound::sbas::terms::RangeSigmas) -> f64| levels.ranges.iter().map(f).collect::<Vec<_>>().into_pyarray(py);
     let d = PyDict::new(py);
     d.set_item("e_fc_m", column(|r| r.fast_degradation_m))?;
     d.set_item("e_iono_m", column(|r| r.grid_degradation_m))?;
@@ -316,12 +316,12 @@ fn terms_columns<'py>(py: Python<'py>, found: &FromTerms) -> PyResult<Bound<'py,
     d.set_item("cov_en_m2", v[(0, 1)])?;
     d.set_item("cov_nn_m2", v[(1, 1)])?;
     d.set_item("cov_uu_m2", v[(2, 2)])?;
-    d.set_item("d_major_m", found.d_major.m())?;
-    d.set_item("hdop", found.hdop)?;
-    d.set_item("vdop", found.vdop)?;
-    d.set_item("hpl_pa_m", found.approach.hpl.m())?;
-    d.set_item("hpl_npa_m", found.en_route.hpl.m())?;
-    d.set_item("vpl_m", found.approach.vpl.map_or(f64::NAN, Metres::m))?;
+    d.set_item("d_major_m", levels.d_major.m())?;
+    d.set_item("hdop", levels.hdop)?;
+    d.set_item("vdop", levels.vdop)?;
+    d.set_item("hpl_pa_m", levels.approach.hpl.m())?;
+    d.set_item("hpl_npa_m", levels.en_route.hpl.m())?;
+    d.set_item("vpl_m", levels.approach.vpl.map_or(f64::NAN, Metres::m))?;
     Ok(d)
 }
 

@@ -38,16 +38,16 @@ fn sbas_positions<'py>(
     within("mask_rad", mask, "rad", "[0, pi/2]", (0.0..=core::f64::consts::FRAC_PI_2).contains(&mask))?;
     let records = &service.navigation.get().records;
     let how = smoothing_s.map(Smoothing::over);
-    let found = py.detach(|| positions::positions(&feed, records, &observations.0, &settings, how.as_ref()));
-    let d = epochs(py, &found, false_alarm)?;
-    d.set_item("satellites", satellites(py, &found)?)?;
-    d.set_item("unused", found.unused.clone())?;
-    d.set_item("smoothed_share", found.smoothed_share)?;
+    let corrected = py.detach(|| positions::positions(&feed, records, &observations.0, &settings, how.as_ref()));
+    let d = epochs(py, &corrected, false_alarm)?;
+    d.set_item("satellites", satellites(py, &corrected)?)?;
+    d.set_item("unused", corrected.unused.clone())?;
+    d.set_item("smoothed_share", corrected.smoothed_share)?;
     d.set_item("ignored", ignored(py, &feed, &settings))?;
     Ok(d)
 }
 
-fn epochs<'py>(py: Python<'py>, found: &Corrected, false_alarm: f64) -> PyResult<Bound<'py, PyDict>> {
+fn epochs<'py>(py: Python<'py>, corrected: &Corrected, false_alarm: f64) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
     let columns: [(&str, Number); 14] = [
         ("est_lat_rad", |f| f.solution.position.point.lat().rad()),
@@ -66,28 +66,28 @@ fn epochs<'py>(py: Python<'py>, found: &Corrected, false_alarm: f64) -> PyResult
         ("p_residual", |f| f.solution.residual_risk),
     ];
     for (name, value) in columns {
-        let values: Vec<f64> = found.fixes.iter().map(|f| f.as_ref().map_or(f64::NAN, value)).collect();
+        let values: Vec<f64> = corrected.fixes.iter().map(|f| f.as_ref().map_or(f64::NAN, value)).collect();
         d.set_item(name, values.into_pyarray(py))?;
     }
-    let count = |value: fn(&Fix) -> usize| found.fixes.iter().map(|f| f.as_ref().map_or(0, |f| value(f) as i64)).collect::<Vec<_>>();
+    let count = |value: fn(&Fix) -> usize| corrected.fixes.iter().map(|f| f.as_ref().map_or(0, |f| value(f) as i64)).collect::<Vec<_>>();
     d.set_item("n_sv", count(|f| f.satellites.len()).into_pyarray(py))?;
     d.set_item("n_redundant", count(|f| f.solution.redundancy).into_pyarray(py))?;
-    let mode = found.fixes.iter().map(|f| mode_code(f.as_ref().ok().map(|f| f.used_for))).collect::<Vec<_>>();
+    let mode = corrected.fixes.iter().map(|f| mode_code(f.as_ref().ok().map(|f| f.used_for))).collect::<Vec<_>>();
     d.set_item("mode", mode.into_pyarray(py))?;
-    let reasons: Vec<_> = found.fixes.iter().map(|f| positions::reason(f, false_alarm)).collect();
+    let reasons: Vec<_> = corrected.fixes.iter().map(|f| positions::reason(f, false_alarm)).collect();
     let words = |(f, r): (&Result<Fix, NoLevel>, &Option<Reason>)| match f {
         Ok(_) => r.map_or_else(String::new, |r| r.words().to_owned()),
         Err(why) => why.to_string(),
     };
     d.set_item("status", reasons.iter().map(|r| status::of(*r)).collect::<Vec<_>>())?;
     d.set_item("reason_id", reasons.iter().map(|r| status::id(*r)).collect::<Vec<_>>())?;
-    d.set_item("reason", found.fixes.iter().zip(&reasons).map(words).collect::<Vec<_>>())?;
+    d.set_item("reason", corrected.fixes.iter().zip(&reasons).map(words).collect::<Vec<_>>())?;
     Ok(d)
 }
 
 /// One row a satellite and epoch.
-fn satellites<'py>(py: Python<'py>, found: &Corrected) -> PyResult<Bound<'py, PyDict>> {
-    let fixes = found.fixes.iter().enumerate().filter_map(|(i, f)| Some((i as i64, f.as_ref().ok()?)));
+fn satellites<'py>(py: Python<'py>, corrected: &Corrected) -> PyResult<Bound<'py, PyDict>> {
+    let fixes = corrected.fixes.iter().enumerate().filter_map(|(i, f)| Some((i as i64, f.as_ref().ok()?)));
     let rows: Vec<(i64, &Used)> = fixes.flat_map(|(i, f)| f.satellites.iter().map(move |s| (i, s))).collect();
     let d = PyDict::new(py);
     d.set_item("epoch", rows.iter().map(|(i, _)| *i).collect::<Vec<_>>().into_pyarray(py))?;

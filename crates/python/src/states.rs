@@ -131,14 +131,14 @@ impl RnpStates {
         self.shaped(py, flat.map_err(|(i, e)| input_error(e, Some(i)))?)
     }
 
-    fn given_residuals<'py>(
+    fn of_residuals<'py>(
         &self,
         py: Python<'py>,
         sum_of_squares_m2: PyReadonlyArray1<'py, f64>,
         n: PyReadonlyArray1<'py, f64>,
     ) -> Rows<'py> {
         let (s, n) = (sum_of_squares_m2.as_slice()?, n.as_slice()?);
-        let flat = states::try_rows(s.len().min(n.len()), &self.table, |i| self.table.given_residuals(s[i], n[i]));
+        let flat = states::try_rows(s.len().min(n.len()), &self.table, |i| self.table.of_residuals(s[i], n[i]));
         self.shaped(py, flat.map_err(|(i, e)| input_error(e, Some(i)))?)
     }
 

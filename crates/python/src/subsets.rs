@@ -25,10 +25,10 @@ struct Ranges<'py> {
     shared_m: PyReadonlyArray2<'py, f64>,
 }
 
-/// What is asked of the subsets, as it comes from Python.
+/// What is required of the subsets, as it comes from Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Wanted {
+struct Options {
     approach: bool,
     least: usize,
     most_satellites: u32,
@@ -77,16 +77,16 @@ struct KpiSubsets {
 #[pymethods]
 impl KpiSubsets {
     #[new]
-    fn new(wanted: Wanted) -> Self {
+    fn new(settings: Options) -> Self {
         let job = Job {
-            used_for: if wanted.approach { Use::PrecisionApproach } else { Use::EnRoute },
-            least: wanted.least,
-            most_satellites: wanted.most_satellites,
-            limits_m: wanted.limits_m,
-            bin_m: wanted.bin_m,
-            n_bins: wanted.n_bins,
-            listed_from: wanted.listed_from,
-            most_listed: wanted.most_listed,
+            used_for: if settings.approach { Use::PrecisionApproach } else { Use::EnRoute },
+            least: settings.least,
+            most_satellites: settings.most_satellites,
+            limits_m: settings.limits_m,
+            bin_m: settings.bin_m,
+            n_bins: settings.n_bins,
+            listed_from: settings.listed_from,
+            most_listed: settings.most_listed,
         };
         Self { tally: Tally::none(&job), job }
     }
@@ -98,8 +98,8 @@ impl KpiSubsets {
         let times = ranges.time_ns.iter().map(|t| GpsTime::from_nanoseconds(*t));
         let epochs: Option<Vec<Epoch<'_>>> = times.zip(spans).map(|(time, span)| Some((time, span?))).collect();
         let epochs = epochs.ok_or_else(|| PyValueError::new_err("epochs beyond the rows"))?;
-        let found = py.detach(|| subsets(&epochs, &self.job)).map_err(refused)?;
-        self.tally = core::mem::take(&mut self.tally).merged(found, &self.job);
+        let tally = py.detach(|| subsets(&epochs, &self.job)).map_err(refused)?;
+        self.tally = core::mem::take(&mut self.tally).merged(tally, &self.job);
         Ok(())
     }
 
@@ -118,25 +118,25 @@ fn refused((epoch, why): (usize, Unavailable)) -> PyErr {
     }
 }
 
-fn columns<'py>(py: Python<'py>, found: &Tally) -> PyResult<Bound<'py, PyDict>> {
+fn columns<'py>(py: Python<'py>, tally: &Tally) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
-    d.set_item("n_epochs", found.n_epochs)?;
-    d.set_item("n_unsolved", found.n_unsolved)?;
-    d.set_item("n_cut", found.n_cut)?;
-    d.set_item("n_subsets", found.n_subsets)?;
-    d.set_item("n_singular", found.n_singular)?;
-    d.set_item("n_mi", found.n_misleading)?;
-    d.set_item("largest_index", found.largest_index)?;
-    d.set_item("n_listed", found.n_listed)?;
-    d.set_item("bins", found.histograms.iter().map(|h| histogram(py, h)).collect::<PyResult<Vec<_>>>()?)?;
+    d.set_item("n_epochs", tally.n_epochs)?;
+    d.set_item("n_unsolved", tally.n_unsolved)?;
+    d.set_item("n_cut", tally.n_cut)?;
+    d.set_item("n_subsets", tally.n_subsets)?;
+    d.set_item("n_singular", tally.n_singular)?;
+    d.set_item("n_mi", tally.n_misleading)?;
+    d.set_item("largest_index", tally.largest_index)?;
+    d.set_item("n_listed", tally.n_listed)?;
+    d.set_item("bins", tally.histograms.iter().map(|h| histogram(py, h)).collect::<PyResult<Vec<_>>>()?)?;
     let both = |r: &[navbound_assess::kpi::Regions; 2]| r.iter().map(|one| regions(py, one)).collect::<PyResult<Vec<_>>>();
-    d.set_item("regions", found.regions.iter().map(both).collect::<PyResult<Vec<_>>>()?)?;
+    d.set_item("regions", tally.regions.iter().map(both).collect::<PyResult<Vec<_>>>()?)?;
     let listed = PyDict::new(py);
-    listed.set_item("time_ns", found.listed.iter().map(|l| l.time.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
-    listed.set_item("used", found.listed.iter().map(|l| l.used).collect::<Vec<_>>().into_pyarray(py))?;
+    listed.set_item("time_ns", tally.listed.iter().map(|l| l.time.nanoseconds()).collect::<Vec<_>>().into_pyarray(py))?;
+    listed.set_item("used", tally.listed.iter().map(|l| l.used).collect::<Vec<_>>().into_pyarray(py))?;
     for (axis, names) in [["hpe_m", "hpl_m"], ["vpe_m", "vpl_m"]].into_iter().enumerate() {
-        listed.set_item(names[0], found.listed.iter().map(|l| l.error_m[axis]).collect::<Vec<_>>().into_pyarray(py))?;
-        listed.set_item(names[1], found.listed.iter().map(|l| l.level_m[axis]).collect::<Vec<_>>().into_pyarray(py))?;
+        listed.set_item(names[0], tally.listed.iter().map(|l| l.error_m[axis]).collect::<Vec<_>>().into_pyarray(py))?;
+        listed.set_item(names[1], tally.listed.iter().map(|l| l.level_m[axis]).collect::<Vec<_>>().into_pyarray(py))?;
     }
     d.set_item("listed", listed)?;
     Ok(d)

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 type Marks = Vec<(&'static str, &'static str, &'static str)>;
 
 fn marks(marks: &'static [Mark]) -> Marks {
-    marks.iter().map(|m| (m.name, m.held.word(), m.why)).collect()
+    marks.iter().map(|m| (m.name, m.provenance.word(), m.why)).collect()
 }
 
 fn carrier<'py>(py: Python<'py>, m: &CarrierModel) -> PyResult<Bound<'py, PyDict>> {

@@ -89,8 +89,8 @@ fn vertical_budget<'py>(py: Python<'py>, constants: &str, at: [Numbers<'py>; 6])
     let (b, d) = (body.as_slice()?, isad.as_slice()?);
     table(py, r.len(), |i| {
         let at = Approach { rnp: m(r[i]), angle: Radians::new(a[i]), altitude: m(h[i]), threshold: m(t[i]) };
-        let found = Budget::new(constants, &at, m(b[i]), m(d[i]))?;
-        let terms = [found.anpe, found.wpr, found.fte, found.ase, found.vae, found.atis, found.root_sum_square, found.total];
+        let budget = Budget::new(constants, &at, m(b[i]), m(d[i]))?;
+        let terms = [budget.anpe, budget.wpr, budget.fte, budget.ase, budget.vae, budget.atis, budget.root_sum_square, budget.total];
         Ok(terms.map(Metres::m))
     })
 }

@@ -107,8 +107,8 @@ impl<'a> Aircraft<'a> {
         let drift = v * self.track_rad.sin() + self.lateral.step(v);
         let omega = g.lateral_frequency_radps;
         let pull = omega * omega * seen_m + 2.0 * g.lateral_damping * omega * drift;
-        let wanted = (v * v * curvature / GRAVITY).atan() - pull / GRAVITY;
-        let command = wanted.clamp(-g.bank_limit_rad, g.bank_limit_rad);
+        let required = (v * v * curvature / GRAVITY).atan() - pull / GRAVITY;
+        let command = required.clamp(-g.bank_limit_rad, g.bank_limit_rad);
         self.bank_rad += STEP_S / g.bank_lag_s * (command - self.bank_rad);
         let path_rate = curvature * v * self.track_rad.cos() / (1.0 - curvature * self.deviation.right_m).max(CENTRE_SHARE);
         self.track_rad += STEP_S * (GRAVITY * self.bank_rad.tan() / v - path_rate);

@@ -1,11 +1,11 @@
-//! The navigation filter on board: the `[filter]` part of a scenario, and what it is told of the sensors.
+//! The navigation filter on board: the `[filter]` part of a scenario, and what is declared to it of the sensors.
 //!
-//! It is told what a maker would declare, the standard deviations and correlation times of the `[sensors]` part, and never what was drawn.
+//! Declared is what a maker would declare, the standard deviations and correlation times of the `[sensors]` part, and never what was drawn.
 
 use crate::philox::{Sensor, Stream};
 use crate::plan::GRAVITY;
 use crate::scenario::{Rule, positive, within};
-use crate::sensors::{Imu, Sensors, staying};
+use crate::sensors::{Imu, Sensors, correlated_error};
 use navbound_core::bound::araim::single::Requirement;
 use navbound_core::monitor::guard;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Risk};
@@ -96,7 +96,7 @@ impl Navigator {
         rules
     }
 
-    /// What the filter is told.
+    /// What is declared to the filter.
     ///
     /// # Errors
     /// [`OutOfDomain`] for a gate that is no risk.
@@ -127,7 +127,7 @@ impl Navigator {
         Ok(settings)
     }
 
-    /// How wrong the start may be, as the filter is told.
+    /// How wrong the start may be, as it is declared to the filter.
     pub fn start_sigma(&self) -> StartSigma {
         StartSigma {
             position: self.position_sigma_m.map(Metres::new),
@@ -182,6 +182,6 @@ fn times(model: ImuModel, factor: f64) -> ImuModel {
 }
 
 fn noise(white: f64, constant: f64, process: f64, time_s: f64) -> SensorNoise {
-    let (bias, bias_time_s) = staying(constant, process, time_s);
+    let (bias, bias_time_s) = correlated_error(constant, process, time_s);
     SensorNoise { white, bias, bias_time_s }
 }

@@ -49,7 +49,7 @@ pub struct Outlook {
     pub(crate) instants: Vec<Instant>,
 }
 
-/// Satellites of the scenario, ready to be asked where they are.
+/// Satellites of the scenario, ready to state where they are.
 struct Satellites(Vec<(Constellation, Orbit)>);
 
 impl Outlook {

@@ -82,7 +82,7 @@ impl Profile {
         self.duration_s
     }
 
-    /// What is asked for at an instant; outside the flight, at its begin or end.
+    /// What is requested at an instant; outside the flight, at its begin or end.
     pub(crate) fn at(&self, time_s: f64) -> Demand {
         let time_s = time_s.clamp(0.0, self.duration_s);
         let index = self.segments.partition_point(|s| s.start_s <= time_s).saturating_sub(1);

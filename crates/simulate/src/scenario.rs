@@ -182,7 +182,7 @@ pub struct Navigation {
     pub multipath_share: f64,
     /// Correlation time of the position error \[s\].
     pub correlation_time_s: f64,
-    /// Claimed standard deviation over the true one; 1 is honest.
+    /// Claimed standard deviation over the true one; 1 is consistent.
     pub claimed_sigma_scale: f64,
 }
 

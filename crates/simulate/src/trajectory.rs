@@ -126,13 +126,13 @@ impl Trajectory {
             return Err(OutOfDomain { argument: "position", value: *bad, unit: "rad or m", domain: "finite numbers" });
         }
         let last = n - 1;
-        let found = Self::through(last as f64, WHEELS_SPACING_S, |time_s| {
+        let trajectory = Self::through(last as f64, WHEELS_SPACING_S, |time_s| {
             let k = time_s.round().clamp(-(last as f64), last as f64) as i64;
             let at = |k: i64| positions[k.unsigned_abs() as usize];
             let (first, ahead) = (at(0), at(k));
             Ok(if k >= 0 { ahead } else { core::array::from_fn(|i| first[i] - nearest_turn(ahead[i] - first[i], i)) })
         })?;
-        Ok(Self { banks: false, ..found })
+        Ok(Self { banks: false, ..trajectory })
     }
 
     /// From positions (latitude, longitude \[rad\], height \[m\]) as a function of time up to the duration. After the end the aircraft goes
@@ -158,9 +158,9 @@ impl Trajectory {
         let kept = |p: &Vec<f64>| (1..count - 1).map(|k| p[k]).collect();
         let sharpened = |p: &Vec<f64>| (1..count - 1).map(|k| p[k] - 0.25 * (p[k - 1] - 2.0 * p[k] + p[k + 1])).collect();
         let controls = [sharpened(&points[0]), sharpened(&points[1]), kept(&points[2])];
-        let found = Self { controls, duration_s, spacing_s, banks: true };
-        found.check(pieces)?;
-        Ok(found)
+        let trajectory = Self { controls, duration_s, spacing_s, banks: true };
+        trajectory.check(pieces)?;
+        Ok(trajectory)
     }
 
     fn check(&self, pieces: usize) -> Result<(), OutOfDomain> {

@@ -104,15 +104,15 @@ fn errors_are_correlated_over_the_stated_time() {
 }
 
 #[test]
-fn a_dishonest_claim_changes_the_covariance_and_nothing_else() {
+fn a_mismodelled_claim_changes_the_covariance_and_nothing_else() {
     let mut boast = scenario();
     boast.navigation.claimed_sigma_scale = 0.5;
-    for (honest, boasting) in flight(scenario(), 0).iter().zip(flight(boast, 0)) {
+    for (consistent, boasting) in flight(scenario(), 0).iter().zip(flight(boast, 0)) {
         for i in 0..6 {
             // A quarter is exact in binary.
-            assert_eq!(boasting.covariance_m2[i], 0.25 * honest.covariance_m2[i]);
+            assert_eq!(boasting.covariance_m2[i], 0.25 * consistent.covariance_m2[i]);
         }
-        assert_eq!(FlownEpoch { covariance_m2: honest.covariance_m2, ..boasting }, *honest);
+        assert_eq!(FlownEpoch { covariance_m2: consistent.covariance_m2, ..boasting }, *consistent);
     }
 }
 
@@ -209,8 +209,8 @@ fn turns_shorten_the_route_as_their_bank_says() {
         let d = change.rad().abs();
         expected += v * v / (9.806_65 * (0.5 * d).tan()) * (2.0 * (0.5 * d).tan() - d);
     }
-    let found = corners - plan.length().m();
-    assert!((found / expected - 1.0).abs() < 0.01, "{found} for {expected}");
+    let shortened = corners - plan.length().m();
+    assert!((shortened / expected - 1.0).abs() < 0.01, "{shortened} for {expected}");
 }
 
 type Change = fn(&mut Scenario);
@@ -236,11 +236,11 @@ fn what_cannot_be_flown_is_refused_by_name() {
     for (argument, change) in changes {
         let mut s = scenario();
         change(&mut s);
-        let found = match Plan::new(&s) {
+        let refusal = match Plan::new(&s) {
             Err(navbound_simulate::Refused::Value(e)) => e.argument,
             Err(navbound_simulate::Refused::Item(at)) => at.error.argument,
             Ok(_) => "accepted",
         };
-        assert_eq!(found, argument);
+        assert_eq!(refusal, argument);
     }
 }

@@ -182,8 +182,8 @@ def protection_levels(
         unit_enu, constellation, (sigma_int_m, sigma_acc_m), (bias_m, bias_continuity_m, p_sat), p_const
     )
     unit, sigma_int, sigma_acc, bias, continuity, prior = columns
-    found = _core.araim_levels(unit, sigma_int, sigma_acc, bias, continuity, prior, of, constants, numbers, exclusion)
-    return _levels(found, shape[:-1])
+    computed = _core.araim_levels(unit, sigma_int, sigma_acc, bias, continuity, prior, of, constants, numbers, exclusion)
+    return _levels(computed, shape[:-1])
 
 
 @checked
@@ -230,13 +230,13 @@ def monitor(
     if shape != together:
         raise InputError("residual_m", f"shape {together}", domain=f"shape {shape}, one for each range")
     unit, sigma_int, sigma_acc, bias, continuity, prior = columns
-    found = _core.araim_monitor(unit, residual, sigma_int, sigma_acc, bias, continuity, prior, of, constants, numbers)
+    computed = _core.araim_monitor(unit, residual, sigma_int, sigma_acc, bias, continuity, prior, of, constants, numbers)
     leading = shape[:-1]
-    step = np.stack([found.pop(f"step_{axis}_m") for axis in "enu"], axis=-1).reshape(*leading, 3)
-    decision = np.array(found.pop("decision"), dtype=np.str_).reshape(leading)
-    excluded, ratio = found.pop("excluded").reshape(shape), found.pop("worst_ratio").reshape(leading)
-    found["n_sv"] = np.isfinite(unit).reshape(-1, len(of), 3).all(axis=-1).sum(axis=-1)
-    return Monitored(_levels(found, leading), decision, excluded, ratio, step)
+    step = np.stack([computed.pop(f"step_{axis}_m") for axis in "enu"], axis=-1).reshape(*leading, 3)
+    decision = np.array(computed.pop("decision"), dtype=np.str_).reshape(leading)
+    excluded, ratio = computed.pop("excluded").reshape(shape), computed.pop("worst_ratio").reshape(leading)
+    computed["n_sv"] = np.isfinite(unit).reshape(-1, len(of), 3).all(axis=-1).sum(axis=-1)
+    return Monitored(_levels(computed, leading), decision, excluded, ratio, step)
 
 
 @checked
@@ -291,14 +291,14 @@ def _columns(
     unit_enu: ArrayLike,
     constellation: Sequence[int] | NDArray[np.int64],
     sigmas_m: tuple[ArrayLike, ArrayLike],
-    given: tuple[ArrayLike | None, ArrayLike | None, ArrayLike | None],
+    stated: tuple[ArrayLike | None, ArrayLike | None, ArrayLike | None],
     p_const: Sequence[float] | None,
 ) -> tuple[tuple[int, ...], list[NDArray[np.float64]], list[int], list[float]]:
     """Shape with the satellites, flat columns, constellation of each satellite, priors of constellations."""
     of = systems_of(unit_enu, constellation)
     bias, continuity, prior = (
         np.asarray(column)[of] if own is None else own
-        for own, column in zip(given, (SUPPORT.bias_m, SUPPORT.bias_continuity_m, SUPPORT.p_sat), strict=True)
+        for own, column in zip(stated, (SUPPORT.bias_m, SUPPORT.bias_continuity_m, SUPPORT.p_sat), strict=True)
     )
     shape, (unit, *columns) = flatten(
         unit_enu=(unit_enu, (3,)),
@@ -319,9 +319,9 @@ def _columns(
     return shape, [unit.ravel(), *columns], of.tolist(), constants
 
 
-def _levels(found: dict[str, Any], shape: tuple[int, ...]) -> Levels:
-    status = np.array(found.pop("words"))[found.pop("outcome")]
-    return Levels(status=status.reshape(shape), **{name: values.reshape(shape) for name, values in found.items()})
+def _levels(computed: dict[str, Any], shape: tuple[int, ...]) -> Levels:
+    status = np.array(computed.pop("words"))[computed.pop("outcome")]
+    return Levels(status=status.reshape(shape), **{name: values.reshape(shape) for name, values in computed.items()})
 
 
 def demand(service: str) -> tuple[str, bool, tuple[tuple[str, float, str, str], ...]]:

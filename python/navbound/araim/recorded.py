@@ -69,37 +69,37 @@ def watch(
     InputError
         Systems that are not there, single signals without a broadcast ionosphere, numbers outside their domain.
     """
-    chosen = checked_model(navigation, systems, signals, model, mask_rad)
+    selected = checked_model(navigation, systems, signals, model, mask_rad)
     numbers = rule_numbers(service)
     if len(numbers) != 7:
         raise InputError("service", service, domain=f"one of {', '.join(SERVICES)}, or a Service")
-    found = _core.araim_watch(
+    recorded = _core.araim_watch(
         observations._core,
         navigation._core,
         systems,
         signals == "dual",
         mask_rad,
         support_rows(support),
-        airborne_numbers(chosen),
+        airborne_numbers(selected),
         numbers,
         checked_smoothing(smoothing_s),
     )
-    outcome = np.array(found.pop("words"))[found.pop("outcome")]
-    decision = np.array(found.pop("decision"), dtype=np.str_)
+    outcome = np.array(recorded.pop("words"))[recorded.pop("outcome")]
+    decision = np.array(recorded.pop("decision"), dtype=np.str_)
     usable = (outcome == "ok") & (decision != "not_excluded")
     columns = {
-        **{name: np.where(usable, found[name], np.nan) for name in ("hpl_m", "vpl_m", "emt_m")},
-        **{name: found[name] for name in ("n_sv", "n_excluded", "n_modes")},
+        **{name: np.where(usable, recorded[name], np.nan) for name in ("hpl_m", "vpl_m", "emt_m")},
+        **{name: recorded[name] for name in ("n_sv", "n_excluded", "n_modes")},
         "mode": ["araim"] * observations.n_epochs,
-        **judged(found, [",".join(names) for names in found.pop("excluded")]),
+        **judged(recorded, [",".join(names) for names in recorded.pop("excluded")]),
     }
     budgets = SERVICES[service] if isinstance(service, str) else service
     name = service if isinstance(service, str) else "the caller's"
     models = {
         "protection levels": f"ARAIM with exclusion, {name}: {stated(budgets)}",
-        **range_models(support, chosen, signals),
+        **range_models(support, selected, signals),
         "exclusion": "equal shares of the integrity risk for every decision (ours)",
     }
-    found["decision_words"] = np.where(decision == "excluded", columns["excluded_sv"], decision)
+    recorded["decision_words"] = np.where(decision == "excluded", columns["excluded_sv"], decision)
     p_false_alert = budgets.false_alarm_v + budgets.false_alarm_h
-    return watched(observations, found, columns, models, track=track, truth_ecef_m=truth_ecef_m, p_false_alert=p_false_alert)
+    return watched(observations, recorded, columns, models, track=track, truth_ecef_m=truth_ecef_m, p_false_alert=p_false_alert)

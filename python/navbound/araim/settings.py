@@ -86,9 +86,9 @@ class Support:
 
 
 def _support() -> Support:
-    found = _core.araim_support()
-    ura, ure, bias, continuity, p_sat, p_const = zip(*found["support"], strict=True)
-    return Support(ura, ure, bias, continuity, p_sat, p_const, found["source"], found["provenance"])
+    defaults = _core.araim_support()
+    ura, ure, bias, continuity, p_sat, p_const = zip(*defaults["support"], strict=True)
+    return Support(ura, ure, bias, continuity, p_sat, p_const, defaults["source"], defaults["provenance"])
 
 
 SERVICES: dict[str, Service] = {name: Service(**numbers) for name, numbers in _core.araim_services().items()}
@@ -204,8 +204,8 @@ def overhead(
 
 def airborne_numbers(model: str | ErrorModel) -> list[float]:
     """Four numbers that the core takes."""
-    chosen = error_model(model)
-    return [*map(float, chosen.noise), float(chosen.vertical_ionosphere_m)]
+    numbers = error_model(model)
+    return [*map(float, numbers.noise), float(numbers.vertical_ionosphere_m)]
 
 
 def systems_of(unit_enu: ArrayLike, constellation: Sequence[int] | NDArray[np.int64]) -> NDArray[np.int64]:
@@ -229,5 +229,5 @@ def systems_of(unit_enu: ArrayLike, constellation: Sequence[int] | NDArray[np.in
 
 def stated(configured: Service | Requirement | Support | ErrorModel) -> str:
     """Where a configuration comes from and how it is held, the word not twice."""
-    held = f"({configured.provenance})"
-    return configured.source if configured.source.endswith(held) else f"{configured.source} {held}"
+    provenance = f"({configured.provenance})"
+    return configured.source if configured.source.endswith(provenance) else f"{configured.source} {provenance}"

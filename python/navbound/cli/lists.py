@@ -13,9 +13,9 @@ def methods_command(json: Json = False) -> None:
     """List every method with its source, provenance and promises."""
     from navbound.methods import methods as all_methods  # noqa: PLC0415
 
-    found, levels = list(all_methods().values()), [algorithm.declared for algorithm in algorithms().values()]
+    entries, levels = list(all_methods().values()), [algorithm.declared for algorithm in algorithms().values()]
     if json:
-        both = {"methods": [m.__dict__ for m in found], "protection_levels": [p.__dict__ for p in levels]}
+        both = {"methods": [m.__dict__ for m in entries], "protection_levels": [p.__dict__ for p in levels]}
         sys.stdout.write(encoder.dumps(both, indent=1) + "\n")
         return
     from rich.table import Table  # noqa: PLC0415
@@ -23,7 +23,7 @@ def methods_command(json: Json = False) -> None:
     table = Table(title="Methods", show_lines=True)
     for heading in ("id", "what", "bounds |…|", "source", "provenance", "assumes", "may alert"):
         table.add_column(heading, overflow="fold")
-    for m in found:
+    for m in entries:
         table.add_row(m.id, m.title, m.error_column, m.source, m.provenance, m.assumes, "yes" if m.may_alert else "no")
     out_console.print(table)
     table = Table(title="Protection levels", show_lines=True)
@@ -38,16 +38,16 @@ def levels_command(json: Json = False) -> None:
     """List the service levels with their limits, source and provenance."""
     from navbound import kpi  # noqa: PLC0415
 
-    found = list(kpi.levels().values())
+    levels = list(kpi.levels().values())
     if json:
-        sys.stdout.write(encoder.dumps([level.model_dump() for level in found], indent=1) + "\n")
+        sys.stdout.write(encoder.dumps([level.model_dump() for level in levels], indent=1) + "\n")
         return
     from rich.table import Table  # noqa: PLC0415
 
     table = Table(title="Service levels")
     for heading in ("id", "operation", "HAL, m", "VAL, m", "accuracy H/V, m", "time to alert, s", "limits", "source"):
         table.add_column(heading, overflow="fold")
-    for level in found:
+    for level in levels:
         vertical, accuracy_v = ("-" if value is None else f"{value:g}" for value in (level.val_m, level.accuracy_v_m))
         accuracy = f"{level.accuracy_h_m:g} / {accuracy_v}"
         table.add_row(

@@ -291,17 +291,17 @@ def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: 
 
 
 def _stop() -> Callable[[], bool]:
-    """Whether the command was asked to end; asked twice it ends at once."""
-    asked = list[int]()
+    """Whether an end was requested; requested twice, the command ends at once."""
+    requested = list[int]()
 
     def ask(number: int, _: object) -> None:
-        if asked:
+        if requested:
             raise KeyboardInterrupt
-        asked.append(number)
+        requested.append(number)
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, ask)
-    return lambda: bool(asked)
+    return lambda: bool(requested)
 
 
 def _say(sentence: str) -> None:

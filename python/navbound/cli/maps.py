@@ -44,10 +44,10 @@ def map_command(
     prn: Annotated[int | None, typer.Option(help="Whose SBAS messages, where a log holds several.")] = None,
     mode: Annotated[str | None, typer.Option(help="Of sbas: pa, npa, auto.")] = None,
     stations: Annotated[Path | None, typer.Option(help="Table of stations of dme. [default: the shipped one]")] = None,
-    rnp_nm: Annotated[float | None, typer.Option(help="Lateral accuracy asked of dme. [default: 1]")] = None,
+    rnp_nm: Annotated[float | None, typer.Option(help="Lateral accuracy required of dme. [default: 1]")] = None,
     fte_nm: Annotated[float | None, typer.Option(help="Flight technical error of dme, 95 %. [default: 0.5]")] = None,
-    limit: Annotated[list[str] | None, typer.Option(help="Asked instead: column=number; may be repeated.")] = None,
-    level: Annotated[str | None, typer.Option(help="Asked instead: alert limits of a service level; see `navbound levels`.")] = None,
+    limit: Annotated[list[str] | None, typer.Option(help="Limit instead: column=number; may be repeated.")] = None,
+    level: Annotated[str | None, typer.Option(help="Limit instead: alert limits of a service level; see `navbound levels`.")] = None,
     backend: Backend = None,
     workers: NWorkers = None,
     cluster: Cluster = None,
@@ -60,7 +60,7 @@ def map_command(
     from navbound.units import METRES_PER_NM  # noqa: PLC0415
 
     work = work_of(backend, workers, cluster, checkpoint)
-    given: dict[str, Any] = {
+    options: dict[str, Any] = {
         "constellation": tuple(constellation) if constellation else None,
         "times": _times(start, hours, every_s),
         "mask_rad": None if mask_deg is None else math.radians(mask_deg),
@@ -85,7 +85,7 @@ def map_command(
             out=out or Path("out") / f"map-{kind}",
             command=command_line(),
             **work,
-            **{name: value for name, value in given.items() if value is not None},
+            **{name: value for name, value in options.items() if value is not None},
         )
     _show(made, json=json)
 
@@ -124,14 +124,14 @@ def _instant(text: str) -> int:
 
 
 def _limits(pairs: list[str]) -> dict[str, float]:
-    found = {}
+    limits = {}
     for pair in pairs:
         name, _, number = pair.partition("=")
         try:
-            found[name] = float(number)
+            limits[name] = float(number)
         except ValueError as e:
             raise InputError("limit", pair, domain="column=number, as hpl_m=40") from e
-    return found
+    return limits
 
 
 def _show(made: Map, *, json: bool) -> None:
@@ -144,8 +144,8 @@ def _show(made: Map, *, json: bool) -> None:
     for outcome in made.summary.outcomes:
         if outcome.share > 0:
             show(f"  {100 * outcome.share:6.2f} % of time and area: {outcome.title}", markup=False, highlight=False)
-    for asked in made.summary.limits:
-        show(f"  {asked.column} <= {asked.limit:.6g} ({asked.source}; {asked.provenance})", markup=False, highlight=False)
+    for limit in made.summary.limits:
+        show(f"  {limit.column} <= {limit.limit:.6g} ({limit.source}; {limit.provenance})", markup=False, highlight=False)
     for assumption in made.summary.assumptions:
         show(f"  - {assumption}", markup=False, highlight=False)
     if made.path is not None:

@@ -109,21 +109,21 @@ def run_folder(files: list[Path], out: Path | None) -> Path:
 
 
 def work_of(backend: str | None, workers: int | None, cluster: str | None, checkpoint: Path | None) -> Work:
-    """Who works and what is kept, as far as it was asked for; refused where it would mean nothing."""
-    found: Work = {}
+    """Who works and what is kept, as far as it was requested; refused where it would mean nothing."""
+    options: Work = {}
     if cluster is not None and backend != "dask":
         raise ConflictError("cluster", needs=("backend",), because="dask")
     if workers is not None and backend in {None, "serial"}:
         raise ConflictError("workers", needs=("backend",), because="processes or dask")
     if backend is not None:
-        found["backend"] = backend
+        options["backend"] = backend
     if workers is not None or cluster is not None:
         from navbound.scale import Workers  # noqa: PLC0415
 
-        found["workers"] = Workers(workers, cluster)
+        options["workers"] = Workers(workers, cluster)
     if checkpoint is not None:
-        found["checkpoint"] = checkpoint
-    return found
+        options["checkpoint"] = checkpoint
+    return options
 
 
 class Bar:

@@ -55,7 +55,7 @@ def predict_command(
     entry(Place, "kind", kind)
     if model not in raim.ERROR_MODELS:
         raise InputError("model", model, domain=f"one of {', '.join(raim.ERROR_MODELS)}")
-    asked = predict_raim.Asked(
+    request = predict_raim.Request(
         constellation=tuple(constellation),
         times=_times(date, hours, every_s),
         limits=tuple(spec) if spec else ("RNP 0.3", "RNP 1"),
@@ -66,11 +66,11 @@ def predict_command(
         kind=kind,
     )
     places = [predict_raim.place(text) for text in at or ()] + [predict_raim.route(file) for file in route or ()]
-    found = predict_raim.predict(asked, places, command=command_line())
+    prediction = predict_raim.predict(request, places, command=command_line())
     if json:
-        sys.stdout.write(found.model_dump_json(indent=1) + "\n")
+        sys.stdout.write(prediction.model_dump_json(indent=1) + "\n")
         return
-    _show(found)
+    _show(prediction)
 
 
 def _times(date: str | None, hours: float, every_s: float) -> Times:
@@ -86,26 +86,26 @@ def _times(date: str | None, hours: float, every_s: float) -> Times:
     return Times(gps_ns(when if when.tzinfo else when.replace(tzinfo=UTC)), hours * 3600.0, every_s)
 
 
-def _show(found: Prediction) -> None:
+def _show(prediction: Prediction) -> None:
     from navbound import gnss  # noqa: PLC0415
     from navbound.run.verdict.numbers import length, share  # noqa: PLC0415
 
     out = out_console
-    span = "from the reference instant of the orbits" if found.times.start_utc is None else f"from {found.times.start_utc} UTC"
-    gone = f", without {', '.join(found.without)}" if found.without else ""
-    systems = ", ".join(words for letter, words in gnss.SYSTEMS.items() if any(s[0] == letter for s in found.satellites))
+    span = "from the reference instant of the orbits" if prediction.times.start_utc is None else f"from {prediction.times.start_utc} UTC"
+    gone = f", without {', '.join(prediction.without)}" if prediction.without else ""
+    systems = ", ".join(words for letter, words in gnss.SYSTEMS.items() if any(s[0] == letter for s in prediction.satellites))
     out.print(
-        f"{found.kind.upper()}, {len(found.satellites)} satellites of {systems} ({', '.join(found.orbits)}){gone}",
+        f"{prediction.kind.upper()}, {len(prediction.satellites)} satellites of {systems} ({', '.join(prediction.orbits)}){gone}",
         style="bold",
         markup=False,
         highlight=False,
     )
-    out.print(f"{found.times.duration_s / 3600:g} h {span}, every {found.times.step_s:g} s", markup=False, highlight=False)
+    out.print(f"{prediction.times.duration_s / 3600:g} h {span}, every {prediction.times.step_s:g} s", markup=False, highlight=False)
     table = Table()
-    for heading in ("where", "asked", "alert limit", "detection", "holes", "longest", "exclusion", "holes", "longest"):
+    for heading in ("where", "required", "alert limit", "detection", "holes", "longest", "exclusion", "holes", "longest"):
         table.add_column(heading, overflow="fold")
-    limits = {asked.id: asked for asked in found.limits}
-    for line in found.lines:
+    limits = {limit.id: limit for limit in prediction.limits}
+    for line in prediction.lines:
         hal = limits[line.limit]
         table.add_row(
             line.place,
@@ -119,11 +119,11 @@ def _show(found: Prediction) -> None:
             "-" if line.longest_exclusion_s is None else _lasting(line.longest_exclusion_s),
         )
     out.print(table)
-    for hole in found.holes[:LISTED]:
+    for hole in prediction.holes[:LISTED]:
         out.print(f"  {_words(hole)}", markup=False, highlight=False)
-    if len(found.holes) > LISTED:
-        out.print(f"  ... and {len(found.holes) - LISTED} more holes; --json has all.", highlight=False)
-    for assumption in found.assumptions:
+    if len(prediction.holes) > LISTED:
+        out.print(f"  ... and {len(prediction.holes) - LISTED} more holes; --json has all.", highlight=False)
+    for assumption in prediction.assumptions:
         out.print(f"  - {assumption}", markup=False, highlight=False)
 
 

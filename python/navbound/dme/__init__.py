@@ -173,15 +173,15 @@ def pairs(
     names = sorted(stations_enu_m)
     aircraft = _one_place("aircraft_enu_m", aircraft_enu_m)
     places = [_one_place(f"stations_enu_m[{name}]", stations_enu_m[name]) for name in names]
-    found = []
+    pairs = []
     for row in _core.dme_pairs(aircraft, places, sigma_altitude_m, course_rad):
         first, second = row.pop("stations")
         covariance = row.pop("covariance_en_m2")
         for key in ("slant_m", "sigma_m", "elevation_rad"):
             row[key] = tuple(row[key])
         matrix = None if covariance is None else np.asarray(covariance, dtype=np.float64)
-        found.append(Pair(stations=(names[first], names[second]), covariance_en_m2=matrix, **row))
-    return found
+        pairs.append(Pair(stations=(names[first], names[second]), covariance_en_m2=matrix, **row))
+    return pairs
 
 
 @checked

@@ -9,7 +9,7 @@ import numpy as np
 
 from navbound import _core
 from navbound.dme.station_table import Stations
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.status import sentences, statuses
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten, unflatten
@@ -104,7 +104,8 @@ def solve(
     if m == 0:
         raise InputError("stations", 0, "1", "at least one station")
     if (prior_lat_rad is None) != (prior_lon_rad is None):
-        raise InputError("prior_lat_rad, prior_lon_rad", "one of them", domain="both or neither")
+        stated, lacking = ("prior_lat_rad", "prior_lon_rad") if prior_lon_rad is None else ("prior_lon_rad", "prior_lat_rad")
+        raise ConflictError(stated, needs=(lacking,))
     arguments: dict[str, tuple[ArrayLike, tuple[int, ...]]] = {"slant_m": (slant_m, (m,)), "h_m": (h_m, ())}
     if sigma_m is not None:
         arguments["sigma_m"] = (sigma_m, (m,))
@@ -113,9 +114,9 @@ def solve(
     shape, arrays = flatten(**arguments)
     flat = dict(zip(arguments, arrays, strict=True))
     prior = (flat["prior_lat_rad"], flat["prior_lon_rad"]) if "prior_lat_rad" in flat else None
-    given = (flat["slant_m"], flat.get("sigma_m"), _points(network), flat["h_m"])
-    found = _core.dme_solve(*given, sigma_altitude_m, prior, prior_within_m, residual_risk)
-    return _positions(found, shape)
+    inputs = (flat["slant_m"], flat.get("sigma_m"), _points(network), flat["h_m"])
+    solution = _core.dme_solve(*inputs, sigma_altitude_m, prior, prior_within_m, residual_risk)
+    return _positions(solution, shape)
 
 
 @checked
@@ -158,9 +159,9 @@ def solve_vor(
         slant_m=(slant_m, ()), bearing_rad=(bearing_rad, ()), station_rad_m=(station_rad_m, (3,)), h_m=(h_m, ())
     )
     lat, lon, height = (np.ascontiguousarray(station[:, k]) for k in range(3))
-    found = _core.dme_solve_vor(slant, bearing, (lat, lon, height), h, sigma_bearing_rad, sigma_altitude_m)
+    solution = _core.dme_solve_vor(slant, bearing, (lat, lon, height), h, sigma_bearing_rad, sigma_altitude_m)
     n = len(h)
-    return _positions(found | {"excluded": np.full(n, -1)}, shape)
+    return _positions(solution | {"excluded": np.full(n, -1)}, shape)
 
 
 class Sights(NamedTuple):
@@ -194,8 +195,8 @@ def sights(lat_rad: ArrayLike, lon_rad: ArrayLike, h_m: ArrayLike, stations: Sta
     """
     network = _network(stations)
     shape, (lat, lon, h) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()), h_m=(h_m, ()))
-    found = _core.dme_sights((lat, lon, h), _core_network(network)).reshape(*shape, len(network), 4)
-    slant, elevation, bearing, usable = (np.ascontiguousarray(found[..., k]) for k in range(4))
+    geometry = _core.dme_sights((lat, lon, h), _core_network(network)).reshape(*shape, len(network), 4)
+    slant, elevation, bearing, usable = (np.ascontiguousarray(geometry[..., k]) for k in range(4))
     return Sights(slant, elevation, bearing, usable == 1.0)
 
 
@@ -267,8 +268,8 @@ def select(
     if course_rad is not None and not np.isfinite(course).all():
         raise InputError("course_rad", "a value that is not finite", domain="finite courses")
     sigmas = (sigma_bearing_rad, sigma_altitude_m)
-    found = _core.dme_along((lat, lon, h), time.astype(np.int64), course, _core_network(network), sigmas, switching)
-    return Selection(**found)
+    selection = _core.dme_along((lat, lon, h), time.astype(np.int64), course, _core_network(network), sigmas, switching)
+    return Selection(**selection)
 
 
 class Coverage(NamedTuple):
@@ -313,7 +314,7 @@ def coverage(
     stations : Stations, or mapping of identifier to (lat_rad, lon_rad, h_m)
         The network.
     rnp_m, fte_m : float
-        Lateral accuracy asked for and flight technical error, both 95 %: ``sqrt(rnp² - fte²)`` is left for navigation. [m]
+        Lateral accuracy required and flight technical error, both 95 %: ``sqrt(rnp² - fte²)`` is left for navigation. [m]
     sigma_altitude_m, sigma_bearing_rad : float
         Standard deviations of altitude and VOR bearing. [m, rad]
     risk : float
@@ -332,11 +333,11 @@ def coverage(
     network = _network(stations)
     limit_m = float(_core.nse_boundary(np.array([rnp_m], dtype=np.float64), np.array([fte_m], dtype=np.float64))[0])
     shape, (lat, lon, h) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()), h_m=(h_m, ()))
-    found = _core.dme_coverage((lat, lon, h), _core_network(network), (sigma_bearing_rad, sigma_altitude_m), risk)
-    best, all_in_view, vor = (found[name].reshape(shape) for name in ("nse_best_m", "nse_all_m", "nse_vor_m"))
+    least = _core.dme_coverage((lat, lon, h), _core_network(network), (sigma_bearing_rad, sigma_altitude_m), risk)
+    best, all_in_view, vor = (least[name].reshape(shape) for name in ("nse_best_m", "nse_all_m", "nse_vor_m"))
     return Coverage(
-        found["n_stations"].reshape(shape),
-        found["best"].reshape(*shape, 2),
+        least["n_stations"].reshape(shape),
+        least["best"].reshape(*shape, 2),
         best,
         all_in_view,
         vor,
@@ -361,8 +362,8 @@ def _core_network(network: Stations) -> tuple[tuple[Floats, Floats, Floats], Flo
     return _points(network), np.ascontiguousarray(network.service_m, dtype=np.float64), network.bearing.tolist()
 
 
-def _positions(found: dict[str, Any], shape: tuple[int, ...]) -> Positions:
-    reason_id = np.array(found.pop("reason_id"), dtype=np.str_).reshape(shape)
-    numbers: dict[str, Any] = {name: unflatten(values, shape) for name, values in found.items()}
+def _positions(solution: dict[str, Any], shape: tuple[int, ...]) -> Positions:
+    reason_id = np.array(solution.pop("reason_id"), dtype=np.str_).reshape(shape)
+    numbers: dict[str, Any] = {name: unflatten(values, shape) for name, values in solution.items()}
     status, reason = statuses(reason_id), sentences(reason_id)
     return Positions(**numbers, status=status, reason=reason, reason_id=reason_id)

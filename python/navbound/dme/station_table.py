@@ -230,10 +230,10 @@ def _parse(path: str | Path, text: str, *, unique: bool) -> Stations:
 
 
 def _fields(path: str | Path, number: int, line: str, n: int) -> list[str]:
-    found = [field.strip() for field in next(csv.reader([line]))]
-    if len(found) != n:
-        raise FormatError(path, f"{len(found)} fields where the heading has {n}: {line[:60]!r}", number)
-    return found
+    fields = [field.strip() for field in next(csv.reader([line]))]
+    if len(fields) != n:
+        raise FormatError(path, f"{len(fields)} fields where the heading has {n}: {line[:60]!r}", number)
+    return fields
 
 
 @dataclass(frozen=True)
@@ -262,10 +262,10 @@ class _Row:
         return math.inf
 
     def word(self, name: str) -> str:
-        found = self.field[name]
-        if not found:
+        word = self.field[name]
+        if not word:
             raise FormatError(self.path, "is missing", self.line, name)
-        return found
+        return word
 
     def number(self, name: str, least: float, most: float) -> float:
         text = self.word(name)

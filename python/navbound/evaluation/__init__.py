@@ -58,7 +58,7 @@ class BoundScore:
     pinball_m : float
         Mean pinball loss of the bound as the quantile ``1 - risk`` of the error's magnitude. [m]
     risk : float
-        The risk the bound was asked for.
+        The risk requested of the bound.
     coverage_kind : str
         Which of the two kinds of coverage this is, as a sentence.
 
@@ -85,7 +85,7 @@ class BoundScore:
 
 @dataclass(frozen=True)
 class Nees:
-    """Mean of e' V⁻¹ e against the chi-square limits (95 %) of an honest covariance.
+    """Mean of e' V⁻¹ e against the chi-square limits (95 %) of a consistent covariance.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class Nees:
     n_effective : float
         Epochs the mean is worth.
     dimension : int
-        What the mean is for an honest covariance.
+        What the mean is for a consistent covariance.
     nees_mean, nees_low, nees_high : float
         Above the limits the covariance is too small, below them too large.
     """
@@ -110,7 +110,7 @@ class Nees:
 
 @dataclass(frozen=True)
 class Pit:
-    """Histogram of the probability integral transform of e' V⁻¹ e; flat for an honest covariance.
+    """Histogram of the probability integral transform of e' V⁻¹ e; flat for a consistent covariance.
 
     Attributes
     ----------
@@ -149,7 +149,7 @@ def bound(
     bound_m : array_like, shape (n,)
         Bound of its magnitude; NaN where there is none. [m]
     risk : float
-        The risk the bound was asked for.
+        The risk requested of the bound.
     track : array_like, shape (n,), optional
         Which epochs follow each other, in order; any labels. All do if not given.
     coverage_kind : {CONDITIONAL, CLOSED_LOOP, REPEATED}
@@ -329,7 +329,7 @@ def containment(n_outside: int, n: int, n_effective: float, risk: float) -> Cont
     n_effective : float
         Independent epochs that they are worth, in (0, n].
     risk : float
-        The risk the bound was asked for.
+        The risk requested of the bound.
 
     Raises
     ------

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from navbound import _core
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.gbas.arguments import named, spread, systems, width_of
 from navbound.gbas.detection import fault_probability, missed_by_monitor, missed_detection_limit, monitor_margin
 from navbound.gbas.filter import aided_covariance, offset_variances
@@ -279,7 +279,7 @@ def protection_levels(
     width, leading = width_of(shape), shape[:-1]
     sigma, sigma_h1 = _sigmas(np.reshape(el, shape), service, sigma_m, sigma_h1_m)
     multipliers = k or factors(integrity_risk)
-    found = _core.gbas_levels(
+    levels = _core.gbas_levels(
         {
             "az_rad": az,
             "el_rad": el,
@@ -295,9 +295,9 @@ def protection_levels(
             "form": named("form", form, ("major", "norm")),
         }
     )
-    reason, reason_id = reasons_of(found, leading)
-    covariance = found.pop("cov_enu_m2").reshape(*leading, 3, 3)
-    columns: dict[str, Any] = {name: unflatten(values, leading) for name, values in found.items()}
+    reason, reason_id = reasons_of(levels, leading)
+    covariance = levels.pop("cov_enu_m2").reshape(*leading, 3, 3)
+    columns: dict[str, Any] = {name: unflatten(values, leading) for name, values in levels.items()}
     status = availability(reason_id)
     return Levels(covariance_enu_m2=covariance, status=status, reason=reason, reason_id=reason_id, **columns)
 
@@ -310,9 +310,9 @@ def _sigmas(
         model = range_sigma(el, service)
         return model.sigma_m.reshape(-1), model.sigma_h1_m.reshape(-1)
     if sigma_m is None or sigma_h1_m is None:
-        raise InputError("sigma_h1_m" if sigma_h1_m is None else "sigma_m", "none", domain="both sigmas, or neither")
-    given = [spread(name, value, el.shape, ()) for name, value in (("sigma_m", sigma_m), ("sigma_h1_m", sigma_h1_m))]
-    return np.asarray(given[0]), np.asarray(given[1])
+        raise ConflictError("sigma_m", needs=("sigma_h1_m",)) if sigma_h1_m is None else ConflictError("sigma_h1_m", needs=("sigma_m",))
+    sigmas = [spread(name, value, el.shape, ()) for name, value in (("sigma_m", sigma_m), ("sigma_h1_m", sigma_h1_m))]
+    return np.asarray(sigmas[0]), np.asarray(sigmas[1])
 
 
 def _b_values(value: ArrayLike | None, leading: tuple[int, ...], width: int) -> NDArray[np.float64] | None:

@@ -107,5 +107,5 @@ def offset_variances(
     if not 1 <= n <= 1_000_000:
         raise InputError("n", n, "1", "[1, 1000000]")
     form = named("noise", noise, ("paper", "bound"))
-    found = _core.gbas_offset_variances(form, [shortest_s, longest_s], true_constant_s, n)
-    return np.ascontiguousarray(found[:, 0]), np.ascontiguousarray(found[:, 1])
+    variances = _core.gbas_offset_variances(form, [shortest_s, longest_s], true_constant_s, n)
+    return np.ascontiguousarray(variances[:, 0]), np.ascontiguousarray(variances[:, 1])

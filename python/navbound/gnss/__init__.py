@@ -183,9 +183,9 @@ def directions(
         Elements that are no orbit, a receiver that is not on the Earth, a time that is not finite.
     """
     shape, (lat, lon, h, time) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()), h_m=(h_m, ()), time_s=(time_s, ()))
-    found = _core.satellite_directions(orbits.elements(), lat, lon, h, time)
+    angles = _core.satellite_directions(orbits.elements(), lat, lon, h, time)
     wide = (*shape, len(orbits.satellite))
-    return found["az_rad"].reshape(wide), found["el_rad"].reshape(wide)
+    return angles["az_rad"].reshape(wide), angles["el_rad"].reshape(wide)
 
 
 @checked
@@ -273,14 +273,14 @@ def covariance(
         Angles outside their domain, a sigma that is not positive, shapes that do not fit.
     """
     shape, (az, el, sigma) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()), sigma_m=(sigma_m, ()))
-    found = _core.position_covariances(az, el, sigma, _systems(shape, constellation))
+    covariances = _core.position_covariances(az, el, sigma, _systems(shape, constellation))
     leading = shape[:-1]
-    reason, reason_id = reasons_of(found, leading)
+    reason, reason_id = reasons_of(covariances, leading)
     return PositionCovariance(
-        found["enu_m2"].reshape(*leading, 3, 3),
-        found["sigma_major_m"].reshape(leading),
-        found["sigma_minor_m"].reshape(leading),
-        found["n_sv"].reshape(leading),
+        covariances["enu_m2"].reshape(*leading, 3, 3),
+        covariances["sigma_major_m"].reshape(leading),
+        covariances["sigma_minor_m"].reshape(leading),
+        covariances["n_sv"].reshape(leading),
         availability(reason_id),
         reason,
         reason_id,
@@ -313,9 +313,9 @@ def responses(
         As :func:`covariance`.
     """
     shape, (az, el, sigma) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()), sigma_m=(sigma_m, ()))
-    found = _core.position_responses(az, el, sigma, _systems(shape, constellation))
-    rows = found["response"].reshape(-1, shape[-1], 3)
-    solved = availability(np.array(found["reason_id"], dtype=np.str_)) == "ok"
+    responses = _core.position_responses(az, el, sigma, _systems(shape, constellation))
+    rows = responses["response"].reshape(-1, shape[-1], 3)
+    solved = availability(np.array(responses["reason_id"], dtype=np.str_)) == "ok"
     rows[solved[:, None] & np.isnan(az.reshape(-1, shape[-1]))] = 0.0
     return np.ascontiguousarray(np.swapaxes(rows, -1, -2)).reshape(*shape[:-1], 3, shape[-1])
 
@@ -342,10 +342,10 @@ def dop(az_rad: ArrayLike, el_rad: ArrayLike, constellation: Sequence[int] | NDA
         As :func:`covariance`.
     """
     shape, (az, el) = flatten(az_rad=(az_rad, ()), el_rad=(el_rad, ()))
-    found = _core.dilutions(az, el, _systems(shape, constellation))
+    dilutions = _core.dilutions(az, el, _systems(shape, constellation))
     leading = shape[:-1]
-    reason, reason_id = reasons_of(found, leading)
-    numbers = {name: values.reshape(leading) for name, values in found.items()}
+    reason, reason_id = reasons_of(dilutions, leading)
+    numbers = {name: values.reshape(leading) for name, values in dilutions.items()}
     return Dilution(status=availability(reason_id), reason=reason, reason_id=reason_id, **numbers)
 
 

@@ -142,9 +142,9 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
     """
     shipped = _core.nominal_constellations()
     if str(name) in shipped:
-        found = dict(shipped[str(name)])
-        found["node_rate_radps"] = np.zeros(len(found["satellite"]))
-        kept = np.ones(len(found["satellite"]), dtype=bool)
+        orbits = dict(shipped[str(name)])
+        orbits["node_rate_radps"] = np.zeros(len(orbits["satellite"]))
+        kept = np.ones(len(orbits["satellite"]), dtype=bool)
     else:
         path = Path(name)
         if not path.exists():
@@ -152,12 +152,12 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
         content = packed.read(path)
         if _is_navigation(content):
             return _broadcast(content, path, near_ns)
-        found = _core.read_almanac(content, str(path), near_ns)
-        kept = (np.asarray(found.pop("health")) == 0) | unhealthy
-    reference = found.pop("reference_ns", None)
-    satellites = tuple(s for s, keep in zip(found.pop("satellite"), kept, strict=True) if keep)
-    indices = np.asarray(found.pop("constellation"), dtype=np.int64)[kept]
-    columns = {column: values[kept] for column, values in found.items()}
+        orbits = _core.read_almanac(content, str(path), near_ns)
+        kept = (np.asarray(orbits.pop("health")) == 0) | unhealthy
+    reference = orbits.pop("reference_ns", None)
+    satellites = tuple(s for s, keep in zip(orbits.pop("satellite"), kept, strict=True) if keep)
+    indices = np.asarray(orbits.pop("constellation"), dtype=np.int64)[kept]
+    columns = {column: values[kept] for column, values in orbits.items()}
     return Orbits(satellite=satellites, constellation=indices, reference_ns=reference, **columns)
 
 

@@ -61,5 +61,5 @@ def dop_map(
         raise InputError("mask_rad", mask_rad, "rad", "(-pi/2, pi/2)")
     users, (lat, lon, h) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()), h_m=(h_m, ()))
     instants, (time,) = flatten(time_s=(time_s, ()))
-    found = _core.dop_map(orbits.elements(), orbits.constellation.tolist(), (lat, lon, h), time, mask_rad)
-    return DopMap(**{name: values.reshape(users + instants) for name, values in found.items()})
+    dilutions = _core.dop_map(orbits.elements(), orbits.constellation.tolist(), (lat, lon, h), time, mask_rad)
+    return DopMap(**{name: values.reshape(users + instants) for name, values in dilutions.items()})

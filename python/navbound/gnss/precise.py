@@ -81,11 +81,11 @@ class PreciseOrbits:
         times = np.asarray(time_ns)
         if not np.issubdtype(times.dtype, np.integer):
             raise InputError("time_ns", f"dtype {times.dtype}", domain="integers")
-        found = self._core.states(satellite, np.ascontiguousarray(times, dtype=np.int64).reshape(-1))
-        if found is None:
+        states = self._core.states(satellite, np.ascontiguousarray(times, dtype=np.int64).reshape(-1))
+        if states is None:
             raise InputError("satellite", satellite, domain=f"one of {', '.join(self.satellites)}")
         wide = (*times.shape, 3)
-        return found["ecef_m"].reshape(wide), found["velocity_mps"].reshape(wide), found["clock_s"].reshape(times.shape)
+        return states["ecef_m"].reshape(wide), states["velocity_mps"].reshape(wide), states["clock_s"].reshape(times.shape)
 
 
 @checked

@@ -53,7 +53,7 @@ class Positions:
         ``ground_speed_mps``, ``n_sv``, ``hdop``, ``vdop``, ``status``, ``reason``, with truth also ``truth_*`` and ``nse_*``; beyond it
         ``vel_e_mps``, ``vel_n_mps``, ``vel_u_mps``, ``n_excluded``, ``n_redundant``, ``p_residual``. Null where there is none.
     unused : dict of str to int
-        Satellite-epochs of the wanted systems that were not used, by the id of the reason in :data:`UNUSED`.
+        Satellite-epochs of the requested systems that were not used, by the id of the reason in :data:`UNUSED`.
     codes : dict of str to list of str
         Pseudoranges used, by system, in order of preference.
     models : dict of str to str
@@ -62,7 +62,7 @@ class Positions:
         The ranges of each position: ``time_ns``, ``sv``, ``az_rad``, ``el_rad``, ``sigma_m`` (of the covariance in force: a failed
         test and contradicting surroundings have widened it), ``residual_m`` (measured less computed at the position, receiver clock
         included), ``shared_1_m`` to ``shared_4_m`` (errors that all ranges have in common: the vertical ionosphere, its gradient east and
-        north, the zenith troposphere). Where it was asked for.
+        north, the zenith troposphere). Where it was requested.
     used : DataFrame, optional
         Ranges by satellite: ``sv``, ``signals`` (``E1-E5a``), ``message`` whose orbit and clock were used, ``n_ranges``; those below the
         mask and those excluded afterwards are among them.
@@ -207,7 +207,7 @@ def solve(
             )
         )
     try:
-        found = _core.solve_positions(
+        positions = _core.solve_positions(
             observations._core,
             navigation._core,
             systems,
@@ -226,12 +226,12 @@ def solve(
     except LookupError as e:
         domain = "auto, climatology, none, dual signals, or navigation files with that message within two days of the observations"
         raise InputError("ionosphere", ionosphere, domain=domain) from e
-    kept = found.pop("ranges")
-    used = used_satellites(found.pop("used"))
-    unused, codes, weights = found.pop("unused"), found.pop("codes"), found.pop("weights")
-    share, model = found.pop("smoothed_share"), found.pop("ionosphere")
+    kept = positions.pop("ranges")
+    used = used_satellites(positions.pop("used"))
+    unused, codes, weights = positions.pop("unused"), positions.pop("codes"), positions.pop("weights")
+    share, model = positions.pop("smoothed_share"), positions.pop("ionosphere")
     name = track or observations.marker or observations.path.name
-    columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **found}
+    columns = {"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **positions}
     epochs = pl.DataFrame(columns).with_columns(pl.col("reason", "reason_id").replace({"": None}))
     floats = [c for c, kind in epochs.schema.items() if kind == pl.Float64]
     epochs = epochs.with_columns(pl.col(floats).fill_nan(None))

@@ -50,7 +50,7 @@ class Watched:
 
 
 def checked_model(navigation: Navigation, systems: str, signals: str, model: str | ErrorModel | None, mask_rad: float) -> ErrorModel:
-    """The error model of a receiver's signals, after a look at what else was asked.
+    """The error model of a receiver's signals, after a check of the other options.
 
     Raises
     ------
@@ -68,18 +68,18 @@ def checked_model(navigation: Navigation, systems: str, signals: str, model: str
     return error_model(f"{signals}-frequency" if model is None else model)
 
 
-def judged(found: dict[str, Any], excluded_sv: Sequence[str]) -> dict[str, Any]:
+def judged(recorded: dict[str, Any], excluded_sv: Sequence[str]) -> dict[str, Any]:
     """Status, reason and excluded satellites of every epoch; the sentence names the satellites, or repeats the core's refusal."""
-    ids = np.array(found.pop("reason_id"), dtype=np.str_)
+    ids = np.array(recorded.pop("reason_id"), dtype=np.str_)
     detail = np.char.add(np.where(np.array(excluded_sv) != "", " ", ""), np.array(excluded_sv, dtype=np.str_))
-    refusal = np.array(found.pop("refusal"), dtype=np.str_)
+    refusal = np.array(recorded.pop("refusal"), dtype=np.str_)
     words = np.where(np.char.str_len(refusal) > 0, refusal, np.char.add(sentences(ids), detail))
-    return {"excluded_sv": excluded_sv, "status": found.pop("status"), "reason_id": ids, "reason": words}
+    return {"excluded_sv": excluded_sv, "status": recorded.pop("status"), "reason_id": ids, "reason": words}
 
 
 def watched(
     observations: Observations,
-    found: dict[str, Any],
+    recorded: dict[str, Any],
     columns: dict[str, Any],
     models: dict[str, str],
     *,
@@ -91,21 +91,21 @@ def watched(
 
     ``p_false_alert`` is the risk that one epoch's tests detect a fault where there is none. [1]
     """
-    position = {name: found[name] for name in ("est_lat_rad", "est_lon_rad", "est_h_m")}
+    position = {name: recorded[name] for name in ("est_lat_rad", "est_lon_rad", "est_h_m")}
     named = [track or observations.marker or observations.path.name] * observations.n_epochs
     epochs = pl.DataFrame({"track": named, "time_ns": observations.time_ns, **position, **columns})
     # A value that does not exist is null in a table.
     epochs = epochs.with_columns(pl.selectors.float().fill_nan(None), pl.selectors.string().replace({"": None}))
-    used, share = used_satellites(found["used"]), found["smoothed_share"]
-    fit = fit_of(found["statistic"], found["redundancy"], found["decision_words"], p_false_alert)
+    used, share = used_satellites(recorded["used"]), recorded["smoothed_share"]
+    fit = fit_of(recorded["statistic"], recorded["redundancy"], recorded["decision_words"], p_false_alert)
     models = {
         **models,
         "satellites used": signal_words(used),
         "smoothing": "none" if share is None else f"divergence-free, {100 * share:.1f} % of the pseudoranges",
-        "satellites not used (satellite-epochs)": unused_words(found["unused"]),
+        "satellites not used (satellite-epochs)": unused_words(recorded["unused"]),
         "fit of the error model": fit.words,
     }
-    return Watched(epochs if truth_ecef_m is None else with_errors(epochs, truth_ecef_m), models, found["unused"], used, fit)
+    return Watched(epochs if truth_ecef_m is None else with_errors(epochs, truth_ecef_m), models, recorded["unused"], used, fit)
 
 
 def checked_smoothing(smoothing_s: float | None) -> float | None:
@@ -121,11 +121,11 @@ def checked_smoothing(smoothing_s: float | None) -> float | None:
     return smoothing_s
 
 
-def range_models(support: Support, chosen: ErrorModel, signals: str) -> dict[str, str]:
+def range_models(support: Support, selected: ErrorModel, signals: str) -> dict[str, str]:
     """What is believed of the ranges, for the record."""
     return {
         "promises of satellites": stated(support),
-        "range errors": f"{stated(chosen)}; beside it the code noise that smoothing leaves, 0.13 m at the zenith for one pseudorange, and "
-        "constants that the broadcast clock does not cover: 0.4 m of GPS C/A where no P(Y) is observed, 2 m of BeiDou's pairs (inferred)",
+        "range errors": f"{stated(selected)}; beside it the code noise that smoothing leaves, 0.13 m at the zenith for one pseudorange, "
+        "and constants outside the broadcast clock: 0.4 m of GPS C/A where no P(Y) is observed, 2 m of BeiDou's pairs (inferred)",
         "signals": "ionosphere-free pairs" if signals == "dual" else "one pseudorange, Klobuchar",
     }

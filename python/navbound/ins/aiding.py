@@ -214,7 +214,7 @@ class Fixes:
     position : array_like, shape (n, 3)
         Latitude, longitude, height of the antenna. [rad, rad, m]
     covariance_enu_m2 : array_like, shape (n, 3, 3)
-        Honest for its own correlation in time: the filter takes each for new. [m²]
+        It allows for its own correlation in time: the filter takes each for new. [m²]
     velocity_ned_mps : array_like, shape (n, 3), optional
         NaN where there is none. [m/s]
     velocity_covariance_ned_m2ps2 : array_like, shape (n, 3, 3), optional

@@ -9,7 +9,7 @@ import polars as pl
 
 from navbound import _core
 from navbound.errors import InputError
-from navbound.ins.settings import FilterSettings, ImuModel, StartSigma, told
+from navbound.ins.settings import FilterSettings, ImuModel, StartSigma, declared_to_core
 from navbound.scenario import Scenario, load
 from navbound.table.arguments import checked
 from navbound.table.columns import CONSISTENCY, REVERSION
@@ -31,7 +31,7 @@ def consistency(
     """Fly simulated sensors through the filter and judge it against the truth, a row a flight.
 
     Flights run on all cores, sample by sample: nothing of them is kept but the sums. The true start errors are drawn from the deviations
-    that the filter is told, by the flight's number.
+    that are declared to the filter, by the flight's number.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def consistency(
     seed : int, optional
         In place of the scenario's.
     imu_model, settings, start
-        What the filter is told.
+        What is declared to the filter.
     skip_s : float
         Time from the begin that is not judged. [s]
 
@@ -62,17 +62,17 @@ def consistency(
     InputError
         A scenario that has no sensors, or settings outside their domain.
     """
-    found = scenario if isinstance(scenario, Scenario) else load(scenario)
+    loaded = scenario if isinstance(scenario, Scenario) else load(scenario)
     for name, value, least in (("flights", flights, 1), ("first", first, 0)):
         if not value >= least:
             raise InputError(name, value, "1", f"[{least}, inf)")
     if not skip_s >= 0.0:
         raise InputError("skip_s", skip_s, "s", "[0, inf)")
-    chosen = found.seed if seed is None else seed
+    seed_used = loaded.seed if seed is None else seed
     # One generator a flight, by seed and number: the same flight has the same start errors in any batch.
-    normals = np.array([np.random.default_rng([chosen, number]).normal(size=9) for number in range(first, first + flights)])
-    words = told(imu_model or ImuModel(), settings or FilterSettings(), start or StartSigma(), (1.0, 0.0), None)
-    table = _core.ins_consistency(found.core_json(), chosen, first, normals, words, skip_s)
+    normals = np.array([np.random.default_rng([seed_used, number]).normal(size=9) for number in range(first, first + flights)])
+    words = declared_to_core(imu_model or ImuModel(), settings or FilterSettings(), start or StartSigma(), (1.0, 0.0), None)
+    table = _core.ins_consistency(loaded.core_json(), seed_used, first, normals, words, skip_s)
     how = settings or FilterSettings()
     declared = (*CONSISTENCY, *REVERSION) if how.reversion or how.form == "federated" else CONSISTENCY
     numbers = np.column_stack([np.arange(first, first + flights), table])

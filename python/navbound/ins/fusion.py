@@ -9,7 +9,7 @@ import numpy as np
 
 from navbound import _core
 from navbound.ins.aiding import Aiding, rows
-from navbound.ins.settings import FilterSettings, Imu, ImuModel, Start, Wheels, told
+from navbound.ins.settings import FilterSettings, Imu, ImuModel, Start, Wheels, declared_to_core
 from navbound.table.arguments import checked
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ class Fused(Track):
     n_states : ndarray of int, shape (n,)
         States in the filter, with those of the one beside it. [1]
     samples : dict of str to int
-        Inertial samples done, bridged, adrift (heard only, after a hole), late, refused, stopped; since the last new start of the filter
+        Inertial samples done, bridged, `adrift` (after a gap), late, refused, stopped; since the last new start of the filter
         (docs/methods/fused-integrity.md).
     stopped, refused : tuple of (int, str), or None
         Time and reason of the stop, and of the first refused sample. [ns]
@@ -265,24 +265,24 @@ def fuse(
     """
     model, how = imu_model or ImuModel(), settings or FilterSettings()
     periods = (output_period_s, update_period_s)
-    return _fused(_core.ins_fuse(_start(start), imu.columns(), aiding.tables(), told(model, how, start, periods, wheels)))
+    return _fused(_core.ins_fuse(_start(start), imu.columns(), aiding.tables(), declared_to_core(model, how, start, periods, wheels)))
 
 
 def _covariance(table: NDArray[np.float64]) -> NDArray[np.float64]:
     return table[:, [9, 10, 12, 10, 11, 13, 12, 13, 14]].reshape(-1, 3, 3)
 
 
-def _reversion(found: tuple[NDArray[np.float64], list[str], NDArray[np.float64]] | None) -> Reversion | None:
-    if found is None:
+def _reversion(fields: tuple[NDArray[np.float64], list[str], NDArray[np.float64]] | None) -> Reversion | None:
+    if fields is None:
         return None
-    table, mode, apart = found
+    table, mode, apart = fields
     return Reversion(table[:, :3].copy(), _covariance(table), mode, apart[:, 0].copy(), apart[:, 1].copy())
 
 
-def _fused(found: dict[str, Any]) -> Fused:
-    table = found["rows"]
+def _fused(fields: dict[str, Any]) -> Fused:
+    table = fields["rows"]
     return Fused(
-        time_ns=found["time_ns"],
+        time_ns=fields["time_ns"],
         position=table[:, :3].copy(),
         velocity_ned_mps=table[:, 3:6].copy(),
         attitude_rad=table[:, 6:9].copy(),
@@ -291,22 +291,22 @@ def _fused(found: dict[str, Any]) -> Fused:
         attitude_sigma_rad=table[:, 18:21].copy(),
         gyroscope_bias_radps=table[:, 21:24].copy(),
         accelerometer_bias_mps2=table[:, 24:27].copy(),
-        mode=found["mode"],
-        status=found["status"],
-        reasons=found["reasons"],
-        source=found["source"],
-        hpl_m=found["hpl_m"],
-        vpl_m=found["vpl_m"],
-        n_states=found["n_states"],
-        samples=dict(zip(("done", "bridged", "adrift", "late", "refused", "stopped"), found["samples"], strict=True)),
-        stopped=found["stopped"],
-        refused=found["refused"],
-        holes=found["holes"],
-        refusals=dict(found["refusals"]),
-        fix_delay_s=found["fix_delay_s"],
-        clock_jumps=found["clock_jumps"],
-        left_out=found["left_out"],
-        further=dict(found["further"]),
-        innovations={kind: Innovations(*numbers) for kind, numbers in found["innovations"].items()},
-        reversion=_reversion(found["reversion"]),
+        mode=fields["mode"],
+        status=fields["status"],
+        reasons=fields["reasons"],
+        source=fields["source"],
+        hpl_m=fields["hpl_m"],
+        vpl_m=fields["vpl_m"],
+        n_states=fields["n_states"],
+        samples=dict(zip(("done", "bridged", "adrift", "late", "refused", "stopped"), fields["samples"], strict=True)),
+        stopped=fields["stopped"],
+        refused=fields["refused"],
+        holes=fields["holes"],
+        refusals=dict(fields["refusals"]),
+        fix_delay_s=fields["fix_delay_s"],
+        clock_jumps=fields["clock_jumps"],
+        left_out=fields["left_out"],
+        further=dict(fields["further"]),
+        innovations={kind: Innovations(*numbers) for kind, numbers in fields["innovations"].items()},
+        reversion=_reversion(fields["reversion"]),
     )

@@ -1,4 +1,4 @@
-"""What an inertial navigator is told: samples, start, sensor models, settings; public as `navbound.ins`."""
+"""The input of an inertial navigator: samples, start, sensor models, settings; public as `navbound.ins`."""
 
 from __future__ import annotations
 
@@ -250,10 +250,10 @@ FORMS = ("tight", "loose", "federated")
 """In the order of the core."""
 
 
-def told(
+def declared_to_core(
     model: ImuModel, how: FilterSettings, start: Start | StartSigma, periods: tuple[float, float], wheels: Wheels | None
 ) -> dict[str, object]:
-    """Give the core everything that the filter is told; `periods` are those of results and updates."""
+    """Give the core everything that is declared to the filter; `periods` are those of results and updates."""
     for name, value in zip(("output_period_s", "update_period_s"), periods, strict=True):
         if not 0.0 <= value < math.inf:
             raise InputError(name, value, "s", "[0, inf)")

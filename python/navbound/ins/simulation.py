@@ -100,20 +100,20 @@ def simulate(
     FormatError
         A scenario file that cannot be flown.
     """
-    found = scenario if isinstance(scenario, Scenario) else load(scenario)
-    if found.sensors is None:
-        raise InputError("scenario", found.title, domain="a scenario with a [sensors] part")
-    chosen = found.seed if seed is None else seed
-    for name, value in (("flight", flight), ("seed", chosen)):
+    loaded = scenario if isinstance(scenario, Scenario) else load(scenario)
+    if loaded.sensors is None:
+        raise InputError("scenario", loaded.title, domain="a scenario with a [sensors] part")
+    seed_used = loaded.seed if seed is None else seed
+    for name, value in (("flight", flight), ("seed", seed_used)):
         if not (isinstance(value, int) and 0 <= value < 2**64):
             raise InputError(name, value, domain="[0, 2^64)")
-    samples = _samples(truth_interval_s, found.sensors.rate_hz)
-    prepared = _core.Sensors(found.core_json(), None if navigation is None else navigation._core)
-    tables = prepared.fly(chosen, flight, samples)
-    names = np.array([station.name for station in found.sensors.stations], dtype=object)
+    samples = _samples(truth_interval_s, loaded.sensors.rate_hz)
+    prepared = _core.Sensors(loaded.core_json(), None if navigation is None else navigation._core)
+    tables = prepared.fly(seed_used, flight, samples)
+    names = np.array([station.name for station in loaded.sensors.stations], dtype=object)
     for kind in ("dme", "vor"):
         tables[kind]["station"] = names[tables[kind]["station"]].tolist()
-    return Sensed(**{name: _frame(columns) for name, columns in tables.items()}, scenario=found, seed=chosen, flight=flight)
+    return Sensed(**{name: _frame(columns) for name, columns in tables.items()}, scenario=loaded, seed=seed_used, flight=flight)
 
 
 def _samples(interval_s: float, rate_hz: int) -> int:
@@ -176,16 +176,16 @@ def roll(
         Fewer than ten positions, one that is not finite or within a degree of a pole, a vehicle that stands still, errors or a rate
         outside their domains.
     """
-    found = np.asarray(position, dtype=np.float64)
-    if found.ndim != 2 or found.shape[1] != 3:
-        raise InputError("position", f"shape {found.shape}", domain="shape (n, 3)")
+    points = np.asarray(position, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise InputError("position", f"shape {points.shape}", domain="shape (n, 3)")
     if not (isinstance(rate_hz, int) and 0 <= rate_hz < 2**32):
         raise InputError("rate_hz", rate_hz, "1/s", "divisors of 10^9 from 10 to 200")
     for name, value in (("flight", flight), ("seed", seed)):
         if not (isinstance(value, int) and 0 <= value < 2**64):
             raise InputError(name, value, domain="[0, 2^64)")
     tables = _core.ins_roll(
-        start_ns, np.ascontiguousarray(found), unit.model_dump_json(), (rate_hz, _samples(truth_interval_s, rate_hz)), (seed, flight)
+        start_ns, np.ascontiguousarray(points), unit.model_dump_json(), (rate_hz, _samples(truth_interval_s, rate_hz)), (seed, flight)
     )
     return Rolled(_frame(tables["truth"]), _frame(tables["imu"]))
 

@@ -93,12 +93,12 @@ class Judge:
         code = _STATUS.get(cast("str", epoch.get("status", "ok")))
         if code is None:
             raise InputError("status", shown(epoch.get("status")), domain=", ".join(_STATUS))
-        found, status, why, state, alert, acceptance, ended, began = self._core.step(
+        values, status, why, state, alert, acceptance, ended, began = self._core.step(
             time_ns, code, numbers, self._declared_by_key and "hpl_m" in epoch
         )
         reason_id, reason = why or (None, None)
         return Judged(
-            numbers={name: None if math.isnan(x) else x for name, x in zip(self.settings.columns, found, strict=True)},
+            numbers={name: None if math.isnan(x) else x for name, x in zip(self.settings.columns, values, strict=True)},
             status=_STATUSES[status],
             reason_id=reason_id,
             reason=reason,

@@ -118,10 +118,10 @@ def _with_status(epochs: pl.DataFrame, decided: dict[str, Any]) -> pl.DataFrame:
     new = [pl.Series([None, *(r[k] for r in decided["reasons"])], dtype=pl.String).gather(code) for k in (0, 1)]
     there = pl.Series(code > 0)
     before = status_list.with_reason_id(epochs)
-    said = (
+    declared = (
         pl.when(there).then(column).otherwise(pl.col(name)).alias(name) for name, column in zip(("reason_id", "reason"), new, strict=True)
     )
-    return before.with_columns(_words("status", _STATUSES, decided["status"]), *said)
+    return before.with_columns(_words("status", _STATUSES, decided["status"]), *declared)
 
 
 def _status_codes(epochs: pl.DataFrame) -> NDArray[np.uint8]:

@@ -15,7 +15,7 @@ import polars as pl
 from navbound import _core
 from navbound.errors import InputError
 from navbound.kpi import records
-from navbound.kpi.catalogue import chosen_levels, level, levels, rnp
+from navbound.kpi.catalogue import level, levels, rnp, selected_levels
 from navbound.kpi.slots import Slots
 from navbound.kpi.subsets import RangeTable, StanfordEsa, SubsetOptions, n_bins, stanford_esa, with_subsets
 from navbound.kpi.tables import FLOATS, Table, codes_of, frame_of, period_of
@@ -144,10 +144,10 @@ def stanford(
     shape, (error, bound) = flatten(error_m=(error_m, ()), level_m=(level_m, ()))
     if len(shape) != 1:
         raise InputError("error_m", f"shape {shape}", domain="shape (n,)")
-    found = _core.kpi_stanford(np.abs(error), bound, alert_limit_m, bin_m, n_bins(bin_m, limit_m))
+    counted = _core.kpi_stanford(np.abs(error), bound, alert_limit_m, bin_m, n_bins(bin_m, limit_m))
     which = records.AXES[records.AXES.index(axis)]
-    counts = StanfordCounts(axis=which, alert_limit_m=alert_limit_m, **found["regions"])
-    bins = StanfordBins(axis=which, variant="stanford", bin_m=bin_m, limit_m=limit_m, n=counts.n, **found["bins"])
+    counts = StanfordCounts(axis=which, alert_limit_m=alert_limit_m, **counted["regions"])
+    bins = StanfordBins(axis=which, variant="stanford", bin_m=bin_m, limit_m=limit_m, n=counts.n, **counted["bins"])
     return Stanford(counts, bins)
 
 
@@ -252,7 +252,7 @@ class Campaign:
         title: str = "",
         experimental: str = "",
     ) -> None:
-        self.levels = chosen_levels(levels)
+        self.levels = selected_levels(levels)
         times = frame_of(first)["time_ns"]
         self.period_s = period_of(times) if period_s is None else float(period_s)
         if not 1e-9 <= self.period_s <= LONGEST_PERIOD_S:
@@ -271,7 +271,7 @@ class Campaign:
             {
                 "origin_ns": int(times[0]),
                 "period_ns": round(1e9 * self.period_s),
-                "demands": [(found.hal_m, found.val_m, found.tta_s) for found in self.levels],
+                "demands": [(level.hal_m, level.val_m, level.tta_s) for level in self.levels],
                 "window": self.n_window_epochs,
                 "bin_m": bin_m,
                 "n_bins": n_bins(bin_m, limit_m),
@@ -316,35 +316,35 @@ class Campaign:
         InputError
             Nothing was added, or other tables than were added.
         """
-        found = self._core.outcome()
-        if found["span_ns"] is None:
+        outcome = self._core.outcome()
+        if outcome["span_ns"] is None:
             raise InputError("table", "no rows", domain="tables with at least one epoch")
-        left = self._keep(found["events"])
+        left = self._keep(outcome["events"])
         if events is not None:
             events(left)
         percentiles = self._percentiles(tables)
-        both = records.axes(found["axes"], percentiles[:6])
+        both = records.axes(outcome["axes"], percentiles[:6])
         results = [
-            records.level_result(wanted, each, whole=found, all_axes=both, percentiles=percentiles[6 * k + 6 : 6 * k + 12], grid=self)
-            for k, (wanted, each) in enumerate(zip(self.levels, found["levels"], strict=True))
+            records.level_result(level, each, whole=outcome, all_axes=both, percentiles=percentiles[6 * k + 6 : 6 * k + 12], grid=self)
+            for k, (level, each) in enumerate(zip(self.levels, outcome["levels"], strict=True))
         ]
-        totals = [sum(each["runs"][kind][0] for each in found["levels"]) for kind in range(3)]
+        totals = [sum(each["runs"][kind][0] for each in outcome["levels"]) for kind in range(3)]
         return Performance(
             title=self._title,
             truth_known=both[0].error_m is not None,
             period_s=self.period_s,
-            first_ns=found["span_ns"][0],
-            last_ns=found["span_ns"][1],
+            first_ns=outcome["span_ns"][0],
+            last_ns=outcome["span_ns"][1],
             exclude_missing=self._exclude_missing,
-            **{name: found[name] for name in ("n_expected", "n_missing", "n_no_solution", "n_solution", "n_mi_epochs")},
-            n_repeated=found["n_repeated"] + self._n_shared,
+            **{name: outcome[name] for name in ("n_expected", "n_missing", "n_no_solution", "n_solution", "n_mi_epochs")},
+            n_repeated=outcome["n_repeated"] + self._n_shared,
             axes=both,
             levels=results,
-            stanford=records.stanford_bins(found["stanford"], *self._bins),
-            series=records.series(found["series"], self.levels),
+            stanford=records.stanford_bins(outcome["stanford"], *self._bins),
+            series=records.series(outcome["series"], self.levels),
             n_events=dict(zip(("loss", "hazard", "mi"), totals, strict=True)),
             events=records.event_records(self._gravest),
-            days=records.days(found["days"], self.levels),
+            days=records.days(outcome["days"], self.levels),
             subsets=None,
             experimental=self._experimental,
             notes=self._notes(),
@@ -359,8 +359,8 @@ class Campaign:
         values = selector.values()
         return [values[k : k + 4] for k in range(0, len(values), 4)]
 
-    def _keep(self, found: dict[str, Any]) -> pl.DataFrame:
-        table = records.events(found, self.levels, self._modes, self._reasons)
+    def _keep(self, events: dict[str, Any]) -> pl.DataFrame:
+        table = records.events(events, self.levels, self._modes, self._reasons)
         self._gravest = records.gravest(pl.concat([self._gravest, table]), MOST_EVENTS)
         return table
 

@@ -17,7 +17,7 @@ RNP_TTA_S = 10.0
 
 def levels() -> dict[str, Level]:
     """Every service level by its name, with limits, demands, source and provenance."""
-    return {found.id: found for found in records.table_of_levels()}
+    return {level.id: level for level in records.table_of_levels()}
 
 
 @checked
@@ -37,9 +37,9 @@ def level(wanted: str | Level) -> Level:
     value = re.fullmatch(r"RNP (\d+(?:\.\d+)?)", wanted.strip(), re.IGNORECASE)
     if value is None:
         raise NotFoundError("levels", wanted, "service level", known, "or RNP x with x in NM")
-    found = rnp(float(value.group(1)), tta_s=RNP_TTA_S)
+    required = rnp(float(value.group(1)), tta_s=RNP_TTA_S)
     source = "alert limit inferred from the RNP value; time to alert that of non-precision approach"
-    return found.model_copy(update={"source": source, "provenance": {"hal_m": "inferred", "tta_s": "inferred"}})
+    return required.model_copy(update={"source": source, "provenance": {"hal_m": "inferred", "tta_s": "inferred"}})
 
 
 @checked
@@ -83,14 +83,14 @@ def rnp(rnp_nm: float, *, tta_s: float, containment: int = 1) -> Level:
     )
 
 
-def chosen_levels(wanted: str | Level | Sequence[str | Level]) -> list[Level]:
+def selected_levels(named: str | Level | Sequence[str | Level]) -> list[Level]:
     """One level or more, each once; names may be joined by commas."""
-    given = [wanted] if isinstance(wanted, (str, Level)) else list(wanted)
-    names = [part for item in given for part in ([p.strip() for p in item.split(",")] if isinstance(item, str) else [item])]
-    found = [level(name) for name in names if name != ""]
-    if not found:
+    levels = [named] if isinstance(named, (str, Level)) else list(named)
+    names = [part for item in levels for part in ([p.strip() for p in item.split(",")] if isinstance(item, str) else [item])]
+    required = [level(name) for name in names if name != ""]
+    if not required:
         raise InputError("levels", "nothing", domain="one level or more")
-    for index, each in enumerate(found):
-        if any(each.id == other.id for other in found[:index]):
+    for index, each in enumerate(required):
+        if any(each.id == other.id for other in required[:index]):
             raise InputError("levels", each.id, domain="levels named once")
-    return found
+    return required

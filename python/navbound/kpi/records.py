@@ -44,14 +44,14 @@ def table_of_levels() -> list[Level]:
 def _listed(row: dict[str, Any]) -> Level:
     limits, rest = row.pop("limits"), row.pop("rest")
     sources = (row.pop("limits_source"), row.pop("rest_source"))
-    held = {name: limits if name in {"hal_m", "val_m"} else rest for name in row if name.endswith(("_m", "_s", "_risk"))}
-    return Level(source=f"alert limits: {sources[0]}; the rest: {sources[1]}", provenance=held, **row)
+    provenance = {name: limits if name in {"hal_m", "val_m"} else rest for name in row if name.endswith(("_m", "_s", "_risk"))}
+    return Level(source=f"alert limits: {sources[0]}; the rest: {sources[1]}", provenance=provenance, **row)
 
 
-def axes(found: list[dict[str, Any]], percentiles: list[list[float]]) -> list[AxisResult]:
+def axes(counts: list[dict[str, Any]], percentiles: list[list[float]]) -> list[AxisResult]:
     """Both axes; `percentiles` holds a row for each quantity of each axis."""
     results = []
-    for index, axis in enumerate(found):
+    for index, axis in enumerate(counts):
         rows = percentiles[3 * index : 3 * index + 3]
         spreads = {
             name: None if axis[name] is None else Spread(**axis[name], **dict(zip(_PERCENTILES, row, strict=True)))
@@ -62,18 +62,18 @@ def axes(found: list[dict[str, Any]], percentiles: list[list[float]]) -> list[Ax
 
 
 def level_result(
-    level: Level, found: dict[str, Any], *, whole: dict[str, Any], all_axes: list[AxisResult], percentiles: list[list[float]], grid: Any
+    level: Level, outcome: dict[str, Any], *, whole: dict[str, Any], all_axes: list[AxisResult], percentiles: list[list[float]], grid: Any
 ) -> LevelResult:
     """One level; `whole` holds the counts of all levels, `all_axes` what every solution had."""
-    n_available, n_solution, n_expected = found["n_available"], whole["n_solution"], whole["n_expected"]
-    n_events = found["n_continuity_events"]
-    _, hazards, misled = found["runs"]
+    n_available, n_solution, n_expected = outcome["n_available"], whole["n_solution"], whole["n_expected"]
+    n_events = outcome["n_continuity_events"]
+    _, hazards, misleading = outcome["runs"]
     rate = _PER / n_available if n_available else None
-    low, high = found["continuity_event_limits"]
+    low, high = outcome["continuity_event_limits"]
     limits = [level.hal_m] if level.val_m is None else [level.hal_m, level.val_m]
     counts = [
         StanfordCounts(axis=axis, alert_limit_m=limit, **regions)
-        for axis, limit, regions in zip(AXES, limits, found["regions"], strict=False)
+        for axis, limit, regions in zip(AXES, limits, outcome["regions"], strict=False)
     ]
     return LevelResult(
         level=level,
@@ -81,62 +81,62 @@ def level_result(
         n_expected=n_expected,
         n_solution=n_solution,
         n_available=n_available,
-        availability_expected=found["availability_expected"],
-        availability_low=found["availability_limits"][0],
-        availability_high=found["availability_limits"][1],
-        n_effective=found["n_effective"],
+        availability_expected=outcome["availability_expected"],
+        availability_low=outcome["availability_limits"][0],
+        availability_high=outcome["availability_limits"][1],
+        n_effective=outcome["n_effective"],
         availability_solution=n_available / n_solution if n_solution else None,
         n_continuity_events=n_events,
         window_s=grid.window_s,
         n_window_epochs=grid.n_window_epochs,
         window_meaningful=grid.period_s <= grid.window_s,
-        n_at_risk=found["n_at_risk"],
-        continuity_risk=found["n_at_risk"] / n_available if n_available else None,
+        n_at_risk=outcome["n_at_risk"],
+        continuity_risk=outcome["n_at_risk"] / n_available if n_available else None,
         events_per_1e5=None if rate is None else rate * n_events,
         events_per_1e5_low=None if rate is None else rate * low,
         events_per_1e5_high=None if rate is None else rate * high,
         continuity_risk_maritime=_MARITIME_S * n_events / (n_expected * grid.period_s) if n_available else None,
         truth_known=all_axes[0].error_m is not None,
-        n_hazard_epochs=found["n_hazard_epochs"],
+        n_hazard_epochs=outcome["n_hazard_epochs"],
         n_hazard_events=hazards[0],
         n_hazard_over_tta=hazards[1],
         longest_hazard_s=hazards[2],
-        n_mi_epochs=found["n_mi_epochs"],
-        n_mi_events=misled[0],
-        n_mi_over_tta=misled[1],
-        longest_mi_s=misled[2],
+        n_mi_epochs=outcome["n_mi_epochs"],
+        n_mi_events=misleading[0],
+        n_mi_over_tta=misleading[1],
+        longest_mi_s=misleading[2],
         stanford=counts,
-        available=axes(found["available"], percentiles),
+        available=axes(outcome["available"], percentiles),
     )
 
 
 def _accuracy_met(level: Level, both: list[AxisResult]) -> bool | None:
     demands = [(level.accuracy_h_m, both[0].error_m), (level.accuracy_v_m, both[1].error_m)]
-    wanted = [(limit, error) for limit, error in demands if limit is not None]
-    if not wanted or any(error is None for _, error in wanted):
+    required = [(limit, error) for limit, error in demands if limit is not None]
+    if not required or any(error is None for _, error in required):
         return None
-    return all(error is not None and error.p95 <= limit for limit, error in wanted)
+    return all(error is not None and error.p95 <= limit for limit, error in required)
 
 
 def stanford_bins(
-    found: list[dict[str, Any]], bin_m: float, limit_m: float, variant: Literal["stanford", "stanford-esa"] = "stanford"
+    cells_of_axes: list[dict[str, Any]], bin_m: float, limit_m: float, variant: Literal["stanford", "stanford-esa"] = "stanford"
 ) -> list[StanfordBins]:
     """Histograms of both axes; an axis without a point is left out."""
     return [
         StanfordBins(axis=axis, variant=variant, bin_m=bin_m, limit_m=limit_m, n=sum(bins["count"]), **bins)
-        for axis, bins in zip(AXES, found, strict=True)
+        for axis, bins in zip(AXES, cells_of_axes, strict=True)
         if bins["count"]
     ]
 
 
-def series(found: dict[str, Any], levels: Sequence[Level]) -> KpiSeries:
+def series(cells: dict[str, Any], levels: Sequence[Level]) -> KpiSeries:
     """Errors and levels against time."""
     ids = [level.id for level in levels]
-    by_level = {name: dict(zip(ids, found.pop(name), strict=True)) for name in ("n_available", "cause")}
-    return KpiSeries(**found, **by_level)
+    by_level = {name: dict(zip(ids, cells.pop(name), strict=True)) for name in ("n_available", "cause")}
+    return KpiSeries(**cells, **by_level)
 
 
-def days(found: list[tuple[int, int, int, list[int]]], levels: Sequence[Level]) -> list[DayResult]:
+def days(counts: list[tuple[int, int, int, list[int]]], levels: Sequence[Level]) -> list[DayResult]:
     """A record for each GPS day."""
     return [
         DayResult(
@@ -145,32 +145,32 @@ def days(found: list[tuple[int, int, int, list[int]]], levels: Sequence[Level]) 
             n_solution=solution,
             n_available={level.id: n for level, n in zip(levels, available, strict=True)},
         )
-        for day, expected, solution, available in found
+        for day, expected, solution, available in counts
     ]
 
 
-def events(found: dict[str, Any], levels: Sequence[Level], modes: dict[str, int], reasons: dict[str, int]) -> pl.DataFrame:
+def events(table: dict[str, Any], levels: Sequence[Level], modes: dict[str, int], reasons: dict[str, int]) -> pl.DataFrame:
     """Events as a table, with what the table said about their onset."""
     words = {code: text for text, code in modes.items()} | {0: None}
     why = {code: text for text, code in reasons.items()} | {0: ""}
-    before, onset = ([words[code] for code in found[f"mode_{at}"]] for at in ("before", "onset"))
-    causes = [why[code] for code in found["reason_onset"]]
-    told = [
+    before, onset = ([words[code] for code in table[f"mode_{at}"]] for at in ("before", "onset"))
+    causes = [why[code] for code in table["reason_onset"]]
+    sentences = [
         _words(kind, text, pair_sv, pair_mode)
         for kind, text, pair_sv, pair_mode in zip(
-            found["kind"],
+            table["kind"],
             causes,
-            zip(found["n_sv_before"], found["n_sv_onset"], strict=True),
+            zip(table["n_sv_before"], table["n_sv_onset"], strict=True),
             zip(before, onset, strict=True),
             strict=True,
         )
     ]
-    columns = {name: values for name, values in found.items() if name in EVENT_SCHEMA}
-    columns["level"] = [levels[index].id for index in found["level"]]
-    columns |= {"reason": told, "mode_before": before, "mode_onset": onset}
+    columns = {name: values for name, values in table.items() if name in EVENT_SCHEMA}
+    columns["level"] = [levels[index].id for index in table["level"]]
+    columns |= {"reason": sentences, "mode_before": before, "mode_onset": onset}
     columns["over_tta"] = [
         None if kind == "loss" else duration > levels[index].tta_s
-        for kind, duration, index in zip(found["kind"], found["duration_s"], found["level"], strict=True)
+        for kind, duration, index in zip(table["kind"], table["duration_s"], table["level"], strict=True)
     ]
     return pl.DataFrame({name: columns[name] for name in EVENT_SCHEMA}, schema=EVENT_SCHEMA)
 
@@ -178,12 +178,12 @@ def events(found: dict[str, Any], levels: Sequence[Level], modes: dict[str, int]
 def _words(kind: str, reason: str, n_sv: tuple[int | None, int | None], mode: tuple[str | None, str | None]) -> str:
     if kind != "loss":
         return ""
-    said = [reason] if reason else []
+    words = [reason] if reason else []
     if None not in n_sv and n_sv[0] != n_sv[1]:
-        said.append(f"satellites {n_sv[0]} to {n_sv[1]}")
+        words.append(f"satellites {n_sv[0]} to {n_sv[1]}")
     if None not in mode and mode[0] != mode[1]:
-        said.append(f"mode {mode[0]} to {mode[1]}")
-    return "; ".join(said)
+        words.append(f"mode {mode[0]} to {mode[1]}")
+    return "; ".join(words)
 
 
 def gravest(table: pl.DataFrame, most: int) -> pl.DataFrame:

@@ -12,7 +12,7 @@ import polars as pl
 from navbound import _core
 from navbound.errors import InputError
 from navbound.kpi import records
-from navbound.records.performance import Level, Performance, StanfordBins, StanfordCounts, SubsetFound, Subsets
+from navbound.records.performance import Level, ListedSubset, Performance, StanfordBins, StanfordCounts, Subsets
 from navbound.table.arguments import checked, checked_fields
 
 if TYPE_CHECKING:
@@ -113,48 +113,48 @@ def stanford_esa(
     InputError
         A missing column, satellites of several constellations, a number outside its domain.
     """
-    chosen = options or SubsetOptions()
+    settings = options or SubsetOptions()
     core = _core.KpiSubsets(
         {
             "approach": True,
-            "least": chosen.min_satellites,
-            "most_satellites": chosen.max_satellites,
+            "least": settings.min_satellites,
+            "most_satellites": settings.max_satellites,
             "limits_m": [(level.hal_m, level.val_m) for level in levels],
             "bin_m": bin_m,
             "n_bins": n_bins(bin_m, limit_m),
-            "listed_from": chosen.listed_from,
+            "listed_from": settings.listed_from,
             "most_listed": MOST_LISTED,
         }
     )
     tables = _again(ranges)
     for table in tables():
         core.add(_columns(_frame(table)))
-    found = core.outcome()
-    listed = _listed(found["listed"], tables)
-    counts = {level.id: _counts(level, both) for level, both in zip(levels, found["regions"], strict=True)}
+    outcome = core.outcome()
+    listed = _listed(outcome["listed"], tables)
+    counts = {level.id: _counts(level, both) for level, both in zip(levels, outcome["regions"], strict=True)}
     subsets = Subsets(
-        **{name: found[name] for name in ("n_epochs", "n_unsolved", "n_cut", "n_subsets", "n_singular", "n_mi", "n_listed")},
-        min_satellites=chosen.min_satellites,
-        max_satellites=chosen.max_satellites,
-        safety_index_h_max=found["largest_index"][0],
-        safety_index_v_max=found["largest_index"][1],
-        listed_from=chosen.listed_from,
+        **{name: outcome[name] for name in ("n_epochs", "n_unsolved", "n_cut", "n_subsets", "n_singular", "n_mi", "n_listed")},
+        min_satellites=settings.min_satellites,
+        max_satellites=settings.max_satellites,
+        safety_index_h_max=outcome["largest_index"][0],
+        safety_index_v_max=outcome["largest_index"][1],
+        listed_from=settings.listed_from,
         listed=listed,
         stanford=counts,
     )
-    return StanfordEsa(subsets, records.stanford_bins(found["bins"], bin_m, limit_m, variant="stanford-esa"))
+    return StanfordEsa(subsets, records.stanford_bins(outcome["bins"], bin_m, limit_m, variant="stanford-esa"))
 
 
 @checked
-def with_subsets(result: Performance, found: StanfordEsa) -> Performance:
+def with_subsets(result: Performance, diagram: StanfordEsa) -> Performance:
     """The indicators with the subsets beside them."""
     notes = []
-    if found.subsets.n_cut:
+    if diagram.subsets.n_cut:
         notes.append(
-            f"Stanford-ESA: {found.subsets.n_cut} epochs have so many satellites that only subsets that leave out a few were looked at, "
-            f"at most 2^{found.subsets.max_satellites} an epoch."
+            f"Stanford-ESA: {diagram.subsets.n_cut} epochs have so many satellites that only subsets that leave out a few were looked at, "
+            f"at most 2^{diagram.subsets.max_satellites} an epoch."
         )
-    changes = {"stanford": [*result.stanford, *found.bins], "subsets": found.subsets, "notes": [*result.notes, *notes]}
+    changes = {"stanford": [*result.stanford, *diagram.bins], "subsets": diagram.subsets, "notes": [*result.notes, *notes]}
     return result.model_copy(update=changes)
 
 
@@ -205,20 +205,20 @@ def _columns(frame: pl.DataFrame) -> dict[str, Any]:
     return {"time_ns": time_ns[first].tolist(), "first": [*first.tolist(), frame.height], "shared_m": shared, **columns}
 
 
-def _listed(found: dict[str, NDArray[Any]], tables: Callable[[], Iterable[RangeTable]]) -> list[SubsetFound]:
+def _listed(columns: dict[str, NDArray[Any]], tables: Callable[[], Iterable[RangeTable]]) -> list[ListedSubset]:
     """The gravest subsets with the names of their satellites, for which the tables are looked through again."""
-    wanted = np.unique(found["time_ns"]).tolist()
+    times = np.unique(columns["time_ns"]).tolist()
     names: dict[int, list[str]] = {}
-    for table in tables() if wanted else []:
-        near = _frame(table).filter(pl.col("time_ns").is_in(wanted)).group_by("time_ns", maintain_order=True).agg("sv")
+    for table in tables() if times else []:
+        near = _frame(table).filter(pl.col("time_ns").is_in(times)).group_by("time_ns", maintain_order=True).agg("sv")
         names.update((int(time_ns), list(sv)) for time_ns, sv in near.iter_rows())
     rows = []
-    for k, time_ns in enumerate(found["time_ns"].tolist()):
-        used, satellites = int(found["used"][k]), names[time_ns]
-        hpe, hpl, vpe, vpl = (float(found[name][k]) for name in ("hpe_m", "hpl_m", "vpe_m", "vpl_m"))
+    for k, time_ns in enumerate(columns["time_ns"].tolist()):
+        used, satellites = int(columns["used"][k]), names[time_ns]
+        hpe, hpl, vpe, vpl = (float(columns[name][k]) for name in ("hpe_m", "hpl_m", "vpe_m", "vpl_m"))
         no_vertical = np.isnan(vpl)
         rows.append(
-            SubsetFound(
+            ListedSubset(
                 time_ns=time_ns,
                 satellites=[sv for i, sv in enumerate(satellites) if used >> i & 1],
                 left_out=[sv for i, sv in enumerate(satellites) if not used >> i & 1],

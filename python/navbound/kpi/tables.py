@@ -51,7 +51,7 @@ def frame_of(table: Table) -> pl.DataFrame:
         raise InputError("time_ns", f"{frame['time_ns'].dtype}", domain="whole nanoseconds")
     if frame["time_ns"].null_count():
         raise InputError("time_ns", "null", "ns", "an instant in every row")
-    wanted = {
+    columns = {
         "time_ns": pl.Int64,
         **dict.fromkeys(FLOATS, pl.Float64),
         "n_sv": pl.Int32,
@@ -59,7 +59,7 @@ def frame_of(table: Table) -> pl.DataFrame:
     }
     try:
         return frame.select(
-            (pl.col(name) if name in frame.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in wanted.items()
+            (pl.col(name) if name in frame.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in columns.items()
         )
     except pl.exceptions.PolarsError as e:
         raise InputError("table", str(e).splitlines()[0][:120], domain="numbers in the columns that hold numbers") from e

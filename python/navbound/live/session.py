@@ -248,7 +248,7 @@ class Session:
         source : Source
             Opened.
         stop : callable
-            Asked every tenth of a second.
+            Called every tenth of a second.
         speed : float
             Of a file: times its own pace; 0 as fast as it goes. [1]
         """

@@ -29,9 +29,9 @@ class _DmeLevels:
 
     def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
         rnp_m, fte_m, sigma_altitude_m = self.numbers
-        found = dme.coverage(lat_rad, lon_rad, self.h_m, self.network, rnp_m=rnp_m, fte_m=fte_m, sigma_altitude_m=sigma_altitude_m)
+        coverage = dme.coverage(lat_rad, lon_rad, self.h_m, self.network, rnp_m=rnp_m, fte_m=fte_m, sigma_altitude_m=sigma_altitude_m)
         columns: dict[str, NDArray[Any]] = {
-            name: np.asarray(getattr(found, name), dtype=np.float64)[:, None] for name in ("nse_best_m", "nse_all_m")
+            name: np.asarray(getattr(coverage, name), dtype=np.float64)[:, None] for name in ("nse_best_m", "nse_all_m")
         }
         return columns | {"p_too_few": np.isnan(columns["nse_best_m"])}
 
@@ -45,7 +45,7 @@ class Dme:
     stations : str or Path, optional
         A table of stations; without it the shipped one.
     rnp_m, fte_m : float
-        Lateral accuracy asked for, and flight technical error, both 95 %. [m]
+        Lateral accuracy required, and flight technical error, both 95 %. [m]
     sigma_altitude_m, h_m : float
         Standard deviation of the altitude, and height of the users. [m]
     """
@@ -68,7 +68,7 @@ class Dme:
         return 1
 
     def limits(self) -> list[Limit]:
-        """What is asked without a word of the caller."""
+        """What is required without a word of the caller."""
         left = float(_core.nse_boundary(np.array([self.rnp_m], dtype=np.float64), np.array([self.fte_m], dtype=np.float64))[0])
         nm = f"RNP {self.rnp_m / METRES_PER_NM:g} with a flight technical error of {self.fte_m / METRES_PER_NM:g} NM"
         return [Limit("nse_best_m", left, f"what {nm} leaves for navigation", "ours")]

@@ -1,4 +1,4 @@
-"""What can be mapped: each kind says what it takes, what it gives and what is asked of it."""
+"""What can be mapped: each kind says what it takes, what it gives and what is required of it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Options(Protocol):
         ...
 
     def limits(self) -> list[Limit]:
-        """What is asked without a word of the caller."""
+        """What is required without a word of the caller."""
         ...
 
     def assumptions(self) -> list[str]:

@@ -1,4 +1,4 @@
-"""What is asked of a column of a map."""
+"""What is required of a column of a map."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from navbound.errors import InputError
 
 @dataclass(frozen=True)
 class Limit:
-    """What is asked of a column: at most this, with where the number comes from and how it is held."""
+    """What is required of a column: at most this, with where the number comes from and how it is held."""
 
     column: str
     limit: float
@@ -30,11 +30,11 @@ def limits_of(level: str, *, vertical: bool = True) -> list[Limit]:
     InputError
         No such level.
     """
-    found = kpi.level(level)
+    required = kpi.level(level)
     # The source of a level of the table speaks of its other demands too.
     sources = {row["id"]: row["limits_source"] for row in _core.service_levels()}
-    source = f"{found.id}: {sources.get(found.id, found.source)}"
-    limits = [Limit("hpl_m", found.hal_m, source, found.provenance["hal_m"])]
-    if vertical and found.val_m is not None:
-        limits.append(Limit("vpl_m", found.val_m, source, found.provenance["val_m"]))
+    source = f"{required.id}: {sources.get(required.id, required.source)}"
+    limits = [Limit("hpl_m", required.hal_m, source, required.provenance["hal_m"])]
+    if vertical and required.val_m is not None:
+        limits.append(Limit("vpl_m", required.val_m, source, required.provenance["val_m"]))
     return limits

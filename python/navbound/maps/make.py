@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 COVERAGE_AT = (0.95, 0.99, 0.995, 0.999)
-"""Availabilities at which the share of the area is told."""
+"""Availabilities at which the share of the area is reported."""
 _ROUNDING = 1e-12
 """Less than this is left of shares that make one: some millions of additions of weights below one. [1]"""
 _RESULT_BYTES = 80.0
@@ -61,7 +61,7 @@ def make(
     grid : Grid, optional
         Users; without it the world in cells of five degrees.
     limits : mapping of column to float, optional
-        What is asked, in the unit of the column; without it that of the kind.
+        What is required, in the unit of the column; without it that of the kind.
     level : str, optional
         A service level of `navbound.kpi.levels` instead: its alert limits.
     backend, checkpoint, workers, progress
@@ -88,24 +88,24 @@ def make(
     known = kinds()
     if kind not in known:
         raise NotFoundError("kind", kind, "kind of map", known)
-    chosen = known[kind]
+    entry = known[kind]
     grid = grid or Grid()
-    job = _options(chosen, options)
-    asked = _limits(chosen, job, limits, level)
+    job = _options(entry, options)
+    required = _limits(entry, job, limits, level)
     evaluate = Evaluate(
         job.levels(),
-        tuple(c.name for c in chosen.columns),
-        tuple((one.column, one.limit) for one in asked),
-        tuple(c.name for c in chosen.causes),
+        tuple(c.name for c in entry.columns),
+        tuple((one.column, one.limit) for one in required),
+        tuple(c.name for c in entry.causes),
     )
     with files.own(out) as folder:
         lat, lon = grid.points()
         n_epochs = job.n_epochs()
-        tiles = [Tile(lat[s], lon[s]) for s in scale.cut(len(grid), n_epochs * chosen.user_epoch_s, n_epochs * _RESULT_BYTES)]
+        tiles = [Tile(lat[s], lon[s]) for s in scale.cut(len(grid), n_epochs * entry.user_epoch_s, n_epochs * _RESULT_BYTES)]
         parts = scale.map_tiles(evaluate, tiles, backend=backend, checkpoint=checkpoint, progress=progress, workers=workers)
         columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
         points = pl.DataFrame({"lat_rad": lat, "lon_rad": lon} | columns)
-        summary = _summary(chosen, grid, points, asked, job)
+        summary = _summary(entry, grid, points, required, job)
         record = map_records.MapRecord(
             navbound_version=_core.__version__,
             command=command,
@@ -133,10 +133,10 @@ def _limits(kind: Kind, job: Any, limits: Mapping[str, float] | None, level: str
     if limits and level:
         raise ConflictError("level", excludes=("limits",))
     if level:
-        asked = [one for one in limits_of(level) if one.column in names]
-        if not asked:
+        requested = [one for one in limits_of(level) if one.column in names]
+        if not requested:
             raise ConflictError("level", because=f"{kind.id} gives {', '.join(names)}")
-        return asked
+        return requested
     if not limits:
         return list(job.limits())
     for name in limits:
@@ -166,7 +166,7 @@ def _inputs(job: Any) -> dict[str, str]:
     return {str(path): File.of(path).sha256 for path in paths if path.is_file()}
 
 
-def _summary(kind: Kind, grid: Grid, points: pl.DataFrame, asked: list[Limit], job: Any) -> map_records.MapSummary:
+def _summary(kind: Kind, grid: Grid, points: pl.DataFrame, required: list[Limit], job: Any) -> map_records.MapSummary:
     n_epochs = job.n_epochs()
     weights, available = grid.weights(), points["p_available"].to_numpy()
     coverage = [map_records.MapCoverage(available=at, share=_share(weights, available >= at)) for at in COVERAGE_AT]
@@ -181,13 +181,13 @@ def _summary(kind: Kind, grid: Grid, points: pl.DataFrame, asked: list[Limit], j
     return map_records.MapSummary(
         kind=kind.id,
         title=f"{kind.title}: {grid.n_lat} × {grid.n_lon} points" + ("" if n_epochs == 1 else f", {n_epochs} epochs"),
-        words=_words(kind, asked, coverage, where, n_epochs),
+        words=_words(kind, required, coverage, where, n_epochs),
         source=kind.source,
         grid=map_records.MapGrid(n_lat=grid.n_lat, n_lon=grid.n_lon, **own),
         n_epochs=n_epochs,
         percentiles=list(PERCENTILES) if n_epochs > 1 else [],
         columns=[_column(column, points, weights) for column in kind.columns],
-        limits=[map_records.MapLimit(column=a.column, limit=a.limit, source=a.source, provenance=a.provenance) for a in asked],
+        limits=[map_records.MapLimit(column=a.column, limit=a.limit, source=a.source, provenance=a.provenance) for a in required],
         coverage=coverage,
         available_mean=float(np.clip((weights * available).sum(), 0.0, 1.0)),
         outcomes=_outcomes(kind, points, weights),
@@ -206,9 +206,9 @@ def _outcomes(kind: Kind, points: pl.DataFrame, weights: np.ndarray[Any, np.dtyp
     shares = {name: float(np.clip((weights * points[name].to_numpy()).sum(), 0.0, 1.0)) for name in named}
     # What is left has a number; a rounding of the shares is none of it.
     beyond = 1.0 - sum(shares.values())
-    found = [map_records.MapOutcome(name=name, title=title, share=shares[name]) for name, title in named.items()]
+    outcomes = [map_records.MapOutcome(name=name, title=title, share=shares[name]) for name, title in named.items()]
     rest = map_records.MapOutcome(name="beyond", title="Beyond the limits", share=beyond if beyond > _ROUNDING else 0.0)
-    return [found[0], rest, *found[1:]]
+    return [outcomes[0], rest, *outcomes[1:]]
 
 
 def _column(column: Column, points: pl.DataFrame, weights: np.ndarray[Any, np.dtype[np.float64]]) -> map_records.MapColumn:
@@ -222,14 +222,14 @@ def _half(values: np.ndarray[Any, np.dtype[np.float64]], weights: np.ndarray[Any
     """The number that half of the area is within."""
     order = np.argsort(values, kind="stable")
     place = min(int(np.searchsorted(np.cumsum(weights[order]), 0.5)), len(values) - 1)
-    found = float(values[order[place]])
-    return found if math.isfinite(found) else None
+    value = float(values[order[place]])
+    return value if math.isfinite(value) else None
 
 
-def _words(kind: Kind, asked: list[Limit], coverage: list[map_records.MapCoverage], worst: map_records.MapWorst, n_epochs: int) -> str:
+def _words(kind: Kind, required: list[Limit], coverage: list[map_records.MapCoverage], worst: map_records.MapWorst, n_epochs: int) -> str:
     units = {column.name: "" if column.unit == "1" else " m" for column in kind.columns}
     titles = {column.name: column.title[0].lower() + column.title[1:] for column in kind.columns}
-    within = " and ".join(f"{titles[a.column]} of at most {a.limit:.6g}{units[a.column]}" for a in asked)
+    within = " and ".join(f"{titles[a.column]} of at most {a.limit:.6g}{units[a.column]}" for a in required)
     if n_epochs == 1:
         return f"{_percent(coverage[0].share)} of the area has a {within}."
     parts = [

@@ -77,9 +77,9 @@ class _DopLevels:
 
     def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
         s = self.sky
-        found = gnss.dop_map(s.orbits, lat_rad, lon_rad, s.h_m, s.time_s, mask_rad=s.mask_rad)
-        columns = {name: getattr(found, name) for name in ("hdop", "vdop", "pdop", "gdop", "n_sv")}
-        return columns | {"p_too_few": np.isnan(found.pdop)}
+        dilutions = gnss.dop_map(s.orbits, lat_rad, lon_rad, s.h_m, s.time_s, mask_rad=s.mask_rad)
+        columns = {name: getattr(dilutions, name) for name in ("hdop", "vdop", "pdop", "gdop", "n_sv")}
+        return columns | {"p_too_few": np.isnan(dilutions.pdop)}
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class Dop(_Day):
         return _DopLevels(self.sky())
 
     def limits(self) -> list[Limit]:
-        """What is asked without a word of the caller."""
+        """What is required without a word of the caller."""
         return [Limit("pdop", 6.0, "GPS SPS performance standard, PDOP availability (the text was not read)", "inferred")]
 
 
@@ -123,7 +123,7 @@ class _Algorithm(_Day):
         return _Predicted(self.sky(), self.ENTRY, tuple(self._options().items()))
 
     def limits(self) -> list[Limit]:
-        """What is asked without a word of the caller."""
+        """What is required without a word of the caller."""
         level, vertical, more = self.ENTRY.limits(**({"service": self._options()["service"]} if "service" in self.ENTRY.options else {}))
         return [*limits_of(level, vertical=vertical), *(Limit(*one) for one in more)]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from navbound import gnss, sbas
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.maps import sources
 from navbound.maps.limits import Limit, limits_of
 from navbound.maps.sources import File, Times
@@ -44,7 +44,7 @@ class _SbasLevels:
     sender: gnss.Orbits | None
 
     def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
-        found = sbas.protection_levels(
+        levels = sbas.protection_levels(
             sources.messages(self.messages, self.prn),
             [file.path for file in self.navigation],
             self.time_ns[:, None],
@@ -54,7 +54,7 @@ class _SbasLevels:
             mode=self.mode,
             mask_rad=self.mask_rad,
         )
-        columns = {name: np.ascontiguousarray(getattr(found, name).T, dtype=np.float64) for name in ("hpl_m", "vpl_m", "n_sv")}
+        columns = {name: np.ascontiguousarray(getattr(levels, name).T, dtype=np.float64) for name in ("hpl_m", "vpl_m", "n_sv")}
         deaf = ~self._hears(lat_rad, lon_rad)
         columns["hpl_m"][deaf] = columns["vpl_m"][deaf] = np.nan
         columns["n_sv"][deaf] = 0
@@ -104,8 +104,10 @@ class Sbas:
     h_m: float = 0.0
 
     def _heard(self) -> sbas.Messages:
-        if not (self.messages and self.navigation):
-            raise InputError("messages, navigation", "none", domain="a message log and the navigation files of its day")
+        if not self.messages:
+            raise ConflictError("kind", needs=("messages",), because="sbas takes the levels of a message log", value="sbas")
+        if not self.navigation:
+            raise ConflictError("messages", needs=("navigation",), because="the orbits are those of the log's day")
         return sources.messages(File.of(self.messages), self.prn)
 
     def _instants(self) -> NDArray[np.int64]:
@@ -114,8 +116,8 @@ class Sbas:
         warm_up_ns = round(WARM_UP_S * sources.NS)
         usual = first + (warm_up_ns if last - first >= 2 * warm_up_ns else 0)
         start = usual if self.times.start_ns is None else self.times.start_ns
-        asked_s = 0.0 if self.times.duration_s is None else self.times.duration_s
-        if start > last or start + asked_s * sources.NS < first:
+        requested_s = 0.0 if self.times.duration_s is None else self.times.duration_s
+        if start > last or start + requested_s * sources.NS < first:
             raise InputError("start_ns", start, "ns", f"[{first}, {last}], the time of the messages")
         offsets_s = self.times.offsets_s(max(self.times.step_s, (last - start) / sources.NS))
         time_ns = start + np.rint(offsets_s * sources.NS).astype(np.int64)
@@ -132,7 +134,7 @@ class Sbas:
         return len(self._instants())
 
     def limits(self) -> list[Limit]:
-        """What is asked without a word of the caller."""
+        """What is required without a word of the caller."""
         return limits_of("NPA", vertical=False) if self.mode == "npa" else limits_of("APV-I")
 
     def assumptions(self) -> list[str]:
@@ -186,9 +188,9 @@ def _sender(heard: sbas.Messages) -> gnss.Orbits | None:
     own = sbas.Messages(heard.time_ns[at], heard.prn[at], heard.data[at], heard.format, heard.tag, [])
     places = [
         place["position_ecef_m"]
-        for found in sorted(sbas.decode(own), key=lambda one: one.type)
-        for place in found.fields.get("entries", [found.fields])
-        if place.get("prn", found.prn) == found.prn
+        for message in sorted(sbas.decode(own), key=lambda one: one.type)
+        for place in message.fields.get("entries", [message.fields])
+        if place.get("prn", message.prn) == message.prn
     ]
     return _standing(places[0]) if places else None
 

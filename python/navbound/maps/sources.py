@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import gnss, sbas
-from navbound.errors import FormatError, InputError
+from navbound.errors import ConflictError, FormatError, InputError
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ class Times:
         return duration_s
 
     def length_s(self, usual_s: float = DAY_S) -> float:
-        """The duration, or the usual one where none was asked for. [s]."""
+        """The duration, or the usual one where none was requested. [s]."""
         return self._within(usual_s) if self.duration_s is None else self.duration_s
 
     def offsets_s(self, usual_s: float = DAY_S) -> NDArray[np.float64]:
@@ -113,7 +113,7 @@ def satellites(constellation: Sequence[str | Path], times: Times, mask_rad: floa
         if abs(since) > ALMANAC_AGE_S:
             days = since / 86_400
             of = f"{utc_text(orbits.reference_ns)} UTC, {abs(days):.1f} days {'before' if days > 0 else 'after'} it"
-            why = "a week number of ten bits is read as the nearest to the day asked"
+            why = "a week number of ten bits is read as the nearest to the day requested"
             raise InputError("start_ns", times.start_ns, "ns", f"a day within a week of the almanac, which is of {of}; {why}")
     return Satellites(orbits, since + times.offsets_s(), mask_rad, h_m)
 
@@ -151,16 +151,18 @@ def messages(log: File, prn: int | None) -> sbas.Messages:
     FormatError
         Not a message log.
     """
-    found = _read(log.path, log.sha256)
-    senders = ", ".join(map(str, np.unique(found.prn)))
+    messages_read = _read(log.path, log.sha256)
+    senders = ", ".join(map(str, np.unique(messages_read.prn)))
     if not senders:
         raise InputError("messages", log.path, domain="a log that holds a message")
     if prn is None and "," in senders:
-        raise InputError("prn", "none", domain=f"one of {senders}: the log holds the messages of several satellites")
-    chosen = found if prn is None else found.of(prn)
-    if len(chosen.prn) == 0:
+        raise ConflictError(
+            "messages", needs=("prn",), because=f"the log holds the messages of several satellites, {senders}", value=log.path
+        )
+    selected = messages_read if prn is None else messages_read.of(prn)
+    if len(selected.prn) == 0:
         raise InputError("prn", prn, domain=f"one of {senders}, whose messages the log holds")
-    return chosen
+    return selected
 
 
 @lru_cache(maxsize=2)

@@ -49,15 +49,15 @@ class Evaluate:
 
     def __call__(self, tile: Tile) -> dict[str, NDArray[np.generic]]:
         """Evaluate the users of a tile."""
-        found = self.levels(tile.lat_rad, tile.lon_rad)
+        levels = self.levels(tile.lat_rad, tile.lon_rad)
         # NaN is not within a limit.
-        met = np.logical_and.reduce([found[column] <= limit for column, limit in self.limits])
+        met = np.logical_and.reduce([levels[column] <= limit for column, limit in self.limits])
         rows: dict[str, NDArray[np.generic]] = {"p_available": met.mean(axis=1)}
-        if "n_sv" in found:
-            rows["n_sv_least"] = found["n_sv"].min(axis=1).astype(np.int64)
-        rows |= {cause: found[cause].mean(axis=1) for cause in self.causes}
+        if "n_sv" in levels:
+            rows["n_sv_least"] = levels["n_sv"].min(axis=1).astype(np.int64)
+        rows |= {cause: levels[cause].mean(axis=1) for cause in self.causes}
         for column in self.columns:
-            rows |= _percentiles(column, found[column])
+            rows |= _percentiles(column, levels[column])
         return rows
 
 

@@ -111,10 +111,10 @@ class Path:
             A position that is not on the Earth, or is more than 5000 km away.
         """
         shape, (lat, lon) = flatten(lat_rad=(lat_rad, ()), lon_rad=(lon_rad, ()))
-        found = self._core.project(lat, lon, near_along_m)
-        leg = found.pop("leg")
+        projected = self._core.project(lat, lon, near_along_m)
+        leg = projected.pop("leg")
         legs = np.where(leg == _NO_LEG, -1, leg.astype(np.int64)).reshape(shape)
-        return Feet(leg=legs, **{name: values.reshape(shape) for name, values in found.items()})
+        return Feet(leg=legs, **{name: values.reshape(shape) for name, values in projected.items()})
 
     def at(self, along_m: ArrayLike) -> Places:
         """Path at distances along it; beyond its ends the first and the last leg go on.
@@ -130,9 +130,9 @@ class Path:
             A distance that is not finite.
         """
         shape, (along,) = flatten(along_m=(along_m, ()))
-        found = self._core.at(along)
-        leg = found.pop("leg").astype(np.int64).reshape(shape)
-        return Places(leg=leg, **{name: values.reshape(shape) for name, values in found.items()})
+        points = self._core.at(along)
+        leg = points.pop("leg").astype(np.int64).reshape(shape)
+        return Places(leg=leg, **{name: values.reshape(shape) for name, values in points.items()})
 
 
 @checked

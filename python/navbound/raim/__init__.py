@@ -225,12 +225,12 @@ def monitor(
     shape, unit, sigma, of = _columns(lines.reshape(*together, 3), constellation, sigma_m)
     if shape != together:
         raise InputError("residual_m", f"shape {together}", domain=f"shape {shape}, one for each range")
-    found = _core.raim_monitor(unit, residual, sigma, of, requirement_numbers(requirement))
+    computed = _core.raim_monitor(unit, residual, sigma, of, requirement_numbers(requirement))
     leading = shape[:-1]
-    step = np.stack([found.pop(f"step_{axis}_m") for axis in "enu"], axis=-1).reshape(*leading, 3)
-    decision = np.array(found.pop("decision"), dtype=np.str_).reshape(leading)
-    excluded, ratio = found.pop("excluded").reshape(shape), found.pop("ratio").reshape(leading)
-    return Monitored(_levels(found, leading), decision, excluded, ratio, step)
+    step = np.stack([computed.pop(f"step_{axis}_m") for axis in "enu"], axis=-1).reshape(*leading, 3)
+    decision = np.array(computed.pop("decision"), dtype=np.str_).reshape(leading)
+    excluded, ratio = computed.pop("excluded").reshape(shape), computed.pop("ratio").reshape(leading)
+    return Monitored(_levels(computed, leading), decision, excluded, ratio, step)
 
 
 @checked
@@ -291,9 +291,9 @@ def _columns(
     return shape, unit.ravel(), sigma, of.tolist()
 
 
-def _levels(found: dict[str, Any], shape: tuple[int, ...]) -> Levels:
-    status = np.array(found.pop("words"))[found.pop("outcome")]
-    return Levels(status=status.reshape(shape), **{name: values.reshape(shape) for name, values in found.items()})
+def _levels(computed: dict[str, Any], shape: tuple[int, ...]) -> Levels:
+    status = np.array(computed.pop("words"))[computed.pop("outcome")]
+    return Levels(status=status.reshape(shape), **{name: values.reshape(shape) for name, values in computed.items()})
 
 
 def assumptions(model: str) -> list[str]:

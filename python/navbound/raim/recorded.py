@@ -71,25 +71,25 @@ def watch(
     InputError
         Systems that are not there, single signals without a broadcast ionosphere, numbers outside their domain.
     """
-    chosen = checked_model(navigation, systems, signals, model, mask_rad)
+    selected = checked_model(navigation, systems, signals, model, mask_rad)
     numbers = requirement_numbers(requirement)
-    promises, airborne = support_rows(support), airborne_numbers(chosen)
+    promises, airborne = support_rows(support), airborne_numbers(selected)
     smoothing = checked_smoothing(smoothing_s)
-    found = _core.raim_watch(
+    recorded = _core.raim_watch(
         observations._core, navigation._core, systems, signals == "dual", mask_rad, promises, airborne, numbers, smoothing
     )
-    outcome = np.array(found.pop("words"))[found.pop("outcome")]
-    decision = np.array(found.pop("decision"), dtype=np.str_)
+    outcome = np.array(recorded.pop("words"))[recorded.pop("outcome")]
+    decision = np.array(recorded.pop("decision"), dtype=np.str_)
     usable = np.isin(decision, ["none", "excluded"]) & (outcome == "ok")
     levels = ("hpl_m", "vpl_m", "hpl_slope_m", "vpl_slope_m")
     columns = {
-        **{name: np.where(usable, found[name], np.nan) for name in levels},
-        **{name: np.where(np.isfinite(found[name]), found[name], np.nan) for name in ("hel_m", "vel_m")},
-        **{name: found[name] for name in ("n_sv", "n_redundant")},
+        **{name: np.where(usable, recorded[name], np.nan) for name in levels},
+        **{name: np.where(np.isfinite(recorded[name]), recorded[name], np.nan) for name in ("hel_m", "vel_m")},
+        **{name: recorded[name] for name in ("n_sv", "n_redundant")},
         "n_excluded": (decision == "excluded").astype(np.int64),
         "decision": decision,
         "mode": ["raim"] * observations.n_epochs,
-        **judged(found, found.pop("excluded")),
+        **judged(recorded, recorded.pop("excluded")),
     }
     models = {
         "protection levels": f"RAIM, weighted slope: {SOURCES[0]}",
@@ -97,9 +97,9 @@ def watch(
         "risks": f"false alarm {requirement.false_alarm:g}, missed detection {requirement.missed_detection:g}, without a fault "
         f"{requirement.fault_free:g}: {requirement.source}; together {requirement.provenance}",
         "use": "the risks are those of en route to non-precision approach; vertical levels at them promise nothing for vertical guidance",
-        **range_models(support, chosen, signals),
+        **range_models(support, selected, signals),
         "satellites": f"{systems}, elevation {np.degrees(mask_rad):g} deg and more",
     }
-    found["decision_words"] = np.where(decision == "excluded", columns["excluded_sv"], decision)
+    recorded["decision_words"] = np.where(decision == "excluded", columns["excluded_sv"], decision)
     p_false_alert = requirement.false_alarm
-    return watched(observations, found, columns, models, track=track, truth_ecef_m=truth_ecef_m, p_false_alert=p_false_alert)
+    return watched(observations, recorded, columns, models, track=track, truth_ecef_m=truth_ecef_m, p_false_alert=p_false_alert)

@@ -108,14 +108,14 @@ def find(epochs: pl.DataFrame, runways: Sequence[Runway] | None = None, gates: G
         runways = near(points.lat_rad[low], points.lon_rad[low])
     gated = [_gate(points, runway, index, gates) for index, runway in enumerate(runways)]
     names = [r.name for r in runways]
-    found, left_out = _segments(pl.concat(gated), epochs, gates, names) if gated else (pl.DataFrame(), [])
+    segments, left_out = _segments(pl.concat(gated), epochs, gates, names) if gated else (pl.DataFrame(), [])
     notes += left_out
-    if found.is_empty():
+    if segments.is_empty():
         return Approaches(epochs.clear(), [], [], {}, notes)
-    found = found.with_columns(pl.col("runway").replace_strict(dict(enumerate(names)), return_dtype=pl.String).alias("runway_name"))
-    approaches = _named(found)
+    segments = segments.with_columns(pl.col("runway").replace_strict(dict(enumerate(names)), return_dtype=pl.String).alias("runway_name"))
+    approaches = _named(segments)
     judged = _between(epochs, approaches, {name: runways[i] for i, name in enumerate(names)})
-    statistics = _statistics(found)
+    statistics = _statistics(segments)
     used = [r for r in runways if r.name in set(approaches["runway_name"])]
     tracks = dict(approaches.select("approach", "track").iter_rows())
     return Approaches(judged, statistics, used, tracks, notes)
@@ -160,19 +160,19 @@ def _missing_rules(epochs: pl.DataFrame, gates: Gates) -> list[str]:
 
 def _gate(points: _Points, runway: Runway, index: int, gates: Gates) -> pl.DataFrame:
     """Points inside the gates of one runway: row of the epoch table, distance before the threshold, cross-track distance."""
-    chosen = _roughly(points, runway, gates)
-    feet = runway.centreline.project(points.lat_rad[chosen], points.lon_rad[chosen])
+    selected = _roughly(points, runway, gates)
+    feet = runway.centreline.project(points.lat_rad[selected], points.lon_rad[selected])
     before = -feet.along_m
-    turn = np.abs((points.ground_track_rad[chosen] - feet.course_rad + np.pi) % (2 * np.pi) - np.pi)
+    turn = np.abs((points.ground_track_rad[selected] - feet.course_rad + np.pi) % (2 * np.pi) - np.pi)
     ceiling = max(gates.altitude_max_m, runway.elevation_m + gates.above_runway_m)
     inside = (before > gates.before_min_m) & (before < gates.before_max_m) & (np.abs(feet.cross_m) < gates.cross_max_m)
     inside &= _holds(turn < gates.track_max_rad, points.ground_track_rad)
-    inside &= _holds(points.altitude_m[chosen] < ceiling, points.altitude_m)
+    inside &= _holds(points.altitude_m[selected] < ceiling, points.altitude_m)
     if gates.descending:
-        inside &= _holds(points.vertical_rate_mps[chosen] < 0, points.vertical_rate_mps)
+        inside &= _holds(points.vertical_rate_mps[selected] < 0, points.vertical_rate_mps)
     return pl.DataFrame(
         {
-            "row": pl.Series(chosen[inside], dtype=pl.UInt32),
+            "row": pl.Series(selected[inside], dtype=pl.UInt32),
             "runway": pl.Series([index] * int(inside.sum()), dtype=pl.Int64),
             "before_m": before[inside],
             "cross_m": feet.cross_m[inside],
@@ -256,9 +256,9 @@ def _left_out(failed: pl.DataFrame, accepted: pl.DataFrame, names: list[str]) ->
     return [f"{lost.height} passes along a runway's centreline are not judged as approaches: {'; '.join(shown)}{more}."]
 
 
-def _named(found: pl.DataFrame) -> pl.DataFrame:
+def _named(segments: pl.DataFrame) -> pl.DataFrame:
     """One row an approach: ``3944ed LFPG/08R``, with a count when a track lands there again."""
-    approaches = found.group_by("segment").agg(
+    approaches = segments.group_by("segment").agg(
         pl.col("track").first(), pl.col("runway_name").first(), start=pl.col("time_ns").min(), end=pl.col("time_ns").max()
     )
     approaches = approaches.sort("track", "start").with_columns(again=pl.int_range(1, pl.len() + 1).over("track", "runway_name"))
@@ -290,10 +290,10 @@ def _between(epochs: pl.DataFrame, approaches: pl.DataFrame, runways: dict[str, 
     return pl.concat(parts).drop("approach", "runway_name", "start", "end").sort("track", "time_ns")
 
 
-def _statistics(found: pl.DataFrame) -> list[CrossTrack]:
-    every = [statistics(str(name), group) for (name,), group in found.sort("runway_name").group_by("runway_name", maintain_order=True)]
-    fresh = found.filter(pl.col("status") == "ok")
-    if fresh.height == found.height:
+def _statistics(segments: pl.DataFrame) -> list[CrossTrack]:
+    every = [statistics(str(name), group) for (name,), group in segments.sort("runway_name").group_by("runway_name", maintain_order=True)]
+    fresh = segments.filter(pl.col("status") == "ok")
+    if fresh.height == segments.height:
         return every
     rest = fresh.sort("runway_name").group_by("runway_name", maintain_order=True)
     return every + [statistics(f"{name}, held and implausible positions left out", group) for (name,), group in rest]

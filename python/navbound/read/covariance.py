@@ -106,17 +106,17 @@ def _typed(epochs: pl.DataFrame, sigma_m: float) -> Claimed:
     """The caller's standard deviation; where the file's own is larger, that speaks against it."""
     own = claim(epochs)
     words = f"Covariance: circular with sigma = {sigma_m:g} m in each axis, as stated by the user."
-    found = _circle(epochs, pl.lit(sigma_m), words, "typed")
+    typed = _circle(epochs, pl.lit(sigma_m), words, "typed")
     own_m = own.epochs.select(((pl.col("cov_ee_m2") + pl.col("cov_nn_m2")) / 2).sqrt().alias("own")).to_series()
     stated_m = own.epochs.select(pl.max_horizontal(own_m / circular_sigma(0.05), *_least_radii(own.epochs)).alias("m")).to_series()
     worse_m = pl.select(pl.when(stated_m > (1.0 + 1e-9) * sigma_m / circular_sigma(0.05)).then(stated_m)).to_series().alias(WORSE)
     stated = [worse_m, *([own.epochs[CONTAINMENT]] if CONTAINMENT in own.epochs.columns else [])]
     known = own_m.filter(own_m.is_finite().fill_null(value=False))
     if known.is_empty():
-        return replace(found, epochs=found.epochs.with_columns(stated))
+        return replace(typed, epochs=typed.epochs.with_columns(stated))
     low, high = float(known.min()), float(known.max())  # type: ignore[arg-type]
     more = f" The file's own accuracies, sigma {low:.3g} to {high:.3g} m, are overruled."
-    return Claimed(found.epochs.with_columns(stated), f"{words}{more}", "typed", (low, high))
+    return Claimed(typed.epochs.with_columns(stated), f"{words}{more}", "typed", (low, high))
 
 
 def _least_radii(epochs: pl.DataFrame) -> list[pl.Expr]:
@@ -126,7 +126,7 @@ def _least_radii(epochs: pl.DataFrame) -> list[pl.Expr]:
         radii.append(((pl.col("sigma_e_m") ** 2 + pl.col("sigma_n_m") ** 2) / 2).sqrt() / circular_sigma(0.05))
     if "nac_p" in epochs.columns:
         better = {category: NACP_EPU_M.get(category + 1, 0.0) for category in range(12)}
-        radii.append(_held("nac_p").replace_strict(better, default=None, return_dtype=pl.Float64))
+        radii.append(_in_force("nac_p").replace_strict(better, default=None, return_dtype=pl.Float64))
     return radii
 
 
@@ -135,8 +135,8 @@ def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
     have = set(epochs.columns)
     if not have & {"rc_m", "nic"}:
         return epochs
-    coded = _held("nic").replace_strict(NIC_RC_M | {0: math.inf}, default=None, return_dtype=pl.Float64) if "nic" in have else None
-    stated = ([_held("rc_m")] if "rc_m" in have else []) + ([] if coded is None else [coded])
+    coded = _in_force("nic").replace_strict(NIC_RC_M | {0: math.inf}, default=None, return_dtype=pl.Float64) if "nic" in have else None
+    stated = ([_in_force("rc_m")] if "rc_m" in have else []) + ([] if coded is None else [coded])
     return epochs.with_columns(pl.coalesce(stated).alias(CONTAINMENT))
 
 
@@ -195,15 +195,17 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
     if "epu_m" in have:
         return _circle(epochs, pl.col("epu_m") * k95, f"Covariance: circular, sigma = EPU / {1 / k95:.4f} (EPU is the 95 % radius).", "epu")
     if "nac_p" in have:
-        sigma = _held("nac_p").replace_strict(NACP_EPU_M, default=None, return_dtype=pl.Float64) * k95
+        sigma = _in_force("nac_p").replace_strict(NACP_EPU_M, default=None, return_dtype=pl.Float64) * k95
         words = (
             f"Covariance: circular, sigma = EPU / {1 / k95:.4f}, EPU being the upper limit that NACp stands for {coding}; an indicator "
             f"counts for {HOLD_S:g} s after it was received."
         )
         return _circle(epochs, sigma, words, "nac_p")
     if have & {"rc_m", "nic"}:
-        coded = _held("nic").replace_strict(NIC_RC_M, default=None, return_dtype=pl.Float64) if "nic" in have else pl.lit(None, pl.Float64)
-        radius = pl.coalesce(_held("rc_m"), coded) if "rc_m" in have else coded
+        coded = (
+            _in_force("nic").replace_strict(NIC_RC_M, default=None, return_dtype=pl.Float64) if "nic" in have else pl.lit(None, pl.Float64)
+        )
+        radius = pl.coalesce(_in_force("rc_m"), coded) if "rc_m" in have else coded
         words = (
             f"Covariance: circular, sigma = Rc / {1 / k_rc:.4f}, taking the containment radius Rc at a risk of {RC_RISK:g}, source "
             f"integrity level 3 {coding}. Rc is an integrity limit, so this sigma is a stand-in."
@@ -213,7 +215,7 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
     return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COVARIANCE), words, "none")
 
 
-def _held(name: str) -> pl.Expr:
+def _in_force(name: str) -> pl.Expr:
     """Take the last value received within `HOLD_S`, track by track."""
     since = pl.when(pl.col(name).is_not_null()).then("time_ns").forward_fill().over("track")
     fresh = (pl.col("time_ns") - since) <= int(HOLD_S * 1e9)

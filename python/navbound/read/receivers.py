@@ -82,26 +82,26 @@ def read(source: Source, name: str) -> Log:
     FormatError
         No message with a position, or positions that nothing dates.
     """
-    found = _core.read_positions(source.content, name)
-    left_out = [(_REASONS[reason], *of) for reason, *of in found["left_out"]]
-    if found["undated"] is not None:
-        n_damaged = sum(count for reason_id, _, count, *_ in found["left_out"] if reason_id in _DAMAGED)
-        raise FormatError(source.path, _undated(found["n_rows"], n_damaged), found["undated"], "date")
-    if found["n_rows"] == 0:
+    log = _core.read_positions(source.content, name)
+    left_out = [(_REASONS[reason], *of) for reason, *of in log["left_out"]]
+    if log["undated"] is not None:
+        n_damaged = sum(count for reason_id, _, count, *_ in log["left_out"] if reason_id in _DAMAGED)
+        raise FormatError(source.path, _undated(log["n_rows"], n_damaged), log["undated"], "date")
+    if log["n_rows"] == 0:
         raise FormatError(source.path, f"a log of kind {name} without a message that holds a position ({MESSAGES[name]})")
-    return Log(_epochs(found), found["n_rows"], left_out, found["absent_ns"], found["fields"], _notes(source, found))
+    return Log(_epochs(log), log["n_rows"], left_out, log["absent_ns"], log["fields"], _notes(source, log))
 
 
-def _epochs(found: dict[str, Any]) -> pl.DataFrame:
-    plain = {name: column for name, column in found.items() if name not in _COUNTS}
+def _epochs(fields: dict[str, Any]) -> pl.DataFrame:
+    plain = {name: column for name, column in fields.items() if name not in _COUNTS}
     out = pl.DataFrame(plain, schema_overrides={"n_sv": pl.Int64, "record": pl.Int64})
-    return out.with_columns(pl.Series(name, found["cov_m2"][:, k]) for k, name in enumerate(COVARIANCE))
+    return out.with_columns(pl.Series(name, fields["cov_m2"][:, k]) for k, name in enumerate(COVARIANCE))
 
 
-def _notes(source: Source, found: dict[str, Any]) -> list[str]:
-    notes = [_NOTES[note].format(*numbers) for note, numbers in found["notes"]]
-    if found["n_outside"]:
-        passed_over = f"{found['n_outside']} of {len(source.content)} bytes"
+def _notes(source: Source, fields: dict[str, Any]) -> list[str]:
+    notes = [_NOTES[note].format(*numbers) for note, numbers in fields["notes"]]
+    if fields["n_outside"]:
+        passed_over = f"{fields['n_outside']} of {len(source.content)} bytes"
         notes.append(f"{passed_over} belong to no message that is read (text, other protocols, or damage)")
     return [f"{source.path.name}: {note}" for note in notes]
 

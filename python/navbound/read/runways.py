@@ -100,10 +100,10 @@ def runway(name: str) -> Runway:
     if ends.is_empty():
         near = difflib.get_close_matches(airport, table()["airport"].unique().to_list(), 3, 0.6)
         raise NotFoundError("path", name, "airport", more=f"nearest: {', '.join(near) or 'none'}")
-    found = ends.filter(pl.col("end") == designator)
-    if found.is_empty():
+    matching = ends.filter(pl.col("end") == designator)
+    if matching.is_empty():
         raise NotFoundError("path", name, f"runway of {airport}", sorted(ends["end"].to_list()))
-    return _runway(found.row(0, named=True))
+    return _runway(matching.row(0, named=True))
 
 
 def _runway(row: dict[str, object]) -> Runway:
@@ -137,8 +137,8 @@ def near(lat_rad: np.ndarray[tuple[int], np.dtype[np.float64]], lon_rad: np.ndar
     for axis in "xyz":
         cells = cells.join(steps, how="cross").with_columns(pl.col(axis) + pl.col("step")).drop("step").unique()
     here = ends.hstack(_cells(ends["lat_rad"].to_numpy(), ends["lon_rad"].to_numpy()))
-    found = here.join(cells, on=["x", "y", "z"], how="semi").sort("airport", "end")
-    return [_runway(row) for row in found.drop("x", "y", "z").iter_rows(named=True)]
+    near_here = here.join(cells, on=["x", "y", "z"], how="semi").sort("airport", "end")
+    return [_runway(row) for row in near_here.drop("x", "y", "z").iter_rows(named=True)]
 
 
 def _cells(lat_rad: np.ndarray[tuple[int], np.dtype[np.float64]], lon_rad: np.ndarray[tuple[int], np.dtype[np.float64]]) -> pl.DataFrame:

@@ -83,8 +83,8 @@ class Source:
             text = self.content.decode("utf-8" if offset else "utf-8-sig")
         except UnicodeDecodeError as e:
             line += self.content.count(b"\n", 0, e.start)
-            found = self.content[e.start : e.start + 8].hex(" ")
-            raise FormatError(self.path, f"not UTF-8 text: bytes {found} at offset {offset + e.start}", line) from e
+            first_bytes = self.content[e.start : e.start + 8].hex(" ")
+            raise FormatError(self.path, f"not UTF-8 text: bytes {first_bytes} at offset {offset + e.start}", line) from e
         if "\0" in text:
             raise FormatError(self.path, "not text: it holds zero bytes", line + text.count("\n", 0, text.index("\0")))
         return text
@@ -125,7 +125,7 @@ LARGE_BYTES = 64 << 20
 
 
 def is_text_table(path: str | Path, least_bytes: int = 0) -> bool:
-    """Whether this is a plain text table of at least this size, told from its beginning."""
+    """Whether this is a plain text table of at least this size, recognised by its beginning."""
     path = Path(path)
     try:
         if path.stat().st_size < least_bytes:

@@ -91,15 +91,15 @@ class Speeds:
         if self._waiting is not None:
             self._judge(self._waiting.with_columns(_window=pl.col("time_ns") // _WINDOW_NS), open_window=0)
             self._waiting = None
-        found = []
+        doubts = []
         for n, word in ((self._n_longer, "further"), (self._n_shorter, "less far")):
             if 0 < n == self._n or (n >= _LEAST and n >= _LEAST_SHARE * self._n):
                 way_m, stated_m = self._worst
-                found.append(
+                doubts.append(
                     f"The positions travel {word} than the recording's own speeds say in {n} of {self._n} minutes (at worst {way_m:.0f} m "
                     f"for {stated_m:.0f} m): the positions are false, or they or the speeds are in another unit than they are read in"
                 )
-        return found
+        return doubts
 
 
 def _legs_m(time_s: NDArray[np.float64], place: NDArray[np.float64]) -> float:

@@ -38,7 +38,7 @@ class Truth:
 
     Attributes
     ----------
-    given : str or None
+    stated : str or None
         As it was given.
     ecef_m : ndarray, shape (3,), or None
         A fixed point, Earth-fixed. [m]
@@ -48,7 +48,7 @@ class Truth:
         What the caller declares of columns, of the estimates and of the truth.
     """
 
-    given: str | None
+    stated: str | None
     ecef_m: NDArray[np.float64] | None
     tolerance_s: float
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -56,12 +56,12 @@ class Truth:
     @property
     def columns_of_estimates(self) -> Mapping[str, str]:
         """What is declared of the estimates' columns: with a recorded truth those of the truth are in its own file."""
-        if self.given is None or self.ecef_m is not None:
+        if self.stated is None or self.ecef_m is not None:
             return self.columns
         return {name: column for name, column in self.columns.items() if name not in _OF_TRUTH}
 
 
-def truth_of(given: str | Path | None, tolerance_s: float, columns: Mapping[str, str] | None = None) -> Truth:
+def truth_of(source: str | Path | None, tolerance_s: float, columns: Mapping[str, str] | None = None) -> Truth:
     """Read ``X,Y,Z`` (Earth-fixed, metres), or take a file's name.
 
     Raises
@@ -69,9 +69,9 @@ def truth_of(given: str | Path | None, tolerance_s: float, columns: Mapping[str,
     InputError
         Three numbers that are no place near the Earth's surface.
     """
-    if given is None:
+    if source is None:
         return Truth(None, None, tolerance_s, columns or {})
-    text = str(given)
+    text = str(source)
     number = r"\s*[-+]?\d+(?:\.\d*)?\s*"
     if re.fullmatch(f"{number},{number},{number}", text) is None:
         return Truth(text, None, tolerance_s, columns or {})
@@ -101,13 +101,13 @@ def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, R
     place = gnss.geodetic(truth.ecef_m)
     names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m")
     fixed = epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True))
-    found, doubts = with_error(fixed)
-    return found, _sentences(f"Truth: the fixed point {truth.given} m, Earth-fixed.", doubts.words), None, doubts
+    compared, doubts = with_error(fixed)
+    return compared, _sentences(f"Truth: the fixed point {truth.stated} m, Earth-fixed.", doubts.words), None, doubts
 
 
 def _recorded(truth: Truth) -> Reading:
     declared = {_OF_TRUTH[name]: column for name, column in truth.columns.items() if name in _OF_TRUTH}
-    return read_beside(str(truth.given), declared, truth.columns_of_estimates)
+    return read_beside(str(truth.stated), declared, truth.columns_of_estimates)
 
 
 def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S) -> tuple[pl.DataFrame, str, TruthDoubts]:
@@ -138,14 +138,14 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
     """
     if not (np.isfinite(tolerance_s) and tolerance_s >= 0):
         raise InputError("truth_tolerance_s", tolerance_s, "s", "[0, inf)")
-    wanted = {"est_lat_rad": "truth_lat_rad", "est_lon_rad": "truth_lon_rad", "est_h_m": "truth_h_m"}
-    other = truth.epochs.rename({k: v for k, v in wanted.items() if k in truth.epochs.columns})
-    places = [v for v in wanted.values() if v in other.columns]
+    renamed = {"est_lat_rad": "truth_lat_rad", "est_lon_rad": "truth_lon_rad", "est_h_m": "truth_h_m"}
+    other = truth.epochs.rename({k: v for k, v in renamed.items() if k in truth.epochs.columns})
+    places = [v for v in renamed.values() if v in other.columns]
     other = other.select("track", "time_ns", *places, truth_time_ns="time_ns", invalid=_invalid(other), truth_sigma_m=_truth_sigma_m(other))
     other, jumps = contradicting(other.sort("track", "time_ns"))
     several = other["track"].n_unique() > 1
     joined = (
-        epochs.drop([v for v in wanted.values() if v in epochs.columns])
+        epochs.drop([v for v in renamed.values() if v in epochs.columns])
         .sort("time_ns")
         .join_asof(
             other.sort("time_ns") if several else other.drop("track").sort("time_ns"),
@@ -174,7 +174,7 @@ def join(epochs: pl.DataFrame, truth: Reading, tolerance_s: float = TOLERANCE_S)
     joined = joined.with_columns(imprecise=imprecise.fill_null(value=False))
     kept = ~pl.any_horizontal("contradicted", "invalid", "imprecise")
     n_contradicted, n_invalid, n_imprecise = (int(joined[name].sum()) for name in ("contradicted", "invalid", "imprecise"))
-    joined = joined.with_columns(pl.when(kept).then(pl.col(name)).alias(name) for name in wanted.values() if name in joined.columns)
+    joined = joined.with_columns(pl.when(kept).then(pl.col(name)).alias(name) for name in renamed.values() if name in joined.columns)
     epochs, doubts = with_error(joined.drop("truth_time_ns", "contradicted", "invalid", "imprecise", "truth_sigma_m"))
     doubts += TruthDoubts(n_contradicted, tuple(jumps) if n_contradicted else (), n_invalid=n_invalid, n_imprecise=n_imprecise)
     return epochs, _sentences(words, doubts.words), doubts

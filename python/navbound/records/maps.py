@@ -24,7 +24,7 @@ class MapColumn(Record):
 
 
 class MapLimit(Record):
-    """What was asked of a column."""
+    """What was required of a column."""
 
     column: str
     limit: float
@@ -36,7 +36,7 @@ class MapCoverage(Record):
     """Share of the area where the limits are met for at least a share of the time."""
 
     available: float
-    """Share of the time asked for."""
+    """Share of the time required."""
     share: float
     """Share of the area, cells weighted by the cosine of their latitude."""
 

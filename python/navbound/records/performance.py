@@ -154,7 +154,7 @@ class StanfordBins(Record):
     count: list[int]
 
 
-class SubsetFound(Record):
+class ListedSubset(Record):
     """One subset of an epoch's satellites whose safety index is high."""
 
     time_ns: int
@@ -194,7 +194,7 @@ class Subsets(Record):
     """Safety index from which a subset is listed."""
     n_listed: int
     """How many reach it."""
-    listed: list[SubsetFound]
+    listed: list[ListedSubset]
     """The gravest of them, at most 500."""
     stanford: dict[str, list[StanfordCounts]]
     """By level id: subsets in the regions; horizontal first, vertical where the level has a vertical limit."""
@@ -287,7 +287,7 @@ class Performance(Record):
     """Hazards and misleading information first, then losses, longest first; at most 500 of all in events.parquet."""
     days: list[DayResult]
     subsets: Subsets | None
-    """Where the Stanford-ESA diagram was asked for."""
+    """Where the Stanford-ESA diagram was requested."""
     experimental: str
     """Words that must stand beside every number of an experimental level; empty for integrity levels."""
     notes: list[str]

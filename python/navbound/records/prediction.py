@@ -19,7 +19,7 @@ class PredictedPlace(Record):
 
 
 class PredictedLimit(Record):
-    """What is asked of the horizontal level."""
+    """What is required of the horizontal level."""
 
     id: str
     hal_m: float

@@ -252,7 +252,7 @@ class MethodResult(Record):
     pinball_m: float | None
 
 
-class Held(Record):
+class RegionCoverage(Record):
     """Share of epochs within a region that claims 95 %, over many tracks."""
 
     region: Literal["circle", "sphere"]
@@ -262,23 +262,23 @@ class Held(Record):
     """95 % limits from drawing whole tracks again."""
 
 
-class Honesty(Record):
+class CovarianceConsistency(Record):
     """May the covariance be believed? Only where truth is known."""
 
     n: int
     n_effective: float
     dimension: int
     nees_mean: float
-    """Mean of e' V^-1 e; `dimension` for an honest covariance."""
+    """Mean of e' V^-1 e; `dimension` for a consistent covariance."""
     nees_low: float
     nees_high: float
     """Chi-square limits (95 %) for the effective sample size."""
     pit_counts: list[int]
-    """Histogram of the probability integral transform in equal bins; flat for an honest covariance."""
+    """Histogram of the probability integral transform in equal bins; flat for a consistent covariance."""
     pit_low: float
     pit_high: float
     """Band (95 %) of one bin."""
-    regions: list[Held] = Field(default_factory=list)
+    regions: list[RegionCoverage] = Field(default_factory=list)
     """Circle and sphere, where there are at least ten tracks."""
     words: str
 
@@ -355,7 +355,7 @@ class Summary(Record):
     tracks: list[TrackSummary]
     accuracy: list[MethodResult]
     integrity: list[MethodResult]
-    honesty: Honesty | None
+    honesty: CovarianceConsistency | None
     states: list[str]
     """Names of the states behind `p_state_1`, `p_state_2`, ..."""
     events: list[EventSummary]

@@ -38,9 +38,9 @@ def render(made: Map, out: Path) -> Path:
     Path
         The file written.
     """
-    # What became of the rest is told for the whole area; at each point it stands in map.parquet.
-    told = {"lat_rad", "lon_rad", "n_sv_least"} | {outcome.name for outcome in made.summary.outcomes} - {"p_available"}
-    shown = [name for name in made.points.columns if name not in told]
+    # What became of the rest is reported for the whole area; at each point it stands in map.parquet.
+    columns = {"lat_rad", "lon_rad", "n_sv_least"} | {outcome.name for outcome in made.summary.outcomes} - {"p_available"}
+    shown = [name for name in made.points.columns if name not in columns]
     fitting = max(1, MOST_VALUES // made.points.height)
     names, left_out = shown[:fitting], shown[fitting:]
     packed = [packing.pack(_SHARE if name == "p_available" else name, made.points[name].cast(float).to_numpy()) for name in names]

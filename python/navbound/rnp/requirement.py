@@ -55,15 +55,15 @@ def requirement(spec: str, phase: str | None = None) -> Requirement:
     plain = re.fullmatch(r"RNP (\d+(?:\.\d+)?)", text, re.IGNORECASE)
     if plain:
         return _value(text.upper(), float(plain.group(1)))
-    found = re.fullmatch(r"(.*?)(?: (\d+(?:\.\d+)?))?", text)
-    stem, chosen = (found.group(1), found.group(2)) if found else (text, None)
+    match = re.fullmatch(r"(.*?)(?: (\d+(?:\.\d+)?))?", text)
+    stem, value = (match.group(1), match.group(2)) if match else (text, None)
     names = {s.name for s in rnp.specifications()}
     if text.upper() in names:
-        stem, chosen = text, None
+        stem, value = text, None
     name = SHORT_NAMES.get(stem.upper(), stem.upper())
     if name not in names:
         raise NotFoundError("spec", spec, "specification", sorted(names | set(SHORT_NAMES)), "or RNP x with x in NM")
-    cell = rnp.specification(name, phase or _phase(name), None if chosen is None else float(chosen) * METRES_PER_NM)
+    cell = rnp.specification(name, phase or _phase(name), None if value is None else float(value) * METRES_PER_NM)
     words = f"{name} {cell.accuracy_m / METRES_PER_NM:g}" if cell.accuracy_least_m < cell.accuracy_most_m else name
     return Requirement(f"{words} ({cell.phase.replace('_', ' ')})", cell.accuracy_m, f"{cell.source} ({cell.provenance})")
 

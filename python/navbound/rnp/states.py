@@ -257,7 +257,7 @@ class StateClassifier:
         ndarray, shape (..., levels + 1)
         """
         shape, (s, count) = flatten(sum_of_squares_m2=(sum_of_squares_m2, ()), n=(n, ()))
-        return unflatten(self._core.given_residuals(s, count), shape)
+        return unflatten(self._core.of_residuals(s, count), shape)
 
     def paper_bivariate(self, lateral_m: ArrayLike, longitudinal_m: ArrayLike, prior: ArrayLike | None = None) -> NDArray[np.float64]:
         """Logarithm of the bivariate posterior as published: an exhibit, never a decision.

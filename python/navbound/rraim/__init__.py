@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from navbound import _core
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.gbas import Factors, Form, Ordering, factors, range_sigma
 from navbound.gbas.arguments import spread, systems
 from navbound.gbas.models import Service
@@ -189,13 +189,13 @@ def protection_levels(  # noqa: PLR0917 - satellites then, satellites now, their
         "p_const": by_system("p_const", p_const, 0.0),
         "p_threshold": 0.1 * allotted_risk if p_threshold is None else p_threshold,
     }
-    found = _core.rraim_levels(job)
-    reason, reason_id = reasons_of(found, leading)
-    multi, multi_id = (np.array(found.pop(name), dtype=np.str_).reshape(leading) for name in ("multi_reason", "multi_reason_id"))
-    covariance = found.pop("cov_enu_m2").reshape(*leading, 3, 3)
-    subsets = found.pop("subsets").reshape(*leading, width, 4)
-    counts: dict[str, Any] = {name: unflatten(np.nan_to_num(found.pop(name)).astype(np.int64), leading) for name in ("n_sv", "n_modes")}
-    columns: dict[str, Any] = {name: unflatten(values, leading) for name, values in found.items()}
+    levels = _core.rraim_levels(job)
+    reason, reason_id = reasons_of(levels, leading)
+    multi, multi_id = (np.array(levels.pop(name), dtype=np.str_).reshape(leading) for name in ("multi_reason", "multi_reason_id"))
+    covariance = levels.pop("cov_enu_m2").reshape(*leading, 3, 3)
+    subsets = levels.pop("subsets").reshape(*leading, width, 4)
+    counts: dict[str, Any] = {name: unflatten(np.nan_to_num(levels.pop(name)).astype(np.int64), leading) for name in ("n_sv", "n_modes")}
+    columns: dict[str, Any] = {name: unflatten(values, leading) for name, values in levels.items()}
     return Levels(
         covariance_enu_m2=covariance,
         subset_sigma_m=subsets[..., 0],
@@ -225,7 +225,7 @@ def fix(
 ) -> dict[str, Any]:
     """The skies at the fix as the core takes them."""
     if (sigma_m is None) != (sigma_h1_m is None):
-        raise InputError("sigma_h1_m" if sigma_h1_m is None else "sigma_m", "none", domain="both sigmas, or neither")
+        raise ConflictError("sigma_m", needs=("sigma_h1_m",)) if sigma_h1_m is None else ConflictError("sigma_h1_m", needs=("sigma_m",))
     if sigma_m is None:
         model = range_sigma(el, service)
         sigma, sigma_h1 = model.sigma_m, model.sigma_h1_m

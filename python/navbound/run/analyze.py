@@ -137,24 +137,26 @@ def material(
         solving.refuse(_TO_SOLVE)
         piece_rows = piece_rows or PIECE_ROWS
         return _in_pieces(in_pieces(Path(names[0]), columns, sigma_m=sigma_m, limits=limits, rnp_m=rnp_m, piece_rows=piece_rows), context)
-    found = sort_out(names, solve=solve)
-    found.require_navigation()
-    if not found.observations:
+    sorted_inputs = sort_out(names, solve=solve)
+    sorted_inputs.require_navigation()
+    if not sorted_inputs.observations:
         solving.refuse(_TO_SOLVE)
     named = truth_of(truth, truth_tolerance_s, columns)
-    readings = [read(source.path, columns=named.columns_of_estimates) for source in found.tables] + (
-        solved(found, solving) if found.observations else []
+    readings = [read(source.path, columns=named.columns_of_estimates) for source in sorted_inputs.tables] + (
+        solved(sorted_inputs, solving) if sorted_inputs.observations else []
     )
     _refuse_experimental(readings)
-    inputs = [r.source for r in readings] + [source.record(None) for source in found.navigation if source not in found.observations]
+    inputs = [r.source for r in readings] + [
+        source.record(None) for source in sorted_inputs.navigation if source not in sorted_inputs.observations
+    ]
     rejected = [x for r in readings for x in r.rejected]
-    notes = found.cut_words() + [note for r in readings for note in r.notes]
+    notes = sorted_inputs.cut_words() + [note for r in readings for note in r.notes]
     epochs, lost = _together(readings, rejected)
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
     # A fixed truth says that the receiver stands: its position may repeat.
     epochs, plausibility = check(claimed.epochs, limits if named.ecef_m is None else replace(limits, moving_mps=math.inf))
-    origin = _origin(claimed, sigma_m, solved_alone=bool(found.observations) and not found.tables)
+    origin = _origin(claimed, sigma_m, solved_alone=bool(sorted_inputs.observations) and not sorted_inputs.tables)
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
     position_doubts, truth_doubts = [*(each for r in readings for each in r.position_doubts), *doubts_of_speeds(epochs)], TruthDoubts()
     assumptions = [of_covariance, plausibility.words, *doubts_of_axes(epochs)]
@@ -294,12 +296,12 @@ def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejecte
     if Path(path).suffix.lower() in {".toml", ".csv"}:
         return _on_route(load_route(path), epochs, rejected)
     names = None if str(path) == "auto" else [name.strip() for name in str(path).split(",")]
-    found = find(epochs, None if names is None else [runway(name) for name in names], gates)
-    if found.epochs.is_empty():
+    approaches = find(epochs, None if names is None else [runway(name) for name in names], gates)
+    if approaches.epochs.is_empty():
         where = "any runway of the table" if names is None else ", ".join(names)
-        passes = " ".join(["", *found.notes])
+        passes = " ".join(["", *approaches.notes])
         raise InputError("path", str(path), domain=f"paths that a track follows: no approach to {where} ({_gates_words(gates)}).{passes}")
-    return _on_approach(found, gates, epochs.height)
+    return _on_approach(approaches, gates, epochs.height)
 
 
 def _gates_words(gates: Gates) -> str:
@@ -330,14 +332,14 @@ def _on_route(route: Route, epochs: pl.DataFrame, rejected: list[Rejection]) -> 
     return _Path(followed, [words], f"Route {route.name}", route.waypoints, [route.source], [statistics(route.name, points)])
 
 
-def _on_approach(found: Approaches, gates: Gates, n_recorded: int) -> _Path:
-    n, runways = len(found.tracks), ", ".join(r.name for r in found.runways)
+def _on_approach(approaches: Approaches, gates: Gates, n_recorded: int) -> _Path:
+    n, runways = len(approaches.tracks), ", ".join(r.name for r in approaches.runways)
     words = [
         f"Path: the centreline through the runway ends of the shipped table (OurAirports), {gates.before_max_m / METRES_PER_NM:g} to "
         f"{gates.before_min_m / METRES_PER_NM:g} NM before the landing threshold; {n} approaches.",
-        f"Judged are all epochs from the first to the last point of an approach, {found.epochs.height} of {n_recorded} recorded; what came "
-        "before the first point is not. The path is the extended centreline, not a coded procedure: its own error counts as flight "
-        "technical error.",
+        f"Judged are all epochs from the first to the last point of an approach, {approaches.epochs.height} of {n_recorded} recorded; "
+        "what came before the first point is not. The path is the extended centreline, not a coded procedure: its own error counts as "
+        "flight technical error.",
     ]
     waypoints = [Waypoint(name=r.name, lat_rad=r.lat_rad, lon_rad=r.lon_rad, kind="runway") for r in found.runways]
     heading = f"{n} recorded approaches to {runways if len(found.runways) <= 4 else f'{len(found.runways)} runways'}"
@@ -352,13 +354,13 @@ def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> tuple[p
     if "status" in epochs.columns:
         # A file that says nothing of its epochs has nothing against them.
         epochs = epochs.with_columns(pl.col("status").fill_null("ok"))
-    found = separate(epochs)
+    separated = separate(epochs)
     reason = "time repeated within a track of several files"
-    for words, repeated in ((reason, found.identical), (f"{reason} with another position, bound or status", found.contradicting)):
+    for words, repeated in ((reason, separated.identical), (f"{reason} with another position, bound or status", separated.contradicting)):
         if not repeated.is_empty():
             example = f"{repeated.height} epochs"
             rejected.append(Rejection(file=readings[-1].source.path, reason=words, count=repeated.height, first_line=None, example=example))
-    return found.epochs, pl.concat([*(r.left_out for r in readings), left_out(found.contradicting)])
+    return separated.epochs, pl.concat([*(r.left_out for r in readings), left_out(separated.contradicting)])
 
 
 def _on_path(lost: pl.DataFrame, epochs: pl.DataFrame, tracks: Mapping[str, str]) -> pl.DataFrame:

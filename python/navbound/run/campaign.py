@@ -64,7 +64,7 @@ def check_flights(flights: int) -> None:
         raise InputError("flights", flights, "1", f"[1, {MAX_FLIGHTS}]")
 
 
-def chosen_seed(flights: int, seed: int | None, own: int) -> int:
+def seed_in_force(flights: int, seed: int | None, own: int) -> int:
     """The seed of a campaign that can be flown: the one given, or the scenario's own.
 
     Raises
@@ -73,10 +73,10 @@ def chosen_seed(flights: int, seed: int | None, own: int) -> int:
         Flights outside [1, 1000], a seed outside [0, 2^64).
     """
     check_flights(flights)
-    found = own if seed is None else seed
-    if not (isinstance(found, int) and 0 <= found < 2**64):
-        raise InputError("seed", found, "1", "[0, 2^64)")
-    return found
+    seed_in_force = own if seed is None else seed
+    if not (isinstance(seed_in_force, int) and 0 <= seed_in_force < 2**64):
+        raise InputError("seed", seed_in_force, "1", "[0, 2^64)")
+    return seed_in_force
 
 
 def track_name(number: int) -> str:
@@ -97,10 +97,10 @@ class _Packed:
     fly: Fly
 
     def __call__(self, flights: range) -> dict[str, NDArray[np.generic]]:
-        epochs, told = self.fly(flights)
+        epochs, reported = self.fly(flights)
         table = io.BytesIO()
         epochs.write_ipc(table)
-        return {"epochs": _bytes(table.getvalue()), "told": _bytes(json.dumps(told).encode())}
+        return {"epochs": _bytes(table.getvalue()), "told": _bytes(json.dumps(reported).encode())}
 
 
 def _bytes(content: bytes) -> NDArray[np.uint8]:
@@ -126,15 +126,15 @@ def fly_all(fly: Fly, flights: int, at_once: int, **work: Unpack[Work]) -> tuple
     -------
     epochs : DataFrame
         Of all flights, in order; the same bits whoever flew them.
-    told : list
-        What was told besides, in order.
+    reported : list
+        What was reported besides, in order.
     """
     tiles = [range(first, min(first + at_once, flights)) for first in range(0, flights, at_once)]
     tell = work.get("progress")
     if tell is not None:
         work["progress"] = lambda done, _tiles: tell(min(done * at_once, flights), flights)
     parts = map_tiles(_Packed(fly), tiles, **work)
-    told = [item for part in parts for item in json.loads(part["told"].tobytes())]
+    reported = [item for part in parts for item in json.loads(part["told"].tobytes())]
     # Each part is given up as soon as it is read: only one copy of a long campaign stays.
     tables = [pl.read_ipc(parts.pop(0)["epochs"].tobytes()) for _ in range(len(parts))]
-    return pl.concat(tables), told
+    return pl.concat(tables), reported

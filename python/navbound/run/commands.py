@@ -112,8 +112,8 @@ def analyze(
         warnings.warn("analyze(levels=...) is evaluate(levels=...); the old spelling goes with the next release", DeprecationWarning, 3)
         return evaluate(files, levels=levels, out=out, progress=progress, command=command, **reading)
     with directory.own(out) as folder:
-        wanted = requirement(spec, phase)
-        material = recorded.material(files, requirement=wanted.words, rnp_m=wanted.rnp_m, **reading)  # type: ignore[arg-type]
+        required = requirement(spec, phase)
+        material = recorded.material(files, requirement=required.words, rnp_m=required.rnp_m, **reading)  # type: ignore[arg-type]
         run = judge(material, settings, command)
         return directory.write(with_answers(run) if reading.get("procedure") is not None else run, folder)
 

@@ -42,7 +42,7 @@ def material(
     seed : int, optional
         In place of the scenario's.
     **work
-        Who flies, what is kept, who is told: as in :func:`navbound.scale.map_tiles`; progress counts flights.
+        Who flies, what is kept, who follows the progress: as in :func:`navbound.scale.map_tiles`; progress counts flights.
 
     Returns
     -------

@@ -36,8 +36,8 @@ MOST_POINTS = 20_000_000
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What a prediction is asked.
+class Request:
+    """What is requested of a prediction.
 
     Attributes
     ----------
@@ -80,10 +80,10 @@ def place(text: str) -> PredictedPlace:
     """
     if "/" in text:
         try:
-            found = runway(text)
+            threshold = runway(text)
         except InputError as e:
             raise InputError("at", text, domain=e.domain) from e
-        return PredictedPlace(name=found.name, lat_rad=[found.lat_rad], lon_rad=[found.lon_rad], h_m=[found.elevation_m])
+        return PredictedPlace(name=threshold.name, lat_rad=[threshold.lat_rad], lon_rad=[threshold.lon_rad], h_m=[threshold.elevation_m])
     domain = "LAT,LON or LAT,LON,H in degrees and metres, latitude within 90 and longitude within 180; or a runway, as LFPG/08R"
     try:
         numbers = [float(part) for part in text.split(",")]
@@ -103,14 +103,14 @@ def route(file: str | Path) -> PredictedPlace:
     FormatError
         Not a route.
     """
-    found = load_route(file)
-    count = 1 + max(1, math.ceil(found.path.length_m / ROUTE_STEP_M))
-    points = found.path.at(np.linspace(0.0, found.path.length_m, count))
-    name = f"route {found.name}, {count} points of {found.path.length_m / METRES_PER_NM:.0f} NM"
+    loaded = load_route(file)
+    count = 1 + max(1, math.ceil(loaded.path.length_m / ROUTE_STEP_M))
+    points = loaded.path.at(np.linspace(0.0, loaded.path.length_m, count))
+    name = f"route {loaded.name}, {count} points of {loaded.path.length_m / METRES_PER_NM:.0f} NM"
     return PredictedPlace(name=name, lat_rad=points.lat_rad.tolist(), lon_rad=points.lon_rad.tolist(), h_m=[0.0] * count)
 
 
-def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = "") -> Prediction:
+def predict(request: Request, places: Sequence[PredictedPlace], *, command: str = "") -> Prediction:
     """Holes of detection and of exclusion at every place.
 
     Raises
@@ -123,27 +123,27 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
     """
     if not places:
         raise InputError("at", "none", domain="one place or route, or more")
-    called = entry(Place, "kind", asked.kind)
+    called = entry(Place, "kind", request.kind)
     names = [p.name for p in places]
     if len(set(names)) < len(names):
         raise InputError("at", ", ".join(names), domain="every place once")
-    limits = [limit(name) for name in dict.fromkeys(asked.limits)]
+    limits = [limit(name) for name in dict.fromkeys(request.limits)]
     if not limits:
         raise InputError("spec", "none", domain="one limit or more")
     points = sum(len(p.lat_rad) for p in places)
-    if points * len(asked.times.offsets_s()) > MOST_POINTS:
-        raise InputError("every_s", asked.times.step_s, "s", f"at most {MOST_POINTS} points times instants; here are {points} points")
-    sky = _sky(asked)
-    orbits = sky.orbits.without(list(dict.fromkeys(asked.without)))
-    start_ns = asked.times.start_ns if asked.times.start_ns is not None else sky.orbits.reference_ns
-    when = _Instants(asked.times.offsets_s(), asked.times.step_s, start_ns)
-    unhealthy = _unhealthy(asked, sky)
+    if points * len(request.times.offsets_s()) > MOST_POINTS:
+        raise InputError("every_s", request.times.step_s, "s", f"at most {MOST_POINTS} points times instants; here are {points} points")
+    sky = _sky(request)
+    orbits = sky.orbits.without(list(dict.fromkeys(request.without)))
+    start_ns = request.times.start_ns if request.times.start_ns is not None else sky.orbits.reference_ns
+    when = _Instants(request.times.offsets_s(), request.times.step_s, start_ns)
+    unhealthy = _unhealthy(request, sky)
     lines: list[PredictedLine] = []
     holes: list[Hole] = []
     for each in places:
-        levels = called(orbits, each.lat_rad, each.lon_rad, each.h_m, sky.time_s, mask_rad=asked.mask_rad, model=asked.model)
-        for wanted in limits:
-            line, more = _judge(each.name, wanted, levels, when)
+        levels = called(orbits, each.lat_rad, each.lon_rad, each.h_m, sky.time_s, mask_rad=request.mask_rad, model=request.model)
+        for required in limits:
+            line, more = _judge(each.name, required, levels, when)
             lines.append(line)
             holes += more
     length_s = len(when.offsets_s) * when.step_s
@@ -151,40 +151,40 @@ def predict(asked: Asked, places: Sequence[PredictedPlace], *, command: str = ""
         start_utc=when.utc(0.0),
         end_utc=when.utc(length_s),
         duration_s=length_s,
-        step_s=asked.times.step_s,
+        step_s=request.times.step_s,
         n=len(when.offsets_s),
     )
     return Prediction(
         navbound_version=__version__,
-        kind=asked.kind,
+        kind=request.kind,
         command=command,
-        orbits=[str(name) for name in asked.constellation],
+        orbits=[str(name) for name in request.constellation],
         satellites=list(orbits.satellite),
-        without=list(dict.fromkeys(asked.without)),
+        without=list(dict.fromkeys(request.without)),
         unhealthy=unhealthy,
         times=times,
-        mask_rad=asked.mask_rad,
-        model=asked.model,
+        mask_rad=request.mask_rad,
+        model=request.model,
         places=list(places),
         limits=limits,
         lines=lines,
         holes=sorted(holes, key=lambda h: (h.start_s, h.place, h.limit, h.function)),
-        assumptions=_assumptions(asked, unhealthy, start_ns),
+        assumptions=_assumptions(request, unhealthy, start_ns),
     )
 
 
-def _sky(asked: Asked) -> Satellites:
+def _sky(request: Request) -> Satellites:
     """Satellites of the receiver's constellations, at the instants."""
-    named = {letter for letter, words in gnss.SYSTEMS.items() if words.lower() in asked.constellation}
-    letters = named | {"G"} if asked.systems is None else set(asked.systems)
+    named = {letter for letter, words in gnss.SYSTEMS.items() if words.lower() in request.constellation}
+    letters = named | {"G"} if request.systems is None else set(request.systems)
     if not letters or not letters <= set(gnss.SYSTEMS):
-        raise InputError("systems", asked.systems, domain=f"letters of {''.join(gnss.SYSTEMS)}")
+        raise InputError("systems", request.systems, domain=f"letters of {''.join(gnss.SYSTEMS)}")
     try:
-        sky = satellites(asked.constellation, asked.times, asked.mask_rad, 0.0)
+        sky = satellites(request.constellation, request.times, request.mask_rad, 0.0)
     except InputError as e:
-        if e.argument != "start_ns" or asked.times.start_ns is None:
+        if e.argument != "start_ns" or request.times.start_ns is None:
             raise
-        raise InputError("date", f"{utc_text(asked.times.start_ns)} UTC", domain=e.domain) from e
+        raise InputError("date", f"{utc_text(request.times.start_ns)} UTC", domain=e.domain) from e
     orbits = sky.orbits.without([name for name in sky.orbits.satellite if name[0] not in letters])
     if not orbits.satellite:
         raise InputError("systems", "".join(sorted(letters)), domain="constellations of the orbits given")
@@ -199,8 +199,8 @@ def limit(name: str) -> PredictedLimit:
     InputError
         No such limit.
     """
-    found = kpi.level(name)
-    return PredictedLimit(id=found.id, hal_m=found.hal_m, source=found.source, provenance=found.provenance["hal_m"])
+    required = kpi.level(name)
+    return PredictedLimit(id=required.id, hal_m=required.hal_m, source=required.source, provenance=required.provenance["hal_m"])
 
 
 @dataclass(frozen=True)
@@ -215,19 +215,19 @@ class _Instants:
         return None if self.start_ns is None else utc_text(self.start_ns + round(since_s * NS))
 
 
-def _judge(name: str, wanted: PredictedLimit, levels: Any, when: _Instants) -> tuple[PredictedLine, list[Hole]]:
+def _judge(name: str, limit: PredictedLimit, levels: Any, when: _Instants) -> tuple[PredictedLine, list[Hole]]:
     """One place, or one route whose every point counts, against one limit."""
     n_sv = levels.n_sv.min(axis=-1)
     detection = _worst(levels.hpl_m)
-    seen = _holes(_Kind(name, wanted, "detection"), detection, n_sv, when)
+    seen = _holes(_Kind(name, limit, "detection"), detection, n_sv, when)
     exclusion, published = (_worst(getattr(levels, column)) if hasattr(levels, column) else None for column in ("hel_m", "hpl_slope_m"))
-    left = [] if exclusion is None else _holes(_Kind(name, wanted, "exclusion"), exclusion, n_sv, when)
+    left = [] if exclusion is None else _holes(_Kind(name, limit, "exclusion"), exclusion, n_sv, when)
     line = PredictedLine(
         place=name,
-        limit=wanted.id,
-        p_detection=float((detection <= wanted.hal_m).mean()),
-        p_exclusion=None if exclusion is None else float((exclusion <= wanted.hal_m).mean()),
-        p_detection_published=None if published is None else float((published <= wanted.hal_m).mean()),
+        limit=limit.id,
+        p_detection=float((detection <= limit.hal_m).mean()),
+        p_exclusion=None if exclusion is None else float((exclusion <= limit.hal_m).mean()),
+        p_detection_published=None if published is None else float((published <= limit.hal_m).mean()),
         n_holes_detection=len(seen),
         n_holes_exclusion=None if exclusion is None else len(left),
         longest_detection_s=max((h.end_s - h.start_s for h in seen), default=0.0),
@@ -259,7 +259,7 @@ def _runs(out: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 def _holes(kind: _Kind, level_m: Floats, n_sv: NDArray[np.int64], when: _Instants) -> list[Hole]:
     """Every time that the level is outside the limit."""
-    found = []
+    holes = []
     for first, last in _runs(level_m > kind.limit.hal_m):
         start_s, end_s = float(when.offsets_s[first]), float(when.offsets_s[last]) + when.step_s
         largest = float(level_m[first : last + 1].max())
@@ -275,24 +275,24 @@ def _holes(kind: _Kind, level_m: Floats, n_sv: NDArray[np.int64], when: _Instant
             n_sv_least=int(n_sv[first : last + 1].min()),
             level_max_m=largest if math.isfinite(largest) else None,
         )
-        found.append(hole)
-    return found
+        holes.append(hole)
+    return holes
 
 
-def _unhealthy(asked: Asked, sky: Satellites) -> list[str]:
+def _unhealthy(request: Request, sky: Satellites) -> list[str]:
     """Satellites that an almanac calls unhealthy: they are not used."""
-    every = {s for name in asked.constellation for s in gnss.constellation(name, near_ns=asked.times.start_ns, unhealthy=True).satellite}
+    every = {
+        s for name in request.constellation for s in gnss.constellation(name, near_ns=request.times.start_ns, unhealthy=True).satellite
+    }
     used = {name[0] for name in sky.orbits.satellite}
     return sorted(name for name in every - set(sky.orbits.satellite) if name[0] in used)
 
 
-def _assumptions(asked: Asked, unhealthy: list[str], start_ns: int | None) -> list[str]:
-    dated = (
-        "Orbits of no date: times count from their reference instant." if start_ns is None else "Orbits of the files at the times asked."
-    )
+def _assumptions(request: Request, unhealthy: list[str], start_ns: int | None) -> list[str]:
+    dated = "Orbits of no date: times count from their reference instant." if start_ns is None else "Orbits of the files at those times."
     return [
         f"{dated} {'Unhealthy by the almanac and not used: ' + ', '.join(unhealthy) + '.' if unhealthy else 'None is called unhealthy.'}",
-        f"Satellites are tracked as soon as they are above {math.degrees(asked.mask_rad):g}°, whatever terrain, bank and interference do.",
-        *entry(Place, "kind", asked.kind).words(asked.model),
-        f"A hole is exact to the step of {asked.times.step_s:g} s; one that is shorter may be missed.",
+        f"Satellites are tracked above {math.degrees(request.mask_rad):g}°. Terrain, bank and interference are not modelled.",
+        *entry(Place, "kind", request.kind).words(request.model),
+        f"A hole is exact to the step of {request.times.step_s:g} s; one that is shorter may be missed.",
     ]

@@ -18,7 +18,7 @@ DEFAULT_METHODS = (
     "anp-cross",
     "anp-vertical",
 )
-"""Shown unless others are asked for: the exact bounds, and the published approximations beside them."""
+"""Shown unless others are requested: the exact bounds, and the published approximations beside them."""
 
 
 @dataclass(frozen=True)

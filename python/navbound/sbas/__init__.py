@@ -108,9 +108,9 @@ def read(path: str | Path, *, tag: Literal["end", "start"] | None = None) -> Mes
     if tag not in (None, "end", "start"):
         raise InputError("tag", tag, domain="end, start")
     place, content = file_content(path)
-    found = _core.sbas_read(content, str(place), tag)
-    refused = [Refused(*row) for row in found.pop("refused")]
-    return Messages(refused=refused, **found)
+    log = _core.sbas_read(content, str(place), tag)
+    refused = [Refused(*row) for row in log.pop("refused")]
+    return Messages(refused=refused, **log)
 
 
 @checked
@@ -132,10 +132,10 @@ def decode(messages: Messages) -> list[Decoded]:
     InputError
         A block whose preamble or parity is wrong.
     """
-    found = _core.sbas_decode(np.ascontiguousarray(messages.data, dtype=np.uint8))
+    decoded = _core.sbas_decode(np.ascontiguousarray(messages.data, dtype=np.uint8))
     return [
         Decoded(int(time_ns), int(prn), kind, fields)
-        for time_ns, prn, (kind, fields) in zip(messages.time_ns, messages.prn, found, strict=True)
+        for time_ns, prn, (kind, fields) in zip(messages.time_ns, messages.prn, decoded, strict=True)
     ]
 
 
@@ -194,20 +194,20 @@ def protection_levels(
     """
     service = service_of(messages, navigation, mode=mode, receiver=(mask_rad, noise_m, divergence_m), test_signal=test_signal)
     shape, places = _places(time_ns, lat_rad, lon_rad, h_m)
-    found = _core.sbas_levels(service, places)
-    codes = found["mode"].reshape(shape)
+    levels = _core.sbas_levels(service, places)
+    codes = levels["mode"].reshape(shape)
     good = "degraded" if test_signal else "ok"
     return Levels(
-        hpl_m=unflatten(found["hpl_m"], shape),
-        vpl_m=unflatten(found["vpl_m"], shape),
-        n_sv=found["n_sv"].reshape(shape),
+        hpl_m=unflatten(levels["hpl_m"], shape),
+        vpl_m=unflatten(levels["vpl_m"], shape),
+        n_sv=levels["n_sv"].reshape(shape),
         mode=MODES[codes],
         status=np.where(codes > 0, good, "not_available"),
-        reason=found["reason"].reshape(shape),
-        reasons=found["reasons"],
-        reason_ids=found["reason_ids"],
+        reason=levels["reason"].reshape(shape),
+        reasons=levels["reasons"],
+        reason_ids=levels["reason_ids"],
         test_signal=test_signal,
-        ignored=found["ignored"],
+        ignored=levels["ignored"],
     )
 
 

@@ -195,7 +195,7 @@ def error_extraction(
         raise InputError("time_ns", f"shape {instants.shape}", domain="shape (..., n) with at least one epoch")
     instants = np.ascontiguousarray(np.broadcast_to(instants, shape)).astype(np.int64)
     period = _median_step_s(instants) if period_s is None else float(period_s)
-    found = _core.ee_extract(
+    extracted = _core.ee_extract(
         {
             "epochs": shape[-1],
             "time_ns": instants.reshape(-1),
@@ -217,23 +217,23 @@ def error_extraction(
         }
     )
     n_warm_up = extraction_gains(rho).n_settle_1_percent
-    age = found["age"]
+    age = extracted["age"]
     status = np.where(age < 0, "not_available", np.where(age < n_warm_up, "degraded", "ok"))
-    error = found["error"]
+    error = extracted["error"]
     return ErrorExtraction(
         ee_error_enu_m=unflatten(error, shape),
         ee_position_enu_m=unflatten(position - error, shape),
-        ee_size_h_m=unflatten(found["size_h"], shape),
-        ee_size_v_m=unflatten(found["size_v"], shape),
-        ee_sum_h_m=unflatten(found["sum_h"], shape),
-        ee_sum_v_m=unflatten(found["sum_v"], shape),
-        ee_noise_h_m=unflatten(found["noise_h"], shape),
-        ee_noise_v_m=unflatten(found["noise_v"], shape),
-        ee_bound_h_m=unflatten(found["bound_h"], shape),
-        ee_bound_v_m=unflatten(found["bound_v"], shape),
+        ee_size_h_m=unflatten(extracted["size_h"], shape),
+        ee_size_v_m=unflatten(extracted["size_v"], shape),
+        ee_sum_h_m=unflatten(extracted["sum_h"], shape),
+        ee_sum_v_m=unflatten(extracted["sum_v"], shape),
+        ee_noise_h_m=unflatten(extracted["noise_h"], shape),
+        ee_noise_v_m=unflatten(extracted["noise_v"], shape),
+        ee_bound_h_m=unflatten(extracted["bound_h"], shape),
+        ee_bound_v_m=unflatten(extracted["bound_v"], shape),
         n_ee_age=age.reshape(shape),
-        reset=_RESETS[found["reset"]].reshape(shape),
-        new_satellites=found["new_satellites"].reshape(shape),
+        reset=_RESETS[extracted["reset"]].reshape(shape),
+        new_satellites=extracted["new_satellites"].reshape(shape),
         status=status.reshape(shape),
         period_s=period,
         n_warm_up=int(n_warm_up),

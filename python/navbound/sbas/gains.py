@@ -90,8 +90,8 @@ def extraction_gains(rho: ArrayLike, period_s: ArrayLike = 1.0) -> ExtractionGai
         A number outside its domain.
     """
     shape, (poles, periods) = flatten(rho=(rho, ()), period_s=(period_s, ()))
-    found = _core.ee_gains(poles, periods)
-    return ExtractionGains(*_columns(found, shape))
+    gains = _core.ee_gains(poles, periods)
+    return ExtractionGains(*_columns(gains, shape))
 
 
 @dataclass(frozen=True)
@@ -132,8 +132,8 @@ def extraction_beta(tau_s: ArrayLike, *, rho: ArrayLike = 0.98, period_s: ArrayL
         A number outside its domain.
     """
     shape, (taus, poles, periods) = flatten(tau_s=(tau_s, ()), rho=(rho, ()), period_s=(period_s, ()))
-    found = _core.ee_beta(poles, periods, taus)
-    beta, ratio = _columns(found, shape)
+    betas = _core.ee_beta(poles, periods, taus)
+    beta, ratio = _columns(betas, shape)
     return ExtractionBeta(beta, ratio, unflatten(taus, shape))
 
 
@@ -298,11 +298,11 @@ def extraction_bias(
     systems = [0] * shape[-1] if constellation is None else [int(c) for c in constellation]
     if len(systems) != shape[-1]:
         raise InputError("constellation", f"{len(systems)} satellites", domain=f"one index for each of {shape[-1]} satellites")
-    found = _core.ee_bias_sights((az, el, sigma), systems, float(mu_most_m), float(alpha))
+    biases = _core.ee_bias_sights((az, el, sigma), systems, float(mu_most_m), float(alpha))
     leading = shape[:-1]
-    reason, reason_id = reasons_of(found, leading)
-    (from_dop_h, from_dop_v), (exact_h, exact_v) = (_columns(found[name], leading) for name in ("from_dop", "exact"))
-    n_sv = found["n_sv"].reshape(leading)
+    reason, reason_id = reasons_of(biases, leading)
+    (from_dop_h, from_dop_v), (exact_h, exact_v) = (_columns(biases[name], leading) for name in ("from_dop", "exact"))
+    n_sv = biases["n_sv"].reshape(leading)
     return ExtractionBias(from_dop_h, from_dop_v, exact_h, exact_v, n_sv, availability(reason_id), reason, reason_id)
 
 

@@ -76,15 +76,17 @@ def corrected_positions(
     track: str | None,
 ) -> CorrectedPositions:
     """What :func:`navbound.sbas.solve` documents, from a service's checked description."""
-    found = _core.sbas_positions(service, observations._core, smoothing_s, false_alarm)
-    satellites, unused, share, ignored = (found.pop(name) for name in ("satellites", "unused", "smoothed_share", "ignored"))
+    positions = _core.sbas_positions(service, observations._core, smoothing_s, false_alarm)
+    satellites, unused, share, ignored = (positions.pop(name) for name in ("satellites", "unused", "smoothed_share", "ignored"))
     if service["test_signal"]:
-        found["reason_id"] = [id_ or "test_signal" for id_ in found["reason_id"]]
-        found["status"] = [REASONS[id_].status for id_ in found["reason_id"]]
-        found["reason"] = [sentence or REASONS[id_].words for id_, sentence in zip(found["reason_id"], found["reason"], strict=True)]
-    found["mode"] = MODES[found["mode"]]
+        positions["reason_id"] = [id_ or "test_signal" for id_ in positions["reason_id"]]
+        positions["status"] = [REASONS[id_].status for id_ in positions["reason_id"]]
+        positions["reason"] = [
+            sentence or REASONS[id_].words for id_, sentence in zip(positions["reason_id"], positions["reason"], strict=True)
+        ]
+    positions["mode"] = MODES[positions["mode"]]
     name = track or observations.marker or observations.path.name
-    epochs = pl.DataFrame({"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **found})
+    epochs = pl.DataFrame({"track": [name] * observations.n_epochs, "time_ns": observations.time_ns, **positions})
     epochs = epochs.with_columns(pl.col("mode", "reason_id", "reason").replace({"": None}), pl.selectors.float().fill_nan(None))
     if truth_ecef_m is not None:
         epochs = with_errors(epochs, truth_ecef_m)

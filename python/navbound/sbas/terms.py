@@ -81,8 +81,8 @@ def covariance_levels(covariance_m2: ArrayLike) -> tuple[NDArray[np.float64], ND
         Another shape.
     """
     shape, (flat,) = flatten(covariance_m2=(covariance_m2, (6,)))
-    found = _core.sbas_covariance_levels(flat)
-    return unflatten(found["hpl_m"], shape), unflatten(found["vpl_m"], shape)
+    levels = _core.sbas_covariance_levels(flat)
+    return unflatten(levels["hpl_m"], shape), unflatten(levels["vpl_m"], shape)
 
 
 @checked

@@ -10,7 +10,7 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from navbound.errors import InputError, NavboundError
+from navbound.errors import ConflictError, InputError, NavboundError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -152,7 +152,7 @@ def _distributed() -> Any:
     try:
         import distributed  # noqa: PLC0415
     except ImportError as e:
-        raise InputError("backend", "dask", domain="serial or processes: Dask is not installed (pip install 'navbound[dask]')") from e
+        raise ConflictError("backend", because="Dask is not installed (pip install 'navbound[dask]')", value="dask") from e
     return distributed
 
 

@@ -120,16 +120,16 @@ def map_tiles(
     if backend not in BACKENDS:
         raise NotFoundError("backend", backend, "back end", BACKENDS)
     kept = Nothing() if checkpoint is None else Folder(checkpoint, function)
-    found = {index: result for index, tile in enumerate(tiles) if (result := kept.load(index, tile)) is not None}
+    results = {index: result for index, tile in enumerate(tiles) if (result := kept.load(index, tile)) is not None}
     tell = progress or (lambda _done, _all: None)
-    tell(len(found), len(tiles))
-    pending = [(index, tile) for index, tile in enumerate(tiles) if index not in found]
+    tell(len(results), len(tiles))
+    pending = [(index, tile) for index, tile in enumerate(tiles) if index not in results]
     for index, result in BACKENDS[backend](function, pending, workers or Workers()):
         checked = _checked(index, result)
         kept.store(index, tiles[index], checked)
-        found[index] = checked
-        tell(len(found), len(tiles))
-    return [found[index] for index in range(len(tiles))]
+        results[index] = checked
+        tell(len(results), len(tiles))
+    return [results[index] for index in range(len(tiles))]
 
 
 def _checked(index: int, result: object) -> dict[str, NDArray[np.generic]]:

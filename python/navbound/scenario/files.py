@@ -112,7 +112,7 @@ def read(name_or_path: str | Path) -> Scenario | Taxi:
         raise FormatError(path, f"cannot be read: {e.strerror}") from e
     except ValidationError as e:
         raise _explained(path, e.errors()[0], written) from e
-    except GivenTwiceError as e:
+    except RepeatedKeyError as e:
         raise FormatError(path, f"{e.value!r} is outside {e.domain}", field=e.argument) from e
     except InputError as e:
         raise _refused(path, e, written) from e
@@ -168,8 +168,8 @@ def _explained(path: Path, error: ErrorDetails, written: dict[Place, Written]) -
     if error["type"] == "missing":
         return FormatError(path, "is missing (it may end in another unit of the same kind)", field=key)
     if error["type"] == "extra_forbidden":
-        return FormatError(path, f"{_shown(found)} is not a key of a scenario", field=key)
-    return FormatError(path, f"{_shown(found)}: {error['msg']}", field=key)
+        return FormatError(path, f"{_shown(entry)} is not a key of a scenario", field=key)
+    return FormatError(path, f"{_shown(entry)}: {error['msg']}", field=key)
 
 
 def _refused(path: Path, error: InputError, written: dict[Place, Written]) -> FormatError:
@@ -191,5 +191,5 @@ def _is_at(place: Place, error: InputError) -> bool:
     return error.index is None or error.index in indices
 
 
-def _shown(found: Written | None) -> str:
-    return "the value" if found is None else repr(found.value)[:80]
+def _shown(entry: Written | None) -> str:
+    return "the value" if entry is None else repr(entry.value)[:80]

@@ -154,6 +154,6 @@ class Taxi(Part):
 
 def check_satellites(found: Taxi, names: tuple[str, ...]) -> None:
     """Refuse a fault of a satellite that is not there."""
-    for k, fault in enumerate(found.faults):
+    for k, fault in enumerate(taxi.faults):
         if fault.satellite not in names:
             raise InputError(f"faults[{k}].satellite", fault.satellite, domain=f"{names[0]} to {names[-1]}")

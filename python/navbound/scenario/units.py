@@ -38,7 +38,7 @@ class Written:
     si: object
 
 
-class GivenTwiceError(InputError):
+class RepeatedKeyError(InputError):
     """One quantity in two units."""
 
 
@@ -50,7 +50,7 @@ def to_si(table: dict[str, Any], written: dict[Place, Written]) -> dict[str, Any
 
     Raises
     ------
-    GivenTwiceError
+    RepeatedKeyError
         One quantity written twice in different units.
     """
     result: dict[str, Any] = {}
@@ -63,7 +63,7 @@ def _table(table: dict[str, Any], place: Place, path: str, written: dict[Place, 
         name, factor = _si_name(key)
         here = f"{path}.{key}" if path else key
         if name in result:
-            raise GivenTwiceError(here, value, domain=f"one unit: it is also given as {written[(*place, name)].key}")
+            raise RepeatedKeyError(here, value, domain=f"one unit: it is also given as {written[(*place, name)].key}")
         result[name] = _value(value, factor, (*place, name), here, written)
         written[(*place, name)] = Written(here, value, result[name])
 

@@ -164,10 +164,10 @@ def require_whole(folder: Path, needed: Collection[str], what: str) -> None:
     for name in sorted({*needed, *(name for name in files if Path(name).name == name)}):
         try:
             _require_file(folder / name)
-            found = _digest(folder / name)
+            actual = _digest(folder / name)
         except OSError as e:
             raise FormatError(folder / name, f"cannot be read: {e.strerror or e}") from e
-        if found != files[name]:
+        if actual != files[name]:
             raise FormatError(folder / name, f"is not the file that the job wrote: its digest differs from the one in {MANIFEST}")
 
 

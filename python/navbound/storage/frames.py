@@ -109,20 +109,20 @@ class Frames:
         """Write one file, a row group for each piece."""
 
         def pieces(*_: object) -> Iterator[pl.DataFrame]:
-            # All columns and rows are asked for: nothing stands between the pieces and the file.
+            # All columns and rows are requested: nothing stands between the pieces and the file.
             yield from self
 
         register_io_source(pieces, schema=self.schema).sink_parquet(path, compression=compression, metadata=metadata, engine="streaming")
 
     def numbers(self, name: str) -> NDArray[np.float64]:
         """The numbers of a column that are finite, in order."""
-        found, n = np.empty(self.height), 0
+        finite, n = np.empty(self.height), 0
         for piece in self.select([name]):
             values = piece[name].cast(pl.Float64).fill_null(np.nan).to_numpy()
             known = values[np.isfinite(values)]
-            found[n : n + len(known)] = known
+            finite[n : n + len(known)] = known
             n += len(known)
-        return found[:n]
+        return finite[:n]
 
     def frame(self) -> pl.DataFrame:
         """The whole table in memory."""

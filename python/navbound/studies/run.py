@@ -46,12 +46,12 @@ def study(name: str, files: Sequence[str | Path] = (), *, out: str | Path | None
         raise NotFoundError("study", name, "study", STUDIES)
     if out is not None and name not in REPORTS and name not in PAGES:
         raise ConflictError("out", because=f"only the studies {', '.join([*REPORTS, *sorted(PAGES)])} write a directory")
-    found = STUDIES[name](files, **work)
+    outcome = STUDIES[name](files, **work)
     if out is not None and name in REPORTS:
         with directory.own(out) as folder:
             directory.write(REPORTS[name](), folder)
     elif out is not None:
         from navbound.studies import pages  # noqa: PLC0415 - loaded only where a page is due
 
-        pages.write(found, Path(out))
-    return found
+        pages.write(outcome, Path(out))
+    return outcome

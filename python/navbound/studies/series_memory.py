@@ -42,8 +42,8 @@ def autocorrelation(series: Floats, *, remove_mean: bool) -> Floats:
     spectrum = np.fft.rfft(x, 2 * n, axis=-1)
     raw = np.fft.irfft(np.abs(spectrum) ** 2, 2 * n, axis=-1)[..., :n]
     with np.errstate(invalid="ignore", divide="ignore"):
-        found: Floats = raw / raw[..., :1]
-    return found
+        correlation: Floats = raw / raw[..., :1]
+    return correlation
 
 
 def first_crossing(values: Floats, level: float) -> Floats:

@@ -32,8 +32,8 @@ STAGES = {
     "path": "the path that the aircraft should follow",
     "solution": "the position, its covariance, and what formed them",
     "bound": "methods and protection levels",
-    "judge": "what is said of an epoch: errors, risks, status, state, alert",
-    "summary": "what is said of many epochs",
+    "judge": "what is stated of an epoch: errors, risks, status, state, alert",
+    "summary": "what is stated of many epochs",
 }
 """What adds a column, in the order of the flow."""
 

@@ -555,7 +555,7 @@ class SettingTest(NamedTuple):
     power : ndarray
         Probability of an alarm at the error. [1]
     detectable_m : ndarray
-        Error that is an alarm with the probability asked for. [m]
+        Error that is an alarm with the requested probability. [m]
     """
 
     threshold_m: Floats

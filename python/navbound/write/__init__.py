@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 from navbound.table.columns import COVARIANCE
 from navbound.write.measurements import WrittenLog, navigation, observations, ubx
 
@@ -76,7 +76,8 @@ def rtklib(epochs: pl.DataFrame, path: str | Path, *, track: str | None = None, 
             raise InputError("track", track, domain=f"one of {', '.join(map(str, tracks))}")
         epochs = epochs.filter(pl.col("track") == track)
     elif len(tracks) > 1:
-        raise InputError("track", None, domain=f"one of {', '.join(map(str, tracks[:8]))}: a solution file holds one track")
+        because = f"a solution file holds one track, and there are {', '.join(map(str, tracks[:8]))}"
+        raise ConflictError("epochs", needs=("track",), because=because)
     there = pl.all_horizontal(pl.col(c).is_not_null() & pl.col(c).is_finite() for c in (*_POSITION, *COVARIANCE))
     kept = epochs.filter(there)
     if kept.is_empty():

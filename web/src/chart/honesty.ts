@@ -1,6 +1,6 @@
 // May the covariance be believed? The histogram of the probability integral transform with its band, and the sentences.
 
-import type { Honesty, Summary } from "../data/records.ts";
+import type { CovarianceConsistency, Summary } from "../data/records.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
 import { count, plain } from "../show/format.ts";
 
@@ -22,14 +22,14 @@ export function honesty(host: HTMLElement, summary: Summary): void {
     section.append(el("p", { class: "note" }, summary.coverage_kind));
 }
 
-function words(h: Honesty): HTMLElement {
+function words(h: CovarianceConsistency): HTMLElement {
     const figures = el("p", { class: "sentence" }, h.words);
     figures.dataset.key = "nees_mean";
     figures.dataset.value = String(h.nees_mean);
     return el("div", {}, figures, el("p", { class: "note" }, "Checked with ", valueOf("n", h.n, count(h.n)), " epochs."));
 }
 
-function histogram(h: Honesty): HTMLElement {
+function histogram(h: CovarianceConsistency): HTMLElement {
     const n = h.pit_counts.length;
     const top = Math.max(h.pit_high, ...h.pit_counts) * 1.1 || 1;
     const x = (i: number): number => LEFT + ((WIDTH - LEFT - 6) * i) / n;

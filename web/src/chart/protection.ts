@@ -17,7 +17,7 @@ const NAMES: Record<Axis, { name: string; error: string; level: string; limit: s
 };
 
 /** Error, protection level and alert limit of one axis. */
-export function protection(host: HTMLElement, scene: Scene, performance: Performance, chosen: LevelResult, axis: Axis): () => void {
+export function protection(host: HTMLElement, scene: Scene, performance: Performance, drawn: LevelResult, axis: Axis): () => void {
     const { table } = scene;
     const { name, error, level, limit } = NAMES[axis];
     const [high, low, errors] = [table.column(`${axis}pl_max_m`)!, table.column(`${axis}pl_min_m`)!, table.column(`${axis}pe_max_m`)!];
@@ -35,10 +35,10 @@ export function protection(host: HTMLElement, scene: Scene, performance: Perform
         const value = axis === "h" ? l.hal_m : l.val_m;
         if (value !== null) limits.set(value, [...(limits.get(value) ?? []), l.id]);
     }
-    const mine = axis === "h" ? chosen.level.hal_m : chosen.level.val_m;
+    const mine = axis === "h" ? drawn.level.hal_m : drawn.level.val_m;
     for (const [value, ids] of limits) lines.push({ key: `${axis}al_${value}`, label: `${limit} of ${ids.join(", ")}`, endLabel: `${limit} ${wholeMetres(value)}`, values: new Float64Array(table.n).fill(value), colour: "limit", width: 1.5, limit: true, hidden: value !== mine, about: `${name} alert limit of ${ids.join(", ")}` });
     const width = duration(performance.series.width_ns / 1e9);
-    const note = `${one ? "Every epoch." : `${performance.truth_known ? "The largest error and the" : "The"} span of the protection level in each ${width}: no epoch is lost.`}${performance.truth_known ? "" : " No truth: the error is unknown."}${mine === null ? ` ${chosen.level.id} asks nothing of the vertical.` : ""}`;
+    const note = `${one ? "Every epoch." : `${performance.truth_known ? "The largest error and the" : "The"} span of the protection level in each ${width}: no epoch is lost.`}${performance.truth_known ? "" : " No truth: the error is unknown."}${mine === null ? ` ${drawn.level.id} asks nothing of the vertical.` : ""}`;
     return strip(host, scene, { id: `protection-${axis}`, title: `${name} error and protection level${mark}`, note, unit: "m", lines, scales: scalesFor(high, mine), floor: FLOOR_M, show: (v) => metres(v), height: 250 });
 }
 
@@ -71,9 +71,9 @@ const LEAST = 0.3;
 export function causes(host: HTMLElement, scene: Scene, performance: Performance): () => void {
     const ids = performance.levels.map((l) => l.level.id);
     if (Object.values(performance.series.cause).every((causes) => causes.every((c) => c === ""))) {
-        const said = el("p", { class: "note", id: "causes" }, "Every level was available at every expected epoch.");
-        host.append(said);
-        return () => said.remove();
+        const note = el("p", { class: "note", id: "causes" }, "Every level was available at every expected epoch.");
+        host.append(note);
+        return () => note.remove();
     }
     const lines: Line[] = ids.map((id) => ({ key: unavailableOf(id), label: id, values: scene.table.column(unavailableOf(id))!, colour: "caution", quiet: true, about: `Share of the expected epochs at which ${id} was not available` }));
     const draw = (u: uPlot): void => ribbons(u, scene, ids);

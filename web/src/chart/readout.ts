@@ -34,13 +34,13 @@ export function readout(lines: Line[], visible: Set<string>, show: (value: numbe
         });
         (visible.has(line.key) ? first : rest).append(chip);
     }
-    const said = words.map((word) => ({ word, cell: valueOf(word.key, null, "") }));
-    first.append(...said.map(({ word, cell }) => el("span", { class: "chip" }, el("span", { class: "chip-name" }, word.label), cell)));
+    const chips = words.map((word) => ({ word, cell: valueOf(word.key, null, "") }));
+    first.append(...chips.map(({ word, cell }) => el("span", { class: "chip" }, el("span", { class: "chip-name" }, word.label), cell)));
     const n = rest.childElementCount;
     const more = n === 0 ? null : el("details", { class: "more-lines" }, el("summary", {}, `${n} more ${n === 1 ? "line" : "lines"}`), rest);
     const element = el("div", {}, first, more);
     const update = (i: number): void => {
-        for (const { word, cell } of said) setValue(cell, word.of(i), word.text(word.of(i)));
+        for (const { word, cell } of chips) setValue(cell, word.of(i), word.text(word.of(i)));
         for (const line of lines) {
             const v = line.values[i] ?? NaN;
             setValue(cells.get(line.key)!, v, show(v, line));

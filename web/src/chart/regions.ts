@@ -43,8 +43,8 @@ export function frameOf(bins: StanfordBins, limit_m: number): Frame {
     let largest = 0;
     const beyond = Math.round(bins.limit_m / bins.bin_m);
     for (const list of [bins.error_bin, bins.level_bin]) for (const k of list) if (k < beyond && k + 1 > largest) largest = k + 1;
-    const wanted = Math.max(BEYOND * limit_m, largest * bins.bin_m);
-    const step = STEPS_M.find((s) => s >= wanted) ?? bins.limit_m;
+    const required = Math.max(BEYOND * limit_m, largest * bins.bin_m);
+    const step = STEPS_M.find((s) => s >= required) ?? bins.limit_m;
     const shown_m = Math.min(bins.limit_m, step);
     return { limit_m, shown_m, limitShown: true, roomBeyond: limit_m <= LEAST_ROOM * shown_m };
 }

@@ -42,12 +42,12 @@ export function asinhTicks(min: number, max: number, threshold: number): number[
 }
 
 /** Moves labels apart vertically, keeping their order, within limits. */
-export function spread(wanted: number[], least: number, top: number, bottom: number): number[] {
-    const order = wanted.map((_, i) => i).sort((a, b) => wanted[a]! - wanted[b]!);
-    const placed = wanted.slice();
+export function spread(requested: number[], least: number, top: number, bottom: number): number[] {
+    const order = requested.map((_, i) => i).sort((a, b) => requested[a]! - requested[b]!);
+    const placed = requested.slice();
     let previous = top - least;
     for (const i of order) {
-        placed[i] = Math.max(wanted[i]!, previous + least);
+        placed[i] = Math.max(requested[i]!, previous + least);
         previous = placed[i]!;
     }
     let next = bottom + least;
@@ -60,9 +60,9 @@ export function spread(wanted: number[], least: number, top: number, bottom: num
 
 /** Indices of values with no value on either side. */
 export function isolated(values: Float64Array): number[] {
-    const found: number[] = [];
+    const single: number[] = [];
     for (let i = 0; i < values.length; i++) {
-        if (Number.isFinite(values[i]!) && !Number.isFinite(values[i - 1] ?? NaN) && !Number.isFinite(values[i + 1] ?? NaN)) found.push(i);
+        if (Number.isFinite(values[i]!) && !Number.isFinite(values[i - 1] ?? NaN) && !Number.isFinite(values[i + 1] ?? NaN)) single.push(i);
     }
-    return found;
+    return single;
 }

@@ -18,7 +18,7 @@ export function blockOf(head: PackedTrack): string {
 /** Fills a store with the positions of all embedded tracks, where there are several. */
 export function groundTracks(payload: Payload): Store<Ground[]> {
     const store = new Store<Ground[]>([]);
-    if (payload.tracks.length > 1) void Promise.all(payload.tracks.map(ground)).then((found) => store.set(found.filter((g) => g !== null)));
+    if (payload.tracks.length > 1) void Promise.all(payload.tracks.map(ground)).then((grounds) => store.set(grounds.filter((g) => g !== null)));
     return store;
 }
 

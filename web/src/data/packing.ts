@@ -18,11 +18,11 @@ export async function inflate(base64: string): Promise<Uint8Array> {
 }
 
 /** Columns of one track, all or some of them; a value that does not exist is NaN. */
-export function unpack(bytes: Uint8Array, columns: PackedColumn[], n: number, wanted?: string[]): Map<string, Float64Array> {
+export function unpack(bytes: Uint8Array, columns: PackedColumn[], n: number, names?: string[]): Map<string, Float64Array> {
     if (bytes.length !== columns.length * n * 4) {
         throw new RangeError(`${bytes.length} bytes do not hold ${columns.length} columns of ${n} values`);
     }
-    const take = columns.map((column, i) => ({ column, i })).filter(({ column }) => wanted?.includes(column.name) ?? true);
+    const take = columns.map((column, i) => ({ column, i })).filter(({ column }) => names?.includes(column.name) ?? true);
     return new Map(take.map(({ column, i }) => [column.name, unpackColumn(bytes.subarray(i * n * 4, (i + 1) * n * 4), column, n)]));
 }
 

@@ -22,8 +22,8 @@ export function headline(record: Performance): HTMLElement {
         caution: `▲ No hazard, but ${record.n_mi_epochs === 1 ? "one epoch" : `${count(record.n_mi_epochs)} epochs`} of misleading information${compared}.`,
         inside: `No misleading information${compared}.`,
     }[tone] + (tone === "unknown" ? "" : unjudged);
-    const said = el("p", { class: "performance-words", "data-tone": tone }, words);
-    said.dataset.key = "n_mi_epochs";
-    said.dataset.value = String(record.n_mi_epochs);
-    return said;
+    const sentence = el("p", { class: "performance-words", "data-tone": tone }, words);
+    sentence.dataset.key = "n_mi_epochs";
+    sentence.dataset.value = String(record.n_mi_epochs);
+    return sentence;
 }

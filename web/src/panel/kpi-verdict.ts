@@ -15,7 +15,7 @@ const STATES = {
 } as const;
 
 /** What the page is about where nobody asked for RNP; null where there is another verdict, or no performance record. */
-export function asked(payload: Payload): Performance | null {
+export function indicatorsOf(payload: Payload): Performance | null {
     const { summary } = payload;
     const record = summary.performance ?? null;
     return record !== null && record.levels.length > 0 && summary.accuracy.length === 0 ? record : null;

@@ -1,4 +1,4 @@
-// The four indicators of every level: what was asked, what was found. One column a level.
+// The four indicators of every level: what is required, what was reached. One column a level.
 
 import type { AxisResult, Level, LevelResult, Performance, Spread } from "../records.gen.ts";
 import { utcOf } from "../data/events.ts";
@@ -15,28 +15,28 @@ interface Row {
 }
 
 /** How a requirement is held; printed ones need no word. */
-function held(level: Level, field: string): string {
+function provenance(level: Level, field: string): string {
     const word = level.provenance[field];
     return word === undefined || word === "printed" ? "" : ` (${word})`;
 }
 
-function asked(value: number | null, level: Level, field: string, show: (v: number) => string): string {
-    return value === null ? "nothing asked" : `asked: ≤ ${show(value)}${held(level, field)}`;
+function required(value: number | null, level: Level, field: string, show: (v: number) => string): string {
+    return value === null ? "nothing asked" : `asked: ≤ ${show(value)}${provenance(level, field)}`;
 }
 
-function limitsHeld(level: Level): string {
+function limitsProvenance(level: Level): string {
     const words = [level.provenance["hal_m"], ...(level.val_m === null ? [] : [level.provenance["val_m"]])];
     return [...new Set(words.map((w) => w ?? "unmarked"))].join(" / ");
 }
 
 function accuracyRow(axis: "h" | "v", performance: Performance): Row {
-    const found = performance.axes.find((a) => a.axis === axis)?.error_m?.p95 ?? null;
+    const error = performance.axes.find((a) => a.axis === axis)?.error_m?.p95 ?? null;
     return {
         head: axis === "h" ? "Horizontal error, 95 %" : "Vertical error, 95 %", ...(axis === "h" ? { group: "Accuracy" } : {}),
         cell: ({ level }) => {
             const limit = axis === "h" ? level.accuracy_h_m : level.accuracy_v_m;
-            const worse = found !== null && limit !== null && found > limit;
-            return { key: `accuracy_${axis}_m`, value: found, text: metres(found), more: asked(limit, level, `accuracy_${axis}_m`, wholeMetres), ...(worse ? { tone: "caution" as const } : {}) };
+            const worse = error !== null && limit !== null && error > limit;
+            return { key: `accuracy_${axis}_m`, value: error, text: metres(error), more: required(limit, level, `accuracy_${axis}_m`, wholeMetres), ...(worse ? { tone: "caution" as const } : {}) };
         },
     };
 }
@@ -56,7 +56,7 @@ function rows(performance: Performance): Row[] {
     const limit = (value: number | null): string => (value === null ? "none" : wholeMetres(value));
     const window = performance.levels[0]?.window_s ?? NaN;
     const list: Row[] = [
-        { head: "Alert limits, HAL / VAL", cell: ({ level }) => ({ key: "hal_m", value: level.hal_m, text: `${limit(level.hal_m)} / ${limit(level.val_m)}`, more: limitsHeld(level) }) },
+        { head: "Alert limits, HAL / VAL", cell: ({ level }) => ({ key: "hal_m", value: level.hal_m, text: `${limit(level.hal_m)} / ${limit(level.val_m)}`, more: limitsProvenance(level) }) },
         accuracyRow("h", performance), accuracyRow("v", performance),
         { head: "Of the expected epochs", group: "Availability", cell: (r) => ({ key: "availability_expected", value: r.availability_expected, text: share(r.availability_expected), more: `95 %: ${share(r.availability_low)} to ${share(r.availability_high)}, as from ${count(Math.round(r.n_effective))} independent epochs` }) },
         { head: "Of the epochs with a solution", cell: (r) => ({ key: "availability_solution", value: r.availability_solution, text: share(r.availability_solution), more: `${count(r.n_available)} of ${count(r.n_solution)}` }) },
@@ -64,7 +64,7 @@ function rows(performance: Performance): Row[] {
             head: `Risk of a loss within ${duration(window)}`, group: "Continuity",
             cell: (r) => ({
                 key: "continuity_risk", value: r.continuity_risk, text: r.window_meaningful ? counted(r.continuity_risk) : "not meaningful",
-                more: r.window_meaningful ? asked(r.level.continuity_risk, r.level, "continuity_risk", (v) => `${risk(v)} per ${r.level.continuity_per ?? "window"}`) : `epochs are further apart than ${duration(r.window_s)}`,
+                more: r.window_meaningful ? required(r.level.continuity_risk, r.level, "continuity_risk", (v) => `${risk(v)} per ${r.level.continuity_per ?? "window"}`) : `epochs are further apart than ${duration(r.window_s)}`,
             }),
         },
         { head: "Losses", cell: (r) => ({ key: "n_continuity_events", value: r.n_continuity_events, text: count(r.n_continuity_events), more: r.events_per_1e5 === null ? "" : `in 100 000 epochs: ${rate(r.events_per_1e5)}, 95 %: ${rate(r.events_per_1e5_low)} to ${rate(r.events_per_1e5_high)}` }) },
@@ -84,8 +84,8 @@ function integrityRows(): Row[] {
             head: "Misleading, epochs",
             cell: (r) => ({ key: "n_mi_epochs", value: r.n_mi_epochs, text: `${r.n_mi_epochs > 0 ? "▲ " : ""}${count(r.n_mi_epochs)}`, more: events(r.n_mi_events, r.n_mi_over_tta, r.longest_mi_s, r.level.tta_s), ...(r.n_mi_epochs > 0 ? { tone: "caution" as const } : {}) }),
         },
-        { head: "Time to alert", cell: ({ level }) => ({ key: "tta_s", value: level.tta_s, text: `${duration(level.tta_s)}${held(level, "tta_s")}` }) },
-        { head: "Integrity risk asked", cell: ({ level }) => ({ key: "integrity_risk", value: level.integrity_risk, text: level.integrity_risk === null ? NONE : `${risk(level.integrity_risk)} per ${level.integrity_per ?? "exposure"}${held(level, "integrity_risk")}`, more: "too small to be measured by counting" }) },
+        { head: "Time to alert", cell: ({ level }) => ({ key: "tta_s", value: level.tta_s, text: `${duration(level.tta_s)}${provenance(level, "tta_s")}` }) },
+        { head: "Integrity risk asked", cell: ({ level }) => ({ key: "integrity_risk", value: level.integrity_risk, text: level.integrity_risk === null ? NONE : `${risk(level.integrity_risk)} per ${level.integrity_per ?? "exposure"}${provenance(level, "integrity_risk")}`, more: "too small to be measured by counting" }) },
     ];
 }
 

@@ -14,7 +14,7 @@ import type { Table } from "../data/table.ts";
 import { button, choice, el, setValue, valueOf } from "../show/dom.ts";
 import { clock, count, date, duration, metres, NONE, share } from "../show/format.ts";
 import { headline } from "./kpi-headline.ts";
-import { asked } from "./kpi-verdict.ts";
+import { indicatorsOf } from "./kpi-verdict.ts";
 import { levelTable, spreadTable } from "./levels.ts";
 import { liveTable, sortable, type Column } from "./sortable.ts";
 import { subsetTable } from "./subsets.ts";
@@ -51,7 +51,7 @@ class Section {
         this.variant = record.stanford[0]?.variant ?? "stanford";
         const events = eventTable(record, payload, (e) => this.goTo(e));
         // Where nothing else was asked, the verdict above has said what this section would begin with.
-        const alone = asked(payload) !== null;
+        const alone = indicatorsOf(payload) !== null;
         host.append(el("section", { id: "performance" }, el("h2", {}, alone ? "Indicators" : `Performance: ${record.title}`), !alone && record.experimental !== "" ? el("p", {}, el("span", { class: "tag" }, record.experimental)) : null, alone ? null : headline(record), scope(record, payload), levelTable(record),
             spreadTable("spread", "Errors and protection levels over the epochs with a solution", record.axes, payload, record.experimental), this.choices(), this.timeline(), this.charts, subsetTable(record, payload), events, days(record, payload), ...(alone ? [] : record.notes.map((n) => el("p", { class: "note" }, n)))));
         this.at.cursor.set(Math.floor(this.table.n / 2));

@@ -86,13 +86,13 @@ export function faults(payload: Payload): HTMLElement | null {
 export function alertLimits(payload: Payload): HTMLElement | null {
     const rows = payload.summary.protection;
     if (rows.length === 0) return null;
-    const held = (p: ProtectionSummary, value: number | null): string => (value === null ? NONE : `${metres(value)} (${p.hal_held})`);
+    const limit = (p: ProtectionSummary, value: number | null): string => (value === null ? NONE : `${metres(value)} (${p.hal_held})`);
     return sortable<ProtectionSummary>({
         id: "alert-limits", caption: "Protection levels against alert limits", rows,
         columns: [
-            text("Phase", "phase"), { head: "HAL", key: "hal_m", of: (p) => p.hal_m, show: (p) => held(p, p.hal_m) }, number("HPL, largest", "hpl_max_m", metres), number("for all faults together", "hpl_multi_max_m", metres),
+            text("Phase", "phase"), { head: "HAL", key: "hal_m", of: (p) => p.hal_m, show: (p) => limit(p, p.hal_m) }, number("HPL, largest", "hpl_max_m", metres), number("for all faults together", "hpl_multi_max_m", metres),
             number("Within HAL", "share_available", share), number("HPE, largest", "hpe_max_m", metres), number("Epochs with HPE above HPL", "n_misleading", count),
-            number("Accuracy 95 %, largest", "accuracy_max_m", metres), { head: "Accuracy asked", key: "accuracy_limit_m", of: (p) => p.accuracy_limit_m, show: (p) => held(p, p.accuracy_limit_m) }, number("Epochs", "n_epochs", count),
+            number("Accuracy 95 %, largest", "accuracy_max_m", metres), { head: "Accuracy asked", key: "accuracy_limit_m", of: (p) => p.accuracy_limit_m, show: (p) => limit(p, p.accuracy_limit_m) }, number("Epochs", "n_epochs", count),
         ],
     });
 }

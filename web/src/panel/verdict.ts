@@ -4,7 +4,7 @@ import type { Belief, BoundCheck, Payload, Verdict, VerdictId, Worst } from "../
 import { utcOf } from "../data/events.ts";
 import { about } from "../chart/methods.ts";
 import { el, svg, valueOf } from "../show/dom.ts";
-import { asked, kpiVerdict } from "./kpi-verdict.ts";
+import { indicatorsOf, kpiVerdict } from "./kpi-verdict.ts";
 import { clock, count, date, level, limitName, nauticalMiles, place, plain, share, SHORT_M, signedMetres } from "../show/format.ts";
 
 /** Faults and moments on the first screen; the table below lists every fault. */
@@ -23,7 +23,7 @@ const STATES: Record<VerdictId, { word: string; mark: string }> = {
 
 export function verdict(host: HTMLElement, payload: Payload): void {
     const { summary } = payload;
-    const record = asked(payload);
+    const record = indicatorsOf(payload);
     if (record !== null) {
         kpiVerdict(host, payload, record);
         return;

@@ -48,10 +48,10 @@ export function button(label: string, attributes: Attributes, press: () => void)
 }
 
 /** Buttons of which one is chosen. */
-export function choice<T extends string>(name: string, options: [T, string][], chosen: T, choose: (value: T) => void): HTMLElement {
+export function choice<T extends string>(name: string, options: [T, string][], selected: T, choose: (value: T) => void): HTMLElement {
     const group = el("div", { class: "choice", role: "group", "aria-label": name });
     for (const [value, label] of options) {
-        const one = button(label, { "data-choice": value, "aria-pressed": value === chosen ? "true" : "false" }, () => {
+        const one = button(label, { "data-choice": value, "aria-pressed": value === selected ? "true" : "false" }, () => {
             for (const other of group.querySelectorAll("button")) other.setAttribute("aria-pressed", String(other === one));
             choose(value);
         });

@@ -45,12 +45,12 @@ function bounds(layer: Layer): number[] {
     const at = (share: number): number => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))]!;
     const low = at(0.01);
     const high = layer.limit === null ? at(0.99) : layer.limit;
-    const found = [-Infinity, ...steps(Math.min(low, high), high)];
+    const edges = [-Infinity, ...steps(Math.min(low, high), high)];
     if (layer.limit !== null) {
-        if (found.at(-1) !== layer.limit) found.push(layer.limit);
-        if (at(1) > 1.5 * layer.limit) found.push(round(1.5 * layer.limit));
+        if (edges.at(-1) !== layer.limit) edges.push(layer.limit);
+        if (at(1) > 1.5 * layer.limit) edges.push(round(1.5 * layer.limit));
     }
-    return [...found, Infinity];
+    return [...edges, Infinity];
 }
 
 /** Up to six multiples of a round step inside an interval. */
@@ -59,9 +59,9 @@ export function steps(low: number, high: number): number[] {
     if (!(span > 0)) return [];
     const decade = 10 ** Math.floor(Math.log10(span / 6));
     const step = [1, 2, 2.5, 5, 10].map((f) => f * decade).find((s) => span / s <= 6)!;
-    const found: number[] = [];
-    for (let k = Math.floor(low / step) + 1; k * step < high - 1e-9 * step && found.length < 6; k++) found.push(round(k * step));
-    return found;
+    const multiples: number[] = [];
+    for (let k = Math.floor(low / step) + 1; k * step < high - 1e-9 * step && multiples.length < 6; k++) multiples.push(round(k * step));
+    return multiples;
 }
 
 function round(value: number): number {
@@ -76,15 +76,15 @@ export function classOf(value: number, all: Class[], share: boolean): number {
 
 /** Share of the area in every class, and last without a value; cells weigh by the cosine of their latitude. */
 export function areas(layer: Layer, all: Class[], grid: MapGrid): number[] {
-    const found = new Array<number>(all.length + 1).fill(0);
+    const areas = new Array<number>(all.length + 1).fill(0);
     let whole = 0;
     for (let row = 0; row < grid.n_lat; row++) {
         const weight = Math.cos(grid.south_rad + (row + 0.5) * grid.step_rad);
         for (let column = 0; column < grid.n_lon; column++) {
             const of = classOf(layer.values[row * grid.n_lon + column]!, all, layer.unit === "%");
-            found[of < 0 ? all.length : of]! += weight;
+            areas[of < 0 ? all.length : of]! += weight;
             whole += weight;
         }
     }
-    return found.map((area) => area / whole);
+    return areas.map((area) => area / whole);
 }

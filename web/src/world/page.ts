@@ -17,12 +17,12 @@ export async function showWorld(root: HTMLElement, world: World): Promise<void> 
     const all = layers(world, await inflate(document.getElementById("navbound-track-0")!.textContent!));
     const theme = choice<Choice>("Theme", [["auto", "Auto"], ["light", "Light"], ["dark", "Dark"]], "auto", choose);
     root.replaceChildren(
-        el("header", {}, el("div", { class: "title" }, el("p", { class: "brand" }, "navbound"), el("h1", {}, summary.title)), el("div", { class: "head-tools" }, theme), found(summary)),
+        el("header", {}, el("div", { class: "title" }, el("p", { class: "brand" }, "navbound"), el("h1", {}, summary.title)), el("div", { class: "head-tools" }, theme), findings(summary)),
         mapPart(world, all), numbers(summary), basis(world));
     root.dataset.ready = "true";
 }
 
-function found(summary: MapSummary): HTMLElement {
+function findings(summary: MapSummary): HTMLElement {
     const fact = (at: number, value: number): HTMLElement => el("div", { class: "fact" }, el("dt", {}, `Area with at least ${100 * at} % of the time`), el("dd", {}, valueOf(`coverage_${at}`, value, share(value))));
     const facts = summary.n_epochs === 1
         ? [el("div", { class: "fact" }, el("dt", {}, "Area within the limit"), el("dd", {}, valueOf("coverage", summary.available_mean, share(summary.available_mean))))]

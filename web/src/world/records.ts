@@ -30,19 +30,19 @@ export const AVAILABLE = "share_available";
 export function layers(world: World, bytes: Uint8Array): Layer[] {
     const { summary } = world;
     const values = unpack(bytes, world.columns, summary.grid.n_lat * summary.grid.n_lon);
-    const found: Layer[] = [];
+    const layers: Layer[] = [];
     const share = values.get(AVAILABLE);
-    if (share !== undefined && summary.n_epochs > 1) found.push({ id: AVAILABLE, title: "Availability", unit: "%", limit: null, values: share.map((v) => wholeEpochs(v, summary.n_epochs)) });
+    if (share !== undefined && summary.n_epochs > 1) layers.push({ id: AVAILABLE, title: "Availability", unit: "%", limit: null, values: share.map((v) => wholeEpochs(v, summary.n_epochs)) });
     for (const column of summary.columns) {
         const limit = summary.limits.find((one) => one.column === column.name)?.limit ?? null;
         const of = (id: string, title: string): void => {
             const numbers = values.get(id);
-            if (numbers !== undefined) found.push({ id, title, unit: column.unit, limit, values: numbers });
+            if (numbers !== undefined) layers.push({ id, title, unit: column.unit, limit, values: numbers });
         };
         if (summary.n_epochs === 1) of(column.name, column.title);
         for (const percentile of summary.percentiles) of(percentileName(column.name, percentile), `${column.title}, ${percentile} % of the time`);
     }
-    return found;
+    return layers;
 }
 
 /** A share of whole epochs in per cent: what the packing rounded is undone, so that all epochs are 100 %. */

@@ -19,8 +19,8 @@ pub fn coverage_interval(
     same_length("bound_m", bound_m.len(), error_m.len())?;
     same_length("track", track.len(), error_m.len())?;
     if !(100..=100_000).contains(&n_replicates) {
-        let found = OutOfDomain { argument: "n_replicates", value: n_replicates as f64, unit: "1", domain: "[100, 100000]" };
-        return Err((None, found));
+        let refusal = OutOfDomain { argument: "n_replicates", value: n_replicates as f64, unit: "1", domain: "[100, 100000]" };
+        return Err((None, refusal));
     }
     let tracks = counts(error_m, bound_m, track);
     if tracks.len() < 2 {

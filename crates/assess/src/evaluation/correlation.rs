@@ -104,19 +104,19 @@ mod tests {
     fn a_gauss_markov_series_is_worth_its_known_share() {
         let n = 200_000;
         for phi in [0.0, 0.5, 0.9, 0.99_f64] {
-            let found = effective_size(&[gauss_markov(n as usize, phi, 20_261_121)]) / f64::from(n);
+            let share = effective_size(&[gauss_markov(n as usize, phi, 20_261_121)]) / f64::from(n);
             let known = (1.0 - phi) / (1.0 + phi);
             let tolerance = 4.0 * (2.0 * (10.0 / (1.0 - phi) + 1.0) / f64::from(n)).sqrt();
-            assert!((found / known - 1.0).abs() <= tolerance, "phi {phi}: {found} for {known} within {tolerance}");
+            assert!((share / known - 1.0).abs() <= tolerance, "phi {phi}: {share} for {known} within {tolerance}");
         }
     }
 
     #[test]
     fn tracks_are_pooled() {
         let tracks: Vec<_> = (0..40).map(|t| gauss_markov(5000, 0.9, 77 + t)).collect();
-        let found = effective_size(&tracks) / 200_000.0;
+        let share = effective_size(&tracks) / 200_000.0;
         // As above: 4 sqrt(2 * 101 / 200 000).
-        assert!((found * 19.0 - 1.0).abs() <= 0.13, "{found}");
+        assert!((share * 19.0 - 1.0).abs() <= 0.13, "{share}");
     }
 
     #[test]
@@ -124,9 +124,9 @@ mod tests {
         let biases = gauss_markov(400, 0.0, 5);
         for length in [50, 100, 1000, 5000] {
             let tracks: Vec<_> = biases.iter().map(|b| vec![*b; length]).collect();
-            let found = effective_size(&tracks);
+            let size = effective_size(&tracks);
             // The sum over a box of L lags is exact: 1 + 2 sum (1 - k/L) = L, so one epoch a track; changes of scale cost 1 %.
-            assert!((found / 400.0 - 1.0).abs() <= 0.01, "{length}: {found}");
+            assert!((size / 400.0 - 1.0).abs() <= 0.01, "{length}: {size}");
         }
         assert_eq!(effective_size(&[vec![3.0; 50], vec![3.0; 20]]), 2.0);
     }
@@ -137,10 +137,10 @@ mod tests {
         let biased: Vec<_> = noise.iter().map(|x| 3.0 + 0.3 * x).collect();
         assert!(effective_size(std::slice::from_ref(&biased)) > 2500.0);
         // The bias has 1 / 1.01 of the square: the size is 1.01 where the noise adds nothing, and the changes of scale cost 1 %.
-        let found = effective_size_about_zero(vec![biased]);
-        assert!((1.0..1.1).contains(&found), "{found}");
-        let found = effective_size_about_zero(vec![noise]);
-        assert!(found > 2500.0, "{found}");
+        let size = effective_size_about_zero(vec![biased]);
+        assert!((1.0..1.1).contains(&size), "{size}");
+        let size = effective_size_about_zero(vec![noise]);
+        assert!(size > 2500.0, "{size}");
     }
 
     #[test]
@@ -150,7 +150,7 @@ mod tests {
         let alternating = (0..1000).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect::<Vec<_>>();
         assert_eq!(effective_size(&[alternating]), 1000.0);
         let trend = (0..1000).map(f64::from).collect::<Vec<_>>();
-        let found = effective_size(&[trend]);
-        assert!((1.0..10.0).contains(&found), "{found}");
+        let size = effective_size(&[trend]);
+        assert!((1.0..10.0).contains(&size), "{size}");
     }
 }

@@ -6,12 +6,12 @@
 //! expected shortfall at a risk p with at most that risk.
 
 use super::INTERVAL_RISK;
+use super::consistency::{Errors, Refused};
 use super::correlation::{by_track, effective_size_about_zero};
-use super::honesty::{Errors, Refused};
 use navbound_core::quantity::{OutOfDomain, Risk};
 use navbound_core::special::beta::{beta_head, share_limits};
 
-/// Largest normalised square of an epoch that counts: what an honest covariance exceeds once in 100 000, 2 ln 1e5. A single epoch whose
+/// Largest normalised square of an epoch that counts: what a consistent covariance exceeds once in 100 000, 2 ln 1e5. A single epoch whose
 /// truth is wrong by kilometres then weighs no more than another.
 const MOST_SQUARE: f64 = 23.025_850_929_940_457;
 
@@ -22,9 +22,9 @@ pub struct Magnitude {
     pub n: usize,
     /// Epochs that the components are worth about zero; the smaller of both axes.
     pub n_effective: f64,
-    /// Mean of e' V^-1 e, each at most [`MOST_SQUARE`]; 2 for an honest covariance.
+    /// Mean of e' V^-1 e, each at most [`MOST_SQUARE`]; 2 for a consistent covariance.
     pub square_mean: f64,
-    /// Largest probability of a mean as large for an honest covariance, over every dependence of the epochs.
+    /// Largest probability of a mean as large for a consistent covariance, over every dependence of the epochs.
     pub p_value: f64,
 }
 
@@ -97,22 +97,22 @@ mod tests {
         let n = 400;
         let error_m: Vec<f64> = (0..n).flat_map(|_| [4.0, 0.0]).collect();
         let covariance_m2: Vec<f64> = (0..n).flat_map(|_| [1.0, 0.0, 0.0, 1.0]).collect();
-        let found = magnitude(&Errors { dimension: 2, error_m: &error_m, covariance_m2: &covariance_m2, track: &[] }).unwrap();
-        assert_eq!((found.n, found.square_mean), (n, 16.0));
+        let refutation = magnitude(&Errors { dimension: 2, error_m: &error_m, covariance_m2: &covariance_m2, track: &[] }).unwrap();
+        assert_eq!((refutation.n, refutation.square_mean), (n, 16.0));
         // One epoch from the axis with the error; the other, which is zero throughout, is worth its one track.
-        assert!(found.n_effective >= 1.0 && found.n_effective < 1.05, "{}", found.n_effective);
-        assert!((found.p_value - (-7.0_f64).exp()).abs() <= 1e-15);
+        assert!(refutation.n_effective >= 1.0 && refutation.n_effective < 1.05, "{}", refutation.n_effective);
+        assert!((refutation.p_value - (-7.0_f64).exp()).abs() <= 1e-15);
     }
 
     /// All outside of one effective epoch: the risk itself, by either count.
     #[test]
     fn one_epoch_outside_has_the_risk_of_its_bound() {
         let risk = Risk::new(0.05).unwrap();
-        let found = containment(500, 500, 1.0, risk).unwrap();
-        assert!((found.p_value - 0.05).abs() <= 1e-12 && (found.p_value_any - 0.05).abs() <= 1e-15);
+        let refutation = containment(500, 500, 1.0, risk).unwrap();
+        assert!((refutation.p_value - 0.05).abs() <= 1e-12 && (refutation.p_value_any - 0.05).abs() <= 1e-15);
         // 0.05^4 for four, from the binomial law.
-        let found = containment(500, 500, 4.0, risk).unwrap();
-        assert!((found.p_value / 6.25e-6 - 1.0).abs() <= 1e-9);
+        let refutation = containment(500, 500, 4.0, risk).unwrap();
+        assert!((refutation.p_value / 6.25e-6 - 1.0).abs() <= 1e-9);
         let none = containment(0, 500, 4.0, risk).unwrap();
         assert_eq!((none.coverage, none.p_value, none.p_value_any), (1.0, 1.0, 1.0));
     }

@@ -94,9 +94,9 @@ mod tests {
     use super::*;
 
     fn of(pattern: &str, window: u64) -> Continuity {
-        let mut found = Continuity::default();
-        pattern.chars().for_each(|c| found.push(c == 'X', 1, window));
-        found
+        let mut continuity = Continuity::default();
+        pattern.chars().for_each(|c| continuity.push(c == 'X', 1, window));
+        continuity
     }
 
     #[test]

@@ -255,7 +255,7 @@ impl Columns<'_> {
     }
 
     fn same_length(&self) -> Result<(), Refused> {
-        let wanted = self.time_ns.len();
+        let expected = self.time_ns.len();
         let lengths = [
             ("nse_e_m", self.nse_m[0].len()),
             ("nse_n_m", self.nse_m[1].len()),
@@ -266,7 +266,7 @@ impl Columns<'_> {
             ("mode", self.mode.len()),
             ("reason", self.reason.len()),
         ];
-        match lengths.into_iter().find(|(_, length)| *length != wanted) {
+        match lengths.into_iter().find(|(_, length)| *length != expected) {
             None => Ok(()),
             Some((argument, length)) => {
                 Err((None, OutOfDomain { argument, value: length as f64, unit: "rows", domain: "the number of times" }))

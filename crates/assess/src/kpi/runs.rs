@@ -151,10 +151,10 @@ mod tests {
                 let mut runs = of(bits, 0, cut);
                 let before = (cut > 0).then(|| State { n_sv: cut as i32 - 1, mode: 0, reason: 0 });
                 runs.append(of(bits, cut, 9), before);
-                let found: Vec<_> = runs.finish();
-                let short: Vec<_> = found.iter().map(|(s, open)| (s.first_slot, s.last_slot, *open, s.before.map(|b| b.n_sv))).collect();
+                let maximal: Vec<_> = runs.finish();
+                let short: Vec<_> = maximal.iter().map(|(s, open)| (s.first_slot, s.last_slot, *open, s.before.map(|b| b.n_sv))).collect();
                 assert_eq!(short, expected, "{bits:09b} cut at {cut}");
-                assert!(found.iter().all(|(s, _)| s.n as i64 == s.last_slot - s.first_slot + 1 && s.peak_m[0] == s.last_slot as f64));
+                assert!(maximal.iter().all(|(s, _)| s.n as i64 == s.last_slot - s.first_slot + 1 && s.peak_m[0] == s.last_slot as f64));
             }
         }
     }

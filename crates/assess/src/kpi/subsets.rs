@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 /// Fewest epochs in one task of the pool: a few milliseconds of work with ten satellites.
 const LEAST_TASK: usize = 64;
 
-/// What is asked of the subsets.
+/// What is required of the subsets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Job {
     /// Which multipliers make a level of a covariance.
@@ -148,11 +148,11 @@ impl Tally {
                 regions[1].add(error_m[1], level_m[1], *val);
             }
         }
-        let found = Listed { time, used: subset.used, error_m, level_m };
-        self.n_misleading += u64::from(found.index() > 1.0);
-        if found.index() >= job.listed_from {
+        let listed = Listed { time, used: subset.used, error_m, level_m };
+        self.n_misleading += u64::from(listed.index() > 1.0);
+        if listed.index() >= job.listed_from {
             self.n_listed += 1;
-            self.listed.push(found);
+            self.listed.push(listed);
             if self.listed.len() >= 2 * job.most_listed.max(1) {
                 self.shorten(job.most_listed);
             }
@@ -235,30 +235,30 @@ mod tests {
     #[test]
     fn the_regions_count_every_subset_that_has_a_position() {
         let (nine, twenty) = (ranges(9, 1.0), ranges(20, 1.0));
-        let found = subsets(&at(&[&nine, &twenty, &nine[..3]]), &job()).unwrap();
+        let tally = subsets(&at(&[&nine, &twenty, &nine[..3]]), &job()).unwrap();
         // 126 + 126 + 84 + 36 + 9 + 1 subsets of nine; of twenty those that leave out four at most.
-        assert_eq!((found.n_epochs, found.n_unsolved, found.n_cut, found.n_subsets), (2, 1, 1, 382 + 6196));
-        let points = found.n_subsets - found.n_singular;
-        assert_eq!(found.regions[0][0].n(), points);
-        assert_eq!(found.regions[0][1].n(), points);
-        assert_eq!((found.regions[1][0].n(), found.regions[1][1].n()), (points, 0));
-        assert_eq!(found.histograms[0].rows().iter().map(|r| r.2).sum::<u64>(), points);
+        assert_eq!((tally.n_epochs, tally.n_unsolved, tally.n_cut, tally.n_subsets), (2, 1, 1, 382 + 6196));
+        let points = tally.n_subsets - tally.n_singular;
+        assert_eq!(tally.regions[0][0].n(), points);
+        assert_eq!(tally.regions[0][1].n(), points);
+        assert_eq!((tally.regions[1][0].n(), tally.regions[1][1].n()), (points, 0));
+        assert_eq!(tally.histograms[0].rows().iter().map(|r| r.2).sum::<u64>(), points);
     }
 
     #[test]
     fn the_gravest_are_listed_and_the_cut_into_tasks_changes_nothing() {
         let sets: Vec<Vec<RangeInError>> = (0..200).map(|k| ranges(8, 0.05 * f64::from(k))).collect();
         let all: Vec<&[RangeInError]> = sets.iter().map(Vec::as_slice).collect();
-        let found = subsets(&at(&all), &job()).unwrap();
-        assert!(found.n_listed > 20 && found.listed.len() == 20, "{}", found.n_listed);
+        let tally = subsets(&at(&all), &job()).unwrap();
+        assert!(tally.n_listed > 20 && tally.listed.len() == 20, "{}", tally.n_listed);
         // Errors grow with the epoch and levels do not, so the gravest subset is of the last.
-        assert_eq!(found.listed[0].time, GpsTime::from_nanoseconds(199));
-        assert!(found.listed.windows(2).all(|w| w[0].index() >= w[1].index()));
-        assert!((found.listed[0].index() - found.largest_index[0].max(found.largest_index[1])).abs() < 1e-15);
+        assert_eq!(tally.listed[0].time, GpsTime::from_nanoseconds(199));
+        assert!(tally.listed.windows(2).all(|w| w[0].index() >= w[1].index()));
+        assert!((tally.listed[0].index() - tally.largest_index[0].max(tally.largest_index[1])).abs() < 1e-15);
         let one_by_one = at(&all).into_iter().map(|e| subsets(&[e], &job()).unwrap());
         let sum = one_by_one.fold(Tally::none(&job()), |a, b| a.merged(b, &job()));
-        assert_eq!((sum.n_subsets, sum.n_misleading, sum.n_listed), (found.n_subsets, found.n_misleading, found.n_listed));
-        assert_eq!(sum, found);
+        assert_eq!((sum.n_subsets, sum.n_misleading, sum.n_listed), (tally.n_subsets, tally.n_misleading, tally.n_listed));
+        assert_eq!(sum, tally);
     }
 
     #[test]

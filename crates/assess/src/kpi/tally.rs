@@ -55,18 +55,18 @@ impl LevelTally {
         }
         self.continuity.push(available, 1, window);
         let hazard = available && epoch.beyond_limit(demand);
-        let misled = available && epoch.beyond_level(Some(demand));
+        let misleading = available && epoch.beyond_level(Some(demand));
         self.n_hazard += u64::from(hazard);
-        self.n_mi += u64::from(misled);
-        for (runs, condition) in self.runs.iter_mut().zip([!available, hazard, misled]) {
+        self.n_mi += u64::from(misleading);
+        for (runs, condition) in self.runs.iter_mut().zip([!available, hazard, misleading]) {
             if condition { runs.push(Stretch::of(epoch, lack, before)) } else { runs.pause(1) }
         }
     }
 
     fn add_absent(&mut self, first_slot: i64, n: u64, before: Option<State>, settings: &Settings) {
-        let [lost, hazards, misled] = &mut self.runs;
+        let [lost, hazards, misleading] = &mut self.runs;
         hazards.pause(n);
-        misled.pause(n);
+        misleading.pause(n);
         if !settings.exclude_missing {
             self.continuity.push(false, n, settings.window);
             lost.push(Stretch::absent(first_slot, n, before));

@@ -20,7 +20,7 @@ const MESSAGES: [Message; 5] = [Message::Lnav, Message::Inav, Message::Fnav, Mes
 /// Epochs that the choice of signals looks at, at most: a day every six minutes.
 const EPOCHS_LOOKED_AT: usize = 256;
 
-/// Why a satellite of the wanted constellations is not in a solution.
+/// Why a satellite of the requested constellations is not in a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unused {
     /// The first frequency has no pseudorange.
@@ -199,7 +199,7 @@ impl<'a> Records<'a> {
     }
 }
 
-/// What each constellation contributes: `None` for those that are not wanted or cannot be used.
+/// What each constellation contributes: `None` for those that are not requested or cannot be used.
 ///
 /// Where several choices of signals are observed, that with the most satellite-epochs that have both pseudoranges and a record; one whose
 /// records have its own clock counts a tenth more. Equal ones by preference.

@@ -95,14 +95,14 @@ pub fn positions(
         (fixes, task.unused)
     };
     let parts: Vec<_> = epochs.par_chunks(size).map(work).collect();
-    let mut found = Corrected { smoothed_share: smoothed.as_ref().map(Smoothed::share), ..Corrected::default() };
+    let mut corrected = Corrected { smoothed_share: smoothed.as_ref().map(Smoothed::share), ..Corrected::default() };
     for (fixes, unused) in parts {
-        found.fixes.extend(fixes);
+        corrected.fixes.extend(fixes);
         for (why, n) in unused {
-            *found.unused.entry(why).or_default() += n;
+            *corrected.unused.entry(why).or_default() += n;
         }
     }
-    found
+    corrected
 }
 
 /// What the receiver recorded.
@@ -191,7 +191,7 @@ impl Task<'_> {
             if range.is_none() {
                 count("no C/A pseudorange on L1".to_owned(), 1);
             } else if service.satellite(prn).is_none() {
-                // Only who is not served is asked why.
+                // Only who is not served is examined for the reason.
                 let why = ranging(store, prn, used_for, now, |prn, iode| orbits.at(prn, iode, now)).err();
                 count(why.map_or_else(|| service.serves().err().map_or_else(String::new, |e| e.to_string()), |w| w.to_string()), 1);
             }

@@ -249,8 +249,8 @@ mod tests {
             let here = geodetic(lat, 10.0, 9000.0);
             let by = Displacement::from_vector(Vector3::new(e, n, u));
             let there = here.moved(&by).unwrap();
-            let found = ecef_from_geodetic(&there).minus(&ecef_from_geodetic(&here)).to_enu(&here.point);
-            prop_assert!((found.vector() - by.vector()).norm() < 0.03);
+            let moved = ecef_from_geodetic(&there).minus(&ecef_from_geodetic(&here)).to_enu(&here.point);
+            prop_assert!((moved.vector() - by.vector()).norm() < 0.03);
         }
     }
 }

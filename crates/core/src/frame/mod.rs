@@ -1,4 +1,4 @@
-//! Frames: where a vector's axes point. A vector or covariance of one frame cannot be passed where another is wanted.
+//! Frames: where a vector's axes point. A vector or covariance of one frame cannot be passed where another is required.
 
 mod geodetic;
 mod gravity;

@@ -121,7 +121,7 @@ impl Air {
     /// The indicated height above the station at which the true height is this one: the inverse of [`Air::true_height`].
     ///
     /// # Errors
-    /// As [`Air::true_height`], for the height asked for or for the one that it takes.
+    /// As [`Air::true_height`], for the height requested or for the one that it takes.
     pub fn indicated_height(&self, true_height: Metres) -> Result<Metres, OutOfDomain> {
         self.check("true_m", true_height)?;
         let h = true_height.m();

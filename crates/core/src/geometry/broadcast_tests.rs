@@ -61,8 +61,8 @@ proptest! {
     #[test]
     fn the_orbit_is_that_of_the_table(ecc in 0.0..0.5f64, t in -7200..7200_i32, anomaly in -4.0..4.0f64) {
         let e = Ephemeris { mean_anomaly: anomaly, ..record(Constellation::Gps, Message::Lnav, ecc) };
-        let found = *state(&e, after(&e, f64::from(t))).unwrap().position.vector();
-        prop_assert!((found - by_the_table(&e, f64::from(t))).norm() < 3e-7, "{}", (found - by_the_table(&e, f64::from(t))).norm());
+        let position = *state(&e, after(&e, f64::from(t))).unwrap().position.vector();
+        prop_assert!((position - by_the_table(&e, f64::from(t))).norm() < 3e-7, "{}", (position - by_the_table(&e, f64::from(t))).norm());
     }
 
     // Central difference over 2 s: the third derivative of the orbit, 4 km/s * (1.5e-4)^2 per s, leaves 1e-4 / 6 m/s, more at the perigee.

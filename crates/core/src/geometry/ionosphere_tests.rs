@@ -60,7 +60,7 @@ fn what_is_not_corrected_still_has_its_size() {
     assert_eq!(nothing.delay(&Vector3::z()), 0.0);
     assert_eq!(nothing.vertical_m, climate.vertical_m);
     assert!((climate.delay(&Vector3::z()) - climate.vertical_m).abs() < 1e-12);
-    let told = Ionosphere::galileo([MEAN_ACTIVITY_SFU, 0.0, 0.0]).unwrap().over(&here(), afternoon());
-    assert!((told.vertical_m - climate.vertical_m).abs() < 1e-12);
+    let modelled = Ionosphere::galileo([MEAN_ACTIVITY_SFU, 0.0, 0.0]).unwrap().over(&here(), afternoon());
+    assert!((modelled.vertical_m - climate.vertical_m).abs() < 1e-12);
     assert!(!Ionosphere::Climatology.is_described() && Ionosphere::broadcast(MESSAGE).unwrap().is_described());
 }

@@ -32,8 +32,8 @@ fn the_printed_values_of_the_description() {
     for (coefficients, rows) in sets {
         let level = ionisation_level(coefficients).unwrap();
         for row in rows {
-            let found = slant(level, row);
-            assert!((found - row[7]).abs() < 1e-4, "{row:?}: {found}");
+            let delay = slant(level, row);
+            assert!((delay - row[7]).abs() < 1e-4, "{row:?}: {delay}");
         }
     }
 }

@@ -64,13 +64,13 @@ fn nodes(orbit: &[OrbitNode], time: GpsTime) -> Result<&[OrbitNode], Unavailable
     }
     let after = orbit.partition_point(|n| n.time <= time);
     let from = after.saturating_sub(NODES / 2 + usize::from(nearer_before(orbit, after, time))).min(orbit.len() - NODES);
-    let chosen = &orbit[from..from + NODES];
-    let gaps = chosen.windows(2).map(|w| w[1].time.seconds_since(w[0].time));
+    let nearest = &orbit[from..from + NODES];
+    let gaps = nearest.windows(2).map(|w| w[1].time.seconds_since(w[0].time));
     let (least, most) = gaps.fold((f64::INFINITY, 0.0_f64), |(least, most), gap| (least.min(gap), most.max(gap)));
     if !(least > 0.0 && most < 1.5 * least) {
         return Err(Unavailable::Invalid { field: "orbit gap", value: most, unit: "s", domain: "one step of the table" });
     }
-    Ok(chosen)
+    Ok(nearest)
 }
 
 /// Whether the node before a time is nearer than the one after it: an odd number of nodes is centred on the nearer.
@@ -84,7 +84,7 @@ fn nearer_before(orbit: &[OrbitNode], after: usize, time: GpsTime) -> bool {
 /// Position and velocity at `time` in axes that stand still and agree with the Earth-fixed ones at that instant.
 ///
 /// ```text
-/// P[i..j](0) = (x_j P[i..j-1] - x_i P[i+1..j]) / (x_j - x_i)       Neville, x counted from the time wanted
+/// P[i..j](0) = (x_j P[i..j-1] - x_i P[i+1..j]) / (x_j - x_i)       Neville, x counted from the time requested
 /// ```
 fn position(nodes: &[OrbitNode], time: GpsTime) -> (Vector3<f64>, Vector3<f64>) {
     let (mut x, mut p, mut v) = ([0.0; NODES], [Vector3::zeros(); NODES], [Vector3::zeros(); NODES]);

@@ -46,11 +46,11 @@ fn the_velocity_is_the_rate_of_the_position() {
 
 #[test]
 fn clocks_run_straight_between_records_and_carry_relativity() {
-    let found = at(13_335.0).unwrap();
-    let inertial = found.velocity_mps + EARTH_RATE * Vector3::new(-found.position.vector().y, found.position.vector().x, 0.0);
-    let relativity = -2.0 * found.position.vector().dot(&inertial) / (SPEED_OF_LIGHT_MPS * SPEED_OF_LIGHT_MPS);
+    let state = at(13_335.0).unwrap();
+    let inertial = state.velocity_mps + EARTH_RATE * Vector3::new(-state.position.vector().y, state.position.vector().x, 0.0);
+    let relativity = -2.0 * state.position.vector().dot(&inertial) / (SPEED_OF_LIGHT_MPS * SPEED_OF_LIGHT_MPS);
     // 444.5 records of 3 ns each.
-    assert!((found.clock_s - relativity - (1e-4 + 3e-9 * 444.5)).abs() < 1e-15);
+    assert!((state.clock_s - relativity - (1e-4 + 3e-9 * 444.5)).abs() < 1e-15);
     // IS-GPS-200: F e sqrt(A) sin E with F = -4.442807633e-10 reaches 4.58e-8 s for e = 0.02; somewhere on the table it does.
     let largest = (0..290).map(|k| at(90.0 * f64::from(k)).unwrap());
     let largest = largest.map(|s| (s.clock_s - 1e-4).abs()).fold(0.0, f64::max);

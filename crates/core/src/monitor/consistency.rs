@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, SMatrix, SVector};
 /// A direction whose variance is this share of its component's is rounding, not knowledge.
 const SINGULAR: f64 = 1e-12;
 
-/// e' V^-1 e: the normalised estimation error squared. Chi-square with three degrees of freedom for an honest covariance. `None` when the
+/// e' V^-1 e: the normalised estimation error squared. Chi-square with three degrees of freedom for a consistent covariance. `None` when the
 /// covariance is singular or anything is not a number.
 pub fn normalised_square<F: Frame>(error: &Displacement<F>, covariance: &Covariance<F>) -> Option<f64> {
     square(*error.vector(), *covariance.matrix())
@@ -20,7 +20,7 @@ pub fn normalised_square_horizontal<F: Frame>(error: &Displacement<F>, covarianc
     square(error.vector().xy(), block)
 }
 
-/// Probability integral transform of a normalised square: uniform for an honest covariance.
+/// Probability integral transform of a normalised square: uniform for a consistent covariance.
 pub fn integral_transform(square: f64, dimension: usize) -> f64 {
     chi_square_head(dimension as f64, square)
 }

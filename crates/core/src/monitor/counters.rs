@@ -19,7 +19,7 @@ pub struct Counters {
     pub n_unusable: u64,
     /// Usable epochs with a bound that is not a number or an RNP value outside (0, inf).
     pub n_nan: u64,
-    /// Exceedances that ended before the crew was told.
+    /// Exceedances that ended before the crew was alerted.
     pub n_withdrawn: u64,
     /// Cautions raised.
     pub n_cautions: u64,

@@ -106,8 +106,8 @@ impl Verdict {
         covariance: &Covariance<Enu>,
         worse: &Covariance<Enu>,
     ) -> Result<Option<Separation>, OutOfDomain> {
-        let found = Separation::of(difference, covariance, worse, self.risk)?;
-        match &found {
+        let apart = Separation::of(difference, covariance, worse, self.risk)?;
+        match &apart {
             Some(separation) if separation.exceeds() => (self.raised, self.agreed_since) = (true, None),
             Some(_) => {
                 let since = *self.agreed_since.get_or_insert(time);
@@ -115,7 +115,7 @@ impl Verdict {
             }
             None => self.agreed_since = None,
         }
-        Ok(found)
+        Ok(apart)
     }
 
     /// Whether the solutions disagree.
@@ -142,10 +142,10 @@ mod tests {
     #[test]
     fn the_limit_is_the_factor_times_the_deviation_along_the_difference() {
         let v = covariance(4.0, 0.0, 1.0);
-        let found = Separation::of(&enu(3.0, 0.0), &v, &v, Risk::SEPARATION).unwrap().unwrap();
-        assert!((found.square - 2.25).abs() < 1e-14 && (found.distance.m() - 3.0).abs() < 1e-15);
-        assert!((found.limit.m() - 11.355_385).abs() < 1e-6, "{}", found.limit.m());
-        assert!(!found.exceeds());
+        let separation = Separation::of(&enu(3.0, 0.0), &v, &v, Risk::SEPARATION).unwrap().unwrap();
+        assert!((separation.square - 2.25).abs() < 1e-14 && (separation.distance.m() - 3.0).abs() < 1e-15);
+        assert!((separation.limit.m() - 11.355_385).abs() < 1e-6, "{}", separation.limit.m());
+        assert!(!separation.exceeds());
         let north = Separation::of(&enu(0.0, -5.7), &v, &v, Risk::SEPARATION).unwrap().unwrap();
         assert!(north.exceeds() && (north.limit.m() - 5.677_692).abs() < 1e-6);
         // Missed with 1e-3: 3.090232 deviations more, along the major axis.
@@ -164,8 +164,8 @@ mod tests {
                 let (a, b) = (length * turn.cos(), length * turn.sin());
                 // Cholesky's factor of the covariance: 3; 2/3, sqrt(4 - 4/9).
                 let d = enu(3.0 * a, 2.0 / 3.0 * a + (4.0f64 - 4.0 / 9.0).sqrt() * b);
-                let found = Separation::of(&d, &v, &v, risk(1e-3)).unwrap().unwrap();
-                assert_eq!(found.exceeds(), beyond, "{u} {turn} {found:?}");
+                let separation = Separation::of(&d, &v, &v, risk(1e-3)).unwrap().unwrap();
+                assert_eq!(separation.exceeds(), beyond, "{u} {turn} {separation:?}");
             }
         }
     }

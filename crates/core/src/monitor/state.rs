@@ -290,7 +290,7 @@ impl StateTable {
     ///
     /// # Errors
     /// [`OutOfDomain`] unless `n >= 1` and the sum is finite and not negative.
-    pub fn given_residuals(&self, sum_of_squares_m2: f64, n: f64) -> Result<PerState, OutOfDomain> {
+    pub fn of_residuals(&self, sum_of_squares_m2: f64, n: f64) -> Result<PerState, OutOfDomain> {
         if !(n >= 1.0 && n.is_finite()) {
             return Err(OutOfDomain { argument: "n", value: n, unit: "1", domain: "[1, inf)" });
         }

@@ -37,11 +37,11 @@ fn most_likely(table: &StateTable, x: f64) -> usize {
 /// Where ln N(x; mu_i, sigma_i) = ln N(x; mu_j, sigma_j), x >= 0: a quadratic a x^2 + 2 h x + c = 0 for every pair.
 fn crossings(table: &StateTable) -> ([f64; MAX_CROSSINGS], usize) {
     let (mean, sigma) = (table.mean_m(), table.sigma_m());
-    let mut found = [0.0; MAX_CROSSINGS];
+    let mut places = [0.0; MAX_CROSSINGS];
     let mut count = 0;
     let mut keep = |x: f64| {
         if x >= 0.0 && x.is_finite() {
-            found[count] = x;
+            places[count] = x;
             count += 1;
         }
     };
@@ -56,7 +56,7 @@ fn crossings(table: &StateTable) -> ([f64; MAX_CROSSINGS], usize) {
             }
         }
     }
-    (found, count)
+    (places, count)
 }
 
 /// Roots of a y^2 + 2 h y + c, NaN where there is none; the form that does not cancel.

@@ -17,7 +17,7 @@ pub struct OutOfDomain {
 }
 
 impl OutOfDomain {
-    /// The confidence that was probably meant, where a risk was asked for.
+    /// The confidence that was probably meant, where a risk was requested.
     pub fn confidence(&self) -> Option<Confidence> {
         let risk = self.domain == Risk::DOMAIN;
         (risk && self.value > Risk::MOST && self.value < 1.0).then_some(Confidence(self.value))
@@ -34,7 +34,7 @@ impl fmt::Display for OutOfDomain {
 
 impl core::error::Error for OutOfDomain {}
 
-/// A confidence where a risk was asked for; it displays as the question whether its complement was meant.
+/// A confidence where a risk was requested; it displays as the question whether its complement was meant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Confidence(f64);
 
@@ -71,7 +71,7 @@ pub enum Unavailable {
     /// The epoch lacks a field.
     #[error("{method} needs {field}, which this epoch lacks")]
     Missing {
-        /// Who asked.
+        /// The caller.
         method: &'static str,
         /// For what.
         field: &'static str,

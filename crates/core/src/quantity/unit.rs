@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_confidence_in_the_place_of_a_risk_is_asked_for() {
+    fn a_confidence_in_the_place_of_a_risk_is_refused() {
         let words = |q: f64| Risk::new(q).unwrap_err().to_string();
         assert_eq!(words(0.99999), "risk = 0.99999 [1] is outside [1e-300, 0.5]: risk is 1 - confidence; did you mean 1e-05?");
         assert!(words(0.95).ends_with("did you mean 0.05?"), "{}", words(0.95));

@@ -149,8 +149,8 @@ impl Ephemeris {
 pub fn nearest(records: &[Ephemeris], time: GpsTime) -> Option<usize> {
     let after = records.partition_point(|r| r.orbit_time <= time);
     let gap = |k: &usize| (records[*k].orbit_time.nanoseconds() - time.nanoseconds()).unsigned_abs();
-    let found = [after.checked_sub(1), Some(after).filter(|k| *k < records.len())];
-    found.into_iter().flatten().filter(|k| records[*k].covers(time)).min_by_key(gap)
+    let neighbours = [after.checked_sub(1), Some(after).filter(|k| *k < records.len())];
+    neighbours.into_iter().flatten().filter(|k| records[*k].covers(time)).min_by_key(gap)
 }
 
 /// Broadcast state of a geostationary augmentation satellite, in Earth-fixed axes.

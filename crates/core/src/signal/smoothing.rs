@@ -150,10 +150,10 @@ mod tests {
         let mut sum = 0.0;
         for k in 0..60 {
             let range = 2.0e7 + 300.0 * k as f64;
-            let found = channel.smoothed(&HOW, at(k as f64), Metres::new(range + noise(k * k / 7)), Metres::new(range - 5.0e6), false);
+            let smoothed = channel.smoothed(&HOW, at(k as f64), Metres::new(range + noise(k * k / 7)), Metres::new(range - 5.0e6), false);
             sum += noise(k * k / 7);
             // Twenty additions of numbers near 2e7 lose some 1e-8.
-            assert!((found.m() - range - sum / (k + 1) as f64).abs() < 1e-6, "epoch {k}");
+            assert!((smoothed.m() - range - sum / (k + 1) as f64).abs() < 1e-6, "epoch {k}");
         }
     }
 

@@ -204,18 +204,18 @@ impl InSolution {
         for (clock, mean) in mean.iter_mut().enumerate() {
             *mean *= normal.share(clock);
         }
-        let mut found = Self { inverse, moved, mean, unseen: Matrix4::zeros(), estimate: Vector4::zeros(), statistic: 0.0 };
+        let mut solution = Self { inverse, moved, mean, unseen: Matrix4::zeros(), estimate: Vector4::zeros(), statistic: 0.0 };
         let (mut information, mut side, mut plain) = (Matrix4::identity(), Vector4::zeros(), 0.0);
         for r in ranges {
-            let left = found.left(normal, &r);
+            let left = solution.left(normal, &r);
             information += (r.row.weight * left) * left.transpose();
             side += (r.row.weight * r.residual) * left;
             plain += r.row.weight * r.residual * r.residual;
         }
-        found.unseen = information.cholesky()?.inverse();
-        found.estimate = found.unseen * side;
-        found.statistic = (plain - side.dot(&found.estimate)).max(0.0);
-        Some(found)
+        solution.unseen = information.cholesky()?.inverse();
+        solution.estimate = solution.unseen * side;
+        solution.statistic = (plain - side.dot(&solution.estimate)).max(0.0);
+        Some(solution)
     }
 
     /// Covariance of the position that comes of the common errors \[m²\].

@@ -62,7 +62,7 @@ fn what_is_left_to_a_satellite_grows_by_the_square_of_its_distance() {
 }
 
 #[test]
-fn the_less_is_said_of_the_ionosphere_the_larger_its_error() {
+fn the_less_is_known_of_the_ionosphere_the_larger_its_error() {
     let size = |ionosphere| CommonErrors::CALIBRATED.sizes(&over(45.0, ionosphere)).sigma;
     let (level, climate, nothing) =
         (size(Ionosphere::galileo([130.0, 0.0, 0.0]).unwrap()), size(Ionosphere::Climatology), size(Ionosphere::Uncorrected));
@@ -123,9 +123,9 @@ proptest! {
         let eigenvalues = n.symmetric_eigenvalues();
         prop_assume!(eigenvalues.max() < 1e6 * eigenvalues.min());
         let s = n.try_inverse().unwrap() * h.transpose() * w;
-        let found = InSolution::new(&normal, left(&normal, &rows, &columns).into_iter()).unwrap();
+        let small = InSolution::new(&normal, left(&normal, &rows, &columns).into_iter()).unwrap();
         let v = s * whole * s.transpose();
-        let ours = normal.covariance().unwrap().matrix() + found.covariance();
+        let ours = normal.covariance().unwrap().matrix() + small.covariance();
         prop_assert!((ours - v.fixed_view::<3, 3>(0, 0)).amax() < 1e-8 * v.amax());
 
         // r' A r with A = R^-1 - R^-1 H (H'R^-1 H)^-1 H' R^-1: the residuals with their full covariance.
@@ -138,11 +138,11 @@ proptest! {
             (r.transpose() * a * r)[0]
         };
         let q = dense(&|_| true);
-        prop_assert!((found.statistic - q).abs() < 1e-9 * (1.0 + q) * eigenvalues.max().max(1.0), "{} {q}", found.statistic);
+        prop_assert!((small.statistic - q).abs() < 1e-9 * (1.0 + q) * eigenvalues.max().max(1.0), "{} {q}", small.statistic);
         let all = left(&normal, &rows, &columns);
         for (i, range) in all.iter().enumerate() {
             let fallen = q - dense(&|k| k != i);
-            prop_assert!((found.fall(&normal, range) - fallen).abs() < 1e-6 * (1.0 + q), "{i}: {} {fallen}", found.fall(&normal, range));
+            prop_assert!((small.fall(&normal, range) - fallen).abs() < 1e-6 * (1.0 + q), "{i}: {} {fallen}", small.fall(&normal, range));
         }
     }
 }

@@ -40,7 +40,7 @@ const LEAST_DEVIATES: f64 = 2.0;
 const TAIL_DEVIATE_SQUARED: f64 = 19.511;
 const DEEPEST: usize = 6;
 
-/// One range, linearised at the position whose covariance is wanted.
+/// One range, linearised at the position whose covariance is requested.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observed {
     /// From the receiver to the satellite, east-north-up.

@@ -154,7 +154,7 @@ struct Solver<'a> {
     normal: Normal,
     /// Statistic and redundancy before anything was excluded.
     before: Option<(f64, usize)>,
-    /// What the residuals of the last step say; `None` until they are asked.
+    /// What the residuals of the last step say; `None` until they are examined.
     judged: Option<Judgement>,
 }
 
@@ -218,7 +218,7 @@ impl<'a> Solver<'a> {
         Self { ranges, seen, time, settings, at, modelled_at, clock_of, clocks: [0.0; CLOCKS], normal, before: None, judged: None }
     }
 
-    /// Rounds of least squares until the position stands still, which is told; robust rounds weigh large residuals down.
+    /// Rounds of least squares until the position stands still, which is reported; robust rounds weigh large residuals down.
     fn settle(&mut self, robust: bool) -> Result<bool, Unavailable> {
         self.judged = None;
         for round in 0..ROUNDS {

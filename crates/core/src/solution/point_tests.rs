@@ -86,7 +86,7 @@ fn exact_ranges_give_the_exact_position_and_clock() {
 }
 
 #[test]
-fn a_range_that_is_wrong_is_found_and_left_out() {
+fn a_range_that_is_wrong_is_identified_and_left_out() {
     let clean = full_sky();
     for (k, fault) in [(0, 1000.0), (1, -60.0), (3, 2e5)] {
         let mut ranges = clean.clone();
@@ -99,7 +99,7 @@ fn a_range_that_is_wrong_is_found_and_left_out() {
 }
 
 #[test]
-fn a_fault_that_cannot_be_found_is_told_and_widens_the_covariance() {
+fn a_fault_that_cannot_be_identified_is_reported_and_widens_the_covariance() {
     // Five satellites: one redundant, which sees a fault and cannot say where.
     let mut ranges: Vec<Range> = full_sky().into_iter().take(5).collect();
     let before = at(&ranges);

@@ -42,7 +42,7 @@ pub struct Subset {
     pub covariance: Covariance<Enu>,
 }
 
-/// How many subsets were asked for, and how many determine no position.
+/// How many subsets were requested, and how many determine no position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Walked {
     /// All.
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_solved_is_said() {
+    fn what_cannot_be_solved_is_reported() {
         let cone: Vec<_> = (0..6).map(|k| (60.0 * f64::from(k), 30.0, 1.0, 0.0)).collect();
         let none = &mut |_: &Subset| {};
         assert!(matches!(walk(&sky(&cone), 4, 2, none), Err(Unavailable::Singular { .. })));

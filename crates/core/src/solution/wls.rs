@@ -389,7 +389,7 @@ mod tests {
 
     #[test]
     fn satellites_on_one_cone_are_singular() {
-        // All at one elevation: height and clock cannot be told apart.
+        // All at one elevation: height and clock cannot be distinguished.
         let cone: [LineOfSight; 6] = core::array::from_fn(|i| sight(60.0 * i as f64, 30.0, 1.0, Constellation::Gps));
         assert!(matches!(covariance(cone.iter()), Err(Unavailable::Singular { .. })));
     }
@@ -403,9 +403,9 @@ mod tests {
             core::array::from_fn(|i| (sight(sky[i].0, sky[i].1, 1.0, Gps).direction.unit(), if i < 5 { Gps } else { Galileo }));
         let h = SMatrix::<f64, 8, 5>::from_fn(|i, j| if j < 3 { -units[i].0[j] } else { f64::from(u8::from((i < 5) == (j == 3))) });
         let whole = (h.transpose() * h).try_inverse().unwrap();
-        let found = dilution_of_units(units.iter().copied()).unwrap();
-        assert!((found.geometric - whole.trace().sqrt()).abs() < 1e-9 * found.geometric);
-        assert!((found.dilution.vertical - whole[(2, 2)].sqrt()).abs() < 1e-9 * found.geometric);
+        let dilution = dilution_of_units(units.iter().copied()).unwrap();
+        assert!((dilution.geometric - whole.trace().sqrt()).abs() < 1e-9 * dilution.geometric);
+        assert!((dilution.dilution.vertical - whole[(2, 2)].sqrt()).abs() < 1e-9 * dilution.geometric);
     }
 
     #[test]
@@ -435,9 +435,9 @@ mod tests {
             let eigenvalues = normal.symmetric_eigenvalues();
             prop_assume!(eigenvalues.max() < 1e6 * eigenvalues.min());
             let full = normal.try_inverse().unwrap();
-            let found = covariance(sights.iter()).unwrap();
-            let difference = (found.matrix() - full.fixed_view::<3, 3>(0, 0)).amax();
-            prop_assert!(difference < 1e-9 * found.matrix().amax(), "{difference}");
+            let solution = covariance(sights.iter()).unwrap();
+            let difference = (solution.matrix() - full.fixed_view::<3, 3>(0, 0)).amax();
+            prop_assert!(difference < 1e-9 * solution.matrix().amax(), "{difference}");
         }
 
         // The rebuilt condition is that of H'WH, the square of the singular values' ratio.

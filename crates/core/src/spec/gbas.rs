@@ -11,13 +11,13 @@ pub struct Mark {
     /// The number's name.
     pub name: &'static str,
     /// How we hold it.
-    pub held: Provenance,
+    pub provenance: Provenance,
     /// Where from, or by which fit.
     pub why: &'static str,
 }
 
-const fn mark(name: &'static str, held: Provenance, why: &'static str) -> Mark {
-    Mark { name, held, why }
+const fn mark(name: &'static str, provenance: Provenance, why: &'static str) -> Mark {
+    Mark { name, provenance, why }
 }
 
 /// `sqrt((a0 + a1 exp(-E / theta0))^2 / M + a2^2)`: one branch of a ground accuracy designator.
@@ -320,7 +320,7 @@ mod tests {
     #[test]
     fn every_inferred_number_says_how_it_was_concluded() {
         let all = ERROR_MODELS.iter().flat_map(|m| m.marks).chain(MONITOR_CURVES.iter().flat_map(|m| m.marks)).chain(CARRIER_SINGLE.marks);
-        let inferred = all.filter(|m| m.held == Provenance::Inferred);
+        let inferred = all.filter(|m| m.provenance == Provenance::Inferred);
         assert!(inferred.clone().count() >= 5);
         assert!(inferred.into_iter().all(|m| m.why.len() > 10));
     }

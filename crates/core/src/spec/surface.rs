@@ -84,8 +84,8 @@ pub struct FaultRates {
     pub marks: &'static [Mark],
 }
 
-const fn mark(name: &'static str, held: Provenance, why: &'static str) -> Mark {
-    Mark { name, held, why }
+const fn mark(name: &'static str, provenance: Provenance, why: &'static str) -> Mark {
+    Mark { name, provenance, why }
 }
 
 const INTEGRITY: Mark =

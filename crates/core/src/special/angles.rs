@@ -54,10 +54,10 @@ mod tests {
     proptest! {
         #[test]
         fn angles_are_those_of_the_library(y in -10.0..10.0f64, x in -10.0..10.0f64) {
-            let found = atan2(&[y, -y, x, 0.0], &[x, x, -y, y]);
-            for (found, want) in found.into_iter().zip([y.atan2(x), (-y).atan2(x), x.atan2(-y), 0.0_f64.atan2(y)]) {
+            let angles = atan2(&[y, -y, x, 0.0], &[x, x, -y, y]);
+            for (angles, want) in angles.into_iter().zip([y.atan2(x), (-y).atan2(x), x.atan2(-y), 0.0_f64.atan2(y)]) {
                 // Two units in the last place of pi.
-                prop_assert!((found - want).abs() < 1e-15, "{found} {want}");
+                prop_assert!((angles - want).abs() < 1e-15, "{angles} {want}");
             }
         }
 

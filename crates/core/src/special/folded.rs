@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn the_risk_at_the_root_is_the_risk_asked_for() {
+    fn the_risk_at_the_root_is_the_risk_requested() {
         for q in [1e-12, 1e-9, 1e-5, 0.05, 0.3, 0.5] {
             let law = FoldedQuantile::new(Risk::new(q).unwrap());
             for step in 0..400 {

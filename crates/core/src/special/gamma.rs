@@ -114,16 +114,16 @@ mod tests {
     #[test]
     fn tails_meet_forty_digit_values() {
         for (dof, x, tail) in TAILS {
-            let found = chi_square_tail(dof, x);
-            assert!((found / tail - 1.0).abs() <= 1e-12, "dof {dof}, x {x}: {found} for {tail}");
+            let computed = chi_square_tail(dof, x);
+            assert!((computed / tail - 1.0).abs() <= 1e-12, "dof {dof}, x {x}: {computed} for {tail}");
         }
     }
 
     #[test]
     fn two_degrees_are_an_exponential() {
         for x in [1e-8, 0.3, 2.0, 40.0, 600.0] {
-            let found = chi_square_tail(2.0, x);
-            assert!((found / exp(-0.5 * x) - 1.0).abs() <= 1e-13, "{x}: {found}");
+            let tail = chi_square_tail(2.0, x);
+            assert!((tail / exp(-0.5 * x) - 1.0).abs() <= 1e-13, "{x}: {tail}");
         }
     }
 

@@ -91,9 +91,9 @@ mod tests {
     #[test]
     fn heads_meet_forty_digit_values() {
         for (dof, lambda, x, head) in HEADS {
-            let found = noncentral_head(dof, lambda, x);
+            let computed = noncentral_head(dof, lambda, x);
             // Logarithms of terms near -650 lose three digits.
-            assert!((found / head - 1.0).abs() <= 1e-12, "dof {dof}, lambda {lambda}, x {x}: {found:e} for {head:e}");
+            assert!((computed / head - 1.0).abs() <= 1e-12, "dof {dof}, lambda {lambda}, x {x}: {computed:e} for {head:e}");
         }
     }
 
@@ -101,8 +101,8 @@ mod tests {
     fn one_degree_is_a_normal_variable_in_an_interval() {
         for (bias, t) in [(0.0, 5.0), (0.3, 2.0), (7.0, 4.5), (20.0, 5.1)] {
             let interval = super::super::normal::tail(bias - t) - super::super::normal::tail(bias + t);
-            let found = noncentral_head(1.0, bias * bias, t * t);
-            assert!((found / interval - 1.0).abs() <= 1e-12, "{bias}, {t}: {found:e} for {interval:e}");
+            let head = noncentral_head(1.0, bias * bias, t * t);
+            assert!((head / interval - 1.0).abs() <= 1e-12, "{bias}, {t}: {head:e} for {interval:e}");
         }
     }
 

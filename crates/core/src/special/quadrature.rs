@@ -71,17 +71,17 @@ mod tests {
     #[test]
     fn powers_up_to_the_degree_of_the_rule_are_exact() {
         for degree in 0..=63 {
-            let [found] = integrate(0.0, 1.0, 1, |x: f64| [x.powi(degree)]);
+            let [integral] = integrate(0.0, 1.0, 1, |x: f64| [x.powi(degree)]);
             // 64 products of up to 63 factors: a few dozen roundings.
-            assert!((found * f64::from(degree + 1) - 1.0).abs() < 64.0 * f64::EPSILON, "degree {degree}: {found}");
+            assert!((integral * f64::from(degree + 1) - 1.0).abs() < 64.0 * f64::EPSILON, "degree {degree}: {integral}");
         }
     }
 
     #[test]
     fn a_kink_at_a_break_costs_nothing() {
-        let [found] = integrate_broken(-1.0, 2.0, [0.25, f64::NAN, -9.0], 1.0, |x| [(x - 0.25).abs()]);
+        let [integral] = integrate_broken(-1.0, 2.0, [0.25, f64::NAN, -9.0], 1.0, |x| [(x - 0.25).abs()]);
         let exact = 0.5 * (1.25 * 1.25 + 1.75 * 1.75);
-        assert!((found - exact).abs() < 1e-14, "{found}");
+        assert!((integral - exact).abs() < 1e-14, "{integral}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Unix compress (`.Z`): codes of growing width that stand for strings seen before (T. Welch 1984; layout of ncompress, provenance: standard).
 //!
-//! The format has no length and no checksum: a file cut between two codes cannot be told from a whole one.
+//! The format has no length and no checksum: a file cut between two codes cannot be distinguished from a whole one.
 
 /// Codes of single bytes.
 const BYTES: usize = 256;

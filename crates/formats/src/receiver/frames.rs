@@ -30,7 +30,7 @@ impl<'a> Frame<'a> {
 }
 
 /// A frame, or what began as one.
-pub(super) struct Found<'a> {
+pub(super) struct Framed<'a> {
     /// Byte at which it begins.
     pub(super) at: usize,
     /// Its number, from 1.
@@ -53,15 +53,15 @@ impl<'a> Frames<'a> {
 }
 
 impl<'a> Iterator for Frames<'a> {
-    type Item = Found<'a>;
+    type Item = Framed<'a>;
 
-    fn next(&mut self) -> Option<Found<'a>> {
+    fn next(&mut self) -> Option<Framed<'a>> {
         let (Place { at, end, .. }, frame) = self.places.by_ref().find_map(|place| match place.frame {
             Ok(frame) => Frame::of(frame).map(|frame| (place, Ok(frame))),
             Err(Damage { reason, .. }) => Some((place, Err(reason))),
         })?;
         self.number += 1;
-        Some(Found { at, number: self.number, length: if frame.is_ok() { end - at } else { 0 }, frame })
+        Some(Framed { at, number: self.number, length: if frame.is_ok() { end - at } else { 0 }, frame })
     }
 }
 

@@ -35,7 +35,7 @@ pub struct Recording {
 
 /// Whether the bytes are a log with raw data: a whole frame of one of the kinds that are read stands in them.
 pub fn is_raw(bytes: &[u8]) -> bool {
-    Frames::new(bytes).any(|found| found.frame.is_ok_and(|f| f.is_raw()))
+    Frames::new(bytes).any(|item| item.frame.is_ok_and(|f| f.is_raw()))
 }
 
 /// Read a log, plain (see [`crate::packed::unpack`]).
@@ -46,10 +46,10 @@ pub fn is_raw(bytes: &[u8]) -> bool {
 pub fn read(bytes: &[u8]) -> Result<Recording, Unreadable> {
     let (mut table, mut subframes, mut n_raw) = (Table::default(), Subframes::default(), 0_usize);
     let mut outside = bytes.len();
-    for found in Frames::new(bytes) {
-        table.begin_frame(found.number, found.at);
-        outside -= found.length;
-        match found.frame {
+    for item in Frames::new(bytes) {
+        table.begin_frame(item.number, item.at);
+        outside -= item.length;
+        match item.frame {
             Ok(frame) => {
                 n_raw += usize::from(frame.is_raw());
                 match frame {
@@ -57,7 +57,7 @@ pub fn read(bytes: &[u8]) -> Result<Recording, Unreadable> {
                     Frame::Sbf { block, body } => sbf::take(block, body, &mut table, &mut subframes),
                 }
             }
-            Err(reason) if measures(bytes, found.at) => table.lose(reason),
+            Err(reason) if measures(bytes, item.at) => table.lose(reason),
             Err(reason) => table.refuse("frame", reason),
         }
     }
@@ -71,7 +71,7 @@ pub fn read(bytes: &[u8]) -> Result<Recording, Unreadable> {
     Ok(Recording { observations: table.finish(), navigation, messages })
 }
 
-/// Measurements of an observation file or of a raw log, told apart by their content.
+/// Measurements of an observation file or of a raw log, distinguished by their content.
 ///
 /// # Errors
 /// [`Unreadable`] as [`crate::rinex::read_observations`] and [`read`], and for a log without one epoch.
@@ -86,7 +86,7 @@ pub fn read_observations(bytes: &[u8]) -> Result<Observations, Unreadable> {
     Ok(observations)
 }
 
-/// Orbits and clocks of a navigation file or of the subframes in a raw log, told apart by their content.
+/// Orbits and clocks of a navigation file or of the subframes in a raw log, distinguished by their content.
 ///
 /// # Errors
 /// [`Unreadable`] as [`crate::rinex::read_navigation`] and [`read`].

@@ -54,12 +54,12 @@ fn epoch(body: &[u8], time: GpsTime, table: &mut Table) -> Option<()> {
         table.refuse("CommonFlags", "the measurements are scrambled");
         return Some(());
     }
-    let (mut at, mut found) = (BODY + 6, Vec::new());
+    let (mut at, mut measurements) = (BODY + 6, Vec::new());
     for _ in 0..count {
         let first = body.get(at..at + first_bytes)?;
         at += first_bytes;
         let master = Master::new(first)?;
-        found.extend(master.as_ref().and_then(|m| m.measurement(table)));
+        measurements.extend(master.as_ref().and_then(|m| m.measurement(table)));
         if master.is_none() {
             table.skip("satellites or signals of other systems");
         }
@@ -68,13 +68,13 @@ fn epoch(body: &[u8], time: GpsTime, table: &mut Table) -> Option<()> {
             at += second_bytes;
             if let Some(master) = &master {
                 match master.slave(second, table)? {
-                    Some(slave) => found.push(slave),
+                    Some(slave) => measurements.push(slave),
                     None => table.skip("signals without a place in RINEX"),
                 }
             }
         }
     }
-    table.epoch(time, found);
+    table.epoch(time, measurements);
     Some(())
 }
 

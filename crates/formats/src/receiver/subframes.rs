@@ -47,14 +47,14 @@ impl Subframes {
             self.ionosphere(klobuchar, subframe.end);
             self.navigation.leap_seconds.get_or_insert(leap_seconds);
         }
-        let found = self.gps.entry(satellite).or_default().take(satellite, &subframe);
-        keep(&mut self.navigation.ephemerides, found)
+        let ephemeris = self.gps.entry(satellite).or_default().take(satellite, &subframe);
+        keep(&mut self.navigation.ephemerides, ephemeris)
     }
     /// The two pages of a Galileo I/NAV word; the odd one begins at bit `odd`.
     pub(super) fn galileo(&mut self, satellite: SatelliteId, pages: &[u8; 32], odd: usize, near: GpsTime) -> Result<(), Reason> {
         let Some(word) = inav::word(pages, odd)? else { return Ok(()) };
-        let found = self.galileo.entry(satellite).or_default().take(satellite, &word, near);
-        keep(&mut self.navigation.ephemerides, found)
+        let ephemeris = self.galileo.entry(satellite).or_default().take(satellite, &word, near);
+        keep(&mut self.navigation.ephemerides, ephemeris)
     }
     /// 250 bits of an SBAS message that ended at the second nearest to `near`.
     pub(super) fn sbas(&mut self, satellite: SatelliteId, bytes: [u8; BLOCK_BYTES], near: GpsTime) -> Result<(), Reason> {
@@ -71,12 +71,12 @@ impl Subframes {
 }
 
 /// A record once, not at every repetition.
-fn keep(records: &mut Vec<Ephemeris>, found: Option<Result<Ephemeris, Reason>>) -> Result<(), Reason> {
-    let Some(found) = found.transpose()? else { return Ok(()) };
-    let same = |e: &Ephemeris| Ephemeris { sent: found.sent, ..*e } == found;
+fn keep(records: &mut Vec<Ephemeris>, ephemeris: Option<Result<Ephemeris, Reason>>) -> Result<(), Reason> {
+    let Some(ephemeris) = ephemeris.transpose()? else { return Ok(()) };
+    let same = |e: &Ephemeris| Ephemeris { sent: ephemeris.sent, ..*e } == ephemeris;
     // Repetitions stand near the end: every satellite adds one record in two hours.
     if !records.iter().rev().any(same) {
-        records.push(found);
+        records.push(ephemeris);
     }
     Ok(())
 }

@@ -139,9 +139,9 @@ fn septentrio_measurements_are_put_together_from_their_parts() {
         -1234.5 * 1227.6 / 1575.42 + 19.6608 + 0.001,
         35.0,
     ];
-    for (found, wanted) in r.values(0).iter().zip(expected) {
+    for (value, part) in r.values(0).iter().zip(expected) {
         // Doubles of 1e8 cycles: 1.5e-8 each, a few operations.
-        assert!((found - wanted).abs() < 1e-7, "{found} {wanted}");
+        assert!((value - part).abs() < 1e-7, "{value} {part}");
     }
     assert_eq!((r.indicator[1], r.skipped["satellites or signals of other systems"]), (0x20, 1));
 }

@@ -43,18 +43,18 @@ fn rawx(p: &[u8], table: &mut Table) -> Option<()> {
         table.refuse("rcvTow, week", "not a time: the receiver does not know it yet");
         return Some(());
     };
-    let mut found = Vec::with_capacity(usize::from(count));
+    let mut measurements = Vec::with_capacity(usize::from(count));
     for k in 0..usize::from(count) {
         let m = p.get(16 + 32 * k..48 + 32 * k)?;
         let (system, number) = (u8_at(m, 20)?, u8_at(m, 21)?);
         let signal = if single { 0 } else { u8_at(m, 22)? };
         match (satellite(system, number), signal_of(system, signal)) {
-            (Some(satellite), Some(signal)) => found.extend(measurement(m, satellite, signal, table)),
+            (Some(satellite), Some(signal)) => measurements.extend(measurement(m, satellite, signal, table)),
             (Some(_), None) => table.skip(&format!("signal {signal} of system {system}")),
             (None, _) => table.skip(&skipped(system)),
         }
     }
-    table.epoch(time, found);
+    table.epoch(time, measurements);
     Some(())
 }
 
@@ -128,7 +128,7 @@ fn raw(p: &[u8], table: &mut Table) -> Option<()> {
         table.refuse("iTOW, week", "not a time: the receiver does not know it yet");
         return Some(());
     };
-    let mut found = Vec::new();
+    let mut messages = Vec::new();
     for k in 0..usize::from(count) {
         let m = p.get(8 + 24 * k..32 + 24 * k)?;
         let (phase, range_m, doppler, number) = (f64_at(m, 0)?, f64_at(m, 8)?, f64::from(f32_at(m, 16)?), u8_at(m, 20)?);
@@ -139,7 +139,7 @@ fn raw(p: &[u8], table: &mut Table) -> Option<()> {
         };
         // Quality 4 and above: code locked; 6 and above: carrier locked.
         let range_m = checked_range((quality >= 4 && range_m != 0.0).then_some(range_m), table);
-        found.push(Measurement {
+        messages.push(Measurement {
             satellite,
             signal: *b"1C",
             range_m,
@@ -149,7 +149,7 @@ fn raw(p: &[u8], table: &mut Table) -> Option<()> {
             indicator: (lock & 0b11) << 4,
         });
     }
-    table.epoch(time, found);
+    table.epoch(time, messages);
     Some(())
 }
 

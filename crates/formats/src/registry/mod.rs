@@ -1,7 +1,7 @@
 //! The formats of files: one list of what is recognised, what it holds, and what is refused by name.
 //!
-//! A file is of the first format of [`FORMATS`] that recognises it. Most are told from their content; a few have no sign of their own and are
-//! told from the end of their name.
+//! A file is of the first format of [`FORMATS`] that recognises it. Most are recognised by their content; a few have no sign of their own and are
+//! recognised by the end of their name.
 
 mod foreign;
 mod signs;

@@ -76,10 +76,10 @@ fn header(lines: &mut Lines<'_>, wide: bool, p: &mut Precise) -> Result<Scale, U
     Err(Unreadable::whole("the header has no END OF HEADER"))
 }
 
-type Found = Option<(navbound_core::signal::SatelliteId, ClockNode)>;
+type Row = Option<(navbound_core::signal::SatelliteId, ClockNode)>;
 
 /// `AS G01  2020  6 25  0  0  0.000000  2   -0.884707516318E-03 ...`; `None` for a satellite of a system that is not read.
-fn record(line: &[u8], scale: Scale) -> Result<Found, (&'static str, &'static str)> {
+fn record(line: &[u8], scale: Scale) -> Result<Row, (&'static str, &'static str)> {
     // Version 3.04 writes names of nine characters, older ones of four: what follows moves by five columns.
     let shift = usize::from(columns(line, 8, 12).trim_ascii().is_empty()) * 5;
     let satellite = match satellite(columns(line, 3, 6), Constellation::Gps) {

@@ -45,8 +45,8 @@ pub(crate) fn label(line: &[u8]) -> &[u8] {
 /// Version and the letter of the file's type, from the first line.
 pub(crate) fn version(line: &[u8]) -> Result<(f64, u8, u8), Unreadable> {
     if label(line) != b"RINEX VERSION / TYPE" {
-        let found: String = text(line, 0, 80).chars().take(60).collect();
-        return Err(Unreadable::at(1, format!("not a RINEX file: the first line does not end in 'RINEX VERSION / TYPE' but is '{found}'")));
+        let first: String = text(line, 0, 80).chars().take(60).collect();
+        return Err(Unreadable::at(1, format!("not a RINEX file: the first line does not end in 'RINEX VERSION / TYPE' but is '{first}'")));
     }
     let version = decimal(columns(line, 0, 9)).or_zero().unwrap_or(f64::NAN);
     if !(2.0..5.0).contains(&version) {

@@ -156,8 +156,8 @@ fn factors(draft: &Draft, o: &Observations) -> [Vec<(usize, f64)>; Constellation
         let Some(constellation) = Constellation::from_letter(*letter) else { continue };
         let codes = o.codes[constellation.index()].iter().enumerate();
         // No names: every code of the system.
-        let chosen = codes.filter(|(_, c)| names.is_empty() || names.contains(c)).map(|(k, _)| (k, *factor));
-        scale[constellation.index()].extend(chosen);
+        let selected = codes.filter(|(_, c)| names.is_empty() || names.contains(c)).map(|(k, _)| (k, *factor));
+        scale[constellation.index()].extend(selected);
     }
     scale
 }

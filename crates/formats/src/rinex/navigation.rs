@@ -298,15 +298,15 @@ impl Navigation {
         }
     }
 
-    fn keep_kepler(&mut self, found: Result<Ephemeris, Refusal>) {
-        match found {
+    fn keep_kepler(&mut self, parsed: Result<Ephemeris, Refusal>) {
+        match parsed {
             Ok(ephemeris) => self.ephemerides.push(ephemeris),
             Err(refusal) => self.refused.push(refusal),
         }
     }
 
-    fn keep(&mut self, found: Result<GeoEphemeris, Refusal>) {
-        match found {
+    fn keep(&mut self, parsed: Result<GeoEphemeris, Refusal>) {
+        match parsed {
             Ok(ephemeris) => self.geostationary.push(ephemeris),
             Err(refusal) => self.refused.push(refusal),
         }

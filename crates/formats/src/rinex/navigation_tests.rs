@@ -47,7 +47,7 @@ fn a_gps_record_arrives_whole() {
     assert_eq!((n.leap_seconds, n.refused.len()), (Some(18), 0));
 }
 
-/// Version 3: a header does not say when, the orbits beneath it do. Version 4 dates each message; the nearest serves, within the time asked.
+/// Version 3: a header does not say when, the orbits beneath it do. Version 4 dates each message; the nearest serves, within the time requested.
 #[test]
 fn messages_of_the_ionosphere_are_dated() {
     let galileo = "GAL    2.8250e+01  7.8125e-03  1.0071e-02  0.0000E+00       IONOSPHERIC CORR    \n";
@@ -128,7 +128,7 @@ fn velocity_is_the_change_of_position_and_drift_that_of_the_clock() {
 }
 
 #[test]
-fn weeks_are_found_without_their_number() {
+fn weeks_are_resolved_without_their_number() {
     let near = GpsTime::from_nanoseconds(2111 * 604_800_000_000_000 + 10_000_000_000);
     let before = nearest_week(604_790.0, near, 0).unwrap();
     assert_eq!(near.seconds_since(before), 20.0);
@@ -165,7 +165,7 @@ fn files_that_are_not_navigation_files_are_refused_by_name() {
 }
 
 #[test]
-fn the_nearest_fresh_record_is_chosen() {
+fn the_nearest_fresh_record_is_selected() {
     let later = G01.replace("2019 04 27 12 00 00", "2019 04 27 14 00 00").replace("5.616000000000D+05", "5.688000000000D+05");
     let n = read(&format!("{HEADER}{G01}{later}"));
     let records = n.of(SatelliteId { constellation: Constellation::Gps, number: 1 });

@@ -197,17 +197,17 @@ impl Observations {
     pub(crate) fn skip(&mut self, kind: &str, n: usize) {
         *self.skipped.entry(kind.to_owned()).or_default() += n;
     }
-    pub(crate) fn refuse(&mut self, line: usize, field: &str, reason: &str, found: &[u8]) {
+    pub(crate) fn refuse(&mut self, line: usize, field: &str, reason: &str, bytes: &[u8]) {
         self.n_refused += 1;
         if self.refused.len() < REFUSALS_KEPT {
-            let text = text(found, 0, 80);
+            let text = text(bytes, 0, 80);
             self.refused.push(Refusal { line, field: field.to_owned(), reason: reason.to_owned(), text });
         }
     }
     /// Refuse a whole epoch.
-    pub(crate) fn lose(&mut self, line: usize, reason: &str, found: &[u8]) {
+    pub(crate) fn lose(&mut self, line: usize, reason: &str, bytes: &[u8]) {
         self.n_lost_epochs += 1;
-        self.refuse(line, "epoch", reason, found);
+        self.refuse(line, "epoch", reason, bytes);
     }
     fn reserve(&mut self, values: usize) {
         self.value.reserve(values);

@@ -99,7 +99,7 @@ fn errors_name_line_field_and_text() {
 }
 
 #[test]
-fn an_epoch_cut_short_is_left_out_and_told() {
+fn an_epoch_cut_short_is_left_out_and_reported() {
     let cut = V3.replace("C11  22238239.302                3      -1212.376          20.000\n", "");
     let o = read(&cut);
     assert_eq!((o.n_epochs(), o.n_refused, o.n_lost_epochs, o.satellite.len()), (1, 1, 1, 1));
@@ -213,8 +213,8 @@ fn an_epoch_out_of_the_order_of_time_is_refused_alone_with_its_line() {
 fn a_range_that_no_receiver_measures_and_a_number_that_no_satellite_has_are_refused() {
     let o = read(&V3.replace("  21600712.022   ", "9999999999.999   ").replace("G19", "G99"));
     assert!(o.values(0)[0].is_nan() && o.values(0)[1] == 113_512_506.876, "the phase stays");
-    let found: Vec<_> = o.refused.iter().map(|r| (r.field.as_str(), r.line)).collect();
-    assert!(found.contains(&("satellite", 14)) && found.iter().any(|(field, _)| *field == "C1C"), "{found:?}");
+    let refused: Vec<_> = o.refused.iter().map(|r| (r.field.as_str(), r.line)).collect();
+    assert!(refused.contains(&("satellite", 14)) && refused.iter().any(|(field, _)| *field == "C1C"), "{refused:?}");
     assert_eq!((o.n_refused, o.satellites(0).len()), (2, 2));
 }
 

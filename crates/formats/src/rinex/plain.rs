@@ -73,7 +73,7 @@ impl Head {
     }
 }
 
-/// Lines of an event, or satellites of a cycle-slip record: counted. Codes that change in the middle of a file are told.
+/// Lines of an event, or satellites of a cycle-slip record: counted. Codes that change in the middle of a file are reported.
 pub(super) fn event(lines: &mut Lines<'_>, head: &Head, n_lines: usize, o: &mut Observations) {
     o.skip(&format!("event {}", head.flag), 1);
     for _ in 0..n_lines {
@@ -231,8 +231,8 @@ pub(super) fn second(mut lines: Lines<'_>, heading: &Heading, o: &mut Observatio
 }
 
 fn second_epoch(lines: &mut Lines<'_>, head: &Head, satellites: &[Result<SatelliteId, u8>], n_codes: usize, o: &mut Observations) {
-    for found in satellites {
-        match found {
+    for each in satellites {
+        match each {
             Ok(satellite) => o.begin_satellite(*satellite),
             Err(letter) => unread(*letter, b"", lines.number, o),
         }
@@ -242,7 +242,7 @@ fn second_epoch(lines: &mut Lines<'_>, head: &Head, satellites: &[Result<Satelli
                 o.abandon_epoch();
                 return;
             };
-            if found.is_ok() {
+            if each.is_ok() {
                 fields(line, (n_codes - first).min(5), lines.number, o);
             }
         }

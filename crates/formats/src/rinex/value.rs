@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_found_in_files() {
+    fn forms_seen_in_files() {
         for (text, value) in [
             ("  21600712.022", 21_600_712.022),
             (" 113512506.876", 113_512_506.876),
@@ -113,8 +113,8 @@ mod tests {
         for bad in
             ["  216 0712.022", "  21600712.0x2", "  -      1.000", "#####12345.678", "  21600712022 ", "  1.600712.022", "  /1600712.022"]
         {
-            let found = read(bad);
-            assert_eq!(found, slow(bad.as_bytes()), "{bad}");
+            let parsed = read(bad);
+            assert_eq!(parsed, slow(bad.as_bytes()), "{bad}");
         }
         assert_eq!(read("#####12345.678"), None);
         assert_eq!(read("  216 0712.022"), None);

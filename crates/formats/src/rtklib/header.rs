@@ -40,7 +40,7 @@ pub struct Layout {
     pub levels: Option<[usize; 2]>,
 }
 
-/// Fields are separated by blanks, tabs, commas or semicolons, whatever the writer was told; none of them occurs inside a field.
+/// Fields are separated by blanks, tabs, commas or semicolons, whatever the settings of the writer; none of them occurs inside a field.
 pub(super) fn fields(line: &str) -> impl Iterator<Item = &str> {
     line.split([' ', '\t', ',', ';']).filter(|f| !f.is_empty())
 }
@@ -102,12 +102,12 @@ fn columns(names: &[&str], scale: Scale, base: Option<[f64; 3]>) -> Result<Layou
     // Date and time of day stand under one name; so do degrees, minutes and seconds.
     let extra = 1 + if form == Form::Sexagesimal { 4 } else { 0 };
     let find = |name: &str| names.iter().position(|n| *n == name).map(|i| i + extra);
-    let all = |wanted: [&str; 6]| -> Option<[usize; 6]> {
-        let mut found = [0; 6];
-        for (slot, name) in found.iter_mut().zip(wanted) {
+    let all = |titles: [&str; 6]| -> Option<[usize; 6]> {
+        let mut columns = [0; 6];
+        for (slot, name) in columns.iter_mut().zip(titles) {
             *slot = find(name)?;
         }
-        Some(found)
+        Some(columns)
     };
     let roots = match form {
         Form::Degrees | Form::Sexagesimal => all(["sdn(m)", "sde(m)", "sdu(m)", "sdne(m)", "sdeu(m)", "sdun(m)"]),

@@ -1,6 +1,6 @@
 //! SBAS message logs to 250-bit blocks: EMS text, RTKLIB `.sbs`, RINEX-B, raw logs of receivers; plain or packed by gzip.
 //!
-//! Logs differ in the instant they write beside a message. A reader is told ([`Tag`]), says what it assumed ([`Log::tag`]), and hands on one
+//! Logs differ in the instant they write beside a message. A reader takes it as input ([`Tag`]), says what it assumed ([`Log::tag`]), and hands on one
 //! thing only: when the message ended.
 
 mod line;
@@ -107,11 +107,11 @@ pub fn read(bytes: &[u8], tag: Option<Tag>) -> Result<Log, Unreadable> {
 
 /// The messages of a raw log; their ends follow from the measurements beside them.
 fn frames(plain: &[u8], log: &mut Log) -> Result<(), Unreadable> {
-    let found = receiver::read(plain)?;
-    if found.messages.is_empty() {
+    let receiver_log = receiver::read(plain)?;
+    if receiver_log.messages.is_empty() {
         return Err(Unreadable::whole("a receiver's log without one SBAS L1 message that is dated"));
     }
-    (log.messages, log.refused) = (found.messages, found.observations.refused);
+    (log.messages, log.refused) = (receiver_log.messages, receiver_log.observations.refused);
     Ok(())
 }
 

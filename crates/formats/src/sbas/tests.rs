@@ -44,8 +44,8 @@ fn damaged_lines_are_counted_with_their_reason() {
     let short = EMS.replace("2580", "25");
     let log = read(format!("{EMS}{flipped}{odd}{month}{short}\n").as_bytes(), None).unwrap();
     assert_eq!(log.messages.len(), 1);
-    let found: Vec<_> = log.refused.iter().map(|r| (r.line, r.field.as_str())).collect();
-    assert_eq!(found, [(2, "message"), (3, "type"), (4, "date"), (5, "message")]);
+    let refused: Vec<_> = log.refused.iter().map(|r| (r.line, r.field.as_str())).collect();
+    assert_eq!(refused, [(2, "message"), (3, "type"), (4, "date"), (5, "message")]);
     assert!(log.refused[0].reason.contains("parity"), "{}", log.refused[0].reason);
 }
 

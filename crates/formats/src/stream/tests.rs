@@ -6,8 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Frames and damage as text, so that they outlive the bytes.
-fn named(found: &Result<Frame<'_>, Damage>) -> String {
-    match found {
+fn named(result: &Result<Frame<'_>, Damage>) -> String {
+    match result {
         Ok(frame) => format!("{frame:?}"),
         Err(damage) => damage.reason.to_owned(),
     }
@@ -17,11 +17,11 @@ fn cut_by(protocol: Protocol, bytes: &[u8], mut next: impl FnMut() -> usize) -> 
     let (mut framer, mut seen, mut at) = (Framer::new(protocol), Vec::new(), 0);
     while at < bytes.len() {
         let end = (at + next().max(1)).min(bytes.len());
-        framer.push(&bytes[at..end], &mut |found| seen.push(named(&found)));
+        framer.push(&bytes[at..end], &mut |item| seen.push(named(&item)));
         assert!(framer.rest().0.len() <= LONGEST_FRAME, "{} bytes are kept", framer.rest().0.len());
         at = end;
     }
-    framer.flush(&mut |found| seen.push(named(&found)));
+    framer.flush(&mut |item| seen.push(named(&item)));
     assert!(framer.rest().0.is_empty());
     seen
 }
@@ -110,26 +110,26 @@ fn an_unfinished_frame_is_kept_and_is_damage_only_at_the_end() {
     let frame = [0xb5, 0x62, 0x05, 0x01, 2, 0, 0x06, 0x01, 0x0f, 0x38];
     for end in 1..frame.len() {
         let (mut framer, mut seen) = (Framer::new(Protocol::Receiver), Vec::new());
-        framer.push(&frame[..end], &mut |found| seen.push(named(&found)));
+        framer.push(&frame[..end], &mut |item| seen.push(named(&item)));
         assert!(seen.is_empty(), "{end} bytes");
-        framer.push(&frame[end..], &mut |found| seen.push(named(&found)));
+        framer.push(&frame[end..], &mut |item| seen.push(named(&item)));
         assert_eq!(seen.len(), 1, "{end} bytes");
         assert!(seen[0].contains("Ubx"), "{seen:?}");
         let mut cut = Framer::new(Protocol::Receiver);
         let mut damage = Vec::new();
         cut.push(&frame[..end], &mut |_| ());
-        cut.flush(&mut |found| damage.push(named(&found)));
+        cut.flush(&mut |item| damage.push(named(&item)));
         assert_eq!(damage.len(), usize::from(end >= 6), "{end} bytes");
     }
 }
 
 #[test]
-fn a_length_that_never_fills_is_given_up() {
+fn a_length_that_never_fills_is_abandoned() {
     // SBF may state 65,535 bytes; a false sync must not hold up more than the longest frame.
     let mut bytes = b"$@\0\0\xa7\x0f\xfc\xff".to_vec();
     bytes.extend(b"$GPZDA,001924.00,13,04,2019,00,00*64\r\n");
     let mut seen = Vec::new();
-    Framer::new(Protocol::Receiver).push(&bytes, &mut |found| seen.push(named(&found)));
+    Framer::new(Protocol::Receiver).push(&bytes, &mut |item| seen.push(named(&item)));
     assert_eq!(seen.len(), 1, "{seen:?}");
 }
 

@@ -63,15 +63,15 @@ impl Decoder {
     /// The next bytes; how many frames or lines were whole.
     pub(crate) fn push(&mut self, bytes: &[u8], out: &mut Vec<Decoded>) -> u64 {
         let (epochs, track, mut n_frames) = (&mut self.epochs, self.track, 0);
-        self.framer.push(bytes, &mut |found| n_frames += u64::from(take(epochs.as_mut(), track, &found, out)));
+        self.framer.push(bytes, &mut |frame| n_frames += u64::from(take(epochs.as_mut(), track, &frame, out)));
         n_frames
     }
 
     /// No bytes came for a while, or none will: what waits is all there is.
     pub(crate) fn flush(&mut self, out: &mut Vec<Decoded>) {
         let (epochs, track) = (&mut self.epochs, self.track);
-        self.framer.flush(&mut |found| {
-            take(epochs.as_mut(), track, &found, out);
+        self.framer.flush(&mut |frame| {
+            take(epochs.as_mut(), track, &frame, out);
         });
         if let Some(epochs) = epochs {
             let mut items = Vec::new();
@@ -101,8 +101,8 @@ impl Decoder {
 }
 
 /// One frame; whether it was whole.
-fn take(epochs: Option<&mut position::Decoder>, track: TrackId, found: &Result<Frame<'_>, Damage>, out: &mut Vec<Decoded>) -> bool {
-    match (found, epochs) {
+fn take(epochs: Option<&mut position::Decoder>, track: TrackId, result: &Result<Frame<'_>, Damage>, out: &mut Vec<Decoded>) -> bool {
+    match (result, epochs) {
         (Err(_), _) => out.push(Err(Refused::DamagedFrame)),
         (Ok(Frame::Line(line)), None) => out.push(json::position(line)),
         (Ok(_), None) => {}
@@ -113,5 +113,5 @@ fn take(epochs: Option<&mut position::Decoder>, track: TrackId, found: &Result<F
             out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, track)));
         }
     }
-    found.is_ok()
+    result.is_ok()
 }

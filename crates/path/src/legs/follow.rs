@@ -133,9 +133,9 @@ impl<'a> Follow<'a> {
     /// [`OutOfDomain`] unless there is one of each a leg.
     pub fn new(path: &'a ProcedurePath, rnp_m: &'a [f64], fly_over: &'a [bool], limits: Limits) -> Result<Self, OutOfDomain> {
         let n = path.legs().len();
-        for (argument, found) in [("rnp_m", rnp_m.len()), ("fly_over", fly_over.len())] {
-            if found != n {
-                return Err(OutOfDomain { argument, value: found as f64, unit: "items", domain: "one item a leg" });
+        for (argument, length) in [("rnp_m", rnp_m.len()), ("fly_over", fly_over.len())] {
+            if length != n {
+                return Err(OutOfDomain { argument, value: length as f64, unit: "items", domain: "one item a leg" });
             }
         }
         let joints = path.legs().windows(2).zip(fly_over);

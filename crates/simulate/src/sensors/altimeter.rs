@@ -8,7 +8,7 @@
 //! departure, and the error grows with the height above it. What is said of the slow part includes it.
 
 use super::faults::SensorFault;
-use super::markov::{Markov, staying};
+use super::markov::{Markov, correlated_error};
 use super::settings::Baro;
 use crate::philox::{Sensor, Stream};
 use navbound_core::quantity::{GpsTime, Metres};
@@ -61,8 +61,9 @@ impl<'a> Altimeter<'a> {
         self.bias.step();
         let climbed = self.lagged_m - self.departure_m;
         let slow = s.bias_sigma_m * self.bias.now() + s.temperature_share * self.temperature_k * climbed;
-        // At one height the air's error is a constant; where the height changes, so does the deviation that is told.
-        let (sigma, correlation_time_s) = staying(s.temperature_share * s.temperature_sigma_k * climbed, s.bias_sigma_m, s.bias_time_s);
+        // At one height the air's error is a constant; where the height changes, so does the declared deviation.
+        let (sigma, correlation_time_s) =
+            correlated_error(s.temperature_share * s.temperature_sigma_k * climbed, s.bias_sigma_m, s.bias_time_s);
         let height = BaroHeight {
             height: Metres::new(self.lagged_m + slow + s.noise_sigma_m * self.noise.normal()),
             sigma_white: Metres::new(s.noise_sigma_m),
@@ -70,8 +71,8 @@ impl<'a> Altimeter<'a> {
             correlation_time_s,
         };
         let frozen = self.last.filter(|_| self.freezes.iter().any(|f| f.since(time_s).is_some()));
-        let said = frozen.unwrap_or(height);
-        self.last = Some(said);
-        out.push(TimedAiding { time, aiding: Aiding::Baro(said) });
+        let reported = frozen.unwrap_or(height);
+        self.last = Some(reported);
+        out.push(TimedAiding { time, aiding: Aiding::Baro(reported) });
     }
 }

@@ -30,13 +30,13 @@ impl Markov {
     }
 }
 
-/// A constant and a process told as one process, its deviation and its correlation time: the variance is that of both, and it moves as the
+/// A constant and a process declared as one process, its deviation and its correlation time: the variance is that of both, and it moves as the
 /// process alone does.
 ///
 /// ```text
 /// sigma^2 = constant^2 + process^2        2 sigma^2 / tau = 2 process^2 / tau_process
 /// ```
-pub(crate) fn staying(constant: f64, process: f64, time_s: f64) -> (f64, f64) {
+pub(crate) fn correlated_error(constant: f64, process: f64, time_s: f64) -> (f64, f64) {
     let sigma = constant.hypot(process);
     let slower = if process > 0.0 { (sigma / process) * (sigma / process) } else { f64::INFINITY };
     (sigma, (time_s * slower).min(CONSTANT_S))

@@ -92,18 +92,19 @@ pub(crate) fn satellites(scenario: &Scenario, systems: &[System], broadcast: Opt
 }
 
 fn nominal(systems: &[System], start_s: f64) -> Result<Vec<Satellite>, OutOfDomain> {
-    let mut found = Vec::new();
+    let mut satellites = Vec::new();
     for slot in systems.iter().flat_map(|s| s.slots()) {
         let orbit = Orbit::new(slot.elements.moved(start_s)?)?;
-        found.push(Satellite { id: slot.satellite, source: Source::Nominal(Box::new(orbit)) });
+        satellites.push(Satellite { id: slot.satellite, source: Source::Nominal(Box::new(orbit)) });
     }
-    Ok(found)
+    Ok(satellites)
 }
 
 /// Healthy satellites with a record that covers some instant of the flight.
 fn from_records(records: &[Ephemeris], systems: &[System], scenario: &Scenario) -> Result<Vec<Satellite>, OutOfDomain> {
-    let wanted: Vec<Constellation> = systems.iter().map(|s| s.constellation()).collect();
-    let mut usable: Vec<Ephemeris> = records.iter().filter(|r| wanted.contains(&r.satellite.constellation) && usable(r)).copied().collect();
+    let requested: Vec<Constellation> = systems.iter().map(|s| s.constellation()).collect();
+    let mut usable: Vec<Ephemeris> =
+        records.iter().filter(|r| requested.contains(&r.satellite.constellation) && usable(r)).copied().collect();
     usable.sort_by_key(|r| (r.satellite, r.orbit_time));
     let (begin, end) = (GpsTime::from_nanoseconds(scenario.start_ns), scenario.duration_s);
     let covered = |id: SatelliteId| usable.iter().any(|r| r.satellite == id && (r.covers(begin) || r.covers(begin.plus_seconds(end))));
@@ -112,7 +113,7 @@ fn from_records(records: &[Ephemeris], systems: &[System], scenario: &Scenario) 
         let domain = "records of healthy satellites that cover the flight";
         return Err(OutOfDomain { argument: "navigation", value: records.len() as f64, unit: "records", domain });
     }
-    Ok(found)
+    Ok(satellites)
 }
 
 fn usable(record: &Ephemeris) -> bool {

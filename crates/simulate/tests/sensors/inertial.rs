@@ -90,10 +90,10 @@ fn scale_and_misalignment_follow_the_motion() {
     let truth = all(&with(perfect()), 0, 700);
     let flights = errors(imu, 30, 700);
     for (kind, scale, misalignment) in [(0, 1e-3, 3e-3), (1, 2e-3, 4e-3)] {
-        let found: Vec<_> = flights.iter().map(|e| distortion(&truth, e, kind)).collect();
-        let diagonal = found.iter().flat_map(|d| (0..3).map(move |i| d[(i, i)] / scale));
+        let distortions: Vec<_> = flights.iter().map(|e| distortion(&truth, e, kind)).collect();
+        let diagonal = distortions.iter().flat_map(|d| (0..3).map(move |i| d[(i, i)] / scale));
         assert_unit_variance(diagonal.map(|x| x * x), "scale");
-        let across = found.iter().flat_map(|d| [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)].map(|place| d[place] / misalignment));
+        let across = distortions.iter().flat_map(|d| [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)].map(|place| d[place] / misalignment));
         assert_unit_variance(across.map(|x| x * x), "misalignment");
     }
 }
@@ -104,8 +104,8 @@ fn a_bias_jump_comes_when_declared_and_stays() {
         (s.imu, s.gnss, s.dme, s.vor, s.baro) = (perfect(), None, None, None, None);
         s.faults = vec![SensorFault::ImuBiasJump { start_s: 100.25, gyro_radps: [1e-3, 0.0, 0.0], accelerometer_mps2: [0.0, -0.5, 0.0] }];
     };
-    let (truth, found) = (all(&with(perfect()), 0, 300), all(&rig(jump), 0, 300));
-    for (k, (a, b)) in truth.iter().zip(&found).enumerate() {
+    let (truth, jumped) = (all(&with(perfect()), 0, 300), all(&rig(jump), 0, 300));
+    for (k, (a, b)) in truth.iter().zip(&jumped).enumerate() {
         // The sample whose interval begins after the jump is the first to feel it: 100.3 s.
         let felt: f64 = if k >= 1003 { 1.0 } else { 0.0 };
         let (a, b) = (&a.step.imu, &b.step.imu);

@@ -202,8 +202,8 @@ fn the_clock_walks_as_its_densities_say() {
     assert_unit_variance(walks.iter().map(|w| w[1] * w[1] / 0.036), "drift");
     // Correlation of the two: Sd/2 over the root of their variances.
     let expected = 0.018 / ((0.009_f64 + 0.012) * 0.036).sqrt();
-    let found = walks.iter().map(|w| w[0] * w[1]).sum::<f64>() / walks.len() as f64 / ((0.009_f64 + 0.012) * 0.036).sqrt();
-    assert!((found - expected).abs() < 4.0 * ((1.0 + expected * expected) / walks.len() as f64).sqrt(), "{found} {expected}");
+    let correlation = walks.iter().map(|w| w[0] * w[1]).sum::<f64>() / walks.len() as f64 / ((0.009_f64 + 0.012) * 0.036).sqrt();
+    assert!((correlation - expected).abs() < 4.0 * ((1.0 + expected * expected) / walks.len() as f64).sqrt(), "{correlation} {expected}");
 }
 
 /// Samples with and without faults, side by side.

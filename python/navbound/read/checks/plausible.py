@@ -1,4 +1,4 @@
-"""Can the recorded positions have been flown? Every recorded track is asked before any bound is formed."""
+"""Can the recorded positions have been flown? Every recorded track is checked before any bound is formed."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Plausibility:
 
     Attributes
     ----------
-    n_held, n_stale, n_jump, n_unsettled, n_late : int
+    n_repeated, n_stale, n_jump, n_unsettled, n_late : int
         Epochs by finding.
     n_fast : int
         Steps faster than the aircraft's own speed allows in the time between the positions.
@@ -81,7 +81,7 @@ class Plausibility:
         The same as a sentence.
     """
 
-    n_held: int
+    n_repeated: int
     n_stale: int
     n_jump: int
     n_unsettled: int
@@ -159,7 +159,7 @@ class Checker:
             # Rows are in the order of tracks: only the last one may go on.
             self._tracks = {name: track} | {k: v for k, v in self._tracks.items() if k > name}
         names = ("finding", "step_m", "too_fast_mps", "speed_doubted")
-        code, step, fast, doubted = (np.concatenate([found[name] for found in judged]) for name in names)
+        code, step, fast, doubted = (np.concatenate([one[name] for one in judged]) for name in names)
         self._n_doubted += int(doubted.sum())
         self._count(code, step, fast, columns)
         return _marked(epochs, code)
@@ -198,8 +198,8 @@ class Checker:
             words += (
                 f" {self._n_dated} of {self._n_rows} rows say when their position was valid; between those, steps are judged by that time."
             )
-        held, stale, jump, unsettled, late = (int(k) for k in n[1:])
-        return Plausibility(held, stale, jump, unsettled, late, self._n_fast, fastest, self._n_doubted, n_steps, largest, words)
+        repeated, stale, jump, unsettled, late = (int(k) for k in n[1:])
+        return Plausibility(repeated, stale, jump, unsettled, late, self._n_fast, fastest, self._n_doubted, n_steps, largest, words)
 
 
 def _columns(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -240,5 +240,5 @@ def _marked(epochs: pl.DataFrame, code: NDArray[np.uint8]) -> pl.DataFrame:
     believed = pl.col("status").is_in(status.USABLE)
     marked = marked.with_columns(pl.when(believed).then(pl.col(c)).alias(c) for c in COVARIANCE if c in epochs.columns)
     # One order of columns, whether the recording had a status or not.
-    said = ("reason_id", "status", "reason")
-    return marked.select(pl.exclude(*said), *said)
+    columns = ("reason_id", "status", "reason")
+    return marked.select(pl.exclude(*columns), *columns)

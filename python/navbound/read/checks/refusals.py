@@ -41,11 +41,11 @@ def rejections(path: str | Path, refused: Iterable[Refused], count: int | None =
     kinds: dict[tuple[str, str], list[Refused]] = {}
     for one in refused:
         kinds.setdefault((_VARYING.sub("", one.field), _VARYING.sub("", one.reason)), []).append(one)
-    found = [_of_kind(path, alike) for alike in kinds.values()]
-    n = sum(one.count for one in found)
+    rejected = [_of_kind(path, alike) for alike in kinds.values()]
+    n = sum(one.count for one in rejected)
     if count is not None and count > n:
-        found.append(Rejection(file=str(path), reason="refusals beyond those listed", count=count - n, first_line=None, example=""))
-    return found
+        rejected.append(Rejection(file=str(path), reason="refusals beyond those listed", count=count - n, first_line=None, example=""))
+    return rejected
 
 
 def _of_kind(path: str | Path, alike: list[Refused]) -> Rejection:
@@ -57,7 +57,7 @@ def _of_kind(path: str | Path, alike: list[Refused]) -> Rejection:
 def of_navigation(navigation: gnss.Navigation) -> list[Rejection]:
     """Records of navigation files that were refused, each with its own file."""
     paths = dict.fromkeys(one.path for one in navigation.refused)
-    return [found for path in paths for found in rejections(path, [one for one in navigation.refused if one.path == path])]
+    return [rejection for path in paths for rejection in rejections(path, [one for one in navigation.refused if one.path == path])]
 
 
 def of_observations(observations: gnss.Observations) -> list[Rejection]:

@@ -228,17 +228,17 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
     text = raw.cast(pl.String, strict=False).str.strip_chars().str.to_lowercase()
     text = text.str.replace_all(r"[\s\-]+", "_").str.replace(r"^\+?(-?\d+)\.0*$", "$1").str.replace(r"^_(\d)", "-$1")
     number = text.cast(pl.Float64, strict=False).is_not_null() | text.is_in(["true", "false"])
-    said = text.is_not_null() & ~text.is_in(_MISSING)
+    declared = text.is_not_null() & ~text.is_in(_MISSING)
     fine = text.is_in(_listed(kind.fine))
     against = text.is_in(_listed(kind.against))
-    unknown = said & ~fine & ~against
-    empty = (~said.fill_null(value=False)).any() and kind.effect == "invalid"
+    unknown = declared & ~fine & ~against
+    empty = (~declared.fill_null(value=False)).any() and kind.effect == "invalid"
     if kind.numbers_unknown:
-        unknown, fine = unknown | (said & number), fine & ~number
+        unknown, fine = unknown | (declared & number), fine & ~number
     if kind.other_against:
         others = unknown & ~number if kind.numbers_unknown else unknown
         against, unknown = against | others, unknown & ~others
-    words = pl.select(pl.when(said & against & ~fine).then(text)).to_series()
+    words = pl.select(pl.when(declared & against & ~fine).then(text)).to_series()
     return Stated(words, text.filter(unknown.fill_null(value=False)).unique(maintain_order=True).head(SHOWN).to_list() + ["empty"] * empty)
 
 

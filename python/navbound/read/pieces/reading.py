@@ -77,9 +77,9 @@ class PiecedReading:
         """
         tally, contradicting = Tally(), list[pl.DataFrame]()
         for piece in self.pieces:
-            found = one_row_a_time(piece, tally)
-            contradicting.append(left_out(found.contradicting))
-            yield found.epochs.drop(LINE)
+            separated = one_row_a_time(piece, tally)
+            contradicting.append(left_out(separated.contradicting))
+            yield separated.epochs.drop(LINE)
         tally.into(self.rejections)
         self.rejections.refuse_if_too_many(self.n_rows)
         self.left_out = pl.concat([self.left_out, *contradicting])

@@ -329,10 +329,10 @@ def assign(
         taken |= {c.name for c in states.values()}
     for quantity in quantities:
         if quantity.name not in columns:
-            found = _known(quantity, [n for n in names if n not in taken], path, own=own)
-            if found is not None:
-                columns[quantity.name] = found
-                taken.add(found.name)
+            assigned = _known(quantity, [n for n in names if n not in taken], path, own=own)
+            if assigned is not None:
+                columns[quantity.name] = assigned
+                taken.add(assigned.name)
     if not times:
         times = _times([n for n in names if n not in taken])
         taken |= {c.name for c in times}
@@ -440,10 +440,10 @@ def _written_unit(name: str, quantity: Quantity, path: Path) -> str | None:
 
 def _times(names: list[str]) -> list[Column]:
     plain = {_plain(name)[0]: name for name in reversed(names)}
-    found = [Column("time", plain[alias], unit) for alias, unit in TIME_NAMES.items() if alias in plain]
-    week = [c for c in found if c.unit == "gps_week"][:1]
-    tow = [c for c in found if c.unit == "gps_tow_s"][:1]
-    single = [c for c in found if c.unit not in {"gps_week", "gps_tow_s"}][:1]
+    columns = [Column("time", plain[alias], unit) for alias, unit in TIME_NAMES.items() if alias in plain]
+    week = [c for c in columns if c.unit == "gps_week"][:1]
+    tow = [c for c in columns if c.unit == "gps_tow_s"][:1]
+    single = [c for c in columns if c.unit not in {"gps_week", "gps_tow_s"}][:1]
     return single or (week + tow if week and tow else [])
 
 
@@ -517,13 +517,13 @@ def declare(*columns: str) -> str:
     return f"declare it: {options} (in Python: columns)"
 
 
-def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, wanted: Sequence[str]) -> None:
-    """Refuse a table without a time or a wanted quantity, and say what comes nearest."""
+def _require(columns: dict[str, Column], times: list[Column], names: list[str], path: Path, required: Sequence[str]) -> None:
+    """Refuse a table without a time or a required quantity, and say what comes nearest."""
     aliases = {q.name: list(q.aliases) for q in QUANTITIES + LEVEL_QUANTITIES}
     needs = {"time": ([*times], list(TIME_NAMES))}
-    needs |= {name: ([columns[name]] if name in columns else [], aliases[name]) for name in wanted}
-    for need, (found, known) in needs.items():
-        if found:
+    needs |= {name: ([columns[name]] if name in columns else [], aliases[name]) for name in required}
+    for need, (present, known) in needs.items():
+        if present:
             continue
         short = [n for n in names if len(n) <= _LONGEST_NAME][:_MOST_COMPARED]
         near = {n: max(difflib.SequenceMatcher(None, _plain(n)[0], a).ratio() for a in known) for n in short}

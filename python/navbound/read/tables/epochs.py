@@ -108,22 +108,22 @@ def _read(source: Source, columns: Mapping[str, str] | None, needs: Sequence[str
         if columns:
             reading.notes.append(f"Columns named by the caller change nothing in {source.path.name}, whose format names its own.")
         return reading
-    found = table(source)
-    mapping = assign(found.columns, columns, source.path, needs=needs, texts=texts(found.frame), where_present=where_present)
-    return _epochs(source, found, mapping, [name for name in POSITION if name in needs])
+    content = table(source)
+    mapping = assign(content.columns, columns, source.path, needs=needs, texts=texts(content.frame), where_present=where_present)
+    return _epochs(source, content, mapping, [name for name in POSITION if name in needs])
 
 
-def _epochs(source: Source, found: Table, mapping: Assignment, required: Sequence[str]) -> Reading:
-    rejections, values = found.rejections, Values(source.path, source.stem, mapping, required)
-    part = values.take(found.frame)
+def _epochs(source: Source, content: Table, mapping: Assignment, required: Sequence[str]) -> Reading:
+    rejections, values = content.rejections, Values(source.path, source.stem, mapping, required)
+    part = values.take(content.frame)
     values.understand()
     out, without = values.timed(part)
     values.tally.into(rejections)
     out, contradicting = _in_order(out, rejections, values.notes)
-    rejections.refuse_if_too_many(found.n_rows)
+    rejections.refuse_if_too_many(content.n_rows)
     _not_empty(source, out, rejections)
     lost = pl.concat([without, left_out(contradicting)])
-    of_file = (source.record(found.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
+    of_file = (source.record(content.n_rows), rejections.records, mapping.unused, values.notes, values.described(), lost)
     return Reading(out.drop(LINE), *of_file, unread=values.unread, position_doubts=values.position_doubts)
 
 
@@ -188,6 +188,6 @@ def _in_order(out: pl.DataFrame, rejections: Rejections, notes: list[str]) -> tu
     late, tally = Late(), Tally()
     late.see(out)
     notes += late.words(rejections.path, rejections.unit)
-    found = one_row_a_time(out, tally)
+    separated = one_row_a_time(out, tally)
     tally.into(rejections)
-    return found.epochs, found.contradicting
+    return separated.epochs, separated.contradicting

@@ -70,11 +70,11 @@ def table(source: Source) -> Table:
     FormatError
         The file is none of these, has no rows, or its columns differ in length.
     """
-    found = {"csv": _csv, "json": _json, "parquet": _parquet}[source.kind](source)
-    if found.n_rows == 0:
+    content = {"csv": _csv, "json": _json, "parquet": _parquet}[source.kind](source)
+    if content.n_rows == 0:
         raise FormatError(source.path, "no rows below the header")
-    found.rejections.refuse_if_too_many(found.n_rows)
-    return found
+    content.rejections.refuse_if_too_many(content.n_rows)
+    return content
 
 
 def _csv(source: Source) -> Table:

@@ -197,10 +197,10 @@ class Values:
 
     def _statements(self, frame: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
         """What columns of validity and of alerts state."""
-        found = [(name, kind.effect, statements.stated(kind, frame[name])) for name, kind in self._mapping.statements]
-        for name, _, each in found:
+        stated = [(name, kind.effect, statements.stated(kind, frame[name])) for name, kind in self._mapping.statements]
+        for name, _, each in stated:
             self._unknown.setdefault(name, {}).update(dict.fromkeys(each.unknown))
-        return found
+        return stated
 
     @property
     def unread(self) -> list[str]:
@@ -341,14 +341,14 @@ class Late:
 
 def one_row_a_time(out: pl.DataFrame, tally: Tally) -> Repeats:
     """Rows in the order of track and time, one an instant; the others are counted."""
-    found = separate(out.sort("track", "time_ns", maintain_order=True))
+    separated = separate(out.sort("track", "time_ns", maintain_order=True))
     reason = "time repeated within a track"
-    kinds = {reason: found.identical, f"{reason} with another position, bound or status": found.contradicting}
+    kinds = {reason: separated.identical, f"{reason} with another position, bound or status": separated.contradicting}
     for place, (words, repeated) in enumerate(kinds.items()):
         if not repeated.is_empty():
             track, time_ns, line = repeated.sort(LINE).select("track", "time_ns", LINE).row(0)
             tally.add(REPEATED + place, words, repeated.height, line, f"track {track}, time_ns {time_ns}", kind="quiet")
-    return found
+    return separated
 
 
 def _no_field(dtype: pl.DataType) -> bool:
@@ -421,5 +421,5 @@ def _few(names: list[str]) -> str:
 
 
 def _largest(values: pl.Series) -> float:
-    found = values.abs().max()
-    return float(found) if isinstance(found, (int, float)) else 0.0
+    largest = values.abs().max()
+    return float(largest) if isinstance(largest, (int, float)) else 0.0

@@ -106,7 +106,7 @@ def from_table(path: Path, truth: Truth, needs: Sequence[str] = ("hpl_m",)) -> P
     if len(tracks) > 1:
         raise InputError("files", f"{path}: tracks {', '.join(map(str, tracks[:4]))}", domain="the series of one receiver in each file")
     epochs, notes, refused = _without_alerts(reading.epochs), list(reading.notes), list(reading.rejected)
-    if truth.given is not None:
+    if truth.stated is not None:
         epochs, words, other, _ = with_truth(epochs, truth)
         notes.append(words)
         refused += [] if other is None else other.rejected
@@ -204,9 +204,11 @@ class Service:
         if not near.time_ns.size:
             raise InputError("files", ", ".join(map(str, self._logs))[:200], domain="message logs of the time of the observations")
         senders = np.unique(near.prn).tolist()
-        if len(senders) > 1 if self._prn is None else self._prn not in senders:
-            wanted = "none" if self._prn is None else self._prn
-            raise InputError("prn", wanted, domain=f"one of the satellites of the logs: {', '.join(map(str, senders))}")
+        listed = ", ".join(map(str, senders))
+        if self._prn is None and len(senders) > 1:
+            raise ConflictError("files", needs=("prn",), because=f"the logs hold the messages of several satellites, {listed}")
+        if self._prn is not None and self._prn not in senders:
+            raise InputError("prn", self._prn, domain=f"one of the satellites of the logs: {listed}")
         return near if self._prn is None else near.of(self._prn)
 
 
@@ -218,7 +220,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
     FormatError
         A file that cannot be read.
     InputError
-        Messages of several satellites and none chosen, no message of the time, or ranges wanted without truth or with messages.
+        Messages of several satellites and none selected, no message of the time, or ranges requested without truth or with messages.
     """
     observations = gnss.read_observations(path)
     require_most_epochs(observations)
@@ -233,7 +235,7 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
         ranges = positions.ranges
     refused = [*of_observations(observations), *service.rejected()]
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", service.navigation.skipped)]
-    if truth.given is not None and truth.ecef_m is None:
+    if truth.stated is not None and truth.ecef_m is None:
         epochs, words, other, _ = with_truth(epochs, truth)
         refused += [] if other is None else other.rejected
         notes.append(words)
@@ -256,8 +258,8 @@ def _corrected(observations: gnss.Observations, service: Service, truth: Truth) 
 
 def _of_own(epochs: pl.DataFrame) -> pl.DataFrame:
     """Levels of the positions' own covariances."""
-    found = sbas.covariance_levels(np.column_stack([epochs[name].fill_null(np.nan).to_numpy() for name in COVARIANCE]))
-    return epochs.with_columns(hpl_m=pl.Series(found[0], nan_to_null=True), vpl_m=pl.Series(found[1], nan_to_null=True))
+    levels = sbas.covariance_levels(np.column_stack([epochs[name].fill_null(np.nan).to_numpy() for name in COVARIANCE]))
+    return epochs.with_columns(hpl_m=pl.Series(levels[0], nan_to_null=True), vpl_m=pl.Series(levels[1], nan_to_null=True))
 
 
 def _range_errors(ranges: pl.DataFrame, epochs: pl.DataFrame) -> pl.DataFrame:

@@ -8,7 +8,7 @@ import polars as pl
 
 from navbound import gnss
 from navbound.algorithms import Recorded, entries
-from navbound.errors import InputError, NotFoundError
+from navbound.errors import ConflictError, NotFoundError
 from navbound.gnss.monitor_fit import DISBELIEF
 from navbound.read.checks.refusals import of_navigation, of_observations, require_most_epochs, skipped_words
 from navbound.read.truth import with_truth
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from navbound.read.truth import Truth
 
-GIVEN = "given"
+DECLARED_LEVELS = "given"
 """Protection levels of the files: a table's, those of an augmentation service's messages."""
 
 RNP_NM = (0.3, 1.0, 2.0)
@@ -53,8 +53,8 @@ def monitor_of(protection: str) -> Recorded | None:
         No such source.
     """
     known = entries(Recorded)
-    if protection != GIVEN and protection not in known:
-        raise NotFoundError("protection", protection, "algorithm", [GIVEN, *known])
+    if protection != DECLARED_LEVELS and protection not in known:
+        raise NotFoundError("protection", protection, "algorithm", [DECLARED_LEVELS, *known])
     return known.get(protection)
 
 
@@ -67,10 +67,11 @@ def monitored(solving: Solving) -> dict[str, str | float]:
         What no monitor has: a model of the ionosphere other than the broadcast one, signals chosen epoch by epoch.
     """
     if solving.ionosphere is not None:
-        domain = "none with --protection: single signals take the broadcast message, --signals dual needs no model"
-        raise InputError("ionosphere", solving.ionosphere, domain=domain)
+        because = "single signals take the broadcast message, and dual signals need no model"
+        raise ConflictError("ionosphere", excludes=("protection",), because=because, value=solving.ionosphere)
     if solving.signals == "auto":
-        raise InputError("signals", "auto", domain="single or dual with --protection: the error model of a level is that of one kind")
+        because = "auto mixes single and dual, and the error model of a level is that of one of them"
+        raise ConflictError("signals", excludes=("protection",), because=because, value="auto")
     return solving.named
 
 
@@ -85,18 +86,22 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Re
     observations = gnss.read_observations(path)
     require_most_epochs(observations)
     require_same_time(observations, records)
-    found = monitor(observations, records, truth_ecef_m=truth.ecef_m, **monitored(solving or Solving()))
-    notes = [f"{path.name}: {words}" for words in decisions(found.epochs)]
-    notes += [f"{path.name}: {name}: {words}" if name in OF_FILE else f"{name}: {words}" for name, words in found.models.items()]
+    monitored_epochs = monitor(observations, records, truth_ecef_m=truth.ecef_m, **monitored(solving or Solving()))
+    notes = [f"{path.name}: {words}" for words in decisions(monitored_epochs.epochs)]
+    notes += [f"{path.name}: {name}: {words}" if name in OF_FILE else f"{name}: {words}" for name, words in monitored_epochs.models.items()]
     refused = [*of_observations(observations), *of_navigation(records)]
     notes += [*skipped_words(path.name, observations.skipped), *skipped_words("navigation data", records.skipped)]
-    epochs = found.epochs
-    if truth.given is not None and truth.ecef_m is None:
+    epochs = monitored_epochs.epochs
+    if truth.stated is not None and truth.ecef_m is None:
         epochs, words, other, _ = with_truth(epochs, truth)
         refused += [] if other is None else other.rejected
         notes.append(words)
     return Part(
-        uniform(epochs), observations.n_epochs, [one.model_dump() for one in refused], notes, "" if found.fit.believable else CONTRADICTED
+        uniform(epochs),
+        observations.n_epochs,
+        [one.model_dump() for one in refused],
+        notes,
+        "" if monitored_epochs.fit.believable else CONTRADICTED,
     )
 
 

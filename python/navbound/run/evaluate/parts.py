@@ -12,7 +12,7 @@ import polars as pl
 
 from navbound import __version__
 from navbound.errors import FormatError
-from navbound.kpi.catalogue import chosen_levels
+from navbound.kpi.catalogue import selected_levels
 from navbound.run.evaluate.levels import SCHEMA, Part, Service, from_observations, from_table
 from navbound.run.evaluate.monitored import from_monitor, monitor_of
 
@@ -50,10 +50,10 @@ def finished_parts(
     stored = []
     for done, source in enumerate(jobs):
         key = hashlib.sha256(f"{source.sha256} {shared}".encode()).hexdigest()[:24]
-        found = _remembered(folder, key, source)
-        if found is None:
-            found = _remember(folder, key, source, _compute(source, sources, options, truth, service))
-        stored.append(found)
+        finished = _remembered(folder, key, source)
+        if finished is None:
+            finished = _remember(folder, key, source, _compute(source, sources, options, truth, service))
+        stored.append(finished)
         if progress is not None:
             progress(done + 1, len(jobs))
     filled = [part for part in stored if part.n_epochs]
@@ -65,14 +65,14 @@ def finished_parts(
 def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
     """What a part's numbers depend on beside its own file."""
     recorded = None
-    if truth.given is not None and truth.ecef_m is None:
+    if truth.stated is not None and truth.ecef_m is None:
         try:
-            recorded = hashlib.sha256(Path(truth.given).read_bytes()).hexdigest()
+            recorded = hashlib.sha256(Path(truth.stated).read_bytes()).hexdigest()
         except OSError as e:
-            raise FormatError(truth.given, e.strerror or str(e)) from e
-    given = [
+            raise FormatError(truth.stated, e.strerror or str(e)) from e
+    inputs = [
         __version__,
-        truth.given,
+        truth.stated,
         recorded,
         truth.tolerance_s,
         dict(options.columns or {}),
@@ -83,7 +83,7 @@ def _shared_key(sources: Files, options: Options, truth: Truth) -> str:
         options.solving.named,
     ]
     beside = sorted(s.sha256 for s in sources.navigation + sources.messages)
-    return json.dumps([given, options.stanford_esa is not None, SCHEMA.names(), beside])
+    return json.dumps([inputs, options.stanford_esa is not None, SCHEMA.names(), beside])
 
 
 def _compute(source: Source, sources: Files, options: Options, truth: Truth, service: Service) -> Part:
@@ -97,7 +97,7 @@ def _compute(source: Source, sources: Files, options: Options, truth: Truth, ser
 
 def _needs(options: Options) -> list[str]:
     """The protection levels that the levels to be judged have limits for."""
-    vertical = any(level.val_m is not None for level in chosen_levels(options.levels))
+    vertical = any(level.val_m is not None for level in selected_levels(options.levels))
     return ["hpl_m", "vpl_m"] if vertical else ["hpl_m"]
 
 

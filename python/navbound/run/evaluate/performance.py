@@ -17,16 +17,16 @@ from navbound import __version__, kpi
 from navbound.errors import ConflictError, InputError
 from navbound.read.source import load
 from navbound.read.truth import TOLERANCE_S, Truth, truth_of
-from navbound.records.run import Honesty, InputFile, Rejection, RunRecord, Summary, Verdict
+from navbound.records.run import CovarianceConsistency, InputFile, Rejection, RunRecord, Summary, Verdict
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run import directory
 from navbound.run.directory import Run
-from navbound.run.evaluate.monitored import GIVEN, monitor_of, monitored
+from navbound.run.evaluate.monitored import DECLARED_LEVELS, monitor_of, monitored
 from navbound.run.evaluate.parts import Stored, finished_parts, ranges_of_parts, tables_of
 from navbound.run.evaluate.words import levels_verdict, performance_words
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
-from navbound.run.summary.consistency import honesty_of
+from navbound.run.summary.consistency import consistency_of
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import copied, of_level
 from navbound.run.verdict.words import COPIED
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 PARTS = "parts"
 """Folder of the run directory that remembers the finished parts."""
-MOST_HONESTY = 1_000_000
+MOST_CONSISTENCY = 1_000_000
 """Epochs whose covariances are compared with their errors: eleven days at 1 Hz, 100 MB."""
 CSV = "epochs.csv"
 """The epochs under the field's column names."""
@@ -95,7 +95,7 @@ class Options:
     stanford_esa: kpi.SubsetOptions | None = None
     experimental: str = ""
     solve: bool = False
-    protection: str = GIVEN
+    protection: str = DECLARED_LEVELS
     signals: str | None = None
     systems: str | None = None
     ionosphere: str | None = None
@@ -144,7 +144,7 @@ def evaluate_files(
     names = [files] if isinstance(files, (str, Path)) else list(files)
     if not names:
         raise InputError("files", "nothing", domain="one file or more")
-    wanted = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
+    levels = [kpi.level(each) if isinstance(each, kpi.Level) else each for each in options.levels]
     truth = truth_of(options.truth, options.truth_tolerance_s, options.columns)
     if monitor_of(options.protection) is not None and options.stanford_esa is not None:
         raise ConflictError("protection", excludes=("stanford_esa",), because="subsets of satellites are solved without monitoring")
@@ -155,16 +155,14 @@ def evaluate_files(
         options.solving.refuse("only observations that no service corrects are solved")
     sources.require_navigation()
     if options.stanford_esa is not None and (sources.tables or sources.messages):
-        raise InputError(
-            "stanford_esa",
-            str((sources.tables or sources.messages)[0].path),
-            domain="it with observations and navigation data alone: a table holds no ranges, and ranges are not corrected by SBAS messages",
-        )
+        because = "a table holds no ranges" if sources.tables else "subsets are solved without the corrections of SBAS messages"
+        named = str((sources.tables or sources.messages)[0].path)
+        raise ConflictError("stanford_esa", because=f"{because} ({named}); observations and navigation data are enough", value=named)
     with ExitStack() as stack:
         writer = None if out is None else stack.enter_context(folders.own(Path(out), _OWN, "a run's"))
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory())) if writer is None else writer.folder
         parts = finished_parts(sources, options, truth, folder / PARTS, progress)
-        campaign, events = _add_all(parts, wanted, options)
+        campaign, events = _add_all(parts, levels, options)
         result = campaign.finish(lambda: tables_of(parts), events.append)
         if options.stanford_esa is not None:
             ranges = kpi.stanford_esa(lambda: ranges_of_parts(parts), campaign.levels, options.stanford_esa)
@@ -206,7 +204,7 @@ def _inputs(sources: Files, truth: Truth, parts: list[Stored]) -> list[InputFile
     """Every file that went in, a recorded truth among them."""
     n_rows = {part.source.path: part.n_rows for part in parts}
     files = sources.tables + sources.observations + sources.navigation + sources.messages
-    recorded = [load(truth.given)] if truth.given is not None and truth.ecef_m is None else []
+    recorded = [load(truth.stated)] if truth.stated is not None and truth.ecef_m is None else []
     return [source.record(n_rows.get(source.path)) for source in files + recorded]
 
 
@@ -227,7 +225,7 @@ def _run(
         risk_accuracy=None,
         risk_integrity=None,
         settings={
-            "levels": [found.level.id for found in result.levels],
+            "levels": [each.level.id for each in result.levels],
             "truth": None if options.truth is None else str(options.truth),
             "truth_tolerance_s": options.truth_tolerance_s,
             "columns": dict(options.columns or {}),
@@ -242,28 +240,32 @@ def _run(
     )
     joined = pl.concat(events).sort("onset_ns", "level", "kind", maintain_order=True)
     first = next(tables_of(parts)).head(1)
-    honesty, notes = _honesty(parts)
+    honesty, notes = _consistency(parts)
     return Run(_summary(result.model_copy(update={"notes": [*result.notes, *notes]}), parts, honesty), record, first, joined, [])
 
 
-def _honesty(parts: list[Stored]) -> tuple[Honesty | None, list[str]]:
+def _consistency(parts: list[Stored]) -> tuple[CovarianceConsistency | None, list[str]]:
     """Whether the covariances agree with the errors, where the files hold both; of the first epochs, so that memory has a limit."""
     columns = ["track", "time_ns", "status", "nse_e_m", "nse_n_m", "nse_u_m", *COVARIANCE]
-    held: list[pl.DataFrame] = []
+    kept: list[pl.DataFrame] = []
     for table in tables_of(parts):
         known = table.select(columns).drop_nulls(["nse_e_m", "cov_ee_m2"])
-        held.append(known.with_columns(pl.col("status").fill_null("ok")))
-        if sum(part.height for part in held) > MOST_HONESTY:
+        kept.append(known.with_columns(pl.col("status").fill_null("ok")))
+        if sum(part.height for part in kept) > MOST_CONSISTENCY:
             break
-    together = pl.concat(held)
-    note = f"The covariances were compared with the errors at the first {MOST_HONESTY} epochs." if together.height > MOST_HONESTY else ""
-    return honesty_of(together.head(MOST_HONESTY)), [note] if note else []
+    together = pl.concat(kept)
+    note = (
+        f"The covariances were compared with the errors at the first {MOST_CONSISTENCY} epochs."
+        if together.height > MOST_CONSISTENCY
+        else ""
+    )
+    return consistency_of(together.head(MOST_CONSISTENCY)), [note] if note else []
 
 
-def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) -> Summary:
-    names = ", ".join(found.level.id for found in result.levels)
+def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsistency | None) -> Summary:
+    names = ", ".join(each.level.id for each in result.levels)
     is_copied = _copied(parts)
-    decided = rule.of_levels([_facts(found, result, is_copied=is_copied) for found in result.levels])
+    decided = rule.of_levels([_facts(each, result, is_copied=is_copied) for each in result.levels])
     verdict = Verdict(
         id=decided,
         # A service level is no RNP: what its id says stands in the words.
@@ -284,8 +286,8 @@ def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) 
         experimental=result.experimental != "",
     )
     by_source: dict[str, list[str]] = {}
-    for found in result.levels:
-        by_source.setdefault(found.level.source, []).append(found.level.id)
+    for each in result.levels:
+        by_source.setdefault(each.level.source, []).append(each.level.id)
     sources = [f"{', '.join(ids)}: {source}." for source, ids in by_source.items()]
     return Summary(
         kind="analyze",
@@ -309,12 +311,12 @@ def _summary(result: Performance, parts: list[Stored], honesty: Honesty | None) 
 
 def _rejected(parts: list[Stored]) -> list[Rejection]:
     """Of all parts; what they have in common, navigation data and messages, once."""
-    found: list[Rejection] = []
+    rejections: list[Rejection] = []
     for fields in (fields for part in parts for fields in part.rejected):
         one = Rejection(**fields)
-        if one not in found:
-            found.append(one)
-    return found
+        if one not in rejections:
+            rejections.append(one)
+    return rejections
 
 
 def _copied(parts: list[Stored]) -> bool:
@@ -323,23 +325,23 @@ def _copied(parts: list[Stored]) -> bool:
     return bool(n_known > 0 and n_same >= rule.COPIED_SHARE * n_known)
 
 
-def _facts(found: LevelResult, result: Performance, *, is_copied: bool) -> rule.LevelFacts:
+def _facts(level: LevelResult, result: Performance, *, is_copied: bool) -> rule.LevelFacts:
     return rule.LevelFacts(
-        n_expected=found.n_expected,
-        n_solution=found.n_solution,
-        n_available=found.n_available,
-        n_misleading_events=found.n_mi_events + found.n_hazard_events,
-        p_misleading=of_level(found, result.period_s),
-        truth_known=_errors_known(found, result),
+        n_expected=level.n_expected,
+        n_solution=level.n_solution,
+        n_available=level.n_available,
+        n_misleading_events=level.n_mi_events + level.n_hazard_events,
+        p_misleading=of_level(level, result.period_s),
+        truth_known=_errors_known(level, result),
         copied=is_copied,
     )
 
 
-def _errors_known(found: LevelResult, result: Performance) -> bool:
+def _errors_known(level: LevelResult, result: Performance) -> bool:
     """Whether the errors are known in every axis that the level limits, at enough epochs with a protection level to speak of all."""
-    axes = result.axes[: 1 if found.level.val_m is None else 2]
+    axes = result.axes[: 1 if level.level.val_m is None else 2]
     n = [0 if axis.error_m is None else axis.error_m.n for axis in axes]
-    return found.truth_known and min(n) >= LEAST_SHARE * found.n_solution
+    return level.truth_known and min(n) >= LEAST_SHARE * level.n_solution
 
 
 def _write(run: Run, parts: list[Stored], folder: folders.Writer) -> Run:

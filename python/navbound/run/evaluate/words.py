@@ -22,7 +22,7 @@ def levels_verdict(verdict: VerdictId) -> list[str]:
 
 
 def performance_words(result: Performance) -> list[str]:
-    """What was asked: integrity first, then availability, continuity and accuracy."""
+    """What was required: integrity first, then availability, continuity and accuracy."""
     words = [f"The protection levels {_predicate(result.experimental)}."] if result.experimental else []
     words += [_integrity(result), _availability(result), _continuity(result)]
     both = [axis.error_m for axis in result.axes]
@@ -42,10 +42,10 @@ def _integrity(result: Performance) -> str:
     if not result.truth_known:
         return "Without truth neither integrity nor accuracy can be judged."
     hazards = [
-        f"{found.level.id} at {found.n_hazard_epochs} epochs ({found.n_hazard_over_tta} of {found.n_hazard_events} runs longer than "
-        f"{found.level.tta_s:g} s)"
-        for found in result.levels
-        if found.n_hazard_epochs
+        f"{each.level.id} at {each.n_hazard_epochs} epochs ({each.n_hazard_over_tta} of {each.n_hazard_events} runs longer than "
+        f"{each.level.tta_s:g} s)"
+        for each in result.levels
+        if each.n_hazard_epochs
     ]
     known = _known(result)
     if hazards:
@@ -57,7 +57,7 @@ def _integrity(result: Performance) -> str:
 
 def _known(result: Performance) -> str:
     """At how many epochs with a protection level the error is known, an axis each; and what could not be judged."""
-    vertical = any(found.level.val_m is not None for found in result.levels)
+    vertical = any(each.level.val_m is not None for each in result.levels)
     words, unknown = [], []
     for axis, name in zip(result.axes, ("horizontal", "vertical"), strict=True):
         n = 0 if axis.error_m is None else axis.error_m.n
@@ -74,9 +74,9 @@ def _availability(result: Performance) -> str:
     absent = "absent epochs are not expected" if result.exclude_missing else f"{result.n_missing} absent"
     repeated = f"; {result.n_repeated} rows share an epoch with another, the worst counts" if result.n_repeated else ""
     each = [
-        f"{found.level.id} {share(found.availability_expected)} ({share(found.availability_low)} to {share(found.availability_high)}, "
-        f"as from {found.n_effective:.0f} independent epochs)"
-        for found in result.levels
+        f"{each.level.id} {share(each.availability_expected)} ({share(each.availability_low)} to {share(each.availability_high)}, "
+        f"as from {each.n_effective:.0f} independent epochs)"
+        for each in result.levels
     ]
     return (
         f"Available, of {result.n_expected} expected epochs ({span}, one every {result.period_s:g} s; {absent}, {result.n_no_solution} "
@@ -85,18 +85,18 @@ def _availability(result: Performance) -> str:
 
 
 def _continuity(result: Performance) -> str:
-    def one(found: LevelResult) -> str:
-        if found.continuity_risk is None:
-            return f"{found.level.id} never available"
-        losses = f"{found.level.id} {found.n_continuity_events} {'loss' if found.n_continuity_events == 1 else 'losses'}"
-        return f"{losses}, risk {found.continuity_risk:.2g}" if found.window_meaningful else losses
+    def one(level: LevelResult) -> str:
+        if level.continuity_risk is None:
+            return f"{level.level.id} never available"
+        losses = f"{level.level.id} {level.n_continuity_events} {'loss' if level.n_continuity_events == 1 else 'losses'}"
+        return f"{losses}, risk {level.continuity_risk:.2g}" if level.window_meaningful else losses
 
     first = result.levels[0]
-    head = f"Continuity in {first.window_s:g} s" if first.window_meaningful else "Continuity (no risk can be told at this sampling period)"
-    return f"{head}: {', '.join(one(found) for found in result.levels)}."
+    head = f"Continuity in {first.window_s:g} s" if first.window_meaningful else "Continuity (no risk at this sampling period)"
+    return f"{head}: {', '.join(one(each) for each in result.levels)}."
 
 
-def _subsets(found: Subsets) -> str:
-    largest = max(found.safety_index_h_max, found.safety_index_v_max)
-    misleading = {0: "none is misleading", 1: "one is misleading"}.get(found.n_mi, f"{found.n_mi} are misleading")
-    return f"Of {found.n_subsets} satellite subsets {misleading}; the largest safety index is {largest:.3g}."
+def _subsets(subsets: Subsets) -> str:
+    largest = max(subsets.safety_index_h_max, subsets.safety_index_v_max)
+    misleading = {0: "none is misleading", 1: "one is misleading"}.get(subsets.n_mi, f"{subsets.n_mi} are misleading")
+    return f"Of {subsets.n_subsets} satellite subsets {misleading}; the largest safety index is {largest:.3g}."

@@ -1,4 +1,4 @@
-"""Files of one run, told apart by what they hold."""
+"""Files of one run, distinguished by what they hold."""
 
 from __future__ import annotations
 
@@ -94,8 +94,8 @@ def sort_out(paths: Sequence[str | Path], *, solve: bool = False) -> Files:
 
 
 def _raw(source: Source) -> list[str] | None:
-    found = _core.raw_log(source.content, str(source.path))
-    return None if found is None else [k for k, n in zip(("observations", "navigation", "messages"), found, strict=True) if n]
+    log = _core.raw_log(source.content, str(source.path))
+    return None if log is None else [k for k, n in zip(("observations", "navigation", "messages"), log, strict=True) if n]
 
 
 _LISTS = ("observations", "navigation", "messages")

@@ -43,12 +43,12 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     if observations.n_epochs == 0:
         raise without_epochs(observations)
     require_same_time(observations, navigation)
-    found = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem)
-    without = found.epochs.filter(pl.col("est_lat_rad").is_null())
-    repeats = separate(found.epochs.filter(pl.col("est_lat_rad").is_not_null()).sort("time_ns", maintain_order=True))
+    solution = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem)
+    without = solution.epochs.filter(pl.col("est_lat_rad").is_null())
+    repeats = separate(solution.epochs.filter(pl.col("est_lat_rad").is_not_null()).sort("time_ns", maintain_order=True))
     known = repeats.epochs
     if known.is_empty():
-        raise FormatError(source.path, f"no position could be solved; satellites not used: {unused_words(found.unused)}")
+        raise FormatError(source.path, f"no position could be solved; satellites not used: {unused_words(solution.unused)}")
     path = str(source.path)
     rejected = [
         Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=f"{count} epochs")
@@ -61,12 +61,12 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         if not rows.is_empty()
     ]
     rejected += of_observations(observations)
-    notes = [f"{source.path.name}: {name}: {words}" for name, words in found.models.items()]
+    notes = [f"{source.path.name}: {name}: {words}" for name, words in solution.models.items()]
     notes += [f"{source.path.name}: {words}" for words in away_from_header(known, observations)]
     notes += skipped_words(source.path.name, observations.skipped)
-    notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in found.unused.items()]
+    notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in solution.unused.items()]
     # Epochs that cannot be read were measured all the same; nobody knows when.
     unread = pl.DataFrame({"track": [source.stem] * observations.n_lost_epochs, "time_ns": None})
     lost = pl.concat([left_out(without), left_out(repeats.contradicting), left_out(unread)])
-    columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in found.codes.values() for c in codes)}
+    columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in solution.codes.values() for c in codes)}
     return Reading(known, source.record(observations.n_epochs), rejected, notes=notes, columns=columns, left_out=lost)

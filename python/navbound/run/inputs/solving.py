@@ -31,8 +31,8 @@ def require_same_time(observations: Observations, navigation: Navigation) -> Non
     times = navigation.records()["orbit_time_ns"].drop_nulls()
     if times.is_empty() or not times.filter(times.is_between(first - LONGEST_NS, last + LONGEST_NS)).is_empty():
         return
-    of, wanted = _dates(int(times.min()), int(times.max())), _dates(first, last)  # type: ignore[arg-type]
-    what = f"ephemerides of {of} for observations of {wanted}"
+    of, needed = _dates(int(times.min()), int(times.max())), _dates(first, last)  # type: ignore[arg-type]
+    what = f"ephemerides of {of} for observations of {needed}"
     raise InputError("files", what, domain=f"navigation files of the time of {observations.path.name}")
 
 

@@ -29,7 +29,7 @@ AUXILIARY = ("callsign", "nac_p", "nic", "rc_m", "epu_m", "sigma_e_m", "sigma_n_
 
 
 def states_truth(path: Path, columns: Mapping[str, str] | None) -> bool:
-    """Whether a text table has columns of the true position, told from its header."""
+    """Whether a text table has columns of the true position, recognised by its header."""
     for lines in Chunks(path):
         if not lines.is_empty():
             names = [name for name in layout_of(path, lines).names if name]
@@ -167,7 +167,7 @@ class _Labels:
 
     def usual(self) -> dict[str, str]:
         """Of several that are as frequent the first of the alphabet."""
-        return {track: _most(found) or track for track, found in self._counts.items()}
+        return {track: _most(counts) or track for track, counts in self._counts.items()}
 
 
 def _most(counts: Counter[str]) -> str | None:

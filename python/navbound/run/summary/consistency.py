@@ -9,8 +9,8 @@ import polars as pl
 
 from navbound import anp, evaluation
 from navbound.methods import column_of
-from navbound.records.run import Held, Honesty
-from navbound.run.verdict.results import honesty_words
+from navbound.records.run import CovarianceConsistency, RegionCoverage
+from navbound.run.verdict.results import consistency_words
 from navbound.status import USABLE
 from navbound.table.columns import COVARIANCE
 
@@ -25,7 +25,7 @@ TRACKS_TO_DRAW = 10
 REGION_RISK = 0.05
 
 
-def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
+def consistency_of(epochs: pl.DataFrame) -> CovarianceConsistency | None:
     """NEES and PIT in three dimensions where the vertical is known, otherwise in two."""
     vertical = {"nse_u_m", "cov_uu_m2"} <= set(epochs.columns)
     errors = ("nse_e_m", "nse_n_m", "nse_u_m") if vertical else ("nse_e_m", "nse_n_m")
@@ -47,7 +47,7 @@ def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
     nees = evaluation.nees(error[known], covariance, track=track)
     pit = evaluation.pit(error[known], covariance, track=track)
     regions = _regions(error[known], covariance, track)
-    return Honesty(
+    return CovarianceConsistency(
         n=nees.n,
         n_effective=nees.n_effective,
         dimension=nees.dimension,
@@ -58,22 +58,22 @@ def honesty_of(epochs: pl.DataFrame) -> Honesty | None:
         pit_low=pit.low,
         pit_high=pit.high,
         regions=regions,
-        words=honesty_words(nees, pit, regions),
+        words=consistency_words(nees, pit, regions),
     )
 
 
-def _regions(error: NDArray[np.float64], covariance: NDArray[np.float64], track: NDArray[np.int64]) -> list[Held]:
+def _regions(error: NDArray[np.float64], covariance: NDArray[np.float64], track: NDArray[np.int64]) -> list[RegionCoverage]:
     """The 95 % circle and sphere against the error, where there are tracks enough to draw again."""
     if len(np.unique(track)) < TRACKS_TO_DRAW:
         return []
     sizes = {"circle": (np.hypot(error[:, 0], error[:, 1]), anp.circle(np.ascontiguousarray(covariance[:, :2, :2]), REGION_RISK))}
     if error.shape[1] == 3:
         sizes["sphere"] = (np.linalg.norm(error, axis=1), anp.sphere(covariance, REGION_RISK))
-    found = []
+    regions = []
     for region, (size, radius) in sizes.items():
         low, high = evaluation.bootstrap_coverage(size, radius, track)
-        found.append(Held.model_validate({"region": region, "share": float((size <= radius).mean()), "low": low, "high": high}))
-    return found
+        regions.append(RegionCoverage.model_validate({"region": region, "share": float((size <= radius).mean()), "low": low, "high": high}))
+    return regions
 
 
 def codes(epochs: pl.DataFrame) -> NDArray[np.int64]:

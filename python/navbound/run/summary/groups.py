@@ -38,9 +38,9 @@ def phases(margins: pl.DataFrame, bound: str, sample_period_s: float, events: pl
     ]
 
 
-def protection_of(epochs: pl.DataFrame, held: dict[str, str]) -> list[ProtectionSummary]:
+def protection_of(epochs: pl.DataFrame, provenance: dict[str, str]) -> list[ProtectionSummary]:
     """Protection levels against the alert limit of each phase whose limit says how it is held."""
-    if not (held and {"phase", "hpl_m", "hal_m"} <= set(epochs.columns)):
+    if not (provenance and {"phase", "hpl_m", "hal_m"} <= set(epochs.columns)):
         return []
 
     def most(name: str) -> pl.Expr:
@@ -59,7 +59,7 @@ def protection_of(epochs: pl.DataFrame, held: dict[str, str]) -> list[Protection
         (pl.col("hpl_m") <= pl.col("hal_m")).fill_null(value=False).mean().alias("share_available"),
         misleading.alias("n_misleading"),
     )
-    return [ProtectionSummary(**row, hal_held=held[row["phase"]]) for row in grouped.iter_rows(named=True)]
+    return [ProtectionSummary(**row, hal_held=provenance[row["phase"]]) for row in grouped.iter_rows(named=True)]
 
 
 def tracks(margins: pl.DataFrame, labels: dict[str, str], events: pl.DataFrame) -> list[TrackSummary]:

@@ -9,7 +9,7 @@ import polars as pl
 from navbound import evaluation
 from navbound.methods import method
 from navbound.records.run import EventSummary, Summary
-from navbound.run.summary.consistency import honesty_of
+from navbound.run.summary.consistency import consistency_of
 from navbound.run.summary.groups import phases, protection_of, tracks
 from navbound.run.summary.margins import by_status, with_margins
 from navbound.run.summary.methods import evaluated
@@ -70,7 +70,7 @@ def summarise(
         tracks=tracks(margins, material.labels, events),
         accuracy=accuracy,
         integrity=[evaluated(epochs, i, risk_integrity, coverage_kind, integrity=True) for i in ids],
-        honesty=honesty_of(epochs),
+        honesty=consistency_of(epochs),
         states=states,
         events=listed(events),
         cross_track=material.cross_track,

@@ -78,24 +78,24 @@ def facts_of(material: Material, margins: pl.DataFrame, stated: list[MethodResul
 
 
 def verdict_of(
-    material: Material, found: VerdictFacts, stated: list[MethodResult], risks: tuple[float, float], protection: list[ProtectionSummary]
+    material: Material, known: VerdictFacts, stated: list[MethodResult], risks: tuple[float, float], protection: list[ProtectionSummary]
 ) -> Verdict:
     """The verdict and its words."""
-    judge, belief = stated[0], found.belief
-    n_epochs, n_degraded = found.n_recorded + found.n_missing, found.n_status.get("degraded", 0)
+    judge, belief = stated[0], known.belief
+    n_epochs, n_degraded = known.n_recorded + known.n_missing, known.n_status.get("degraded", 0)
     facts = rule.TrackFacts(
         n_epochs=n_epochs,
-        n_judged=found.n_judged,
-        n_outside=found.n_outside,
+        n_judged=known.n_judged,
+        n_outside=known.n_outside,
         n_beyond_alert_limit=sum(p.n_epochs - round(p.share_available * p.n_epochs) for p in protection),
-        n_implausible=found.n_status.get("invalid_input", 0),
+        n_implausible=known.n_status.get("invalid_input", 0),
         n_misleading=sum(check.n_above for check in belief.levels if check.level == "hpl_m") if belief is not None else 0,
         belief="unchecked" if belief is None else belief.state,
-        n_known_beyond=found.n_known_beyond,
-        n_stated_against=found.doubts.n_stated_against,
-        n_without_level=found.doubts.n_without_level,
-        n_apart=0 if found.doubts.neighbours is None else found.doubts.neighbours.n,
-        truth_lost=material.truth_doubts.n > 0 and found.n_truth <= material.truth_doubts.n,
+        n_known_beyond=known.n_known_beyond,
+        n_stated_against=known.doubts.n_stated_against,
+        n_without_level=known.doubts.n_without_level,
+        n_apart=0 if known.doubts.neighbours is None else known.doubts.neighbours.n,
+        truth_lost=material.truth_doubts.n > 0 and known.n_truth <= material.truth_doubts.n,
         position_doubted=bool(material.position_doubts),
     )
     decided = rule.of_tracks(facts)
@@ -105,33 +105,33 @@ def verdict_of(
         words="",
         requirement=material.requirement,
         method=judge.id,
-        share_inside=found.n_inside / found.n_judged if found.n_judged else None,
-        share_contained=found.n_contained / found.n_judged if found.n_judged else None,
+        share_inside=known.n_inside / known.n_judged if known.n_judged else None,
+        share_contained=known.n_contained / known.n_judged if known.n_judged else None,
         n_epochs=n_epochs,
-        n_judged=found.n_judged,
+        n_judged=known.n_judged,
         n_degraded=n_degraded,
-        n_unjudged=n_epochs - found.n_judged - n_degraded,
-        n_missing=found.n_missing,
+        n_unjudged=n_epochs - known.n_judged - n_degraded,
+        n_missing=known.n_missing,
         n_outside=facts.n_outside,
         n_known_beyond=facts.n_known_beyond,
-        n_stated_beyond=found.doubts.n_stated_beyond,
-        n_stated_alert=found.doubts.n_stated_alert,
-        n_stated_worse=found.doubts.n_stated_worse,
-        n_stated_uncontained=found.doubts.n_stated_uncontained,
+        n_stated_beyond=known.doubts.n_stated_beyond,
+        n_stated_alert=known.doubts.n_stated_alert,
+        n_stated_worse=known.doubts.n_stated_worse,
+        n_stated_uncontained=known.doubts.n_stated_uncontained,
         unread=material.unread,
         position_doubts=material.position_doubts,
         n_apart=facts.n_apart,
-        largest_apart_m=found.doubts.neighbours.largest_m if found.doubts.neighbours is not None and facts.n_apart else None,
-        n_without_level=found.doubts.n_without_level,
-        n_long_steps=found.doubts.n_long_steps,
-        longest_step_s=found.doubts.longest_step_s,
+        largest_apart_m=known.doubts.neighbours.largest_m if known.doubts.neighbours is not None and facts.n_apart else None,
+        n_without_level=known.doubts.n_without_level,
+        n_long_steps=known.doubts.n_long_steps,
+        longest_step_s=known.doubts.longest_step_s,
         assumed=_assumed(material, judge.id),
         belief=belief,
         n_implausible=facts.n_implausible,
-        worst_accuracy=found.worst[0],
-        worst_integrity=found.worst[1],
-        truth_known=found.n_truth > 0,
-        n_truth=found.n_truth,
+        worst_accuracy=known.worst[0],
+        worst_integrity=known.worst[1],
+        truth_known=known.n_truth > 0,
+        n_truth=known.n_truth,
         n_truth_doubted=material.truth_doubts.n,
         truth_doubts=material.truth_doubts.words,
     )

@@ -248,8 +248,8 @@ def _magnitude(epochs: pl.DataFrame) -> evaluation.Magnitude | None:
         return None
     track: NDArray[np.int64] = epochs.get_column("track").rle_id().cast(pl.Int64).to_numpy()
     error = np.column_stack([east, north])
-    found = evaluation.magnitude(error[known], covariance[known], track[known])
-    return found if found.n > 0 else None
+    magnitude = evaluation.magnitude(error[known], covariance[known], track[known])
+    return magnitude if magnitude.n > 0 else None
 
 
 def of_level(result: LevelResult, period_s: float) -> float | None:

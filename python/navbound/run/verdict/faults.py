@@ -45,12 +45,12 @@ def fault_summaries(scenario: Scenario | Taxi, epochs: pl.DataFrame, events: pl.
     if not isinstance(scenario, Scenario) or scenario.sensors is None or scenario.filter is None:
         return []
     time_to_alert_s = min(cell.time_to_alert_s for cell in rnp.specifications() if cell.containment_m is not None)
-    found = []
+    summaries = []
     for key, frame in epochs.group_by("track", maintain_order=True):
         alerts = events.filter(pl.col("track") == key[0]).sort("onset_ns").select("onset_ns", "kind").rows()
         for window in _windows(scenario):
-            found.append(_summary(window, frame, alerts, (time_to_alert_s, scenario.filter.separation_risk)))
-    return found
+            summaries.append(_summary(window, frame, alerts, (time_to_alert_s, scenario.filter.separation_risk)))
+    return summaries
 
 
 @dataclass(frozen=True)

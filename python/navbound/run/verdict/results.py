@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from navbound.evaluation import Nees, Pit
-    from navbound.records.run import CovarianceOrigin, Held, MethodResult, ProtectionSummary, Verdict, Worst
+    from navbound.records.run import CovarianceOrigin, MethodResult, ProtectionSummary, RegionCoverage, Verdict, Worst
     from navbound.records.verdict import VerdictId
 
 HEADLINES: dict[VerdictId, str] = {
@@ -79,8 +79,8 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
     accuracy, integrity = (level(risk) for risk in risks)
     shares = _shares(verdict)
     if verdict.id == "nothing_judged" or verdict.share_inside is None or verdict.share_contained is None:
-        found = f" {verdict.n_outside} epochs that are not ok have a bound beyond its limit." if verdict.n_outside else ""
-        return f"{HEADLINES[verdict.id]} {verdict.requirement}: {shares}.{found}"
+        outside = f" {verdict.n_outside} epochs that are not ok have a bound beyond its limit." if verdict.n_outside else ""
+        return f"{HEADLINES[verdict.id]} {verdict.requirement}: {shares}.{outside}"
     if verdict.id == "not_believable":
         n = verdict.n_known_beyond
         beyond = f"at {n} ok epochs the known error is beyond twice RNP though the bound is within it" if n else ""
@@ -183,24 +183,24 @@ def _worst(worst: Worst) -> str:
 
 
 def protection_words(protection: list[ProtectionSummary]) -> str:
-    """How protection levels stood against alert limits, and whether they told the truth; nothing where there are none."""
+    """How protection levels stood against alert limits, and whether they bounded the true errors; nothing where there are none."""
     if not protection:
         return ""
     n = sum(p.n_epochs for p in protection)
     available = share(sum(p.share_available * p.n_epochs for p in protection) / n)
-    held = ", ".join(sorted({p.hal_held for p in protection}))
-    misled = sum(p.n_misleading for p in protection)
-    truth = f" At {misled} epochs the true error is above the protection level: misleading information." if misled else ""
-    return f" Protection level within the alert limit ({held}) at {available} of {n} epochs.{truth}"
+    provenance = ", ".join(sorted({p.hal_held for p in protection}))
+    misleading = sum(p.n_misleading for p in protection)
+    truth = f" At {misleading} epochs the true error is above the protection level: misleading information." if misleading else ""
+    return f" Protection level within the alert limit ({provenance}) at {available} of {n} epochs.{truth}"
 
 
-def honesty_words(nees: Nees, pit: Pit, regions: Sequence[Held] = ()) -> str:
+def consistency_words(nees: Nees, pit: Pit, regions: Sequence[RegionCoverage] = ()) -> str:
     """Whether the covariance may be believed, with the factor by which it is off, and on how much evidence."""
-    found = (
-        f"NEES {nees.nees_mean:.3g}, {nees.dimension} for an honest covariance, "
+    opening = (
+        f"NEES {nees.nees_mean:.3g}, {nees.dimension} for a consistent covariance, "
         f"limits {nees.nees_low:.3g} to {nees.nees_high:.3g} for {nees.n_effective:.0f} effective epochs"
     )
-    return f"{found}{_judgement(nees, pit)}{_regions(regions)}"
+    return f"{opening}{_judgement(nees, pit)}{_regions(regions)}"
 
 
 def _judgement(nees: Nees, pit: Pit) -> str:
@@ -230,6 +230,6 @@ def _judgement(nees: Nees, pit: Pit) -> str:
     )
 
 
-def _regions(regions: Sequence[Held]) -> str:
-    held = [f"the 95 % {r.region} held {share(r.share)} of the epochs ({share(r.low)} to {share(r.high)})" for r in regions]
-    return f" Over all tracks {', '.join(held)}; limits from drawing whole tracks again." if held else ""
+def _regions(regions: Sequence[RegionCoverage]) -> str:
+    shares = [f"the 95 % {r.region} held {share(r.share)} of the epochs ({share(r.low)} to {share(r.high)})" for r in regions]
+    return f" Over all tracks {', '.join(shares)}; limits from drawing whole tracks again." if shares else ""

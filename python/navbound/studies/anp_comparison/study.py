@@ -145,7 +145,7 @@ def run(*, flights: int = 50, **work: Unpack[Work]) -> Study:
     flights : int
         Monte Carlo flights of each case, a fifth of them for the one that fails. [1]
     **work
-        Who flies, what is kept, who is told: as in :func:`navbound.scale.map_tiles`; progress counts the flights of all cases.
+        Who flies, what is kept, who follows the progress: as in :func:`navbound.scale.map_tiles`; progress counts the flights of all cases.
 
     Raises
     ------
@@ -274,7 +274,7 @@ def _entries(case: Case) -> list[Entry]:
     """The published numbers that we hold, beside those of the case with the published sensors."""
     errors = {a.axis: a for a in case.axes}
     rows = {(b.evaluation, b.axis): b for b in case.bounds}
-    found = [
+    entries = [
         Entry(
             table="3",
             quantity=f"RMSE of the error, {axis} [m]",
@@ -286,7 +286,7 @@ def _entries(case: Case) -> list[Entry]:
         )
         for axis, value, why in _RMSE
     ]
-    found += [
+    entries += [
         Entry(
             table="3",
             quantity=f"RMS of the {which}, {axis} [m]",
@@ -298,7 +298,7 @@ def _entries(case: Case) -> list[Entry]:
         )
         for which, axis, value, verdict, why in _RMS
     ]
-    found += [
+    entries += [
         Entry(
             table="4",
             quantity=f"share within the {which}, altitude [%]",
@@ -310,7 +310,7 @@ def _entries(case: Case) -> list[Entry]:
         )
         for which, value, why in _SHARES
     ]
-    found += [
+    entries += [
         Entry(
             table="5",
             quantity=f"MAPE of the {which}, {axis}, as a ratio to the error",
@@ -323,7 +323,7 @@ def _entries(case: Case) -> list[Entry]:
         )
         for which, axis, value in _SCORES
     ]
-    return found
+    return entries
 
 
 SIZE_FACTOR = 1.5
@@ -371,16 +371,16 @@ _SCORES = (
 
 
 def _words(cases: list[Case]) -> list[str]:
-    said = [
+    words = [
         "Tables 6 and 7 of the paper repeat tables 4 and 5 digit by digit: its Monte Carlo values are lost, nothing is compared with them.",
         "A bound is better only if its Winkler score is lower; the ellipsoid read by axis holds more than 95 % and pays for it in width.",
     ]
     for case in cases:
         off = case.nees_over_3 > case.nees_high_over_3 or case.nees_over_3 < case.nees_low_over_3
         bins = sum(not case.pit_low <= count <= case.pit_high for count in case.pit_counts)
-        said.append(
+        words.append(
             f"{case.name}: NEES/3 {case.nees_over_3:.3g}, {'outside' if off else 'inside'} its limits {case.nees_low_over_3:.3g} to "
             f"{case.nees_high_over_3:.3g}; {bins} of {len(case.pit_counts)} bins of the PIT outside their band; mean squared innovation "
             f"{case.nis:.3g}, correlation of successive ones {case.lag_one:.2g}."
         )
-    return said
+    return words

@@ -53,6 +53,6 @@ def _case(case: Case) -> list[RenderableType]:
         bounds.add_column(heading, justify="left" if heading in {"evaluation", "axis"} else "right")
     for b in case.bounds:
         scores = (f"{b.mape_of_bound:.1f}", f"{b.mape_of_error:.1f}", f"{b.winkler_m:.3f}", f"{b.pinball_m:.3f}")
-        held = (f"{100 * b.containment:.2f}", _spread(b.containment_low, b.containment_high))
-        bounds.add_row(b.evaluation, b.axis, f"{b.rms_m:.3f}", *held, *scores)
+        coverage = (f"{100 * b.containment:.2f}", _spread(b.containment_low, b.containment_high))
+        bounds.add_row(b.evaluation, b.axis, f"{b.rms_m:.3f}", *coverage, *scores)
     return [axes, joint, bounds]

@@ -68,11 +68,11 @@ def find(files: Sequence[str | Path]) -> tuple[Path, Path, Path]:
     FormatError
         A file that is not there.
     """
-    given = [Path(f) for f in files]
-    if len(given) not in {0, 1, 3}:
-        raise InputError("files", f"{len(given)} files", domain="positions, or positions, observations and navigation")
-    positions = given[0] if given else next((f / DAY for f in FOLDERS if (f / DAY).exists()), FOLDERS[0] / DAY)
-    observations, navigation = given[1:] or [positions.parent / name for name in RAW]
+    paths = [Path(f) for f in files]
+    if len(paths) not in {0, 1, 3}:
+        raise InputError("files", f"{len(paths)} files", domain="positions, or positions, observations and navigation")
+    positions = paths[0] if paths else next((f / DAY for f in FOLDERS if (f / DAY).exists()), FOLDERS[0] / DAY)
+    observations, navigation = paths[1:] or [positions.parent / name for name in RAW]
     for path in (positions, observations, navigation):
         if not path.exists():
             message = "not there; give the files as arguments: positions with protection levels (.pos), observations, navigation"
@@ -115,11 +115,11 @@ def stage(name: str, cause: str, day: Day, error_m: Floats, bounds: tuple[Floats
     table = {"time_ns": day.time_ns, "hpl_m": bounds[0], "vpl_m": bounds[1]} | {
         f"nse_{axis}_m": error_m[:, k] for k, axis in enumerate("enu")
     }
-    found = kpi.evaluate(table, list(LEVELS.values()), exclude_missing=True)
-    horizontal, vertical = found.axes
+    indicators = kpi.evaluate(table, list(LEVELS.values()), exclude_missing=True)
+    horizontal, vertical = indicators.axes
     if horizontal.error_m is None or vertical.error_m is None or horizontal.safety_index is None or vertical.safety_index is None:
         raise FormatError(day.path, f"{name}: not one epoch has both bounds")
-    shares = {field: level.n_available / day.time_ns.size for field, level in zip(LEVELS, found.levels, strict=True)}
+    shares = {field: level.n_available / day.time_ns.size for field, level in zip(LEVELS, indicators.levels, strict=True)}
     return Stage(
         name=name,
         cause=cause,
@@ -130,14 +130,14 @@ def stage(name: str, cause: str, day: Day, error_m: Floats, bounds: tuple[Floats
         vpe_max_m=vertical.error_m.max,
         safety_h_max=horizontal.safety_index.max,
         safety_v_max=vertical.safety_index.max,
-        n_misleading=found.n_mi_epochs,
+        n_misleading=indicators.n_mi_epochs,
     )
 
 
 def correlations(day: Day, step_s: float) -> list[Correlation]:
     """Autocorrelation of each axis on the grid of the day, missing epochs left out, and beta from it."""
     place = np.round((day.time_ns - day.time_ns[0]) * 1e-9 / step_s).astype(np.int64)
-    found = []
+    rows = []
     for k, axis in enumerate("enu"):
         grid = np.zeros(int(place[-1]) + 1)
         grid[place] = day.error_m[:, k] - day.error_m[:, k].mean()
@@ -146,7 +146,7 @@ def correlations(day: Day, step_s: float) -> list[Correlation]:
         lags = np.fft.irfft(spectrum)[: grid.size]
         r = {lag: float(lags[round(lag / step_s)] / lags[0]) for lag in (60, 300, 600)}
         tau_s = -300.0 / float(np.log(r[300]))
-        found.append(
+        rows.append(
             Correlation.model_validate(
                 {
                     "axis": axis,
@@ -159,7 +159,7 @@ def correlations(day: Day, step_s: float) -> list[Correlation]:
                 }
             )
         )
-    return found
+    return rows
 
 
 def recorded_bias(folder: Path) -> BiasReading | None:

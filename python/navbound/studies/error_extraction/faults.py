@@ -40,10 +40,17 @@ FAULTS: dict[str, tuple[float, float, tuple[float | None, ...]]] = {
 """Each fault by its step [m] and slope [m/s], and what was computed for it before, from one run: the quantities in their order."""
 
 
-HELD_RISK = 1e-3
-HELD = ((30.0, 3.7e-4, 5e-6), (60.0, 5e-3, 5e-4), (100.0, 1.9e-2, 5e-4), (300.0, 0.11, 5e-3), (600.0, 0.21, 5e-3), (1800.0, 0.43, 5e-3))
+RISK_OF_CASES = 1e-3
+CASES_OF_RISK = (
+    (30.0, 3.7e-4, 5e-6),
+    (60.0, 5e-3, 5e-4),
+    (100.0, 1.9e-2, 5e-4),
+    (300.0, 0.11, 5e-3),
+    (600.0, 0.21, 5e-3),
+    (1800.0, 0.43, 5e-3),
+)
 """Correlation time [s], what was computed for it before, and half of its last digit."""
-HELD_RUNS, HELD_LENGTH = 400, 1200
+RISK_RUNS, RISK_LENGTH = 400, 1200
 """Independent runs, and samples in each; the first third, in which the filter settles, is not counted."""
 
 
@@ -86,46 +93,46 @@ def overshoot_m(step_m: float = 10.0) -> float:
     """Largest corrected error after a step of an error that is otherwise nothing."""
     position = np.zeros((2 * ONSET, 3))
     position[ONSET:, 2] = step_m
-    found = sbas.error_extraction(np.arange(2 * ONSET) * 1_000_000_000, position, np.zeros(3))
-    return float(np.abs(found.ee_position_enu_m[:, 2]).max())
+    extraction = sbas.error_extraction(np.arange(2 * ONSET) * 1_000_000_000, position, np.zeros(3))
+    return float(np.abs(extraction.ee_position_enu_m[:, 2]).max())
 
 
-def held_risks(*, seed: int = 2012) -> list[HeldRisk]:
+def risks_of_cases(*, seed: int = 2012) -> list[RiskOfMemory]:
     """How often errors of several correlation times pass the noise bound whose stated risk is 1e-3.
 
     Returns
     -------
-    list of HeldRisk
+    list of RiskOfMemory
         ``reproducible`` where the share stated before is within four standard errors, from independent runs, and half its last digit.
     """
     generator = np.random.Generator(np.random.Philox(seed))
-    times = np.arange(HELD_LENGTH) * 1_000_000_000
-    found = []
-    for tau_s, stated, half_digit in HELD:
-        position = np.zeros((HELD_RUNS, HELD_LENGTH, 3))
-        position[..., 2] = gauss_markov(generator.standard_normal((HELD_RUNS, HELD_LENGTH)), tau_s)
-        extracted = sbas.error_extraction(times, position, np.zeros(3), risk_v=HELD_RISK)
+    times = np.arange(RISK_LENGTH) * 1_000_000_000
+    risks = []
+    for tau_s, stated, half_digit in CASES_OF_RISK:
+        position = np.zeros((RISK_RUNS, RISK_LENGTH, 3))
+        position[..., 2] = gauss_markov(generator.standard_normal((RISK_RUNS, RISK_LENGTH)), tau_s)
+        extracted = sbas.error_extraction(times, position, np.zeros(3), risk_v=RISK_OF_CASES)
         error, bound = np.abs(extracted.ee_position_enu_m[..., 2]), extracted.ee_noise_v_m
-        shares = np.mean((error > bound)[:, HELD_LENGTH // 3 :], axis=1)
-        mean, standard_error = float(shares.mean()), float(shares.std(ddof=1) / np.sqrt(HELD_RUNS))
+        shares = np.mean((error > bound)[:, RISK_LENGTH // 3 :], axis=1)
+        mean, standard_error = float(shares.mean()), float(shares.std(ddof=1) / np.sqrt(RISK_RUNS))
         again = abs(mean - stated) <= 4.0 * standard_error + half_digit
-        found.append(
-            HeldRisk(
+        risks.append(
+            RiskOfMemory(
                 tau_s=tau_s,
-                risk=HELD_RISK,
+                risk=RISK_OF_CASES,
                 stated=stated,
                 found=mean,
                 standard_error=standard_error,
                 verdict="reproducible" if again else "not reproducible",
             )
         )
-    return found
+    return risks
 
 
 def _entries(fault: str, stated: tuple[float | None, ...], position: Floats, velocity: Floats) -> list[FaultEntry]:
     times = np.arange(position.shape[1]) * 1_000_000_000
-    found = sbas.error_extraction(times, position, velocity, bias_h_m=BIAS_BOUND_M, bias_v_m=BIAS_BOUND_M)
-    bound, error = found.ee_bound_v_m[:, ONSET:], np.abs(found.ee_position_enu_m[:, ONSET:, 2])
+    extraction = sbas.error_extraction(times, position, velocity, bias_h_m=BIAS_BOUND_M, bias_v_m=BIAS_BOUND_M)
+    bound, error = extraction.ee_bound_v_m[:, ONSET:], np.abs(extraction.ee_position_enu_m[:, ONSET:, 2])
     numbers = (
         bound.max(axis=1),
         _first(error > bound),

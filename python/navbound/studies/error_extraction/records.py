@@ -93,7 +93,7 @@ class FaultEntry(Record):
     verdict: Verdict
 
 
-class HeldRisk(Record):
+class RiskOfMemory(Record):
     """Share of samples beyond the noise bound when the error is Gauss-Markov: what becomes of a stated risk."""
 
     tau_s: float
@@ -107,7 +107,7 @@ class HeldRisk(Record):
     verdict: Verdict
 
 
-class HeldLaw(Record):
+class RiskOfLaw(Record):
     """Share of independent errors of one law beyond the noise bound: what becomes of a stated risk."""
 
     law: str
@@ -149,11 +149,11 @@ class Study(Record):
     claims: list[Claim]
     faults: list[FaultEntry]
     n_fault_runs: int
-    held: list[HeldRisk]
+    held: list[RiskOfMemory]
     """At a stated risk of 1e-3, counted."""
-    held_small: list[HeldRisk]
+    held_small: list[RiskOfMemory]
     """At 5e-8, the tail given each window."""
-    held_laws: list[HeldLaw]
+    held_laws: list[RiskOfLaw]
     words: list[str]
 
     def table(self) -> RenderableType:

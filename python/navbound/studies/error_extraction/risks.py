@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import sbas, tse
-from navbound.studies.error_extraction.records import HeldLaw, HeldRisk
+from navbound.studies.error_extraction.records import RiskOfLaw, RiskOfMemory
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,7 +22,7 @@ WINDOW, WEIGHT, BETA = 50, 0.5, 1.2
 DRAWS = 100_000
 """Windows drawn; the tail beyond each is exact, so that risks far below one in a hundred thousand are seen."""
 SMALL_RISK = 5e-8
-HELD_SMALL = ((60.0, 7e-7, 5e-8), (100.0, 2e-5, 5e-6), (300.0, 2.2e-3, 5e-5), (600.0, 1.3e-2, 5e-4), (1800.0, 8.4e-2, 5e-4))
+SMALL_CASES = ((60.0, 7e-7, 5e-8), (100.0, 2e-5, 5e-6), (300.0, 2.2e-3, 5e-5), (600.0, 1.3e-2, 5e-4), (1800.0, 8.4e-2, 5e-4))
 """Correlation time [s], what was computed for it before, and half of its last digit."""
 RESPONSE = 1000
 """Samples of the filter's response that are kept: 0.98^1000 is 2e-9."""
@@ -92,7 +92,7 @@ LAWS = (
 """Those of the specification whose risks a hundred thousand windows can tell; below 1e-11 they cannot."""
 
 
-def held_laws(*, seed: int = 2012) -> list[HeldLaw]:
+def held_laws(*, seed: int = 2012) -> list[RiskOfLaw]:
     """How often independent errors of several laws, known exactly, pass the noise bound.
 
     ::
@@ -101,10 +101,10 @@ def held_laws(*, seed: int = 2012) -> list[HeldLaw]:
 
     Returns
     -------
-    list of HeldLaw
+    list of RiskOfLaw
         ``reproducible`` where what was stated before is within four standard errors, from independent windows, and half its last digit.
     """
-    found = []
+    laws = []
     for index, law in enumerate(LAWS):
         sizes = law.draw(np.random.Generator(np.random.Philox([seed, index])), (DRAWS, WINDOW))
         weights = np.repeat([law.weight, 2.0 - law.weight], WINDOW // 2)
@@ -116,16 +116,16 @@ def held_laws(*, seed: int = 2012) -> list[HeldLaw]:
             again = abs(mean - stated) <= 4.0 * error + half_digit
             verdict = "reproducible" if again else "not reproducible"
             one = {"law": law.name, "risk": risk, "stated": stated, "found": mean, "standard_error": error, "verdict": verdict}
-            found.append(HeldLaw.model_validate(one))
-    return found
+            laws.append(RiskOfLaw.model_validate(one))
+    return laws
 
 
-def held_small(*, seed: int = 2012) -> list[HeldRisk]:
+def held_small(*, seed: int = 2012) -> list[RiskOfMemory]:
     """How often Gauss-Markov errors pass the noise bound whose stated risk is 5e-8: the Gaussian tail given each window, exactly.
 
     Returns
     -------
-    list of HeldRisk
+    list of RiskOfMemory
         As :func:`held_laws`.
     """
     normals = np.random.Generator(np.random.Philox([seed, len(LAWS)])).standard_normal((DRAWS, WINDOW))
@@ -133,27 +133,27 @@ def held_small(*, seed: int = 2012) -> list[HeldRisk]:
     k = sbas.extraction_factor(SMALL_RISK, window=WINDOW, weight=WEIGHT).k
     weights = BETA * np.repeat([WEIGHT, 2.0 - WEIGHT], WINDOW // 2)
     lags = np.abs(np.subtract.outer(np.arange(rows.shape[1]), np.arange(rows.shape[1])))
-    found = []
-    for tau_s, stated, half_digit in HELD_SMALL:
+    risks = []
+    for tau_s, stated, half_digit in SMALL_CASES:
         joint = rows @ np.exp(-lags / tau_s) @ rows.T
         window, across, own = joint[:-1, :-1], joint[:-1, -1], joint[-1, -1]
-        given = np.linalg.solve(window, across)
+        gain = np.linalg.solve(window, across)
         extracted = normals @ np.linalg.cholesky(window).T
         bound = k * (np.abs(extracted) @ weights)
-        mean, error = _mean(np.asarray(tse.exceedance_risk(extracted @ given, float(np.sqrt(own - across @ given)), bound)))
+        mean, error = _mean(np.asarray(tse.exceedance_risk(extracted @ gain, float(np.sqrt(own - across @ gain)), bound)))
         again = abs(mean - stated) <= 4.0 * error + half_digit
         verdict = "reproducible" if again else "not reproducible"
         one = {"tau_s": tau_s, "risk": SMALL_RISK, "stated": stated, "found": mean, "standard_error": error, "verdict": verdict}
-        found.append(HeldRisk.model_validate(one))
-    return found
+        risks.append(RiskOfMemory.model_validate(one))
+    return risks
 
 
 def _responses() -> Floats:
     """Rows that make the last 50 extracted errors of the errors before, by the filter's response; beneath them the last corrected one."""
     position = np.zeros((2 * RESPONSE, 3))
     position[RESPONSE, 2] = 1.0
-    found = sbas.error_extraction(np.arange(2 * RESPONSE) * 1_000_000_000, position, np.zeros(3))
-    response = found.ee_error_enu_m[RESPONSE:, 2]
+    extraction = sbas.error_extraction(np.arange(2 * RESPONSE) * 1_000_000_000, position, np.zeros(3))
+    response = extraction.ee_error_enu_m[RESPONSE:, 2]
     rows = np.zeros((WINDOW + 1, RESPONSE + WINDOW))
     for i in range(WINDOW):
         rows[i, i + 1 : i + 1 + RESPONSE] = response[::-1]

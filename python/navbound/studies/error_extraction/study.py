@@ -15,7 +15,7 @@ import numpy as np
 from navbound import sbas
 from navbound.errors import InputError
 from navbound.studies.error_extraction.day import WINDOW, Day, correlations, find, load, recorded_bias, stage
-from navbound.studies.error_extraction.faults import SIGMA_VELOCITY_MPS, held_risks, inject, overshoot_m
+from navbound.studies.error_extraction.faults import SIGMA_VELOCITY_MPS, inject, overshoot_m, risks_of_cases
 from navbound.studies.error_extraction.records import Availability, Cause, Claim, Correlation, FaultEntry, Stage, Study
 from navbound.studies.error_extraction.risks import held_laws, held_small
 
@@ -121,7 +121,7 @@ def run(files: Sequence[str | Path] = (), *, seed: int = 2012, velocity_runs: in
         claims=_claims(stages, computed.share_higher, remembered, faults),
         faults=faults,
         n_fault_runs=fault_runs,
-        held=held_risks(seed=seed),
+        held=risks_of_cases(seed=seed),
         held_small=held_small(seed=seed),
         held_laws=held_laws(seed=seed),
         words=_words(computed, split, velocity_runs),
@@ -157,13 +157,13 @@ class _Computed:
     """Least and most over the runs of the velocity noise, with the sum."""
 
 
-def _compute(day: Day, seed: int, runs: int, honest_beta: float) -> _Computed:
+def _compute(day: Day, seed: int, runs: int, exact_beta: float) -> _Computed:
     bias_h, bias_v = bias = sbas.extraction_bias_dop(day.hdop, day.vdop, day.n_seen)
     noise = np.random.Generator(np.random.Philox(seed)).standard_normal((runs, *day.error_m.shape)) * VELOCITY_SIGMA_MPS
     every = _extract(day, bias, noise, BETA)
     summed = _Extracted(every.error_m[0], every.bound_h_m[0], every.bound_v_m[0])
     printed = _extract(day, bias, noise[0], BETA, printed=True)
-    honest = _extract(day, bias, noise[0], honest_beta)
+    exact = _extract(day, bias, noise[0], exact_beta)
     perfect = _extract(day, bias, np.zeros(3), BETA)
     late, settled = slice(SETTLED, None), day.after(SETTLED)
 
@@ -178,7 +178,7 @@ def _compute(day: Day, seed: int, runs: int, honest_beta: float) -> _Computed:
             judged("corrected, bias bound alone", "variances dropped", summed.error_m, bias_h, bias_v),
             judged("EE bound, cfar_sum", "noise bound added", summed.error_m, summed.bound_h_m, summed.bound_v_m),
             judged("EE bound, as_printed", "noise bound over M", printed.error_m, printed.bound_h_m, printed.bound_v_m),
-            judged(f"EE bound, beta {honest_beta:.2f}", "cfar_sum, beta as measured", honest.error_m, honest.bound_h_m, honest.bound_v_m),
+            judged(f"EE bound, beta {exact_beta:.2f}", "cfar_sum, beta as measured", exact.error_m, exact.bound_h_m, exact.bound_v_m),
         ],
         noiseless=judged("EE bound, perfect velocity", "cfar_sum", perfect.error_m, perfect.bound_h_m, perfect.bound_v_m),
         share_higher=float(np.mean(np.abs(summed.error_m[late, 2]) > np.abs(day.error_m[late, 2]))),
@@ -194,7 +194,7 @@ def _range(values: list[float]) -> tuple[float, float]:
 
 def _extract(day: Day, bias: tuple[Floats, Floats], velocity: Floats, beta: float, *, printed: bool = False) -> _Extracted:
     """Filter and bound of the day; the station stands, so its velocity is the noise of a receiver, or nothing."""
-    found = sbas.error_extraction(
+    extraction = sbas.error_extraction(
         day.time_ns,
         day.error_m,
         velocity,
@@ -205,7 +205,7 @@ def _extract(day: Day, bias: tuple[Floats, Floats], velocity: Floats, beta: floa
         beta=beta,
         noise_bound="as_printed" if printed else "cfar_sum",
     )
-    return _Extracted(found.ee_position_enu_m, found.ee_bound_h_m, found.ee_bound_v_m)
+    return _Extracted(extraction.ee_position_enu_m, extraction.ee_bound_h_m, extraction.ee_bound_v_m)
 
 
 def _split(stages: list[Stage]) -> list[Cause]:
@@ -279,8 +279,8 @@ def _claims(stages: list[Stage], share_higher: float, remembered: list[Correlati
     ]
 
 
-def _levels(found: Stage) -> str:
-    a = found.availability
+def _levels(stage: Stage) -> str:
+    a = stage.availability
     return f"{100 * a.apv_i:.1f}/{100 * a.apv_ii:.1f}/{100 * a.cat_i_12:.1f} %"
 
 

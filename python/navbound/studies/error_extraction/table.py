@@ -11,7 +11,7 @@ from rich.table import Table
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from navbound.studies.error_extraction.records import Availability, HeldRisk, Spread, Study
+    from navbound.studies.error_extraction.records import Availability, RiskOfMemory, Spread, Study
 
 LEVELS = ("APV-I", "LPV-200", "APV-II", "CAT-I (12 m)")
 
@@ -26,7 +26,7 @@ def render(study: Study) -> RenderableType:
             f"{b.from_dop_m_max:.1f} m; exact median {b.exact_m_median:.1f} m, at most {b.exact_m_max:.1f} m and "
             f"{b.worst_ratio:.3f} times mu sqrt(N) VDOP."
         )
-    return Group(*parts, _faults(study), _held(study, study.held), _held(study, study.held_small), _held_laws(study), *study.words)
+    return Group(*parts, _faults(study), _risks(study, study.held), _risks(study, study.held_small), _risks_of_laws(study), *study.words)
 
 
 def _titled(study: Study, title: str, *headings: str) -> Table:
@@ -36,8 +36,8 @@ def _titled(study: Study, title: str, *headings: str) -> Table:
     return table
 
 
-def _shares(found: Availability, *, signed: bool = False) -> list[str]:
-    values = (found.apv_i, found.lpv_200, found.apv_ii, found.cat_i_12)
+def _shares(availability: Availability, *, signed: bool = False) -> list[str]:
+    values = (availability.apv_i, availability.lpv_200, availability.apv_ii, availability.cat_i_12)
     digits = "+.1f" if signed else ".1f"
     return ["" if v is None else f"{100 * v:{digits}}" for v in values]
 
@@ -88,15 +88,15 @@ def _faults(study: Study) -> Table:
     return table
 
 
-def _held(study: Study, held: list[HeldRisk]) -> Table:
-    title = f"Share of Gauss-Markov errors beyond the noise bound (stated risk {held[0].risk:g})"
+def _risks(study: Study, rows: list[RiskOfMemory]) -> Table:
+    title = f"Share of Gauss-Markov errors beyond the noise bound (stated risk {rows[0].risk:g})"
     table = _titled(study, title, "tau [s]", "stated before", "found", "standard error", "verdict")
-    for h in held:
+    for h in rows:
         table.add_row(f"{h.tau_s:g}", f"{h.stated:.2g}", f"{h.found:.2g}", f"{h.standard_error:.1g}", h.verdict)
     return table
 
 
-def _held_laws(study: Study) -> Table:
+def _risks_of_laws(study: Study) -> Table:
     title = "Share of independent errors beyond the noise bound, by their law"
     table = _titled(study, title, "law of the error", "stated risk", "stated before", "found", "standard error", "verdict")
     for h in study.held_laws:
@@ -104,8 +104,8 @@ def _held_laws(study: Study) -> Table:
     return table
 
 
-def _spread(found: Spread) -> str:
-    if found.least is None or found.median is None or found.most is None:
+def _spread(spread: Spread) -> str:
+    if spread.least is None or spread.median is None or spread.most is None:
         return "never"
-    never = f", never in {found.share_never:.0%}" if found.share_never else ""
-    return f"{found.least:.0f} / {found.median:.0f} / {found.most:.0f}{never}"
+    never = f", never in {spread.share_never:.0%}" if spread.share_never else ""
+    return f"{spread.least:.0f} / {spread.median:.0f} / {spread.most:.0f}{never}"

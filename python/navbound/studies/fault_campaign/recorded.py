@@ -382,6 +382,6 @@ def run(
             cut = [(r, ONSETS[onset] * end) for onset in onsets for r, end in zip(recordings, ends_s, strict=True)]
             if kind.family == "tuning":
                 cut = [(r, 0.0) for r in recordings]
-            found = [counts(kind.change(r, size, onset_s), onset_s) for r, onset_s in cut]
-            rows.append(((kind.id, kind.family, kind.unit, size), found))
-    return summed([(key, pl.DataFrame(found)) for key, found in rows], flights=len(recordings), n_tiles=len(rows))
+            tables = [counts(kind.change(r, size, onset_s), onset_s) for r, onset_s in cut]
+            rows.append(((kind.id, kind.family, kind.unit, size), tables))
+    return summed([(key, pl.DataFrame(table)) for key, table in rows], flights=len(recordings), n_tiles=len(rows))

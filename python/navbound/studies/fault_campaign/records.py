@@ -120,8 +120,8 @@ def _share(frame: pl.DataFrame, wrong: str, of: str) -> Share:
 
 def _row(key: tuple[str, str, str, float], frame: pl.DataFrame) -> Row:
     delays = frame["delay_s"].to_numpy()
-    found = delays[np.isfinite(delays)]
-    told = Counter(reason for cell in frame["reasons"] for reason in cell.split("|") if reason)
+    finite = delays[np.isfinite(delays)]
+    reported = Counter(reason for cell in frame["reasons"] for reason in cell.split("|") if reason)
     kind, family, unit, size = key
     return Row(
         kind=kind,
@@ -133,11 +133,11 @@ def _row(key: tuple[str, str, str, float], frame: pl.DataFrame) -> Row:
         wrong=_share(frame, "n_ok_wrong", "n_ok"),
         normal_wrong=_share(frame, "n_normal_wrong", "n_normal"),
         late=_share(frame, "n_late", "n_normal"),
-        detected=int(found.size),
-        delay_median_s=float(np.median(found)) if found.size else None,
-        delay_most_s=float(found.max()) if found.size else None,
+        detected=int(finite.size),
+        delay_median_s=float(np.median(finite)) if finite.size else None,
+        delay_most_s=float(finite.max()) if finite.size else None,
         error_most_m=float(frame["error_most_m"].to_numpy().max()),
-        reasons=[reason for reason, _ in told.most_common(REASONS_SHOWN)],
+        reasons=[reason for reason, _ in reported.most_common(REASONS_SHOWN)],
     )
 
 

@@ -90,7 +90,7 @@ def faulty(scenario: Scenario, tile: Tile) -> tuple[Scenario, float]:
 
 def tiles(kinds: Sequence[str], sizes: Sequence[int], onsets: Sequence[int], flights: int) -> list[Tile]:
     """Every tile, the healthy flights first; a kind that acts from the begin is flown once whatever the times."""
-    found = [Tile(HEALTHY, 0, 0, flights)]
+    tiles = [Tile(HEALTHY, 0, 0, flights)]
     for name in kinds:
         kind = _BY_ID[name]
         for size in (s for s in sizes if s < len(kind.sizes)):
@@ -99,8 +99,8 @@ def tiles(kinds: Sequence[str], sizes: Sequence[int], onsets: Sequence[int], fli
                 change = kind.change(kind.sizes[size], ONSETS_S[onset])
                 if change not in changes:
                     changes.append(change)
-                    found.append(Tile(name, size, onset, flights))
-    return found
+                    tiles.append(Tile(name, size, onset, flights))
+    return tiles
 
 
 def run(

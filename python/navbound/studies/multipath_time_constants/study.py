@@ -105,15 +105,15 @@ def run(files: Sequence[str | Path] = (), *, draws: int = 1000, seed: int = 673)
         raise InputError("draws", draws, "1", "[20, inf)")
     generator = np.random.Generator(np.random.Philox(seed))
     tau = time_constants(generator, draws)
-    found: dict[float, list[Floats]] = {ts: [] for ts in PUBLISHED_S}
+    by_interval: dict[float, list[Floats]] = {ts: [] for ts in PUBLISHED_S}
     for first in range(0, draws, CHUNK):
         raw = markov(generator, tau[first : first + CHUNK])
-        for ts, some in found.items():
+        for ts, some in by_interval.items():
             some.append(first_crossing(autocorrelation(smooth(raw, ts)[:, RUN_IN:], remove_mean=False), INVERSE_E))
     checks = markov(generator, np.repeat([SHORTEST_S, PERCENTILES_S[2]], 100))
     return Study(
         draws=draws,
-        smoothed=[_smoothed(ts, np.concatenate(lags), checks) for ts, lags in found.items()],
+        smoothed=[_smoothed(ts, np.concatenate(lags), checks) for ts, lags in by_interval.items()],
         series=[],
         words=[
             "Least and most are extremes of estimates from two hours of samples: the least falls slowly with the number of draws (for "

@@ -50,8 +50,8 @@ class Evidence:
 
     def largest(self, quantity: str, mode: str, phase: str, seconds: float = 0.0, case: str = "A") -> float:
         """The largest bias of a cell; -1 where not even none passes."""
-        found = self.cell(quantity, mode, phase, seconds, case).bias_m
-        return -1.0 if found is None else found
+        bias_m = self.cell(quantity, mode, phase, seconds, case).bias_m
+        return -1.0 if bias_m is None else bias_m
 
     @property
     def times(self) -> list[float]:
@@ -70,21 +70,21 @@ def shown(bias_m: float) -> str:
 
 def aided_ratios(config: SurfaceMovement, sky: Sky) -> dict[str, tuple[float, float]]:
     """Least and largest ratio of the deviation with an inertial system to that of ranges alone, by form of the noise, over some skies."""
-    found: dict[str, list[float]] = {"paper": [], "bound": []}
+    by_form: dict[str, list[float]] = {"paper": [], "bound": []}
     some = np.linspace(0, len(sky.az_rad) - 1, min(AIDED_SKIES, len(sky.az_rad))).astype(int)
     for mode in MODES:
         own = sky.of(mode.systems)
         az, el = own.az_rad[some], own.el_rad[some]
         alone = gbas.protection_levels(az, el, own.systems, service=mode.service)
         usable = alone.status == "ok"
-        for form in found:
+        for form in by_form:
             lat_rad = float(np.radians(config.airport.lat_deg))
             covariance = gbas.aided_covariance(
                 az[usable], el[usable], own.systems, lat_rad=lat_rad, service=mode.service, noise="paper" if form == "paper" else "bound"
             )
             both = gbas.protection_levels(az[usable], el[usable], own.systems, service=mode.service, aided_covariance_m2=covariance)
-            found[form] += (both.sigma_m / alone.sigma_m[usable]).tolist()
-    return {form: (min(ratios), max(ratios)) for form, ratios in found.items() if ratios}
+            by_form[form] += (both.sigma_m / alone.sigma_m[usable]).tolist()
+    return {form: (min(ratios), max(ratios)) for form, ratios in by_form.items() if ratios}
 
 
 def judge(
@@ -104,10 +104,12 @@ def judge(
     claims = []
     for entry in CLAIMS:
         if whole and needed:
-            verdict, found = entry.judge(evidence)
+            verdict, evidence_words = entry.judge(evidence)
         else:
-            verdict, found = "not judged", "the configuration leaves out what the claim is about, or an epoch has no solution"
-        claims.append(Claim(id=entry.id, claim=entry.claim, found=found, verdict=verdict, fitted=entry.fitted, expected=entry.expected))
+            verdict, evidence_words = "not judged", "the configuration leaves out what the claim is about, or an epoch has no solution"
+        claims.append(
+            Claim(id=entry.id, claim=entry.claim, found=evidence_words, verdict=verdict, fitted=entry.fitted, expected=entry.expected)
+        )
     return claims
 
 
@@ -115,8 +117,8 @@ Verdict = Literal["reproduced", "not reproduced", "only without a bound", "bound
 Judged = tuple[Verdict, str]
 
 
-def _if(holds: bool, found: str, verdict: Verdict = "reproduced") -> Judged:
-    return (verdict if holds else "not reproduced"), found
+def _if(holds: bool, evidence: str, verdict: Verdict = "reproduced") -> Judged:
+    return (verdict if holds else "not reproduced"), evidence
 
 
 def _c01(e: Evidence) -> Judged:
@@ -137,8 +139,8 @@ def _c03(e: Evidence) -> Judged:
 
 def _c04(e: Evidence) -> Judged:
     (low, high), (low_b, high_b) = e.aided["paper"], e.aided["bound"]
-    found = f"sigma ratio {low:.2f} to {high:.2f} with the paper's noise, {low_b:.1f} to {high_b:.1f} with noise that bounds"
-    return _if(high < 1 and low_b > 1, found, "only without a bound")
+    sentence = f"sigma ratio {low:.2f} to {high:.2f} with the paper's noise, {low_b:.1f} to {high_b:.1f} with noise that bounds"
+    return _if(high < 1 and low_b > 1, sentence, "only without a bound")
 
 
 def _c05(e: Evidence) -> Judged:
@@ -167,8 +169,8 @@ def _c09(e: Evidence) -> Judged:
     others = all(e.largest("monitor", m, p, case="B") < 0 for m in ("D", "F1") for p in ("ATW", "TL"))
     b = [e.largest("monitor", "F2", p, case="B") for p in ("ATW", "TL")]
     a = [e.largest("monitor", "F2", p) for p in ("ATW", "TL")]
-    found = f"F2: {', '.join(map(shown, b))} in case B, {', '.join(map(shown, a))} in case A; D and F1 {'none' if others else 'some'}"
-    return _if(others and b == [0.0, 0.0], found)
+    sentence = f"F2: {', '.join(map(shown, b))} in case B, {', '.join(map(shown, a))} in case A; D and F1 {'none' if others else 'some'}"
+    return _if(others and b == [0.0, 0.0], sentence)
 
 
 def _c10(e: Evidence) -> Judged:
@@ -219,22 +221,22 @@ def _c14(e: Evidence) -> Judged:
 
 
 def _worst(e: Evidence, mode: str, seconds: float) -> float:
-    found = e.cell("multi", mode, "SLL", seconds).worst_m
-    return np.inf if found is None else found
+    worst_m = e.cell("multi", mode, "SLL", seconds).worst_m
+    return np.inf if worst_m is None else worst_m
 
 
 def _c15(e: Evidence) -> Judged:
     short, long = 10.0, 600.0
     d, f = ([_worst(e, m, t) for t in (short, long)] for m in ("D", "F2"))
-    found = f"level without bias {d[0]:.2f} (D) against {f[0]:.2f} m (F2) at 10 s, {d[1]:.1f} against {f[1]:.1f} m at 600 s"
-    return _if(d[0] < f[0] and f[1] < d[1], found)
+    sentence = f"level without bias {d[0]:.2f} (D) against {f[0]:.2f} m (F2) at 10 s, {d[1]:.1f} against {f[1]:.1f} m at 600 s"
+    return _if(d[0] < f[0] and f[1] < d[1], sentence)
 
 
 def _c16(e: Evidence) -> Judged:
     places = [("ATW", 60.0), ("TL", 20.0), ("TL", 60.0)]
     pairs = [(e.largest("multi", "F1", *place), e.largest("multi", "F2", *place)) for place in places]
-    found = "; ".join(f"{p} at {t:g} s: F1 {shown(a)}, F2 {shown(b)}" for (p, t), (a, b) in zip(places, pairs, strict=True))
-    return _if(all(a > b for a, b in pairs), found)
+    sentence = "; ".join(f"{p} at {t:g} s: F1 {shown(a)}, F2 {shown(b)}" for (p, t), (a, b) in zip(places, pairs, strict=True))
+    return _if(all(a > b for a, b in pairs), sentence)
 
 
 def _c17(e: Evidence) -> Judged:
@@ -261,9 +263,9 @@ def _c18(e: Evidence) -> Judged:
 
     sparse = {m.id: largest(m.id, every) for m in MODES}
     dense = {m.id: largest(m.id, 1) for m in MODES}
-    words = [", ".join(f"{m} {shown(v)}" for m, v in found.items()) for found in (sparse, dense)]
-    found = f"single fault at 600 s: {words[1]} over all geometries; {words[0]} over those 30 min apart, by which the number was fixed"
-    return _if(all(v >= 0 for v in dense.values()), found, "fixes a number")
+    words = [", ".join(f"{m} {shown(v)}" for m, v in shares.items()) for shares in (sparse, dense)]
+    sentence = f"single fault at 600 s: {words[1]} over all geometries; {words[0]} over those 30 min apart, by which the number was fixed"
+    return _if(all(v >= 0 for v in dense.values()), sentence, "fixes a number")
 
 
 def _c19(e: Evidence) -> Judged:

@@ -55,22 +55,22 @@ def rules(config: SurfaceMovement) -> Rules:
         if name not in phases:
             raise InputError("only", name, domain=f"sub-phases: {', '.join(phases)}")
     kept = {name: phases[name] for name in (config.only or phases)}
-    budget = _given(gbas.error_budget(), sigma_fte_m=given.sigma_fte_m, sigma_pde_m=given.sigma_pde_m)
+    budget = _stated(gbas.error_budget(), sigma_fte_m=given.sigma_fte_m, sigma_pde_m=given.sigma_pde_m)
     curves = gbas.monitor_curves()
-    curves["D"] = _given(curves["D"], projection=given.gast_d_projection)
-    curves["F"] = _given(curves["F"], projection=given.gast_f_projection, stretch=given.gast_f_stretch)
+    curves["D"] = _stated(curves["D"], projection=given.gast_d_projection)
+    curves["F"] = _stated(curves["F"], projection=given.gast_f_projection, stretch=given.gast_f_stretch)
     return Rules(
         phases=kept,
         budget=budget,
         accuracy_m={name: gbas.accuracy_limit(phase.containment_m, budget) for name, phase in kept.items()},
-        carriers={name: _given(c, clock_mps=given.clock_mps) for name, c in gbas.carriers().items()},
+        carriers={name: _stated(c, clock_mps=given.clock_mps) for name, c in gbas.carriers().items()},
         curves=curves,
         rates=gbas.fault_rates(),
         allocation=gbas.allocation(),
     )
 
 
-def _given(record: Any, **numbers: float | None) -> Any:
+def _stated(record: Any, **numbers: float | None) -> Any:
     """The record with the user's numbers, each marked."""
     own = {name: value for name, value in numbers.items() if value is not None}
     marks = tuple(Mark(name, "given", "the configuration's own") for name in own)
@@ -101,8 +101,8 @@ def before(config: SurfaceMovement, mode: Mode, sky: Sky, risk: float, covarianc
 
 def gain(config: SurfaceMovement, levels: Levels) -> Floats:
     """Gain of the bias in the configured ordering."""
-    found: Floats = getattr(levels, f"bias_gain_{config.method.ordering}")
-    return found
+    gains: Floats = getattr(levels, f"bias_gain_{config.method.ordering}")
+    return gains
 
 
 def fault_probability(mode: Mode, rates: FaultRates) -> float:

@@ -62,7 +62,7 @@ class Method(Part):
     covariance: Literal["snapshot", "paper", "bound"]
 
 
-class Given(Part):
+class OwnNumbers(Part):
     """Numbers of the user's instead of the rebuilt ones."""
 
     clock_mps: float | None = Field(default=None, ge=0)
@@ -94,7 +94,7 @@ class SurfaceMovement(Part):
     geometry: Geometry
     grid: Grid
     method: Method
-    given: Given = Given()
+    given: OwnNumbers = OwnNumbers()
     requirement: list[Requirement] = Field(default_factory=list)
     only: list[str] = Field(default_factory=list)
     """Sub-phases to look at, by name; all without it."""
@@ -126,8 +126,8 @@ def load(path: Path | None = None) -> SurfaceMovement:
         return SurfaceMovement.model_validate(table)
     except ValidationError as e:
         first = e.errors()[0]
-        said = "is missing" if first["type"] == "missing" else f"{first['input']!r}: {first['msg']}"
-        raise FormatError(path or SHIPPED, said, field=_place(table, first["loc"])) from e
+        problem = "is missing" if first["type"] == "missing" else f"{first['input']!r}: {first['msg']}"
+        raise FormatError(path or SHIPPED, problem, field=_place(table, first["loc"])) from e
 
 
 def _place(table: dict[str, Any], location: tuple[str | int, ...]) -> str:

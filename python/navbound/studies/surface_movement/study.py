@@ -66,16 +66,16 @@ def run(files: Sequence[str | Path] = (), *, progress: Callable[[int, int], None
 def study(config: SurfaceMovement, sky: Sky, progress: Callable[[int, int], None] | None = None) -> Study:
     """The study of given skies."""
     rules = grid.rules(config)
-    tell, found = progress or (lambda _done, _all: None), []
+    tell, results = progress or (lambda _done, _all: None), []
     for done, mode in enumerate(MODES):
         tell(done, len(MODES))
-        found.append(_mode(config, rules, mode, sky.of(mode.systems)))
-    tell(len(found), len(found))
-    befores = [f.before for f in found]
-    margins = [m for f in found for m in f.margins]
-    cells = [c for f in found for c in f.cells]
+        results.append(_mode(config, rules, mode, sky.of(mode.systems)))
+    tell(len(results), len(results))
+    befores = [f.before for f in results]
+    margins = [m for f in results for m in f.margins]
+    cells = [c for f in results for c in f.cells]
     aided = claims.aided_ratios(config, sky)
-    grids = {f.mode.id: f.levels_of_cells[grid.CASES[0]] for f in found}
+    grids = {f.mode.id: f.levels_of_cells[grid.CASES[0]] for f in results}
     judged = claims.judge(config, rules, befores, cells, grids=grids, aided=aided)
     return Study(
         title=config.title,
@@ -86,8 +86,8 @@ def study(config: SurfaceMovement, sky: Sky, progress: Callable[[int, int], None
         before=befores,
         margins=margins,
         cells=cells,
-        curves=[c for f in found for c in f.curves],
-        errors=[f.errors for f in found],
+        curves=[c for f in results for c in f.curves],
+        errors=[f.errors for f in results],
         claims=judged,
         words=_words(config, sky),
     )
@@ -106,7 +106,7 @@ def configured(files: list[Path]) -> SurfaceMovement:
     return config.model_copy(update={"geometry": config.geometry.model_copy(update=geometry)})
 
 
-class _Found:
+class _ModeResults:
     """Everything about one mode."""
 
     def __init__(self, mode: Mode) -> None:
@@ -119,38 +119,38 @@ class _Found:
         self.levels_of_cells: dict[str, Floats] = {}
 
 
-def _mode(config: SurfaceMovement, rules: Rules, mode: Mode, sky: Sky) -> _Found:
-    found = _Found(mode)
+def _mode(config: SurfaceMovement, rules: Rules, mode: Mode, sky: Sky) -> _ModeResults:
+    result = _ModeResults(mode)
     covariance = grid.aided(config, mode, sky)
     first = next(iter(rules.phases.values()))
     levels = grid.before(config, mode, sky, first.integrity_risk, covariance)
     biases = np.asarray(config.grid.bias_m)
     gain = grid.gain(config, levels)
-    found.before = _before(mode, levels, gain, biases)
-    found.errors = _errors(mode, levels, gain, float(biases.max()))
+    result.before = _before(mode, levels, gain, biases)
+    result.errors = _errors(mode, levels, gain, float(biases.max()))
     statistic = np.nanmedian if config.method.missed_detection == "median" else np.nanmax
     # The worst direction of the covariance used.
     sigma = (levels.accuracy_m - levels.bias_hor_m) / K95
     typical, typical_gain = float(statistic(sigma)), float(statistic(gain))
     for case in grid.CASES:
         if case == grid.CASES[0] or len(mode.systems) > 1:
-            found.levels_of_cells[case] = grid.coasting(config, rules, mode, case, sky, covariance_m2=covariance)
+            result.levels_of_cells[case] = grid.coasting(config, rules, mode, case, sky, covariance_m2=covariance)
         else:
-            found.levels_of_cells[case] = found.levels_of_cells[grid.CASES[0]]
+            result.levels_of_cells[case] = result.levels_of_cells[grid.CASES[0]]
         for k, (name, phase) in enumerate(rules.phases.items()):
             own = (
                 grid.before(config, mode, sky, phase.integrity_risk, covariance) if phase.integrity_risk != first.integrity_risk else levels
             )
             decades = grid.margins(rules, mode, case, phase, share=rules.allocation.ground, sigma_m=typical, bias_m=biases * typical_gain)
-            found.margins.append(Margin(mode=mode.id, case=case, phase=name, decades=decades.tolist()))
-            cells = found.levels_of_cells[case][:, :, k]
+            result.margins.append(Margin(mode=mode.id, case=case, phase=name, decades=decades.tolist()))
+            cells = result.levels_of_cells[case][:, :, k]
             place = {"mode": mode.id, "case": case, "phase": name}
-            found.cells += list(
+            result.cells += list(
                 _cells_before(place, own, gain, biases, accuracy_m=rules.accuracy_m[name], hal_m=phase.hal_m, decades=decades)
             )
-            found.cells += list(_cells_coasting(config, rules, mode, place, cells, statistic=statistic))
-            found.curves.append(_curve(rules, mode, case, name, typical))
-    return found
+            result.cells += list(_cells_coasting(config, rules, mode, place, cells, statistic=statistic))
+            result.curves.append(_curve(rules, mode, case, name, typical))
+    return result
 
 
 def _before(mode: Mode, levels: Levels, gain: Floats, biases: Floats) -> Before:
@@ -220,7 +220,7 @@ def _cells_coasting(
 
 
 def _slope(accuracy: Floats, biases: Floats) -> Floats:
-    """Metres of accuracy for a metre of bias; 0 where only one size is asked for."""
+    """Metres of accuracy for a metre of bias; 0 where only one size is requested."""
     spread = float(biases[-1] - biases[0])
     return (accuracy[:, -1] - accuracy[:, 0]) / spread if spread else np.zeros(len(accuracy))
 
@@ -256,9 +256,9 @@ def _curve(rules: Rules, mode: Mode, case: str, name: str, sigma_m: float) -> Cu
 
 def _phase(rules: Rules, name: str) -> Phase:
     p = rules.phases[name]
-    held = min((m.held for m in p.marks), key=WEAKEST.index)
+    provenance = min((m.held for m in p.marks), key=WEAKEST.index)
     if any(m.held == "inferred" for m in p.marks):
-        held = "inferred"
+        provenance = "inferred"
     return Phase(
         id=p.id,
         title=p.title,
@@ -268,7 +268,7 @@ def _phase(rules: Rules, name: str) -> Phase:
         integrity_risk=p.integrity_risk,
         continuity_risk=p.continuity_risk,
         speed_mps=p.speed_mps,
-        held=held,
+        held=provenance,
     )
 
 

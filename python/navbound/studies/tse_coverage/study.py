@@ -223,11 +223,11 @@ def repeated_coverage(deviation_over_sigma: float) -> float:
 def _day(step_s: float) -> _Day:
     times = np.arange(0.0, SIDEREAL_DAY_S, step_s)
     sky = gnss.geometry(gnss.constellation("gps"), SITE_LAT_RAD, SITE_LON_RAD, SITE_H_M, times, mask_rad=MASK_RAD)
-    found = gnss.covariance(sky.az_rad, sky.el_rad, SIGMA_RANGE_M)
-    usable = found.status == "ok"
-    covariance = found.enu_m2[usable, :2, :2]
+    solution = gnss.covariance(sky.az_rad, sky.el_rad, SIGMA_RANGE_M)
+    usable = solution.status == "ok"
+    covariance = solution.enu_m2[usable, :2, :2]
     cross = tse.project(np.zeros(2), covariance, COURSE_RAD).sigma_m
-    return _Day(sky.n_sv[usable], covariance, cross, found.sigma_major_m[usable])
+    return _Day(sky.n_sv[usable], covariance, cross, solution.sigma_major_m[usable])
 
 
 def _factor_risk(factor: float) -> float:
@@ -256,13 +256,13 @@ class _Assumed:
 
     def beyond(self, day: _Day) -> dict[str, Floats]:
         """Share of the day beyond each method's bound, worked out in closed form at every epoch."""
-        found: dict[str, Floats] = {level: np.zeros(len(METHODS)) for level in LEVELS}
+        risks: dict[str, Floats] = {level: np.zeros(len(METHODS)) for level in LEVELS}
         sigma = day.sigma_cross_m
         for fte_m, weight in _half_normal(sigma, self.spread_m) if self.spread_m else [(self.ratio * sigma, 1.0)]:
             for level in LEVELS:
                 bounds = _bounds(day, fte_m, level)
-                found[level] += [weight * float(tse.exceedance_risk(fte_m, sigma, bounds[method]).mean()) for method in METHODS]
-        return found
+                risks[level] += [weight * float(tse.exceedance_risk(fte_m, sigma, bounds[method]).mean()) for method in METHODS]
+        return risks
 
 
 @dataclass(frozen=True)

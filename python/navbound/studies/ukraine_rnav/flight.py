@@ -111,7 +111,7 @@ def material(flown: Flight, seed: int) -> Material:
     measured = seen.slant_m + dme.range_sigma(seen.slant_m) * generator.standard_normal(seen.slant_m.shape)
     bearings = seen.bearing_rad + dme.VOR_SIGMA_RAD * generator.standard_normal(seen.bearing_rad.shape)
     h_m = flown.h_m + SIGMA_ALTITUDE_M * generator.standard_normal(flown.h_m.shape)
-    both = _chosen(flown.selection.used, len(flown.stations))
+    both = _selected(flown.selection.used, len(flown.stations))
     vor = flown.selection.vor
     row, column = np.arange(len(vor)), np.maximum(vor, 0)
     station = np.column_stack((flown.stations.lat_rad, flown.stations.lon_rad, flown.stations.h_m))[column]
@@ -152,7 +152,7 @@ def _assumptions() -> list[str]:
     ]
 
 
-def _chosen(pairs: NDArray[np.int64], m: int) -> NDArray[np.bool_]:
+def _selected(pairs: NDArray[np.int64], m: int) -> NDArray[np.bool_]:
     """Pairs as places of their stations to a mask of shape (n, m)."""
     mask: NDArray[np.bool_] = (pairs[:, :, None] == np.arange(m)).any(axis=1)
     return mask
@@ -170,11 +170,13 @@ def _solved(flown: Flight, slant_m: Floats, h_m: Floats) -> dme.Positions:
     )
 
 
-def _table(flown: Flight, found: dme.Positions, h_m: Floats, offered: NDArray[np.bool_], track: str) -> pl.DataFrame:
-    reason_id = np.where(offered, found.reason_id, "no_station_pair")
+def _table(flown: Flight, positions: dme.Positions, h_m: Floats, offered: NDArray[np.bool_], track: str) -> pl.DataFrame:
+    reason_id = np.where(offered, positions.reason_id, "no_station_pair")
     status, reason = statuses(reason_id), sentences(reason_id)
     usable = np.isin(status, USABLE)
-    lat, lon = (np.where(usable, solved, path_) for solved, path_ in ((found.lat_rad, flown.lat_rad), (found.lon_rad, flown.lon_rad)))
+    lat, lon = (
+        np.where(usable, solved, path_) for solved, path_ in ((positions.lat_rad, flown.lat_rad), (positions.lon_rad, flown.lon_rad))
+    )
     on_path = np.column_stack((flown.lat_rad, flown.lon_rad, flown.h_m))
     nse = _core.navigation_error(np.column_stack((lat, lon, h_m)), on_path)
     legs = ["-".join(pair) for pair in itertools.pairwise([DEPARTURE, *POINTS_DEG, DESTINATION])]
@@ -196,7 +198,7 @@ def _table(flown: Flight, found: dme.Positions, h_m: Floats, offered: NDArray[np
             "along_m": flown.along_m,
             "fte_m": np.where(usable, 0.0, np.nan),
             **{f"nse_{axis}_m": known(nse[:, k]) for k, axis in enumerate("enu")},
-            **{f"cov_{'enu'[i]}{'enu'[j]}_m2": known(found.covariance_enu_m2[:, i, j]) for j in range(3) for i in range(j + 1)},
+            **{f"cov_{'enu'[i]}{'enu'[j]}_m2": known(positions.covariance_enu_m2[:, i, j]) for j in range(3) for i in range(j + 1)},
             "rnp_m": np.full(len(lat), RNP_M),
             "ground_speed_mps": np.full(len(lat), SPEED_MPS),
             "leg": np.array(legs)[flown.leg],

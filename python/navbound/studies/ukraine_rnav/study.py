@@ -174,11 +174,11 @@ def _judged(seed: int) -> tuple[scene.Flight, Run, rnp.StateClassifier]:
         raise InputError("seed", seed, domain="[0, inf)")
     flown = scene.flight(scene.network())
     material = scene.material(flown, seed)
-    said = (
+    words = (
         f"On the track {AUTHORS} the states are posteriors of the authors' classifier (safe form) for the 95 % navigation error across the "
         "route, with a flight technical error of half of each level (theirs is not known); elsewhere they come from the law of the error."
     )
-    judged, classifier = judge(replace(material, assumptions=[*material.assumptions, said])), _classifier()
+    judged, classifier = judge(replace(material, assumptions=[*material.assumptions, words])), _classifier()
     pair = material.epochs.filter(pl.col("track") == scene.PAIR).with_columns(pl.lit(AUTHORS).alias("track"))
     label = "Optimal DME pair, states by the authors' classifier"
     # Judged apart: the same flight must not count twice in the verdict.
@@ -206,8 +206,8 @@ def _with_posteriors(epochs: pl.DataFrame, classifier: rnp.StateClassifier) -> p
 
 
 def _matrices(flown: scene.Flight) -> dict[str, Floats]:
-    found = flown.selection
-    return {scene.PAIR: found.used_en_m2, scene.ALL: found.all_en_m2, scene.VOR: found.vor_en_m2}
+    selection = flown.selection
+    return {scene.PAIR: selection.used_en_m2, scene.ALL: selection.all_en_m2, scene.VOR: selection.vor_en_m2}
 
 
 def _across(flown: scene.Flight, matrix: Floats) -> Floats:
@@ -223,7 +223,7 @@ def _means(flown: scene.Flight, judged: Run, name: str, nse95: Floats) -> Means:
     matrix = _matrices(flown)[name][known]
     limit = float(rnp.nse_boundary(scene.RNP_M, FTE_SHARE * scene.RNP_M))
     track = judged.epochs.filter(pl.col("track") == name, pl.col("nse_cross_m").is_not_null(), pl.col("anp_cross_m").is_not_null())
-    held = track.select((pl.col("nse_cross_m").abs() <= pl.col("anp_cross_m")).mean()).item()
+    share = track.select((pl.col("nse_cross_m").abs() <= pl.col("anp_cross_m")).mean()).item()
     return Means(
         track=name,
         label=scene.LABELS[name],
@@ -233,7 +233,7 @@ def _means(flown: scene.Flight, judged: Run, name: str, nse95: Floats) -> Means:
         circle_median_m=_some(np.median(anp.circle(matrix, RISK))) if known.any() else None,
         # Where there is no position nothing is supported.
         share_rnp_1=float(np.mean(nse95 <= limit)),
-        coverage=None if held is None else float(held),
+        coverage=None if share is None else float(share),
     )
 
 
@@ -300,8 +300,8 @@ def _render(study: Study) -> RenderableType:
         means.add_column(heading, justify="left" if heading == "navigation" else "right")
     for m in study.means:
         numbers = [_metres(v) for v in (m.nse95_median_m, m.nse95_max_m, m.circle_median_m)]
-        held = "-" if m.coverage is None else f"{100 * m.coverage:.1f}"
-        means.add_row(m.label, f"{100 * m.share_available:.1f}", *numbers, f"{100 * m.share_rnp_1:.1f}", held)
+        coverage = "-" if m.coverage is None else f"{100 * m.coverage:.1f}"
+        means.add_row(m.label, f"{100 * m.share_available:.1f}", *numbers, f"{100 * m.share_rnp_1:.1f}", coverage)
     pairs = Table(title="The pair in use")
     for heading in ("stations", "from [NM]", "to [NM]", "drms least [m]", "most [m]"):
         pairs.add_column(heading)

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 /// A conditional variance below this share of the variance itself is rounding, and the matrix singular.
 const SINGULAR: f64 = 1e-14;
 
-/// The region e' V^-1 e <= k^2 that the error leaves with the risk asked for.
+/// The region e' V^-1 e <= k^2 that the error leaves with the requested risk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipsoid {
     /// k, the factor of the three-dimensional length.

@@ -57,7 +57,7 @@ pub struct Directional {
     pub bias: Metres,
     /// Standard deviation along it.
     pub sigma: Metres,
-    /// What |error| exceeds with the risk asked for.
+    /// What |error| exceeds with the requested risk.
     pub half_width: Metres,
 }
 

@@ -50,7 +50,7 @@ pub fn rectangle(covariance: [f64; 3], mean: [f64; 2], half_sizes: [f64; 2]) -> 
 
 fn rectangle_sides([cc, cv, vv]: [f64; 3], [mc, mv]: [f64; 2], [a, b]: [f64; 2]) -> Sides {
     if !(vv > 0.0) {
-        return both(given(0.0, mv, b), given(sqrt(cc.max(0.0)), mc, a));
+        return both(interval(0.0, mv, b), interval(sqrt(cc.max(0.0)), mc, a));
     }
     let (slope, sigma) = (cv / vv, sqrt(vv));
     let rest = sqrt((cc - cv * slope).max(0.0));
@@ -63,14 +63,14 @@ fn rectangle_sides([cc, cv, vv]: [f64; 3], [mc, mv]: [f64; 2], [a, b]: [f64; 2])
     let (lo, hi) = ((-b).max(mv - REACH * sigma), b.min(mv + REACH * sigma));
     let [inside, outside] = integrate_broken(lo, hi, breaks, PANEL * sigma, |v| {
         let weight = density((v - mv) / sigma) / sigma;
-        let c = given(rest, mc + slope * (v - mv), a);
+        let c = interval(rest, mc + slope * (v - mv), a);
         [weight * c.inside, weight * c.outside]
     });
     Sides { inside, outside: outside + line(sigma, mv, b).outside }
 }
 
 /// Both sides of |x| <= half for a normal x, which may be fixed.
-fn given(sigma: f64, mean: f64, half: f64) -> Sides {
+fn interval(sigma: f64, mean: f64, half: f64) -> Sides {
     if sigma > 0.0 {
         let AtRadius { inside, outside, .. } = line(sigma, mean, half);
         return Sides { inside, outside };
@@ -94,11 +94,11 @@ pub fn cylinder(upper: [f64; 6], mean: [f64; 3], radius: f64, half_height: f64) 
     check([("radius_m", radius), ("half_height_m", half_height)], &mean)?;
     let [ee, en, nn, eu, nu, uu] = accept(upper, NAMES[0]).map(|_| upper)?;
     if !(uu > 0.0) {
-        let disc = disc_given([ee, en, nn])?.at([mean[0], mean[1]], radius);
-        return Ok(both(given(0.0, mean[2], half_height), disc));
+        let disc = disc_of([ee, en, nn])?.at([mean[0], mean[1]], radius);
+        return Ok(both(interval(0.0, mean[2], half_height), disc));
     }
     let slope = [eu / uu, nu / uu];
-    let disc = disc_given([ee - eu * slope[0], en - eu * slope[1], nn - nu * slope[1]])?;
+    let disc = disc_of([ee - eu * slope[0], en - eu * slope[1], nn - nu * slope[1]])?;
     let sigma = sqrt(uu);
     let mut breaks = [f64::NAN; 10];
     for (i, shift) in [0.0, -EDGE, EDGE].into_iter().enumerate() {
@@ -135,7 +135,7 @@ struct Disc {
     axes: [[f64; 3]; 3],
 }
 
-fn disc_given([ee, en, nn]: [f64; 3]) -> Result<Disc, OutOfDomain> {
+fn disc_of([ee, en, nn]: [f64; 3]) -> Result<Disc, OutOfDomain> {
     // A conditional variance may be rounding: what is left of a perfectly correlated error.
     let (ee, nn) = (ee.max(0.0), nn.max(0.0));
     let en = within(en, -sqrt(ee * nn), sqrt(ee * nn));

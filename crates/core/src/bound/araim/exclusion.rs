@@ -162,12 +162,12 @@ impl Candidates {
     /// # Errors
     /// [`NoModes::TooManyDecisions`].
     fn likely(modes: &FaultModes, service: &Service) -> Result<Self, NoModes> {
-        let mut found = Self::none();
+        let mut likely = Self::none();
         for mode in modes.iter().skip(1).filter(|m| m.p > service.integrity()) {
-            *found.mask.get_mut(found.count).ok_or(NoModes::TooManyDecisions { most: MOST_DECISIONS })? = mode.satellites;
-            found.count += 1;
+            *likely.mask.get_mut(likely.count).ok_or(NoModes::TooManyDecisions { most: MOST_DECISIONS })? = mode.satellites;
+            likely.count += 1;
         }
-        Ok(found)
+        Ok(likely)
     }
 
     /// In the order of what they do to the position, so that the first are likely to have the largest levels.
@@ -186,21 +186,21 @@ impl Candidates {
 
     /// The modes whose separation is largest against its threshold, in that order.
     fn suspects(solver: &mut Solver, of: &Separation, modes: &FaultModes, service: &Service) -> Self {
-        let mut found = Self::none();
+        let mut suspects = Self::none();
         solver.ratios(of, modes, service, |mask, ratio| {
             // Insertion into the few that are kept.
-            let mut place = found.count.min(MOST_TRIED - 1);
-            if found.count == MOST_TRIED && ratio <= found.ratio[place] {
+            let mut place = suspects.count.min(MOST_TRIED - 1);
+            if suspects.count == MOST_TRIED && ratio <= suspects.ratio[place] {
                 return;
             }
-            while place > 0 && found.ratio[place - 1] < ratio {
-                (found.mask[place], found.ratio[place]) = (found.mask[place - 1], found.ratio[place - 1]);
+            while place > 0 && suspects.ratio[place - 1] < ratio {
+                (suspects.mask[place], suspects.ratio[place]) = (suspects.mask[place - 1], suspects.ratio[place - 1]);
                 place -= 1;
             }
-            (found.mask[place], found.ratio[place]) = (mask, ratio);
-            found.count = (found.count + 1).min(MOST_TRIED);
+            (suspects.mask[place], suspects.ratio[place]) = (mask, ratio);
+            suspects.count = (suspects.count + 1).min(MOST_TRIED);
         });
-        found
+        suspects
     }
 
     /// Of the risk for each decision, "nothing" among them.

@@ -64,14 +64,14 @@ impl Monitor {
     /// # Errors
     /// [`NoLevels`].
     #[inline(always)]
-    pub fn single_levels(&mut self, sights: &[Sight], wanted: &Requirement) -> Result<Levels, NoLevels> {
+    pub fn single_levels(&mut self, sights: &[Sight], requirement: &Requirement) -> Result<Levels, NoLevels> {
         let modes = modes::single(sights)?;
         checked(sights)?;
         let (monitored, _) = self.every.separate(sights, &[], &modes)?;
         let faults = sights.len().max(1) as f64;
-        let k_ff = one_sided_factor(0.5 * wanted.fault_free.q());
-        let k_fa = one_sided_factor(0.5 * wanted.false_alarm.q() / faults);
-        let k_md = one_sided_factor(wanted.missed_detection.q());
+        let k_ff = one_sided_factor(0.5 * requirement.fault_free.q());
+        let k_fa = one_sided_factor(0.5 * requirement.false_alarm.q() / faults);
+        let k_md = one_sided_factor(requirement.missed_detection.q());
         let (mut east_north, mut axes, mut up, mut threshold_u) = (0.0_f64, [0.0_f64; 2], 0.0_f64, 0.0_f64);
         for (k, outcome) in self.every.outcome[..modes.len()].iter().enumerate() {
             let Some(sums) = outcome else {
@@ -102,12 +102,12 @@ impl Monitor {
     ///
     /// # Errors
     /// [`NoLevels`].
-    pub fn single_levels_after_exclusion(&mut self, sights: &[Sight], wanted: &Requirement) -> Result<Levels, NoLevels> {
-        let mut worst = self.single_levels(sights, wanted)?;
+    pub fn single_levels_after_exclusion(&mut self, sights: &[Sight], requirement: &Requirement) -> Result<Levels, NoLevels> {
+        let mut worst = self.single_levels(sights, requirement)?;
         let mut rest = super::exclusion::Rest::default();
         for i in 0..sights.len() {
             let (left, _) = rest.without(sights, &[], 1 << i);
-            let after = match self.single_levels(left, wanted) {
+            let after = match self.single_levels(left, requirement) {
                 Ok(after) => Some(after),
                 Err(NoLevels::Geometry(Unavailable::Invalid { field, value, unit, domain })) => {
                     return Err(NoLevels::Modes(NoModes::OutOfDomain(OutOfDomain { argument: field, value, unit, domain })));

@@ -101,20 +101,20 @@ fn exclusion_promises_more_than_detection_and_finds_the_fault() {
     assert!(exclusion.hpl > detection.hpl && exclusion.vpl > detection.vpl);
     let mut residuals = [3.0; 10];
     residuals[2] += 200.0;
-    let found = monitored(&mut monitor, &mut book, &sights, &residuals, &service).unwrap();
-    assert_eq!((found.decision, found.excluded), (exclusion::Decision::Excluded, 1 << 2));
+    let outcome = monitored(&mut monitor, &mut book, &sights, &residuals, &service).unwrap();
+    assert_eq!((outcome.decision, outcome.excluded), (exclusion::Decision::Excluded, 1 << 2));
     // Residuals without the fault are equal for all: clocks take them up.
-    assert!(found.step.iter().all(|s| s.m().abs() < 1e-9), "{:?}", found.step);
-    assert!(found.worst_ratio > 1.0);
+    assert!(outcome.step.iter().all(|s| s.m().abs() < 1e-9), "{:?}", outcome.step);
+    assert!(outcome.worst_ratio > 1.0);
 }
 
 #[test]
 fn satellites_that_cannot_be_tested_are_no_agreement() {
     // Five of one constellation: without any one of them four are left, which always agree.
     let (sights, mut monitor) = (published(1e-5)[..5].to_vec(), Monitor::default());
-    let found = monitored(&mut monitor, &mut Anew(None), &sights, &[0.0, 0.0, 1e4, 0.0, 0.0], &Service::LPV_200).unwrap();
-    assert!(found.worst_ratio > 1.0, "{found:?}");
-    assert_eq!((found.decision, found.excluded), (exclusion::Decision::NotExcluded, 0));
+    let tested = monitored(&mut monitor, &mut Anew(None), &sights, &[0.0, 0.0, 1e4, 0.0, 0.0], &Service::LPV_200).unwrap();
+    assert!(tested.worst_ratio > 1.0, "{tested:?}");
+    assert_eq!((tested.decision, tested.excluded), (exclusion::Decision::NotExcluded, 0));
 }
 
 /// The list of fault modes is worked out with six satellites, so that only the number of sights can refuse.
@@ -133,7 +133,7 @@ fn sixty_four_satellites_are_served_and_more_are_refused() {
 }
 
 #[test]
-fn what_there_is_no_room_for_is_said() {
+fn what_there_is_no_room_for_is_reported() {
     let one = published(1e-5)[0];
     let many: Vec<_> = (0..65).map(|_| one).collect();
     assert_eq!(Service::LPV_200.modes(&many, &P_CONST).unwrap_err(), NoModes::TooManySatellites { have: 65 });
@@ -189,13 +189,13 @@ fn each_exclusion(sights: &[Sight], service: &Service) -> (f64, Vec<(u64, Option
 fn the_promise_with_exclusion_is_the_largest_of_all_decisions() {
     for service in Service::ALL {
         for (k, sights) in skies(7, false).chain(skies(8, true)).enumerate() {
-            let found = predicted(&mut Monitor::default(), &mut Anew(None), &sights, &service);
+            let prediction = predicted(&mut Monitor::default(), &mut Anew(None), &sights, &service);
             let (_, decisions) = each_exclusion(&sights, &service);
             if decisions[0].1.is_none() {
-                assert!(found.is_err(), "sky {k}");
+                assert!(prediction.is_err(), "sky {k}");
                 continue;
             }
-            let found = found.unwrap();
+            let prediction = prediction.unwrap();
             let largest =
                 |of: fn(&Levels) -> f64| decisions.iter().map(|d| d.1.as_ref().map_or(f64::INFINITY, of)).fold(0.0, f64::max).to_bits();
             // The same numbers compared, so the same bits.

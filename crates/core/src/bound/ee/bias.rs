@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn the_farthest_corner_is_found_in_every_direction() {
+    fn the_farthest_corner_is_right_in_every_direction() {
         let cases: [&[[f64; 2]]; 5] = [
             &[[1.0, 0.0], [0.0, 1.0]],
             &[[0.3, 0.1], [-0.6, -0.2], [0.1, 0.9]],
@@ -93,14 +93,14 @@ mod tests {
             &[[0.0, 0.0], [0.4, -0.2]],
         ];
         for pairs in cases {
-            let found = exact(rows(pairs), Metres::new(1.0)).unwrap();
+            let largest = exact(rows(pairs), Metres::new(1.0)).unwrap();
             let scan = (0..36_000)
                 .map(|i| f64::from(i) * core::f64::consts::PI / 36_000.0)
                 .map(|t| pairs.iter().map(|p| (t.cos() * p[0] + t.sin() * p[1]).abs()).sum::<f64>());
             let scanned = scan.fold(0.0, f64::max);
             // A scan falls short by at most 1 - cos of half its step: 1e-9.
-            assert!(found.horizontal.m() >= scanned - 1e-15 && found.horizontal.m() <= scanned * (1.0 + 2e-9), "{found:?} {scanned}");
-            assert!((found.vertical.m() - 0.5 * pairs.len() as f64).abs() < 1e-15);
+            assert!(largest.horizontal.m() >= scanned - 1e-15 && largest.horizontal.m() <= scanned * (1.0 + 2e-9), "{largest:?} {scanned}");
+            assert!((largest.vertical.m() - 0.5 * pairs.len() as f64).abs() < 1e-15);
         }
     }
 

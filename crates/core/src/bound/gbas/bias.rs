@@ -76,9 +76,9 @@ mod tests {
     proptest! {
         #[test]
         fn the_exact_gain_is_the_largest_over_all_signs(vectors in proptest::collection::vec(proptest::array::uniform2(-1.0..1.0f64), 1..=12)) {
-            let found = Ordering::Exact.gain(vectors.iter().copied());
+            let gain = Ordering::Exact.gain(vectors.iter().copied());
             // Twelve additions of numbers below 12.
-            prop_assert!((found - brute_force(&vectors)).abs() < 1e-13 * 12.0);
+            prop_assert!((gain - brute_force(&vectors)).abs() < 1e-13 * 12.0);
         }
 
         #[test]

@@ -190,8 +190,8 @@ mod tests {
         let surface = Factors::new(Risk::SURFACE_INTEGRITY, &RULE).unwrap();
         assert!((surface.fault_free - 6.5376).abs() < 1e-4 && (surface.missed - 4.0556).abs() < 1e-4, "{surface:?}");
         for (receivers, fault_free, missed) in [(2, 5.762, 2.935), (3, 5.81, 2.898), (4, 5.847, 2.878)] {
-            let found = Factors::new(Risk::APPROACH_INTEGRITY, &FactorRule { axes: 2, receivers, ..RULE }).unwrap();
-            assert!((found.fault_free - fault_free).abs() < 1e-3 && (found.missed - missed).abs() < 1e-3, "{receivers}: {found:?}");
+            let factors = Factors::new(Risk::APPROACH_INTEGRITY, &FactorRule { axes: 2, receivers, ..RULE }).unwrap();
+            assert!((factors.fault_free - fault_free).abs() < 1e-3 && (factors.missed - missed).abs() < 1e-3, "{receivers}: {factors:?}");
         }
     }
 
@@ -214,8 +214,8 @@ mod tests {
     #[test]
     fn accuracy_limits_meet_the_table() {
         for (containment, limit) in [(4.5, 1.77), (3.5, 1.36), (2.5, 0.94)] {
-            let found = accuracy_limit(Metres::new(containment), &ERROR_BUDGET).unwrap().m();
-            assert!((found - limit).abs() < 5e-3, "{containment}: {found}");
+            let computed = accuracy_limit(Metres::new(containment), &ERROR_BUDGET).unwrap().m();
+            assert!((computed - limit).abs() < 5e-3, "{containment}: {computed}");
         }
         assert!(accuracy_limit(Metres::new(0.5), &ERROR_BUDGET).is_err());
         assert!(accuracy_limit(Metres::new(f64::NAN), &ERROR_BUDGET).is_err());

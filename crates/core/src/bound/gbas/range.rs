@@ -134,8 +134,8 @@ mod tests {
         ];
         for (model, row) in table {
             for (el, sigma) in row {
-                let found = RangeError::new(&model, Radians::degrees(el)).unwrap().sigma().m();
-                assert!((found - sigma).abs() < 1e-3, "{} {el}: {found}", model.id);
+                let computed = RangeError::new(&model, Radians::degrees(el)).unwrap().sigma().m();
+                assert!((computed - sigma).abs() < 1e-3, "{} {el}: {computed}", model.id);
             }
         }
         let ionosphere = RangeError::new(&GAST_D, Radians::degrees(30.0)).unwrap().ionosphere.m();
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn the_smallest_coasting_error_is_two_phases() {
-        let found = carrier_sigma(&CARRIER_DUAL, Radians::new(1.0), 25.0, 0.0).unwrap().m();
-        assert!((found - 0.02 * core::f64::consts::SQRT_2).abs() < 1e-16);
+        let sigma = carrier_sigma(&CARRIER_DUAL, Radians::new(1.0), 25.0, 0.0).unwrap().m();
+        assert!((sigma - 0.02 * core::f64::consts::SQRT_2).abs() < 1e-16);
     }
 }

@@ -229,8 +229,8 @@ impl Monitor {
         let [with_fault, without] = self.noise;
         let noise = [hypot(sigma[0], sigma[1]), sigma[2]];
         let published = [0, 1].map(|k| if redundancy > 0 { slopes[k] * missed } else { f64::INFINITY });
-        let held = [0, 1].map(|k| Metres::new((published[k] + with_fault * noise[k]).max(without * noise[k])));
-        let [hpl, vpl] = held;
+        let guaranteed = [0, 1].map(|k| Metres::new((published[k] + with_fault * noise[k]).max(without * noise[k])));
+        let [hpl, vpl] = guaranteed;
         let [hpl_slope, vpl_slope] = published.map(Metres::new);
         Levels::of(hpl, vpl, Detail { hpl_slope, vpl_slope, sigma: sigma.map(Metres::new), redundancy })
     }

@@ -129,19 +129,19 @@ fn a_satellite_that_nothing_checks_leaves_no_level() {
 }
 
 #[test]
-fn a_wrong_satellite_is_found_and_left_out_with_the_levels_of_the_rest() {
+fn a_wrong_satellite_is_identified_and_left_out_with_the_levels_of_the_rest() {
     let mut monitor = Monitor::new(&Requirement::RAIM);
     let sights = sky(8);
     for wrong in 0..8 {
         let mut residuals = [250.0; 8];
         residuals[wrong] += 300.0;
-        let found = monitor.monitored(&sights, &residuals).unwrap();
-        assert_eq!((found.decision, found.excluded), (Decision::Excluded, Some(wrong)));
+        let outcome = monitor.monitored(&sights, &residuals).unwrap();
+        assert_eq!((outcome.decision, outcome.excluded), (Decision::Excluded, Some(wrong)));
         let mut rest = sights.clone();
         rest.remove(wrong);
-        assert_eq!(found.levels, monitor.levels(&rest).unwrap());
+        assert_eq!(outcome.levels, monitor.levels(&rest).unwrap());
         // Without the wrong one the ranges agree to rounding of 250 m.
-        assert!(found.step.iter().all(|s| s.m().abs() < 1e-9) && found.ratio > 1.0);
+        assert!(outcome.step.iter().all(|s| s.m().abs() < 1e-9) && outcome.ratio > 1.0);
     }
     let quiet = monitor.monitored(&sights, &[250.0; 8]).unwrap();
     assert_eq!((quiet.decision, quiet.excluded), (Decision::Nothing, None));

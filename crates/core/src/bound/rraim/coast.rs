@@ -256,10 +256,10 @@ mod tests {
             return Err(TestCaseError::reject("badly conditioned"));
         };
         prop_assert!((by_product - by_difference).amax() < lost);
-        let found = Coast::new(f).unwrap().without(removed).unwrap();
+        let downdated = Coast::new(f).unwrap().without(removed).unwrap();
         let m = by_difference.fixed_view::<3, 3>(0, 0);
-        prop_assert!((found.carried - m).amax() < 2.0 * lost, "{}", (found.carried - m).amax());
-        prop_assert!((found.added - p.fixed_view::<3, 3>(0, 0)).amax() < 2.0 * lost * (1.0 + p.amax()));
+        prop_assert!((downdated.carried - m).amax() < 2.0 * lost, "{}", (downdated.carried - m).amax());
+        prop_assert!((downdated.added - p.fixed_view::<3, 3>(0, 0)).amax() < 2.0 * lost * (1.0 + p.amax()));
         Ok(())
     }
 

@@ -216,7 +216,7 @@ pub struct Multipliers {
 }
 
 impl Multipliers {
-    /// Separation above which the satellite is held to be faulty: k_FA d(P_ss,i), with room for the biases' part if asked for.
+    /// Separation above which the satellite is held to be faulty: k_FA d(P_ss,i), with room for the biases' part if requested.
     pub fn threshold(&self, without: &Without, bias: Metres, biased: bool) -> Metres {
         let room = if biased { bias.m() } else { 0.0 };
         Metres::new(self.false_alarm * without.separation.m() + without.separation_gain * room)

@@ -89,9 +89,9 @@ impl Grid {
     pub fn refresh(&mut self, store: &Store, used_for: Use, now: GpsTime) {
         self.0.fill(Point::Absent);
         let degradation = store.degradation(used_for, now);
-        for held in store.grid(used_for, now) {
-            let Some(cell) = held.point.cell().and_then(|i| self.0.get_mut(i)) else { continue };
-            *cell = match held.held {
+        for node in store.grid(used_for, now) {
+            let Some(cell) = node.point.cell().and_then(|i| self.0.get_mut(i)) else { continue };
+            *cell = match node.in_force {
                 None if *cell == Point::Absent => Point::NotMonitored,
                 None => continue,
                 Some((GridDelay { delay_m: None, .. }, _)) => Point::DoNotUse,
@@ -110,7 +110,7 @@ impl Grid {
     /// triangle of the others.
     #[inline(always)]
     pub fn vertical(&self, at: Pierce) -> Option<Vertical> {
-        self.whole(at).or_else(|| self.chosen(at))
+        self.whole(at).or_else(|| self.selected(at))
     }
 
     /// The first choice of all: a small cell below 60 degrees whose four points have values.
@@ -132,7 +132,7 @@ impl Grid {
     }
 
     #[inline(never)]
-    fn chosen(&self, at: Pierce) -> Option<Vertical> {
+    fn selected(&self, at: Pierce) -> Option<Vertical> {
         if !(at.lat_deg.abs() <= 90.0 && at.lon_deg.abs() <= 180.0) {
             return None;
         }
@@ -389,10 +389,10 @@ mod tests {
         for lat in -600..=600 {
             for lon in -360..=360 {
                 let at = at(f64::from(lat) * 0.1, f64::from(lon) * 0.5);
-                if let Some(found) = grid.whole(at) {
+                if let Some(delay) = grid.whole(at) {
                     whole += 1;
                     // A few roundings of values up to 20 apart.
-                    assert!((found.delay_m - grid.chosen(at).unwrap().delay_m).abs() < 1e-12, "{at:?}");
+                    assert!((delay.delay_m - grid.selected(at).unwrap().delay_m).abs() < 1e-12, "{at:?}");
                 }
             }
         }
@@ -441,13 +441,16 @@ mod tests {
             let lon = -179.5 + 0.1 * f64::from(step);
             for (k, sign) in [(0, 1.0), (1, -1.0), (2, 1.0), (3, -1.0), (7, 1.0), (9, -1.0)] {
                 let lat = sign * (75.3 + f64::from(k));
-                let found = grid.vertical(at(lat, lon)).unwrap();
+                let vertical = grid.vertical(at(lat, lon)).unwrap();
                 let expected = between_75_and_85(lat, lon);
                 // A few roundings of values below ten.
-                assert!((found.delay_m - expected).abs() < 1e-12 && (found.variance_m2 - 2.0 * expected).abs() < 1e-11, "{lat} {lon}");
+                assert!(
+                    (vertical.delay_m - expected).abs() < 1e-12 && (vertical.variance_m2 - 2.0 * expected).abs() < 1e-11,
+                    "{lat} {lon}"
+                );
                 let lat = sign * (85.1 + 0.5 * f64::from(k));
-                let found = grid.vertical(at(lat, lon)).unwrap();
-                assert!((found.delay_m - around_the_pole(lat, lon)).abs() < 1e-12, "{lat} {lon}");
+                let vertical = grid.vertical(at(lat, lon)).unwrap();
+                assert!((vertical.delay_m - around_the_pole(lat, lon)).abs() < 1e-12, "{lat} {lon}");
             }
         }
     }
@@ -480,10 +483,10 @@ mod tests {
                     let m = nalgebra::Matrix3::from_fn(|r, c| if r < 2 { places[kept[c]][r] } else { 1.0 });
                     let w = m.lu().solve(&Vector3::new(x, y, 1.0)).unwrap();
                     match triangle(missing, x, y) {
-                        Some(found) => {
+                        Some(vertical) => {
                             assert!(w.iter().all(|w| *w >= -1e-12), "{missing} {x} {y}");
-                            assert_eq!(found[missing], 0.0);
-                            kept.iter().zip(w.iter()).for_each(|(k, w)| assert!((found[*k] - w).abs() < 1e-14));
+                            assert_eq!(vertical[missing], 0.0);
+                            kept.iter().zip(w.iter()).for_each(|(k, w)| assert!((vertical[*k] - w).abs() < 1e-14));
                         }
                         None => assert!(w.iter().any(|w| *w < 0.0), "{missing} {x} {y}"),
                     }
@@ -505,7 +508,7 @@ mod tests {
                 set(&mut grid, corners[k].0, corners[k].1, point);
             }
             for (x, y) in [(0.2, 0.3), (0.7, 0.9), (0.8, 0.1), (0.1, 0.6)] {
-                let found = grid.vertical(at(35.0 + 5.0 * y, 135.0 + 5.0 * x));
+                let delay = grid.vertical(at(35.0 + 5.0 * y, 135.0 + 5.0 * x));
                 let silent: Vec<usize> = (0..4).filter(|k| kinds[*k] == 1).collect();
                 let weights = match silent.len() {
                     _ if kinds.contains(&2) => None,
@@ -514,7 +517,7 @@ mod tests {
                     _ => None,
                 };
                 let expected = weights.map(|w| (0..4).map(|k| w[k] * if kinds[k] == 0 { values[k] } else { 0.0 }).sum::<f64>());
-                match (found, expected) {
+                match (delay, expected) {
                     (Some(f), Some(e)) => assert!((f.delay_m - e).abs() < 1e-12 && (f.variance_m2 - 2.0 * e).abs() < 1e-12, "{kinds:?}"),
                     (f, e) => assert!(f.is_none() && e.is_none(), "{kinds:?} {x} {y}: {f:?} {e:?}"),
                 }
@@ -543,9 +546,9 @@ mod tests {
             let east = Vector3::new(-lambda.sin(), lambda.cos(), 0.0);
             let north = up.cross(&east);
             let unit = e.cos() * (a.sin() * east + a.cos() * north) + e.sin() * up;
-            let [found] = Pierce::abreast(&up, &[[unit.x], [unit.y], [unit.z]], &[e.sin()], &[e.cos()]);
-            prop_assert!((found.lat_deg - want_lat.to_degrees()).abs() < 1e-9);
-            let off = (found.lon_deg - want_lon.to_degrees()).rem_euclid(360.0);
+            let [pierce] = Pierce::abreast(&up, &[[unit.x], [unit.y], [unit.z]], &[e.sin()], &[e.cos()]);
+            prop_assert!((pierce.lat_deg - want_lat.to_degrees()).abs() < 1e-9);
+            let off = (pierce.lon_deg - want_lon.to_degrees()).rem_euclid(360.0);
             prop_assert!(off.min(360.0 - off) < 1e-8, "{off}");
         }
     }

@@ -198,9 +198,9 @@ impl Sky {
     pub fn look(&mut self, service: &Service, user: &User) {
         let factor = service.region_factor(user.lat_deg, user.lon_deg);
         let orbits = service.orbits();
-        let (found, n) = orbits.above(&user.position_m, &user.up());
+        let (satellites, n) = orbits.above(&user.position_m, &user.up());
         self.count = 0;
-        for group in found[..n].chunks(ABREAST) {
+        for group in satellites[..n].chunks(ABREAST) {
             // The last group is filled up with its first satellite.
             let which: [usize; ABREAST] = core::array::from_fn(|l| group.get(l).copied().unwrap_or(group[0]));
             let sights = Sights::new(user, orbits.towards(&which, &user.position_m));

@@ -128,13 +128,13 @@ impl Orbits {
     #[inline(always)]
     pub(super) fn above(&self, place: &Vector3<f64>, up: &Vector3<f64>) -> ([usize; SATELLITES], usize) {
         let level = up.dot(place) - 1000.0;
-        let (mut found, mut n) = ([0; SATELLITES], 0);
+        let (mut numbers, mut n) = ([0; SATELLITES], 0);
         for i in 0..self.count {
             let height = up.x * self.position[0][i] + up.y * self.position[1][i] + up.z * self.position[2][i];
-            found[n] = i;
+            numbers[n] = i;
             n += usize::from(height >= level);
         }
-        (found, n)
+        (numbers, n)
     }
 
     /// Unit vectors from a place to the satellites when their signals left, in axes of reception.

@@ -95,7 +95,7 @@ pub fn student_t(deviation: Deviation, nu: f64, risk: Risk) -> Result<Metres, Ou
     Ok(Metres::new(fte + excess * scale))
 }
 
-/// How far the risk at a bound may be from the one asked for: 1e-6 is far above its rounding, and far below what any figure here shows.
+/// How far the risk at a bound may be from the one requested: 1e-6 is far above its rounding, and far below what any figure here shows.
 const SAME_RISK: f64 = 1e-6;
 
 /// One hypothesis of a mixture.

@@ -135,7 +135,7 @@ impl Scaled {
 }
 
 /// Half sizes of a box from one joint risk: `share` of it goes to the side walls, the rest to floor and ceiling, each by the exact
-/// bound. The joint risk at these limits stands beside them and is never more than asked for.
+/// bound. The joint risk at these limits stands beside them and is never more than requested.
 ///
 /// # Errors
 /// [`OutOfDomain`] for a share outside (0, 1) or as [`box_risk`].

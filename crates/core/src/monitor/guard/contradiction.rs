@@ -57,7 +57,7 @@ pub struct Contradiction {
     starts: [Option<GpsTime>; STARTS_MOST],
     started: Option<GpsTime>,
     out: bool,
-    /// A contradiction of which the unit was the cause has been cleared, and nobody has asked since.
+    /// A contradiction of which the unit was the cause has been cleared, and nobody has read it since.
     cleared: bool,
 }
 
@@ -141,7 +141,7 @@ impl Contradiction {
         self.started = Some(now);
     }
 
-    /// Whether a contradiction of which the unit was the cause has been cleared since this was last asked.
+    /// Whether a contradiction of which the unit was the cause has been cleared since this was last read.
     pub fn take_cleared(&mut self) -> bool {
         core::mem::take(&mut self.cleared)
     }

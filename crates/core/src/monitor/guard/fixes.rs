@@ -58,10 +58,10 @@ impl Guard {
     /// The filter has used the measurements of the last snapshot: the levels of its position from now on.
     pub fn note_level(&mut self, filter: &mut Fusion, now: GpsTime) {
         let Some(looked) = self.looked.as_ref().filter(|l| l.ranges_agree == RangesAgree::Yes) else { return };
-        let Some((d, given)) = filter.against(&looked.snapshot).zip(filter.solution(now)) else { return };
+        let Some((d, output)) = filter.against(&looked.snapshot).zip(filter.solution(now)) else { return };
         let apart = d.position.vector();
         let level = [hypot(apart.x, apart.y) + looked.level_m[0], apart.z.abs() + looked.level_m[1]];
-        let sigma = [horizontal_axes(&given.covariance).0.m(), sqrt(given.covariance.matrix()[(2, 2)])];
+        let sigma = [horizontal_axes(&output.covariance).0.m(), sqrt(output.covariance.matrix()[(2, 2)])];
         if level.iter().chain(&sigma).all(|x| x.is_finite()) {
             self.level = Some((now, level, sigma));
         }
@@ -139,13 +139,13 @@ mod tests {
     #[test]
     fn the_velocity_between_two_positions_has_their_variances_and_the_acceleration() {
         for dt in [0.5, 1.0, 2.0] {
-            let found = between(&snapshot(0.0, 0.0, 4.0), &snapshot(dt, 120.0 * dt, 5.0)).unwrap();
+            let motion = between(&snapshot(0.0, 0.0, 4.0), &snapshot(dt, 120.0 * dt, 5.0)).unwrap();
             // The axes of the second place: 240 m turn them by 4e-5.
-            assert!((found.enu_mps - Vector3::new(120.0, 0.0, 0.0)).norm() < 0.02, "{}", found.enu_mps);
+            assert!((motion.enu_mps - Vector3::new(120.0, 0.0, 0.0)).norm() < 0.02, "{}", motion.enu_mps);
             let turned = 0.5 * ACCELERATION_MPS2 * dt;
             for (k, times) in [1.0, 2.0, 3.0].into_iter().enumerate() {
                 let expected = 9.0 * times / (dt * dt) + turned * turned;
-                assert!((found.covariance[(k, k)] - expected).abs() < 1e-12 * expected, "{dt} {k}: {}", found.covariance[(k, k)]);
+                assert!((motion.covariance[(k, k)] - expected).abs() < 1e-12 * expected, "{dt} {k}: {}", motion.covariance[(k, k)]);
             }
         }
         let first = snapshot(0.0, 0.0, 4.0);

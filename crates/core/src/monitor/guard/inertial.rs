@@ -265,12 +265,12 @@ mod tests {
             [(12.0, 0.5, None), (12.001, 0.0, Some(30)), (9.8, 0.501, Some(30)), (f64::NAN, 0.0, Some(30)), (9.8, f64::NAN, Some(30))]
         {
             for sign in [1.0, -1.0] {
-                let found = first_doubt(most, None, |k, f, r| {
+                let first = first_doubt(most, None, |k, f, r| {
                     if k == 30 {
                         (f.z, r.x) = (sign * force, sign * rate)
                     }
                 });
-                assert_eq!(found, doubt, "{force} {rate}");
+                assert_eq!(first, doubt, "{force} {rate}");
             }
         }
     }
@@ -334,12 +334,12 @@ mod tests {
         let change = Envelope { change_mps3: 10.0, ..Envelope::NONE };
         // The tenths end with the samples 1, 6, 11, 16: one metre per second squared is allowed from end to end.
         for (step, doubt) in [(0.9, None), (1.1, Some(16)), (-1.1, Some(16)), (f64::NAN, Some(12))] {
-            let found = first_doubt(change, None, |k, f, _| {
+            let first = first_doubt(change, None, |k, f, _| {
                 if k >= 12 {
                     f.x += step
                 }
             });
-            assert_eq!(found, doubt, "{step}");
+            assert_eq!(first, doubt, "{step}");
         }
         let mut plausibility = Plausibility::new(change);
         let mut hear = |t: f64, force: f64| {

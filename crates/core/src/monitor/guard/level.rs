@@ -51,9 +51,9 @@ impl Guard {
     /// ```text
     /// HPL(t) = HPL(t0) + K (sigma(t) - sigma(t0)) + a t^2 + g w t^3 / 3
     /// ```
-    pub(super) fn carry(&mut self, epoch: GpsTime, snapshot: Option<&SnapshotFacts>, given: Option<&Solution>) -> Option<CarriedFacts> {
-        let given = given?;
-        let sigma = [horizontal_axes(&given.covariance).0.m(), sqrt(given.covariance.matrix()[(2, 2)])];
+    pub(super) fn carry(&mut self, epoch: GpsTime, snapshot: Option<&SnapshotFacts>, output: Option<&Solution>) -> Option<CarriedFacts> {
+        let output = output?;
+        let sigma = [horizontal_axes(&output.covariance).0.m(), sqrt(output.covariance.matrix()[(2, 2)])];
         let tested = snapshot.filter(|s| s.time == epoch && s.ranges_agree == RangesAgree::Yes);
         if let Some(([h, v], [dh, dv])) = tested.and_then(|s| s.level_m.zip(s.distance_m)) {
             self.level = Some((epoch, [h + dh, v + dv], sigma));
@@ -75,8 +75,8 @@ impl Guard {
 /// Distance between a snapshot and another position of the antenna, horizontal and vertical \[m\].
 pub(super) fn apart(snapshot: &Snapshot, antenna: &EcefPosition) -> Option<[f64; 2]> {
     let d = antenna.minus(&ecef_from_geodetic(&snapshot.position)).to_enu(&snapshot.position.point);
-    let found = [hypot(d.vector().x, d.vector().y), d.vector().z.abs()];
-    found.iter().all(|x| x.is_finite()).then_some(found)
+    let distance = [hypot(d.vector().x, d.vector().y), d.vector().z.abs()];
+    distance.iter().all(|x| x.is_finite()).then_some(distance)
 }
 
 #[cfg(test)]

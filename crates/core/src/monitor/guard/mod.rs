@@ -156,7 +156,7 @@ impl Guard {
             self.clock_wrong = None;
         }
         match outcome {
-            Advance::Done | Advance::Bridged { .. } | Advance::Adrift { .. } => {
+            Advance::Done | Advance::Bridged { .. } | Advance::AfterGap { .. } => {
                 (self.accepted, self.refused_since) = (Some(due), false);
                 if !self.plausibility.holds(sample, self.acceleration_mps2) {
                     self.contradiction.convict(due);
@@ -177,7 +177,7 @@ impl Guard {
         let mut ranges = self.fresh(&judgeable(together));
         let before = self.looked.take();
         let (mut looked, excluded) = match self.look(time, &mut ranges) {
-            Ok(found) => found,
+            Ok(admitted) => admitted,
             Err(_) => return all,
         };
         self.note_acceleration(before.as_ref(), &looked);
@@ -276,9 +276,9 @@ impl Guard {
     }
 
     /// What is known at an epoch, once a second; `given` is the filter's solution of that time.
-    pub fn facts(&mut self, filter: &mut Fusion, epoch: GpsTime, given: Option<&Solution>, witnesses: Witnesses) -> Facts {
-        let given = given.filter(|s| s.is_sound());
-        let of_filter = given.and_then(|s| {
+    pub fn facts(&mut self, filter: &mut Fusion, epoch: GpsTime, output: Option<&Solution>, witnesses: Witnesses) -> Facts {
+        let output = output.filter(|s| s.is_sound());
+        let of_filter = output.and_then(|s| {
             let p = s.state.position().ok()?;
             let v = s.covariance.matrix();
             Some(FilterFacts {
@@ -292,14 +292,14 @@ impl Guard {
             time: l.snapshot.time,
             ranges_agree: l.ranges_agree,
             level_m: Some(l.level_m),
-            distance_m: given.and_then(|s| apart(&l.snapshot, &filter.antenna_of(s)?)),
+            distance_m: output.and_then(|s| apart(&l.snapshot, &filter.antenna_of(s)?)),
         });
         let inertial = self.inertial(epoch);
         let alone = inertial != Inertial::Plausible && inertial != Inertial::Clock;
         if alone && !self.testimony.iter().all(|t| t.lets_stand()) {
             self.contradiction.leave_open();
         }
-        let carried = self.carry(epoch, snapshot.as_ref(), given);
+        let carried = self.carry(epoch, snapshot.as_ref(), output);
         let gating = self.shares.second(epoch, filter);
         Facts {
             epoch,

@@ -124,7 +124,7 @@ mod tests {
     }
 
     /// What is said after each of these mean squares, a second apart.
-    fn said(squares: &[f64]) -> Vec<Tuning> {
+    fn tunings(squares: &[f64]) -> Vec<Tuning> {
         let mut shares = Shares::new();
         let hear = |(k, s): (usize, &f64)| {
             shares.innovations(at(k as f64), &Block { square: 4.0 * s, freedom: 4 });
@@ -137,12 +137,12 @@ mod tests {
     fn the_declared_errors_stand_until_five_instants_say_otherwise() {
         assert!(matches!(Shares::new().tuning(), Tuning::AsDeclared));
         for square in [3.1, 50.0, f64::NAN, f64::INFINITY] {
-            let found = said(&[square; 20]);
+            let shares = tunings(&[square; 20]);
             // The weight of five seconds of a mean over sixty is 4.84: the sixth passes five.
-            assert!(found[..5].iter().all(|t| matches!(t, Tuning::AsDeclared)), "{square}");
-            assert!(found[5..].iter().all(|t| matches!(t, Tuning::Foreign)), "{square}");
+            assert!(shares[..5].iter().all(|t| matches!(t, Tuning::AsDeclared)), "{square}");
+            assert!(shares[5..].iter().all(|t| matches!(t, Tuning::Foreign)), "{square}");
         }
-        assert!(said(&[2.9; 300]).iter().all(|t| matches!(t, Tuning::AsDeclared)));
+        assert!(tunings(&[2.9; 300]).iter().all(|t| matches!(t, Tuning::AsDeclared)));
     }
 
     #[test]
@@ -153,10 +153,10 @@ mod tests {
             let weighted = |f: &dyn Fn(usize) -> f64| (0..=now).map(|k| f(k) * (-((now - k) as f64) / 60.0).exp()).sum::<f64>();
             weighted(&|k| squares[k]) / weighted(&|_| 1.0)
         };
-        for (k, t) in said(&squares).iter().enumerate().skip(6) {
+        for (k, t) in tunings(&squares).iter().enumerate().skip(6) {
             assert_eq!(matches!(t, Tuning::Foreign), mean(k) > 1.5, "{k}");
         }
         // One instant counts no more than ten.
-        assert!(said(&[&[1.0; 30][..], &[1e9], &[1.0; 30]].concat()).iter().all(|t| matches!(t, Tuning::AsDeclared)));
+        assert!(tunings(&[&[1.0; 30][..], &[1e9], &[1.0; 30]].concat()).iter().all(|t| matches!(t, Tuning::AsDeclared)));
     }
 }

@@ -232,7 +232,7 @@ fn of_the_filter(reasons: Reasons, facts: &Facts, filter: &FilterFacts) -> Reaso
 /// The levels of the position that is given, or why there are none.
 fn level(facts: &Facts, source: Source, snapshot: Option<&SnapshotFacts>) -> (Option<[f64; 2]>, Option<Reason>) {
     let tested = snapshot.filter(|s| s.ranges_agree == RangesAgree::Yes);
-    let found = match (tested, source) {
+    let bounded = match (tested, source) {
         (_, Source::None) => return (None, Some(Reason::SnapshotMissing)),
         (Some(s), Source::Snapshot) => s.level_m.map(|l| disputed(facts, l)),
         (Some(s), Source::Filter) => {
@@ -247,7 +247,7 @@ fn level(facts: &Facts, source: Source, snapshot: Option<&SnapshotFacts>) -> (Op
         }
         (None, Source::Snapshot) => return (None, Some(Reason::SnapshotMissing)),
     };
-    match found.filter(|l| l.iter().all(is_level)) {
+    match bounded.filter(|l| l.iter().all(is_level)) {
         Some(level) => (Some(level), None),
         None => (None, Some(Reason::LevelMissing)),
     }
@@ -311,7 +311,7 @@ fn status(facts: &Facts, source: Source, reasons: Reasons, with_level: bool) -> 
 
 /// Reasons that say something of the filter and nothing of the snapshot, once the unit is known to be out.
 ///
-/// Filters and stations that fall out are among them: where the unit is not the cause the epoch is not available before this is asked.
+/// Filters and stations that fall out are among them: where the unit is not the cause the epoch is not available before this is examined.
 const OF_THE_FILTER_ALONE: [Reason; 8] = [
     Reason::StateStale,
     Reason::ImuMissing,

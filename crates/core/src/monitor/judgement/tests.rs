@@ -47,9 +47,9 @@ const WITHOUT: [fn(&mut Facts); 8] = [
 
 #[test]
 fn all_facts_good_are_ok_with_the_sum_of_distance_and_level() {
-    let found = decide(&good());
-    assert_eq!((found.status, found.source, found.reasons), (Status::Ok, Source::Filter, Reasons::NONE));
-    assert_eq!((found.hpl_m, found.vpl_m), (Some(12.0), Some(18.0)));
+    let decision = decide(&good());
+    assert_eq!((decision.status, decision.source, decision.reasons), (Status::Ok, Source::Filter, Reasons::NONE));
+    assert_eq!((decision.hpl_m, decision.vpl_m), (Some(12.0), Some(18.0)));
     assert_eq!(decide(&Facts::none(epoch())).status, Status::NotAvailable);
     assert_eq!(decide(&Facts::none(epoch())).source, Source::None);
 }
@@ -76,9 +76,9 @@ fn a_state_of_another_time_is_no_position() {
     for (ns, status) in [(400_000, Status::Ok), (-400_000, Status::Ok), (600_000, Status::Degraded), (-1_000_000_000, Status::Degraded)] {
         let mut facts = good();
         facts.filter.as_mut().unwrap().time = GpsTime::from_nanoseconds(epoch().nanoseconds() + ns);
-        let found = decide(&facts);
-        assert_eq!(found.status, status, "{ns}");
-        assert_eq!(found.source == Source::Snapshot, status != Status::Ok, "{ns}");
+        let decision = decide(&facts);
+        assert_eq!(decision.status, status, "{ns}");
+        assert_eq!(decision.source == Source::Snapshot, status != Status::Ok, "{ns}");
     }
 }
 
@@ -91,9 +91,9 @@ fn a_unit_that_is_out_leaves_the_snapshot() {
         (Inertial::Implausible, Status::Ok),
         (Inertial::Fault, Status::Ok),
     ] {
-        let found = decide(&Facts { inertial: Some(inertial), ..good() });
-        assert_eq!((found.status, found.source), (status, Source::Snapshot), "{inertial:?}");
-        assert_eq!((found.hpl_m, found.vpl_m), (Some(10.0), Some(15.0)));
+        let decision = decide(&Facts { inertial: Some(inertial), ..good() });
+        assert_eq!((decision.status, decision.source), (status, Source::Snapshot), "{inertial:?}");
+        assert_eq!((decision.hpl_m, decision.vpl_m), (Some(10.0), Some(15.0)));
         let alone = decide(&Facts { inertial: Some(inertial), snapshot: None, ..good() });
         assert_eq!(alone.status, Status::NotAvailable, "{inertial:?}");
     }
@@ -102,21 +102,21 @@ fn a_unit_that_is_out_leaves_the_snapshot() {
 #[test]
 fn a_contradiction_is_bounded_for_both_readings_and_never_ok() {
     let agreement = Some(Agreement::Contradicted { bound_m: [400.0, 20.0] });
-    let found = decide(&Facts { agreement, ..good() });
-    assert_eq!((found.status, found.source), (Status::Degraded, Source::Snapshot));
-    assert_eq!((found.hpl_m, found.vpl_m), (Some(400.0), Some(20.0)));
+    let decision = decide(&Facts { agreement, ..good() });
+    assert_eq!((decision.status, decision.source), (Status::Degraded, Source::Snapshot));
+    assert_eq!((decision.hpl_m, decision.vpl_m), (Some(400.0), Some(20.0)));
     // The evidence is in the unit: its own level.
-    let found = decide(&Facts { agreement, inertial: Some(Inertial::Implausible), ..good() });
-    assert_eq!((found.status, found.hpl_m), (Status::Ok, Some(10.0)));
+    let decision = decide(&Facts { agreement, inertial: Some(Inertial::Implausible), ..good() });
+    assert_eq!((decision.status, decision.hpl_m), (Status::Ok, Some(10.0)));
     // Agreed again without a cause: the filter is given, and neither reading is dropped.
     let open = Some(Agreement::Open { bound_m: [400.0, 20.0] });
-    let found = decide(&Facts { agreement: open, ..good() });
-    assert_eq!((found.status, found.source, found.hpl_m), (Status::Degraded, Source::Filter, Some(402.0)));
+    let decision = decide(&Facts { agreement: open, ..good() });
+    assert_eq!((decision.status, decision.source, decision.hpl_m), (Status::Degraded, Source::Filter, Some(402.0)));
     // Nobody to turn to.
     assert_eq!(decide(&Facts { agreement, snapshot: None, ..good() }).status, Status::NotAvailable);
     for bound_m in [[f64::NAN; 2], [f64::INFINITY; 2]] {
-        let found = decide(&Facts { agreement: Some(Agreement::Contradicted { bound_m }), ..good() });
-        assert_eq!((found.status, found.hpl_m), (Status::NotAvailable, None), "{bound_m:?}");
+        let decision = decide(&Facts { agreement: Some(Agreement::Contradicted { bound_m }), ..good() });
+        assert_eq!((decision.status, decision.hpl_m), (Status::NotAvailable, None), "{bound_m:?}");
     }
 }
 
@@ -136,8 +136,12 @@ fn what_a_witness_says_against_the_snapshot_no_unit_explains() {
         for (stations, altimeter) in [(spoken, Testimony::Agrees), (Testimony::Silent, spoken)] {
             let witnesses = Some(Witnesses { stations, altimeter, ..good().witnesses.unwrap() });
             for facts in [by_snapshot(), Facts { inertial: Some(Inertial::Missing { for_s: 20.0 }), ..good() }] {
-                let found = decide(&Facts { witnesses, ..facts });
-                assert_eq!((found.status, found.hpl_m, found.vpl_m), (Status::NotAvailable, None, None), "{stations:?} {altimeter:?}");
+                let decision = decide(&Facts { witnesses, ..facts });
+                assert_eq!(
+                    (decision.status, decision.hpl_m, decision.vpl_m),
+                    (Status::NotAvailable, None, None),
+                    "{stations:?} {altimeter:?}"
+                );
             }
             // A unit that came back learnt from the satellites that were in question.
             let agreement = Some(Agreement::Open { bound_m: [20.0, 20.0] });
@@ -147,8 +151,8 @@ fn what_a_witness_says_against_the_snapshot_no_unit_explains() {
     // Beside a unit and a filter that agree with the snapshot a station is outvoted; of the height nothing is claimed.
     let of = |stations, altimeter| Facts { witnesses: Some(Witnesses { stations, altimeter, ..good().witnesses.unwrap() }), ..good() };
     assert_eq!(decide(&of(Testimony::Contradicts, Testimony::Agrees)).status, Status::Ok);
-    let found = decide(&of(Testimony::Agrees, Testimony::Contradicts));
-    assert_eq!((found.status, found.hpl_m, found.vpl_m), (Status::Degraded, Some(12.0), None));
+    let decision = decide(&of(Testimony::Agrees, Testimony::Contradicts));
+    assert_eq!((decision.status, decision.hpl_m, decision.vpl_m), (Status::Degraded, Some(12.0), None));
     // A contradiction from before the unit failed.
     let agreement = Some(Agreement::Unexplained { bound_m: [f64::INFINITY; 2] });
     assert_eq!(decide(&Facts { agreement, ..by_snapshot() }).status, Status::NotAvailable);
@@ -159,12 +163,12 @@ fn without_a_snapshot_ok_and_level_last_one_and_a_half_seconds() {
     for (age_s, status) in
         [(1.0, Status::Ok), (1.5, Status::Ok), (2.0, Status::Degraded), (-1.0, Status::Degraded), (f64::NAN, Status::Degraded)]
     {
-        let found = decide(&Facts { snapshot: None, carried: Some(CarriedFacts { age_s, level_m: [14.0, 20.0] }), ..good() });
-        assert_eq!((found.status, found.hpl_m.is_some()), (status, status == Status::Ok), "{age_s}");
+        let decision = decide(&Facts { snapshot: None, carried: Some(CarriedFacts { age_s, level_m: [14.0, 20.0] }), ..good() });
+        assert_eq!((decision.status, decision.hpl_m.is_some()), (status, status == Status::Ok), "{age_s}");
     }
     let solved = SnapshotFacts { level_m: None, ..good().snapshot.unwrap() };
-    let found = decide(&Facts { snapshot: Some(solved), ..good() });
-    assert_eq!((found.status, found.leading()), (Status::Degraded, Some(Reason::LevelMissing)));
+    let decision = decide(&Facts { snapshot: Some(solved), ..good() });
+    assert_eq!((decision.status, decision.leading()), (Status::Degraded, Some(Reason::LevelMissing)));
 }
 
 #[test]
@@ -175,8 +179,9 @@ fn ids_and_numbers_of_reasons_are_each_once() {
         let only = Reasons::NONE.with(reason);
         assert_eq!(only.iter().collect::<Vec<_>>(), [reason]);
         // A reason alone is the leading one.
-        let found = Decision { status: Status::Degraded, reasons: only, source: Source::None, hpl_m: None, vpl_m: None, disputed: false };
-        assert_eq!(found.leading(), Some(reason));
+        let decision =
+            Decision { status: Status::Degraded, reasons: only, source: Source::None, hpl_m: None, vpl_m: None, disputed: false };
+        assert_eq!(decision.leading(), Some(reason));
     }
 }
 
@@ -266,29 +271,29 @@ proptest! {
 
     #[test]
     fn ok_is_granted_and_never_left_over(facts in facts()) {
-        let found = decide(&facts);
-        let level = [found.hpl_m, found.vpl_m];
-        prop_assert!(level.iter().flatten().all(|l| l.is_finite() && *l >= 0.0), "a level is a number: {found:?}");
-        prop_assert_eq!(found.reasons.is_empty() && found.source == Source::Filter, found.status == Status::Ok && found.source == Source::Filter);
-        if found.source == Source::Filter {
+        let decision = decide(&facts);
+        let level = [decision.hpl_m, decision.vpl_m];
+        prop_assert!(level.iter().flatten().all(|l| l.is_finite() && *l >= 0.0), "a level is a number: {decision:?}");
+        prop_assert_eq!(decision.reasons.is_empty() && decision.source == Source::Filter, decision.status == Status::Ok && decision.source == Source::Filter);
+        if decision.source == Source::Filter {
             // Whatever the status: no position of another time, none made of numbers that are none.
             let filter = facts.filter.unwrap();
             prop_assert!((filter.time.nanoseconds() - facts.epoch.nanoseconds()).abs() <= 500_000);
             prop_assert!(filter.position.iter().chain(&filter.variance_m2).all(|x| x.is_finite()));
         }
-        if found.source == Source::Snapshot {
+        if decision.source == Source::Snapshot {
             prop_assert!((facts.snapshot.unwrap().time.nanoseconds() - facts.epoch.nanoseconds()).abs() <= 500_000);
         }
-        if found.status == Status::Ok {
+        if decision.status == Status::Ok {
             prop_assert!(level.iter().all(Option::is_some));
             prop_assert_eq!(facts.satellite_times_hold, Some(true));
-            let explained = matches!(facts.inertial, Some(Inertial::Fault | Inertial::Implausible)) && found.source == Source::Snapshot;
+            let explained = matches!(facts.inertial, Some(Inertial::Fault | Inertial::Implausible)) && decision.source == Source::Snapshot;
             prop_assert!(explained || facts.witnesses.unwrap().filters_disagree != Some(true));
             let checked = facts.snapshot.is_some_and(|s| s.ranges_agree == RangesAgree::Yes) || facts.carried.is_some_and(|c| c.age_s <= CARRIED_MOST_S);
             prop_assert!(checked);
         }
-        if found.status != Status::Ok {
-            prop_assert!(!found.reasons.is_empty(), "what is not ok says why");
+        if decision.status != Status::Ok {
+            prop_assert!(!decision.reasons.is_empty(), "what is not ok says why");
         }
     }
 

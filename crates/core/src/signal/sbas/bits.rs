@@ -27,11 +27,11 @@ impl Block {
         let block = Self(bytes);
         let [preamble, ..] = bytes;
         if !PREAMBLES.contains(&preamble) {
-            return Err(Malformed::Preamble { found: preamble });
+            return Err(Malformed::Preamble { preamble });
         }
-        let (found, computed) = (block.unsigned(DATA_BITS, 24), crc24q(&bytes, DATA_BITS));
-        if found != computed {
-            return Err(Malformed::Parity { found, computed });
+        let (stated, computed) = (block.unsigned(DATA_BITS, 24), crc24q(&bytes, DATA_BITS));
+        if stated != computed {
+            return Err(Malformed::Parity { stated, computed });
         }
         Ok(block)
     }

@@ -171,8 +171,8 @@ impl Store {
         if self.regions.iter().flatten().any(|r| r.value.iods != regions.iods) {
             self.regions = [None; REGION_MESSAGES];
         }
-        if let Some(held) = self.regions.get_mut(usize::from(regions.number) - 1) {
-            *held = Some(Received { value: *regions, at });
+        if let Some(in_force) = self.regions.get_mut(usize::from(regions.number) - 1) {
+            *in_force = Some(Received { value: *regions, at });
         }
     }
 

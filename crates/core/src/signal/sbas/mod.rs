@@ -38,16 +38,16 @@ pub const SOURCE: &str = "RTCA DO-229D, appendix A (standard; checked on recorde
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Malformed {
     /// None of the three preambles.
-    #[error("preamble {found:#04x} is none of 0x53, 0x9a, 0xc6")]
+    #[error("preamble {preamble:#04x} is none of 0x53, 0x9a, 0xc6")]
     Preamble {
         /// The first eight bits.
-        found: u8,
+        preamble: u8,
     },
     /// Damaged on the way.
-    #[error("parity {found:#08x} does not fit the data, which give {computed:#08x}")]
+    #[error("parity {stated:#08x} does not fit the data, which give {computed:#08x}")]
     Parity {
         /// The last 24 bits.
-        found: u32,
+        stated: u32,
         /// CRC-24Q of the others.
         computed: u32,
     },

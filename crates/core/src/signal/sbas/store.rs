@@ -57,7 +57,7 @@ pub struct GridValue {
     /// Where.
     pub point: GridPoint,
     /// What is in force there, with the first bit of its message.
-    pub held: Option<(GridDelay, GpsTime)>,
+    pub in_force: Option<(GridDelay, GpsTime)>,
 }
 
 /// The parts of one satellite's correction in force, before any model.
@@ -244,8 +244,8 @@ impl Store {
     fn grid_value(&self, mask: &GridMask, index: usize, number: u8, used_for: Use, now: GpsTime) -> Option<GridValue> {
         let block = self.grid.get(usize::from(mask.band))?.get(index / BLOCK_POINTS)?.as_ref();
         let block = block.filter(|r| r.value.iodi == mask.iodi && timeout::GRID.alive(used_for, r.at, now));
-        let held = block.and_then(|r| Some((r.value.points.get(index % BLOCK_POINTS)?, r.applies())));
-        Some(GridValue { point: place(mask.band, number)?, held: held.map(|(delay, applies)| (*delay, applies)) })
+        let in_force = block.and_then(|r| Some((r.value.points.get(index % BLOCK_POINTS)?, r.applies())));
+        Some(GridValue { point: place(mask.band, number)?, in_force: in_force.map(|(delay, applies)| (*delay, applies)) })
     }
 
     pub(super) fn mask(&self, iodp: u8) -> Option<&Received<PrnMask>> {

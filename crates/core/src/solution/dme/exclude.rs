@@ -62,18 +62,18 @@ pub fn solve_checked(ranges: &mut [Range], altitude: &Altitude, prior: Option<&P
     let mut best: Option<(usize, Fix)> = None;
     let mut second = f64::INFINITY;
     for k in 0..ranges.len() {
-        let Ok(found) = without(ranges, k, altitude, prior) else { continue };
+        let Ok(rest) = without(ranges, k, altitude, prior) else { continue };
         match &best {
-            Some((_, known)) if known.chi_square <= found.chi_square => second = second.min(found.chi_square),
+            Some((_, known)) if known.chi_square <= rest.chi_square => second = second.min(rest.chi_square),
             known => {
                 second = known.map_or(f64::INFINITY, |(_, known)| known.chi_square);
-                best = Some((k, found));
+                best = Some((k, rest));
             }
         }
     }
     match best {
-        Some((k, found)) if passes(&found) && second - found.chi_square >= 2.0 * ln(EXCLUSION_ODDS) => {
-            Ok(Checked { fix: found, verdict: Verdict::Excluded(k) })
+        Some((k, rest)) if passes(&rest) && second - rest.chi_square >= 2.0 * ln(EXCLUSION_ODDS) => {
+            Ok(Checked { fix: rest, verdict: Verdict::Excluded(k) })
         }
         _ => Ok(Checked { fix, verdict: Verdict::Undecided }),
     }
@@ -83,7 +83,7 @@ pub fn solve_checked(ranges: &mut [Range], altitude: &Altitude, prior: Option<&P
 fn without(ranges: &mut [Range], k: usize, altitude: &Altitude, prior: Option<&Prior>) -> Result<Fix, NoFix> {
     let last = ranges.len() - 1;
     ranges.swap(k, last);
-    let found = solve(&ranges[..last], altitude, prior);
+    let solution = solve(&ranges[..last], altitude, prior);
     ranges.swap(k, last);
-    found
+    solution
 }

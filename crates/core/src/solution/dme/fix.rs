@@ -170,10 +170,10 @@ fn check(ranges: &[Range], altitude: &Altitude) -> Result<(), OutOfDomain> {
 }
 
 /// The one solution that the prior allows.
-fn near(found: [Result<Fix, NoFix>; 2], prior: &Prior) -> Result<Fix, NoFix> {
+fn near(candidates: [Result<Fix, NoFix>; 2], prior: &Prior) -> Result<Fix, NoFix> {
     let from = ecef_from_geodetic(&prior.position);
     let allowed = |fix: &Fix| distance(fix, &from) <= prior.within.m();
-    match found {
+    match candidates {
         [Ok(a), Ok(b)] if allowed(&a) && allowed(&b) => Err(NoFix::Ambiguous),
         [Ok(fix), _] if allowed(&fix) => Ok(fix),
         [_, Ok(fix)] if allowed(&fix) => Ok(fix),
@@ -215,13 +215,13 @@ fn settle(ranges: &[Range], altitude: &Altitude, start: &EcefPosition) -> Result
             return Ok(fix(&place, &solved, ranges.len()));
         }
         let next = at_altitude(&EcefPosition::from_vector(place.ecef.vector() + factor * move_by), altitude)?;
-        let found = step(ranges, altitude, &next)?;
+        let stepped = step(ranges, altitude, &next)?;
         // Within a metre it converges by itself, and sums of squares near zero are rounding.
-        if found.chi_square > solved.chi_square && move_by.norm() > 1.0 {
+        if stepped.chi_square > solved.chi_square && move_by.norm() > 1.0 {
             factor *= 0.5;
             continue;
         }
-        (place, solved, factor) = (next, found, 1.0);
+        (place, solved, factor) = (next, stepped, 1.0);
     }
     Err(NoFix::NotSettled)
 }

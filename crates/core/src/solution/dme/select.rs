@@ -52,9 +52,9 @@ pub fn best_pair(
         for (j, b) in sights.iter().enumerate().skip(i + 1) {
             let Some(b) = b else { continue };
             let pair = Pair::of([a, b], range, admission, sigma_altitude)?;
-            let Some(found) = figure.of(&pair) else { continue };
-            if best.is_none_or(|known| found < known.figure) {
-                best = Some(Best { stations: [i, j], pair, figure: found });
+            let Some(merit) = figure.of(&pair) else { continue };
+            if best.is_none_or(|known| merit < known.figure) {
+                best = Some(Best { stations: [i, j], pair, figure: merit });
             }
         }
     }

@@ -137,7 +137,7 @@ pub fn vor_fix(station: &Place, measured: &VorRange, altitude: &Altitude) -> Res
 fn placed(station: &Place, measured: &VorRange, position: &Geodetic, sigma_altitude: Metres) -> Result<Fix, NoFix> {
     let sight = Sight::between(&Place::new(*position)?, station).ok_or(NoFix::Overhead)?;
     let ground = Metres::new(sight.slant.m() * sight.level());
-    let found = vor_dme(ground, sight.slant, measured.sigma_bearing, measured.sigma)?.ok_or(NoFix::Overhead)?;
-    let covariance = found.covariance(&sight, sigma_altitude);
+    let resolved = vor_dme(ground, sight.slant, measured.sigma_bearing, measured.sigma)?.ok_or(NoFix::Overhead)?;
+    let covariance = resolved.covariance(&sight, sigma_altitude);
     Ok(Fix { position: *position, covariance, used: 2, chi_square: 0.0, p_residual: None })
 }

@@ -265,9 +265,9 @@ mod tests {
             let f = f64::from(i) / (2.0 * period * f64::from(n));
             [f, 3.0 / (1.0 - 2.0 * phi * (core::f64::consts::TAU * f * period).cos() + phi * phi)]
         });
-        let found = from_spectrum(rho, period, points).unwrap();
+        let gain = from_spectrum(rho, period, points).unwrap();
         // The trapezoid of a smooth periodic function is exact to rounding.
-        assert!((found / gauss_markov(rho, period, tau).unwrap() - 1.0).abs() < 1e-9);
+        assert!((gain / gauss_markov(rho, period, tau).unwrap() - 1.0).abs() < 1e-9);
     }
 
     #[test]

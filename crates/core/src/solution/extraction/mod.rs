@@ -10,7 +10,7 @@ use crate::quantity::{GpsTime, OutOfDomain};
 use crate::special::float::{exp, ln};
 use nalgebra::Vector3;
 
-/// Longest step, in nominal periods, that the filter carries its state over, unless told otherwise.
+/// Longest step, in nominal periods, that the filter carries its state over, unless declared otherwise.
 pub const GAP_PERIODS: f64 = 3.0;
 
 /// Position and velocity of one instant.
@@ -235,14 +235,14 @@ mod tests {
     }
 
     #[test]
-    fn new_satellites_are_seen_and_reset_only_where_asked() {
-        for asked in [false, true] {
-            let mut filter = Filter::new(Settings::new(0.98, 1.0, 3.0, asked).unwrap());
+    fn new_satellites_are_seen_and_reset_only_where_requested() {
+        for reset in [false, true] {
+            let mut filter = Filter::new(Settings::new(0.98, 1.0, 3.0, reset).unwrap());
             filter.step(&Sample { satellites: Some(7), ..sample(0, 0.0, 0.0) }).unwrap();
             let next = filter.step(&Sample { satellites: Some(3), ..sample(1, 10.0, 0.0) }).unwrap();
             assert!(next.new_satellites);
-            assert_eq!(next.reset, asked.then_some(Reset::Satellites));
-            assert_eq!(next.error.vector()[0], if asked { 0.0 } else { 10.0 });
+            assert_eq!(next.reset, reset.then_some(Reset::Satellites));
+            assert_eq!(next.error.vector()[0], if reset { 0.0 } else { 10.0 });
         }
     }
 

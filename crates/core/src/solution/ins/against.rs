@@ -81,7 +81,7 @@ impl Fusion {
         let any = Radians::new(1.0);
         let sigma = StartSigma { position, velocity_mps: 2.0 * sqrt(most), attitude: [any; 3] };
         self.renew(at, &sigma)?;
-        self.main.begin_adrift();
+        self.main.begin_after_gap();
         Ok(())
     }
 

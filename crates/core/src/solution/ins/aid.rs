@@ -76,7 +76,7 @@ impl Wheels {
 const KNOWN_SIGMAS: f64 = 3.0;
 
 impl Aided {
-    /// Why it was not used, where no gate was asked.
+    /// Why it was not used, where no gate was examined.
     pub const fn refusal(&self) -> Option<Refusal> {
         match self {
             Self::Used { .. } | Self::Gated { .. } => None,
@@ -150,7 +150,7 @@ impl Filter {
 
     fn judge(&mut self, timed: &TimedAiding) -> Aided {
         let (antenna, age_s) = match self.ready(timed.time) {
-            Ok(found) => found,
+            Ok(innovation) => innovation,
             Err(outcome) => return outcome,
         };
         if let Err(outcome) = self.admit(timed) {
@@ -223,12 +223,12 @@ impl Filter {
         if first != m.satellite.constellation {
             let bias = Process::constant(clock.inter_system_m);
             let what = Further::InterSystem(m.satellite.constellation);
-            let Some(found) = self.slots.ensure(joint, what, bias, 0.0) else { return Aided::NoPlace };
-            more[0] = Some(found);
+            let Some(slot) = self.slots.ensure(joint, what, bias, 0.0) else { return Aided::NoPlace };
+            more[0] = Some(slot);
         }
         let slow = Process { sigma: m.sigma_correlated.m(), first: m.sigma_first.m(), tau_s: m.correlation_time_s };
         match self.own_state(Further::Satellite(m.satellite), slow, &mut range.variance) {
-            Ok(found) => more[1] = found,
+            Ok(slot) => more[1] = slot,
             Err(outcome) => return outcome,
         }
         for place in [Some(bias), more[0], more[1]].into_iter().flatten() {
@@ -285,8 +285,8 @@ impl Filter {
         if self.stopped.is_some() {
             return Aided::Stopped;
         }
-        if let Some(adrift) = &self.adrift {
-            return Aided::Late { age_s: self.time().seconds_since(adrift.heard) };
+        if let Some(after_gap) = &self.after_gap {
+            return Aided::Late { age_s: self.time().seconds_since(after_gap.heard) };
         }
         if let Err(refusal) = wheels.check() {
             return Aided::Refused(refusal);

@@ -49,9 +49,9 @@ mod tests {
     fn gravity_and_course_give_the_attitude() {
         let (sp, cp, sr, cr) = (0.1f64.sin(), 0.1f64.cos(), 0.2f64.sin(), 0.2f64.cos());
         let force = 9.81 * Vector3::new(sp, -cp * sr, -cp * cr);
-        let found = coarse(&force, &Vector3::new(0.0, -3.0, 0.0)).unwrap();
-        assert!((found.pitch.rad() - 0.1).abs() < 1e-15 && (found.roll.rad() - 0.2).abs() < 1e-15);
-        assert_eq!(found.heading.rad(), -core::f64::consts::FRAC_PI_2);
+        let attitude = coarse(&force, &Vector3::new(0.0, -3.0, 0.0)).unwrap();
+        assert!((attitude.pitch.rad() - 0.1).abs() < 1e-15 && (attitude.roll.rad() - 0.2).abs() < 1e-15);
+        assert_eq!(attitude.heading.rad(), -core::f64::consts::FRAC_PI_2);
     }
 
     #[test]

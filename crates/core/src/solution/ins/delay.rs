@@ -11,7 +11,7 @@
 //!
 //! Where velocities come, by Doppler, the same with their first difference, which is far less noisy.
 //!
-//! An offset, a drift or a slow error of either drops out of the second difference, so the filter's own state is not asked but for the axes.
+//! An offset, a drift or a slow error of either drops out of the second difference, so the filter's own state is not used but for the axes.
 //! The delay is where S is least; it counts where S at no delay is larger by far more than chance makes it. Provenance: ours.
 
 use crate::quantity::GpsTime;
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn late_positions_are_found_in_a_turn_and_their_delay_with_them() {
+    fn late_positions_are_detected_in_a_turn_and_their_delay_with_them() {
         for delay_s in [1.0, 2.0, -1.0] {
             let (late, estimate) = circled(delay_s, 180, true);
             assert!(late, "{delay_s}");

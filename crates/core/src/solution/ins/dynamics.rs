@@ -172,9 +172,9 @@ mod tests {
                 };
                 let (up, down) = (end(error[k]), end(-error[k]));
                 for i in 0..MOTION {
-                    let found = (up[i] - down[i]) / (2.0 * error[k]);
+                    let difference = (up[i] - down[i]) / (2.0 * error[k]);
                     let allowed = if k >= 6 && i < 6 { 3e-6 } else { 2e-8 };
-                    assert!((found - t[k][i]).abs() < allowed, "state {k} to {i}: {found:e} {:e}", t[k][i]);
+                    assert!((difference - t[k][i]).abs() < allowed, "state {k} to {i}: {difference:e} {:e}", t[k][i]);
                 }
             }
         }

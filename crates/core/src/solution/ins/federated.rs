@@ -1,6 +1,6 @@
 //! The federated form: a filter for the satellites, one for the stations and the altimeter, and a master that joins them.
 //!
-//! Both filters live on the same inertial unit and the same start, so their errors are related. Each is told that start and unit are worse
+//! Both filters live on the same inertial unit and the same start, so their errors are related. To each, start and unit are declared worse
 //! than they are, its variances over its share b of the information; then the errors of both are bounded as if they were independent:
 //!
 //! ```text
@@ -10,7 +10,7 @@
 //!
 //! The variant without reset: the master never writes back. So neither filter ever learns from the other's measurements, a false
 //! measurement stays in its own filter, and the one without satellites is a witness against the other. The cost: V is an upper bound, not
-//! the covariance, and a filter alone is worse than one told the truth. With a reset to V/b after each fusion V would be the optimum, and
+//! the covariance, and a filter alone is worse than one with the true values. With a reset to V/b after each fusion V would be the optimum, and
 //! whatever deceives one filter would be in both. Source: Carlson, federated square root filter, 1990 (the text was not read); provenance: inferred
 //! formulas, equal shares ours.
 
@@ -29,22 +29,22 @@ const SHARE: f64 = 0.5;
 
 type Joint = SMatrix<f64, NAV, NAV>;
 
-/// What a filter of the federation is told of start and inertial unit: standard deviations over the root of its share.
+/// What is declared to a filter of the federation of start and inertial unit: standard deviations over the root of its share.
 pub(super) fn shared(sigma: &StartSigma, settings: &Settings) -> (StartSigma, Settings) {
     let wider = 1.0 / sqrt(SHARE);
     let noise = |n: &SensorNoise| SensorNoise { white: n.white * wider, bias: n.bias * wider, bias_time_s: n.bias_time_s };
-    let mut told = *settings;
-    told.imu.gyroscope = noise(&settings.imu.gyroscope);
-    told.imu.accelerometer = noise(&settings.imu.accelerometer);
-    told.gap_acceleration_mps2 *= wider;
-    told.gap_rate_radps *= wider;
-    told.resumption = settings.resumption.wider(wider);
+    let mut shared_settings = *settings;
+    shared_settings.imu.gyroscope = noise(&settings.imu.gyroscope);
+    shared_settings.imu.accelerometer = noise(&settings.imu.accelerometer);
+    shared_settings.gap_acceleration_mps2 *= wider;
+    shared_settings.gap_rate_radps *= wider;
+    shared_settings.resumption = settings.resumption.wider(wider);
     let start = StartSigma {
         position: sigma.position.map(|s| Metres::new(s.m() * wider)),
         velocity_mps: sigma.velocity_mps * wider,
         attitude: sigma.attitude.map(|s| Radians::new(s.rad() * wider)),
     };
-    (start, told)
+    (start, shared_settings)
 }
 
 /// What both say together. The first alone where the sum of both covariances is not positive, which no filter that runs leaves behind.

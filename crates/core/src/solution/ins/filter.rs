@@ -1,6 +1,6 @@
 //! The filter: inertial samples carry the state, measurements correct it, nothing brings it down.
 
-use super::adrift::Adrift;
+use super::after_gap::AfterGap;
 use super::covariance::{BASE, Fade, Joint, Row, StepNoise, WIDTH};
 use super::delay::Delay;
 use super::dynamics::{BA, BG, NAV, PHI, R, V, transition};
@@ -35,7 +35,7 @@ pub enum Advance {
         gap_s: f64,
     },
     /// Heard, not integrated: what turned in a hole before it is not known.
-    Adrift {
+    AfterGap {
         /// Time since the state that the filter holds \[s\].
         since_s: f64,
     },
@@ -68,7 +68,7 @@ pub struct Samples {
     /// Outside their domain.
     pub n_refused: u64,
     /// Heard only, after a hole too long to be bridged.
-    pub n_adrift: u64,
+    pub n_after_gap: u64,
     /// After the stop.
     pub n_stopped: u64,
 }
@@ -127,7 +127,7 @@ pub struct Filter {
     waiting: Option<Waiting>,
     samples: Samples,
     pub(super) stopped: Option<Stop>,
-    pub(super) adrift: Option<Adrift>,
+    pub(super) after_gap: Option<AfterGap>,
     pub(super) aligning: bool,
     pub(super) stations: Stations,
     pub(super) instant: Instant,
@@ -171,7 +171,7 @@ impl Filter {
             waiting: None,
             samples: Samples::default(),
             stopped: None,
-            adrift: None,
+            after_gap: None,
             aligning: false,
             stations: Stations::new(),
             instant: Instant::default(),
@@ -259,7 +259,7 @@ impl Filter {
                 self.samples.n_done += 1;
                 self.samples.n_bridged += 1;
             }
-            Advance::Adrift { .. } => self.samples.n_adrift += 1,
+            Advance::AfterGap { .. } => self.samples.n_after_gap += 1,
             Advance::Late => self.samples.n_late += 1,
             Advance::Refused(_) => self.samples.n_refused += 1,
             Advance::Stopped(_) => self.samples.n_stopped += 1,
@@ -274,7 +274,7 @@ impl Filter {
         if let Err(refusal) = check(sample) {
             return Advance::Refused(refusal);
         }
-        if self.adrift.is_some() {
+        if self.after_gap.is_some() {
             return self.listen(sample);
         }
         let since_s = sample.time.seconds_since(self.state().time);

@@ -115,7 +115,7 @@ fn ranges_that_contradict_each_other_make_no_position() {
     assert_eq!(fusion.innovations(Kind::Range).n_refused, 3);
 }
 
-/// Before any measurement both filters of the federation are told twice the variance, and together they know the start as it is.
+/// Before any measurement both filters of the federation start with twice the variance, and together they know the start as it is.
 #[test]
 fn the_master_knows_as_much_as_the_start_and_both_filters_half_of_it() {
     let mut fusion = fusion(Form::Federated, |_| ());

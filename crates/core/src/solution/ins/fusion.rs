@@ -47,8 +47,8 @@ impl Fusion {
     pub fn new(start: NavState, sigma: &StartSigma, settings: Settings) -> Result<Self, OutOfDomain> {
         settings.check()?;
         let federated = settings.form == Form::Federated;
-        let (wider, told) = if federated { shared(sigma, &settings) } else { (*sigma, settings) };
-        let main = Filter::new(start, &wider, told)?;
+        let (wider, shared_settings) = if federated { shared(sigma, &settings) } else { (*sigma, settings) };
+        let main = Filter::new(start, &wider, shared_settings)?;
         let beside = if federated || settings.reversion { Some(main.clone()) } else { None };
         Ok(Self { settings, main, beside, receiver: Receiver::new(), nested: !federated })
     }
@@ -72,7 +72,7 @@ impl Fusion {
         }
         let outcome = self.main.advance(sample);
         // Each finds its own attitude after a hole.
-        self.nested &= !matches!(outcome, Advance::Adrift { .. });
+        self.nested &= !matches!(outcome, Advance::AfterGap { .. });
         outcome
     }
 

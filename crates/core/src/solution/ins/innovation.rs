@@ -186,27 +186,27 @@ mod tests {
         };
         let mut normal = || (-2.0 * uniform().ln()).sqrt() * (core::f64::consts::TAU * uniform()).cos();
         let (mut sums, mut last, mut most) = (Innovations::default(), [None; 10], 0.0f64);
-        let mut found = f64::NAN;
+        let mut memory = f64::NAN;
         for second in 0..300 {
             let time = GpsTime::default().plus_seconds(f64::from(second));
             for before in &mut last {
                 let new = share * before.unwrap_or(0.0) + (1.0 - share * share).sqrt() * normal();
                 sums.used(new, before.replace(new), time);
             }
-            found = sums.memory(time);
-            most = most.max(found.abs());
+            memory = sums.memory(time);
+            most = most.max(memory.abs());
         }
-        (found, most)
+        (memory, most)
     }
 
     /// White: five deviations either way. A share of 0.3 among 10 * 60 / 2 pairs that weigh: 0.3 sqrt of their sum over that of their squares,
     /// 0.3 * 600 / sqrt(300) = 10.4 ± 1.2.
     #[test]
-    fn innovations_that_remember_are_found_within_a_minute() {
+    fn correlated_innovations_are_detected_within_a_minute() {
         let (_, most) = memory_of(0.0);
         assert!(most < 5.0, "{most}");
-        let (found, _) = memory_of(0.3);
-        assert!((found - 10.4).abs() < 4.0, "{found}");
+        let (memory, _) = memory_of(0.3);
+        assert!((memory - 10.4).abs() < 4.0, "{memory}");
     }
 
     #[test]

@@ -60,25 +60,25 @@ impl Instant {
 mod tests {
     use super::*;
 
-    fn said(gated: &[f64], used: usize) -> Option<f64> {
+    fn size_of(gated: &[f64], used: usize) -> Option<f64> {
         let (mut instant, begin) = (Instant::default(), GpsTime::default());
         assert_eq!(instant.at(begin), None);
         (0..used).for_each(|_| instant.used());
         gated.iter().for_each(|z| instant.gated(*z, 25.0));
         assert_eq!(instant.at(begin), None, "the instant is not over");
-        let found = instant.at(begin.plus_seconds(1.0));
+        let jump = instant.at(begin.plus_seconds(1.0));
         assert_eq!(instant.at(begin.plus_seconds(2.0)), None, "nothing is said twice");
-        found
+        jump
     }
 
     #[test]
     fn ranges_that_are_off_alike_are_a_jump_and_others_are_not() {
-        assert_eq!(said(&[100.0, 104.0, 96.0, 100.0], 0), Some(100.0));
-        assert_eq!(said(&[100.0, 104.0, 96.0, 100.0], 1), Some(100.0));
-        assert_eq!(said(&[100.0, 104.0, 96.0, 100.0], 2), None, "a third of them agrees with the filter");
-        assert_eq!(said(&[100.0, 104.0, 96.0], 0), None, "three do not determine");
+        assert_eq!(size_of(&[100.0, 104.0, 96.0, 100.0], 0), Some(100.0));
+        assert_eq!(size_of(&[100.0, 104.0, 96.0, 100.0], 1), Some(100.0));
+        assert_eq!(size_of(&[100.0, 104.0, 96.0, 100.0], 2), None, "a third of them agrees with the filter");
+        assert_eq!(size_of(&[100.0, 104.0, 96.0], 0), None, "three do not determine");
         // A position that is wrong shows in every range by another length.
-        assert_eq!(said(&[100.0, 40.0, -96.0, -30.0], 0), None);
-        assert_eq!(said(&[f64::NAN, 1.0, 1.0, 1.0], 0), None);
+        assert_eq!(size_of(&[100.0, 40.0, -96.0, -30.0], 0), None);
+        assert_eq!(size_of(&[f64::NAN, 1.0, 1.0, 1.0], 0), None);
     }
 }

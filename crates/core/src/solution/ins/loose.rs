@@ -39,7 +39,7 @@ const FLOOR: f64 = 1e-9;
 
 /// A satellite in a solved position.
 #[derive(Debug, Clone, Copy)]
-struct Held {
+struct CommonBias {
     satellite: SatelliteId,
     response: Vector3<f64>,
     variance: f64,
@@ -49,7 +49,7 @@ struct Held {
 /// The last solved position: what the next one has in common with it.
 #[derive(Debug, Clone)]
 pub(super) struct Receiver {
-    held: [Option<Held>; MOST],
+    biases: [Option<CommonBias>; MOST],
     /// When, and the root L of its slow covariance.
     last: Option<(GpsTime, Matrix3<f64>)>,
 }
@@ -84,14 +84,14 @@ impl Rows {
 
 impl Receiver {
     pub(super) const fn new() -> Self {
-        Self { held: [None; MOST], last: None }
+        Self { biases: [None; MOST], last: None }
     }
 
     /// Correlation of the slow part now with that of the last position, as far as satellites are in both.
-    fn common(&self, now: &[Option<Held>], dt: f64) -> Matrix3<f64> {
+    fn common(&self, now: &[Option<CommonBias>], dt: f64) -> Matrix3<f64> {
         let mut c = Matrix3::zeros();
         for a in now.iter().flatten() {
-            let before = self.held.iter().flatten().find(|b| b.satellite == a.satellite);
+            let before = self.biases.iter().flatten().find(|b| b.satellite == a.satellite);
             if let Some(b) = before {
                 c += a.response * b.response.transpose() * (a.variance.min(b.variance) * exp(-dt / a.tau_s));
             }
@@ -100,7 +100,7 @@ impl Receiver {
     }
 
     /// How the three states move to a new root of the slow covariance: A and its noise. Nothing is carried over from nowhere.
-    fn course(&self, root: &Matrix3<f64>, now: &[Option<Held>], time: GpsTime) -> Option<(Matrix3<f64>, Matrix3<f64>)> {
+    fn course(&self, root: &Matrix3<f64>, now: &[Option<CommonBias>], time: GpsTime) -> Option<(Matrix3<f64>, Matrix3<f64>)> {
         let a = match &self.last {
             None => Matrix3::zeros(),
             Some((before, last)) => {
@@ -148,8 +148,8 @@ impl Filter {
             Ok((antenna, _)) => antenna,
             Err(outcome) => return outcome,
         };
-        let mut held = [None; MOST];
-        let solved = match self.position(&antenna, ranges, &mut held) {
+        let mut biases = [None; MOST];
+        let solved = match self.position(&antenna, ranges, &mut biases) {
             Ok(solved) => solved,
             Err(outcome) => {
                 if matches!(outcome, Aided::Gated { .. }) {
@@ -158,7 +158,7 @@ impl Filter {
                 return outcome;
             }
         };
-        let outcome = self.use_position(receiver, &antenna, &solved, &held);
+        let outcome = self.use_position(receiver, &antenna, &solved, &biases);
         // The position may have moved the velocity, much so where both are tied: after a hole.
         if let Some((step, covariance)) = velocity(&antenna.moving(self.state()), ranges) {
             self.use_three(Kind::FixVelocity, &step, &covariance, |axis| antenna.along_velocity(axis));
@@ -172,7 +172,7 @@ impl Filter {
     }
 
     /// The position, its covariance in parts, and each satellite's share; refused where the geometry or the residuals say no.
-    fn position(&self, antenna: &Antenna, ranges: &[SatelliteRange], held: &mut [Option<Held>; MOST]) -> Result<Solved, Aided> {
+    fn position(&self, antenna: &Antenna, ranges: &[SatelliteRange], biases: &mut [Option<CommonBias>; MOST]) -> Result<Solved, Aided> {
         let mut offset = Vector3::zeros();
         let mut rows = code_rows(antenna, ranges);
         let mut normal = Normal::new(rows.iter()).map_err(|_| Aided::NoPosition)?;
@@ -194,18 +194,18 @@ impl Filter {
             return Err(Aided::Gated { square });
         }
         let (mut white, mut slow) = (Matrix3::zeros(), Matrix3::zeros());
-        for ((m, row), place) in ranges.iter().zip(rows.iter()).zip(held) {
+        for ((m, row), place) in ranges.iter().zip(rows.iter()).zip(biases) {
             let response = normal.response(&inverse, &row);
             let variance = m.sigma_correlated.m() * m.sigma_correlated.m();
             let outer = response * response.transpose();
             white += outer * (m.sigma_white.m() * m.sigma_white.m());
             slow += outer * variance;
-            *place = Some(Held { satellite: m.satellite, response, variance, tau_s: m.correlation_time_s });
+            *place = Some(CommonBias { satellite: m.satellite, response, variance, tau_s: m.correlation_time_s });
         }
         Ok(Solved { step: offset + step, white, slow })
     }
 
-    fn use_position(&mut self, receiver: &mut Receiver, antenna: &Antenna, solved: &Solved, held: &[Option<Held>; MOST]) -> Aided {
+    fn use_position(&mut self, receiver: &mut Receiver, antenna: &Antenna, solved: &Solved, biases: &[Option<CommonBias>; MOST]) -> Aided {
         let kind = Kind::FixPosition;
         if self.settings.errors == ErrorModel::White || !(solved.slow.trace() > 0.0) {
             return self.use_three(kind, &solved.step, &(solved.white + solved.slow), |axis| antenna.along_position(axis));
@@ -213,15 +213,15 @@ impl Filter {
         let floored = solved.slow + Matrix3::identity() * (FLOOR * solved.slow.trace());
         let time = self.time();
         let Some(root) = floored.cholesky().map(|c| c.l()) else { return Aided::NoPosition };
-        let Some((a, q)) = receiver.course(&root, held, time) else { return Aided::NoPosition };
+        let Some((a, q)) = receiver.course(&root, biases, time) else { return Aided::NoPosition };
         let mut places = [0; 3];
         for (k, place) in (0..).zip(&mut places) {
             let unit = Process::constant(1.0);
-            let Some(found) = self.slots.ensure(&mut self.joint, Further::SolvedPosition(k), unit, 0.0) else { return Aided::NoPlace };
-            *place = found;
+            let Some(slot) = self.slots.ensure(&mut self.joint, Further::SolvedPosition(k), unit, 0.0) else { return Aided::NoPlace };
+            *place = slot;
         }
         self.slots.mix(&mut self.joint, places, &a, &q);
-        *receiver = Receiver { held: *held, last: Some((time, root)) };
+        *receiver = Receiver { biases: *biases, last: Some((time, root)) };
         let believed = Vector3::from(places.map(|place| self.slots.value(place)));
         let row = |axis: &Vector3<f64>| {
             let share = root.transpose() * axis;

@@ -9,7 +9,7 @@
 //! Local axes point north, east and down and the equations hold the tangent of the latitude: within 0.1 degree of a pole a state is
 //! refused, and no wander angle is carried.
 
-mod adrift;
+mod after_gap;
 mod against;
 mod aid;
 mod align;
@@ -37,7 +37,7 @@ mod stations;
 mod strapdown;
 mod together;
 
-pub use adrift::Resumption;
+pub use after_gap::Resumption;
 pub use against::{Difference, is_sane, judgeable};
 pub use aid::{Aided, Wheels};
 pub use align::{COURSE_FROM_MPS, coarse};

@@ -115,9 +115,9 @@ impl Modes {
                 self.since[k] = None;
             }
         }
-        let held = |k: usize| self.last[k].is_some_and(|t| now.seconds_since(t) <= self.patience.lose_s);
+        let available = |k: usize| self.last[k].is_some_and(|t| now.seconds_since(t) <= self.patience.lose_s);
         let ripe = |k: usize| first || self.since[k].is_some_and(|t| now.seconds_since(t) >= self.patience.gain_s);
-        let keep = |k: usize| Mode::AIDED[k] <= self.mode && held(k);
+        let keep = |k: usize| Mode::AIDED[k] <= self.mode && available(k);
         let best = (0..3).rev().find(|&k| keep(k) || (possible[k] && ripe(k)));
         self.mode = best.map_or(Mode::Coasting, |k| Mode::AIDED[k]);
     }

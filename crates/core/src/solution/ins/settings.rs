@@ -1,6 +1,6 @@
-//! What the filter is told: noise of the sensors, first uncertainty, gates, patience.
+//! What is declared to the filter: noise of the sensors, first uncertainty, gates, patience.
 
-use super::adrift::Resumption;
+use super::after_gap::Resumption;
 use super::state::finite;
 use crate::quantity::{Metres, OutOfDomain, Radians, Risk};
 use nalgebra::Vector3;
@@ -117,7 +117,7 @@ pub struct Patience {
     pub gain_s: f64,
 }
 
-/// Everything the filter is told at the start.
+/// Everything declared to the filter at the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// The inertial unit.

@@ -286,7 +286,7 @@ mod tests {
         let [clock, drift] = slots.ensure_clock(&mut joint, &model, 0.0).unwrap();
         slots.settle(&mut joint, at(10.0), &model, 60.0);
         // 4 + 900 + 0.5 * 10 + 0.06 * 1000 / 3; 90 + 0.06 * 100 / 2; 9 + 0.6, to the rounding of some additions.
-        let found = [joint.get(clock, clock), joint.get(clock, drift), joint.get(drift, drift)];
-        assert!(found.iter().zip([929.0, 93.0, 9.6]).all(|(f, e)| (f - e).abs() < 1e-12 * e), "{found:?}");
+        let variances = [joint.get(clock, clock), joint.get(clock, drift), joint.get(drift, drift)];
+        assert!(variances.iter().zip([929.0, 93.0, 9.6]).all(|(f, e)| (f - e).abs() < 1e-12 * e), "{variances:?}");
     }
 }

@@ -127,10 +127,10 @@ mod tests {
     #[test]
     fn what_one_measurement_hides_shows_in_several() {
         let mut stations = Stations::new();
-        let found: Vec<_> = (0..7).map(|_| stations.judge(Further::Dme(3), &look(26.4), GATE)).collect();
+        let judged: Vec<_> = (0..7).map(|_| stations.judge(Further::Dme(3), &look(26.4), GATE)).collect();
         // 1.4 a measurement over the slack: the sixth brings 8.4.
-        assert!(found[..5].iter().all(|s| *s == Standing::Good), "{found:?}");
-        assert_eq!(found[5..], [Standing::LeftOut, Standing::Waiting]);
+        assert!(judged[..5].iter().all(|s| *s == Standing::Good), "{judged:?}");
+        assert_eq!(judged[5..], [Standing::LeftOut, Standing::Waiting]);
         assert_eq!(stations.left_out().collect::<Vec<_>>(), [Further::Dme(3)]);
         // Another station, and one deviation for ever, are not touched.
         assert!((0..1000).all(|_| stations.judge(Further::Vor(3), &look(11.0), GATE) == Standing::Good));

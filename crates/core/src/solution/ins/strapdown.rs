@@ -188,7 +188,7 @@ pub(super) fn check(sample: &ImuIncrement) -> Result<(), OutOfDomain> {
 }
 
 const INTERVAL_MOST_S: f64 = 10.0;
-/// More than half a turn in a sample cannot be told from a turn the other way.
+/// More than half a turn in a sample cannot be distinguished from a turn the other way.
 const ANGLE_MOST_RAD: f64 = core::f64::consts::PI;
 /// A thousand g for a second: no vehicle of ours.
 const VELOCITY_MOST_MPS: f64 = 1.0e4;

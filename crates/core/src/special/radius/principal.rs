@@ -74,16 +74,16 @@ mod tests {
 
     #[test]
     fn small_eigenvalues_keep_their_digits() {
-        // diag(1, 1e-8) turned by (3/5, 4/5): exact in rationals; the determinant of the rounded matrix fixes what may be asked.
+        // diag(1, 1e-8) turned by (3/5, 4/5): exact in rationals; the determinant of the rounded matrix fixes what may be required.
         let (l, s) = ([1.0, 1e-8], [0.6, 0.8]);
         let v = [
             [s[0] * s[0] * l[0] + s[1] * s[1] * l[1], s[0] * s[1] * (l[0] - l[1]), 0.0],
             [s[0] * s[1] * (l[0] - l[1]), s[1] * s[1] * l[0] + s[0] * s[0] * l[1], 0.0],
             [0.0, 0.0, 1e-20],
         ];
-        let (found, _) = principal_axes(&v);
-        assert!((found[0] - 1.0).abs() < 4.0 * f64::EPSILON);
-        assert!((found[1] / 1e-8 - 1.0).abs() < 1e8 * 4.0 * f64::EPSILON);
-        assert_eq!(found[2], 1e-20);
+        let (axes, _) = principal_axes(&v);
+        assert!((axes[0] - 1.0).abs() < 4.0 * f64::EPSILON);
+        assert!((axes[1] / 1e-8 - 1.0).abs() < 1e8 * 4.0 * f64::EPSILON);
+        assert_eq!(axes[2], 1e-20);
     }
 }

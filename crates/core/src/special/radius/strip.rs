@@ -103,8 +103,8 @@ mod tests {
                 let [exact] = integrate(middle - half, middle + half, 1, |x| [density(x)]);
                 // Beyond the seam the tails cancel to a thirtieth of themselves, each with the rounding of its argument squared.
                 let allowed = if share < 1.0 { 2e-15 } else { 2e-14 } * (1.0 + middle * middle);
-                let found = between(middle - half, middle + half);
-                assert!((found / exact - 1.0).abs() < allowed, "{middle} {half}: {found} {exact}");
+                let inside = between(middle - half, middle + half);
+                assert!((inside / exact - 1.0).abs() < allowed, "{middle} {half}: {inside} {exact}");
             }
         }
     }
@@ -119,9 +119,9 @@ mod tests {
         ];
         for (sigma, mean) in cases {
             for radius in [0.5, 1.0, 3.5, 5.0, 9.0] {
-                let found = at(sigma, mean, radius);
+                let sides = at(sigma, mean, radius);
                 // Two sums of 4000 positive terms.
-                assert!((found.inside + found.outside - 1.0).abs() < 2e-13, "{sigma:?} {mean:?} {radius}: {found:?}");
+                assert!((sides.inside + sides.outside - 1.0).abs() < 2e-13, "{sigma:?} {mean:?} {radius}: {sides:?}");
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Which receiver wrote a log, told from the beginnings of its messages.
+//! Which receiver wrote a log, recognised by the beginnings of its messages.
 
 use super::Kind;
 use memchr::{memchr_iter, memmem};

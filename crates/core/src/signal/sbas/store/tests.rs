@@ -179,13 +179,13 @@ fn grid_delays_wait_for_the_mask_of_their_issue() {
     store.receive(second(1), &delays(1)).unwrap();
     assert_eq!(store.grid(Use::EnRoute, second(2)).count(), 0);
     store.receive(second(2), &points(0, 1)).unwrap();
-    assert!(store.grid(Use::EnRoute, second(3)).all(|g| g.held.is_none()), "of another issue");
+    assert!(store.grid(Use::EnRoute, second(3)).all(|g| g.in_force.is_none()), "of another issue");
     store.receive(second(3), &points(1, 2)).unwrap();
-    let held: std::vec::Vec<_> = store.grid(Use::EnRoute, second(4)).filter_map(|g| Some((g.point, g.held?))).collect();
-    assert_eq!(held.len(), 1);
-    let (point, (delay, applies)) = held[0];
+    let in_force: std::vec::Vec<_> = store.grid(Use::EnRoute, second(4)).filter_map(|g| Some((g.point, g.in_force?))).collect();
+    assert_eq!(in_force.len(), 1);
+    let (point, (delay, applies)) = in_force[0];
     assert_eq!((point.lat_deg, point.lon_deg, delay.delay_m, delay.givei, applies), (-65, -20, Some(4.0), 3, second(0)));
-    assert_eq!(store.grid(Use::EnRoute, second(602)).filter(|g| g.held.is_some()).count(), 0, "600 s after the end");
+    assert_eq!(store.grid(Use::EnRoute, second(602)).filter(|g| g.in_force.is_some()).count(), 0, "600 s after the end");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! After a hole in the inertial samples that is too long to be bridged: adrift, then aligning, then as before.
+//! After a hole in the inertial samples that is too long to be bridged: after the gap, then aligning, then as before.
 //!
 //! What turned in the hole is not known, so nothing can be integrated. The filter stays on the last velocity, as uncertain as the declared
 //! acceleration makes it over the hole, and speaks again with the first measurement after it: satellites, or stations and their time.
@@ -75,7 +75,7 @@ const GRAVITY: f64 = 9.8;
 
 /// What is heard of the samples meanwhile.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Adrift {
+pub(super) struct AfterGap {
     /// The last sample.
     pub(super) heard: GpsTime,
     listened_s: f64,
@@ -84,19 +84,19 @@ pub(super) struct Adrift {
 }
 
 impl Filter {
-    /// Whether the state is that of the last sample: not while adrift before a measurement.
+    /// Whether the state is that of the last sample: not after a gap, before a measurement.
     pub fn is_current(&self) -> bool {
-        self.stopped.is_none() && self.adrift.is_none_or(|a| a.heard <= self.time())
+        self.stopped.is_none() && self.after_gap.is_none_or(|a| a.heard <= self.time())
     }
 
     /// Of when the last sample is, integrated or not.
     pub(super) fn heard(&self) -> GpsTime {
-        self.adrift.map_or(self.time(), |a| a.heard)
+        self.after_gap.map_or(self.time(), |a| a.heard)
     }
 
     /// Whether the attitude is unknown, or not yet as good as it will be.
     pub(super) const fn is_aligning(&self) -> bool {
-        self.adrift.is_some() || self.aligning
+        self.after_gap.is_some() || self.aligning
     }
 
     /// The hole before this sample is too long.
@@ -104,78 +104,78 @@ impl Filter {
         self.settle();
         self.strapdown.forget();
         self.delay.forget_motion();
-        self.begin_adrift();
+        self.begin_after_gap();
         self.listen(sample)
     }
 
     /// A new filter without an attitude: it listens from the first sample on, and has its position already.
-    pub(super) fn begin_adrift(&mut self) {
+    pub(super) fn begin_after_gap(&mut self) {
         self.aligning = true;
         for k in 0..3 {
             self.joint.reset(PHI + k, ANY_ANGLE_RAD2);
         }
         let zero = Vector3::zeros();
-        self.adrift = Some(Adrift { heard: self.time(), listened_s: 0.0, force: zero, rate: zero });
+        self.after_gap = Some(AfterGap { heard: self.time(), listened_s: 0.0, force: zero, rate: zero });
     }
 
-    /// A good sample while adrift.
+    /// A good sample while after_gap.
     pub(super) fn listen(&mut self, sample: &ImuIncrement) -> Advance {
-        let Some(mut adrift) = self.adrift else { return Advance::Late };
-        let since_s = sample.time.seconds_since(adrift.heard);
+        let Some(mut after_gap) = self.after_gap else { return Advance::Late };
+        let since_s = sample.time.seconds_since(after_gap.heard);
         if !(since_s > 0.0) {
             return Advance::Late;
         }
-        let aided = adrift.heard == self.time();
+        let aided = after_gap.heard == self.time();
         let whole = since_s - sample.interval_s <= 0.5 * sample.interval_s;
-        if whole && aided && self.align(&adrift) {
+        if whole && aided && self.align(&after_gap) {
             return self.taken(sample, Advance::Done);
         }
         if !whole {
-            adrift.listened_s = 0.0;
+            after_gap.listened_s = 0.0;
         }
         let dt = sample.interval_s;
-        let share = if adrift.listened_s > 0.0 { (dt / LISTEN_S).min(1.0) } else { 1.0 };
-        adrift.force += share * (sample.velocity_mps / dt - self.biases[1] - adrift.force);
-        adrift.rate += share * (sample.angle_rad / dt - self.biases[0] - adrift.rate);
-        adrift.listened_s += dt;
-        adrift.heard = sample.time;
-        self.adrift = Some(adrift);
-        Advance::Adrift { since_s: sample.time.seconds_since(self.time()) }
+        let share = if after_gap.listened_s > 0.0 { (dt / LISTEN_S).min(1.0) } else { 1.0 };
+        after_gap.force += share * (sample.velocity_mps / dt - self.biases[1] - after_gap.force);
+        after_gap.rate += share * (sample.angle_rad / dt - self.biases[0] - after_gap.rate);
+        after_gap.listened_s += dt;
+        after_gap.heard = sample.time;
+        self.after_gap = Some(after_gap);
+        Advance::AfterGap { since_s: sample.time.seconds_since(self.time()) }
     }
 
     /// Attitude by weight and course, where both say something.
-    fn align(&mut self, adrift: &Adrift) -> bool {
+    fn align(&mut self, after_gap: &AfterGap) -> bool {
         let how = self.settings.resumption;
         let v = *self.state().velocity_ned_mps();
         let speed = hypot(v.x, v.y);
         let sigma = sqrt(self.joint.get(V, V) + self.joint.get(V + 1, V + 1));
         let known = speed >= COURSE_FROM_MPS && sigma <= how.course_share * speed;
         let turning = how.turning_most_radps + 3.0 * self.settings.imu.gyroscope.bias;
-        if !(known && adrift.listened_s >= LISTEN_S && adrift.rate.norm() <= turning) {
+        if !(known && after_gap.listened_s >= LISTEN_S && after_gap.rate.norm() <= turning) {
             return false;
         }
-        let Ok(attitude) = coarse(&adrift.force, &v) else { return false };
+        let Ok(attitude) = coarse(&after_gap.force, &v) else { return false };
         self.strapdown.state_mut().q = quaternion(&attitude);
         let (tilt, heading) = (how.tilt.rad(), hypot(how.heading.rad(), sigma / speed));
         for (k, sigma) in [tilt, tilt, heading].iter().enumerate() {
             self.joint.reset(PHI + k, sigma * sigma);
         }
-        self.adrift = None;
+        self.after_gap = None;
         true
     }
 
     /// Aligning ends when the tilt is as well known as the accelerometers allow.
     pub(super) fn watch_alignment(&mut self) {
-        if self.aligning && self.adrift.is_none() {
+        if self.aligning && self.after_gap.is_none() {
             let most = self.settings.resumption.settled.rad() + 3.0 * self.settings.imu.accelerometer.bias / GRAVITY;
             self.aligning = !(0..2).all(|k| self.joint.get(PHI + k, PHI + k) <= most * most);
         }
     }
 
-    /// Adrift, the last velocity carries the position to the last sample.
+    /// AfterGap, the last velocity carries the position to the last sample.
     pub(super) fn drift(&mut self) -> Result<(), OutOfDomain> {
-        let Some(adrift) = self.adrift else { return Ok(()) };
-        let dt = adrift.heard.seconds_since(self.time());
+        let Some(after_gap) = self.after_gap else { return Ok(()) };
+        let dt = after_gap.heard.seconds_since(self.time());
         if !(dt > 0.0) {
             return Ok(());
         }
@@ -185,9 +185,9 @@ impl Filter {
         check_latitude(lat)?;
         let state = self.strapdown.state_mut();
         (state.lat, state.lon, state.h) = (lat, wrapped(s.lon + dt * s.v.y / (local.east * local.cos)), s.h - dt * s.v.z);
-        state.time = adrift.heard;
+        state.time = after_gap.heard;
         self.spread(dt);
-        self.modes.tick(adrift.heard);
+        self.modes.tick(after_gap.heard);
         Ok(())
     }
 

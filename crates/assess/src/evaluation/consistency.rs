@@ -12,16 +12,16 @@ use rayon::prelude::*;
 /// Epochs in one task of the pool.
 const EPOCHS_PER_TASK: usize = 4096;
 
-/// Mean normalised square, and what an honest covariance would give.
+/// Mean normalised square, and what a consistent covariance would give.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Honesty {
+pub struct Consistency {
     /// Epochs used.
     pub n: usize,
     /// Epochs without an error, or with a covariance that is singular or not a number.
     pub n_unusable: usize,
     /// Epochs the mean is worth.
     pub n_effective: f64,
-    /// 2 or 3: what the mean is for an honest covariance.
+    /// 2 or 3: what the mean is for a consistent covariance.
     pub dimension: usize,
     /// Mean of e' V^-1 e.
     pub nees_mean: f64,
@@ -40,7 +40,7 @@ pub struct Pit {
     pub n_effective: f64,
     /// Epochs in each of equal bins.
     pub counts: Vec<u64>,
-    /// Band (95 %) of one bin for an honest covariance, in epochs.
+    /// Band (95 %) of one bin for a consistent covariance, in epochs.
     pub low: f64,
     /// The upper one.
     pub high: f64,
@@ -99,14 +99,14 @@ impl Errors<'_> {
 ///
 /// # Errors
 /// [`OutOfDomain`] for a dimension other than 2 or 3 and columns of unequal length.
-pub fn nees(errors: &Errors<'_>) -> Result<Honesty, Refused> {
+pub fn nees(errors: &Errors<'_>) -> Result<Consistency, Refused> {
     errors.check()?;
     let squares = errors.squares();
     let series = by_track(errors.track, squares.len(), |row| !squares[row].is_nan(), |row| squares[row]);
     let n: usize = series.iter().map(Vec::len).sum();
     let n_effective = effective_size(&series);
     let dof = n_effective * errors.dimension as f64;
-    Ok(Honesty {
+    Ok(Consistency {
         n,
         n_unusable: squares.len() - n,
         n_effective,
