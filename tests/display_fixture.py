@@ -164,8 +164,8 @@ class Stream:
             if not part:
                 raise EOFError
             self._left += part
-        found, _, self._left = self._left.partition(end)
-        return found
+        part, _, self._left = self._left.partition(end)
+        return part
 
     def next(self, name: str) -> dict[str, Any]:
         """The next event of a name."""

@@ -81,8 +81,8 @@ def kept(name: str) -> dict[str, Any]:
         return outcome(run) | {"nav_mode": run.epochs["nav_mode"].gather_every(590).to_list()}
     if isinstance(scenario.read(name), scenario.Taxi):
         return taxied(navbound.fly(name))
-    found = scenario.load(name)
-    return outcome(navbound.fly(name)) if found.sensors is None else sensed(ins.simulate(found))
+    loaded = scenario.load(name)
+    return outcome(navbound.fly(name)) if loaded.sensors is None else sensed(ins.simulate(loaded))
 
 
 def _short(value: Any) -> Any:

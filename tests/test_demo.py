@@ -119,16 +119,16 @@ def test_the_spoofed_approach_is_replayed_on_the_flight_display(tmp_path: Path) 
     quiet = {**os.environ, "BROWSER": "true"}
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=quiet) as process:
         assert process.stdout is not None
-        said = list[str]()
-        while not (said and said[-1].startswith("Display: http://127.0.0.1:")):
-            said.append(process.stdout.readline())
-            assert said[-1], "it ended before the display was there"
+        sentences = list[str]()
+        while not (sentences and sentences[-1].startswith("Display: http://127.0.0.1:")):
+            sentences.append(process.stdout.readline())
+            assert sentences[-1], "it ended before the display was there"
         # A minute of the flight.
         time.sleep(2.0)
         process.send_signal(signal.SIGINT)
         rest, trouble = process.communicate(timeout=30)
     assert process.returncode == 0, trouble
-    assert "spoofing begins" in "".join(said)
+    assert "spoofing begins" in "".join(sentences)
     assert "epochs of 1 tracks" in rest
     origin = origin_of(tmp_path / "session")
     assert (origin["kind"], origin["speed"]) == ("replay", 60.0)

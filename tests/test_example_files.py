@@ -96,7 +96,7 @@ def test_protection_levels_of_the_station_hold() -> None:
     assert hpl.max() < 100.0
 
 
-def test_the_station_is_silent_during_its_outage_and_its_faulty_satellite_is_found() -> None:
+def test_the_station_is_silent_during_its_outage_and_its_faulty_satellite_is_excluded() -> None:
     observations, navigation = gnss.read_observations(DATA / "station.rnx"), gnss.read_navigation(DATA / "broadcast.rnx")
     since_s = (observations.time_ns - STATION.begin_ns) / NS
     (silent,) = STATION.outages_s
@@ -106,8 +106,8 @@ def test_the_station_is_silent_during_its_outage_and_its_faulty_satellite_is_fou
     watched = raim.watch(observations, navigation, truth_ecef_m=examples.PLACE_ECEF_M).epochs
     excluded = watched.filter(pl.col("excluded_sv").is_not_null())
     assert set(excluded["excluded_sv"]) == {satellite}
-    found_s = (excluded["time_ns"].to_numpy() - STATION.begin_ns) / NS
-    assert found_s.tolist() == [s for s in expected if during_s[0] <= s < during_s[1]]
+    fault_s = (excluded["time_ns"].to_numpy() - STATION.begin_ns) / NS
+    assert fault_s.tolist() == [s for s in expected if during_s[0] <= s < during_s[1]]
 
 
 def test_a_log_becomes_an_observation_file(tmp_path: Path) -> None:

@@ -34,9 +34,9 @@ def plain() -> Run:
 
 
 def read(name_or_path: str | Path) -> scenario.Taxi:
-    found = scenario.read(name_or_path)
-    assert isinstance(found, scenario.Taxi)
-    return found
+    loaded = scenario.read(name_or_path)
+    assert isinstance(loaded, scenario.Taxi)
+    return loaded
 
 
 def seconds_of(run: Run, kind: str) -> list[int]:
@@ -66,9 +66,9 @@ def test_the_route_follows_nodes_of_the_real_taxiways() -> None:
 
 
 def test_speeds_keep_to_sub_phases_turns_and_brakes() -> None:
-    found = read(BASE)
-    asked = flown.limits()
-    way = move(found)
+    loaded = read(BASE)
+    limits = flown.limits()
+    way = move(loaded)
     assert list(dict.fromkeys(way.phase)) == ["RWY", "RET", "NTW", "ATW", "TL", "SLL"]
     for name, limit in limits.items():
         # The landing roll is limited by the speed of touching down alone.
@@ -94,10 +94,10 @@ def test_metres_of_a_radian_are_those_of_the_ellipsoid() -> None:
 
 
 def navigator(**changes: object) -> Navigator:
-    found = read(BASE)
-    found = found.model_copy(update={"navigation": found.navigation.model_copy(update=changes)})
-    asked = flown.limits()
-    return Navigator(found, move(found), asked)
+    loaded = read(BASE)
+    loaded = loaded.model_copy(update={"navigation": loaded.navigation.model_copy(update=changes)})
+    limits = flown.limits()
+    return Navigator(loaded, move(loaded), limits)
 
 
 def test_simulated_errors_have_the_covariance_that_the_core_claims() -> None:
@@ -236,7 +236,7 @@ def test_a_fault_the_ground_misses_misleads_and_the_verdict_says_so(tmp_path: Pa
     misleading = (run.epochs["nse_h_m"] > run.epochs["hpl_m"]).sum()
     assert misleading == sum(p.n_misleading for p in run.summary.protection) > 100
     assert run.summary.verdict.inside is None
-    assert f"At {misled} epochs the true error is above the protection level" in run.summary.verdict.words
+    assert f"At {misleading} epochs the true error is above the protection level" in run.summary.verdict.words
     text = scenario.find("barcelona-taxi-missed-fault").read_text(encoding="utf-8")
     quiet, aided = tmp_path / "quiet.toml", tmp_path / "aided.toml"
     quiet.write_text(text.split("[[faults]]", maxsplit=1)[0], encoding="utf-8")
@@ -309,7 +309,7 @@ def test_the_covariance_that_bounds_leaves_no_room_at_the_stand(tmp_path: Path, 
 )
 def test_what_is_wrong_in_a_file_is_named(tmp_path: Path, old: str, new: str, message: str) -> None:
     file = changed(tmp_path, old, new)
-    with pytest.raises(FormatError, match=re.escape(said)):
+    with pytest.raises(FormatError, match=re.escape(message)):
         read(file)
 
 

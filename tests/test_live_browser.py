@@ -118,15 +118,15 @@ def normal(browser: Browser, tmp_path: Path) -> Iterator[Shown]:
 def test_numbers_of_the_page_are_those_of_the_journal(normal: Shown) -> None:
     normal.feeder.values = {"fte_m": 31.25, "hpl_m": 19.5}
     normal.page.wait_for_function("() => document.querySelector('[data-key=hpl_m]').dataset.value === '19.5'")
-    told = normal.digits()
+    shown_words = normal.digits()
     row = tables.epochs(normal.fed.folder).tail(1).to_dicts()[0]
     expected = {**row, "anp_m": row["anp_cross_m"]}
-    for key, (text, value) in told.items():
-        # Twelve digits are told.
+    for key, (text, value) in shown_words.items():
+        # Twelve digits are sent.
         assert float(value) == pytest.approx(expected[key], rel=1e-11), key
         assert text not in {"---", "n/a"}
-    assert told["fte_m"][0] == "+31.25 m"
-    assert told["rnp_m"][0] == "0.300 NM · 555.6 m"
+    assert shown_words["fte_m"][0] == "+31.25 m"
+    assert shown_words["rnp_m"][0] == "0.300 NM · 555.6 m"
     assert normal.page.locator(".alert-none").inner_text() == "NORMAL"
     assert normal.page.locator('[data-key="nav_mode"]').inner_text() == "GNSS/INS"
     # The token is not kept where another page could read it.
@@ -179,12 +179,12 @@ def test_what_a_record_does_not_state_is_dashes_and_not_the_last_number(normal: 
     assert normal.digits()["hpl_m"][0] == "18.00 m"
     normal.feeder.values = {"hpl_m": None, "vpl_m": None, "fte_v_m": None, "nav_mode": None, "n_sv": None}
     normal.page.wait_for_function("() => document.querySelector('[data-key=hpl_m]').textContent === '---'")
-    told = normal.digits()
-    assert {key: told[key] for key in ("hpl_m", "vpl_m", "fte_v_m")} == dict.fromkeys(("hpl_m", "vpl_m", "fte_v_m"), ("---", ""))
+    shown_words = normal.digits()
+    assert {key: shown_words[key] for key in ("hpl_m", "vpl_m", "fte_v_m")} == dict.fromkeys(("hpl_m", "vpl_m", "fte_v_m"), ("---", ""))
     assert normal.page.locator('[data-key="nav_mode"]').inner_text() == "not stated"
     assert normal.page.locator('[data-key="n_sv"]').inner_text() == "---"
     # What is stated still stands.
-    assert told["rnp_m"][0] == "0.300 NM · 555.6 m"
+    assert shown_words["rnp_m"][0] == "0.300 NM · 555.6 m"
 
 
 def gone(display: Shown) -> None:
@@ -256,7 +256,7 @@ def test_a_server_that_dies_is_a_lost_link_for_good(browser: Browser, tmp_path: 
         time.sleep(2.5)
         assert display.word() == "LINK LOST"
         gone(display)
-        # What the page was not told it does not claim to have drawn.
+        # What the page did not receive it does not claim to have drawn.
         assert display.fed.session.n_epochs > 20
 
 
@@ -374,12 +374,12 @@ def test_a_narrow_page_is_read_without_scrolling_sideways_and_text_has_contrast(
         # What is new blinks for ten seconds or until it is acknowledged.
         display.page.keyboard.press("A")
         display.page.wait_for_selector(".alert-row:not(.new)")
-        found = display.page.evaluate(f"() => {PROBES}.texts()")
-        assert found["n"] > 50
-        assert found["bad"] == []
+        contrast = display.page.evaluate(f"() => {PROBES}.texts()")
+        assert contrast["n"] > 50
+        assert contrast["bad"] == []
 
 
-def test_a_browser_without_the_token_is_told_what_to_do(browser: Browser, tmp_path: Path) -> None:
+def test_a_browser_without_the_token_shows_what_to_do(browser: Browser, tmp_path: Path) -> None:
     with shown(browser, tmp_path / "session") as display:
         context = browser.new_context()
         page = context.new_page()

@@ -1,4 +1,4 @@
-"""The server of the live display: who may ask, what a page is told, what a slow, silent or hostile one costs the others."""
+"""The server of the live display: who may ask, what a page receives, what a slow, silent or hostile one costs the others."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def fed(tmp_path: Path) -> Iterator[Fed]:
     session.close()
 
 
-def test_without_the_token_nothing_is_told(fed: Fed) -> None:
+def test_without_the_token_nothing_is_sent(fed: Fed) -> None:
     fed.position()
     with served(fed.folder) as display:
         page = Browser(display)
@@ -151,7 +151,7 @@ def test_an_address_that_asks_too_often_has_to_wait(fed: Fed, monkeypatch: pytes
     assert statuses == [401] * int(request.BURST) + [429] * 3
 
 
-def test_a_port_that_is_taken_is_said(fed: Fed) -> None:
+def test_a_port_that_is_taken_is_an_error(fed: Fed) -> None:
     with served(fed.folder) as display, pytest.raises(FormatError, match="choose another --port"):
         server.Server(Watch(fed.folder), Options(display.port))
     with pytest.raises(InputError, match="port"):
@@ -173,17 +173,17 @@ def test_a_page_gets_what_the_journal_out_holds(fed: Fed) -> None:
     assert expected.height == 2
     assert snapshot["track"] == "F1"
     for shown, at in ((snapshot["rows"][0], 0), (rows[-1], 1)):
-        told = dict(zip(fields, shown, strict=True))
+        sent = dict(zip(fields, shown, strict=True))
         for name in watch.NUMBERS:
             value = expected[name][at]
             if value is None or math.isnan(value):
-                assert told[name] is None, name
+                assert sent[name] is None, name
             else:
-                # Twelve digits are told.
-                assert told[name] == pytest.approx(value, rel=1e-11), name
-        assert {name: told[name] for name in watch.WORDS} == {name: expected[name][at] for name in watch.WORDS}
+                # Twelve digits are sent.
+                assert sent[name] == pytest.approx(value, rel=1e-11), name
+        assert {name: sent[name] for name in watch.WORDS} == {name: expected[name][at] for name in watch.WORDS}
         # Seconds of UTC since 1970: GPS time began 3657 days later and is 18 s ahead since 2017. A double holds a quarter of a microsecond.
-        assert told["utc_s"] == pytest.approx(expected["time_ns"][at] / 1e9 + 3657 * 86_400 - 18, abs=1e-6)
+        assert sent["utc_s"] == pytest.approx(expected["time_ns"][at] / 1e9 + 3657 * 86_400 - 18, abs=1e-6)
     # What the second record does not state is not that of the first.
     assert [dict(zip(fields, rows[-1], strict=True))[name] for name in ("hpl_m", "vpl_m", "nav_mode")] == [None, None, None]
 
@@ -196,17 +196,17 @@ def test_alerts_reach_every_page_with_the_keys_of_the_session(fed: Fed) -> None:
             for page in (one, other):
                 assert page.next("snapshot")["open"] == []
             fed.position(fte_m=2000.0)
-            told = [[page.next("alert")["key"] for _ in fed.reported] for page in (one, other)]
-        assert told[0] == told[1] == [each["key"] for each in fed.reported]
-        assert len(told[0]) == 1
-        # One that comes later is told of what lasts.
+            sent = [[page.next("alert")["key"] for _ in fed.reported] for page in (one, other)]
+        assert sent[0] == sent[1] == [each["key"] for each in fed.reported]
+        assert len(sent[0]) == 1
+        # One that comes later receives what lasts.
         with browser.stream() as late:
             snapshot = late.next("snapshot")
-    assert [each["key"] for each in snapshot["open"]] == told[0]
+    assert [each["key"] for each in snapshot["open"]] == sent[0]
     assert snapshot["open"][0]["kind"] == "warning"
 
 
-def test_an_acknowledgement_is_kept_and_told_and_ends_no_alert(fed: Fed) -> None:
+def test_an_acknowledgement_is_kept_and_sent_and_ends_no_alert(fed: Fed) -> None:
     fed.position()
     fed.position(fte_m=2000.0)
     with served(fed.folder) as display:
@@ -254,12 +254,12 @@ def test_a_page_that_never_reads_costs_the_others_nothing(fed: Fed, monkeypatch:
             assert (most, len(display.hub.clients)) == (9, 1), "silent pages were not dropped"
         for line in deaf:
             line.close()
-    # A page is told each 0.1 s; the machine may be busy with other things for some more.
+    # A page receives news each 0.1 s; the machine may be busy with other things for some more.
     assert sorted(waited)[len(waited) // 2] < 0.4
     assert len(waited) > 5
 
 
-def test_more_pages_than_are_served_are_told_so(fed: Fed, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_more_pages_than_are_served_are_refused(fed: Fed, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(request, "BURST", 1000.0)
     fed.position()
     with served(fed.folder) as display:
@@ -289,10 +289,10 @@ def test_what_waits_for_a_page_is_bounded_and_alerts_are_never_merged() -> None:
         for k in range(hub.MOST_ALERTS):
             client.tell("alert", {"key": k})
         assert not client.closed
-        told = (await client.take()).decode()
-        keys = [json.loads(line.removeprefix("data: "))["key"] for line in told.splitlines() if '"key"' in line]
+        sent = (await client.take()).decode()
+        keys = [json.loads(line.removeprefix("data: "))["key"] for line in sent.splitlines() if '"key"' in line]
         assert keys == list(range(hub.MOST_ALERTS))
-        state = json.loads(told.split("event: state\ndata: ")[1])
+        state = json.loads(sent.split("event: state\ndata: ")[1])
         assert state["rows"] == [[float(k)] for k in range(1000 - hub.MOST_ROWS, 1000)]
         assert state["n_skipped"] == 1000 - hub.MOST_ROWS
         for k in range(hub.MOST_ALERTS + 1):
@@ -354,7 +354,7 @@ def test_the_age_of_live_data_is_that_of_their_time_and_of_a_recording_that_of_i
         each.close()
 
 
-def test_a_damaged_journal_is_trouble_that_every_page_is_told(fed: Fed) -> None:
+def test_a_damaged_journal_is_trouble_on_every_page(fed: Fed) -> None:
     fed.position()
     seen = Watch(fed.folder)
     seen.poll()
@@ -454,7 +454,7 @@ def test_the_display_beside_a_session_ends_with_it_and_its_death_does_not_hurt(f
     assert fed.session.n_epochs == 2
 
 
-def test_a_folder_that_is_no_session_is_said(tmp_path: Path) -> None:
+def test_a_folder_that_is_no_session_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match="settings of a live session"):
         Child(tmp_path, Options())
 

@@ -50,8 +50,8 @@ def test_a_reader_of_flights_refuses_another_kind(tmp_path: Path) -> None:
 
 def test_a_scenario_is_the_same_from_its_record() -> None:
     for name in ("beijing-shanghai", "barcelona-taxi-ground-fault"):
-        found = scenario.read(name)
-        assert scenario.of_record(found.model_dump(mode="json")) == found
+        loaded = scenario.read(name)
+        assert scenario.of_record(loaded.model_dump(mode="json")) == loaded
 
 
 def test_units_become_si() -> None:

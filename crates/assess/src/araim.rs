@@ -76,8 +76,8 @@ impl Worker {
         match (rule, exclusion) {
             (Rule::Araim(service), false) => exclusion::detected(monitor, known, sights, service),
             (Rule::Araim(service), true) => exclusion::predicted(monitor, known, sights, service),
-            (Rule::Raim(wanted), false) => monitor.single_levels(sights, wanted),
-            (Rule::Raim(wanted), true) => monitor.single_levels_after_exclusion(sights, wanted),
+            (Rule::Raim(requested), false) => monitor.single_levels(sights, requested),
+            (Rule::Raim(requested), true) => monitor.single_levels_after_exclusion(sights, requested),
         }
     }
 }

@@ -104,9 +104,9 @@ pub type Counted = (usize, Result<Answer, Unavailable>);
 fn one(skies: &Skies<'_>, request: &Request<'_>, sky: usize) -> Result<Counted, AtIndex> {
     let at = |error| AtIndex { index: sky, error };
     let ranges = skies.ranges(sky)?;
-    let aided = asked.aided_m2.map(|all| covariance(all, sky)).transpose().map_err(at)?;
-    let bias = size_of_bias(asked.bias_m[sky]).map_err(at)?;
-    let settings = Settings { bias, ..asked.settings };
+    let aided = request.aided_m2.map(|all| covariance(all, sky)).transpose().map_err(at)?;
+    let bias = size_of_bias(request.bias_m[sky]).map_err(at)?;
+    let settings = Settings { bias, ..request.settings };
     let plain: Vec<Sight> = ranges.iter().map(|r| r.1).collect();
     let answer = Snapshot::new(&plain).map(|snapshot| {
         let shift = request.b_values_m.map_or(Metres::new(0.0), |all| shift(all, skies, sky, &ranges, &snapshot));

@@ -62,7 +62,7 @@ pub struct Row<D> {
 }
 
 impl<D> Row<D> {
-    /// Of levels asked for.
+    /// Of the requested levels.
     ///
     /// # Errors
     /// [`OutOfDomain`]: the caller's mistake.

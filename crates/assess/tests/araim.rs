@@ -77,9 +77,9 @@ fn a_batch_has_the_bits_of_single_epochs_with_priors_alike_or_not() {
             let (n_sv, single) = alone(&c, epoch);
             assert_eq!((row.n_sv, row.outcome), (n_sv, Outcome::Ok));
             let batch = row.levels.unwrap();
-            assert_eq!(batch.vpl_m().to_bits(), found.vpl_m().to_bits(), "epoch {epoch}");
-            assert_eq!(batch.hpl.m().to_bits(), found.hpl.m().to_bits(), "epoch {epoch}");
-            assert_eq!(batch.detail.p_unmonitored.to_bits(), found.detail.p_unmonitored.to_bits(), "epoch {epoch}");
+            assert_eq!(batch.vpl_m().to_bits(), single.vpl_m().to_bits(), "epoch {epoch}");
+            assert_eq!(batch.hpl.m().to_bits(), single.hpl.m().to_bits(), "epoch {epoch}");
+            assert_eq!(batch.detail.p_unmonitored.to_bits(), single.detail.p_unmonitored.to_bits(), "epoch {epoch}");
         }
     }
 }

@@ -148,7 +148,7 @@ impl Algorithm for Toy {
 }
 
 #[test]
-fn an_algorithm_of_ones_own_is_asked_as_any_other() {
+fn an_algorithm_of_ones_own_is_called_as_any_other() {
     let (levels, numbers) = Ask(&sky(0.0, 1.0)).with::<Toy>().unwrap();
     assert_eq!((levels.hpl.m(), levels.vpl, numbers), (9.0, None, vec![9.0]));
 }

@@ -150,7 +150,7 @@ fn the_binding_makes_no_mathematics() {
     let sources = files(&root().join("crates/python/src"), "rs");
     assert!(sources.len() > 20, "only {} files found: the search is broken", sources.len());
     for file in sources {
-        let found = mathematics(&fs::read_to_string(&file).unwrap());
-        assert!(found.is_empty(), "{} calls {found:?}: that belongs into assess or core", file.display());
+        let calls = mathematics(&fs::read_to_string(&file).unwrap());
+        assert!(calls.is_empty(), "{} calls {calls:?}: that belongs into assess or core", file.display());
     }
 }

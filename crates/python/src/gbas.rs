@@ -4,7 +4,7 @@ use crate::batch::{numbers, rejected, table};
 use crate::error::input_error;
 use crate::status;
 use navbound_assess::batch::rows;
-use navbound_assess::gbas::{self, Asked, Skies};
+use navbound_assess::gbas::{self, Request, Skies};
 use navbound_core::bound::gbas::aided::Aided;
 use navbound_core::bound::gbas::bias::Ordering;
 use navbound_core::bound::gbas::detection::{self, Hazard};

@@ -311,7 +311,7 @@ fn terms_columns<'py>(py: Python<'py>, levels: &FromTerms) -> PyResult<Bound<'py
     d.set_item("sigma_tropo_m", column(|r| sbas::sigmas_m(&r.error)[2]))?;
     d.set_item("sigma_air_m", column(|r| sbas::sigmas_m(&r.error)[3]))?;
     d.set_item("sigma_m", column(|r| sbas::sigmas_m(&r.error)[4]))?;
-    let v = found.covariance.matrix();
+    let v = levels.covariance.matrix();
     d.set_item("cov_ee_m2", v[(0, 0)])?;
     d.set_item("cov_en_m2", v[(0, 1)])?;
     d.set_item("cov_nn_m2", v[(1, 1)])?;

@@ -124,8 +124,8 @@ def _settings(source: str, form: str | None, *, spec: str, path: str | None, met
     known = form or (None if "://" in source or source == "-" else format_of(source))
     if known is None and ("://" in source or source == "-"):
         raise InputError("format", "none", domain="json, ubx, sbf, novatel or nmea with --format: a stream is not guessed")
-    chosen = method or ("tse-exact" if has_path(Path(source)) else "")
-    settings = live.Settings(format=known or "json", rnp_m=requirement(spec).rnp_m, path=path, method=chosen, **others)
+    selected = method or ("tse-exact" if has_path(Path(source)) else "")
+    settings = live.Settings(format=known or "json", rnp_m=requirement(spec).rnp_m, path=path, method=selected, **others)
     settings.core()
     return settings
 

@@ -86,9 +86,9 @@ def replay(
     if torn:
         name = _journal(source).name
         say(f"{name}: {torn} bytes at its end are no whole frame and are not judged: it was cut, or its writer was killed or still writes")
-    chosen = settings or settings_of(source)
-    origin = Origin("replay", str(source), speed, points(chosen, ""), limits)
-    session = Session(out, chosen, origin=origin, report=report)
+    selected = settings or settings_of(source)
+    origin = Origin("replay", str(source), speed, points(selected, ""), limits)
+    session = Session(out, selected, origin=origin, report=report)
     started(session)
     ends, _ = _core.live_frames(frames)
     pace, begin = Pace(speed), 0

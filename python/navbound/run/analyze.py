@@ -341,11 +341,12 @@ def _on_approach(approaches: Approaches, gates: Gates, n_recorded: int) -> _Path
         "what came before the first point is not. The path is the extended centreline, not a coded procedure: its own error counts as "
         "flight technical error.",
     ]
-    waypoints = [Waypoint(name=r.name, lat_rad=r.lat_rad, lon_rad=r.lon_rad, kind="runway") for r in found.runways]
-    heading = f"{n} recorded approaches to {runways if len(found.runways) <= 4 else f'{len(found.runways)} runways'}"
-    words += [r.doubt for r in found.runways if r.doubt is not None]
-    notes = words + found.notes
-    return _Path(found.epochs, notes, heading, waypoints, cross_track=found.cross_track, tracks=found.tracks, operation="approach")
+    waypoints = [Waypoint(name=r.name, lat_rad=r.lat_rad, lon_rad=r.lon_rad, kind="runway") for r in approaches.runways]
+    cross, tracks = approaches.cross_track, approaches.tracks
+    heading = f"{n} recorded approaches to {runways if len(approaches.runways) <= 4 else f'{len(approaches.runways)} runways'}"
+    words += [r.doubt for r in approaches.runways if r.doubt is not None]
+    notes = words + approaches.notes
+    return _Path(approaches.epochs, notes, heading, waypoints, cross_track=cross, tracks=tracks, operation="approach")
 
 
 def _together(readings: Sequence[Reading], rejected: list[Rejection]) -> tuple[pl.DataFrame, pl.DataFrame]:

@@ -47,11 +47,11 @@ class Flights:
 
     def __call__(self, flights: range) -> tuple[pl.DataFrame, list[Any]]:
         """Epochs of some flights, and what their filters say of themselves."""
-        found, flyer = _opened(self.scenario)
+        loaded, flyer = _opened(self.scenario)
         if isinstance(flyer, _core.Outlook):
-            return _table(flyer.fly(self.seed, flights.start, len(flights)), found), []
+            return _table(flyer.fly(self.seed, flights.start, len(flights)), loaded), []
         columns, verdicts = flyer.navigate(self.seed, flights.start, len(flights))
-        return _table(columns, found), verdicts
+        return _table(columns, loaded), verdicts
 
     @property
     def at_once(self) -> int:
@@ -60,14 +60,14 @@ class Flights:
 
     def context(self, flights: int, verdicts: list[Any]) -> Context:
         """What is said of the epochs."""
-        found, _ = _opened(self.scenario)
-        plan = _core.Outlook(found.core_json()).plan()
+        loaded, _ = _opened(self.scenario)
+        plan = _core.Outlook(loaded.core_json()).plan()
         reported = {"filter": filter_verdict(verdicts) | {"restarts": len(verdicts) - flights}} if verdicts else {}
         return Context(
             requirement="RNP by phase of flight",
-            assumptions=_assumptions(found),
-            covariance=CovarianceOrigin(id="simulated" if found.filter is None else "filter"),
-            waypoints=[Waypoint(name=w.name, lat_rad=w.lat_rad, lon_rad=w.lon_rad, kind=w.kind) for w in found.waypoints],
+            assumptions=_assumptions(loaded),
+            covariance=CovarianceOrigin(id="simulated" if loaded.filter is None else "filter"),
+            waypoints=[Waypoint(name=w.name, lat_rad=w.lat_rad, lon_rad=w.lon_rad, kind=w.kind) for w in loaded.waypoints],
             settings={key: plan[key] for key in ("length_m", "cruise_speed_mps", "top_of_climb_s", "top_of_descent_s")} | reported,
         )
 
@@ -75,8 +75,8 @@ class Flights:
 @lru_cache(maxsize=1)
 def _opened(scenario: str) -> tuple[Scenario, _core.Outlook | _core.Sensors]:
     """What all flights of a scenario share, worked out once a process."""
-    found = Scenario.model_validate_json(scenario)
-    return found, _core.Outlook(found.core_json()) if found.filter is None else _core.Sensors(found.core_json(), None)
+    loaded = Scenario.model_validate_json(scenario)
+    return loaded, _core.Outlook(loaded.core_json()) if loaded.filter is None else _core.Sensors(loaded.core_json(), None)
 
 
 def _table(columns: dict[str, Any], scenario: Scenario) -> pl.DataFrame:
@@ -135,11 +135,11 @@ def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
     ``mean_square`` is the mean squared normalised innovation (NIS), ``lag_one`` the correlation with the one before it of the same source,
     both over all flights.
     """
-    found: dict[str, Any] = {}
+    tally: dict[str, Any] = {}
     for kind in (key for key in verdicts[0] if key not in _COUNTS):
         used, gated, refused, square, lag, pairs = np.array([v[kind] for v in verdicts], dtype=float).T
         if used.sum() + gated.sum() + refused.sum() > 0:
-            found[kind] = {
+            tally[kind] = {
                 "n_used": int(used.sum()),
                 "n_gated": int(gated.sum()),
                 "n_refused": int(refused.sum()),
@@ -149,7 +149,7 @@ def filter_verdict(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
     samples = np.sum([v["samples"] for v in verdicts], axis=0).tolist()
     words = ("done", "bridged", "adrift", "late", "refused", "stopped")
     jumps = sum(v["clock_jumps"] for v in verdicts)
-    return found | {"samples": dict(zip(words, samples, strict=True)), "clock_jumps": jumps, "snapshot_tests": _tests(verdicts)}
+    return tally | {"samples": dict(zip(words, samples, strict=True)), "clock_jumps": jumps, "snapshot_tests": _tests(verdicts)}
 
 
 def _tests(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
@@ -157,10 +157,10 @@ def _tests(verdicts: list[dict[str, Any]]) -> dict[str, Any]:
     n = sum(v["snapshot_tests"][0] for v in verdicts)
     sums = np.sum([v["snapshot_tests"][2] for v in verdicts], axis=0)
     most = np.max([v["snapshot_tests"][3] for v in verdicts], axis=0)
-    found: dict[str, Any] = {"n": n, "n_raised": sum(v["snapshot_tests"][1] for v in verdicts)}
+    tally: dict[str, Any] = {"n": n, "n_raised": sum(v["snapshot_tests"][1] for v in verdicts)}
     for name, freedom, total, largest in zip(_TESTS, (2, 2, 1, 1), sums, most, strict=True):
-        found[name] = {"mean_square": float(total / n / freedom) if n else None, "largest": float(largest)}
-    return found
+        tally[name] = {"mean_square": float(total / n / freedom) if n else None, "largest": float(largest)}
+    return tally
 
 
 def _weighted(values: np.ndarray[Any, Any], weights: np.ndarray[Any, Any]) -> float | None:
@@ -173,19 +173,21 @@ def _words(words: Sequence[str | None], codes: np.ndarray[Any, Any]) -> pl.Serie
 
 
 def _assumptions(scenario: Scenario) -> list[str]:
-    said = list(scenario.assumptions)
+    sentences = list(scenario.assumptions)
     if scenario.filter is not None:
-        said.append(
-            "The position comes from simulated sensors through a navigation filter that is told their statistics; guidance follows the "
+        sentences.append(
+            "The position comes from simulated sensors through a navigation filter that has their statistics; guidance follows the "
             "filter's error, worked out on a first flight of the same number."
         )
         if scenario.filter.mode == "white":
-            said.append("The filter takes errors that stay for new at every measurement: it is wrong about itself on purpose.")
+            sentences.append("The filter takes correlated errors as new each time: its covariance is overconfident on purpose.")
     if scenario.sensors is not None and scenario.sensors.faults:
-        said.append(f"Sensors fail: {', '.join(f'{f.kind} from {f.start_s:g} s' for f in scenario.sensors.faults)}.")
+        sentences.append(f"Sensors fail: {', '.join(f'{f.kind} from {f.start_s:g} s' for f in scenario.sensors.faults)}.")
     scale = scenario.navigation.claimed_sigma_scale
     if scale != 1.0:
-        said.append(f"The covariance claims {scale:g} times the true standard deviation: it is dishonest on purpose.")
+        sentences.append(f"The covariance claims {scale:g} times the true standard deviation: it is mismodelled on purpose.")
     if scenario.faults:
-        said.append(f"Faults are injected: {', '.join(f'{f.kind} from {f.start_s:g} s for {f.duration_s:g} s' for f in scenario.faults)}.")
-    return said
+        sentences.append(
+            f"Faults are injected: {', '.join(f'{f.kind} from {f.start_s:g} s for {f.duration_s:g} s' for f in scenario.faults)}."
+        )
+    return sentences

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from navbound.records.material import Material
 from navbound.run import flight
-from navbound.run.campaign import chosen_seed, fly_all, scenario_file, track_name
+from navbound.run.campaign import fly_all, scenario_file, seed_in_force, track_name
 from navbound.run.ground import flight as ground
 from navbound.scenario import Scenario, Taxi, find, read
 
@@ -58,21 +58,21 @@ def material(
     FormatError
         A scenario file that cannot be flown, a folder that cannot keep tiles.
     """
-    found = scenario if isinstance(scenario, (Scenario, Taxi)) else read(scenario)
-    chosen = chosen_seed(flights, seed, found.seed)
-    campaign = SIMULATORS[found.kind](found.model_dump_json(), chosen)
+    loaded = scenario if isinstance(scenario, (Scenario, Taxi)) else read(scenario)
+    seed_used = seed_in_force(flights, seed, loaded.seed)
+    campaign = SIMULATORS[loaded.kind](loaded.model_dump_json(), seed_used)
     epochs, reported = fly_all(campaign, flights, campaign.at_once, **work)
     context = campaign.context(flights, reported)
     return Material(
         epochs=epochs,
         kind="fly",
-        title=found.title,
-        operation=found.operation,
+        title=loaded.title,
+        operation=loaded.operation,
         sample_period_s=1.0,
         labels={track_name(i): f"Flight {i + 1}" for i in range(flights)},
         inputs=[] if isinstance(scenario, (Scenario, Taxi)) else [scenario_file(find(scenario))],
-        scenario=found.model_dump(mode="json"),
-        seed=chosen,
+        scenario=loaded.model_dump(mode="json"),
+        seed=seed_used,
         requirement=context.requirement,
         assumptions=context.assumptions,
         covariance=context.covariance,

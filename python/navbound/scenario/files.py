@@ -13,7 +13,7 @@ from navbound.errors import FormatError, InputError, NotFoundError
 from navbound.scenario.models import Scenario
 from navbound.scenario.sensors import grades, with_grade
 from navbound.scenario.taxi import Taxi
-from navbound.scenario.units import GivenTwiceError, Place, Written, to_si
+from navbound.scenario.units import Place, RepeatedKeyError, Written, to_si
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -73,10 +73,10 @@ def load(name_or_path: str | Path) -> Scenario:
     InputError, FormatError
         As :func:`read`; and a scenario of another kind.
     """
-    found = read(name_or_path)
-    if not isinstance(found, Scenario):
-        raise FormatError(find(name_or_path), f"{found.kind!r} is not a flight", field="kind")
-    return found
+    loaded = read(name_or_path)
+    if not isinstance(loaded, Scenario):
+        raise FormatError(find(name_or_path), f"{loaded.kind!r} is not a flight", field="kind")
+    return loaded
 
 
 def read(name_or_path: str | Path) -> Scenario | Taxi:
@@ -163,8 +163,8 @@ def _laid_over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
 
 def _explained(path: Path, error: ErrorDetails, written: dict[Place, Written]) -> FormatError:
     place = tuple(part for part in error["loc"] if part not in _FAULT_KINDS)
-    found = written.get(place)
-    key = found.key if found else ".".join(str(part) for part in place)
+    entry = written.get(place)
+    key = entry.key if entry else ".".join(str(part) for part in place)
     if error["type"] == "missing":
         return FormatError(path, "is missing (it may end in another unit of the same kind)", field=key)
     if error["type"] == "extra_forbidden":

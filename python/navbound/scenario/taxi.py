@@ -152,7 +152,7 @@ class Taxi(Part):
         return (self.start_gps - midnight).total_seconds()
 
 
-def check_satellites(found: Taxi, names: tuple[str, ...]) -> None:
+def check_satellites(taxi: Taxi, names: tuple[str, ...]) -> None:
     """Refuse a fault of a satellite that is not there."""
     for k, fault in enumerate(taxi.faults):
         if fault.satellite not in names:

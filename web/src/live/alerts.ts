@@ -131,11 +131,11 @@ export function events(): Part {
     const element = el("section", { class: "events panel" }, el("div", { class: "events-head" }, el("h2", {}, "Events of the session"), filter), el("div", { class: "scroll" }, table));
     let shown = "";
     const show = (model: Model): void => {
-        const wanted = filter.value.trim().toLowerCase();
-        const state = `${model.nTransitions} ${model.snapshot?.client} ${wanted}`;
+        const requested = filter.value.trim().toLowerCase();
+        const state = `${model.nTransitions} ${model.snapshot?.client} ${requested}`;
         if (state === shown) return;
         shown = state;
-        const matching = [...model.events].reverse().filter((t) => wanted === "" || `${t.track ?? "source"} ${t.kind} ${t.transition}`.toLowerCase().includes(wanted));
+        const matching = [...model.events].reverse().filter((t) => requested === "" || `${t.track ?? "source"} ${t.kind} ${t.transition}`.toLowerCase().includes(requested));
         body.replaceChildren(...matching.slice(0, MOST_SHOWN).map((t) => el("tr", { "data-event": t.key, "data-tone": t.transition === "raised" ? (severity(t.kind) === 0 ? "warning" : "caution") : "" },
             el("td", {}, clock(t.event_utc_s, true)), el("td", { class: "words" }, t.track === null ? "source" : plainName(t.track)), el("td", { class: "words kind" }, word(t.kind)),
             el("td", { class: "words" }, t.transition), el("td", {}, clock(t.onset_utc_s, true)), el("td", {}, metres(t.peak_m)), el("td", {}, metres(t.min_margin_m)))));

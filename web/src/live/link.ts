@@ -33,7 +33,7 @@ function clockWorker(): Worker {
 export class Link {
     private stream: EventSource | null = null;
     private again: ReturnType<typeof setTimeout> | null = null;
-    private wanted: string | null = null;
+    private requested: string | null = null;
     private readonly model: Model;
     private readonly heard: Heard;
 
@@ -60,8 +60,8 @@ export class Link {
         this.connect();
     }
 
-    connect(track: string | null = this.wanted): void {
-        this.wanted = track;
+    connect(track: string | null = this.requested): void {
+        this.requested = track;
         this.stream?.close();
         if (this.again !== null) clearTimeout(this.again);
         const stream = new EventSource(track === null ? "/events" : `/events?track=${encodeURIComponent(track)}`);

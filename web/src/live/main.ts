@@ -33,7 +33,7 @@ const [, , , gauges, tse, , levels, history] = parts;
 const overlay = el("div", { class: "lost", hidden: true, "aria-hidden": "true" }, el("p", {}));
 const paused = el("p", { class: "band paused", role: "status", hidden: true }, "PAUSED: the view stands still; alerts and the link are watched. Space goes on.");
 const warned = el("p", { class: "sr", "aria-live": "assertive" });
-const told = el("p", { class: "sr", "aria-live": "polite" });
+const announced = el("p", { class: "sr", "aria-live": "polite" });
 const help = el("dialog", { class: "keys", "aria-label": "Keys" }, el("h2", {}, "Keys"), el("dl", {}, ...KEYS.flatMap(([key, what]) => [el("dt", {}, el("kbd", {}, key)), el("dd", {}, what)])), button("Close", {}, () => help.close()));
 let frozen = false;
 let due = false;
@@ -43,7 +43,7 @@ const tools = el("div", { class: "head-tools" },
     choice("Theme", [["auto", "Auto"], ["light", "Light"], ["dark", "Dark"]], theme, (to) => pick(to)), button("Keys ?", { "aria-haspopup": "dialog" }, () => help.showModal()));
 host.append(el("h1", { class: "sr" }, "navbound live flight display"), top.element, band.element, paused,
     el("div", { class: "live-grid" }, chart.element, el("div", { class: "right" }, force.element, gauges!.element, tse!.element, levels!.element)), history!.element, list.element,
-    el("footer", {}, el("p", { class: "note" }, "For information. Not certified for anything; not a substitute for certified equipment."), tools), overlay, warned, told, help);
+    el("footer", {}, el("p", { class: "note" }, "For information. Not certified for anything; not a substitute for certified equipment."), tools), overlay, warned, announced, help);
 
 function pick(to: typeof theme): void {
     theme = to;
@@ -96,7 +96,7 @@ let spoken_ms = -Infinity;
 function speak(transition: Transition): void {
     if (transition.transition !== "raised" || performance.now() - spoken_ms < SPOKEN_MS) return;
     spoken_ms = performance.now();
-    say(severity(transition.kind) === 0 ? warned : told, `${transition.kind.replaceAll("_", " ")} of ${transition.track === null ? "the source" : plainName(transition.track)}`);
+    say(severity(transition.kind) === 0 ? warned : announced, `${transition.kind.replaceAll("_", " ")} of ${transition.track === null ? "the source" : plainName(transition.track)}`);
 }
 
 function stranger(): void {

@@ -93,9 +93,9 @@ function strip(chart: Chart): Part {
         drawn = picture;
         const data = dataOf(chart, model);
         const usual = usualSize(chart, model);
-        const wanted = `${colour("ink")} ${width} ${usual}`;
-        if (u === null || wanted !== hues) {
-            hues = wanted;
+        const hue = `${colour("ink")} ${width} ${usual}`;
+        if (u === null || hue !== hues) {
+            hues = hue;
             threshold = usual;
             u?.destroy();
             u = new uPlot(options(chart, width, threshold, () => end, (v) => { if (current !== null) decorate(v, chart, current, end); }), data, plot);

@@ -9,7 +9,7 @@ pub trait Algorithm: Sized {
     const PROTECTION: Protection;
     /// Names of the numbers of a detail; the ending of each is its unit.
     const COLUMNS: &'static [&'static str];
-    /// What the levels are asked under.
+    /// What the levels are requested under.
     type Settings;
     /// What it says beside its levels.
     type Detail: Copy;
@@ -17,7 +17,7 @@ pub trait Algorithm: Sized {
     /// The settings of a caller who has none of his own.
     fn usual() -> Self::Settings;
 
-    /// With settings. It may be large: made once, asked for epoch after epoch.
+    /// With settings. It may be large: made once, called epoch after epoch.
     fn new(settings: &Self::Settings) -> Self;
 
     /// Levels of one epoch.

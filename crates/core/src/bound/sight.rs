@@ -87,7 +87,7 @@ impl From<Sight> for WeightedSight {
 pub struct Levels<D = ()> {
     /// Horizontal; infinite where a fault cannot be monitored.
     pub hpl: Metres,
-    /// Vertical, likewise; none where the algorithm, or the use that it is asked for, has no vertical level.
+    /// Vertical, likewise; none where the algorithm, or the use that is requested, has no vertical level.
     pub vpl: Option<Metres>,
     /// What the family says beside.
     pub detail: D,

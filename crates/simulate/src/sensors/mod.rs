@@ -24,7 +24,7 @@ mod stations;
 mod unit_faults;
 
 pub(crate) use clock::ReceiverClock;
-pub(crate) use markov::{Markov, staying};
+pub(crate) use markov::{Markov, correlated_error};
 pub(crate) use sky::Satellite;
 
 pub use faults::{ReceiverFault, SensorFault, Trouble};

@@ -108,8 +108,8 @@ fn from_records(records: &[Ephemeris], systems: &[System], scenario: &Scenario) 
     usable.sort_by_key(|r| (r.satellite, r.orbit_time));
     let (begin, end) = (GpsTime::from_nanoseconds(scenario.start_ns), scenario.duration_s);
     let covered = |id: SatelliteId| usable.iter().any(|r| r.satellite == id && (r.covers(begin) || r.covers(begin.plus_seconds(end))));
-    let found: Vec<Satellite> = Satellite::of_records(&usable).into_iter().filter(|s| covered(s.id)).collect();
-    if found.is_empty() {
+    let satellites: Vec<Satellite> = Satellite::of_records(&usable).into_iter().filter(|s| covered(s.id)).collect();
+    if satellites.is_empty() {
         let domain = "records of healthy satellites that cover the flight";
         return Err(OutOfDomain { argument: "navigation", value: records.len() as f64, unit: "records", domain });
     }

@@ -1,6 +1,6 @@
 """The flight display: a process of its own that reads the journals of a session and shows them in browsers on this host.
 
-`watch` follows the journals; `hub` keeps what each page has still to be told; `request` reads and answers HTTP and decides who may ask;
+`watch` follows the journals; `hub` keeps what each page has still to receive; `request` reads and answers HTTP and decides who may ask;
 `server` joins them; `child` runs the server beside a session. It may be slow, attacked or killed: the monitor does not notice.
 """
 

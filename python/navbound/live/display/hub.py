@@ -1,4 +1,4 @@
-"""What each page has still to be told: every alert; of epochs the newest where it is slow, and how many it was not told."""
+"""What each page has still to receive: every alert; of epochs the newest where it is slow, and how many it missed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Client:
     Attributes
     ----------
     n_skipped : int
-        Epochs that it was not told.
+        Epochs that it missed.
     """
 
     def __init__(self, number: int, track: str | None, now_s: float) -> None:
@@ -60,7 +60,7 @@ class Client:
         self._wake.set()
 
     def close(self) -> None:
-        """Nothing more is told."""
+        """Nothing more is sent."""
         self.closed = True
         self._wake.set()
 

@@ -216,8 +216,8 @@ class Door:
         RefusedError
             None.
         """
-        given = request.cookie(self._cookie).encode("utf-8", "replace")
+        received = request.cookie(self._cookie).encode("utf-8", "replace")
         for value, (number, until) in self._sessions.items():
-            if hmac.compare_digest(given, value.encode()) and time.monotonic() < until:
+            if hmac.compare_digest(received, value.encode()) and time.monotonic() < until:
                 return number
         raise RefusedError(HTTPStatus.UNAUTHORIZED)

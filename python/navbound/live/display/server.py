@@ -95,13 +95,13 @@ class Server:
     async def run(self, stop: Callable[[], bool]) -> None:
         """Serve until `stop`."""
         servers = [await asyncio.start_server(self._connected, sock=each, limit=request.MOST_HEAD) for each in self._sockets]
-        told = 0.0
+        sent = 0.0
         try:
             while not stop():
                 news = self.watch.poll()
                 now = time.monotonic()
-                if news or now - told >= STATUS_S:
-                    told = now
+                if news or now - sent >= STATUS_S:
+                    sent = now
                     self._tell(news.rows, news.transitions)
                 self.hub.drop_silent(now)
                 if not self.watch.behind:
@@ -132,9 +132,9 @@ class Server:
             task.add_done_callback(self._tasks.discard)
         peer = writer.get_extra_info("peername")
         try:
-            asked = await request.read(reader)
-            self.door.check(asked, str(peer[0]) if peer else "")
-            await self._answer(asked, reader, writer)
+            query = await request.read(reader)
+            self.door.check(query, str(peer[0]) if peer else "")
+            await self._answer(query, reader, writer)
         except RefusedError as e:
             with contextlib.suppress(OSError):
                 writer.write(request.answer(e.status))
@@ -150,45 +150,45 @@ class Server:
             # What a page does not take is given up.
             writer.transport.abort()
 
-    async def _answer(self, asked: request.Request, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    async def _answer(self, query: request.Request, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         post = {"/session": self._begin, "/alive": self._alive, "/acknowledge": self._acknowledge}
-        if asked.method == "POST" and asked.path in post:
-            writer.write(post[asked.path](asked))
-        elif asked.method != "GET":
+        if query.method == "POST" and query.path in post:
+            writer.write(post[query.path](query))
+        elif query.method != "GET":
             raise RefusedError(HTTPStatus.METHOD_NOT_ALLOWED)
-        elif asked.path in self._files:
-            body, kind = self._files[asked.path]
+        elif query.path in self._files:
+            body, kind = self._files[query.path]
             writer.write(request.answer(HTTPStatus.OK, body, kind))
-        elif asked.path == "/health":
+        elif query.path == "/health":
             status, body = self._health()
             writer.write(request.answer(status, body, "application/json"))
-        elif asked.path == "/session":
-            self.door.session(asked)
+        elif query.path == "/session":
+            self.door.session(query)
             writer.write(request.answer(HTTPStatus.NO_CONTENT))
-        elif asked.path == "/events":
-            self.door.session(asked)
-            await self._stream(asked, reader, writer)
+        elif query.path == "/events":
+            self.door.session(query)
+            await self._stream(query, reader, writer)
             return
         else:
             raise RefusedError(HTTPStatus.NOT_FOUND)
         async with asyncio.timeout(request.REQUEST_S):
             await writer.drain()
 
-    def _begin(self, asked: request.Request) -> bytes:
-        token = asked.json().get("token")
+    def _begin(self, query: request.Request) -> bytes:
+        token = query.json().get("token")
         return request.answer(HTTPStatus.NO_CONTENT, extra=self.door.open(token if isinstance(token, str) else ""))
 
-    def _alive(self, asked: request.Request) -> bytes:
-        self.door.session(asked)
-        client = self.hub.clients.get(_whole(asked.json().get("client")))
+    def _alive(self, query: request.Request) -> bytes:
+        self.door.session(query)
+        client = self.hub.clients.get(_whole(query.json().get("client")))
         if client is None:
             raise RefusedError(HTTPStatus.NOT_FOUND)
         client.alive_s = time.monotonic()
         return request.answer(HTTPStatus.NO_CONTENT)
 
-    def _acknowledge(self, asked: request.Request) -> bytes:
-        number = self.door.session(asked)
-        alert = asked.json().get("alert")
+    def _acknowledge(self, query: request.Request) -> bytes:
+        number = self.door.session(query)
+        alert = query.json().get("alert")
         if not isinstance(alert, str) or alert not in self.watch.open:
             raise RefusedError(HTTPStatus.NOT_FOUND)
         if alert not in self.watch.acknowledged:
@@ -211,12 +211,12 @@ class Server:
         record = {"status": word, "age_s": min(status["ages_s"].values(), default=None), "last_alert": last, "version": __version__}
         return (HTTPStatus.SERVICE_UNAVAILABLE if lost else HTTPStatus.OK), json.dumps(record).encode()
 
-    async def _stream(self, asked: request.Request, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    async def _stream(self, query: request.Request, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         try:
-            wanted = parse_qs(asked.query, max_num_fields=4).get("track", [None])[0]
+            requested = parse_qs(query.query, max_num_fields=4).get("track", [None])[0]
         except ValueError as e:
             raise RefusedError(HTTPStatus.BAD_REQUEST) from e
-        client = self.hub.enter(wanted if wanted in self.watch.tracks else None, time.monotonic())
+        client = self.hub.enter(requested if requested in self.watch.tracks else None, time.monotonic())
         if client is None:
             raise RefusedError(HTTPStatus.SERVICE_UNAVAILABLE)
         _narrow(writer)
@@ -309,7 +309,7 @@ def serve(folder: Path, options: Options, *, ready: Callable[[Server], None], st
     ready : callable
         Takes the server once it listens.
     stop : callable
-        Asked every tenth of a second.
+        Called every tenth of a second.
 
     Raises
     ------

@@ -297,9 +297,9 @@ class Watch:
             "reasons": {name: reason.words for name, reason in REASONS.items()},
         }
 
-    def snapshot(self, wanted: str | None) -> dict[str, Any]:
+    def snapshot(self, requested: str | None) -> dict[str, Any]:
         """Everything a page shows of one aircraft, and the alerts of all."""
-        name = wanted if wanted in self.tracks else next(iter(self.tracks), None)
+        name = requested if requested in self.tracks else next(iter(self.tracks), None)
         return {
             "session": self.session(),
             "track": name,

@@ -459,12 +459,12 @@ def _whole_week(times: list[Column], names: list[str], path: Path) -> list[Colum
     if not have:
         return times
     known = {_plain(name)[0]: name for name in reversed(names)}
-    for unit in WEEK:
+    for unit, kind in WEEK.items():
         if unit not in have:
             other = next((known[alias] for alias, each in TIME_NAMES.items() if each == unit and alias in known), None)
             if other is None:
                 (declared,) = have
-                words = f"“{times[0].name}” is {WEEK[declared]}, and no column is {WEEK[unit]}; {declare(f'{unit}=COLUMN')}"
+                words = f"“{times[0].name}” is {WEEK[declared]}, and no column is {kind}; {declare(f'{unit}=COLUMN')}"
                 raise FormatError(path, words, 1, "time")
             times = [*times, Column("time", other, unit)]
     return times

@@ -8,7 +8,7 @@ import numpy as np
 
 from navbound import sbas
 from navbound.errors import InputError
-from navbound.studies.error_extraction.records import FaultEntry, HeldRisk, Spread
+from navbound.studies.error_extraction.records import FaultEntry, RiskOfMemory, Spread
 from navbound.studies.gauss_markov import gauss_markov
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ fn number(detail: &Detail, column: usize) -> f64 {
     numbers.get(column).copied().unwrap_or(f64::NAN)
 }
 
-/// What the levels of [`Araim`] are asked under.
+/// What the levels of [`Araim`] are requested under.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// The service.

@@ -199,10 +199,10 @@ fn the_promise_with_exclusion_is_the_largest_of_all_decisions() {
             let largest =
                 |of: fn(&Levels) -> f64| decisions.iter().map(|d| d.1.as_ref().map_or(f64::INFINITY, of)).fold(0.0, f64::max).to_bits();
             // The same numbers compared, so the same bits.
-            assert_eq!(found.hpl.m().to_bits(), largest(|l| l.hpl.m()), "sky {k}");
-            assert_eq!(found.vpl_m().to_bits(), largest(|l| l.vpl_m()), "sky {k}");
+            assert_eq!(prediction.hpl.m().to_bits(), largest(|l| l.hpl.m()), "sky {k}");
+            assert_eq!(prediction.vpl_m().to_bits(), largest(|l| l.vpl_m()), "sky {k}");
             assert_eq!(
-                found.detail.axes.map(|x| x.m().to_bits()),
+                prediction.detail.axes.map(|x| x.m().to_bits()),
                 [largest(|l| l.detail.axes[0].m()), largest(|l| l.detail.axes[1].m())],
                 "sky {k}"
             );

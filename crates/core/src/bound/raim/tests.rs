@@ -81,7 +81,7 @@ fn levels_after_exclusion_are_the_worst_of_every_geometry_without_one() {
     two[5].constellation = Galileo;
     for sights in [sky(8), sky(6), two] {
         let detection = monitor.levels(&sights).unwrap();
-        let found = monitor.after_exclusion(&detection);
+        let after = monitor.after_exclusion(&detection);
         let (mut hel, mut vel) = (detection.hpl.m(), detection.vpl_m());
         for out in 0..sights.len() {
             let mut rest = sights.clone();
@@ -89,7 +89,7 @@ fn levels_after_exclusion_are_the_worst_of_every_geometry_without_one() {
             let levels = monitor.levels(&rest).unwrap();
             (hel, vel) = (hel.max(levels.hpl.m()), vel.max(levels.vpl_m()));
         }
-        assert!(close(found.hpl.m(), hel) && close(found.vpl_m(), vel), "{found:?}, {hel}, {vel}");
+        assert!(close(after.hpl.m(), hel) && close(after.vpl_m(), vel), "{after:?}, {hel}, {vel}");
     }
 }
 
