@@ -125,12 +125,12 @@ def test_context_says_what_was_assumed_and_read(flown: Material) -> None:
     assert flown.inputs[0].sha256 == hashlib.sha256(file.read_bytes()).hexdigest()
     assert [w.name for w in flown.waypoints][::20] == ["ZBAA", "ZSSS"]
     assert any("nominal" in sentence for sentence in flown.assumptions)
-    led = material("beijing-shanghai-misleading")
+    led = material("beijing-shanghai-misled")
     assert "lateral-ramp from 6700 s" in led.assumptions[-1]
 
 
 def test_interference_is_admitted_and_a_ramp_is_not() -> None:
-    plain, poor, led = (material(name).epochs for name in (DRAWN, "beijing-shanghai-degraded", "beijing-shanghai-misleading"))
+    plain, poor, led = (material(name).epochs for name in (DRAWN, "beijing-shanghai-degraded", "beijing-shanghai-misled"))
     at = 6_900
     assert poor["cov_ee_m2"][at] == pytest.approx(250**2 * plain["cov_ee_m2"][at], rel=1e-12)
     assert led["cov_ee_m2"][at] == plain["cov_ee_m2"][at]

@@ -292,7 +292,7 @@ def test_the_covariance_that_bounds_leaves_no_room_at_the_stand(tmp_path: Path, 
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ('transition = "N3"', 'transition = "X9"', "X9"),
         ('mode = "F2"', 'mode = "F3"', "F3"),

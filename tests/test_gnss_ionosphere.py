@@ -278,7 +278,7 @@ def test_positions_that_nobody_vouches_for_are_not_taken_for_their_covariance(si
     assert selected_positions.models["signals"].startswith(taken)
 
 
-@pytest.mark.parametrize(("shift_m", "said"), [(0.0, False), (5000.0, True)])
+@pytest.mark.parametrize(("shift_m", "noted"), [(0.0, False), (5000.0, True)])
 def test_a_header_that_is_far_from_every_solved_position_is_reported(
     shared_data: Path, tmp_path: Path, shift_m: float, noted: bool
 ) -> None:

@@ -195,7 +195,7 @@ def test_what_cannot_be_sensed_is_refused(arguments: dict[str, object], argument
 
 
 @pytest.mark.parametrize(
-    ("text", "field", "said"),
+    ("text", "field", "message"),
     [
         ('[sensors.imu]\ngrade = "best"', "sensors.imu.grade", "navigation"),
         ("[sensors]\nrate_hz = 90", "sensors.rate_hz", "divisors"),

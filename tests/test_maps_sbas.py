@@ -118,7 +118,7 @@ def test_instants_beyond_the_log_have_no_level_and_are_counted(more: Path) -> No
     assert outcomes(made_map)["p_no_service"] == pytest.approx(4 / 6, abs=1e-12)
 
 
-@pytest.mark.parametrize(("prn", "named"), [(None, "one of 120, 126"), (129, "one of 120, 126")])
+@pytest.mark.parametrize(("prn", "named"), [(None, "several satellites, 120, 126"), (129, "one of 120, 126")])
 def test_where_there_are_several_senders_one_has_to_be_named(more: Path, prn: int | None, named: str) -> None:
     with pytest.raises(InputError, match=named):
         made(more, "egnos_2012299.ems", prn=prn)

@@ -84,7 +84,7 @@ def test_a_file_may_say_only_what_differs(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "field", "said"),
+    ("old", "new", "field", "message"),
     [
         ("mask_deg = 7.0", "mask_deg = 95.0", "navigation.mask_deg", "95.0 is outside [0, pi/2] [rad]"),
         ("mask_deg = 7.0", 'mask_deg = "7"', "navigation.mask_deg", "valid number"),

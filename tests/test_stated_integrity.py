@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import navbound
+from navbound import FormatError
 from navbound.records.run import Verdict
 from test_verdict import first_sentence, table
 
@@ -163,3 +164,43 @@ def test_pieces_state_the_same(tmp_path: Path) -> None:
         whole = navbound.analyze(path, sigma_m=sigma_m).summary.verdict
         assert whole == navbound.analyze(path, sigma_m=sigma_m, piece_rows=7).summary.verdict
         assert whole.unread == ["mode (loiter)", "hacc"]
+
+
+@pytest.mark.parametrize("name", ["integrity", "raim", "fde"])
+@pytest.mark.parametrize("word", ["no", "none", "off"])
+def test_no_integrity_is_no_absence_of_an_alert(tmp_path: Path, name: str, word: str) -> None:
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, added={name: [word] * N})).summary.verdict
+    assert (verdict.id, verdict.n_stated_alert) == ("not_shown", N)
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_an_alert_of_a_repeated_row_is_an_alert(tmp_path: Path, first: bool) -> None:
+    path = table(tmp_path / "a.csv", N, added={"alert": ["none"] * N})
+    head, *rows = path.read_text(encoding="utf-8").splitlines()
+    twice = [both for row in rows for both in ((row, row.replace("none", "warning"))[:: 1 if first else -1])]
+    path.write_text("\n".join([head, *twice]) + "\n", encoding="utf-8")
+    verdict = navbound.analyze(path).summary.verdict
+    assert (verdict.id, verdict.n_stated_alert) == ("not_shown", N)
+
+
+@pytest.mark.parametrize("worse_first", [True, False])
+def test_a_hazard_of_a_repeated_row_is_a_hazard(tmp_path: Path, worse_first: bool) -> None:
+    rows = []
+    for k in range(300):
+        good, bad = f"{1_400_000_000 + k},20,25,1.0,1.5", f"{1_400_000_000 + k},20,25,900.0,1.5"
+        rows += [good] if not 100 <= k < 112 else [bad, good] if worse_first else [good, bad]
+    path = tmp_path / "levels.csv"
+    path.write_text("\n".join(["time_s,hpl_m,vpl_m,hpe_m,vpe_m", *rows]) + "\n", encoding="utf-8")
+    run = navbound.evaluate(path, levels="APV-I")
+    assert run.summary.verdict.id == "not_believable"
+
+
+@pytest.mark.parametrize("twin", ["HPE_M", "Hpe_m", "hpe_m [m]"])
+def test_columns_whose_names_differ_in_writing_alone_are_refused(tmp_path: Path, twin: str) -> None:
+    path = tmp_path / "levels.csv"
+    rows = [f"{1_400_000_000 + k},20,25,1.0,1.5,900" for k in range(60)]
+    path.write_text("\n".join([f"time_s,hpl_m,vpl_m,hpe_m,vpe_m,{twin}", *rows]) + "\n", encoding="utf-8")
+    with pytest.raises(FormatError, match="one name in another writing"):
+        navbound.evaluate(path, levels="APV-I")
+    declared = navbound.evaluate(path, levels="APV-I", columns={"hpe_m": "hpe_m:m"}).summary.verdict
+    assert declared.id != "not_believable"

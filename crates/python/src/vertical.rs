@@ -151,7 +151,7 @@ fn vertical_setting_test<'py>(
 ) -> Table<'py> {
     let (s, q, d, p) = (sigma_m.as_slice()?, risk.as_slice()?, error_m.as_slice()?, probability.as_slice()?);
     table(py, s.len(), |i| {
-        let test = SettingTest::new(m(s[i]), Risk::new(q[i])?)?;
+        let test = SettingTest::new(m(s[i]), Risk::new(q[i]).map_err(|e| OutOfDomain { argument: "false_alarm", ..e })?)?;
         if !d[i].is_finite() {
             return Err(OutOfDomain { argument: "error_m", value: d[i], unit: "m", domain: "(-inf, inf)" });
         }

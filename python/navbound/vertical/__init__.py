@@ -117,7 +117,8 @@ def setting_error(qnh_hpa: ArrayLike, setting_hpa: ArrayLike) -> Floats:
     InputError
         A setting outside [500, 1200] hPa.
     """
-    return setting_offset(setting_hpa) - setting_offset(qnh_hpa)
+    shape, (qnh, setting) = flatten(qnh_hpa=(qnh_hpa, ()), setting_hpa=(setting_hpa, ()))
+    return unflatten(_core.vertical_setting_offset(setting) - _core.vertical_setting_offset(qnh), shape)
 
 
 @checked
@@ -379,7 +380,8 @@ def budget(
     NotFoundError
         Constants of another name.
     """
-    body = CONSTANTS[_named(constants)].body_geometry_m if body_geometry_m is None else body_geometry_m
+    straight_m = CONSTANTS[_named(constants)].body_geometry_m
+    body = straight_m if body_geometry_m is None else body_geometry_m
     shape, flat = flatten(
         rnp_m=(rnp_m, ()),
         angle_rad=(angle_rad, ()),

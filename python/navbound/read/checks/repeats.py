@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import polars as pl
 
 from navbound import status
+from navbound.read.checks.stated import ALERT
 from navbound.records.frames import LEFT_OUT
 from navbound.table.columns import COVARIANCE, VARIANCES
 from navbound.units import EARTH_RADIUS_M
@@ -56,13 +57,14 @@ def separate(epochs: pl.DataFrame) -> Repeats:
 
     Two rows of one time contradict each other where their positions lie further apart than `SAME_PLACE_M` (``position_jump``: no vehicle is
     in two places), or where both state an accuracy, a bound or an error and the numbers differ (``invalid_number``). Nobody knows which of
-    them is right, so the epoch is not believed. Where only the statuses differ, the graver counts.
+    them is right, so the epoch is not believed. Where only the statuses differ, the graver counts; an alert of any of them counts; and of
+    rows with errors and levels one whose error is above its level: no recorded hazard is left out.
     """
     key = ["track", "time_ns"]
     again = (pl.all_horizontal(pl.col(k) == pl.col(k).shift(1) for k in key)).fill_null(value=False)
     if not epochs.select(again.any()).item():
         return Repeats(epochs, epochs.clear(), epochs.clear())
-    epochs = _gravest_first(epochs, key)
+    epochs = _with_every_alert(_gravest_first(epochs.with_columns(_hazard(epochs).alias("__hazard")), key), key)
     place, bound = _other_place(epochs, key), _other_bound(epochs, key)
     status_differs = _differs("status", key) if "status" in epochs.columns else pl.lit(value=False)
     marked = epochs.with_columns(again.alias("__again"), place.alias("__place"), bound.alias("__bound"), status_differs.alias("__status"))
@@ -74,23 +76,45 @@ def separate(epochs: pl.DataFrame) -> Repeats:
     return Repeats(kept, plain.filter(~contradicts), plain.filter(contradicts))
 
 
-_MARKS = ("__again", "__place", "__bound", "__status")
+_MARKS = ("__again", "__place", "__bound", "__status", "__hazard")
+_UNKNOWN_BOUND = pl.col("__bound") & ~pl.col("__hazard")
 _REASON = pl.struct(
-    reason_id=pl.when("__place").then(pl.lit("position_jump")).when("__bound").then(pl.lit("invalid_number")),
-    sentence=pl.when("__place").then(pl.lit(_OTHER_PLACE)).when("__bound").then(pl.lit(_OTHER_BOUND)),
+    reason_id=pl.when("__place").then(pl.lit("position_jump")).when(_UNKNOWN_BOUND).then(pl.lit("invalid_number")),
+    sentence=pl.when("__place").then(pl.lit(_OTHER_PLACE)).when(_UNKNOWN_BOUND).then(pl.lit(_OTHER_BOUND)),
 ).alias("reason")
 
 
-def _gravest_first(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
-    """The row of the gravest status first within its time; a status that the list does not know is the gravest."""
-    if "status" not in epochs.columns:
+def _hazard(epochs: pl.DataFrame) -> pl.Expr:
+    """Whether the error that a row states is above the level that it states, in the plane or in height."""
+    have = set(epochs.columns)
+    pairs = []
+    if "hpl_m" in have:
+        errors = [pl.col("hpe_m")] if "hpe_m" in have else []
+        errors += [(pl.col("nse_e_m") ** 2 + pl.col("nse_n_m") ** 2).sqrt()] if {"nse_e_m", "nse_n_m"} <= have else []
+        pairs += [error > pl.col("hpl_m") for error in errors]
+    if "vpl_m" in have:
+        pairs += [pl.col(name).abs() > pl.col("vpl_m") for name in ("vpe_m", "nse_u_m") if name in have]
+    return pl.any_horizontal(*(pair.fill_null(value=False) for pair in pairs)) if pairs else pl.lit(value=False)
+
+
+def _with_every_alert(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
+    """An alert that one row of a time states is that of all of them."""
+    if ALERT not in epochs.columns:
         return epochs
+    return epochs.with_columns(pl.col(ALERT).drop_nulls().first().over(key))
+
+
+def _gravest_first(epochs: pl.DataFrame, key: list[str]) -> pl.DataFrame:
+    """A hazard first within its time, then the row of the gravest status; a status that the list does not know is the gravest."""
+    order = [*key, "__hazard"]
+    if "status" not in epochs.columns:
+        return epochs.sort(*order, descending=[False, False, True], maintain_order=True)
     place = {id_: k for k, id_ in enumerate(status.STATUSES)}
     rank = pl.col("status").replace_strict(place, default=len(place), return_dtype=pl.Int64)
     # An empty field says nothing.
     return (
         epochs.with_columns(rank.fill_null(-1).alias("__rank"))
-        .sort(*key, "__rank", descending=[False, False, True], maintain_order=True)
+        .sort(*order, "__rank", descending=[False, False, True, True], maintain_order=True)
         .drop("__rank")
     )
 

@@ -65,6 +65,9 @@ NO_ALERT = _words(
 )
 """Words that state that there is no alert. Any other is one: nobody knows what it means, and it is not "normal"."""
 
+NO_INTEGRITY = _words("no none off false")
+"""Words that state that there is no integrity or no monitor, where the column is named by what it has."""
+
 KINDS: tuple[Kind, ...] = (
     Kind(
         "invalid",
@@ -131,7 +134,7 @@ KINDS: tuple[Kind, ...] = (
             "fde_status health gps_health"
         ),
         frozenset(),
-        NO_ALERT,
+        NO_ALERT - NO_INTEGRITY,
         other_against=True,
         numbers_unknown=True,
     ),

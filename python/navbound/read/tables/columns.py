@@ -339,6 +339,7 @@ def assign(
     times = _whole_week(times, [n for n in names if n not in taken], path)
     taken |= {c.name for c in times}
     _require(columns, times, names, path, needs)
+    _refuse_twins(columns, set(declared or {}), names, path)
     free = [n for n in names if n not in taken]
     kinds = {name: kind_of(_plain(name)[0]) for name in free}
     if {_plain(name)[0] for name in names} & TRANSPONDER:
@@ -445,6 +446,15 @@ def _times(names: list[str]) -> list[Column]:
     tow = [c for c in columns if c.unit == "gps_tow_s"][:1]
     single = [c for c in columns if c.unit not in {"gps_week", "gps_tow_s"}][:1]
     return single or (week + tow if week and tow else [])
+
+
+def _refuse_twins(columns: dict[str, Column], declared: set[str], names: list[str], path: Path) -> None:
+    """Refuse a column beside which another one has the same name but for case, blanks or a unit: the order would decide."""
+    for quantity, column in columns.items():
+        twins = [name for name in names if name != column.name and _plain(name)[0] == _plain(column.name)[0]]
+        if twins and quantity not in declared:
+            what = f"“{column.name}” and “{twins[0]}” are one name in another writing, and nothing says which of both counts"
+            raise FormatError(path, f"{what}; {declare(f'{quantity}=COLUMN')}", 1, quantity)
 
 
 def _whole_week(times: list[Column], names: list[str], path: Path) -> list[Column]:

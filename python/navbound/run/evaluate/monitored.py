@@ -8,7 +8,7 @@ import polars as pl
 
 from navbound import gnss
 from navbound.algorithms import Recorded, entries
-from navbound.errors import ConflictError, NotFoundError
+from navbound.errors import ConflictError, InputError, NotFoundError
 from navbound.gnss.monitor_fit import DISBELIEF
 from navbound.read.checks.refusals import of_navigation, of_observations, require_most_epochs, skipped_words
 from navbound.read.truth import with_truth
@@ -70,8 +70,8 @@ def monitored(solving: Solving) -> dict[str, str | float]:
         because = "single signals take the broadcast message, and dual signals need no model"
         raise ConflictError("ionosphere", excludes=("protection",), because=because, value=solving.ionosphere)
     if solving.signals == "auto":
-        because = "auto mixes single and dual, and the error model of a level is that of one of them"
-        raise ConflictError("signals", excludes=("protection",), because=because, value="auto")
+        domain = "single or dual with --protection: the error model of a level is that of one of them"
+        raise InputError("signals", "auto", domain=domain)
     return solving.named
 
 
