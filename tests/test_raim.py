@@ -76,7 +76,7 @@ def test_the_guaranteed_level_bounds_a_missed_fault_of_any_size_and_the_publishe
     assert max(published) > 0.05, "the geometry no longer shows what the page says"
 
 
-@pytest.mark.parametrize(("slope", "published", "published"), [(0.3, 0.094, 1e-5), (1.0, 0.0035, 1e-6), (2.0, 7.5e-4, 3e-6)])
+@pytest.mark.parametrize(("slope", "published", "risk"), [(0.3, 0.094, 1e-5), (1.0, 0.0035, 1e-6), (2.0, 7.5e-4, 3e-6)])
 def test_the_risks_of_the_page_come_out(slope: float, published: float, risk: float) -> None:
     """docs/methods/raim.md: five redundant ranges, sigma of the position one metre."""
     _, bias = raim.factors(5)
