@@ -47,7 +47,7 @@ fn the_sizes_follow_the_message() {
     assert!((sizes.uneven_m - 0.3 * sizes.sigma.x).abs() < 1e-12);
     // Beside the magnetic equator the crests stand north or south.
     let south = over(10.0, broadcast());
-    assert!((errors.sizes(&south).sigma.z - (0.35 * south.vertical_m).hypot(0.08 * a)).abs() < 1e-12);
+    assert!((errors.sizes(&south).sigma.z - 1.75 * (0.20 * south.vertical_m).hypot(0.08 * a)).abs() < 1e-12);
 }
 
 /// What a plane through the zenith leaves of a curved ionosphere grows by the square of the distance.
