@@ -68,7 +68,6 @@ def test_a_map_of_a_service_needs_its_messages_and_their_orbits() -> None:
         (lambda: gbas.protection_levels([0.1], [1.0], sigma_m=0.3), "sigma_m needs sigma_h1_m"),
         (lambda: gbas.protection_levels([0.1], [1.0], sigma_h1_m=0.3), "sigma_h1_m needs sigma_m"),
         (lambda: dme.solve([1.0, 2.0], NETWORK, 0.0, sigma_altitude_m=0.0, prior_lat_rad=0.7), "prior_lat_rad needs prior_lon_rad"),
-        (lambda: monitored(Solving(signals="auto")), "signals cannot stand beside protection: auto mixes single and dual"),
         (lambda: monitored(Solving(ionosphere="none")), "ionosphere cannot stand beside protection: single signals take"),
     ],
 )
