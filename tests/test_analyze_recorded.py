@@ -252,8 +252,17 @@ def test_a_covariance_that_is_none_is_not_believed(tmp_path: Path) -> None:
     (tmp_path / "cov.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     epochs = material(tmp_path / "cov.csv", requirement="RNP 1", rnp_m=1852).epochs
     assert epochs["status"].to_list() == ["ok", "invalid_input", "degraded", "not_available"]
-    assert epochs["reason"].to_list() == [None, "not a covariance", "covariance is zero", "no covariance"]
+    assert epochs["reason"].to_list() == [None, "not a covariance", "the covariance is zero along an axis", "no covariance"]
     assert epochs["cov_ee_m2"].to_list() == [4.0, None, 0.0, None]
+
+
+@pytest.mark.parametrize("axis", ["e", "n", "u"])
+def test_an_axis_without_an_error_is_one_whose_accuracy_the_file_does_not_have(axis: str, tmp_path: Path) -> None:
+    sigma_m = {name: 0 if name == axis else 5 for name in "enu"}
+    rows = ["gps_time_s,lat_deg,lon_deg,height_m,sigma_e_m,sigma_n_m,sigma_u_m"]
+    rows += [f"{1.3e9 + i},{48 + 5e-4 * i},2,900,{sigma_m['e']},{sigma_m['n']},{sigma_m['u']}" for i in range(60)]
+    (tmp_path / "sigma.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    assert set(material(tmp_path / "sigma.csv", requirement="RNP 1", rnp_m=1852).epochs["status"]) == {"degraded"}
 
 
 @pytest.mark.parametrize("rnp_m", [0.0, -1.0, math.nan, math.inf])

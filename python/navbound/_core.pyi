@@ -101,7 +101,7 @@ _TransitionRow = tuple[_Names, _Times, tuple[float, float, float], int]
 class LiveSettings:
     def __init__(
         self,
-        judging: tuple[str, str, str],
+        judging: tuple[str, str, str, str | None],
         risks: tuple[float, float],
         monitor: tuple[list[float], float, float, float, float],
         rnp_m: float,

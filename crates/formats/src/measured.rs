@@ -9,6 +9,17 @@
 /// manuals give it).
 pub const GGA_QUALITIES: &[u8] = &[1, 2, 3, 4, 5, 9];
 
+/// Mode of an NMEA RMC or GLL sentence: autonomous, differential, precise, fixed and float carrier phase. Not N (not valid), E (dead
+/// reckoning), M (typed in), S (simulator). Provenance: standard (NMEA 0183 version 4, as receivers' manuals give it).
+pub const NMEA_MODES: &[u8] = b"ADPRF";
+
+/// Dimensions of a fix in NMEA GSA below which a position has a height that nothing measured. Provenance: standard, as above \[1\].
+pub const GSA_DIMENSIONS: f64 = 3.0;
+
+/// Fewest satellites of a position that satellites alone give: two or less leave a line or a surface, whatever else is held fixed.
+/// Provenance: derived \[1\].
+pub const LEAST_SATELLITES: u32 = 3;
+
 /// Quality of an RTKLIB solution: fixed, float, SBAS, differential, single, precise. Not 0 (none), 7 (dead reckoning). Provenance: standard
 /// (RTKLIB manual, section B.1).
 pub const RTKLIB_QUALITIES: &[u8] = &[1, 2, 3, 4, 5, 6];

@@ -27,6 +27,10 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     // A direction of several turns is none.
     let stated = position.course_rad.map(|course| if course.abs() <= COURSE_MOST_RAD { course } else { f64::NAN });
     let (mut fte_m, mut course) = (position.fte_m, stated.or(position.fte_m.map(|_| 0.0)).map(Radians::new));
+    // A deviation is part of the total error. A track that stated one once and states none later is not judged without it.
+    if let Some(method) = settings.of_stated_fte.filter(|_| settings.path.is_none() && position.fte_m.is_some()) {
+        track.judge.judge_by(method);
+    }
     let mut covariance_m2 = position.covariance_m2;
     match (&settings.path, point) {
         (_, Some(Err(_))) => refuse(Reason::InvalidNumber),
@@ -45,7 +49,7 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     }
     match position.covariance_m2 {
         None => refuse(Reason::NoCovariance),
-        Some([ee, _, nn, ..]) if ee == 0.0 && nn == 0.0 => refuse(Reason::ZeroCovariance),
+        Some([ee, _, nn, .., uu]) if [ee, nn, uu].contains(&0.0) => refuse(Reason::ZeroCovariance),
         Some(_) => {}
     }
     let sample = Sample {

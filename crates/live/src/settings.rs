@@ -2,6 +2,7 @@
 
 use crate::decode::Format;
 use crate::position::TrackId;
+use navbound_core::bound::Alerting;
 use navbound_core::frame::LatLon;
 use navbound_core::judge;
 use navbound_core::quantity::{Metres, OutOfDomain};
@@ -38,6 +39,8 @@ pub struct Settings {
     pub track: TrackId,
     /// Method, risks and monitor of every track.
     pub judge: judge::Settings,
+    /// The method of a track from its first record on that states a flight technical error; `None`: that of all.
+    pub of_stated_fte: Option<Alerting>,
     /// RNP value in force where a record states none.
     pub rnp: Metres,
     /// The path; without one the flight technical error is the record's own.

@@ -2,7 +2,7 @@ use super::*;
 use navbound_core::bound::Alerting;
 use navbound_core::judge;
 use navbound_core::monitor::rnp::{self, Chain};
-use navbound_core::quantity::{GpsTime, Metres, Risk};
+use navbound_core::quantity::{GpsTime, Metres, Risk, Status};
 use proptest::prelude::*;
 use std::fmt::Write;
 
@@ -14,6 +14,7 @@ fn settings() -> Settings {
     Settings {
         format: Format::Json,
         track: TrackId::new("receiver").unwrap(),
+        of_stated_fte: None,
         judge: judge::Settings {
             method: Alerting::of("tse-exact").unwrap(),
             accuracy: Risk::new(0.05).unwrap(),
@@ -438,4 +439,50 @@ fn a_mode_that_no_word_can_have_costs_no_position() {
     let all = flown(&mut lane, 3, |k| line("d", f64::from(k), ",\"fte_m\":20.0,\"sigma_m\":10.0,\"nav_mode\":\"<img onerror>\""));
     assert_eq!(epochs_of(&all, "d").len(), 3);
     assert!(epochs_of(&all, "d").iter().all(|e| e.nav_mode.is_none() && e.alert == rnp::Alert::Normal));
+}
+
+/// A deviation counts from the record on that states one; a track that states none any more is not judged without it.
+#[test]
+fn a_track_that_states_its_deviation_is_judged_by_its_total_error() {
+    let navigation_alone = || {
+        let given = settings();
+        let judge = judge::Settings { method: Alerting::of("anp-circle").unwrap(), ..given.judge };
+        Settings { judge, of_stated_fte: Some(given.judge.method), ..given }
+    };
+    // A hundred times RNP aside at a navigation error of 10 m.
+    let aside = |k: u32| format!(",\"fte_m\":{},\"course_rad\":0.0,\"sigma_m\":10.0", if k < 10 { 20 } else { 55_560 });
+    let mut lane = Lane::new(navigation_alone()).unwrap();
+    let all = flown(&mut lane, 30, |k| line("d", f64::from(k), &aside(k)));
+    let warned = all.iter().find_map(|o| if let Output::Transition(t) = o { Some((t.kind, t.event)) } else { None });
+    assert_eq!(warned, Some((Kind::Warning, at(10.0))));
+    // The same judge as the one that is set to the total error, to the bit.
+    let mut total = Lane::new(settings()).unwrap();
+    assert_eq!(format!("{all:?}"), format!("{:?}", flown(&mut total, 30, |k| line("d", f64::from(k), &aside(k)))));
+    // A track without a deviation keeps the navigation error, and one that stops to state it has no bound.
+    let mut lane = Lane::new(navigation_alone()).unwrap();
+    let alone = ",\"est_lat_rad\":0.5,\"est_lon_rad\":0.1,\"est_h_m\":100.0,\"sigma_m\":10.0".to_owned();
+    let stops = |k: u32| line("f", f64::from(k), &if k < 3 { aside(0) } else { alone.clone() });
+    let all = flown(&mut lane, 6, |k| line("e", f64::from(k), &alone) + &stops(k));
+    assert!(epochs_of(&all, "e").iter().all(|e| e.status.usable() && number(e, "accuracy_bound_m") < 30.0));
+    assert_eq!(epochs_of(&all, "f").iter().map(|e| e.status.usable()).collect::<Vec<_>>(), [true, true, true, false, false, false]);
+    // It is kept in a snapshot.
+    let (mut lane, ..) = Lane::restore(navigation_alone(), &lane.snapshot(0, 0)).unwrap();
+    let after = flown(&mut lane, 1, |_| line("f", 6.0, &alone));
+    assert!(epochs_of(&after, "f").iter().all(|e| !e.status.usable()));
+}
+
+/// A logger writes zero for an accuracy that it does not have.
+#[test]
+fn a_variance_of_zero_in_any_axis_is_not_believed() {
+    for zero in 0..3 {
+        let of = |axis: usize| if axis == zero { 0.0 } else { 25.0 };
+        let rest = format!(
+            ",\"fte_m\":20.0,\"course_rad\":0.0,\"cov_ee_m2\":{},\"cov_en_m2\":0.0,\"cov_nn_m2\":{},\"cov_eu_m2\":0.0,\"cov_nu_m2\":0.0,\"cov_uu_m2\":{}",
+            of(0),
+            of(1),
+            of(2)
+        );
+        let all = flown(&mut Lane::new(settings()).unwrap(), 3, |k| line("d", f64::from(k), &rest));
+        assert_eq!(epochs_of(&all, "d")[0].status, Status::Degraded);
+    }
 }

@@ -23,12 +23,12 @@ struct LiveSettings(Settings);
 
 #[pymethods]
 impl LiveSettings {
-    /// `judging`: format, name of a receiver's track, method. `risks`: accuracy, integrity. `monitor`: six times of the chain, raise delay,
+    /// `judging`: format, name of a receiver's track, method, method of a track that states a flight technical error. `risks`: accuracy, integrity. `monitor`: six times of the chain, raise delay,
     /// clear delay, clear ratio, stale time. `times_ns`: lateness, ahead, retention.
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn new(
-        judging: (String, String, String),
+        judging: (String, String, String, Option<String>),
         risks: (f64, f64),
         monitor: ([f64; 6], f64, f64, f64, f64),
         rnp_m: f64,
@@ -38,7 +38,8 @@ impl LiveSettings {
         max_tracks: usize,
         digest: [u8; 32],
     ) -> PyResult<Self> {
-        let (format, track, method) = judging;
+        let (format, track, method, of_stated_fte) = judging;
+        let alerting = |id: String| Alerting::of(&id).map_err(|_| PyKeyError::new_err(id));
         let ([sample_period_s, sensor_latency_s, filter_s, computing_s, display_s, time_to_alert_s], raise, clear, ratio, stale) = monitor;
         let settings = rnp::Settings {
             chain: Chain { sample_period_s, sensor_latency_s, filter_s, computing_s, display_s, time_to_alert_s },
@@ -48,7 +49,7 @@ impl LiveSettings {
             stale_after_s: stale,
         };
         let judge = judge::Settings {
-            method: Alerting::of(&method).map_err(|_| PyKeyError::new_err(method))?,
+            method: alerting(method)?,
             accuracy: Risk::new(risks.0).map_err(refused)?,
             integrity: Risk::new(risks.1).map_err(refused)?,
             states: None,
@@ -63,6 +64,7 @@ impl LiveSettings {
             format: Format::of(&format).ok_or_else(|| PyKeyError::new_err(format))?,
             track: TrackId::new(&track).ok_or_else(|| PyKeyError::new_err(track))?,
             judge,
+            of_stated_fte: of_stated_fte.map(alerting).transpose()?,
             rnp: Metres::new(rnp_m),
             path,
             lateness_ns: times_ns.0,

@@ -54,7 +54,7 @@ def watch(
     path: Course = None,
     form: Form = None,
     method: Annotated[
-        str, typer.Option(help="tse-exact or anp-circle. [default: the first with --path or a run that has one, otherwise the second]")
+        str, typer.Option(help="tse-exact or anp-circle. [default: the first with --path or a track that states fte_m]")
     ] = "",
     track: Annotated[str, typer.Option(help="Name of a receiver's track.")] = "receiver",
     period_s: Annotated[float, typer.Option(help="Sample period of a track.")] = 1.0,

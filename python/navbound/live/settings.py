@@ -36,8 +36,9 @@ class Settings:
         RNP value in force where a record states none. [m]
     path : str, optional
         Runway (``LFPG/08R``) or route file. Without one the flight technical error is the record's own.
-    method : {"tse-exact", "anp-circle"}
-        Whose bound is compared with RNP. Default: the first with a path, the second without.
+    method : {"tse-exact", "anp-circle"}, optional
+        Whose bound is compared with RNP. Default: the first with a path and for every track from its first record on that states a flight
+        technical error, the second otherwise.
     track : str
         Name of a receiver's track.
     risk_accuracy, risk_integrity : float
@@ -80,9 +81,7 @@ class Settings:
     def __post_init__(self) -> None:
         if self.format not in FORMATS:
             raise InputError("format", self.format, domain=f"one of {', '.join(FORMATS)}")
-        if not self.method:
-            object.__setattr__(self, "method", METHODS[0] if self.path is not None else METHODS[1])
-        if self.method not in METHODS:
+        if self.method and self.method not in METHODS:
             raise InputError("method", self.method, domain=f"one of {', '.join(METHODS)}")
         if not 0 < self.rnp_m < float("inf"):
             raise InputError("rnp_m", self.rnp_m, "m", "(0, inf)")
@@ -93,6 +92,12 @@ class Settings:
             raise InputError("expiry_s", self.expiry_s, "s", "(0, 1e9)")
         if not 0 < self.max_tracks <= 1_000_000:
             raise InputError("max_tracks", self.max_tracks, "1", "[1, 1000000]")
+
+    @property
+    def methods(self) -> tuple[str, str]:
+        """Method of a track, and of one that states a flight technical error."""
+        total, navigation = METHODS
+        return (self.method, self.method) if self.method else (total if self.path is not None else navigation, total)
 
     @property
     def stale_s(self) -> float:
@@ -119,7 +124,7 @@ class Settings:
         path = None if self.path is None else path_of(self.path)
         try:
             return _core.LiveSettings(
-                (self.format, self.track, self.method),
+                (self.format, self.track, *self.methods),
                 (self.risk_accuracy, self.risk_integrity),
                 (chain, self.raise_delay_s, self.clear_delay_s, self.clear_ratio, self.stale_s),
                 self.rnp_m,

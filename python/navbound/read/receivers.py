@@ -22,6 +22,7 @@ MESSAGES: dict[str, str] = dict(_core.position_logs())
 
 _REASONS = {
     "accuracy_without_position": "accuracy of no position (GST or GBS without a GGA of its time)",
+    "contradicted": "position that another statement of its epoch speaks against",
     "damaged_message": "damaged message",
     "damaged_other_message": "damaged message of no position",
     "marked_invalid": "position marked invalid",
@@ -36,6 +37,7 @@ _REASONS = {
 _NOTES = {
     "circular_covariance": "without NAV-COV the covariance is circular, of hAcc (root of both horizontal variances) and vAcc",
     "worse_accuracy": "hAcc or vAcc is worse than NAV-COV beside it; the covariance was enlarged to it",
+    "worse_expected_errors": "the expected errors of GBS are worse than GST beside them; the covariance was enlarged to them",
     "datum": "datum {0} of the receiver is not WGS-84; positions are taken as they stand",
     "expected_errors": "without GST the expected errors of GBS stand for standard deviations",
     "no_separation": "GGA without the separation of the geoid: heights are left out",

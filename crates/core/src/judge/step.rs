@@ -199,6 +199,11 @@ impl Judge {
         &self.settings
     }
 
+    /// From now on the bound of another method is compared with RNP.
+    pub const fn judge_by(&mut self, method: Alerting) {
+        self.settings.method = method;
+    }
+
     /// The monitor: alert in force, open events, counters.
     pub const fn monitor(&self) -> &rnp::Monitor {
         &self.monitor

@@ -165,7 +165,7 @@ reasons! {
     /// A covariance without an inverse.
     SingularCovariance, "singular_covariance", Ok, "the covariance is singular: the axis pierces no surface";
     /// A covariance of zeros.
-    ZeroCovariance, "zero_covariance", Degraded, "covariance is zero";
+    ZeroCovariance, "zero_covariance", Degraded, "the covariance is zero along an axis";
     /// Navigation by DME ranges.
     KeptByDme, "kept_by_dme", Degraded, "without satellites: ranges to DME keep the position";
     /// Navigation by a VOR and a DME.

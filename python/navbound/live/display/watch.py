@@ -286,7 +286,7 @@ class Watch:
             "origin": self.origin,
             "rnp_m": s.rnp_m,
             "path": s.path,
-            "method": s.method,
+            "method": " or ".join(dict.fromkeys(s.methods)),
             "risk_accuracy": s.risk_accuracy,
             "risk_integrity": s.risk_integrity,
             "sample_period_s": s.sample_period_s,

@@ -54,7 +54,7 @@ def covariance_status(epochs: pl.DataFrame) -> pl.DataFrame:
         pl.when(~believed).then(pl.lit(None, pl.String))
         .when(pl.any_horizontal(c.is_null() for c in (ee, nn, en))).then(pl.lit("no_covariance"))
         .when(~positive).then(pl.lit("not_a_covariance"))
-        .when(ee + nn == 0).then(pl.lit("zero_covariance"))
+        .when(pl.any_horizontal(ee == 0, nn == 0, pl.col("cov_uu_m2") == 0)).then(pl.lit("zero_covariance"))
     )  # fmt: skip
     epochs = status.overridden(epochs, epochs.select(fault.alias("reason_id"))["reason_id"])
     return epochs.with_columns(pl.when(pl.col("status").is_in(status.USABLE)).then(pl.col(c)).alias(c) for c in COVARIANCE)

@@ -45,6 +45,8 @@ pub(super) enum Step {
     End { key: i64, kind: u32 },
     /// It is of the epoch `key` and holds a date, or none; whether it holds more.
     Date { key: i64, kind: u32, dated: Option<Dated>, kept: bool },
+    /// It has no time of its own and belongs to the unfinished epoch; of several the one with the largest number counts.
+    Beside { kind: u32, number: fn(&[u8]) -> f64 },
     /// It is an epoch of its own.
     Whole(Box<Position>),
     /// It is none.
@@ -88,6 +90,10 @@ impl Decoder {
                 let complete = self.epoch.put(key, Message { kind, record, body: body.to_vec() });
                 self.emit(&complete, out);
                 self.end_at_last(out);
+            }
+            Step::Beside { kind, number } => {
+                let message = Message { kind, record, body: body.to_vec() };
+                self.epoch.put_beside(message, |new, kept| number(&new.body) > number(&kept.body));
             }
             Step::End { key, kind } => {
                 self.begin(key, kind, out);

@@ -51,6 +51,16 @@ impl Epoch {
         complete
     }
 
+    /// A message without a time of its own: of the unfinished epoch, and one of a kind. Where an epoch was finished before it came, it counts for
+    /// the next one.
+    pub(super) fn put_beside(&mut self, message: Message, better: impl Fn(&Message, &Message) -> bool) {
+        match self.state.messages.iter_mut().find(|each| each.kind == message.kind) {
+            Some(kept) if better(&message, kept) => *kept = message,
+            Some(_) => {}
+            None => self.state.messages.push(message),
+        }
+    }
+
     /// A message of the epoch `key` that is not kept.
     pub(super) fn pass(&mut self, key: i64, kind: u32) {
         if self.state.key != Some(key) {

@@ -97,6 +97,8 @@ pub enum Reason {
     NotMeasured,
     /// Nothing was measured, by the quality of a sentence.
     NoFix,
+    /// Another statement of the same epoch says that there is no such position.
+    Contradicted,
     /// Second 60 on a day that had none.
     NoSuchLeapSecond,
     /// Nowhere on Earth, or at no time.
@@ -113,6 +115,7 @@ impl Reason {
             Self::MarkedInvalid => "marked_invalid",
             Self::NotMeasured => "no_position",
             Self::NoFix => "no_fix",
+            Self::Contradicted => "contradicted",
             Self::NoSuchLeapSecond => "no_such_leap_second",
             Self::OutsideDomain => "outside_domain",
         }
@@ -144,6 +147,8 @@ pub enum Note {
     Uncorrelated,
     /// A stated accuracy worse than the covariance beside it; the covariance was enlarged to it.
     WorseAccuracy,
+    /// The expected errors of GBS are worse than GST beside them; the covariance was enlarged to them.
+    WorseExpectedErrors,
     /// A datum that is not WGS-84.
     Datum(u8),
     /// The misleading-information risk of protection levels, coefficient and power of ten an hour.
@@ -160,6 +165,7 @@ impl Note {
             Self::ExpectedErrors => ("expected_errors", [0, 0]),
             Self::Uncorrelated => ("uncorrelated", [0, 0]),
             Self::WorseAccuracy => ("worse_accuracy", [0, 0]),
+            Self::WorseExpectedErrors => ("worse_expected_errors", [0, 0]),
             Self::Datum(datum) => ("datum", [datum as i32, 0]),
             Self::RiskOfLevels(coefficient, exponent) => ("risk_of_levels", [coefficient as i32, exponent as i32]),
             Self::NoSeparation => ("no_separation", [0, 0]),
@@ -243,6 +249,8 @@ impl Position {
     /// The position, or none where it lies nowhere or at no time, as whole messages with wrong contents give it.
     fn checked(mut self) -> Self {
         let on_earth = self.lat_rad.is_some_and(|lat| lat.abs() <= FRAC_PI_2) && self.lon_rad.is_some_and(|lon| lon.abs() <= TAU);
+        // A receiver that has no position yet writes zeros; no track stands on that point to the last bit.
+        let on_earth = on_earth && (self.lat_rad, self.lon_rad) != (Some(0.0), Some(0.0));
         let height = self.h_m.is_none_or(|h| h > LOWEST_M && h < HIGHEST_M);
         // A week beyond every time gives none.
         let dated = self.time.map_or(self.of_day.is_some(), |time| (0..LATEST_NS).contains(&time.nanoseconds()));
@@ -261,6 +269,19 @@ impl Position {
 /// Covariance of standard deviations whose correlations are not known \[m²\].
 fn uncorrelated(east_m: f64, north_m: f64, up_m: f64) -> [f64; 6] {
     [east_m * east_m, 0.0, north_m * north_m, 0.0, 0.0, up_m * up_m]
+}
+
+/// Ratio of variances up to which two statements of one epoch say the same: a tenth of the deviation. Provenance: ours \[1\].
+const SAME: f64 = 1.21;
+
+/// A covariance, enlarged where another statement of the same epoch is worse, and whether it was.
+fn no_better(own: [f64; 6], beside: Option<[f64; 6]>) -> ([f64; 6], bool) {
+    let [ee, en, nn, eu, nu, uu] = own;
+    let Some([east, _, north, _, _, up]) = beside else { return (own, false) };
+    let factor = |stated: f64, own: f64| if own > 0.0 && stated > SAME * own { stated / own } else { 1.0 };
+    let (h, v) = (factor(east + north, ee + nn), factor(up, uu));
+    let both = libm::sqrt(h * v);
+    ([ee * h, en * h, nn * h, eu * both, nu * both, uu * v], h > 1.0 || v > 1.0)
 }
 
 #[cfg(test)]

@@ -1,11 +1,13 @@
 //! NMEA 0183: GGA with GST (or GBS) and the speed of RMC of the same time of day, dated by RMC or ZDA.
 //!
+//! What RMC, GLL and GSA of the same epoch say against the position of GGA takes it away.
+//!
 //! Source: NMEA 0183 version 4 as receivers' manuals give it; standard. GGA has no date, and its height stands above the geoid.
 
 use super::decoder::Step;
 use super::epoch::{Message, of_kind};
-use super::{Absent, Fields, Note, OfDay, Position, Reason, uncorrelated};
-use crate::measured::GGA_QUALITIES;
+use super::{Absent, Fields, Note, OfDay, Position, Reason, no_better, uncorrelated};
+use crate::measured::{GGA_QUALITIES, GSA_DIMENSIONS, LEAST_SATELLITES, NMEA_MODES};
 use crate::time::{Calendar, Scale, from_calendar, from_unix, to_calendar, to_unix};
 use navbound_core::quantity::GpsTime;
 
@@ -17,6 +19,8 @@ const MINUTE_NS: i64 = 61 * SECOND_NS;
 const GGA: u32 = name(*b"GGA");
 const GST: u32 = name(*b"GST");
 const GBS: u32 = name(*b"GBS");
+const GLL: u32 = name(*b"GLL");
+const GSA: u32 = name(*b"GSA");
 const RMC: u32 = name(*b"RMC");
 const ZDA: u32 = name(*b"ZDA");
 
@@ -53,9 +57,12 @@ pub struct Dated {
 pub(super) fn step(body: &[u8], record: u64) -> Step {
     let fields = Sentence(body);
     let address = fields.get(0).and_then(|address| address.get(2..)).and_then(|address| <[u8; 3]>::try_from(address).ok());
-    let Some(kind) = address.map(name).filter(|kind| [GGA, GST, GBS, RMC, ZDA].contains(kind)) else { return Step::Passed };
+    let Some(kind) = address.map(name).filter(|kind| [GGA, GST, GBS, GLL, GSA, RMC, ZDA].contains(kind)) else { return Step::Passed };
+    if kind == GSA {
+        return if fields.number(2).is_some() { Step::Beside { kind, number: dimensions } } else { Step::Passed };
+    }
     // A receiver without a fix leaves its fields empty.
-    let Some(OfDay(key)) = fields.get(1).and_then(of_day) else {
+    let Some(OfDay(key)) = fields.get(if kind == GLL { 5 } else { 1 }).and_then(of_day) else {
         return if kind == GGA { Step::Whole(Box::new(Position::none(record, Reason::NoFix, fields.stated()))) } else { Step::Passed };
     };
     match kind {
@@ -63,10 +70,17 @@ pub(super) fn step(body: &[u8], record: u64) -> Step {
         RMC if fields.get(2) == Some(b"A") => {
             Step::Date { key, kind, dated: fields.get(9).and_then(short_date).and_then(|d| dated(d, key)), kept: true }
         }
-        RMC => Step::Date { key, kind, dated: None, kept: false },
+        RMC | GLL => Step::Date { key, kind, dated: None, kept: true },
         ZDA => Step::Date { key, kind, dated: fields.long_date().and_then(|d| dated(d, key)), kept: false },
+        GST if !fields.sizes(&[2, 3, 4, 6, 7, 8]) => Step::Malformed("a deviation of GST is no size"),
+        GBS if !fields.sizes(&[2, 3, 4]) => Step::Malformed("an expected error of GBS is no size"),
         _ => Step::Part { key, kind },
     }
+}
+
+/// Dimensions of the fix of a GSA sentence: a receiver of several systems writes one sentence each, and the system that has no satellite says 1.
+fn dimensions(gsa: &[u8]) -> f64 {
+    Sentence(gsa).number(2).unwrap_or(0.0)
 }
 
 /// Quality, satellites, HDOP, altitude, separation; latitude and longitude.
@@ -85,28 +99,67 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
     let measured = gga.number(6).is_some_and(|quality| GGA_QUALITIES.iter().any(|each| f64::from(*each) == quality));
     let (altitude, separation) = (gga.number(9), gga.number(11));
     let of_gst = sentence(GST).and_then(|gst| covariance(&gst));
-    let of_gbs = if of_gst.is_some() { None } else { sentence(GBS).and_then(|gbs| expected_errors(&gbs)) };
-    // Only the sentence of the same time, and one that says it is valid, is kept.
+    let expected = sentence(GBS).and_then(|gbs| expected_errors(&gbs));
+    let enlarged = of_gst.map(|own| no_better(own, expected));
+    let of_gbs = if of_gst.is_some() { None } else { expected };
+    let against = contradiction(&gga, &sentence);
     let speed_mps = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
     let track_rad = sentence(RMC).and_then(|rmc| rmc.number(8)).filter(|degrees| (0.0..=360.0).contains(degrees)).map(f64::to_radians);
     let usable = measured && lat_rad.is_some() && lon_rad.is_some();
+    let no_fix = || Absent { reason: Reason::NoFix, stated: gga.stated() };
+    let worse = enlarged.is_some_and(|(_, worse)| worse).then_some(Note::WorseExpectedErrors);
     Some(Position {
         record,
         of_day: of_day(gga.get(1)?),
         lat_rad,
         lon_rad,
         h_m: altitude.zip(separation).map(|(altitude, separation)| altitude + separation),
-        covariance_m2: of_gst.or(of_gbs),
+        covariance_m2: enlarged.map(|(covariance, _)| covariance).or(of_gbs),
         ground_speed_mps: speed_mps,
         ground_track_rad: track_rad,
         n_sv: gga.number(7).map(|count| count as u32),
         hdop: gga.number(8),
-        absent: (!usable).then(|| Absent { reason: Reason::NoFix, stated: gga.stated() }),
+        absent: if usable { against.map(|stated| Absent { reason: Reason::Contradicted, stated }) } else { Some(no_fix()) },
         fields: if speed_mps.is_some() { FIELDS_AND_SPEED } else { FIELDS },
         covariance_from: if of_gst.is_some() { Some("GST") } else { of_gbs.map(|_| "GBS") },
-        notes: [(altitude.is_some() && separation.is_none()).then_some(Note::NoSeparation), of_gbs.map(|_| Note::ExpectedErrors)],
+        notes: [(altitude.is_some() && separation.is_none()).then_some(Note::NoSeparation), worse.or(of_gbs.map(|_| Note::ExpectedErrors))],
         ..Position::default()
     })
+}
+
+/// What the sentences of an epoch say against the position of its GGA.
+fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sentence<'a>>) -> Option<String> {
+    let place = |of: &Sentence<'_>, at: usize| of.angle(at, [b"N", b"S"]).zip(of.angle(at + 2, [b"E", b"W"]));
+    let own = place(gga, 2);
+    // Status, mode, position.
+    let stated = [("RMC", RMC, 2, 12, 3), ("GLL", GLL, 6, 7, 1)].into_iter().find_map(|(name, kind, status, mode, at)| {
+        let other = sentence(kind)?;
+        let text = |at: usize| other.get(at).filter(|text| !text.is_empty()).map(String::from_utf8_lossy);
+        if let Some(status) = text(status).filter(|status| status != "A") {
+            return Some(format!("{name} status {status}"));
+        }
+        if let Some(mode) = text(mode).filter(|mode| !mode.bytes().all(|letter| NMEA_MODES.contains(&letter))) {
+            return Some(format!("{name} mode {mode}"));
+        }
+        let apart_m = apart_m(own?, place(&other, at)?);
+        let resolution_m = gga.resolution_m(2) + other.resolution_m(at);
+        (apart_m > ONE_PLACE_M + resolution_m).then(|| format!("position of {name} {apart_m:.0} m away"))
+    });
+    let flat = || sentence(GSA).map(|gsa| dimensions(gsa.0)).filter(|dimensions| *dimensions < GSA_DIMENSIONS);
+    let few = || gga.number(7).filter(|count| *count < f64::from(LEAST_SATELLITES));
+    stated.or_else(|| flat().map(|fix| format!("GSA fix {fix}"))).or_else(|| few().map(|count| format!("{count} satellites")))
+}
+
+/// Distance within which two sentences of one time give one place: receivers smooth and extrapolate them differently. Provenance: ours \[m\].
+const ONE_PLACE_M: f64 = 30.0;
+/// Provenance: derived, WGS-84's mean radius rounded upwards; for a distance that decides at tens of metres \[m\].
+const EARTH_M: f64 = 6.372e6;
+
+/// Distance of two near places.
+fn apart_m((lat, lon): (f64, f64), (other_lat, other_lon): (f64, f64)) -> f64 {
+    let turn = core::f64::consts::TAU;
+    let east = libm::remainder(other_lon - lon, turn) * libm::cos(lat);
+    EARTH_M * libm::hypot(other_lat - lat, east)
 }
 
 /// Number of the accuracy beside which no position stands.
@@ -164,6 +217,17 @@ impl<'a> Sentence<'a> {
         let angle = degrees(self.get(at)?)?.to_radians();
         let hemisphere = self.get(at + 1)?;
         if hemisphere == positive { Some(angle) } else { (hemisphere == negative).then_some(-angle) }
+    }
+
+    /// Whether each of these is empty, absent or a number that is not negative.
+    fn sizes(&self, which: &[usize]) -> bool {
+        which.iter().all(|at| self.get(*at).is_none_or(|text| text.is_empty() || number(text).is_some_and(|size| size >= 0.0)))
+    }
+
+    /// Length of one unit of the last digit of the angle in minutes.
+    fn resolution_m(&self, at: usize) -> f64 {
+        let decimals = self.get(at).and_then(|text| text.iter().position(|byte| *byte == b'.').map(|point| text.len() - point - 1));
+        EARTH_M * (1.0 / 60.0_f64).to_radians() * libm::pow(10.0, -(decimals.unwrap_or(0) as f64))
     }
 
     fn long_date(&self) -> Option<(i32, u8, u8)> {

@@ -91,6 +91,7 @@ fn a_week_beyond_every_time_is_outside_its_domain() {
         let mut body = vec![0; 68];
         body[4..6].copy_from_slice(&week.to_le_bytes());
         body[6] = 1;
+        body[8..16].copy_from_slice(&0.5_f64.to_le_bytes());
         let mut out = Vec::new();
         let mut decoder = Decoder::new(Kind::Sbf, Ends::WithNext);
         decoder.take(&Frame::Sbf { block: 4007, body: &body }, 1, &mut out);
@@ -183,6 +184,82 @@ fn the_speed_is_that_of_a_valid_rmc_of_the_same_time() {
     let gst = "GPGST,120001.00,1.0,,,,2.0,3.0,4.0".to_owned();
     let log = read_sentences(&[&gga(1), &rmc(1, "A", "36.0"), &rmc(1, "A", "37.0"), &gst].map(String::as_str));
     assert!(log.positions.len() == 1 && log.positions[0].covariance_m2.is_some());
+}
+
+const ZDA: &str = "GPZDA,120000.00,22,11,2026,00,00";
+const GGA: &str = "GPGGA,120000.00,4900.0000,N,00230.0000,E,1,08,1.0,100.0,M,47.0,M,,";
+const GST: &str = "GPGST,120000.00,1.0,,,,2.0,3.0,4.0";
+
+/// What the sentences of one time say: reasons of those that are no position.
+fn reasons(bodies: &[&str]) -> Vec<(&'static str, String)> {
+    read_sentences(bodies).left_out.into_iter().map(|each| (each.reason, each.example)).collect()
+}
+
+#[test]
+fn what_another_sentence_says_against_a_position_takes_it_away() {
+    let rmc = |status: &str, mode: &str, minutes: &str| format!("GPRMC,120000.00,{status},{minutes},N,00230.0000,E,0.0,,221126,,,{mode},V");
+    let gll = |status: &str, mode: &str| format!("GPGLL,4900.0000,N,00230.0000,E,120000.00,{status},{mode}");
+    let gsa = |talker: &str, fix: u8| format!("{talker}GSA,A,{fix},01,02,03,04,,,,,,,,,2.0,1.0,1.7");
+    for (other, says) in [
+        (rmc("V", "N", "4900.0000"), "RMC status V"),
+        (rmc("A", "S", "4900.0000"), "RMC mode S"),
+        (rmc("A", "E", "4900.0000"), "RMC mode E"),
+        (rmc("A", "M", "4900.0000"), "RMC mode M"),
+        (rmc("A", "A", "4901.0000"), "position of RMC 1854 m away"),
+        (gll("V", "A"), "GLL status V"),
+        (gll("A", "N"), "GLL mode N"),
+        (gsa("GP", 1), "GSA fix 1"),
+        (gsa("GP", 2), "GSA fix 2"),
+    ] {
+        // Before the position, behind it, and behind its accuracy.
+        for order in [[ZDA, &other, GGA, GST], [ZDA, GGA, &other, GST], [ZDA, GGA, GST, &other]] {
+            if order[1].contains("GSA") {
+                continue; // It has no time: before the first sentence of an epoch it is of the one before.
+            }
+            assert_eq!(reasons(&order), [("contradicted", says.to_owned())], "{order:?}");
+        }
+    }
+    for other in [
+        rmc("A", "A", "4900.0000"),
+        rmc("A", "D", "4900.0000"),
+        rmc("A", "", "4900.0000"),
+        // 18.5 m, and as far as two decimals can be.
+        rmc("A", "A", "4900.0100"),
+        rmc("A", "R", "4900.02"),
+        gll("A", "A"),
+        gsa("GN", 3),
+    ] {
+        assert_eq!(reasons(&[ZDA, GGA, &other, GST]), [], "{other}");
+    }
+    // The system without a satellite says that it has no fix.
+    for systems in [[gsa("GP", 3), gsa("GL", 1)], [gsa("GL", 1), gsa("GP", 3)]] {
+        assert_eq!(reasons(&[ZDA, GGA, &systems[0], &systems[1], GST]), []);
+    }
+    // A sentence of another time says nothing of this one.
+    assert_eq!(reasons(&[ZDA, GGA, GST, &rmc("V", "N", "4900.0000").replace("120000", "120001")]), []);
+    assert_eq!(reasons(&[ZDA, &GGA.replace(",08,", ",00,"), GST]), [("contradicted", "0 satellites".to_owned())]);
+}
+
+#[test]
+fn the_worse_of_two_accuracies_of_one_epoch_counts() {
+    let log = read_sentences(&[ZDA, GGA, GST, "GPGBS,120000.00,900.0,900.0,900.0,,,,"]);
+    let [ee, _, nn, _, _, uu] = log.positions[0].covariance_m2.unwrap();
+    assert!(ee >= 9e5 * 0.6 && nn >= 9e5 * 0.3 && (ee + nn) / (2.0 * 8.1e5) > 0.999 && (uu / 8.1e5 - 1.0).abs() < 1e-12);
+    assert_eq!(log.notes, [Note::WorseExpectedErrors]);
+    let log = read_sentences(&[ZDA, GGA, GST, "GPGBS,120000.00,1.0,1.0,1.0,,,,"]);
+    assert_eq!((log.positions[0].covariance_m2, log.notes.as_slice()), (Some([9.0, 0.0, 4.0, 0.0, 0.0, 16.0]), &[][..]));
+    // A deviation that is no size is damage, and is counted.
+    for gst in ["GPGST,120000.00,1.0,,,,-2.0,3.0,4.0", "GPGST,120000.00,1.0,,,,x,3.0,4.0"] {
+        let log = read_sentences(&[ZDA, GGA, gst]);
+        assert_eq!((log.positions[0].covariance_m2, log.left_out.len()), (None, 1), "{gst}");
+    }
+}
+
+#[test]
+fn the_zeros_of_a_receiver_without_a_position_are_none() {
+    let at = |lat: &str, lon: &str| reasons(&[ZDA, &GGA.replace("4900.0000", lat).replace("00230.0000", lon), GST]);
+    assert_eq!(at("0000.0000", "00000.0000").first().map(|(reason, _)| *reason), Some("outside_domain"));
+    assert_eq!(at("0000.0000", "00000.0001"), []);
 }
 
 proptest! {

@@ -4,7 +4,8 @@
 
 use super::decoder::Step;
 use super::epoch::{Message, of_kind};
-use super::{Absent, Fields, Note, Position, Reason};
+use super::{Absent, Fields, Note, Position, Reason, no_better};
+use crate::measured::LEAST_SATELLITES;
 use crate::receiver::bits::{f32_at, i16_at, i32_at, u8_at, u16_at, u32_at};
 use crate::time::{Calendar, Scale, from_calendar, from_week};
 use navbound_core::quantity::GpsTime;
@@ -16,7 +17,9 @@ const COV: u32 = 0x0136;
 const END: u32 = 0x0161;
 const PL: u32 = 0x0162;
 /// 3-D, and 3-D with dead reckoning.
-const FIXES: [u8; 2] = [3, 4];
+const FIXES: [u8; 2] = [ALONE, 4];
+/// 3-D by satellites alone.
+const ALONE: u8 = 3;
 /// Frame of NAV-PL: semi-major and semi-minor axis of the horizontal ellipse, and vertical.
 const ELLIPSE: u8 = 3;
 
@@ -86,17 +89,20 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
 }
 
 fn absent(pvt: &[u8], time: Option<GpsTime>) -> Option<Absent> {
-    let (valid, fix, flags) = (u8_at(pvt, 11)?, u8_at(pvt, 20)?, u8_at(pvt, 21)?);
+    let (valid, fix, flags, satellites) = (u8_at(pvt, 11)?, u8_at(pvt, 20)?, u8_at(pvt, 21)?, u32::from(u8_at(pvt, 23)?));
     let reason = if time.is_none() {
         Reason::TimeNotValid
     } else if !FIXES.contains(&fix) || flags & 1 == 0 {
         Reason::NoFix3d
     } else if u8_at(pvt, 78)? & 1 == 1 {
         Reason::MarkedInvalid
+    } else if fix == ALONE && satellites < LEAST_SATELLITES {
+        Reason::Contradicted
     } else {
         return None;
     };
-    Some(Absent { reason, stated: format!("fixType {fix}, gnssFixOk {}, validTime {}", flags & 1, valid >> 1 & 1) })
+    let valid_time = valid >> 1 & 1;
+    Some(Absent { reason, stated: format!("fixType {fix}, gnssFixOk {}, validTime {valid_time}, numSV {satellites}", flags & 1) })
 }
 
 /// GPS time of NAV-TIMEGPS, where week and time of week are both valid.
@@ -134,19 +140,6 @@ fn covariance(message: &[u8]) -> Option<[f64; 6]> {
     let term = |at: usize| f32_at(message, at).map(f64::from);
     let [nn, ne, nd, ee, ed, dd] = [term(16)?, term(20)?, term(24)?, term(28)?, term(32)?, term(36)?];
     Some([ee, ne, nn, -ed, -nd, dd])
-}
-
-/// Ratio of variances up to which hAcc and vAcc say the same as NAV-COV: a tenth of the deviation. Provenance: ours \[1\].
-const SAME: f64 = 1.21;
-
-/// The covariance, enlarged where the accuracies of the same epoch are worse, and whether it was.
-fn no_better(exact: [f64; 6], accuracies: Option<[f64; 6]>) -> ([f64; 6], bool) {
-    let [ee, en, nn, eu, nu, uu] = exact;
-    let Some([east, _, north, _, _, up]) = accuracies else { return (exact, false) };
-    let factor = |stated: f64, own: f64| if own > 0.0 && stated > SAME * own { stated / own } else { 1.0 };
-    let (h, v) = (factor(east + north, ee + nn), factor(up, uu));
-    let both = libm::sqrt(h * v);
-    ([ee * h, en * h, nn * h, eu * both, nu * both, uu * v], h > 1.0 || v > 1.0)
 }
 
 /// A circle: hAcc is the root of both horizontal variances together.
