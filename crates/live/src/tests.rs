@@ -445,9 +445,9 @@ fn a_mode_that_no_word_can_have_costs_no_position() {
 #[test]
 fn a_track_that_states_its_deviation_is_judged_by_its_total_error() {
     let navigation_alone = || {
-        let given = settings();
-        let judge = judge::Settings { method: Alerting::of("anp-circle").unwrap(), ..given.judge };
-        Settings { judge, of_stated_fte: Some(given.judge.method), ..given }
+        let base = settings();
+        let judge = judge::Settings { method: Alerting::of("anp-circle").unwrap(), ..base.judge };
+        Settings { judge, of_stated_fte: Some(base.judge.method), ..base }
     };
     // A hundred times RNP aside at a navigation error of 10 m.
     let aside = |k: u32| format!(",\"fte_m\":{},\"course_rad\":0.0,\"sigma_m\":10.0", if k < 10 { 20 } else { 55_560 });

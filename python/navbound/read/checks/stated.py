@@ -43,6 +43,21 @@ def worse_than_covariance(epochs: pl.DataFrame, least_m: Sequence[pl.Expr]) -> p
     return epochs.with_columns(pl.when(stated_m > largest_m).then(stated_m).alias(WORSE))
 
 
+BESIDE_LEVEL = "beside_level_m"
+"""The largest horizontal accuracy or error that a row of a table of levels states beside them, where it is above its level [m]."""
+
+
+def worse_than_level(rows: pl.DataFrame) -> pl.DataFrame:
+    """Add `BESIDE_LEVEL` where a table of levels states accuracies that the indicators do not use."""
+    beside = [pl.col(name) for name in ("epu_m", "unread_accuracy_m") if name in rows.columns]
+    axes = [pl.col(name) ** 2 for name in ("sigma_e_m", "sigma_n_m") if name in rows.columns]
+    beside += [pl.sum_horizontal(axes).sqrt()] if axes else []
+    if not beside or "hpl_m" not in rows.columns:
+        return rows
+    largest = pl.max_horizontal(beside)
+    return rows.with_columns(pl.when(largest > pl.col("hpl_m")).then(largest).alias(BESIDE_LEVEL))
+
+
 def against_itself(rows: pl.DataFrame) -> pl.DataFrame:
     """Replace the columns of errors and of the alert by `ERROR` and `ALERT`; they are absent where the table has none of these."""
     errors = [pl.col(name).abs() for name in _LENGTHS if name in rows.columns]

@@ -75,7 +75,7 @@ KINDS: tuple[Kind, ...] = (
             "valid is_valid validity position_valid pos_valid gps_valid gnss_valid fix_valid data_valid nav_valid solution_valid "
             "location_valid usable reliable trusted healthy gps_ok gnss_ok position_ok pos_ok nav_ok integrity_ok raim_ok "
             "fix_ok gnss_fix_ok "
-            "gnssfixok gps_available gnss_available raim_available"
+            "gnssfixok available is_available gps_available gnss_available raim_available integrity_available pl_valid hpl_valid xpl_valid"
         ),
         _NO,
         _YES,
@@ -94,6 +94,7 @@ KINDS: tuple[Kind, ...] = (
         "invalid",
         _words(
             "mode nav_mode navigation_mode pos_mode position_mode posmode mode_indicator positioning_mode sol_status solution_status "
+            "gps_primary gnss_primary "
             "solution_type pos_type position_type nav_status navigation_status gps_status gnss_status position_status"
         ),
         _words(
@@ -143,7 +144,8 @@ KINDS: tuple[Kind, ...] = (
         _words(
             "alert alert_state alarm raim_alert raim_warning raim_fault raim_alarm integrity_alert integrity_warning integrity_alarm "
             "integrity_lost loss_of_integrity loi fault fault_flag fault_detected failure gps_fault gnss_fault nav_fault warning caution "
-            "warning_flag spoofing spoofed spoofing_detected spoof_flag jamming jammed jamming_detected interference invalid is_invalid "
+            "warn warning_flag "
+            "spoofing spoofed spoofing_detected spoof_flag jamming jammed jamming_detected interference invalid is_invalid "
             "position_invalid unreliable outlier misleading hmi error_flag do_not_use not_valid degraded"
         ),
         frozenset(),
@@ -164,6 +166,7 @@ _SPEAKS = _words(
     "vacc pacc sigma std stddev epu anp epe eph epv ehpe cep drms rms fom hfom vfom "
     "nse tse fte err coasting coast extrapolated age nsat nsats sats satellites sat "
     "epx epy epd hrms vrms 2drms cep50 cep95 r95 sd sdev ehe eve hdop pdop pl level major minor outage dr mlat tisb datum covariance type "
+    "available availability exceeded exceedance herr verr poserr "
     "confidence outlier misleading degraded lost loss solution denied reckoning estimated predicted propagated simulated source "
 )
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
@@ -171,12 +174,14 @@ _SPEAKS = _words(
 
 def kind_of(plain_name: str) -> Kind | None:
     """The kind of statement that a column of this name makes; None for any other column."""
-    return _BY_NAME.get(plain_name.replace("_", ""))
+    name = plain_name.replace("_", "")
+    several = _BY_NAME.get(name.removesuffix("s"))
+    return _BY_NAME.get(name, several if several is not None and several.effect == "alert" else None)
 
 
 _ACCURACY = _words(
     "acc hacc pacc accuracy uncertainty sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms rms hrms hfom "
-    "fom nse tse fte err error errors"
+    "fom nse tse fte err error errors herr poserr"
 )
 """Parts of names of a horizontal accuracy or error, a length. Provenance: ours."""
 _NO_POSITION = _words(
@@ -193,7 +198,8 @@ def _parts(name: str) -> list[str]:
 
 def speaks_of_integrity(name: str) -> bool:
     """Whether the name of a column that nothing reads, as the file writes it, is one of a statement of integrity."""
-    return not _SPEAKS.isdisjoint([*_parts(name), name.lower()])
+    parts = [*_parts(name), name.lower()]
+    return not _SPEAKS.isdisjoint([*parts, *(part.removesuffix("s") for part in parts)])
 
 
 def speaks_of_accuracy(name: str) -> bool:

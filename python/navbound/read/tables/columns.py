@@ -144,7 +144,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("rc_m", 0.0, _INF, m="rc", nm="rc_nm"),
     _q("nac_p", 0.0, 15.0, **{"1": "nacp nac_p"}),
     _q("nic", 0.0, 15.0, **{"1": "nic"}),
-    _q("n_sv", 0.0, 255.0, **{"1": "ns n_sats satellites"}),
+    _q("n_sv", 0.0, 255.0, **{"1": "ns nsv num_sv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites"}),
     _q("track", 0.0, 0.0, text="icao24 icao track_id flight_id aircraft_id"),
     _q("callsign", 0.0, 0.0, text="callsign flight"),
     _q("hpl_m", 0.0, 1e9, m="hpl"),
@@ -344,6 +344,8 @@ def assign(
     kinds = {name: kind_of(_plain(name)[0]) for name in free}
     if {_plain(name)[0] for name in names} & TRANSPONDER:
         kinds.pop("alert", None)
+    # The mode of a table of levels is a word of the method that gave them, or one against the position.
+    kinds |= {columns[name].name: kind_of(name) for name in ("mode",) if name in columns}
     statements = [(name, kind) for name, kind in kinds.items() if kind is not None]
     stating = {name for name, _ in statements}
     return Assignment(columns, times, [n for n in free if n not in stating], statements)

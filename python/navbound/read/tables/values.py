@@ -132,11 +132,12 @@ class Values:
         self._see_heights(part)
         if tuple(self._required) == POSITION:
             return self._reported(part, frame)
+        part = stated.worse_than_level(part)
         return stated.with_statements(part, self._statements(frame))
 
     def _with_accuracy(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The largest number of the columns that nothing reads though they speak of an accuracy; it bounds nothing."""
-        lengths = self._mapping.accuracies if tuple(self._required) == POSITION else {}
+        lengths = self._mapping.accuracies
         known = {name: frame[name] for name in lengths if not _no_field(frame.schema[name])}
         values = [(raw.cast(pl.Float64, strict=False).abs().fill_nan(None) * lengths[name]).alias(name) for name, raw in known.items()]
         if not values:
@@ -198,7 +199,10 @@ class Values:
     def _statements(self, frame: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
         """What columns of validity and of alerts state."""
         stated = [(name, kind.effect, statements.stated(kind, frame[name])) for name, kind in self._mapping.statements]
+        read = {column.name for column in self._mapping.columns.values()}
         for name, _, each in stated:
+            if name in read:
+                continue
             self._unknown.setdefault(name, {}).update(dict.fromkeys(each.unknown))
         return stated
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,7 @@ import polars as pl
 from navbound import gnss, sbas, status
 from navbound.errors import ConflictError, FormatError, InputError
 from navbound.read.checks.refusals import of_navigation, of_observations, rejections, require_most_epochs, skipped_words
-from navbound.read.checks.stated import ALERT
+from navbound.read.checks.stated import ALERT, BESIDE_LEVEL
 from navbound.read.tables.epochs import read
 from navbound.read.truth import Truth, with_error, with_truth
 from navbound.run.inputs.solving import Solving, require_same_time
@@ -69,6 +69,10 @@ class Part:
         Words that must stand beside levels that no integrity rests on; empty for others.
     ranges : DataFrame, optional
         Ranges with their errors, for the Stanford-ESA diagram; columns of :func:`navbound.kpi.stanford_esa`.
+    unread : list of str
+        Columns, or words of columns, that speak of integrity by their name and are not understood.
+    n_stated_worse : int
+        Usable epochs at which the file states an accuracy or an error above its horizontal protection level that no indicator uses.
     """
 
     epochs: pl.DataFrame
@@ -77,6 +81,8 @@ class Part:
     notes: list[str]
     experimental: str = ""
     ranges: pl.DataFrame | None = None
+    unread: list[str] = field(default_factory=list)
+    n_stated_worse: int = 0
 
 
 def from_table(path: Path, truth: Truth, needs: Sequence[str] = ("hpl_m",)) -> Part:
@@ -118,7 +124,22 @@ def from_table(path: Path, truth: Truth, needs: Sequence[str] = ("hpl_m",)) -> P
     rejected = [one.model_dump() for one in refused]
     # Columns of Error Extraction say in their own name what they are.
     of_extraction = any(reading.columns.get(name, "").startswith("ee_") for name in ("hpl_m", "vpl_m"))
-    return Part(uniform(epochs), reading.source.n_rows or 0, rejected, notes, sbas.EXTRACTION_LABEL if of_extraction else "")
+    return Part(
+        uniform(epochs),
+        reading.source.n_rows or 0,
+        rejected,
+        notes,
+        sbas.EXTRACTION_LABEL if of_extraction else "",
+        unread=reading.unread,
+        n_stated_worse=_beside_level(epochs),
+    )
+
+
+def _beside_level(epochs: pl.DataFrame) -> int:
+    if BESIDE_LEVEL not in epochs.columns:
+        return 0
+    usable = pl.col("status").is_in(status.USABLE) if "status" in epochs.columns else pl.lit(value=True)
+    return epochs.filter(usable & pl.col(BESIDE_LEVEL).is_not_null()).height
 
 
 def _without_alerts(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -278,7 +299,8 @@ def uniform(epochs: pl.DataFrame) -> pl.DataFrame:
         (pl.col(name) if name in epochs.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in SCHEMA.items()
     )
     horizontal = (pl.col("nse_e_m") ** 2 + pl.col("nse_n_m") ** 2).sqrt()
-    # Components stand above a size that is stated beside them: they are what the indicators take.
+    # Of a size and components of one error the larger counts; one component alone is no error of both axes.
+    parts = pl.when(horizontal.is_null() & pl.col("hpe_m").is_not_null()).then(pl.max_horizontal(pl.col("nse_e_m", "nse_n_m").abs()))
     return filled.with_columns(
-        hpe_m=pl.coalesce(horizontal, "hpe_m"), vpe_m=pl.coalesce(pl.col("nse_u_m").abs(), pl.col("vpe_m").abs())
+        hpe_m=pl.max_horizontal(horizontal, "hpe_m", parts), vpe_m=pl.max_horizontal(pl.col("nse_u_m").abs(), pl.col("vpe_m").abs())
     ).sort("time_ns", maintain_order=True)

@@ -36,6 +36,8 @@ class Stored:
     rejected: list[dict[str, Any]]
     notes: list[str]
     experimental: str
+    unread: list[str]
+    n_stated_worse: int
     digests: dict[str, str]
     source: Source
 
@@ -111,6 +113,8 @@ def _remember(folder: Path, key: str, source: Source, part: Part) -> Stored:
         "rejected": part.rejected,
         "notes": part.notes,
         "experimental": part.experimental,
+        "unread": part.unread,
+        "n_stated_worse": part.n_stated_worse,
     }
     try:
         # Not before: a run that is refused at its first file leaves nothing behind.

@@ -29,6 +29,7 @@ from navbound.run.inputs.solving import Solving
 from navbound.run.summary.consistency import consistency_of
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import copied, of_level
+from navbound.run.verdict.results import beside_words, unread_words
 from navbound.run.verdict.words import COPIED
 from navbound.storage import folders
 from navbound.table.columns import COVARIANCE
@@ -265,12 +266,23 @@ def _consistency(parts: list[Stored]) -> tuple[CovarianceConsistency | None, lis
 def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsistency | None) -> Summary:
     names = ", ".join(each.level.id for each in result.levels)
     is_copied = _copied(parts)
-    decided = rule.of_levels([_facts(each, result, is_copied=is_copied) for each in result.levels])
+    n_worse = sum(part.n_stated_worse for part in parts)
+    unread = list(dict.fromkeys(each for part in parts for each in part.unread))
+    doubted = is_copied or n_worse > 0
+    decided = rule.of_levels([_facts(each, result, doubted=doubted) for each in result.levels])
     verdict = Verdict(
         id=decided,
         # A service level is no RNP: what its id says stands in the words.
         inside=None,
-        words=" ".join([*levels_verdict(decided), *([COPIED] if is_copied else []), *performance_words(result)]),
+        words=" ".join(
+            [
+                *levels_verdict(decided),
+                *([COPIED] if is_copied else []),
+                *beside_words(n_worse, unread),
+                *performance_words(result),
+                *unread_words(unread),
+            ]
+        ),
         requirement=names,
         method="performance",
         share_inside=None,
@@ -280,6 +292,8 @@ def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsis
         n_unjudged=result.n_expected - result.n_solution,
         n_missing=result.n_missing,
         n_implausible=0,
+        n_stated_worse=n_worse,
+        unread=unread,
         worst_accuracy=None,
         worst_integrity=None,
         truth_known=result.truth_known,
@@ -325,7 +339,7 @@ def _copied(parts: list[Stored]) -> bool:
     return bool(n_known > 0 and n_same >= rule.COPIED_SHARE * n_known)
 
 
-def _facts(level: LevelResult, result: Performance, *, is_copied: bool) -> rule.LevelFacts:
+def _facts(level: LevelResult, result: Performance, *, doubted: bool) -> rule.LevelFacts:
     return rule.LevelFacts(
         n_expected=level.n_expected,
         n_solution=level.n_solution,
@@ -333,7 +347,7 @@ def _facts(level: LevelResult, result: Performance, *, is_copied: bool) -> rule.
         n_misleading_events=level.n_mi_events + level.n_hazard_events,
         p_misleading=of_level(level, result.period_s),
         truth_known=_errors_known(level, result),
-        copied=is_copied,
+        doubted=doubted,
     )
 
 

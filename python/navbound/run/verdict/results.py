@@ -51,11 +51,15 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
             f"Between epochs nothing is known: {verdict.n_long_steps} steps are longer than a position takes to become stale, "
             f"the longest {verdict.longest_step_s:.6g} s."
         )
-    if verdict.unread:
-        parts.append(f"Not understood and not used, though the names speak of accuracy or integrity: {'; '.join(verdict.unread)}.")
+    parts += unread_words(verdict.unread)
     parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
     parts += truth_words(verdict)
     return " ".join(parts)
+
+
+def unread_words(unread: Sequence[str]) -> list[str]:
+    """What a file says of accuracy or integrity that was not understood; nothing where there is none."""
+    return [f"Not understood and not used, though the names speak of accuracy or integrity: {'; '.join(unread)}."] if unread else []
 
 
 def _assumed(verdict: Verdict, covariance: CovarianceOrigin) -> str:
@@ -152,6 +156,17 @@ def _not_shown(verdict: Verdict) -> list[str]:
             "integrity was compared without a level."
         )
     return why
+
+
+def beside_words(n_epochs: int, unread: Sequence[str]) -> list[str]:
+    """That a table states what its own levels cannot hold; nothing where it does not."""
+    if not n_epochs:
+        return []
+    return [
+        f"Not shown: the file itself states an accuracy or an error (EPU, sigma) above its horizontal protection level at {n_epochs} "
+        f"{'epoch' if n_epochs == 1 else 'epochs'}."
+        f"{_read_as_metres(unread)}"
+    ]
 
 
 def _read_as_metres(unread: Sequence[str]) -> str:

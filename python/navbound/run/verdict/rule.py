@@ -109,8 +109,8 @@ class LevelFacts:
         Largest probability of as many for a level that keeps its integrity risk; None where there are none.
     truth_known : bool
         Errors are known.
-    copied : bool
-        Where they are known the truth is the estimate itself.
+    doubted : bool
+        The truth is the estimate itself, or the file states an accuracy or an error above its own levels.
     """
 
     n_expected: int
@@ -119,7 +119,7 @@ class LevelFacts:
     n_misleading_events: int
     p_misleading: float | None
     truth_known: bool
-    copied: bool = False
+    doubted: bool = False
 
 
 _GRAVEST: tuple[VerdictId, ...] = ("not_believable", "nothing_judged", "outside", "not_shown", "inside")
@@ -138,7 +138,7 @@ def _of_level(facts: LevelFacts) -> VerdictId:
         return "nothing_judged"
     if facts.n_solution - facts.n_available > (1.0 - LEAST_SHARE) * facts.n_expected:
         return "outside"
-    if facts.copied or facts.n_misleading_events or not facts.truth_known or not facts.n_available >= LEAST_SHARE * facts.n_expected:
+    if facts.doubted or facts.n_misleading_events or not facts.truth_known or not facts.n_available >= LEAST_SHARE * facts.n_expected:
         return "not_shown"
     return "inside"
 

@@ -1,0 +1,65 @@
+"""What a table of errors and levels states beside them counts, or is named in the verdict."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+import navbound
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from navbound.records.run import Verdict
+
+N = 300
+
+
+def verdict(folder: Path, column: str, value: object) -> Verdict:
+    """Of a table that is inside its limits (HPL 20 m, error 1 m) but for one more column."""
+    rows = [f"time,hpl,vpl,hpe,vpe,{column}", *(f"{1_400_000_000 + k},20,25,1,1,{value}" for k in range(N))]
+    (folder / "levels.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    return navbound.evaluate([folder / "levels.csv"], levels="APV-I").summary.verdict
+
+
+@pytest.mark.parametrize(
+    ("column", "value"), [("note", 1), ("epu", 19), ("sigma_n_m", 19), ("tse", 19), ("NumSat", 9), ("mode", "pa"), ("faults", 0)]
+)
+def test_what_does_not_contradict_a_level_changes_nothing(column: str, value: object, tmp_path: Path) -> None:
+    assert verdict(tmp_path, column, value).id == "inside"
+
+
+@pytest.mark.parametrize(
+    ("column", "value"), [("epu", 21), ("sigma_n_m", 900), ("tse", 5000), ("h_error", 500), ("herr", 500), ("CEP95", 21)]
+)
+def test_an_accuracy_or_error_above_the_level_is_against_it(column: str, value: float, tmp_path: Path) -> None:
+    of = verdict(tmp_path, column, value)
+    assert (of.id, of.n_stated_worse) == ("not_shown", N)
+    assert "states an accuracy or an error (EPU, sigma) above its horizontal protection level at 300 epochs" in of.words
+
+
+def test_one_component_of_an_error_is_no_smaller_than_the_error(tmp_path: Path) -> None:
+    assert verdict(tmp_path, "nerr", 500).id == "not_believable"
+
+
+@pytest.mark.parametrize(
+    ("column", "value"),
+    [
+        ("mode", "dead reckoning"),
+        ("available", 0),
+        ("xpl_valid", "false"),
+        ("faults", "2 satellites"),
+        ("warn", "RAIM"),
+        ("gps_primary", "lost"),
+    ],
+)
+def test_a_statement_against_the_position_leaves_no_level(column: str, value: object, tmp_path: Path) -> None:
+    assert verdict(tmp_path, column, value).id == "nothing_judged"
+
+
+@pytest.mark.parametrize(("column", "value"), [("hal_exceeded", 1), ("hpl_flag", "unusable")])
+def test_what_is_not_understood_is_named_in_the_verdict(column: str, value: object, tmp_path: Path) -> None:
+    of = verdict(tmp_path, column, value)
+    assert of.unread == [column]
+    assert f"Not understood and not used, though the names speak of accuracy or integrity: {column}." in of.words
