@@ -110,6 +110,11 @@ def test_a_run_can_be_shown_again(track: Path, tmp_path: Path) -> None:
     again = navbound("show", tmp_path / "run", "--json")
     assert first.returncode == again.returncode == 0, first.stderr
     assert json.loads(first.stdout) == json.loads(again.stdout)
+    assert "later job" not in again.stderr
+    (tmp_path / "run" / "summary.json.partial").write_text("{", encoding="utf-8")
+    killed = navbound("show", tmp_path / "run", "--json")
+    assert json.loads(killed.stdout) == json.loads(first.stdout)
+    assert "a later job began here and has not finished (summary.json.partial); this is the run before it." in killed.stderr
 
 
 def test_a_directory_with_other_files_is_left_alone(track: Path, tmp_path: Path) -> None:

@@ -350,9 +350,10 @@ def test_epochs_that_are_an_hour_apart_say_so(tmp_path: Path) -> None:
 
 
 def with_truth(**changed: object) -> dict[str, object]:
-    """The track with a truth 1 m to the east at every epoch."""
+    """The track with a truth 1 to 1.3 m to the east."""
     flown = columns()
-    return {"truth_lat_deg": flown["lat"], "truth_lon_deg": flown["lon"] + 1.0 / 74_500.0} | changed
+    east_m = 1.15 + 0.15 * np.sin(np.linspace(0.0, 3.0, N))
+    return {"truth_lat_deg": flown["lat"], "truth_lon_deg": flown["lon"] + east_m / 74_500.0} | changed
 
 
 def test_truth_at_few_epochs_supports_these_alone(tmp_path: Path) -> None:

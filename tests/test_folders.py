@@ -72,6 +72,11 @@ def test_a_job_killed_at_any_write_leaves_no_folder_that_reads_as_its_result(tmp
     assert outcomes[-1] == {"new job"}
     # While the new files are written the old ones stand; only the renaming takes them away.
     assert outcomes.count({"old job"}) >= (2 * len(NAMES) if before else 0)
+    places = [tmp_path / str(last) for last in range(finished + 1)]
+    began = [place.is_dir() and bool(folders.unfinished(place)) for place in places]
+    # Every job that wrote a byte and did not finish is seen, also where the folder reads as the one before it.
+    assert not began[-1]
+    assert sum(seen and outcome == {"old job"} for seen, outcome in zip(began, outcomes, strict=True)) >= (len(NAMES) if before else 0)
     for last in range(finished + 1):
         write(tmp_path / str(last), "next")
         assert words(tmp_path / str(last)) == {"next job"}, "what a killed job leaves must not stop the next one"

@@ -39,24 +39,39 @@ def test_errors_far_below_a_careful_sigma_are_errors(tmp_path: Path) -> None:
     """Errors of 0.1 m beside a sigma of 30 m: a careless sigma, no copy."""
     verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=30.0, error_en_m=white(N, 0.1))).summary.verdict
     assert verdict.belief is not None
-    assert (verdict.id, verdict.belief.state) == ("inside", "supported")
-    # Squares of white errors of 0.1 m are (30 / 0.1)^2 times smaller, within what 400 pairs leave to chance (a twentieth each way).
-    factor = re.search(r"The squared errors are ([\d.e+]+) times smaller than the covariance states", verdict.words)
+    assert (verdict.id, verdict.belief.state) == ("inside", "small")
+    assert "The squared errors are more than 100 times smaller than the covariance states" in verdict.words
+    assert "this supports no bound" in verdict.words
+    # Squares of white errors of 0.2 sigma are 25 times smaller, within what 400 pairs leave to chance (a twentieth each way).
+    careful = navbound.analyze(table(tmp_path / "c.csv", N, sigma_m=5.0, error_en_m=white(N, 1.0))).summary.verdict
+    factor = re.search(r"The squared errors are ([\d.]+) times smaller than the covariance states", careful.words)
     assert factor is not None
-    assert float(factor[1]) == pytest.approx(9e4, rel=0.15)
+    assert float(factor[1]) == pytest.approx(25.0, rel=0.15)
     usual = navbound.analyze(table(tmp_path / "b.csv", N, error_en_m=white(N))).summary.verdict
     assert "times smaller" not in usual.words
 
 
 def test_few_independent_epochs_support_nothing(tmp_path: Path) -> None:
     """An error that stays for a whole track is one independent epoch."""
-    verdict = navbound.analyze(table(tmp_path / "a.csv", N, error_en_m=np.ones((N, 2)))).summary.verdict
+    slow_m = 1.0 + 0.5 * np.sin(np.linspace(0.0, 1.0, N))
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, error_en_m=np.column_stack([slow_m, slow_m]))).summary.verdict
     assert verdict.belief is not None
     assert (verdict.id, verdict.belief.state) == ("inside", "few")
     assert "at least 10 independent epochs are needed, and these are worth 1" in verdict.words
 
 
+@pytest.mark.parametrize("offset_m", [0.01, 0.5, 3.0])
+def test_one_solution_with_an_offset_is_no_truth(tmp_path: Path, offset_m: float) -> None:
+    error = np.full((N, 2), offset_m)
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, error_en_m=error)).summary.verdict
+    assert verdict.belief is not None
+    assert (verdict.id, verdict.belief.state) == ("not_shown", "copied")
+
+
 def test_the_rule_of_few_and_copied() -> None:
+    assert rule.of_belief(replace(GOOD, square_share=0.1)) == "supported"
+    assert rule.of_belief(replace(GOOD, square_share=0.099)) == "small"
+    assert rule.of_belief(replace(GOOD, square_share=0.099, n_effective=9.9)) == "few"
     assert rule.of_belief(GOOD) == "supported"
     assert rule.of_belief(replace(GOOD, n_effective=9.9)) == "few"
     assert rule.of_belief(replace(GOOD, n_effective=10.0)) == "supported"

@@ -455,7 +455,17 @@ def test_every_verdict_has_its_status() -> None:
     exit_codes = {verdict: exit_status.of_verdict(verdict) for verdict in rule.MEANS_INSIDE}
     assert exit_codes == {"inside": 0, "outside": 0, "not_shown": 0, "not_believable": 4, "nothing_judged": 4}
     of_belief = {state: exit_status.of_verdict("not_shown", state) for state in get_args(BeliefState)}
-    assert of_belief == {"unchecked": 0, "supported": 0, "partial": 0, "few": 0, "copied": 0, "short": 0, "contradicted": 4, "refuted": 4}
+    assert of_belief == {
+        "unchecked": 0,
+        "supported": 0,
+        "partial": 0,
+        "few": 0,
+        "small": 0,
+        "copied": 0,
+        "short": 0,
+        "contradicted": 4,
+        "refuted": 4,
+    }
 
 
 def test_a_level_that_misleads_is_not_believable(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 export type VerdictId = "inside" | "outside" | "not_shown" | "not_believable" | "nothing_judged";
 
-export type BeliefState = "unchecked" | "supported" | "partial" | "few" | "copied" | "short" | "contradicted" | "refuted";
+export type BeliefState = "unchecked" | "supported" | "partial" | "few" | "small" | "copied" | "short" | "contradicted" | "refuted";
 
 export type Outcome = "no alert needed" | "before" | "within the time to alert" | "late" | "missed";
 
@@ -359,7 +359,7 @@ export interface LevelCheck {
 
 /** Whether truth supports the bounds that a run states. */
 export interface Belief {
-    /** `partial`: truth supports the bounds at less than the least share of the epochs. `few`: fewer than 10 independent epochs, which contradict nothing and support nothing. `copied`: the truth is the estimate itself; the verdict is not shown. `refuted` withdraws the verdict; `contradicted` (a bound beside the lateral ones is false) and `short` leave it not shown. */
+    /** `partial`: truth supports the bounds at less than the least share of the epochs. `few`: fewer than 10 independent epochs, which contradict nothing and support nothing. `small`: the errors are so much smaller than the covariance states that the truth may not be independent of the estimate. `copied`: the truth is the estimate itself; the verdict is not shown. `refuted` withdraws the verdict; `contradicted` (a bound beside the lateral ones is false) and `short` leave it not shown. */
     state: BeliefState;
     /** Epochs that are checked where truth is known: those with status ok, or the degraded ones where none is ok. */
     n_epochs: number;

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from navbound.cli.parts import Json, out_console
+from navbound.cli.parts import Json, err_console, out_console
 from navbound.exit_status import of_verdict
 
 if TYPE_CHECKING:
@@ -24,8 +24,18 @@ def show_command(
 ) -> None:
     """Print the verdict of a finished run."""
     from navbound.run import directory  # noqa: PLC0415
+    from navbound.storage.folders import unfinished  # noqa: PLC0415
 
-    show(directory.load(run_directory), json=json)
+    run = directory.load(run_directory)
+    began = unfinished(run_directory)
+    if began:
+        err_console.print(
+            f"navbound: {run_directory}: a later job began here and has not finished ({', '.join(began[:3])}); this is the run before it.",
+            markup=False,
+            highlight=False,
+            soft_wrap=True,
+        )
+    show(run, json=json)
 
 
 def show(run: Run, *, json: bool) -> None:

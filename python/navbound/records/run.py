@@ -64,7 +64,8 @@ class Belief(Record):
 
     state: BeliefState
     """`partial`: truth supports the bounds at less than the least share of the epochs. `few`: fewer than 10 independent epochs, which
-    contradict nothing and support nothing. `copied`: the truth is the estimate itself; the verdict is not shown. `refuted` withdraws
+    contradict nothing and support nothing. `small`: the errors are so much smaller than the covariance states that the truth may not be
+    independent of the estimate. `copied`: the truth is the estimate itself; the verdict is not shown. `refuted` withdraws
     the verdict; `contradicted` (a bound beside the lateral ones is false) and `short` leave it not shown."""
     n_epochs: int = 0
     """Epochs that are checked where truth is known: those with status ok, or the degraded ones where none is ok."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 VerdictId = Literal["inside", "outside", "not_shown", "not_believable", "nothing_judged"]
-BeliefState = Literal["unchecked", "supported", "partial", "few", "copied", "short", "contradicted", "refuted"]
+BeliefState = Literal["unchecked", "supported", "partial", "few", "small", "copied", "short", "contradicted", "refuted"]
 
 LEAST_SHARE = 0.95
 """Least share of all expected epochs that must be judged with status ok before "inside" may be said.

@@ -112,6 +112,11 @@ def _remains(folder: Path) -> list[Path]:
     return [path for path in folder.iterdir() if _place(path.name) != path.name]
 
 
+def unfinished(folder: Path) -> list[str]:
+    """Names of what a later job began to write in a whole folder and did not finish, or has not finished yet."""
+    return sorted(path.name for path in _remains(folder))
+
+
 def _place(name: str) -> str:
     """The name under which a file appears; what writes whole files itself puts the suffix on once more."""
     while name.endswith(_PARTIAL):

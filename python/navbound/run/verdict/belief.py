@@ -15,6 +15,7 @@ from navbound.records.run import Belief, BoundCheck, LevelCheck
 from navbound.run.verdict import rule
 from navbound.status import USABLE
 from navbound.table.columns import HORIZONTAL
+from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -98,6 +99,7 @@ def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float], st
         n_above_vertical_level=sum(check.n_above for check in levels if check.level == "vpl_m"),
         truth_share=n_truth / max(usable.height, 1),
         copied_share=_copied_share(usable),
+        square_share=None if size is None else size.square_mean / rule.SQUARE_OF_TRUE,
     )
     return Belief(
         state=rule.of_belief(facts),
@@ -201,7 +203,7 @@ def _copied_share(epochs: pl.DataFrame) -> float:
     known = np.isfinite(size)
     if not known.any():
         return 0.0
-    same = (size == 0.0) | _rounded_copies(epochs)
+    same = (size == 0.0) | _rounded_copies(epochs) | _shifted_copies(epochs)
     if {"cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
         # P(e' V^-1 e <= x) = 1 - exp(-x / 2); the smaller variance of both axes makes x largest, which is the careful side.
         variance = np.fmin(column_of(epochs, "cov_ee_m2"), column_of(epochs, "cov_nn_m2"))
@@ -209,6 +211,27 @@ def _copied_share(epochs: pl.DataFrame) -> float:
             improbable = -np.expm1(-0.5 * size**2 / variance) <= SAME_AT
         same |= (size <= SAME_M) & improbable
     return float(same[known].mean())
+
+
+_TRAVELS_M = 100.0
+"""Extent of a track above which an error that stays the same to `SAME_M` is an offset of one solution: the error of two measurements
+moves with satellites and reflections. Provenance: ours."""
+
+
+def _shifted_copies(epochs: pl.DataFrame) -> NDArray[np.bool_]:
+    """Epochs of moving tracks whose truth is the estimate but for one constant offset."""
+    none = np.zeros(epochs.height, dtype=np.bool_)
+    if not {"est_lat_rad", "est_lon_rad", "cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
+        return none
+    north_m = pl.col("est_lat_rad") * EARTH_RADIUS_M
+    east_m = pl.col("est_lon_rad") * pl.col("est_lat_rad").cos() * EARTH_RADIUS_M
+    extent_m = pl.max_horizontal((each.max() - each.min()).over("track") for each in (north_m, east_m))
+    moved_m = [pl.col(name) - pl.col(name).median().over("track") for name in ("nse_e_m", "nse_n_m")]
+    size_m = pl.sum_horizontal(each**2 for each in moved_m).sqrt()
+    variance = pl.min_horizontal("cov_ee_m2", "cov_nn_m2")
+    improbable = -(-0.5 * size_m**2 / variance).exp() + 1.0 <= SAME_AT
+    same = epochs.select(((extent_m > _TRAVELS_M) & (size_m <= SAME_M) & improbable).fill_null(value=False).alias("same"))["same"]
+    return same.to_numpy()
 
 
 _DECIMALS = range(3, 8)

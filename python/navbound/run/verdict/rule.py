@@ -165,6 +165,8 @@ class BeliefFacts:
         Share of the checked epochs whose truth is known.
     copied_share : float
         Share of the epochs with truth at which it is the estimate itself.
+    square_share : float or None
+        Mean squared error over what the covariance states.
     """
 
     n_effective: float
@@ -175,7 +177,14 @@ class BeliefFacts:
     n_above_vertical_level: int = 0
     truth_share: float = 1.0
     copied_share: float = 0.0
+    square_share: float | None = None
 
+
+SQUARE_OF_TRUE = 2.0
+"""Mean of e' V^-1 e of a horizontal error under its true covariance. Derived: two axes. [1]"""
+
+TOO_SMALL = 0.1
+"""Share of the squared error that the covariance states below which truth supports nothing. Provenance: ours."""
 
 FEW_EPOCHS = 10.0
 """Independent epochs below which their number is no better known than by its own size: it comes from the same correlated data.
@@ -207,7 +216,7 @@ def of_belief(facts: BeliefFacts) -> BeliefState:
     excludes the claim, or so few independent epochs stand behind it that they decide nothing, or where the data are improbable though not
     enough to refute. Truth that is the estimate itself says nothing: copied. Truth that is known at less than the least share of judged
     epochs supports the bounds of these epochs alone: partial. Fewer independent epochs than `FEW_EPOCHS` contradict nothing and support
-    nothing: few.
+    nothing: few. Errors below `TOO_SMALL` of what is stated may be those of a truth that comes from the estimate: small.
     """
     if is_refuted(facts.p_values, len(facts.p_values)):
         return "refuted"
@@ -218,6 +227,13 @@ def of_belief(facts: BeliefFacts) -> BeliefState:
     doubted = facts.short and joint_probability(facts.p_values) <= DOUBTED_AT
     if facts.excluded or doubted or (facts.short and facts.n_effective < FEW_EPOCHS):
         return "short"
+    return _of_believed(facts)
+
+
+def _of_believed(facts: BeliefFacts) -> BeliefState:
+    """Of a truth that speaks against nothing."""
     if facts.truth_share < LEAST_SHARE:
         return "partial"
-    return "supported" if facts.n_effective >= FEW_EPOCHS else "few"
+    if facts.n_effective < FEW_EPOCHS:
+        return "few"
+    return "small" if facts.square_share is not None and facts.square_share < TOO_SMALL else "supported"

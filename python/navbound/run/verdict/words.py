@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from navbound.methods import method
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run.verdict.numbers import level, share
-from navbound.run.verdict.rule import FEW_EPOCHS
+from navbound.run.verdict.rule import FEW_EPOCHS, SQUARE_OF_TRUE, TOO_SMALL
 
 if TYPE_CHECKING:
     from navbound.records.run import Belief, BoundCheck, LevelCheck, Verdict
@@ -78,7 +78,8 @@ def _checked(verdict: Verdict) -> list[str]:
 
 
 COPIED = (
-    "The truth is the estimate itself: at most of the epochs their distance is nil, or far below what two measurements leave. "
+    "The truth is the estimate itself: at most of the epochs their distance is nil, far below what two measurements leave, or the same to "
+    "the millimetre while the aircraft moves. "
     "It says nothing of the errors."
 )
 
@@ -90,18 +91,16 @@ def covered_words(belief: Belief | None) -> str:
     return f"; the true position is known at {share(belief.n_truth / belief.n_epochs)} of the checked epochs only"
 
 
-TOO_SMALL = 0.1
-"""Share of the squared error that the covariance states below which a reader is warned. Provenance: ours."""
-
-
 def _small(belief: Belief) -> list[str]:
     """Errors that no covariance of this size explains."""
-    if belief.square_mean is None or belief.state == "copied" or not belief.square_mean < TOO_SMALL * 2.0:
+    if belief.square_mean is None or belief.state == "copied" or not belief.square_mean < TOO_SMALL * SQUARE_OF_TRUE:
         return []
-    ratio = 2.0 / belief.square_mean if belief.square_mean > 0.0 else float("inf")
+    ratio = SQUARE_OF_TRUE / belief.square_mean if belief.square_mean > 0.0 else float("inf")
+    times = f"{ratio:.2g}" if ratio < 100.0 else "more than 100"
+    unsupported = "; this supports no bound" if belief.state == "small" else ""
     return [
-        f"The squared errors are {ratio:.3g} times smaller than the covariance states: either the covariance is far too large, or "
-        "the truth is not independent of the estimate."
+        f"The squared errors are {times} times smaller than the covariance states: either the covariance is far too large, or "
+        f"the truth is not independent of the estimate{unsupported}."
     ]
 
 
