@@ -40,6 +40,11 @@ impl Refused {
         Self::FleetFull,
     ];
 
+    /// Whether nothing of it could be read.
+    pub(crate) const fn unread(self) -> bool {
+        matches!(self, Self::DamagedFrame | Self::NotAPosition)
+    }
+
     /// The id of tables.
     pub const fn id(self) -> &'static str {
         match self {
@@ -82,6 +87,13 @@ pub struct Counters {
 impl Counters {
     pub(crate) const fn refuse(&mut self, reason: Refused) {
         self.refused[reason as usize] += 1;
+    }
+
+    /// Frames and lines, whole or damaged, and how many of them could not be read.
+    pub(crate) fn read_and_not(&self) -> (u64, u64) {
+        let n = |reason: Refused| self.refused[reason as usize];
+        let unread = Refused::ALL.into_iter().filter(|reason| reason.unread()).map(n).sum();
+        (self.n_frames + n(Refused::DamagedFrame), unread)
     }
 
     /// Names and counts.

@@ -11,7 +11,8 @@ const GARBLED_ONE_IN: u64 = 10;
 /// The kinds, in the order of their state.
 const KINDS: [Kind; 5] = [Kind::Quiet, Kind::Clock, Kind::Garbled, Kind::FleetFull, Kind::SourceLost];
 
-/// What is known of the source. All times are arrivals; where arrivals are not known, there are no such alerts but that of too many tracks.
+/// What is known of the source. All times are arrivals; where arrivals are not known, there are no such alerts but that of too
+/// many tracks and, at the end, that of a damaged source.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Feed {
     open: [Option<GpsTime>; KINDS.len()],
@@ -75,6 +76,13 @@ impl Feed {
         self.window = Some((arrival, 0, 0));
     }
 
+    /// A source whose arrivals are not known has ended: frames and those that could not be read, by `now`, a time of its own.
+    pub(crate) fn ended(&self, (n, n_unread): (u64, u64), now: GpsTime, out: &mut Vec<Output>) {
+        if n_unread * GARBLED_ONE_IN >= n && n_unread > 0 {
+            out.push(Output::Transition(Transition { arrival: None, ..of_source(Kind::Garbled, Turn::Raised, now, now, now) }));
+        }
+    }
+
     /// The reader is alive at `now`.
     pub(crate) fn heartbeat(&mut self, now: GpsTime, quiet_after_ns: i64, out: &mut Vec<Output>) {
         let since = *self.good.get_or_insert(now);
@@ -106,7 +114,11 @@ impl Feed {
 }
 
 fn transition(kind: Kind, turn: Turn, annunciation: GpsTime, onset: GpsTime, now: GpsTime) -> Output {
-    Output::Transition(Transition {
+    Output::Transition(of_source(kind, turn, annunciation, onset, now))
+}
+
+fn of_source(kind: Kind, turn: Turn, annunciation: GpsTime, onset: GpsTime, now: GpsTime) -> Transition {
+    Transition {
         track: None,
         incarnation: 0,
         kind,
@@ -119,5 +131,5 @@ fn transition(kind: Kind, turn: Turn, annunciation: GpsTime, onset: GpsTime, now
         min_margin_m: f64::NAN,
         event: now,
         arrival: Some(now),
-    })
+    }
 }

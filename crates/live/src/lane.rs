@@ -101,6 +101,9 @@ impl Lane {
                 self.decoder.flush(&mut decoded);
                 self.take(&decoded, arrival, 0, out);
                 self.release_until(GpsTime::from_nanoseconds(i64::MAX), false, arrival, out);
+                if let (None, Some(now)) = (arrival, self.event_time) {
+                    self.feed.ended(self.counters.read_and_not(), now, out);
+                }
             }
         }
     }
@@ -116,7 +119,7 @@ impl Lane {
     }
 
     fn take(&mut self, decoded: &[Decoded], arrival: Option<GpsTime>, n_frames: u64, out: &mut Vec<Output>) {
-        let n_refused = decoded.iter().filter(|each| matches!(each, Err(Refused::DamagedFrame | Refused::NotAPosition))).count() as u64;
+        let n_refused = decoded.iter().filter(|each| each.as_ref().is_err_and(|reason| reason.unread())).count() as u64;
         self.counters.n_frames += n_frames;
         self.feed.frames(arrival, n_frames, n_refused, out);
         for each in decoded {

@@ -185,9 +185,9 @@ fn no_number_is_passed_over() {
             let all = flown(&mut lane, 30, |k| if k == 10 { line("d", 10.0, &rest) } else { good("d", f64::from(k)) });
             let keys: Vec<_> = transitions(&all).into_iter().filter(|key| key.starts_with("d/")).collect();
             let refused: u64 = lane.counters().refused.iter().sum();
-            // A deviation to the left is a number; a number beyond all doubles is no record.
+            // A deviation to the left is a number; a number beyond all doubles leaves the track without a position.
             let passes = name == "fte_m" && value == "-1.0";
-            let reported = keys.iter().any(|key| key.contains("/warning/")) || refused == 1;
+            let reported = keys.iter().any(|key| key.contains("/warning/") || key.contains("/unavailable/")) && refused == 0;
             assert_eq!(reported, !passes, "{name} {value}: {keys:?}, {refused} refused");
             assert!(value != "null" || lane.monitor_counters().n_nan == 1, "{name} {value}");
         }
@@ -484,5 +484,53 @@ fn a_variance_of_zero_in_any_axis_is_not_believed() {
         );
         let all = flown(&mut Lane::new(settings()).unwrap(), 3, |k| line("d", f64::from(k), &rest));
         assert_eq!(epochs_of(&all, "d")[0].status, Status::Degraded);
+    }
+}
+
+/// A line that says of whom and of when it is, and no position that can be read, leaves its track without one at that time.
+#[test]
+fn a_line_that_is_refused_for_its_numbers_is_a_loss_of_its_track() {
+    let bad = [
+        ",\"fte_m\":NaN,\"sigma_m\":10.0",
+        ",\"fte_m\":20.0,\"sigma_m\":-Infinity",
+        ",\"fte_m\":20.0,\"sigma_m\":\"ten\"",
+        ",\"fte_m\":20.0,\"sigma_m\":10.0,\"status\":\"OK\"",
+        ",\"fte_m\":[20.0],\"sigma_m\":10.0",
+    ];
+    for rest in bad {
+        let mut lane = Lane::new(settings()).unwrap();
+        let stated = |k: u32| line("d", f64::from(k), if (10..20).contains(&k) { rest } else { ",\"fte_m\":20.0,\"sigma_m\":10.0" });
+        let all = flown(&mut lane, 30, stated);
+        let of = epochs_of(&all, "d");
+        // What is stated as none is within no limit (warning); what cannot be read is not there (unavailable).
+        assert!(of[10..20].iter().all(|e| e.alert != rnp::Alert::Normal), "{rest}");
+        assert!(of[..10].iter().chain(&of[28..]).all(|e| e.alert == rnp::Alert::Normal), "{rest}");
+        let raised = all.iter().any(|o| matches!(o, Output::Transition(t) if t.track == TrackId::new("d") && t.event == at(10.0)));
+        assert!(raised, "{rest}");
+        assert!(lane.counters().refused.iter().all(|n| *n == 0));
+    }
+    // A word in a text is a word.
+    assert_eq!(
+        TrackId::new("NaN"),
+        epochs_of(&flown(&mut Lane::new(settings()).unwrap(), 3, |k| good("NaN", f64::from(k))), "NaN").first().map(|e| e.track)
+    );
+}
+
+/// A file has no arrivals: what it could not be read of is an alert at its end, in pieces of any size.
+#[test]
+fn a_file_that_is_damaged_by_a_tenth_says_so_at_its_end() {
+    let text = |one_in: u32| {
+        (0..60).fold(String::new(), |all, k| all + &good("d", f64::from(k)) + if k % one_in == 0 { "{ damaged\n" } else { "" })
+    };
+    for (one_in, garbled) in [(5, true), (30, false)] {
+        let outputs = [1, 7, 100_000].map(|size| {
+            let (mut lane, mut out) = (Lane::new(settings()).unwrap(), Vec::new());
+            for bytes in text(one_in).as_bytes().chunks(size) {
+                lane.step(&Input::Chunk { arrival: None, bytes }, &mut out);
+            }
+            lane.step(&Input::End { arrival: None }, &mut out);
+            format!("{out:?}")
+        });
+        assert_eq!((outputs[0].contains("Garbled"), &outputs[0], &outputs[0]), (garbled, &outputs[1], &outputs[2]));
     }
 }

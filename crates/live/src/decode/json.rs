@@ -66,16 +66,69 @@ fn number<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
     Option::<f64>::deserialize(from).map(|value| Some(value.unwrap_or(f64::NAN)))
 }
 
+/// Of whom and of when a line is that holds no position.
+#[derive(Deserialize)]
+struct Named<'a> {
+    v: u32,
+    #[serde(borrow)]
+    track: Cow<'a, str>,
+    time_ns: i64,
+}
+
 pub(super) fn position(line: &[u8]) -> Decoded {
-    let line: Line<'_> = serde_json::from_slice(line).map_err(|_| Refused::NotAPosition)?;
-    if line.v != VERSION {
+    if let Ok(line) = serde_json::from_slice(line) {
+        return whole(&line);
+    }
+    // Programs write numbers that are none in ways that JSON has not.
+    let plain = without_nan(line);
+    if let Ok(line) = serde_json::from_slice(&plain) {
+        return whole(&line);
+    }
+    // A line that says of whom and of when it is, and no position: that track has none at that time.
+    let named: Named<'_> = serde_json::from_slice(&plain).map_err(|_| Refused::NotAPosition)?;
+    let (status, reason) = (Status::InvalidInput, Some(Reason::InvalidNumber));
+    Ok(Position { status, reason, ..empty(named.v, &named.track, named.time_ns)? })
+}
+
+fn empty(version: u32, track: &str, time_ns: i64) -> Decoded {
+    if version != VERSION {
         return Err(Refused::Version);
     }
-    let track = TrackId::new(&line.track).ok_or(Refused::TrackName)?;
-    if line.time_ns < 0 {
+    let track = TrackId::new(track).ok_or(Refused::TrackName)?;
+    if time_ns < 0 {
         return Err(Refused::Undated);
     }
-    let status = Status::from_id(line.status.as_deref().unwrap_or("ok")).ok_or(Refused::NotAPosition)?;
+    Ok(Position::new(track, GpsTime::from_nanoseconds(time_ns)))
+}
+
+/// The line with `null` in the place of `NaN`, `Infinity` and `-Infinity` outside texts.
+fn without_nan(line: &[u8]) -> Vec<u8> {
+    const WORDS: [&[u8]; 6] = [b"NaN", b"nan", b"-Infinity", b"Infinity", b"-inf", b"inf"];
+    let (mut plain, mut rest, mut in_text) = (Vec::with_capacity(line.len()), line, false);
+    while let [first, behind @ ..] = rest {
+        if let Some(word) = WORDS.iter().find(|word| !in_text && rest.starts_with(word)) {
+            plain.extend_from_slice(b"null");
+            rest = &rest[word.len()..];
+            continue;
+        }
+        plain.push(*first);
+        rest = behind;
+        match (first, behind) {
+            (b'\\', [escaped, behind @ ..]) if in_text => {
+                plain.push(*escaped);
+                rest = behind;
+            }
+            (b'"', _) => in_text = !in_text,
+            _ => {}
+        }
+    }
+    plain
+}
+
+fn whole(line: &Line<'_>) -> Decoded {
+    let stated = line.status.as_deref().unwrap_or("ok");
+    // A word of no list is nobody's `ok`.
+    let status = Status::from_id(stated).unwrap_or(Status::NotAvailable);
     let position = Position {
         status,
         reason: (!status.usable()).then_some(Reason::Reported),
@@ -95,7 +148,7 @@ pub(super) fn position(line: &[u8]) -> Decoded {
             n_sv: line.n_sv,
             nav_mode: line.nav_mode.as_deref().and_then(TrackId::new),
         },
-        ..Position::new(track, GpsTime::from_nanoseconds(line.time_ns))
+        ..empty(line.v, &line.track, line.time_ns)?
     };
     Ok(position)
 }
