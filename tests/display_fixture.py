@@ -26,6 +26,7 @@ WHOLE = {
     "fte_m": 20.0,
     "fte_v_m": -4.0,
     "course_rad": 1.0,
+    "ground_speed_mps": 0.0,
     "cov_ee_m2": 25.0,
     "cov_en_m2": 0.0,
     "cov_nn_m2": 9.0,

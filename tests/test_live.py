@@ -12,9 +12,11 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from live_fixture import FLEET, Sent, fleet, frames, generator, recorded, transitions, truth
 from navbound import _core, live
+from navbound.cli.main import app
 from navbound.errors import FormatError, InputError
 from navbound.live import journal, tables, transition
 from navbound.live.settings import Settings
@@ -266,7 +268,8 @@ def test_a_command_that_is_ended_judges_what_it_has_and_can_be_resumed(tmp_path:
 
 def lived_lines(tmp_path: Path, **more: object) -> tuple[set[str], set[str]]:
     """Statuses and alerts of a minute of records with a good covariance, some keys changed or taken away (`...`)."""
-    record = {"v": 1, "track": "A", "est_lat_rad": 0.85, "est_lon_rad": 0.03, "cov_ee_m2": 64.0, "cov_en_m2": 0.0, "cov_nn_m2": 64.0}
+    record = {"v": 1, "track": "A", "est_lat_rad": 0.85, "est_lon_rad": 0.03, "ground_speed_mps": 0.0}
+    record |= {"cov_ee_m2": 64.0, "cov_en_m2": 0.0, "cov_nn_m2": 64.0}
     record = {name: value for name, value in (record | more).items() if value is not ...}
     tmp_path.mkdir(exist_ok=True)
     log = tmp_path / "log.jsonl"
@@ -302,3 +305,14 @@ def test_a_journal_that_was_cut_says_how_much_is_not_judged(tmp_path: Path) -> N
     messages.clear()
     live.judge(recorded(tmp_path / "whole", content), tmp_path / "other", say=messages.append)
     assert messages == []
+
+
+def test_a_position_that_stands_without_a_word_is_old_unless_the_receiver_is_known_to_stand(tmp_path: Path) -> None:
+    sentences = json.dumps({"v": 1, "track": "A", "est_lat_rad": 0.85, "est_lon_rad": 0.03, "sigma_m": 5.0})
+    log = tmp_path / "log.jsonl"
+    times = (1_317_644_000_000_000_000 + k * 1_000_000_000 for k in range(60))
+    log.write_text("".join(f'{sentences[:-1]}, "time_ns": {time_ns}}}\n' for time_ns in times))
+    for words, alerts in ([], {"unavailable"}), (["--standing"], {"normal"}):
+        done = CliRunner().invoke(app, ["live", str(log), "--out", str(tmp_path / "out" / str(len(words))), *words])
+        assert done.exit_code == 0, done.output
+        assert set(tables.epochs(tmp_path / "out" / str(len(words)))["alert"][10:]) == alerts

@@ -168,7 +168,7 @@ def test_midnight_a_leap_second_and_a_rollover_of_the_week_are_successive_second
     dates = [day + timedelta(days=int(text.startswith("00"))) for text in times]
     log = tmp_path / "log.nmea"
     log.write_text(nmea(day, times, dates))
-    epochs = lived(log, tmp_path / "out", live.Settings(format="nmea", rnp_m=RNP_M), chunk=7)
+    epochs = lived(log, tmp_path / "out", live.Settings(format="nmea", rnp_m=RNP_M, standing=True), chunk=7)
     first = day.replace(hour=int(times[0][:2]), minute=int(times[0][2:4]), second=int(times[0][4:6]))
     assert epochs["time_ns"].to_list() == [gps_ns(first) + k * 1_000_000_000 for k in range(len(times))]
     assert set(epochs["alert"]) == {"normal"}

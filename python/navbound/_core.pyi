@@ -105,6 +105,7 @@ class LiveSettings:
         risks: tuple[float, float],
         monitor: tuple[list[float], float, float, float, float],
         rnp_m: float,
+        motion: dict[str, float],
         path: Path | None,
         times_ns: tuple[int, int, int],
         expiry_ns: int | None,

@@ -5,65 +5,13 @@
 
 mod way;
 
-use navbound_core::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic};
-use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Radians};
+use navbound_core::frame::EcefPosition;
+use navbound_core::monitor::motion::{Between, repeated, sea_level, within};
+use navbound_core::quantity::{GpsTime, OutOfDomain};
+
+pub use navbound_core::monitor::motion::{Finding, Limits, Report};
 
 use way::{Repeats, Way};
-
-/// What an aircraft can do. Provenance: ours; every figure is a setting.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// Fastest speed over the ground where none is reported \[m/s\].
-    pub max_speed_mps: f64,
-    /// Factor on the reported speed.
-    pub speed_factor: f64,
-    /// Added to it \[m/s\]: rounding, acceleration since the report.
-    pub speed_margin_mps: f64,
-    /// How much older than its time stamp a position may be \[s\].
-    pub latency_s: f64,
-    /// The same where the recording says when a position was valid \[s\]: what such times are wrong by.
-    pub fix_latency_s: f64,
-    /// Distance that is never called a jump \[m\]: the noise of a position.
-    pub noise_m: f64,
-    /// Reported speed from which an unchanged position counts as held \[m/s\]; infinite for a receiver that is known to stand.
-    pub moving_mps: f64,
-    /// Age from which a held position is no longer a position \[s\].
-    pub stale_after_s: f64,
-    /// How long after a jump positions are not believed \[s\].
-    pub settle_s: f64,
-}
-
-/// One recorded position: `speed` is the reported speed over the ground, NaN where none is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Report {
-    /// When.
-    pub time: GpsTime,
-    /// When the position was valid, where the recording says so.
-    pub fixed: Option<GpsTime>,
-    /// Latitude \[rad\].
-    pub lat_rad: f64,
-    /// Longitude \[rad\].
-    pub lon_rad: f64,
-    /// Reported speed over the ground \[m/s\].
-    pub speed_mps: f64,
-}
-
-/// What was found about one position.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Finding {
-    /// Nothing against it.
-    Plausible,
-    /// The position of an earlier report, repeated, not yet stale.
-    Repeated,
-    /// The same, too old.
-    Stale,
-    /// Reachable only from a position that was older than a stale one.
-    Late,
-    /// Not reachable from the position before.
-    Jump,
-    /// Within the settling time after a jump.
-    Unsettled,
-}
 
 /// Finding, age of the position \[s\] and distance from the position before it \[m\] (straight line at sea level).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -306,60 +254,4 @@ impl Window {
         let between = Between::new(&first, &fastest, limits);
         here.minus(&self.from).vector().norm() <= between.reach_m(between.latency_s, limits)
     }
-}
-
-/// An unchanged position is held where the aircraft says it moves; a parked one repeats itself rightly. Where no speed is reported a repeat may
-/// be a slow one's rounded position, until it lasts.
-fn repeated(report: &Report, since: GpsTime, limits: &Limits) -> Finding {
-    let silent = report.speed_mps.is_nan();
-    let may_move = if silent { limits.moving_mps.is_finite() } else { report.speed_mps > limits.moving_mps };
-    match (may_move, within(report.time, since, limits.stale_after_s)) {
-        (true, false) => Finding::Stale,
-        (true, true) if !silent => Finding::Repeated,
-        _ => Finding::Plausible,
-    }
-}
-
-/// Whether no more than `limit_s` has passed; in whole nanoseconds, since 30 s as 3e10 * 1e-9 is more than 30.
-fn within(now: GpsTime, earlier: GpsTime, limit_s: f64) -> bool {
-    // The cast saturates, so an endless limit is one.
-    now.nanoseconds() - earlier.nanoseconds() <= (limit_s * 1e9) as i64
-}
-
-/// What lies between two reports.
-struct Between {
-    /// Time between the positions \[s\].
-    elapsed_s: f64,
-    /// How much longer the aircraft may have flown \[s\].
-    latency_s: f64,
-    /// The recording says when both positions were valid.
-    dated: bool,
-    speed_mps: f64,
-}
-
-impl Between {
-    fn new(from: &Report, to: &Report, limits: &Limits) -> Self {
-        // f64::max prefers a number to a NaN.
-        let reported = from.speed_mps.max(to.speed_mps);
-        let speed_mps = if reported.is_nan() {
-            limits.max_speed_mps
-        } else {
-            (limits.speed_factor * reported + limits.speed_margin_mps).min(limits.max_speed_mps)
-        };
-        match from.fixed.zip(to.fixed) {
-            // An older position may arrive after a newer one.
-            Some((a, b)) => Self { elapsed_s: b.seconds_since(a).abs(), latency_s: limits.fix_latency_s, dated: true, speed_mps },
-            None => Self { elapsed_s: to.time.seconds_since(from.time), latency_s: limits.latency_s, dated: false, speed_mps },
-        }
-    }
-
-    /// How far an aircraft may be from its last position \[m\].
-    fn reach_m(&self, latency_s: f64, limits: &Limits) -> f64 {
-        self.speed_mps * (self.elapsed_s + latency_s) + limits.noise_m
-    }
-}
-
-fn sea_level(report: &Report) -> Result<EcefPosition, OutOfDomain> {
-    let point = LatLon::new(Radians::new(report.lat_rad), Radians::new(report.lon_rad))?;
-    Ok(ecef_from_geodetic(&Geodetic { point, height: Metres::new(0.0) }))
 }

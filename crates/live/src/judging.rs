@@ -8,6 +8,7 @@ use crate::track::Track;
 use navbound_core::bound::{AlertBound, anp};
 use navbound_core::frame::{Covariance, LatLon};
 use navbound_core::judge::{Evaluated, Judged, Sample};
+use navbound_core::monitor::motion::{Finding, Motion, Report};
 use navbound_core::monitor::rnp::{Acceptance, Event};
 use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Status, Unavailable};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -83,9 +84,20 @@ fn stated_as_none(position: &Position) -> bool {
     horizontal.chain(&position.fte_m).any(|number| number.is_nan())
 }
 
+/// The record without its position where the track cannot have moved there, or has not moved.
+fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Position {
+    let place = position.lat_rad.zip(position.lon_rad).filter(|_| position.status.usable());
+    let Some((lat_rad, lon_rad)) = place else { return *position };
+    let speed_mps = position.ground_speed_mps.unwrap_or(f64::NAN);
+    let report = Report { time: position.time, fixed: None, lat_rad, lon_rad, speed_mps };
+    // A place off the Earth is refused where it is projected, or is no covariance's.
+    let found = track.motion.see(&report, &settings.motion).map_or(Some(Reason::InvalidNumber), Finding::reason);
+    found.map_or(*position, |reason| position.without(reason))
+}
+
 /// Judges a record and says what became of it. A fault of ours makes this epoch of this track unusable, and nothing else; whether one happened.
 pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived: &Arrived, out: &mut Vec<Output>, fault: bool) -> bool {
-    let position = &arrived.position;
+    let position = &believed(settings, track, &arrived.position);
     let (seen, mut reason) = sample(settings, track, position);
     let before = track.judge;
     let attempt = catch_unwind(AssertUnwindSafe(|| {
@@ -107,6 +119,7 @@ pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived
     };
     if judged.step.acceptance == Acceptance::ClockSetBack {
         track.incarnation = track.incarnation.saturating_add(1);
+        track.motion = Motion::default();
     }
     if matches!(judged.step.acceptance, Acceptance::Accepted | Acceptance::ClockSetBack) {
         let next = track.last.map(|last| last.plus_seconds(settings.judge.monitor.chain.sample_period_s));

@@ -55,6 +55,8 @@ pub struct Position {
     pub fte_m: Option<f64>,
     /// Course of the path \[rad\].
     pub course_rad: Option<f64>,
+    /// Speed over the ground, by which the motion of the positions is judged \[m/s\].
+    pub ground_speed_mps: Option<f64>,
     /// Covariance ee, en, nn, eu, nu, uu \[m²\].
     pub covariance_m2: Option<[f64; 6]>,
     /// Horizontal protection level \[m\].
@@ -110,6 +112,7 @@ impl Position {
             h_m: None,
             fte_m: None,
             course_rad: None,
+            ground_speed_mps: None,
             covariance_m2: None,
             hpl_m: None,
             rnp_m: None,
@@ -138,9 +141,8 @@ impl Position {
         to.i64(self.time.nanoseconds());
         to.u8(self.status as u8);
         to.option(self.reason, |to, reason| to.u8(reason as u8));
-        for number in [self.lat_rad, self.lon_rad, self.h_m, self.fte_m, self.course_rad, self.hpl_m, self.rnp_m] {
-            to.option(number, Writer::f64);
-        }
+        let numbers = [self.lat_rad, self.lon_rad, self.h_m, self.fte_m, self.course_rad, self.ground_speed_mps, self.hpl_m, self.rnp_m];
+        numbers.into_iter().for_each(|number| to.option(number, Writer::f64));
         to.option(self.covariance_m2, |to, covariance| covariance.into_iter().for_each(|term| to.f64(term)));
         self.shown.write(to);
     }
@@ -151,7 +153,7 @@ impl Position {
         let reason = from.option(reason)?;
         let mut number = || from.option(Reader::f64);
         let (lat_rad, lon_rad, h_m, fte_m) = (number()?, number()?, number()?, number()?);
-        let (course_rad, hpl_m, rnp_m) = (number()?, number()?, number()?);
+        let (course_rad, ground_speed_mps, hpl_m, rnp_m) = (number()?, number()?, number()?, number()?);
         let covariance_m2 = from.option(|from| {
             let mut terms = [0.0; 6];
             for term in &mut terms {
@@ -160,7 +162,22 @@ impl Position {
             Ok(terms)
         })?;
         let shown = Shown::read(from)?;
-        Ok(Self { track, time, status, reason, lat_rad, lon_rad, h_m, fte_m, course_rad, covariance_m2, hpl_m, rnp_m, shown })
+        Ok(Self {
+            track,
+            time,
+            status,
+            reason,
+            lat_rad,
+            lon_rad,
+            h_m,
+            fte_m,
+            course_rad,
+            ground_speed_mps,
+            covariance_m2,
+            hpl_m,
+            rnp_m,
+            shown,
+        })
     }
 }
 

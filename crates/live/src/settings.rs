@@ -5,6 +5,7 @@ use crate::position::TrackId;
 use navbound_core::bound::Alerting;
 use navbound_core::frame::LatLon;
 use navbound_core::judge;
+use navbound_core::monitor::motion;
 use navbound_core::quantity::{Metres, OutOfDomain};
 use navbound_path::{Foot, Line, Route};
 
@@ -41,6 +42,8 @@ pub struct Settings {
     pub judge: judge::Settings,
     /// The method of a track from its first record on that states a flight technical error; `None`: that of all.
     pub of_stated_fte: Option<Alerting>,
+    /// What an aircraft can do, by which the motion of positions is judged.
+    pub motion: motion::Limits,
     /// RNP value in force where a record states none.
     pub rnp: Metres,
     /// The path; without one the flight technical error is the record's own.

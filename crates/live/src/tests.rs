@@ -1,8 +1,11 @@
 use super::*;
 use navbound_core::bound::Alerting;
 use navbound_core::judge;
-use navbound_core::monitor::rnp::{self, Chain};
-use navbound_core::quantity::{GpsTime, Metres, Risk, Status};
+use navbound_core::monitor::{
+    motion,
+    rnp::{self, Chain},
+};
+use navbound_core::quantity::{GpsTime, Metres, Reason, Risk, Status};
 use proptest::prelude::*;
 use std::fmt::Write;
 
@@ -22,6 +25,17 @@ fn settings() -> Settings {
             states: None,
             monitor: rnp::Settings { chain, raise_delay_s: 3.0, clear_delay_s: 5.0, clear_ratio: 0.9, stale_after_s: 2.0 },
             with_levels: false,
+        },
+        motion: motion::Limits {
+            max_speed_mps: 400.0,
+            speed_factor: 1.25,
+            speed_margin_mps: 25.0,
+            latency_s: 10.0,
+            fix_latency_s: 1.0,
+            noise_m: 100.0,
+            moving_mps: 15.0,
+            stale_after_s: 2.0,
+            settle_s: 30.0,
         },
         rnp: Metres::new(555.6),
         path: None,
@@ -460,14 +474,14 @@ fn a_track_that_states_its_deviation_is_judged_by_its_total_error() {
     assert_eq!(format!("{all:?}"), format!("{:?}", flown(&mut total, 30, |k| line("d", f64::from(k), &aside(k)))));
     // A track without a deviation keeps the navigation error, and one that stops to state it has no bound.
     let mut lane = Lane::new(navigation_alone()).unwrap();
-    let alone = ",\"est_lat_rad\":0.5,\"est_lon_rad\":0.1,\"est_h_m\":100.0,\"sigma_m\":10.0".to_owned();
-    let stops = |k: u32| line("f", f64::from(k), &if k < 3 { aside(0) } else { alone.clone() });
-    let all = flown(&mut lane, 6, |k| line("e", f64::from(k), &alone) + &stops(k));
+    let alone = |k: u32| placed(0.5 + 1e-5 * f64::from(k), "");
+    let stops = |k: u32| line("f", f64::from(k), &if k < 3 { aside(0) } else { alone(k) });
+    let all = flown(&mut lane, 6, |k| line("e", f64::from(k), &alone(k)) + &stops(k));
     assert!(epochs_of(&all, "e").iter().all(|e| e.status.usable() && number(e, "accuracy_bound_m") < 30.0));
     assert_eq!(epochs_of(&all, "f").iter().map(|e| e.status.usable()).collect::<Vec<_>>(), [true, true, true, false, false, false]);
     // It is kept in a snapshot.
     let (mut lane, ..) = Lane::restore(navigation_alone(), &lane.snapshot(0, 0)).unwrap();
-    let after = flown(&mut lane, 1, |_| line("f", 6.0, &alone));
+    let after = flown(&mut lane, 1, |_| line("f", 6.0, &alone(6)));
     assert!(epochs_of(&after, "f").iter().all(|e| !e.status.usable()));
 }
 
@@ -532,5 +546,54 @@ fn a_file_that_is_damaged_by_a_tenth_says_so_at_its_end() {
             format!("{out:?}")
         });
         assert_eq!((outputs[0].contains("Garbled"), &outputs[0], &outputs[0]), (garbled, &outputs[1], &outputs[2]));
+    }
+}
+
+/// A position and its accuracy, and what else is stated.
+fn placed(lat_rad: f64, more: &str) -> String {
+    format!(",\"est_lat_rad\":{lat_rad},\"est_lon_rad\":0.1,\"est_h_m\":100.0,\"sigma_m\":10.0{more}")
+}
+
+/// Of the record at 10 s and of those after it: reasons, each once in its order. 1e-5 rad a second are 64 m/s.
+fn doubts(limits: motion::Limits, of: impl Fn(u32) -> String) -> (Vec<&'static str>, Vec<rnp::Alert>) {
+    let base = settings();
+    let judge = judge::Settings { method: Alerting::of("anp-circle").unwrap(), ..base.judge };
+    let mut lane = Lane::new(Settings { judge, motion: limits, ..base }).unwrap();
+    let mut all = flown(&mut lane, 30, |k| line("d", f64::from(k), &of(k)));
+    // The lane that is written down on the way goes on alike.
+    let mut restored = Lane::restore(lane.settings.clone(), &lane.snapshot(0, 0)).unwrap().0;
+    let next = |lane: &mut Lane| chunk(lane, 30.1, &line("d", 30.0, &of(30)));
+    assert_eq!(format!("{:?}", next(&mut lane.clone())), format!("{:?}", next(&mut restored)));
+    all.extend(next(&mut lane));
+    let epochs = epochs_of(&all, "d");
+    let mut reasons: Vec<_> = epochs.iter().filter_map(|e| e.reason.map(Reason::id)).collect();
+    reasons.dedup();
+    (reasons, epochs.iter().map(|e| e.alert).collect())
+}
+
+#[test]
+fn a_position_that_stands_while_its_aircraft_moves_is_not_believed() {
+    let limits = settings().motion;
+    let flies = |k: u32| 0.5 + 1e-5 * f64::from(k);
+    let frozen = |k: u32| flies(k.min(10));
+    let fast = ",\"ground_speed_mps\":64.0";
+    assert_eq!(doubts(limits, |k| placed(flies(k), fast)).0, [""; 0]);
+    let (reasons, alerts) = doubts(limits, |k| placed(frozen(k), fast));
+    assert_eq!(reasons, ["position_held", "position_stale"]);
+    assert!(alerts[..13].iter().all(|a| *a == rnp::Alert::Normal) && alerts[14..].iter().all(|a| *a == rnp::Alert::Unavailable));
+    // Nobody says that it stands; somebody says it; the receiver is known to stand.
+    assert_eq!(doubts(limits, |k| placed(frozen(k), "")).0, ["position_stale"]);
+    assert_eq!(doubts(limits, |k| placed(frozen(k), ",\"ground_speed_mps\":0.0")).0, [""; 0]);
+    assert_eq!(doubts(motion::Limits { moving_mps: f64::INFINITY, ..limits }, |k| placed(frozen(k), "")).0, [""; 0]);
+}
+
+#[test]
+fn a_position_that_jumps_farther_than_its_aircraft_flies_is_not_believed() {
+    // 64 km to the side.
+    let spoofed = |k: u32| 0.5 + 1e-5 * f64::from(k) + if k >= 10 { 0.01 } else { 0.0 };
+    for speed in [",\"ground_speed_mps\":64.0", ""] {
+        let (reasons, alerts) = doubts(settings().motion, |k| placed(spoofed(k), speed));
+        assert_eq!(reasons, ["position_jump", "position_not_settled"]);
+        assert!(alerts[10..].iter().all(|a| *a == rnp::Alert::Unavailable), "{alerts:?}");
     }
 }

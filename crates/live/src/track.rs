@@ -4,6 +4,7 @@ use crate::codec::{Damaged, Reader, Writer};
 use crate::order::Waiting;
 use crate::output::Kind;
 use navbound_core::judge::{self, Judge};
+use navbound_core::monitor::motion::{Motion, Report};
 use navbound_core::quantity::{GpsTime, Metres};
 
 /// Everything that is kept of a track.
@@ -20,6 +21,8 @@ pub(crate) struct Track {
     pub(crate) stepped: bool,
     /// Distance along the path of the last foot.
     pub(crate) along: Option<Metres>,
+    /// Its last different position and its last jump.
+    pub(crate) motion: Motion,
     pub(crate) waiting: Waiting,
     /// Whether its silence was noticed since the last record.
     pub(crate) silent: bool,
@@ -27,7 +30,17 @@ pub(crate) struct Track {
 
 impl Track {
     pub(crate) fn new(judge: Judge, incarnation: u32) -> Self {
-        Self { judge, incarnation, open: [None; 3], last: None, stepped: false, along: None, waiting: Waiting::default(), silent: false }
+        Self {
+            judge,
+            incarnation,
+            open: [None; 3],
+            last: None,
+            stepped: false,
+            along: None,
+            motion: Motion::default(),
+            waiting: Waiting::default(),
+            silent: false,
+        }
     }
 
     /// Time of the next record, where the last ones came at the period.
@@ -52,6 +65,11 @@ impl Track {
         to.option(self.last, |to, time| to.i64(time.nanoseconds()));
         to.flag(self.stepped);
         to.option(self.along, |to, along| to.f64(along.m()));
+        to.option(self.motion.last, |to, last| {
+            to.i64(last.time.nanoseconds());
+            [last.lat_rad, last.lon_rad, last.speed_mps].into_iter().for_each(|number| to.f64(number));
+        });
+        to.option(self.motion.jumped, |to, time| to.i64(time.nanoseconds()));
         self.waiting.write(to);
         to.flag(self.silent);
     }
@@ -69,6 +87,11 @@ impl Track {
         let last = from.option(Reader::i64)?.map(GpsTime::from_nanoseconds);
         let stepped = from.flag()?;
         let along = from.option(Reader::f64)?.map(Metres::new);
-        Ok(Self { judge, incarnation, open, last, stepped, along, waiting: Waiting::read(from)?, silent: from.flag()? })
+        let report = |from: &mut Reader<'_>| {
+            let time = GpsTime::from_nanoseconds(from.i64()?);
+            Ok(Report { time, fixed: None, lat_rad: from.f64()?, lon_rad: from.f64()?, speed_mps: from.f64()? })
+        };
+        let motion = Motion { last: from.option(report)?, jumped: from.option(Reader::i64)?.map(GpsTime::from_nanoseconds) };
+        Ok(Self { judge, incarnation, open, last, stepped, along, motion, waiting: Waiting::read(from)?, silent: from.flag()? })
     }
 }

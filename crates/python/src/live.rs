@@ -3,6 +3,7 @@
 use crate::error::input_error;
 use crate::live_outputs::{TransitionRow, transition_row};
 use crate::path::{Path, Shape};
+use crate::read::limits_of;
 use navbound_core::bound::Alerting;
 use navbound_core::judge;
 use navbound_core::monitor::rnp::{self, Chain};
@@ -32,6 +33,7 @@ impl LiveSettings {
         risks: (f64, f64),
         monitor: ([f64; 6], f64, f64, f64, f64),
         rnp_m: f64,
+        motion: &Bound<'_, PyDict>,
         path: Option<PyRef<'_, Path>>,
         times_ns: (i64, i64, i64),
         expiry_ns: Option<i64>,
@@ -64,6 +66,7 @@ impl LiveSettings {
             format: Format::of(&format).ok_or_else(|| PyKeyError::new_err(format))?,
             track: TrackId::new(&track).ok_or_else(|| PyKeyError::new_err(track))?,
             judge,
+            motion: limits_of(motion)?,
             of_stated_fte: of_stated_fte.map(alerting).transpose()?,
             rnp: Metres::new(rnp_m),
             path,

@@ -127,7 +127,7 @@ fn navigation_error<'py>(
     rows(py, &errors)
 }
 
-fn limits_of(limits: &Bound<'_, PyDict>) -> PyResult<Limits> {
+pub fn limits_of(limits: &Bound<'_, PyDict>) -> PyResult<Limits> {
     let limit = |name: &'static str| -> PyResult<f64> {
         let value: f64 = limits.as_any().get_item(name)?.extract()?;
         if !(value >= 0.0) {

@@ -62,6 +62,7 @@ def watch(
     raise_delay_s: Annotated[float, typer.Option(help="How long the accuracy bound is outside before the caution.")] = 3.0,
     lateness_s: Annotated[float, typer.Option(help="How long the order of a track is waited for; 1 for a fleet.")] = 0.0,
     expiry_s: Annotated[float | None, typer.Option(help="Silence after which a track is forgotten. [default: never]")] = None,
+    standing: Annotated[bool, typer.Option("--standing", help="The receiver stands: a position that repeats is not held.")] = False,
     speed: Annotated[float, typer.Option(help="Of a file: times its own pace; 0 as fast as it goes.")] = 0.0,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the session in --out.")] = False,
     display: Display = False,
@@ -86,6 +87,7 @@ def watch(
         raise_delay_s=raise_delay_s,
         lateness_s=lateness_s,
         expiry_s=expiry_s,
+        standing=standing,
     )
     _run(
         source,
@@ -125,6 +127,9 @@ def _settings(source: str, form: str | None, *, spec: str, path: str | None, met
     if known is None and ("://" in source or source == "-"):
         raise InputError("format", "none", domain="json, ubx, sbf, novatel or nmea with --format: a stream is not guessed")
     selected = method or ("tse-exact" if has_path(Path(source)) else "")
+    if Path(source).is_dir():
+        # The motion of a finished run was judged with what it knew, a receiver that stands among it.
+        others["standing"] = True
     settings = live.Settings(format=known or "json", rnp_m=requirement(spec).rnp_m, path=path, method=selected, **others)
     settings.core()
     return settings

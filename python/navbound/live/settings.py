@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from navbound import _core
 from navbound.errors import FormatError, InputError
+from navbound.read.checks.plausible import Limits
 from navbound.read.receivers import MESSAGES
 from navbound.read.routes import load_route
 from navbound.read.runways import runway
@@ -55,6 +57,8 @@ class Settings:
         Silence after which a track is forgotten; None: never. [s]
     max_tracks : int
         Most tracks that are watched.
+    standing : bool
+        The receivers are known to stand: a position that repeats is no old one.
     """
 
     format: str
@@ -77,6 +81,7 @@ class Settings:
     retention_s: float = 3600.0
     expiry_s: float | None = None
     max_tracks: int = 50_000
+    standing: bool = False
 
     def __post_init__(self) -> None:
         if self.format not in FORMATS:
@@ -128,6 +133,7 @@ class Settings:
                 (self.risk_accuracy, self.risk_integrity),
                 (chain, self.raise_delay_s, self.clear_delay_s, self.clear_ratio, self.stale_s),
                 self.rnp_m,
+                asdict(Limits(moving_mps=math.inf) if self.standing else Limits()),
                 None if path is None else path._core,
                 nanoseconds,
                 None if self.expiry_s is None else _ns(self.expiry_s),

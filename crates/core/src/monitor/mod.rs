@@ -8,6 +8,7 @@ pub mod exposure;
 pub mod guard;
 pub mod judgement;
 mod latch;
+pub mod motion;
 pub mod rnp;
 pub mod separation;
 mod settings;

@@ -30,6 +30,8 @@ struct Line<'a> {
     #[serde(default, deserialize_with = "number")]
     course_rad: Option<f64>,
     #[serde(default, deserialize_with = "number")]
+    ground_speed_mps: Option<f64>,
+    #[serde(default, deserialize_with = "number")]
     sigma_m: Option<f64>,
     #[serde(default, deserialize_with = "number")]
     cov_ee_m2: Option<f64>,
@@ -137,6 +139,7 @@ fn whole(line: &Line<'_>) -> Decoded {
         h_m: line.est_h_m,
         fte_m: line.fte_m,
         course_rad: line.course_rad,
+        ground_speed_mps: line.ground_speed_mps,
         covariance_m2: line.covariance(),
         hpl_m: line.hpl_m,
         rnp_m: line.rnp_m,

@@ -22,6 +22,7 @@ pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {
                 lat_rad: position.lat_rad,
                 lon_rad: position.lon_rad,
                 h_m: position.h_m,
+                ground_speed_mps: position.ground_speed_mps,
                 covariance_m2: position.covariance_m2,
                 hpl_m: position.hpl_m,
                 status: if usable { Status::Ok } else { Status::NotAvailable },

@@ -1,0 +1,247 @@
+//! Can a position have been flown to? What is judged of one report from the last one alone; of a whole recording more can be said.
+//!
+//! A position report does not show whether it is true: a decoder or a receiver repeats the last position when none arrives, and a falsified
+//! receiver jumps. Both leave a track that no bound of the navigation error covers.
+
+use crate::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic};
+use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Reason};
+
+/// What an aircraft can do. Provenance: ours; every figure is a setting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Fastest speed over the ground where none is reported \[m/s\].
+    pub max_speed_mps: f64,
+    /// Factor on the reported speed.
+    pub speed_factor: f64,
+    /// Added to it \[m/s\]: rounding, acceleration since the report.
+    pub speed_margin_mps: f64,
+    /// How much older than its time stamp a position may be \[s\].
+    pub latency_s: f64,
+    /// The same where the recording says when a position was valid \[s\]: what such times are wrong by.
+    pub fix_latency_s: f64,
+    /// Distance that is never called a jump \[m\]: the noise of a position.
+    pub noise_m: f64,
+    /// Reported speed from which an unchanged position counts as held \[m/s\]; infinite for a receiver that is known to stand.
+    pub moving_mps: f64,
+    /// Age from which a held position is no longer a position \[s\].
+    pub stale_after_s: f64,
+    /// How long after a jump positions are not believed \[s\].
+    pub settle_s: f64,
+}
+
+/// One recorded position: `speed` is the reported speed over the ground, NaN where none is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Report {
+    /// When.
+    pub time: GpsTime,
+    /// When the position was valid, where the recording says so.
+    pub fixed: Option<GpsTime>,
+    /// Latitude \[rad\].
+    pub lat_rad: f64,
+    /// Longitude \[rad\].
+    pub lon_rad: f64,
+    /// Reported speed over the ground \[m/s\].
+    pub speed_mps: f64,
+}
+
+/// What was found about one position.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Finding {
+    /// Nothing against it.
+    Plausible,
+    /// The position of an earlier report, repeated, not yet stale.
+    Repeated,
+    /// The same, too old.
+    Stale,
+    /// Reachable only from a position that was older than a stale one.
+    Late,
+    /// Not reachable from the position before.
+    Jump,
+    /// Within the settling time after a jump.
+    Unsettled,
+}
+
+impl Finding {
+    /// Why the position is not to be believed; `None` where nothing is against it.
+    pub const fn reason(self) -> Option<Reason> {
+        match self {
+            Self::Plausible => None,
+            Self::Repeated => Some(Reason::PositionHeld),
+            Self::Stale => Some(Reason::PositionStale),
+            Self::Late => Some(Reason::PositionLate),
+            Self::Jump => Some(Reason::PositionJump),
+            Self::Unsettled => Some(Reason::PositionNotSettled),
+        }
+    }
+}
+
+/// An unchanged position is held where the aircraft says it moves; a parked one repeats itself rightly. Where no speed is reported a repeat may
+/// be a slow one's rounded position, until it lasts.
+pub fn repeated(report: &Report, since: GpsTime, limits: &Limits) -> Finding {
+    let silent = report.speed_mps.is_nan();
+    let may_move = if silent { limits.moving_mps.is_finite() } else { report.speed_mps > limits.moving_mps };
+    match (may_move, within(report.time, since, limits.stale_after_s)) {
+        (true, false) => Finding::Stale,
+        (true, true) if !silent => Finding::Repeated,
+        _ => Finding::Plausible,
+    }
+}
+
+/// Whether no more than `limit_s` has passed; in whole nanoseconds, since 30 s as 3e10 * 1e-9 is more than 30.
+pub fn within(now: GpsTime, earlier: GpsTime, limit_s: f64) -> bool {
+    // The cast saturates, so an endless limit is one.
+    now.nanoseconds() - earlier.nanoseconds() <= (limit_s * 1e9) as i64
+}
+
+/// What lies between two reports.
+#[derive(Debug, Clone, Copy)]
+pub struct Between {
+    /// Time between the positions \[s\].
+    pub elapsed_s: f64,
+    /// How much longer the aircraft may have flown \[s\].
+    pub latency_s: f64,
+    /// The recording says when both positions were valid.
+    pub dated: bool,
+    /// The fastest that counts \[m/s\].
+    pub speed_mps: f64,
+}
+
+impl Between {
+    /// Of two reports of one track.
+    pub fn new(from: &Report, to: &Report, limits: &Limits) -> Self {
+        // f64::max prefers a number to a NaN.
+        let reported = from.speed_mps.max(to.speed_mps);
+        let speed_mps = if reported.is_nan() {
+            limits.max_speed_mps
+        } else {
+            (limits.speed_factor * reported + limits.speed_margin_mps).min(limits.max_speed_mps)
+        };
+        match from.fixed.zip(to.fixed) {
+            // An older position may arrive after a newer one.
+            Some((a, b)) => Self { elapsed_s: b.seconds_since(a).abs(), latency_s: limits.fix_latency_s, dated: true, speed_mps },
+            None => Self { elapsed_s: to.time.seconds_since(from.time), latency_s: limits.latency_s, dated: false, speed_mps },
+        }
+    }
+
+    /// How far an aircraft may be from its last position \[m\].
+    pub fn reach_m(&self, latency_s: f64, limits: &Limits) -> f64 {
+        self.speed_mps * (self.elapsed_s + latency_s) + limits.noise_m
+    }
+}
+
+/// The place of a report, at sea level.
+///
+/// # Errors
+/// [`OutOfDomain`] for a position that is no place on the Earth.
+pub fn sea_level(report: &Report) -> Result<EcefPosition, OutOfDomain> {
+    let point = LatLon::new(Radians::new(report.lat_rad), Radians::new(report.lon_rad))?;
+    Ok(ecef_from_geodetic(&Geodetic { point, height: Metres::new(0.0) }))
+}
+
+/// The motion of a track whose reports arrive: the last different position, and the last jump.
+///
+/// The same rules as for a recording, as far as one report and the last different one decide them. What needs later reports, or the speeds of
+/// the whole track, is not seen: a jump of a track that reports no speed is judged by the fastest speed of all.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Motion {
+    /// The last different position.
+    pub last: Option<Report>,
+    /// When a position jumped last.
+    pub jumped: Option<GpsTime>,
+}
+
+impl Motion {
+    /// What is found about the next report; one that is no later than the last different position says nothing.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a position that is no place on the Earth.
+    pub fn see(&mut self, report: &Report, limits: &Limits) -> Result<Finding, OutOfDomain> {
+        let here = sea_level(report)?;
+        let Some(from) = self.last else {
+            self.last = Some(*report);
+            return Ok(Finding::Plausible);
+        };
+        if report.time <= from.time {
+            return Ok(Finding::Plausible);
+        }
+        let finding = if report.lat_rad == from.lat_rad && report.lon_rad == from.lon_rad {
+            repeated(report, from.time, limits)
+        } else {
+            let (between, step_m) = (Between::new(&from, report, limits), here.minus(&sea_level(&from)?).vector().norm());
+            self.last = Some(*report);
+            let silent = from.speed_mps.is_nan() && report.speed_mps.is_nan();
+            // Nothing in a track without speeds tells an old position from a wrong one.
+            let latency_s = if silent { limits.stale_after_s } else { between.latency_s };
+            if !(step_m <= between.reach_m(latency_s, limits)) {
+                self.jumped = Some(report.time);
+                Finding::Jump
+            } else if step_m <= between.reach_m(limits.stale_after_s, limits) {
+                Finding::Plausible
+            } else {
+                Finding::Late
+            }
+        };
+        let settling = self.jumped.is_some_and(|jump| within(report.time, jump, limits.settle_s));
+        Ok(if settling && !matches!(finding, Finding::Jump | Finding::Stale) { Finding::Unsettled } else { finding })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: Limits = Limits {
+        max_speed_mps: 400.0,
+        speed_factor: 1.25,
+        speed_margin_mps: 25.0,
+        latency_s: 10.0,
+        fix_latency_s: 1.0,
+        noise_m: 100.0,
+        moving_mps: 15.0,
+        stale_after_s: 2.0,
+        settle_s: 30.0,
+    };
+
+    fn report(seconds: i64, north_m: f64, speed_mps: f64) -> Report {
+        let time = GpsTime::from_nanoseconds(seconds * 1_000_000_000);
+        Report { time, fixed: None, lat_rad: 0.8 + north_m / 6.37e6, lon_rad: 0.1, speed_mps }
+    }
+
+    fn found(reports: &[Report], limits: &Limits) -> Vec<Finding> {
+        let mut motion = Motion::default();
+        reports.iter().map(|each| motion.see(each, limits).unwrap()).collect()
+    }
+
+    #[test]
+    fn a_position_that_stands_while_the_aircraft_moves_is_held_and_then_stale() {
+        use Finding::{Plausible, Repeated, Stale};
+        let held = |speed| found(&[0, 1, 2, 3, 4].map(|k| report(k, 0.0, speed)), &LIMITS);
+        assert_eq!(held(100.0), [Plausible, Repeated, Repeated, Stale, Stale]);
+        assert_eq!(held(0.0), [Plausible; 5]);
+        // Nobody vouches that it stands.
+        assert_eq!(held(f64::NAN), [Plausible, Plausible, Plausible, Stale, Stale]);
+        let stands = Limits { moving_mps: f64::INFINITY, ..LIMITS };
+        assert_eq!(found(&[0, 1, 2, 3, 4].map(|k| report(k, 0.0, f64::NAN)), &stands), [Plausible; 5]);
+    }
+
+    #[test]
+    fn a_step_beyond_the_reach_is_a_jump_and_nothing_is_believed_until_it_has_settled() {
+        use Finding::{Jump, Late, Plausible, Unsettled};
+        // (1.25 x 100 + 25) m/s in 1 + 10 s, and 100 m: 1750 m; with 2 s: 550 m.
+        let step = |north_m, speed| found(&[report(0, 0.0, speed), report(1, north_m, speed)], &LIMITS)[1];
+        assert_eq!([540.0, 560.0, 1740.0, 1760.0].map(|m| step(m, 100.0)), [Plausible, Late, Late, Jump]);
+        // Without a speed 400 m/s in 1 + 2 s, and 100 m.
+        assert_eq!([1290.0, 1310.0].map(|m| step(m, f64::NAN)), [Plausible, Jump]);
+        let after = |k| if k == 1 { report(k, 9e3, 100.0) } else { report(k, 9e3 + 100.0 * (k - 1) as f64, 100.0) };
+        let all = found(&[report(0, 0.0, 100.0), after(1), after(2), after(31), after(32)], &LIMITS);
+        assert_eq!(all, [Plausible, Jump, Unsettled, Unsettled, Plausible]);
+    }
+
+    #[test]
+    fn a_report_of_the_past_says_nothing_and_a_place_off_the_earth_is_none() {
+        let mut motion = Motion::default();
+        motion.see(&report(10, 0.0, 100.0), &LIMITS).unwrap();
+        assert_eq!(motion.see(&report(5, 9e5, 100.0), &LIMITS), Ok(Finding::Plausible));
+        assert!(motion.see(&Report { lat_rad: f64::NAN, ..report(11, 0.0, 100.0) }, &LIMITS).is_err());
+    }
+}
