@@ -91,8 +91,8 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
     let speed_mps = position.ground_speed_mps.unwrap_or(f64::NAN);
     let report = Report { time: position.time, fixed: None, lat_rad, lon_rad, speed_mps };
     // A place off the Earth is refused where it is projected, or is no covariance's.
-    let found = track.motion.see(&report, &settings.motion).map_or(Some(Reason::InvalidNumber), Finding::reason);
-    found.map_or(*position, |reason| position.without(reason))
+    let finding = track.motion.see(&report, &settings.motion).map_or(Some(Reason::InvalidNumber), Finding::reason);
+    finding.map_or(*position, |reason| position.without(reason))
 }
 
 /// Judges a record and says what became of it. A fault of ours makes this epoch of this track unusable, and nothing else; whether one happened.

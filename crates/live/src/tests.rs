@@ -572,7 +572,7 @@ fn doubts(limits: motion::Limits, of: impl Fn(u32) -> String) -> (Vec<&'static s
 }
 
 #[test]
-fn a_position_that_stands_while_its_aircraft_moves_is_not_believed() {
+fn a_position_that_stays_while_its_aircraft_moves_is_not_believed() {
     let limits = settings().motion;
     let flies = |k: u32| 0.5 + 1e-5 * f64::from(k);
     let frozen = |k: u32| flies(k.min(10));

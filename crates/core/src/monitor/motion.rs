@@ -207,33 +207,33 @@ mod tests {
         Report { time, fixed: None, lat_rad: 0.8 + north_m / 6.37e6, lon_rad: 0.1, speed_mps }
     }
 
-    fn found(reports: &[Report], limits: &Limits) -> Vec<Finding> {
+    fn findings(reports: &[Report], limits: &Limits) -> Vec<Finding> {
         let mut motion = Motion::default();
         reports.iter().map(|each| motion.see(each, limits).unwrap()).collect()
     }
 
     #[test]
-    fn a_position_that_stands_while_the_aircraft_moves_is_held_and_then_stale() {
+    fn a_position_that_stays_while_the_aircraft_moves_is_held_and_then_stale() {
         use Finding::{Plausible, Repeated, Stale};
-        let held = |speed| found(&[0, 1, 2, 3, 4].map(|k| report(k, 0.0, speed)), &LIMITS);
+        let held = |speed| findings(&[0, 1, 2, 3, 4].map(|k| report(k, 0.0, speed)), &LIMITS);
         assert_eq!(held(100.0), [Plausible, Repeated, Repeated, Stale, Stale]);
         assert_eq!(held(0.0), [Plausible; 5]);
-        // Nobody vouches that it stands.
+        // Nobody vouches that it at_rest.
         assert_eq!(held(f64::NAN), [Plausible, Plausible, Plausible, Stale, Stale]);
-        let stands = Limits { moving_mps: f64::INFINITY, ..LIMITS };
-        assert_eq!(found(&[0, 1, 2, 3, 4].map(|k| report(k, 0.0, f64::NAN)), &stands), [Plausible; 5]);
+        let at_rest = Limits { moving_mps: f64::INFINITY, ..LIMITS };
+        assert_eq!(findings(&[0, 1, 2, 3, 4].map(|k| report(k, 0.0, f64::NAN)), &at_rest), [Plausible; 5]);
     }
 
     #[test]
     fn a_step_beyond_the_reach_is_a_jump_and_nothing_is_believed_until_it_has_settled() {
         use Finding::{Jump, Late, Plausible, Unsettled};
         // (1.25 x 100 + 25) m/s in 1 + 10 s, and 100 m: 1750 m; with 2 s: 550 m.
-        let step = |north_m, speed| found(&[report(0, 0.0, speed), report(1, north_m, speed)], &LIMITS)[1];
+        let step = |north_m, speed| findings(&[report(0, 0.0, speed), report(1, north_m, speed)], &LIMITS)[1];
         assert_eq!([540.0, 560.0, 1740.0, 1760.0].map(|m| step(m, 100.0)), [Plausible, Late, Late, Jump]);
         // Without a speed 400 m/s in 1 + 2 s, and 100 m.
         assert_eq!([1290.0, 1310.0].map(|m| step(m, f64::NAN)), [Plausible, Jump]);
         let after = |k| if k == 1 { report(k, 9e3, 100.0) } else { report(k, 9e3 + 100.0 * (k - 1) as f64, 100.0) };
-        let all = found(&[report(0, 0.0, 100.0), after(1), after(2), after(31), after(32)], &LIMITS);
+        let all = findings(&[report(0, 0.0, 100.0), after(1), after(2), after(31), after(32)], &LIMITS);
         assert_eq!(all, [Plausible, Jump, Unsettled, Unsettled, Plausible]);
     }
 
