@@ -213,13 +213,13 @@ mod tests {
     }
 
     #[test]
-    fn a_position_that_stays_while_the_aircraft_moves_is_held_and_then_stale() {
+    fn a_position_that_stays_while_the_aircraft_moves_is_repeated_and_then_stale() {
         use Finding::{Plausible, Repeated, Stale};
-        let held = |speed| findings(&[0, 1, 2, 3, 4].map(|k| report(k, 0.0, speed)), &LIMITS);
-        assert_eq!(held(100.0), [Plausible, Repeated, Repeated, Stale, Stale]);
-        assert_eq!(held(0.0), [Plausible; 5]);
-        // Nobody vouches that it at_rest.
-        assert_eq!(held(f64::NAN), [Plausible, Plausible, Plausible, Stale, Stale]);
+        let repeats = |speed| findings(&[0, 1, 2, 3, 4].map(|k| report(k, 0.0, speed)), &LIMITS);
+        assert_eq!(repeats(100.0), [Plausible, Repeated, Repeated, Stale, Stale]);
+        assert_eq!(repeats(0.0), [Plausible; 5]);
+        // Nobody vouches that it stands.
+        assert_eq!(repeats(f64::NAN), [Plausible, Plausible, Plausible, Stale, Stale]);
         let at_rest = Limits { moving_mps: f64::INFINITY, ..LIMITS };
         assert_eq!(findings(&[0, 1, 2, 3, 4].map(|k| report(k, 0.0, f64::NAN)), &at_rest), [Plausible; 5]);
     }
