@@ -278,9 +278,9 @@ def test_positions_that_nobody_vouches_for_are_not_taken_for_their_covariance(si
     assert selected_positions.models["signals"].startswith(taken)
 
 
-@pytest.mark.parametrize(("shift_m", "noted"), [(0.0, False), (5000.0, True)])
-def test_a_header_that_is_far_from_every_solved_position_is_reported(
-    shared_data: Path, tmp_path: Path, shift_m: float, noted: bool
+@pytest.mark.parametrize(("shift_m", "doubted"), [(0.0, False), (90.0, False), (120.0, True), (554.0, True), (5000.0, True)])
+def test_a_header_of_another_place_than_a_standing_receiver_s_leaves_nothing_shown(
+    shared_data: Path, tmp_path: Path, shift_m: float, doubted: bool
 ) -> None:
     folder = shared_data / "gnss" / "taroz_static"
     text = gzip.decompress((folder / "rover.obs.gz").read_bytes()).decode("latin-1")
@@ -288,8 +288,14 @@ def test_a_header_that_is_far_from_every_solved_position_is_reported(
     at = next(k for k, line in enumerate(lines) if "APPROX POSITION XYZ" in line)
     navigation = folder / "base.nav"
     place = [float(word) for word in lines[at].split()[:3]]
-    lines[at] = f"{place[0] + shift_m:14.4f}{place[1]:14.4f}{place[2]:14.4f}{'':18}APPROX POSITION XYZ\n"
+    # East, so that the distance is horizontal.
+    east = np.array([-place[1], place[0]]) / np.hypot(place[0], place[1]) * shift_m
+    lines[at] = f"{place[0] + east[0]:14.4f}{place[1] + east[1]:14.4f}{place[2]:14.4f}{'':18}APPROX POSITION XYZ\n"
     path = tmp_path / "rover.obs"
     path.write_text("".join(lines), encoding="latin-1")
-    words = " ".join(navbound.analyze([path, navigation]).summary.assumptions)
-    assert ("the approximate position of the header is" in words) == noted
+    verdict = navbound.analyze([path, navigation]).summary.verdict
+    assert any("approximate position of the header" in each for each in verdict.position_doubts) == doubted
+    assert (verdict.id == "inside") == (not doubted)
+    if doubted:
+        settled = navbound.analyze([path, navigation], truth=",".join(map(str, place))).summary.verdict
+        assert not settled.position_doubts

@@ -24,7 +24,8 @@ def verdict(folder: Path, column: str, value: object) -> Verdict:
 
 
 @pytest.mark.parametrize(
-    ("column", "value"), [("note", 1), ("epu", 19), ("sigma_n_m", 19), ("tse", 19), ("NumSat", 9), ("mode", "pa"), ("faults", 0)]
+    ("column", "value"),
+    [("note", 1), ("epu", 19), ("sigma_n_m", 19), ("tse", 19), ("NumSat", 9), ("hdop", 99), ("mode", "pa"), ("faults", 0)],
 )
 def test_what_does_not_contradict_a_level_changes_nothing(column: str, value: object, tmp_path: Path) -> None:
     assert verdict(tmp_path, column, value).id == "inside"
@@ -63,3 +64,9 @@ def test_what_is_not_understood_is_named_in_the_verdict(column: str, value: obje
     of = verdict(tmp_path, column, value)
     assert of.unread == [column]
     assert f"Not understood and not used, though the names speak of accuracy or integrity: {column}." in of.words
+
+
+def test_an_error_above_its_level_counts_at_any_dilution(tmp_path: Path) -> None:
+    rows = ["time,hpl,vpl,hpe,vpe,hdop", *(f"{1_400_000_000 + k},20,25,{30 if k == 9 else 1},1,99" for k in range(N))]
+    (tmp_path / "levels.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    assert navbound.evaluate([tmp_path / "levels.csv"], levels="APV-I").summary.verdict.id == "not_believable"

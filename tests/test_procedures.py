@@ -269,6 +269,26 @@ def test_a_route_with_a_refused_line_is_refused_with_its_number(tmp_path: Path) 
     assert any("1 of" in note for note in other.notes)
 
 
+def test_a_route_with_a_lost_line_is_refused_where_it_is_lost(tmp_path: Path) -> None:
+    lines = SAMPLE.read_text(encoding="ascii").splitlines()
+    lost = next(k for k, line in enumerate(lines) if "JPBAGK2PC0E    010TF" in line)
+    del lines[lost]
+    file = tmp_path / "lost.txt"
+    file.write_text("\n".join(lines) + "\n", encoding="ascii")
+    with pytest.raises(FormatError, match="1 record is missing by the record numbers") as refusal:
+        path.procedure(file, "KDEN", "H26-Z", "FUZZZ")
+    assert refusal.value.line == lost + 1
+    assert [f.line for f in procedures.read(file).contradictions() if f.kind == "missing"] == [lost + 1]
+    path.procedure(file, "KDEN", "H26-Z", "CAPTJ")
+
+
+def test_no_published_file_lacks_a_line_by_its_record_numbers(shared_data: Path) -> None:
+    files = [*(shared_data / "procedures").glob("*.txt"), *(shared_data / "infra" / "cifp_faa_2604").glob("K*.txt")]
+    routes = [(entry.ident, route.gaps) for file in files for entry in procedures.read(file).entries for route in entry.routes]
+    assert len(files) >= 9
+    assert [each for each in routes if each[1]] == []
+
+
 def test_a_fix_that_is_not_in_the_file_takes_its_leg_and_the_next(tmp_path: Path) -> None:
     text = SAMPLE.read_text(encoding="ascii")
     file = tmp_path / "less.txt"

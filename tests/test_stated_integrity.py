@@ -50,6 +50,8 @@ def stating(tmp_path: Path, name: str, fine: object, bad: object, *, sigma_m: fl
         ("gps_denied", "no", "yes"),
         ("coasting", 0, 12.5),
         ("is_predicted", 0, 1),
+        ("hdop", 1.2, 99.99),
+        ("PDOP", 30.0, 30.1),
     ],
 )
 def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Path, name: str, fine: object, bad: object) -> None:

@@ -199,6 +199,7 @@ _Reports = tuple[NDArray[np.int64], NDArray[np.int64], _F, _F, _F]
 
 SPEEDS_BESIDE: int
 GGA_QUALITIES: list[int]
+MOST_DILUTION: float
 RTKLIB_QUALITIES: list[int]
 
 class PlausibleTrack:
@@ -260,7 +261,9 @@ class NavigationDatabase:
     def refused(self) -> list[tuple[int, str, str, str]]: ...
     @property
     def counts(self) -> dict[str, int]: ...
-    def procedures(self) -> list[tuple[str, str, str, int, list[tuple[str, str, int, list[int]]], list[tuple[int, float]]]]: ...
+    def procedures(
+        self,
+    ) -> list[tuple[str, str, str, int, list[tuple[str, str, int, list[int], list[tuple[int, int, bool]]]], list[tuple[int, float]]]]: ...
     def path(
         self, procedure: int, routes: list[int], missed: bool, selected_m: float | None, defaults: bool
     ) -> tuple[list[dict[str, Any]], ProcedurePath]: ...

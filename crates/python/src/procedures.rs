@@ -3,7 +3,7 @@
 use crate::error::{format_error, input_error};
 use navbound_core::frame::LatLon;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians};
-use navbound_formats::arinc424::{self, Contradiction, Database, LegRequirement, PathOfProcedure, Procedure, ProcedureLeg};
+use navbound_formats::arinc424::{self, Contradiction, Database, LegRequirement, PathOfProcedure, Procedure, ProcedureLeg, Route};
 use navbound_path::legs::{Follow, LegFoot, Limits, PathLeg, ProcedurePath as Legs, Tracked};
 use navbound_path::{AtIndex, legs::State};
 use numpy::{IntoPyArray, PyReadonlyArray1};
@@ -30,11 +30,15 @@ fn missing(argument: &'static str, value: usize, domain: &'static str) -> PyErr 
     refused(OutOfDomain { argument, value: value as f64, unit: "1", domain })
 }
 
+fn gaps(route: &Route) -> Vec<(usize, u32, bool)> {
+    route.gaps.iter().map(|g| (g.line, g.n_missing, g.inside)).collect()
+}
+
 fn letter(byte: u8) -> String {
     String::from_utf8_lossy(&[byte]).trim().to_owned()
 }
 
-type RouteRow = (String, String, usize, Vec<usize>);
+type RouteRow = (String, String, usize, Vec<usize>, Vec<(usize, u32, bool)>);
 type ProcedureRow = (String, &'static str, String, usize, Vec<RouteRow>, Vec<(usize, f64)>);
 
 #[pymethods]
@@ -87,7 +91,7 @@ impl NavigationDatabase {
         Ok(d)
     }
 
-    /// Airport, kind, identifier, line, routes (type, transition, legs, refused lines) and lines of minima of every procedure.
+    /// Airport, kind, identifier, line, routes (type, transition, legs, refused lines, gaps) and lines of minima of every procedure.
     fn procedures(&self) -> Vec<ProcedureRow> {
         self.0.procedures().iter().map(row).collect()
     }
@@ -144,7 +148,7 @@ impl NavigationDatabase {
 }
 
 fn row(p: &Procedure) -> ProcedureRow {
-    let routes = p.routes.iter().map(|r| (letter(r.route_type), r.transition.to_string(), r.legs.len(), r.refused.clone()));
+    let routes = p.routes.iter().map(|r| (letter(r.route_type), r.transition.to_string(), r.legs.len(), r.refused.clone(), gaps(r)));
     let levels = p.levels.iter().map(|l| (l.line, l.rnp_m)).collect();
     (p.name.airport.to_string(), p.name.kind.name(), p.name.ident.to_string(), p.line, routes.collect(), levels)
 }

@@ -243,6 +243,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(navigation_error, m)?)?;
     m.add("SPEEDS_BESIDE", SPEEDS_BESIDE)?;
     m.add("GGA_QUALITIES", numbers(measured::GGA_QUALITIES))?;
+    m.add("MOST_DILUTION", navbound_core::solution::plausible::DILUTION)?;
     m.add("RTKLIB_QUALITIES", numbers(measured::RTKLIB_QUALITIES))?;
     m.add_class::<PlausibleTrack>()
 }

@@ -54,12 +54,15 @@ class RouteEntry:
         Legs.
     refused : tuple of int
         Its refused lines: with any, the route is not whole.
+    gaps : tuple of (int, int, bool)
+        Line before which records are missing by the file's record numbers, how many, and whether inside the route, which is then not whole.
     """
 
     route_type: str
     transition: str
     n_legs: int
     refused: tuple[int, ...]
+    gaps: tuple[tuple[int, int, bool], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -162,7 +165,7 @@ class Database:
         Raises
         ------
         FormatError
-            A refused line in a route that is needed.
+            A refused or missing line in a route that is needed.
         InputError
             A name that the file does not have.
         """
@@ -173,6 +176,15 @@ class Database:
                 raise FormatError(
                     self.file, f"{airport} {procedure}: this line is refused, so the route is not whole", number, self._why(number)
                 )
+            for number, n, inside in entry.routes[k].gaps:
+                if inside:
+                    raise FormatError(self.file, f"{airport} {procedure}: {_missing(n)}, so the route is not whole", number)
+        between = [
+            f"{_missing(n)} before line {number} of {Path(self.file).name}, between two routes of {entry.ident}"
+            for k in routes
+            for number, n, inside in entry.routes[k].gaps
+            if not inside
+        ]
         selected_m = None if line is None else self._selected(index, entry, routes, line)
         rows, path = self._core.path(index, routes, missed, selected_m, defaults)
         return Procedure(
@@ -185,7 +197,7 @@ class Database:
             legs=tuple(leg(row) for row in rows),
             levels=entry.levels,
             file=self.file,
-            notes=tuple(self.notes),
+            notes=(*self.notes, *between),
             core=path,
         )
 
@@ -237,14 +249,22 @@ def read(file: str | Path) -> Database:
     return Database(_core.NavigationDatabase.read(str(file)), str(file))
 
 
-def _entry(row: tuple[str, str, str, int, list[tuple[str, str, int, list[int]]], list[tuple[int, float]]]) -> Entry:
+_Route = tuple[str, str, int, list[int], list[tuple[int, int, bool]]]
+"""Type, transition, legs, refused lines and gaps of a route, as the core gives it."""
+
+
+def _missing(n: int) -> str:
+    return f"{n} {'record is' if n == 1 else 'records are'} missing by the record numbers"
+
+
+def _entry(row: tuple[str, str, str, int, list[_Route], list[tuple[int, float]]]) -> Entry:
     airport, kind, ident, line, routes, levels = row
     return Entry(
         airport,
         kind,
         ident,
         line,
-        tuple(RouteEntry(route_type, transition, n, tuple(refused)) for route_type, transition, n, refused in routes),
+        tuple(RouteEntry(route_type, transition, n, tuple(refused), tuple(gaps)) for route_type, transition, n, refused, gaps in routes),
         tuple(LevelOfService(number, rnp_m) for number, rnp_m in levels),
     )
 

@@ -26,13 +26,13 @@ class Finding:
         The leg.
     kind : str
         ``centre``, ``radius``, ``course``, ``length``, ``rnp_grows``, ``rnp_grows_early``, ``rnp_and_level``, ``rnp_missing``, ``height``,
-        ``unresolved`` or ``not_whole``.
+        ``unresolved``, ``not_whole`` or ``missing``.
     remark : bool
         Whether no two records contradict each other.
     published, expected : float
-        What the file has, and what the other records or the fixes have, both in `unit`.
+        What the file has, and what the other records, the fixes or the record numbers have, both in `unit`.
     unit : str
-        ``m`` or ``rad``.
+        ``m``, ``rad``, or ``1`` for numbers of records.
     words : str
         The same as a sentence.
     """
@@ -58,7 +58,7 @@ class Finding:
 def finding(row: dict[str, Any]) -> Finding:
     """A finding from the core's row."""
     words = _WORDS[row["kind"]](row["published"], row["expected"])
-    return Finding(**row, unit="rad" if row["kind"] == "course" else "m", words=words)
+    return Finding(**row, unit=_UNITS.get(row["kind"], "m"), words=words)
 
 
 def _rnp(m: float) -> str:
@@ -69,6 +69,8 @@ def _course(published: float, expected: float) -> str:
     off = abs((published - expected + math.pi) % math.tau - math.pi)
     return f"coded course {math.degrees(published):.1f}° true, the fixes give {math.degrees(expected):.1f}°: {math.degrees(off):.1f}° apart"
 
+
+_UNITS = {"course": "rad", "missing": "1"}
 
 _WORDS: dict[str, Callable[[float, float], str]] = {
     "centre": lambda p, e: (
@@ -84,4 +86,5 @@ _WORDS: dict[str, Callable[[float, float], str]] = {
     "height": lambda p, e: f"threshold of the path point {p:.1f} m above mean sea level, of the runway record {e:.1f} m",
     "unresolved": lambda _p, _e: "a fix, centre or navaid that the leg needs is not in the file, or stands there twice",
     "not_whole": lambda _p, _e: "this line is refused, so the route is not whole",
+    "missing": lambda _, e: f"records missing before this line, by the record numbers: {e:.0f}",
 }

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import polars as pl
 
-from navbound import _core
+from navbound import _core, status
 from navbound.errors import FormatError
 from navbound.table.columns import COVARIANCE
 
@@ -25,6 +25,7 @@ _REASONS = {
     "contradicted": "position that another statement of its epoch speaks against",
     "damaged_message": "damaged message",
     "damaged_other_message": "damaged message of no position",
+    "implausible_dilution": status.REASONS["implausible_dilution"].words,
     "marked_invalid": "position marked invalid",
     "no_3d_fix": "no 3-D fix",
     "no_fix": "no fix",

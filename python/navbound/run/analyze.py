@@ -158,7 +158,7 @@ def material(
     epochs, plausibility = check(claimed.epochs, limits if named.ecef_m is None else replace(limits, moving_mps=math.inf))
     origin = _origin(claimed, sigma_m, solved_alone=bool(sorted_inputs.observations) and not sorted_inputs.tables)
     of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
-    position_doubts, truth_doubts = [*(each for r in readings for each in r.position_doubts), *doubts_of_speeds(epochs)], TruthDoubts()
+    position_doubts, truth_doubts = [*_doubts(readings, decided=truth is not None), *doubts_of_speeds(epochs)], TruthDoubts()
     assumptions = [of_covariance, plausibility.words, *doubts_of_axes(epochs)]
     if truth is not None:
         epochs, words, other, truth_doubts = with_truth(epochs, named)
@@ -194,6 +194,11 @@ def material(
         position_doubts=position_doubts,
         truth_doubts=truth_doubts,
     )
+
+
+def _doubts(readings: Sequence[Reading], *, decided: bool) -> list[str]:
+    """What speaks against the positions; a truth decides where they are."""
+    return [each for r in readings for each in (*r.position_doubts, *(() if decided else r.place_doubts))]
 
 
 @dataclass(frozen=True)

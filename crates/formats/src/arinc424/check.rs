@@ -45,11 +45,13 @@ pub enum Contradiction {
     Unresolved,
     /// A line of the route was refused: it is not whole.
     NotWhole,
+    /// The file's record numbers leave records out.
+    Missing,
 }
 
 impl Contradiction {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Centre,
         Self::Radius,
         Self::Course,
@@ -61,6 +63,7 @@ impl Contradiction {
         Self::Height,
         Self::Unresolved,
         Self::NotWhole,
+        Self::Missing,
     ];
     /// Whether it is a remark: unusual or not whole, while no two records contradict each other.
     pub const fn is_remark(self) -> bool {
@@ -80,6 +83,7 @@ impl Contradiction {
             Self::Height => "height",
             Self::Unresolved => "unresolved",
             Self::NotWhole => "not_whole",
+            Self::Missing => "missing",
         }
     }
 }
@@ -127,6 +131,8 @@ impl Database {
             for route in &procedure.routes {
                 let at = At { procedure, transition: route.transition };
                 findings.extend(route.refused.iter().map(|l| at.finding(*l, None, Contradiction::NotWhole, f64::NAN, f64::NAN)));
+                let inside = route.gaps.iter().filter(|g| g.inside);
+                findings.extend(inside.map(|g| at.finding(g.line, None, Contradiction::Missing, 0.0, f64::from(g.n_missing))));
                 self.geometry(at, route, &mut findings);
                 requirements(at, route, &mut findings);
             }

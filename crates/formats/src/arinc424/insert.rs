@@ -1,11 +1,34 @@
 //! One record into the database: which kind it is, and its fields.
 
 use super::field::{Fault, Record, Text, rnp_m};
-use super::record::{Airport, Fix, FixName, Kind, Leg, LevelOfService, PathPoint, Procedure, ProcedureName, Route, Runway};
+use super::record::{Airport, Fix, FixName, Gap, Kind, Leg, LevelOfService, PathPoint, Procedure, ProcedureName, Route, Runway};
 use super::{Database, FixKey};
 use navbound_core::frame::LatLon;
 
 type Done = Result<(), Fault>;
+
+/// The file record number has five digits and begins again after the last \[1\].
+const RECORD_NUMBERS: u32 = 100_000;
+/// A greater step is another place of the numbering and says nothing of lost lines (ours) \[1\].
+const MOST_MISSING: u32 = 1000;
+
+/// The procedure, route type and transition that a record belongs to.
+type RouteName = (ProcedureName, u8, Text<5>);
+
+/// The record numbers of successive records of procedures.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Numbering {
+    before: Option<(u32, RouteName)>,
+    n_consecutive: usize,
+    n_gaps: usize,
+}
+
+impl Numbering {
+    /// What was between the next record and the last one is not known.
+    pub(super) fn forget(&mut self) {
+        self.before = None;
+    }
+}
 
 impl Database {
     pub(super) fn insert(&mut self, line: usize, r: Record<'_>) -> Done {
@@ -121,6 +144,33 @@ impl Database {
         }
     }
 
+    /// Compare the record number with that of the line before, where both are of one procedure: they are consecutive in a whole file.
+    pub(super) fn number(&mut self, line: usize, r: Record<'_>) {
+        let is_procedure = r.byte(5) == b'P' && r.byte(6) == b' ';
+        let number = r.whole("file record number", 124, 128).ok().flatten().and_then(|n| u32::try_from(n).ok());
+        let here = number.zip(if is_procedure { route_of(r) } else { None });
+        let before = std::mem::replace(&mut self.numbering.before, here);
+        let (Some((number, (name, route_type, transition))), Some((number_before, route_before))) = (here, before) else { return };
+        if name != route_before.0 {
+            return;
+        }
+        let step = (number + RECORD_NUMBERS - number_before) % RECORD_NUMBERS;
+        if step == 1 {
+            self.numbering.n_consecutive += 1;
+        } else if (2..=MOST_MISSING).contains(&step) {
+            self.numbering.n_gaps += 1;
+            let inside = route_before == (name, route_type, transition);
+            self.route_mut(line, name, route_type, transition).gaps.push(Gap { line, n_missing: step - 1, inside });
+        }
+    }
+
+    /// Record numbers that are not consecutive in most places number something else.
+    pub(super) fn settle_numbering(&mut self) {
+        if self.numbering.n_gaps > self.numbering.n_consecutive {
+            self.procedures.iter_mut().flat_map(|p| &mut p.routes).for_each(|route| route.gaps.clear());
+        }
+    }
+
     fn procedure_mut(&mut self, line: usize, name: ProcedureName) -> &mut Procedure {
         let last = self.procedures.len().checked_sub(1).filter(|i| self.procedures[*i].name == name);
         let index = last.unwrap_or_else(|| *self.by_name.entry(name).or_insert(self.procedures.len()));
@@ -135,7 +185,7 @@ impl Database {
         let same = |r: &Route| r.route_type == route_type && r.transition == transition;
         let index = routes.iter().rposition(same).unwrap_or(routes.len());
         if index == routes.len() {
-            routes.push(Route { route_type, transition, legs: Vec::new(), refused: Vec::new() });
+            routes.push(Route { route_type, transition, legs: Vec::new(), refused: Vec::new(), gaps: Vec::new() });
         }
         &mut routes[index]
     }
@@ -189,7 +239,7 @@ fn twice(field: &'static str, ident: &str) -> Fault {
     Fault { field, reason: "stands twice in the file", text: ident.to_owned() }
 }
 
-fn route_of(r: Record<'_>) -> Option<(ProcedureName, u8, Text<5>)> {
+fn route_of(r: Record<'_>) -> Option<RouteName> {
     let kind = match r.byte(13) {
         b'D' => Kind::Sid,
         b'E' => Kind::Star,

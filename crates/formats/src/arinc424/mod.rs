@@ -17,7 +17,7 @@ mod requirement;
 pub use check::{Contradiction, Finding};
 pub use field::{Course, Extent, Text};
 pub use geometry::{Part, PathOfProcedure, ProcedureLeg};
-pub use record::{Airport, Fix, FixName, Kind, Leg, LevelOfService, PathPoint, Procedure, ProcedureName, Route, Runway};
+pub use record::{Airport, Fix, FixName, Gap, Kind, Leg, LevelOfService, PathPoint, Procedure, ProcedureName, Route, Runway};
 pub use requirement::{LegRequirement, Origin};
 
 use crate::refusal::{Refusal, Unreadable};
@@ -65,6 +65,7 @@ pub struct Database {
     procedures: Vec<Procedure>,
     by_name: HashMap<ProcedureName, usize>,
     path_points: Vec<PathPoint>,
+    numbering: insert::Numbering,
 }
 
 /// Records by kind.
@@ -127,6 +128,7 @@ fn plain(source: impl BufRead) -> Result<Database, Unreadable> {
     if known == 0 {
         return Err(Unreadable::whole("no record of ARINC 424: lines of 132 characters that begin with S or T"));
     }
+    database.settle_numbering();
     Ok(database)
 }
 
@@ -153,6 +155,10 @@ impl Database {
         } else {
             self.insert(line.number, record)
         };
+        match result {
+            Ok(()) => self.number(line.number, record),
+            Err(_) => self.numbering.forget(),
+        }
         result.map_err(|fault| self.refuse(line.number, record, fault)).is_ok()
     }
 

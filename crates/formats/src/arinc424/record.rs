@@ -103,6 +103,19 @@ pub struct Route {
     pub legs: Vec<Leg>,
     /// Lines of this route that were refused: it is not whole.
     pub refused: Vec<usize>,
+    /// Where the file's record numbers leave records out.
+    pub gaps: Vec<Gap>,
+}
+
+/// Records that the file's record numbers (columns 124 to 128) leave out between two records of one procedure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Gap {
+    /// Line of the record after them.
+    pub line: usize,
+    /// How many.
+    pub n_missing: u32,
+    /// Whether the record before them is of the same route, which is then not whole. Between two routes the missing records may be a route.
+    pub inside: bool,
 }
 
 /// A line of minima: level of service `A` with its RNP.

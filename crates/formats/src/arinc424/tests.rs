@@ -170,3 +170,42 @@ proptest::proptest! {
         }
     }
 }
+
+/// The procedure with record numbers from `first` in steps of `step`, without the lines `without` of its five.
+fn numbered(first: usize, step: usize, without: &[usize]) -> String {
+    let legs = LEGS.iter().enumerate().filter(|(k, _)| !without.contains(k));
+    let legs: String = legs.map(|(k, l)| format!("{l:<123}{:05}2604\n", (first + step * k) % 100_000)).collect();
+    PLACES.iter().map(|l| padded(l)).collect::<String>() + &legs + FIXES
+}
+
+fn gaps(text: &str) -> Vec<Vec<Gap>> {
+    database(text).procedures()[0].routes.iter().map(|r| r.gaps.clone()).collect()
+}
+
+#[test]
+fn a_leg_line_that_is_lost_is_known_by_the_record_numbers() {
+    let none = Vec::<Gap>::new();
+    assert_eq!(gaps(&numbered(68_001, 1, &[])), [none.clone(), none.clone()]);
+    assert_eq!(gaps(&numbered(68_001, 1, &[1])), [vec![Gap { line: 5, n_missing: 1, inside: true }], none.clone()]);
+    // The numbers begin again after 99,999.
+    assert_eq!(gaps(&numbered(99_998, 1, &[])), [none.clone(), none.clone()]);
+    assert_eq!(gaps(&numbered(99_998, 1, &[1])), [vec![Gap { line: 5, n_missing: 1, inside: true }], none.clone()]);
+    // Between two routes nobody knows whose the line was.
+    assert_eq!(gaps(&numbered(68_001, 1, &[2])), [none.clone(), vec![Gap { line: 6, n_missing: 1, inside: false }]]);
+    let contradictions = database(&numbered(68_001, 1, &[1])).contradictions();
+    assert!(contradictions.iter().any(|f| (f.line, f.kind, f.expected) == (5, Contradiction::Missing, 1.0)));
+}
+
+#[test]
+fn record_numbers_that_number_something_else_say_nothing_of_lost_lines() {
+    let none = Vec::<Gap>::new();
+    assert_eq!(gaps(&numbered(7, 0, &[1])), [none.clone(), none.clone()]);
+    assert_eq!(gaps(&numbered(10, 10, &[])), [none.clone(), none]);
+}
+
+#[test]
+fn a_refused_line_is_not_counted_as_a_missing_one_too() {
+    let text = numbered(68_001, 1, &[]).replace("020JPBAG", "0x0JPBAG");
+    let database = database(&text);
+    assert_eq!((database.n_refused, database.procedures()[0].routes[0].gaps.len()), (1, 0));
+}

@@ -6,6 +6,7 @@ Names and codes as NMEA 0183, u-blox, NovAtel, MAVLink and RTKLIB write them (pr
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -36,6 +37,8 @@ class Kind:
         Any word that is neither is against it. Numbers are, too, unless `numbers_unknown`.
     numbers_unknown : bool
         A number may mean either, and is not understood.
+    above : float
+        A number above it is against the position, any other says nothing.
     """
 
     effect: Effect
@@ -44,6 +47,7 @@ class Kind:
     fine: frozenset[str]
     other_against: bool = False
     numbers_unknown: bool = False
+    above: float = math.inf
 
 
 def _words(text: str) -> frozenset[str]:
@@ -122,6 +126,8 @@ KINDS: tuple[Kind, ...] = (
         _NO - _words("v invalid not_valid bad unusable fail failed unhealthy unreliable"),
         other_against=True,
     ),
+    # The rule of solved positions; receivers write 99.99 where they know none.
+    Kind("invalid", _words("hdop pdop gdop vdop dop"), frozenset(), frozenset(), above=_core.MOST_DILUTION),
     Kind(
         "alert",
         _words("spoofing_state spoof_state spoof_det_state jamming_state jam_state"),
@@ -236,7 +242,8 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
     """Read a column. An empty field states nothing."""
     text = raw.cast(pl.String, strict=False).str.strip_chars().str.to_lowercase()
     text = text.str.replace_all(r"[\s\-]+", "_").str.replace(r"^\+?(-?\d+)\.0*$", "$1").str.replace(r"^_(\d)", "-$1")
-    number = text.cast(pl.Float64, strict=False).is_not_null() | text.is_in(["true", "false"])
+    value = text.cast(pl.Float64, strict=False)
+    number = value.is_not_null() | text.is_in(["true", "false"])
     declared = text.is_not_null() & ~text.is_in(_MISSING)
     fine = text.is_in(_listed(kind.fine))
     against = text.is_in(_listed(kind.against))
@@ -247,6 +254,8 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
     if kind.other_against:
         others = unknown & ~number if kind.numbers_unknown else unknown
         against, unknown = against | others, unknown & ~others
+    if kind.above < math.inf:
+        against, unknown, empty = (value > kind.above).fill_null(value=False), unknown & value.is_null(), False
     words = pl.select(pl.when(declared & against & ~fine).then(text)).to_series()
     return Stated(words, text.filter(unknown.fill_null(value=False)).unique(maintain_order=True).head(SHOWN).to_list() + ["empty"] * empty)
 

@@ -344,6 +344,9 @@ def assign(
     kinds = {name: kind_of(_plain(name)[0]) for name in free}
     if {_plain(name)[0] for name in names} & TRANSPONDER:
         kinds.pop("alert", None)
+    if tuple(needs) != POSITION:
+        # A level counts with any dilution: an error above it is misleading all the same.
+        kinds = {name: kind for name, kind in kinds.items() if kind is None or not math.isfinite(kind.above)}
     # The mode of a table of levels is a word of the method that gave them, or one against the position.
     kinds |= {columns[name].name: kind_of(name) for name in ("mode",) if name in columns}
     statements = [(name, kind) for name, kind in kinds.items() if kind is not None]

@@ -50,6 +50,8 @@ class Reading:
         refused value in one of them, or with another position, bound or status at the time of another row. A null time is not known.
     position_doubts : list of str
         Columns whose numbers may be in another unit than they are read in.
+    place_doubts : list of str
+        Why the positions may be elsewhere; a truth decides.
     unread : list of str
         Columns, or words of columns, that speak of integrity by their name and are not understood.
     """
@@ -63,6 +65,7 @@ class Reading:
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     unread: list[str] = field(default_factory=list)
     position_doubts: list[str] = field(default_factory=list)
+    place_doubts: list[str] = field(default_factory=list)
 
 
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:

@@ -9,7 +9,7 @@ import polars as pl
 from navbound import gnss
 from navbound.errors import FormatError
 from navbound.gnss.receivers import unused_words
-from navbound.read.checks.places import away_from_header
+from navbound.read.checks.places import header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
 from navbound.read.checks.repeats import left_out, separate
 from navbound.read.tables.epochs import Reading
@@ -62,11 +62,14 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     ]
     rejected += of_observations(observations)
     notes = [f"{source.path.name}: {name}: {words}" for name, words in solution.models.items()]
-    notes += [f"{source.path.name}: {words}" for words in away_from_header(known, observations)]
+    header = header_against(known, observations)
+    notes += [f"{source.path.name}: {words}" for words in header.notes]
     notes += skipped_words(source.path.name, observations.skipped)
     notes += [f"{source.path.name}: {count} satellite-epochs not used: {gnss.UNUSED[why]}" for why, count in solution.unused.items()]
     # Epochs that cannot be read were measured all the same; nobody knows when.
     unread = pl.DataFrame({"track": [source.stem] * observations.n_lost_epochs, "time_ns": None})
     lost = pl.concat([left_out(without), left_out(repeats.contradicting), left_out(unread)])
     columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in solution.codes.values() for c in codes)}
-    return Reading(known, source.record(observations.n_epochs), rejected, notes=notes, columns=columns, left_out=lost)
+    return Reading(
+        known, source.record(observations.n_epochs), rejected, notes=notes, columns=columns, left_out=lost, place_doubts=header.doubts
+    )

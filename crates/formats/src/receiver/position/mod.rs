@@ -19,6 +19,7 @@ pub use nmea::Dated;
 use crate::stream::Family;
 use core::f64::consts::{FRAC_PI_2, TAU};
 use navbound_core::quantity::GpsTime;
+use navbound_core::solution::plausible::DILUTION;
 
 /// A receiver's format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,6 +100,8 @@ pub enum Reason {
     NoFix,
     /// Another statement of the same epoch says that there is no such position.
     Contradicted,
+    /// The satellites hardly determine the position, by its own dilution.
+    Dilution,
     /// Second 60 on a day that had none.
     NoSuchLeapSecond,
     /// Nowhere on Earth, or at no time.
@@ -116,6 +119,7 @@ impl Reason {
             Self::NotMeasured => "no_position",
             Self::NoFix => "no_fix",
             Self::Contradicted => "contradicted",
+            Self::Dilution => "implausible_dilution",
             Self::NoSuchLeapSecond => "no_such_leap_second",
             Self::OutsideDomain => "outside_domain",
         }
@@ -210,6 +214,8 @@ pub struct Position {
     pub hdop: Option<f64>,
     /// Vertical dilution of precision.
     pub vdop: Option<f64>,
+    /// Dilution of precision of the position.
+    pub pdop: Option<f64>,
     /// Horizontal protection level \[m\].
     pub hpl_m: Option<f64>,
     /// Vertical protection level \[m\].
@@ -261,6 +267,11 @@ impl Position {
         }
         if !dated {
             self.time = None;
+        }
+        // Receivers write 99.99 where they know none.
+        let dilution = [self.pdop, self.hdop, self.vdop].into_iter().flatten().fold(0.0, f64::max);
+        if self.absent.is_none() && dilution > DILUTION {
+            self.absent = Some(Absent { reason: Reason::Dilution, stated: format!("dilution {dilution}") });
         }
         self
     }

@@ -272,3 +272,30 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_dilution_that_hardly_determines_a_position_takes_it() {
+    let of = |hdop: &str| reasons(&[ZDA, &GGA.replace(",08,1.0,", &format!(",08,{hdop},")), GST]);
+    assert_eq!(of("30.0"), []);
+    assert_eq!(of("99.99"), [("implausible_dilution", "dilution 99.99".to_owned())]);
+}
+
+/// NAV-PVT with a position dilution in hundredths and everything else in order.
+#[test]
+fn the_dilution_of_a_u_blox_position_counts() {
+    for (pdop, taken) in [(150_u16, false), (3000, false), (9999, true)] {
+        let mut pvt = vec![0; 92];
+        pvt[4..6].copy_from_slice(&2026_u16.to_le_bytes());
+        (pvt[6], pvt[7], pvt[11], pvt[20], pvt[21], pvt[23]) = (11, 22, 0b111, 3, 1, 9);
+        pvt[24..28].copy_from_slice(&25_000_000_i32.to_le_bytes());
+        pvt[28..32].copy_from_slice(&490_000_000_i32.to_le_bytes());
+        pvt[40..44].copy_from_slice(&3000_u32.to_le_bytes());
+        pvt[76..78].copy_from_slice(&pdop.to_le_bytes());
+        let mut out = Vec::new();
+        let mut decoder = Decoder::new(Kind::Ubx, Ends::WithNext);
+        decoder.take(&Frame::Ubx { kind: [0x01, 0x07], payload: &pvt }, 1, &mut out);
+        decoder.finish(&mut out);
+        let reasons: Vec<_> = positions(&out).iter().map(|p| p.absent.as_ref().map(|absent| absent.reason)).collect();
+        assert_eq!(reasons, [taken.then_some(Reason::Dilution)], "{pdop}");
+    }
+}

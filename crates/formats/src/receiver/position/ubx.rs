@@ -71,6 +71,7 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
         n_sv: u8_at(pvt, 23).map(u32::from),
         hdop: dop(12),
         vdop: dop(10),
+        pdop: u16_at(pvt, 76).map(|value| f64::from(value) / 100.0),
         hpl_m: levels.map(|(hpl, _, _)| hpl),
         vpl_m: levels.map(|(_, vpl, _)| vpl),
         absent: absent(pvt, time),
