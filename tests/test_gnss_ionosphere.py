@@ -19,8 +19,11 @@ import pytest
 
 import navbound
 from navbound import InputError, _core, gnss
+from navbound.gnss.constellation_doubts import contradicting
 from navbound.gnss.signal_choice import smaller_covariance
 from navbound.methods import bounds
+
+EXAMPLES = Path(__file__).parents[1] / "examples" / "data"
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 LINES = {"GPS": (b"GPSA", b"GPSB", b"ION ALPHA", b"ION BETA"), "Galileo": (b"GAL ",)}
@@ -299,3 +302,66 @@ def test_a_header_of_another_place_than_a_standing_receiver_s_leaves_nothing_sho
     if doubted:
         settled = navbound.analyze([path, navigation], truth=",".join(map(str, place))).summary.verdict
         assert not settled.position_doubts
+
+
+def with_biased_ranges(folder: Path, letter: str, sigma_m: float) -> Path:
+    """The example's station with an error of its own in all ranges of each satellite of a constellation."""
+    rng, bias_m = np.random.default_rng(3), dict[str, float]()
+    lines, body = [], False
+    for line in (EXAMPLES / "station.rnx").read_text(encoding="ascii").splitlines():
+        changed = line
+        if body and line.startswith(letter):
+            bias_m.setdefault(line[:3], sigma_m * float(rng.standard_normal()))
+            fields = [line[at : at + 16] for at in range(3, len(line), 16)]
+            ranges = [field[:14].strip() and 1.5e7 < float(field[:14]) < 4.5e7 for field in fields]
+            moved = [f"{float(f[:14]) + bias_m[line[:3]]:14.3f}{f[14:]}" if r else f for f, r in zip(fields, ranges, strict=True)]
+            changed = line[:3] + "".join(moved)
+        body |= "END OF HEADER" in line
+        lines.append(changed)
+    path = folder / "station.rnx"
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+    return path
+
+
+@pytest.mark.parametrize(("letter", "others", "name"), [("E", "G", "Galileo"), ("G", "E", "GPS")])
+def test_the_constellation_that_contradicts_the_others_is_named(tmp_path: Path, letter: str, others: str, name: str) -> None:
+    path, navigation = with_biased_ranges(tmp_path, letter, 5.0), EXAMPLES / "broadcast.rnx"
+    verdict = navbound.analyze([path, navigation]).summary.verdict
+    assert verdict.id == "not_shown"
+    assert [each for each in verdict.position_doubts if name in each and f"--systems {others} " in each] == verdict.position_doubts
+    assert len(verdict.position_doubts) == 1
+    settled = navbound.analyze([path, navigation], systems=others).summary.verdict
+    assert settled.position_doubts == []
+    assert settled.n_judged > 2 * verdict.n_judged
+
+
+@dataclass(frozen=True)
+class Reasons:
+    """As much of positions as the search looks at: 100 epochs, of which some are contradicted."""
+
+    n_contradicted: int
+    codes: dict[str, list[str]]
+
+    @property
+    def epochs(self) -> pl.DataFrame:
+        ids = ["residuals_contradict"] * self.n_contradicted + [None] * (100 - self.n_contradicted)
+        return pl.DataFrame({"est_lat_rad": [0.5] * 100, "reason_id": ids, "status": ["degraded" if id_ else "ok" for id_ in ids]})
+
+
+@pytest.mark.parametrize(
+    ("alone", "words"),
+    [
+        ({"GE": 2, "GC": 80, "EC": 80}, "BeiDou contradict the others"),
+        ({"GE": 2, "GC": 2, "EC": 80}, "Galileo and BeiDou contradict each other"),
+        ({"GE": 60, "GC": 80, "EC": 80}, None),
+    ],
+)
+def test_a_constellation_is_named_only_where_one_alone_settles_it(alone: dict[str, int], words: str | None) -> None:
+    codes = {letter: ["C1C"] for letter in "GEC"}
+    doubts = contradicting(Reasons(80, codes), lambda letters: Reasons(alone[letters], codes))  # type: ignore[arg-type, return-value]
+    assert [words in each for each in doubts if words] == ([True] if words else [])
+    assert contradicting(Reasons(20, codes), {}.__getitem__) == []  # type: ignore[arg-type]
+
+
+def test_a_healthy_station_has_no_constellation_in_doubt() -> None:
+    assert navbound.analyze([EXAMPLES / "station.rnx", EXAMPLES / "broadcast.rnx"]).summary.verdict.position_doubts == []

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import polars as pl
 
 from navbound import gnss
 from navbound.errors import FormatError
+from navbound.gnss.constellation_doubts import contradicting
 from navbound.gnss.receivers import unused_words
 from navbound.read.checks.places import header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
@@ -62,6 +64,9 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     ]
     rejected += of_observations(observations)
     notes = [f"{source.path.name}: {name}: {words}" for name, words in solution.models.items()]
+    doubts = contradicting(
+        solution, lambda systems: replace(solving, systems=systems).solve(observations, navigation, signals="auto", systems=systems)
+    )
     header = header_against(known, observations)
     notes += [f"{source.path.name}: {words}" for words in header.notes]
     notes += skipped_words(source.path.name, observations.skipped)
@@ -71,5 +76,12 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     lost = pl.concat([left_out(without), left_out(repeats.contradicting), left_out(unread)])
     columns = {"est_lat_rad": "solved from " + ", ".join(c for codes in solution.codes.values() for c in codes)}
     return Reading(
-        known, source.record(observations.n_epochs), rejected, notes=notes, columns=columns, left_out=lost, place_doubts=header.doubts
+        known,
+        source.record(observations.n_epochs),
+        rejected,
+        notes=notes,
+        columns=columns,
+        left_out=lost,
+        position_doubts=doubts,
+        place_doubts=header.doubts,
     )
