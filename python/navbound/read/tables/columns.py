@@ -145,7 +145,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("nac_p", 0.0, 15.0, **{"1": "nacp nac_p"}),
     _q("nic", 0.0, 15.0, **{"1": "nic"}),
     _q("n_sv", 0.0, 255.0, **{"1": "ns nsv num_sv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites"}),
-    _q("track", 0.0, 0.0, text="icao24 icao track_id flight_id aircraft_id"),
+    _q("track", 0.0, 0.0, text="icao24 icao mmsi track_id flight_id aircraft_id vehicle_id"),
     _q("callsign", 0.0, 0.0, text="callsign flight"),
     _q("hpl_m", 0.0, 1e9, m="hpl"),
     _q("vpl_m", 0.0, 1e9, m="vpl"),
@@ -382,9 +382,19 @@ def _plain(name: str) -> tuple[str, str | None]:
     return re.sub(r"[\s\-.]+", "_", stem.strip().lower()), unit
 
 
+def _parted(name: str) -> str:
+    """``latDeg`` to ``lat_deg``."""
+    return _plain(re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name))[0] if len(name) <= _LONGEST_NAME else _plain(name)[0]
+
+
+def _by_form(names: list[str]) -> dict[str, str]:
+    """Plain names and those taken apart at capitals, to the first column of each; a plain name counts before one taken apart."""
+    return {_parted(name): name for name in reversed(names)} | {_plain(name)[0]: name for name in reversed(names)}
+
+
 def _known(quantity: Quantity, names: list[str], path: Path, *, own: bool) -> Column | None:
     """Find the first known name, in the order of the aliases; ``own``: `track` is who flies, not whither, as in our own epoch table."""
-    plain = {_plain(name)[0]: name for name in reversed(names)}
+    plain = _by_form(names)
     if own and quantity.name in {"track", "ground_track_rad"}:
         plain = {k: v for k, v in plain.items() if (k == "track") == (quantity.name == "track")}
     elif quantity.name == "track":
@@ -445,7 +455,7 @@ def _written_unit(name: str, quantity: Quantity, path: Path) -> str | None:
 
 
 def _times(names: list[str]) -> list[Column]:
-    plain = {_plain(name)[0]: name for name in reversed(names)}
+    plain = _by_form(names)
     columns = [Column("time", plain[alias], unit) for alias, unit in TIME_NAMES.items() if alias in plain]
     week = [c for c in columns if c.unit == "gps_week"][:1]
     tow = [c for c in columns if c.unit == "gps_tow_s"][:1]
@@ -456,7 +466,8 @@ def _times(names: list[str]) -> list[Column]:
 def _refuse_twins(columns: dict[str, Column], declared: set[str], names: list[str], path: Path) -> None:
     """Refuse a column beside which another one has the same name but for case, blanks or a unit: the order would decide."""
     for quantity, column in columns.items():
-        twins = [name for name in names if name != column.name and _plain(name)[0] == _plain(column.name)[0]]
+        forms = {_plain(column.name)[0], _parted(column.name)}
+        twins = [name for name in names if name != column.name and forms & {_plain(name)[0], _parted(name)}]
         if twins and quantity not in declared:
             what = f"“{column.name}” and “{twins[0]}” are one name in another writing, and nothing says which of both counts"
             raise FormatError(path, f"{what}; {declare(f'{quantity}=COLUMN')}", 1, quantity)
@@ -518,11 +529,13 @@ def _declared(key: str, value: str, names: list[str], path: Path, known: tuple[Q
 
 
 def _unit_of_time(name: str) -> str:
-    """The unit that the name of a column suggests."""
-    scale = "gps" if "gps" in name.lower() else "utc"
-    parts = set(_plain(name)[0].split("_"))
-    sizes = {"ns": {"ns", "nsec"}, "us": {"us", "usec", "micros"}, "ms": {"ms", "msec", "millis"}}
-    size = next((size for size, words in sizes.items() if words & parts), "s")
+    """The unit that the name of a column suggests; ``UNIT`` where it suggests none."""
+    parts = set(_parted(name).split("_"))
+    sizes = {"ns": {"ns", "nsec"}, "us": {"us", "usec", "micros"}, "ms": {"ms", "msec", "millis"}, "s": {"s", "sec", "unix", "epoch"}}
+    size = next((size for size, words in sizes.items() if words & parts), None)
+    if size is None and not {"gps", "utc"} & parts:
+        return "UNIT"
+    scale = "gps" if "gps" in parts else "utc"
     return f"{scale}_{size}" if f"{scale}_{size}" in TIME_UNITS else f"{scale}_s"
 
 
@@ -545,12 +558,13 @@ def _require(columns: dict[str, Column], times: list[Column], names: list[str], 
         best = sorted(short, key=lambda n: -near[n])[:5]
         if not best:
             raise FormatError(path, "the first line names no columns: a table begins with their names", 1, need)
+        others = f" and {len(names) - len(best)} more" if len(names) > len(best) else ""
         unit = {"time": _unit_of_time(best[0]), "est_lat_rad": "deg", "est_lon_rad": "deg"}.get(need, "m")
-        more = f" (of {', '.join(TIME_UNITS)})" if need == "time" else ""
+        more = f"; units: {', '.join(TIME_UNITS)}" if need == "time" else ""
         raise FormatError(
             path,
-            f"no column holds it (known names: {', '.join(known[:6])}, ...); the nearest of the {len(names)} found are "
-            f"{', '.join(best)}; if one of them is it, {declare(f'{need}=COLUMN:{unit}')}{more}",
+            f"no column holds it (known names: {', '.join(known[:6])}, ...); the file has {', '.join(best)}{others}; "
+            f"if one of them is it, {declare(f'{need}=COLUMN:{unit}')}{more}",
             1,
             need,
         )

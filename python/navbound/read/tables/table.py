@@ -91,6 +91,9 @@ def _csv(source: Source) -> Table:
     return Table(rows.frame, rejections, rows.n_rows)
 
 
+_SEPARATORS, _SEPARATOR_WORDS = ",;\t", "comma, semicolon or tab"
+
+
 @dataclass(frozen=True)
 class Layout:
     """What the first line of a text table says of the others."""
@@ -113,7 +116,28 @@ def lines_of(text: str, first_line: int) -> pl.DataFrame:
     """Lines that are neither empty nor remarks, with their numbers; `first_line` is that of the first."""
     lines = pl.DataFrame({"text": text.split("\n")}, schema={"text": pl.String}).with_columns(pl.col("text").str.strip_chars_end("\r"))
     lines = lines.with_columns(pl.int_range(first_line, first_line + pl.len()).alias(LINE))
-    return lines.filter(pl.col("text").str.strip_chars() != "", ~pl.col("text").str.starts_with("#"))
+    lines = lines.filter(pl.col("text").str.strip_chars() != "")
+    remark = pl.col("text").str.starts_with("#")
+    rest = lines.filter(~remark)
+    if first_line > 1 or rest.is_empty():
+        return rest
+    before = lines.filter(pl.col(LINE) < rest[LINE][0]).tail(1).with_columns(pl.col("text").str.strip_chars_start("# \t"))
+    return pl.concat([before, rest]) if not before.is_empty() and _names_of(before["text"][0], rest["text"][0]) else rest
+
+
+def _names_of(remark: str, row: str) -> bool:
+    """Whether a remark holds the names of the columns: as many fields as the numbers below it, and no number."""
+    separator = max(_SEPARATORS, key=row.count)
+    names, numbers = (line.split(separator) for line in (remark, row))
+    return separator in row and len(names) == len(numbers) and _is_number(numbers[0]) and not any(map(_is_number, names))
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text.strip().strip('"').replace(":", "").replace("-", "").replace("T", "").rstrip("Z"))
+    except ValueError:
+        return False
+    return True
 
 
 def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
@@ -122,10 +146,12 @@ def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
     Raises
     ------
     FormatError
-        A name that stands twice.
+        A name that stands twice; fields that blanks separate.
     """
     header = str(lines["text"][0])
-    separator = max(",;\t", key=header.count)
+    separator = max(_SEPARATORS, key=header.count)
+    if separator not in header and len(header.split()) > 2:
+        raise FormatError(path, f"no {_SEPARATOR_WORDS} in “{header[:60]}”: blanks separate no fields", int(lines[LINE][0]), "header")
     return Layout(header, separator, _names(path, header, separator))
 
 

@@ -1,0 +1,64 @@
+"""How a text table names its columns: with capitals, behind the mark of a remark, separated by blanks, in no known way."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from navbound import FormatError
+from navbound.read import read
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def table(folder: Path, header: str, row: str = "{t},47.0,8.{t}") -> Path:
+    path = folder / "track.csv"
+    path.write_text("\n".join([header, *(row.format(t=1_600_000_000 + k) for k in range(3))]) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "timestamp,latDeg,lonDeg",
+        "timestamp,Latitude,Longitude",
+        "#timestamp [s],latitude [deg],longitude [deg]",
+        "# made by hand\n# time,lat,lon",
+    ],
+)
+def test_a_header_that_a_person_understands_is_understood(tmp_path: Path, header: str) -> None:
+    reading = read(table(tmp_path, header))
+    assert reading.epochs.height == 3
+    assert reading.columns["est_lat_rad"].endswith("deg")
+    assert reading.rejected == []
+
+
+def test_a_remark_with_other_fields_than_the_rows_is_none_of_their_names(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="time: no column holds it"):
+        read(table(tmp_path, "# time,lat,lon,h"))
+    # Names are there: the remark above them is one.
+    assert read(table(tmp_path, "# east,north,up\ntime,lat,lon")).epochs.height == 3
+
+
+def test_every_vessel_is_a_track_of_its_own(tmp_path: Path) -> None:
+    reading = read(table(tmp_path, "MMSI,time,lat,lon", "21100000{t:.1},{t},47.0,8.{t}".replace("{t:.1}", "7")))
+    assert reading.epochs["track"].unique().to_list() == ["211000007"]
+
+
+def test_two_writings_of_one_name_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="are one name in another writing"):
+        read(table(tmp_path, "time,latDeg,lon,lat_deg", "{t},47.0,8.{t},48.0"))
+
+
+def test_fields_between_blanks_are_named_as_such(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="no comma, semicolon or tab") as refusal:
+        read(table(tmp_path, "time lat lon", "{t} 47.0 8.{t}"))
+    assert refusal.value.line == 1
+
+
+@pytest.mark.parametrize(("name", "unit"), [("zeit", "UNIT"), ("zeit_ms", "utc_ms"), ("gpsZeit", "gps_s"), ("unix zeit", "utc_s")])
+def test_a_unit_of_time_is_proposed_only_where_the_name_has_one(tmp_path: Path, name: str, unit: str) -> None:
+    with pytest.raises(FormatError, match=f'--map "time=COLUMN:{unit}"'):
+        read(table(tmp_path, f"{name},lat,lon"))
