@@ -145,7 +145,7 @@ def test_truth_columns_of_a_level_table_are_used_or_named(tmp_path: Path) -> Non
     used = navbound.evaluate(levels(tmp_path / "a.csv", n, hpe=None, **places), levels="NPA")
     assert used.epochs["hpe_m"].to_list() == pytest.approx([1.11] * n, abs=0.01)
     stated = navbound.evaluate(levels(tmp_path / "b.csv", n, **places), levels="NPA").summary.assumptions
-    assert any("truth_lat_rad and truth_lon_rad are not used: the errors are those that the table states (hpe_m)" in s for s in stated)
+    assert any("the error of an epoch is the larger of what the table states (hpe_m) and of its true positions" in s for s in stated)
     alone = {name: places[name] for name in ("truth_lat", "truth_lon")}
     words = navbound.evaluate(levels(tmp_path / "c.csv", n, hpe=None, **alone), levels="NPA").summary.assumptions
     assert any("are not used: the table holds no estimated positions" in s for s in words)

@@ -70,3 +70,23 @@ def test_an_error_above_its_level_counts_at_any_dilution(tmp_path: Path) -> None
     rows = ["time,hpl,vpl,hpe,vpe,hdop", *(f"{1_400_000_000 + k},20,25,{30 if k == 9 else 1},1,99" for k in range(N))]
     (tmp_path / "levels.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     assert navbound.evaluate([tmp_path / "levels.csv"], levels="APV-I").summary.verdict.id == "not_believable"
+
+
+@pytest.mark.parametrize(
+    ("columns", "bad"),
+    [
+        ("hpe,nse_e_m,nse_n_m", "100,1,1"),
+        ("hpe,nse_e_m,nse_n_m", "1,60,80"),
+        ("hpe,nse_e_m,nse_n_m", "1,nan,80"),
+        ("hpe,nse_e_m,nse_n_m", "100,0,0"),
+        ("nse_e_m,nse_n_m,est_lat_deg,est_lon_deg,truth_lat_deg,truth_lon_deg", "1,1,48.0,2.0,48.01,2.0"),
+    ],
+)
+def test_of_two_statements_of_one_error_the_larger_counts(columns: str, bad: str, tmp_path: Path) -> None:
+    fine = "1,1,1" if columns.startswith("hpe") else "1,1,48.0,2.0,48.00001,2.00001"
+    rows = [f"time,hpl,vpl,vpe,{columns}", *(f"{1_400_000_000 + k},20,25,1,{bad if 100 <= k < 160 else fine}" for k in range(N))]
+    (tmp_path / "levels.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    result = navbound.evaluate([tmp_path / "levels.csv"], levels="APV-I")
+    assert result.summary.verdict.id == "not_believable"
+    assert result.summary.performance is not None
+    assert result.summary.performance.levels[0].n_hazard_epochs == 60

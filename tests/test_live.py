@@ -243,14 +243,17 @@ def test_a_command_that_is_ended_judges_what_it_has_and_can_be_resumed(tmp_path:
     for resume in ([], ["--resume"]):
         with subprocess.Popen([*command, *resume], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
             assert process.stdin is not None
+            # The record is of now when it is written: the command listens, as its heartbeats in the journal show.
             before = (out / journal.IN).stat().st_size if resume else 0
-            record = {"v": 1, "track": "a", "time_ns": live.session.now_ns(), "fte_m": 5.0, "sigma_m": 2000.0}
-            process.stdin.write(json.dumps(record).encode() + b"\n")
-            process.stdin.flush()
             end = time.monotonic() + 60
-            while time.monotonic() < end and not (out / journal.IN).exists():
+            while time.monotonic() < end and (not (out / journal.IN).exists() or (out / journal.IN).stat().st_size <= before):
                 time.sleep(0.05)
-            while time.monotonic() < end and (out / journal.IN).stat().st_size <= before:
+            before = (out / journal.IN).stat().st_size
+            record = {"v": 1, "track": "a", "time_ns": live.session.now_ns(), "fte_m": 5.0, "sigma_m": 2000.0}
+            line = json.dumps(record).encode() + b"\n"
+            process.stdin.write(line)
+            process.stdin.flush()
+            while time.monotonic() < end and (out / journal.IN).stat().st_size < before + len(line):
                 time.sleep(0.05)
             begin = time.monotonic()
             process.terminate()

@@ -62,3 +62,20 @@ def test_fields_between_blanks_are_named_as_such(tmp_path: Path) -> None:
 def test_a_unit_of_time_is_proposed_only_where_the_name_has_one(tmp_path: Path, name: str, unit: str) -> None:
     with pytest.raises(FormatError, match=f'--map "time=COLUMN:{unit}"'):
         read(table(tmp_path, f"{name},lat,lon"))
+
+
+def test_another_header_in_the_middle_ends_the_table(tmp_path: Path) -> None:
+    path = table(tmp_path, "time,lat,lon,sigma_e_m")
+    path.write_text("time,lat,lon,sigma_e_m,sigma_n_m\n1600000000,47,8,3,3\ntime,lat,lon,sigma_e_km,sigma_n_km\n1600000001,47,8,3,3\n")
+    with pytest.raises(FormatError, match="another header in the middle") as refusal:
+        read(path)
+    assert refusal.value.line == 3
+
+
+def test_the_same_header_again_is_a_row_that_is_counted(tmp_path: Path) -> None:
+    header, rows = "time,lat,lon", [f"{1_600_000_000 + k},47.0,8.0{k}" for k in range(30)]
+    path = tmp_path / "two.csv"
+    path.write_text("\n".join([header, *rows[:15], header, *rows[15:]]) + "\n")
+    reading = read(path)
+    assert reading.epochs.height == 30
+    assert sum(one.count for one in reading.rejected) == 1

@@ -50,6 +50,10 @@ def stating(tmp_path: Path, name: str, fine: object, bad: object, *, sigma_m: fl
         ("gps_denied", "no", "yes"),
         ("coasting", 0, 12.5),
         ("is_predicted", 0, 1),
+        ("used", 1, 0),
+        ("sol_stat", "SOL_COMPUTED", "COV_TRACE"),
+        ("nuc_p", 8, 0),
+        ("n_sv", 9, 0),
         ("hdop", 1.2, 99.99),
         ("PDOP", 30.0, 30.1),
     ],
@@ -72,6 +76,10 @@ def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Pa
         ("fault", "false", "true"),
         ("alarm", "none", "RNP ALERT"),
         ("invalid", 0, 1),
+        ("unable_rnp", 0, 1),
+        ("unhealthy", 0, 1),
+        ("stale", "false", "true"),
+        ("raim_flag", 0, 1),
     ],
 )
 def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine: object, bad: object) -> None:
@@ -206,3 +214,12 @@ def test_columns_whose_names_differ_in_writing_alone_are_refused(tmp_path: Path,
         navbound.evaluate(path, levels="APV-I")
     declared = navbound.evaluate(path, levels="APV-I", columns={"hpe_m": "hpe_m:m"}).summary.verdict
     assert declared.id != "not_believable"
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "beyond"),
+    [("xtk", 500.0, False), ("xte", -600.0, True), ("cross_track_nm", 0.5, True), ("lateral_deviation_nm", -0.2, False)],
+)
+def test_a_deviation_under_any_of_its_names_is_weighed(tmp_path: Path, name: str, value: float, beyond: bool) -> None:
+    verdict = stating(tmp_path, name, 5.0 if "nm" not in name else 0.003, value)
+    assert (verdict.id, verdict.n_stated_beyond) == (("not_shown", 100) if beyond else ("inside", 0))

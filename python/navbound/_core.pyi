@@ -199,7 +199,19 @@ _Reports = tuple[NDArray[np.int64], NDArray[np.int64], _F, _F, _F]
 
 SPEEDS_BESIDE: int
 GGA_QUALITIES: list[int]
+LEAST_SATELLITES: int
 MOST_DILUTION: float
+NEIGHBOUR_RISK: float
+
+def neighbours_apart(
+    track: NDArray[np.int64],
+    time_ns: NDArray[np.int64],
+    lat_rad: NDArray[np.float64],
+    lon_rad: NDArray[np.float64],
+    variance_m2: NDArray[np.float64],
+    stale_after_s: float,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+
 RTKLIB_QUALITIES: list[int]
 
 class PlausibleTrack:

@@ -4,6 +4,7 @@ use crate::receivers::ranges::{Records, Source, Tally, Unused, plans};
 use crate::receivers::signals::Plan;
 pub use crate::receivers::signals::Signals;
 use crate::smoothing::{self, Form, Smoothed};
+use nalgebra::Vector3;
 use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::frame::{EcefPosition, ecef_from_geodetic};
 use navbound_core::geometry::ionosphere::Ionosphere;
@@ -145,6 +146,8 @@ struct Solved {
     fix: Result<Fix, Unavailable>,
     /// Its other readings, where the position cannot stand alone.
     mixture: Option<Box<Mixture>>,
+    /// The way to where a constellation that was left out puts the receiver \[m\].
+    rival: Option<Vector3<f64>>,
     kept: Vec<(SatelliteId, Used)>,
 }
 
@@ -172,8 +175,8 @@ impl Solver<'_> {
         };
         let solved = point::solve_readings(ranges, self.source.observations.time[epoch], &self.job.settings, near, offsets, keep);
         match solved {
-            Ok((fix, mixture)) => Solved { fix: Ok(fix), mixture: mixture.map(Box::new), kept },
-            Err(why) => Solved { fix: Err(why), mixture: None, kept },
+            Ok((fix, mixture)) => Solved { fix: Ok(fix), mixture: mixture.map(Box::new), rival: None, kept },
+            Err(why) => Solved { fix: Err(why), mixture: None, rival: None, kept },
         }
     }
 
@@ -208,13 +211,24 @@ impl Solver<'_> {
         // What cannot be used was counted before.
         self.source.collect(epoch, &mut ranges, &mut Vec::new(), &mut Tally::default());
         let all = ranges.len();
-        ranges.retain(|r| !treatment.without[r.satellite.constellation.index()]);
+        let (left_out, ranges): (Vec<Range>, Vec<Range>) =
+            ranges.into_iter().partition(|r| treatment.without[r.satellite.constellation.index()]);
         let near = before.fix.as_ref().ok().map(|f| ecef_from_geodetic(&f.position));
         let without = (ranges.len() < all).then(|| self.solve(epoch, &ranges, near.as_ref(), &Offsets::default()));
         let tied = without.as_ref().unwrap_or(before).few() && treatment.offsets.tie(&ranges);
-        let solved = if tied { self.solve(epoch, &ranges, near.as_ref(), &treatment.offsets) } else { without? };
+        let mut solved = if tied { self.solve(epoch, &ranges, near.as_ref(), &treatment.offsets) } else { without? };
+        solved.rival = solved.fix.as_ref().ok().and_then(|fix| self.rival(epoch, fix, &left_out));
         let checked = solved.fix.as_ref().is_ok_and(|f| f.spare >= 1);
         (checked || before.fix.is_err()).then_some((all - ranges.len(), solved))
+    }
+
+    /// The way to where the constellations that were left out put the receiver, each by itself; the longest.
+    fn rival(&self, epoch: usize, fix: &Fix, left_out: &[Range]) -> Option<Vector3<f64>> {
+        let way = |c: Constellation| {
+            let own: Vec<Range> = left_out.iter().filter(|r| r.satellite.constellation == c).copied().collect();
+            fix.rival(&self.solve(epoch, &own, None, &Offsets::default()).fix.ok()?)
+        };
+        Constellation::ALL.into_iter().filter_map(way).max_by(|a, b| a.norm().total_cmp(&b.norm()))
     }
 }
 
@@ -224,11 +238,11 @@ const FEW: usize = 3;
 /// Statuses and covariances, which the receiver's past has a part in, through the file in its order.
 fn declare(times: &[GpsTime], solved: Vec<Solved>, keep: bool, out: &mut Positions) {
     let mut declarations = Declarations::default();
-    for (time, Solved { fix, mixture, mut kept }) in times.iter().zip(solved) {
+    for (time, Solved { fix, mixture, rival, mut kept }) in times.iter().zip(solved) {
         let own = fix.as_ref().map_or(1.0, |f| f.inflation);
         let (fix, doubt) = match fix {
             Ok(mut fix) => {
-                let doubt = declarations.declare(*time, &mut fix, mixture.as_deref());
+                let doubt = declarations.declare(*time, &mut fix, mixture.as_deref(), rival);
                 let doubt = doubt.or(out.undescribed.then_some(Doubt::IonosphereUndescribed));
                 (doubt.and_then(|d| d.refusal(&fix)).map_or(Ok(fix), Err), doubt)
             }

@@ -9,6 +9,7 @@ use navbound_core::bound::{AlertBound, anp};
 use navbound_core::frame::{Covariance, LatLon};
 use navbound_core::judge::{Evaluated, Judged, Sample};
 use navbound_core::monitor::motion::{Finding, Motion, Report};
+use navbound_core::monitor::neighbours::{Neighbours, Place};
 use navbound_core::monitor::rnp::{Acceptance, Event};
 use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Status, Unavailable};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -92,7 +93,12 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
     let report = Report { time: position.time, fixed: None, lat_rad, lon_rad, speed_mps };
     // A place off the Earth is refused where it is projected, or is no covariance's.
     let finding = track.motion.see(&report, &settings.motion).map_or(Some(Reason::InvalidNumber), Finding::reason);
-    finding.map_or(*position, |reason| position.without(reason))
+    let restless = || {
+        let variance_m2 = position.covariance_m2.map(|[ee, _, nn, ..]| ee.max(nn))?;
+        let place = Place { time: position.time, lat_rad, lon_rad, variance_m2 };
+        track.neighbours.contradict(place, settings.motion.stale_after_s).then_some(Reason::NeighboursContradict)
+    };
+    finding.or_else(restless).map_or(*position, |reason| position.without(reason))
 }
 
 /// Judges a record and says what became of it. A fault of ours makes this epoch of this track unusable, and nothing else; whether one happened.
@@ -119,7 +125,7 @@ pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived
     };
     if judged.step.acceptance == Acceptance::ClockSetBack {
         track.incarnation = track.incarnation.saturating_add(1);
-        track.motion = Motion::default();
+        (track.motion, track.neighbours) = (Motion::default(), Neighbours::default());
     }
     if matches!(judged.step.acceptance, Acceptance::Accepted | Acceptance::ClockSetBack) {
         let next = track.last.map(|last| last.plus_seconds(settings.judge.monitor.chain.sample_period_s));

@@ -276,10 +276,13 @@ impl Lane {
         let Some(track) = self.tracks.get_mut(&id) else { return };
         let stale_s = track.judge.monitor().settings().stale_after_s;
         let mut arrived = *arrived;
-        // What is older than monitoring may be silent is no news: it cannot end a loss of monitoring.
-        if watermark.seconds_since(arrived.position.time) > stale_s && arrived.position.status.usable() && track.silent {
+        // What is older than monitoring may be silent is no news, by the time of the others and by that of its own arrival.
+        let lateness_ns = self.settings.lateness_ns;
+        let heard = arrived.arrival.map(|at| GpsTime::from_nanoseconds(at.nanoseconds().saturating_sub(lateness_ns)));
+        let now = heard.map_or(watermark, |heard| heard.max(watermark));
+        if now.seconds_since(arrived.position.time) > stale_s && arrived.position.status.usable() {
             self.counters.n_stale += 1;
-            arrived.position = arrived.position.without(Reason::PositionStale);
+            arrived.position = arrived.position.without(Reason::RecordOld);
         }
         let (before, incarnation, silent) = (track.last, track.incarnation, track.silent);
         #[cfg(test)]

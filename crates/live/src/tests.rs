@@ -597,3 +597,51 @@ fn a_position_that_jumps_farther_than_its_aircraft_flies_is_not_believed() {
         assert!(alerts[10..].iter().all(|a| *a == rnp::Alert::Unavailable), "{alerts:?}");
     }
 }
+
+/// A receiver that flies 70 m/s north, every second record so many metres beside.
+#[test]
+fn positions_that_alternate_are_not_believed() {
+    let of = |k: u32, aside_m: f64| {
+        let (lat, lon) = (0.8 + 70.0 * f64::from(k) / 6.371e6, if k % 2 == 0 { 0.1 } else { 0.1 + aside_m / 4.44e6 });
+        line(
+            "a",
+            f64::from(k),
+            &format!(
+                ",\"est_lat_rad\":{lat},\"est_lon_rad\":{lon},\"sigma_m\":3.0,\"fte_m\":0.0,\"course_rad\":0.0,\"ground_speed_mps\":70.0"
+            ),
+        )
+    };
+    for (aside_m, expected) in
+        [(0.0, [None; 4]), (420.0, [None, None, Some(Reason::NeighboursContradict), Some(Reason::NeighboursContradict)])]
+    {
+        let mut lane = Lane::new(settings()).unwrap();
+        let mut all = Vec::new();
+        for k in 0..8 {
+            all.extend(chunk(&mut lane, f64::from(k) + 0.1, &of(k, aside_m)));
+        }
+        let reasons: Vec<_> = epochs_of(&all, "a").iter().map(|e| e.reason).collect();
+        assert_eq!(reasons[..4], expected, "{aside_m}");
+    }
+}
+
+/// Records that come so late that monitoring may have been silent meanwhile, though their own times go on.
+#[test]
+fn data_that_are_not_of_now_are_not_monitored() {
+    for (late_s, normal) in [(2.5, true), (3.1, false), (18.0, false), (3000.0, false)] {
+        let mut lane = Lane::new(settings()).unwrap();
+        let mut all = Vec::new();
+        for k in 0..40 {
+            let now = late_s + 0.5 * f64::from(k);
+            all.extend(chunk(&mut lane, now, &good("a", 0.5 * f64::from(k))));
+            lane.step(&Input::Heartbeat { arrival: at(now + 0.3) }, &mut all);
+        }
+        let epochs = epochs_of(&all, "a");
+        assert!(epochs.len() >= 36, "{late_s}");
+        assert!(epochs.iter().all(|e| (e.alert == rnp::Alert::Normal) == normal), "{late_s}");
+        assert!(epochs.iter().all(|e| (e.reason == Some(Reason::RecordOld)) == !normal), "{late_s}");
+        // Raised once, and never taken back; a track that is forgotten meanwhile begins anew.
+        let turns = all.iter().filter(|output| matches!(output, Output::Transition(t) if t.turn == Turn::Cleared)).count();
+        assert_eq!(turns, 0, "{late_s}");
+        assert!(late_s > 20.0 || transitions(&all).len() == usize::from(!normal), "{late_s}");
+    }
+}

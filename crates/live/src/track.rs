@@ -5,6 +5,7 @@ use crate::order::Waiting;
 use crate::output::Kind;
 use navbound_core::judge::{self, Judge};
 use navbound_core::monitor::motion::{Motion, Report};
+use navbound_core::monitor::neighbours::{Neighbours, Place};
 use navbound_core::quantity::{GpsTime, Metres};
 
 /// Everything that is kept of a track.
@@ -23,6 +24,8 @@ pub(crate) struct Track {
     pub(crate) along: Option<Metres>,
     /// Its last different position and its last jump.
     pub(crate) motion: Motion,
+    /// Its last two positions.
+    pub(crate) neighbours: Neighbours,
     pub(crate) waiting: Waiting,
     /// Whether its silence was noticed since the last record.
     pub(crate) silent: bool,
@@ -38,6 +41,7 @@ impl Track {
             stepped: false,
             along: None,
             motion: Motion::default(),
+            neighbours: Neighbours::default(),
             waiting: Waiting::default(),
             silent: false,
         }
@@ -70,6 +74,12 @@ impl Track {
             [last.lat_rad, last.lon_rad, last.speed_mps].into_iter().for_each(|number| to.f64(number));
         });
         to.option(self.motion.jumped, |to, time| to.i64(time.nanoseconds()));
+        for place in self.neighbours.last {
+            to.option(place, |to, place| {
+                to.i64(place.time.nanoseconds());
+                [place.lat_rad, place.lon_rad, place.variance_m2].into_iter().for_each(|number| to.f64(number));
+            });
+        }
         self.waiting.write(to);
         to.flag(self.silent);
     }
@@ -92,6 +102,12 @@ impl Track {
             Ok(Report { time, fixed: None, lat_rad: from.f64()?, lon_rad: from.f64()?, speed_mps: from.f64()? })
         };
         let motion = Motion { last: from.option(report)?, jumped: from.option(Reader::i64)?.map(GpsTime::from_nanoseconds) };
-        Ok(Self { judge, incarnation, open, last, stepped, along, motion, waiting: Waiting::read(from)?, silent: from.flag()? })
+        let place = |from: &mut Reader<'_>| {
+            let time = GpsTime::from_nanoseconds(from.i64()?);
+            Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })
+        };
+        let neighbours = Neighbours { last: [from.option(place)?, from.option(place)?] };
+        let (waiting, silent) = (Waiting::read(from)?, from.flag()?);
+        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, waiting, silent })
     }
 }

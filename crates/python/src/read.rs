@@ -3,6 +3,7 @@
 use crate::error::{format_error, input_error};
 use navbound_assess::error::navigation_errors;
 use navbound_assess::plausible::{Finding, Limits, Report, SPEEDS_BESIDE, Survey, Track};
+use navbound_core::monitor::neighbours::{self, Apart, Place};
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_formats::packed::{Limit, unpack_within};
 use navbound_formats::{measured, rtklib, time};
@@ -213,6 +214,38 @@ impl PlausibleTrack {
     }
 }
 
+/// Of every three successive positions of one track how far the middle one stands from the line between the others [m], and the risk of as much by
+/// the covariances; NaN where they are not of one track, or time does not go on.
+#[pyfunction]
+fn neighbours_apart<'py>(
+    py: Python<'py>,
+    track: PyReadonlyArray1<'py, i64>,
+    time_ns: PyReadonlyArray1<'py, i64>,
+    lat_rad: PyReadonlyArray1<'py, f64>,
+    lon_rad: PyReadonlyArray1<'py, f64>,
+    variance_m2: PyReadonlyArray1<'py, f64>,
+    stale_after_s: f64,
+) -> PyResult<Columns<'py>> {
+    let (track, time_ns) = (track.as_slice()?, time_ns.as_slice()?);
+    let (lat_rad, lon_rad, variance_m2) = (lat_rad.as_slice()?, lon_rad.as_slice()?, variance_m2.as_slice()?);
+    let place = |k: usize| Place {
+        time: GpsTime::from_nanoseconds(time_ns[k]),
+        lat_rad: lat_rad[k],
+        lon_rad: lon_rad[k],
+        variance_m2: variance_m2[k],
+    };
+    let (away_m, risk) = (2..track.len())
+        .map(|k| {
+            let of_one = track[k - 2] == track[k];
+            let apart = Apart::of([&place(k - 2), &place(k - 1), &place(k)], stale_after_s).filter(|_| of_one);
+            apart.map_or((f64::NAN, f64::NAN), |apart| (apart.away_m, apart.risk()))
+        })
+        .unzip::<_, _, Vec<_>, Vec<_>>();
+    Ok((away_m.into_pyarray(py), risk.into_pyarray(py)))
+}
+
+type Columns<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
 fn triples<'a>(array: &'a PyReadonlyArray2<'_, f64>) -> PyResult<&'a [[f64; 3]]> {
     let (rows, rest) = array.as_slice()?.as_chunks::<3>();
     if !rest.is_empty() || array.as_array().ncols() != 3 {
@@ -243,6 +276,9 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(navigation_error, m)?)?;
     m.add("SPEEDS_BESIDE", SPEEDS_BESIDE)?;
     m.add("GGA_QUALITIES", numbers(measured::GGA_QUALITIES))?;
+    m.add_function(wrap_pyfunction!(neighbours_apart, m)?)?;
+    m.add("NEIGHBOUR_RISK", neighbours::RISK)?;
+    m.add("LEAST_SATELLITES", measured::LEAST_SATELLITES)?;
     m.add("MOST_DILUTION", navbound_core::solution::plausible::DILUTION)?;
     m.add("RTKLIB_QUALITIES", numbers(measured::RTKLIB_QUALITIES))?;
     m.add_class::<PlausibleTrack>()

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from navbound.gnss.receivers import Positions
 
-_RESIDUALS = ("residuals_contradict", "recent_residuals_contradict", "service_residuals_contradict", "exclusion_unconfirmed")
+_RESIDUALS = ("residuals_contradict", "recent_residuals_contradict", "constellations_contradict", "exclusion_unconfirmed")
 """Reasons that ranges which do not agree give an epoch."""
 _MOST = 0.25
 """A larger share of the solved epochs with such a reason is worth a search. Provenance: ours. [1]"""

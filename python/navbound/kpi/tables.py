@@ -43,10 +43,9 @@ def frame_of(table: Table) -> pl.DataFrame:
     for name in ("time_ns", "hpl_m"):
         if name not in frame.columns:
             raise InputError("table", f"columns {', '.join(frame.columns[:12])}", domain=f"a table with a column {name}")
-    if "hpe_m" in frame.columns and ("nse_e_m" not in frame.columns or frame["nse_e_m"].is_null().all()):
-        known = pl.col("hpe_m").is_not_null()
+    if "hpe_m" in frame.columns:
         vertical = pl.col("vpe_m") if "vpe_m" in frame.columns else pl.lit(None, pl.Float64)
-        frame = frame.with_columns(nse_e_m=pl.col("hpe_m"), nse_n_m=pl.when(known).then(0.0), nse_u_m=vertical)
+        frame = with_larger_error(frame, pl.col("hpe_m"), vertical)
     if not frame["time_ns"].dtype.is_integer():
         raise InputError("time_ns", f"{frame['time_ns'].dtype}", domain="whole nanoseconds")
     if frame["time_ns"].null_count():
@@ -60,6 +59,33 @@ def frame_of(table: Table) -> pl.DataFrame:
     try:
         return frame.select(
             (pl.col(name) if name in frame.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in columns.items()
+        )
+    except pl.exceptions.PolarsError as e:
+        raise InputError("table", str(e).splitlines()[0][:120], domain="numbers in the columns that hold numbers") from e
+
+
+def with_larger_error(frame: pl.DataFrame, horizontal_m: pl.Expr, vertical_m: pl.Expr) -> pl.DataFrame:
+    """The errors of a table, replaced where another statement of the same epochs is larger: of two the worse counts.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        With ``nse_e_m nse_n_m nse_u_m`` or some of them.
+    horizontal_m, vertical_m : Expr
+        The other statement: a length, and an error of either sign. [m]
+    """
+    own = [pl.col(f"nse_{axis}_m") if f"nse_{axis}_m" in frame.columns else pl.lit(None, pl.Float64) for axis in "enu"]
+    try:
+        east, north, up, other_h, other_u = (each.cast(pl.Float64) for each in (*own, horizontal_m.abs(), vertical_m))
+        # A component that is not there adds nothing to the one that is.
+        has = other_h.is_not_null()
+        east, north = (pl.when(has).then(each.fill_null(0.0)).otherwise(each) for each in (east, north))
+        size = (east**2 + north**2).sqrt()
+        larger, ratio = has & (other_h > size), pl.when(size > 0.0).then(other_h / size)
+        return frame.with_columns(
+            nse_e_m=pl.when(larger).then(pl.coalesce(east * ratio, other_h)).otherwise(east),
+            nse_n_m=pl.when(larger).then(pl.coalesce(north * ratio, pl.lit(0.0))).otherwise(north),
+            nse_u_m=pl.when(other_u.is_not_null() & (up.is_null() | (other_u.abs() > up.abs()))).then(other_u).otherwise(up),
         )
     except pl.exceptions.PolarsError as e:
         raise InputError("table", str(e).splitlines()[0][:120], domain="numbers in the columns that hold numbers") from e

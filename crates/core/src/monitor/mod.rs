@@ -9,6 +9,7 @@ pub mod guard;
 pub mod judgement;
 mod latch;
 pub mod motion;
+pub mod neighbours;
 pub mod rnp;
 pub mod separation;
 mod settings;

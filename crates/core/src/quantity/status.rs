@@ -243,6 +243,15 @@ reasons! {
     NoStationPair, "no_station_pair", NotAvailable, "no station or no admissible pair";
     /// A text of the input that is no id of this list.
     Reported, "reported", NotAvailable, "reported by the input";
+    /// Of a live position.
+    NeighboursContradict, "neighbours_contradict", NotAvailable,
+        "the position and the two before it contradict each other: no manoeuvre and no covariance explains them";
+    /// Of a live record.
+    RecordOld, "record_old", NotAvailable,
+        "the record was older than the stale time when it arrived: the data are not of now, or a clock is wrong";
+    /// Two constellations, two positions.
+    ConstellationsContradict, "constellations_contradict", Degraded,
+        "two constellations contradict each other, and nothing says which of them is wrong";
 }
 
 impl Reason {

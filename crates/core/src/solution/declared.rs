@@ -2,9 +2,10 @@
 //!
 //! ```text
 //! ok       = the residuals agree with the weights, no memory of contradiction, either three ranges to spare with nothing excluded
-//!            or one to spare and trace P <= 2 trace V, and the declared 95 % circle is within 0.1 NM
+//!            or one to spare and trace P <= 2 trace V, no two constellations give two positions, and the declared 95 % circle is within
+//!            0.1 NM
 //! declared = V;   with other readings P, widened to reach each that is not negligible, and to hold its uncertainty where the position is ok;
-//!            with the memory P + f V
+//!            with the memory P + f V; with the way d to another constellation's position + d d'
 //! ```
 //!
 //! V is the covariance of the position itself, P that over all readings of its ranges ([`Mixture`]), f the variance factor of
@@ -14,11 +15,13 @@ use super::Surroundings;
 use super::mixture::{Mixture, OBSTRUCTED};
 use super::plausible::Movement;
 use super::point::{CONFIRMED, Fix};
+use super::rivals::Rivalry;
 use super::wls::horizontal_axes;
 use crate::frame::Covariance;
 use crate::quantity::{GpsTime, Reason, Risk, Unavailable};
 use crate::special::float::exp;
 use crate::special::radius::RadiusLaw;
+use nalgebra::Vector3;
 
 /// What is known of the surroundings fades with this \[s\].
 const MEMORY_S: f64 = 60.0;
@@ -46,6 +49,8 @@ pub enum Doubt {
     ExclusionUnconfirmed,
     /// Nothing excluded, and another reading of the ranges that fits as well.
     ReadingUnconfirmed,
+    /// Two constellations give two positions.
+    ConstellationsContradict,
     /// A circle too wide to be of use.
     WideCircle,
     /// Single frequencies, and no message describes the ionosphere.
@@ -60,13 +65,14 @@ pub enum Doubt {
 
 impl Doubt {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::ResidualsContradict,
         Self::RecentResidualsContradict,
         Self::NoRedundancy,
         Self::ClockUnchecked,
         Self::ExclusionUnconfirmed,
         Self::ReadingUnconfirmed,
+        Self::ConstellationsContradict,
         Self::WideCircle,
         Self::IonosphereUndescribed,
         Self::ImplausibleHeight,
@@ -83,6 +89,7 @@ impl Doubt {
             Self::ClockUnchecked => Reason::ClockUnchecked,
             Self::ExclusionUnconfirmed => Reason::ExclusionUnconfirmed,
             Self::ReadingUnconfirmed => Reason::ReadingUnconfirmed,
+            Self::ConstellationsContradict => Reason::ConstellationsContradict,
             Self::WideCircle => Reason::WideCircle,
             Self::IonosphereUndescribed => Reason::IonosphereUndescribed,
             Self::ImplausibleHeight => Reason::ImplausibleHeight,
@@ -123,6 +130,7 @@ impl Doubt {
 pub struct Declarations {
     surroundings: Surroundings,
     movement: Movement,
+    rivalry: Rivalry,
     /// Posterior probability that the surroundings are obstructed, and when.
     obstructed: f64,
     last: Option<GpsTime>,
@@ -130,14 +138,21 @@ pub struct Declarations {
 
 impl Default for Declarations {
     fn default() -> Self {
-        Self { surroundings: Surroundings::default(), movement: Movement::default(), obstructed: OBSTRUCTED, last: None }
+        Self {
+            surroundings: Surroundings::default(),
+            movement: Movement::default(),
+            rivalry: Rivalry::default(),
+            obstructed: OBSTRUCTED,
+            last: None,
+        }
     }
 }
 
 impl Declarations {
-    /// Take the next position in time, with the other readings of its ranges where it cannot stand alone. The position's covariance becomes the
-    /// declared one; what it is doubted for is returned.
-    pub fn declare(&mut self, time: GpsTime, fix: &mut Fix, mixture: Option<&Mixture>) -> Option<Doubt> {
+    /// Take the next position in time, with the other readings of its ranges where it cannot stand alone, and the way to where a constellation
+    /// that was left out puts the receiver. The position's covariance becomes the declared one; what it is doubted for is returned.
+    pub fn declare(&mut self, time: GpsTime, fix: &mut Fix, mixture: Option<&Mixture>, rival: Option<Vector3<f64>>) -> Option<Doubt> {
+        let reaching = self.rivalry.judge(time, fix, rival);
         let factor = self.surroundings.judge(time, fix);
         let own = *fix.covariance.matrix();
         if let Some(factor) = factor.filter(|f| *f > fix.inflation) {
@@ -157,7 +172,12 @@ impl Declarations {
         if !self.movement.possible(time, &fix.position, velocity, fix.covariance.matrix()) {
             return Some(Doubt::ImplausibleJump);
         }
-        doubt(fix, factor.is_some(), confirmed).or_else(|| too_wide(fix).then_some(Doubt::WideCircle))
+        let doubt = doubt(fix, factor.is_some(), confirmed);
+        if let Some(reaching) = reaching {
+            fix.covariance = Covariance::claim_symmetric(fix.covariance.matrix() + reaching);
+            return Some(Doubt::ConstellationsContradict);
+        }
+        doubt.or_else(|| too_wide(fix).then_some(Doubt::WideCircle))
     }
 
     fn obstructed(&mut self, time: GpsTime, fix: &Fix, mixture: Option<&Mixture>) -> f64 {

@@ -20,7 +20,7 @@ fn readings(n: usize, fault: f64) -> Mixture {
 }
 
 fn declared(mut fix: Fix, mixture: Option<&Mixture>) -> (Option<Doubt>, Fix) {
-    let doubt = Declarations::default().declare(at(0), &mut fix, mixture);
+    let doubt = Declarations::default().declare(at(0), &mut fix, mixture, None);
     (doubt, fix)
 }
 
@@ -67,10 +67,10 @@ fn a_doubt_has_an_order() {
 fn a_jump_is_refused_and_its_refusal_has_a_number_and_a_sentence() {
     let mut d = Declarations::default();
     let mut here = fix(1.0, &[]);
-    assert_eq!(d.declare(at(0), &mut here, None), None);
+    assert_eq!(d.declare(at(0), &mut here, None, None), None);
     let mut there = fix(1.0, &[]);
     there.position.height = Metres::new(90_000.0);
-    let doubt = d.declare(at(1), &mut there, None).unwrap();
+    let doubt = d.declare(at(1), &mut there, None, None).unwrap();
     assert_eq!(doubt, Doubt::ImplausibleJump);
     assert!(doubt.refuses() && doubt.refusal(&there).is_some());
 }

@@ -12,6 +12,7 @@ pub mod mixture;
 pub mod plausible;
 pub mod point;
 mod range_error;
+pub mod rivals;
 pub mod snapshot;
 pub mod subsets;
 mod surroundings;

@@ -23,7 +23,7 @@ fn an_exclusion_that_one_spare_range_cannot_confirm_is_degraded_and_holds_the_er
             let (mut fix, mixture) = readings(&ranges, &Offsets::default());
             let error = error(&fix);
             wrong += usize::from(fix.consistent && fix.n_excluded == 1 && fix.excluded[0] != Some(ranges[k].satellite));
-            let doubt = Declarations::default().declare(GpsTime::default(), &mut fix, mixture.as_ref());
+            let doubt = Declarations::default().declare(GpsTime::default(), &mut fix, mixture.as_ref(), None);
             let normalised = error.dot(&(fix.covariance.matrix().try_inverse().unwrap() * error));
             // The 1e-5 quantile of chi-square with three degrees of freedom is 25.9 (tables).
             assert!(normalised < 25.9, "{k} {fault}: {error:?} {normalised}");

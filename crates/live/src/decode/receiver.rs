@@ -7,8 +7,8 @@ use crate::position::{Position, TrackId};
 use navbound_core::quantity::{Reason, Status};
 use navbound_formats::receiver::position::{Dated, Decoder, Ends, Item, Kind, Message, OfDay, State};
 
-/// Most messages of an unfinished epoch: at most one of a kind. Provenance: ours.
-const MOST_MESSAGES: u32 = 8;
+/// Most messages of an unfinished epoch: one of a kind, and four of each that talkers share. Provenance: ours.
+const MOST_MESSAGES: u32 = 16;
 
 /// A report, or why there is none; nothing for a date, or for an accuracy alone.
 pub(super) fn decoded(item: Item, track: TrackId) -> Option<Decoded> {

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
-from navbound import status
+from navbound import _core, status
 from navbound.read.checks.statements import NO_ALERT
 
 if TYPE_CHECKING:
@@ -97,3 +97,14 @@ def with_statements(rows: pl.DataFrame, statements: Sequence[tuple[str, Effect, 
     # What the recording states already stays where it is as grave.
     fault = pl.select(pl.when(sentence.is_not_null() & rows["status"].is_in(status.USABLE)).then(pl.lit("reported"))).to_series()
     return status.overridden(rows, fault, sentence)
+
+
+def of_satellites(rows: pl.DataFrame) -> pl.DataFrame:
+    """Positions on fewer satellites than determine one are kept by something else, where the recording states no status of its own."""
+    if "n_sv" not in rows.columns or "status" in rows.columns:
+        return rows
+    few = (rows["n_sv"] < _core.LEAST_SATELLITES).fill_null(value=False)
+    if not few.any():
+        return rows
+    rows = rows.with_columns(pl.lit("ok").alias("status"))
+    return status.overridden(rows, pl.select(pl.when(few).then(pl.lit("coasting"))).to_series())

@@ -78,7 +78,7 @@ KINDS: tuple[Kind, ...] = (
         _words(
             "valid is_valid validity position_valid pos_valid gps_valid gnss_valid fix_valid data_valid nav_valid solution_valid "
             "location_valid usable reliable trusted healthy gps_ok gnss_ok position_ok pos_ok nav_ok integrity_ok raim_ok "
-            "fix_ok gnss_fix_ok "
+            "fix_ok gnss_fix_ok used in_use accepted believed "
             "gnssfixok available is_available gps_available gnss_available raim_available integrity_available pl_valid hpl_valid xpl_valid"
         ),
         _NO,
@@ -98,7 +98,7 @@ KINDS: tuple[Kind, ...] = (
         "invalid",
         _words(
             "mode nav_mode navigation_mode pos_mode position_mode posmode mode_indicator positioning_mode sol_status solution_status "
-            "gps_primary gnss_primary "
+            "gps_primary gnss_primary sol_stat solstat solution_state "
             "solution_type pos_type position_type nav_status navigation_status gps_status gnss_status position_status"
         ),
         _words(
@@ -126,6 +126,8 @@ KINDS: tuple[Kind, ...] = (
         _NO - _words("v invalid not_valid bad unusable fail failed unhealthy unreliable"),
         other_against=True,
     ),
+    # Version 0 transponders: 0 is an unknown integrity.
+    Kind("invalid", _words("nuc_p nucp nuc"), _words("0"), frozenset("123456789")),
     # The rule of solved positions; receivers write 99.99 where they know none.
     Kind("invalid", _words("hdop pdop gdop vdop dop"), frozenset(), frozenset(), above=_core.MOST_DILUTION),
     Kind(
@@ -136,10 +138,7 @@ KINDS: tuple[Kind, ...] = (
     ),
     Kind(
         "alert",
-        _words(
-            "raim raim_status raim_flag raim_state integrity integrity_status integrity_flag integrity_state fde "
-            "fde_status health gps_health"
-        ),
+        _words("raim raim_status raim_state integrity integrity_status integrity_flag integrity_state fde fde_status health gps_health"),
         frozenset(),
         NO_ALERT - NO_INTEGRITY,
         other_against=True,
@@ -152,7 +151,8 @@ KINDS: tuple[Kind, ...] = (
             "integrity_lost loss_of_integrity loi fault fault_flag fault_detected failure gps_fault gnss_fault nav_fault warning caution "
             "warn warning_flag "
             "spoofing spoofed spoofing_detected spoof_flag jamming jammed jamming_detected interference invalid is_invalid "
-            "position_invalid unreliable outlier misleading hmi error_flag do_not_use not_valid degraded"
+            "position_invalid unreliable outlier misleading hmi error_flag do_not_use not_valid degraded unable_rnp rnp_alert rnp_warning "
+            "raim_flag unhealthy unsafe rejected bad frozen stale stuck"
         ),
         frozenset(),
         NO_ALERT,
@@ -186,7 +186,7 @@ def kind_of(plain_name: str) -> Kind | None:
 
 
 _ACCURACY = _words(
-    "acc hacc pacc accuracy uncertainty sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms rms hrms hfom "
+    "acc hacc pacc accuracy uncertainty sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms twodrms rms hrms hfom "
     "fom nse tse fte err error errors herr poserr"
 )
 """Parts of names of a horizontal accuracy or error, a length. Provenance: ours."""

@@ -172,7 +172,13 @@ STATED_QUANTITIES: tuple[Quantity, ...] = (
     _q("nse_cross_m", -1e8, 1e8),
     _q("nse_along_m", -1e8, 1e8),
     _q("tse_m", -1e8, 1e8, m="tse"),
-    _q("fte_m", -1e8, 1e8, m="fte"),
+    _q(
+        "fte_m",
+        -1e8,
+        1e8,
+        m="fte xtk xte xtd xtrack cross_track cross_track_error cross_track_deviation lateral_deviation lateral_error",
+        nm="xtk_nm xte_nm xtd_nm cross_track_nm cross_track_error_nm lateral_deviation_nm",
+    ),
     _q("alert", 0.0, 0.0),
 )
 """What a recorded track may state against its own positions. It bounds nothing; the verdict weighs it."""
@@ -352,6 +358,21 @@ def assign(
     statements = [(name, kind) for name, kind in kinds.items() if kind is not None]
     stating = {name for name, _ in statements}
     return Assignment(columns, times, [n for n in free if n not in stating], statements)
+
+
+_NAMES = frozenset(
+    {"track", *TIME_NAMES, *(name for q in (*QUANTITIES, *LEVEL_QUANTITIES, *STATED_QUANTITIES) for name in (q.name, *q.aliases))}
+)
+
+
+def is_header(cells: Sequence[object]) -> bool:
+    """Whether a row of a table holds names of columns and no numbers."""
+    words = [str(cell) for cell in cells if cell not in (None, "")]
+    return sum(_plain(word)[0] in _NAMES or _parted(word) in _NAMES for word in words if len(word) <= _LONGEST_NAME) >= _LEAST_NAMES
+
+
+_LEAST_NAMES = 2
+"""Names of quantities in one row that make it a header: one may be a callsign. [1]"""
 
 
 def position_time(unused: list[str]) -> Column | None:

@@ -22,6 +22,7 @@ from navbound.read.tables.columns import (
     Assignment,
     Column,
     declare,
+    is_header,
     position_time,
 )
 from navbound.read.tables.table import LINE
@@ -69,6 +70,10 @@ def _with_speed(part: pl.DataFrame) -> pl.DataFrame:
     return part.with_columns(pl.coalesce(*reported, of_velocity).alias("ground_speed_mps")).drop("vel_n_mps", "vel_e_mps")
 
 
+_ROWS_OF_WORDS = 100
+"""Rows without a number that are looked at for another header. [1]"""
+
+
 class Values:
     """Takes rows of one table; every piece is taken before the times are understood, and dated after.
 
@@ -103,6 +108,7 @@ class Values:
             A column that holds neither numbers nor text.
         """
         self._check_kinds(frame)
+        self._refuse_another_header(frame)
         out, against = {LINE: frame[LINE]}, list[tuple[str, pl.Series]]()
         bad = pl.repeat(value=False, n=frame.height, eager=True)
         for place, (name, column) in enumerate(self._mapping.columns.items()):
@@ -143,6 +149,21 @@ class Values:
         if not values:
             return part
         return part.with_columns(pl.DataFrame(values).max_horizontal().alias("unread_accuracy_m"))
+
+    def _refuse_another_header(self, frame: pl.DataFrame) -> None:
+        """Refuse a table in which the names of columns change on the way; the same header again is a row without numbers."""
+        texts = [c.name for c in (*self._mapping.columns.values(), *self._mapping.times) if frame.schema[c.name] == pl.String]
+        if not texts:
+            return
+        wordy = pl.all_horizontal(pl.col(name).str.contains(r"^[\s#\"]*[A-Za-z]") | pl.col(name).is_null() for name in texts)
+        for row in frame.filter(wordy.fill_null(value=False)).head(_ROWS_OF_WORDS).iter_rows(named=True):
+            line = row.pop(LINE)
+            again = all(str(cell).strip() == name for name, cell in row.items() if cell is not None)
+            if not again and is_header(list(row.values())):
+                why = (
+                    "another header in the middle of the table: the columns below it may be others, or in other units; split the file there"
+                )
+                raise FormatError(self._path, why, line)
 
     def _check_kinds(self, frame: pl.DataFrame) -> None:
         names = [column.name for column in (*self._mapping.columns.values(), *self._mapping.times)]
@@ -194,7 +215,8 @@ class Values:
         if "status" in part.columns:
             known = pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)
             self._n_unknown += part.filter(~known).height
-        return stated.with_statements(status.recorded(stated.against_itself(part)), self._statements(frame))
+        known = stated.of_satellites(status.recorded(stated.against_itself(part)))
+        return stated.with_statements(known, self._statements(frame))
 
     def _statements(self, frame: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
         """What columns of validity and of alerts state."""

@@ -12,6 +12,7 @@ import polars as pl
 
 from navbound import gnss, sbas, status
 from navbound.errors import ConflictError, FormatError, InputError
+from navbound.kpi.tables import with_larger_error
 from navbound.read.checks.refusals import of_navigation, of_observations, rejections, require_most_epochs, skipped_words
 from navbound.read.checks.stated import ALERT, BESIDE_LEVEL
 from navbound.read.tables.epochs import read
@@ -157,12 +158,16 @@ def _with_own_truth(epochs: pl.DataFrame) -> tuple[pl.DataFrame, list[str]]:
     if not {"truth_lat_rad", "truth_lon_rad"} <= have:
         return epochs, []
     errors = sorted(have & {"nse_e_m", "hpe_m"})
-    if errors:
-        return epochs, [f"truth_lat_rad and truth_lon_rad are not used: the errors are those that the table states ({', '.join(errors)})."]
     if not {"est_lat_rad", "est_lon_rad"} <= have:
-        return epochs, ["truth_lat_rad and truth_lon_rad are not used: the table holds no estimated positions to compare with them."]
-    epochs, doubts = with_error(epochs)
-    return epochs, [f"Truth: from the file itself. {doubts.words}".rstrip()]
+        why = f"the errors are those that the table states ({', '.join(errors)})" if errors else "the table holds no estimated positions"
+        return epochs, [f"truth_lat_rad and truth_lon_rad are not used: {why}; without estimated positions nothing is compared with them."]
+    compared, doubts = with_error(epochs)
+    if not errors:
+        return compared, [f"Truth: from the file itself. {doubts.words}".rstrip()]
+    own = compared.select(h=(pl.col("nse_e_m") ** 2 + pl.col("nse_n_m") ** 2).sqrt(), u="nse_u_m")
+    epochs = with_larger_error(epochs.with_columns(_h=own["h"], _u=own["u"]), pl.col("_h"), pl.col("_u")).drop("_h", "_u")
+    of_both = f"the larger of what the table states ({', '.join(errors)}) and of its true positions"
+    return epochs, [f"Truth: from the file itself; the error of an epoch is {of_both}. {doubts.words}".rstrip()]
 
 
 class Service:

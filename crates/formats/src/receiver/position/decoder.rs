@@ -41,6 +41,8 @@ pub(super) enum Step {
     Passed,
     /// It belongs to the epoch `key`.
     Part { key: i64, kind: u32 },
+    /// The same, and several talkers write it.
+    PartOfTalkers { key: i64, kind: u32 },
     /// It ends the epoch `key`.
     End { key: i64, kind: u32 },
     /// It is of the epoch `key` and holds a date, or none; whether it holds more.
@@ -88,6 +90,11 @@ impl Decoder {
             }
             Step::Part { key, kind } => {
                 let complete = self.epoch.put(key, Message { kind, record, body: body.to_vec() });
+                self.emit(&complete, out);
+                self.end_at_last(out);
+            }
+            Step::PartOfTalkers { key, kind } => {
+                let complete = self.epoch.put_again(key, Message { kind, record, body: body.to_vec() });
                 self.emit(&complete, out);
                 self.end_at_last(out);
             }

@@ -20,14 +20,17 @@ pub struct Message {
     pub body: Vec<u8>,
 }
 
+/// Talkers that write one message for one epoch, each constellation and all together (ours) \[1\].
+const TALKERS: usize = 4;
+
 /// What an unfinished epoch consists of.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct State {
     /// What the messages of an epoch have in common: time of week, or time of day.
     pub key: Option<i64>,
-    /// The messages so far, at most one of a kind.
+    /// The messages so far, at most one of a kind, and a few of one that several talkers write.
     pub messages: Vec<Message>,
-    /// Kind of the newest message of this epoch.
+    /// Kind of the newest message of this epoch; in the highest byte how many of its kind came before it, where talkers share one.
     pub newest: u32,
     /// Kind of the last message of the epoch before.
     pub last: u32,
@@ -49,6 +52,18 @@ impl Epoch {
         self.pass(key, message.kind);
         self.state.messages.push(message);
         complete
+    }
+
+    /// A message that several talkers write for one epoch, each with what it knows.
+    pub(super) fn put_again(&mut self, key: i64, message: Message) -> Vec<Message> {
+        let of_kind = self.state.messages.iter().filter(|each| each.kind == message.kind).count();
+        if self.state.key != Some(key) || of_kind == 0 || of_kind >= TALKERS {
+            return self.put(key, message);
+        }
+        // The third of a kind is another last message than the second.
+        self.pass(key, message.kind | (of_kind as u32) << 24);
+        self.state.messages.push(message);
+        Vec::new()
     }
 
     /// A message without a time of its own: of the unfinished epoch, and one of a kind. Where an epoch was finished before it came, it counts for
@@ -82,5 +97,10 @@ impl Epoch {
 
 /// The message of a kind.
 pub(super) fn of_kind(messages: &[Message], kind: u32) -> Option<&Message> {
-    messages.iter().find(|message| message.kind == kind)
+    all_of_kind(messages, kind).next()
+}
+
+/// All messages of a kind.
+pub(super) fn all_of_kind(messages: &[Message], kind: u32) -> impl Iterator<Item = &Message> {
+    messages.iter().filter(move |message| message.kind == kind)
 }

@@ -1,11 +1,11 @@
 //! NMEA 0183: GGA with GST (or GBS) and the speed of RMC of the same time of day, dated by RMC or ZDA.
 //!
-//! What RMC, GLL and GSA of the same epoch say against the position of GGA takes it away.
+//! What RMC, GLL, GNS, GSA and GBS of the same epoch say against the position of GGA takes it away. Of several accuracies the worst counts.
 //!
 //! Source: NMEA 0183 version 4 as receivers' manuals give it; standard. GGA has no date, and its height stands above the geoid.
 
 use super::decoder::Step;
-use super::epoch::{Message, of_kind};
+use super::epoch::{Message, all_of_kind, of_kind};
 use super::{Absent, Fields, Note, OfDay, Position, Reason, no_better, uncorrelated};
 use crate::measured::{GGA_QUALITIES, GSA_DIMENSIONS, LEAST_SATELLITES, NMEA_MODES};
 use crate::time::{Calendar, Scale, from_calendar, from_unix, to_calendar, to_unix};
@@ -20,6 +20,7 @@ const GGA: u32 = name(*b"GGA");
 const GST: u32 = name(*b"GST");
 const GBS: u32 = name(*b"GBS");
 const GLL: u32 = name(*b"GLL");
+const GNS: u32 = name(*b"GNS");
 const GSA: u32 = name(*b"GSA");
 const RMC: u32 = name(*b"RMC");
 const ZDA: u32 = name(*b"ZDA");
@@ -57,7 +58,7 @@ pub struct Dated {
 pub(super) fn step(body: &[u8], record: u64) -> Step {
     let fields = Sentence(body);
     let address = fields.get(0).and_then(|address| address.get(2..)).and_then(|address| <[u8; 3]>::try_from(address).ok());
-    let Some(kind) = address.map(name).filter(|kind| [GGA, GST, GBS, GLL, GSA, RMC, ZDA].contains(kind)) else { return Step::Passed };
+    let Some(kind) = address.map(name).filter(|kind| [GGA, GST, GBS, GLL, GNS, GSA, RMC, ZDA].contains(kind)) else { return Step::Passed };
     if kind == GSA {
         return if fields.number(2).is_some() { Step::Beside { kind, number: dimensions } } else { Step::Passed };
     }
@@ -74,6 +75,8 @@ pub(super) fn step(body: &[u8], record: u64) -> Step {
         ZDA => Step::Date { key, kind, dated: fields.long_date().and_then(|d| dated(d, key)), kept: false },
         GST if !fields.sizes(&[2, 3, 4, 6, 7, 8]) => Step::Malformed("a deviation of GST is no size"),
         GBS if !fields.sizes(&[2, 3, 4]) => Step::Malformed("an expected error of GBS is no size"),
+        GST | GBS => Step::PartOfTalkers { key, kind },
+        GNS => Step::Date { key, kind, dated: None, kept: true },
         _ => Step::Part { key, kind },
     }
 }
@@ -98,11 +101,13 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
     let (lat_rad, lon_rad) = (gga.angle(2, [b"N", b"S"]), gga.angle(4, [b"E", b"W"]));
     let measured = gga.number(6).is_some_and(|quality| GGA_QUALITIES.iter().any(|each| f64::from(*each) == quality));
     let (altitude, separation) = (gga.number(9), gga.number(11));
-    let of_gst = sentence(GST).and_then(|gst| covariance(&gst));
-    let expected = sentence(GBS).and_then(|gbs| expected_errors(&gbs));
+    let all = |kind| all_of_kind(messages, kind).map(|message| Sentence(&message.body));
+    let of_gst = worst(all(GST).filter_map(|gst| covariance(&gst)));
+    let expected = worst(all(GBS).filter_map(|gbs| expected_errors(&gbs)));
     let enlarged = of_gst.map(|own| no_better(own, expected));
     let of_gbs = if of_gst.is_some() { None } else { expected };
-    let against = contradiction(&gga, &sentence);
+    let biased = || all(GBS).find_map(|gbs| biased_range(&gbs));
+    let against = contradiction(&gga, &sentence).or_else(biased);
     let speed_mps = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
     let track_rad = sentence(RMC).and_then(|rmc| rmc.number(8)).filter(|degrees| (0.0..=360.0).contains(degrees)).map(f64::to_radians);
     let usable = measured && lat_rad.is_some() && lon_rad.is_some();
@@ -131,15 +136,21 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
 fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sentence<'a>>) -> Option<String> {
     let place = |of: &Sentence<'_>, at: usize| of.angle(at, [b"N", b"S"]).zip(of.angle(at + 2, [b"E", b"W"]));
     let own = place(gga, 2);
-    // Status, mode, position.
-    let stated = [("RMC", RMC, 2, 12, 3), ("GLL", GLL, 6, 7, 1)].into_iter().find_map(|(name, kind, status, mode, at)| {
+    // Status, mode, position, navigational status.
+    let beside = [("RMC", RMC, Some(2), 12, 3, 13), ("GLL", GLL, Some(6), 7, 1, ABSENT), ("GNS", GNS, None, 6, 2, 13)];
+    let stated = beside.into_iter().find_map(|(name, kind, status, mode, at, navigational)| {
         let other = sentence(kind)?;
         let text = |at: usize| other.get(at).filter(|text| !text.is_empty()).map(String::from_utf8_lossy);
-        if let Some(status) = text(status).filter(|status| status != "A") {
+        if let Some(status) = status.and_then(text).filter(|status| status != "A") {
             return Some(format!("{name} status {status}"));
         }
-        if let Some(mode) = text(mode).filter(|mode| !mode.bytes().all(|letter| NMEA_MODES.contains(&letter))) {
+        // GNS has a letter for each constellation, of which one that is used is enough.
+        let measured = |mode: &str| mode.bytes().any(|letter| NMEA_MODES.contains(&letter));
+        if let Some(mode) = text(mode).filter(|mode| !measured(mode)) {
             return Some(format!("{name} mode {mode}"));
+        }
+        if let Some(status) = text(navigational).filter(|status| UNSAFE.contains(&status.as_ref())) {
+            return Some(format!("{name} navigational status {status}"));
         }
         let apart_m = apart_m(own?, place(&other, at)?);
         let resolution_m = gga.resolution_m(2) + other.resolution_m(at);
@@ -148,6 +159,25 @@ fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sente
     let flat = || sentence(GSA).map(|gsa| dimensions(gsa.0)).filter(|dimensions| *dimensions < GSA_DIMENSIONS);
     let few = || gga.number(7).filter(|count| *count < f64::from(LEAST_SATELLITES));
     stated.or_else(|| flat().map(|fix| format!("GSA fix {fix}"))).or_else(|| few().map(|count| format!("{count} satellites")))
+}
+
+/// Navigational statuses of NMEA 0183 version 4.1 that speak against a position: caution and unsafe. `S` is safe, `V` says that none is given.
+const UNSAFE: [&str; 2] = ["C", "U"];
+/// No such field.
+const ABSENT: usize = usize::MAX;
+/// A bias of a range that is larger than so many of its own standard deviations is none by chance. Provenance: ours \[1\].
+const BIAS: f64 = 5.0;
+
+/// What a GBS sentence says of a satellite that has failed.
+fn biased_range(gbs: &Sentence<'_>) -> Option<String> {
+    let (satellite, bias_m, sigma_m) = (gbs.get(5).filter(|text| !text.is_empty())?, gbs.number(7)?, gbs.number(8).unwrap_or(0.0));
+    let satellite = String::from_utf8_lossy(satellite);
+    (bias_m.abs() > BIAS * sigma_m).then(|| format!("GBS: satellite {satellite} wrong by {bias_m} m"))
+}
+
+/// Of several accuracies of one epoch the worst.
+fn worst(accuracies: impl Iterator<Item = [f64; 6]>) -> Option<[f64; 6]> {
+    accuracies.reduce(|one, other| no_better(one, Some(other)).0)
 }
 
 /// Distance within which two sentences of one time give one place: receivers smooth and extrapolate them differently. Provenance: ours \[m\].
@@ -280,11 +310,18 @@ fn degrees(text: &[u8]) -> Option<f64> {
     (minutes < 60.0).then_some(whole + minutes / 60.0)
 }
 
+/// Largest ratio of the ellipse's axis to the deviations: a 95 % axis of two equal deviations is 1.73 of their root sum (standard), with a margin
+/// for rounding (ours) \[1\].
+const ELLIPSE: f64 = 3.0;
+
 /// From GST: deviations along the axes, and the turn of the ellipse. Its axes are scaled to the deviations: the standard calls them standard
 /// deviations, some makers write 95 % axes.
 fn covariance(gst: &Sentence<'_>) -> Option<[f64; 6]> {
     let [lat, lon, alt] = [gst.number(6)?, gst.number(7)?, gst.number(8)?];
     let [ee, _, nn, _, _, uu] = uncorrelated(lon, lat, alt);
+    // An ellipse beyond any scale of the deviations is another statement, and the worse one.
+    let scale = gst.number(3).filter(|major| *major > ELLIPSE * libm::sqrt(ee + nn));
+    let [ee, nn, uu] = scale.map_or([ee, nn, uu], |major| [ee.max(major * major), nn.max(major * major), uu]);
     let en = gst.number(3).zip(gst.number(4)).zip(gst.number(5)).map_or(0.0, |((major, minor), orient)| {
         let (sum, turn) = (major * major + minor * minor, orient.to_radians());
         if sum > 0.0 { (ee + nn) * (major * major - minor * minor) / sum * libm::sin(turn) * libm::cos(turn) } else { 0.0 }

@@ -299,3 +299,70 @@ fn the_dilution_of_a_u_blox_position_counts() {
         assert_eq!(reasons, [taken.then_some(Reason::Dilution)], "{pdop}");
     }
 }
+
+#[test]
+fn what_several_talkers_say_of_an_accuracy_is_worth_its_worst() {
+    let poor = "GPGST,120000.00,1.0,,,,2000.0,3000.0,4000.0";
+    for order in [[ZDA, GGA, GST, poor], [ZDA, GGA, poor, GST]] {
+        let log = read_sentences(&order);
+        let [ee, _, nn, _, _, uu] = log.positions[0].covariance_m2.unwrap();
+        assert!([(ee, 9e6), (nn, 4e6), (uu, 1.6e7)].iter().all(|(v, w)| (v / w - 1.0).abs() < 1e-9), "{ee} {nn} {uu}");
+        assert_eq!(log.left_out, [], "{order:?}");
+    }
+    // An ellipse of 3 km beside deviations of metres.
+    let log = read_sentences(&[ZDA, GGA, "GPGST,120000.00,1.0,3000.0,3000.0,0.0,2.0,3.0,4.0"]);
+    assert_eq!(log.positions[0].covariance_m2.map(|v| [v[0], v[2], v[5]]), Some([9e6, 9e6, 16.0]));
+    // One of 95 % is a scale.
+    let log = read_sentences(&[ZDA, GGA, "GPGST,120000.00,1.0,7.3,4.9,90.0,2.0,3.0,4.0"]);
+    let of = log.positions[0].covariance_m2.map(|v| v.map(f64::round));
+    assert_eq!(of, Some([9.0, 0.0, 4.0, 0.0, 0.0, 16.0]));
+}
+
+#[test]
+fn what_gns_gbs_and_a_navigational_status_say_against_a_position_takes_it() {
+    let gns = |mode: &str, lat: &str, last: &str| format!("GNGNS,120000.00,{lat},N,00230.0000,E,{mode},09,1.0,100.0,47.0,,,{last}");
+    let rmc = |last: &str| format!("GNRMC,120000.00,A,4900.0000,N,00230.0000,E,1.0,80.0,221126,,,A,{last}");
+    let gbs = |failed: &str| format!("GNGBS,120000.00,3.0,3.0,5.0,{failed}");
+    for (other, says) in [
+        (gns("NN", "4900.0000", "S"), "GNS mode NN"),
+        (gns("EE", "4900.0000", "S"), "GNS mode EE"),
+        (gns("AA", "4901.2000", "S"), "position of GNS 2224 m away"),
+        (gns("AA", "4900.0000", "U"), "GNS navigational status U"),
+        (rmc("U"), "RMC navigational status U"),
+        (rmc("C"), "RMC navigational status C"),
+        (gbs("12,0.001,400.0,5.0"), "GBS: satellite 12 wrong by 400 m"),
+        (gbs("12,0.001,-26.0,5.0"), "GBS: satellite 12 wrong by -26 m"),
+    ] {
+        for order in [[ZDA, &other, GGA, GST], [ZDA, GGA, GST, &other]] {
+            assert_eq!(reasons(&order), [("contradicted", says.to_owned())], "{order:?}");
+        }
+    }
+    for other in [
+        gns("AN", "4900.0000", "S"),
+        gns("NA", "4900.0000", "V"),
+        gns("A", "4900.0000", ""),
+        rmc("S"),
+        rmc("V"),
+        gbs("12,0.9,20.0,5.0"),
+        gbs(",,,"),
+    ] {
+        assert_eq!(reasons(&[ZDA, GGA, &other, GST]), [], "{other}");
+    }
+}
+
+#[test]
+fn a_stream_waits_for_the_talkers_of_the_epoch_before() {
+    let poor = "GPGST,120000.00,1.0,,,,2000.0,3000.0,4000.0";
+    let mut decoder = Decoder::new(Kind::Nmea, Ends::WithLast);
+    let mut variances = Vec::new();
+    for second in 0..4 {
+        for body in [ZDA, GGA, GST, poor] {
+            let (mut out, body) = (Vec::new(), body.replace("120000", &format!("12000{second}")));
+            decoder.take(&Frame::Nmea(body.as_bytes()), 1, &mut out);
+            variances.extend(positions(&out).iter().map(|p| (second, p.covariance_m2.map(|v| v[0]))));
+        }
+    }
+    // The first epoch ends with the next; from the second on at its own last sentence.
+    assert!(variances.iter().all(|(_, v)| v.is_some_and(|v| (v / 9e6 - 1.0).abs() < 1e-9)), "{variances:?}");
+    assert_eq!(variances.iter().map(|(second, _)| *second).collect::<Vec<_>>(), [1, 1, 2, 3]);
+}
