@@ -15,7 +15,7 @@ from typer.core import TyperGroup
 
 from navbound.cli.parts import err_console, out_console
 from navbound.errors import ConflictError, InputError
-from navbound.exit_status import OUR_BUG
+from navbound.exit_status import NO_VERDICT, OUR_BUG
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -338,7 +338,11 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
         f"{session.n_epochs} epochs of {session.n_tracks} tracks, {session.n_transitions} transitions; "
         f"refused: {refused or 'nothing'}; session in {session.folder}"
     )
+    if not session.n_epochs:
+        sentence += f"; no epoch was judged: nothing of the source is read as {settings.format}; --format names what it sends"
     if json:
         _say(sentence)
     else:
         out_console.print(sentence, markup=False, highlight=False, soft_wrap=True)
+    if not session.n_epochs:
+        raise typer.Exit(NO_VERDICT)

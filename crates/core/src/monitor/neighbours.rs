@@ -9,7 +9,8 @@
 //! ```
 //!
 //! The rest is compared with ``sqrt(-2 ln risk)`` standard deviations of d, the larger variance of both axes taken. A position may be as late as one
-//! that is not yet stale. Provenance: ours.
+//! that is not yet stale, at the mean speed from a to c. Where positions come fast (both steps below half a second) and all three differ, a late one
+//! is late by a step at most and at the slower speed of both steps: a jump is no speed. Provenance: ours.
 
 use crate::quantity::GpsTime;
 use crate::special::float::{cos, exp, hypot, sin, sqrt};
@@ -20,6 +21,8 @@ pub const RISK: f64 = 1e-9;
 const ACCELERATION_MPS2: f64 = 10.0;
 /// What five decimals of a degree move three positions by. Derived \[m\].
 const ROUNDING_M: f64 = 2.0;
+/// Steps below this are of a receiver that computes as fast as it is recorded. Provenance: ours \[s\].
+const FAST_S: f64 = 0.5;
 /// Mean radius of the Earth: good to a percent over some kilometres \[m\].
 const EARTH_RADIUS_M: f64 = 6_371_000.0;
 
@@ -67,7 +70,12 @@ impl Apart {
             (0.0, hypot(away[0], away[1]))
         };
         let free_m = 0.5 * ACCELERATION_MPS2 * before_s * after_s + ROUNDING_M;
-        let late_m = stale_after_s * length_m / whole_s;
+        let step_speeds = [hypot(step[0], step[1]) / before_s, hypot(way[0] - step[0], way[1] - step[1]) / after_s];
+        let longest_s = before_s.max(after_s);
+        // One that repeats the last place, as slower receivers do in a faster table, is held, and its next step makes up for it.
+        let fast = longest_s < FAST_S && step_speeds.iter().all(|speed| *speed > 0.0);
+        let late_m =
+            if fast { longest_s.min(stale_after_s) * step_speeds[0].min(step_speeds[1]) } else { stale_after_s * length_m / whole_s };
         let (rest_across, rest_along) = ((across_m - free_m).max(0.0), (along_m - free_m - late_m).max(0.0));
         let other = 1.0 - share;
         let variance = b.variance_m2 + other * other * a.variance_m2 + share * share * c.variance_m2;
@@ -140,6 +148,18 @@ mod tests {
         // Neighbours at one place have no along.
         let back = apart([place(0.0, 0.0, 0.0), place(1.0, 30.0, 0.0), place(2.0, 0.0, 0.0)]);
         assert!((back.unexplained_m - 23.0).abs() < 1e-6, "{back:?}");
+    }
+
+    #[test]
+    fn a_step_along_the_way_is_no_speed_where_positions_come_fast() {
+        // 20 m/s at 10 Hz, and a step of 95 m that stays: half of it beside the line, less 2 m, 0.05 m and a step of 2 m.
+        let jump = apart([place(0.0, 0.0, 0.0), place(0.1, 2.0, 0.0), place(0.2, 97.0, 0.0)]);
+        assert!((jump.away_m - 46.5).abs() < 1e-6 && (jump.unexplained_m - 42.45).abs() < 1e-6, "{jump:?}");
+        // At 1 Hz a late position explains it; so does one that a slower receiver repeats.
+        let slow = apart([place(0.0, 0.0, 0.0), place(1.0, 20.0, 0.0), place(2.0, 135.0, 0.0)]);
+        assert!(slow.unexplained_m < 1e-6, "{slow:?}");
+        let repeated = apart([place(0.0, 0.0, 0.0), place(0.1, 0.0, 0.0), place(0.2, 20.0, 0.0)]);
+        assert!(repeated.unexplained_m < 1e-6, "{repeated:?}");
     }
 
     #[test]

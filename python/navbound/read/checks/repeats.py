@@ -19,6 +19,9 @@ SAME_PLACE_M = 1.0
 SAME_BOUND = 0.01
 """Relative difference up to which two numbers of an accuracy or a bound are one, written with other digits. [1] Provenance: ours."""
 
+CLOCK_STANDS = 10
+"""Rows of one time beside the kept one from which on the clock stands: logs that are joined twice repeat a row once. [1] Provenance: ours."""
+
 BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic", "hpl_m", "vpl_m", "hpe_m", "vpe_m")
 """What a row states of its accuracy or its bound, beside its covariance."""
 
@@ -44,7 +47,8 @@ class Repeats:
     epochs : DataFrame
         One row a time; a contradicted one has status ``invalid_input``.
     identical, contradicting : DataFrame
-        Rows left out: those that repeat the kept row of their time, and those with another position, bound or status.
+        Rows left out: those that repeat the kept row of their time, and those with another position, bound or status,
+        or of a clock that stands.
     """
 
     epochs: pl.DataFrame
@@ -71,7 +75,9 @@ def separate(epochs: pl.DataFrame) -> Repeats:
     doubted = marked.with_columns(pl.col("__place", "__bound").any().over(key)).filter(~pl.col("__again"))
     kept = _refused(doubted.drop(_MARKS), doubted.select(_REASON).unnest("reason"))
     repeated = marked.filter("__again")
-    contradicts = repeated.select(pl.any_horizontal("__place", "__bound", "__status")).to_series()
+    # A time that repeats so often is no second copy of a row: the clock stands, and its rows are epochs of unknown times.
+    stands = pl.len().over(key) >= CLOCK_STANDS
+    contradicts = repeated.select(pl.any_horizontal("__place", "__bound", "__status", stands)).to_series()
     plain = repeated.drop(_MARKS)
     return Repeats(kept, plain.filter(~contradicts), plain.filter(contradicts))
 

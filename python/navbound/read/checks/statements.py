@@ -152,7 +152,8 @@ KINDS: tuple[Kind, ...] = (
             "warn warning_flag "
             "spoofing spoofed spoofing_detected spoof_flag jamming jammed jamming_detected interference invalid is_invalid "
             "position_invalid unreliable outlier misleading hmi error_flag do_not_use not_valid degraded unable_rnp rnp_alert rnp_warning "
-            "raim_flag unhealthy unsafe rejected bad frozen stale stuck"
+            "raim_flag unhealthy unsafe rejected bad frozen stale stuck mock mocked is_mock mock_location is_mocked from_mock_provider "
+            "is_from_mock_provider is_spoofed gps_spoofed gnss_spoofed is_jammed gps_jammed gnss_jammed simulated_location"
         ),
         frozenset(),
         NO_ALERT,

@@ -21,7 +21,7 @@ from navbound.records.run import CovarianceConsistency, InputFile, Rejection, Ru
 from navbound.records.verdict import LEAST_SHARE
 from navbound.run import directory
 from navbound.run.directory import Run
-from navbound.run.evaluate.monitored import DECLARED_LEVELS, monitor_of, monitored
+from navbound.run.evaluate.monitored import CONTRADICTED, DECLARED_LEVELS, monitor_of, monitored
 from navbound.run.evaluate.parts import Stored, finished_parts, ranges_of_parts, tables_of
 from navbound.run.evaluate.words import levels_verdict, performance_words
 from navbound.run.inputs.files import sort_out
@@ -268,7 +268,8 @@ def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsis
     is_copied = _copied(parts)
     n_worse = sum(part.n_stated_worse for part in parts)
     unread = list(dict.fromkeys(each for part in parts for each in part.unread))
-    doubted = is_copied or n_worse > 0
+    # Levels whose error model the residuals contradict show nothing.
+    doubted = is_copied or n_worse > 0 or result.experimental == CONTRADICTED
     decided = rule.of_levels([_facts(each, result, doubted=doubted) for each in result.levels])
     verdict = Verdict(
         id=decided,
