@@ -319,3 +319,22 @@ def test_a_position_that_stands_without_a_word_is_old_unless_the_receiver_is_kno
         done = CliRunner().invoke(app, ["live", str(log), "--out", str(tmp_path / "out" / str(len(words))), *words])
         assert done.exit_code == 0, done.output
         assert set(tables.epochs(tmp_path / "out" / str(len(words)))["alert"][10:]) == alerts
+
+
+def test_a_source_of_which_nothing_is_read_is_no_success(tmp_path: Path) -> None:
+    (tmp_path / "track.csv").write_text("time,lat,lon\n1600000000,47,8\n" * 20, encoding="utf-8")
+    command = [
+        sys.executable,
+        "-m",
+        "navbound",
+        "live",
+        "watch",
+        str(tmp_path / "track.csv"),
+        "--format",
+        "json",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 4, done.stderr
+    assert "nothing of the source is read as json" in " ".join((done.stdout + done.stderr).split())

@@ -15,6 +15,7 @@ import navbound
 import rinex_fixture
 from navbound import araim, gnss, raim
 from navbound.gnss.monitor_fit import DISBELIEF, exact_interval, fit_of
+from test_gnss_ionosphere import EXAMPLES, with_biased_ranges
 
 LIGHT = 299792458.0
 DAY = "ESBC00DNK_R_20201770000_01D"
@@ -206,3 +207,14 @@ def test_raim_compares_its_residuals_too(day: tuple[gnss.Observations, gnss.Navi
     watched = raim.watch(observations, navigation)
     assert watched.fit.residuals_fit, watched.fit.words
     assert "fit of the error model" in watched.models
+
+
+def test_levels_whose_model_the_residuals_contradict_show_nothing(tmp_path: Path) -> None:
+    """An error of 8 m (one sigma) in all ranges of each satellite: no error is above its level, and the levels promise nothing."""
+    biased = with_biased_ranges(tmp_path, "G", 8.0)
+    run = navbound.evaluate(
+        [biased, EXAMPLES / "broadcast.rnx"], protection="raim", levels="RNP 0.3", truth="4189135.1896,188029.6189,4789919.6247"
+    )
+    assert run.summary.performance is not None
+    assert run.summary.performance.levels[0].n_mi_events == 0
+    assert run.summary.verdict.id == "not_shown"

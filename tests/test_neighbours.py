@@ -72,3 +72,14 @@ def test_two_receivers_in_blocks_at_the_speed_of_an_aircraft(tmp_path: Path, row
     verdict = moved(tmp_path, error, 250.0)
     assert verdict.id == "not_shown"
     assert verdict.n_apart > 0 or verdict.n_implausible > 0
+
+
+@pytest.mark.parametrize(("step_m", "n"), [(0.0, 0), (95.0, 2)])
+def test_a_step_along_the_track_that_stays_is_seen_where_positions_come_fast(tmp_path: Path, step_m: float, n: int) -> None:
+    """10 Hz at 20 m/s, sigma 3 m: half the step less a manoeuvre of 2.05 m and a position late by 2 m, against 6.4 x 3.7 m."""
+    along = [2.0 * k + (step_m if k >= 200 else 0.0) for k in range(N)]
+    rows = [f"{1_400_000_000 + 0.1 * k:.1f},{math.degrees(0.85 + m / M_PER_RAD)},2.0,3,3" for k, m in enumerate(along)]
+    path = tmp_path / "fast.csv"
+    path.write_text("\n".join(["time,lat,lon,sigma_e_m,sigma_n_m", *rows]) + "\n", encoding="utf-8")
+    verdict = navbound.analyze(path).summary.verdict
+    assert (verdict.id, verdict.n_apart) == ("inside" if n == 0 else "not_shown", n)

@@ -64,6 +64,18 @@ def test_a_unit_of_time_is_proposed_only_where_the_name_has_one(tmp_path: Path, 
         read(table(tmp_path, f"{name},lat,lon"))
 
 
+def test_the_rows_of_a_clock_that_stands_are_expected_and_not_judged(tmp_path: Path) -> None:
+    rows = [f"{1_600_000_000 + min(k, 5)},47.0,8.0" for k in range(40)]
+    path = tmp_path / "still.csv"
+    path.write_text("\n".join(["time,lat,lon", *rows]) + "\n", encoding="utf-8")
+    reading = read(path)
+    assert (reading.epochs.height, reading.left_out.height) == (6, 34)
+    # A file that holds every row twice lost nothing.
+    path.write_text("\n".join(["time,lat,lon", *rows[:6], *rows[:6]]) + "\n", encoding="utf-8")
+    twice = read(path)
+    assert (twice.epochs.height, twice.left_out.height) == (6, 0)
+
+
 def test_another_header_in_the_middle_ends_the_table(tmp_path: Path) -> None:
     path = table(tmp_path, "time,lat,lon,sigma_e_m")
     path.write_text("time,lat,lon,sigma_e_m,sigma_n_m\n1600000000,47,8,3,3\ntime,lat,lon,sigma_e_km,sigma_n_km\n1600000001,47,8,3,3\n")

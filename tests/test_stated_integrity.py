@@ -80,6 +80,9 @@ def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Pa
         ("unhealthy", 0, 1),
         ("stale", "false", "true"),
         ("raim_flag", 0, 1),
+        ("MockLocation", 0, 1),
+        ("isFromMockProvider", "false", "true"),
+        ("is_spoofed", "false", "true"),
     ],
 )
 def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine: object, bad: object) -> None:

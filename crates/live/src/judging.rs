@@ -51,7 +51,11 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     }
     match position.covariance_m2 {
         None => refuse(Reason::NoCovariance),
-        Some([ee, _, nn, .., uu]) if [ee, nn, uu].contains(&0.0) => refuse(Reason::ZeroCovariance),
+        Some([ee, _, nn, .., uu]) if [ee, nn, uu].contains(&0.0) => {
+            refuse(Reason::ZeroCovariance);
+            // In the plane it bounds nothing, so that no alert rests on it.
+            covariance_m2 = covariance_m2.filter(|_| ![ee, nn].contains(&0.0));
+        }
         Some(_) => {}
     }
     let sample = Sample {

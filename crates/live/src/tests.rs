@@ -497,8 +497,24 @@ fn a_variance_of_zero_in_any_axis_is_not_believed() {
             of(2)
         );
         let all = flown(&mut Lane::new(settings()).unwrap(), 3, |k| line("d", f64::from(k), &rest));
-        assert_eq!(epochs_of(&all, "d")[0].status, Status::Degraded);
+        let epochs = epochs_of(&all, "d");
+        // In the plane nothing bounds the error, and nothing is normal.
+        let (status, alert) =
+            if zero < 2 { (Status::NotAvailable, rnp::Alert::Unavailable) } else { (Status::Degraded, rnp::Alert::Normal) };
+        assert!(epochs.iter().all(|e| (e.status, e.alert) == (status, alert)), "{zero}: {:?}", epochs[0]);
     }
+}
+
+#[test]
+fn a_level_of_nothing_and_a_status_of_nothing_are_not_normal() {
+    let after_good = |rest: &str| {
+        let rest = format!(",\"fte_m\":5.0,\"course_rad\":0.0,\"sigma_m\":3.0{rest}");
+        let all = flown(&mut Lane::new(settings()).unwrap(), 12, |k| line("d", f64::from(k), &rest));
+        epochs_of(&all, "d").last().map(|e| e.alert)
+    };
+    assert_eq!(after_good(",\"hpl_m\":20.0,\"status\":\"ok\""), Some(rnp::Alert::Normal));
+    assert_ne!(after_good(",\"hpl_m\":0.0"), Some(rnp::Alert::Normal));
+    assert_eq!(after_good(",\"status\":null"), Some(rnp::Alert::Unavailable));
 }
 
 /// A line that says of whom and of when it is, and no position that can be read, leaves its track without one at that time.

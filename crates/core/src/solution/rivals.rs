@@ -1,7 +1,7 @@
 //! Two constellations that fit themselves and give two positions: nothing of one receiver's ranges says which of them is right.
 //!
-//! Exclusion goes by numbers: the constellation with fewer satellites is left out, whether it is the one that is wrong or not. Two
-//! constellations that agree with each other against a third are evidence; one against one is none.
+//! Exclusion goes by numbers: the constellation with fewer satellites is left out, whether it is the one that is wrong or not. Nor are two that
+//! agree against a third evidence: who leads off one of them leads off both.
 //!
 //! ```text
 //! rivals:  d' (V + W)^-1 d > chi-square quantile of 3 unknowns at 1e-3,   d between the positions, V and W their covariances
@@ -31,10 +31,10 @@ impl Fix {
     }
 
     /// Where other ranges of the same epoch put the receiver by themselves, from this position, east, north, up \[m\]; none where they do not fit
-    /// themselves, say the same, or where two constellations carry this position.
+    /// themselves, or say the same.
     pub fn rival(&self, other: &Self) -> Option<Vector3<f64>> {
         let fits_itself = other.consistent || other.redundancy == 0;
-        if !fits_itself || self.is_supported() {
+        if !fits_itself {
             return None;
         }
         let turn = enu_from_ecef(&self.position.point);

@@ -17,7 +17,7 @@ struct Line<'a> {
     #[serde(borrow)]
     track: Cow<'a, str>,
     time_ns: i64,
-    #[serde(default, borrow)]
+    #[serde(default, borrow, deserialize_with = "word")]
     status: Option<Cow<'a, str>>,
     #[serde(default, deserialize_with = "number")]
     est_lat_rad: Option<f64>,
@@ -64,6 +64,11 @@ struct Line<'a> {
 }
 
 /// A number, NaN for `null`. A key that is absent does not come here.
+/// A word; `null` is one that says nothing good.
+fn word<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Cow<'de, str>>, D::Error> {
+    Option::<Cow<'de, str>>::deserialize(from).map(|word| Some(word.unwrap_or_default()))
+}
+
 fn number<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
     Option::<f64>::deserialize(from).map(|value| Some(value.unwrap_or(f64::NAN)))
 }
@@ -141,7 +146,8 @@ fn whole(line: &Line<'_>) -> Decoded {
         course_rad: line.course_rad,
         ground_speed_mps: line.ground_speed_mps,
         covariance_m2: line.covariance(),
-        hpl_m: line.hpl_m,
+        // A level of nothing bounds nothing.
+        hpl_m: line.hpl_m.map(|level| if level > 0.0 { level } else { f64::NAN }),
         rnp_m: line.rnp_m,
         shown: Shown {
             fte_v_m: line.fte_v_m,

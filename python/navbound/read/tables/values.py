@@ -369,7 +369,10 @@ def one_row_a_time(out: pl.DataFrame, tally: Tally) -> Repeats:
     """Rows in the order of track and time, one an instant; the others are counted."""
     separated = separate(out.sort("track", "time_ns", maintain_order=True))
     reason = "time repeated within a track"
-    kinds = {reason: separated.identical, f"{reason} with another position, bound or status, or by a clock that stands": separated.contradicting}
+    kinds = {
+        reason: separated.identical,
+        f"{reason} with another position, bound or status, or by a clock that stands": separated.contradicting,
+    }
     for place, (words, repeated) in enumerate(kinds.items()):
         if not repeated.is_empty():
             track, time_ns, line = repeated.sort(LINE).select("track", "time_ns", LINE).row(0)

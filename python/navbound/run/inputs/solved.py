@@ -56,7 +56,10 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         Rejection(file=path, reason=f"no position: {REASONS[id_].words}", count=count, first_line=None, example=f"{count} epochs")
         for id_, count in without.group_by("reason_id").len().sort("reason_id").iter_rows()
     ]
-    kinds = {"time repeated": repeats.identical, "time repeated with another position, bound or status, or by a clock that stands": repeats.contradicting}
+    kinds = {
+        "time repeated": repeats.identical,
+        "time repeated with another position, bound or status, or by a clock that stands": repeats.contradicting,
+    }
     rejected += [
         Rejection(file=path, reason=reason, count=rows.height, first_line=None, example=f"{rows.height} epochs")
         for reason, rows in kinds.items()

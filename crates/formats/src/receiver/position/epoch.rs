@@ -48,7 +48,9 @@ impl Epoch {
     pub(super) fn put(&mut self, key: i64, message: Message) -> Vec<Message> {
         let state = &mut self.state;
         let again = state.messages.iter().any(|each| each.kind == message.kind);
-        let complete = if state.key != Some(key) || again { std::mem::take(&mut state.messages) } else { Vec::new() };
+        // What came without a time behind a finished epoch is of the next one.
+        let finished = state.key.is_none();
+        let complete = if (state.key != Some(key) && !finished) || again { std::mem::take(&mut state.messages) } else { Vec::new() };
         self.pass(key, message.kind);
         self.state.messages.push(message);
         complete
@@ -86,11 +88,12 @@ impl Epoch {
 
     /// Whether the newest message was the last by habit.
     pub(super) fn at_last(&self) -> bool {
-        self.ends == Ends::WithLast && self.state.newest == self.state.last
+        self.ends == Ends::WithLast && self.state.key.is_some() && self.state.newest == self.state.last
     }
 
-    /// What there is.
+    /// What there is: the epoch is finished.
     pub(super) fn take(&mut self) -> Vec<Message> {
+        self.state.key = None;
         std::mem::take(&mut self.state.messages)
     }
 }

@@ -366,3 +366,19 @@ fn a_stream_waits_for_the_talkers_of_the_epoch_before() {
     assert!(variances.iter().all(|(_, v)| v.is_some_and(|v| (v / 9e6 - 1.0).abs() < 1e-9)), "{variances:?}");
     assert_eq!(variances.iter().map(|(second, _)| *second).collect::<Vec<_>>(), [1, 1, 2, 3]);
 }
+
+#[test]
+fn a_fix_that_is_stated_behind_a_finished_epoch_counts_for_the_next() {
+    let mut decoder = Decoder::new(Kind::Nmea, Ends::WithLast);
+    let mut reasons = Vec::new();
+    for second in 0..6 {
+        let gsa = format!("GNGSA,A,{},01,02,03,04,05,06,07,,,,,,2.0,1.0,1.7", if second < 3 { 3 } else { 1 });
+        for body in [ZDA, GGA, GST, &gsa] {
+            let (mut out, body) = (Vec::new(), body.replace("120000", &format!("12000{second}")));
+            decoder.take(&Frame::Nmea(body.as_bytes()), 1, &mut out);
+            reasons.extend(positions(&out).iter().map(|p| p.absent.as_ref().map(|absent| absent.reason)));
+        }
+    }
+    let contradicted = Some(Reason::Contradicted);
+    assert_eq!(reasons, [None, None, None, None, contradicted, contradicted], "one epoch late, and none missed");
+}
