@@ -20,7 +20,7 @@ SAME_BOUND = 0.01
 """Relative difference up to which two numbers of an accuracy or a bound are one, written with other digits. [1] Provenance: ours."""
 
 CLOCK_STANDS = 10
-"""Rows of one time beside the kept one from which on the clock stands: logs that are joined twice repeat a row once. [1] Provenance: ours."""
+"""Rows of one time from which on the clock stands: logs that are joined twice repeat a row once. [1] Provenance: ours."""
 
 BOUNDS = ("sigma_e_m", "sigma_n_m", "sigma_u_m", "epu_m", "rc_m", "nac_p", "nic", "hpl_m", "vpl_m", "hpe_m", "vpe_m")
 """What a row states of its accuracy or its bound, beside its covariance."""

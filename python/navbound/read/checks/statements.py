@@ -187,7 +187,8 @@ def kind_of(plain_name: str) -> Kind | None:
 
 
 _ACCURACY = _words(
-    "acc hacc pacc accuracy uncertainty sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms twodrms rms hrms hfom "
+    "acc hacc pacc accuracy uncertainty sigma std stddev sd sdev epe eph ehpe ehe epx epy cep cep50 cep95 r95 drms 2drms rms hrms hfom "
+    "twodrms "
     "fom nse tse fte err error errors herr poserr"
 )
 """Parts of names of a horizontal accuracy or error, a length. Provenance: ours."""

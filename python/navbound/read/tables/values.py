@@ -215,8 +215,8 @@ class Values:
         if "status" in part.columns:
             known = pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)
             self._n_unknown += part.filter(~known).height
-        known = stated.of_satellites(status.recorded(stated.against_itself(part)))
-        return stated.with_statements(known, self._statements(frame))
+        rows = stated.of_satellites(status.recorded(stated.against_itself(part)))
+        return stated.with_statements(rows, self._statements(frame))
 
     def _statements(self, frame: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
         """What columns of validity and of alerts state."""
