@@ -338,3 +338,36 @@ def test_a_source_of_which_nothing_is_read_is_no_success(tmp_path: Path) -> None
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 4, done.stderr
     assert "nothing of the source is read as json" in " ".join((done.stdout + done.stderr).split())
+
+
+def half_read(tmp_path: Path) -> tuple[Path, Path, int]:
+    """A log of 300 records, a session of it that was stopped on the way, and how many bytes it has read."""
+    record = {"v": 1, "track": "A", "fte_m": 5.0, "course_rad": 0.0, "sigma_m": 3.0}
+    log = tmp_path / "log.jsonl"
+    log.write_text("".join(json.dumps(record | {"time_ns": 1_317_644_000_000_000_000 + k * 1_000_000_000}) + "\n" for k in range(300)))
+    session = live.Session(tmp_path / "out", Settings(format="json", rnp_m=555.6))
+    with closing(File(log, chunk=1000)) as source:
+        rounds = iter([False] * 7)
+        session.run(source, stop=lambda: next(rounds, True))
+    return log, tmp_path / "out", session.n_bytes
+
+
+def test_a_file_that_was_left_in_the_middle_of_a_record_is_read_on_from_there(tmp_path: Path) -> None:
+    log, out, n_bytes = half_read(tmp_path)
+    assert n_bytes == 7000
+    assert log.read_bytes()[:n_bytes][-1:] != b"\n", "the record goes on behind the cut"
+    session = live.Session(out, Settings(format="json", rnp_m=555.6), resume=True)
+    with closing(File(log)) as source:
+        session.run(source)
+    assert tables.epochs(out).height == 300
+    assert session.counters()["refused_not_a_position"] == 0
+
+
+def test_another_file_is_not_read_on(tmp_path: Path) -> None:
+    log, out, _ = half_read(tmp_path)
+    other = tmp_path / "other.jsonl"
+    other.write_text(log.read_text(encoding="utf-8").replace('"fte_m": 5.0', '"fte_m": 6.0'), encoding="utf-8")
+    session = live.Session(out, Settings(format="json", rnp_m=555.6), resume=True)
+    with closing(File(other)) as source, pytest.raises(InputError, match="first 7000 bytes"):
+        session.run(source)
+    session.close()

@@ -91,3 +91,17 @@ def test_the_same_header_again_is_a_row_that_is_counted(tmp_path: Path) -> None:
     reading = read(path)
     assert reading.epochs.height == 30
     assert sum(one.count for one in reading.rejected) == 1
+
+
+@pytest.mark.parametrize(("scale", "refused"), [("GPST", False), ("UTC", True)])
+def test_another_header_of_a_solution_file_is_refused(tmp_path: Path, scale: str, refused: bool) -> None:
+    header = "%  {}                  latitude(deg) longitude(deg)  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)"
+    rows = [f"2024/03/15 12:00:{k:02d}.000   48.5000000   2.000000{k % 10}   100.0000   5   9   1.0   1.0   2.0" for k in range(20)]
+    path = tmp_path / "joined.pos"
+    path.write_text("\n".join([header.format("GPST"), *rows[:10], header.format(scale), *rows[10:]]) + "\n", encoding="utf-8")
+    if not refused:
+        assert read(path).epochs.height == 20
+        return
+    with pytest.raises(FormatError, match="another header in the middle") as refusal:
+        read(path)
+    assert refusal.value.line == 12

@@ -19,9 +19,10 @@ from navbound import __version__, _core
 from navbound.errors import FormatError, InputError, InternalError
 from navbound.live import journal, transition
 from navbound.live.settings import load
+from navbound.live.source import File
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from navbound.live.settings import Settings
@@ -227,9 +228,10 @@ class Session:
         if at > position:
             self._say(f"recovered: {at - position} bytes of the journal judged again, {len(again)} outputs were there already")
 
-    def finish(self) -> None:
-        """Judge what waits, keep everything, leave the folder."""
-        self.take(_core.live_input("end", None, b""))
+    def finish(self, *, ended: bool = True) -> None:
+        """Judge what waits, keep everything, leave the folder; of a source that has more to say nothing is flushed: it goes on there."""
+        if ended:
+            self.take(_core.live_input("end", None, b""))
         self.snapshot()
         self._out.sync()
         self.close()
@@ -252,11 +254,15 @@ class Session:
         speed : float
             Of a file: times its own pace; 0 as fast as it goes. [1]
         """
+        if self.n_bytes and isinstance(source, File) and not source.begins_with(self._chunks()):
+            raise InputError("source", "another file", domain=f"the file whose first {self.n_bytes} bytes this session has read")
         source.skip(self.n_bytes)
-        pace, up, beat = Pace(speed), True, time.monotonic()
+        # What arrives is gone; a file that is left in the middle is read on from there.
+        pace, up, beat, ended = Pace(speed), True, time.monotonic(), source.live
         while not stop():
             data = source.read(_WAIT_S)
             if data is None:
+                ended = True
                 break
             arrival = now_ns() if source.live else None
             if source.live and source.up != up:
@@ -268,7 +274,11 @@ class Session:
             if source.live and time.monotonic() - beat >= _HEARTBEAT_S:
                 beat = time.monotonic()
                 self.take(_core.live_input("heartbeat", now_ns(), b""))
-        self.finish()
+        self.finish(ended=ended)
+
+    def _chunks(self) -> Iterator[bytes]:
+        """What the journal holds of the source."""
+        return (content for kind, _, content in _core.live_inputs(journal.read(self._in.path)) if kind == "chunk")
 
 
 class Pace:

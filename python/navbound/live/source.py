@@ -9,13 +9,16 @@ import socket
 import sys
 import time
 from pathlib import Path
-from typing import IO, Protocol
+from typing import IO, TYPE_CHECKING, Protocol
 from urllib.parse import urlsplit
 
 from navbound.errors import FormatError, InputError
 from navbound.live.recording import Recording
 from navbound.live.settings import FORMATS
 from navbound.read import formats
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 CHUNK = 32 * 1024
 """Bytes that are read at once. [B]"""
@@ -73,6 +76,11 @@ class File:
     def skip(self, n_bytes: int) -> None:
         """Leave out what was read by a session before."""
         self._file.seek(n_bytes)
+
+    def begins_with(self, parts: Iterable[bytes]) -> bool:
+        """Whether the file begins with these bytes."""
+        self._file.seek(0)
+        return all(self._file.read(len(part)) == part for part in parts)
 
     def close(self) -> None:
         """Give it back."""

@@ -48,14 +48,18 @@ pub(super) fn fields(line: &str) -> impl Iterator<Item = &str> {
 /// The layout that the last comment line before the data states.
 pub(super) fn layout(text: &str) -> Result<Layout, Unreadable> {
     let comments = || text.lines().enumerate().filter(|(_, l)| l.trim_start().starts_with('%'));
-    let named = comments().find_map(|(i, l)| {
+    let mut named = comments().filter_map(|(i, l)| {
         // A unit alone belongs to the name before it: 'hpl (m)' is one column.
         let names: Vec<&str> = fields(l.trim_start().trim_start_matches('%')).filter(|name| !name.starts_with('(')).collect();
         Some((i + 1, scale(names.first()?)?, names))
     });
-    let (line, scale, names) = named.ok_or_else(|| {
+    let (line, scale, names) = named.next().ok_or_else(|| {
         Unreadable::whole("no comment line names the columns (an RTKLIB solution file has one such as '%  GPST  latitude(deg) ...')")
     })?;
+    // Files that are joined may have the same header again; another one would give the rows below it another time or other columns.
+    if let Some((other, ..)) = named.find(|(_, _, others)| *others != names) {
+        return Err(Unreadable::at(other, "another header in the middle of the file: split it there"));
+    }
     let base = comments().find_map(|(_, l)| base(l));
     columns(&names, scale, base).map_err(|reason| Unreadable::at(line, reason))
 }
