@@ -67,7 +67,7 @@ def test_a_jammed_flight_with_stations_keeps_its_rnp(expected: Callable[[str], E
     """The specification's third acceptance: satellites lost from 40:00 to 60:00, mode dme_dme, RNP kept throughout."""
     result = expected(JAMMED)
     assert all(leg.status == "kept" for leg in result.record.legs)
-    assert result.record.words[0].startswith("RNP is kept on all")
+    assert result.record.words[0].startswith("Accuracy: RNP is kept on all")
     assert any("from 40:00 to 60:00; mostly dme_dme" in sentence for sentence in result.record.words)
     jammed = result.seconds.filter((pl.col("time_s") >= 2410) & (pl.col("time_s") < 3600))
     assert jammed["n_sv"].max() == 0
@@ -82,13 +82,13 @@ def test_without_stations_the_inertial_unit_keeps_rnp_2(expected: Callable[[str]
     assert all(leg.status == "kept" for leg in result.record.legs)
     last = result.seconds.filter(pl.col("time_s") == 3590)
     assert last["mode"].to_list() == ["coasting"]
-    # 197.9 m at 1,190 s by twelve flown filters (specification D.3), 5 % asked.
+    # 197.9 m at 1,190 s by twelve flown filters (specification D.3), 5 % required.
     assert last["anp_circle_m"][0] == pytest.approx(197.9, rel=0.01)
     assert result.seconds["anp_circle_m"].max() < 210.0  # type: ignore[operator]
 
 
 def test_the_predicted_circle_is_that_of_a_flown_filter(expected: Callable[[str], Expected]) -> None:
-    """The flown filter has noise, gusts and 200 samples a second; 5 % asked, 10 % for 10 s after a change of mode."""
+    """The flown filter has noise, gusts and 200 samples a second; 5 % required, 10 % for 10 s after a change of mode."""
     scenario = load("beijing-shanghai-jammed")
     assert scenario.sensors is not None
     alone = scenario.model_copy(update={"sensors": scenario.sensors.model_copy(update={"stations": []})})
@@ -124,7 +124,7 @@ def test_circles_and_legs_are_those_of_the_table(expected: Callable[[str], Expec
 def test_a_leg_that_fails_says_when(expected: Callable[[str], Expected]) -> None:
     text = WITHOUT_STATIONS + JAMMED + '[equipment]\ninertial = "tactical"\n'
     result = expected(text)
-    assert result.record.words[0].startswith("RNP is not kept on")
+    assert result.record.words[0].startswith("Accuracy: RNP is not kept on")
     broken = [leg for leg in result.record.legs if leg.status != "kept"]
     # No station is in the list: nobody knows whether one is there.
     assert {leg.status for leg in broken} == {"no_stations_known"}
@@ -305,7 +305,7 @@ def test_a_prediction_is_assessed_against_flights(tmp_path: Path, expected: Call
     assert every.nees is not None
     assert every.coverage_low is not None
     assert every.coverage is not None
-    assert every.coverage_low <= every.coverage
+    assert every.coverage_low <= every.coverage <= 1.0
     by_place = assess_prediction(tmp_path / "prediction", tmp_path / "flight", by="along")
     # Jamming comes by time: a second more or less on the way moves a few epochs.
     assert by_place.p_mode_agrees > 0.99

@@ -12,7 +12,7 @@ from rich.table import Table
 from navbound.cli.parts import Json, command_line, out_console
 
 if TYPE_CHECKING:
-    from navbound.records.expected import Agreement, Assessment
+    from navbound.records.prediction import Agreement, Assessment
 
 app = typer.Typer(help="What was predicted against what was flown.", no_args_is_help=True, rich_markup_mode=None)
 

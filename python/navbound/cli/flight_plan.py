@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from navbound.records.expected import ExpectedFlight
+    from navbound.records.prediction import ExpectedFlight
 
 
 def predict_flight_command(plans: list[str], unused: Mapping[str, object], out: Path | None, json: bool) -> None:

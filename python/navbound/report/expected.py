@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     import polars as pl
 
-    from navbound.records.expected import ExpectedFlight
+    from navbound.records.prediction import ExpectedFlight
 
 WIDTH, HEIGHT, LEFT, RIGHT, BAND = 1040.0, 380.0, 64.0, 14.0, 26.0
 MAP_HEIGHT = 420.0
@@ -106,7 +106,11 @@ def _time_line(record: ExpectedFlight, seconds: pl.DataFrame, shown: pl.DataFram
             (x(a), round(max(x(b) - x(a), 0.5), 1), COLOURS.get(mode, "#6b7785"), f"{mode} {a / 60:.1f} to {b / 60:.1f} min")
             for a, b, mode in _runs(seconds)
         ],
-        "outages": [(x(o.start_s), round(x(o.end_s) - x(o.start_s), 1), f"{o.what} {' '.join(o.names)}") for o in record.outages],
+        "outages": [
+            (x(o.start_s), round(x(o.end_s) - x(o.start_s), 1), f"{o.what} {' '.join(o.names)}")
+            for o in record.outages
+            if o.what != "stations"
+        ],
     }
 
 
@@ -138,8 +142,10 @@ def _route(record: ExpectedFlight, seconds: pl.DataFrame) -> dict[str, Any]:
     edge = 40.0
     scale = min((WIDTH - 2 * edge) / wide, (MAP_HEIGHT - 2 * edge) / tall)
 
+    middle = (WIDTH - wide * scale) / 2
+
     def at(k: int) -> tuple[float, float]:
-        return round(edge + (east[k] - min(east)) * scale, 1), round(MAP_HEIGHT - edge - (lat[k] - min(lat)) * scale, 1)
+        return round(middle + (east[k] - min(east)) * scale, 1), round(MAP_HEIGHT - edge - (lat[k] - min(lat)) * scale, 1)
 
     lines = []
     for a, b, mode in _runs(seconds):
@@ -147,9 +153,11 @@ def _route(record: ExpectedFlight, seconds: pl.DataFrame) -> dict[str, Any]:
         # The run ends where the next begins.
         points = [at(k) for k in (*rows, min(int(b), seconds.height - 1))]
         lines.append((COLOURS.get(mode, "#6b7785"), " ".join(f"{px},{py}" for px, py in points), mode))
-    marks = []
+    marks = list[tuple[float, float, str, str]]()
     for leg in record.legs:
         px, py = at(min(int(leg.start_s), seconds.height - 1))
-        marks.append((px, py, leg.leg.split("-")[0], "" if leg.status == "kept" else "bad"))
+        # A name over another would be no name.
+        crowded = any(abs(px - x) < 40 and abs(py - y) < 11 for x, y, name, _ in marks if name)
+        marks.append((px, py, "" if crowded else leg.leg.split("-")[0], "" if leg.status == "kept" else "bad"))
     length_nm = record.length_m / METRES_PER_NM
     return {"width": WIDTH, "height": MAP_HEIGHT, "lines": lines, "marks": marks, "words": f"{length_nm:.0f} NM, north up"}

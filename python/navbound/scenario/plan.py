@@ -165,8 +165,10 @@ def _explained(path: str | Path, error: ErrorDetails, written: dict[tuple[str | 
         return FormatError(path, "is missing (it may end in another unit of the same kind)", field=key)
     if error["type"] == "extra_forbidden":
         return FormatError(path, f"is not a key of a plan; there {_keys(place)}", field=key)
-    said = error["msg"].removeprefix("Value error, ")
-    return FormatError(path, said if entry is None or isinstance(entry.value, dict) else f"{entry.value!r}: {said}"[:200], field=key)
+    sentence = error["msg"].removeprefix("Value error, ")
+    return FormatError(
+        path, sentence if entry is None or isinstance(entry.value, dict) else f"{entry.value!r}: {sentence}"[:200], field=key
+    )
 
 
 def _keys(place: tuple[str | int, ...]) -> str:

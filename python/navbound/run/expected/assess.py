@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from navbound import __version__, anp, evaluation
 from navbound.errors import FormatError, InputError
-from navbound.records.expected import Agreement, Assessment, ExpectedFlight
+from navbound.records.prediction import Agreement, Assessment, ExpectedFlight
 from navbound.run import directory
 from navbound.run.expected.flight import EPOCHS, RECORD
 from navbound.storage import folders

@@ -11,7 +11,7 @@ import polars as pl
 from navbound import __version__
 from navbound.algorithms import Place, entry
 from navbound.errors import FormatError, InputError
-from navbound.records.expected import ExpectedFlight, Shift
+from navbound.records.prediction import ExpectedFlight, Shift
 from navbound.run.expected.hold import hold
 from navbound.run.expected.legs import legs
 from navbound.run.expected.page import clock, sections
@@ -23,7 +23,7 @@ from navbound.time import utc_text
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
-    from navbound.records.expected import ExpectedLeg
+    from navbound.records.prediction import ExpectedLeg
     from navbound.run.expected.setup import Setup
 
 RECORD, EPOCHS, PAGE = "prediction.json", "epochs.parquet", "page.html"
@@ -114,23 +114,23 @@ def _sentences(lines: list[ExpectedLeg], level: Shift, table: pl.DataFrame) -> l
     if broken:
         first = min(broken, key=lambda line: line.first_without_s if line.first_without_s is not None else line.end_s)
         words = [
-            f"RNP is not kept on {len(broken)} of {len(lines)} legs; first on {first.leg} (RNP {first.rnp_m / METRES_PER_NM:g}) "
+            f"Accuracy: RNP is not kept on {len(broken)} of {len(lines)} legs; first on {first.leg} (RNP {first.rnp_m / METRES_PER_NM:g}) "
             f"from {clock(first.first_without_s or first.start_s)} on."
         ]
     else:
-        words = [f"RNP is kept on all {len(lines)} legs: the 95 % total error across the path is within it at every second."]
+        words = [f"Accuracy: RNP is kept on all {len(lines)} legs, the 95 % total error across the path is within it at every second."]
     circle = table["anp_circle_m"].fill_nan(None)
     worst = circle.arg_max()
     if worst is not None:
         words.append(f"The largest 95 % circle of navigation is {circle[worst]:.0f} m at {clock(worst)}, mode {table['mode'][worst]}.")
     words += [f"No satellite is used from {clock(a)} to {clock(b)}; mostly {mode}." for a, b, mode in _without_satellites(table)]
     if level.n_holes == 0:
-        words.append("The protection level of the monitor is inside the RNP at every instant.")
+        words.append("Integrity: the protection level of the monitor is inside the RNP at every instant.")
     else:
         lasts = level.longest_hole_s
         beyond = f", longer than the {DISPATCH_HOLE_S / 60:g} min up to which dispatch is usual" if lasts > DISPATCH_HOLE_S else ""
         plural = "s" if level.n_holes > 1 else ""
-        words.append(f"{level.n_holes} hole{plural} of the protection level; the longest is {lasts / 60:.1f} min{beyond}.")
+        words.append(f"Integrity: {level.n_holes} hole{plural} of the protection level; the longest is {lasts / 60:.1f} min{beyond}.")
     return words
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from navbound import anp
 from navbound.ins.coasting import AIDED, SPECIFICATION, coasting_hold_s, drift_hold_s
-from navbound.records.expected import Hold
+from navbound.records.prediction import Hold
 from navbound.scenario.sensors import grades, with_grade
 from navbound.scenario.units import to_si
 from navbound.units import METRES_PER_NM

@@ -9,7 +9,7 @@ import numpy as np
 
 from navbound import dme, rnp
 from navbound.errors import InputError
-from navbound.records.expected import ExpectedLeg, LevelHole
+from navbound.records.prediction import ExpectedLeg, LevelHole
 from navbound.run.expected.table import parts
 
 if TYPE_CHECKING:

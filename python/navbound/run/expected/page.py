@@ -8,7 +8,7 @@ from navbound.run.verdict.numbers import length, share
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
-    from navbound.records.expected import ExpectedFlight
+    from navbound.records.prediction import ExpectedFlight
 
 WORDS = {"kept": "kept", "not_kept": "NOT KEPT", "no_stations_known": "NO STATIONS KNOWN"}
 

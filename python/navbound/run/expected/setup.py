@@ -15,7 +15,7 @@ from navbound import _core, gnss
 from navbound.errors import FormatError, InputError, NotFoundError
 from navbound.maps.sources import NS, Times, satellites
 from navbound.read.routes import load_route
-from navbound.records.expected import Outage
+from navbound.records.prediction import Outage
 from navbound.scenario import Scenario, load
 from navbound.scenario.models import GPS_EPOCH
 from navbound.scenario.plan import FTE_95_NM, Plan, Window

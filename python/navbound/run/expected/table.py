@@ -15,7 +15,7 @@ from navbound.ins.coasting import CROSS_95
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from navbound.records.expected import Outage
+    from navbound.records.prediction import Outage
     from navbound.run.expected.setup import Setup
 
     Floats = NDArray[np.float64]
