@@ -14,7 +14,7 @@ import numpy as np
 import polars as pl
 import pytest
 
-from navbound import anp, gnss, ins, raim
+from navbound import anp, dme, gnss, ins, raim
 from navbound.cli import main as cli
 from navbound.errors import FormatError, InputError
 from navbound.run import directory
@@ -22,6 +22,7 @@ from navbound.run.commands import fly
 from navbound.run.expected.assess import assess_prediction, compare
 from navbound.run.expected.flight import Expected, predict_flight, write
 from navbound.run.expected.setup import setup
+from navbound.run.expected.table import levels
 from navbound.run.fly import material
 from navbound.scenario import Scenario, load
 from navbound.scenario.plan import read_plan
@@ -119,6 +120,27 @@ def test_circles_and_legs_are_those_of_the_table(expected: Callable[[str], Expec
         assert leg.tse_max_m <= 0.25 * METRES_PER_NM + leg.anp_max_m
     assert result.record.legs[0].start_s == 0.0
     assert all(a.end_s == b.start_s for a, b in zip(result.record.legs, result.record.legs[1:], strict=False))
+
+
+def test_dme_pairs_are_counted_where_the_aircraft_is(expected: Callable[[str], Expected]) -> None:
+    """Counted again with the selection along a flight; a notice takes its station out of every pair."""
+    clear = expected(JAMMED)
+    shown = clear.shown
+    scenario = load("beijing-shanghai")
+    assert scenario.sensors is not None
+    network = {s.name: (s.lat_rad, s.lon_rad, s.height_m) for s in scenario.sensors.stations}
+    lat, lon, h = (shown[name].to_numpy() for name in ("lat_rad", "lon_rad", "h_m"))
+    selection = dme.select(shown["time_ns"].to_numpy(), lat, lon, h, network, sigma_altitude_m=30.0)
+    assert shown["n_dme"].to_list() == selection.n_stations.tolist()
+    names = sorted(network)
+    best = [None if a < 0 else f"{names[a]}-{names[b]}" for a, b in selection.best.tolist()]
+    assert shown["dme_pair"].to_list() == best
+    assert 0.0 < sum(pair is not None for pair in best) / len(best) <= 1.0
+    less = expected(JAMMED + '[[notices]]\nstations = ["DPX"]\nfrom_min = 30\nuntil_min = 70\n').shown
+    during = (shown["time_s"] >= 1800) & (shown["time_s"] < 4200)
+    assert any("DPX" in pair for pair in shown.filter(during)["dme_pair"].drop_nulls())
+    assert not any("DPX" in pair for pair in less.filter(during)["dme_pair"].drop_nulls())
+    assert less.filter(~during)["dme_pair"].equals(shown.filter(~during)["dme_pair"])
 
 
 def test_a_leg_that_fails_says_when(expected: Callable[[str], Expected]) -> None:
@@ -257,6 +279,12 @@ def test_a_plan_that_is_none_is_refused_with_its_key(tmp_path: Path, text: str, 
     assert words in str(refused.value)
 
 
+def test_constellations_that_the_orbits_lack_are_named(tmp_path: Path, shared_data: Path) -> None:
+    almanac = shared_data / "gnss" / "almanacs" / "20160331.alm"
+    file = plan(tmp_path, f'flight = "beijing-shanghai"\norbits = ["{almanac}"]\n')
+    assert setup(file, read_plan(file)).warnings == ["The orbits have no satellite of galileo, beidou: the prediction is without them."]
+
+
 def test_an_almanac_of_another_week_is_refused(tmp_path: Path, shared_data: Path) -> None:
     almanac = shared_data / "gnss" / "almanacs" / "20160331.alm"
     text = f'flight = "beijing-shanghai"\ndeparture_utc = 2016-04-21T06:00:00Z\norbits = ["{almanac}"]\n'
@@ -341,6 +369,7 @@ def test_an_overconfident_prediction_is_seen(expected: Callable[[str], Expected]
     assert wrong.coverage == pytest.approx(1 - 0.05**0.25, abs=0.02)
     assert wrong.nees == pytest.approx(4.0, abs=0.08)
     assert wrong.nees_high is not None
+    assert wrong.nees is not None
     assert wrong.nees > wrong.nees_high
     assert wrong.ratio_median == pytest.approx(0.5)
 
@@ -423,3 +452,29 @@ def test_a_run_without_a_filter_is_not_assessed(tmp_path: Path, expected: Callab
     assert "nav_mode" not in directory.load(tmp_path / "flight").epochs.columns
     with pytest.raises(FormatError, match="nav_mode"):
         assess_prediction(tmp_path / "prediction", tmp_path / "flight")
+
+
+def test_satellites_that_may_be_out_make_a_mixture(tmp_path: Path) -> None:
+    """A short flight with GPS: the sum over no and one satellite out, counted again from the levels of plans with notices."""
+    head = 'flight = "beijing-shanghai"\nroute = "route.csv"\nduration_min = 40\nstep_min = 10\napproach_step_min = 10\n'
+    head += 'departure_shifts_s = []\n[[requirements]]\nname = "all"\nrnp_nm = 0.015\n'
+    (tmp_path / "route.csv").write_text("name,lat_deg,lon_deg\nA,40.0,116.0\nB,36.5,117.5\n", encoding="utf-8")
+    q = 0.01
+    mixed = predict_flight(plan(tmp_path, head + f"[equipment]\nsatellite_outage_probability = {q}\n"), with_hold=False).record
+    names = [s for s in mixed.satellites if s[0] == "G"]
+    total = 0.0
+    file = plan(tmp_path, head)
+    prepared = setup(file, read_plan(file))
+    rows = predict_flight(file, with_hold=False).shown.drop("hpl_m", "n_sv_monitor", "jammed")
+    for out in [None, *names]:
+        level = levels(prepared, rows, without=frozenset() if out is None else frozenset({out}))["hpl_m"]
+        p = (1 - q) ** len(names) if out is None else q * (1 - q) ** (len(names) - 1)
+        total += p * bool((level <= rows["rnp_m"]).all())
+    (leg,) = mixed.legs
+    assert leg.p_without_hole == pytest.approx(total, rel=1e-12)
+    # Some satellite matters, and not all of them.
+    assert (1 - q) ** len(names) < total
+    assert mixed.p_unexamined is not None
+    assert total < 1 - mixed.p_unexamined
+    assert mixed.p_unexamined == pytest.approx(1 - (1 - q) ** len(names) * (1 + len(names) * q / (1 - q)), abs=1e-12)
+    assert predict_flight(file, with_hold=False).record.p_unexamined is None

@@ -133,6 +133,15 @@ class ExpectedLeg(Record):
     """Share of the instants with a level inside the alert limit. [1]"""
     n_holes: int
     longest_hole_s: float
+    p_without_hole: float | None
+    """Probability that the leg has no hole, over the sets of satellites out of service that were worked out: a lower bound. None where
+    the plan states no probability of an outage. [1]"""
+    n_dme_least: int
+    """Fewest DME in view and in service. [1]"""
+    p_dme_pair: float
+    """Share of the instants with an admissible pair of DME. [1]"""
+    dme_circle_max_m: float | None
+    """Largest 95 % circle of a position by the best pair alone; None where some instant has no pair. [m]"""
     risk_2rnp: float | None
     """Bound of the risk to be beyond twice the RNP at least once on the leg; None where some instant has no position. [1]"""
 
@@ -197,6 +206,8 @@ class ExpectedFlight(Record):
     fte_95_m: float
     """En route; the approach has half. [m]"""
     outages: list[Outage]
+    p_unexamined: float | None
+    """Probability of more satellites out at once than were worked out; None where the plan states no probability of an outage. [1]"""
     legs: list[ExpectedLeg]
     holes: list[LevelHole]
     shifts: list[Shift]

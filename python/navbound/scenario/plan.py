@@ -90,6 +90,10 @@ class Equipment(Part):
     monitor_systems: str | None = None
     """Letters of the constellations that the monitor uses; by default G for RAIM, else those of the receiver."""
     model: str = "single-frequency"
+    satellite_outage_probability: float = Field(default=0.0, ge=0.0, le=0.1)
+    """That a satellite is out of service without a notice, each for itself; nobody has published one to be taken. [1]"""
+    outages: Literal[0, 1, 2] = 1
+    """Satellites out at once that are worked out where the probability is not zero."""
     steering: Steering = "autopilot"
     fte_95_m: float | None = Field(default=None, ge=0)
     """In place of the usual one of the steering."""

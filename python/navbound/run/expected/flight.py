@@ -14,9 +14,10 @@ from navbound.errors import FormatError, InputError
 from navbound.records.prediction import ExpectedFlight, Shift
 from navbound.run.expected.hold import hold
 from navbound.run.expected.legs import legs
+from navbound.run.expected.mixture import without_hole
 from navbound.run.expected.page import clock, sections
 from navbound.run.expected.setup import setup
-from navbound.run.expected.table import instants, levels, seconds
+from navbound.run.expected.table import instants, levels, pairs, seconds
 from navbound.scenario.plan import read_plan
 from navbound.storage import folders
 from navbound.time import utc_text
@@ -65,8 +66,11 @@ def predict_flight(file: str | Path, *, command: str = "", with_hold: bool = Tru
     prepared = setup(file, plan)
     table = seconds(prepared)
     rows = table[instants(prepared, table).tolist()]
-    shown = rows.hstack(levels(prepared, rows))
+    shown = rows.hstack(levels(prepared, rows)).hstack(pairs(prepared, rows))
     lines, holes = legs(prepared, table, shown)
+    probable, p_unexamined = without_hole(prepared, rows, [(line.start_s, line.end_s) for line in lines])
+    if probable is not None:
+        lines = [line.model_copy(update={"p_without_hole": p}) for line, p in zip(lines, probable, strict=True)]
     shifts = [_shift(prepared, rows, shift_s) for shift_s in plan.departure_shifts_s]
     record = ExpectedFlight(
         navbound_version=__version__,
@@ -83,6 +87,7 @@ def predict_flight(file: str | Path, *, command: str = "", with_hold: bool = Tru
         mask_rad=prepared.scenario.sensors.gnss.mask_rad if prepared.scenario.sensors and prepared.scenario.sensors.gnss else 0.0,
         fte_95_m=prepared.fte_95_m[0],
         outages=prepared.windows,
+        p_unexamined=p_unexamined,
         legs=lines,
         holes=holes,
         shifts=shifts,
@@ -158,13 +163,23 @@ def _assumptions(prepared: Setup) -> list[str]:
     return [
         "The covariance is that of the flight's own filter on a flight whose sensors have no errors.",
         "What a filter rejects in the air, and what it adds to its covariance for a measurement that contradicts it, is not known before.",
-        f"{orbits} None fails unless a notice says so: the probability of an outage is taken as zero.",
+        f"{orbits} {_failures(prepared)}",
         f"Flight technical error, 95 %: {en_route:g} NM, on approach {approach:g} NM ({mark}).",
         f"The levels are those of {equipment.monitor} with the satellites of {prepared.systems()}; the alert limit is the RNP (inferred).",
         *entry(Place, "monitor", equipment.monitor).words(equipment.model),
         "Stations are used within the coverage that the scenario states and above a horizon of a smooth Earth; terrain is not modelled.",
         f"The risk on a leg takes a correlation time of {equipment.fte_correlation_s:g} s (inferred).",
     ]
+
+
+def _failures(prepared: Setup) -> str:
+    equipment = prepared.plan.equipment
+    if equipment.satellite_outage_probability == 0.0:
+        return "None fails unless a notice says so: the probability of an outage is taken as zero."
+    return (
+        f"Each is out of service without a notice with probability {equipment.satellite_outage_probability:g} (stated in the plan), "
+        f"independently; up to {equipment.outages} at once were worked out, more count as a hole. The covariance has all of them."
+    )
 
 
 def write(expected: Expected, folder: str | Path) -> Path:
@@ -177,7 +192,9 @@ def write(expected: Expected, folder: str | Path) -> Path:
     """
     from navbound.report.expected import Section, page  # noqa: PLC0415  (only where one is written)
 
-    table = expected.seconds.join(expected.shown.select("time_ns", "hpl_m", "n_sv_monitor", "jammed"), on="time_ns", how="left")
+    table = expected.seconds.join(
+        expected.shown.select("time_ns", "hpl_m", "n_sv_monitor", "jammed", "n_dme", "dme_pair", "dme_circle_m"), on="time_ns", how="left"
+    )
     table = table.with_columns(pl.col(pl.Float64).fill_nan(None))
     with folders.own(Path(folder), {RECORD, EPOCHS, PAGE}, "a prediction's") as target:
         target.text(RECORD, expected.record.model_dump_json(indent=1) + "\n")

@@ -69,6 +69,10 @@ def _leg(setup: Setup, part: pl.DataFrame, rows: pl.DataFrame, holes: list[Level
             "p_level": float(level.mean()),
             "n_holes": len(holes),
             "longest_hole_s": max((h.end_s - h.start_s for h in holes), default=0.0),
+            "p_without_hole": None,
+            "n_dme_least": int(rows["n_dme"].min()),  # type: ignore[arg-type]
+            "p_dme_pair": float(rows["dme_pair"].is_not_null().mean()),  # type: ignore[arg-type]
+            "dme_circle_max_m": float(rows["dme_circle_m"].max()) if rows["dme_pair"].null_count() == 0 else None,  # type: ignore[arg-type]
             "risk_2rnp": _exposed(setup, risk) if known.all() else None,
         }
     )

@@ -36,6 +36,7 @@ def sections(record: ExpectedFlight) -> list[tuple[str, list[tuple[str, ...]]]]:
 
 def leg_rows(record: ExpectedFlight) -> list[tuple[str, ...]]:
     """Heading and one row a leg."""
+    probable = record.p_unexamined is not None
     rows: list[tuple[str, ...]] = [
         (
             "leg",
@@ -50,6 +51,8 @@ def leg_rows(record: ExpectedFlight) -> list[tuple[str, ...]]:
             "level",
             "in limit",
             "longest hole",
+            *(["P no hole"] if probable else []),
+            "DME pair",
             "risk 2 RNP",
             "",
         )
@@ -71,6 +74,8 @@ def leg_rows(record: ExpectedFlight) -> list[tuple[str, ...]]:
                 _length(leg.hpl_max_m),
                 share(leg.p_level),
                 "-" if leg.n_holes == 0 else clock(leg.longest_hole_s),
+                *([_probability(leg.p_without_hole)] if probable else []),
+                share(leg.p_dme_pair),
                 _risk(leg.risk_2rnp),
                 WORDS[leg.status],
             )
@@ -105,6 +110,10 @@ def hold_rows(record: ExpectedFlight) -> list[tuple[str, ...]]:
             cells.append(f"> {own[m].longest_s / 60:.0f} min" if lasts is None else f"{lasts / 60:.0f} min")
         rows.append((model, *cells, next(iter(own.values())).provenance))
     return rows
+
+
+def _probability(p: float | None) -> str:
+    return "-" if p is None else f"{100 * p:.3f} %"
 
 
 def _risk(risk: float | None) -> str:

@@ -106,12 +106,20 @@ def setup(file: str | Path, plan: Plan) -> Setup:
     table["start_gps"] = GPS_EPOCH + timedelta(microseconds=start_ns // 1000)
     clear = _checked(file, table | {"faults": []}, [])
     windows, warnings = _windows(file, plan, clear, start_ns, orbits)
+    warnings += _not_in_orbits(table, orbits)
     during = [w for w in windows if w.start_s < clear.duration_s and w.end_s > 0]
     scenario = _checked(file, table | {"faults": []}, [_fault(w) for w in during])
     fte = [nm * METRES_PER_NM for nm in FTE_95_NM[plan.equipment.steering]]
     own = plan.equipment.fte_95_m
     fte_95_m = (fte[0], fte[1]) if own is None else (own, own)
     return Setup(plan, scenario, orbits, since_s, plan.departure_utc is not None, bool(plan.orbits), windows, warnings, fte_95_m)
+
+
+def _not_in_orbits(table: dict[str, Any], orbits: gnss.Orbits) -> list[str]:
+    receiver = table["sensors"]["gnss"]
+    there = {name[0] for name in orbits.satellite}
+    absent = [] if receiver is None else [name for name in receiver["constellations"] if _LETTERS[name] not in there]
+    return [f"The orbits have no satellite of {', '.join(absent)}: the prediction is without them."] if absent else []
 
 
 def _base(file: str | Path, folder: Path, plan: Plan) -> Scenario:

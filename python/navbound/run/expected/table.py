@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polars as pl
 
-from navbound import _core, anp, tse
+from navbound import _core, anp, dme, tse
 from navbound.algorithms import Place, entry
 from navbound.ins.coasting import CROSS_95
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 RISK_ACCURACY, RISK_INTEGRITY = 0.05, 1e-5
+ALTITUDE_SIGMA_M = 50.0
+"""Of an altitude where the scenario has no altimeter. Provenance: inferred. [m]"""
 
 
 def seconds(setup: Setup) -> pl.DataFrame:
@@ -116,8 +119,11 @@ def parts(table: pl.DataFrame) -> list[tuple[int, int]]:
     return list(zip(begins, [*begins[1:], len(keys)], strict=True))
 
 
-def levels(setup: Setup, shown: pl.DataFrame, shift_s: float = 0.0) -> pl.DataFrame:
-    """Levels of the satellites in view and in service at the rows: ``hpl_m``, ``n_sv_monitor``, ``jammed``; NaN where there is none."""
+def levels(setup: Setup, shown: pl.DataFrame, shift_s: float = 0.0, without: frozenset[str] = frozenset()) -> pl.DataFrame:
+    """Levels of the satellites in view and in service at the rows, without some more: ``hpl_m``, ``n_sv_monitor``, ``jammed``.
+
+    The level is NaN where there is none.
+    """
     called = entry(Place, "equipment.monitor", setup.plan.equipment.monitor)
     others = [s for s in setup.orbits.satellite if s[0] not in setup.systems()]
     in_view = setup.orbits.without(others)
@@ -131,13 +137,43 @@ def levels(setup: Setup, shown: pl.DataFrame, shift_s: float = 0.0) -> pl.DataFr
         jammed[k] = any(w.what == "jamming" for w in out)
         if jammed[k] or not on_board:
             continue
-        gone = {name for w in out if w.what == "satellites" for name in w.names}
+        gone = {name for w in out if w.what == "satellites" for name in w.names} | without
         orbits = in_view.without([s for s in in_view.satellite if s in gone]) if gone else in_view
         if not orbits.satellite:
             continue
         at = called(orbits, [lat], [lon], [h], [setup.since_s + time_s + shift_s], mask_rad=mask_rad, model=setup.plan.equipment.model)
         hpl[k], n_sv[k] = float(np.ravel(at.hpl_m)[0]), int(np.ravel(at.n_sv)[0])
     return pl.DataFrame({"hpl_m": hpl, "n_sv_monitor": n_sv, "jammed": jammed})
+
+
+def pairs(setup: Setup, shown: pl.DataFrame) -> pl.DataFrame:
+    """DME of the rows, by the rules of :func:`navbound.dme.select`.
+
+    ``n_dme`` in view and in service; ``dme_pair`` the best pair, and ``dme_circle_m``, the 95 % circle of a position by that pair alone;
+    null and NaN where no pair is admissible.
+    """
+    sensors = setup.scenario.sensors
+    n, pair, circle = np.zeros(shown.height, dtype=np.int64), np.full(shown.height, None, dtype=object), np.full(shown.height, np.nan)
+    on_board = sensors is not None and sensors.dme is not None
+    network = {s.name: (s.lat_rad, s.lon_rad, s.height_m) for s in sensors.stations if s.kind != "vor"} if sensors and on_board else {}
+    altitude = sensors.baro.bias_sigma_m if sensors is not None and sensors.baro is not None else ALTITUDE_SIGMA_M
+    absent = [_stations_out(setup, time_s) for time_s in shown["time_s"]]
+    for out in set(absent):
+        rows = np.array([k for k, each in enumerate(absent) if each == out])
+        left = {name: place for name, place in network.items() if name not in out}
+        if not left:
+            continue
+        part = shown[rows.tolist()]
+        lat, lon, h = (part[name].to_numpy() for name in ("lat_rad", "lon_rad", "h_m"))
+        seen = dme.coverage(lat, lon, h, left, rnp_m=METRES_PER_NM, fte_m=0.0, sigma_altitude_m=altitude, risk=RISK_ACCURACY)
+        names = dme.Stations.of(left).ident
+        n[rows], circle[rows] = seen.n_stations, seen.nse_best_m
+        pair[rows] = ["-".join(names[int(k)] for k in best) if best[0] >= 0 else None for best in seen.best]
+    return pl.DataFrame({"n_dme": n, "dme_pair": pl.Series(pair.tolist(), dtype=pl.String), "dme_circle_m": circle})
+
+
+def _stations_out(setup: Setup, time_s: float) -> frozenset[str]:
+    return frozenset(name for w in _out(setup, time_s, 0.0) if w.what == "stations" for name in w.names)
 
 
 def _out(setup: Setup, time_s: float, shift_s: float) -> list[Outage]:
