@@ -51,8 +51,8 @@ def show(record: ExpectedFlight) -> None:
     for heading, rows in sections(record):
         if len(rows) > 1:
             table = Table(title=heading, title_justify="left")
-            for cell in rows[0]:
-                table.add_column(cell, overflow="fold")
+            for k, cell in enumerate(rows[0]):
+                table.add_column(cell, overflow="fold", no_wrap=k == 0)
             for row in rows[1:]:
                 table.add_row(*row)
             out_console.print(table)

@@ -15,6 +15,7 @@ from navbound.records.prediction import Agreement, Assessment, ExpectedFlight
 from navbound.run import directory
 from navbound.run.expected.flight import EPOCHS, RECORD
 from navbound.storage import folders
+from navbound.table.columns import HORIZONTAL
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 By = Literal["time", "along"]
-NEEDED = ("track", "time_ns", "along_m", "nav_mode", "cov_ee_m2", "cov_en_m2", "cov_nn_m2")
+NEEDED = ("track", "time_ns", "along_m", "nav_mode", *HORIZONTAL)
 ERROR = ("nse_e_m", "nse_n_m")
 CLOSE = 0.05
 """Circles this close agree: the acceptance of the specification. [1]"""

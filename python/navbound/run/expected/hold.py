@@ -11,6 +11,7 @@ from navbound.ins.coasting import AIDED, SPECIFICATION, coasting_hold_s, drift_h
 from navbound.records.prediction import Hold
 from navbound.scenario.sensors import grades, with_grade
 from navbound.scenario.units import to_si
+from navbound.table.columns import HORIZONTAL
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def _by_filter(setup: Setup, grade: str) -> list[Hold]:
         faults.append({"kind": "station-outage", "start_s": lost_s, "duration_s": left_s + 1.0, "stations": stations})
     columns = setup.sensors(imu=imu, faults=faults).error_free()
     after = np.flatnonzero((np.arange(len(columns["time_ns"])) > lost_s) & (columns["available"] == 1))
-    ee, en, nn = (np.asarray(columns[name])[after] for name in ("cov_ee_m2", "cov_en_m2", "cov_nn_m2"))
+    ee, en, nn = (np.asarray(columns[name])[after] for name in HORIZONTAL)
     circle = anp.circle(np.stack([np.stack([ee, en], -1), np.stack([en, nn], -1)], -2), 0.05)
     lines = []
     for nm in RNP_NM:

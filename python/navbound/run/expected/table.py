@@ -11,6 +11,7 @@ import polars as pl
 from navbound import _core, anp, dme, tse
 from navbound.algorithms import Place, entry
 from navbound.ins.coasting import CROSS_95
+from navbound.table.columns import COVARIANCE, HORIZONTAL, VARIANCES
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
@@ -51,10 +52,7 @@ def seconds(setup: Setup) -> pl.DataFrame:
             "rnp_m": columns["rnp_m"],
             "mode": _words(modes, columns["nav_mode"]),
             "n_sv": columns["n_sv"].astype(np.int64),
-            "cov_ee_m2": columns["cov_ee_m2"],
-            "cov_en_m2": columns["cov_en_m2"],
-            "cov_nn_m2": columns["cov_nn_m2"],
-            "cov_uu_m2": columns["cov_uu_m2"],
+            **{name: columns[name] for name in COVARIANCE},
             **bounds,
             "status": _words(statuses, columns["decided"]),
             "reason": [ids[int(k)] if k >= 0 else None for k in columns["leading"]],
@@ -69,14 +67,14 @@ def _words(words: list[str], codes: Any) -> list[str]:
 def _bounds(setup: Setup, columns: dict[str, Any], available: NDArray[np.bool_]) -> dict[str, Floats]:
     """Bounds and risks where there is a covariance; NaN elsewhere."""
     n = len(available)
-    ee, en, nn = (np.asarray(columns[name])[available] for name in ("cov_ee_m2", "cov_en_m2", "cov_nn_m2"))
+    ee, en, nn = (np.asarray(columns[name])[available] for name in HORIZONTAL)
     covariance = np.stack([np.stack([ee, en], -1), np.stack([en, nn], -1)], -2)
     rnp = np.asarray(columns["rnp_m"])[available]
     cross = tse.project(np.zeros((len(ee), 2)), covariance, np.asarray(columns["course_rad"])[available]).sigma_m
     sigma_fte = (_fte_95(setup, columns) / CROSS_95)[available]
     accuracy = tse.random_fte(0.0, sigma_fte, cross, RISK_ACCURACY)
     integrity = tse.random_fte(0.0, sigma_fte, cross, RISK_INTEGRITY)
-    up = np.asarray(columns["cov_uu_m2"])[available]
+    up = np.asarray(columns[VARIANCES[2]])[available]
     values = {
         "anp_circle_m": anp.circle(covariance, RISK_ACCURACY),
         "sigma_cross_m": cross,
