@@ -18,7 +18,7 @@ use navbound_core::monitor::separation;
 use navbound_core::quantity::{GpsTime, OutOfDomain, Risk, Unavailable};
 use navbound_core::signal::{Aiding, TimedAiding};
 use navbound_core::solution::ins::{Fusion, Innovations, Kind, Mode, NavState, Samples, Solution};
-use navbound_simulate::{Doubt, FlownEpoch, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by};
+use navbound_simulate::{Doubt, ERROR_FREE, FlownEpoch, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by};
 use rayon::prelude::*;
 
 /// Flights, and what their filters say of themselves.
@@ -53,6 +53,16 @@ impl Fused {
         let flown: Vec<_> = numbers.map(|number| flight(sensing, seed, number)).collect::<Result<_, _>>()?;
         let (epochs, verdicts): (_, Vec<_>) = flown.into_iter().unzip();
         Ok(Self { flights: Flights::of(epochs, first), verdicts: verdicts.concat() })
+    }
+
+    /// The flight whose sensors have no errors: its covariances are those to expect, from the same filter on the same schedule of
+    /// measurements.
+    ///
+    /// # Errors
+    /// As [`Fused::fly`].
+    pub fn error_free(sensing: &Sensing) -> Result<Self, OutOfDomain> {
+        let (epochs, verdicts) = flight(sensing, 0, ERROR_FREE)?;
+        Ok(Self { flights: Flights::of(vec![epochs], 0), verdicts })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Simulated sensors.
 
 use crate::error::input_error;
+use crate::orbits::named;
 use crate::positions::Navigation;
 use crate::simulate::{epochs, read, refused, unreadable};
 use navbound_assess::fused::{Fused, MODES, Verdict};
@@ -34,6 +35,20 @@ impl Sensors {
         let scenario = read(scenario)?;
         let records = navigation.map(|n| n.ephemerides());
         py.detach(|| Sensing::new(scenario, records)).map(Self).map_err(refused)
+    }
+
+    /// From a scenario and satellites by name with seven elements each; the flight begins so long after the elements' instant.
+    #[staticmethod]
+    fn of_orbits(py: Python<'_>, scenario: &str, names: Vec<String>, elements: PyReadonlyArray2<'_, f64>, since_s: f64) -> PyResult<Self> {
+        let scenario = read(scenario)?;
+        let orbits = named(&names, elements.as_slice()?.as_chunks().0, since_s)?;
+        py.detach(|| Sensing::with_orbits(scenario, &orbits)).map(Self).map_err(refused)
+    }
+
+    /// The flight without errors on the scenario's filter: the covariances to expect.
+    fn error_free<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let flown = py.detach(|| Fused::error_free(&self.0)).map_err(|e| input_error(e, None))?;
+        epochs(py, &flown.flights)
     }
 
     /// One flight as tables of columns.

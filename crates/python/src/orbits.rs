@@ -1,6 +1,7 @@
 //! Orbits and clocks of analysis centres, and almanacs.
 
 use crate::error::{format_error, input_error};
+use crate::gnss::orbit;
 use navbound_core::geometry::Elements;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{Constellation, SatelliteId};
@@ -8,6 +9,7 @@ use navbound_formats::packed::unpack;
 use navbound_formats::precise::Precise;
 use navbound_formats::{Refusal, almanac, rinex, sp3};
 use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::{BTreeMap, BTreeSet};
@@ -104,6 +106,16 @@ impl PreciseOrbits {
 pub fn satellite_id(name: &str) -> Option<SatelliteId> {
     let constellation = Constellation::from_letter(*name.as_bytes().first()?)?;
     Some(SatelliteId { constellation, number: name.get(1..)?.parse().ok()? })
+}
+
+/// Satellites by name with elements that are moved by some time.
+pub fn named(names: &[String], elements: &[[f64; 7]], since_s: f64) -> PyResult<Vec<(SatelliteId, Elements)>> {
+    let one = |(index, (name, row)): (usize, (&String, &[f64; 7]))| {
+        let id = satellite_id(name).ok_or_else(|| PyValueError::new_err(format!("{name}: no satellite")))?;
+        let moved = orbit(row).moved(since_s).map_err(|e: OutOfDomain| input_error(e, Some(index)))?;
+        Ok((id, moved))
+    };
+    names.iter().zip(elements).enumerate().map(one).collect()
 }
 
 /// An almanac: satellites, health, constellation indices, elements at one instant, and that instant where the week is known.

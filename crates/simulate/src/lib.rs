@@ -23,6 +23,7 @@ pub use flight::{Doubt, FlownEpoch, Navigated, fly, fly_by};
 pub use ground::{Driven, GroundFlight, RangeFault, RouteMotion, RoutePoint, Taxi, TaxiNavigation};
 pub use navigator::{BelievedErrors, Coupling, Navigator};
 pub use outlook::Outlook;
+pub use philox::ERROR_FREE;
 pub use plan::{PhaseRange, Plan, Refused};
 pub use scenario::{Fault, Guidance, Gusts, Navigation, Phase, ProfileSettings, Scenario, System, Turns, Waypoint};
 pub use sensors::{

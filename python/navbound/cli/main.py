@@ -12,7 +12,7 @@ import typer
 
 import navbound
 from navbound import _core
-from navbound.cli import analyze, demo, evaluate, example, fly, lists, live, maps, predict, procedures, show, study, verify
+from navbound.cli import analyze, assess, demo, evaluate, example, fly, lists, live, maps, predict, procedures, show, study, verify
 from navbound.cli.parts import err_console
 from navbound.errors import FormatError, InputError, InternalError, NavboundError, visible
 from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed
@@ -57,6 +57,7 @@ for _name, _command in _COMMANDS.items():
     app.command(_name)(_command)
 app.add_typer(procedures.app, name="procedures")
 app.add_typer(live.app, name="live")
+app.add_typer(assess.app, name="assess")
 
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)

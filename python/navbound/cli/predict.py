@@ -12,8 +12,9 @@ import typer
 from rich.table import Table
 
 from navbound.algorithms import Place, entries, entry
+from navbound.cli.flight_plan import predict_flight_command
 from navbound.cli.parts import command_line, out_console
-from navbound.errors import InputError
+from navbound.errors import ConflictError, InputError
 
 if TYPE_CHECKING:
     from navbound.maps.sources import Times
@@ -24,9 +25,12 @@ LISTED = 40
 
 
 def predict_command(
-    kind: Annotated[str, typer.Argument(help=f"What to predict: {', '.join(entries(Place))}.")],
+    kind: Annotated[str, typer.Argument(help=f"What to predict: {', '.join(entries(Place))}; or flight, the navigation along a plan.")],
     constellation: Annotated[
-        list[str], typer.Argument(help="YUMA or SEM almanac, RINEX navigation file, or gps, galileo, beidou (nominal, of no date).")
+        list[str],
+        typer.Argument(
+            help="YUMA or SEM almanac, RINEX navigation file, or gps, galileo, beidou (nominal, of no date); of a flight the PLAN.toml."
+        ),
     ],
     at: Annotated[
         list[str] | None, typer.Option("--at", help="LAT,LON[,H] in degrees and metres, or a runway (LFPG/08R); may be repeated.")
@@ -46,12 +50,19 @@ def predict_command(
     ] = None,
     mask_deg: Annotated[float, typer.Option(help="Lowest elevation used.")] = 5.0,
     model: Annotated[str, typer.Option(help="Error of a range: single-frequency, dual-frequency.")] = "single-frequency",
+    out: Annotated[Path | None, typer.Option("--out", help="Of a flight: folder for record, epoch table and page.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,
 ) -> None:
     """Say when, over a day, a monitor on board could not detect or not exclude a faulty satellite at a place or on a route."""
     from navbound import raim  # noqa: PLC0415
     from navbound.run import predict as predict_raim  # noqa: PLC0415
 
+    if kind == "flight":
+        unused = {"at": at, "route": route, "date": date, "spec": spec, "without": without, "systems": systems}
+        predict_flight_command(list(constellation), unused, out, json)
+        return
+    if out is not None:
+        raise ConflictError("out", because=f"only a flight leaves a folder; --json prints the result of {kind}", value=out)
     entry(Place, "kind", kind)
     if model not in raim.ERROR_MODELS:
         raise InputError("model", model, domain=f"one of {', '.join(raim.ERROR_MODELS)}")

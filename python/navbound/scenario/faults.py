@@ -247,6 +247,28 @@ SENSOR_FAULTS: tuple[type[Part], ...] = (
 )
 """Every kind of fault of a sensor: the one list that the scenario reader, the documentation and the fault campaign read."""
 
+
+class SatelliteOutage(Part):
+    """Satellites are out of service, as a notice announces it; a letter stands for a whole constellation."""
+
+    kind: Literal["satellite-outage"]
+    start_s: float
+    duration_s: float
+    satellites: list[str] = Field(min_length=1)
+
+
+class StationOutage(Part):
+    """Stations are out of service, ranges and bearings."""
+
+    kind: Literal["station-outage"]
+    start_s: float
+    duration_s: float
+    stations: list[str] = Field(min_length=1)
+
+
+OUTAGES: tuple[type[Part], ...] = (SatelliteOutage, StationOutage)
+"""What a notice announces: nothing wrong is measured, so no campaign has to find it."""
+
 SensorFault = Annotated[
     SatelliteStep
     | SatelliteRamp
@@ -268,7 +290,9 @@ SensorFault = Annotated[
     | ImuClock
     | ImuTrouble
     | BaroBlockage
-    | BaroFrozen,
+    | BaroFrozen
+    | SatelliteOutage
+    | StationOutage,
     Field(discriminator="kind"),
 ]
 

@@ -26,6 +26,8 @@ _FAULT_KINDS = {
     "lateral-ramp",
     "degraded-ranging",
     "satellite-step",
+    "satellite-outage",
+    "station-outage",
     "satellite-ramp",
     "interference",
     "spoofing",

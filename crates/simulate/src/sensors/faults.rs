@@ -210,6 +210,24 @@ pub enum SensorFault {
         /// How long \[s\].
         duration_s: f64,
     },
+    /// Satellites are out of service, as a notice announces it.
+    SatelliteOutage {
+        /// Time after the begin of the flight \[s\].
+        start_s: f64,
+        /// How long \[s\].
+        duration_s: f64,
+        /// As in [`SensorFault::SatellitesStep`].
+        satellites: Vec<String>,
+    },
+    /// Stations are out of service, ranges and bearings.
+    StationOutage {
+        /// Time after the begin of the flight \[s\].
+        start_s: f64,
+        /// How long \[s\].
+        duration_s: f64,
+        /// Their names.
+        stations: Vec<String>,
+    },
     /// The altimeter repeats its last word.
     BaroFrozen {
         /// Time after the begin of the flight \[s\].
@@ -295,6 +313,8 @@ impl SensorFault {
             | Self::ImuNoise { start_s, duration_s, .. }
             | Self::ImuClip { start_s, duration_s, .. }
             | Self::ImuClock { start_s, duration_s, .. }
+            | Self::SatelliteOutage { start_s, duration_s, .. }
+            | Self::StationOutage { start_s, duration_s, .. }
             | Self::BaroFrozen { start_s, duration_s }
             | Self::BaroBlockage { start_s, duration_s } => start_s..start_s + duration_s,
             Self::ImuBiasJump { start_s, .. } => start_s..f64::INFINITY,
@@ -305,6 +325,22 @@ impl SensorFault {
     pub(crate) fn since(&self, time_s: f64) -> Option<f64> {
         let window = self.window();
         window.contains(&time_s).then_some(time_s - window.start)
+    }
+
+    /// Whether it silences a satellite at a time.
+    pub(crate) fn silences(&self, id: SatelliteId, time_s: f64) -> bool {
+        match self {
+            Self::SatelliteOutage { satellites, .. } => self.since(time_s).is_some() && satellites.iter().any(|name| is_of(name, id)),
+            _ => false,
+        }
+    }
+
+    /// Whether it silences a station at a time.
+    pub(crate) fn silences_station(&self, station: &str, time_s: f64) -> bool {
+        match self {
+            Self::StationOutage { stations, .. } => self.since(time_s).is_some() && stations.iter().any(|name| name == station),
+            _ => false,
+        }
     }
 
     /// The satellite it concerns.
@@ -361,6 +397,14 @@ impl SensorFault {
                 let known = !satellites.is_empty() && satellites.iter().all(|name| group(name).is_some());
                 rules.push(Rule("satellites", f64::NAN, "", known, "names of satellites as G05, or letters of constellations"));
                 rules.push(within("size", *size, "m or m/s", -1e7, 1e7, "[-1e7, 1e7]"));
+            }
+            Self::SatelliteOutage { satellites, .. } => {
+                let known = !satellites.is_empty() && satellites.iter().all(|name| group(name).is_some());
+                rules.push(Rule("satellites", f64::NAN, "", known, "names of satellites as G05, or letters of constellations"));
+            }
+            Self::StationOutage { stations: names, .. } => {
+                let known = !names.is_empty() && names.iter().all(|name| stations.iter().any(|s| &s.name == name));
+                rules.push(Rule("stations", f64::NAN, "", known, "names of stations of the table"));
             }
             Self::ReceiverDelay { delay_s, .. } => rules.push(within("delay_s", *delay_s, "s", 0.0, 10.0, "[0, 10]")),
             Self::ReceiverSigma { factor, .. } | Self::ImuNoise { factor, .. } | Self::DmeBiases { factor, .. } => {

@@ -34,12 +34,13 @@ use crate::flight::fly;
 use crate::navigator::Navigator;
 use crate::outlook::Outlook;
 use crate::plan::Refused;
-use crate::scenario::{Scenario, kept};
+use crate::scenario::{Scenario, System, kept};
 use crate::trajectory::{Motion, Trajectory};
 use altimeter::Altimeter;
 use inertial::{InertialUnit, TrueIncrements};
+use navbound_core::geometry::Elements;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
-use navbound_core::signal::{Ephemeris, ImuIncrement, PhaseRange, TimedAiding};
+use navbound_core::signal::{Ephemeris, ImuIncrement, PhaseRange, SatelliteId, TimedAiding};
 use receiver::Receiver;
 use receiver_faults::ReceiverFaults;
 use stations::{Bearings, Interrogator};
@@ -70,13 +71,29 @@ impl Sensing {
     /// # Errors
     /// As [`Outlook::new`]; [`OutOfDomain`] for a scenario without sensors or records that do not cover the flight.
     pub fn new(scenario: Scenario, broadcast: Option<&[Ephemeris]>) -> Result<Self, Refused> {
+        Self::of(scenario, |scenario, systems| sky::satellites(scenario, systems, broadcast))
+    }
+
+    /// From a scenario with sensors and the satellites of an almanac, their elements at the begin of the flight. Those of constellations
+    /// that the receiver does not use are left out.
+    ///
+    /// # Errors
+    /// As [`Outlook::new`]; [`OutOfDomain`] for a scenario without sensors, elements that are no orbit, or no satellite that is used.
+    pub fn with_orbits(scenario: Scenario, orbits: &[(SatelliteId, Elements)]) -> Result<Self, Refused> {
+        Self::of(scenario, |_, systems| sky::of_elements(orbits, systems))
+    }
+
+    fn of(
+        scenario: Scenario,
+        satellites: impl FnOnce(&Scenario, &[System]) -> Result<Vec<Satellite>, OutOfDomain>,
+    ) -> Result<Self, Refused> {
         let Some(sensors) = scenario.sensors.clone() else {
             let domain = "a scenario with a [sensors] part";
             return Err(OutOfDomain { argument: "sensors", value: 0.0, unit: "tables", domain }.into());
         };
         let outlook = Outlook::new(scenario)?;
         let satellites = match &sensors.gnss {
-            Some(gnss) => sky::satellites(&outlook.scenario, &gnss.constellations, broadcast)?,
+            Some(gnss) => satellites(&outlook.scenario, &gnss.constellations)?,
             None => Vec::new(),
         };
         if let Some(fault) = sensors.faults.iter().find(|f| f.satellite().is_some_and(|id| satellites.iter().all(|s| s.id != id))) {
@@ -251,7 +268,7 @@ impl SensedFlight<'_> {
         if let Some((every, vor)) = &mut self.vor
             && index.is_multiple_of(*every)
         {
-            vor.measure(time, truth, &mut self.aiding)?;
+            vor.measure(time_s, time, truth, &mut self.aiding)?;
         }
         if let Some((every, baro)) = &mut self.baro {
             baro.follow(time_s, truth.position.height.m());

@@ -116,7 +116,8 @@ impl<'a> Receiver<'a> {
         };
         for channel in &mut self.channels {
             let noise = channel.step();
-            let heard = if silent { None } else { instant.heard(channel, &seen, noise)? };
+            let out_of_service = self.faults.iter().any(|f| f.silences(channel.satellite.id, time_s));
+            let heard = if silent || out_of_service { None } else { instant.heard(channel, &seen, noise)? };
             if let Some((range, phase)) = heard {
                 out.push(TimedAiding { time: self.begin.plus_seconds(time_s), aiding: Aiding::Satellite(range) });
                 self.phases.push(phase);

@@ -3,8 +3,8 @@
 use crate::scenario::{Scenario, System};
 use nalgebra::Vector3;
 use navbound_core::frame::EcefPosition;
-use navbound_core::geometry::Orbit;
 use navbound_core::geometry::broadcast::{Broadcast, in_axes_of_reception};
+use navbound_core::geometry::{Elements, Orbit};
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_core::signal::{Carrier, Constellation, Ephemeris, Message, SPEED_OF_LIGHT_MPS, SatelliteId, nearest};
 
@@ -96,6 +96,20 @@ fn nominal(systems: &[System], start_s: f64) -> Result<Vec<Satellite>, OutOfDoma
     for slot in systems.iter().flat_map(|s| s.slots()) {
         let orbit = Orbit::new(slot.elements.moved(start_s)?)?;
         satellites.push(Satellite { id: slot.satellite, source: Source::Nominal(Box::new(orbit)) });
+    }
+    Ok(satellites)
+}
+
+/// Satellites of the constellations in use, by their elements at the begin of the flight.
+pub(crate) fn of_elements(orbits: &[(SatelliteId, Elements)], systems: &[System]) -> Result<Vec<Satellite>, OutOfDomain> {
+    let used = |id: SatelliteId| systems.iter().any(|s| s.constellation() == id.constellation);
+    let mut satellites = Vec::new();
+    for (id, elements) in orbits.iter().filter(|(id, _)| used(*id)) {
+        satellites.push(Satellite { id: *id, source: Source::Nominal(Box::new(Orbit::new(*elements)?)) });
+    }
+    if satellites.is_empty() {
+        let domain = "satellites of the receiver's constellations";
+        return Err(OutOfDomain { argument: "orbits", value: orbits.len() as f64, unit: "satellites", domain });
     }
     Ok(satellites)
 }

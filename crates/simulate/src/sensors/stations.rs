@@ -75,7 +75,8 @@ impl<'a> Interrogator<'a> {
         for site in &mut self.sites {
             let white = site.noise.normal();
             let sight = site.sight(&aircraft)?;
-            if !site.serves(&sight, &self.settings.coverage, motion.position.height.m()) {
+            let out_of_service = self.faults.iter().any(|f| f.silences_station(site.name, time_s));
+            if out_of_service || !site.serves(&sight, &self.settings.coverage, motion.position.height.m()) {
                 continue;
             }
             let sigma = self.settings.noise_least_m.max(self.settings.noise_share * sight.slant_m);
@@ -105,6 +106,7 @@ impl<'a> Interrogator<'a> {
 /// The receiver of bearings.
 pub(crate) struct Bearings<'a> {
     settings: &'a Vor,
+    faults: &'a [SensorFault],
     sites: Vec<Site<'a>>,
 }
 
@@ -115,15 +117,16 @@ impl<'a> Bearings<'a> {
             Site::new(i, s, stream(Sensor::VorBias), settings.bias_sigma_rad, stream(Sensor::VorNoise))
         };
         let sites: Result<_, _> = sensors.stations.iter().enumerate().filter(|(_, s)| s.kind.bears()).map(site).collect();
-        Ok(Self { settings, sites: sites? })
+        Ok(Self { settings, faults: &sensors.faults, sites: sites? })
     }
 
-    pub(crate) fn measure(&mut self, time: GpsTime, motion: &Motion, out: &mut Vec<TimedAiding>) -> Result<(), OutOfDomain> {
+    pub(crate) fn measure(&mut self, time_s: f64, time: GpsTime, motion: &Motion, out: &mut Vec<TimedAiding>) -> Result<(), OutOfDomain> {
         let aircraft = ecef_from_geodetic(&motion.position);
         for site in &mut self.sites {
             let white = site.noise.normal();
             let sight = site.sight(&aircraft)?;
-            if !site.serves(&sight, &self.settings.coverage, motion.position.height.m()) {
+            let out_of_service = self.faults.iter().any(|f| f.silences_station(site.name, time_s));
+            if out_of_service || !site.serves(&sight, &self.settings.coverage, motion.position.height.m()) {
                 continue;
             }
             let angle = sight.direction.azimuth().rad() + site.bias + self.settings.noise_sigma_rad * white;

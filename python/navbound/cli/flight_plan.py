@@ -1,0 +1,60 @@
+"""`navbound predict flight`: what a person sees of the prediction of a planned flight."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from rich.table import Table
+
+from navbound.cli.parts import command_line, out_console
+from navbound.errors import ConflictError, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from navbound.records.prediction import ExpectedFlight
+
+
+def predict_flight_command(plans: list[str], unused: Mapping[str, object], out: Path | None, json: bool) -> None:
+    """Predict the flight of a plan; print it, or leave it in a folder too."""
+    from navbound.run.expected import flight  # noqa: PLC0415
+
+    if len(plans) != 1:
+        raise InputError("constellation", ", ".join(plans), domain="one plan: navbound predict flight PLAN.toml")
+    for name, value in unused.items():
+        if value:
+            raise ConflictError(name, because="a flight has place, time, satellites and requirement from its plan", value=value)
+    expected = flight.predict_flight(plans[0], command=command_line())
+    target = None if out is None else flight.write(expected, out)
+    if json:
+        sys.stdout.write(expected.record.model_dump_json(indent=1) + "\n")
+        return
+    show(expected.record)
+    if target is not None:
+        out_console.print(f"Written: {target}", markup=False, highlight=False)
+
+
+def show(record: ExpectedFlight) -> None:
+    """One page: what the flight may count on, leg by leg."""
+    from navbound.run.expected.page import sections  # noqa: PLC0415
+
+    def say(text: str, style: str = "") -> None:
+        out_console.print(text, style=style, markup=False, highlight=False)
+
+    say(record.title, "bold")
+    for sentence in record.words:
+        say(sentence)
+    for warning in record.warnings:
+        say(f"Warning: {warning}", "yellow")
+    for heading, rows in sections(record):
+        if len(rows) > 1:
+            table = Table(title=heading, title_justify="left")
+            for k, cell in enumerate(rows[0]):
+                table.add_column(cell, overflow="fold", no_wrap=k == 0)
+            for row in rows[1:]:
+                table.add_row(*row)
+            out_console.print(table)
+    for assumption in record.assumptions:
+        say(f"  - {assumption}")
