@@ -41,6 +41,7 @@ def leg_rows(record: ExpectedFlight) -> list[tuple[str, ...]]:
         (
             "leg",
             "RNP, NM",
+            "accuracy",
             "from",
             "to",
             "mode",
@@ -54,7 +55,6 @@ def leg_rows(record: ExpectedFlight) -> list[tuple[str, ...]]:
             *(["P no hole"] if probable else []),
             "DME pair",
             "risk 2 RNP",
-            "",
         )
     ]
     for leg in record.legs:
@@ -64,6 +64,7 @@ def leg_rows(record: ExpectedFlight) -> list[tuple[str, ...]]:
             (
                 leg.leg,
                 f"{leg.rnp_m / METRES_PER_NM:g}",
+                WORDS[leg.status],
                 clock(leg.start_s),
                 clock(leg.end_s),
                 modes,
@@ -77,7 +78,6 @@ def leg_rows(record: ExpectedFlight) -> list[tuple[str, ...]]:
                 *([_probability(leg.p_without_hole)] if probable else []),
                 share(leg.p_dme_pair),
                 _risk(leg.risk_2rnp),
-                WORDS[leg.status],
             )
         )
     return rows
