@@ -4,7 +4,6 @@ use crate::receivers::ranges::{Records, Source, Tally, Unused, plans};
 use crate::receivers::signals::Plan;
 pub use crate::receivers::signals::Signals;
 use crate::smoothing::{self, Form, Smoothed};
-use nalgebra::Vector3;
 use navbound_core::bound::araim::ranging::Beyond;
 use navbound_core::frame::{EcefPosition, ecef_from_geodetic};
 use navbound_core::geometry::ionosphere::Ionosphere;
@@ -15,6 +14,7 @@ use navbound_core::solution::constellations::{Constellations, Treatment};
 use navbound_core::solution::declared::{Declarations, Doubt};
 use navbound_core::solution::mixture::Mixture;
 use navbound_core::solution::point::{self, Fix, Offsets, Range, Settings, Used};
+use navbound_core::solution::rivals::Rival;
 use navbound_formats::precise::Precise;
 use navbound_formats::rinex::{Dated, Navigation, Observations};
 use rayon::prelude::*;
@@ -147,7 +147,7 @@ struct Solved {
     /// Its other readings, where the position cannot stand alone.
     mixture: Option<Box<Mixture>>,
     /// The way to where a constellation that was left out puts the receiver \[m\].
-    rival: Option<Vector3<f64>>,
+    rival: Option<Rival>,
     kept: Vec<(SatelliteId, Used)>,
 }
 
@@ -223,12 +223,12 @@ impl Solver<'_> {
     }
 
     /// The way to where the constellations that were left out put the receiver, each by itself; the longest.
-    fn rival(&self, epoch: usize, fix: &Fix, left_out: &[Range]) -> Option<Vector3<f64>> {
+    fn rival(&self, epoch: usize, fix: &Fix, left_out: &[Range]) -> Option<Rival> {
         let way = |c: Constellation| {
             let own: Vec<Range> = left_out.iter().filter(|r| r.satellite.constellation == c).copied().collect();
-            fix.rival(&self.solve(epoch, &own, None, &Offsets::default()).fix.ok()?)
+            fix.rival(&self.solve(epoch, &own, None, &Offsets::default()).fix.ok()?).map(|way| (c, way))
         };
-        Constellation::ALL.into_iter().filter_map(way).max_by(|a, b| a.norm().total_cmp(&b.norm()))
+        Constellation::ALL.into_iter().filter_map(way).max_by(|(_, a), (_, b)| a.norm().total_cmp(&b.norm()))
     }
 }
 

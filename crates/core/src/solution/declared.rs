@@ -15,13 +15,12 @@ use super::Surroundings;
 use super::mixture::{Mixture, OBSTRUCTED};
 use super::plausible::Movement;
 use super::point::{CONFIRMED, Fix};
-use super::rivals::Rivalry;
+use super::rivals::{Rival, Rivalry};
 use super::wls::horizontal_axes;
 use crate::frame::Covariance;
 use crate::quantity::{GpsTime, Reason, Risk, Unavailable};
 use crate::special::float::exp;
 use crate::special::radius::RadiusLaw;
-use nalgebra::Vector3;
 
 /// What is known of the surroundings fades with this \[s\].
 const MEMORY_S: f64 = 60.0;
@@ -151,7 +150,7 @@ impl Default for Declarations {
 impl Declarations {
     /// Take the next position in time, with the other readings of its ranges where it cannot stand alone, and the way to where a constellation
     /// that was left out puts the receiver. The position's covariance becomes the declared one; what it is doubted for is returned.
-    pub fn declare(&mut self, time: GpsTime, fix: &mut Fix, mixture: Option<&Mixture>, rival: Option<Vector3<f64>>) -> Option<Doubt> {
+    pub fn declare(&mut self, time: GpsTime, fix: &mut Fix, mixture: Option<&Mixture>, rival: Option<Rival>) -> Option<Doubt> {
         let reaching = self.rivalry.judge(time, fix, rival);
         let factor = self.surroundings.judge(time, fix);
         let own = *fix.covariance.matrix();

@@ -13,6 +13,7 @@
 use super::point::{CONFIRMED, Fix};
 use crate::frame::{ecef_from_geodetic, enu_from_ecef};
 use crate::quantity::GpsTime;
+use crate::signal::Constellation;
 use crate::special::gamma::chi_square_tail;
 use nalgebra::{Matrix3, Vector3};
 
@@ -24,10 +25,12 @@ const SUPPORTING: u32 = 3;
 const MEMORY_S: f64 = 3600.0;
 
 impl Fix {
-    /// Whether two constellations that agree carry it.
-    pub fn is_supported(&self) -> bool {
-        let supporting = self.used.iter().filter(|numbers| numbers.count_ones() >= SUPPORTING).count();
-        self.consistent && self.spare >= CONFIRMED && supporting >= 2
+    /// Whether a constellation and another one carry it, and enough ranges check them.
+    fn is_carried_by(&self, constellation: Constellation) -> bool {
+        let carries = |c: usize| self.used[c].count_ones() >= SUPPORTING;
+        let own = constellation.index();
+        let another = (0..self.used.len()).any(|c| c != own && carries(c));
+        self.consistent && self.spare >= CONFIRMED && carries(own) && another
     }
 
     /// Where other ranges of the same epoch put the receiver by themselves, from this position, east, north, up \[m\]; none where they do not fit
@@ -46,22 +49,25 @@ impl Fix {
     }
 }
 
+/// The constellation that contradicts a position, and the way to where it puts the receiver, east, north, up \[m\].
+pub type Rival = (Constellation, Vector3<f64>);
+
 /// A contradiction between constellations that no epoch has resolved yet. No heap.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Rivalry {
-    open: Option<(GpsTime, Vector3<f64>)>,
+    open: Option<(GpsTime, Rival)>,
 }
 
 impl Rivalry {
     /// Take the next position in time with its rival. Where one is or is not resolved: the covariance that reaches it.
-    pub fn judge(&mut self, time: GpsTime, fix: &Fix, rival: Option<Vector3<f64>>) -> Option<Matrix3<f64>> {
+    pub fn judge(&mut self, time: GpsTime, fix: &Fix, rival: Option<Rival>) -> Option<Matrix3<f64>> {
         let lasts = |since: &GpsTime| (0.0..=MEMORY_S).contains(&time.seconds_since(*since));
         self.open = match rival {
-            Some(way) => Some((time, way)),
-            // Constellations that agree again have settled it.
-            None => self.open.filter(|(since, _)| lasts(since) && !fix.is_supported()),
+            Some(rival) => Some((time, rival)),
+            // Only the constellation itself settles it, where it agrees with another again.
+            None => self.open.filter(|(since, (constellation, _))| lasts(since) && !fix.is_carried_by(*constellation)),
         };
-        self.open.map(|(_, way)| way * way.transpose())
+        self.open.map(|(_, (_, way))| way * way.transpose())
     }
 }
 

@@ -37,8 +37,10 @@ fn two_positions_that_contradict_each_other_are_rivals() {
 
 #[test]
 fn a_contradiction_stays_until_constellations_agree_or_an_hour_is_over() {
-    let way = Some(Vector3::new(0.0, 0.0, 300.0));
-    let judged = |times: &[(i64, Fix, Option<Vector3<f64>>)]| {
+    let way = Some((Constellation::Galileo, Vector3::new(0.0, 0.0, 300.0)));
+    // Others that agree say nothing of the one that contradicts them.
+    let others = Some((Constellation::BeiDou, Vector3::new(0.0, 0.0, 300.0)));
+    let judged = |times: &[(i64, Fix, Option<Rival>)]| {
         let mut declarations = Declarations::default();
         let doubts: Vec<_> = times.iter().map(|(t, f, rival)| declarations.declare(at(*t), &mut f.clone(), None, *rival)).collect();
         doubts
@@ -47,6 +49,7 @@ fn a_contradiction_stays_until_constellations_agree_or_an_hour_is_over() {
     assert_eq!(judged(&[(0, alone(10.0), way), (1, alone(10.0), None), (3600, alone(10.0), None)]), [open, open, open]);
     assert_eq!(judged(&[(0, alone(10.0), way), (3601, alone(10.0), None)]), [open, none]);
     assert_eq!(judged(&[(0, alone(10.0), way), (1, of_two(10.0), None), (2, alone(10.0), None)]), [open, none, none]);
+    assert_eq!(judged(&[(0, of_two(10.0), others), (1, of_two(10.0), None), (2, of_two(10.0), None)]), [open, open, open]);
     // A clock that was set back begins anew.
     assert_eq!(judged(&[(10, alone(10.0), way), (5, alone(10.0), None)]), [open, none]);
 }
@@ -54,7 +57,7 @@ fn a_contradiction_stays_until_constellations_agree_or_an_hour_is_over() {
 #[test]
 fn the_declared_covariance_reaches_the_rival() {
     let mut fix = alone(10.0);
-    let _ = Declarations::default().declare(at(0), &mut fix, None, Some(Vector3::new(30.0, 40.0, 0.0)));
+    let _ = Declarations::default().declare(at(0), &mut fix, None, Some((Constellation::Galileo, Vector3::new(30.0, 40.0, 0.0))));
     let v = fix.covariance.matrix();
     assert_eq!([v[(0, 0)], v[(0, 1)], v[(1, 1)], v[(2, 2)]], [901.0, 1200.0, 1601.0, 1.0]);
 }
