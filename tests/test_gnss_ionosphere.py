@@ -327,7 +327,7 @@ def with_biased_ranges(folder: Path, letter: str, sigma_m: float) -> Path:
 def test_the_constellation_that_contradicts_the_others_is_named(tmp_path: Path, letter: str, others: str, name: str) -> None:
     path, navigation = with_biased_ranges(tmp_path, letter, 5.0), EXAMPLES / "broadcast.rnx"
     verdict = navbound.analyze([path, navigation]).summary.verdict
-    assert verdict.id == "nothing_judged"
+    assert verdict.id in {"not_shown", "nothing_judged"}
     assert [each for each in verdict.position_doubts if name in each and f"--systems {others} " in each] == verdict.position_doubts
     assert len(verdict.position_doubts) == 1
     settled = navbound.analyze([path, navigation], systems=others).summary.verdict

@@ -29,7 +29,7 @@ FTE_95_NM: dict[Steering, tuple[float, float]] = {
     "flight-director": (0.5, 0.25),
     "manual": (1.0, 0.5),
 }
-"""95 % flight technical error en route and on approach. Provenance: standard, from memory; clause unknown. [NM]"""
+"""95 % flight technical error en route and on approach. Provenance: inferred; clause unknown. [NM]"""
 
 
 class Window(Part):

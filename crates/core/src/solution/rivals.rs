@@ -21,6 +21,8 @@ use nalgebra::{Matrix3, Vector3};
 const RISK: f64 = 1e-3;
 /// Satellites with which a constellation supports another's position: one for its clock and two that check it.
 const SUPPORTING: u32 = 3;
+/// Ranges beyond the unknowns from which on what is left after exclusions agrees by more than chance.
+const TESTED: usize = 2;
 /// A contradiction that no later epoch resolves counts for this long \[s\].
 const MEMORY_S: f64 = 3600.0;
 
@@ -36,7 +38,9 @@ impl Fix {
     /// Where other ranges of the same epoch put the receiver by themselves, from this position, east, north, up \[m\]; none where they do not fit
     /// themselves, or say the same.
     pub fn rival(&self, other: &Self) -> Option<Vector3<f64>> {
-        let fits_itself = other.consistent || other.redundancy == 0;
+        // Ranges of which some were excluded until the others agreed by chance do not fit themselves.
+        let tested = other.n_excluded == 0 || other.redundancy >= TESTED;
+        let fits_itself = tested && (other.consistent || other.redundancy == 0);
         if !fits_itself {
             return None;
         }

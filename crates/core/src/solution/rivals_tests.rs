@@ -31,6 +31,7 @@ fn two_positions_that_contradict_each_other_are_rivals() {
     // What does not fit itself is no rival, what cannot be tested is one.
     assert_eq!(alone(10.0).rival(&Fix { consistent: false, ..alone(500.0) }), None);
     assert!(alone(10.0).rival(&Fix { consistent: false, redundancy: 0, ..alone(500.0) }).is_some());
+    assert_eq!(alone(10.0).rival(&Fix { consistent: false, redundancy: 0, n_excluded: 2, ..alone(500.0) }), None);
     // Two that agree do not outvote a third.
     assert!(of_two(10.0).rival(&alone(500.0)).is_some());
 }

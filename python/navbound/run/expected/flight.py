@@ -158,7 +158,7 @@ def _without_satellites(table: pl.DataFrame) -> list[tuple[float, float, str]]:
 def _assumptions(prepared: Setup) -> list[str]:
     equipment = prepared.plan.equipment
     en_route, approach = (fte / METRES_PER_NM for fte in prepared.fte_95_m)
-    mark = "stated in the plan" if equipment.fte_95_m is not None else "standard, from memory"
+    mark = "stated in the plan" if equipment.fte_95_m is not None else "inferred, clause unknown"
     orbits = "Satellites of the files in the plan." if prepared.from_files else "Satellites in nominal constellations of no date."
     return [
         "The covariance is that of the flight's own filter on a flight whose sensors have no errors.",
