@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,8 @@ import numpy as np
 
 from navbound import write
 from navbound.errors import InputError
+from navbound.examples import inertial, tracks
+from navbound.examples.levels import levels
 from navbound.examples.station import Station, measure
 
 if TYPE_CHECKING:
@@ -32,8 +35,14 @@ STATION = Station(
 """Two hours at the airport of Paris; five minutes without a signal; a satellite whose ranges are 40 m and more too long."""
 LOG = replace(STATION, step_s=1.0, n_epochs=180, seed=61, outages_s=(), wrong=())
 """Three minutes every second, on which nothing happens."""
+DAY = replace(STATION, begin_ns=BEGIN_NS - 9 * _HOUR_NS, n_epochs=2880, seed=62, outages_s=((30_000.0, 30_600.0),), wrong=())
+"""A day every 30 s, ten minutes of it without a signal."""
+TRAFFIC = tracks.Day(begin=datetime(2026, 3, 1, 5), apart_s=2500.0, n_flights=24, step_s=2, seed=63)
+"""Twelve approaches to each runway."""
+PIECE = inertial.Piece("beijing-shanghai", from_s=6040, until_s=6280, silent_s=(6160, 6220), seed=65)
+"""Four minutes of a descent with a turn, one of them without a position of the receiver."""
 PLACE_ECEF_M = (4189135.1896, 188029.6189, 4789919.6247)
-"""The antenna of both, Earth-fixed: truth. [m]"""
+"""The antenna of all, Earth-fixed: truth. [m]"""
 
 
 @dataclass(frozen=True)
@@ -67,9 +76,31 @@ def _ubx(folder: Path) -> None:
     write.navigation(recording.navigation, folder / "receiver-broadcast.rnx")
 
 
+def _tracks(folder: Path) -> None:
+    reported, truth = tracks.record(TRAFFIC)
+    reported.write_csv(folder / "tracks.csv")
+    truth.write_csv(folder / "tracks-truth.csv")
+
+
+def _levels(folder: Path) -> None:
+    levels(DAY, PLACE_ECEF_M).write_csv(folder / "levels.csv")
+
+
+def _imu(folder: Path) -> None:
+    log = inertial.record(PIECE)
+    log.imu.write_csv(folder / "imu.csv")
+    log.fixes.write_csv(folder / "fixes.csv")
+    log.truth.write_csv(folder / "motion.csv")
+
+
 EXAMPLES: dict[str, Example] = {
     "rinex": Example(("station.rnx", "broadcast.rnx"), "two hours of a station, an outage, a faulty satellite", _rinex),
     "ubx": Example(("receiver.ubx", "receiver-broadcast.rnx"), "three minutes of a u-blox receiver's raw measurements", _ubx),
+    "tracks": Example(("tracks.csv", "tracks-truth.csv"), "a day's approaches to two runways, and where the aircraft were", _tracks),
+    "levels": Example(("levels.csv",), "a day of protection levels with their errors", _levels),
+    "imu": Example(
+        ("imu.csv", "fixes.csv", "motion.csv"), "four minutes of an inertial unit, a receiver's positions, the true motion", _imu
+    ),
 }
 """Examples by name."""
 

@@ -10,6 +10,7 @@ import numpy as np
 from navbound.errors import InputError
 from navbound.table.arguments import checked_fields
 from navbound.table.arrays import numbers, whole_numbers
+from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -231,6 +232,25 @@ class Fixes:
     velocity_covariance_ned_m2ps2: ArrayLike | None = None
     hpl_m: ArrayLike = np.nan
     vpl_m: ArrayLike = np.nan
+
+    @classmethod
+    def of_table(cls, table: pl.DataFrame, *, correlation_time_s: float = 0.0) -> Fixes:
+        """Take a table with ``time_ns``, ``lat_rad``, ``lon_rad``, ``h_m`` and the six columns of the covariance (``cov_ee_m2`` ...).
+
+        Parameters
+        ----------
+        table : polars.DataFrame
+            Rows by time; ``hpl_m`` and ``vpl_m`` are taken where it has them.
+        correlation_time_s : float, optional
+            Of errors that stay from fix to fix. Of fixes dt apart with this time tau, 2 tau / dt say as much as one that is independent:
+            their covariance is multiplied by it, and never made smaller. [s]
+        """
+        six = table.select(COVARIANCE).to_numpy()
+        time_ns = table["time_ns"].to_numpy()
+        apart_s = float(np.median(np.diff(time_ns))) * 1e-9 if time_ns.size > 1 else np.inf
+        levels = {name: table[name].to_numpy() for name in ("hpl_m", "vpl_m") if name in table.columns}
+        covariance = max(1.0, 2.0 * correlation_time_s / apart_s) * six[:, [0, 1, 3, 1, 2, 4, 3, 4, 5]].reshape(-1, 3, 3)
+        return cls(time_ns, table.select("lat_rad", "lon_rad", "h_m").to_numpy(), covariance, **levels)
 
     def table(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Give times and numbers."""

@@ -58,6 +58,17 @@ class Start(StartSigma):
     velocity_ned_mps: tuple[float, float, float]
     attitude_rad: tuple[float, float, float]
 
+    @classmethod
+    def of_table(cls, table: pl.DataFrame) -> Start:
+        """Take the first row of a table with ``time_ns``, ``lat_rad`` ... ``h_m``, ``vel_n_mps`` ..., ``roll_rad`` ... ``heading_rad``."""
+        first = table.row(0, named=True)
+        return cls(
+            time_ns=first["time_ns"],
+            position=(first["lat_rad"], first["lon_rad"], first["h_m"]),
+            velocity_ned_mps=(first["vel_n_mps"], first["vel_e_mps"], first["vel_d_mps"]),
+            attitude_rad=(first["roll_rad"], first["pitch_rad"], first["heading_rad"]),
+        )
+
 
 @checked_fields
 @dataclass(frozen=True)
