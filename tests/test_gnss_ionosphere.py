@@ -304,6 +304,22 @@ def test_a_header_of_another_place_than_a_standing_receiver_s_leaves_nothing_sho
         assert not settled.position_doubts
 
 
+@pytest.mark.parametrize("protection", ["given", "raim"])
+@pytest.mark.parametrize("moved", [False, True])
+def test_levels_at_another_place_than_the_header_s_say_so(tmp_path: Path, protection: str, moved: bool) -> None:
+    lines = (EXAMPLES / "station.rnx").read_text(encoding="ascii").splitlines(keepends=True)
+    at = next(k for k, line in enumerate(lines) if "APPROX POSITION XYZ" in line)
+    place = [float(word) for word in lines[at].split()[:3]]
+    lines[at] = f"{place[0]:14.4f}{place[1] + 500.0 * moved:14.4f}{place[2]:14.4f}{'':18}APPROX POSITION XYZ\n"
+    (tmp_path / "station.rnx").write_text("".join(lines), encoding="ascii")
+    files = [tmp_path / "station.rnx", EXAMPLES / "broadcast.rnx"]
+    verdict = navbound.evaluate(files, levels="NPA", protection=protection).summary.verdict
+    assert any("approximate position of the header" in each for each in verdict.position_doubts) == moved
+    assert ("approximate position of the header" in verdict.words) == moved
+    settled = navbound.evaluate(files, levels="NPA", protection=protection, truth=",".join(map(str, place))).summary.verdict
+    assert not settled.position_doubts
+
+
 def with_biased_ranges(folder: Path, letter: str, sigma_m: float) -> Path:
     """The example's station with an error of its own in all ranges of each satellite of a constellation."""
     rng, bias_m = np.random.default_rng(3), dict[str, float]()

@@ -123,3 +123,33 @@ def test_a_walk_with_the_tuning_of_an_airliner_is_never_ok_and_is_named() -> Non
     # Until it is named the level is the receiver's own: true.
     assert not (ok & ~(np.hypot(error[:, 0], error[:, 1]) <= fused.hpl_m)).any()
     assert not ok[named[0] :].any()
+
+
+@pytest.mark.parametrize("off_m", [25.0, 60.0, 1000.0])
+def test_one_position_that_is_wrong_ends_nothing(recording: Recording, off_m: float) -> None:
+    """A receiver's single outlier: what the filter did not use is no riddle once its unit has led it on to the next position."""
+    fixes, times_ns = recording.fixes, np.asarray(recording.fixes.time_ns)
+    k = len(times_ns) // 2
+    wrong = np.array(fixes.position)
+    wrong[k, 0] += off_m / recording.metres[0]
+    fused, ok, outside = judged(replace(recording, fixes=replace(fixes, position=wrong)))
+    _, ok_before, _ = judged(recording)
+    assert not outside.any()
+    # Six periods of the receiver, no less than the time of agreement that is required.
+    at_s = (fused.time_ns - times_ns[k]) / SECOND
+    assert not ok[(at_s >= 0.0) & (at_s < 4.0)].any() or off_m < 60.0
+    assert ok[at_s > 12.0].mean() > ok_before[at_s > 12.0].mean() - 0.01
+
+
+def test_positions_that_stay_wrong_until_the_filter_agrees_are_not_taken_for_a_moment(recording: Recording) -> None:
+    """A filter that is led on by its unit becomes less certain until it agrees with what it has contradicted."""
+    fixes = recording.fixes
+    wrong = np.array(fixes.position)
+    begin = len(wrong) // 2
+    wrong[begin : begin + 50, 0] += 40.0 / recording.metres[0]
+    fused, _, outside = judged(replace(recording, fixes=replace(fixes, position=wrong)))
+    assert not outside.any()
+    unavailable = np.array(fused.status) == "not_available"
+    assert unavailable.any()
+    assert np.isnan(fused.hpl_m[unavailable]).all()
+    assert np.isnan(fused.vpl_m[unavailable]).all()

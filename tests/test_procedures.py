@@ -299,6 +299,35 @@ def test_a_fix_that_is_not_in_the_file_takes_its_leg_and_the_next(tmp_path: Path
     assert any(f.kind == "unresolved" for f in procedures.read(file).contradictions())
 
 
+def test_an_rnp_that_no_such_procedure_has_is_contradicted(tmp_path: Path) -> None:
+    text = SAMPLE.read_text(encoding="ascii")
+    damaged = tmp_path / "rnp.txt"
+    damaged.write_text(text.replace("010RF", "990RF").replace("010TF", "051TF"), encoding="ascii")
+    base = procedures.read(damaged)
+    legs = base.procedure("KDEN", "H26-Z", "CAPTJ").legs
+    of_arcs = [(one.rnp_origin, np.isnan(one.rnp_m)) for one in legs if one.terminator == "RF"]
+    assert of_arcs
+    assert set(of_arcs) == {("contradicted", True)}
+    assert {one.rnp_m for one in legs if one.terminator == "TF" and one.part == "approach"} == {0.5 * 1852.0}
+    findings = [one for one in base.contradictions() if one.kind == "rnp_too_large"]
+    assert len(findings) >= len(of_arcs)
+    assert all("99" in one.words and "5" in one.words for one in findings)
+    assert not any(one.kind == "rnp_too_large" for one in procedures.read(SAMPLE).contradictions())
+
+
+def test_a_fix_far_from_its_airport_belongs_to_no_approach(tmp_path: Path) -> None:
+    text = SAMPLE.read_text(encoding="ascii")
+    line = next(one for one in text.splitlines() if one[12:18] == "CBCALN")
+    at = line.index("N39")
+    damaged = tmp_path / "far.txt"
+    damaged.write_text(text.replace(line, f"{line[:at]}N29{line[at + 3 :]}"), encoding="ascii")
+    whole, legs = (procedures.read(file).procedure("KDEN", "H26-Z", "CAPTJ").legs for file in (SAMPLE, damaged))
+    k = next(k for k, one in enumerate(whole) if one.fix == "BCALN")
+    assert whole[k].state == "full"
+    assert legs[k].state == "impossible"
+    assert not legs[k].has_path
+
+
 def test_a_missed_approach_with_an_open_end_loses_its_distances_and_keeps_its_legs() -> None:
     procedure = path.procedure(SAMPLE, "KDEN", "H26-Z", "FUZZZ", missed=True)
     assert [(x.terminator, x.state) for x in procedure.legs[4:]] == [("CA", "open_end"), ("DF", "no_start"), ("HM", "holding")]

@@ -25,8 +25,8 @@ class Finding:
     sequence : int or None
         The leg.
     kind : str
-        ``centre``, ``radius``, ``course``, ``length``, ``rnp_grows``, ``rnp_grows_early``, ``rnp_and_level``, ``rnp_missing``, ``height``,
-        ``unresolved``, ``not_whole`` or ``missing``.
+        ``centre``, ``radius``, ``course``, ``length``, ``rnp_grows``, ``rnp_grows_early``, ``rnp_and_level``, ``rnp_too_large``,
+        ``rnp_missing``, ``height``, ``unresolved``, ``not_whole`` or ``missing``.
     remark : bool
         Whether no two records contradict each other.
     published, expected : float
@@ -82,6 +82,7 @@ _WORDS: dict[str, Callable[[float, float], str]] = {
     "rnp_grows": lambda p, e: f"{_rnp(p)} after {_rnp(e)}: it grows towards the runway",
     "rnp_grows_early": lambda p, e: f"{_rnp(p)} after {_rnp(e)} inside a transition",
     "rnp_and_level": lambda p, e: f"the leg has {_rnp(p)}, the nearest line of minima {_rnp(e)}: a factor of {max(p / e, e / p):.0f}",
+    "rnp_too_large": lambda p, e: f"{_rnp(p)}; no specification of such a procedure has more than {_rnp(e)}",
     "rnp_missing": lambda _, e: f"no RNP on the last leg of the final approach; the first line of minima is {_rnp(e)}",
     "height": lambda p, e: f"threshold of the path point {p:.1f} m above mean sea level, of the runway record {e:.1f} m",
     "unresolved": lambda _p, _e: "a fix, centre or navaid that the leg needs is not in the file, or stands there twice",

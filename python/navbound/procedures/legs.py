@@ -32,7 +32,7 @@ STATES = {
     "ambiguous_fix": "its fix, centre or navaid has two positions in the file",
     "no_variation": "a magnetic course, and neither navaid nor airport has a variation",
     "not_coded": "a course, distance or turn direction is not coded",
-    "impossible": "its fixes define no such geometry",
+    "impossible": "its fixes define no such geometry, or lie too far from the airport",
 }
 """What the deviation from a leg is worth, by the state's id."""
 
@@ -41,7 +41,7 @@ ORIGINS = {
     "selected": "line selected",
     "default": "default (standard)",
     "not_coded": "not coded: not judged",
-    "contradicted": "not a published line: not judged",
+    "contradicted": "not a published line, or above 5 NM: not judged",
 }
 """Where the RNP of a leg comes from, by the origin's id."""
 

@@ -5,7 +5,7 @@
 
 use super::geometry::Part;
 use super::record::{Kind, Leg, LevelOfService, Procedure, Route};
-use super::requirement::published;
+use super::requirement::{TERMINAL_MOST_M, published, too_large};
 use super::{Course, Database, Extent, Text, geometry};
 use core::f64::consts::{PI, TAU};
 use navbound_path::legs::State;
@@ -37,6 +37,8 @@ pub enum Contradiction {
     RnpGrowsEarly,
     /// The field of the last leg of the final approach differs from every line of minima by a factor of five or more.
     RnpAndLevel,
+    /// The RNP of a leg is larger than that of any specification of such a procedure.
+    RnpTooLarge,
     /// The last leg of the final approach has no RNP, the procedure has lines of minima.
     RnpMissing,
     /// The path point's height above mean sea level is not that of the runway record.
@@ -51,7 +53,7 @@ pub enum Contradiction {
 
 impl Contradiction {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Centre,
         Self::Radius,
         Self::Course,
@@ -59,6 +61,7 @@ impl Contradiction {
         Self::RnpGrows,
         Self::RnpGrowsEarly,
         Self::RnpAndLevel,
+        Self::RnpTooLarge,
         Self::RnpMissing,
         Self::Height,
         Self::Unresolved,
@@ -79,6 +82,7 @@ impl Contradiction {
             Self::RnpGrows => "rnp_grows",
             Self::RnpGrowsEarly => "rnp_grows_early",
             Self::RnpAndLevel => "rnp_and_level",
+            Self::RnpTooLarge => "rnp_too_large",
             Self::RnpMissing => "rnp_missing",
             Self::Height => "height",
             Self::Unresolved => "unresolved",
@@ -203,6 +207,9 @@ impl Database {
 
 /// RNP along the way in, and that of the last leg against the lines of minima; of procedures that code one.
 fn requirements(at: At<'_>, route: &Route, findings: &mut Vec<Finding>) {
+    for (leg, rnp_m) in route.legs.iter().filter_map(|l| Some((l, l.rnp_m.filter(|m| too_large(*m))?))) {
+        findings.push(at.finding(leg.line, Some(leg.sequence), Contradiction::RnpTooLarge, rnp_m, TERMINAL_MOST_M));
+    }
     if at.procedure.name.kind != Kind::Approach {
         return;
     }

@@ -2,6 +2,7 @@
 //!
 //! On the final approach the line that the caller selected counts (ours). Without one, the field counts where it is one of the published
 //! lines; where they contradict each other, or the field is blank, the leg has no RNP and is not judged. Elsewhere the field counts.
+//! A field above 5 NM is no RNP of a departure, arrival or approach (INFERRED) and is contradicted.
 //! Where a field is blank, the default of the specification counts only if the caller allows it (1.0 NM; 0.3 NM on the final approach;
 //! standard: ICAO Doc 9613).
 
@@ -11,6 +12,9 @@ use super::record::LevelOfService;
 const NAUTICAL_MILE_M: f64 = 1852.0;
 /// Two RNP within this share of each other are one, written with other digits \[1\].
 const ROUNDING: f64 = 0.01;
+
+/// RNP of a terminal leg at most: that of RNAV 5, the widest specification of an arrival (INFERRED) \[m\].
+pub(super) const TERMINAL_MOST_M: f64 = 5.0 * NAUTICAL_MILE_M;
 
 /// Where the RNP of a leg comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +27,7 @@ pub enum Origin {
     Default,
     /// None: the field is blank.
     NotCoded,
-    /// None: the field is no published line of minima.
+    /// None: the field is no published line of minima, or too large for any.
     Contradicted,
 }
 
@@ -58,6 +62,7 @@ impl LegRequirement {
         let is_final = leg.part == Part::Final;
         let (rnp_m, origin) = match (coded, selected_m) {
             (_, Some(line)) if is_final => (line, Origin::Selected),
+            (Some(rnp), _) if too_large(rnp) => (f64::NAN, Origin::Contradicted),
             (Some(rnp), _) if !is_final || levels.is_empty() || published(rnp, levels) => (rnp, Origin::Coded),
             (Some(_), _) => (f64::NAN, Origin::Contradicted),
             (None, _) if defaults => (if is_final { 0.3 } else { 1.0 } * NAUTICAL_MILE_M, Origin::Default),
@@ -66,6 +71,11 @@ impl LegRequirement {
         let unlike_line = coded.is_some_and(|c| rnp_m.is_finite() && !same(c, rnp_m));
         Self { rnp_m, origin, differs: unlike_line || origin == Origin::Contradicted }
     }
+}
+
+/// Whether an RNP is none of a departure, arrival or approach.
+pub(super) fn too_large(rnp_m: f64) -> bool {
+    !(rnp_m <= TERMINAL_MOST_M * (1.0 + ROUNDING))
 }
 
 /// Whether an RNP is one of the lines of minima.

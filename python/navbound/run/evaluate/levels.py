@@ -13,6 +13,7 @@ import polars as pl
 from navbound import gnss, sbas, status
 from navbound.errors import ConflictError, FormatError, InputError
 from navbound.kpi.tables import with_larger_error
+from navbound.read.checks.places import header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, rejections, require_most_epochs, skipped_words
 from navbound.read.checks.stated import ALERT, BESIDE_LEVEL
 from navbound.read.tables.epochs import read
@@ -74,6 +75,8 @@ class Part:
         Columns, or words of columns, that speak of integrity by their name and are not understood.
     n_stated_worse : int
         Usable epochs at which the file states an accuracy or an error above its horizontal protection level that no indicator uses.
+    position_doubts : list of str
+        Why nothing can be shown of the positions.
     """
 
     epochs: pl.DataFrame
@@ -84,6 +87,7 @@ class Part:
     ranges: pl.DataFrame | None = None
     unread: list[str] = field(default_factory=list)
     n_stated_worse: int = 0
+    position_doubts: list[str] = field(default_factory=list)
 
 
 def from_table(path: Path, truth: Truth, needs: Sequence[str] = ("hpl_m",)) -> Part:
@@ -266,10 +270,19 @@ def from_observations(path: Path, service: Service, truth: Truth, *, keep_ranges
         refused += [] if other is None else other.rejected
         notes.append(words)
     rejected = [one.model_dump() for one in refused]
+    doubts = place_doubts(epochs, observations, truth)
     if service.has_messages:
-        return Part(uniform(epochs), observations.n_epochs, rejected, notes)
+        return Part(uniform(epochs), observations.n_epochs, rejected, notes, position_doubts=doubts)
     errors = None if ranges is None else _range_errors(ranges, epochs)
-    return Part(uniform(_of_own(epochs)), observations.n_epochs, rejected, notes, sbas.EXTRACTION_LABEL, errors)
+    return Part(uniform(_of_own(epochs)), observations.n_epochs, rejected, notes, sbas.EXTRACTION_LABEL, errors, position_doubts=doubts)
+
+
+def place_doubts(epochs: pl.DataFrame, observations: gnss.Observations, truth: Truth) -> list[str]:
+    """What the position of the file's header says against the solved ones; a truth decides between the two, and nothing is left to say."""
+    if truth.stated is not None:
+        return []
+    header = header_against(epochs, observations)
+    return [f"{observations.path.name}: {words}" for words in (*header.doubts, *header.notes)]
 
 
 def _corrected(observations: gnss.Observations, service: Service, truth: Truth) -> tuple[pl.DataFrame, list[str]]:

@@ -12,7 +12,7 @@ from navbound.errors import ConflictError, InputError, NotFoundError
 from navbound.gnss.monitor_fit import DISBELIEF
 from navbound.read.checks.refusals import of_navigation, of_observations, require_most_epochs, skipped_words
 from navbound.read.truth import with_truth
-from navbound.run.evaluate.levels import Part, uniform
+from navbound.run.evaluate.levels import Part, place_doubts, uniform
 from navbound.run.inputs.solving import Solving, require_same_time
 from navbound.run.verdict.numbers import share
 from navbound.status import REASONS
@@ -102,6 +102,7 @@ def from_monitor(path: Path, records: gnss.Navigation, truth: Truth, monitor: Re
         [one.model_dump() for one in refused],
         notes,
         "" if monitored_epochs.fit.believable else CONTRADICTED,
+        position_doubts=place_doubts(epochs, observations, truth),
     )
 
 

@@ -38,6 +38,7 @@ class Stored:
     experimental: str
     unread: list[str]
     n_stated_worse: int
+    position_doubts: list[str]
     digests: dict[str, str]
     source: Source
 
@@ -115,6 +116,7 @@ def _remember(folder: Path, key: str, source: Source, part: Part) -> Stored:
         "experimental": part.experimental,
         "unread": part.unread,
         "n_stated_worse": part.n_stated_worse,
+        "position_doubts": part.position_doubts,
     }
     try:
         # Not before: a run that is refused at its first file leaves nothing behind.

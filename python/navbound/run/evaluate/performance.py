@@ -269,7 +269,8 @@ def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsis
     n_worse = sum(part.n_stated_worse for part in parts)
     unread = list(dict.fromkeys(each for part in parts for each in part.unread))
     # Levels whose error model the residuals contradict show nothing.
-    doubted = is_copied or n_worse > 0 or result.experimental == CONTRADICTED
+    doubts = [doubt for part in parts for doubt in part.position_doubts]
+    doubted = is_copied or n_worse > 0 or bool(doubts) or result.experimental == CONTRADICTED
     decided = rule.of_levels([_facts(each, result, doubted=doubted) for each in result.levels])
     verdict = Verdict(
         id=decided,
@@ -279,6 +280,7 @@ def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsis
             [
                 *levels_verdict(decided),
                 *([COPIED] if is_copied else []),
+                *(f"{doubt}." for doubt in doubts),
                 *beside_words(n_worse, unread),
                 *performance_words(result),
                 *unread_words(unread),
@@ -294,6 +296,7 @@ def _summary(result: Performance, parts: list[Stored], honesty: CovarianceConsis
         n_missing=result.n_missing,
         n_implausible=0,
         n_stated_worse=n_worse,
+        position_doubts=doubts,
         unread=unread,
         worst_accuracy=None,
         worst_integrity=None,

@@ -9,6 +9,11 @@ use crate::quantity::GpsTime;
 
 /// Agreement without a break after which filter and snapshot are one again \[s\]. Provenance: inferred.
 pub const AGREED_S: f64 = 30.0;
+/// Failed tests within this time that no new start followed are those of wrong positions: the filter has used none of them, and its unit has led
+/// it on to where the next ones are \[s\]. Provenance: inferred.
+const BRIEF_S: f64 = 5.0;
+/// Agreement without a break after which that is so \[s\]. Provenance: inferred.
+const AGREED_AFTER_BRIEF_S: f64 = 5.0;
 /// Time that the unit must be plausible before a filter is started anew \[s\]. Provenance: inferred.
 const CLEAN_S: f64 = 5.0;
 /// Time from which a contradiction was there before the unit showed a fault, so that the fault does not explain it \[s\]. Provenance: inferred.
@@ -54,6 +59,10 @@ pub struct Contradiction {
     open: bool,
     /// It was there before the unit showed a fault.
     before: bool,
+    /// While it was there the positions left the way that their own rates lead.
+    jumped: bool,
+    /// Where the tests did not fail since, they would not have failed with the covariances from before it.
+    returned: bool,
     starts: [Option<GpsTime>; STARTS_MOST],
     started: Option<GpsTime>,
     out: bool,
@@ -62,8 +71,9 @@ pub struct Contradiction {
 }
 
 impl Contradiction {
-    /// The tests of an instant, of a filter whose attitude is settled or not.
-    pub fn judge(&mut self, now: GpsTime, tests: &Tests, settled: bool) {
+    /// The tests of an instant, of a filter whose attitude is settled or not; `back` where they would not fail with the covariances from before
+    /// the contradiction either. A filter that is led on by its unit alone gets less certain, until it agrees with everything.
+    pub fn judge(&mut self, now: GpsTime, tests: &Tests, settled: bool, back: bool) {
         if tests.moved() {
             self.moved = Some(now);
         }
@@ -73,13 +83,23 @@ impl Contradiction {
             return;
         }
         let Some(failed) = self.failed.max(self.started) else { return };
-        let agreed = now.seconds_since(failed) >= AGREED_S;
+        self.returned &= back;
+        let brief = self.is_brief();
+        let agreed = now.seconds_since(failed) >= if brief { AGREED_AFTER_BRIEF_S } else { AGREED_S };
         if self.raised.is_some() && agreed && settled && !self.out {
             self.cleared = self.unit;
             // A cause that has gone leaves nothing open.
-            self.open |= !self.unit || self.before;
-            (self.raised, self.unit, self.still) = (None, false, false);
+            self.open |= !brief && (!self.unit || self.before);
+            (self.raised, self.unit, self.still, self.jumped) = (None, false, false, false);
         }
+    }
+
+    /// Whether the tests have failed so briefly that the positions were the cause: nothing of them is in the filter. A unit that had led the
+    /// filter off would not have led it back.
+    fn is_brief(&self) -> bool {
+        let Some((raised, failed)) = self.raised.zip(self.failed) else { return false };
+        let kept = self.started.is_none_or(|s| s < raised);
+        self.returned && !self.unit && !self.before && kept && failed.seconds_since(raised) < BRIEF_S
     }
 
     /// The unit delivers what cannot be: the evidence is in the unit.
@@ -95,7 +115,17 @@ impl Contradiction {
     /// The unit has failed in whatever way: what was unexplained before stays so.
     pub fn note_fault(&mut self, now: GpsTime) {
         let unexplained = !self.unit && self.raised.is_some_and(|t| now.seconds_since(t) >= BEFORE_S);
-        self.before |= self.open || unexplained;
+        self.before |= self.open || unexplained || self.jumped;
+    }
+
+    /// The positions have left the way that their own rates lead. Where nothing contradicts them that stays open; where something does it is the
+    /// same riddle, which a unit that fails later does not explain.
+    pub fn leave_course(&mut self) {
+        if self.raised.is_some() && !self.unit {
+            self.jumped = true;
+        } else {
+            self.leave_open();
+        }
     }
 
     /// A witness has spoken against satellites that stood alone: a unit that comes back learns from them and explains nothing.
@@ -105,11 +135,14 @@ impl Contradiction {
 
     /// The ground stations rule out that the inertial unit is right.
     pub fn rule_out_the_unit(&mut self) {
+        self.before |= self.jumped;
         self.unit |= self.raised.is_some() && !self.still;
     }
 
     fn fail(&mut self, now: GpsTime, unit: bool) {
-        self.raised.get_or_insert(now);
+        if self.raised.is_none() {
+            (self.raised, self.returned) = (Some(now), true);
+        }
         self.failed = Some(now);
         self.unit |= unit;
         if self.starts.iter().all(|s| s.is_some_and(|t| now.seconds_since(t) <= STARTS_S)) {
@@ -185,20 +218,20 @@ mod tests {
         c.rule_out_the_unit();
         assert!(!c.convicts_the_unit(), "nothing is contradicted");
         for second in 0..4 {
-            c.judge(at(f64::from(second)), &position(0.0, 100.0), true);
+            c.judge(at(f64::from(second)), &position(0.0, 100.0), true, true);
         }
         assert!(c.is_raised() && !c.convicts_the_unit() && !c.start_is_due(at(4.0), 5.0) && c.start_is_due(at(5.0), 5.0));
         for start in [5.0, 20.0, 40.0] {
             assert!(c.start_is_due(at(start), 5.0));
             c.started(at(start));
             assert!(!c.start_is_due(at(start + 8.0), 5.0), "it has not contradicted yet");
-            c.judge(at(start + 8.0), &position(0.0, 50.0), true);
+            c.judge(at(start + 8.0), &position(0.0, 50.0), true, true);
             assert!(!c.convicts_the_unit());
         }
         c.rule_out_the_unit();
         // Out for the flight, however long it then agrees.
         for second in 50..2000 {
-            c.judge(at(f64::from(second)), &position(0.0, 0.0), true);
+            c.judge(at(f64::from(second)), &position(0.0, 0.0), true, true);
         }
         assert!(c.convicts_the_unit() && !c.start_is_due(at(2000.0), 5.0));
     }
@@ -206,24 +239,65 @@ mod tests {
     #[test]
     fn a_contradiction_without_a_cause_stays_open_and_no_later_fault_of_the_unit_explains_it() {
         let mut c = Contradiction::default();
-        c.judge(at(0.0), &position(100.0, 100.0), true);
+        c.judge(at(0.0), &position(100.0, 100.0), true, true);
         c.started(at(5.0));
-        (6..35).for_each(|s| c.judge(at(f64::from(s)), &position(1.0, 1.0), true));
+        (6..35).for_each(|s| c.judge(at(f64::from(s)), &position(1.0, 1.0), true, true));
         assert!(c.is_raised());
-        c.judge(at(35.0), &position(1.0, 1.0), false);
+        c.judge(at(35.0), &position(1.0, 1.0), false, true);
         assert!(c.is_raised(), "the attitude is not settled");
-        c.judge(at(36.0), &position(1.0, 1.0), true);
+        c.judge(at(36.0), &position(1.0, 1.0), true, true);
         assert!(!c.is_raised() && c.is_open() && !c.convicts_the_unit());
-        (37..4000).for_each(|s| c.judge(at(f64::from(s)), &position(1.0, 1.0), true));
+        (37..4000).for_each(|s| c.judge(at(f64::from(s)), &position(1.0, 1.0), true, true));
         assert!(c.is_open(), "time explains nothing");
         assert!(!c.was_before_the_unit());
         c.convict(at(4000.0));
         assert!(c.was_before_the_unit() && c.is_open());
         // Raised for ten seconds by the tests alone: a fault of the unit comes too late to be the cause.
         let mut c = Contradiction::default();
-        (0..=10).for_each(|s| c.judge(at(f64::from(s)), &position(100.0, 100.0), true));
+        (0..=10).for_each(|s| c.judge(at(f64::from(s)), &position(100.0, 100.0), true, true));
         c.convict(at(10.0));
         assert!(c.was_before_the_unit());
+    }
+
+    /// One position of many is wrong: the filter has not used it, and its unit leads it on to the next ones.
+    #[test]
+    fn positions_that_are_wrong_for_a_moment_leave_nothing_open() {
+        let (wrong, right) = (position(500.0, 0.0), position(1.0, 1.0));
+        let after = |failing: &[i32], until: i32| {
+            let mut c = Contradiction::default();
+            (0..until).for_each(|s| c.judge(at(f64::from(s)), if failing.contains(&s) { &wrong } else { &right }, true, true));
+            c
+        };
+        assert!(after(&[10], 15).is_raised());
+        let c = after(&[10], 16);
+        assert!(!c.is_raised() && !c.is_open());
+        let c = after(&[10, 11, 13, 14], 20);
+        assert!(!c.is_raised() && !c.is_open());
+        // The filter agrees because it has become less certain.
+        let mut c = after(&[10], 11);
+        (11..60).for_each(|s| c.judge(at(f64::from(s)), &right, true, s > 11));
+        assert!(!c.is_raised() && c.is_open());
+        // Five seconds and more: by then nobody knows.
+        let c = after(&[10, 15], 100);
+        assert!(!c.is_raised() && c.is_open());
+        // Positions that left their own way are part of the riddle while it lasts, and open where nothing contradicts them.
+        let mut c = after(&[10], 11);
+        c.leave_course();
+        (11..16).for_each(|s| c.judge(at(f64::from(s)), &right, true, true));
+        assert!(!c.is_raised() && !c.is_open());
+        c.leave_course();
+        assert!(c.is_open());
+        // A unit that fails meanwhile, or a filter that was started anew there, may be the cause.
+        let mut c = after(&[10], 11);
+        c.leave_course();
+        c.convict(at(12.0));
+        assert!(c.was_before_the_unit());
+        (13..50).for_each(|s| c.judge(at(f64::from(s)), &right, true, true));
+        assert!(!c.is_raised() && c.is_open());
+        let mut c = after(&[10], 11);
+        c.started(at(11.0));
+        (12..50).for_each(|s| c.judge(at(f64::from(s)), &right, true, true));
+        assert!(!c.is_raised() && c.is_open());
     }
 
     #[test]
@@ -232,11 +306,11 @@ mod tests {
         c.convict(at(0.0));
         assert!(c.convicts_the_unit() && c.implausible_lately(at(1.0)) && !c.start_is_due(at(4.9), 5.0) && c.start_is_due(at(5.0), 5.0));
         let mut c = Contradiction::default();
-        (0..60).for_each(|s| c.judge(at(f64::from(s)), &position(100.0, 5.0), true));
+        (0..60).for_each(|s| c.judge(at(f64::from(s)), &position(100.0, 5.0), true, true));
         assert!(c.is_raised() && !c.convicts_the_unit() && !c.start_is_due(at(60.0), 5.0));
         // A square that is no number is a failure.
         let mut c = Contradiction::default();
-        c.judge(at(0.0), &position(f64::NAN, 0.0), true);
+        c.judge(at(0.0), &position(f64::NAN, 0.0), true, true);
         assert!(c.is_raised());
     }
 
@@ -260,11 +334,11 @@ mod tests {
     fn a_contradiction_lasts_from_its_begin_or_from_the_last_start_after_which_it_failed_again() {
         let mut c = Contradiction::default();
         assert!(!c.lasts(at(100.0), 5.0), "nothing is contradicted");
-        (0..=3).for_each(|s| c.judge(at(f64::from(s)), &position(100.0, 0.0), true));
+        (0..=3).for_each(|s| c.judge(at(f64::from(s)), &position(100.0, 0.0), true, true));
         assert!(!c.lasts(at(4.9), 5.0) && c.lasts(at(5.0), 5.0));
         c.started(at(6.0));
         assert!(!c.lasts(at(20.0), 5.0), "it has not contradicted since the start");
-        c.judge(at(8.0), &position(100.0, 0.0), true);
+        c.judge(at(8.0), &position(100.0, 0.0), true, true);
         assert!(!c.lasts(at(10.9), 5.0) && c.lasts(at(11.0), 5.0));
     }
 }

@@ -4,7 +4,7 @@
 //! brings one. That a filter falls out with solved positions convicts nobody, neither the unit nor the receiver. Provenance: ours.
 
 use super::motion::{ACCELERATION_MPS2, STEP_MOST_S};
-use super::{Guard, Looked, Tests};
+use super::{Guard, Looked};
 use crate::frame::ecef_from_geodetic;
 use crate::monitor::judgement::RangesAgree;
 use crate::quantity::{GpsTime, OutOfDomain};
@@ -37,13 +37,9 @@ impl Guard {
         let mut usable = true;
         if let Some(d) = filter.against(&looked.snapshot) {
             let settled = !matches!(filter.mode_now(), Mode::Aligning);
-            let mut tests = self.test(&d, &looked);
-            if m.velocity_ned_mps.is_none() {
-                // A difference of positions is no velocity of its own.
-                (tests.square[1], tests.square[3], tests.exceeds[1], tests.exceeds[3]) = (0.0, 0.0, false, false);
-            }
-            let tests = Tests { square: [tests.square[0], 0.0, tests.square[2], 0.0], ..tests };
-            self.contradiction.judge(timed.time, &tests, settled);
+            // A difference of positions is no velocity of its own.
+            let velocity = looked.velocity.as_ref().filter(|_| m.velocity_ned_mps.is_some());
+            let tests = self.compare(&d, &looked, velocity, settled);
             self.tests = Some((timed.time, tests));
             if let Some(square) = square(&d) {
                 self.shares.innovations(timed.time, &Block { square, freedom: COMPONENTS });

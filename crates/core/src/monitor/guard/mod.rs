@@ -7,6 +7,7 @@
 mod contradiction;
 mod course;
 mod fixes;
+mod height;
 mod inertial;
 mod level;
 mod look;
@@ -20,6 +21,7 @@ mod witnesses;
 
 pub use contradiction::{AGREED_S, Contradiction, Tests};
 pub use inertial::{Envelope, Plausibility};
+use records::Widths;
 pub use records::{Admitted, EXCLUDED_MOST, Looked, Settings, Tally};
 pub use shares::Shares;
 pub use stations::{Reading, Stations, testimony};
@@ -31,9 +33,10 @@ use crate::frame::{Covariance, Displacement, Enu};
 use crate::quantity::{GpsTime, OutOfDomain};
 use crate::signal::{ImuIncrement, SatelliteId, TimedAiding};
 use crate::solution::ins::{Advance, Block, Difference, Fusion, Mode, Solution, judgeable};
-use crate::solution::snapshot::{Ranges, Solver};
+use crate::solution::snapshot::{Ranges, SnapshotVelocity, Solver};
 use crate::special::gamma::{chi_square_factor, chi_square_tail};
 use course::Course;
+use height::Height;
 use level::apart;
 
 /// Risk of a false contradiction of one test at one instant: 1e-5 an hour over four tests and 3600 seconds. Provenance: re-derived, of the
@@ -70,10 +73,13 @@ pub struct Guard {
     /// Stations against the snapshot alone, and what they and the altimeter have last said of it.
     alone: Stations<1>,
     testimony: [Testimony; 2],
+    height: Height,
     /// The way of the satellites by their own rates.
     course: Option<Course>,
     tally: Tally,
     last: Ranges,
+    /// Of the last instant at which nothing was contradicted.
+    undisputed: Option<Widths>,
     tests: Option<(GpsTime, Tests)>,
     /// The last accepted sample, and whether samples came since.
     accepted: Option<GpsTime>,
@@ -111,9 +117,11 @@ impl Guard {
             stations: Stations::default(),
             alone: Stations::default(),
             testimony: [Testimony::Silent; 2],
+            height: Height::default(),
             course: None,
             tally: Tally::default(),
             last: Ranges::of(core::iter::empty()),
+            undisputed: None,
             tests: None,
             accepted: None,
             begin: None,
@@ -185,18 +193,18 @@ impl Guard {
             filter.heard_velocity(time, velocity);
         }
         let difference = filter.against(&looked.snapshot);
-        let tests = difference.filter(|_| looked.ranges_agree == RangesAgree::Yes).map(|d| self.test(&d, &looked));
+        let difference = difference.filter(|_| looked.ranges_agree == RangesAgree::Yes);
         let mut out = [None; EXCLUDED_MOST];
         out[0] = excluded;
         let block = block_without(filter, time, &mut ranges, &mut out);
         let settled = !matches!(filter.mode_now(), Mode::Aligning);
         let mut usable = looked.ranges_agree != RangesAgree::No;
-        if let Some(tests) = &tests {
+        if let Some(d) = &difference {
             let before = self.contradiction.is_raised();
-            self.contradiction.judge(time, tests, settled);
+            let tests = self.compare(d, &looked, looked.velocity.as_ref(), settled);
             self.tally.n_raised += u64::from(!before && self.contradiction.is_raised());
-            self.tally.add(tests);
-            self.tests = Some((time, *tests));
+            self.tally.add(&tests);
+            self.tests = Some((time, tests));
             usable &= !tests.fail();
             // The clock of the unit was wrong lately: what the filter has made of its samples is no riddle.
             if tests.fail() && self.clock_wrong.is_some() {
@@ -227,7 +235,7 @@ impl Guard {
         let Some(led) = self.course.filter(|_| now.ranges_agree != RangesAgree::No) else { return };
         let (apart_m, [h, v]) = led.apart(now);
         if !(h <= self.limit[0] && v <= self.limit[2]) {
-            self.contradiction.leave_open();
+            self.contradiction.leave_course();
         }
         (0..2).for_each(|k| now.level_m[k] += apart_m[k]);
         if !measured {
@@ -235,17 +243,27 @@ impl Guard {
         }
     }
 
+    /// The filter against the snapshot of an instant, and what follows for a contradiction.
+    fn compare(&mut self, d: &Difference, looked: &Looked, velocity: Option<&SnapshotVelocity>, settled: bool) -> Tests {
+        let widths = Widths::of(d, looked, velocity);
+        let tests = self.test(d, velocity, &widths);
+        let back = self.undisputed.is_some_and(|before| !self.test(d, velocity, &before).fail());
+        self.contradiction.judge(looked.snapshot.time, &tests, settled, back);
+        if !self.contradiction.is_raised() {
+            self.undisputed = Some(widths);
+        }
+        tests
+    }
+
     /// The squares of an instant against their limits.
-    fn test(&self, d: &Difference, looked: &Looked) -> Tests {
-        let s = looked.snapshot.covariance.matrix();
-        let wide = Covariance::<Enu>::claim_symmetric(d.covariance.matrix() * DIFFERENCE_INFLATION + s * DIFFERENCE_FLOOR);
+    fn test(&self, d: &Difference, velocity: Option<&SnapshotVelocity>, widths: &Widths) -> Tests {
         let up = |value: f64, variance: f64| if variance > 0.0 { value * value / variance } else { f64::NAN };
         let horizontal = |d: &Displacement<Enu>, v: &Covariance<Enu>| normalised_square_horizontal(d, v).unwrap_or(f64::NAN);
-        let mut square = [horizontal(&d.position, &wide), 0.0, up(d.position.vector().z, wide.matrix()[(2, 2)]), 0.0];
-        if let Some(v) = &looked.velocity {
+        let position = &widths.position;
+        let mut square = [horizontal(&d.position, position), 0.0, up(d.position.vector().z, position.matrix()[(2, 2)]), 0.0];
+        if let (Some(v), Some(both)) = (velocity, &widths.velocity) {
             let apart = Displacement::<Enu>::from_vector(d.velocity_mps - v.enu_mps);
-            let both = Covariance::<Enu>::claim_symmetric(v.covariance + d.velocity_m2ps2);
-            square[1] = horizontal(&apart, &both);
+            square[1] = horizontal(&apart, both);
             square[3] = up(apart.vector().z, both.matrix()[(2, 2)]);
         }
         let exceeds = core::array::from_fn(|k| !(square[k] <= self.limit[k]));

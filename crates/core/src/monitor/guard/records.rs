@@ -1,10 +1,13 @@
 //! What a guard is set with, what it says of ranges, and what it counts.
 
-use super::{Envelope, Tests};
+use super::{DIFFERENCE_FLOOR, DIFFERENCE_INFLATION, Envelope, Tests};
 use crate::bound::araim::single::Requirement;
+use crate::frame::{Covariance, Enu};
 use crate::monitor::judgement::RangesAgree;
 use crate::signal::SatelliteId;
+use crate::solution::ins::Difference;
 use crate::solution::snapshot::{Snapshot, SnapshotVelocity};
+
 /// How a guard is set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -52,6 +55,25 @@ pub struct Looked {
     pub ranges_agree: RangesAgree,
     /// Levels, horizontal and vertical \[m\].
     pub level_m: [f64; 2],
+}
+
+/// What filter and snapshot may differ by.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Widths {
+    /// Covariance of the difference of positions,
+    pub(super) position: Covariance<Enu>,
+    /// and of the velocities, where there are two.
+    pub(super) velocity: Option<Covariance<Enu>>,
+}
+
+impl Widths {
+    pub(super) fn of(d: &Difference, looked: &Looked, velocity: Option<&SnapshotVelocity>) -> Self {
+        let own = looked.snapshot.covariance.matrix() * DIFFERENCE_FLOOR;
+        Self {
+            position: Covariance::claim_symmetric(d.covariance.matrix() * DIFFERENCE_INFLATION + own),
+            velocity: velocity.map(|v| Covariance::claim_symmetric(v.covariance + d.velocity_m2ps2)),
+        }
+    }
 }
 
 /// Sums over the tests of a flight.

@@ -1,12 +1,11 @@
 //! Stations and altimeter as witnesses of the snapshot.
 
 use super::Guard;
-use super::stations::{Reading, testimony};
+use super::stations::Reading;
 use crate::frame::{Covariance, Enu, enu_from_ecef};
 use crate::monitor::judgement::RangesAgree;
-use crate::signal::{Aiding, BaroHeight, TimedAiding};
+use crate::signal::{Aiding, TimedAiding};
 use crate::solution::ins::Fusion;
-use crate::special::gamma::chi_square_tail;
 
 impl Guard {
     /// Stations and altimeter of one instant: witnesses of the snapshot of the same instant, alone and against the filter without satellites.
@@ -18,11 +17,6 @@ impl Guard {
         let snapshot = Reading { ecef: *looked.snapshot.ecef.vector(), covariance: turned(&looked.snapshot.covariance) };
         let beside = filter.without_satellites(time).filter(|_| looked.ranges_agree == RangesAgree::Yes);
         let other = beside.and_then(|b| Some(Reading { ecef: *filter.antenna_of(&b)?.vector(), covariance: turned(&b.covariance) }));
-        let of_height = |m: &BaroHeight| {
-            let apart = m.height.m() - looked.snapshot.position.height.m();
-            let [white, bias] = [m.sigma_white.m(), m.sigma_bias.m()];
-            chi_square_tail(1.0, apart * apart / (white * white + bias * bias + looked.snapshot.covariance.matrix()[(2, 2)]))
-        };
         for timed in together.iter().filter(|t| t.time == time) {
             match &timed.aiding {
                 Aiding::Dme(m) => {
@@ -32,7 +26,7 @@ impl Guard {
                     }
                 }
                 Aiding::Vor(m) => self.alone.hear_bearing(time, m, &[snapshot]),
-                Aiding::Baro(m) => self.testimony[1] = self.testimony[1].then(testimony(of_height(m))),
+                Aiding::Baro(m) => self.testimony[1] = self.testimony[1].then(self.height.hear(m, &looked.snapshot)),
                 _ => {}
             }
         }

@@ -160,7 +160,9 @@ pub fn decide(facts: &Facts) -> Decision {
     let vertical = level.filter(|_| !reasons.has(Reason::AltimeterContradicts));
     let bounded = if is_disputed(facts) { vertical } else { level };
     let status = status(facts, source, reasons, bounded.is_some());
-    Decision { status, reasons, source, hpl_m: level.map(|l| l[0]), vpl_m: vertical.map(|l| l[1]), disputed: is_disputed(facts) }
+    // What is not to be relied on has no level.
+    let [hpl_m, vpl_m] = [level.map(|l| l[0]), vertical.map(|l| l[1])].map(|l| l.filter(|_| status != Status::NotAvailable));
+    Decision { status, reasons, source, hpl_m, vpl_m, disputed: is_disputed(facts) }
 }
 
 fn is_of(snapshot: &SnapshotFacts, epoch: GpsTime) -> bool {
