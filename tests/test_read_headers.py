@@ -105,3 +105,18 @@ def test_another_header_of_a_solution_file_is_refused(tmp_path: Path, scale: str
     with pytest.raises(FormatError, match="another header in the middle") as refusal:
         read(path)
     assert refusal.value.line == 12
+
+
+@pytest.mark.parametrize(("n_sv", "status"), [(9, None), (2, "degraded"), (0, "degraded")])
+def test_a_solution_of_fewer_satellites_than_determine_one_is_kept_by_something_else(tmp_path: Path, n_sv: int, status: str | None) -> None:
+    header = "%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)"
+    rows = [f"2024/03/15 12:00:{k:02d}.000   48.5000000   2.000000{k % 10}   100.0000   5   {n_sv}   1.0   1.0   2.0" for k in range(20)]
+    path = tmp_path / "few.pos"
+    path.write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
+    epochs = read(path).epochs
+    assert ("status" in epochs.columns) == (status is not None)
+    if status is not None:
+        assert epochs["status"].unique().to_list() == [status]
+    # A file without the field states none.
+    path.write_text("\n".join([header, *rows]).replace("  ns", "").replace(f"   5   {n_sv}   ", "   5   ") + "\n", encoding="utf-8")
+    assert "status" not in read(path).epochs.columns

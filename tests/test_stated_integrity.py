@@ -83,6 +83,15 @@ def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Pa
         ("MockLocation", 0, 1),
         ("isFromMockProvider", "false", "true"),
         ("is_spoofed", "false", "true"),
+        ("sim", 0, 1),
+        ("mi", 0, 1),
+        ("navaccuracydowngrad", 0, 1),
+        # A column that nothing knows, by the words that stand in it.
+        ("msg", "", "GPS PRIMARY LOST"),
+        ("message", "GPS PRIMARY OK", "UNABLE REQD NAV PERF-RNP"),
+        ("fms_text", "cruise", "nav accur downgrade"),
+        ("state_word", "normal", "warning"),
+        ("remark", "no alert", "No position"),
     ],
 )
 def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine: object, bad: object) -> None:
@@ -107,6 +116,7 @@ def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine:
         ("position_source", "2", "position_source"),
         ("age_s", "900", "age_s"),
         ("sat_count", "0", "sat_count"),
+        ("cdi", "2.5", "cdi"),
     ],
 )
 def test_what_is_not_understood_is_named(tmp_path: Path, name: str, value: str, named: str) -> None:

@@ -78,7 +78,7 @@ KINDS: tuple[Kind, ...] = (
         _words(
             "valid is_valid validity position_valid pos_valid gps_valid gnss_valid fix_valid data_valid nav_valid solution_valid "
             "location_valid usable reliable trusted healthy gps_ok gnss_ok position_ok pos_ok nav_ok integrity_ok raim_ok "
-            "fix_ok gnss_fix_ok used in_use accepted believed "
+            "fix_ok gnss_fix_ok used use in_use accepted believed "
             "gnssfixok available is_available gps_available gnss_available raim_available integrity_available pl_valid hpl_valid xpl_valid"
         ),
         _NO,
@@ -93,7 +93,7 @@ KINDS: tuple[Kind, ...] = (
         _NO_FIX | _DIGITS - _GGA | _words("simulator simulation simulated manual"),
         _FIX - _DIGITS | _GGA,
     ),
-    Kind("invalid", _words("q quality solution_quality"), _NO_FIX, _FIX | {"1"}),
+    Kind("invalid", _words("q qual quality solution_quality"), _NO_FIX, _FIX | {"1"}),
     Kind(
         "invalid",
         _words(
@@ -153,6 +153,7 @@ KINDS: tuple[Kind, ...] = (
             "spoofing spoofed spoofing_detected spoof_flag jamming jammed jamming_detected interference invalid is_invalid "
             "position_invalid unreliable outlier misleading hmi error_flag do_not_use not_valid degraded unable_rnp rnp_alert rnp_warning "
             "raim_flag unhealthy unsafe rejected bad frozen stale stuck mock mocked is_mock mock_location is_mocked from_mock_provider "
+            "mi sim simulator reverted reversion nav_accuracy_downgraded navaccuracydowngrad "
             "is_from_mock_provider is_spoofed gps_spoofed gnss_spoofed is_jammed gps_jammed gnss_jammed simulated_location"
         ),
         frozenset(),
@@ -174,6 +175,7 @@ _SPEAKS = _words(
     "nse tse fte err coasting coast extrapolated age nsat nsats sats satellites sat "
     "epx epy epd hrms vrms 2drms cep50 cep95 r95 sd sdev ehe eve hdop pdop pl level major minor outage dr mlat tisb datum covariance type "
     "available availability exceeded exceedance herr verr poserr "
+    "deviation cdi monitor message msg state carrsoln "
     "confidence outlier misleading degraded lost loss solution denied reckoning estimated predicted propagated simulated source "
 )
 """Parts of names that speak of validity, accuracy or integrity. Provenance: ours."""
@@ -237,6 +239,8 @@ class Stated:
 
 SHOWN = 3
 """Words of a column that are named. [1]"""
+_SHOWN_CHARACTERS = 60
+"""Of a free text. [1]"""
 _MISSING = ("", "nan", "null", "na", "n/a")
 
 
@@ -260,6 +264,24 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
         against, unknown, empty = (value > kind.above).fill_null(value=False), unknown & value.is_null(), False
     words = pl.select(pl.when(declared & against & ~fine).then(text)).to_series()
     return Stated(words, text.filter(unknown.fill_null(value=False)).unique(maintain_order=True).head(SHOWN).to_list() + ["empty"] * empty)
+
+
+_ALARM = (
+    r"\b(unable|unreliable|invalid|lost|fail|fails|failed|failure|fault|faulty|alarm|alert|warning|misleading|spoof|spoofed|spoofing|jam|jammed|jamming|"
+    r"degraded|unhealthy|unsafe|downgrade|downgraded)\b"
+)
+_NONE = r"\b(no|none|not|without|clear|cleared|off|false|ended|end|over|0)\b"
+_NO_POSITION_WORDS = r"\b(no (fix|position|solution|navigation|gps|gnss|raim|integrity)|not (valid|available|usable|reliable)|do not use)\b"
+"""Words of alarms in a free text, words that take them back, and sentences without either that say the same. Provenance: ours."""
+
+
+def alarms(raw: pl.Series) -> Stated:
+    """Read a column of free texts that nothing else reads: a message of a receiver or a crew. A text that takes an alarm back is named."""
+    text = raw.str.to_lowercase().str.replace_all(r"[_\-]+", " ")
+    alarm, none, outright = (text.str.contains(words).fill_null(value=False) for words in (_ALARM, _NONE, _NO_POSITION_WORDS))
+    against = outright | (alarm & ~none)
+    words = pl.select(pl.when(against).then(raw.str.slice(0, _SHOWN_CHARACTERS))).to_series()
+    return Stated(words, raw.filter(alarm & none & ~outright).unique(maintain_order=True).head(SHOWN).to_list())
 
 
 def _listed(words: Iterable[str]) -> list[str]:

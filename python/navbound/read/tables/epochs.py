@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from navbound.errors import FormatError
 from navbound.read.checks import levels
 from navbound.read.checks.rejections import Rejections, Tally
 from navbound.read.checks.repeats import left_out
+from navbound.read.checks.stated import of_satellites
 from navbound.read.source import Source, load
 from navbound.read.tables.columns import POSITION, Assignment, assign
 from navbound.read.tables.table import LINE, Table, table
@@ -130,8 +132,12 @@ def _epochs(source: Source, content: Table, mapping: Assignment, required: Seque
     return Reading(out.drop(LINE), *of_file, unread=values.unread, position_doubts=values.position_doubts)
 
 
+_STATES_SATELLITES = re.compile(r"^%.*\bns\b", re.MULTILINE)
+
+
 def _rtklib(source: Source) -> Reading:
-    d = _core.read_rtklib(source.text(), str(source.path))
+    text = source.text()
+    d = _core.read_rtklib(text, str(source.path))
     rejections, notes = Rejections(source.path), list[str]()
     refused = pl.DataFrame(d["refused"], schema=["line", "field", "reason", "text"], orient="row")
     for (name, reason), group in refused.group_by("field", "reason", maintain_order=True):
@@ -145,6 +151,8 @@ def _rtklib(source: Source) -> Reading:
     if unmeasured.height:
         example = f"quality {d['quality'][measured.arg_min()]}"
         rejections.add("Q: not a measured position", unmeasured.height, unmeasured[LINE][0], example, malformed=False)
+    # Without the field the reader has 0.
+    out = of_satellites(out) if _STATES_SATELLITES.search(text) else out.drop("n_sv")
     out, contradicting = _in_order(out, rejections, notes)
     rejections.refuse_if_too_many(d["n_rows"])
     _not_empty(source, out, rejections)
