@@ -7,6 +7,7 @@ import runpy
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 ROOT = Path(__file__).parents[1]
 
@@ -35,6 +36,15 @@ def test_the_readme_says_what_its_lines_give() -> None:
             assert abs(value - float(stated.group(1))) <= 0.005, f"{expression.strip()} gives {value}"
             checked += 1
     assert checked > 0
+
+
+def test_the_other_lines_of_the_readme_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.S)[1:]
+    assert len(blocks) == 1
+    names: dict[str, object] = {}
+    exec(blocks[0], names)
+    assert {"gnss", "coasting"} <= set(names["fused"].mode)  # type: ignore[attr-defined]
 
 
 def test_every_link_of_the_readme_leads_somewhere() -> None:

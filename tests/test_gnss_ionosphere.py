@@ -304,6 +304,17 @@ def test_a_header_of_another_place_than_a_standing_receiver_s_leaves_nothing_sho
         assert not settled.position_doubts
 
 
+def test_a_verdict_says_why_epochs_are_not_ok(tmp_path: Path) -> None:
+    verdict = navbound.analyze([EXAMPLES / "station.rnx", EXAMPLES / "broadcast.rnx"], signals="single", ionosphere="none").summary.verdict
+    assert verdict.n_reason == {"ionosphere_undescribed": verdict.n_degraded}
+    assert (
+        f"Epochs that are not ok: no message describes the ionosphere: heights can be wrong by metres ({verdict.n_degraded})."
+        in verdict.words
+    )
+    whole = navbound.analyze([EXAMPLES / "station.rnx", EXAMPLES / "broadcast.rnx"]).summary.verdict
+    assert sum(whole.n_reason.values()) == whole.n_epochs - whole.n_missing - whole.n_judged
+
+
 @pytest.mark.parametrize("protection", ["given", "raim"])
 @pytest.mark.parametrize("moved", [False, True])
 def test_levels_at_another_place_than_the_header_s_say_so(tmp_path: Path, protection: str, moved: bool) -> None:

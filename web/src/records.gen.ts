@@ -425,6 +425,8 @@ export interface Verdict {
     n_stated_worse: number;
     /** The same where it states a containment radius (Rc, NIC) beyond twice RNP, or none. */
     n_stated_uncontained: number;
+    /** Epochs that are not ok by the id of their reason, the most frequent first. */
+    n_reason: Record<string, number>;
     /** Columns, or words of columns, that speak of integrity by their name and are not understood. */
     unread: string[];
     /** Why the positions may not be what they are read as (their unit, their motion); the verdict cannot be "inside" beside one. */

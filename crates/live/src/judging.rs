@@ -12,6 +12,7 @@ use navbound_core::monitor::motion::{Finding, Motion, Report};
 use navbound_core::monitor::neighbours::{Neighbours, Place};
 use navbound_core::monitor::rnp::{Acceptance, Event};
 use navbound_core::quantity::{GpsTime, Metres, Radians, Reason, Status, Unavailable};
+use navbound_core::solution::plausible::HEIGHT_M;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What decided an alert: a time of the data, and the arrival of the input behind it.
@@ -32,6 +33,9 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     // A deviation is part of the total error. A track that stated one once and states none later is not judged without it.
     if let Some(method) = settings.of_stated_fte.filter(|_| settings.path.is_none() && position.fte_m.is_some()) {
         track.judge.judge_by(method);
+    }
+    if position.h_m.is_some_and(|h| h < HEIGHT_M.0 || h > HEIGHT_M.1) {
+        refuse(Reason::InvalidNumber);
     }
     let mut covariance_m2 = position.covariance_m2;
     match (&settings.path, point) {
@@ -58,6 +62,9 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
         }
         Some(_) => {}
     }
+    // What a track stated once the settings do not stand in for later: a record without it has no limit.
+    track.states_rnp |= position.rnp_m.is_some();
+    let rnp = if track.states_rnp { Metres::new(position.rnp_m.unwrap_or(f64::NAN)) } else { settings.rnp };
     let sample = Sample {
         time: position.time,
         status: reason.filter(|_| position.status.usable()).map_or(position.status, Reason::status),
@@ -68,7 +75,7 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
         covariance: covariance_m2.map(Covariance::from_upper),
         nse_en_m: None,
         nse_u_m: None,
-        rnp: Some(position.rnp_m.map_or(settings.rnp, Metres::new)),
+        rnp: Some(rnp),
         hpl: position.hpl_m.map(Metres::new),
     };
     (sample, reason)

@@ -196,7 +196,8 @@ fn no_number_is_passed_over() {
             fields[place] = format!("\"{name}\":{value}");
             let rest = format!(",{}", fields.join(","));
             let mut lane = Lane::new(settings()).unwrap();
-            let all = flown(&mut lane, 30, |k| if k == 10 { line("d", 10.0, &rest) } else { good("d", f64::from(k)) });
+            let usual = format!(",\"{}", whole.join(",\""));
+            let all = flown(&mut lane, 30, |k| line("d", f64::from(k), if k == 10 { &rest } else { &usual }));
             let keys: Vec<_> = transitions(&all).into_iter().filter(|key| key.starts_with("d/")).collect();
             let refused: u64 = lane.counters().refused.iter().sum();
             // A deviation to the left is a number; a number beyond all doubles leaves the track without a position.
@@ -206,6 +207,18 @@ fn no_number_is_passed_over() {
             assert!(value != "null" || lane.monitor_counters().n_nan == 1, "{name} {value}");
         }
     }
+}
+
+#[test]
+fn a_limit_that_a_track_stated_is_not_replaced_by_the_settings() {
+    let (stated, without) = (",\"fte_m\":20.0,\"sigma_m\":100.0,\"rnp_m\":100.0", ",\"fte_m\":20.0,\"sigma_m\":100.0");
+    let mut lane = Lane::new(settings()).unwrap();
+    let all = flown(&mut lane, 30, |k| line("d", f64::from(k), if k < 10 { stated } else { without }));
+    let alerts: Vec<_> = epochs_of(&all, "d").iter().map(|e| e.alert).collect();
+    assert!(alerts.len() == 30 && alerts[10..].iter().all(|a| *a == rnp::Alert::Warning), "{alerts:?}");
+    // Where none was stated it is that of the settings.
+    let all = flown(&mut Lane::new(settings()).unwrap(), 30, |k| line("d", f64::from(k), without));
+    assert!(epochs_of(&all, "d").iter().all(|e| e.alert == rnp::Alert::Normal));
 }
 
 #[test]

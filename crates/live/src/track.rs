@@ -27,6 +27,8 @@ pub(crate) struct Track {
     /// Its last two positions.
     pub(crate) neighbours: Neighbours,
     pub(crate) waiting: Waiting,
+    /// Whether a record of it stated an RNP.
+    pub(crate) states_rnp: bool,
     /// Whether its silence was noticed since the last record.
     pub(crate) silent: bool,
 }
@@ -43,6 +45,7 @@ impl Track {
             motion: Motion::default(),
             neighbours: Neighbours::default(),
             waiting: Waiting::default(),
+            states_rnp: false,
             silent: false,
         }
     }
@@ -81,6 +84,7 @@ impl Track {
             });
         }
         self.waiting.write(to);
+        to.flag(self.states_rnp);
         to.flag(self.silent);
     }
 
@@ -107,7 +111,7 @@ impl Track {
             Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })
         };
         let neighbours = Neighbours { last: [from.option(place)?, from.option(place)?] };
-        let (waiting, silent) = (Waiting::read(from)?, from.flag()?);
-        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, waiting, silent })
+        let (waiting, states_rnp, silent) = (Waiting::read(from)?, from.flag()?, from.flag()?);
+        Ok(Self { judge, incarnation, open, last, stepped, along, motion, neighbours, waiting, states_rnp, silent })
     }
 }

@@ -133,6 +133,8 @@ class Verdict(Record):
     """The same where it states a 95 % radius that is larger than its covariance allows."""
     n_stated_uncontained: int = 0
     """The same where it states a containment radius (Rc, NIC) beyond twice RNP, or none."""
+    n_reason: dict[str, int] = Field(default_factory=dict)
+    """Epochs that are not ok by the id of their reason, the most frequent first."""
     unread: list[str] = Field(default_factory=list)
     """Columns, or words of columns, that speak of integrity by their name and are not understood."""
     position_doubts: list[str] = Field(default_factory=list)

@@ -14,7 +14,7 @@ from navbound.read.checks.neighbours import COLUMNS as NEIGHBOURS
 from navbound.read.checks.stated import ALERT, CONTAINMENT, ERROR, WORSE
 from navbound.records.run import PhaseSummary, Summary, TrackSummary, Worst
 from navbound.run.inputs.doubts import Doubts
-from navbound.run.summary.margins import OUTSIDE, by_status, judged_margins, with_margins, worst_of
+from navbound.run.summary.margins import OUTSIDE, by_reason, by_status, judged_margins, with_margins, worst_of
 from navbound.run.summary.methods import method_result
 from navbound.run.summary.missing import Gaps
 from navbound.run.summary.summarise import listed
@@ -59,6 +59,7 @@ class _Sums:
         self.gaps = Gaps(material.left_out, material.sample_period_s)
         self.n = self.n_judged = self.n_inside = self.n_contained = self.n_outside = 0
         self.n_status: Counter[str] = Counter()
+        self.n_reason: Counter[str] = Counter()
         self.worst: list[Worst | None] = [None, None]
         self.phases: dict[tuple[str, float], _Group] = {}
         self.tracks: dict[str, _Group] = {}
@@ -78,6 +79,7 @@ class _Sums:
         self.n_contained += int((judged["_margin_integrity"] >= 0).sum())
         self.n_outside += int(margins.select(OUTSIDE.sum()).item())
         self.n_status.update(by_status(margins))
+        self.n_reason.update(by_reason(margins))
         for k, worst in enumerate(worst_of(margins, self._judging)):
             before = self.worst[k]
             if worst is not None and (before is None or worst.margin_m < before.margin_m):
@@ -138,6 +140,7 @@ def summary(material: Material, epochs: Frames, events: pl.DataFrame, ids: Seque
         n_contained=sums.n_contained,
         n_outside=sums.n_outside,
         n_status=dict(sorted(sums.n_status.items())),
+        n_reason=dict(sorted(sums.n_reason.items(), key=lambda each: (-each[1], each[0]))),
         worst=(sums.worst[0], sums.worst[1]),
         doubts=sums.doubts,
     )

@@ -52,6 +52,14 @@ def by_status(epochs: pl.DataFrame) -> dict[str, int]:
     return dict(epochs.get_column("status").value_counts().sort("status").iter_rows())
 
 
+def by_reason(epochs: pl.DataFrame) -> dict[str, int]:
+    """Epochs that are not ok by reason, the most frequent first."""
+    if "reason_id" not in epochs.columns:
+        return {}
+    named = epochs.filter((pl.col("status") != "ok") & (pl.col("reason_id") != ""))["reason_id"]
+    return dict(named.value_counts().sort("count", "reason_id", descending=[True, False]).iter_rows())
+
+
 def worst_of(margins: pl.DataFrame, judging: str) -> tuple[Worst | None, Worst | None]:
     """Epochs of the least margin, of accuracy and of integrity."""
     return _worst(margins, "_margin", method(judging).column, 1.0), _worst(margins, "_margin_integrity", "_integrity", 2.0)

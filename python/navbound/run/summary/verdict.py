@@ -12,7 +12,7 @@ from navbound.judge import with_levels
 from navbound.methods import column_of, method
 from navbound.records.run import Belief, MethodResult, ProtectionSummary, Verdict, Worst
 from navbound.run.inputs.doubts import Doubts
-from navbound.run.summary.margins import KNOWN_BEYOND, OUTSIDE, by_status, judged_margins, worst_of
+from navbound.run.summary.margins import KNOWN_BEYOND, OUTSIDE, by_reason, by_status, judged_margins, worst_of
 from navbound.run.summary.missing import n_missing
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import of_epochs
@@ -34,6 +34,8 @@ class VerdictFacts:
         With status ok and both margins; of these within RNP, and within twice RNP.
     n_status : dict
         Epochs by status.
+    n_reason : dict
+        Epochs that are not ok by reason, the most frequent first.
     worst : (Worst or None, Worst or None)
         Epochs of the least margin, of accuracy and of integrity.
     doubts : Doubts
@@ -47,6 +49,7 @@ class VerdictFacts:
     n_contained: int
     n_outside: int
     n_status: dict[str, int]
+    n_reason: dict[str, int]
     worst: tuple[Worst | None, Worst | None]
     doubts: Doubts
     belief: Belief | None = None
@@ -69,6 +72,7 @@ def facts_of(material: Material, margins: pl.DataFrame, stated: list[MethodResul
         n_contained=int((judged["_margin_integrity"] >= 0).sum()),
         n_outside=margins.select(OUTSIDE.sum()).item(),
         n_status=by_status(margins),
+        n_reason=by_reason(margins),
         worst=worst_of(margins, judge.id),
         doubts=doubts,
         belief=of_epochs(margins, judge.id, risks, [each.id for each in stated]),
@@ -112,6 +116,7 @@ def verdict_of(
         n_degraded=n_degraded,
         n_unjudged=n_epochs - known.n_judged - n_degraded,
         n_missing=known.n_missing,
+        n_reason=known.n_reason,
         n_outside=facts.n_outside,
         n_known_beyond=facts.n_known_beyond,
         n_stated_beyond=known.doubts.n_stated_beyond,

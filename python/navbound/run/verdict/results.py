@@ -12,6 +12,7 @@ from navbound.read.tables.columns import declare
 from navbound.run.verdict.numbers import length, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS
 from navbound.run.verdict.words import COPIED, contradicted_words, covered_words, refuted_words, truth_words
+from navbound.status import REASONS
 from navbound.time import utc_text
 
 if TYPE_CHECKING:
@@ -38,6 +39,8 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
     parts = [f"{assumed}: {first[0].lower()}{first[1:]}" if assumed else first]
     if verdict.id == "not_shown":
         parts += _not_shown(verdict)
+    if verdict.id != "inside":
+        parts += _reasons(verdict)
     if verdict.worst_accuracy is not None:
         parts.append(_worst(verdict.worst_accuracy))
     parts += [f"{doubt}." for doubt in verdict.position_doubts]
@@ -97,6 +100,18 @@ def _first(verdict: Verdict, risks: tuple[float, float]) -> str:
         f"{verdict.n_judged} judged epochs, the {integrity} bound within twice RNP at {share(verdict.share_contained)}{more}; "
         f"{shares}{covered_words(verdict.belief)}{_thin(verdict)}."
     )
+
+
+_MOST_REASONS = 3
+"""Reasons that are named. [1]"""
+
+
+def _reasons(verdict: Verdict) -> list[str]:
+    """Why epochs are not ok: the most frequent reasons."""
+    named = [f"{REASONS[id_].words if id_ in REASONS else id_} ({n})" for id_, n in list(verdict.n_reason.items())[:_MOST_REASONS]]
+    more = len(verdict.n_reason) - len(named)
+    also = f"; {more} more reasons" if more > 1 else "; one more reason" if more else ""
+    return [f"Epochs that are not ok: {'; '.join(named)}{also}."] if named else []
 
 
 def _thin(verdict: Verdict) -> str:
