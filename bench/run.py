@@ -19,7 +19,24 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from clock import Row, show
 
-MODULES = ("tse", "anp", "runs", "sbas", "gbas", "gnss", "kpi", "dme", "sensors", "araim", "raim", "ins", "maps", "rnp", "procedures")
+MODULES = (
+    "start",
+    "tse",
+    "anp",
+    "runs",
+    "sbas",
+    "gbas",
+    "gnss",
+    "kpi",
+    "dme",
+    "sensors",
+    "araim",
+    "raim",
+    "ins",
+    "maps",
+    "rnp",
+    "procedures",
+)
 RESULTS = Path(__file__).parent / "results"
 
 

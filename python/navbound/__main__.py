@@ -1,5 +1,5 @@
 """`python -m navbound` is `navbound`."""
 
-from navbound.cli.main import main
+from navbound.cli.start import process
 
-main()
+process()

@@ -15,6 +15,12 @@ if TYPE_CHECKING:
     import polars as pl
     from numpy.typing import NDArray
 
+_EXTRACTION = _core.ee_declaration()
+EXTRACTION_LABEL = str(_EXTRACTION["label"])
+"""What stands beside every number of Error Extraction (:mod:`navbound.sbas`)."""
+EXTRACTION_MARK = "ee_"
+"""How the name of every column of Error Extraction begins."""
+
 Provenance = Literal["printed", "re-derived", "standard", "ours", "inferred", "yours"]
 
 

@@ -17,14 +17,6 @@ from navbound.cli.parts import err_console
 from navbound.errors import FormatError, InputError, InternalError, NavboundError, visible
 from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed
 
-app = typer.Typer(
-    help=f"How wrong an aircraft's position may be, and when that is not good enough.\n\nExit status: {listed()}.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
-
 
 def _version(value: bool) -> None:
     if value:
@@ -32,7 +24,6 @@ def _version(value: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
 def _about(
     version: Annotated[bool, typer.Option("--version", help="Print the version, nothing else.", callback=_version, is_eager=True)] = False,
 ) -> None:
@@ -53,11 +44,35 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "map": maps.map_command,
     "predict": predict.predict_command,
 }
-for _name, _command in _COMMANDS.items():
-    app.command(_name)(_command)
-app.add_typer(procedures.app, name="procedures")
-app.add_typer(live.app, name="live")
-app.add_typer(assess.app, name="assess")
+_GROUPS = {"procedures": procedures.app, "live": live.app, "assess": assess.app}
+
+
+def _with(commands: dict[str, Callable[..., None]], groups: dict[str, typer.Typer]) -> typer.Typer:
+    """The command line with these commands and groups of commands."""
+    whole = typer.Typer(
+        help=f"How wrong an aircraft's position may be, and when that is not good enough.\n\nExit status: {listed()}.",
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+    )
+    whole.callback()(_about)
+    for name, command in commands.items():
+        whole.command(name)(command)
+    for name, group in groups.items():
+        whole.add_typer(group, name=name)
+    return whole
+
+
+app = _with(_COMMANDS, _GROUPS)
+
+
+def _of(arguments: list[str]) -> typer.Typer:
+    """The command line as far as these arguments need it: the options of a command that is not named are not read."""
+    named = arguments[0] if arguments else ""
+    if named in _COMMANDS:
+        return _with({named: _COMMANDS[named]}, {})
+    return _with({}, {named: _GROUPS[named]}) if named in _GROUPS else app
 
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -67,7 +82,7 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 def main() -> None:
     """Entry point: every refusal is a sentence, every surprise is ours."""
     try:
-        status = app(standalone_mode=False)
+        status = _of(sys.argv[1:])(standalone_mode=False)
         sys.exit(status if isinstance(status, int) else 0)
     except typer.Abort:
         sys.exit(130)
@@ -105,7 +120,7 @@ def _end_by(surprise: BaseException) -> None:
 
 def _option(argument: str) -> str:
     """An argument as the command that runs has it: `--truth` for `truth`; unchanged where it is none of its options."""
-    command: Any = typer.main.get_command(app)
+    command: Any = typer.main.get_command(_of(sys.argv[1:]))
     for word in sys.argv[1:]:
         if word not in getattr(command, "commands", {}):
             break

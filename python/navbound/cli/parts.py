@@ -28,6 +28,9 @@ PAPER_WIDTH = 140
 """Columns of a table that goes to a file or a pipe, where the width of a terminal means nothing."""
 
 out_console = Console(width=None if sys.stdout.isatty() else PAPER_WIDTH)
+if not out_console.is_terminal:
+    # Nothing is coloured there: what would be coloured need not be looked for.
+    out_console = Console(width=out_console.width, highlight=False)
 err_console = Console(stderr=True)
 
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")]

@@ -211,8 +211,19 @@ def read_observations(path: str | Path) -> Observations:
         Not such a file, with line and field. Damage that leaves the rest readable is listed in ``refused``; the line of a log is the
         number of its frame.
     """
-    place, content = file_content(path)
-    return Observations(_core.Observations(content, str(place)), place)
+    return observations_of(*file_content(path))
+
+
+@checked
+def observations_of(path: Path, content: bytes) -> Observations:
+    """The same of a file whose plain bytes are there already.
+
+    Raises
+    ------
+    FormatError
+        As :func:`read_observations`.
+    """
+    return Observations(_core.Observations(content, str(path)), path)
 
 
 @checked
@@ -238,5 +249,16 @@ def read_navigation(paths: str | Path | Sequence[str | Path]) -> Navigation:
     several = [paths] if isinstance(paths, str | Path) else list(paths)
     if not several:
         raise InputError("paths", "nothing", domain="at least one file")
-    files = [file_content(p) for p in several]
+    return navigation_of([file_content(p) for p in several])
+
+
+@checked
+def navigation_of(files: Sequence[tuple[Path, bytes]]) -> Navigation:
+    """The same of files whose plain bytes are there already.
+
+    Raises
+    ------
+    FormatError
+        As :func:`read_navigation`.
+    """
     return Navigation(_core.Navigation([(content, str(place)) for place, content in files]), [place for place, _ in files])

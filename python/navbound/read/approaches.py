@@ -306,7 +306,8 @@ def statistics(name: str, points: pl.DataFrame) -> CrossTrack:
     tracks (n - 1), which says how much tracks differ from each other.
     """
     cross = points["cross_m"].to_numpy()
-    means = points.group_by("segment").agg(pl.col("cross_m").mean())["cross_m"]
+    # In the order of the points: a sum in the order of the threads would differ in its last bit from run to run.
+    means = points.group_by("segment", maintain_order=True).agg(pl.col("cross_m").mean())["cross_m"]
     between = means.std(ddof=1) if len(means) > 1 else None
     rank = math.ceil(0.95 * len(cross))
     return CrossTrack(

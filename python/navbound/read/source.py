@@ -89,6 +89,16 @@ class Source:
             raise FormatError(self.path, "not text: it holds zero bytes", line + text.count("\n", 0, text.index("\0")))
         return text
 
+    def plain(self) -> tuple[Path, bytes]:
+        """Path and content, which is read again where it was not kept.
+
+        Raises
+        ------
+        FormatError
+            As :func:`navbound.storage.packed.read`.
+        """
+        return self.path, self.content or packed.read(self.path)
+
     def record(self, n_rows: int | None) -> InputFile:
         """Entry of the run record."""
         return InputFile(path=str(self.path), sha256=self.sha256, n_bytes=self.n_bytes, n_rows=n_rows)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from navbound import _core, gnss, status
+from navbound import _core, status
 from navbound.errors import ConflictError, InputError
 from navbound.read.checks.established import contradicting, established
 from navbound.read.checks.stated import ALERT, CONTAINMENT, LEVEL_SIGMAS, TWO_DRMS
@@ -98,6 +98,8 @@ def with_truth(epochs: pl.DataFrame, truth: Truth) -> tuple[pl.DataFrame, str, R
         other = _recorded(truth)
         joined, words, doubts = join(epochs, other, truth.tolerance_s)
         return joined, words, other, doubts
+    from navbound import gnss  # noqa: PLC0415  (only with a fixed point)
+
     place = gnss.geodetic(truth.ecef_m)
     names = ("truth_lat_rad", "truth_lon_rad", "truth_h_m")
     fixed = epochs.with_columns(pl.lit(float(value)).alias(name) for name, value in zip(names, place, strict=True))

@@ -12,7 +12,8 @@ from navbound.errors import visible
 class Record(BaseModel):
     """Immutable, with no field that is not declared; every text in it is fit to be shown."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    # Of forty kinds a run has ten: each is built when the first of it is made.
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     @model_validator(mode="before")
     @classmethod

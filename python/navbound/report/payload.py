@@ -214,25 +214,37 @@ def _places(epochs: pl.DataFrame | Frames, name: str, first: list[float]) -> NDA
 
 
 @cache
-def _coastline() -> list[np.ndarray[Any, np.dtype[np.float64]]]:
-    """Polylines (longitude, latitude) in degrees, from the prepared file: one a line, thousandths of a degree, differences."""
+def _coastline() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Longitude and latitude in degrees of all points of the prepared file, and whether a segment leads from each to the next.
+
+    The file has one polyline a line, thousandths of a degree, each point as the difference from the one before.
+    """
     text = files("navbound").joinpath("_web/coastline.txt").read_text(encoding="ascii")
     lines = [line for line in text.splitlines() if line and not line.startswith("#")]
-    return [np.cumsum(np.array(line.split(), dtype=np.int64).reshape(-1, 2), axis=0) / 1000.0 for line in lines]
+    steps = np.fromstring(" ".join(lines), dtype=np.int64, sep=" ").reshape(-1, 2)
+    # A point is two numbers, and a number is followed by one space or the end of its line.
+    ends = np.cumsum([(line.count(" ") + 1) // 2 for line in lines])
+    points = np.cumsum(steps, axis=0)
+    # The sums begin anew with every polyline.
+    before = np.repeat(np.vstack((np.zeros((1, 2), np.int64), points[ends[:-1] - 1])), np.diff(ends, prepend=0), axis=0)
+    lon, lat = ((points - before) / 1000.0).T
+    leads = np.ones(len(lon), dtype=bool)
+    leads[ends - 1] = False
+    return lon, lat, leads
 
 
 def clip_coastline(south: float, west: float, north: float, east: float) -> list[list[int]]:
     """Coastline inside a region given in degrees: polylines of longitude, latitude in thousandths of a degree, differenced."""
     middle = (west + east) / 2
+    of_file, lat, leads = _coastline()
+    lon = middle + (of_file - middle + 180.0) % 360.0 - 180.0
+    inside = (lat >= south) & (lat <= north) & (lon >= west) & (lon <= east)
+    # A segment stays when either end is inside; it breaks where the longitude wraps.
+    segment = np.zeros(len(lon) + 1, dtype=np.int8)
+    segment[1:-1] = leads[:-1] & (inside[:-1] | inside[1:]) & (np.abs(np.diff(lon)) < 180.0)
+    edges = np.flatnonzero(np.diff(segment))
     kept: list[list[int]] = []
-    for line in _coastline():
-        lon = middle + (line[:, 0] - middle + 180.0) % 360.0 - 180.0
-        lat = line[:, 1]
-        inside = (lat >= south) & (lat <= north) & (lon >= west) & (lon <= east)
-        # A segment stays when either end is inside; it breaks where the longitude wraps.
-        segment = (inside[:-1] | inside[1:]) & (np.abs(np.diff(lon)) < 180.0)
-        edges = np.flatnonzero(np.diff(np.concatenate(([0], segment.astype(np.int8), [0]))))
-        for first, last in zip(edges[::2], edges[1::2], strict=True):
-            points = np.rint(np.column_stack((lon, lat))[first : last + 1] * 1000.0).astype(np.int64)
-            kept.append(np.diff(points, axis=0, prepend=np.zeros((1, 2), dtype=np.int64)).ravel().tolist())
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        points = np.rint(np.column_stack((lon[first : last + 1], lat[first : last + 1])) * 1000.0).astype(np.int64)
+        kept.append(np.diff(points, axis=0, prepend=np.zeros((1, 2), dtype=np.int64)).ravel().tolist())
     return kept

@@ -13,12 +13,11 @@ import polars as pl
 from navbound import _core
 from navbound import status as status_list
 from navbound.errors import InputError
-from navbound.methods import method
+from navbound.methods import EXTRACTION_LABEL, method
 from navbound.risks import checked_risk
 from navbound.rnp.catalogue import Specification, specification, specifications
 from navbound.rnp.exposure import PER_EPOCH, ExposureBasis, PerEpoch, PerHour, per_epoch_risk, per_hour_risk
 from navbound.rnp.states import StateClassifier, StateOfError, StateOfErrors, nse_boundary, state_of_error, state_of_errors, states_of_track
-from navbound.sbas.gains import EXTRACTION_LABEL
 from navbound.table.arguments import checked, nanoseconds, number_or_nan
 from navbound.table.columns import EVENTS
 from navbound.table.declare import schema as schema_of

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, get_args
 import polars as pl
 
 from navbound.errors import ConflictError, InputError
+from navbound.methods import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.read.approaches import Approaches, Gates, find, statistics
 from navbound.read.checks.axes import doubts_of_axes
 from navbound.read.checks.plausible import Limits, check
@@ -28,11 +29,8 @@ from navbound.records.operation import Operation
 from navbound.records.run import CovarianceOrigin, Rejection, Waypoint
 from navbound.records.truth import TruthDoubts
 from navbound.run.inputs.files import sort_out
-from navbound.run.inputs.solved import solved
 from navbound.run.inputs.solving import Solving
 from navbound.run.pieces import AUXILIARY, covariance_status, in_pieces, states_truth, without_path
-from navbound.run.procedure import Flown, on_procedure
-from navbound.sbas.gains import EXTRACTION_LABEL, EXTRACTION_MARK
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
@@ -40,7 +38,9 @@ if TYPE_CHECKING:
 
     from navbound.read.pieces import PiecedReading
     from navbound.records.run import CrossTrack, InputFile
+    from navbound.run.inputs.files import Files
     from navbound.run.pieces import InPieces
+    from navbound.run.procedure import Flown, OnProcedure
 
 
 def material(
@@ -143,7 +143,7 @@ def material(
         solving.refuse(_TO_SOLVE)
     named = truth_of(truth, truth_tolerance_s, columns)
     readings = [read(source.path, columns=named.columns_of_estimates) for source in sorted_inputs.tables] + (
-        solved(sorted_inputs, solving) if sorted_inputs.observations else []
+        _solved(sorted_inputs, solving) if sorted_inputs.observations else []
     )
     _refuse_experimental(readings)
     inputs = [r.source for r in readings] + [
@@ -168,7 +168,7 @@ def material(
     elif {"truth_lat_rad", "truth_lon_rad"} <= set(epochs.columns):
         epochs, truth_doubts = with_error(epochs)
         assumptions.append(f"Truth: from the file itself. {truth_doubts.words}".rstrip())
-    route = _follow(path, epochs, gates, rejected) if procedure is None else on_procedure(epochs, procedure)
+    route = _follow(path, epochs, gates, rejected) if procedure is None else _on_procedure(epochs, procedure)
     epochs = covariance_status(route.epochs)
     if procedure is None:
         epochs = epochs.with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
@@ -293,6 +293,18 @@ class _Path:
     tracks: dict[str, str] = field(default_factory=dict)
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     operation: Operation = "en-route"
+
+
+def _solved(files: Files, solving: Solving) -> list[Reading]:
+    from navbound.run.inputs.solved import solved  # noqa: PLC0415  (receivers are loaded where there are measurements)
+
+    return solved(files, solving)
+
+
+def _on_procedure(epochs: pl.DataFrame, procedure: Flown) -> OnProcedure:
+    from navbound.run.procedure import on_procedure  # noqa: PLC0415  (databases of procedures are loaded where one is named)
+
+    return on_procedure(epochs, procedure)
 
 
 def _follow(path: str | Path | None, epochs: pl.DataFrame, gates: Gates, rejected: list[Rejection]) -> _Path:

@@ -1,4 +1,7 @@
-"""Three of the jobs as functions: fly, analyze and evaluate. The command line is a thin skin over these."""
+"""Three of the jobs as functions: fly, analyze and evaluate. The command line is a thin skin over these.
+
+Each loads what it alone needs when it runs: simulators, indicators, procedures.
+"""
 
 from __future__ import annotations
 
@@ -7,17 +10,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from navbound import scenario as scenarios
 from navbound.records.performance import Level
 from navbound.rnp.requirement import requirement
 from navbound.run import analyze as recorded
 from navbound.run import directory
-from navbound.run import fly as simulated
-from navbound.run.evaluate import performance
 from navbound.run.judge import judge
-from navbound.run.procedure import with_answers
 from navbound.run.settings import Settings
-from navbound.run.verdict.faults import fault_summaries
 from navbound.table.arguments import checked
 
 if TYPE_CHECKING:
@@ -65,6 +63,10 @@ def fly(
     FormatError
         A scenario file that cannot be read, or a run directory that cannot be written.
     """
+    from navbound import scenario as scenarios  # noqa: PLC0415
+    from navbound.run import fly as simulated  # noqa: PLC0415
+    from navbound.run.verdict.faults import fault_summaries  # noqa: PLC0415
+
     with directory.own(out) as folder:
         material = simulated.material(scenario, flights=flights, seed=seed, **work)
         run = judge(material, settings, command)
@@ -115,7 +117,11 @@ def analyze(
         required = requirement(spec, phase)
         material = recorded.material(files, requirement=required.words, rnp_m=required.rnp_m, **reading)  # type: ignore[arg-type]
         run = judge(material, settings, command)
-        return directory.write(with_answers(run) if reading.get("procedure") is not None else run, folder)
+        if reading.get("procedure") is not None:
+            from navbound.run.procedure import with_answers  # noqa: PLC0415
+
+            run = with_answers(run)
+        return directory.write(run, folder)
 
 
 @checked
@@ -151,6 +157,8 @@ def evaluate(
     FormatError
         A file that cannot be read; the message names file, line, field and the text found.
     """
+    from navbound.run.evaluate import performance  # noqa: PLC0415
+
     named = [levels] if isinstance(levels, (str, Level)) else list(levels)
     options = performance.Options(levels=named, **reading)  # type: ignore[arg-type]
     return performance.evaluate_files(files, options, out=out, command=command, progress=progress)

@@ -14,10 +14,10 @@ from navbound import _core
 from navbound.errors import InputError
 from navbound.gnss import Observations
 from navbound.gnss.files import file_content
+from navbound.methods import EXTRACTION_LABEL
 from navbound.sbas.extraction import ErrorExtraction, error_extraction
 from navbound.sbas.gains import (
     ALPHA,
-    EXTRACTION_LABEL,
     MU_MOST_M,
     ExtractionBeta,
     ExtractionBias,

@@ -14,7 +14,8 @@ import polars as pl
 
 from navbound import _core
 from navbound.errors import InputError
-from navbound.sbas.gains import EXTRACTION_LABEL, EXTRACTION_MARK, extraction_gains, whole
+from navbound.methods import EXTRACTION_LABEL, EXTRACTION_MARK
+from navbound.sbas.gains import extraction_gains, whole
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten, unflatten
 

@@ -25,10 +25,6 @@ if TYPE_CHECKING:
 
 _DECLARED = _core.ee_declaration()
 
-EXTRACTION_LABEL = str(_DECLARED["label"])
-"""What stands beside every number of Error Extraction."""
-EXTRACTION_MARK = "ee_"
-"""How the name of every column of Error Extraction begins."""
 MU_MOST_M = float(_DECLARED["mu_most_m"])
 """Largest bias of a range in the paper. [m]"""
 ALPHA = float(_DECLARED["alpha"])

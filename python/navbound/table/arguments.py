@@ -45,18 +45,21 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     InputError
         When called, with the argument's name, what it was and what is expected.
     """
-    names = list(inspect.signature(function).parameters)
+
+    @functools.cache
+    def names() -> list[str]:
+        return list(inspect.signature(function).parameters)
 
     @functools.cache
     def checks() -> dict[str, Check]:
         # Not when the module is loaded: names of classes below the function are not known yet.
         annotations = inspect.get_annotations(function)
-        return {name: c for name in names if (c := _check(annotations.get(name), function.__globals__)) is not None}
+        return {name: c for name in names() if (c := _check(annotations.get(name), function.__globals__)) is not None}
 
     @functools.wraps(function)
     def checking(*args: P.args, **kwargs: P.kwargs) -> R:
         by_name = checks()
-        for name, value in [*zip(names, args, strict=False), *kwargs.items()]:
+        for name, value in [*zip(names(), args, strict=False), *kwargs.items()]:
             if name in by_name:
                 by_name[name](name, value)
         try:

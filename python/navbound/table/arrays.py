@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,10 @@ MOST_BYTES = 16 << 30
 """What the broadcast copy of one array argument may need: a day of 1 Hz epochs needs less than a megabyte per number. [B]"""
 
 
+_PLAIN = (np.ndarray, np.float64, int, list, tuple)
+"""Classes whose objects have no mask."""
+
+
 def numbers(name: str, value: object, expected: str = "numbers") -> NDArray[np.generic]:
     """See a named argument as an array of real numbers.
 
@@ -33,7 +38,7 @@ def numbers(name: str, value: object, expected: str = "numbers") -> NDArray[np.g
         return np.asarray(value)
     if value is None:
         raise InputError(name, None, domain=expected)
-    if isinstance(value, np.ma.MaskedArray) and np.ma.getmaskarray(value).any():
+    if _is_masked(value):
         raise InputError(name, "an array with masked entries", domain="an array without a mask; NaN stands for an absent number")
     try:
         array = np.asarray(value)
@@ -47,6 +52,13 @@ def numbers(name: str, value: object, expected: str = "numbers") -> NDArray[np.g
         raise InputError(name, f"{array.ndim} axes", domain=f"an array of at most {MOST_AXES} axes")
     _require_room(name, array.size * 8)
     return array
+
+
+def _is_masked(value: object) -> bool:
+    """Whether entries are masked; `numpy.ma` is loaded where somebody has made such an array, not here."""
+    if type(value) in _PLAIN or "numpy.ma" not in sys.modules:
+        return False
+    return isinstance(value, np.ma.MaskedArray) and bool(np.ma.getmaskarray(value).any())
 
 
 def whole_numbers(name: str, value: object, expected: str = "whole numbers") -> NDArray[np.int64]:

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from navbound import gnss
 from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
     import polars as pl
     from numpy.typing import NDArray
+
+    from navbound import gnss
 
 
 def east_north_m(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -67,6 +68,8 @@ def header_against(known: pl.DataFrame, observations: gnss.Observations) -> Head
     places = known.select("est_lat_rad", "est_lon_rad").drop_nulls().drop_nans().to_numpy()
     if not len(places):
         return Header([], [])
+    from navbound import gnss  # noqa: PLC0415  (only with measurements)
+
     header = gnss.geodetic(header_ecef_m)[None, :2]
     apart_m = np.hypot(*east_north_m(header, places).T)
     # A place has a median by its axes; across the meridian of 180 degrees they are counted from the first place.

@@ -59,10 +59,14 @@ class Files:
         ]
 
 
+KEPT_BYTES = 64 << 20
+"""Plain bytes of measurements and messages that are kept until they are read: two days of 30 s epochs as plain text. [B] Ours."""
+
+
 def sort_out(paths: Sequence[str | Path], *, solve: bool = False) -> Files:
     """Tell observations, navigation data, message logs and tables apart by their content.
 
-    Only digests and kinds are kept; contents are read again when they are needed.
+    Digests and kinds are kept, and as much content as :data:`KEPT_BYTES`; the rest is read again when it is needed.
 
     Parameters
     ----------
@@ -78,14 +82,16 @@ def sort_out(paths: Sequence[str | Path], *, solve: bool = False) -> Files:
     InputError
         `solve` where no file holds measurements.
     """
-    files = Files()
+    files, room = Files(), KEPT_BYTES
     for path in paths:
         source = load(path)
         kinds = (_raw(source) if solve else None) or [_kind(source)]
         if kinds == ["tables"]:
             source.refuse_unknown()
         open_end = not source.content.endswith((b"\n", b"\r", b"\x1a")) and source.content[:200].isascii()
-        kept = Source(source.path, b"", source.sha256, source.n_bytes, open_end)
+        content = source.content if kinds != ["tables"] and len(source.content) <= room else b""
+        room -= len(content)
+        kept = Source(source.path, content, source.sha256, source.n_bytes, open_end)
         for kind in kinds:
             getattr(files, kind).append(kept)
     if solve and not files.observations:

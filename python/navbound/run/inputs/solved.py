@@ -10,6 +10,7 @@ import polars as pl
 from navbound import gnss
 from navbound.errors import FormatError
 from navbound.gnss.constellation_doubts import contradicting
+from navbound.gnss.files import navigation_of, observations_of
 from navbound.gnss.receivers import unused_words
 from navbound.read.checks.places import header_against
 from navbound.read.checks.refusals import of_navigation, of_observations, skipped_words, without_epochs
@@ -32,7 +33,7 @@ def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
     FormatError
         A file that cannot be read, or in which no position can be solved.
     """
-    navigation = gnss.read_navigation([source.path for source in files.navigation])
+    navigation = navigation_of([source.plain() for source in files.navigation])
     readings = [_reading(source, navigation, solving or Solving()) for source in files.observations]
     if readings:
         readings[0].rejected.extend(of_navigation(navigation))
@@ -41,7 +42,7 @@ def solved(files: Files, solving: Solving | None = None) -> list[Reading]:
 
 
 def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> Reading:
-    observations = gnss.read_observations(source.path)
+    observations = observations_of(*source.plain())
     if observations.n_epochs == 0:
         raise without_epochs(observations)
     require_same_time(observations, navigation)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-from navbound import gnss
 from navbound.errors import ConflictError, InputError
 from navbound.time import utc_text
 
@@ -81,4 +80,6 @@ class Solving:
     def solve(self, observations: Observations, navigation: Navigation, *, signals: str, systems: str, **more: Any) -> Positions:
         """Positions by what is named, by the defaults elsewhere."""
         named: dict[str, Any] = {"signals": signals, "systems": systems, **self.named}
+        from navbound import gnss  # noqa: PLC0415  (only with measurements)
+
         return gnss.solve(observations, navigation, **named, **more)
