@@ -124,6 +124,41 @@ def test_pieces_of_any_length_give_the_bits_of_the_whole(tmp_path: Path, kind: s
         assert one.data["coastline"] == other.data["coastline"]
 
 
+@pytest.mark.parametrize("kind", TABLES)
+def test_pieces_of_a_parquet_file_give_the_bits_of_the_whole(tmp_path: Path, kind: str) -> None:
+    text = tmp_path / "sound.csv"
+    lines = [line for line in TABLES[kind]().replace("\r", "").split("\n") if line and not line.startswith("#") and '"' not in line]
+    text.write_text("\n".join(line for line in lines if line.count(",") == lines[0].count(",")) + "\n")
+    file = tmp_path / f"{kind}.parquet"
+    pl.read_csv(text, infer_schema_length=None).write_parquet(file, row_group_size=50)
+    whole = in_pieces(file, tmp_path / "whole", None)
+    assert isinstance(whole.table, pl.DataFrame)
+    for piece_rows in PIECES:
+        run = in_pieces(file, tmp_path / "pieces", piece_rows)
+        assert not isinstance(run.table, pl.DataFrame), "it must have been read in pieces"
+        assert run.summary.model_dump_json() == whole.summary.model_dump_json(), piece_rows
+        assert run.epochs.equals(whole.epochs), piece_rows
+        assert run.epochs.schema == whole.epochs.schema
+        assert run.events.equals(whole.events), piece_rows
+        assert run.record.inputs == whole.record.inputs
+
+
+def test_a_large_parquet_file_is_read_in_pieces_unless_it_holds_a_truth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("navbound.run.pieces.material.LARGE_ROWS", 60)
+    file, damaged, with_truth = (tmp_path / f"{name}.parquet" for name in ("large", "damaged", "truth"))
+    table = pl.DataFrame([row(k, "g", sde=1.0, sdn=1.0) for k in range(60)])
+    table.write_parquet(file)
+    assert not isinstance(navbound.analyze(file).table, pl.DataFrame)
+    assert isinstance(navbound.analyze(file, truth="4200000,170000,4780000").table, pl.DataFrame)
+    table.with_columns(truth_lat=pl.col("latitude"), truth_lon=pl.col("longitude")).write_parquet(with_truth)
+    assert isinstance(navbound.analyze(with_truth).table, pl.DataFrame)
+    table.head(59).write_parquet(file)
+    assert isinstance(navbound.analyze(file).table, pl.DataFrame)
+    damaged.write_bytes(file.read_bytes()[:-200])
+    with pytest.raises(FormatError, match="damaged Parquet file"):
+        navbound.analyze(damaged, piece_rows=7)
+
+
 def test_the_tables_have_what_they_are_to_show(tmp_path: Path) -> None:
     """Otherwise their pieces would agree on nothing."""
     words, statuses, kinds = "", set[str](), set[str]()

@@ -84,6 +84,46 @@ def test_the_level_is_gone_for_the_silence_and_its_reason_is_reported(log: sbas.
     assert (sbas.protection_levels(without(log, 581_003, 581_006), navigation, instants, **USER, mode="npa").mode == "npa").all()
 
 
+def test_the_damaged_hour_loses_15_levels_by_the_rule_and_33_where_every_fast_correction_is_erased(folder: Path) -> None:
+    """Both counts are against ages alone: the same log with an empty message in each second that is lost."""
+    navigation = folder / "gps_2025046_17h_rinex3.nav"
+    whole = sbas.read(folder / "more" / "prn137_2025046_17h.ems.gz")
+    damaged = sbas.read(folder / "more" / "prn137_loss_2025046_17h.ems.gz")
+    tow = (damaged.time_ns - WEEK_NS) // NS
+    types = np.array([message.type for message in sbas.decode(damaged)])
+    lost = np.setdiff1d((whole.time_ns - WEEK_NS) // NS, tow)
+    runs = [(int(run[0]), int(run[-1])) for run in np.split(lost, np.flatnonzero(np.diff(lost) > 1) + 1) if run.size >= 4]
+    assert [last - first + 1 for first, last in runs] == [4, 5, 10, 4, 20]
+
+    # An empty message (type 63) has one of three preambles: the one of its second.
+    empty: dict[int, int] = {}
+    for k in np.flatnonzero(types == 63):
+        empty.setdefault(int(tow[k]) % 3, int(k))
+    source = np.array([empty[int(t) % 3] for t in lost])
+    time_ns = np.concatenate([damaged.time_ns, WEEK_NS + lost * NS])
+    order = np.argsort(time_ns, kind="stable")
+    heard = replace(
+        damaged,
+        time_ns=time_ns[order],
+        prn=np.concatenate([damaged.prn, damaged.prn[source]])[order],
+        data=np.concatenate([damaged.data, damaged.data[source]])[order],
+    )
+
+    by_rule, by_erasure = [], []
+    for first, last in runs:
+        instants = seconds(first + 4, last + 60)
+        by_age = sbas.protection_levels(heard, navigation, instants, **USER, mode="pa").mode == "pa"
+        rule = sbas.protection_levels(damaged, navigation, instants, **USER, mode="pa").mode == "pa"
+        # The reading that the specification declines: with the silence every fast correction goes, so that each satellite waits for two.
+        kept = ~(np.isin(types, [2, 3, 4, 5, 6, 24]) & (tow < first))
+        erased = replace(damaged, time_ns=damaged.time_ns[kept], prn=damaged.prn[kept], data=damaged.data[kept])
+        erasure = sbas.protection_levels(erased, navigation, instants, **USER, mode="pa").mode == "pa"
+        by_rule.append(int((by_age & ~rule).sum()))
+        by_erasure.append(int((by_age & ~erasure).sum()))
+    assert by_rule == [3, 3, 3, 3, 3]
+    assert by_erasure == [9, 9, 3, 9, 3]
+
+
 def test_preambles_say_which_second_a_log_means(folder: Path) -> None:
     late = sbas.read(folder / "msas137_2025046_17h.ems")
     assert late.late_s == {137: 1}

@@ -53,6 +53,25 @@ pub fn reference(week: i64, time_of_week_s: f64, near: Option<GpsTime>) -> Optio
     crate::time::from_week(full, of_week)
 }
 
+/// Times of applicability of one almanac lie within this \[s\]: half a week, so that one on either side of a week's end is of one almanac
+/// and a week number that is wrong by one is not. Provenance: ours.
+const ONE_ALMANAC_S: f64 = WEEK_S / 2.0;
+
+/// How much later an entry is than another, by the nearer way round where weeks roll over \[s\].
+pub fn later_s(entry: &Entry, than: &Entry) -> f64 {
+    let weeks = (entry.week - than.week + ROLLOVER / 2).rem_euclid(ROLLOVER) - ROLLOVER / 2;
+    weeks as f64 * WEEK_S + entry.time_of_week_s - than.time_of_week_s
+}
+
+/// The entries of one almanac, and those of another week or time than most: a week that is wrong by one moves a satellite by thousands of
+/// kilometres, and nothing tells it from an old entry.
+pub fn of_one_time(entries: Vec<Entry>) -> (Vec<Entry>, Vec<Entry>) {
+    let near = |one: &Entry| entries.iter().filter(|other| later_s(other, one).abs() <= ONE_ALMANAC_S).count();
+    // Of two times that are as frequent the first.
+    let usual = entries.iter().rev().max_by_key(|entry| near(entry)).copied();
+    entries.into_iter().partition(|entry| usual.is_some_and(|usual| later_s(entry, &usual).abs() <= ONE_ALMANAC_S))
+}
+
 /// Read an almanac, YUMA or SEM, recognised by its content; plain (see [`crate::packed::unpack`]).
 ///
 /// # Errors

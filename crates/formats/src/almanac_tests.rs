@@ -67,6 +67,26 @@ fn a_rolled_over_week_is_the_one_nearest_to_a_known_time() {
     assert_eq!(reference(2035, 0.0, Some(week(100))), Some(week(2035)));
 }
 
+/// A week's end may lie between two times of one almanac; a week that is wrong by one, or by the ten bits' turn less one, may not.
+#[test]
+fn entries_of_another_week_than_most_are_put_aside() {
+    let of = |number: u32, week: i64, time_s: f64| {
+        let text = YUMA.replace("ID:                         01", &format!("ID: {number:02}"));
+        text.replace("week:                        866", &format!("week: {week}")).replace("589824.0000", &format!("{time_s:.4}"))
+    };
+    let split = |rows: &[(u32, i64, f64)]| {
+        let text: String = rows.iter().map(|(number, week, time_s)| of(*number, *week, *time_s)).collect();
+        let (kept, aside) = of_one_time(read(text.as_bytes()).unwrap());
+        let numbers = |entries: Vec<Entry>| entries.iter().map(|entry| entry.satellite.number).collect::<Vec<_>>();
+        (numbers(kept), numbers(aside))
+    };
+    assert_eq!(split(&[(1, 866, 589_824.0), (2, 866, 589_824.0), (3, 867, 589_824.0)]), (vec![1, 2], vec![3]));
+    assert_eq!(split(&[(1, 866, 589_824.0), (2, 867, 4096.0), (3, 866, 503_808.0)]), (vec![1, 2, 3], vec![]));
+    assert_eq!(split(&[(1, 1023, 589_824.0), (2, 0, 4096.0), (3, 866, 4096.0)]), (vec![1, 2], vec![3]));
+    assert_eq!(split(&[(1, 866, 0.0), (2, 900, 0.0)]), (vec![1], vec![2]));
+    assert_eq!(split(&[(1, 866, 589_824.0), (2, 866, 147_456.0), (3, 866, 589_824.0)]), (vec![1, 3], vec![2]));
+}
+
 #[test]
 fn damage_is_refused_with_line_and_field() {
     for (from, to, line, field) in [

@@ -123,14 +123,13 @@ pub fn named(names: &[String], elements: &[[f64; 7]], since_s: f64) -> PyResult<
 #[pyo3(signature = (content, path, near_ns))]
 fn read_almanac<'py>(py: Python<'py>, content: &[u8], path: &str, near_ns: Option<i64>) -> PyResult<Bound<'py, PyDict>> {
     let read = || almanac::read(&unpack(content)?);
-    let entries = py.detach(read).map_err(|e| format_error(path, &e))?;
+    let (entries, other_time) = almanac::of_one_time(py.detach(read).map_err(|e| format_error(path, &e))?);
     let near = near_ns.map(GpsTime::from_nanoseconds);
-    // Times among satellites count from the first; the week's own number does for differences.
+    // Times among satellites count from the first.
     let first = entries.first().map_or((0, 0.0), |e| (e.week, e.time_of_week_s));
     let mut elements = Vec::with_capacity(entries.len());
     for (index, e) in entries.iter().enumerate() {
-        let weeks = (e.week - first.0 + 512).rem_euclid(1024) - 512;
-        let later = weeks as f64 * 604_800.0 + e.time_of_week_s - first.1;
+        let later = entries.first().map_or(0.0, |first| almanac::later_s(e, first));
         elements.push(e.elements.moved(-later).map_err(|e: OutOfDomain| input_error(e, Some(index)))?);
     }
     let column = |f: fn(&Elements) -> f64| elements.iter().map(f).collect::<Vec<_>>().into_pyarray(py);
@@ -145,6 +144,7 @@ fn read_almanac<'py>(py: Python<'py>, content: &[u8], path: &str, near_ns: Optio
     d.set_item("perigee_rad", column(|e| e.perigee.rad()))?;
     d.set_item("mean_anomaly_rad", column(|e| e.mean_anomaly.rad()))?;
     d.set_item("health", entries.iter().map(|e| e.health).collect::<Vec<_>>())?;
+    d.set_item("of_other_time", other_time.iter().map(|e| e.satellite.to_string()).collect::<Vec<_>>())?;
     d.set_item("reference_ns", almanac::reference(first.0, first.1, near).map(GpsTime::nanoseconds))?;
     Ok(d)
 }

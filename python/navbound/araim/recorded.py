@@ -69,6 +69,7 @@ def watch(
     InputError
         Systems that are not there, single signals without a broadcast ionosphere, numbers outside their domain.
     """
+    observations.require_epochs()
     selected = checked_model(navigation, systems, signals, model, mask_rad)
     numbers = rule_numbers(service)
     if len(numbers) != 7:

@@ -14,7 +14,7 @@ import typer
 from typer.core import TyperGroup
 
 from navbound.cli.parts import err_console, out_console
-from navbound.errors import ConflictError, InputError
+from navbound.errors import ConflictError, FormatError, InputError
 from navbound.exit_status import NO_VERDICT, OUR_BUG
 
 if TYPE_CHECKING:
@@ -283,7 +283,7 @@ def judge(journal: Journal, out: SessionOut = Path("out/judged"), json: JsonLine
 
 @app.command()
 def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: Annotated[Path, typer.Argument(help="Another.")]) -> None:
-    """Compare every bound, status, alert and transition of two sessions as bits; exit status 70 where one differs."""
+    """Compare every bound, status, alert and transition of two sessions of the same data as bits; exit status 70 where one differs."""
     from navbound import live  # noqa: PLC0415
 
     result = live.compare(a, b)
@@ -291,6 +291,8 @@ def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: 
     out_console.print(
         f"{result.n_epochs} epochs and {result.n_transitions} transitions compared: {result.n_differing} differ{where}.", highlight=False
     )
+    if result.apart is not None:
+        raise FormatError(b, f"is no other judgement of the session in {a}: {result.apart}")
     if result.n_differing:
         raise typer.Exit(OUR_BUG)
 

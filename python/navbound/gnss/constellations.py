@@ -54,6 +54,8 @@ class Orbits:
         Rate of right ascension of the node; 0 where nothing is known of it. [rad/s]
     reference_ns : int or None
         GPS time of the reference instant; None for nominal orbits, and for an almanac whose week may have rolled over. [ns]
+    notes : tuple of str
+        What an almanac lacks of GPS, and what of it is not used.
     """
 
     satellite: tuple[str, ...]
@@ -66,20 +68,21 @@ class Orbits:
     mean_anomaly_rad: NDArray[np.float64]
     node_rate_radps: NDArray[np.float64]
     reference_ns: int | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse columns of different lengths."""
         for name in self.__dataclass_fields__:
             shape = np.shape(getattr(self, name))
-            if name != "reference_ns" and shape != (len(self.satellite),):
+            if name not in {"reference_ns", "notes"} and shape != (len(self.satellite),):
                 raise InputError(name, f"shape {shape}", domain=f"one value a satellite, shape ({len(self.satellite)},)")
 
     def __add__(self, other: Orbits) -> Orbits:
         """Both sets of satellites; of two reference instants neither is kept unless they agree."""
-        names = [n for n in self.__dataclass_fields__ if n not in {"satellite", "reference_ns"}]
+        names = [n for n in self.__dataclass_fields__ if n not in {"satellite", "reference_ns", "notes"}]
         joined = {n: np.concatenate([getattr(self, n), getattr(other, n)]) for n in names}
         reference = self.reference_ns if self.reference_ns == other.reference_ns else None
-        return Orbits(satellite=self.satellite + other.satellite, reference_ns=reference, **joined)
+        return Orbits(satellite=self.satellite + other.satellite, reference_ns=reference, notes=self.notes + other.notes, **joined)
 
     def without(self, satellites: Sequence[str]) -> Orbits:
         """The same without some satellites, as for those that a notice takes out of service.
@@ -93,9 +96,9 @@ class Orbits:
         if absent:
             raise InputError("without", ", ".join(absent), domain=f"satellites of these orbits: {', '.join(self.satellite)}")
         kept = np.array([name not in satellites for name in self.satellite], dtype=bool)
-        columns = [n for n in self.__dataclass_fields__ if n not in {"satellite", "reference_ns"}]
+        columns = [n for n in self.__dataclass_fields__ if n not in {"satellite", "reference_ns", "notes"}]
         names = tuple(name for name, keep in zip(self.satellite, kept, strict=True) if keep)
-        return Orbits(satellite=names, reference_ns=self.reference_ns, **{n: getattr(self, n)[kept] for n in columns})
+        return Orbits(satellite=names, reference_ns=self.reference_ns, notes=self.notes, **{n: getattr(self, n)[kept] for n in columns})
 
     def elements(self) -> NDArray[np.float64]:
         """Seven elements a row: axis, eccentricity, inclination, node, perigee, mean anomaly, rate of the node; shape (n, 7)."""
@@ -140,7 +143,7 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
     FormatError
         Not an almanac, with line and field.
     """
-    shipped = _core.nominal_constellations()
+    shipped, notes = _core.nominal_constellations(), list[str]()
     if str(name) in shipped:
         orbits = dict(shipped[str(name)])
         orbits["node_rate_radps"] = np.zeros(len(orbits["satellite"]))
@@ -153,12 +156,36 @@ def constellation(name: str | Path, *, near_ns: int | None = None, unhealthy: bo
         if _is_navigation(content):
             return _broadcast(content, path, near_ns)
         orbits = _core.read_almanac(content, str(path), near_ns)
-        kept = (np.asarray(orbits.pop("health")) == 0) | unhealthy
+        healthy, other_time = np.asarray(orbits.pop("health")) == 0, orbits.pop("of_other_time")
+        kept = healthy | unhealthy
+        left_out = [] if unhealthy else [name for name, good in zip(orbits["satellite"], healthy, strict=True) if not good]
+        notes = _almanac_notes(path.name, orbits["satellite"], left_out, other_time)
     reference = orbits.pop("reference_ns", None)
     satellites = tuple(s for s, keep in zip(orbits.pop("satellite"), kept, strict=True) if keep)
     indices = np.asarray(orbits.pop("constellation"), dtype=np.int64)[kept]
     columns = {column: values[kept] for column, values in orbits.items()}
-    return Orbits(satellite=satellites, constellation=indices, reference_ns=reference, **columns)
+    return Orbits(satellite=satellites, constellation=indices, reference_ns=reference, notes=tuple(notes), **columns)
+
+
+_GPS_NUMBERS = 32
+"""Satellites of GPS have the numbers from 1 to this one. Provenance: standard (IS-GPS-200)."""
+_GPS_SLOTS = 24
+"""Slots of the baseline constellation. Provenance: standard (GPS SPS performance standard)."""
+
+
+def _almanac_notes(name: str, satellites: Sequence[str], unhealthy: Sequence[str], other_time: Sequence[str]) -> list[str]:
+    """What an almanac lacks: text that is cut between two satellites is whole by its form."""
+    n = len(satellites) + len(other_time)
+    absent = sorted({f"G{number:02d}" for number in range(1, _GPS_NUMBERS + 1)} - {*satellites, *other_time})
+    lacks = f" without {', '.join(absent)}" if absent else ""
+    few = f"; fewer than the {_GPS_SLOTS} slots of GPS, so the file is cut or is not a whole almanac" if n < _GPS_SLOTS else ""
+    notes = [f"{name}: {n} satellites{lacks}{few}."]
+    if unhealthy:
+        notes.append(f"{name}: {', '.join(unhealthy)} {'is' if len(unhealthy) == 1 else 'are'} unhealthy and left out.")
+    if other_time:
+        reason = "of another week or time than most, by more than half a week"
+        notes.append(f"{name}: {len(other_time)} satellites are {reason}, and left out: {', '.join(other_time)}.")
+    return notes
 
 
 def _is_navigation(content: bytes) -> bool:

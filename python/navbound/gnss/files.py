@@ -83,6 +83,18 @@ class Observations:
         self.n_lost_epochs = core.n_lost_epochs
         self.refused = [Refused(path, *r) for r in core.refused]
 
+    def require_epochs(self) -> None:
+        """Refuse a file without an epoch of measurements.
+
+        Raises
+        ------
+        InputError
+            It has none.
+        """
+        if not self.n_epochs:
+            refused = f", {self.n_refused} records refused" if self.n_refused else ""
+            raise InputError("observations", f"{self.path.name}: no epoch{refused}", domain="measurements of at least one epoch")
+
     @checked
     def column(self, system: str, code: str) -> pl.DataFrame:
         """Every value of one code.

@@ -173,7 +173,7 @@ def solve(
     Raises
     ------
     InputError
-        Systems that are not there, a broadcast ionosphere that no file gives, numbers outside their domain.
+        Systems that are not there, a broadcast ionosphere that no file gives, numbers outside their domain, no epoch of measurements.
     """
     if not systems or any(s not in SYSTEMS for s in systems):
         raise InputError("systems", systems, domain=f"letters of {''.join(SYSTEMS)}")
@@ -185,6 +185,7 @@ def solve(
         raise InputError("most_excluded", most_excluded, "1", "[0, inf)")
     if smoothing not in {"hatch", "divergence-free"}:
         raise InputError("smoothing", smoothing, domain="hatch, divergence-free")
+    observations.require_epochs()
     if signals == "auto":
         return smaller_covariance(
             lambda kind: solve(

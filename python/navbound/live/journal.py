@@ -89,6 +89,55 @@ def _require_version(path: Path, first: bytes) -> None:
         raise FormatError(path, f"{e}; navbound live judge makes a new one of the journal in") from e
 
 
+def require_pair(folder: Path, came_in: bytes, went_out: bytes) -> None:
+    """Refuse two journals that are not of one session: every output stands behind an input of the journal in, in its order.
+
+    Raises
+    ------
+    FormatError
+        An input or an output that cannot be read, outputs without inputs, or outputs of another journal in.
+    """
+    with readable(folder / IN):
+        for begin, end in _parts(came_in):
+            _core.live_inputs(came_in[begin:end])
+    if went_out and not came_in:
+        raise FormatError(folder / IN, f"is missing or empty, and {OUT} holds what was judged of it; put it back, or choose another --out")
+    before, known = 0, {*_core.live_frames(came_in)[0]}
+    begin = 0
+    for end in _core.live_frames(went_out)[0]:
+        with readable(folder / OUT):
+            position = _core.live_last_position(went_out[begin:end])
+            _core.live_comparable(went_out[begin:end])
+        # Of a journal in that lost its end the outputs behind it are cut off.
+        if position < before or (position <= len(came_in) and position not in known):
+            raise FormatError(folder / OUT, _FOREIGN)
+        begin, before = end, position
+
+
+_FOREIGN = f"does not belong to {IN}: an output stands behind no input of it, or before an earlier one; put the session's own files back"
+_PART_BYTES = 1 << 20
+
+
+def _parts(frames: bytes) -> Iterator[tuple[int, int]]:
+    """Begin and end of whole frames, about a megabyte together."""
+    begin, ends = 0, _core.live_frames(frames)[0]
+    for end in ends:
+        if end - begin >= _PART_BYTES or end == ends[-1]:
+            yield begin, end
+            begin = end
+
+
+@contextmanager
+def readable(path: Path) -> Iterator[None]:
+    """What cannot be read of a journal's frames is a fault of the file."""
+    try:
+        yield
+    except FormatError:
+        raise
+    except ValueError as e:
+        raise FormatError(path, f"not the journal of a session, or damaged: {e}") from e
+
+
 def torn(path: Path) -> int:
     """Bytes behind the last whole frame of a journal: it was cut, or its writer was killed or still writes. [B]."""
     return path.stat().st_size - len(read(path))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -124,6 +125,8 @@ class Comparison:
     n_transitions: int
     n_differing: int
     first: str | None
+    apart: str | None = None
+    """Why they may differ."""
 
 
 def compare(a: Path, b: Path) -> Comparison:
@@ -135,11 +138,32 @@ def compare(a: Path, b: Path) -> Comparison:
         A journal that cannot be read or holds nothing: there would be nothing to compare.
     """
     both = [journal.read(folder / journal.OUT) for folder in (a, b)]
-    left, right = (_core.live_comparable(frames) for frames in both)
+    sides = list[list[tuple[int, bytes]]]()
+    for folder, frames in zip((a, b), both, strict=True):
+        with journal.readable(folder / journal.OUT):
+            sides.append(_core.live_comparable(frames))
+    left, right = sides
     n_transitions = len(_core.live_transitions(both[0]))
     if not left:
         raise FormatError(a / journal.OUT, "holds no output: nothing to compare")
     differing = [k for k, (x, y) in enumerate(zip(left, right, strict=False)) if x != y]
     n_differing = len(differing) + abs(len(left) - len(right))
     first = None if not n_differing else f"output {differing[0] if differing else min(len(left), len(right))}"
-    return Comparison(len(left) - n_transitions, n_transitions, n_differing, first)
+    return Comparison(len(left) - n_transitions, n_transitions, n_differing, first, _apart(a, b) if n_differing else None)
+
+
+def _apart(a: Path, b: Path) -> str | None:
+    """Why two sessions may differ: they judged other data, or in another way; None where they did not."""
+    settings, inputs = [], []
+    for folder in (a, b):
+        with journal.readable(folder / journal.IN):
+            settings.append(load(folder / journal.SETTINGS))
+            frames = journal.read(folder / journal.IN)
+            inputs.append(hashlib.sha256(frames).digest())
+        journal.require_pair(folder, frames, journal.read(folder / journal.OUT))
+    if inputs[0] != inputs[1]:
+        return "the two journals in differ"
+    if settings[0] != settings[1]:
+        return "the settings differ"
+    ends = [bool(journal.torn(folder / journal.OUT)) for folder in (a, b)]
+    return "a journal out has no whole end" if any(ends) else None

@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from navbound import __version__, _core
-from navbound.errors import FormatError, InputError, InternalError
-from navbound.live import journal, transition
+from navbound.errors import FormatError, InputError
+from navbound.live import journal
+from navbound.live.events import Events
 from navbound.live.settings import load
 from navbound.live.source import File
 
@@ -65,6 +66,12 @@ class Origin:
     limits: dict[str, Any] | None = None
 
 
+_OTHERWISE = (
+    f"{journal.IN} judged again gives other outputs than stand here: one of the two was changed, or another version of navbound "
+    "wrote them; navbound live judge makes a new session of the journal in. If nobody touched the folder, please report it"
+)
+
+
 class Session:
     """A lane between two journals.
 
@@ -88,11 +95,10 @@ class Session:
     Raises
     ------
     FormatError
-        The folder holds something else, is written by another process, or holds a damaged journal.
+        The folder holds something else, is written by another process, or holds a damaged journal, journals of two sessions, or one that
+        gives other outputs than before when it is judged again.
     InputError
         Resumed with other settings.
-    InternalError
-        What is judged again differs from what was judged before.
     """
 
     def __init__(
@@ -118,13 +124,16 @@ class Session:
             self._in = journal.Journal(out / journal.IN)
             opened.callback(self._in.close)
             self._out = journal.Journal(out / journal.OUT)
+            opened.callback(self._out.close)
+            journal.require_pair(out, self._in.content(), self._out.content())
+            for written in (self._in, self._out):
+                if written.torn:
+                    say(f"{written.path.name}: {written.torn} bytes of an unfinished frame were cut off")
+            self._events = Events(out, time_to_alert_s=settings.time_to_alert_s, say=say)
+            self._lane, position = self._restored()
+            self._recover(position)
             # What is open stays open; before that it was given back.
             opened.pop_all()
-        for written in (self._in, self._out):
-            if written.torn:
-                say(f"{written.path.name}: {written.torn} bytes of an unfinished frame were cut off")
-        self._lane, position = self._restored()
-        self._recover(position)
         self._snapshot_at = time.monotonic()
 
     @property
@@ -170,11 +179,10 @@ class Session:
     def _show(self, rows: list[_core._TransitionRow], *, replayed: bool = False) -> None:
         if not rows:
             return
-        reported = [transition.record(row, time_to_alert_s=self.settings.time_to_alert_s, replayed=replayed) for row in rows]
+        reported = self._events.records(rows, replayed=replayed)
         if not replayed:
             self.n_transitions += len(reported)
-        with (self.folder / journal.EVENTS).open("a", encoding="utf-8") as file:
-            file.writelines(transition.line(t) + "\n" for t in reported)
+        self._events.append(reported)
         for t in reported:
             self._report(t)
 
@@ -182,6 +190,7 @@ class Session:
         """Keep the state behind all that was taken."""
         self._in.sync()
         self._out.sync()
+        self._events.require(self._out.content)
         self._passed("in-snapshot")
         content = self._lane.snapshot(self._in.length, self._out.length)
         partial = self.folder / f"{journal.SNAPSHOT}.partial"
@@ -210,6 +219,8 @@ class Session:
         if before.length != self._out.length:
             self._say("the journal out is ahead of the journal in: it is cut")
             self._out.cut(before.length)
+        again_shown = [row for row in _core.live_transitions(before.frames) if row[3] > position]
+        self._events.restore(before.frames, ahead=again_shown)
         committed = before.comparable[-1][0] if before.comparable else 0
         expected = [output for output in before.comparable if output[0] > position]
         again: list[tuple[int, bytes]] = []
@@ -223,8 +234,8 @@ class Session:
             self._out.append(part.frames)
             self._show(_core.live_transitions(part.frames))
         if again != expected:
-            raise InternalError("live.Session", "the journal judged again gives other outputs than before: not deterministic")
-        self._show([row for row in _core.live_transitions(before.frames) if row[3] > position], replayed=True)
+            raise FormatError(self._out.path, _OTHERWISE)
+        self._show(again_shown, replayed=True)
         if at > position:
             self._say(f"recovered: {at - position} bytes of the journal judged again, {len(again)} outputs were there already")
 
@@ -344,6 +355,8 @@ def _prepare(out: Path, settings: Settings, origin: Origin, *, resume: bool) -> 
         present = {p.name for p in out.iterdir()}
     except OSError as e:
         raise FormatError(out, f"cannot be written: {e.strerror or e}") from e
+    if folders := sorted(name for name in present & ours if not (out / name).is_file()):
+        raise FormatError(out / folders[0], "is no file: not the folder of a live session; choose another --out")
     if strangers := sorted(present - ours):
         raise FormatError(out, f"holds files that are not a live session's ({', '.join(strangers[:3])}); choose another --out")
     if resume and journal.SETTINGS in present:
@@ -351,6 +364,9 @@ def _prepare(out: Path, settings: Settings, origin: Origin, *, resume: bool) -> 
         if kept != settings:
             differing = sorted(name for name in vars(kept) if getattr(kept, name) != getattr(settings, name))
             raise InputError("resume", str(out), domain=f"a session of the same settings; these differ: {', '.join(differing)}")
+    elif present and journal.SETTINGS not in present:
+        parts = f"holds parts of a session ({', '.join(sorted(present)[:3])}) and no {journal.SETTINGS}, without which it cannot be resumed"
+        raise FormatError(out, f"{parts}; put it back, or choose another --out")
     elif present:
         raise FormatError(out, "holds a session already; go on with --resume, or choose another --out")
     record = {"navbound_version": __version__, "settings": json.loads(settings.text()), "origin": asdict(origin)}

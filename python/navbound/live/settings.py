@@ -158,7 +158,9 @@ def load(file: FilePath) -> Settings:
     """
     try:
         return Settings(**json.loads(file.read_text(encoding="utf-8"))["settings"])
-    except (OSError, ValueError, KeyError, TypeError) as e:
+    except FileNotFoundError as e:
+        raise FormatError(file, "is missing: nobody knows how it judged without the settings of a live session; put it back") from e
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as e:
         raise FormatError(file, f"not the settings of a live session: {e}") from e
 
 

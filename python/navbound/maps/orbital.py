@@ -66,6 +66,7 @@ class _Day:
         return [
             f"{len(sky.orbits.satellite)} satellites ({named}),{out} {dated}: all healthy and tracked above "
             f"{math.degrees(self.mask_rad):g}°; terrain is not considered.",
+            *sky.orbits.notes,
             self.times.words(self.n_epochs(), first),
             *([f"Users {self.h_m:g} m above the ellipsoid."] if self.h_m else []),
         ]

@@ -71,6 +71,7 @@ def watch(
     InputError
         Systems that are not there, single signals without a broadcast ionosphere, numbers outside their domain.
     """
+    observations.require_epochs()
     selected = checked_model(navigation, systems, signals, model, mask_rad)
     numbers = requirement_numbers(requirement)
     promises, airborne = support_rows(support), airborne_numbers(selected)

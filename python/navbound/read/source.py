@@ -16,6 +16,17 @@ if TYPE_CHECKING:
     from navbound.read.formats import Format
 
 _LOOK_AT = 1 << 16
+_BINARY = "binary, of no kind that is known here; convert it to NMEA, RINEX or a table with the maker's program"
+_BINARY_SHARE = 0.05
+"""Share of bytes that no text has, from which a beginning is binary and not a damaged text. [1] Provenance: ours."""
+_TEXT_BYTES = bytes(byte for byte in range(256) if byte >= 0x20 or byte in b"\t\n\v\f\r\x1b")
+
+
+def _is_binary(content: bytes) -> bool:
+    """Whether a file begins with control characters among its bytes, or with bytes that are no UTF-8, as binary data do everywhere."""
+    begin = content[:4096]
+    unlike = len(begin.translate(None, _TEXT_BYTES)) + begin.decode("utf-8", "replace").count("\ufffd")
+    return unlike > _BINARY_SHARE * len(begin)
 
 
 @dataclass(frozen=True)
@@ -82,10 +93,14 @@ class Source:
         try:
             text = self.content.decode("utf-8" if offset else "utf-8-sig")
         except UnicodeDecodeError as e:
+            if not offset and _is_binary(self.content):
+                raise FormatError(self.path, f"{_BINARY}: it begins with {self.content[:8].hex(' ')}") from e
             line += self.content.count(b"\n", 0, e.start)
             first_bytes = self.content[e.start : e.start + 8].hex(" ")
             raise FormatError(self.path, f"not UTF-8 text: bytes {first_bytes} at offset {offset + e.start}", line) from e
         if "\0" in text:
+            if not offset and _is_binary(self.content):
+                raise FormatError(self.path, f"{_BINARY}: it begins with {self.content[:8].hex(' ')}")
             raise FormatError(self.path, "not text: it holds zero bytes", line + text.count("\n", 0, text.index("\0")))
         return text
 
@@ -128,6 +143,22 @@ def load(path: str | Path) -> Source:
     if of.instead is not None:
         raise FormatError(path, f"a {of.title}, which is not read: {of.instead}")
     return Source(path, content, hashlib.sha256(stored).hexdigest(), len(stored))
+
+
+def digested(path: Path) -> Source:
+    """A file without its content: its digest and size.
+
+    Raises
+    ------
+    FormatError
+        It cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            digest = hashlib.file_digest(file, "sha256")
+            return Source(path, b"", digest.hexdigest(), file.tell())
+    except OSError as e:
+        raise FormatError(path, f"cannot be read: {e.strerror}") from e
 
 
 LARGE_BYTES = 64 << 20

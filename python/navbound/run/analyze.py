@@ -19,7 +19,6 @@ from navbound.read.covariance import Claimed, claim
 from navbound.read.pieces import PIECE_ROWS
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
-from navbound.read.source import LARGE_BYTES, is_text_table
 from navbound.read.speeds import doubts_of_speeds
 from navbound.read.tables.epochs import Reading, read
 from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
@@ -30,7 +29,7 @@ from navbound.records.run import CovarianceOrigin, Rejection, Waypoint
 from navbound.records.truth import TruthDoubts
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
-from navbound.run.pieces import AUXILIARY, covariance_status, in_pieces, states_truth, without_path
+from navbound.run.pieces import AUXILIARY, covariance_status, in_pieces, is_large, without_path
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
@@ -100,8 +99,8 @@ def material(
     operation : {"en-route", "approach", "ground"}, optional
         What was flown. Without it a recording on the path to a runway or on an approach procedure is an approach, any other is en route.
     piece_rows : int, optional
-        Read the one text table in pieces of about so many rows, whatever its size. Without it a table of 64 MiB or more is read so where
-        it has neither path nor truth. Results are the same.
+        Read the one text table or Parquet file in pieces of about so many rows, whatever its size. Without it a table of 64 MiB or more,
+        or of half a million rows of Parquet, is read so where it has neither path nor truth. Results are the same.
 
     Raises
     ------
@@ -131,9 +130,9 @@ def material(
     alone = len(names) == 1 and path is None and procedure is None and truth is None and not solve
     if piece_rows is not None and not alone:
         raise ConflictError(
-            "piece_rows", excludes=("path", "procedure", "truth", "solve"), because="only one text table alone is read in pieces"
+            "piece_rows", excludes=("path", "procedure", "truth", "solve"), because="only one table alone is read in pieces"
         )
-    if alone and _is_large(Path(names[0]), columns, piece_rows):
+    if alone and is_large(Path(names[0]), columns, piece_rows):
         solving.refuse(_TO_SOLVE)
         piece_rows = piece_rows or PIECE_ROWS
         return _in_pieces(in_pieces(Path(names[0]), columns, sigma_m=sigma_m, limits=limits, rnp_m=rnp_m, piece_rows=piece_rows), context)
@@ -229,11 +228,6 @@ def _stated(operation: Operation | None) -> Operation | None:
     if operation is not None and operation not in get_args(Operation):
         raise InputError("operation", operation, domain=" or ".join(get_args(Operation)))
     return operation
-
-
-def _is_large(table: Path, columns: Mapping[str, str] | None, piece_rows: int | None) -> bool:
-    """Whether a file is a text table that is read in pieces: a large one, or any where pieces are requested; a truth needs whole series."""
-    return is_text_table(table, LARGE_BYTES if piece_rows is None else 0) and not states_truth(table, columns)
 
 
 _TO_SOLVE = "there are no measurements to solve (RINEX observations, or a receiver's log with solve)"

@@ -169,7 +169,7 @@ def predict(request: Request, places: Sequence[PredictedPlace], *, command: str 
         limits=limits,
         lines=lines,
         holes=sorted(holes, key=lambda h: (h.start_s, h.place, h.limit, h.function)),
-        assumptions=_assumptions(request, unhealthy, start_ns),
+        assumptions=_assumptions(request, unhealthy, start_ns, sky.orbits.notes),
     )
 
 
@@ -288,10 +288,11 @@ def _unhealthy(request: Request, sky: Satellites) -> list[str]:
     return sorted(name for name in every - set(sky.orbits.satellite) if name[0] in used)
 
 
-def _assumptions(request: Request, unhealthy: list[str], start_ns: int | None) -> list[str]:
+def _assumptions(request: Request, unhealthy: list[str], start_ns: int | None, notes: Sequence[str]) -> list[str]:
     dated = "Orbits of no date: times count from their reference instant." if start_ns is None else "Orbits of the files at those times."
     return [
         f"{dated} {'Unhealthy by the almanac and not used: ' + ', '.join(unhealthy) + '.' if unhealthy else 'None is called unhealthy.'}",
+        *notes,
         f"Satellites are tracked above {math.degrees(request.mask_rad):g}°. Terrain, bank and interference are not modelled.",
         *entry(Place, "kind", request.kind).words(request.model),
         f"A hole is exact to the step of {request.times.step_s:g} s; one that is shorter may be missed.",

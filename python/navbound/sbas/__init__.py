@@ -321,6 +321,7 @@ def solve(
     FormatError
         An unreadable navigation file.
     """
+    observations.require_epochs()
     receiver = (mask_rad, noise_m, divergence_m)
     service = service_of(messages, navigation, mode=mode, receiver=receiver, test_signal=test_signal)
     return corrected_positions(

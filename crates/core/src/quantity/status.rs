@@ -252,6 +252,8 @@ reasons! {
     /// Two constellations, two positions.
     ConstellationsContradict, "constellations_contradict", Degraded,
         "two constellations contradict each other, and nothing says which of them is wrong";
+    /// Of a recorded position.
+    FewSatellites, "few_satellites", Degraded, "the recording counts fewer satellites than determine a position";
 }
 
 impl Reason {

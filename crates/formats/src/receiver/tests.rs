@@ -54,6 +54,24 @@ fn gps(number: u8) -> SatelliteId {
 /// MSAS, PRN 137, 2025-02-15 17:00:01 (cssrlib-data, MIT).
 const MSAS: [u32; 8] = [0xC60D_FFF8, 0x001F_FDFF, 0xC005_FFFF, 0xFDFF_FFFF, 0xFFC0_01FF, 0xDFFE_E3BA, 0xBA3A_EA7B, 0xAFA3_2580];
 
+/// Versions 0 and 1 are those of the interface descriptions; 0 has one signal a satellite.
+#[test]
+fn a_version_of_measurements_that_is_not_known_is_refused_and_counted() {
+    let of_version = |version: u8, tow_s: f64| {
+        let mut p = rawx(tow_s, &[(0, 5, 3, 2.2e7, 1, 7)])[6..].to_vec();
+        p.truncate(p.len() - 2);
+        p[13] = version;
+        ubx(0x15, &p)
+    };
+    let r = read(&[of_version(2, 1.0), of_version(1, 2.0), of_version(9, 3.0), of_version(0, 4.0)].concat()).unwrap().observations;
+    assert_eq!(r.n_epochs(), 2);
+    let reasons: Vec<&str> = r.refused.iter().map(|refusal| refusal.reason.as_str()).collect();
+    let sentence = |version: u8| format!("version {version} of RXM-RAWX, of which 0 and 1 are read");
+    assert!(reasons.len() == 2 && reasons[0].contains(&sentence(2)) && reasons[1].contains(&sentence(9)), "{reasons:?}");
+    // The second signal of GPS in version 1; the only one in version 0.
+    assert_eq!(r.codes[Constellation::Gps.index()].iter().filter(|code| code[0] == b'C').count(), 2);
+}
+
 #[test]
 fn measurements_become_a_table() {
     let first = rawx(456_000.998, &[(0, 5, 0, 2.2e7, 64_000, 7), (0, 5, 3, 2.2e7 + 5.0, 500, 3), (2, 11, 0, 2.5e7, 0, 5)]);

@@ -14,9 +14,9 @@ const SFRBX: [u8; 2] = [0x02, 0x13];
 const RAW_OLD: [u8; 2] = [0x02, 0x10];
 const SFRB_OLD: [u8; 2] = [0x02, 0x11];
 
-/// Messages that are read.
-/// Those of measurements.
+/// Messages of measurements.
 pub(super) const MEASUREMENTS: [[u8; 2]; 2] = [RAWX, RAW_OLD];
+/// Messages that are read.
 pub(super) const RAW: [[u8; 2]; 4] = [RAWX, SFRBX, RAW_OLD, SFRB_OLD];
 
 /// A pseudorange beyond this is none \[m\]: three times the way to a geostationary satellite. Provenance: ours.
@@ -37,8 +37,15 @@ pub(super) fn take(kind: [u8; 2], payload: &[u8], table: &mut Table, subframes: 
 
 fn rawx(p: &[u8], table: &mut Table) -> Option<()> {
     let (tow_s, week, count) = (f64_at(p, 0)?, u16_at(p, 8)?, u8_at(p, 11)?);
-    // Version 0 has no signal identifiers: one signal a satellite.
-    let single = u8_at(p, 13)? == 0;
+    // Version 0 has no signal identifiers: one signal a satellite. What another version holds where is not known.
+    let single = match u8_at(p, 13)? {
+        0 => true,
+        1 => false,
+        version => {
+            table.lose(&format!("version {version} of RXM-RAWX, of which 0 and 1 are read"));
+            return Some(());
+        }
+    };
     let Some(time) = time(week, tow_s) else {
         table.refuse("rcvTow, week", "not a time: the receiver does not know it yet");
         return Some(());

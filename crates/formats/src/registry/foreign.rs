@@ -26,10 +26,57 @@ pub(super) fn sirf(file: &File<'_>) -> bool {
 }
 
 pub(super) fn tsip(file: &File<'_>) -> bool {
+    packets(file, |packet| packet.len() > 1)
+}
+
+/// Garmin's packets have the frame of TSIP, and a size and a sum within it.
+pub(super) fn garmin(file: &File<'_>) -> bool {
+    let sound = |packet: &[u8]| {
+        let sum = packet.iter().fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
+        matches!(packet, [_, size, ..] if usize::from(*size) + 3 == packet.len()) && sum == 0
+    };
+    packets(file, sound)
+}
+
+pub(super) fn casic(file: &File<'_>) -> bool {
+    stream(file, b"\xba\xce", casic_frame)
+}
+
+pub(super) fn skytraq(file: &File<'_>) -> bool {
+    stream(file, b"\xa0\xa1", skytraq_frame)
+}
+
+pub(super) fn hemisphere(file: &File<'_>) -> bool {
+    stream(file, b"$BIN", hemisphere_frame)
+}
+
+pub(super) fn javad(file: &File<'_>) -> bool {
+    [b"JP".as_slice(), b"~~"].into_iter().any(|first| stream(file, first, javad_message))
+}
+
+/// The text log of Android's measurements: by the comments that describe it, or by its first line.
+pub(super) fn gnss_logger(file: &File<'_>) -> bool {
+    const LINES: usize = 64;
+    let begin = file.content.get(..file.content.len().min(1 << 14)).unwrap_or_default();
+    let described = begin.split(|byte| *byte == b'\n').take(LINES).filter_map(|line| line.strip_prefix(b"#")).any(|comment| {
+        let of_lines = [b"Raw,utcTimeMillis,".as_slice(), b"Raw,ElapsedRealtimeMillis,", b"Fix,Provider,Latitude"];
+        of_lines.iter().any(|words| comment.trim_ascii_start().starts_with(words))
+    });
+    let providers = [b"GPS".as_slice(), b"gps", b"FLP", b"fused", b"NLP", b"network"];
+    let first = begin.trim_ascii_start();
+    let fix = first
+        .strip_prefix(b"Fix,")
+        .is_some_and(|rest| providers.iter().any(|name| rest.strip_prefix(*name).is_some_and(|rest| rest.starts_with(b","))));
+    described || fix || matches!(first, [b'R', b'a', b'w', b',', b'0'..=b'9', ..])
+}
+
+/// Whether packets between 10 and 10 03 stand one behind the other, each of which is sound without its frame and its doubled bytes.
+fn packets(file: &File<'_>, sound: impl Fn(&[u8]) -> bool) -> bool {
     let start = file.content.get(..file.content.len().min(LONGEST * FRAMES)).unwrap_or_default();
-    memchr::memchr_iter(0x10, start)
-        .filter_map(|at| start.get(at..))
-        .any(|begun| (0..FRAMES).try_fold(begun, |rest, _| rest.get(tsip_packet(rest)?..)).is_some())
+    memchr::memchr_iter(0x10, start).filter_map(|at| start.get(at..)).any(|begun| {
+        let next = |rest: &'_ [u8]| tsip_packet(rest).filter(|(packet, _)| sound(packet)).map(|(_, length)| length);
+        (0..FRAMES).try_fold(begun, |rest, _| rest.get(next(rest)?..)).is_some()
+    })
 }
 
 /// Whether whole frames stand one behind the other from the first on; a stream may begin in the middle of one.
@@ -64,18 +111,57 @@ fn sirf_frame(rest: &[u8]) -> Option<usize> {
     (sum == u32::from(a) << 8 | u32::from(b)).then_some(end + 4)
 }
 
-/// Bytes of a packet: 10, an identifier, at most 300 bytes in which 10 stands twice, 10 03.
-fn tsip_packet(rest: &[u8]) -> Option<usize> {
+/// A packet, with what stands twice once, and its bytes in the file: 10, an identifier, at most 300 bytes in which 10 stands twice, 10 03.
+fn tsip_packet(rest: &[u8]) -> Option<(Vec<u8>, usize)> {
     const MOST: usize = 300;
     let &[0x10, id, ..] = rest else { return None };
-    let mut at = 2;
-    for n in 0..=MOST {
+    let (mut packet, mut at) = (vec![id], 2);
+    for _ in 0..=MOST {
         match rest.get(at..)? {
-            [0x10, 0x03, ..] => return (n > 0 && !matches!(id, 0x03 | 0x10)).then_some(at + 2),
+            [0x10, 0x03, ..] => return (packet.len() > 1 && !matches!(id, 0x03 | 0x10)).then_some((packet, at + 2)),
             [0x10, 0x10, ..] => at += 2,
             [0x10, ..] | [] => return None,
             _ => at += 1,
         }
+        packet.push(*rest.get(at - 1)?);
     }
     None
+}
+
+/// Bytes of a frame: BA CE, length, class, identifier, the payload, the sum of its words with the head.
+fn casic_frame(rest: &[u8]) -> Option<usize> {
+    let &[0xba, 0xce, low, high, class, id] = rest.first_chunk::<6>()? else { return None };
+    let length = usize::from(u16::from_le_bytes([low, high]));
+    let (payload, stated) = (rest.get(6..6 + length)?, rest.get(6 + length..)?.first_chunk::<4>()?);
+    let (words, odd) = payload.as_chunks::<4>();
+    let head = u32::from(id) << 24 | u32::from(class) << 16;
+    let sum = words.iter().fold(head.wrapping_add(length as u32), |sum, word| sum.wrapping_add(u32::from_le_bytes(*word)));
+    (odd.is_empty() && sum == u32::from_le_bytes(*stated)).then_some(10 + length)
+}
+
+/// Bytes of a frame: A0 A1, length, the message, the exclusive or of its bytes, 0D 0A.
+fn skytraq_frame(rest: &[u8]) -> Option<usize> {
+    let &[0xa0, 0xa1, high, low] = rest.first_chunk::<4>()? else { return None };
+    let end = 4 + usize::from(u16::from_be_bytes([high, low]));
+    let (message, &[sum, b'\r', b'\n']) = (rest.get(4..end)?, rest.get(end..)?.first_chunk::<3>()?) else { return None };
+    (message.iter().fold(0, |all, byte| all ^ byte) == sum).then_some(end + 3)
+}
+
+/// Bytes of a frame: $BIN, number of the block, length, the block, the sum of its bytes, 0D 0A.
+fn hemisphere_frame(rest: &[u8]) -> Option<usize> {
+    let &[b'$', b'B', b'I', b'N', _, _, low, high] = rest.first_chunk::<8>()? else { return None };
+    let end = 8 + usize::from(u16::from_le_bytes([low, high]));
+    let (block, &[s0, s1, b'\r', b'\n']) = (rest.get(8..end)?, rest.get(end..)?.first_chunk::<4>()?) else { return None };
+    let sum = block.iter().fold(0_u16, |sum, byte| sum.wrapping_add(u16::from(*byte)));
+    (sum == u16::from_le_bytes([s0, s1])).then_some(end + 4)
+}
+
+/// Bytes of a message: two characters, three hexadecimal digits of length, the body, and perhaps the end of a line.
+fn javad_message(rest: &[u8]) -> Option<usize> {
+    let (&[a, b], digits) = (rest.first_chunk::<2>()?, rest.get(2..5)?);
+    let length = core::str::from_utf8(digits).ok().filter(|text| !text.starts_with('+'))?;
+    let end = 5 + usize::from_str_radix(length, 16).ok()?;
+    let upper = digits.iter().all(|digit| digit.is_ascii_digit() || (b'A'..=b'F').contains(digit));
+    let line_end = rest.get(end..)?.iter().take(2).take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+    (upper && end > 5 && (0x30..=0x7e).contains(&a) && (0x30..=0x7e).contains(&b)).then_some(end + line_end)
 }

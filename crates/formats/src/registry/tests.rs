@@ -41,6 +41,20 @@ fn signs_name_their_format() {
         (b"time,lat,lon\n1,2,3\n".to_vec(), "day.csv", "csv"),
         (b"\x10\x41abc\x10\x03\x10\x42a\x10\x10\x10\x03\x10\x43a\x10\x03".to_vec(), "", "tsip"),
         (b"\x10\x41abc\x10\x03\x10\x42a\x10\x10\x10\x03\x10\x43a\x10\x04".to_vec(), "", "csv"),
+        // Size 2 and a sum that makes the whole 0 modulo 256.
+        (b"\x10\x33\x02ab\x08\x10\x03".repeat(3), "", "garmin"),
+        (b"\x10\x33\x02ab\x09\x10\x03".repeat(3), "", "tsip"),
+        // The query of versions in Trimble's second form.
+        (b"\x10\x90\x00\x00\x02\x00\x92\x10\x03".repeat(3), "", "tsip"),
+        (b"\xba\xce\x04\x00\x01\x03\x01\x00\x00\x00\x05\x00\x01\x03".repeat(3), "", "casic"),
+        (b"\xa0\xa1\x00\x02\xe5\x01\xe4\r\n".repeat(3), "", "skytraq"),
+        (b"\xa0\xa1\x00\x02\xe5\x01\xe5\r\n".repeat(3), "", "csv"),
+        (b"$BIN\x01\x00\x02\x00\xff\x02\x01\x01\r\n".repeat(3), "", "hemisphere"),
+        (b"JP003RLO\r\n~~005\x01\x02\x03\x04\x05PV002ab\n".to_vec(), "", "javad"),
+        (b"# Raw,utcTimeMillis,TimeNanos\nRaw,1,2\n".to_vec(), "gnss_log.txt", "gnss-logger"),
+        (b"Fix,GPS,52.1,0.1,86,1,3.5,0,1741096809398\n".to_vec(), "", "gnss-logger"),
+        // Their first bytes alone, in the middle of other data, make no log of a receiver.
+        (b"\x00\x01$@\x00\x00\x00\x4f\x60\x00\xb5\x62\x01\x07\x5c\x00".to_vec(), "", "csv"),
         (b"\xa0\xa2\x00\x02\x01\x02\x00\x03\xb0\xb3".to_vec(), "", "sirf"),
         (b"\xa0\xa2\x00\x02\x01\x02\x00\x04\xb0\xb3".to_vec(), "", "csv"),
     ];

@@ -19,7 +19,6 @@ pub(crate) use check::crc16;
 pub use frame::{Damage, Family, Frame};
 pub use framer::{BadRest, Framer, Protocol};
 pub use search::{Among, Frames, Place};
-#[cfg(test)]
 pub(crate) use search::{Look, look};
 
 /// Longest frame that is kept until its end arrives \[B\]. A length field above it is no length; the longest UBX frame that is believed has

@@ -108,3 +108,12 @@ def of_satellites(rows: pl.DataFrame) -> pl.DataFrame:
         return rows
     rows = rows.with_columns(pl.lit("ok").alias("status"))
     return status.overridden(rows, pl.select(pl.when(few).then(pl.lit("coasting"))).to_series())
+
+
+def of_counted_satellites(rows: pl.DataFrame) -> tuple[pl.DataFrame, int]:
+    """Positions of a receiver's log beside a count of satellites that determines none: which of the two is wrong nobody knows."""
+    few = (rows["n_sv"] < _core.LEAST_SATELLITES).fill_null(value=False) if "n_sv" in rows.columns else pl.Series([False])
+    if not few.any():
+        return rows, 0
+    rows = rows.with_columns(pl.lit("ok").alias("status"))
+    return status.overridden(rows, pl.select(pl.when(few).then(pl.lit("few_satellites"))).to_series()), int(few.sum())

@@ -1,4 +1,4 @@
-"""A text table of any size to pieces of the epoch table. The largest thing in memory is its column of times."""
+"""A text table or a Parquet file of any size to pieces of the epoch table. The largest thing in memory is its column of times."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from navbound.read.checks.rejections import Rejections, Tally
 from navbound.read.checks.repeats import left_out
 from navbound.read.pieces.chunks import CHUNK_BYTES, Chunks
 from navbound.read.pieces.order import Pieces
+from navbound.read.pieces.parquet import batches, is_parquet
+from navbound.read.source import Source, digested
 from navbound.read.tables.columns import POSITION, assign
 from navbound.read.tables.table import LINE, Layout, layout_of, rows_of
 from navbound.read.tables.values import Late, Values, one_row_a_time, texts
@@ -98,7 +100,7 @@ class PiecedReading:
 
 
 def read_pieces(path: str | Path, *, columns: Mapping[str, str] | None = None, piece_rows: int = PIECE_ROWS) -> PiecedReading:
-    """Read a recorded track from a text table of any size.
+    """Read a recorded track from a text table or a Parquet file of any size.
 
     Parameters
     ----------
@@ -114,63 +116,122 @@ def read_pieces(path: str | Path, *, columns: Mapping[str, str] | None = None, p
     FormatError, InputError
         As :func:`navbound.read.read`.
     """
-    first = _FirstPass(Path(path), columns, max(1, piece_rows // _SAMPLES))
-    for lines in first.chunks:
-        first.take(lines)
+    path, stride = Path(path), max(1, piece_rows // _SAMPLES)
+    first: _FirstPass = _OfParquet(path, columns, stride) if is_parquet(path) else _OfText(path, columns, stride)
+    first.read()
     return _second_pass(first, max(1, piece_rows // first.stride))
 
 
 class _FirstPass:
     """Rows in SI, with their times as they are written."""
 
+    unit = "line"
+
     def __init__(self, path: Path, columns: Mapping[str, str] | None, stride: int) -> None:
-        # Short chunks for short pieces, so that what depends on a chunk is seen to depend on nothing.
-        self.chunks = Chunks(path, min(CHUNK_BYTES, 64 * _SAMPLES * stride))
         self.path, self.stride, self.n_rows = path, stride, 0
         self.parts, self.places = Spool(), list[tuple[int, int]]()
         self.sample, self.names = list[pl.DataFrame](), set[str | None]()
-        self.rejections = Rejections(path)
+        self.rejections = Rejections(path, self.unit)
         self._columns = columns
-        self._layout: Layout | None = None
-        self._bad: tuple[str, int, int, str] | None = None
 
-    def take(self, lines: pl.DataFrame) -> None:
-        """The next lines of the file."""
-        if lines.is_empty():
+    @property
+    def source(self) -> Source:
+        """The file without its content; digest and size are those of what was read."""
+        raise NotImplementedError
+
+    def read(self) -> None:
+        """Every row of the file."""
+        raise NotImplementedError
+
+    def named(self, names: list[str], frame: pl.DataFrame) -> None:
+        """What the columns of the first rows are."""
+        self.mapping: Assignment = assign(names, self._columns, self.path, texts=texts(frame))
+        self.values = Values(self.path, self.source.stem, self.mapping, list(POSITION))
+
+    def keep(self, frame: pl.DataFrame) -> None:
+        """The next rows."""
+        if frame.is_empty():
             return
-        if self._layout is None:
-            self._layout = layout_of(self.path, lines)
-            words = texts(rows_of(self.path, self._layout, lines[1:]).frame)
-            self.mapping: Assignment = assign([name for name in self._layout.names if name], self._columns, self.path, texts=words)
-            self.values = Values(self.path, self.chunks.source.stem, self.mapping, list(POSITION))
-            lines = lines[1:]
-        rows = rows_of(self.path, self._layout, lines)
-        self.n_rows += rows.n_rows
-        if rows.bad is not None:
-            before = self._bad or (rows.bad[0], 0, *rows.bad[2:])
-            self._bad = (before[0], before[1] + rows.bad[1], *before[2:])
-        if rows.frame.is_empty():
-            return
-        part = self.values.take(rows.frame)
+        part = self.values.take(frame)
         self.places.append(self.parts.put(part))
         self.sample.append(self.values.keys(part.gather_every(self.stride)))
         self.names |= set(part["track"].unique()) if "track" in part.columns else {None}
 
     def checked(self) -> None:
         """Refuse a file without rows, or with too many that are none."""
-        if self._layout is None:
-            raise FormatError(self.path, "nothing but comments")
         if self.n_rows == 0:
             raise FormatError(self.path, "no rows below the header")
-        if self._bad is not None:
-            self.rejections.add(*self._bad)
         self.rejections.refuse_if_too_many(self.n_rows)
+
+
+class _OfText(_FirstPass):
+    """Lines of a text table."""
+
+    def __init__(self, path: Path, columns: Mapping[str, str] | None, stride: int) -> None:
+        super().__init__(path, columns, stride)
+        # Short chunks for short pieces, so that what depends on a chunk is seen to depend on nothing.
+        self._chunks = Chunks(path, min(CHUNK_BYTES, 64 * _SAMPLES * stride))
+        self._layout: Layout | None = None
+        self._bad: tuple[str, int, int, str] | None = None
+
+    @property
+    def source(self) -> Source:
+        return self._chunks.source
+
+    def read(self) -> None:
+        for lines in self._chunks:
+            self._take(lines)
+
+    def _take(self, lines: pl.DataFrame) -> None:
+        if lines.is_empty():
+            return
+        if self._layout is None:
+            self._layout = layout_of(self.path, lines)
+            self.named([name for name in self._layout.names if name], rows_of(self.path, self._layout, lines[1:]).frame)
+            lines = lines[1:]
+        rows = rows_of(self.path, self._layout, lines)
+        self.n_rows += rows.n_rows
+        if rows.bad is not None:
+            before = self._bad or (rows.bad[0], 0, *rows.bad[2:])
+            self._bad = (before[0], before[1] + rows.bad[1], *before[2:])
+        self.keep(rows.frame)
+
+    def checked(self) -> None:
+        if self._layout is None:
+            raise FormatError(self.path, "nothing but comments")
+        if self.n_rows and self._bad is not None:
+            self.rejections.add(*self._bad)
+        super().checked()
+
+
+class _OfParquet(_FirstPass):
+    """Batches of a Parquet file."""
+
+    unit = "record"
+
+    def __init__(self, path: Path, columns: Mapping[str, str] | None, stride: int) -> None:
+        super().__init__(path, columns, stride)
+        self._source = Source(path, b"", "", 0)
+
+    @property
+    def source(self) -> Source:
+        return self._source
+
+    def read(self) -> None:
+        # Batches of few rows for short pieces, as the chunks of a text.
+        for batch in batches(self.path, min(PIECE_ROWS, _SAMPLES * self.stride)):
+            if self.n_rows == 0:
+                self.named(batch.columns, batch)
+            counted = batch.with_columns(pl.int_range(self.n_rows + 1, self.n_rows + batch.height + 1).alias(LINE))
+            self.n_rows += batch.height
+            self.keep(counted)
+        self._source = digested(self.path)
 
 
 def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
     """Rows with their times, distributed to pieces."""
     first.checked()
-    values, source = first.values, first.chunks.source
+    values, source = first.values, first.source
     values.understand()
     names = sorted({source.stem if name is None else name for name in first.names})
     pieces = Pieces(names, values.when(pl.concat(first.sample)), every)
@@ -187,7 +248,7 @@ def _second_pass(first: _FirstPass, every: int) -> PiecedReading:
         with_levels |= _with(out, "hpl_m")
     first.parts.close()
     values.tally.into(first.rejections)
-    values.notes.extend(late.words(source.path, "line"))
+    values.notes.extend(late.words(source.path, first.unit))
     if n == 0:
         first.rejections.refuse_if_too_many(first.n_rows)
         raise FormatError(source.path, f"no row holds a time, a latitude and a longitude{first.rejections.in_words()}")

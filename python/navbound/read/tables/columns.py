@@ -560,6 +560,19 @@ def _unit_of_time(name: str) -> str:
     return f"{scale}_{size}" if f"{scale}_{size}" in TIME_UNITS else f"{scale}_s"
 
 
+_TRUTH_ALIASES = frozenset(alias for q in QUANTITIES if q.name in {"truth_lat_rad", "truth_lon_rad"} for alias in q.aliases)
+
+
+def truth_as_position(names: Iterable[str]) -> dict[str, str]:
+    """Of a recording that holds a true position and no estimate, its columns as those of a position: quantity to ``column:unit``."""
+    of_truth = {"truth_lat_rad": "est_lat_rad", "truth_lon_rad": "est_lon_rad", "truth_h_m": "est_h_m"}
+    aliases = {alias: (q.name, unit) for q in QUANTITIES for alias, unit in q.aliases.items()}
+    known = {name: aliases[_plain(name)[0]] for name in names if _plain(name)[0] in aliases}
+    if {"est_lat_rad", "est_lon_rad"} & {quantity for quantity, _ in known.values()}:
+        return {}
+    return {of_truth[quantity]: f"{name}:{unit}" for name, (quantity, unit) in known.items() if quantity in of_truth}
+
+
 def declare(*columns: str) -> str:
     """How a person declares what a column is, from the command line and in Python."""
     options = " ".join(f'--map "{column}"' for column in columns)
@@ -580,6 +593,11 @@ def _require(columns: dict[str, Column], times: list[Column], names: list[str], 
         if not best:
             raise FormatError(path, "the first line names no columns: a table begins with their names", 1, need)
         others = f" and {len(names) - len(best)} more" if len(names) > len(best) else ""
+        truth = [n for n in names if _plain(n)[0] in _TRUTH_ALIASES]
+        if need in POSITION and truth:
+            of_truth = f"the file has the true position ({', '.join(truth[:3])}) and no estimate"
+            advice = "name it with --truth beside the recording that it is the truth of"
+            raise FormatError(path, f"no column holds it; {of_truth}: {advice}", 1, need)
         unit = {"time": _unit_of_time(best[0]), "est_lat_rad": "deg", "est_lon_rad": "deg"}.get(need, "m")
         more = f"; units: {', '.join(TIME_UNITS)}" if need == "time" else ""
         raise FormatError(

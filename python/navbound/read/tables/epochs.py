@@ -13,9 +13,9 @@ from navbound.errors import FormatError
 from navbound.read.checks import levels
 from navbound.read.checks.rejections import Rejections, Tally
 from navbound.read.checks.repeats import left_out
-from navbound.read.checks.stated import of_satellites
+from navbound.read.checks.stated import of_counted_satellites
 from navbound.read.source import Source, load
-from navbound.read.tables.columns import POSITION, Assignment, assign
+from navbound.read.tables.columns import POSITION, Assignment, assign, truth_as_position
 from navbound.read.tables.table import LINE, Table, table
 from navbound.read.tables.values import Late, Values, one_row_a_time, texts
 from navbound.records.frames import LEFT_OUT
@@ -103,10 +103,12 @@ def read_beside(path: str | Path, columns: Mapping[str, str], where_present: Map
     FormatError, InputError
         As :func:`read`.
     """
-    return _read(load(path), columns, POSITION, where_present)
+    return _read(load(path), columns, POSITION, where_present, beside=True)
 
 
-def _read(source: Source, columns: Mapping[str, str] | None, needs: Sequence[str], where_present: Mapping[str, str]) -> Reading:
+def _read(
+    source: Source, columns: Mapping[str, str] | None, needs: Sequence[str], where_present: Mapping[str, str], *, beside: bool = False
+) -> Reading:
     of = source.format
     if of.id == "rtklib" or of.read is not None:
         reading = _rtklib(source) if of.read is None else _log(source, of.read(source))
@@ -114,6 +116,9 @@ def _read(source: Source, columns: Mapping[str, str] | None, needs: Sequence[str
             reading.notes.append(f"Columns named by the caller change nothing in {source.path.name}, whose format names its own.")
         return reading
     content = table(source)
+    if beside:
+        # A file of the truth may call its positions so.
+        columns = truth_as_position(content.columns) | dict(columns or {})
     mapping = assign(content.columns, columns, source.path, needs=needs, texts=texts(content.frame), where_present=where_present)
     return _epochs(source, content, mapping, [name for name in POSITION if name in needs])
 
@@ -152,7 +157,7 @@ def _rtklib(source: Source) -> Reading:
         example = f"quality {d['quality'][measured.arg_min()]}"
         rejections.add("Q: not a measured position", unmeasured.height, unmeasured[LINE][0], example, malformed=False)
     # Without the field the reader has 0.
-    out = of_satellites(out) if _STATES_SATELLITES.search(text) else out.drop("n_sv")
+    out = of_counted_satellites(out)[0] if _STATES_SATELLITES.search(text) else out.drop("n_sv")
     out, contradicting = _in_order(out, rejections, notes)
     rejections.refuse_if_too_many(d["n_rows"])
     _not_empty(source, out, rejections)
@@ -170,6 +175,10 @@ def _log(source: Source, log: receivers.Log) -> Reading:
     rejections.refuse_if_too_many(log.n_rows)
     _not_empty(source, log.epochs, rejections)
     out = log.epochs.rename({"record": LINE}).with_columns(pl.lit(source.stem).alias("track"), pl.selectors.float().fill_nan(None))
+    # Of GGA: the count of other messages is part of their fix.
+    out, n_few = of_counted_satellites(out) if source.format.id == "nmea" else (out, 0)
+    if n_few:
+        log.notes.append(f"{source.path.name}: {n_few} positions count fewer satellites than determine one; they are degraded.")
     out, contradicting = _in_order(out, rejections, log.notes)
     empty = [c for c in out.columns if out[c].is_null().all()]
     # The receiver lived and had no position: a row of a table without one counts in the same way.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -167,6 +168,9 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
     bare = pl.col("text").str.replace_all(r'"[^"]*"', "")
     counted = lines.with_columns(n=bare.str.count_matches(layout.separator, literal=True) + 1, open=bare.str.contains('"', literal=True))
     n_fields = len(layout.names)
+    # Of a field in quotation marks nothing stands behind the second of them.
+    behind = pl.col("text").str.contains(f'(?:^|{re.escape(layout.separator)})"(?:[^"]|"")*"[^"{re.escape(layout.separator)}]')
+    counted = counted.with_columns(open=pl.col("open") | behind)
     good = counted.filter(pl.col("n") == n_fields, ~pl.col("open"))
     bad = counted.filter((pl.col("n") != n_fields) | pl.col("open"))
     refused = None
@@ -178,7 +182,9 @@ def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:
     try:
         frame = pl.read_csv(io.BytesIO(body), separator=layout.separator, has_header=False, skip_rows=1, schema=schema)
     except pl.exceptions.PolarsError as e:
-        raise FormatError(path, f"not a table: {e}") from e
+        first = good.filter(pl.col("text").str.contains('"', literal=True))
+        line = int(first[LINE][0]) if first.height else int(good[LINE][0])
+        raise FormatError(path, "not a table: quotation marks that do not enclose whole fields", line) from e
     if frame.height != good.height:
         raise FormatError(path, f"not a table: {good.height} lines make {frame.height} rows")
     named = {str(i): name for i, name in enumerate(layout.names) if name}
@@ -206,8 +212,13 @@ def _parquet(source: Source) -> Table:
         require_free(source, n_rows)
         frame = pl.read_parquet(io.BytesIO(source.content))
     except (pl.exceptions.PolarsError, OSError) as e:
-        raise FormatError(source.path, f"damaged Parquet file: {str(e).splitlines()[0]}") from e
+        raise FormatError(source.path, f"damaged Parquet file: {words_of(e)}") from e
     return Table(_counted(frame), Rejections(source.path, "record"), frame.height)
+
+
+def words_of(error: Exception) -> str:
+    """The first sentence of the table library, without what it advises its own users."""
+    return re.split(r"\n|\. |, (?:try|consider)|You might", str(error), maxsplit=1)[0].strip()[:160]
 
 
 def _json(source: Source) -> Table:

@@ -164,6 +164,7 @@ def _assumptions(prepared: Setup) -> list[str]:
         "The covariance is that of the flight's own filter on a flight whose sensors have no errors.",
         "What a filter rejects in the air, and what it adds to its covariance for a measurement that contradicts it, is not known before.",
         f"{orbits} {_failures(prepared)}",
+        *prepared.orbits.notes,
         f"Flight technical error, 95 %: {en_route:g} NM, on approach {approach:g} NM ({mark}).",
         f"The levels are those of {equipment.monitor} with the satellites of {prepared.systems()}; the alert limit is the RNP (inferred).",
         *entry(Place, "monitor", equipment.monitor).words(equipment.model),

@@ -152,7 +152,8 @@ def _source(system: str, name: str, start: datetime | None, duration_s: float) -
             raise InputError(
                 "geometry.start", str(start), domain=f"a day within a week of the almanac {path.name}, which is {days:.1f} days earlier"
             )
-    return _Source(orbits, begins_s, f"{len(orbits.satellite)} {TITLES[system]} satellites of {path.name}", dated=True)
+    notes = f" ({' '.join(orbits.notes)})" if orbits.notes else ""
+    return _Source(orbits, begins_s, f"{len(orbits.satellite)} {TITLES[system]} satellites of {path.name}{notes}", dated=True)
 
 
 def _from_navigation(system: str, path: Path, start_ns: int | None, duration_s: float) -> _Source:

@@ -3,7 +3,7 @@
 use super::decoder::{Decoder, Item};
 use super::epoch::Ends;
 use super::nmea::Dated;
-use super::{Kind, Note, Position};
+use super::{Kind, Note, Position, Reason};
 use crate::stream::{Among, Frame, Frames, Place};
 use navbound_core::quantity::GpsTime;
 use std::collections::BTreeMap;
@@ -120,9 +120,9 @@ impl Log {
         }
     }
 
-    fn position(&mut self, position: Position) {
+    fn position(&mut self, mut position: Position) {
         self.n_rows += 1;
-        if let Some(absent) = position.absent {
+        if let Some(absent) = position.absent.take_if(|absent| absent.reason != Reason::FewSatellites) {
             self.absent.push(position.time);
             self.leave_out(absent.reason.id(), absent.reason.damaged(), position.record, absent.stated);
             return;

@@ -100,6 +100,8 @@ pub enum Reason {
     NoFix,
     /// Another statement of the same epoch says that there is no such position.
     Contradicted,
+    /// The message of the position itself counts fewer satellites than determine one. A log keeps such a position, as one that is trusted less.
+    FewSatellites,
     /// The satellites hardly determine the position, by its own dilution.
     Dilution,
     /// Second 60 on a day that had none.
@@ -119,6 +121,7 @@ impl Reason {
             Self::NotMeasured => "no_position",
             Self::NoFix => "no_fix",
             Self::Contradicted => "contradicted",
+            Self::FewSatellites => "few_satellites",
             Self::Dilution => "implausible_dilution",
             Self::NoSuchLeapSecond => "no_such_leap_second",
             Self::OutsideDomain => "outside_domain",

@@ -111,7 +111,8 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
     let speed_mps = sentence(RMC).and_then(|rmc| rmc.number(7)).filter(|knots| *knots >= 0.0).map(|knots| knots * KNOT_MPS);
     let track_rad = sentence(RMC).and_then(|rmc| rmc.number(8)).filter(|degrees| (0.0..=360.0).contains(degrees)).map(f64::to_radians);
     let usable = measured && lat_rad.is_some() && lon_rad.is_some();
-    let no_fix = || Absent { reason: Reason::NoFix, stated: gga.stated() };
+    let absent = |reason: Reason| move |stated: String| Absent { reason, stated };
+    let few = || gga.number(7).filter(|count| *count < f64::from(LEAST_SATELLITES)).map(|count| format!("{count} satellites"));
     let worse = enlarged.is_some_and(|(_, worse)| worse).then_some(Note::WorseExpectedErrors);
     Some(Position {
         record,
@@ -124,7 +125,11 @@ pub(super) fn position(messages: &[Message]) -> Option<Position> {
         ground_track_rad: track_rad,
         n_sv: gga.number(7).map(|count| count as u32),
         hdop: gga.number(8),
-        absent: if usable { against.map(|stated| Absent { reason: Reason::Contradicted, stated }) } else { Some(no_fix()) },
+        absent: if usable {
+            against.map(absent(Reason::Contradicted)).or_else(|| few().map(absent(Reason::FewSatellites)))
+        } else {
+            Some(absent(Reason::NoFix)(gga.stated()))
+        },
         fields: if speed_mps.is_some() { FIELDS_AND_SPEED } else { FIELDS },
         covariance_from: if of_gst.is_some() { Some("GST") } else { of_gbs.map(|_| "GBS") },
         notes: [(altitude.is_some() && separation.is_none()).then_some(Note::NoSeparation), worse.or(of_gbs.map(|_| Note::ExpectedErrors))],
@@ -157,8 +162,7 @@ fn contradiction<'a>(gga: &Sentence<'a>, sentence: &impl Fn(u32) -> Option<Sente
         (apart_m > ONE_PLACE_M + resolution_m).then(|| format!("position of {name} {apart_m:.0} m away"))
     });
     let flat = || sentence(GSA).map(|gsa| dimensions(gsa.0)).filter(|dimensions| *dimensions < GSA_DIMENSIONS);
-    let few = || gga.number(7).filter(|count| *count < f64::from(LEAST_SATELLITES));
-    stated.or_else(|| flat().map(|fix| format!("GSA fix {fix}"))).or_else(|| few().map(|count| format!("{count} satellites")))
+    stated.or_else(|| flat().map(|fix| format!("GSA fix {fix}")))
 }
 
 /// Navigational statuses of NMEA 0183 version 4.1 that speak against a position: caution and unsafe. `S` is safe, `V` says that none is given.

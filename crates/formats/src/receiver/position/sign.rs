@@ -1,6 +1,7 @@
 //! Which receiver wrote a log, recognised by the beginnings of its messages.
 
 use super::Kind;
+use crate::stream::{Among, Look, look};
 use memchr::{memchr_iter, memmem};
 
 /// Bytes in which a message of a log must begin \[B\]. Provenance: ours.
@@ -8,6 +9,9 @@ const LOOK_AT: usize = 1 << 17;
 
 /// Longest sentence with its line end and the time of its arrival \[B\]. Provenance: ours.
 const LONGEST_SENTENCE: usize = 1100;
+
+/// Places at which a frame may begin that are tried. Provenance: ours.
+const MOST_TRIES: usize = 4096;
 
 /// The receiver whose positions are read: of a mixed log the first of [`Kind::ALL`] with a message that holds a position, else the first
 /// with any message. Damaged messages count: a damaged log is a log.
@@ -33,11 +37,27 @@ fn position(bytes: &[u8], kind: Kind) -> bool {
 /// Whether any message begins.
 fn message(bytes: &[u8], kind: Kind) -> bool {
     match kind {
-        Kind::Ubx => behind(bytes, b"\xb5\x62").any(|rest| matches!(rest, [0x01..=0x29, 0x00..=0x92, ..])),
-        Kind::Sbf => behind(bytes, b"$@").any(|rest| matches!(rest, [_, _, _, 0x0f..=0xff, _, 0x00..=0x1f, ..])),
+        Kind::Ubx => begins_a_chain(bytes, b"\xb5\x62", |rest| match rest {
+            [0x01..=0x29, 0x00..=0x92, low, high, ..] => Some(8 + usize::from(u16::from_le_bytes([*low, *high]))),
+            _ => None,
+        }),
+        Kind::Sbf => begins_a_chain(bytes, b"$@", |rest| match rest {
+            [_, _, _, 0x0f..=0xff, low, high @ 0x00..=0x1f, ..] => Some(usize::from(u16::from_le_bytes([*low, *high]))),
+            _ => None,
+        }),
         Kind::Novatel => memmem::find(bytes, b"\xaa\x44\x12\x1c").is_some() || behind(bytes, b"#").any(named_log),
         Kind::Nmea => behind(bytes, b"$").any(whole_sentence),
     }
+}
+
+/// Whether a frame of the sign begins the bytes, or is whole, or has another behind it: two bytes alone stand in any binary file. `length` is
+/// that of a frame by what follows its sign.
+fn begins_a_chain(bytes: &[u8], sign: &[u8], length: impl Fn(&[u8]) -> Option<usize>) -> bool {
+    let whole = |at: usize| bytes.get(at..).is_some_and(|rest| matches!(look(rest, Among::Raw, true), Look::Frame { .. }));
+    memmem::find_iter(bytes, sign).take(MOST_TRIES).any(|at| {
+        let stated = bytes.get(at + sign.len()..).and_then(&length).filter(|length| *length >= sign.len());
+        stated.is_some_and(|length| at == 0 || bytes.get(at + length..).is_some_and(|rest| rest.starts_with(sign)) || whole(at))
+    })
 }
 
 /// What follows each place of a sign.

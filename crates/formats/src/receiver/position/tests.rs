@@ -237,7 +237,14 @@ fn what_another_sentence_says_against_a_position_takes_it_away() {
     }
     // A sentence of another time says nothing of this one.
     assert_eq!(reasons(&[ZDA, GGA, GST, &rmc("V", "N", "4900.0000").replace("120000", "120001")]), []);
-    assert_eq!(reasons(&[ZDA, &GGA.replace(",08,", ",00,"), GST]), [("contradicted", "0 satellites".to_owned())]);
+    // Its own count of satellites takes no position away: some receivers always write 0. A log keeps it, a stream does not use it.
+    let few = read_sentences(&[ZDA, &GGA.replace(",08,", ",00,"), GST]);
+    assert_eq!((few.positions.len(), few.left_out.len(), few.absent.len()), (1, 0, 0));
+    let stated = few.positions[0].absent.as_ref().map(|absent| (absent.reason, absent.stated.as_str()));
+    assert_eq!((few.positions[0].n_sv, stated), (Some(0), Some((Reason::FewSatellites, "0 satellites"))));
+    // What another sentence says counts before it.
+    let both = reasons(&[ZDA, &GGA.replace(",08,", ",00,"), GST, &rmc("V", "N", "4900.0000")]);
+    assert_eq!(both, [("contradicted", "RMC status V".to_owned())]);
 }
 
 #[test]
