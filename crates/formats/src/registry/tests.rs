@@ -71,3 +71,15 @@ fn a_toy_format_is_one_entry() {
     let of = |content: &[u8]| recognise(&formats, &File { content, name: "" }).unwrap().id;
     assert_eq!((of(b"#TOY,1,2"), of(b"PAR1")), ("toy", "parquet"));
 }
+
+proptest::proptest! {
+    /// Any bytes behind any sign, cut anywhere, are of some format.
+    #[test]
+    fn no_bytes_are_too_strange(parts in proptest::collection::vec((0_usize..12, proptest::collection::vec(proptest::num::u8::ANY, 0..40)), 0..12), cut in 0_usize..8) {
+        let signs: [&[u8]; 12] =
+            [b"\xb5\x62\x01\x07", b"$@", b"\x10", b"\x10\x03", b"\xba\xce", b"\xa0\xa1", b"$BIN", b"JP0FF", b"~~005", b"\xd3\x00", b"\xa0\xa2", b"Fix,GPS,"];
+        let content: Vec<u8> = parts.iter().flat_map(|(sign, junk)| [signs[*sign], junk.as_slice()].concat()).collect();
+        let content = content.get(..content.len().saturating_sub(cut)).unwrap_or_default();
+        proptest::prop_assert!(!id(content, "log").is_empty());
+    }
+}
