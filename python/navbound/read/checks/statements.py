@@ -275,6 +275,15 @@ _NO_POSITION_WORDS = r"\b(no (fix|position|solution|navigation|gps|gnss|raim|int
 """Words of alarms in a free text, words that take them back, and sentences without either that say the same. Provenance: ours."""
 
 
+def alarming(texts: pl.DataFrame) -> list[str]:
+    """Columns of texts in which any row has a word of an alarm; few have, and a table may have thousands."""
+    if not texts.width:
+        return []
+    words = f"(?i){_ALARM}|{_NO_POSITION_WORDS}".replace(r"\b(", "(").replace(r")\b", ")").replace(" ", r"[\s_-]+")
+    has = texts.select(pl.all().str.contains(words).any().fill_null(value=False)).row(0)
+    return [name for name, any_row in zip(texts.columns, has, strict=True) if any_row]
+
+
 def alarms(raw: pl.Series) -> Stated:
     """Read a column of free texts that nothing else reads: a message of a receiver or a crew. A text that takes an alarm back is named."""
     text = raw.str.to_lowercase().str.replace_all(r"[_\-]+", " ")

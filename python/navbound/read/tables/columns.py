@@ -190,7 +190,8 @@ TIME_NAMES: dict[str, str] = {
     "time_ns": "gps_ns", "gps_time_ns": "gps_ns", "gps_time_s": "gps_s", "gps_s": "gps_s",
     "gps_week": "gps_week", "week": "gps_week", "gps_tow": "gps_tow_s", "gps_tow_s": "gps_tow_s", "tow_s": "gps_tow_s", "tow": "gps_tow_s",
     "timestamp": "utc", "time": "utc", "utc": "utc", "datetime": "utc", "time_utc": "utc", "utc_time": "utc",
-    "unix_time": "utc_s", "unix_time_s": "utc_s", "time_s": "utc_s", "timestamp_ms": "utc_ms", "time_ms": "utc_ms",
+    "unix_time": "utc_s", "unix_time_s": "utc_s", "time_s": "utc_s", "timestamp_ms": "utc_ms",
+    "unixtimemillis": "utc_ms", "unix_time_millis": "utc_ms", "utctimemillis": "utc_ms", "time_ms": "utc_ms",
     "time_utc_usec": "utc_us", "utc_us": "utc_us", "timestamp_us": "utc_us", "time_us": "utc_us", "timeus": "utc_us",
 }  # fmt: skip
 """Known names of time columns to the way they are written."""

@@ -221,8 +221,9 @@ class Values:
     def _statements(self, frame: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
         """What columns of validity and of alerts state."""
         stated = [(name, kind.effect, statements.stated(kind, frame[name])) for name, kind in self._mapping.statements]
-        texts = [name for name in self._mapping.unused if frame.schema.get(name) == pl.String]
-        stated += [(name, "alert", statements.alarms(frame[name])) for name in texts]
+        kinds = frame.schema
+        texts = frame.select([name for name in self._mapping.unused if kinds.get(name) == pl.String])
+        stated += [(name, "alert", statements.alarms(texts[name])) for name in statements.alarming(texts)]
         read = {column.name for column in self._mapping.columns.values()}
         for name, _, each in stated:
             if name in read:

@@ -124,7 +124,7 @@ def summary(material: Material, epochs: Frames, events: pl.DataFrame, ids: Seque
         Of accuracy and of integrity. [1]
     """
     judging = ids[0]
-    read = ("phase", "rnp_m", "along_m", "integrity_compared_m", *NEIGHBOURS)
+    read = ("phase", "rnp_m", "along_m", "integrity_compared_m", "reason_id", *NEIGHBOURS)
     doubted = ("hpl_m", ERROR, ALERT, WORSE, CONTAINMENT)
     names = [*read, *doubted, method(judging).column, method(judging).integrity_column]
     sums = _Sums(material, judging, events)

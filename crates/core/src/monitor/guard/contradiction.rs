@@ -61,7 +61,7 @@ pub struct Contradiction {
     before: bool,
     /// While it was there the positions left the way that their own rates lead.
     jumped: bool,
-    /// Where the tests did not fail since, they would not have failed with the covariances from before it.
+    /// Where the tests did not fail since, they were usual with the covariances from before it.
     returned: bool,
     starts: [Option<GpsTime>; STARTS_MOST],
     started: Option<GpsTime>,
@@ -71,8 +71,9 @@ pub struct Contradiction {
 }
 
 impl Contradiction {
-    /// The tests of an instant, of a filter whose attitude is settled or not; `back` where they would not fail with the covariances from before
-    /// the contradiction either. A filter that is led on by its unit alone gets less certain, until it agrees with everything.
+    /// The tests of an instant, of a filter whose attitude is settled or not; `back` where their squares are usual (a chance above 1e-3) with the
+    /// covariances from before the contradiction. A filter that is led on by its unit alone gets less certain, until it agrees with everything;
+    /// positions that are led off slowly stay near the limit on both sides of it.
     pub fn judge(&mut self, now: GpsTime, tests: &Tests, settled: bool, back: bool) {
         if tests.moved() {
             self.moved = Some(now);

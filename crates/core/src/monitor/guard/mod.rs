@@ -24,7 +24,7 @@ pub use inertial::{Envelope, Plausibility};
 use records::Widths;
 pub use records::{Admitted, EXCLUDED_MOST, Looked, Settings, Tally};
 pub use shares::Shares;
-pub use stations::{Reading, Stations, testimony};
+pub use stations::{AGREE, Reading, Stations, testimony};
 
 use super::consistency::normalised_square_horizontal;
 use super::judgement::{Agreement, Facts, FilterFacts, Inertial, RangesAgree, SnapshotFacts, Testimony, Witnesses};
@@ -65,6 +65,8 @@ pub struct Guard {
     raim: raim::Monitor,
     rates: raim::Monitor,
     limit: [f64; 4],
+    /// Squares up to which both are said to be back together.
+    usual: [f64; 4],
     plausibility: Plausibility,
     contradiction: Contradiction,
     shares: Shares,
@@ -102,14 +104,15 @@ impl Guard {
         if !(settings.age_sigma_s >= 0.0 && settings.age_sigma_s.is_finite()) {
             return Err(OutOfDomain { argument: "age_sigma_s", value: settings.age_sigma_s, unit: "s", domain: "[0, inf)" });
         }
-        let [two, one] = [2.0, 1.0].map(|dof| chi_square_factor(dof, TEST_RISK));
+        let limits = |risk| [2.0, 2.0, 1.0, 1.0].map(|dof| chi_square_factor(dof, risk));
         let raim = raim::Monitor::new(&settings.requirement);
         Ok(Self {
             settings,
             solver: Solver::default(),
             rates: raim.clone(),
             raim,
-            limit: [two, two, one, one],
+            limit: limits(TEST_RISK),
+            usual: limits(AGREE),
             plausibility: Plausibility::new(settings.envelope),
             contradiction: Contradiction::default(),
             shares: Shares::new(),
@@ -247,7 +250,8 @@ impl Guard {
     fn compare(&mut self, d: &Difference, looked: &Looked, velocity: Option<&SnapshotVelocity>, settled: bool) -> Tests {
         let widths = Widths::of(d, looked, velocity);
         let tests = self.test(d, velocity, &widths);
-        let back = self.undisputed.is_some_and(|before| !self.test(d, velocity, &before).fail());
+        let squares = self.undisputed.map(|before| self.test(d, velocity, &before).square);
+        let back = squares.is_some_and(|s| s.iter().zip(&self.usual).all(|(square, most)| square <= most));
         self.contradiction.judge(looked.snapshot.time, &tests, settled, back);
         if !self.contradiction.is_raised() {
             self.undisputed = Some(widths);

@@ -31,8 +31,9 @@ const SILENT_S: f64 = 5.0;
 const STATIONS_LEAST: usize = 2;
 /// Marks the bearing of a station that measures ranges as well.
 const BEARING: u16 = 0x8000;
-/// Chance from which the stations agree, and below which they rule out. Provenance: inferred.
-const AGREE: f64 = 1e-3;
+/// Chance from which a witness agrees. Provenance: inferred.
+pub const AGREE: f64 = 1e-3;
+/// Chance below which it rules out. Provenance: inferred.
 const RULE_OUT: f64 = 1e-7;
 
 /// A place where the antenna may be, and its covariance, Earth-centred.
