@@ -8,8 +8,8 @@ use navbound_core::bound::faults::FaultModes;
 use navbound_core::bound::gbas::bias::Ordering;
 use navbound_core::bound::gbas::detection::Hazard;
 use navbound_core::bound::gbas::range::carrier_sigma;
-use navbound_core::bound::sbas::model::broadcast_ionosphere_m2;
-use navbound_core::bound::tse::{Component, Deviation, farthest, mixture, rf_fte, sigma_budget};
+use navbound_core::bound::sbas::model::{Corrected, broadcast_ionosphere_m2};
+use navbound_core::bound::tse::{Component, Deviation, deviations, farthest, ln_exceedance_risk, mixture, rf_fte, sigma_budget};
 use navbound_core::frame::{Covariance, Displacement, Enu};
 use navbound_core::monitor::consistency::{integral_transform, normalised_square, normalised_square_horizontal};
 use navbound_core::monitor::rnp::Counters;
@@ -311,4 +311,53 @@ fn a_mixture_of_errors_is_bounded_where_their_risks_together_are_the_risk() {
             assert!(met || jumps, "{k} {q}: {} at {bound}", outside(bound));
         }
     }
+}
+
+/// Of a range without its degradation 8 m stand beside the deviation of the UDRE, whatever the factor.
+#[test]
+fn an_unknown_degradation_is_eight_metres_more() {
+    let corrected = |degradation_m, rss| Corrected { udre_m: 0.5, degradation_m, rss };
+    close(corrected(None, false).variance_m2(2.0), 81.0, 1e-15);
+    close(corrected(None, true).variance_m2(4.0), 100.0, 1e-15);
+    close(corrected(Some([0.1, 0.2, 0.3, 0.4]), false).variance_m2(2.0), 4.0, 1e-15);
+    close(corrected(Some([0.1, 0.2, 0.3, 0.4]), true).variance_m2(2.0), 1.3, 1e-15);
+}
+
+/// Covariances whose smallest eigenvalue is a hair above and below zero, in every plane: the pair of axes decides as all three together do.
+#[test]
+fn a_covariance_is_one_where_its_smallest_eigenvalue_is_none_below_zero() {
+    let tangent = (Radians::new(0.7), Radians::new(0.1));
+    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+        for correlation in [-0.5, 0.3, 0.9, 1.1, 1.5] {
+            let sigma = [3.0, 5.0, 7.0];
+            let mut m = Matrix3::from_diagonal(&Vector3::from(sigma.map(|s| s * s)));
+            m[(i, j)] = correlation * sigma[i] * sigma[j];
+            m[(j, i)] = m[(i, j)];
+            let least = SymmetricEigen::new(m).eigenvalues.min();
+            let offset = Displacement::<Enu>::from_vector(Vector3::zeros());
+            let made = deviations(&offset, &Covariance::claim_symmetric(m), tangent.0, tangent.1);
+            assert_eq!(made.is_ok(), least >= 0.0, "{i} {j} {correlation} {least}");
+        }
+    }
+}
+
+/// Without a deviation the risk is 0 or 1, and its logarithm minus infinity or 0.
+#[test]
+fn the_logarithm_of_a_risk_without_a_deviation_is_that_of_zero_or_one() {
+    let of = |fte: f64| ln_exceedance_risk(Deviation::new(Metres::new(fte), Metres::new(0.0)).unwrap(), Metres::new(10.0)).unwrap();
+    assert_eq!([of(9.0), of(-10.0)], [f64::NEG_INFINITY; 2]);
+    assert_eq!([of(11.0), of(-10.1)], [0.0; 2]);
+}
+
+/// The residuals of a line in both their signs: (0, 0), (1, 3), (2, 0), (3, 1), by hand: slope 0, intercept 1, squares 1 + 4 + 1 + 0.
+#[test]
+fn what_is_left_of_a_line_is_the_sum_of_its_squares() {
+    let line = navbound_core::monitor::altimeter::setting_line([(0.0, 0.0), (1.0, 3.0), (2.0, 0.0), (3.0, 1.0)].into_iter()).unwrap();
+    assert!(line.slope.abs() < 1e-15);
+    close(line.intercept.m(), 1.0, 1e-15);
+    close(line.residual_sigma.m(), 3.0_f64.sqrt(), 1e-15);
+    // With a slope: (0, 1), (1, 2), (2, 6), (3, 7): slope 2.2, intercept 0.7, residuals 0.3, -0.9, 0.9, -0.3.
+    let line = navbound_core::monitor::altimeter::setting_line([(0.0, 1.0), (1.0, 2.0), (2.0, 6.0), (3.0, 7.0)].into_iter()).unwrap();
+    close(line.slope, 2.2, 1e-14);
+    close(line.residual_sigma.m(), 0.9_f64.sqrt(), 1e-13);
 }

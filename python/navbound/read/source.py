@@ -19,6 +19,8 @@ _LOOK_AT = 1 << 16
 _BINARY = "binary, of no kind that is known here; convert it to NMEA, RINEX or a table with the maker's program"
 _BINARY_SHARE = 0.05
 """Share of bytes that no text has, from which a beginning is binary and not a damaged text. [1] Provenance: ours."""
+_BINARY_BYTES = 8
+"""Number of such bytes above which the share is asked: two wrong bytes in a text of one line are damage. [1] Provenance: ours."""
 _TEXT_BYTES = bytes(byte for byte in range(256) if byte >= 0x20 or byte in b"\t\n\v\f\r\x1b")
 
 
@@ -26,7 +28,7 @@ def _is_binary(content: bytes) -> bool:
     """Whether a file begins with control characters among its bytes, or with bytes that are no UTF-8, as binary data do everywhere."""
     begin = content[:4096]
     unlike = len(begin.translate(None, _TEXT_BYTES)) + begin.decode("utf-8", "replace").count("\ufffd")
-    return unlike > _BINARY_SHARE * len(begin)
+    return unlike > max(_BINARY_BYTES, _BINARY_SHARE * len(begin))
 
 
 @dataclass(frozen=True)
