@@ -20,7 +20,7 @@ _BINARY = "binary, of no kind that is known here; convert it to NMEA, RINEX or a
 _BINARY_SHARE = 0.05
 """Share of bytes that no text has, from which a beginning is binary and not a damaged text. [1] Provenance: ours."""
 _BINARY_BYTES = 8
-"""Number of such bytes above which the share is asked: two wrong bytes in a text of one line are damage. [1] Provenance: ours."""
+"""Number of such bytes above which the share counts: two wrong bytes in a text of one line are damage. [1] Provenance: ours."""
 _TEXT_BYTES = bytes(byte for byte in range(256) if byte >= 0x20 or byte in b"\t\n\v\f\r\x1b")
 
 
