@@ -98,7 +98,7 @@ fn cannot_last(scenario: &Scenario) -> OutOfDomain {
     OutOfDomain { argument: "duration_s", value: scenario.duration_s, unit: "s", domain }
 }
 
-/// Route and profile at a cruise speed. Turns are as wide as the speed where their waypoint is passed asks for.
+/// Route and profile at a cruise speed. Turns are as wide as the speed where their waypoint is passed asks for, or as their waypoint says.
 fn flown(scenario: &Scenario, cruise_speed_mps: f64) -> Result<(Route, Profile), Refused> {
     let points = points(scenario)?;
     let corners = Route::new(&points, &vec![Metres::new(0.0); points.len()])?;
@@ -106,7 +106,8 @@ fn flown(scenario: &Scenario, cruise_speed_mps: f64) -> Result<(Route, Profile),
     let mut radii = vec![Metres::new(0.0); points.len()];
     for (i, change) in Route::track_changes(&points)?.into_iter().enumerate() {
         let speed = rough.speed_at_along(corners.waypoints_along()[i + 1].m());
-        radii[i + 1] = turn_radius(&scenario.turns, speed, change);
+        let stated = scenario.waypoints[i + 1].radius_m.map(Metres::new);
+        radii[i + 1] = stated.unwrap_or_else(|| turn_radius(&scenario.turns, speed, change));
     }
     let route = Route::new(&points, &radii)?;
     let profile = Profile::new(&scenario.profile, route.length().m(), cruise_speed_mps)?;

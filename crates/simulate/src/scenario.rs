@@ -50,6 +50,9 @@ pub struct Waypoint {
     pub lat_rad: f64,
     /// Longitude, WGS-84 \[rad\].
     pub lon_rad: f64,
+    /// Radius of the turn at it \[m\], 0 for a corner; without one the bank decides.
+    #[serde(default)]
+    pub radius_m: Option<f64>,
 }
 
 /// Bank of a fly-by turn: half the track change, between these limits, and no faster than the rate.
@@ -245,6 +248,7 @@ impl Scenario {
         rules.extend(self.guidance.rules());
         rules.extend(self.gusts.rules());
         rules.extend(self.navigation.rules());
+        rules.extend(self.waypoints.iter().filter_map(|w| w.radius_m).map(|r| within("radius_m", r, "m", 0.0, 1e6, "[0, 1e6]")));
         rules.extend(self.phases.iter().map(|p| positive("rnp_m", p.rnp_m, "m")));
         rules.extend(self.faults.iter().flat_map(Fault::rules));
         rules.extend(self.sensors.iter().flat_map(Sensors::rules));

@@ -96,7 +96,7 @@ class Prediction(Record):
     assumptions: list[str]
 
 
-LegStatus = Literal["kept", "not_kept", "no_stations_known"]
+LegStatus = Literal["kept", "not_kept", "no_stations_known", "no_rnp"]
 
 
 class ExpectedLeg(Record):
@@ -104,7 +104,8 @@ class ExpectedLeg(Record):
 
     leg: str
     phase: str
-    rnp_m: float
+    rnp_m: float | None
+    """None where nobody has stated one: nothing is judged then, and what is compared with it is None, too. [m]"""
     start_s: float
     """Since departure. [s]"""
     end_s: float
@@ -115,27 +116,27 @@ class ExpectedLeg(Record):
     """Largest 95 % circle of the navigation error. [m]"""
     anp_max_s: float | None
     """When. [s]"""
-    p_anp_within: float
+    p_anp_within: float | None
     """Share of the time that the circle is within the RNP. [1]"""
     tse_max_m: float | None
     """Largest 95 % bound of the total error across the path, flight technical error included. [m]"""
-    p_tse_within: float
+    p_tse_within: float | None
     """Share of the time that it is within the RNP. [1]"""
     first_without_s: float | None
     """First time at which the total error is not within the RNP; None where it always is. [s]"""
-    longest_without_s: float
+    longest_without_s: float | None
     """Longest time without. [s]"""
-    hal_m: float
+    hal_m: float | None
     """Alert limit of the level. [m]"""
     hpl_max_m: float | None
     """Largest protection level; None where there is none at all. [m]"""
-    p_level: float
+    p_level: float | None
     """Share of the instants with a level inside the alert limit. [1]"""
-    n_holes: int
-    longest_hole_s: float
+    n_holes: int | None
+    longest_hole_s: float | None
     p_without_hole: float | None
     """Probability that the leg has no hole, over the sets of satellites out of service that were worked out: a lower bound. None where
-    the plan states no probability of an outage. [1]"""
+    the plan states no probability of an outage, or nobody an RNP. [1]"""
     n_dme_least: int
     """Fewest DME in view and in service. [1]"""
     p_dme_pair: float
@@ -143,7 +144,7 @@ class ExpectedLeg(Record):
     dme_circle_max_m: float | None
     """Largest 95 % circle of a position by the best pair alone; None where some instant has no pair. [m]"""
     risk_2rnp: float | None
-    """Bound of the risk to be beyond twice the RNP at least once on the leg; None where some instant has no position. [1]"""
+    """Bound of the risk to be beyond twice the RNP at least once on the leg; None where some instant has no position or no RNP. [1]"""
 
 
 class LevelHole(Record):
@@ -161,9 +162,10 @@ class Shift(Record):
     """The levels of the same flight with another departure."""
 
     shift_s: float
-    p_level: float
-    n_holes: int
-    longest_hole_s: float
+    p_level: float | None
+    """None, as the two below, where no leg has an RNP. [1]"""
+    n_holes: int | None
+    longest_hole_s: float | None
 
 
 class Hold(Record):

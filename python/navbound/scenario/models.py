@@ -25,6 +25,8 @@ class Waypoint(Part):
     lat_rad: float
     lon_rad: float
     kind: Literal["waypoint", "runway", "station"] = "waypoint"
+    radius_m: float | None = None
+    """Of the turn at it; 0 is a corner. Without it the bank decides."""
 
 
 class Turns(Part):

@@ -77,6 +77,19 @@ class Jamming(Window):
     """No satellite can be received."""
 
 
+class PlannedProcedure(Part):
+    """A published departure, arrival or approach that is flown."""
+
+    database: str = Field(min_length=1)
+    """Navigation database of ARINC 424, beside the plan."""
+    name: str = Field(min_length=1)
+    """``KDEN/H26-Z:FUZZZ``."""
+    line: str | None = None
+    """Line of minima that is flown, such as ``RNP 0.3``."""
+    defaults: bool = False
+    """Legs without a coded RNP take the default of the specification."""
+
+
 class Equipment(Part):
     """What the aircraft has, where it differs from the scenario."""
 
@@ -112,6 +125,12 @@ class Plan(Part):
     orbits: list[str] = Field(default=[])
     """Almanacs (YUMA, SEM), RINEX navigation files, or nominal constellations; without any the nominal ones of the receiver."""
     route: str | None = None
+    procedures: list[PlannedProcedure] = Field(default=[])
+    """In the order flown: departures, then the route, then arrivals and approaches."""
+    departure_height_m: float | None = None
+    cruise_height_m: float | None = None
+    arrival_height_m: float | None = None
+    """In place of the scenario's, above the ellipsoid."""
     step_s: float = Field(default=60.0, ge=1.0, le=3600.0)
     approach_step_s: float = Field(default=10.0, ge=1.0, le=3600.0)
     approach_m: float = Field(default=20.0 * METRES_PER_NM, ge=0)
@@ -181,6 +200,7 @@ def _keys(place: tuple[str | int, ...]) -> str:
         "equipment": Equipment,
         "notices": Notice,
         "jamming": Jamming,
+        "procedures": PlannedProcedure,
         "requirements": Phase,
         "stations": Station,
     }

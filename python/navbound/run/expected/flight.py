@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import polars as pl
 
 from navbound import __version__
@@ -70,7 +71,8 @@ def predict_flight(file: str | Path, *, command: str = "", with_hold: bool = Tru
     lines, holes = legs(prepared, table, shown)
     probable, p_unexamined = without_hole(prepared, rows, [(line.start_s, line.end_s) for line in lines])
     if probable is not None:
-        lines = [line.model_copy(update={"p_without_hole": p}) for line, p in zip(lines, probable, strict=True)]
+        known = [p if line.rnp_m is not None else None for line, p in zip(lines, probable, strict=True)]
+        lines = [line.model_copy(update={"p_without_hole": p}) for line, p in zip(lines, known, strict=True)]
     shifts = [_shift(prepared, rows, shift_s) for shift_s in plan.departure_shifts_s]
     record = ExpectedFlight(
         navbound_version=__version__,
@@ -101,8 +103,13 @@ def predict_flight(file: str | Path, *, command: str = "", with_hold: bool = Tru
 
 def _shift(prepared: Setup, rows: pl.DataFrame, shift_s: float) -> Shift:
     """Levels of the same rows with another departure; a hole goes on over legs here."""
-    level = levels(prepared, rows, shift_s)
-    good = (level["hpl_m"].to_numpy() <= rows["rnp_m"].to_numpy()).tolist()
+    rnp_m = rows["rnp_m"].to_numpy()
+    stated = np.isfinite(rnp_m)
+    if not stated.any():
+        return Shift(shift_s=shift_s, p_level=None, n_holes=None, longest_hole_s=None)
+    inside = levels(prepared, rows, shift_s)["hpl_m"].to_numpy() <= rnp_m
+    # Where nobody has stated an RNP there is neither a level inside it nor a hole.
+    good = (inside | ~stated).tolist()
     times = [*rows["time_s"].to_list(), float(rows["time_s"][-1]) + 1.0]
     lengths, begin = list[float](), None
     for k, fine in enumerate([*good, True]):
@@ -111,25 +118,32 @@ def _shift(prepared: Setup, rows: pl.DataFrame, shift_s: float) -> Shift:
         elif fine and begin is not None:
             lengths.append(times[k] - begin)
             begin = None
-    return Shift(shift_s=shift_s, p_level=sum(good) / len(good), n_holes=len(lengths), longest_hole_s=max(lengths, default=0.0))
+    return Shift(shift_s=shift_s, p_level=float(inside[stated].mean()), n_holes=len(lengths), longest_hole_s=max(lengths, default=0.0))
 
 
 def _sentences(lines: list[ExpectedLeg], level: Shift, table: pl.DataFrame) -> list[str]:
-    broken = [line for line in lines if line.status != "kept"]
+    broken = [line for line in lines if line.status not in {"kept", "no_rnp"}]
+    n_unknown = sum(line.status == "no_rnp" for line in lines)
+    judged = f"{len(lines)} legs" if not n_unknown else f"{len(lines) - n_unknown} legs that have one"
+    without = f" {n_unknown} of {len(lines)} legs have no RNP: nothing is said of them." if n_unknown else ""
     if broken:
         first = min(broken, key=lambda line: line.first_without_s if line.first_without_s is not None else line.end_s)
         words = [
-            f"Accuracy: RNP is not kept on {len(broken)} of {len(lines)} legs; first on {first.leg} (RNP {first.rnp_m / METRES_PER_NM:g}) "
-            f"from {clock(first.first_without_s or first.start_s)} on."
+            f"Accuracy: RNP is not kept on {len(broken)} of {judged}; first on {first.leg} (RNP {(first.rnp_m or 0.0) / METRES_PER_NM:g}) "
+            f"from {clock(first.first_without_s or first.start_s)} on.{without}"
         ]
+    elif n_unknown == len(lines):
+        words = ["Accuracy: nothing is judged, no leg has an RNP."]
     else:
-        words = [f"Accuracy: RNP is kept on all {len(lines)} legs, the 95 % total error across the path is within it at every second."]
+        words = [f"Accuracy: RNP is kept on all {judged}, the 95 % total error across the path is within it at every second.{without}"]
     circle = table["anp_circle_m"].fill_nan(None)
     worst = circle.arg_max()
     if worst is not None:
         words.append(f"The largest 95 % circle of navigation is {circle[worst]:.0f} m at {clock(worst)}, mode {table['mode'][worst]}.")
     words += [f"No satellite is used from {clock(a)} to {clock(b)}; mostly {mode}." for a, b, mode in _without_satellites(table)]
-    if level.n_holes == 0:
+    if level.n_holes is None or level.longest_hole_s is None:
+        words.append("Integrity: no leg has an RNP that a protection level could be compared with.")
+    elif level.n_holes == 0:
         words.append("Integrity: the protection level of the monitor is inside the RNP at every instant.")
     else:
         lasts = level.longest_hole_s
@@ -165,6 +179,7 @@ def _assumptions(prepared: Setup) -> list[str]:
         "What a filter rejects in the air, and what it adds to its covariance for a measurement that contradicts it, is not known before.",
         f"{orbits} {_failures(prepared)}",
         *prepared.orbits.notes,
+        *prepared.path_words,
         f"Flight technical error, 95 %: {en_route:g} NM, on approach {approach:g} NM ({mark}).",
         f"The levels are those of {equipment.monitor} with the satellites of {prepared.systems()}; the alert limit is the RNP (inferred).",
         *entry(Place, "monitor", equipment.monitor).words(equipment.model),

@@ -29,7 +29,7 @@ def legs(setup: Setup, table: pl.DataFrame, shown: pl.DataFrame) -> tuple[list[E
         part = table[begin:end]
         start_s, end_s = float(part["time_s"][0]), float(part["time_s"][-1]) + 1.0
         rows = shown.filter((shown["time_s"] >= start_s) & (shown["time_s"] < end_s))
-        own = _holes(rows, end_s)
+        own = _holes(rows, end_s) if math.isfinite(part["rnp_m"][0]) else []
         holes += own
         lines.append(_leg(setup, part, rows, own, (start_s, end_s)))
     return lines, holes
@@ -37,13 +37,14 @@ def legs(setup: Setup, table: pl.DataFrame, shown: pl.DataFrame) -> tuple[list[E
 
 def _leg(setup: Setup, part: pl.DataFrame, rows: pl.DataFrame, holes: list[LevelHole], times: tuple[float, float]) -> ExpectedLeg:
     rnp_m = float(part["rnp_m"][0])
+    stated = math.isfinite(rnp_m)
     circle, total, risk = (part[name].to_numpy() for name in ("anp_circle_m", "tse_accuracy_m", "p_exceed_2rnp"))
     # A bound that is NaN is not within anything.
     within = total <= rnp_m
     without = np.flatnonzero(~within)
     level = rows["hpl_m"].to_numpy() <= rnp_m
     known = np.isfinite(circle)
-    status = "kept" if within.all() else "not_kept"
+    status = "no_rnp" if not stated else "kept" if within.all() else "not_kept"
     if status == "not_kept" and _no_stations(setup, part[int(without[0]) : int(without[-1]) + 1]):
         status = "no_stations_known"
     shares = part["mode"].value_counts(sort=True)
@@ -52,28 +53,28 @@ def _leg(setup: Setup, part: pl.DataFrame, rows: pl.DataFrame, holes: list[Level
         {
             "leg": part["leg"][0],
             "phase": part["phase"][0],
-            "rnp_m": rnp_m,
+            "rnp_m": rnp_m if stated else None,
             "start_s": times[0],
             "end_s": times[1],
             "modes": {mode: count / part.height for mode, count in shares.rows()},
             "status": status,
             "anp_max_m": float(np.nanmax(circle)) if known.any() else None,
             "anp_max_s": times[0] + float(np.nanargmax(circle)) if known.any() else None,
-            "p_anp_within": float((circle <= rnp_m).mean()),
+            "p_anp_within": float((circle <= rnp_m).mean()) if stated else None,
             "tse_max_m": float(np.nanmax(total)) if known.any() else None,
-            "p_tse_within": float(within.mean()),
-            "first_without_s": times[0] + float(without[0]) if len(without) else None,
-            "longest_without_s": float(_longest(~within)),
-            "hal_m": rnp_m,
+            "p_tse_within": float(within.mean()) if stated else None,
+            "first_without_s": times[0] + float(without[0]) if stated and len(without) else None,
+            "longest_without_s": float(_longest(~within)) if stated else None,
+            "hal_m": rnp_m if stated else None,
             "hpl_max_m": float(finite.max()) if len(finite) else None,
-            "p_level": float(level.mean()),
-            "n_holes": len(holes),
-            "longest_hole_s": max((h.end_s - h.start_s for h in holes), default=0.0),
+            "p_level": float(level.mean()) if stated else None,
+            "n_holes": len(holes) if stated else None,
+            "longest_hole_s": max((h.end_s - h.start_s for h in holes), default=0.0) if stated else None,
             "p_without_hole": None,
             "n_dme_least": int(rows["n_dme"].min()),  # type: ignore[arg-type]
             "p_dme_pair": float(rows["dme_pair"].is_not_null().mean()),  # type: ignore[arg-type]
             "dme_circle_max_m": float(rows["dme_circle_m"].max()) if rows["dme_pair"].null_count() == 0 else None,  # type: ignore[arg-type]
-            "risk_2rnp": _exposed(setup, risk) if known.all() else None,
+            "risk_2rnp": _exposed(setup, risk) if stated and known.all() else None,
         }
     )
 

@@ -40,6 +40,7 @@ def without_hole(setup: Setup, rows: pl.DataFrame, spans: list[tuple[float, floa
         examined += p * math.comb(len(names), size)
         for out in itertools.combinations(names, size):
             hpl = levels(setup, rows, without=frozenset(out))["hpl_m"].to_list()
+            # A leg without an RNP has no probability: the caller leaves it out.
             good = [level <= rnp for level, rnp in zip(hpl, rows["rnp_m"], strict=True)]
             for k, (begin, end) in enumerate(spans):
                 if all(g for g, t in zip(good, rows["time_s"], strict=True) if begin <= t < end):

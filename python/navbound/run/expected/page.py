@@ -10,7 +10,7 @@ from navbound.units import METRES_PER_NM
 if TYPE_CHECKING:
     from navbound.records.prediction import ExpectedFlight
 
-WORDS = {"kept": "kept", "not_kept": "NOT KEPT", "no_stations_known": "NO STATIONS KNOWN"}
+WORDS = {"kept": "kept", "not_kept": "NOT KEPT", "no_stations_known": "NO STATIONS KNOWN", "no_rnp": "NO RNP"}
 
 
 SHORTEST = 0.01
@@ -63,18 +63,18 @@ def leg_rows(record: ExpectedFlight) -> list[tuple[str, ...]]:
         rows.append(
             (
                 leg.leg,
-                f"{leg.rnp_m / METRES_PER_NM:g}",
+                "-" if leg.rnp_m is None else f"{leg.rnp_m / METRES_PER_NM:g}",
                 WORDS[leg.status],
                 clock(leg.start_s),
                 clock(leg.end_s),
                 modes,
                 _length(leg.anp_max_m),
                 _length(leg.tse_max_m),
-                share(leg.p_tse_within),
+                _share(leg.p_tse_within),
                 "-" if leg.first_without_s is None else clock(leg.first_without_s),
                 _length(leg.hpl_max_m),
-                share(leg.p_level),
-                "-" if leg.n_holes == 0 else clock(leg.longest_hole_s),
+                _share(leg.p_level),
+                "-" if not leg.longest_hole_s else clock(leg.longest_hole_s),
                 *([_probability(leg.p_without_hole)] if probable else []),
                 share(leg.p_dme_pair),
                 _risk(leg.risk_2rnp),
@@ -90,9 +90,9 @@ def shift_rows(record: ExpectedFlight) -> list[tuple[str, ...]]:
         rows.append(
             (
                 f"{shift.shift_s / 60:+.0f} min",
-                share(shift.p_level),
-                str(shift.n_holes),
-                "-" if shift.n_holes == 0 else clock(shift.longest_hole_s),
+                _share(shift.p_level),
+                "-" if shift.n_holes is None else str(shift.n_holes),
+                "-" if not shift.longest_hole_s else clock(shift.longest_hole_s),
             )
         )
     return rows
@@ -118,6 +118,10 @@ def _probability(p: float | None) -> str:
 
 def _risk(risk: float | None) -> str:
     return "-" if risk is None else f"{risk:.1e}" if risk >= SMALLEST else f"< {SMALLEST:g}"
+
+
+def _share(part: float | None) -> str:
+    return "-" if part is None else share(part)
 
 
 def _length(metres: float | None) -> str:

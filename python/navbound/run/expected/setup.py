@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import dataclass
 from datetime import timedelta
@@ -16,6 +17,7 @@ from navbound.errors import FormatError, InputError, NotFoundError
 from navbound.maps.sources import NS, Times, satellites
 from navbound.read.routes import load_route
 from navbound.records.prediction import Outage
+from navbound.run.expected.way import Way, way
 from navbound.scenario import Scenario, load
 from navbound.scenario.models import GPS_EPOCH
 from navbound.scenario.plan import FTE_95_NM, Plan, Window
@@ -57,6 +59,12 @@ class Setup:
         What the reader must know.
     fte_95_m : tuple of float
         En route and on approach. [m]
+    legs : list of str
+        Name of the leg between each two waypoints of the scenario.
+    without_rnp : frozenset of int
+        Phases of the scenario whose RNP nobody has stated.
+    path_words : list of str
+        What the reader must know of the path.
     """
 
     plan: Plan
@@ -68,6 +76,9 @@ class Setup:
     windows: list[Outage]
     warnings: list[str]
     fte_95_m: tuple[float, float]
+    legs: list[str]
+    without_rnp: frozenset[int]
+    path_words: list[str]
 
     def sensors(self, **changed: Any) -> _core.Sensors:
         """The sensors of the flight without errors."""
@@ -101,7 +112,8 @@ def setup(file: str | Path, plan: Plan) -> Setup:
     base = _base(file, folder, plan)
     table = base.model_dump(mode="python")
     _equip(file, table, plan)
-    _lay_route(file, folder, table, plan)
+    flown = _lay_route(file, folder, table, plan)
+    _lay_heights(table, plan)
     orbits, start_ns, since_s = _orbits(file, folder, plan, table)
     table["start_gps"] = GPS_EPOCH + timedelta(microseconds=start_ns // 1000)
     clear = _checked(file, table | {"faults": []}, [])
@@ -112,7 +124,31 @@ def setup(file: str | Path, plan: Plan) -> Setup:
     fte = [nm * METRES_PER_NM for nm in FTE_95_NM[plan.equipment.steering]]
     own = plan.equipment.fte_95_m
     fte_95_m = (fte[0], fte[1]) if own is None else (own, own)
-    return Setup(plan, scenario, orbits, since_s, plan.departure_utc is not None, bool(plan.orbits), windows, warnings, fte_95_m)
+    return Setup(
+        plan=plan,
+        scenario=scenario,
+        orbits=orbits,
+        since_s=since_s,
+        dated=plan.departure_utc is not None,
+        from_files=bool(plan.orbits),
+        windows=windows,
+        warnings=warnings,
+        fte_95_m=fte_95_m,
+        legs=[f"{a.name}-{b.name}" for a, b in itertools.pairwise(scenario.waypoints)] if flown is None else flown.legs,
+        without_rnp=frozenset() if flown is None else flown.phases()[1],
+        path_words=_path_words(plan, flown),
+    )
+
+
+def _path_words(plan: Plan, flown: Way | None) -> list[str]:
+    if flown is None:
+        return []
+    parts = [f"procedure {one.name} of {one.database}{f', line {one.line}' if one.line else ''}" for one in plan.procedures]
+    return [
+        f"Path: {', '.join([*([plan.route] if plan.route else []), *parts])}. Fixes are flown by, arcs are as published; "
+        "the vertical profile is the scenario's, not the published altitudes.",
+        *flown.words,
+    ]
 
 
 def _not_in_orbits(table: dict[str, Any], orbits: gnss.Orbits) -> list[str]:
@@ -154,18 +190,39 @@ def _equip(file: str | Path, table: dict[str, Any], plan: Plan) -> None:
     sensors["faults"] = []
 
 
-def _lay_route(file: str | Path, folder: Path, table: dict[str, Any], plan: Plan) -> None:
+def _lay_heights(table: dict[str, Any], plan: Plan) -> None:
+    """Heights of the plan; the end of the initial climb moves with the departure."""
+    profile = table["profile"]
+    if plan.departure_height_m is not None:
+        higher_m = plan.departure_height_m - profile["departure_height_m"]
+        for name in ("departure_height_m", "initial_climb_height_m"):
+            profile[name] += higher_m
+    for name, value in (("cruise_height_m", plan.cruise_height_m), ("arrival_height_m", plan.arrival_height_m)):
+        if value is not None:
+            profile[name] = value
+
+
+def _lay_route(file: str | Path, folder: Path, table: dict[str, Any], plan: Plan) -> Way | None:
+    """Lay the plan's own path, where it has one; that of procedures is returned."""
     if plan.duration_s is not None:
         table["duration_s"] = plan.duration_s
+    if plan.procedures:
+        if plan.duration_s is None:
+            raise FormatError(file, "is missing: a path of its own has a time of its own", field="duration_s")
+        points = load_route(folder / plan.route).waypoints if plan.route else []
+        flown = way(file, folder, plan.procedures, points, plan.requirements)
+        table["waypoints"], table["phases"] = flown.waypoints, flown.phases()[0]
+        return flown
     if plan.requirements is not None:
         table["phases"] = [p.model_dump() for p in plan.requirements]
     if plan.route is None:
-        return
+        return None
     for key, value in (("duration_s", plan.duration_s), ("requirements", plan.requirements)):
         if value is None:
             raise FormatError(file, "is missing: a route of its own has a time and requirements of its own", field=key)
     waypoints = load_route(folder / plan.route).waypoints
     table["waypoints"] = [{"name": w.name, "lat_rad": w.lat_rad, "lon_rad": w.lon_rad, "kind": "waypoint"} for w in waypoints]
+    return None
 
 
 def _orbits(file: str | Path, folder: Path, plan: Plan, table: dict[str, Any]) -> tuple[gnss.Orbits, int, float]:
@@ -203,7 +260,9 @@ def _checked(file: str | Path, table: dict[str, Any], faults: list[dict[str, Any
         error = e.errors()[0]
         raise FormatError(file, error["msg"], field=".".join(map(str, error["loc"]))) from e
     except InputError as e:
-        raise FormatError(file, f"the flight of the plan: {e}") from e
+        turn = e.index if e.argument == "radius_m" else None
+        where = "" if turn is None else f" (the turn at {table['waypoints'][turn]['name']})"
+        raise FormatError(file, f"the flight of the plan: {e}{where}") from e
     return scenario
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,8 +32,7 @@ def seconds(setup: Setup) -> pl.DataFrame:
     scenario = setup.scenario
     modes = [*_core.Sensors.modes(), "stopped"]
     statuses, _, ids = _core.Sensors.judgement()
-    names = [w.name for w in scenario.waypoints]
-    legs = [f"{a}-{b}" for a, b in itertools.pairwise(names)]
+    columns["rnp_m"] = np.where(np.isin(columns["phase"], list(setup.without_rnp)), np.nan, columns["rnp_m"])
     available = columns["available"] == 1
     bounds = _bounds(setup, columns, available)
     n = len(columns["time_ns"])
@@ -47,7 +45,7 @@ def seconds(setup: Setup) -> pl.DataFrame:
             "lon_rad": columns["path_lon_rad"],
             "h_m": columns["path_h_m"],
             "course_rad": columns["course_rad"],
-            "leg": _words(legs, columns["leg"]),
+            "leg": _words(setup.legs, columns["leg"]),
             "phase": _words([p.name for p in scenario.phases], columns["phase"]),
             "rnp_m": columns["rnp_m"],
             "mode": _words(modes, columns["nav_mode"]),
@@ -82,8 +80,8 @@ def _bounds(setup: Setup, columns: dict[str, Any], available: NDArray[np.bool_])
         "sigma_u_m": up**0.5,
         "tse_accuracy_m": accuracy.tse_m,
         "tse_integrity_m": integrity.tse_m,
-        "p_exceed_rnp": tse.exceedance_risk(0.0, accuracy.sigma_m, rnp),
-        "p_exceed_2rnp": tse.exceedance_risk(0.0, accuracy.sigma_m, 2 * rnp),
+        "p_exceed_rnp": _exceedance(accuracy.sigma_m, rnp),
+        "p_exceed_2rnp": _exceedance(accuracy.sigma_m, 2 * rnp),
     }
     whole = {}
     for name, part in values.items():
@@ -91,6 +89,14 @@ def _bounds(setup: Setup, columns: dict[str, Any], available: NDArray[np.bool_])
         column[available] = part
         whole[name] = column
     return whole
+
+
+def _exceedance(sigma_m: Floats, limit_m: Floats) -> Floats:
+    """Risk of the total error to be beyond a limit; NaN where there is none."""
+    stated = np.isfinite(limit_m)
+    risk = np.full(len(limit_m), np.nan)
+    risk[stated] = tse.exceedance_risk(0.0, sigma_m[stated], limit_m[stated])
+    return risk
 
 
 def _fte_95(setup: Setup, columns: dict[str, Any]) -> Floats:
@@ -112,7 +118,7 @@ def instants(setup: Setup, table: pl.DataFrame) -> NDArray[np.int64]:
 
 def parts(table: pl.DataFrame) -> list[tuple[int, int]]:
     """First and one past the last row of every leg under one RNP."""
-    keys = list(zip(table["leg"], table["phase"], table["rnp_m"], strict=True))
+    keys = list(zip(table["leg"], table["phase"], table["rnp_m"].fill_nan(None), strict=True))
     begins = [k for k in range(len(keys)) if k == 0 or keys[k] != keys[k - 1]]
     return list(zip(begins, [*begins[1:], len(keys)], strict=True))
 
