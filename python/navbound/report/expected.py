@@ -158,6 +158,6 @@ def _route(record: ExpectedFlight, seconds: pl.DataFrame) -> dict[str, Any]:
         px, py = at(min(int(leg.start_s), seconds.height - 1))
         # A name over another would be no name.
         crowded = any(abs(px - x) < 40 and abs(py - y) < 11 for x, y, name, _ in marks if name)
-        marks.append((px, py, "" if crowded else leg.leg.split("-")[0], "" if leg.status == "kept" else "bad"))
+        marks.append((px, py, "" if crowded else leg.leg.split("-")[0], "" if leg.status in {"kept", "no_rnp"} else "bad"))
     length_nm = record.length_m / METRES_PER_NM
     return {"width": WIDTH, "height": MAP_HEIGHT, "lines": lines, "marks": marks, "words": f"{length_nm:.0f} NM, north up"}

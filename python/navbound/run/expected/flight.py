@@ -144,7 +144,8 @@ def _sentences(lines: list[ExpectedLeg], level: Shift, table: pl.DataFrame) -> l
     if level.n_holes is None or level.longest_hole_s is None:
         words.append("Integrity: no leg has an RNP that a protection level could be compared with.")
     elif level.n_holes == 0:
-        words.append("Integrity: the protection level of the monitor is inside the RNP at every instant.")
+        of = " of a leg that has one" if n_unknown else ""
+        words.append(f"Integrity: the protection level of the monitor is inside the RNP at every instant{of}.")
     else:
         lasts = level.longest_hole_s
         beyond = f", longer than the {DISPATCH_HOLE_S / 60:g} min up to which dispatch is usual" if lasts > DISPATCH_HOLE_S else ""
