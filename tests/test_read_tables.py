@@ -272,6 +272,7 @@ def test_state_vectors_in_si_are_not_taken_for_feet(tmp_path: Path) -> None:
         (b"%  GPST latitude(deg) longitude(deg) height(m)\n", "no row holds"),
         (b"% nothing\n1 2 3\n", "names the columns"),
         (b"timestamp,lat,lon\n5,1,2\n", "are not Unix times"),
+        (b"gps_s,lat,lon\n1176498287,452206015,-931453379\n", 'are declared with --map "est_lat_rad=lat:deg_e7"'),
     ],
 )
 def test_a_file_that_cannot_be_interpreted_is_refused_in_words(tmp_path: Path, content: bytes, says: str) -> None:

@@ -28,6 +28,7 @@ __all__ = [
     "Grid",
     "Place",
     "Recorded",
+    "Sent",
     "algorithms",
     "entries",
     "entry",
@@ -120,6 +121,14 @@ class Place(Entry):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Sent(Entry):
+    """Levels from what a service sent.
+
+    (messages, navigation, time_ns, ``lat_rad``, ``lon_rad``, ``h_m``, ``mode``, ``mask_rad``) -> levels.
+    """
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Grid(Entry):
     """Levels of a grid of users: (orbits, lat_rad, lon_rad, h_m, time_s, ``mask_rad``, options) -> levels with the columns and ``status``.
 
@@ -166,7 +175,7 @@ class Algorithm:
     declared : ProtectionMethod
         What a person must know of its levels.
     entries : tuple of Entry
-        Ways to call it, of any of the three kinds.
+        Ways to call it, of any of the four kinds.
     """
 
     declared: ProtectionMethod
@@ -216,6 +225,7 @@ _ENTRIES: dict[str, tuple[Entry, ...]] = {
             words="Service {service}, error model {model}; integrity support data of the satellites as shipped, inferred.",
         ),
     ),
+    "sbas": (Sent(name="sbas", call="navbound.sbas.protection_levels"),),
 }
 _OF_SESSION: dict[str, Algorithm] = {}
 

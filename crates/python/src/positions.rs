@@ -224,6 +224,12 @@ impl Navigation {
         let row = |(path, r): &(String, Refusal)| (path.clone(), r.line, r.field.clone(), r.reason.clone(), r.text.clone());
         self.refused.iter().map(row).collect()
     }
+    /// The same without the Keplerian records of some satellites.
+    fn without(&self, satellites: Vec<String>) -> Self {
+        let mut records = self.records.clone();
+        records.ephemerides.retain(|e| !satellites.contains(&e.satellite.to_string()));
+        Self { records, refused: self.refused.clone() }
+    }
     /// Broadcast ionosphere of "G" or "C": alpha, beta.
     fn klobuchar(&self, system: char) -> Option<([f64; 4], [f64; 4])> {
         let model = if system == 'C' { self.records.klobuchar_beidou } else { self.records.klobuchar_gps };

@@ -164,6 +164,11 @@ class Navigation:
         return pl.DataFrame(self._core.records())
 
     @checked
+    def without(self, satellites: Sequence[str]) -> Navigation:
+        """The same without the Keplerian records of some satellites, as ``G05``; names that are not there change nothing."""
+        return Navigation(self._core.without(list(satellites)), self.paths)
+
+    @checked
     def orbits(self, system: str, time_ns: int) -> Orbits:
         """Kepler orbits of a constellation from each healthy satellite's nearest record, without harmonics: for the geometry of a day.
 

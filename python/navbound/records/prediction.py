@@ -153,7 +153,8 @@ class LevelHole(Record):
     leg: str
     start_s: float
     end_s: float
-    reason: Literal["jamming", "satellites"]
+    reason: Literal["jamming", "satellites", "service"]
+    """``service``: an augmentation service offers no satellite there."""
     n_sv_least: int
     hpl_max_m: float | None
 

@@ -90,6 +90,18 @@ class PlannedProcedure(Part):
     """Legs without a coded RNP take the default of the specification."""
 
 
+class SbasLog(Part):
+    """Messages of an augmentation service that were sent before, for the levels of monitor "sbas"."""
+
+    messages: str = Field(min_length=1)
+    """Message log, beside the plan."""
+    navigation: list[str] = Field(min_length=1)
+    """RINEX navigation files of the log's day."""
+    prn: int | None = None
+    """Whose messages, where the log holds several satellites'."""
+    mode: Literal["auto", "pa", "npa"] = "auto"
+
+
 class Equipment(Part):
     """What the aircraft has, where it differs from the scenario."""
 
@@ -99,7 +111,7 @@ class Equipment(Part):
     """A grade of navbound/data/imu-grades.toml."""
     without: list[Literal["gnss", "dme", "vor", "baro"]] = Field(default=[])
     monitor: str = "raim"
-    """Whose levels: a name that ``navbound predict`` knows."""
+    """Whose levels: a name that ``navbound predict`` knows, or "sbas" with messages that were sent before."""
     monitor_systems: str | None = None
     """Letters of the constellations that the monitor uses; by default G for RAIM, else those of the receiver."""
     model: str = "single-frequency"
@@ -140,6 +152,7 @@ class Plan(Part):
     """In place of the scenario's phases."""
     stations: list[Station] | None = None
     """In place of the scenario's."""
+    sbas: SbasLog | None = None
     equipment: Equipment = Equipment()
     notices: list[Notice] = Field(default=[])
     jamming: list[Jamming] = Field(default=[])
@@ -150,6 +163,8 @@ class Plan(Part):
             raise ValueError("departure_utc needs a zone, as 2026-11-22T06:00:00Z")
         if self.departure_utc is None and any(w.from_utc is not None for w in (*self.notices, *self.jamming)):
             raise ValueError("from_utc needs departure_utc: a flight of no date meets no time of day")
+        if self.sbas is not None and self.departure_utc is None:
+            raise ValueError("sbas needs departure_utc: a flight of no date meets no messages")
         return self
 
 
@@ -201,6 +216,7 @@ def _keys(place: tuple[str | int, ...]) -> str:
         "notices": Notice,
         "jamming": Jamming,
         "procedures": PlannedProcedure,
+        "sbas": SbasLog,
         "requirements": Phase,
         "stations": Station,
     }

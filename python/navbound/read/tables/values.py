@@ -432,11 +432,15 @@ def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
         raw, empty = pl.Series([None] * len(column), dtype=pl.Float64), column.is_null()
     frame = pl.DataFrame({"raw": raw, "empty": empty, "si": raw * factor})
     allowed = f"outside [{q.low / factor:.6g}, {q.high / factor:.6g}] {'' if q.si == '1' else what.unit}".rstrip()
+    # Receivers' integers of 1e-7 degrees are what is so far outside of degrees.
+    in_e7 = f'{allowed}; integers of 1e-7 degrees are declared with --map "{q.name}={what.name}:deg_e7"'
+    whole = pl.col("raw").abs().is_between(1e6, 180e7) & (pl.col("raw").floor() == pl.col("raw")) & pl.lit(what.unit == "deg")
     frame = frame.select(
         pl.when(pl.col("si").is_between(q.low, q.high) & pl.col("raw").is_finite()).then("si").alias("value"),
         pl.when("empty").then(pl.lit("empty"))
         .when(pl.col("raw").is_null()).then(pl.lit("not a number"))
         .when(~pl.col("raw").is_finite()).then(pl.lit("not finite"))
+        .when(~pl.col("si").is_between(q.low, q.high) & whole).then(pl.lit(in_e7))
         .when(~pl.col("si").is_between(q.low, q.high)).then(pl.lit(allowed))
         .alias("reason"),
     )  # fmt: skip

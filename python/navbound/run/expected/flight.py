@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound import __version__
-from navbound.algorithms import Place, entry
+from navbound.algorithms import Place, Sent, entries, entry
 from navbound.errors import FormatError, InputError
 from navbound.records.prediction import ExpectedFlight, Shift
 from navbound.run.expected.hold import hold
@@ -27,6 +27,7 @@ from navbound.units import METRES_PER_NM
 if TYPE_CHECKING:
     from navbound.records.prediction import ExpectedLeg
     from navbound.run.expected.setup import Setup
+    from navbound.scenario.plan import Plan
 
 RECORD, EPOCHS, PAGE = "prediction.json", "epochs.parquet", "page.html"
 DISPATCH_HOLE_S = 300.0
@@ -60,10 +61,7 @@ def predict_flight(file: str | Path, *, command: str = "", with_hold: bool = Tru
         A plan that is none: file, key and what is allowed.
     """
     plan = read_plan(file)
-    try:
-        entry(Place, "monitor", plan.equipment.monitor)
-    except InputError as e:
-        raise FormatError(file, str(e), field="equipment.monitor") from e
+    _check_monitor(file, plan)
     prepared = setup(file, plan)
     table = seconds(prepared)
     rows = table[instants(prepared, table).tolist()]
@@ -99,6 +97,21 @@ def predict_flight(file: str | Path, *, command: str = "", with_hold: bool = Tru
         assumptions=_assumptions(prepared),
     )
     return Expected(record, table, shown)
+
+
+def _check_monitor(file: str | Path, plan: Plan) -> None:
+    """Refuse a monitor that is not known, or without what it needs."""
+    monitor = plan.equipment.monitor
+    if monitor in entries(Sent):
+        if plan.sbas is None:
+            raise FormatError(file, f"{monitor!r} needs [sbas] with messages that were sent before", field="equipment.monitor")
+        return
+    if plan.sbas is not None:
+        raise FormatError(file, f'is for equipment.monitor = "sbas"; the monitor is {monitor!r}', field="sbas")
+    try:
+        entry(Place, "monitor", monitor)
+    except InputError as e:
+        raise FormatError(file, f"{e}; or {', '.join(entries(Sent))}", field="equipment.monitor") from e
 
 
 def _shift(prepared: Setup, rows: pl.DataFrame, shift_s: float) -> Shift:
@@ -183,7 +196,7 @@ def _assumptions(prepared: Setup) -> list[str]:
         *prepared.path_words,
         f"Flight technical error, 95 %: {en_route:g} NM, on approach {approach:g} NM ({mark}).",
         f"The levels are those of {equipment.monitor} with the satellites of {prepared.systems()}; the alert limit is the RNP (inferred).",
-        *entry(Place, "monitor", equipment.monitor).words(equipment.model),
+        *(entry(Place, "monitor", equipment.monitor).words(equipment.model) if prepared.sbas is None else prepared.sbas.words()),
         "Stations are used within the coverage that the scenario states and above a horizon of a smooth Earth; terrain is not modelled.",
         f"The risk on a leg takes a correlation time of {equipment.fte_correlation_s:g} s (inferred).",
     ]

@@ -134,7 +134,7 @@ def _hole(rows: pl.DataFrame, start_s: float, end_s: float) -> LevelHole:
         leg=rows["leg"][0],
         start_s=start_s,
         end_s=end_s,
-        reason="jamming" if bool(rows["jammed"].any()) else "satellites",
+        reason="jamming" if bool(rows["jammed"].any()) else "satellites" if bool(rows["served"].all()) else "service",
         n_sv_least=int(rows["n_sv_monitor"].min()),  # type: ignore[arg-type]
         hpl_max_m=float(finite.max()) if len(finite) == len(level) else None,
     )

@@ -17,6 +17,7 @@ from navbound.errors import FormatError, InputError, NotFoundError
 from navbound.maps.sources import NS, Times, satellites
 from navbound.read.routes import load_route
 from navbound.records.prediction import Outage
+from navbound.run.expected.service import Service, service
 from navbound.run.expected.way import Way, way
 from navbound.scenario import Scenario, load
 from navbound.scenario.models import GPS_EPOCH
@@ -65,6 +66,8 @@ class Setup:
         Phases of the scenario whose RNP nobody has stated.
     path_words : list of str
         What the reader must know of the path.
+    sbas : Service, optional
+        What the levels rest on where they are those of SBAS.
     """
 
     plan: Plan
@@ -79,6 +82,7 @@ class Setup:
     legs: list[str]
     without_rnp: frozenset[int]
     path_words: list[str]
+    sbas: Service | None
 
     def sensors(self, **changed: Any) -> _core.Sensors:
         """The sensors of the flight without errors."""
@@ -92,7 +96,7 @@ class Setup:
         if self.plan.equipment.monitor_systems is not None:
             return self.plan.equipment.monitor_systems
         gnss_on_board = self.scenario.sensors.gnss if self.scenario.sensors else None
-        if self.plan.equipment.monitor == "raim" or gnss_on_board is None:
+        if self.plan.equipment.monitor == "raim" or self.sbas is not None or gnss_on_board is None:
             return "G"
         return "".join(dict.fromkeys(_LETTERS[name] for name in gnss_on_board.constellations))
 
@@ -137,6 +141,7 @@ def setup(file: str | Path, plan: Plan) -> Setup:
         legs=[f"{a.name}-{b.name}" for a, b in itertools.pairwise(scenario.waypoints)] if flown is None else flown.legs,
         without_rnp=frozenset() if flown is None else flown.phases()[1],
         path_words=_path_words(plan, flown),
+        sbas=None if plan.sbas is None else service(file, folder, plan.sbas, start_ns),
     )
 
 

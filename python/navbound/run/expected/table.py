@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.records.prediction import Outage
+    from navbound.run.expected.service import Service
     from navbound.run.expected.setup import Setup
 
     Floats = NDArray[np.float64]
@@ -124,10 +125,12 @@ def parts(table: pl.DataFrame) -> list[tuple[int, int]]:
 
 
 def levels(setup: Setup, shown: pl.DataFrame, shift_s: float = 0.0, without: frozenset[str] = frozenset()) -> pl.DataFrame:
-    """Levels of the satellites in view and in service at the rows, without some more: ``hpl_m``, ``n_sv_monitor``, ``jammed``.
+    """Levels of the satellites in view and in service at the rows, without some more: ``hpl_m``, ``n_sv_monitor``, ``jammed``, ``served``.
 
-    The level is NaN where there is none.
+    The level is NaN where there is none. ``served`` is false where an augmentation service offers no satellite.
     """
+    if setup.sbas is not None:
+        return _sent(setup, setup.sbas, shown, shift_s, without)
     called = entry(Place, "equipment.monitor", setup.plan.equipment.monitor)
     others = [s for s in setup.orbits.satellite if s[0] not in setup.systems()]
     in_view = setup.orbits.without(others)
@@ -147,7 +150,24 @@ def levels(setup: Setup, shown: pl.DataFrame, shift_s: float = 0.0, without: fro
             continue
         at = called(orbits, [lat], [lon], [h], [setup.since_s + time_s + shift_s], mask_rad=mask_rad, model=setup.plan.equipment.model)
         hpl[k], n_sv[k] = float(np.ravel(at.hpl_m)[0]), int(np.ravel(at.n_sv)[0])
-    return pl.DataFrame({"hpl_m": hpl, "n_sv_monitor": n_sv, "jammed": jammed})
+    return pl.DataFrame({"hpl_m": hpl, "n_sv_monitor": n_sv, "jammed": jammed, "served": np.full(shown.height, fill_value=True)})
+
+
+def _sent(setup: Setup, sbas: Service, shown: pl.DataFrame, shift_s: float, without: frozenset[str]) -> pl.DataFrame:
+    """The same of messages that a service sent; rows with the same satellites out are worked out together."""
+    sensors = setup.scenario.sensors
+    gnss = sensors.gnss if sensors is not None else None
+    outs = [_out(setup, time_s, shift_s) for time_s in shown["time_s"]]
+    jammed = np.array([any(w.what == "jamming" for w in out) for out in outs])
+    gone = [frozenset(name for w in out if w.what == "satellites" for name in w.names) | without for out in outs]
+    hpl, n_sv, served = np.full(shown.height, np.nan), np.zeros(shown.height, dtype=np.int64), np.full(shown.height, fill_value=True)
+    for names in set(gone):
+        rows = np.flatnonzero(np.array([each == names for each in gone]) & ~jammed)
+        if gnss is None or not len(rows):
+            continue
+        hpl[rows], n_sv[rows] = sbas.levels(shown[rows.tolist()], setup.scenario.start_ns, shift_s, gnss.mask_rad, names)
+        served[rows] = n_sv[rows] > 0
+    return pl.DataFrame({"hpl_m": hpl, "n_sv_monitor": n_sv, "jammed": jammed, "served": served})
 
 
 def pairs(setup: Setup, shown: pl.DataFrame) -> pl.DataFrame:
