@@ -38,8 +38,10 @@ class Section(NamedTuple):
     rows: Sequence[tuple[str, ...]]
 
 
-def page(record: ExpectedFlight, seconds: pl.DataFrame, shown: pl.DataFrame, sections: Sequence[Section]) -> str:
-    """The page as text."""
+def page(
+    record: ExpectedFlight, seconds: pl.DataFrame, shown: pl.DataFrame, sections: Sequence[Section], warned: Sequence[str] = ()
+) -> str:
+    """The page as text; cells with one of the words `warned` are marked."""
     template = files("navbound.report").joinpath("expected.html.j2").read_text(encoding="utf-8")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     return environment.from_string(template).render(
@@ -48,6 +50,7 @@ def page(record: ExpectedFlight, seconds: pl.DataFrame, shown: pl.DataFrame, sec
         line=_time_line(record, seconds, shown),
         route=_route(record, seconds),
         colours={mode: colour for mode, colour in COLOURS.items() if mode in set(seconds["mode"])},
+        warned=warned,
         departure=f"{record.departure_utc} UTC" if record.departure_utc else "of no date",
     )
 

@@ -16,7 +16,7 @@ from navbound.records.prediction import ExpectedFlight, Shift
 from navbound.run.expected.hold import hold
 from navbound.run.expected.legs import legs
 from navbound.run.expected.mixture import without_hole
-from navbound.run.expected.page import clock, sections
+from navbound.run.expected.page import WORDS, clock, sections
 from navbound.run.expected.setup import setup
 from navbound.run.expected.table import instants, levels, pairs, seconds
 from navbound.scenario.plan import read_plan
@@ -229,7 +229,9 @@ def write(expected: Expected, folder: str | Path) -> Path:
     with folders.own(Path(folder), {RECORD, EPOCHS, PAGE}, "a prediction's") as target:
         target.text(RECORD, expected.record.model_dump_json(indent=1) + "\n")
         target.write(EPOCHS, table.write_parquet)
-        target.text(PAGE, page(expected.record, expected.seconds, expected.shown, [Section(*part) for part in sections(expected.record)]))
+        tables = [Section(*part) for part in sections(expected.record)]
+        warned = [words for status, words in WORDS.items() if status != "kept"]
+        target.text(PAGE, page(expected.record, expected.seconds, expected.shown, tables, warned))
     return Path(folder)
 
 
