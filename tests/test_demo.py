@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 import navbound
-from navbound.live.display.watch import origin_of
+from navbound.live.session import origin_of
 from navbound.run.directory import load
 
 CHROMIUM = shutil.which("chromium")

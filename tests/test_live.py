@@ -18,8 +18,9 @@ from live_fixture import FLEET, Sent, fleet, frames, generator, recorded, transi
 from navbound import _core, live
 from navbound.cli.main import app
 from navbound.errors import FormatError, InputError
-from navbound.live import journal, tables, transition
+from navbound.live import journal
 from navbound.live.settings import Settings
+from navbound.live.sinks import tables, transition
 from navbound.live.source import File
 
 

@@ -18,8 +18,10 @@ import pytest
 
 from display_fixture import SETTINGS, Fed, Feeder
 from navbound import live
-from navbound.live import tables
-from navbound.live.display import Child, Options
+from navbound.live.child import Child
+from navbound.live.display import Options
+from navbound.live.display import child as display_child
+from navbound.live.sinks import tables
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -93,12 +95,12 @@ class Shown:
 def shown(browser: Browser, folder: Path, width: int = 1440, scheme: Any = "light", fed: Fed | None = None) -> Iterator[Shown]:
     fed = fed or Fed(folder)
     problems: list[str] = []
-    with Feeder(fed) as feeder, Child(fed.folder, Options()) as child:
+    with Feeder(fed) as feeder, display_child(fed.folder, Options()) as child:
         context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
         page = context.new_page()
         page.on("pageerror", lambda error: problems.append(str(error)))
         page.on("console", lambda message: problems.append(message.text) if message.type in {"error", "warning"} else None)
-        page.goto(child.address)
+        page.goto(child.text)
         page.wait_for_selector("#display[data-painted]", timeout=20_000)
         display = Shown(fed, feeder, child, page, problems)
         yield display
@@ -383,7 +385,7 @@ def test_a_browser_without_the_token_shows_what_to_do(browser: Browser, tmp_path
     with shown(browser, tmp_path / "session") as display:
         context = browser.new_context()
         page = context.new_page()
-        page.goto(display.child.address.split("#")[0])
+        page.goto(display.child.text.split("#")[0])
         page.wait_for_selector(".stranger")
         assert "whole address" in page.locator(".stranger").inner_text()
         assert page.locator(".fresh-word").inner_text() == "CONNECTING"

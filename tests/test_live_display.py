@@ -22,9 +22,12 @@ import pytest
 from display_fixture import SETTINGS, Browser, Fed, served
 from navbound import _core, live
 from navbound.errors import FormatError, InputError
-from navbound.live import journal, tables
-from navbound.live.display import Child, Options, Watch, hub, request, server, watch
-from navbound.live.session import now_ns
+from navbound.live import journal
+from navbound.live.display import Options, Watch, hub, request, server, watch
+from navbound.live.display import child as display_child
+from navbound.live.session import now_ns, origin_of
+from navbound.live.sinks import tables
+from navbound.live.tail import Tail
 
 FOREIGN = "http://attacker.example"
 
@@ -382,7 +385,7 @@ def test_a_frame_that_is_not_whole_yet_is_waited_for(fed: Fed) -> None:
     fed.position()
     whole = (fed.folder / journal.OUT).read_bytes()
     piece = fed.folder / "piece.nvj"
-    tail = watch.Tail(piece)
+    tail = Tail(piece)
     assert tail.frames() == b""
     for cut in (3, len(whole) // 2, len(whole) - 1):
         piece.write_bytes(whole[:cut])
@@ -442,12 +445,12 @@ def test_health_is_ok_degraded_or_lost_without_a_token(fed: Fed) -> None:
 
 def test_the_display_beside_a_session_ends_with_it_and_its_death_does_not_hurt(fed: Fed) -> None:
     fed.position()
-    with Child(fed.folder, Options()) as child:
-        port = int(child.address.split(":")[2].split("/")[0])
+    with display_child(fed.folder, Options()) as child:
+        port = int(child.text.split(":")[2].split("/")[0])
         socket.create_connection(("127.0.0.1", port), 5.0).close()
     with pytest.raises(OSError, match="refused"):
         socket.create_connection(("127.0.0.1", port), 5.0).close()
-    with Child(fed.folder, Options()) as child:
+    with display_child(fed.folder, Options()) as child:
         assert child._process.pid is not None
         os.kill(child._process.pid, signal.SIGKILL)
         fed.position()
@@ -456,7 +459,7 @@ def test_the_display_beside_a_session_ends_with_it_and_its_death_does_not_hurt(f
 
 def test_a_folder_that_is_no_session_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match="settings of a live session"):
-        Child(tmp_path, Options())
+        display_child(tmp_path, Options())
 
 
 def test_a_log_is_replayed_with_its_display_and_both_end_on_demand(tmp_path: Path) -> None:
@@ -477,7 +480,7 @@ def test_a_log_is_replayed_with_its_display_and_both_end_on_demand(tmp_path: Pat
     assert process.returncode == 0, stderr
     assert "60 epochs" in stdout
     assert "stays open" in stderr
-    origin = watch.origin_of(out)
+    origin = origin_of(out)
     # Limits of LPV-200: ICAO Annex 10, table 3.7.2.4-1.
     assert (origin["kind"], origin["speed"], origin["limits"]) == ("replay", 20.0, {"name": "LPV-200", "hal_m": 40.0, "val_m": 35.0})
 

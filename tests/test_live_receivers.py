@@ -15,7 +15,7 @@ import pytest
 
 import navbound
 from navbound import live
-from navbound.live import tables
+from navbound.live.sinks import tables
 from navbound.live.source import File
 from navbound.run.directory import Run
 from navbound.time import gps_ns

@@ -15,7 +15,7 @@ import pytest
 import navbound
 from navbound import live
 from navbound.errors import FormatError
-from navbound.live import tables
+from navbound.live.sinks import tables
 from navbound.live.source import File
 from navbound.read import read
 

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from navbound.live import Session, Settings
-    from navbound.live.display import Child
+    from navbound.live.child import Child
+    from navbound.live.sinks.webhook import Target
 
 
 class SourceFirst(TyperGroup):
@@ -43,6 +44,10 @@ Form = Annotated[str | None, typer.Option("--format", help="json, ubx, sbf, nova
 Display = Annotated[bool, typer.Option("--display", help="Show it in a browser on this host: the address is printed. Ctrl-C ends both.")]
 OpenPage = Annotated[bool, typer.Option("--open", help="Show it, and open the page in the browser of this machine.")]
 Level = Annotated[str | None, typer.Option(help="Service level whose alert limits the display shows, such as LPV-200.")]
+Hook = Annotated[
+    str | None, typer.Option("--webhook", help="Address that each transition is sent to: https://..., or http:// on this host.")
+]
+SecretFile = Annotated[Path | None, typer.Option("--secret-file", help="File with the key of the signature of what is sent to --webhook.")]
 Port = Annotated[int, typer.Option(help="Port of the display. [default: one that is free]", show_default=False)]
 
 
@@ -69,6 +74,8 @@ def watch(
     port: Port = 0,
     open_page: OpenPage = False,
     level: Level = None,
+    webhook: Hook = None,
+    secret_file: SecretFile = None,
     json: JsonLines = False,
 ) -> None:
     """Judge a source until it ends or the command is stopped; alerts are reported as they are raised.
@@ -99,6 +106,7 @@ def watch(
             limits=_limits(level),
             resume=resume,
             json=json,
+            target=_target(webhook, secret_file),
         ),
     )
 
@@ -114,6 +122,7 @@ class _Ways:
     resume: bool = False
     json: bool = False
     replay: bool = False
+    target: Target | None = None
 
 
 def _settings(source: str, form: str | None, *, spec: str, path: str | None, method: str = "", **others: Any) -> Settings:
@@ -147,13 +156,15 @@ def _run(source: str, settings: Settings, ways: _Ways) -> None:
     kind: Any = "live" if opened.live else "replay" if ways.replay else "recording"
     origin = live.Origin(kind, source, None if opened.live else ways.speed, points(settings, source), ways.limits)
     session = live.Session(ways.out, settings, origin=origin, resume=ways.resume, report=_report(json=ways.json), say=_say)
-    with ways.screen as screen:
+    with ways.screen as screen, _Post(ways.target) as post:
         screen.show(session)
+        post.begin(session)
         try:
-            session.run(opened, stop=stop, speed=ways.speed)
+            session.run(opened, stop=lambda: post.heard() or stop(), speed=ways.speed)
         finally:
             opened.close()
         _ended(session, settings, json=ways.json)
+        post.hold(stop)
         screen.hold(stop)
 
 
@@ -190,13 +201,13 @@ class _Screen:
 
     def show(self, session: Session) -> None:
         """Open it."""
-        from navbound.live.display import Child  # noqa: PLC0415
+        from navbound.live.display import child  # noqa: PLC0415
 
         if self._options is None:
             return
-        self._child = Child(session.folder, self._options)
-        _address(self._child.address, json=self._json)
-        if self._opened and not webbrowser.open(self._child.address):
+        self._child = child(session.folder, self._options)
+        _address(self._child.text, json=self._json)
+        if self._opened and not webbrowser.open(self._child.text):
             _say("no browser was found on this machine: open the address in one")
 
     def hold(self, stop: Callable[[], bool]) -> None:
@@ -205,6 +216,56 @@ class _Screen:
             _say("the data have ended; the display stays open until Ctrl-C")
             while not stop():
                 time.sleep(0.1)
+
+
+def _target(url: str | None, secret_file: Path | None) -> Target | None:
+    from navbound.live.sinks.webhook import Target, secret_of  # noqa: PLC0415
+
+    if url is None:
+        if secret_file is not None:
+            raise ConflictError("secret_file", needs=("webhook",))
+        return None
+    return Target(url, None if secret_file is None else secret_of(secret_file))
+
+
+class _Post:
+    """What sends the transitions of a session on, in a process beside it, or nothing."""
+
+    def __init__(self, target: Target | None) -> None:
+        self._target = target
+        self._child: Child | None = None
+
+    def __enter__(self) -> _Post:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._child is not None:
+            self._child.end()
+
+    def begin(self, session: Session) -> None:
+        """Start it."""
+        from navbound.live.child import Child  # noqa: PLC0415
+        from navbound.live.sinks.webhook import beside  # noqa: PLC0415
+
+        if self._target is not None:
+            self._child = Child(beside, session.folder, self._target, "transitions cannot be sent")
+
+    def heard(self) -> bool:
+        """Report what it said; never a reason to stop: who sends may fail, the monitor goes on."""
+        for sentence in self._child.sentences() if self._child is not None else []:
+            _say(sentence)
+        return False
+
+    def hold(self, stop: Callable[[], bool]) -> None:
+        """Wait behind the end of the data until everything was taken, or the command is stopped."""
+        if self._child is None:
+            return
+        while self._child.works and not stop():
+            self.heard()
+            time.sleep(0.1)
+        self.heard()
+        if self._child.works:
+            _say("not every transition was taken; navbound live send goes on with them")
 
 
 def _address(address: str, *, json: bool) -> None:
@@ -273,6 +334,29 @@ def display(
 
 
 @app.command()
+def send(
+    folder: Annotated[Path, typer.Argument(help="Folder of a session that runs, or ran.")],
+    webhook: Annotated[
+        str, typer.Option("--webhook", help="Address that each transition is sent to: https://..., or http:// on this host.")
+    ],
+    secret_file: SecretFile = None,
+) -> None:
+    """Send the transitions of a session to a webhook, in order, from its journal alone, until each was taken and the session has ended.
+
+    Who was stopped or killed goes on where it was. Ctrl-C ends the sending and not the session.
+    """
+    from navbound.live.sinks.webhook import Webhook  # noqa: PLC0415
+
+    target = _target(webhook, secret_file)
+    if target is not None:
+        sender = Webhook(folder, target, say=_say)
+        sender.run(stop=_stop())
+        out_console.print(f"{sender.n_sent} transitions taken by {target.name}, {sender.n_waiting} wait.", highlight=False)
+        if sender.n_waiting:
+            raise typer.Exit(NO_VERDICT)
+
+
+@app.command()
 def judge(journal: Journal, out: SessionOut = Path("out/judged"), json: JsonLines = False) -> None:
     """Judge a whole journal at once: the causal batch."""
     from navbound import live  # noqa: PLC0415
@@ -316,7 +400,7 @@ def _say(sentence: str) -> None:
 
 
 def _report(*, json: bool) -> Callable[[dict[str, Any]], None]:
-    from navbound.live import transition  # noqa: PLC0415
+    from navbound.live.sinks import transition  # noqa: PLC0415
     from navbound.time import utc_text  # noqa: PLC0415
 
     def report(reported: dict[str, Any]) -> None:
@@ -330,7 +414,7 @@ def _report(*, json: bool) -> Callable[[dict[str, Any]], None]:
 
 
 def _ended(session: Session, settings: Settings, *, json: bool) -> None:
-    from navbound.live import tables  # noqa: PLC0415
+    from navbound.live.sinks import tables  # noqa: PLC0415
 
     counters = session.counters()
     if session.n_epochs:

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 IN, OUT, SNAPSHOT, SETTINGS, EVENTS = "in.nvj", "out.nvj", "snapshot.bin", "live.json", "events.jsonl"
 ACKNOWLEDGED = "acknowledged.jsonl"
 """What a person at the display has seen: written by the display, read by nobody."""
+SENT = "sent.json"
+"""How far a webhook has taken the transitions: written and read by who sends them."""
 
 
 class Journal:

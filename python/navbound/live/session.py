@@ -18,8 +18,8 @@ import numpy as np
 from navbound import __version__, _core
 from navbound.errors import FormatError, InputError
 from navbound.live import journal
-from navbound.live.events import Events
 from navbound.live.settings import load
+from navbound.live.sinks.events import Events
 from navbound.live.source import File
 
 if TYPE_CHECKING:
@@ -64,6 +64,15 @@ class Origin:
     speed: float | None = None
     points: list[list[float]] = field(default_factory=list)
     limits: dict[str, Any] | None = None
+
+
+def origin_of(folder: Path) -> dict[str, Any]:
+    """Where the data of a session come from, as its folder says."""
+    try:
+        kept = json.loads((folder / journal.SETTINGS).read_text(encoding="utf-8")).get("origin")
+    except (OSError, ValueError) as e:
+        raise FormatError(folder / journal.SETTINGS, f"not the settings of a live session: {e}") from e
+    return {"kind": "recording", "source": "", "speed": None, "points": [], "limits": None} | (kept if isinstance(kept, dict) else {})
 
 
 _OTHERWISE = (
@@ -347,7 +356,9 @@ def _prepare(out: Path, settings: Settings, origin: Origin, *, resume: bool) -> 
         journal.SETTINGS,
         journal.EVENTS,
         journal.ACKNOWLEDGED,
+        journal.SENT,
         f"{journal.SNAPSHOT}.partial",
+        f"{journal.SENT}.partial",
     }
     ours |= {"epochs.parquet", "events.parquet"}
     try:

@@ -1,11 +1,29 @@
 """The flight display: a process of its own that reads the journals of a session and shows them in browsers on this host.
 
 `watch` follows the journals; `hub` keeps what each page has still to receive; `request` reads and answers HTTP and decides who may ask;
-`server` joins them; `child` runs the server beside a session. It may be slow, attacked or killed: the monitor does not notice.
+`server` joins them. It may be slow, attacked or killed: the monitor does not notice.
 """
 
-from navbound.live.display.child import Child
-from navbound.live.display.server import Options, Server, serve
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from navbound.live.child import Child
+from navbound.live.display.server import Options, Server, beside, serve
 from navbound.live.display.watch import Watch
 
-__all__ = ["Child", "Options", "Server", "Watch", "serve"]
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["Options", "Server", "Watch", "child", "serve"]
+
+
+def child(folder: Path, options: Options) -> Child:
+    """The display of a folder in a process beside the session; its `text` is the address.
+
+    Raises
+    ------
+    FormatError
+        It cannot be served, and why.
+    """
+    return Child(beside, folder, options, "the display cannot be shown")

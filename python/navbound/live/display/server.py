@@ -319,3 +319,9 @@ def serve(folder: Path, options: Options, *, ready: Callable[[Server], None], st
     server = Server(Watch(folder), options)
     ready(server)
     asyncio.run(server.run(stop))
+
+
+def beside(folder: Path, options: Options, ready: Callable[[str], None], say: Callable[[str], None], stop: Callable[[], bool]) -> None:
+    """:func:`serve` in a process beside a session."""
+    del say  # a display speaks on its pages
+    serve(folder, options, ready=lambda server: ready(server.address), stop=stop)

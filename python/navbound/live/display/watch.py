@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections import deque
@@ -11,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from navbound import _core
 from navbound.errors import FormatError
-from navbound.live import journal, transition
-from navbound.live.session import now_ns
+from navbound.live import journal
+from navbound.live.session import now_ns, origin_of
 from navbound.live.settings import COMPUTING_S, load
+from navbound.live.sinks import transition
+from navbound.live.tail import Tail
 from navbound.status import REASONS
 from navbound.table.columns import HORIZONTAL
 from navbound.time import utc_offset_s
@@ -30,8 +31,6 @@ HISTORY_S = 600.0
 HISTORY_ROWS = 6000
 MOST_TRACKS = 64
 MOST_EVENTS = 500
-SLICE = 1 << 20
-"""Bytes of a journal that are read at once. [B]"""
 
 WORDS = ("status", "reason_id", "alert", "nav_mode")
 NUMBERS = (
@@ -60,46 +59,6 @@ NUMBERS = (
 FIELDS = ("utc_s", *WORDS, *NUMBERS)
 """What a row of an epoch holds, in this order. A number that is none is null."""
 Row = list[Any]
-
-
-class Tail:
-    """Whole frames at the end of a file that another process writes.
-
-    Attributes
-    ----------
-    behind : bool
-        Whether there is more to read at once.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self.path, self._at, self._left, self.behind = path, 0, b"", False
-
-    def frames(self) -> bytes:
-        """Whole frames that were added.
-
-        Raises
-        ------
-        FormatError
-            A frame is damaged, or the file became shorter: it is another session's.
-        """
-        try:
-            with self.path.open("rb") as file:
-                size = file.seek(0, 2)
-                if size < self._at:
-                    raise FormatError(self.path, "became shorter while it was read: another session writes it")
-                file.seek(self._at)
-                read = file.read(SLICE)
-        except FileNotFoundError:
-            return b""
-        self._at += len(read)
-        self.behind = self._at < size
-        content = self._left + read
-        ends, behind = _core.live_frames(content)
-        end = ends[-1] if ends else 0
-        if behind == "damaged":
-            raise FormatError(self.path, f"a frame is damaged at byte {self._at - len(content) + end}")
-        self._left = content[end:]
-        return content[:end]
 
 
 @dataclass
@@ -217,10 +176,7 @@ class Watch:
 
     def _transitions(self, frames: bytes) -> list[dict[str, Any]]:
         replayed = self.origin["kind"] != "live"
-        records = [
-            transition.record(row, time_to_alert_s=self.settings.time_to_alert_s, replayed=replayed)
-            for row in _core.live_transitions(frames)
-        ]
+        records = transition.records(frames, time_to_alert_s=self.settings.time_to_alert_s, replayed=replayed)
         shown = [self._shown(record) for record in records]
         for each in shown:
             self.n_transitions += 1
@@ -324,12 +280,3 @@ def alert_of(key: str) -> str:
 def _number(value: float | None) -> float | None:
     """Twelve digits; what is no number is null."""
     return float(f"{value:.12g}") if value is not None and math.isfinite(value) else None
-
-
-def origin_of(folder: Path) -> dict[str, Any]:
-    """Where the data of a session come from, as its folder says."""
-    try:
-        kept = json.loads((folder / journal.SETTINGS).read_text(encoding="utf-8")).get("origin")
-    except (OSError, ValueError) as e:
-        raise FormatError(folder / journal.SETTINGS, f"not the settings of a live session: {e}") from e
-    return {"kind": "recording", "source": "", "speed": None, "points": [], "limits": None} | (kept if isinstance(kept, dict) else {})

@@ -9,7 +9,8 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from navbound import _core
-from navbound.live import journal, transition
+from navbound.live import journal
+from navbound.live.sinks import transition
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

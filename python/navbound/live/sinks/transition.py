@@ -6,6 +6,8 @@ import json
 import math
 from typing import TYPE_CHECKING, Any
 
+from navbound import _core
+
 if TYPE_CHECKING:
     from navbound._core import _TransitionRow
 
@@ -45,6 +47,11 @@ def record(row: _TransitionRow, *, time_to_alert_s: float, replayed: bool) -> di
         *(latency_s, None if latency_s is None else latency_s <= time_to_alert_s, replayed, position),
     )
     return dict(zip(FIELDS, values, strict=True))
+
+
+def records(frames: bytes, *, time_to_alert_s: float, replayed: bool) -> list[dict[str, Any]]:
+    """Every transition of whole frames of a journal out."""
+    return [record(row, time_to_alert_s=time_to_alert_s, replayed=replayed) for row in _core.live_transitions(frames)]
 
 
 def line(transition: dict[str, Any]) -> str:

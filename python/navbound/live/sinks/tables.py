@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from navbound import _core
-from navbound.live import journal, transition
+from navbound.live import journal
+from navbound.live.sinks import transition
 
 if TYPE_CHECKING:
     from pathlib import Path
