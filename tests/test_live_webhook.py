@@ -279,7 +279,7 @@ def test_a_session_sends_while_it_runs_and_the_command_goes_on_with_the_rest(log
     assert command("compare", out, tmp_path / "alone").returncode == 0
 
 
-def test_a_wrong_use_of_the_command_is_said(log: Path, tmp_path: Path) -> None:
+def test_a_wrong_use_of_the_command_is_refused(log: Path, tmp_path: Path) -> None:
     assert "--secret-file" in command("watch", log, "--out", tmp_path / "a", "--secret-file", "x").stderr
     refused = command("watch", log, "--out", tmp_path / "b", "--webhook", "http://192.0.2.1/")
     assert refused.returncode == 2

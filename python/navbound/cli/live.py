@@ -357,6 +357,14 @@ def send(
 
 
 @app.command()
+def counts(folder: Annotated[Path, typer.Argument(help="Folder of a session that runs, or ran.")]) -> None:
+    """Print what a session counted, as Prometheus reads it at /metrics of the display: from the journal out and the last snapshot."""
+    from navbound.live.sinks import metrics  # noqa: PLC0415
+
+    typer.echo(metrics.of(folder), nl=False)
+
+
+@app.command()
 def judge(journal: Journal, out: SessionOut = Path("out/judged"), json: JsonLines = False) -> None:
     """Judge a whole journal at once: the causal batch."""
     from navbound import live  # noqa: PLC0415

@@ -20,6 +20,7 @@ from navbound.live.display import hub, request
 from navbound.live.display.request import RefusedError
 from navbound.live.display.watch import Watch
 from navbound.live.session import now_ns
+from navbound.live.sinks import metrics
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -162,6 +163,9 @@ class Server:
         elif query.path == "/health":
             status, body = self._health()
             writer.write(request.answer(status, body, "application/json"))
+        elif query.path == "/metrics":
+            body = self.watch.metrics(len(self.hub.clients)).encode()
+            writer.write(request.answer(HTTPStatus.OK, body, metrics.KIND))
         elif query.path == "/session":
             self.door.session(query)
             writer.write(request.answer(HTTPStatus.NO_CONTENT))

@@ -13,7 +13,8 @@ from navbound.errors import FormatError
 from navbound.live import journal
 from navbound.live.session import now_ns, origin_of
 from navbound.live.settings import COMPUTING_S, load
-from navbound.live.sinks import transition
+from navbound.live.sinks import metrics, transition
+from navbound.live.sinks.metrics import Counts, Taken
 from navbound.live.tail import Tail
 from navbound.status import REASONS
 from navbound.table.columns import HORIZONTAL
@@ -111,6 +112,7 @@ class Watch:
         self.folder, self._clock = folder, clock
         self.settings = load(folder / journal.SETTINGS)
         self.origin = origin_of(folder)
+        self.counts, self.taken = Counts(), Taken(folder, self.settings)
         self._in, self._out = Tail(folder / journal.IN), Tail(folder / journal.OUT)
         self.tracks: dict[str, Track] = {}
         self.n_hidden = 0
@@ -131,8 +133,10 @@ class Watch:
             self._inputs(self._in.frames())
             frames = self._out.frames()
             if frames:
-                self._epochs(_core.live_epochs(frames), rows)
+                columns = _core.live_epochs(frames)
+                self._epochs(columns, rows)
                 transitions = self._transitions(frames)
+                self.counts.see(columns["status"], transitions)
         except (FormatError, OSError, ValueError) as e:
             self.trouble = str(e)
         return News(rows, transitions)
@@ -175,8 +179,7 @@ class Watch:
         return time_ns / 1e9 + GPS_EPOCH_UNIX_S - self._offset[1]
 
     def _transitions(self, frames: bytes) -> list[dict[str, Any]]:
-        replayed = self.origin["kind"] != "live"
-        records = transition.records(frames, time_to_alert_s=self.settings.time_to_alert_s, replayed=replayed)
+        records = transition.records(frames, time_to_alert_s=self.settings.time_to_alert_s, origin=self.origin)
         shown = [self._shown(record) for record in records]
         for each in shown:
             self.n_transitions += 1
@@ -252,6 +255,26 @@ class Watch:
             "chain": chain,
             "reasons": {name: reason.words for name, reason in REASONS.items()},
         }
+
+    def metrics(self, clients: int) -> str:
+        """What was counted, for Prometheus."""
+        self.taken.poll()
+        status = self.status()
+        known = status["ages_s"].values()
+        ages = {'what="newest"': min(known), 'what="oldest"': max(known)} if known else {}
+        written_s = self.taken.written_s
+        own = [
+            *metrics.family("navbound_event_age_seconds", "gauge", "Age of the data of the tracks that the display follows.", ages),
+            *metrics.family(
+                "navbound_feed_up", "gauge", "1 while the reader of the source says that it is alive.", {"": int(status["feed"] == "live")}
+            ),
+            *metrics.family("navbound_display_clients", "gauge", "Pages that are open.", {"": clients}),
+        ]
+        if written_s is not None:
+            own += metrics.family(
+                "navbound_snapshot_age_seconds", "gauge", "Age of the snapshot.", {"": round(max(0.0, time.time() - written_s), 1)}
+            )
+        return metrics.text([self.counts.lines(), self.taken.lines(), own])
 
     def snapshot(self, requested: str | None) -> dict[str, Any]:
         """Everything a page shows of one aircraft, and the alerts of all."""

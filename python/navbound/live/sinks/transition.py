@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 from navbound import _core
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from navbound._core import _TransitionRow
 
 VERSION = 1
@@ -49,8 +51,9 @@ def record(row: _TransitionRow, *, time_to_alert_s: float, replayed: bool) -> di
     return dict(zip(FIELDS, values, strict=True))
 
 
-def records(frames: bytes, *, time_to_alert_s: float, replayed: bool) -> list[dict[str, Any]]:
-    """Every transition of whole frames of a journal out."""
+def records(frames: bytes, *, time_to_alert_s: float, origin: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Every transition of whole frames of a journal out; those of data that did not arrive just then are replayed."""
+    replayed = origin["kind"] != "live"
     return [record(row, time_to_alert_s=time_to_alert_s, replayed=replayed) for row in _core.live_transitions(frames)]
 
 
