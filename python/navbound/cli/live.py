@@ -53,7 +53,12 @@ Port = Annotated[int, typer.Option(help="Port of the display. [default: one that
 
 @app.command()
 def watch(
-    source: Annotated[str, typer.Argument(help="A file, a run directory, - (standard input), tcp://host:port or udp://host:port.")],
+    source: Annotated[
+        str,
+        typer.Argument(
+            help="A file, a run directory, - (standard input), tcp://host:port, udp://host:port or serial:///dev/ttyACM0?baud=115200."
+        ),
+    ],
     out: SessionOut = Path("out/live"),
     spec: Spec = "RNP 0.3",
     path: Course = None,

@@ -1,4 +1,4 @@
-"""Where bytes come from: a file, standard input, a TCP connection, UDP datagrams. Nothing here looks into the bytes."""
+"""Where bytes come from: a file, standard input, a TCP connection, UDP datagrams, a serial port. Nothing here looks into the bytes."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ CHUNK = 32 * 1024
 """Bytes that are read at once. [B]"""
 _RETRY_FIRST_S, _RETRY_MOST_S = 0.5, 30.0
 _CONNECT_S = 5.0
+_LEAST_BAUD, _USUAL_BAUD = 1200, 115_200
 
 
 class Source(Protocol):
@@ -66,7 +67,7 @@ class File:
         try:
             self._file: IO[bytes] = path.open("rb")
         except OSError as e:
-            raise FormatError(path, f"cannot be opened: {e.strerror}; a source is a file, - , tcp://host:port or udp://host:port") from e
+            raise FormatError(path, f"cannot be opened: {e.strerror}; a source is {SOURCES}") from e
 
     def read(self, timeout_s: float) -> bytes | None:
         """Take the next bytes: as :class:`Source` says."""
@@ -109,34 +110,40 @@ class StandardInput:
         """It belongs to the process."""
 
 
-class Tcp:
-    """A connection that is opened again for ever once it was there."""
+class _Line:
+    """Something with a descriptor that is opened again for ever once it was there."""
 
     live = True
 
-    def __init__(self, host: str, port: int) -> None:
-        self._address, self._wait_s, self._next_s = (host, port), _RETRY_FIRST_S, 0.0
+    def __init__(self) -> None:
+        self._wait_s, self._next_s = _RETRY_FIRST_S, 0.0
         self._jitter = random.Random()
-        try:
-            self._socket: socket.socket | None = socket.create_connection(self._address, _CONNECT_S)
-        except OSError as e:
-            what = f"cannot be reached: {e.strerror or e}; start what sends there, or check host and port"
-            raise FormatError(f"tcp://{host}:{port}", what) from e
+        self._descriptor: int | None = self._opened()
+
+    def _opened(self) -> int:
+        """Open it: a descriptor, which `_Line` closes.
+
+        Raises
+        ------
+        OSError
+            It is not there.
+        """
+        raise NotImplementedError
 
     @property
     def up(self) -> bool:
         """Whether the connection is there."""
-        return self._socket is not None
+        return self._descriptor is not None
 
     def read(self, timeout_s: float) -> bytes | None:
         """Take the next bytes: as :class:`Source` says."""
-        if self._socket is None:
+        if self._descriptor is None:
             self._again(timeout_s)
             return b""
         try:
-            if not select.select([self._socket], [], [], timeout_s)[0]:
+            if not select.select([self._descriptor], [], [], timeout_s)[0]:
                 return b""
-            data = self._socket.recv(CHUNK)
+            data = os.read(self._descriptor, CHUNK)
         except OSError:
             data = b""
         if not data:
@@ -150,7 +157,7 @@ class Tcp:
             time.sleep(min(wait_s, timeout_s))
             return
         try:
-            self._socket = socket.create_connection(self._address, _CONNECT_S)
+            self._descriptor = self._opened()
             self._wait_s = _RETRY_FIRST_S
         except OSError:
             self._next_s = time.monotonic() + self._wait_s * self._jitter.uniform(0.8, 1.2)
@@ -161,9 +168,74 @@ class Tcp:
 
     def close(self) -> None:
         """Give it back."""
-        if self._socket is not None:
-            self._socket.close()
-            self._socket = None
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
+
+
+class Tcp(_Line):
+    """A connection."""
+
+    def __init__(self, host: str, port: int) -> None:
+        self._address = (host, port)
+        try:
+            super().__init__()
+        except OSError as e:
+            what = f"cannot be reached: {e.strerror or e}; start what sends there, or check host and port"
+            raise FormatError(f"tcp://{host}:{port}", what) from e
+
+    def _opened(self) -> int:
+        return socket.create_connection(self._address, _CONNECT_S).detach()
+
+
+class Serial(_Line):
+    """A serial port, eight bits without parity; nothing is written to it."""
+
+    def __init__(self, device: str, baud: int) -> None:
+        self._device, self._baud = device, baud
+        speed = _speeds().get(baud)
+        if speed is None:
+            raise InputError("source", f"baud={baud}", domain=f"speeds of a serial port: {', '.join(map(str, sorted(_speeds())))}")
+        self._speed = speed
+        try:
+            super().__init__()
+        except OSError as e:
+            what = f"cannot be opened: {e.strerror or e}; check the device, and that you may read it"
+            raise FormatError(f"serial://{device}", what) from e
+
+    def _opened(self) -> int:
+        import fcntl  # noqa: PLC0415 - there are no serial ports of this kind on every system
+        import termios  # noqa: PLC0415
+
+        descriptor = os.open(self._device, os.O_RDONLY | os.O_NOCTTY | os.O_NONBLOCK)
+        try:
+            fcntl.ioctl(descriptor, termios.TIOCEXCL)
+            settings = termios.tcgetattr(descriptor)
+            # No translation of any kind, no signals, eight bits, the line of the modem ignored.
+            settings[0] = settings[1] = settings[3] = 0
+            settings[2] = termios.CS8 | termios.CREAD | termios.CLOCAL
+            settings[4] = settings[5] = self._speed
+            termios.tcsetattr(descriptor, termios.TCSANOW, settings)
+        except termios.error as e:
+            os.close(descriptor)
+            raise OSError(*e.args[:2]) from e
+        except OSError:
+            os.close(descriptor)
+            raise
+        return descriptor
+
+
+def _speeds() -> dict[int, int]:
+    """Speeds of serial ports of this system by their number; nothing where it has no such ports. [baud]."""
+    try:
+        import termios  # noqa: PLC0415 - see above
+    except ImportError:
+        return {}
+    return {
+        int(name[1:]): value
+        for name, value in vars(termios).items()
+        if name[0] == "B" and name[1:].isdigit() and int(name[1:]) >= _LEAST_BAUD
+    }
 
 
 class Udp:
@@ -200,13 +272,16 @@ class Udp:
         self._socket.close()
 
 
+SOURCES = "a file, -, tcp://host:port, udp://host:port or serial:///dev/ttyACM0?baud=115200"
+
+
 def open_source(name: str, *, lines: bool = False, chunk: int = CHUNK) -> Source:
     """Open a source.
 
     Parameters
     ----------
     name : str
-        A file, a run directory, ``-`` for standard input, ``tcp://host:port`` or ``udp://host:port``.
+        A file, a run directory, ``-`` for standard input, ``tcp://host:port``, ``udp://host:port`` or ``serial:///dev/ttyACM0?baud=115200``.
     lines : bool
         Whether it sends lines of text.
     chunk : int
@@ -223,14 +298,25 @@ def open_source(name: str, *, lines: bool = False, chunk: int = CHUNK) -> Source
         return StandardInput()
     if "://" not in name:
         return Recording(Path(name), chunk) if Path(name).is_dir() else File(Path(name), chunk)
-    parts = urlsplit(name)
     try:
+        parts = urlsplit(name)
         host, port = parts.hostname, parts.port
-    except ValueError:
-        host = port = None
+    except ValueError as e:
+        raise InputError("source", name, domain=SOURCES) from e
+    if parts.scheme == "serial" and not host and parts.path.startswith("/"):
+        return Serial(parts.path, _baud(name, parts.query))
     if parts.scheme not in {"tcp", "udp"} or not host or port is None:
-        raise InputError("source", name, domain="a file, -, tcp://host:port or udp://host:port")
+        raise InputError("source", name, domain=SOURCES)
     return Tcp(host, port) if parts.scheme == "tcp" else Udp(host, port, lines=lines)
+
+
+def _baud(name: str, query: str) -> int:
+    if not query:
+        return _USUAL_BAUD
+    key, _, value = query.partition("=")
+    if key != "baud" or not (value.isascii() and value.isdigit() and len(value) <= 8):
+        raise InputError("source", name, domain="serial:///dev/ttyACM0?baud=115200: a device of this host and its speed")
+    return int(value)
 
 
 def format_of(name: str) -> str | None:
