@@ -182,5 +182,5 @@ class Scenario(Part):
     def core_json(self) -> str:
         """Write what the core reads."""
         data = self.model_dump(mode="json", exclude={"kind", "operation", "title", "start_gps", "seed", "assumptions", "waypoints"})
-        data["waypoints"] = [w.model_dump(exclude={"kind"}) for w in self.waypoints]
+        data["waypoints"] = [w.model_dump(exclude={"kind"}, exclude_none=True) for w in self.waypoints]
         return json.dumps(data | {"start_ns": self.start_ns})
