@@ -41,10 +41,13 @@ def test_the_readme_says_what_its_lines_give() -> None:
 def test_the_other_lines_of_the_readme_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.S)[1:]
-    assert len(blocks) == 1
+    assert len(blocks) == 2
     names: dict[str, object] = {}
     exec(blocks[0], names)
     assert {"gnss", "coasting"} <= set(names["fused"].mode)  # type: ignore[attr-defined]
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda _, name: names.setdefault("saved", name))
+    exec(blocks[1], names)
+    assert names["saved"] == "approaches.png"
 
 
 def test_every_link_of_the_readme_leads_somewhere() -> None:

@@ -32,7 +32,7 @@ LAYERS = (
     ("judge", "read", "write"),
     ("scale", "report"),
     ("maps", "run"),
-    ("studies",),
+    ("studies", "plot"),
     ("examples",),
     ("live",),
     ("cli",),

@@ -38,7 +38,7 @@ SUBJECTS = (
         "tse",
         "vertical",
     ),
-    *("algorithms", "maps", "methods", "scale", "scenario", "status", "time", "units", "verify", "write"),
+    *("algorithms", "maps", "methods", "plot", "scale", "scenario", "status", "time", "units", "verify", "write"),
 )
 """Modules that a caller uses, by name."""
 _JOBS = {**dict.fromkeys(("analyze", "evaluate", "fly"), "navbound.run.commands"), "study": "navbound.studies.run"}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,7 +27,7 @@ EVENTS = "events.parquet"
 REPORT = "report.html"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """A finished run: its records, its epoch table and, once written, where it lies. A large table is in pieces on the disk."""
 
@@ -43,6 +44,45 @@ class Run:
         from navbound.read.pieces import Frames  # noqa: PLC0415
 
         return self.table.frame() if isinstance(self.table, Frames) else self.table
+
+    def __repr__(self) -> str:
+        """What it is, in a line."""
+        verdict = self.summary.verdict
+        where = "" if self.path is None else f", in {self.path}"
+        return f"<Run: {self.summary.title}; {verdict.id.replace('_', ' ')}; {self.table.height} epochs{where}>"
+
+    def _repr_html_(self) -> str:
+        """For notebooks: the verdict, and where the report is."""
+        verdict = self.summary.verdict
+        rows = [("epochs", str(self.table.height)), *((name, str(n)) for name, n in self.summary.n_status.items())]
+        cells = "".join(f"<tr><td>{escape(name)}</td><td>{escape(n)}</td></tr>" for name, n in rows)
+        report = "" if self.path is None else f"<p>Report: <code>{escape(str(self.path / REPORT))}</code></p>"
+        return f"<p><b>{escape(self.summary.title)}</b></p><p>{escape(verdict.words)}</p><table>{cells}</table>{report}"
+
+    def save(self, out: str | Path) -> Run:
+        """Write the run, with its report, to a folder of its own.
+
+        Raises
+        ------
+        FormatError
+            The folder cannot be written, or holds files that are not a run's.
+        """
+        with own(out) as folder:
+            return write(self, folder)
+
+    def show(self) -> Path:
+        """Open the report in the browser of this machine; where it lies.
+
+        Raises
+        ------
+        FormatError
+            The run was never written.
+        """
+        import webbrowser  # noqa: PLC0415 - only where one is opened
+
+        report = self.report
+        webbrowser.open(report.resolve().as_uri())
+        return report
 
     @property
     def report(self) -> Path:
