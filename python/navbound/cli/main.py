@@ -12,7 +12,7 @@ import typer
 
 import navbound
 from navbound import _core
-from navbound.cli import analyze, assess, demo, evaluate, example, fly, lists, live, maps, predict, procedures, show, study, verify
+from navbound.cli import analyze, assess, demo, evaluate, example, export, fly, lists, live, maps, predict, procedures, show, study, verify
 from navbound.cli.parts import err_console
 from navbound.errors import FormatError, InputError, InternalError, NavboundError, visible
 from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed
@@ -41,6 +41,7 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "levels": lists.levels_command,
     "verify": verify.verify_command,
     "show": show.show_command,
+    "export": export.export_command,
     "map": maps.map_command,
     "predict": predict.predict_command,
 }

@@ -12,12 +12,13 @@ import polars as pl
 from navbound import _core
 from navbound.errors import ConflictError, InputError
 from navbound.table.columns import COVARIANCE
+from navbound.write.geographic import Shape, geojson, kml, shapes
 from navbound.write.measurements import WrittenLog, navigation, observations, ubx
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Written", "WrittenLog", "navigation", "observations", "rtklib", "ubx"]
+__all__ = ["Shape", "Written", "WrittenLog", "geojson", "kml", "navigation", "observations", "rtklib", "shapes", "ubx"]
 
 _POSITION = ("time_ns", "est_lat_rad", "est_lon_rad", "est_h_m")
 
