@@ -126,6 +126,7 @@ def test_every_published_approach_gives_its_own_path_or_the_leg_that_has_none(ai
     [
         ('route = "route.csv"\n{approach}', "requirements: is missing"),
         ("{approach}{requirements}", "requirements: are for a route"),
+        ('route = "route.csv"\n{approach}[[requirements]]\nname = "a"\nrnp_nm = 60000\n', "is outside (0, 37040], 20 NM"),
         ('{approach}[[procedures]]\ndatabase = "{folder}/procedures/KDEN.txt"\nname = "KDEN/BAYLR6:RW08"\n', "procedures[1]"),
         ('[[procedures]]\ndatabase = "{folder}/procedures/KAUS.txt"\nname = "KAUS/NOSUCH"\n', "NOSUCH"),
         ('[[procedures]]\ndatabase = "{folder}/procedures/KAUS.txt"\nname = "nonsense"\n', "AIRPORT/PROCEDURE"),

@@ -139,3 +139,17 @@ def test_what_is_refused(text: str, says: str, folder: Path, tmp_path: Path) -> 
 def test_a_flight_of_no_date_meets_no_messages(folder: Path, tmp_path: Path) -> None:
     with pytest.raises(FormatError, match="sbas needs departure_utc"):
         expected(tmp_path, head(folder).replace(f"departure_utc = {DEPARTURE}\n", "") + MONITOR + log(folder))
+
+
+def test_what_of_the_log_is_lost_is_reported_with_the_levels(folder: Path, tmp_path: Path) -> None:
+    """A hole of ten minutes and three lines that are no messages."""
+    lines = (folder / LOG).read_text().splitlines()
+    kept = [line for k, line in enumerate(lines) if not 1200 <= k < 1800]
+    for k in (100, 200, 300):
+        kept[k] = kept[k][:30] + "Z" * 10 + kept[k][40:]
+    (tmp_path / "cut.ems").write_text("\n".join(kept) + "\n")
+    text = head(folder) + MONITOR + log(folder).replace(f"{folder}/{LOG}", "cut.ems")
+    words = " ".join(expected(tmp_path, text).record.assumptions)
+    assert "cut.ems: " in words
+    assert "gaps of more than 4 s, the longest 601 s" in words
+    assert "3 lines of the log refused as damaged" in words

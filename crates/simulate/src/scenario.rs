@@ -249,7 +249,9 @@ impl Scenario {
         rules.extend(self.gusts.rules());
         rules.extend(self.navigation.rules());
         rules.extend(self.waypoints.iter().filter_map(|w| w.radius_m).map(|r| within("radius_m", r, "m", 0.0, 1e6, "[0, 1e6]")));
-        rules.extend(self.phases.iter().map(|p| positive("rnp_m", p.rnp_m, "m")));
+        // As of specifications: RNP values in (0, 20] NM.
+        let rnp = |p: &Phase| Rule("rnp_m", p.rnp_m, "m", p.rnp_m > 0.0 && p.rnp_m <= 37_040.0, "(0, 37040], 20 NM");
+        rules.extend(self.phases.iter().map(rnp));
         rules.extend(self.faults.iter().flat_map(Fault::rules));
         rules.extend(self.sensors.iter().flat_map(Sensors::rules));
         rules.extend(self.filter.iter().flat_map(|f| f.rules(self.sensors.is_some(), self.faults.len())));

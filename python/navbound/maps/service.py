@@ -149,7 +149,7 @@ class Sbas:
             else "Every user hears every message: the log does not say where its satellite is."
         )
         return [
-            f"PRN {int(heard.prn[0])}: {_log_words(heard)}",
+            f"PRN {int(heard.prn[0])}: {log_words(heard)}",
             reach,
             f"Every satellite above {mask}; terrain is not considered; mode {self.mode}.",
             self.times.words(len(time_ns), int(time_ns[0])),
@@ -163,7 +163,8 @@ def _types(heard: sbas.Messages) -> NDArray[np.uint8]:
     return np.asarray(heard.data[:, 1] >> 2, dtype=np.uint8)
 
 
-def _log_words(heard: sbas.Messages) -> str:
+def log_words(heard: sbas.Messages) -> str:
+    """How much of a log there is, and what is not: gaps, messages that forbid its use, lines that were refused."""
     times = np.sort(heard.time_ns)
     gaps_s = np.diff(times) / sources.NS
     long = gaps_s[gaps_s > GAP_S]

@@ -10,8 +10,8 @@ import numpy as np
 from navbound import gnss, sbas
 from navbound.algorithms import Sent, entry
 from navbound.errors import FormatError, NavboundError
+from navbound.maps.service import log_words
 from navbound.maps.sources import NS, File, messages
-from navbound.time import utc_text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -61,16 +61,13 @@ class Service:
 
     def words(self) -> list[str]:
         """What the levels rest on."""
-        first, last = (utc_text(int(t)) for t in (self.heard.time_ns.min(), self.heard.time_ns.max()))
-        apart = (
-            "on the same day"
-            if self.days == 0
-            else f"{abs(self.days)} day{'s' if abs(self.days) > 1 else ''} {'before' if self.days > 0 else 'after'}"
-        )
+        sent = "on the same day"
+        if self.days:
+            sent = f"{abs(self.days)} day{'s' if abs(self.days) > 1 else ''} {'before' if self.days > 0 else 'after'}"
         return [
-            f"Levels: SBAS PRN {int(self.heard.prn[0])} from messages that were sent {apart} at the same time of day ({self.name}, {first} "
-            f"to {last} UTC), with the satellites of that day; what will be sent is not known. Outside the log there is no level.",
-            *self.heard.tag_words(),
+            f"Levels: SBAS PRN {int(self.heard.prn[0])} from messages that were sent {sent} at the same time of day, "
+            "with the satellites of that day; what will be sent is not known. Outside the log there is no level.",
+            f"{self.name}: {log_words(self.heard)}",
         ]
 
 

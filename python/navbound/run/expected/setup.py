@@ -247,7 +247,7 @@ def _orbits(file: str | Path, folder: Path, plan: Plan, table: dict[str, Any]) -
     try:
         sky = satellites(names, Times(departure, length, length), 0.0, 0.0)
     except InputError as e:
-        key = "departure_utc" if e.argument == "start_ns" else "orbits"
+        key = "departure_utc" if e.argument in {"start_ns", "near_ns"} else "orbits"
         value = plan.departure_utc if key == "departure_utc" else e.value
         raise FormatError(file, f"{value} is not accepted; expected {e.domain}", field=key) from e
     start_ns = departure if departure is not None else sky.orbits.reference_ns
