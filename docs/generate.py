@@ -1,7 +1,8 @@
 """Write what is generated from lists: `./dev generate` writes, `--check` compares.
 
-docs/notation.md (the tables), docs/architecture.md (the pictures), web/src/columns.gen.ts and web/src/records.gen.ts. The list of columns
-is navbound.table.columns, the records are those of navbound.records, the order of the parts is that of the tests which hold it.
+docs/notation.md (the tables), docs/architecture.md (the pictures), docs/reference, web/src/columns.gen.ts and web/src/records.gen.ts.
+The list of columns is navbound.table.columns, the records are those of navbound.records, the order of the parts is that of the tests
+which hold it.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import reference
 from typescript import records_page
 
+import navbound
 from navbound.methods import methods
 from navbound.table import columns
 from navbound.table.declare import STAGES, UNITS, Column
@@ -124,6 +127,10 @@ def _words(text: str) -> list[str]:
 PAGES: dict[Path, Callable[[str], str]] = {
     ROOT / "docs" / "notation.md": notation,
     ROOT / "docs" / "architecture.md": architecture,
+    ROOT / "docs" / "reference" / "commands.md": reference.commands,
+    ROOT / "docs" / "reference" / "python.md": reference.python,
+    **{ROOT / "docs" / "reference" / "python" / f"{each}.md": reference.subject_page(each) for each in navbound.SUBJECTS},
+    ROOT / "docs" / "reference" / "scenario.md": reference.scenario,
     ROOT / "web" / "src" / "columns.gen.ts": columns_page,
     ROOT / "web" / "src" / "records.gen.ts": records_page,
 }
@@ -144,4 +151,5 @@ if __name__ == "__main__":
     if "--check" in sys.argv:
         sys.exit(f"differs from its lists, run ./dev generate: {', '.join(str(path.relative_to(ROOT)) for path in old)}" if old else 0)
     for path in old:
+        path.parent.mkdir(exist_ok=True)
         path.write_text(PAGES[path](path.read_text(encoding="utf-8") if path.exists() else ""), encoding="utf-8")

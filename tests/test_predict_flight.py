@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import sys
 from dataclasses import dataclass
@@ -13,8 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 import pytest
+from rich.console import Console
 
 from navbound import anp, dme, gnss, ins, raim
+from navbound.cli import flight_plan
 from navbound.cli import main as cli
 from navbound.errors import FormatError, InputError
 from navbound.run import directory
@@ -479,3 +482,16 @@ def test_satellites_that_may_be_out_make_a_mixture(tmp_path: Path) -> None:
     assert total < 1 - mixed.p_unexamined
     assert mixed.p_unexamined == pytest.approx(1 - (1 - q) ** len(names) * (1 + len(names) * q / (1 - q)), abs=1e-12)
     assert predict_flight(file, with_hold=False).record.p_unexamined is None
+
+
+def test_a_wide_table_is_cut_for_a_terminal_and_every_piece_names_its_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    printed = io.StringIO()
+    monkeypatch.setattr(flight_plan, "out_console", Console(width=80, file=printed))
+    rows = [["leg", *(f"head {k}" for k in range(14))], ["ZBAA-ELKUR", *(f"cell {k}" for k in range(14))]]
+    flight_plan.print_table("Legs", rows)
+    lines = printed.getvalue().splitlines()
+    assert max(len(line) for line in lines) <= 80
+    assert [line.strip() for line in lines if line.startswith("Legs")] == ["Legs", "Legs, continued"]
+    assert printed.getvalue().count("ZBAA-ELKUR") == 2
+    for k in range(14):
+        assert f" cell {k} " in printed.getvalue()

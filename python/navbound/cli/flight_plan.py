@@ -11,7 +11,7 @@ from navbound.cli.parts import command_line, out_console
 from navbound.errors import ConflictError, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from navbound.records.prediction import ExpectedFlight
@@ -36,6 +36,10 @@ def predict_flight_command(plans: list[str], unused: Mapping[str, object], out: 
         out_console.print(f"Written: {target}", markup=False, highlight=False)
 
 
+MOST_COLUMNS = 8
+"""Of a table in a terminal of 80 columns, beside the first; a wider one is cut, and each piece has the first column."""
+
+
 def show(record: ExpectedFlight) -> None:
     """One page: what the flight may count on, leg by leg."""
     from navbound.run.expected.page import sections  # noqa: PLC0415
@@ -50,11 +54,19 @@ def show(record: ExpectedFlight) -> None:
         say(f"Warning: {warning}", "yellow")
     for heading, rows in sections(record):
         if len(rows) > 1:
-            table = Table(title=heading, title_justify="left")
-            for k, cell in enumerate(rows[0]):
-                table.add_column(cell, overflow="fold", no_wrap=k == 0)
-            for row in rows[1:]:
-                table.add_row(*row)
-            out_console.print(table)
+            print_table(heading, rows)
     for assumption in record.assumptions:
         say(f"  - {assumption}")
+
+
+def print_table(heading: str, rows: Sequence[Sequence[str]]) -> None:
+    """A table cut so that it fits a terminal; rows: the heads first."""
+    pieces = -(-(len(rows[0]) - 1) // MOST_COLUMNS)
+    width = -(-(len(rows[0]) - 1) // pieces)
+    for begin in range(1, len(rows[0]), width):
+        table = Table(title=heading if begin == 1 else f"{heading}, continued", title_justify="left")
+        for k, cell in enumerate((rows[0][0], *rows[0][begin : begin + width])):
+            table.add_column(cell, overflow="fold", no_wrap=k == 0)
+        for row in rows[1:]:
+            table.add_row(row[0], *row[begin : begin + width])
+        out_console.print(table)

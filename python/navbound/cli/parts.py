@@ -6,6 +6,7 @@ Nothing here needs numbers or tables: a command loads what it needs when it runs
 from __future__ import annotations
 
 import math
+import os
 import shlex
 import sys
 from pathlib import Path
@@ -25,9 +26,9 @@ if TYPE_CHECKING:
     from navbound.scale import Work
 
 PAPER_WIDTH = 140
-"""Columns of a table that goes to a file or a pipe, where the width of a terminal means nothing."""
+"""Columns of a table that goes to a file or a pipe, where the width of a terminal means nothing; COLUMNS states another one."""
 
-out_console = Console(width=None if sys.stdout.isatty() else PAPER_WIDTH)
+out_console = Console(width=None if sys.stdout.isatty() or os.environ.get("COLUMNS") else PAPER_WIDTH)
 if not out_console.is_terminal:
     # Nothing is coloured there: what would be coloured need not be looked for.
     out_console = Console(width=out_console.width, highlight=False)

@@ -171,7 +171,7 @@ def finish(ax: Axes, title: str, x: str, y: str, *, legend: bool = True) -> Axes
     ax.grid(visible=True, color=colours()["rule"], linewidth=0.6)
     ax.set_axisbelow(b=True)
     if legend and ax.get_legend_handles_labels()[0]:
-        ax.legend(frameon=False, fontsize="small")
+        ax.legend(framealpha=0.85, edgecolor="none", fontsize="small")
     return ax
 
 

@@ -167,7 +167,7 @@ def protection_levels(
 ) -> Levels:
     """Protection levels of many epochs from lines of sight, of detection and after exclusion.
 
-    With slope_i = |s_i| / sqrt(w_i (1 - leverage_i)) the published level is max slope_i · missed_bias; the level is
+    With slope_i = ``|s_i|`` / sqrt(w_i (1 - leverage_i)) the published level is max slope_i · missed_bias; the level is
     max(K_ff d, max slope_i · missed_bias + K d) with K = Q⁻¹(P_MD/2), K_ff = Q⁻¹(P_ff/2) and d the standard deviation upwards, or
     sqrt(sigma_e² + sigma_n²) (Brown and Chin 1997, standard; noise ours).
 

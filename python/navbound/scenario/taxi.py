@@ -88,7 +88,7 @@ Fault = Annotated[RangeStep | RangeRamp, Field(discriminator="kind")]
 
 
 class Taxi(Part):
-    """A landing and the way to the stand."""
+    """A landing and the taxi-in."""
 
     kind: Literal["taxi"]
     operation: Literal["ground"] = "ground"
