@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import sys
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
 
 import navbound
+from navbound.cli import main as cli
+from navbound.cli import parts
 from navbound.run.directory import Run
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 ROOT = Path(__file__).parents[1]
 SHARED = ROOT.parent / "shared"
@@ -31,3 +39,27 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip(f"SKIPPED ALOUD: no real data at {folder}")
     return folder
+
+
+@dataclass(frozen=True)
+class Ended:
+    """What a command left."""
+
+    status: int
+    stdout: str
+    stderr: str
+
+
+@pytest.fixture(name="navbound")
+def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., Ended]:
+    """The command line in this process, as it prints to a file: starting Python for each refusal costs more than all the rest."""
+    monkeypatch.setattr(parts.out_console, "width", parts.PAPER_WIDTH)
+
+    def run(*arguments: str | Path) -> Ended:
+        monkeypatch.setattr(sys, "argv", ["navbound", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        printed = capsys.readouterr()
+        return Ended(int(ended.value.code or 0), printed.out, printed.err)
+
+    return run

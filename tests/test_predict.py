@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import sys
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +12,6 @@ import numpy as np
 import pytest
 
 from navbound import gnss, kpi, raim
-from navbound.cli import main as cli
 from navbound.errors import InputError
 from navbound.maps.sources import Times
 from navbound.run.predict import Request, place, predict, route
@@ -23,30 +20,9 @@ from navbound.time import gps_ns
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from conftest import Ended
+
 USAGE, UNREADABLE = 2, 3
-
-
-@dataclass(frozen=True)
-class Ended:
-    """What a command left."""
-
-    status: int
-    stdout: str
-    stderr: str
-
-
-@pytest.fixture
-def navbound(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., Ended]:
-    """The command line in this process: starting Python for each refusal costs more than all the rest."""
-
-    def run(*arguments: str | Path) -> Ended:
-        monkeypatch.setattr(sys, "argv", ["navbound", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            cli.main()
-        printed = capsys.readouterr()
-        return Ended(int(ended.value.code or 0), printed.out, printed.err)
-
-    return run
 
 
 EIGHT_HOURS = Times(None, 8 * 3600.0, 300.0)

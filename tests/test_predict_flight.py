@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import sys
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from functools import cache
 from pathlib import Path
@@ -18,7 +16,6 @@ from rich.console import Console
 
 from navbound import anp, dme, gnss, ins, raim
 from navbound.cli import flight_plan
-from navbound.cli import main as cli
 from navbound.errors import FormatError, InputError
 from navbound.run import directory
 from navbound.run.commands import fly
@@ -34,6 +31,8 @@ from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from conftest import Ended
 
 JAMMED = """title = "jammed for twenty minutes"
 flight = "beijing-shanghai"
@@ -375,29 +374,6 @@ def test_an_overconfident_prediction_is_seen(expected: Callable[[str], Expected]
     assert wrong.nees is not None
     assert wrong.nees > wrong.nees_high
     assert wrong.ratio_median == pytest.approx(0.5)
-
-
-@dataclass(frozen=True)
-class Ended:
-    """What a command left."""
-
-    status: int
-    stdout: str
-    stderr: str
-
-
-@pytest.fixture
-def navbound(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., Ended]:
-    """The command line in this process."""
-
-    def run(*arguments: str | Path) -> Ended:
-        monkeypatch.setattr(sys, "argv", ["navbound", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            cli.main()
-        printed = capsys.readouterr()
-        return Ended(int(ended.value.code or 0), printed.out, printed.err)
-
-    return run
 
 
 def test_the_command_prints_a_page_and_leaves_a_folder(tmp_path: Path, navbound: Callable[..., Ended]) -> None:

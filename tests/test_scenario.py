@@ -93,7 +93,7 @@ def test_a_file_may_say_only_what_differs(tmp_path: Path) -> None:
         ("mask_deg = 7.0", "mask = 7.0", "navigation.mask_rad", "missing"),
         ("mask_deg = 7.0", "mask_deg = 7.0\nmask_limit = 2", "navigation.mask_limit", "not a key"),
         ("mask_deg = 7.0", "mask_deg = 7.0\nmask_rad = 0.1", "navigation.mask_rad", "one unit"),
-        ("rnp_nm = 0.3", "rnp_nm = -0.3", "phases[3].rnp_nm", "(0, inf)"),
+        ("rnp_nm = 0.3", "rnp_nm = -0.3", "phases[3].rnp_nm", "(0, 37040], 20 NM [m]"),
         ('["gps", "beidou"]', '["gps", "loran"]', "navigation.constellations[1]", "'galileo' or 'beidou'"),
         ("duration_s = 7081.0", "duration_min = 30", "duration_min", "cruise speed"),
         ("duration_s = 7081.0", "duration_s = 7081.0\nspeed_kt = 300", "speed_kt", "not a key"),

@@ -53,6 +53,16 @@ def stating(tmp_path: Path, name: str, fine: object, bad: object, *, sigma_m: fl
         ("used", 1, 0),
         ("sol_stat", "SOL_COMPUTED", "COV_TRACE"),
         ("nuc_p", 8, 0),
+        # Words of alarms count in a column of states too.
+        ("fix", "3D", "integrity lost"),
+        ("fix", "3D", "SPOOFING"),
+        ("fix", "3D", "simulated"),
+        ("fix_type", 3, "do not use"),
+        ("quality", "fix", "unreliable"),
+        ("gps", "valid", "unavail"),
+        ("gps", "true", "false"),
+        ("gnss", "3D", "no"),
+        ("mode", "GNSS", "off"),
         ("n_sv", 9, 0),
         ("hdop", 1.2, 99.99),
         ("PDOP", 30.0, 30.1),
@@ -92,6 +102,12 @@ def test_a_row_that_is_not_valid_by_its_own_recording_is_not_judged(tmp_path: Pa
         ("fms_text", "cruise", "nav accur downgrade"),
         ("state_word", "normal", "warning"),
         ("remark", "no alert", "No position"),
+        ("eicas", "", "NAV UNAVAIL"),
+        ("ecam", "", "FM POS DISAGREE"),
+        ("ecam", "", "NOT FOR NAV"),
+        ("note", "", "INTEG LOSS"),
+        ("remarks", "", "dead reckoning"),
+        ("integrity", "ok", "N"),
     ],
 )
 def test_an_alert_under_any_of_its_names_is_one(tmp_path: Path, name: str, fine: object, bad: object) -> None:
@@ -172,6 +188,34 @@ def test_a_typed_sigma_states_what_it_overrules_and_a_larger_one_of_the_file_cou
 def test_an_epu_beside_the_files_own_sigma_counts_under_a_typed_one_too(tmp_path: Path) -> None:
     path = table(tmp_path / "a.csv", N, added={"epu_m": np.full(N, 200.0)})
     assert navbound.analyze(path, sigma_m=3.0).summary.verdict.n_stated_worse == N
+
+
+@pytest.mark.parametrize(
+    ("added", "sigma_m"),
+    [
+        ({"sigma_n_m": 40_000.0}, 3.0),
+        ({"sigma_n_m": 400.0, "sigma_e_m": ""}, 3.0),
+        ({"cov_nn_m2": 160_000.0}, 3.0),
+        ({"cov_ee_m2": 160_000.0, "cov_nn_m2": 160_000.0}, 3.0),
+        ({"sigma_e_m": 3.0, "sigma_n_m": 3.0, "sdn": 400.0}, None),
+        ({"cov_ee_m2": 9.0, "cov_nn_m2": 9.0, "sigma_n_m": 400.0}, None),
+        ({"cov_ee_m2": 9.0, "cov_nn_m2": 9.0, "cov_en_m2": 0.0, "sigma_n_m": 400.0}, None),
+    ],
+)
+def test_half_a_statement_of_accuracy_counts(tmp_path: Path, added: dict[str, object], sigma_m: float | None) -> None:
+    """One axis, variances without their correlation, two columns of one quantity."""
+    for number, n_worse in ((None, N), (1.0, 0)):
+        values = {name: value if value == "" or number is None else number for name, value in added.items()}
+        path = table(tmp_path / "a.csv", N, sigma_m=None, added={name: [str(value)] * N for name, value in values.items()})
+        verdict = navbound.analyze(path, sigma_m=sigma_m).summary.verdict
+        assert (verdict.id, verdict.n_stated_worse) == ("not_shown" if n_worse else "inside", n_worse), values
+
+
+def test_variances_without_their_correlation_make_a_covariance_that_is_worded_so(tmp_path: Path) -> None:
+    path = table(tmp_path / "a.csv", N, sigma_m=None, added={"cov_ee_m2": [160_000.0] * N, "cov_nn_m2": [160_000.0] * N})
+    run = navbound.analyze(path)
+    assert run.summary.verdict.id == "outside"
+    assert any("from the file's variances; axes taken as uncorrelated" in each for each in run.summary.assumptions)
 
 
 def test_pieces_state_the_same(tmp_path: Path) -> None:

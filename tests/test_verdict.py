@@ -35,7 +35,7 @@ def table(
     path: Path,
     n: int = 400,
     *,
-    sigma_m: float = 3.0,
+    sigma_m: float | None = 3.0,
     error_en_m: NDArray[np.float64] | None = None,
     degraded: int = 0,
     drop: slice | None = None,
@@ -46,16 +46,14 @@ def table(
     k = np.arange(n)
     error = np.zeros((n, 2)) if error_en_m is None else error_en_m
     lat, lon = 0.85 + 50.0 * k / M_PER_RAD, np.full(n, 0.04)
-    sigma = np.full(n, sigma_m)
-    sigma[:degraded] = 0.0
     columns = {
         "time_ns": START_NS + k * 1_000_000_000,
         "est_lat_rad": lat + error[:, 1] / M_PER_RAD,
         "est_lon_rad": lon + error[:, 0] / (M_PER_RAD * math.cos(0.85)),
         "est_h_m": np.full(n, 1000.0),
-        "sigma_e_m": sigma,
-        "sigma_n_m": sigma,
     }
+    if sigma_m is not None:
+        columns["sigma_e_m"] = columns["sigma_n_m"] = np.where(k < degraded, 0.0, sigma_m)
     if error_en_m is not None:
         columns |= {"truth_lat_rad": lat, "truth_lon_rad": lon, "truth_h_m": np.full(n, 1000.0) + error_u_m}
     frame = pl.DataFrame(columns | dict(added or {}))

@@ -6,7 +6,7 @@
 mod way;
 
 use navbound_core::frame::EcefPosition;
-use navbound_core::monitor::motion::{Between, repeated, sea_level, within};
+use navbound_core::monitor::motion::{Between, Gone, repeated, sea_level, within};
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 
 pub use navbound_core::monitor::motion::{Finding, Limits, Report};
@@ -120,6 +120,7 @@ pub struct Track {
     window: Option<Window>,
     way: Way,
     repeats: Repeats,
+    gone: Gone,
     /// Speeds of the reports before \[m/s\]; NaN where none was reported.
     before_mps: [f64; SPEEDS_BESIDE],
 }
@@ -141,6 +142,7 @@ impl Track {
             window: None,
             way: Way::default(),
             repeats: Repeats::default(),
+            gone: Gone::default(),
             before_mps: [f64::NAN; SPEEDS_BESIDE],
         }
     }
@@ -183,13 +185,16 @@ impl Track {
         let Some((fix, from)) = self.last else {
             self.last = Some((*report, here));
             self.window = Some(Window::begin(report, here));
+            self.gone.step(report, false, limits);
             return Ok(Judged { finding: Finding::Plausible, age_s: 0.0, step_m: 0.0, too_fast_mps: 0.0, speed_doubted });
         };
         let elapsed = report.time.seconds_since(fix.time);
         let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
         let step_m = here.minus(&from).vector().norm();
         let mut too_fast_mps = 0.0;
-        let (mut finding, mut age_s) = if unchanged { (repeated(report, fix.time, limits), elapsed) } else { (Finding::Plausible, 0.0) };
+        let way_m = self.gone.step(report, unchanged, limits);
+        let (mut finding, mut age_s) =
+            if unchanged { (repeated(report, fix.time, way_m, limits), elapsed) } else { (Finding::Plausible, 0.0) };
         if !unchanged {
             let flown = self.window.as_mut().is_none_or(|w| w.reaches(report, &here, limits));
             let between = Between::new(&fix, report, limits);
@@ -209,7 +214,7 @@ impl Track {
             }
             self.last = Some((*report, here));
         }
-        let returned = repeated(report, repeated_since, limits) == Finding::Stale && report.speed_mps.is_nan();
+        let returned = repeated(report, repeated_since, 0.0, limits) == Finding::Stale && report.speed_mps.is_nan();
         if finding != Finding::Jump && (behind.is_some() || returned) {
             finding = Finding::Stale;
             age_s = age_s.max(behind.unwrap_or_else(|| report.time.seconds_since(repeated_since)));

@@ -85,9 +85,12 @@ fn an_aircraft_that_gathers_speed_flies_as_far_as_it_reported() {
 
 #[test]
 fn a_parked_aircraft_may_repeat_its_position() {
-    for speed in [0.0, 14.0] {
-        assert!(findings(&track(&[5.0; 20], speed)).iter().all(|f| *f == Finding::Plausible), "{speed} m/s");
+    for speed in [0.0, 2.0] {
+        assert!(findings(&track(&[5.0; 1200], speed)).iter().all(|f| *f == Finding::Plausible), "{speed} m/s");
     }
+    // Further than 100 m and two seconds of 14 m/s it would be elsewhere: after 9.1 s.
+    let slow = findings(&track(&[5.0; 60], 14.0));
+    assert_eq!(slow.iter().position(|f| *f == Finding::Stale), Some(10));
 }
 
 /// Twenty minutes of the last fix, from the begin and in flight; up to the stale time a slow one's position may round to the same.

@@ -104,12 +104,14 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
     let report = Report { time: position.time, fixed: None, lat_rad, lon_rad, speed_mps };
     // A place off the Earth is refused where it is projected, or is no covariance's.
     let finding = track.motion.see(&report, &settings.motion).map_or(Some(Reason::InvalidNumber), Finding::reason);
-    let restless = || {
+    let mut restless = || {
         let variance_m2 = position.covariance_m2.map(|[ee, _, nn, ..]| ee.max(nn))?;
         let place = Place { time: position.time, lat_rad, lon_rad, variance_m2 };
         track.neighbours.contradict(place, settings.motion.stale_after_s).then_some(Reason::NeighboursContradict)
     };
-    finding.or_else(restless).map_or(*position, |reason| position.without(reason))
+    // A position that is merely late may contradict those before it all the same: the graver word counts.
+    let reason = if finding == Some(Reason::PositionLate) { restless().or(finding) } else { finding.or_else(restless) };
+    reason.map_or(*position, |reason| position.without(reason))
 }
 
 /// Judges a record and says what became of it. A fault of ours makes this epoch of this track unusable, and nothing else; whether one happened.

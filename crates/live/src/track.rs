@@ -4,7 +4,7 @@ use crate::codec::{Damaged, Reader, Writer};
 use crate::order::Waiting;
 use crate::output::Kind;
 use navbound_core::judge::{self, Judge};
-use navbound_core::monitor::motion::{Motion, Report};
+use navbound_core::monitor::motion::{Gone, Motion, Report};
 use navbound_core::monitor::neighbours::{Neighbours, Place};
 use navbound_core::quantity::{GpsTime, Metres};
 
@@ -77,6 +77,8 @@ impl Track {
             [last.lat_rad, last.lon_rad, last.speed_mps].into_iter().for_each(|number| to.f64(number));
         });
         to.option(self.motion.jumped, |to, time| to.i64(time.nanoseconds()));
+        to.option(self.motion.gone.seen, |to, time| to.i64(time.nanoseconds()));
+        to.f64(self.motion.gone.way_m);
         for place in self.neighbours.last {
             to.option(place, |to, place| {
                 to.i64(place.time.nanoseconds());
@@ -105,7 +107,9 @@ impl Track {
             let time = GpsTime::from_nanoseconds(from.i64()?);
             Ok(Report { time, fixed: None, lat_rad: from.f64()?, lon_rad: from.f64()?, speed_mps: from.f64()? })
         };
-        let motion = Motion { last: from.option(report)?, jumped: from.option(Reader::i64)?.map(GpsTime::from_nanoseconds) };
+        let (last_different, jumped) = (from.option(report)?, from.option(Reader::i64)?.map(GpsTime::from_nanoseconds));
+        let gone = Gone { seen: from.option(Reader::i64)?.map(GpsTime::from_nanoseconds), way_m: from.f64()? };
+        let motion = Motion { last: last_different, jumped, gone };
         let place = |from: &mut Reader<'_>| {
             let time = GpsTime::from_nanoseconds(from.i64()?);
             Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })

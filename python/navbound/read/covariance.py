@@ -98,8 +98,10 @@ def claim(epochs: pl.DataFrame, sigma_m: float | None = None) -> Claimed:
         if not (math.isfinite(sigma_m) and sigma_m > 0):
             raise InputError("sigma_m", sigma_m, "m", "(0, inf)")
         return _typed(epochs, float(sigma_m))
+    # What the table states is read from the table as it is: a covariance that is made of one statement takes the place of another.
+    least_m = _least_radii(epochs)
     claimed = _of_file(epochs, set(epochs.columns))
-    return replace(claimed, epochs=worse_than_covariance(_with_containment(claimed.epochs), _least_radii(claimed.epochs)))
+    return replace(claimed, epochs=worse_than_covariance(_with_containment(claimed.epochs), least_m))
 
 
 def _typed(epochs: pl.DataFrame, sigma_m: float) -> Claimed:
@@ -108,7 +110,9 @@ def _typed(epochs: pl.DataFrame, sigma_m: float) -> Claimed:
     words = f"Covariance: circular with sigma = {sigma_m:g} m in each axis, as stated by the user."
     typed = _circle(epochs, pl.lit(sigma_m), words, "typed")
     own_m = own.epochs.select(((pl.col("cov_ee_m2") + pl.col("cov_nn_m2")) / 2).sqrt().alias("own")).to_series()
-    stated_m = own.epochs.select(pl.max_horizontal(own_m / circular_sigma(0.05), *_least_radii(own.epochs)).alias("m")).to_series()
+    stated_m = pl.select(
+        pl.max_horizontal(pl.lit(each) for each in (own_m / circular_sigma(0.05), *_least_radii(epochs))).alias("m")
+    ).to_series()
     worse_m = pl.select(pl.when(stated_m > (1.0 + 1e-9) * sigma_m / circular_sigma(0.05)).then(stated_m)).to_series().alias(WORSE)
     stated = [worse_m, *([own.epochs[CONTAINMENT]] if CONTAINMENT in own.epochs.columns else [])]
     known = own_m.filter(own_m.is_finite().fill_null(value=False))
@@ -119,15 +123,20 @@ def _typed(epochs: pl.DataFrame, sigma_m: float) -> Claimed:
     return Claimed(typed.epochs.with_columns(stated), f"{words}{more}", "typed", (low, high))
 
 
-def _least_radii(epochs: pl.DataFrame) -> list[pl.Expr]:
+def _least_radii(epochs: pl.DataFrame) -> list[pl.Series]:
     """The least 95 % radius by each accuracy of the file; an indicator stands for a class of radii, of which its lower limit. [m]."""
     radii = [pl.col(name) for name in ("epu_m", "unread_accuracy_m") if name in epochs.columns]
-    if {"sigma_e_m", "sigma_n_m"} <= set(epochs.columns):
-        radii.append(((pl.col("sigma_e_m") ** 2 + pl.col("sigma_n_m") ** 2) / 2).sqrt() / circular_sigma(0.05))
+    # One axis alone says what the error is at least.
+    deviations = [pl.col(f"sigma_{axis}_m") ** 2 for axis in "en" if f"sigma_{axis}_m" in epochs.columns]
+    variances = [pl.col(f"cov_{axis}{axis}_m2") for axis in "en" if f"cov_{axis}{axis}_m2" in epochs.columns]
+    for squares in (deviations, variances if len(variances) == 1 else []):
+        if squares:
+            known = pl.any_horizontal(each.is_not_null() for each in squares)
+            radii.append(pl.when(known).then((pl.sum_horizontal(squares) / 2).sqrt() / circular_sigma(0.05)))
     if "nac_p" in epochs.columns:
         better = {category: NACP_EPU_M.get(category + 1, 0.0) for category in range(12)}
         radii.append(_in_force("nac_p").replace_strict(better, default=None, return_dtype=pl.Float64))
-    return radii
+    return epochs.select(radius.alias(str(k)) for k, radius in enumerate(radii)).get_columns()
 
 
 def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
@@ -146,12 +155,23 @@ def _of_file(epochs: pl.DataFrame, have: set[str]) -> Claimed:
         more = " The vertical axis is taken as uncorrelated, which the file does not say." if alone else ""
         words = f"Covariance: as the file gives it.{more}{_beside(have)}"
         return Claimed(_complete(epochs), words, "file")
+    if set(_DIAGONAL) <= have:
+        filled = epochs.with_columns(
+            pl.when(pl.all_horizontal(pl.col(name).is_not_null() for name in _DIAGONAL)).then(0.0).alias("cov_en_m2")
+        )
+        return Claimed(_complete(filled), f"{_of_axes('variances')}{_beside(have)}", "file_axes")
     if {"sigma_e_m", "sigma_n_m"} <= have:
         squares = {f"cov_{a}{a}_m2": pl.col(f"sigma_{a}_m") ** 2 for a in "enu" if f"sigma_{a}_m" in have}
         filled = epochs.with_columns(pl.lit(0.0).alias("cov_en_m2"), **squares)
-        words = "Covariance: from the file's standard deviations; axes taken as uncorrelated, which the file does not say."
-        return Claimed(_complete(filled), f"{words}{_beside(have)}", "file_axes")
+        return Claimed(_complete(filled), f"{_of_axes('standard deviations')}{_beside(have)}", "file_axes")
     return _coded(epochs, have)
+
+
+_DIAGONAL = ("cov_ee_m2", "cov_nn_m2")
+
+
+def _of_axes(what: str) -> str:
+    return f"Covariance: from the file's {what}; axes taken as uncorrelated, which the file does not say."
 
 
 def _beside(have: set[str]) -> str:

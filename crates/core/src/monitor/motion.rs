@@ -75,11 +75,37 @@ impl Finding {
     }
 }
 
-/// An unchanged position is held where the aircraft says it moves; a parked one repeats itself rightly. Where no speed is reported a repeat may
-/// be a slow one's rounded position, until it lasts.
-pub fn repeated(report: &Report, since: GpsTime, limits: &Limits) -> Finding {
+/// Speed up to which an aircraft may stand: noise of a reported speed. \[m/s\] Provenance: ours.
+const STANDS_MPS: f64 = 2.0;
+
+/// How far an aircraft went by its own speeds while its position stayed the same.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Gone {
+    /// The last report.
+    pub seen: Option<GpsTime>,
+    /// The way by the speeds reported since the position changed \[m\].
+    pub way_m: f64,
+}
+
+impl Gone {
+    /// The way at the next report. Of a gap longer than the latency nobody knows how long the aircraft moved.
+    pub fn step(&mut self, report: &Report, unchanged: bool, limits: &Limits) -> f64 {
+        let passed_s = self.seen.map_or(0.0, |seen| report.time.seconds_since(seen)).clamp(0.0, limits.latency_s);
+        let moves = unchanged && report.speed_mps > STANDS_MPS;
+        self.way_m = if !unchanged { 0.0 } else { self.way_m + if moves { report.speed_mps * passed_s } else { 0.0 } };
+        self.seen = Some(report.time);
+        self.way_m
+    }
+}
+
+/// An unchanged position is held where the aircraft says it moves; a parked one repeats itself rightly. A slow one's rounded position may
+/// repeat, until the aircraft would be elsewhere by its own speeds, `way_m`. Where no speed is reported a repeat may be such a one, until it lasts.
+pub fn repeated(report: &Report, since: GpsTime, way_m: f64, limits: &Limits) -> Finding {
     let silent = report.speed_mps.is_nan();
     let may_move = if silent { limits.moving_mps.is_finite() } else { report.speed_mps > limits.moving_mps };
+    if limits.moving_mps.is_finite() && way_m > limits.noise_m + limits.latency_s * report.speed_mps.max(0.0) {
+        return Finding::Stale;
+    }
     match (may_move, within(report.time, since, limits.stale_after_s)) {
         (true, false) => Finding::Stale,
         (true, true) if !silent => Finding::Repeated,
@@ -148,6 +174,8 @@ pub struct Motion {
     pub last: Option<Report>,
     /// When a position jumped last.
     pub jumped: Option<GpsTime>,
+    /// The way by the reported speeds since the position changed.
+    pub gone: Gone,
 }
 
 impl Motion {
@@ -159,13 +187,16 @@ impl Motion {
         let here = sea_level(report)?;
         let Some(from) = self.last else {
             self.last = Some(*report);
+            self.gone.step(report, false, limits);
             return Ok(Finding::Plausible);
         };
         if report.time <= from.time {
             return Ok(Finding::Plausible);
         }
-        let finding = if report.lat_rad == from.lat_rad && report.lon_rad == from.lon_rad {
-            repeated(report, from.time, limits)
+        let unchanged = report.lat_rad == from.lat_rad && report.lon_rad == from.lon_rad;
+        let way_m = self.gone.step(report, unchanged, limits);
+        let finding = if unchanged {
+            repeated(report, from.time, way_m, limits)
         } else {
             let (between, step_m) = (Between::new(&from, report, limits), here.minus(&sea_level(&from)?).vector().norm());
             self.last = Some(*report);
@@ -222,6 +253,21 @@ mod tests {
         assert_eq!(repeats(f64::NAN), [Plausible, Plausible, Plausible, Stale, Stale]);
         let at_rest = Limits { moving_mps: f64::INFINITY, ..LIMITS };
         assert_eq!(findings(&[0, 1, 2, 3, 4].map(|k| report(k, 0.0, f64::NAN)), &at_rest), [Plausible; 5]);
+    }
+
+    #[test]
+    fn a_slow_aircraft_s_position_that_stays_is_stale_once_its_speed_led_elsewhere() {
+        let begins = |speed: f64, every: i64| {
+            let reports: Vec<Report> = (0..600).map(|k| report(every * k, 0.0, speed)).collect();
+            findings(&reports, &LIMITS).iter().position(|each| *each == Finding::Stale).map(|k| every * k as i64)
+        };
+        // 14.9 m/s: further than 100 m and ten seconds of it after 17 s; 3 m/s: 130 m after 44 s.
+        assert_eq!([14.9, 3.0, 2.0, 0.0].map(|speed| begins(speed, 1)), [Some(17), Some(44), None, None]);
+        assert_eq!(begins(14.9, 10), Some(20));
+        // It may have stood during a gap.
+        assert_eq!(findings(&[report(0, 0.0, 0.0), report(900, 0.0, 14.0), report(901, 14.0, 14.0)], &LIMITS)[1], Finding::Plausible);
+        let at_rest = Limits { moving_mps: f64::INFINITY, ..LIMITS };
+        assert_eq!(findings(&(0..100).map(|k| report(k, 0.0, 5.0)).collect::<Vec<_>>(), &at_rest), [Finding::Plausible; 100]);
     }
 
     #[test]

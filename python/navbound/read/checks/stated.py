@@ -34,12 +34,12 @@ LEVEL_SIGMAS = 6.0
 _LENGTHS = ("nse_h_m", "nse_cross_m", "nse_along_m", "tse_m", "fte_m")
 
 
-def worse_than_covariance(epochs: pl.DataFrame, least_m: Sequence[pl.Expr]) -> pl.DataFrame:
+def worse_than_covariance(epochs: pl.DataFrame, least_m: Sequence[pl.Series]) -> pl.DataFrame:
     """Add `WORSE` where the table states accuracies; ``least_m``: what each says that the 95 % radius is at least [m]."""
     if not least_m or not {"cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
         return epochs
     largest_m = TWO_DRMS * (pl.col("cov_ee_m2") + pl.col("cov_nn_m2")).sqrt()
-    stated_m = pl.max_horizontal(least_m)
+    stated_m = pl.max_horizontal(pl.lit(each) for each in least_m)
     return epochs.with_columns(pl.when(stated_m > largest_m).then(stated_m).alias(WORSE))
 
 

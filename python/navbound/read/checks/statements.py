@@ -69,7 +69,7 @@ NO_ALERT = _words(
 )
 """Words that state that there is no alert. Any other is one: nobody knows what it means, and it is not "normal"."""
 
-NO_INTEGRITY = _words("no none off false")
+NO_INTEGRITY = _words("n no none off false")
 """Words that state that there is no integrity or no monitor, where the column is named by what it has."""
 
 KINDS: tuple[Kind, ...] = (
@@ -85,7 +85,7 @@ KINDS: tuple[Kind, ...] = (
         _YES,
         other_against=True,
     ),
-    Kind("invalid", _words("fix gps_fix gnss_fix has_fix fix_status position_fix fixstatus gpsfix"), _NO_FIX, _FIX | {"1"}),
+    Kind("invalid", _words("fix gps gnss gps_fix gnss_fix has_fix fix_status position_fix fixstatus gpsfix"), _NO_FIX, _FIX | {"1"}),
     Kind("invalid", _words("fix_type fixtype gps_fix_type gnss_fix_type fix_mode gps_mode gnss_mode"), _NO_FIX | {"1"}, _FIX),
     Kind(
         "invalid",
@@ -102,10 +102,10 @@ KINDS: tuple[Kind, ...] = (
             "solution_type pos_type position_type nav_status navigation_status gps_status gnss_status position_status"
         ),
         _words(
-            "n e m s v none no_fix nofix not_valid invalid invalid_fix insufficient_obs no_convergence singularity cov_trace test_dist "
-            "cold_start v_h_limit residuals integrity_warning pending unauthorized dr dead_reckoning coast coasting estimated extrapolated "
-            "propagated predicted simulated simulator simulation manual fixedpos memory last_known lost degraded fail failed fault alert "
-            "alarm warning caution not_available unavailable denied reversion reversionary no_nav acquisition standby "
+            "n e m s v no off none no_fix nofix not_valid invalid invalid_fix insufficient_obs no_convergence singularity cov_trace "
+            "test_dist cold_start v_h_limit residuals integrity_warning pending unauthorized dr dead_reckoning coast coasting estimated "
+            "extrapolated propagated predicted simulated simulator simulation manual fixedpos memory last_known lost degraded fail failed "
+            "fault alert alarm warning caution not_available unavailable denied reversion reversionary no_nav acquisition standby "
             "stopped halted frozen stale jammed spoofed unreliable"
         ),
         _FIX - _words("2 3 4 5 6 9")
@@ -262,16 +262,24 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
         against, unknown = against | others, unknown & ~others
     if kind.above < math.inf:
         against, unknown, empty = (value > kind.above).fill_null(value=False), unknown & value.is_null(), False
+    # A word of an alarm is one in a column of states too.
+    alarm = (unknown & ~number & _alarm(text, _STATE_ALARM)).fill_null(value=False)
+    against, unknown = against | alarm, unknown & ~alarm
     words = pl.select(pl.when(declared & against & ~fine).then(text)).to_series()
     return Stated(words, text.filter(unknown.fill_null(value=False)).unique(maintain_order=True).head(SHOWN).to_list() + ["empty"] * empty)
 
 
 _ALARM = (
     r"\b(unable|unreliable|invalid|lost|fail|fails|failed|failure|fault|faulty|alarm|alert|warning|misleading|spoof|spoofed|spoofing|jam|jammed|jamming|"
-    r"degraded|unhealthy|unsafe|downgrade|downgraded)\b"
+    r"degraded|unhealthy|unsafe|downgrade|downgraded|unavail|unavailable|disagree|inop|loss|doubtful|dead reckoning)\b"
 )
+_STATE_ALARM = _ALARM.replace("(unable", "(simulated|simulation|simulator|mocked|unable")
+"""In a column of states a simulation is of the position, in a free text of anything."""
 _NONE = r"\b(no|none|not|without|clear|cleared|off|false|ended|end|over|0)\b"
-_NO_POSITION_WORDS = r"\b(no (fix|position|solution|navigation|gps|gnss|raim|integrity)|not (valid|available|usable|reliable)|do not use)\b"
+_NO_POSITION_WORDS = (
+    r"\b(no (fix|position|solution|navigation|gps|gnss|raim|integrity)|not (valid|available|usable|reliable|for nav|for navigation)|"
+    r"do not use)\b"
+)
 """Words of alarms in a free text, words that take them back, and sentences without either that say the same. Provenance: ours."""
 
 
@@ -286,11 +294,20 @@ def alarming(texts: pl.DataFrame) -> list[str]:
 
 def alarms(raw: pl.Series) -> Stated:
     """Read a column of free texts that nothing else reads: a message of a receiver or a crew. A text that takes an alarm back is named."""
-    text = raw.str.to_lowercase().str.replace_all(r"[_\-]+", " ")
-    alarm, none, outright = (text.str.contains(words).fill_null(value=False) for words in (_ALARM, _NONE, _NO_POSITION_WORDS))
-    against = outright | (alarm & ~none)
+    against = _alarm(raw)
     words = pl.select(pl.when(against).then(raw.str.slice(0, _SHOWN_CHARACTERS))).to_series()
-    return Stated(words, raw.filter(alarm & none & ~outright).unique(maintain_order=True).head(SHOWN).to_list())
+    taken_back = _plain_text(raw).str.contains(_ALARM).fill_null(value=False) & ~against
+    return Stated(words, raw.filter(taken_back).unique(maintain_order=True).head(SHOWN).to_list())
+
+
+def _plain_text(raw: pl.Series) -> pl.Series:
+    return raw.str.to_lowercase().str.replace_all(r"[_\-]+", " ")
+
+
+def _alarm(raw: pl.Series, alarms: str = _ALARM) -> pl.Series:
+    """Which texts state an alarm that they do not take back."""
+    alarm, none, outright = (_plain_text(raw).str.contains(words).fill_null(value=False) for words in (alarms, _NONE, _NO_POSITION_WORDS))
+    return outright | (alarm & ~none)
 
 
 def _listed(words: Iterable[str]) -> list[str]:

@@ -257,16 +257,24 @@ class Assignment:
 
     @property
     def unread(self) -> list[str]:
-        """Columns that nothing reads, though their names speak of integrity."""
+        """Columns that nothing reads, though their names speak of integrity; so does a second column of one accuracy."""
         plain = {name: _plain(name)[0] for name in self.unused}
         transponders = bool(TRANSPONDER & set(plain.values()))
-        return [name for name, each in plain.items() if speaks_of_integrity(name) and not (transponders and each == "alert")]
+        speaks = {name: speaks_of_integrity(name) or each in _accuracies_by_alias() for name, each in plain.items()}
+        return [name for name, each in plain.items() if speaks[name] and not (transponders and each == "alert")]
 
     @property
     def accuracies(self) -> dict[str, float]:
         """Those of them that are lengths of a horizontal accuracy or error: the factor to metres of the unit in the name, otherwise 1."""
-        lengths = {name: _length_in(name) for name in self.unread if speaks_of_accuracy(name)}
+        again = _accuracies_by_alias()
+        lengths = {name: _length_in(name) for name in self.unread if speaks_of_accuracy(name) or _plain(name)[0] in again}
         return {name: factor for name, factor in lengths.items() if factor is not None}
+
+
+@functools.cache
+def _accuracies_by_alias() -> frozenset[str]:
+    """Names of the accuracies that a covariance is made of; where two of one file name the same, one is read."""
+    return frozenset(alias for q in QUANTITIES if q.name in {"sigma_e_m", "sigma_n_m", "epu_m"} for alias in q.aliases)
 
 
 def _length_in(name: str) -> float | None:
