@@ -1,7 +1,7 @@
 //! ARAIM levels of many epochs: geometry given, or users and orbits.
 
 use crate::araim_modes::Known;
-use crate::outlook::{Outcome, Outlook, predicted, refusal, rows};
+use crate::outlook::{Outcome, Outlook, at_desk, predicted, refusal, rows};
 use nalgebra::Vector3;
 use navbound_core::bound::araim::exclusion::{self, Monitored};
 use navbound_core::bound::araim::modes::MOST_SATELLITES;
@@ -9,10 +9,11 @@ use navbound_core::bound::araim::service::Service;
 use navbound_core::bound::araim::single::Requirement;
 use navbound_core::bound::araim::{Detail, Levels, Monitor};
 use navbound_core::bound::{NoLevels, Sight};
-use navbound_core::quantity::Metres;
+use navbound_core::quantity::{Metres, OutOfDomain};
 use navbound_core::signal::Constellation;
 use navbound_path::AtIndex;
 use rayon::prelude::*;
+use std::cell::RefCell;
 
 /// Satellites in many solutions: rows are epochs, columns satellites; one whose line of sight is NaN is not used.
 #[derive(Debug, Clone, Copy)]
@@ -100,6 +101,13 @@ impl Desk {
         exclusion::monitored(monitor, known, &self.sights, residuals_m, service)
     }
 
+    /// Levels of a row's satellites.
+    #[inline(always)]
+    fn row(&mut self, sights: &Sights<'_>, row: usize, rule: &Rule, exclusion: bool) -> Result<Row, OutOfDomain> {
+        self.take(sights, row, |_| ());
+        Row::of(self.sights.len(), self.worker.levels(&self.sights, rule, exclusion))
+    }
+
     /// Take up a row's satellites; `each` receives the column of every one.
     #[inline(always)]
     fn take(&mut self, sights: &Sights<'_>, row: usize, mut each: impl FnMut(usize)) {
@@ -130,16 +138,45 @@ impl Desk {
 /// # Errors
 /// [`AtIndex`]: the first epoch with a number outside its domain.
 pub fn levels(sights: &Sights<'_>, rule: &Rule, exclusion: bool) -> Result<Vec<Row>, AtIndex> {
-    let uniform = uniform(sights);
-    rows(
-        sights.len(),
-        || Desk::new(sights.p_const, uniform),
-        #[inline(always)]
-        |desk, row| {
-            desk.take(sights, row, |_| ());
-            Row::of(desk.sights.len(), desk.worker.levels(&desk.sights, rule, exclusion))
-        },
-    )
+    let asked = Asked { rule: *rule, p_const: sights.p_const, p_sat: priors(sights) };
+    if sights.len() > 1 {
+        return rows(
+            sights.len(),
+            || asked.desk(),
+            #[inline(always)]
+            |desk, row| desk.row(sights, row, rule, exclusion),
+        );
+    }
+    KEPT.with_borrow_mut(|kept| {
+        let known = kept.take_if(|(before, _)| *before == asked);
+        let (_, desk) = kept.insert(known.unwrap_or_else(|| (asked, asked.desk())));
+        at_desk(
+            desk,
+            sights.len(),
+            #[inline(always)]
+            |desk, row| desk.row(sights, row, rule, exclusion),
+        )
+    })
+}
+
+thread_local! {
+    /// The desk of this thread's last single epoch: a program that asks for one epoch after another finds the fault modes worked out.
+    static KEPT: RefCell<Option<(Asked, Desk)>> = const { RefCell::new(None) };
+}
+
+/// What the fault modes of a desk depend on besides the constellations of the satellites.
+#[derive(Clone, Copy, PartialEq)]
+struct Asked {
+    rule: Rule,
+    p_const: [f64; Constellation::ALL.len()],
+    /// Prior of the satellites of each constellation; `None` where they differ, and modes are worked out for every epoch.
+    p_sat: Option<[Option<f64>; Constellation::ALL.len()]>,
+}
+
+impl Asked {
+    fn desk(&self) -> Desk {
+        Desk::new(self.p_const, self.p_sat.is_some())
+    }
 }
 
 /// Detection and exclusion at every epoch: `residual_m` holds measured less computed ranges, one a satellite.
@@ -147,7 +184,7 @@ pub fn levels(sights: &Sights<'_>, rule: &Rule, exclusion: bool) -> Result<Vec<R
 /// # Errors
 /// As [`levels`], and for a residual of a satellite in use that is no number.
 pub fn monitored(sights: &Sights<'_>, residual_m: &[f64], service: &Service) -> Result<Vec<Tested>, AtIndex> {
-    let uniform = uniform(sights);
+    let uniform = priors(sights).is_some();
     let each = |desk: &mut (Desk, Vec<f64>, Vec<usize>), row: usize| {
         let (desk, residuals, columns) = desk;
         residuals.clear();
@@ -202,9 +239,9 @@ pub(crate) fn squared(sigma: f64) -> f64 {
     sigma * sigma.abs()
 }
 
-/// Whether satellites of one constellation share one prior everywhere.
-fn uniform(sights: &Sights<'_>) -> bool {
+/// The prior that all satellites of each constellation share; `None` where those of one do not.
+fn priors(sights: &Sights<'_>) -> Option<[Option<f64>; Constellation::ALL.len()]> {
     let mut first = [None; Constellation::ALL.len()];
     let same = |(p, c): (&f64, &Constellation)| *first[c.index()].get_or_insert(*p) == *p;
-    sights.p_sat.iter().zip(sights.constellation.iter().cycle()).all(same)
+    sights.p_sat.iter().zip(sights.constellation.iter().cycle()).all(same).then_some(first)
 }

@@ -16,6 +16,9 @@ pub(crate) struct Known {
     last: Option<(Key, usize)>,
 }
 
+/// Sets of fault modes that are kept, 12 kB each; a program that asks for single epochs all day does not grow.
+const MOST_KEPT: usize = 256;
+
 /// Constellations of the satellites in their order.
 type Key = [u8; MOST_SATELLITES];
 
@@ -27,6 +30,10 @@ impl Known {
     fn place(&mut self, key: Key, sights: &[Sight], service: &Service) -> Result<usize, NoModes> {
         if let Some(place) = self.places.get(&key) {
             return Ok(*place);
+        }
+        if self.modes.len() == MOST_KEPT {
+            self.places.clear();
+            self.modes.clear();
         }
         self.modes.push(service.modes(sights, &self.p_const)?);
         self.places.insert(key, self.modes.len() - 1);

@@ -1,6 +1,7 @@
 //! One loop for all batches: items of equal cost, results in order, the first refusal named by its index.
 
-use navbound_core::quantity::OutOfDomain;
+use navbound_core::quantity::{OutOfDomain, Risk};
+use navbound_core::special::folded::FoldedQuantile;
 use rayon::prelude::*;
 
 /// Items below which one thread is quicker than waking the others.
@@ -27,6 +28,39 @@ pub fn rows<const M: usize>(n: usize, item: impl Fn(usize) -> Result<[f64; M], O
         for (offset, row) in out.chunks_exact_mut(M).enumerate() {
             let index = first + offset;
             row.copy_from_slice(&item(index).map_err(|reason| Rejected { index, reason })?);
+        }
+        Ok(())
+    })
+}
+
+/// The factors of the risk that was asked for last: items of one batch mostly share theirs.
+#[derive(Debug, Default)]
+pub struct Factors(Option<FoldedQuantile>);
+
+impl Factors {
+    /// The factors of a risk.
+    ///
+    /// # Errors
+    /// A risk outside its domain.
+    #[inline]
+    pub fn of(&mut self, q: f64) -> Result<FoldedQuantile, OutOfDomain> {
+        match self.0 {
+            Some(known) if known.risk() == q => Ok(known),
+            _ => Ok(*self.0.insert(FoldedQuantile::new(Risk::new(q)?))),
+        }
+    }
+}
+
+/// One number an item, each at its own risk: what depends on the risk alone is worked out once as long as the risk stays the same.
+///
+/// # Errors
+/// As [`rows`].
+pub fn at_risks(n: usize, item: impl Fn(usize, &mut Factors) -> Result<f64, OutOfDomain> + Sync) -> Result<Vec<f64>, Rejected> {
+    chunks::<1>(n, |first, out| {
+        let mut factors = Factors::default();
+        for (offset, row) in out.iter_mut().enumerate() {
+            let index = first + offset;
+            *row = item(index, &mut factors).map_err(|reason| Rejected { index, reason })?;
         }
         Ok(())
     })
@@ -65,6 +99,17 @@ mod tests {
             assert_eq!(out.len(), 2 * n);
             assert!(out.chunks(2).enumerate().all(|(i, row)| row[0] == i as f64 && row[1] == -(i as f64)));
         }
+    }
+
+    #[test]
+    fn every_item_has_the_factors_of_its_own_risk() {
+        let q = [0.05, 0.05, 1e-5, 0.05, 1e-5, 1e-5];
+        let found = at_risks(q.len(), |i, factors| Ok(factors.of(q[i])?.two_sided())).unwrap();
+        let alone: Vec<f64> = q.iter().map(|q| FoldedQuantile::new(Risk::new(*q).unwrap()).two_sided()).collect();
+        assert_eq!(found, alone);
+        let wrong = [0.05, 0.05, f64::NAN, 2.0];
+        let refused = at_risks(wrong.len(), |i, factors| Ok(factors.of(wrong[i])?.risk())).unwrap_err();
+        assert_eq!((refused.index, refused.reason.argument), (2, "risk"));
     }
 
     #[test]

@@ -260,6 +260,9 @@ pub(crate) fn rows<D: Send, T: Send>(
 ) -> Result<Vec<T>, AtIndex> {
     let arch = Arch::new();
     let chunk = CHUNK.min(256);
+    if n <= chunk {
+        return at_desk(&mut desk(), n, epoch);
+    }
     let done: Result<Vec<Vec<T>>, AtIndex> = (0..n.div_ceil(chunk))
         .into_par_iter()
         .map_init(desk, |desk, k| {
@@ -268,6 +271,11 @@ pub(crate) fn rows<D: Send, T: Send>(
         })
         .collect();
     Ok(done?.into_iter().flatten().collect())
+}
+
+/// A few epochs in this thread, without waking another, at a desk that the caller keeps.
+pub(crate) fn at_desk<D, T>(desk: &mut D, n: usize, epoch: impl Fn(&mut D, usize) -> Result<T, OutOfDomain>) -> Result<Vec<T>, AtIndex> {
+    Arch::new().dispatch(Job { desk, span: 0..n, epoch: &epoch })
 }
 
 /// One chunk as a job for [`Arch::dispatch`], which compiles it once for each width of instructions.

@@ -1,7 +1,7 @@
 //! Flat arrays to batch loops and back.
 
 use crate::error::input_error;
-use navbound_assess::batch::{Rejected, rows};
+use navbound_assess::batch::{self, Factors, Rejected, rows};
 use navbound_core::quantity::OutOfDomain;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -18,6 +18,16 @@ pub fn numbers<'py>(
     item: impl Fn(usize) -> Result<f64, OutOfDomain> + Sync + Send,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let out = py.detach(|| rows(n, |i| Ok([item(i)?]))).map_err(rejected)?;
+    Ok(out.into_pyarray(py))
+}
+
+/// The same, each item at its own risk.
+pub fn at_risks<'py>(
+    py: Python<'py>,
+    n: usize,
+    item: impl Fn(usize, &mut Factors) -> Result<f64, OutOfDomain> + Sync + Send,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let out = py.detach(|| batch::at_risks(n, item)).map_err(rejected)?;
     Ok(out.into_pyarray(py))
 }
 

@@ -4,6 +4,7 @@
 
 mod anp;
 mod araim;
+mod arguments;
 mod batch;
 mod dme;
 mod ee;
@@ -55,6 +56,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     vertical::register(m)?;
     anp::register(m)?;
     araim::register(m)?;
+    arguments::register(m)?;
     raim::register(m)?;
     rnp::register(m)?;
     sbas::register(m)?;

@@ -1,6 +1,6 @@
 //! Total system error.
 
-use crate::batch::{numbers, rejected, table};
+use crate::batch::{at_risks, numbers, rejected, table};
 use crate::error::input_error;
 use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::tse::{self, Component, Deviation, Horizontal, PathDeviations, RandomFte, RotatedFrame};
@@ -64,13 +64,13 @@ fn tse_project<'py>(py: Python<'py>, offset_en: Vectors<'py>, covariance: Matric
 #[pyfunction]
 fn tse_exact<'py>(py: Python<'py>, fte: Numbers<'py>, sigma: Numbers<'py>, risk: Numbers<'py>) -> Column<'py> {
     let (f, s, q) = (fte.as_slice()?, sigma.as_slice()?, risk.as_slice()?);
-    numbers(py, q.len(), |i| Ok(tse::exact(Deviation::new(m(f[i]), m(s[i]))?, Risk::new(q[i])?).m()))
+    at_risks(py, q.len(), |i, factors| Ok(tse::exact_at(Deviation::new(m(f[i]), m(s[i]))?, &factors.of(q[i])?).m()))
 }
 
 #[pyfunction]
 fn tse_ltem<'py>(py: Python<'py>, fte: Numbers<'py>, sigma: Numbers<'py>, risk: Numbers<'py>) -> Column<'py> {
     let (f, s, q) = (fte.as_slice()?, sigma.as_slice()?, risk.as_slice()?);
-    numbers(py, q.len(), |i| Ok(tse::ltem(Deviation::new(m(f[i]), m(s[i]))?, Risk::new(q[i])?).m()))
+    at_risks(py, q.len(), |i, factors| Ok(tse::ltem_at(Deviation::new(m(f[i]), m(s[i]))?, &factors.of(q[i])?).m()))
 }
 
 #[pyfunction]
@@ -102,18 +102,18 @@ impl TsePrepared {
 #[pyfunction]
 fn tse_sqsm<'py>(py: Python<'py>, fte: Numbers<'py>, covariance: Matrices<'py>, risk: Numbers<'py>) -> Column<'py> {
     let (f, c, q) = (fte.as_slice()?, covariance.as_slice()?, risk.as_slice()?);
-    numbers(py, q.len(), |i| {
+    at_risks(py, q.len(), |i, factors| {
         let ellipse = Horizontal::new(&covariance_en(c, i)?).map_err(|e| named(e, "covariance_en_m2"))?;
-        Ok(tse::sqsm(m(f[i]), &ellipse, Risk::new(q[i])?)?.m())
+        Ok(tse::sqsm_at(m(f[i]), &ellipse, &factors.of(q[i])?)?.m())
     })
 }
 
 #[pyfunction]
 fn tse_ctem<'py>(py: Python<'py>, offset_en: Vectors<'py>, covariance: Matrices<'py>, risk: Numbers<'py>) -> Column<'py> {
     let (p, c, q) = (offset_en.as_slice()?, covariance.as_slice()?, risk.as_slice()?);
-    numbers(py, q.len(), |i| {
+    at_risks(py, q.len(), |i, factors| {
         let ellipse = Horizontal::new(&covariance_en(c, i)?).map_err(|e| named(e, "covariance_en_m2"))?;
-        Ok(tse::ctem(&offset(p, 2, i), &ellipse, Risk::new(q[i])?)?.m())
+        Ok(tse::ctem_at(&offset(p, 2, i), &ellipse, &factors.of(q[i])?)?.m())
     })
 }
 
@@ -126,9 +126,9 @@ fn tse_ctem_foot<'py>(
     risk: Numbers<'py>,
 ) -> Column<'py> {
     let (f, chi, c, q) = (fte.as_slice()?, course.as_slice()?, covariance.as_slice()?, risk.as_slice()?);
-    numbers(py, q.len(), |i| {
+    at_risks(py, q.len(), |i, factors| {
         let ellipse = Horizontal::new(&covariance_en(c, i)?).map_err(|e| named(e, "covariance_en_m2"))?;
-        Ok(tse::ctem_foot(m(f[i]), Radians::new(chi[i]), &ellipse, Risk::new(q[i])?)?.m())
+        Ok(tse::ctem_foot_at(m(f[i]), Radians::new(chi[i]), &ellipse, &factors.of(q[i])?)?.m())
     })
 }
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from navbound import _core
 from navbound.errors import InputError
 
 if TYPE_CHECKING:
@@ -36,6 +37,8 @@ def numbers(name: str, value: object, expected: str = "numbers") -> NDArray[np.g
     """
     if type(value) is float:
         return np.asarray(value)
+    if type(value) is np.ndarray and value.dtype == np.float64 and value.ndim <= MOST_AXES and value.nbytes <= MOST_BYTES:
+        return value
     if value is None:
         raise InputError(name, None, domain=expected)
     if _is_masked(value):
@@ -112,6 +115,10 @@ def flatten(**arguments: tuple[ArrayLike, tuple[int, ...]]) -> tuple[tuple[int, 
     InputError
         Not numbers, a wrong item shape, or leading shapes that do not broadcast.
     """
+    # One number, or arrays that fit as they are, is what is called most: nothing is left to do or to refuse.
+    plain = _core.flatten_plain(arguments)
+    if plain is not None:
+        return plain
     arrays: list[tuple[NDArray[np.float64], tuple[int, ...]]] = []
     leading: tuple[int, ...] = ()
     for name, (value, item) in arguments.items():
@@ -133,7 +140,7 @@ def flatten(**arguments: tuple[ArrayLike, tuple[int, ...]]) -> tuple[tuple[int, 
 
 def unflatten(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float64]:
     """Give a flat result its leading shape; zero-dimensional results stay arrays of shape ``()``."""
-    return values.reshape(shape + values.shape[1:])
+    return values if values.shape == shape else values.reshape(shape + values.shape[1:])
 
 
 def split_columns(table: NDArray[np.float64], shape: tuple[int, ...]) -> list[NDArray[np.float64]]:

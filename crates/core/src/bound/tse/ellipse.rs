@@ -4,7 +4,7 @@ use super::lateral::axes;
 use crate::frame::{Covariance, Displacement, Enu};
 use crate::quantity::{Metres, OutOfDomain, Radians, Risk};
 use crate::special::float::{atan2, hypot, sin_cos, sqrt};
-use crate::special::two_sided_factor;
+use crate::special::folded::FoldedQuantile;
 
 /// A covariance may be indefinite by this share of its largest variance: rounding, taken as zero.
 const ROUNDING: f64 = 1e-9;
@@ -64,10 +64,18 @@ impl Horizontal {
 /// # Errors
 /// [`OutOfDomain`] for a flight technical error that is not finite.
 pub fn sqsm(fte: Metres, horizontal: &Horizontal, risk: Risk) -> Result<Metres, OutOfDomain> {
+    sqsm_at(fte, horizontal, &FoldedQuantile::new(risk))
+}
+
+/// The same with the factors of the risk worked out before, for many epochs at one risk \[m\].
+///
+/// # Errors
+/// As [`sqsm`].
+pub fn sqsm_at(fte: Metres, horizontal: &Horizontal, factors: &FoldedQuantile) -> Result<Metres, OutOfDomain> {
     if !fte.m().is_finite() {
         return Err(OutOfDomain { argument: "fte_m", value: fte.m(), unit: "m", domain: "(-inf, inf)" });
     }
-    Ok(Metres::new(fte.m().abs() + two_sided_factor(risk.q()) * horizontal.major))
+    Ok(Metres::new(fte.m().abs() + factors.two_sided() * horizontal.major))
 }
 
 /// Circle tangent to the ellipse: the distance from the expected point to the farthest point of the ellipse with factor K(q) \[m\].
@@ -76,13 +84,21 @@ pub fn sqsm(fte: Metres, horizontal: &Horizontal, risk: Risk) -> Result<Metres, 
 /// # Errors
 /// [`OutOfDomain`] for an offset that is not finite.
 pub fn ctem(offset: &Displacement<Enu>, horizontal: &Horizontal, risk: Risk) -> Result<Metres, OutOfDomain> {
+    ctem_at(offset, horizontal, &FoldedQuantile::new(risk))
+}
+
+/// The same with the factors of the risk worked out before, for many epochs at one risk \[m\].
+///
+/// # Errors
+/// As [`ctem`].
+pub fn ctem_at(offset: &Displacement<Enu>, horizontal: &Horizontal, factors: &FoldedQuantile) -> Result<Metres, OutOfDomain> {
     let p = offset.vector();
     if !(p.x.is_finite() && p.y.is_finite()) {
         let value = if p.x.is_finite() { p.y } else { p.x };
         return Err(OutOfDomain { argument: "offset_en_m", value, unit: "m", domain: "(-inf, inf)" });
     }
     let (x, y) = horizontal.in_axes(p.x, p.y);
-    let k = two_sided_factor(risk.q());
+    let k = factors.two_sided();
     Ok(farthest(Metres::new(x), Metres::new(y), Metres::new(k * horizontal.major), Metres::new(k * horizontal.minor)))
 }
 
@@ -91,11 +107,19 @@ pub fn ctem(offset: &Displacement<Enu>, horizontal: &Horizontal, risk: Risk) -> 
 /// # Errors
 /// [`OutOfDomain`] for a flight technical error or course that is not finite.
 pub fn ctem_foot(fte: Metres, course: Radians, horizontal: &Horizontal, risk: Risk) -> Result<Metres, OutOfDomain> {
+    ctem_foot_at(fte, course, horizontal, &FoldedQuantile::new(risk))
+}
+
+/// The same with the factors of the risk worked out before, for many epochs at one risk \[m\].
+///
+/// # Errors
+/// As [`ctem_foot`].
+pub fn ctem_foot_at(fte: Metres, course: Radians, horizontal: &Horizontal, factors: &FoldedQuantile) -> Result<Metres, OutOfDomain> {
     if !fte.m().is_finite() {
         return Err(OutOfDomain { argument: "fte_m", value: fte.m(), unit: "m", domain: "(-inf, inf)" });
     }
     let (_, n) = axes(course)?;
-    ctem(&Displacement::from_vector(n * fte.m()), horizontal, risk)
+    ctem_at(&Displacement::from_vector(n * fte.m()), horizontal, factors)
 }
 
 /// Distance from the origin to the farthest point of an ellipse centred at (`x`, `y`) with these half axes \[m\].

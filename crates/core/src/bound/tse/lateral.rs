@@ -103,8 +103,13 @@ pub(crate) fn axes(course: Radians) -> Result<(Vector3<f64>, Vector3<f64>), OutO
 /// The published double integrals (Fu 2014, eq. 13 to 18) reduce to this: the error across the path is a linear form of a normal
 /// vector, so it is normal, and the strip between the two lines is an interval of it.
 pub fn exact(deviation: Deviation, risk: Risk) -> Metres {
+    exact_at(deviation, &FoldedQuantile::new(risk))
+}
+
+/// The same with the factors of the risk worked out before, for many epochs at one risk \[m\].
+pub fn exact_at(deviation: Deviation, factors: &FoldedQuantile) -> Metres {
     let Deviation { fte, sigma } = deviation;
-    Metres::new(if sigma == 0.0 { fte.abs() } else { fte.abs() + FoldedQuantile::new(risk).excess(fte.abs() / sigma) * sigma })
+    Metres::new(if sigma == 0.0 { fte.abs() } else { fte.abs() + factors.excess(fte.abs() / sigma) * sigma })
 }
 
 /// The exact bound from a prepared table: the same to a few 1e-15, in a few operations \[m\].
@@ -117,7 +122,13 @@ pub fn exact_prepared(deviation: Deviation, prepared: &PreparedQuantile) -> Metr
 /// Line tangent to the ellipse: fte + K(q) sigma \[m\]. Never below the exact bound; equal to it where fte or sigma is zero.
 #[inline]
 pub fn ltem(deviation: Deviation, risk: Risk) -> Metres {
-    Metres::new(deviation.fte.abs() + FoldedQuantile::new(risk).two_sided() * deviation.sigma)
+    ltem_at(deviation, &FoldedQuantile::new(risk))
+}
+
+/// The same with the factors of the risk worked out before, for many epochs at one risk \[m\].
+#[inline]
+pub fn ltem_at(deviation: Deviation, factors: &FoldedQuantile) -> Metres {
+    Metres::new(deviation.fte.abs() + factors.two_sided() * deviation.sigma)
 }
 
 /// Risk that the total system error exceeds a limit: an alert needs no root.

@@ -10,12 +10,12 @@ mod lateral;
 mod printed;
 mod vertical;
 
-pub use ellipse::{Horizontal, ctem, ctem_foot, farthest, sqsm};
+pub use ellipse::{Horizontal, ctem, ctem_at, ctem_foot, ctem_foot_at, farthest, sqsm, sqsm_at};
 pub use extended::{Component, MAX_DEGREES_OF_FREEDOM, RandomFte, mixture, paired_overbound, rf_fte, rssm, student_t};
 pub(crate) use lateral::axes;
 pub use lateral::{
-    Deviation, Gradient, Lateral, exact, exact_prepared, exceedance_risk, fte_budget, gradient, ln_exceedance_risk, ltem, project,
-    sigma_budget,
+    Deviation, Gradient, Lateral, exact, exact_at, exact_prepared, exceedance_risk, fte_budget, gradient, ln_exceedance_risk, ltem,
+    ltem_at, project, sigma_budget,
 };
 pub use printed::{RotatedFrame, factor_as_printed, ltem_as_printed, slope, slope_as_printed};
 pub use vertical::{Box, PathDeviations, box_limits, box_risk, deviations};
