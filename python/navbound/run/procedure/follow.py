@@ -17,12 +17,11 @@ from navbound.records.run import Waypoint
 from navbound.run.procedure.answers import flown_record
 from navbound.run.procedure.heights import height_results, heights, setting_result
 from navbound.time import utc_text
-from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from navbound.procedures import Flight, LegResult, Procedure
+    from navbound.procedures import Flight, Procedure
     from navbound.records.operation import Operation
     from navbound.records.procedure import ProcedureFlown
     from navbound.records.run import CrossTrack, InputFile
@@ -79,7 +78,7 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
             ok = followed.status[inside] == "ok"
             known = ok & np.isfinite(part["rnp_m"].to_numpy())
             unknown.append(left_out(part.filter(pl.Series(ok & ~known))))
-            words += _words(track, group["time_ns"][0], flight)
+            words.append(_words(track, group["time_ns"][0], flight))
             if known.any():
                 judged.append(part.filter(pl.Series(known)))
                 tracks[track] = str(group["track"][0])
@@ -155,20 +154,6 @@ def _status_words(track: str, followed: Followed) -> str:
     return f"Positions of {track}: {shown}. Only those that are ok are judged."
 
 
-def _words(track: str, time_ns: int, flight: Flight) -> list[str]:
+def _words(track: str, time_ns: int, flight: Flight) -> str:
     when = utc_text(time_ns + round(flight.first_time_s * 1e9))
-    first = f"{track}: judged from {when} UTC on; {flight.n_without_rnp} positions on legs without an RNP are not."
-    legs = [_leg_words(leg, time_ns) for leg in flight.legs if leg.n]
-    return [first, *legs]
-
-
-def _leg_words(leg: LegResult, time_ns: int) -> str:
-    share = f" = {leg.max_abs_m / leg.rnp_m:.3f} RNP" if np.isfinite(leg.rnp_m) else ""
-    turns = f"; {leg.n_transition} in turns" if leg.n_transition else ""
-    inside = f"inside RNP {leg.n_inside}, inside twice RNP {leg.n_inside_twice}{turns}"
-    return (
-        f"Leg {leg.fix or leg.terminator} ({leg.terminator}, {rnp_words(leg.rnp_m)}, {leg.length_m / METRES_PER_NM:.2f} NM): "
-        f"{leg.n} positions in "
-        f"{leg.duration_s:.0f} s, mean {leg.mean_m:+.2f} m, RMS {leg.rms_m:.2f} m, 95 % {leg.p95_m:.2f} m, largest {leg.max_abs_m:.2f} m"
-        f"{share} at {utc_text(time_ns + round(leg.worst_time_s * 1e9))}; {inside}."
-    )
+    return f"{track}: judged from {when} UTC on; {flight.n_without_rnp} positions on legs without an RNP are not."
