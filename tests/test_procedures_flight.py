@@ -53,7 +53,8 @@ def test_every_epoch_has_the_rnp_of_its_leg(flown: Run) -> None:
 
 def test_the_verdict_and_the_three_answers(flown: Run) -> None:
     assert flown.summary.verdict.id == "inside"
-    words = "\n".join(flown.summary.assumptions)
+    (flight,) = flown.summary.procedures
+    words = "\n".join([*flight.answers, *flown.summary.assumptions])
     assert "inside RNP at 32 of 32, inside twice RNP at 32 of 32" in words
     assert "Bound of the total error (95 %): inside RNP at 32 of 32" in words
     assert "cannot show 1e-5" in words
@@ -73,7 +74,7 @@ def test_a_track_700_m_beside_is_not_inside(shared_data: Path, tmp_path: Path) -
     assert (last["fte_m"].abs() > 0.3 * NM).all()
     assert (last["fte_m"].abs() < 0.6 * NM).all()
     assert run.summary.verdict.id == "outside"
-    assert any("not within RNP; within twice RNP" in words for words in run.summary.assumptions)
+    assert any("not within RNP; within twice RNP" in words for words in run.summary.procedures[0].answers)
 
 
 def test_a_leg_without_rnp_is_expected_and_not_shown(shared_data: Path, tmp_path: Path) -> None:
@@ -124,8 +125,9 @@ def test_the_commands_print_list_legs_and_contradictions(shared_data: Path, tmp_
     shown = run(app, ["procedures", "show", str(SAMPLE), "KDEN/H26-Z:CAPTJ", "--missed", "--line", "RNP 0.15", "--out", str(page)])
     assert shown.exit_code == 0, shown.output
     html = page.read_text(encoding="utf-8")
-    # CAPTJ-BCALN, BCALN-JPBAG, JPBAG-GRASP, GRASP-RW26, the climb and the hold in plan; one line in the profile.
-    assert html.count("<polyline") == 7
+    # CAPTJ-BCALN, BCALN-JPBAG, JPBAG-GRASP, GRASP-RW26, the climb and the hold in plan; coded altitudes, vertical path and the
+    # surface below it in the profile.
+    assert html.count("<polyline") == 9
     assert "line selected" in html
     assert "(field 0.3)" in html
     kaus = str(shared_data / "procedures" / "KAUS.txt")

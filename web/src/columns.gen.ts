@@ -17,6 +17,8 @@ export type NumberColumn =
     | "rnp_m"
     | "fte_m"
     | "fte_v_m"
+    | "baro_off_m"
+    | "limit_v_m"
     | "nse_e_m"
     | "nse_n_m"
     | "nse_u_m"

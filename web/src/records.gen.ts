@@ -315,6 +315,98 @@ export interface Performance {
     notes: string[];
 }
 
+/** Deviations of one kind of height from the vertical path of the final approach. */
+export interface HeightResult {
+    /** The altimeter: pressure altitude with a setting. Geometry: height above the ellipsoid less the undulation. */
+    by: "altimeter" | "geometry";
+    path: "barometric" | "straight";
+    n: number;
+    mean_m: number;
+    rms_m: number;
+    /** 95 % of the sizes. */
+    p95_m: number;
+    least_m: number;
+    most_m: number;
+    limit_m: number;
+    n_inside: number;
+    /** Epochs with a bound of the vertical total error. */
+    n_bound: number;
+    /** Epochs whose bound is inside the limit. */
+    n_bound_inside: number;
+    /** Largest risk of an epoch that the aircraft is below the path by more than the limit. */
+    risk_below_max: number | null;
+}
+
+/** What the heights of a descent say of the altimeter setting. It cannot tell a wrong setting from a wrong geometric height. */
+export interface SettingResult {
+    setting_hpa: number;
+    origin: "given" | "broadcast";
+    n: number;
+    /** Geometric less indicated height at the aerodrome; negative where the setting is too high. */
+    intercept_m: number;
+    /** Growth of the difference with height: the temperature. */
+    slope: number;
+    residual_sigma_m: number;
+    /** A larger intercept is an alarm. */
+    threshold_m: number;
+    /** Found with 90 %. */
+    detectable_m: number;
+    alarm: boolean;
+}
+
+/** A flight on one leg. */
+export interface LegFlown {
+    sequence: number;
+    fix: string;
+    terminator: string;
+    state: string;
+    rnp_m: number | null;
+    rnp_origin: string;
+    length_m: number | null;
+    n: number;
+    n_transition: number;
+    duration_s: number;
+    mean_m: number | null;
+    rms_m: number | null;
+    p95_m: number | null;
+    max_abs_m: number | null;
+    n_inside: number;
+    n_inside_twice: number;
+    /** Epochs with a bound of the total error. */
+    n_bound: number;
+    n_bound_inside: number;
+    n_bound_inside_twice: number;
+    worst_time_ns: number | null;
+    worst_along_m: number | null;
+}
+
+/** One flight against a procedure. */
+export interface ProcedureFlown {
+    track: string;
+    procedure: string;
+    line: string | null;
+    /** From when on it was judged. */
+    first_ns: number;
+    /** Positions by what they are worth, from the first that was judged to the last. */
+    n_status: Record<string, number>;
+    /** Positions judged, on legs with an RNP. */
+    n: number;
+    n_inside: number;
+    n_inside_twice: number;
+    n_without_rnp: number;
+    n_bound: number;
+    n_bound_inside: number;
+    n_bound_inside_twice: number;
+    n_effective: number;
+    /** Share outside RNP that no exceedance in so many independent positions leaves open at 95 % confidence; None where there was one. */
+    most_exceeding: number | null;
+    legs: LegFlown[];
+    heights: HeightResult[];
+    setting: SettingResult | null;
+    /** Whether it was inside: recorded positions, bounds of the total error, what the data can decide; then the heights. */
+    answers: string[];
+}
+
 export type Operation = "en-route" | "approach" | "ground";
 
 /** The epoch with the smallest margin between bound and limit. */
@@ -643,6 +735,8 @@ export interface Summary {
     states: string[];
     events: EventSummary[];
     cross_track: CrossTrack[];
+    /** Flights against a published procedure. */
+    procedures: ProcedureFlown[];
     rejected: Rejection[];
     /** Epochs by status. */
     n_status: Record<string, number>;

@@ -21,6 +21,7 @@ import { Table, type NumberName } from "./data/table.ts";
 import { map } from "./map/map.ts";
 import { cursorBar } from "./panel/cursorbar.ts";
 import { indicatorsOf } from "./panel/kpi-verdict.ts";
+import { procedures } from "./panel/procedure.ts";
 import { performance as performanceReport } from "./panel/performance.ts";
 import { smallPrint } from "./panel/smallprint.ts";
 import { alertLimits, crossTrack, events, faults, methods, phases, rejections, tracks } from "./panel/tables.ts";
@@ -35,7 +36,7 @@ const PARTS: { component: Component; host: "upper" | "charts"; needs: NumberName
     { component: map, host: "upper", needs: ["est_lat_rad"] },
     { component: performance, host: "upper", needs: ["rnp_m", "fte_m", "fte_v_m"] },
     { component: lateral, host: "charts", needs: ["fte_m"] },
-    { component: vertical, host: "charts", needs: ["fte_v_m"], aloft: true },
+    { component: vertical, host: "charts", needs: ["fte_v_m", "baro_off_m"], aloft: true },
     { component: anp, host: "charts", needs: ["anp_circle_m", "anp_sphere_m"] },
     { component: alertLimit, host: "charts", needs: ["hal_m"] },
     { component: exceedance, host: "charts", needs: ["p_exceed_2rnp"] },
@@ -78,6 +79,8 @@ class Page {
         const tables = el("section", { id: "tables" }, el("h2", {}, heading), alone ? null : this.trackTable.element);
         if (summary.phases.length > 0) tables.append(phases(payload));
         for (const part of [alertLimits(payload), faults(payload), crossTrack(payload), events(payload, () => this.current, (t) => this.select(t)), rejections(payload)]) if (part !== null) tables.append(part);
+        const flown = procedures(payload);
+        if (flown !== null) this.upper.before(flown);
         root.append(tables, ...(alone ? [] : [methods(payload)]), smallPrint(payload), this.bar);
         this.listTracks();
         const first = payload.tracks[0];

@@ -139,11 +139,12 @@ impl NavigationDatabase {
             .collect()
     }
 
-    /// Elevation of an airport and of the threshold of one of its runways [m]; None where the file has none.
-    fn elevations(&self, airport: &str, runway: &str) -> (Option<f64>, Option<f64>) {
+    /// Elevation of an airport; elevation of the threshold of one of its runways, and its height above the ellipsoid [m]; None where the
+    /// file has none.
+    fn elevations(&self, airport: &str, runway: &str) -> (Option<f64>, Option<f64>, Option<f64>) {
         let of_airport = self.0.airport(airport).and_then(|a| a.elevation_m);
-        let threshold = self.0.runway(arinc424::Text::new(airport), arinc424::Text::new(runway)).and_then(|r| r.elevation_m);
-        (of_airport, threshold)
+        let threshold = self.0.runway(arinc424::Text::new(airport), arinc424::Text::new(runway));
+        (of_airport, threshold.and_then(|r| r.elevation_m), threshold.and_then(|r| r.ellipsoid_height_m))
     }
 }
 

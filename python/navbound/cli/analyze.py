@@ -54,6 +54,20 @@ def analyze_command(
         bool, typer.Option("--defaults", help="With --procedure: legs without a coded RNP take the default of the specification.")
     ] = False,
     missed: Annotated[bool, typer.Option("--missed", help="With --procedure: with the missed approach.")] = False,
+    vertical_path: Annotated[
+        str | None,
+        typer.Option(
+            help="With --procedure: barometric (default; a constant slope over the curved Earth, baro-VNAV) or straight (ILS, LPV, GLS)."
+        ),
+    ] = None,
+    setting_hpa: Annotated[
+        float | None,
+        typer.Option(help="With --procedure: altimeter setting. Default: what the aircraft broadcasts; without one nothing is said by it."),
+    ] = None,
+    undulation_m: Annotated[
+        float | None,
+        typer.Option(help="With --procedure: height of the sea above the ellipsoid. Default: by the two heights of the runway."),
+    ] = None,
     spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3', 'RNP AR 0.1' or 'RNP APCH'.")] = "RNP 0.3",
     operation: Annotated[
         str | None,
@@ -87,7 +101,8 @@ def analyze_command(
     json: Json = False,
 ) -> None:
     """Judge recorded tracks against a path and a navigation specification, epoch by epoch."""
-    flown = procedures.flown(procedure, database, line, defaults=defaults, missed=missed)
+    stated = procedures.Stated(line, defaults or None, missed or None, vertical_path, setting_hpa, undulation_m)
+    flown = procedures.flown(procedure, database, stated)
     of_levels = evaluate.Options(
         prn, period_s, exclude_missing, stanford_esa, min_satellites, max_satellites, listed_from, experimental, protection
     )

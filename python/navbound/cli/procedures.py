@@ -8,7 +8,7 @@ import sys
 from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 from rich.table import Table
@@ -19,8 +19,11 @@ from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from navbound.procedures import Database, Procedure
+    from navbound.report.procedure import Heights
     from navbound.run.procedure import Flown
 
+KELVIN = 273.15
+"""0 °C. [K]"""
 app = typer.Typer(help="Published procedures of a navigation database (ARINC 424).", no_args_is_help=True, rich_markup_mode=None)
 File = Annotated[Path, typer.Argument(help="Navigation database: ARINC 424, 132 characters a line, plain or gzip.")]
 
@@ -60,10 +63,14 @@ def show_command(
     line: Annotated[str | None, typer.Option("--line", help="Line of minima that is flown, such as 'RNP 0.3'.")] = None,
     missed: Annotated[bool, typer.Option("--missed", help="With the missed approach.")] = False,
     defaults: Annotated[bool, typer.Option("--defaults", help="Legs without a coded RNP take the default of the specification.")] = False,
+    lowest_c: Annotated[
+        float | None,
+        typer.Option("--lowest-c", help="Lowest temperature at the threshold in °C, for the obstacle clearance surface of RNP AR."),
+    ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="HTML page with plan and profile to write.")] = None,
     json: Json = False,
 ) -> None:
-    """Show the legs of one procedure, and with --out its plan and profile as a page."""
+    """Show the legs of one procedure, its vertical path, and with --out its plan and profile as a page."""
     from navbound.procedures.names import parts  # noqa: PLC0415
     from navbound.report import procedure as drawn  # noqa: PLC0415
 
@@ -72,10 +79,16 @@ def show_command(
     procedure = database.procedure(airport, ident, transition, missed=missed, line=line, defaults=defaults)
     lines = {x.line for x in procedure.legs} | {x.line for x in procedure.levels}
     findings = [f for f in database.contradictions(airport) if f.procedure == ident and f.line in lines]
+    heights = _heights(database, procedure, lowest_c)
     if out is not None:
-        _write(out, drawn.page(procedure, findings))
+        _write(out, drawn.page(procedure, findings, heights))
     if json:
-        _print_json(_plain(procedure) | {"findings": [asdict(f) for f in findings]})
+        below = {
+            "vertical_path": None if heights.path is None else asdict(heights.path),
+            "obstacle_surface": None if heights.surface is None else heights.surface._asdict(),
+            "vertical_words": list(heights.words),
+        }
+        _print_json(_plain(procedure) | below | {"findings": [asdict(f) for f in findings]})
         return
     table = Table(
         title=f"{procedure.name}, {procedure.length_m / METRES_PER_NM:.2f} NM" if math.isfinite(procedure.length_m) else procedure.name
@@ -85,7 +98,7 @@ def show_command(
     for leg in procedure.legs:
         table.add_row(*drawn.cells(leg))
     out_console.print(table)
-    for note in drawn.notes(procedure, findings):
+    for note in drawn.notes(procedure, findings, heights):
         out_console.print(note.text, markup=False, highlight=False)
     if out is not None:
         out_console.print(f"Page: {out.resolve()}", markup=False, highlight=False, soft_wrap=True)
@@ -120,10 +133,21 @@ def check_command(
     _say(database)
 
 
-def flown(name: str | None, database: Path | None, line: str | None, *, defaults: bool, missed: bool) -> Flown | None:
+class Stated(NamedTuple):
+    """What a caller of `navbound analyze` states of a procedure; None: nothing."""
+
+    line: str | None
+    defaults: bool | None
+    missed: bool | None
+    vertical_path: str | None
+    setting_hpa: float | None
+    undulation_m: float | None
+
+
+def flown(name: str | None, database: Path | None, stated: Stated) -> Flown | None:
     """The procedure that `navbound analyze` judges against; options that would do nothing without it are refused."""
     if name is None:
-        for option, value in {"database": database, "line": line, "defaults": defaults or None, "missed": missed or None}.items():
+        for option, value in {"database": database, **stated._asdict()}.items():
             if value is not None:
                 raise ConflictError(option, needs=("procedure",))
         return None
@@ -131,13 +155,32 @@ def flown(name: str | None, database: Path | None, line: str | None, *, defaults
         raise ConflictError("procedure", needs=("database",), because="a navigation database (ARINC 424)")
     from navbound.run.procedure import Flown  # noqa: PLC0415
 
-    return Flown(database, name, line, defaults, missed)
+    given = {key: value for key, value in stated._asdict().items() if value is not None and key != "vertical_path"}
+    shape = {} if stated.vertical_path is None else {"shape": stated.vertical_path}
+    return Flown(database, name, **given, **shape)
 
 
 def _read(file: Path) -> Database:
     from navbound import procedures  # noqa: PLC0415
 
     return procedures.read(file)
+
+
+def _heights(database: Database, procedure: Procedure, lowest_c: float | None) -> Heights:
+    """Vertical path and obstacle clearance surface of an approach."""
+    from navbound.procedures import surface_below, vertical_path  # noqa: PLC0415
+    from navbound.report.procedure import Heights  # noqa: PLC0415
+
+    if procedure.kind != "approach":
+        if lowest_c is not None:
+            raise InputError("lowest_c", lowest_c, "°C", "an approach: the surface lies below its final part")
+        return Heights(None, None, ())
+    path, words = vertical_path(database, procedure)
+    told = f"{words[0].upper()}{words[1:]}" + ("" if words.endswith(".") else ".")
+    if path is None:
+        return Heights(None, None, (told,))
+    surface, more = surface_below(path, procedure, None if lowest_c is None else lowest_c + KELVIN)
+    return Heights(path, surface, (told, more))
 
 
 def _say(database: Database) -> None:

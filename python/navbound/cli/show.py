@@ -10,8 +10,10 @@ import typer
 
 from navbound.cli.parts import Json, err_console, out_console
 from navbound.exit_status import of_verdict
+from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
+    from navbound.records.procedure import ProcedureFlown
     from navbound.run.directory import Run
 
 LISTED_FAULTS = 10
@@ -50,10 +52,36 @@ def show(run: Run, *, json: bool) -> None:
         raise typer.Exit(status)
 
 
+def _print_procedure(flight: ProcedureFlown) -> None:
+    """Legs and answers of one flight against a procedure."""
+    from rich.table import Table  # noqa: PLC0415  (only where a procedure was flown)
+
+    table = Table(title=f"{flight.track}{f', {flight.line}' if flight.line else ''}")
+    for heading in ("leg", "RNP", "from", "n", "mean, m", "95 %, m", "largest, m", "/ RNP", "inside", "bound inside", "in turns"):
+        table.add_column(heading, overflow="fold")
+    for leg in flight.legs:
+        rnp = "unknown" if leg.rnp_m is None else f"{leg.rnp_m / METRES_PER_NM:.3g}"
+        sizes = [_metres(value) for value in (leg.mean_m, leg.p95_m, leg.max_abs_m)]
+        ratio = "-" if leg.rnp_m is None or leg.max_abs_m is None else f"{leg.max_abs_m / leg.rnp_m:.3f}"
+        inside = f"{leg.n_inside}" if leg.rnp_m is not None else "-"
+        bound = f"{leg.n_bound_inside} of {leg.n_bound}" if leg.n_bound else "-"
+        name = f"{leg.fix or '-'} {leg.terminator}"
+        table.add_row(name, rnp, leg.rnp_origin.replace("_", " "), str(leg.n), *sizes, ratio, inside, bound, str(leg.n_transition))
+    out_console.print(table)
+    for number, answer in enumerate(flight.answers, 1):
+        out_console.print(f"  {number}. {answer}", markup=False, highlight=False)
+
+
+def _metres(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"
+
+
 def _print(run: Run) -> None:
     summary = run.summary
     out_console.print(summary.title, style="bold", markup=False)
     out_console.print(summary.verdict.words, markup=False, highlight=False)
+    for flight in summary.procedures:
+        _print_procedure(flight)
     out_console.print("Assumed and found:", markup=False)
     for assumption in summary.assumptions:
         out_console.print(f"  - {assumption}", markup=False, highlight=False)

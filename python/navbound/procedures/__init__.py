@@ -8,6 +8,7 @@ from navbound.procedures.database import Database, Entry, Refused, RouteEntry, r
 from navbound.procedures.findings import Finding
 from navbound.procedures.flight import Flight, LegResult, Limits, judge
 from navbound.procedures.legs import Followed, Leg, LegFeet, LevelOfService, Procedure
+from navbound.procedures.vertical import VerticalPath, surface_below, vertical_path
 
 __all__ = [
     "Database",
@@ -23,6 +24,9 @@ __all__ = [
     "Procedure",
     "Refused",
     "RouteEntry",
+    "VerticalPath",
     "judge",
     "read",
+    "surface_below",
+    "vertical_path",
 ]

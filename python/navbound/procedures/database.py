@@ -205,6 +205,10 @@ class Database:
         """Elevation of a runway's threshold, such as ``RW26`` [m]."""
         return self._core.elevations(airport, runway)[1]
 
+    def threshold_heights_m(self, airport: str, runway: str) -> tuple[float | None, float | None]:
+        """Elevation of a runway's threshold, and its height above the ellipsoid; None where the file has none [m]."""
+        return self._core.elevations(airport, runway)[1:]
+
     def _why(self, number: int) -> str | None:
         return next((f"{r.field} {r.reason}" for r in self.refused if r.line == number), None)
 

@@ -15,6 +15,7 @@ from navbound.records.truth import TruthDoubts
 
 if TYPE_CHECKING:
     from navbound.records.operation import Operation
+    from navbound.records.procedure import ProcedureFlown
     from navbound.records.run import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
     from navbound.storage.frames import Frames
 
@@ -75,6 +76,7 @@ class Material:
     inputs: list[InputFile] = field(default_factory=list)
     rejected: list[Rejection] = field(default_factory=list)
     cross_track: list[CrossTrack] = field(default_factory=list)
+    procedures: list[ProcedureFlown] = field(default_factory=list)
     scenario: dict[str, object] | None = None
     seed: int | None = None
     settings: dict[str, object] = field(default_factory=dict)

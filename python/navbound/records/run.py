@@ -13,6 +13,7 @@ from navbound.records.base import Record
 from navbound.records.faults import FaultSummary
 from navbound.records.operation import Operation
 from navbound.records.performance import Performance
+from navbound.records.procedure import ProcedureFlown
 from navbound.records.verdict import LEAST_SHARE, BeliefState, VerdictId
 
 
@@ -363,6 +364,8 @@ class Summary(Record):
     """Names of the states behind `p_state_1`, `p_state_2`, ..."""
     events: list[EventSummary]
     cross_track: list[CrossTrack]
+    procedures: list[ProcedureFlown] = Field(default_factory=list)
+    """Flights against a published procedure."""
     rejected: list[Rejection]
     n_status: dict[str, int]
     """Epochs by status."""

@@ -13,9 +13,11 @@ from navbound.procedures.picture import altitude_words, picture
 from navbound.units import METRES_PER_FT, METRES_PER_NM
 
 if TYPE_CHECKING:
+    from navbound.procedures import VerticalPath
     from navbound.procedures.findings import Finding
     from navbound.procedures.legs import Leg, Procedure
     from navbound.procedures.picture import Picture
+    from navbound.vertical import Surface
 
 HEADINGS = (
     "seq",
@@ -34,6 +36,8 @@ HEADINGS = (
 )
 WIDTH, HEIGHT, EDGE = 1040.0, 620.0, 60.0
 PROFILE_HEIGHT = 260.0
+STEPS = 40
+"""Of the vertical path in the profile. [1]"""
 
 
 def cells(leg: Leg) -> tuple[str, ...]:
@@ -66,9 +70,17 @@ class Note(NamedTuple):
     is_warning: bool
 
 
-def notes(procedure: Procedure, findings: list[Finding]) -> list[Note]:
+class Heights(NamedTuple):
+    """Vertical path and obstacle clearance surface of an approach, where it has them, and what is said of them."""
+
+    path: VerticalPath | None
+    surface: Surface | None
+    words: tuple[str, ...]
+
+
+def notes(procedure: Procedure, findings: list[Finding], heights: Heights) -> list[Note]:
     """What a reader must know beside the table."""
-    notes = []
+    notes = [Note(text, is_warning=False) for text in heights.words]
     if procedure.levels:
         names = ", ".join(f"RNP {x.rnp_m / METRES_PER_NM:.3g}" for x in procedure.levels)
         selected = f"; selected: {procedure.line}." if procedure.line else "; none selected."
@@ -91,7 +103,7 @@ def notes(procedure: Procedure, findings: list[Finding]) -> list[Note]:
     return notes + [Note(text, is_warning=True) for text in (*warnings, *procedure.notes)]
 
 
-def page(procedure: Procedure, findings: list[Finding]) -> str:
+def page(procedure: Procedure, findings: list[Finding], heights: Heights) -> str:
     """The page as HTML.
 
     Parameters
@@ -100,15 +112,17 @@ def page(procedure: Procedure, findings: list[Finding]) -> str:
         From :func:`navbound.path.procedure`.
     findings : list of Finding
         Contradictions in its data.
+    heights : Heights
+        What is drawn below the coded altitudes.
     """
     shown = picture(procedure)
     template = files("navbound.report").joinpath("procedure.html.j2").read_text(encoding="utf-8")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     return environment.from_string(template).render(
         title=procedure.name,
-        notes=notes(procedure, findings),
+        notes=notes(procedure, findings, heights),
         plan=_plan(procedure, shown),
-        profile=_profile(shown),
+        profile=_profile(procedure, shown, heights),
         headings=HEADINGS,
         rows=[cells(leg) for leg in procedure.legs],
         source=procedure.file,
@@ -138,23 +152,41 @@ def _plan(procedure: Procedure, shown: Picture) -> dict[str, Any]:
     return {"width": WIDTH, "height": round(height, 1), "lines": lines, "marks": marks, "bar": bar}
 
 
-def _profile(shown: Picture) -> dict[str, Any] | None:
+def _profile(procedure: Procedure, shown: Picture, heights: Heights) -> dict[str, Any] | None:
     known = [m for m in shown.marks if math.isfinite(m.along_m) and math.isfinite(m.altitude_m)]
     if len(known) < 2 or known[-1].along_m <= known[0].along_m:
         return None
+    path, surface = _below(procedure, heights)
+    drawn = [(m.along_m, m.altitude_m) for m in known]
     first, length = known[0].along_m, known[-1].along_m - known[0].along_m
-    low, high = min(m.altitude_m for m in known), max(m.altitude_m for m in known)
+    low, high = (end(a for _, a in (*drawn, *path, *surface)) for end in (min, max))
     rise = max(high - low, 1.0)
 
     def at(along: float, altitude: float) -> tuple[float, float]:
         x = 70 + (along - first) / length * (WIDTH - 160)
         return round(x, 1), round(PROFILE_HEIGHT - 30 - (altitude - low) / rise * (PROFILE_HEIGHT - 80), 1)
 
-    points = [at(m.along_m, m.altitude_m) for m in known]
+    def text(places: list[tuple[float, float]]) -> str:
+        return " ".join(f"{x},{y}" for x, y in (at(*place) for place in places))
+
     rows = [{"y": at(first, a)[1], "words": f"{a / METRES_PER_FT:.0f} ft"} for a in (low, high)]
-    marks = _labelled([(*p, f"{m.name} {m.altitude}") for p, m in zip(points, known, strict=True)])
-    text = " ".join(f"{x},{y}" for x, y in points)
-    return {"width": WIDTH, "height": PROFILE_HEIGHT, "points": text, "marks": marks, "rows": rows}
+    marks = _labelled([(*at(*p), f"{m.name} {m.altitude}") for p, m in zip(drawn, known, strict=True)])
+    lines = {"points": text(drawn), "path": text(path), "surface": text(surface)}
+    return {"width": WIDTH, "height": PROFILE_HEIGHT, "marks": marks, "rows": rows} | lines
+
+
+def _below(procedure: Procedure, heights: Heights) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
+    """The vertical path and the surface below it: places along the procedure and altitudes."""
+    path, surface = heights.path, heights.surface
+    if path is None:
+        return [], []
+    begin = procedure.legs[path.legs[0]].begin_m
+    along = [begin + (path.end_m - begin) * k / STEPS for k in range(STEPS + 1)]
+    of_path = list(zip(along, path.altitude_m(along).tolist(), strict=True))
+    if surface is None:
+        return of_path, []
+    ends = [begin, path.end_m - surface.origin_m]
+    return of_path, [(s, surface.altitude_m(path.end_m - s)) for s in ends]
 
 
 def _labelled(places: list[tuple[float, float, str]]) -> list[dict[str, Any]]:

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from navbound.read.pieces import PiecedReading
+    from navbound.records.procedure import ProcedureFlown
     from navbound.records.run import CrossTrack, InputFile
     from navbound.run.inputs.files import Files
     from navbound.run.pieces import InPieces
@@ -188,6 +189,7 @@ def material(
         rejected=rejected,
         left_out=pl.concat([_on_path(lost, epochs, route.tracks), route.left_out]),
         cross_track=route.cross_track,
+        procedures=route.flights,
         settings=context.settings_with(readings),
         unread=list(dict.fromkeys(each for r in readings for each in r.unread)),
         position_doubts=position_doubts,
@@ -287,6 +289,7 @@ class _Path:
     tracks: dict[str, str] = field(default_factory=dict)
     left_out: pl.DataFrame = field(default_factory=lambda: pl.DataFrame(schema=LEFT_OUT))
     operation: Operation = "en-route"
+    flights: list[ProcedureFlown] = field(default_factory=list)
 
 
 def _solved(files: Files, solving: Solving) -> list[Reading]:

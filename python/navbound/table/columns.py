@@ -51,6 +51,8 @@ EPOCHS: tuple[Column, ...] = (
     *row("altitude_m", "altitude as a recording reports it: pressure altitude with ADS-B, not a height above the ellipsoid", "source"),
     *row("rnp_m", "RNP value in force", "path", shown=True),
     *row("fte_m fte_v_m", "flight technical error across and above the path, signed", "path", shown=True),
+    *row("baro_off_m", "indicated altitude (pressure altitude with the altimeter setting) above the vertical path", "path", shown=True),
+    *row("limit_v_m", "largest vertical deviation that the specification of a procedure allows", "path", shown=True),
     *row("nse_e_m nse_n_m nse_u_m", "navigation system error, where truth is known", "source", shown=True),
     *row("nse_along_m nse_cross_m", "the same along and across the course", "judge", shown=True),
     *row("nse_h_m nse_3d_m", "its horizontal and its three-dimensional length", "judge", shown=True),
@@ -196,6 +198,7 @@ READ: tuple[Column, ...] = (
         "source",
     ),
     *row("rc_m", f"horizontal containment radius that a transponder states; {_READ}", "source"),
+    *row("setting_hpa", f"altimeter setting that an aircraft broadcasts; {_READ}", "source"),
     *row("nac_p nic", f"accuracy and integrity category that a transponder states; {_READ}", "source", kind="number"),
     *row("callsign", f"callsign of the aircraft; {_READ}", "source", kind="text"),
 )

@@ -22,6 +22,7 @@ UNITS = {
     "mps": "m/s",
     "mps2": "m/s²",
     "radps": "rad/s",
+    "hpa": "hPa",
     "1": "1",
     "text": "text",
 }

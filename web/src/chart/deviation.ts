@@ -30,15 +30,19 @@ export function lateral(host: HTMLElement, scene: Scene): () => void {
 
 export function vertical(host: HTMLElement, scene: Scene): () => void {
     const { table } = scene;
-    const fte = table.column("fte_v_m");
+    const [fte, indicated] = [table.column("fte_v_m"), table.column("baro_off_m")];
     const bounds = methodLines(scene, ["tse_v_m"], true);
-    if (fte === undefined) return missing(host, "Vertical deviation", "No vertical path was given, so the vertical deviation is unknown.");
-    const lines: Line[] = [{ key: "fte_v_m", label: "FTE vertical", values: fte, colour: "ink", width: 1.2, front: 2, about: "Flight technical error above the path" }];
+    if (fte === undefined && indicated === undefined) return missing(host, "Vertical deviation", "No vertical path was given, so the vertical deviation is unknown.");
+    const lines: Line[] = [];
+    if (fte !== undefined) lines.push({ key: "fte_v_m", label: indicated === undefined ? "FTE vertical" : "By geometry", values: fte, colour: "ink", width: 1.2, front: 2, about: "Flight technical error above the path, of the geometric height" });
+    if (indicated !== undefined) lines.push({ key: "baro_off_m", label: "By altimeter", values: indicated, colour: "m2", width: 1.2, front: 2, about: "Indicated altitude, with the altimeter setting, above the path" });
     const tse = table.column("tse_v_m");
     if (tse !== undefined) lines.push({ key: "tse_v_m", label: "TSE (truth)", values: tse, colour: "m5", width: 1, front: 1, about: "Total system error above the path" });
     lines.push(...bounds);
-    const note = `Positive above the path. ${bounds.length === 0 ? "No bound of the vertical error was computed." : "No vertical limit is required by RNP."}`;
-    return strip(host, scene, { id: "vertical", title: "Vertical deviation", note, unit: "m", lines, scales: ["data"], show: lengthText });
+    const limit = table.column("limit_v_m");
+    if (limit !== undefined) lines.push({ key: "limit_v_m", label: "75 ft", values: limit, colour: "limit", width: 1.5, mirror: true, limit: true, about: "Largest vertical deviation that the specification of the procedure allows (standard)" });
+    const without = bounds.length === 0 ? "No bound of the vertical error was computed." : limit === undefined ? "No vertical limit is required by RNP." : "";
+    return strip(host, scene, { id: "vertical", title: "Vertical deviation", note: `Positive above the path. ${without}`.trim(), unit: "m", lines, scales: limit === undefined ? ["data"] : ["limits", "data"], show: lengthText });
 }
 
 /** Where the limits dwarf the data a linear scale shows only one of them. */

@@ -65,7 +65,9 @@ function verticalGauge(scene: Scene): Gauge | null {
     const rows: Gauge["rows"] = [];
     if (anp !== null) rows.push([anp, "ANP 95 %, vertical", metres]);
     rows.push(["fte_v_m", "FTE vertical", signedMetres]);
+    if (table.has("baro_off_m")) rows.push(["baro_off_m", "By altimeter", signedMetres]);
     if (bound !== undefined) rows.push([columnOf(bound, false), `TSE bound ${level(bound.risk)}, ${bound.id}`, metres]);
+    if (table.has("limit_v_m")) return { title: "Vertical", vertical: true, required: true, deviation: "fte_v_m", pointed: true, limit: (read) => read("limit_v_m"), limitWords: (v) => (Number.isFinite(v) ? `${metres(v)} (75 ft)` : "no vertical path here"), anp, rows };
     // RNP sets no vertical limit: the ends are round lengths that hold the whole flight, and say so.
     const largest = Math.max(1, ...Array.from(table.column("fte_v_m")!, (v) => (Number.isFinite(v) ? Math.abs(v) : 0)));
     const step = 10 ** Math.floor(Math.log10(largest));

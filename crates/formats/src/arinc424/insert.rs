@@ -7,8 +7,8 @@ use navbound_core::frame::LatLon;
 
 type Done = Result<(), Fault>;
 
-/// The file record number has five digits and begins again after the last \[1\].
-const RECORD_NUMBERS: u32 = 100_000;
+/// The file record number has five digits: 1 comes after 99,999, never 0 (as in the national file of cycle 2604) \[1\].
+const RECORD_NUMBERS: u32 = 99_999;
 /// A greater step is another place of the numbering and says nothing of lost lines (ours) \[1\].
 const MOST_MISSING: u32 = 1000;
 

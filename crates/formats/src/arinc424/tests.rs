@@ -187,7 +187,7 @@ fn a_leg_line_that_is_lost_is_known_by_the_record_numbers() {
     let none = Vec::<Gap>::new();
     assert_eq!(gaps(&numbered(68_001, 1, &[])), [none.clone(), none.clone()]);
     assert_eq!(gaps(&numbered(68_001, 1, &[1])), [vec![Gap { line: 5, n_missing: 1, inside: true }], none.clone()]);
-    // The numbers begin again after 99,999.
+    // After 99,999 the national file begins again with 1.
     assert_eq!(gaps(&numbered(99_998, 1, &[])), [none.clone(), none.clone()]);
     assert_eq!(gaps(&numbered(99_998, 1, &[1])), [vec![Gap { line: 5, n_missing: 1, inside: true }], none.clone()]);
     // Between two routes nobody knows whose the line was.

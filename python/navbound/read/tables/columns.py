@@ -47,6 +47,7 @@ UNITS: dict[str, dict[str, float]] = {
         "ft/min": METRES_PER_FT / 60,
         "fpm": METRES_PER_FT / 60,
     },
+    "hpa": {**dict.fromkeys(("hpa", "mbar", "mb"), 1.0), "inhg": 33.863886},
     "1": {"1": 1.0, "": 1.0},
     "time": {},
     "text": {},
@@ -144,6 +145,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("rc_m", 0.0, _INF, m="rc", nm="rc_nm"),
     _q("nac_p", 0.0, 15.0, **{"1": "nacp nac_p"}),
     _q("nic", 0.0, 15.0, **{"1": "nic"}),
+    # What cannot be a setting is judged where it is used: the position beside it is none the worse.
+    _q("setting_hpa", -_INF, _INF, hpa="nav_qnh qnh qnh_hpa altimeter_setting_hpa"),
     _q("n_sv", 0.0, 255.0, **{"1": "ns nsv num_sv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites"}),
     _q("track", 0.0, 0.0, text="icao24 icao mmsi track_id flight_id aircraft_id vehicle_id"),
     _q("callsign", 0.0, 0.0, text="callsign flight"),

@@ -302,6 +302,7 @@ def _readsb(source: Source, data: dict[str, Any]) -> dict[str, list[Any]]:
         "geoaltitude": [row[10] if len(row) > 10 else None for row in trace],
         "icao24": [str(data.get("icao", source.stem))] * len(trace),
         "callsign": [d.get("flight") for d in details],
+        "nav_qnh": [d.get("nav_qnh") for d in details],
         "nac_p": [d.get("nac_p") for d in details],
         "nic": [d.get("nic") for d in details],
         "rc": [d.get("rc") for d in details],

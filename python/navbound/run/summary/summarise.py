@@ -74,6 +74,7 @@ def summarise(
         states=states,
         events=listed(events),
         cross_track=material.cross_track,
+        procedures=material.procedures,
         rejected=material.rejected,
         n_status=by_status(epochs),
     )

@@ -1,79 +1,34 @@
-"""Recorded tracks against a published procedure: epochs with the deviation and the RNP of their leg, and the answers in words."""
+"""Every track along a procedure: which epochs are judged, by which leg, and what their positions and heights say."""
 
 from __future__ import annotations
 
-import hashlib
-from dataclasses import asdict, dataclass, field, fields, replace
-from pathlib import Path
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
 
-from navbound import procedures
 from navbound.errors import InputError
-from navbound.methods import column_of
 from navbound.procedures.flight import results, rnp_words
 from navbound.procedures.legs import Followed
-from navbound.procedures.names import parts
 from navbound.read.approaches import statistics
 from navbound.read.checks.repeats import left_out
-from navbound.records.run import InputFile, Waypoint
+from navbound.records.run import Waypoint
+from navbound.run.procedure.answers import flown_record
+from navbound.run.procedure.heights import height_results, heights, setting_result
 from navbound.time import utc_text
-from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from navbound.procedures import Flight, LegResult, Procedure
+    from navbound.procedures import Flight, Procedure
     from navbound.records.operation import Operation
-    from navbound.records.run import CrossTrack
-    from navbound.run.directory import Run
+    from navbound.records.procedure import ProcedureFlown
+    from navbound.records.run import CrossTrack, InputFile
+    from navbound.run.procedure.flown import Flown
 
 NEXT_FLIGHT_S = 600.0
 """After so long without a judged position another flight begins (ours). [s]"""
-BOUND = "tse_exact_m"
-"""Bound of the total error at 95 %: what the second answer counts."""
-
-
-@dataclass(frozen=True)
-class Flown:
-    """Which procedure a recording is judged against.
-
-    Attributes
-    ----------
-    database : path
-        Navigation database of ARINC 424.
-    name : str
-        ``KDEN/H26-Z:FUZZZ``.
-    line : str, optional
-        Line of minima that is flown, such as ``RNP 0.3``.
-    defaults, missed : bool
-        As in :func:`navbound.path.procedure`.
-    """
-
-    database: str | Path
-    name: str
-    line: str | None = None
-    defaults: bool = False
-    missed: bool = False
-
-    @property
-    def settings(self) -> dict[str, object]:
-        """For the run record."""
-        return asdict(self) | {"database": str(self.database)}
-
-    def source(self) -> InputFile:
-        """The database as an input, without its text in memory."""
-        with Path(self.database).open("rb") as stream:
-            digest = hashlib.file_digest(stream, "sha256").hexdigest()
-            return InputFile(path=str(self.database), sha256=digest, n_bytes=stream.tell(), n_rows=None)
-
-    def load(self) -> Procedure:
-        """The procedure of the file."""
-        airport, ident, transition = parts(self.name)
-        base = procedures.read(self.database)
-        return base.procedure(airport, ident, transition, missed=self.missed, line=self.line, defaults=self.defaults)
 
 
 @dataclass(frozen=True)
@@ -87,6 +42,7 @@ class OnProcedure:
     waypoints: list[Waypoint]
     inputs: list[InputFile]
     cross_track: list[CrossTrack]
+    flights: list[ProcedureFlown]
     tracks: dict[str, str] = field(default_factory=dict)
     operation: Operation = "approach"
 
@@ -102,15 +58,18 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
     InputError
         No track follows the procedure.
     """
-    procedure = flown.load()
+    loaded = flown.load()
+    procedure = loaded.procedure
     rnp = np.array([x.rnp_m for x in procedure.legs])
     judged, unknown, words, tracks = list[pl.DataFrame](), list[pl.DataFrame](), list[str](), dict[str, str]()
+    flights: list[ProcedureFlown] = []
     for group in epochs.partition_by("track", maintain_order=True):
         time_s = (group["time_ns"] - group["time_ns"][0]).to_numpy() * 1e-9
         lat, lon = (group[name].cast(pl.Float64).fill_null(float("nan")).to_numpy() for name in ("est_lat_rad", "est_lon_rad"))
         followed = procedure.follow(time_s, lat, lon)
-        rows = _columns(group, procedure, followed, rnp)
-        words.append(_status_words(str(group["track"][0]), followed))
+        height = heights(group, followed, loaded, flown)
+        rows = _columns(group, procedure, followed, rnp).with_columns(height.columns)
+        words += [_status_words(str(group["track"][0]), followed), *([height.words] if height.words else [])]
         for number, (first, last) in enumerate(_flights(followed, time_s), 1):
             inside = slice(first, last + 1)
             flight = results(procedure, _part(followed, inside), time_s[inside])
@@ -119,10 +78,14 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
             ok = followed.status[inside] == "ok"
             known = ok & np.isfinite(part["rnp_m"].to_numpy())
             unknown.append(left_out(part.filter(pl.Series(ok & ~known))))
-            words += _words(track, group["time_ns"][0], flight)
+            words.append(_words(track, group["time_ns"][0], flight))
             if known.any():
                 judged.append(part.filter(pl.Series(known)))
                 tracks[track] = str(group["track"][0])
+                record = flown_record(track, group["time_ns"][0], flight, procedure)
+                of_heights = [] if loaded.path is None else height_results(judged[-1], loaded.path.shape)
+                tested = setting_result(time_s, float(time_s[last]), height, loaded)
+                flights.append(record.model_copy(update={"heights": of_heights, "setting": tested}))
     if not judged:
         domain = f"procedures that a track follows: no epoch is established on a leg of {procedure.name} with an RNP"
         raise InputError("procedure", flown.name, domain=domain)
@@ -131,7 +94,7 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
     return OnProcedure(
         epochs=table,
         left_out=pl.concat([x for x in unknown if x["track"].is_in(list(tracks)).all()]),
-        words=[_path_words(procedure), *procedure.notes, *words],
+        words=[_path_words(procedure), loaded.words[0].upper() + loaded.words[1:] + ("" if loaded.words.endswith(".") else "."), *procedure.notes, *words],
         heading=f"Procedure {procedure.name}" + (f", {procedure.line}" if procedure.line else ""),
         waypoints=[Waypoint(name=n, lat_rad=a, lon_rad=o, kind="runway" if n.startswith("RW") else "waypoint") for n, a, o in marks],
         inputs=[flown.source()],
@@ -139,30 +102,10 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
             statistics(f"{procedure.name} {leg}", points.select(cross_m="fte_m", segment="track"))
             for (leg,), points in table.group_by("leg", maintain_order=True)
         ],
+        flights=flights,
         tracks=tracks,
         operation="approach" if procedure.kind == "approach" else "en-route",
     )
-
-
-def with_answers(run: Run) -> Run:
-    """The second answer, which needs the bounds: epochs whose 95 % bound of the total error is inside the RNP of their leg."""
-    epochs = run.epochs
-    bound, rnp = (column_of(epochs, name) if name in epochs.columns else np.full(epochs.height, np.nan) for name in (BOUND, "rnp_m"))
-    known = np.isfinite(bound) & np.isfinite(rnp)
-    n = int(known.sum())
-    words = f"Bound of the total error: no epoch has one (no covariance), so the second answer is not shown for {epochs.height} epochs."
-    if n:
-        by_leg = ", ".join(
-            f"{leg} {int((bound[here] <= rnp[here]).sum())} of {int(here.sum())}"
-            for leg in epochs["leg"].unique(maintain_order=True)
-            for here in (known & (epochs["leg"] == leg).to_numpy(),)
-            if here.any()
-        )
-        inside, twice = int((bound[known] <= rnp[known]).sum()), int((bound[known] <= 2 * rnp[known]).sum())
-        words = f"Bound of the total error (95 %): inside RNP at {inside} of {n}, inside twice RNP at {twice} of {n}; by leg: {by_leg}."
-        words += "" if n == epochs.height else f" {epochs.height - n} epochs have no bound."
-    summary = run.summary.model_copy(update={"assumptions": [*run.summary.assumptions, words]})
-    return replace(run, summary=summary)
 
 
 def _flights(followed: Followed, time_s: NDArray[np.float64]) -> list[tuple[int, int]]:
@@ -211,20 +154,6 @@ def _status_words(track: str, followed: Followed) -> str:
     return f"Positions of {track}: {shown}. Only those that are ok are judged."
 
 
-def _words(track: str, time_ns: int, flight: Flight) -> list[str]:
+def _words(track: str, time_ns: int, flight: Flight) -> str:
     when = utc_text(time_ns + round(flight.first_time_s * 1e9))
-    first = f"{track}: judged from {when} UTC on; {flight.n_without_rnp} positions on legs without an RNP are not."
-    legs = [_leg_words(leg, time_ns) for leg in flight.legs if leg.n]
-    return [first, *legs, *flight.words]
-
-
-def _leg_words(leg: LegResult, time_ns: int) -> str:
-    share = f" = {leg.max_abs_m / leg.rnp_m:.3f} RNP" if np.isfinite(leg.rnp_m) else ""
-    turns = f"; {leg.n_transition} in turns" if leg.n_transition else ""
-    inside = f"inside RNP {leg.n_inside}, inside twice RNP {leg.n_inside_twice}{turns}"
-    return (
-        f"Leg {leg.fix or leg.terminator} ({leg.terminator}, {rnp_words(leg.rnp_m)}, {leg.length_m / METRES_PER_NM:.2f} NM): "
-        f"{leg.n} positions in "
-        f"{leg.duration_s:.0f} s, mean {leg.mean_m:+.2f} m, RMS {leg.rms_m:.2f} m, 95 % {leg.p95_m:.2f} m, largest {leg.max_abs_m:.2f} m"
-        f"{share} at {utc_text(time_ns + round(leg.worst_time_s * 1e9))}; {inside}."
-    )
+    return f"{track}: judged from {when} UTC on; {flight.n_without_rnp} positions on legs without an RNP are not."
