@@ -98,7 +98,7 @@ class Options:
 
 def evaluate_command(
     files: Files,
-    levels: Annotated[str, typer.Option(help=_LEVELS), Chosen(lists="levels", commas=True)],
+    levels: Annotated[str, typer.Option(help=_LEVELS), Chosen(lists="limits", commas=True)],
     truth: Truth = None,
     truth_tolerance_s: TruthTolerance = None,
     protection: Annotated[str | None, typer.Option(help=_PROTECTION), Chosen(lists="protection")] = None,

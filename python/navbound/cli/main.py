@@ -12,7 +12,7 @@ import typer
 
 import navbound
 from navbound import _core
-from navbound.cli import analyze, assess, calls, demo, evaluate, example, export, fly, interrupt, lists, live, maps, open, predict, procedures, show, study, verify
+from navbound.cli import analyze, assess, calls, demo, evaluate, example, export, fly, interrupt, lists, live, maps, open, predict, procedures, schema, show, study, verify
 from navbound.cli.parts import err_console
 from navbound.errors import FormatError, InputError, InternalError, NavboundError, visible
 from navbound.exit_status import OUR_BUG, STOPPED, UNREADABLE, USAGE, listed
@@ -46,6 +46,8 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "study": study.study_command,
     "methods": lists.methods_command,
     "levels": lists.levels_command,
+    "scenarios": lists.scenarios_command,
+    "schema": schema.schema_command,
     "verify": verify.verify_command,
     "show": show.show_command,
     "export": export.export_command,
@@ -93,6 +95,9 @@ def main() -> None:
     interrupt.watch()
     try:
         status = _of(sys.argv[1:])(standalone_mode=False)
+        if status == STOPPED:
+            # The parser of the command line makes this status of a Ctrl-C.
+            raise KeyboardInterrupt
         sys.exit(status if isinstance(status, int) else 0)
     except (typer.Abort, KeyboardInterrupt):
         err_console.print(interrupt.words(), markup=False, highlight=False, soft_wrap=True)

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 PROGRESS = "NAVBOUND_PROGRESS"
 EVERY_S = 0.2
 """Shortest time between two words on how far the work is. [s]"""
+LEAST_WORKERS = 2
+"""Worker processes that any machine may be asked for."""
 PAPER_WIDTH = 140
 """Columns of a table that goes to a file or a pipe, where the width of a terminal means nothing; COLUMNS states another one."""
 
@@ -134,6 +136,9 @@ def work_of(backend: str | None, workers: int | None, cluster: str | None, check
         raise ConflictError("cluster", needs=("backend",), because="dask")
     if workers is not None and backend in {None, "serial"}:
         raise ConflictError("workers", needs=("backend",), because="processes or dask")
+    cores = os.cpu_count() or 1
+    if workers is not None and cluster is None and not 1 <= workers <= max(cores, LEAST_WORKERS):
+        raise InputError("workers", workers, "1", f"[1, {max(cores, LEAST_WORKERS)}]: this machine has {cores} cores")
     if backend is not None:
         options["backend"] = backend
     if workers is not None or cluster is not None:

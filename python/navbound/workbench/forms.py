@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from navbound.errors import ConflictError, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Callable, Collection, Mapping
 
 MOST_VALUES = 500
 MOST_CHARACTERS = 1000
@@ -129,7 +129,7 @@ def arguments(form: Form, values: Mapping[str, Any], files: Collection[str], *, 
             continue
         texts = [_checked(field, text, files) for text in _texts(field, values.get(field.name))]
         if field.required and not texts:
-            raise InputError(field.name, "nothing", domain=_expected(field))
+            raise LackingError(field.name, _expected(field))
         if field.several == "commas" and texts:
             texts = [",".join(texts)]
         if field.flag:
@@ -138,6 +138,28 @@ def arguments(form: Form, values: Mapping[str, Any], files: Collection[str], *, 
         else:
             behind += [f"./{text}" if text.startswith("-") else text for text in texts]
     return line[:1] + behind + line[1:]
+
+
+class LackingError(InputError):
+    """An argument that must be there and is not.
+
+    Attributes
+    ----------
+    what : str
+        What is expected.
+    """
+
+    def __init__(self, argument: str, what: str) -> None:
+        self.what = what
+        super().__init__(argument, None)
+
+    def words(self, name: Callable[[str], str]) -> str:
+        """As :meth:`InputError.words`."""
+        return f"{name(self.argument)} is needed: {self.what}"
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """From its parts, as that of :class:`InputError`."""
+        return type(self), (self.argument, self.what)
 
 
 def _option(flag: str, text: str) -> list[str]:

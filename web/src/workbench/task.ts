@@ -20,6 +20,7 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
     let controls: Control[] = [];
     let timer: ReturnType<typeof setTimeout> | undefined;
     let asked = 0;
+    let busy = false;
     const place = el("div", { class: "wb-form" });
     const summary = el("p", { class: "wb-summary" });
     const refusal = el("p", { class: "wb-refused", role: "alert" });
@@ -46,7 +47,6 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
         line.textContent = answer.line === undefined ? "" : `cd ${quoted(bench.folder)}\n${answer.line}`;
         line.dataset.why = answer.refused ?? "";
         if (answer.refused !== undefined) line.textContent = `not yet: ${answer.refused}`;
-        start.disabled = false;
         if (lines.open) await translate(turn);
     };
     const translate = async (turn: number): Promise<void> => {
@@ -70,9 +70,11 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
         taken.toggleAttribute("data-lacking", names.length === 0 && field?.required === true);
     };
     const begin = async (): Promise<void> => {
-        start.disabled = true;
+        // A button that is disabled loses the focus.
+        if (busy) return;
+        busy = true;
         const answer = await ask("/start", { command: form.command, values: values() });
-        start.disabled = false;
+        busy = false;
         refuse(answer);
         if (answer.job !== undefined) started(answer.job);
         else if (answer.field !== undefined) place.querySelector<HTMLElement>(`[data-field="${answer.field}"] :is(input, select)`)?.focus();
