@@ -41,7 +41,9 @@ def test_a_list_is_read_on_a_screen_of_80_columns(command: Callable[[], None], m
     # No word is cut, and none is broken over lines.
     assert "…" not in shown.getvalue().replace("|…|", "")
     words = set(re.findall(r"[a-z]{4,}", shown.getvalue()))
-    assert {"methods_command": "provenance", "levels_command": "operation", "scenarios_command": "taxi"}.get(command.__name__, "cases") in words
+    assert {"methods_command": "provenance", "levels_command": "operation", "scenarios_command": "taxi"}.get(
+        command.__name__, "cases"
+    ) in words
 
 
 def test_the_shipped_scenarios_are_listed(navbound: Command) -> None:

@@ -117,7 +117,9 @@ def test_other_hosts_and_other_origins_are_refused(page: Browser, folder: Path) 
     assert not (folder / kept.DROPPED).exists()
 
 
-@pytest.mark.parametrize("path", ["/../../etc/passwd", "/report/../track.csv", "/report/%2e%2e%2fown%2ftrack.csv", "/report/", "/track.csv", "/_web/"])
+@pytest.mark.parametrize(
+    "path", ["/../../etc/passwd", "/report/../track.csv", "/report/%2e%2e%2fown%2ftrack.csv", "/report/", "/track.csv", "/_web/"]
+)
 def test_no_path_reaches_a_file(page: Browser, path: str) -> None:
     assert page.ask("GET", path).status == 404
 
@@ -135,8 +137,8 @@ def test_a_file_outside_the_folder_cannot_be_named(page: Browser, folder: Path, 
         for field in ("path", "truth"):
             assert asked(page, "/line", command="analyze", values={"files": ["track.csv"], field: name})["field"] == field, name
     # What no file is, still goes: a runway, a point.
-    line = asked(page, "/line", command="analyze", values={"files": ["track.csv"], "path": "LFPG/08R", "truth": "1,2,-3.5"})["line"]
-    assert shlex.split(line)[:7] == ["navbound", "analyze", "track.csv", "--path", "LFPG/08R", "--truth", "1,2,-3.5"]
+    line = asked(page, "/line", command="analyze", values={"files": ["track.csv"], "path": "LFPG/08R,LFPG/09L", "truth": "1,2,-3.5"})["line"]
+    assert shlex.split(line)[:7] == ["navbound", "analyze", "track.csv", "--path", "LFPG/08R,LFPG/09L", "--truth", "1,2,-3.5"]
 
 
 def test_what_is_written_stays_in_the_folder(page: Browser, folder: Path, tmp_path: Path) -> None:
@@ -385,7 +387,7 @@ def test_a_stopped_job_leaves_nothing_that_reads_as_whole_and_goes_on(page: Brow
 
 def test_only_so_many_jobs_run_at_a_time(page: Browser, server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
     waiting = [sys.executable, "-c", "import time; time.sleep(60)"]
-    monkeypatch.setattr(jobs, "program", lambda *arguments: waiting)
+    monkeypatch.setattr(jobs, "program", lambda *_: waiting)
     monkeypatch.setattr(jobs, "GENTLE_S", 0.1)
     values = {"files": ["track.csv"]}
     outs = [asked(page, "/start", command="analyze", values=values)["job"]["out"] for _ in range(jobs.MOST_RUNNING)]
@@ -409,7 +411,13 @@ def test_runways_and_procedures_are_found_by_a_part_of_their_name(page: Browser,
 def test_the_lines_of_python_do_the_same(page: Browser, folder: Path) -> None:
     values = {"files": ["track.csv"], "sigma_m": "5", "spec": "RNP 1"}
     lines = asked(page, "/python", command="analyze", values=values)["python"]
-    done = subprocess.run([sys.executable, "-c", f"{lines}\nprint(result.summary.verdict.requirement)"], cwd=folder, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", f"{lines}\nprint(result.summary.verdict.requirement)"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert done.stdout.strip() == "RNP 1"
     command = shlex.split(asked(page, "/line", command="analyze", values=values, name="again")["line"])
     subprocess.run([sys.executable, "-m", *command], cwd=folder, capture_output=True, check=False)

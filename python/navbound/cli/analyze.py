@@ -75,7 +75,9 @@ def analyze_command(
     truth: Truth = None,
     truth_tolerance_s: TruthTolerance = None,
     sigma_m: Annotated[
-        float | None, typer.Option(help="Stated standard deviation of the position per axis, where the file has no covariance."), Chosen(first=True)
+        float | None,
+        typer.Option(help="Stated standard deviation of the position per axis, where the file has no covariance."),
+        Chosen(first=True),
     ] = None,
     column: Columns = None,
     methods: Methods = DEFAULT,

@@ -48,7 +48,13 @@ def call(name: str, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwar
 def lines(name: str, function: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> str:
     """The lines of Python that make a call; arguments that have their default are left out."""
     package, dot, _ = name.partition(".")
-    whence = "import navbound" if package == "navbound" else f"from navbound import {package}" if dot else f"from {function.__module__} import {name}"
+    whence = (
+        "import navbound"
+        if package == "navbound"
+        else f"from navbound import {package}"
+        if dot
+        else f"from {function.__module__} import {name}"
+    )
     imports = {whence}
     defaults = {each.name: each.default for each in inspect.signature(inspect.unwrap(function)).parameters.values()}
     written = [_source(value, imports) for value in args]

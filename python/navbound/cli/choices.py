@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     """(value as it is typed, words)."""
 
 NUMBER = r"-?\d+(\.\d+)?"
-RUNWAY = r"[A-Za-z0-9]{2,7}/[A-Za-z0-9]{1,4}"
+_RUNWAY = r"[A-Za-z0-9]{2,7}/[A-Za-z0-9]{1,4}"
+RUNWAY = rf"{_RUNWAY}(,{_RUNWAY})*"
 POINT = rf"{NUMBER},{NUMBER}(,{NUMBER})?"
 
 

@@ -12,7 +12,27 @@ import typer
 
 import navbound
 from navbound import _core
-from navbound.cli import analyze, assess, calls, demo, evaluate, example, export, fly, interrupt, lists, live, maps, open, predict, procedures, schema, show, study, verify
+from navbound.cli import (
+    analyze,
+    assess,
+    calls,
+    demo,
+    evaluate,
+    example,
+    export,
+    fly,
+    interrupt,
+    lists,
+    live,
+    maps,
+    predict,
+    procedures,
+    schema,
+    show,
+    study,
+    verify,
+    workbench,
+)
 from navbound.cli.parts import err_console
 from navbound.errors import FormatError, InputError, InternalError, NavboundError, visible
 from navbound.exit_status import OUR_BUG, STOPPED, UNREADABLE, USAGE, listed
@@ -31,6 +51,7 @@ def _about(
         bool, typer.Option("--python", help=f"Before {', '.join(calls.COMMANDS)}: print the Python that does the same, and do nothing.")
     ] = False,
 ) -> None:
+    del version
     if python:
         if context.invoked_subcommand not in calls.COMMANDS:
             raise InputError("--python", context.invoked_subcommand, domain=f"one of the commands {', '.join(calls.COMMANDS)} behind it")
@@ -53,7 +74,7 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "export": export.export_command,
     "map": maps.map_command,
     "predict": predict.predict_command,
-    "open": open.open_command,
+    "open": workbench.open_command,
 }
 _GROUPS = {"procedures": procedures.app, "live": live.app, "assess": assess.app}
 

@@ -23,13 +23,9 @@ if TYPE_CHECKING:
 
 
 def map_command(
-    kind: Annotated[
-        str, typer.Argument(help=f"What to map: dop, {', '.join(entries(MapOf))}, sbas, dme."), Chosen(lists="maps")
-    ],
+    kind: Annotated[str, typer.Argument(help=f"What to map: dop, {', '.join(entries(MapOf))}, sbas, dme."), Chosen(lists="maps")],
     step_deg: Annotated[float, typer.Option(help="Side of a cell."), Chosen(first=True)] = 5.0,
-    region: Annotated[
-        str | None, typer.Option(help="South,north,west,east in degrees. [default: the world]"), Chosen(first=True)
-    ] = None,
+    region: Annotated[str | None, typer.Option(help="South,north,west,east in degrees. [default: the world]"), Chosen(first=True)] = None,
     constellation: Annotated[
         list[str] | None,
         typer.Option(help="gps, galileo, beidou, or a YUMA or SEM almanac or RINEX navigation file; may be repeated. [dop, raim, araim]"),
@@ -58,7 +54,9 @@ def map_command(
     rnp_nm: Annotated[float | None, typer.Option(help="Lateral accuracy required of dme. [default: 1]")] = None,
     fte_nm: Annotated[float | None, typer.Option(help="Flight technical error of dme, 95 %. [default: 0.5]")] = None,
     limit: Annotated[list[str] | None, typer.Option(help="Limit instead: column=number; may be repeated.")] = None,
-    level: Annotated[str | None, typer.Option(help="Limit instead: alert limits of a service level; see `navbound levels`."), Chosen(lists="levels")] = None,
+    level: Annotated[
+        str | None, typer.Option(help="Limit instead: alert limits of a service level; see `navbound levels`."), Chosen(lists="levels")
+    ] = None,
     backend: Backend = None,
     workers: NWorkers = None,
     cluster: Cluster = None,

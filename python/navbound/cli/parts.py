@@ -61,7 +61,8 @@ Files = Annotated[
     ),
 ]
 Truth = Annotated[
-    str | None, typer.Option(help="A file with true positions, joined by time; or X,Y,Z of a fixed point (Earth-fixed, metres)."),
+    str | None,
+    typer.Option(help="A file with true positions, joined by time; or X,Y,Z of a fixed point (Earth-fixed, metres)."),
     Chosen(files=True, free=POINT),
 ]
 TruthTolerance = Annotated[float | None, typer.Option(help="How far apart in time a truth epoch may be. [default: 0.01]")]

@@ -40,7 +40,9 @@ def predict_command(
         Chosen(lists="constellations", files=True),
     ],
     at: Annotated[
-        list[str] | None, typer.Option("--at", help="LAT,LON[,H] in degrees and metres, or a runway (LFPG/08R); may be repeated."), Chosen(search="runways", typed=True)
+        list[str] | None,
+        typer.Option("--at", help="LAT,LON[,H] in degrees and metres, or a runway (LFPG/08R); may be repeated."),
+        Chosen(search="runways", typed=True),
     ] = None,
     route: Annotated[list[Path] | None, typer.Option(help="Route file (.toml, .csv): every point of it counts; may be repeated.")] = None,
     date: Annotated[
@@ -51,15 +53,21 @@ def predict_command(
     hours: Annotated[float, typer.Option(help="Length.")] = 24.0,
     every_s: Annotated[float, typer.Option(help="Step between instants.")] = 60.0,
     spec: Annotated[
-        list[str] | None, typer.Option(help="RNP 0.3, RNP 1, ... or a service level (NPA); may be repeated. [default: RNP 0.3, RNP 1]"), Chosen(lists="limits", typed=True)
+        list[str] | None,
+        typer.Option(help="RNP 0.3, RNP 1, ... or a service level (NPA); may be repeated. [default: RNP 0.3, RNP 1]"),
+        Chosen(lists="limits", typed=True),
     ] = None,
     without: Annotated[list[str] | None, typer.Option(help="Satellite out of service (a NANU), as G05; may be repeated.")] = None,
     systems: Annotated[
         str | None, typer.Option(help="Constellations that the receiver uses, letters of GEC. [default: G, and nominal ones as named]")
     ] = None,
     mask_deg: Annotated[float, typer.Option(help="Lowest elevation used.")] = 5.0,
-    model: Annotated[str, typer.Option(help="Error of a range: single-frequency, dual-frequency."), Chosen(lists="models")] = "single-frequency",
-    out: Annotated[Path | None, typer.Option("--out", help="Of a flight: folder for record, epoch table and page."), Written("kind", "flights")] = None,
+    model: Annotated[
+        str, typer.Option(help="Error of a range: single-frequency, dual-frequency."), Chosen(lists="models")
+    ] = "single-frequency",
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Of a flight: folder for record, epoch table and page."), Written("kind", "flights")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")] = False,
 ) -> None:
     """Say when, over a day, a monitor on board could not detect or not exclude a faulty satellite at a place or on a route."""

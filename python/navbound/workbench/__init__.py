@@ -1,4 +1,4 @@
-"""The workbench: a page of this host on which files are dropped, jobs of the command line chosen, started, stopped, and their reports read.
+"""The workbench: a page of this host on which files are dropped, jobs of the command line started and stopped, and their reports read.
 
 `forms` says what can be asked, as the command line declares it, and writes the command line of what was asked; `files` knows the files of the
 folder and takes new ones; `recognise` says what each is; `jobs` runs command lines as processes of their own; `runs` finds what earlier

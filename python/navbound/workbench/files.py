@@ -106,7 +106,9 @@ class Files:
         """
         place = self.folder / DROPPED
         if n_bytes > MOST_FILE_BYTES:
-            raise FormatError(name, f"{n_bytes / 1e9:.1f} GB; a dropped file may have {MOST_FILE_BYTES / 1e9:.1f} GB: put it into the folder")
+            raise FormatError(
+                name, f"{n_bytes / 1e9:.1f} GB; a dropped file may have {MOST_FILE_BYTES / 1e9:.1f} GB: put it into the folder"
+            )
         try:
             place.mkdir(mode=0o700, exist_ok=True)
             if place.is_symlink():
@@ -115,7 +117,9 @@ class Files:
         except OSError as e:
             raise FormatError(place, f"cannot be written: {e.strerror or e}") from e
         if n_bytes > free - LEFT_BYTES:
-            raise FormatError(name, f"{n_bytes / 1e9:.1f} GB; the disk has {free / 1e9:.1f} GB and must keep {LEFT_BYTES / 1e9:.1f} GB free")
+            raise FormatError(
+                name, f"{n_bytes / 1e9:.1f} GB; the disk has {free / 1e9:.1f} GB and must keep {LEFT_BYTES / 1e9:.1f} GB free"
+            )
         kept = self._free(place, tidy(name))
         self._coming.add(kept)
         return Coming(self, place, kept)

@@ -195,5 +195,3 @@ def _checked(field: Field, text: str, files: Collection[str]) -> str:
         return text
     # What the command would take for the name of a file is one of the list: nothing else of the disk can be named.
     raise InputError(field.name, text, domain="a file of the list" + (f", or {_expected(field)}" if field.kind != "file" else ""))
-
-

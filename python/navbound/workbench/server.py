@@ -37,6 +37,7 @@ IDLE_S = 30.0
 PIECE_BYTES = 256 * 1024
 PYTHON_S = 30.0
 """Time that the Python lines of a command line may take. [s]"""
+MOST_DIGITS = 9
 WITHOUT_SCRIPTS = "The workbench needs a browser that runs scripts."
 REPORT_POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'; "
@@ -59,6 +60,28 @@ class Settings:
 
     folder: Path
     forms: Sequence[Form]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A job as a page asks for it.
+
+    Attributes
+    ----------
+    form : Form
+        Of its command.
+    line : list of str
+        Its command line, without the program.
+    values : dict
+        As they were asked.
+    out : str
+        Folder that it writes; empty where it writes none.
+    """
+
+    form: Form
+    line: list[str]
+    values: dict[str, Any]
+    out: str
 
 
 class Server(Service):
@@ -126,7 +149,9 @@ class Server(Service):
 
     def _workbench(self, query: request.Request) -> bytes:
         self.door.session(query)
-        forms = [{"command": form.command, "summary": form.summary, "fields": [vars(f) for f in form.fields]} for form in self.forms.values()]
+        forms = [
+            {"command": form.command, "summary": form.summary, "fields": [vars(f) for f in form.fields]} for form in self.forms.values()
+        ]
         limits = {"most_file_bytes": files.MOST_FILE_BYTES, "left_bytes": files.LEFT_BYTES}
         return _json({"folder": str(self.folder), "version": __version__, "forms": forms, "limits": limits})
 
@@ -164,16 +189,16 @@ class Server(Service):
 
     def _line(self, query: request.Request) -> bytes:
         self.door.session(query)
-        return self._asking(query, lambda form, line, values, out: {"line": shlex.join(["navbound", *line])})
+        return self._asking(query, lambda asked: {"line": shlex.join(["navbound", *asked.line])})
 
     async def _python(self, query: request.Request) -> bytes:
         self.door.session(query)
-        lines = list[str]()
-        answer = self._asking(query, lambda form, line, values, out: lines.extend(line) or {})
-        if not lines:
-            return answer
+        asked = list[Asked]()
+        refused = self._asking(query, lambda one: {"asked": asked.append(one)})
+        if not asked:
+            return refused
         done = await asyncio.to_thread(
-            subprocess.run, program("--python", *lines), cwd=self.folder, capture_output=True, timeout=PYTHON_S, check=False
+            subprocess.run, program("--python", *asked[0].line), cwd=self.folder, capture_output=True, timeout=PYTHON_S, check=False
         )
         if done.returncode:
             return _json({"refused": visible(done.stderr.decode("utf-8", "replace").removeprefix("navbound: ").strip())})
@@ -182,9 +207,8 @@ class Server(Service):
     def _start(self, query: request.Request) -> bytes:
         self.door.session(query)
 
-        def start(form: Form, line: list[str], values: dict[str, Any], out: str) -> dict[str, Any]:
-            job = self.jobs.start(line, command=form.command, values=values, out=out)
-            return {"job": job.row()}
+        def start(asked: Asked) -> dict[str, Any]:
+            return {"job": self.jobs.start(asked.line, command=asked.form.command, values=asked.values, out=asked.out).row()}
 
         return self._asking(query, start)
 
@@ -193,7 +217,7 @@ class Server(Service):
         self.jobs.stop(self._job(query.json().get("job")))
         return request.answer(HTTPStatus.NO_CONTENT)
 
-    def _asking(self, query: request.Request, then: Callable[[Form, list[str], dict[str, Any], str], dict[str, Any]]) -> bytes:
+    def _asking(self, query: request.Request, then: Callable[[Asked], dict[str, Any]]) -> bytes:
         """Answer a page that asks for a job: with what is done with it, or with the sentence that refuses it."""
         asked = query.json()
         form, values = self.forms.get(str(asked.get("command"))), asked.get("values")
@@ -203,7 +227,7 @@ class Server(Service):
             name = self._name_of(form, values, asked.get("name"))
             out, parts = (f"{folder}/{name}" for folder in (files.OUT, files.PARTS))
             line = arguments(form, values, self.files.known, out=out, parts=parts)
-            return _json(then(form, line, values, out if form.writes(values) else ""))
+            return _json(then(Asked(form, line, values, out if form.writes(values) else "")))
         except InputError as e:
             flags = {field.name: field.flag.removeprefix("--").replace("-", " ") or field.name for field in form.fields}
             return _json({"refused": visible(e.words(lambda argument: flags.get(argument, argument))), "field": e.argument})
@@ -280,16 +304,17 @@ class Server(Service):
         try:
             size = path.stat().st_size
             with path.open("rb") as file:
-                writer.write(request.head(HTTPStatus.OK, kind, size, {"Content-Security-Policy": REPORT_POLICY, "Cross-Origin-Opener-Policy": "unsafe-none"}))
+                writer.write(
+                    request.head(
+                        HTTPStatus.OK, kind, size, {"Content-Security-Policy": REPORT_POLICY, "Cross-Origin-Opener-Policy": "unsafe-none"}
+                    )
+                )
                 while piece := await asyncio.to_thread(file.read, PIECE_BYTES):
                     writer.write(piece)
                     async with asyncio.timeout(IDLE_S):
                         await writer.drain()
         except OSError as e:
             raise RefusedError(HTTPStatus.NOT_FOUND) from e
-
-
-MOST_DIGITS = 9
 
 
 def _asked(query: request.Request) -> dict[str, str]:
@@ -301,8 +326,6 @@ def _asked(query: request.Request) -> dict[str, str]:
 
 def _json(value: dict[str, Any]) -> bytes:
     return request.answer(HTTPStatus.OK, json.dumps(value, separators=(",", ":")).encode(), "application/json")
-
-
 
 
 def serve(settings: Settings, options: Options, *, ready: Callable[[Server], None], stop: Callable[[], bool]) -> None:
