@@ -8,7 +8,7 @@ from pathlib import Path
 PACKAGE = Path(__file__).parents[1] / "python" / "navbound"
 LAYERS = (
     ("errors", "exit_status", "units", "_core"),
-    ("risks", "status", "storage", "table", "time"),
+    ("risks", "serve", "status", "storage", "table", "time"),
     ("records", "methods", "algorithms", "scenario"),
     (
         "anp",
@@ -34,7 +34,7 @@ LAYERS = (
     ("maps", "run"),
     ("studies", "plot"),
     ("examples",),
-    ("live",),
+    ("live", "workbench"),
     ("cli",),
 )
 """Parts of the package from what all others use to what shows. A part may import from its own layer and from those before it."""

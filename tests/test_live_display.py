@@ -23,11 +23,12 @@ from display_fixture import SETTINGS, Browser, Fed, served
 from navbound import _core, live
 from navbound.errors import FormatError, InputError
 from navbound.live import journal
-from navbound.live.display import Options, Watch, hub, request, server, watch
+from navbound.live.display import Options, Watch, server, watch
 from navbound.live.display import child as display_child
 from navbound.live.session import now_ns, origin_of
 from navbound.live.sinks import tables
 from navbound.live.tail import Tail
+from navbound.serve import hub, request
 
 FOREIGN = "http://attacker.example"
 
@@ -133,7 +134,7 @@ def test_every_answer_has_the_headers_that_keep_a_page_to_itself(fed: Fed) -> No
 
 
 def test_no_script_of_the_page_takes_text_for_markup_or_program() -> None:
-    served_scripts = [content for path, (content, _) in server._files().items() if path.endswith(".js")]
+    served_scripts = [content for path, (content, _) in server.bundle().items() if path.endswith(".js")]
     assert len(served_scripts) == 2
     for script in served_scripts:
         assert not re.search(rb"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(|new Function", script)

@@ -1,10 +1,11 @@
 import { defineConfig } from "vite";
 
-// What is built, by mode: the report (the default), the live display, and the worker that keeps its time. Each is one script and at most one
+// What is built, by mode: the report (the default), the live display, the workbench, and the worker that keeps its time. Each is one script and at most one
 // style sheet with fixed names: pages take them as they are, and CI compares them byte for byte. The report's notices hold those of all.
 const BUNDLES = {
     production: { entry: "src/report.ts", name: "report", license: { fileName: "third-party.md" } },
     live: { entry: "src/live/main.ts", name: "live" },
+    workbench: { entry: "src/workbench/main.ts", name: "workbench" },
     clock: { entry: "src/live/clock.ts", name: "clock" },
 };
 

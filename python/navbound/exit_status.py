@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-DONE, USAGE, UNREADABLE, NO_VERDICT, OUR_BUG = 0, 2, 3, 4, 70
+DONE, USAGE, UNREADABLE, NO_VERDICT, OUR_BUG, STOPPED = 0, 2, 3, 4, 70, 130
 
 MEANINGS = {
     DONE: "done; a verdict that was reached (inside, outside, not shown) is part of the output",
     USAGE: "wrong use",
-    UNREADABLE: "unreadable data",
+    UNREADABLE: "unreadable data, or a place that cannot be written (a disk that is full)",
     NO_VERDICT: "no verdict: truth contradicts a bound of the run, or no epoch could be judged; the output is complete",
     OUR_BUG: "a bug of navbound",
+    STOPPED: "stopped by Ctrl-C",
 }
 
 WITHOUT_VERDICT = frozenset({"not_believable", "nothing_judged"})

@@ -9,10 +9,14 @@ import typer
 
 import navbound
 from navbound.cli import evaluate, procedures
+from navbound.cli.calls import call
+from navbound.cli.choices import RUNWAY, Chosen
 from navbound.cli.fly import DEFAULT, Methods, settings_of
 from navbound.cli.parts import (
+    SIGNAL,
     SIGNALS,
     SYSTEMS,
+    Bar,
     Columns,
     Files,
     Ionosphere,
@@ -40,6 +44,7 @@ def analyze_command(
     path: Annotated[
         str | None,
         typer.Option(help="Where the aircraft should be: a runway (LFPG/08R), auto (the runway each aircraft lands on), or a route file."),
+        Chosen(words=("auto",), search="runways", files=True, free=RUNWAY),
     ] = None,
     procedure: Annotated[
         str | None,
@@ -47,6 +52,7 @@ def analyze_command(
             help="Instead of --path: AIRPORT/PROCEDURE[:TRANSITION] of --database, such as KDEN/H26-Z:FUZZZ; "
             "each leg has its own RNP, and --spec has no part in it."
         ),
+        Chosen(search="procedures", typed=True),
     ] = None,
     database: Annotated[Path | None, typer.Option(help="With --procedure: navigation database of ARINC 424.")] = None,
     line: Annotated[str | None, typer.Option(help="With --procedure: line of minima that is flown, such as 'RNP 0.3'.")] = None,
@@ -59,6 +65,7 @@ def analyze_command(
         typer.Option(
             help="With --procedure: barometric (default; a constant slope over the curved Earth, baro-VNAV) or straight (ILS, LPV, GLS)."
         ),
+        Chosen(words=("barometric", "straight")),
     ] = None,
     setting_hpa: Annotated[
         float | None,
@@ -68,22 +75,29 @@ def analyze_command(
         float | None,
         typer.Option(help="With --procedure: height of the sea above the ellipsoid. Default: by the two heights of the runway."),
     ] = None,
-    spec: Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3', 'RNP AR 0.1' or 'RNP APCH'.")] = "RNP 0.3",
+    spec: Annotated[
+        str,
+        typer.Option(help="Navigation specification, such as 'RNP 0.3', 'RNP AR 0.1' or 'RNP APCH'."),
+        Chosen(lists="specifications", typed=True),
+    ] = "RNP 0.3",
     operation: Annotated[
         str | None,
         typer.Option(
             help="en-route, approach or ground. Default: approach with runways or an approach procedure as the path, otherwise en-route."
         ),
+        Chosen(words=("en-route", "approach", "ground")),
     ] = None,
     truth: Truth = None,
     truth_tolerance_s: TruthTolerance = None,
     sigma_m: Annotated[
-        float | None, typer.Option(help="Stated standard deviation of the position per axis, where the file has no covariance.")
+        float | None,
+        typer.Option(help="Stated standard deviation of the position per axis, where the file has no covariance."),
+        Chosen(first=True),
     ] = None,
     column: Columns = None,
     methods: Methods = DEFAULT,
     solve: Solve = False,
-    signals: Annotated[str | None, typer.Option(help=SIGNALS.format("auto"))] = None,
+    signals: Annotated[str | None, typer.Option(help=SIGNALS.format("auto")), SIGNAL] = None,
     systems: Annotated[str | None, typer.Option(help=SYSTEMS.format("GEC"))] = None,
     ionosphere: Ionosphere = None,
     mask: Mask = None,
@@ -125,15 +139,19 @@ def analyze_command(
     reading |= {} if flown is None else {"procedure": flown}
     of_levels.refuse_any()
     folder = run_folder(files, out)
-    run = navbound.analyze(
-        files,
-        path=path,
-        spec=spec,
-        sigma_m=sigma_m,
-        operation=operation,
-        settings=settings_of(methods),
-        out=folder,
-        command=command_line(),
-        **reading,
-    )
+    with Bar("steps") as progress:
+        run = call(
+            "navbound.analyze",
+            navbound.analyze,
+            files,
+            path=path,
+            spec=spec,
+            sigma_m=sigma_m,
+            operation=operation,
+            settings=settings_of(methods),
+            out=folder,
+            progress=progress,
+            command=command_line(),
+            **reading,
+        )
     show(run, json=json)

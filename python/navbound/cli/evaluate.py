@@ -9,7 +9,11 @@ import typer
 
 import navbound
 from navbound.algorithms import Recorded, entries
+from navbound.cli import interrupt
+from navbound.cli.calls import call
+from navbound.cli.choices import Chosen
 from navbound.cli.parts import (
+    SIGNAL,
     SIGNALS,
     SYSTEMS,
     Bar,
@@ -94,10 +98,10 @@ class Options:
 
 def evaluate_command(
     files: Files,
-    levels: Annotated[str, typer.Option(help=_LEVELS)],
+    levels: Annotated[str, typer.Option(help=_LEVELS), Chosen(lists="limits", commas=True)],
     truth: Truth = None,
     truth_tolerance_s: TruthTolerance = None,
-    protection: Annotated[str | None, typer.Option(help=_PROTECTION)] = None,
+    protection: Annotated[str | None, typer.Option(help=_PROTECTION), Chosen(lists="protection")] = None,
     prn: Annotated[int | None, typer.Option(help=_PRN)] = None,
     period_s: Annotated[float | None, typer.Option(help=_PERIOD)] = None,
     exclude_missing: Annotated[bool, typer.Option("--exclude-missing", help=_MISSING)] = False,
@@ -108,7 +112,7 @@ def evaluate_command(
     experimental: Annotated[str, typer.Option(help=_EXPERIMENTAL)] = "",
     column: Columns = None,
     solve: Solve = False,
-    signals: Annotated[str | None, typer.Option(help=SIGNALS.format("single"))] = None,
+    signals: Annotated[str | None, typer.Option(help=SIGNALS.format("single")), SIGNAL] = None,
     systems: Annotated[str | None, typer.Option(help=SYSTEMS.format("G"))] = None,
     ionosphere: Ionosphere = None,
     mask: Mask = None,
@@ -138,8 +142,11 @@ def evaluate_command(
 def run(files: list[Path], levels: str, of_levels: Options, reading: dict[str, Any], out: Path | None, *, json: bool) -> None:
     """Evaluate, print and end with the status of the verdict."""
     subsets, folder = of_levels.subsets(), run_folder(files, out)
+    interrupt.keep(f"Finished files are kept in {folder}: the same command goes on from there.")
     with Bar("files") as progress:
-        evaluated = navbound.evaluate(
+        evaluated = call(
+            "navbound.evaluate",
+            navbound.evaluate,
             files,
             levels=levels,
             prn=of_levels.prn,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rich.table import Table
 
+from navbound.cli.calls import call
 from navbound.cli.parts import command_line, out_console
 from navbound.errors import ConflictError, InputError
 
@@ -26,7 +27,7 @@ def predict_flight_command(plans: list[str], unused: Mapping[str, object], out: 
     for name, value in unused.items():
         if value:
             raise ConflictError(name, because="a flight has place, time, satellites and requirement from its plan", value=value)
-    expected = flight.predict_flight(plans[0], command=command_line())
+    expected = call("predict_flight", flight.predict_flight, plans[0], command=command_line())
     target = None if out is None else flight.write(expected, out)
     if json:
         sys.stdout.write(expected.record.model_dump_json(indent=1) + "\n")

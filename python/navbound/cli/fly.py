@@ -8,12 +8,18 @@ from typing import Annotated
 import typer
 
 import navbound
+from navbound.cli.calls import call
+from navbound.cli.choices import Chosen
 from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, Out, command_line, work_of
 from navbound.cli.show import show
 from navbound.run.settings import DEFAULT_METHODS, Settings
 
 DEFAULT = ",".join(DEFAULT_METHODS)
-Methods = Annotated[str, typer.Option("--methods", help="Comma-separated method ids; see `navbound methods`.")]
+Methods = Annotated[
+    str,
+    typer.Option("--methods", help="Comma-separated method ids; see `navbound methods`."),
+    Chosen(lists="methods", commas=True),
+]
 
 
 def settings_of(methods: str) -> Settings:
@@ -38,5 +44,15 @@ def fly_command(
     out = out or Path("out") / Path(scenario).stem
     work = work_of(backend, workers, cluster, checkpoint)
     with Bar("flights") as work["progress"]:
-        run = navbound.fly(scenario, flights=flights, seed=seed, settings=settings_of(methods), out=out, command=command_line(), **work)
+        run = call(
+            "navbound.fly",
+            navbound.fly,
+            scenario,
+            flights=flights,
+            seed=seed,
+            settings=settings_of(methods),
+            out=out,
+            command=command_line(),
+            **work,
+        )
     show(run, json=json)

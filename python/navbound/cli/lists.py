@@ -1,12 +1,16 @@
-"""`navbound methods` and `navbound levels`: what there is, with source and provenance."""
+"""`navbound methods`, `navbound levels` and `navbound scenarios`: what there is, with source and provenance."""
 
 from __future__ import annotations
 
 import json as encoder
 import sys
+from typing import TYPE_CHECKING
 
 from navbound.algorithms import algorithms
 from navbound.cli.parts import Json, out_console
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 
 def methods_command(json: Json = False) -> None:
@@ -18,20 +22,16 @@ def methods_command(json: Json = False) -> None:
         both = {"methods": [m.__dict__ for m in entries], "protection_levels": [p.__dict__ for p in levels]}
         sys.stdout.write(encoder.dumps(both, indent=1) + "\n")
         return
-    from rich.table import Table  # noqa: PLC0415
-
-    table = Table(title="Methods", show_lines=True)
-    for heading in ("id", "what", "bounds |…|", "source", "provenance", "assumes", "may alert"):
-        table.add_column(heading, overflow="fold")
-    for m in entries:
-        table.add_row(m.id, m.title, m.error_column, m.source, m.provenance, m.assumes, "yes" if m.may_alert else "no")
-    out_console.print(table)
-    table = Table(title="Protection levels", show_lines=True)
-    for heading in ("id", "what", "source", "provenance", "covers", "assumes", "integrity"):
-        table.add_column(heading, overflow="fold")
-    for p in levels:
-        table.add_row(p.id, p.title, p.source, p.provenance, p.covers, p.assumes, "yes" if p.integrity else "no, experimental")
-    out_console.print(table)
+    print_list(
+        "Methods",
+        ("id", "what", "bounds |…|", "source", "provenance", "assumes", "may alert"),
+        [(m.id, m.title, m.error_column, m.source, m.provenance, m.assumes, "yes" if m.may_alert else "no") for m in entries],
+    )
+    print_list(
+        "Protection levels",
+        ("id", "what", "source", "provenance", "covers", "assumes", "integrity"),
+        [(p.id, p.title, p.source, p.provenance, p.covers, p.assumes, "yes" if p.integrity else "no, experimental") for p in levels],
+    )
 
 
 def levels_command(json: Json = False) -> None:
@@ -42,15 +42,49 @@ def levels_command(json: Json = False) -> None:
     if json:
         sys.stdout.write(encoder.dumps([level.model_dump() for level in levels], indent=1) + "\n")
         return
-    from rich.table import Table  # noqa: PLC0415
-
-    table = Table(title="Service levels")
-    for heading in ("id", "operation", "HAL, m", "VAL, m", "accuracy H/V, m", "time to alert, s", "limits", "source"):
-        table.add_column(heading, overflow="fold")
+    rows = []
     for level in levels:
         vertical, accuracy_v = ("-" if value is None else f"{value:g}" for value in (level.val_m, level.accuracy_v_m))
         accuracy = f"{level.accuracy_h_m:g} / {accuracy_v}"
-        table.add_row(
-            level.id, level.title, f"{level.hal_m:g}", vertical, accuracy, f"{level.tta_s:g}", level.provenance["hal_m"], level.source
-        )
-    out_console.print(table)
+        numbers = (f"{level.hal_m:g}", vertical, accuracy, f"{level.tta_s:g}")
+        rows.append((level.id, level.title, *numbers, level.provenance["hal_m"], level.source))
+    headings = ("id", "operation", "HAL, m", "VAL, m", "accuracy H/V, m", "time to alert, s", "limits", "source")
+    print_list("Service levels", headings, rows)
+
+
+def scenarios_command(json: Json = False) -> None:
+    """List the scenarios that ship with navbound: `navbound fly NAME` flies one."""
+    from navbound import scenario  # noqa: PLC0415
+
+    shipped = {name: scenario.read(name) for name in scenario.shipped()}
+    rows = [{"name": name, "kind": each.kind, "title": each.title} for name, each in shipped.items()]
+    if json:
+        sys.stdout.write(encoder.dumps(rows, indent=1) + "\n")
+        return
+    print_list("Scenarios", ("name", "kind", "title"), [tuple(row.values()) for row in rows], wide=NARROW)
+
+
+NARROW, WIDE = 80, 110
+"""Columns of a screen from which a list of a few, and of many columns, is a table."""
+
+
+def print_list(title: str, headings: Sequence[str], rows: Sequence[Sequence[str]], *, wide: int = WIDE) -> None:
+    """Print rows: a table where the screen is wide enough for one, otherwise one block a row, its first cell as the heading."""
+    from rich.padding import Padding  # noqa: PLC0415
+    from rich.table import Table  # noqa: PLC0415
+
+    if out_console.width >= wide:
+        table = Table(title=title, show_lines=wide > NARROW)
+        for k, heading in enumerate(headings):
+            table.add_column(heading, overflow="fold", no_wrap=k == 0)
+        for row in rows:
+            table.add_row(*row)
+        out_console.print(table)
+        return
+    out_console.print(title, style="bold", markup=False, highlight=False)
+    for row in rows:
+        block = Table.grid(padding=(0, 2))
+        for heading, cell in zip(headings[1:], row[1:], strict=True):
+            block.add_row(heading, cell)
+        out_console.print(f"\n{row[0]}", style="bold", markup=False, highlight=False)
+        out_console.print(Padding(block, (0, 0, 0, 2)), markup=False, highlight=False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 import time
 import webbrowser
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from navbound.cli.parts import err_console, out_console
+from navbound.cli.parts import err_console, out_console, stop_requested
 from navbound.errors import ConflictError, FormatError, InputError
 from navbound.exit_status import NO_VERDICT, OUR_BUG
 
@@ -157,7 +156,7 @@ def _run(source: str, settings: Settings, ways: _Ways) -> None:
 
     _check_speed(ways.speed)
     opened = live.open_source(source, lines=settings.format == "json", chunk=512 if ways.speed else CHUNK)
-    stop = _stop()
+    stop = stop_requested()
     kind: Any = "live" if opened.live else "replay" if ways.replay else "recording"
     origin = live.Origin(kind, source, None if opened.live else ways.speed, points(settings, source), ways.limits)
     session = live.Session(ways.out, settings, origin=origin, resume=ways.resume, report=_report(json=ways.json), say=_say)
@@ -310,7 +309,7 @@ def replay(
     if spec is not None or path is not None or form is not None:
         one = "spec" if spec is not None else "path" if path is not None else "form"
         raise ConflictError(one, because="a journal is judged with the settings of its session")
-    stop = _stop()
+    stop = stop_requested()
     with shown as screen:
         session = live.replay(
             recording,
@@ -335,7 +334,7 @@ def display(
     """Show a session in a browser on this host, from its journals alone; Ctrl-C ends the display and not the session."""
     from navbound.live.display import Options, serve  # noqa: PLC0415
 
-    serve(folder, Options(port), ready=lambda server: _address(server.address, json=False), stop=_stop())
+    serve(folder, Options(port), ready=lambda server: _address(server.address, json=False), stop=stop_requested())
 
 
 @app.command()
@@ -355,7 +354,7 @@ def send(
     target = _target(webhook, secret_file)
     if target is not None:
         sender = Webhook(folder, target, say=_say)
-        sender.run(stop=_stop())
+        sender.run(stop=stop_requested())
         out_console.print(f"{sender.n_sent} transitions taken by {target.name}, {sender.n_waiting} wait.", highlight=False)
         if sender.n_waiting:
             raise typer.Exit(NO_VERDICT)
@@ -392,20 +391,6 @@ def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: 
         raise FormatError(b, f"is no other judgement of the session in {a}: {result.apart}")
     if result.n_differing:
         raise typer.Exit(OUR_BUG)
-
-
-def _stop() -> Callable[[], bool]:
-    """Whether an end was requested; requested twice, the command ends at once."""
-    requested = list[int]()
-
-    def ask(number: int, _: object) -> None:
-        if requested:
-            raise KeyboardInterrupt
-        requested.append(number)
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, ask)
-    return lambda: bool(requested)
 
 
 def _say(sentence: str) -> None:

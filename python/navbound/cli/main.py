@@ -12,10 +12,30 @@ import typer
 
 import navbound
 from navbound import _core
-from navbound.cli import analyze, assess, demo, evaluate, example, export, fly, lists, live, maps, predict, procedures, show, study, verify
+from navbound.cli import (
+    analyze,
+    assess,
+    calls,
+    demo,
+    evaluate,
+    example,
+    export,
+    fly,
+    interrupt,
+    lists,
+    live,
+    maps,
+    predict,
+    procedures,
+    schema,
+    show,
+    study,
+    verify,
+    workbench,
+)
 from navbound.cli.parts import err_console
 from navbound.errors import FormatError, InputError, InternalError, NavboundError, visible
-from navbound.exit_status import OUR_BUG, UNREADABLE, USAGE, listed
+from navbound.exit_status import OUR_BUG, STOPPED, UNREADABLE, USAGE, listed
 
 
 def _version(value: bool) -> None:
@@ -25,9 +45,17 @@ def _version(value: bool) -> None:
 
 
 def _about(
+    context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Print the version, nothing else.", callback=_version, is_eager=True)] = False,
+    python: Annotated[
+        bool, typer.Option("--python", help=f"Before {', '.join(calls.COMMANDS)}: print the Python that does the same, and do nothing.")
+    ] = False,
 ) -> None:
-    pass
+    del version
+    if python:
+        if context.invoked_subcommand not in calls.COMMANDS:
+            raise InputError("--python", context.invoked_subcommand, domain=f"one of the commands {', '.join(calls.COMMANDS)} behind it")
+        calls.print_calls()
 
 
 _COMMANDS: dict[str, Callable[..., None]] = {
@@ -39,11 +67,14 @@ _COMMANDS: dict[str, Callable[..., None]] = {
     "study": study.study_command,
     "methods": lists.methods_command,
     "levels": lists.levels_command,
+    "scenarios": lists.scenarios_command,
+    "schema": schema.schema_command,
     "verify": verify.verify_command,
     "show": show.show_command,
     "export": export.export_command,
     "map": maps.map_command,
     "predict": predict.predict_command,
+    "open": workbench.open_command,
 }
 _GROUPS = {"procedures": procedures.app, "live": live.app, "assess": assess.app}
 
@@ -70,7 +101,7 @@ app = _with(_COMMANDS, _GROUPS)
 
 def _of(arguments: list[str]) -> typer.Typer:
     """The command line as far as these arguments need it: the options of a command that is not named are not read."""
-    named = arguments[0] if arguments else ""
+    named = next((word for word in arguments if word != "--python"), "")
     if named in _COMMANDS:
         return _with({named: _COMMANDS[named]}, {})
     return _with({}, {named: _GROUPS[named]}) if named in _GROUPS else app
@@ -82,13 +113,16 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 def main() -> None:
     """Entry point: every refusal is a sentence, every surprise is ours."""
+    interrupt.watch()
     try:
         status = _of(sys.argv[1:])(standalone_mode=False)
+        if status == STOPPED:
+            # The parser of the command line makes this status of a Ctrl-C.
+            raise KeyboardInterrupt
         sys.exit(status if isinstance(status, int) else 0)
-    except typer.Abort:
-        sys.exit(130)
-    except KeyboardInterrupt:
-        sys.exit(130)
+    except (typer.Abort, KeyboardInterrupt):
+        err_console.print(interrupt.words(), markup=False, highlight=False, soft_wrap=True)
+        sys.exit(STOPPED)
     except InternalError as e:
         if os.environ.get("NAVBOUND_TRACEBACK"):
             raise

@@ -12,6 +12,8 @@ import typer
 
 from navbound.algorithms import Grid as MapOf
 from navbound.algorithms import entries
+from navbound.cli.calls import call
+from navbound.cli.choices import Chosen, Written
 from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, out_console, work_of
 from navbound.errors import InputError
 
@@ -21,12 +23,13 @@ if TYPE_CHECKING:
 
 
 def map_command(
-    kind: Annotated[str, typer.Argument(help=f"What to map: dop, {', '.join(entries(MapOf))}, sbas, dme.")],
-    step_deg: Annotated[float, typer.Option(help="Side of a cell.")] = 5.0,
-    region: Annotated[str | None, typer.Option(help="South,north,west,east in degrees. [default: the world]")] = None,
+    kind: Annotated[str, typer.Argument(help=f"What to map: dop, {', '.join(entries(MapOf))}, sbas, dme."), Chosen(lists="maps")],
+    step_deg: Annotated[float, typer.Option(help="Side of a cell."), Chosen(first=True)] = 5.0,
+    region: Annotated[str | None, typer.Option(help="South,north,west,east in degrees. [default: the world]"), Chosen(first=True)] = None,
     constellation: Annotated[
         list[str] | None,
         typer.Option(help="gps, galileo, beidou, or a YUMA or SEM almanac or RINEX navigation file; may be repeated. [dop, raim, araim]"),
+        Chosen(lists="constellations", files=True),
     ] = None,
     start: Annotated[
         str | None,
@@ -37,22 +40,28 @@ def map_command(
     mask_deg: Annotated[float | None, typer.Option(help="Lowest elevation used. [default: 5]")] = None,
     height_m: Annotated[float | None, typer.Option(help="Height of the users above the ellipsoid.")] = None,
     without: Annotated[list[str] | None, typer.Option(help="Satellite out of service, as G05; may be repeated. [dop, raim, araim]")] = None,
-    service: Annotated[str | None, typer.Option(help="Service of araim: lpv-200, horizontal.")] = None,
-    model: Annotated[str | None, typer.Option(help="Error model of araim and raim: dual-frequency, single-frequency.")] = None,
+    service: Annotated[
+        str | None, typer.Option(help="Service of araim: lpv-200, horizontal."), Chosen(words=("lpv-200", "horizontal"))
+    ] = None,
+    model: Annotated[
+        str | None, typer.Option(help="Error model of araim and raim: dual-frequency, single-frequency."), Chosen(lists="models")
+    ] = None,
     messages: Annotated[Path | None, typer.Option(help="Message log of sbas.")] = None,
     navigation: Annotated[list[Path] | None, typer.Option(help="RINEX navigation file of sbas; may be repeated.")] = None,
     prn: Annotated[int | None, typer.Option(help="Whose SBAS messages, where a log holds several.")] = None,
-    mode: Annotated[str | None, typer.Option(help="Of sbas: pa, npa, auto.")] = None,
+    mode: Annotated[str | None, typer.Option(help="Of sbas: pa, npa, auto."), Chosen(words=("pa", "npa", "auto"))] = None,
     stations: Annotated[Path | None, typer.Option(help="Table of stations of dme. [default: the shipped one]")] = None,
     rnp_nm: Annotated[float | None, typer.Option(help="Lateral accuracy required of dme. [default: 1]")] = None,
     fte_nm: Annotated[float | None, typer.Option(help="Flight technical error of dme, 95 %. [default: 0.5]")] = None,
     limit: Annotated[list[str] | None, typer.Option(help="Limit instead: column=number; may be repeated.")] = None,
-    level: Annotated[str | None, typer.Option(help="Limit instead: alert limits of a service level; see `navbound levels`.")] = None,
+    level: Annotated[
+        str | None, typer.Option(help="Limit instead: alert limits of a service level; see `navbound levels`."), Chosen(lists="levels")
+    ] = None,
     backend: Backend = None,
     workers: NWorkers = None,
     cluster: Cluster = None,
     checkpoint: Checkpoint = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder to write. [default: out/map-<kind>]")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder to write. [default: out/map-<kind>]"), Written()] = None,
     json: Json = False,
 ) -> None:
     """Map what a grid of users gets over a day, and say on what share of the area that is enough."""
@@ -77,7 +86,9 @@ def map_command(
         "fte_m": None if fte_nm is None else fte_nm * METRES_PER_NM,
     }
     with Bar("tiles") as work["progress"]:
-        made = maps.make(
+        made = call(
+            "maps.make",
+            maps.make,
             kind,
             grid=maps.Grid.degrees(step_deg, *_region(region)),
             limits=_limits(limit or []),

@@ -5,16 +5,21 @@ Nothing here needs numbers or tables: a command loads what it needs when it runs
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import shlex
+import signal
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
+from navbound.cli import interrupt
+from navbound.cli.choices import POINT, Chosen, Written
 from navbound.errors import ConflictError, InputError
 from navbound.storage.packed import require_there
 
@@ -25,6 +30,11 @@ if TYPE_CHECKING:
 
     from navbound.scale import Work
 
+PROGRESS = "NAVBOUND_PROGRESS"
+EVERY_S = 0.2
+"""Shortest time between two words on how far the work is. [s]"""
+LEAST_WORKERS = 2
+"""Worker processes that any machine may be asked for."""
 PAPER_WIDTH = 140
 """Columns of a table that goes to a file or a pipe, where the width of a terminal means nothing; COLUMNS states another one."""
 
@@ -35,10 +45,14 @@ if not out_console.is_terminal:
 err_console = Console(stderr=True)
 
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, nothing else.")]
-Backend = Annotated[str | None, typer.Option(help="Who works: serial (this process, on all cores), processes, dask. [default: serial]")]
+Backend = Annotated[
+    str | None,
+    typer.Option(help="Who works: serial (this process, on all cores), processes, dask. [default: serial]"),
+    Chosen(words=("serial", "processes", "dask")),
+]
 NWorkers = Annotated[int | None, typer.Option("--workers", help="Worker processes. [default: one a core]")]
 Cluster = Annotated[str | None, typer.Option(help="Address of a Dask scheduler. [default: one on this machine]")]
-Out = Annotated[Path | None, typer.Option("--out", help="Run directory to write. [default: out/<name>]")]
+Out = Annotated[Path | None, typer.Option("--out", help="Run directory to write. [default: out/<name>]"), Written()]
 Files = Annotated[
     list[Path],
     typer.Argument(
@@ -47,7 +61,9 @@ Files = Annotated[
     ),
 ]
 Truth = Annotated[
-    str | None, typer.Option(help="A file with true positions, joined by time; or X,Y,Z of a fixed point (Earth-fixed, metres).")
+    str | None,
+    typer.Option(help="A file with true positions, joined by time; or X,Y,Z of a fixed point (Earth-fixed, metres)."),
+    Chosen(files=True, free=POINT),
 ]
 TruthTolerance = Annotated[float | None, typer.Option(help="How far apart in time a truth epoch may be. [default: 0.01]")]
 Columns = Annotated[
@@ -67,11 +83,13 @@ Ionosphere = Annotated[
         help="Model of single signals: broadcast (GPS message), galileo (NTCM-G by Galileo's message), climatology, none, or auto, the "
         "first of these that the navigation files have. [default: auto]"
     ),
+    Chosen(words=("auto", "broadcast", "galileo", "climatology", "none")),
 ]
 Mask = Annotated[float | None, typer.Option(help="Lowest elevation of satellites to solve from, degrees, 0 to below 90. [default: 5]")]
 SIGNALS = (
     "Measurements to solve: single (L1, E1, B1I), dual (ionosphere-free pairs), or auto, the smaller declared covariance. [default: {}]"
 )
+SIGNAL = Chosen(words=("auto", "single", "dual"))
 SYSTEMS = "Constellations to solve from: letters of GEC. [default: {}]"
 Checkpoint = Annotated[
     Path | None, typer.Option(help="Folder that keeps finished parts: started again, interrupted work goes on from there.")
@@ -119,6 +137,9 @@ def work_of(backend: str | None, workers: int | None, cluster: str | None, check
         raise ConflictError("cluster", needs=("backend",), because="dask")
     if workers is not None and backend in {None, "serial"}:
         raise ConflictError("workers", needs=("backend",), because="processes or dask")
+    cores = os.cpu_count() or 1
+    if workers is not None and cluster is None and not 1 <= workers <= max(cores, LEAST_WORKERS):
+        raise InputError("workers", workers, "1", f"[1, {max(cores, LEAST_WORKERS)}]: this machine has {cores} cores")
     if backend is not None:
         options["backend"] = backend
     if workers is not None or cluster is not None:
@@ -127,15 +148,36 @@ def work_of(backend: str | None, workers: int | None, cluster: str | None, check
         options["workers"] = Workers(workers, cluster)
     if checkpoint is not None:
         options["checkpoint"] = checkpoint
+        interrupt.keep(f"Finished parts are kept in {checkpoint}: the same command goes on from there.")
     return options
 
 
+def stop_requested() -> Callable[[], bool]:
+    """Whether an end was requested; requested twice, the command ends at once."""
+    interrupt.unwatch()
+    requested = list[int]()
+
+    def ask(number: int, _: object) -> None:
+        if requested:
+            raise KeyboardInterrupt
+        requested.append(number)
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, ask)
+    return lambda: bool(requested)
+
+
 class Bar:
-    """A bar with the time that is left, on a terminal and for work of more than one part; nothing elsewhere."""
+    """A bar with the time that is left, on a terminal and for work of more than one part; nothing elsewhere.
+
+    Who waits for the command in place of a person names a file in ``NAVBOUND_PROGRESS``: how far the work is stands there as JSON.
+    """
 
     def __init__(self, what: str) -> None:
         self._what = what
         self._shown: tuple[Progress, TaskID] | None = None
+        self._file = os.environ.get(PROGRESS)
+        self._written_s = -math.inf
 
     def __enter__(self) -> Callable[[int, int], None]:
         return self._tell
@@ -145,12 +187,26 @@ class Bar:
             self._shown[0].stop()
 
     def _tell(self, done: int, total: int) -> None:
+        self._write(done, total)
         if self._shown is None:
             if total < 2 or not err_console.is_terminal:
                 return
             self._shown = self._start(total)
         bar, task = self._shown
         bar.update(task, completed=done, total=total)
+
+    def _write(self, done: int, total: int) -> None:
+        now_s = time.monotonic()
+        if self._file is None or (now_s - self._written_s < EVERY_S and done < total):
+            return
+        self._written_s = now_s
+        partial = Path(f"{self._file}.partial")
+        try:
+            partial.write_text(json.dumps({"what": self._what, "done": done, "total": total}), encoding="utf-8")
+            partial.replace(self._file)
+        except OSError:
+            # Nobody waits any more.
+            self._file = None
 
     def _start(self, total: int) -> tuple[Progress, TaskID]:
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn  # noqa: PLC0415

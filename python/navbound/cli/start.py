@@ -21,12 +21,13 @@ def process() -> None:
     gc.set_threshold(100_000, 20, 20)
     if "study" not in sys.argv[1:2]:
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    from navbound.cli.main import main  # noqa: PLC0415 - NumPy reads the setting when it is loaded
+    from navbound.cli import interrupt  # noqa: PLC0415 - NumPy reads the setting when it is loaded
+    from navbound.cli.main import main  # noqa: PLC0415
 
     try:
         main()
     except SystemExit as end:
-        if threading.active_count() > 1 or not isinstance(end.code, int):
+        if threading.active_count() - interrupt.threads() > 1 or not isinstance(end.code, int):
             raise
         atexit._run_exitfuncs()
         try:

@@ -9,6 +9,8 @@ from typing import Annotated
 import typer
 
 import navbound
+from navbound.cli.calls import call
+from navbound.cli.choices import Chosen, Written
 from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, out_console, work_of
 
 
@@ -20,6 +22,7 @@ def study_command(
             "multipath-time-constants, surface-movement, "
             "tse-coverage, ukraine-rnav, vertical-budget"
         ),
+        Chosen(lists="studies"),
     ],
     files: Annotated[list[Path] | None, typer.Argument(help="Recorded data or a configuration, for a study that takes some.")] = None,
     out: Annotated[
@@ -27,6 +30,7 @@ def study_command(
         typer.Option(
             "--out", help="Directory to write, for a study of a flight (ukraine-rnav) or with a page (fault-campaign, surface-movement)."
         ),
+        Written("name", "studies with a folder"),
     ] = None,
     backend: Backend = None,
     workers: NWorkers = None,
@@ -41,7 +45,7 @@ def study_command(
     """
     work = work_of(backend, workers, cluster, checkpoint)
     with Bar(name) as work["progress"]:
-        result = navbound.study(name, files or [], out=out, **work)
+        result = call("navbound.study", navbound.study, name, files or [], out=out, **work)
     if json:
         sys.stdout.write(result.model_dump_json(indent=1) + "\n")
     else:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 import navbound
+from navbound.cli.lists import WIDE
 from navbound.cli.parts import Json, err_console, out_console
 from navbound.exit_status import OUR_BUG
 
@@ -57,14 +58,18 @@ def _verified(outcomes: list[Outcome]) -> Table:
 
     table = Table(title=f"navbound {navbound.__version__}: reference vectors on this machine")
     table.add_column("vectors", no_wrap=True)
-    table.add_column("function", no_wrap=True)
-    table.add_column("checked against", overflow="fold", ratio=1)
-    for heading in ("cases", "worst relative", "of tolerance"):
+    # A narrow screen has room for the numbers alone; --json has all.
+    wide = out_console.width >= WIDE
+    if wide:
+        table.add_column("function", no_wrap=True)
+        table.add_column("checked against", overflow="fold", ratio=1)
+    for heading in ("cases", "worst relative" if wide else "worst", "of tolerance"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("", no_wrap=True)
     for o in outcomes:
         verdict = "ok" if not o.failures else f"{len(o.failures)} FAILED"
         against = f"{o.file.source} ({o.file.provenance})"
         share = f"{100 * o.worst_share:.2g} %"
-        table.add_row(o.file.id, o.file.call, against, str(o.checked), f"{o.worst_relative:.1e}", share, verdict)
+        what = (o.file.call, against) if wide else ()
+        table.add_row(o.file.id, *what, str(o.checked), f"{o.worst_relative:.1e}", share, verdict)
     return table

@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from navbound.scale import Work
 
 
+STEPS = 3
+"""Of an analysis: reading, judging, writing."""
+
+
 @checked
 def fly(
     scenario: str | Path = "beijing-shanghai",
@@ -96,8 +100,10 @@ def analyze(
         CSV, Parquet, JSON tables or RTKLIB ``.pos``, plain or gzip.
     spec, phase : str
         Navigation specification, as :func:`navbound.rnp.requirement.requirement` reads it.
-    levels, progress
+    levels
         Former spelling of :func:`evaluate`; it goes with the next release.
+    progress : callable, optional
+        Called with (done, all) steps: read, judged, written.
     settings, out, command
         As in :func:`fly`.
     **reading
@@ -114,14 +120,24 @@ def analyze(
         warnings.warn("analyze(levels=...) is evaluate(levels=...); the old spelling goes with the next release", DeprecationWarning, 3)
         return evaluate(files, levels=levels, out=out, progress=progress, command=command, **reading)
     with directory.own(out) as folder:
+        tell = progress or _nobody
+        tell(0, STEPS)
         required = requirement(spec, phase)
         material = recorded.material(files, requirement=required.words, rnp_m=required.rnp_m, **reading)  # type: ignore[arg-type]
+        tell(1, STEPS)
         run = judge(material, settings, command)
+        tell(2, STEPS)
         if reading.get("procedure") is not None:
             from navbound.run.procedure import with_answers  # noqa: PLC0415
 
             run = with_answers(run)
-        return directory.write(run, folder)
+        written = directory.write(run, folder)
+        tell(STEPS, STEPS)
+        return written
+
+
+def _nobody(done: int, total: int) -> None:
+    """Nobody waits."""
 
 
 @checked

@@ -1,5 +1,6 @@
 // The connection to the server: token to session, one stream, signs of life, acknowledgements, and a clock of the page's own.
 
+import { begin, post } from "../show/session.ts";
 import { Model, type Snapshot, type State, type Transition } from "./state.ts";
 
 const ALIVE_MS = 5000;
@@ -17,10 +18,6 @@ export interface Heard {
 
 export function now_s(): number {
     return performance.now() / 1000;
-}
-
-function post(path: string, body: object): Promise<Response> {
-    return fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body), cache: "no-store" });
 }
 
 /** A worker needs an address that the page vouches for. */
@@ -50,13 +47,8 @@ export class Link {
         setInterval(() => this.alive(), ALIVE_MS);
     }
 
-    /** The token stands behind the # of the address that the command printed; the cookie that it buys stays. */
     async begin(): Promise<void> {
-        const token = location.hash.slice(1);
-        if (token !== "") {
-            history.replaceState(null, "", location.pathname);
-            await post("/session", { token });
-        }
+        await begin();
         this.connect();
     }
 

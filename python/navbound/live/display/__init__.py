@@ -1,7 +1,7 @@
 """The flight display: a process of its own that reads the journals of a session and shows them in browsers on this host.
 
-`watch` follows the journals; `hub` keeps what each page has still to receive; `request` reads and answers HTTP and decides who may ask;
-`server` joins them. It may be slow, attacked or killed: the monitor does not notice.
+`watch` follows the journals; `server` tells the pages what they hold, by the server of :mod:`navbound.serve`. It may be slow, attacked or
+killed: the monitor does not notice.
 """
 
 from __future__ import annotations
@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navbound.live.child import Child
-from navbound.live.display.server import Options, Server, beside, serve
+from navbound.live.display.server import Server, beside, serve
 from navbound.live.display.watch import Watch
+from navbound.serve.service import Options
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,4 +1,4 @@
-"""HTTP as far as the display needs it: one request a connection, everything bounded, and who may ask."""
+"""HTTP as far as pages of this host need it: one request a connection, everything bounded, and who may ask."""
 
 from __future__ import annotations
 
@@ -6,13 +6,15 @@ import asyncio
 import hmac
 import json
 import secrets
+import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from http import HTTPStatus
 from typing import Any
 
 MOST_HEAD = 8 * 1024
 MOST_BODY = 4 * 1024
+MOST_DIGITS = 15
 REQUEST_S = 5.0
 """Time that a request may take to arrive. [s]"""
 RATE_PER_S, BURST = 20.0, 60.0
@@ -42,13 +44,14 @@ class RefusedError(Exception):
 
 @dataclass(frozen=True)
 class Request:
-    """A request that came whole."""
+    """A request; `length` is that of its body, read or not."""
 
     method: str
     path: str
     query: str
     headers: dict[str, str]
     body: bytes
+    length: int
 
     def cookie(self, name: str) -> str:
         """A cookie; empty where there is none."""
@@ -75,8 +78,8 @@ class Request:
         return value
 
 
-async def read(reader: asyncio.StreamReader) -> Request:
-    """One request.
+async def read_head(reader: asyncio.StreamReader) -> Request:
+    """A request as far as its body, which is still to be read.
 
     Raises
     ------
@@ -86,28 +89,42 @@ async def read(reader: asyncio.StreamReader) -> Request:
     try:
         async with asyncio.timeout(REQUEST_S):
             head = await reader.readuntil(b"\r\n\r\n")
-            if len(head) > MOST_HEAD:
-                raise RefusedError(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
-            first, *lines = head.decode("latin-1").split("\r\n")[:-2]
-            method, target, version = _first(first)
-            headers = _headers(lines)
-            if not version.startswith("HTTP/1.") or "transfer-encoding" in headers:
-                raise RefusedError(HTTPStatus.BAD_REQUEST)
-            length = headers.get("content-length", "0")
-            if not (length.isascii() and length.isdigit()):
-                raise RefusedError(HTTPStatus.BAD_REQUEST)
-            # A number of thousands of digits is none that a body could have.
-            if len(length) > len(str(MOST_BODY)) or int(length) > MOST_BODY:
-                raise RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
-            body = await reader.readexactly(int(length))
     except asyncio.LimitOverrunError as e:
         raise RefusedError(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE) from e
     except TimeoutError as e:
         raise RefusedError(HTTPStatus.REQUEST_TIMEOUT) from e
     except asyncio.IncompleteReadError as e:
         raise RefusedError(HTTPStatus.BAD_REQUEST) from e
+    if len(head) > MOST_HEAD:
+        raise RefusedError(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
+    first, *lines = head.decode("latin-1").split("\r\n")[:-2]
+    method, target, version = _first(first)
+    headers = _headers(lines)
+    length = headers.get("content-length", "0")
+    if not version.startswith("HTTP/1.") or "transfer-encoding" in headers or not (length.isascii() and length.isdigit()):
+        raise RefusedError(HTTPStatus.BAD_REQUEST)
     path, _, query = target.partition("?")
-    return Request(method, path, query, headers, body)
+    # A number of thousands of digits is none that a body could have.
+    return Request(method, path, query, headers, b"", int(length) if len(length) <= MOST_DIGITS else sys.maxsize)
+
+
+async def with_body(request: Request, reader: asyncio.StreamReader, most: int = MOST_BODY) -> Request:
+    """The same request with its body.
+
+    Raises
+    ------
+    RefusedError
+        It is longer than `most`, too slow, or cut.
+    """
+    if request.length > most:
+        raise RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
+    try:
+        async with asyncio.timeout(REQUEST_S):
+            return replace(request, body=await reader.readexactly(request.length))
+    except TimeoutError as e:
+        raise RefusedError(HTTPStatus.REQUEST_TIMEOUT) from e
+    except asyncio.IncompleteReadError as e:
+        raise RefusedError(HTTPStatus.BAD_REQUEST) from e
 
 
 def _first(line: str) -> tuple[str, str, str]:

@@ -1,0 +1,94 @@
+"""`navbound schema`: what `--json` of a command prints, as JSON Schema, from the records themselves."""
+
+from __future__ import annotations
+
+import json as encoder
+import sys
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from navbound.cli.choices import Chosen
+from navbound.errors import NotFoundError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Schema = dict[str, Any]
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+def _summary() -> Any:
+    from navbound.records.run import Summary  # noqa: PLC0415
+
+    return Summary
+
+
+def _map() -> Any:
+    from navbound.records.maps import MapSummary  # noqa: PLC0415
+
+    return MapSummary
+
+
+def _prediction() -> Any:
+    from navbound.records.prediction import Prediction  # noqa: PLC0415
+
+    return Prediction
+
+
+def _flight() -> Any:
+    from navbound.records.prediction import ExpectedFlight  # noqa: PLC0415
+
+    return ExpectedFlight
+
+
+def _assessed() -> Any:
+    from navbound.records.prediction import Assessment  # noqa: PLC0415
+
+    return Assessment
+
+
+def _levels() -> Any:
+    from navbound.records.performance import Level  # noqa: PLC0415
+
+    return list[Level]
+
+
+RECORDS: dict[str, Callable[[], Any]] = {
+    **dict.fromkeys(("analyze", "evaluate", "fly", "show"), _summary),
+    "map": _map,
+    "predict": _prediction,
+    "predict-flight": _flight,
+    "assess": _assessed,
+    "levels": _levels,
+}
+"""Commands and the record that their `--json` prints."""
+
+
+def of(name: str) -> Schema:
+    """The schema of what `--json` of a command prints.
+
+    Raises
+    ------
+    NotFoundError
+        A command that prints no record.
+    """
+    if name == "live":
+        from importlib.resources import files  # noqa: PLC0415
+
+        live: Schema = encoder.loads(files("navbound.live").joinpath("schemas/transition.json").read_text(encoding="utf-8"))
+        return live
+    if name not in RECORDS:
+        raise NotFoundError("command", name, "record", (*RECORDS, "live"))
+    from pydantic import TypeAdapter  # noqa: PLC0415
+
+    made: Schema = TypeAdapter(RECORDS[name]()).json_schema(mode="serialization")
+    return {"$schema": DIALECT} | made
+
+
+def schema_command(
+    command: Annotated[str, typer.Argument(help=f"Whose --json: {', '.join(RECORDS)}, live."), Chosen(words=(*RECORDS, "live"))],
+) -> None:
+    """Print the JSON Schema of what --json of a command prints."""
+    sys.stdout.write(encoder.dumps(of(command), indent=1) + "\n")
