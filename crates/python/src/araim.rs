@@ -1,6 +1,7 @@
 //! ARAIM protection levels.
 
 use crate::error::input_error;
+use crate::fields::fields;
 use crate::gnss::orbit;
 use crate::positions::{Navigation, Observations, satellites};
 use crate::status;
@@ -63,8 +64,7 @@ fn araim_services(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 fn araim_support(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let m = SupportMessage::STUDY;
     let d = PyDict::new(py);
-    d.set_item("id", m.id)?;
-    d.set_item("source", m.source)?;
+    fields!(d, m: id, source);
     d.set_item("provenance", m.provenance.word())?;
     let rows = m.support.map(|s| [s.sigma_ura.m(), s.sigma_ure.m(), s.bias.m(), s.bias_continuity.m(), s.p_sat, s.p_const]);
     d.set_item("support", rows)?;

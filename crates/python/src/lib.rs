@@ -9,6 +9,7 @@ mod dme;
 mod ee;
 mod error;
 mod evaluation;
+mod fields;
 mod gbas;
 mod gnss;
 mod ground;
