@@ -4,7 +4,7 @@ use super::modes::{Book, FaultModes, NoModes};
 use super::service::{Service, SupportMessage};
 use super::single::{self, Requirement};
 use super::{Detail, Levels, Monitor, exclusion};
-use crate::bound::{Algorithm, NoLevels, Protection, Sight};
+use crate::bound::{Algorithm, NoLevels, Protection, Ranges, Sight};
 use crate::quantity::Metres;
 use crate::signal::Constellation;
 
@@ -52,6 +52,7 @@ impl Book for Modes {
 
 impl Algorithm for Araim {
     const PROTECTION: Protection = super::PROTECTION;
+    const RANGES: Ranges = Ranges::Receiver;
     const COLUMNS: &'static [&'static str] = COLUMNS;
     type Settings = Settings;
     type Detail = Detail;
@@ -89,6 +90,7 @@ pub struct Separation {
 
 impl Algorithm for Separation {
     const PROTECTION: Protection = single::PROTECTION;
+    const RANGES: Ranges = Ranges::Receiver;
     const COLUMNS: &'static [&'static str] = COLUMNS;
     /// The requirement, and whether the levels hold after an exclusion too.
     type Settings = (Requirement, bool);
