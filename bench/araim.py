@@ -41,10 +41,10 @@ def measure() -> list[Row]:
     def levels(every: int, *, service: str = "lpv-200", exclusion: bool = False) -> araim.Levels:
         return araim.predict(orbits, lat, lon, 0.0, instants[::every], service=service, exclusion=exclusion)
 
-    found = levels(1)
-    n, ok = found.vpl_m.size, found.status == "ok"
+    computed = levels(1)
+    n, ok = computed.vpl_m.size, computed.status == "ok"
     few = levels(6, exclusion=True).vpl_m.size
-    words = f"{found.n_sv.mean():.1f} satellites, {found.n_modes.mean():.1f} modes, mean VPL {found.vpl_m[ok].mean():.2f} m"
+    words = f"{computed.n_sv.mean():.1f} satellites, {computed.n_modes.mean():.1f} modes, mean VPL {computed.vpl_m[ok].mean():.2f} m"
     excluded = seconds(lambda: levels(6, exclusion=True)) / few
     day, spent = wall(DAY)
     day_n = lat.size * 288

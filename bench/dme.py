@@ -31,7 +31,7 @@ def measure() -> list[Row]:
     track = (np.arange(2000) * 10**9, np.full(2000, place[0]), lon, np.full(2000, 10_000.0))
     lat_map, lon_map = np.meshgrid(np.radians(np.arange(36.0, 60.0, 0.5)), np.radians(np.arange(-10.0, 30.0, 0.5)), indexing="ij")
     europe = dme.stations().near(lat_map, lon_map, 350e3)
-    asked = {"rnp_m": 1852.0, "fte_m": 926.0, "sigma_altitude_m": 30.0}
+    requirement = {"rnp_m": 1852.0, "fte_m": 926.0, "sigma_altitude_m": 30.0}
     jobs: list[tuple[str, Callable[[], object], int, str]] = [
         ("dme solve, four ranges, prior", lambda: dme.solve(ranges, four, 9000.0, sigma_altitude_m=30.0, **prior), N, "an epoch"),
         ("dme solve, four ranges, no prior", lambda: dme.solve(ranges, four, 9000.0, sigma_altitude_m=30.0), N, "both meetings settled"),
@@ -39,7 +39,7 @@ def measure() -> list[Row]:
         ("dme select, 15 stations", lambda: dme.select(*track, network(), sigma_altitude_m=30.0), 2000, "an epoch"),
         (
             f"dme coverage, Europe, {len(europe)} stations",
-            lambda: dme.coverage(lat_map, lon_map, 9500.0, europe, **asked),
+            lambda: dme.coverage(lat_map, lon_map, 9500.0, europe, **requirement),
             lat_map.size,
             f"a point of {lat_map.size}",
         ),

@@ -48,8 +48,8 @@ def measure() -> list[Row]:
     mechanized = seconds(lambda: ins.mechanize(quarter.imu, quarter.start), 3) / n
     rows = [Row("ins mechanize, 200 Hz", mechanized, n, "a sample, results at every sample")]
     for name, aiding, states, goal_s in cases:
-        found = ins.fuse(quarter.imu, aiding, quarter.start)
-        assert int(found.n_states.max()) == states, found.n_states.max()
+        fused = ins.fuse(quarter.imu, aiding, quarter.start)
+        assert int(fused.n_states.max()) == states, fused.n_states.max()
         cost = seconds(partial(ins.fuse, quarter.imu, aiding, quarter.start), 3) / n
         rows.append(Row(name, cost, n, "a sample; covariance at every sample, updates at 1 Hz", goal_s))
     hours = body.standing(2, 7200.0, 100)
@@ -66,9 +66,9 @@ def measure() -> list[Row]:
         ("loose", with_stations, ins.FilterSettings(form="loose")),
         ("federated", with_stations, ins.FilterSettings(form="federated")),
     ):
-        found = ins.fuse(hours.imu, aiding, hours.start, settings=how)
+        fused = ins.fuse(hours.imu, aiding, hours.start, settings=how)
         cost = seconds(partial(ins.fuse, hours.imu, aiding, hours.start, settings=how), repeats=1)
-        note = f"a sample; {found.n_states.max()} states, 26 satellites at 1 Hz; {cost:.2f} s the flight"
+        note = f"a sample; {fused.n_states.max()} states, 26 satellites at 1 Hz; {cost:.2f} s the flight"
         rows.append(Row(f"ins fuse, {name}", cost / n, n, note, goal_s=10.0 / n))
     return rows
 

@@ -61,9 +61,9 @@ def measure() -> list[Row]:
     table = day(0)
     best = seconds(lambda: kpi.evaluate(table, LEVELS, period_s=1.0), 3)
     rows = [Row("kpi.evaluate, a day, four levels", best / DAY, DAY, f"in memory; {best:.2f} s")]
-    sky, wanted = ranges(2880, 10), [kpi.level(name) for name in LEVELS.split(",")]
-    n = kpi.stanford_esa(sky, wanted).subsets.n_subsets
-    took = seconds(lambda: kpi.stanford_esa(sky, wanted), 1)
+    sky, required = ranges(2880, 10), [kpi.level(name) for name in LEVELS.split(",")]
+    n = kpi.stanford_esa(sky, required).subsets.n_subsets
+    took = seconds(lambda: kpi.stanford_esa(sky, required), 1)
     rows.append(Row("kpi.stanford_esa, a subset, four levels", took / n, n, f"2880 epochs of ten satellites; {took:.2f} s"))
     with tempfile.TemporaryDirectory() as folder:
         files = []
@@ -77,10 +77,10 @@ def measure() -> list[Row]:
 
 def _campaign(files: list[str], out: str) -> Row:
     done = subprocess.run([sys.executable, __file__, out, *files], check=True, capture_output=True, text=True)
-    found = json.loads(done.stdout.splitlines()[-1])
+    measured = json.loads(done.stdout.splitlines()[-1])
     n = DAY * len(files)
-    note = f"files to report; {found['wall_s']:.1f} s, {found['cpu_s']:.1f} s CPU, {found['peak_mb']:.0f} MB at most"
-    return Row(f"campaign of {len(files)} daily files", found["wall_s"] / n, n, note)
+    note = f"files to report; {measured['wall_s']:.1f} s, {measured['cpu_s']:.1f} s CPU, {measured['peak_mb']:.0f} MB at most"
+    return Row(f"campaign of {len(files)} daily files", measured["wall_s"] / n, n, note)
 
 
 def main() -> None:

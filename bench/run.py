@@ -69,10 +69,10 @@ def main() -> None:
         group: list[Row] = importlib.import_module(name).measure()
         show(group)
         rows += [(name, row) for row in group]
-    wanted = [row for _, row in rows if row.met is not None]
-    missed = [row.name for row in wanted if not row.met]
-    if wanted:
-        print(f"{len(wanted) - len(missed)} of {len(wanted)} goals met" + (f"; not met: {', '.join(missed)}" if missed else ""))
+    goals = [row for _, row in rows if row.met is not None]
+    missed = [row.name for row in goals if not row.met]
+    if goals:
+        print(f"{len(goals) - len(missed)} of {len(goals)} goals met" + (f"; not met: {', '.join(missed)}" if missed else ""))
     if set(arguments.modules) == set(MODULES):
         write(rows)
 
@@ -80,11 +80,11 @@ def main() -> None:
 def write(rows: list[tuple[str, Row]]) -> None:
     """The results of today, beside the machine."""
     first = {group: row.seconds_per_item for group, row in reversed(rows)}
-    found = [row._asdict() | {"met": row.met, "group": group, "ratio": row.seconds_per_item / first[group]} for group, row in rows]
+    results = [row._asdict() | {"met": row.met, "group": group, "ratio": row.seconds_per_item / first[group]} for group, row in rows]
     RESULTS.mkdir(exist_ok=True)
     stamp = datetime.now(UTC).strftime("%Y-%m-%d")
     out = RESULTS / f"{stamp}.json"
-    out.write_text(json.dumps({"date": stamp, "machine": machine(), "results": found}, indent=1) + "\n")
+    out.write_text(json.dumps({"date": stamp, "machine": machine(), "results": results}, indent=1) + "\n")
     print(f"written to {out}")
 
 

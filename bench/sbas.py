@@ -31,8 +31,8 @@ def measure() -> list[Row]:
     users = seconds(lambda: sbas.protection_levels(log, navigation, few[:, None], lat_rad=lat, lon_rad=lon, h_m=0.0, mode="pa"), repeats=3)
     setup = seconds(lambda: sbas.protection_levels(log, navigation, few[:1], **place, mode="pa"))
     n = few.size * lat.size
-    found = sbas.protection_levels(log, navigation, few[:, None], lat_rad=lat, lon_rad=lon, h_m=0.0, mode="pa")
-    satellites = float(found.n_sv.mean())
+    computed = sbas.protection_levels(log, navigation, few[:, None], lat_rad=lat, lon_rad=lon, h_m=0.0, mode="pa")
+    satellites = float(computed.n_sv.mean())
     sky = sbas.satellites(log, navigation, few[:1, None], lat_rad=lat, lon_rad=lon, h_m=0.0, mode="pa")
     most = int(np.bincount(sky.epoch).max())
     full = np.flatnonzero(np.bincount(sky.epoch) == most)

@@ -61,9 +61,9 @@ def measure() -> list[Row]:
             "the same number, vectorised",
         ),
     ]
-    found = [Row(name, seconds(action, 7) / n, n, note) for name, action, n, note in jobs]
+    measured = [Row(name, seconds(action, 7) / n, n, note) for name, action, n, note in jobs]
     quadrature = seconds(lambda: by_quadrature((3.0, 6.0), (10.0, 6.0), 2.0), repeats=2)
-    return [*found, Row("quadrature and search", quadrature, 1, "SciPy quad inside brentq, as published")]
+    return [*measured, Row("quadrature and search", quadrature, 1, "SciPy quad inside brentq, as published")]
 
 
 if __name__ == "__main__":

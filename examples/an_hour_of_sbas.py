@@ -18,19 +18,19 @@ import sys
 from navbound import gnss, kpi, sbas
 
 observations, navigation, messages, *truth_ecef_m = sys.argv[1:]
-found = sbas.solve(
+solved = sbas.solve(
     gnss.read_observations(observations),
     gnss.read_navigation(navigation),
     sbas.read(messages),
     mode="pa",
     truth_ecef_m=[float(metres) for metres in truth_ecef_m],
 )
-performance = kpi.evaluate(found.epochs, ["APV-I"])
+performance = kpi.evaluate(solved.epochs, ["APV-I"])
 level = performance.levels[0]
 print(
     f"{performance.n_solution} of {performance.n_expected} epochs have a position, {level.n_available} meet the limits of {level.level.id}"
 )
 for axis in performance.axes:
     print(f"{axis.axis}: error 95 % {axis.error_m.p95:.1f} m, protection level 95 % {axis.level_m.p95:.1f} m, above it {axis.n_mi} times")
-regions = kpi.stanford(found.epochs["nse_u_m"], found.epochs["vpl_m"], 50.0).counts
+regions = kpi.stanford(solved.epochs["nse_u_m"], solved.epochs["vpl_m"], 50.0).counts
 print(f"vertical Stanford diagram: {regions.n_nominal} nominal, {regions.n_mi} misleading, {regions.n_hmi} hazardous")

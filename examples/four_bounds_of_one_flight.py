@@ -16,5 +16,5 @@ epochs = navbound.fly("beijing-shanghai-drawn").epochs
 error_m = np.abs(epochs["tse_m"].to_numpy())
 for method in ("tse_exact", "tse_ltem", "tse_ctem_foot", "tse_sqsm"):
     bound_m = epochs[f"{method}_m"].to_numpy()
-    held = np.mean(error_m <= bound_m)
-    print(f"{method:14} {bound_m.mean():6.1f} m on average, holds the error at {100 * held:.1f} % of {len(error_m)} epochs")
+    inside = np.mean(error_m <= bound_m)
+    print(f"{method:14} {bound_m.mean():6.1f} m on average, holds the error at {100 * inside:.1f} % of {len(error_m)} epochs")

@@ -12,6 +12,6 @@ from navbound.maps.sources import Times
 europe = maps.Grid.degrees(5.0, (35.0, 70.0, -10.0, 40.0))
 hourly = Times(step_s=3600.0)
 for out in ((), ("G05", "E11")):
-    found = maps.make("araim", grid=europe, times=hourly, without=out).summary
-    shares = ", ".join(f"{100 * c.share:.1f} % of the area for {100 * c.available:g} % of the time" for c in found.coverage[:2])
+    summary = maps.make("araim", grid=europe, times=hourly, without=out).summary
+    shares = ", ".join(f"{100 * c.share:.1f} % of the area for {100 * c.available:g} % of the time" for c in summary.coverage[:2])
     print(f"{'without ' + ' and '.join(out) if out else 'all satellites'}: {shares}")

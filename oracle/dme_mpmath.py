@@ -88,10 +88,10 @@ def solve(names: list[str], measured: list[Any], h: Any, sigma_h: Any, start: tu
     covariance = [[c[0, 0], c[0, 1], up[0]], [c[1, 0], c[1, 1], up[1]], [up[0], up[1], mpf(sigma_h) ** 2]]
     chi_square = (z.T * (r**-1) * z)[0]
     dof = len(names) - 2
-    found = {"lat_rad": lat, "lon_rad": lon, "covariance_enu_m2": covariance, "drms_m": sqrt(c[0, 0] + c[1, 1])}
+    fix = {"lat_rad": lat, "lon_rad": lon, "covariance_enu_m2": covariance, "drms_m": sqrt(c[0, 0] + c[1, 1])}
     if dof:
-        found["p_residual"] = mp.gammainc(mpf(dof) / 2, chi_square / 2, mp.inf, regularized=True)
-    return found
+        fix["p_residual"] = mp.gammainc(mpf(dof) / 2, chi_square / 2, mp.inf, regularized=True)
+    return fix
 
 
 def vor(name: str, distance: Any, bearing: Any, h: Any, start: tuple[Any, Any]) -> tuple[Any, Any]:
@@ -158,13 +158,13 @@ def solve_vectors() -> str:
     for name, (names, place, h, sigma_h, errors) in TRUTHS.items():
         lat, lon = (radians(x) for x in place)
         measured = [float(slant(lat, lon, mpf(h), s)) + e for s, e in zip(stations(names), errors, strict=True)]
-        found = solve(names, measured, h, sigma_h, (lat, lon))
+        fix = solve(names, measured, h, sigma_h, (lat, lon))
         table = ", ".join(f"{n} = [{', '.join(repr(float(v)) for v in s)}]" for n, s in zip(names, stations(names), strict=True))
-        given = f"slant_m = {measured}, stations = {{ {table} }}, h_m = {h}, sigma_altitude_m = {sigma_h}"
+        inputs = f"slant_m = {measured}, stations = {{ {table} }}, h_m = {h}, sigma_altitude_m = {sigma_h}"
         if len(names) == 2:
-            given += f", prior_lat_rad = {float(lat)!r}, prior_lon_rad = {float(lon)!r}"
-        expect = ", ".join(f"{key} = {text(value)}" for key, value in found.items())
-        lines += ["", "[[case]]", f'id = "{name}"', f"input = {{ {given} }}", f"expect = {{ {expect}, n_ranges = {len(names)} }}"]
+            inputs += f", prior_lat_rad = {float(lat)!r}, prior_lon_rad = {float(lon)!r}"
+        expect = ", ".join(f"{key} = {text(value)}" for key, value in fix.items())
+        lines += ["", "[[case]]", f'id = "{name}"', f"input = {{ {inputs} }}", f"expect = {{ {expect}, n_ranges = {len(names)} }}"]
     return "\n".join(lines) + "\n"
 
 
@@ -186,12 +186,12 @@ def vor_vectors() -> str:
         lat, lon = vor(station, mpf(distance), mpf(bearing), h, start)
         place = [float(lat0), float(lon0), float(h0)]
         covariance = vor_covariance(station, distance, (lat, lon, mpf(h)), sigma_h, mpf(sigma_bearing))
-        given = f"slant_m = {distance}, bearing_rad = {bearing}, station_rad_m = {place}, h_m = {h}, sigma_altitude_m = {sigma_h}"
+        inputs = f"slant_m = {distance}, bearing_rad = {bearing}, station_rad_m = {place}, h_m = {h}, sigma_altitude_m = {sigma_h}"
         lines += [
             "",
             "[[case]]",
             f'id = "{station}"',
-            f"input = {{ {given}, sigma_bearing_rad = {sigma_bearing} }}",
+            f"input = {{ {inputs}, sigma_bearing_rad = {sigma_bearing} }}",
             f"expect = {{ lat_rad = {text(lat)}, lon_rad = {text(lon)}, covariance_enu_m2 = {text(covariance)} }}",
         ]
     return "\n".join(lines) + "\n"

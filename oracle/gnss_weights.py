@@ -5,8 +5,8 @@ Two factors are found on one set of epochs, in this order, and nothing else is:
 1. ``range_factor`` without truth: the residuals of all epochs, weighted, sum to their redundancy.
 2. ``shared_factor`` with truth: the mean normalised squared error is 3.
 
-``python oracle/gnss_weights.py`` prints both for the first half of the ESBC day, and the accuracy and honesty of the shipped weights and of
-those just calibrated on everything else at hand.
+``python oracle/gnss_weights.py`` prints both for the first half of the ESBC day, and the accuracy and consistency of the shipped weights
+and of those just calibrated on everything else at hand.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Recording:
 
     def solve(self, systems: str, factors: tuple[float, float] = (1.0, 1.0)) -> pl.DataFrame:
         """The epoch table of the part."""
-        found = gnss.solve(
+        solved = gnss.solve(
             self.observations,
             self.navigation,
             systems=systems,
@@ -52,7 +52,7 @@ class Recording:
             shared_factor=factors[1],
             truth_ecef_m=self.truth_ecef_m,
         )
-        return found.epochs[slice(*self.part)]
+        return solved.epochs[slice(*self.part)]
 
 
 def recordings() -> dict[str, Recording]:
@@ -66,7 +66,7 @@ def recordings() -> dict[str, Recording]:
     header = arlm.approximate_ecef_m
     taroz = gnss_folder / "taroz_static"
     place = [float(v) for v in (taroz / "rover_position.txt").read_text().split()]
-    found = [
+    read = [
         Recording("ESBC, first half", day, broadcast, esbc, (None, 1440)),
         Recording("ESBC, second half", day, broadcast, esbc, (1440, None)),
         Recording(
@@ -80,7 +80,7 @@ def recordings() -> dict[str, Recording]:
         ),
         hong_kong(gnss_folder / "HK_TST_2019_118"),
     ]
-    return {r.name: r for r in found}
+    return {r.name: r for r in read}
 
 
 def hong_kong(folder: Path) -> Recording:
@@ -111,9 +111,9 @@ def squares(epochs: pl.DataFrame) -> NDArray[np.float64]:
     rows = [[c["ee"], c["en"], c["eu"]], [c["en"], c["nn"], c["nu"]], [c["eu"], c["nu"], c["uu"]]]
     covariance = np.moveaxis(np.array(rows), -1, 0)
     good = np.isfinite(error).all(axis=1) & np.isfinite(covariance).all(axis=(1, 2))
-    found = np.full(epochs.height, np.nan)
-    found[good] = np.einsum("ni,ni->n", error[good], np.linalg.solve(covariance[good], error[good][..., None])[..., 0])
-    return found
+    squares = np.full(epochs.height, np.nan)
+    squares[good] = np.einsum("ni,ni->n", error[good], np.linalg.solve(covariance[good], error[good][..., None])[..., 0])
+    return squares
 
 
 def variance_factor(epochs: pl.DataFrame) -> float:
@@ -140,18 +140,18 @@ def calibrate(recording: Recording, systems: str) -> tuple[float, float]:
 
 
 def report(recording: Recording, systems: str, factors: tuple[float, float]) -> list[str]:
-    """One line a status: how many, accuracy, honesty."""
+    """One line a status: how many, accuracy, consistency."""
     epochs = recording.solve(systems, factors)
     square = squares(epochs)
     horizontal = np.hypot(*(epochs[c].fill_null(np.nan).to_numpy() for c in ("nse_e_m", "nse_n_m")))
     lines = []
     for status in ("ok", "degraded"):
-        chosen = (epochs["status"] == status).to_numpy() & np.isfinite(square)
-        if chosen.any():
-            h95, mean, median = np.quantile(horizontal[chosen], 0.95), square[chosen].mean(), np.median(square[chosen])
-            inside = float((square[chosen] <= stats.chi2.ppf(0.95, 3)).mean())
+        selected = (epochs["status"] == status).to_numpy() & np.isfinite(square)
+        if selected.any():
+            h95, mean, median = np.quantile(horizontal[selected], 0.95), square[selected].mean(), np.median(square[selected])
+            inside = float((square[selected] <= stats.chi2.ppf(0.95, 3)).mean())
             lines.append(
-                f"{recording.name:20s} {systems:4s} {status:9s} n {chosen.sum():5d}  H95 {h95:7.2f} m"
+                f"{recording.name:20s} {systems:4s} {status:9s} n {selected.sum():5d}  H95 {h95:7.2f} m"
                 f"  NEES mean {mean:8.2f} median {median:6.2f}  in 95 % {inside:.3f}"
             )
     return lines
@@ -159,17 +159,17 @@ def report(recording: Recording, systems: str, factors: tuple[float, float]) -> 
 
 def main() -> None:
     """Calibrate, then tell of everything."""
-    found = recordings()
+    known = recordings()
     shipped = (1.0, 1.0)
     for systems in ("G", "GE", "GEC"):
-        factors = calibrate(found["ESBC, first half"], systems)
+        factors = calibrate(known["ESBC, first half"], systems)
         print(f"calibrated on the first half of the ESBC day, {systems}: ranges {factors[0]:.3f}, shared {factors[1]:.3f}")
-        for name, recording in found.items():
+        for name, recording in known.items():
             if name == "ARLM" and systems != "G":
                 continue
             of = systems.replace("E", "") if name.startswith("HK") else systems
-            for label, chosen in (("shipped", shipped), ("calibrated", factors)):
-                for line in report(recording, of, chosen):
+            for label, weights in (("shipped", shipped), ("calibrated", factors)):
+                for line in report(recording, of, weights):
                     print(f"  {label:10s} {line}")
 
 

@@ -304,7 +304,7 @@ def common() -> dict[str, str]:
     }
 
 
-def fixes_given() -> str:
+def fixes_input() -> str:
     places = [moved(t, o) for t, o in zip(FIX_TIMES, FIX_OFFSETS_ENU, strict=True)]
     fixes = table(
         **{"class": '"ins.Fixes"'},
@@ -323,9 +323,9 @@ def fixes_given() -> str:
     return table(**{"class": '"ins.Aiding"'}, fixes=fixes, baro=baro)
 
 
-def ranges_given() -> str:
+def ranges_input() -> str:
     times = [t for t in FIX_TIMES for _ in SATELLITES_RAD]
-    given = table(
+    satellites = table(
         **{"class": '"ins.SatelliteRanges"'},
         time_ns=nanoseconds(times),
         satellite="[" + ", ".join(f'"G{k % 5 + 1:02d}"' for k in range(len(times))) + "]",
@@ -336,7 +336,7 @@ def ranges_given() -> str:
         sigma_correlated_m=SLOW,
         correlation_time_s=SLOW_TIME,
     )
-    return table(**{"class": '"ins.Aiding"'}, satellites=given)
+    return table(**{"class": '"ins.Aiding"'}, satellites=satellites)
 
 
 SPREAD_BECAUSE = "the step of 0.25 s in 40 s: (1/160)² of what the biases make, twice in a variance, 8e-5"
@@ -349,16 +349,16 @@ def vectors() -> str:
         'source = "dense filter in Earth-fixed axes on a parallel flown at constant speed, matrix exponentials: oracle/ins_filter.py"',
         'provenance = "ours"',
     ]
-    for name, given, found in (
-        ("solved positions and altimeter", fixes_given(), with_fixes()),
-        ("ranges to five satellites", ranges_given(), with_ranges()),
+    for name, inputs, results in (
+        ("solved positions and altimeter", fixes_input(), with_fixes()),
+        ("ranges to five satellites", ranges_input(), with_ranges()),
     ):
-        words = ", ".join(f"{key} = {value}" for key, value in {**common(), "aiding": given}.items())
+        words = ", ".join(f"{key} = {value}" for key, value in {**common(), "aiding": inputs}.items())
         for part, tolerance in (
             ("spread", f'{{ rel = {SPREAD_SHARE}, because = "{SPREAD_BECAUSE}" }}'),
             ("estimate", f'{{ rel = {ESTIMATE_SHARE}, because = "{ESTIMATE_BECAUSE}" }}'),
         ):
-            expect = table(**found[part])
+            expect = table(**results[part])
             lines += ["", "[[case]]", f'id = "{name}: {part}"', f"input = {{ {words} }}", f"expect = {expect}", f"tolerance = {tolerance}"]
     return "\n".join(lines) + "\n"
 

@@ -42,8 +42,8 @@ def factors(dof: int, false_alarm: float = FALSE_ALARM, missed: float = MISSED) 
     start = float(stats.chi2.isf(false_alarm, dof))
     square = mp.findroot(lambda x: mp.gammainc(mp.mpf(dof) / 2, x / 2, mp.inf, regularized=True) - mp.mpf(false_alarm), start)
     guess = (math.sqrt(start) + float(stats.norm.isf(missed))) ** 2
-    found = mp.findroot(lambda v: mp.log(noncentral_head(dof, v, square) / mp.mpf(missed)), (guess, guess + 2), tol=1e-30)
-    return float(mp.sqrt(square)), float(mp.sqrt(found))
+    root = mp.findroot(lambda v: mp.log(noncentral_head(dof, v, square) / mp.mpf(missed)), (guess, guess + 2), tol=1e-30)
+    return float(mp.sqrt(square)), float(mp.sqrt(root))
 
 
 def levels(unit: Floats, systems: list[int], sigma: Floats) -> dict[str, float]:
@@ -143,9 +143,9 @@ def print_factors() -> None:
     print('provenance = "ours"')
     print('tolerance = { rel = 1e-12, because = "the chi-square quantile is exact to the last digit of a logarithm of size 1e2" }')
     dofs = [1, 2, 3, 4, 5, 6, 8, 12, 20, 40, 60]
-    found = [factors(dof) for dof in dofs]
+    computed = [factors(dof) for dof in dofs]
     print(f'\n[[case]]\nid = "false-alarm-3.33e-7-missed-1e-3"\n[case.input]\nn_redundant = {dofs}\n[case.expect]')
-    print(f"value = [{[repr(t) for t, _ in found]}, {[repr(b) for _, b in found]}]".replace("'", '"'))
+    print(f"value = [{[repr(t) for t, _ in computed]}, {[repr(b) for _, b in computed]}]".replace("'", '"'))
 
 
 if __name__ == "__main__":

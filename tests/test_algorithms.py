@@ -14,9 +14,12 @@ import pytest
 from typer.testing import CliRunner
 
 import navbound
-from navbound import InputError, algorithms, maps
+from navbound import InputError, algorithms, araim, gnss, maps, raim
+from navbound.araim import listed
 from navbound.cli.main import app
+from navbound.errors import ConflictError
 from navbound.maps.sources import Times
+from navbound.methods import ProtectionMethod
 from navbound.run.predict import Request, place, predict
 from test_raim import day
 from toy_algorithm import TOY, WORDS
@@ -97,4 +100,52 @@ def test_every_entry_belongs_to_an_algorithm_of_the_core_and_can_be_called() -> 
             assert callable(algorithms._loaded(one.call)), one.name
             if isinstance(one, algorithms.Place):
                 assert one.words("single-frequency")
-    assert set(algorithms._ENTRIES) <= set(algorithms.algorithms())
+    assert set(algorithms._FUNCTIONS) <= set(algorithms.algorithms())
+
+
+def test_an_algorithm_of_orbits_needs_no_entry_in_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The core's line is enough for help, map and prediction; what a service corrects needs its messages."""
+    monkeypatch.setattr(algorithms, "_FUNCTIONS", {})
+    assert {"raim-slope", "raim-separation", "araim"} <= set(listed.known())
+    assert set(listed.known()) == set(algorithms.entries(algorithms.Place)) == set(algorithms.entries(algorithms.Grid))
+    assert not {"sbas", "gbas", "error-extraction"} & set(listed.known())
+    made = maps.make("raim-separation", grid=maps.Grid.degrees(45.0), times=HOURS, limits={"hpl_m": 1000.0})
+    assert made.points["hpl_p50_m"].is_finite().all()
+    result = predict(Request(["gps"], HOURS, ("RNP 0.3",), kind="raim-separation"), [place("50,8")])
+    assert result.kind == "raim-separation"
+    assert any("RAIM by solution separation" in words for words in result.assumptions)
+
+
+def test_levels_by_id_are_those_of_the_function_of_the_family() -> None:
+    sky = (gnss.constellation("gps") + gnss.constellation("galileo"), [0.9, -0.2], [0.1, 2.0], 0.0, HOURS.offsets_s())
+    slope, usual = listed.predict(*sky, algorithm="raim-slope"), raim.predict(*sky)
+    for name in ("hpl_m", "vpl_m", "n_sv", "status"):
+        np.testing.assert_array_equal(getattr(slope, name), getattr(usual, name))
+    np.testing.assert_array_equal(slope.beside["hpl_slope_m"], usual.hpl_slope_m)
+    by_id, own = listed.predict(*sky, algorithm="araim", model="dual-frequency"), araim.predict(*sky)
+    for name in ("hpl_m", "vpl_m", "n_sv", "status"):
+        np.testing.assert_array_equal(getattr(by_id, name), getattr(own, name))
+    np.testing.assert_array_equal(by_id.beside["emt_m"], own.emt_m)
+    assert np.isfinite(own.vpl_m).any()
+    with pytest.raises(InputError, match="algorithm = gbas: no algorithm of orbits"):
+        listed.predict(*sky, algorithm="gbas")
+
+
+def test_a_service_of_messages_is_mapped_by_its_entry(shared_data: Path) -> None:
+    """SBAS has no map of its own: what takes messages is mapped as it is."""
+    folder = shared_data / "sbas" / "more"
+    files = {"messages": folder / "prn137_2025046_17h.ems.gz", "navigation": (folder / "gps_2025046_17h.25N",)}
+    work = {"grid": maps.Grid.degrees(5.0, (30.0, 40.0, 130.0, 140.0)), "times": Times(None, 600.0, 300.0), "mode": "npa", **files}
+    declared = ProtectionMethod("toy-service", "Toy", "toy_algorithm.sent", "a test", "yours", "nothing", WORDS, integrity=False)
+    toy = algorithms.Sent(name="toy-service", call="toy_algorithm.sent", title="Toy service", columns=(algorithms.HPL,))
+    usual = maps.make("sbas", **work)  # type: ignore[arg-type]
+    with algorithms.register(algorithms.Algorithm(declared, (toy,))):
+        doubled = maps.make("toy-service", limits={"hpl_m": 100.0}, **work)  # type: ignore[arg-type]
+    assert usual.points["hpl_p50_m"].is_finite().all()
+    np.testing.assert_array_equal(doubled.points["hpl_p50_m"], 2.0 * usual.points["hpl_p50_m"])
+    assert "vpl_p50_m" not in doubled.points.columns
+    with (
+        pytest.raises(ConflictError, match="toy-service takes the levels of a message log"),
+        algorithms.register(algorithms.Algorithm(declared, (toy,))),
+    ):
+        maps.make("toy-service", grid=work["grid"])  # type: ignore[arg-type]

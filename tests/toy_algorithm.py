@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from navbound import algorithms, raim
+from navbound import algorithms, raim, sbas
 from navbound.methods import ProtectionMethod
 
 if TYPE_CHECKING:
@@ -35,6 +35,12 @@ def watch(*files: Any, **options: Any) -> Any:
     watched = raim.watch(*files, **options)
     doubled = watched.epochs.with_columns(watched.epochs["hpl_m"] * 2.0)
     return replace(watched, epochs=doubled, models=watched.models | {"protection levels": WORDS})
+
+
+def sent(*messages: Any, **options: Any) -> Any:
+    """Levels of a service's messages."""
+    levels = sbas.protection_levels(*messages, **options)
+    return Levels(2.0 * levels.hpl_m, levels.n_sv, levels.status)
 
 
 TOY = algorithms.Algorithm(

@@ -1,14 +1,16 @@
 """The list of algorithms of protection levels: what each promises, and which jobs can call it.
 
-The core declares every algorithm (:func:`navbound.methods.protection_methods`). Here stands, once, what can be called for it: on recorded
-observations (``--protection``), over a grid of users (``navbound map``) and for a place or a route (``navbound predict``). Those commands,
-their help, the pages and the contract tests read this list. An algorithm of a caller's own joins it for a session by :func:`register`.
+The core declares every algorithm (:func:`navbound.methods.protection_methods`). One that needs nothing but orbits can be mapped
+(``navbound map``) and predicted (``navbound predict``) by its id: nothing is entered for it here. ``_FUNCTIONS`` has what needs a function
+of the package: settings of a family, recorded observations (``--protection``), messages of a service. Commands, their help, the pages and
+the contract tests read this list. An algorithm of a caller's own joins it for a session by :func:`register`.
 """
 
 from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
@@ -122,10 +124,23 @@ class Place(Entry):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sent(Entry):
-    """Levels from what a service sent.
+    """Levels from what a service sent: at a place, along a route, or of a grid of users.
 
     (messages, navigation, time_ns, ``lat_rad``, ``lon_rad``, ``h_m``, ``mode``, ``mask_rad``) -> levels.
+
+    Attributes
+    ----------
+    title : str
+        Heading of the map.
+    columns : tuple of Column
+        What the map shows, the first column first.
+    user_epoch_s : float
+        What a user costs at one instant on one core, about. [s]
     """
+
+    title: str
+    columns: tuple[Column, ...]
+    user_epoch_s: float = 4e-6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -192,7 +207,7 @@ ARAIM_CAUSES = (
     Cause("p_not_monitored", "Faults that cannot be monitored take the whole integrity risk", ("not_monitored",)),
 )
 
-_ENTRIES: dict[str, tuple[Entry, ...]] = {
+_FUNCTIONS: dict[str, tuple[Entry, ...]] = {
     "raim-slope": (
         Recorded(name="raim", call="navbound.raim.watch"),
         Place(name="raim", call="navbound.raim.predict", assumptions="navbound.raim.assumptions"),
@@ -225,15 +240,45 @@ _ENTRIES: dict[str, tuple[Entry, ...]] = {
             words="Service {service}, error model {model}; integrity support data of the satellites as shipped, inferred.",
         ),
     ),
-    "sbas": (Sent(name="sbas", call="navbound.sbas.protection_levels"),),
+    "sbas": (Sent(name="sbas", call="navbound.sbas.protection_levels", title="SBAS protection levels", columns=(VPL, HPL)),),
 }
 _OF_SESSION: dict[str, Algorithm] = {}
 
 
 def algorithms() -> dict[str, Algorithm]:
     """Every algorithm by its id: the core's in their order, then those of the session."""
-    shipped = {id_: Algorithm(declared, _ENTRIES.get(id_, ())) for id_, declared in protection_methods().items()}
-    return shipped | _OF_SESSION
+    return {id_: Algorithm(declared, _entries(declared)) for id_, declared in protection_methods().items()} | _OF_SESSION
+
+
+def _entries(declared: ProtectionMethod) -> tuple[Entry, ...]:
+    """Functions of the package for it, and what its declaration is enough for: a map, and a place or a route."""
+    own = _FUNCTIONS.get(declared.id, ())
+    if not declared.of_orbits:
+        return own
+    by_id: dict[type[Entry], Entry] = {
+        Place: Place(
+            name=declared.id,
+            call="navbound.araim.listed.predict",
+            settings={"algorithm": declared.id},
+            assumptions=partial(_assumptions, declared.id),
+        ),
+        Grid: Grid(
+            name=declared.id,
+            call="navbound.araim.listed.predict",
+            settings={"algorithm": declared.id},
+            title=declared.title,
+            columns=(HPL, VPL),
+            causes=ARAIM_CAUSES,
+            options={"model": "single-frequency"},
+            words="Usual settings, error model {model}.",
+        ),
+    }
+    return own + tuple(entry for kind, entry in by_id.items() if not any(isinstance(one, kind) for one in own))
+
+
+def _assumptions(algorithm: str, model: str) -> list[str]:
+    words: list[str] = _loaded("navbound.araim.listed.assumptions")(algorithm, model)
+    return words
 
 
 def entries(kind: type[E]) -> dict[str, E]:

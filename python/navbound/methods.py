@@ -75,6 +75,8 @@ class ProtectionMethod:
         Which faults the levels cover, and what must be true for the stated risk to be true.
     integrity : bool
         Whether integrity may rest on it; False for experimental levels.
+    of_orbits : bool
+        Whether orbits and an error model of ranges are all that it needs: then it can be mapped and predicted by its id.
     """
 
     id: str
@@ -85,6 +87,7 @@ class ProtectionMethod:
     covers: str
     assumes: str
     integrity: bool
+    of_orbits: bool = False
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use navbound_core::bound::araim::modes::NoModes;
 use navbound_core::bound::araim::ranging::{Airborne, Beyond};
 use navbound_core::bound::araim::service::Support;
-use navbound_core::bound::{Algorithm, Levels, NoLevels, Sight};
+use navbound_core::bound::{Algorithm, Levels, NoLevels, Sight, Task, with_algorithm};
 use navbound_core::frame::{Geodetic, ecef_from_geodetic, enu_from_ecef};
 use navbound_core::geometry::{Elements, Orbit};
 use navbound_core::quantity::{Metres, OutOfDomain, Radians, Reason, Unavailable};
@@ -214,6 +214,38 @@ where
         #[inline(always)]
         |algorithm, sights| algorithm.levels(sights),
     )
+}
+
+/// Levels by an algorithm of the list, and the numbers beside them in the order in which it names them; NaN where there are no levels.
+#[derive(Debug, Clone)]
+pub struct Listed {
+    /// One a user and instant.
+    pub rows: Vec<Row<()>>,
+    /// One a number that the algorithm names, each as long as the rows.
+    pub numbers: Vec<(&'static str, Vec<f64>)>,
+}
+
+/// The same as [`predict`] by the id of an algorithm, with its usual settings; `None` where no algorithm of satellites has the id.
+///
+/// # Errors
+/// As [`predict`].
+pub fn predict_by_id(id: &str, outlook: &Outlook<'_>) -> Option<Result<Listed, AtIndex>> {
+    with_algorithm(id, Predict(outlook))
+}
+
+struct Predict<'a>(&'a Outlook<'a>);
+
+impl Task for Predict<'_> {
+    type Output = Result<Listed, AtIndex>;
+
+    fn with<A: Algorithm>(self) -> Self::Output {
+        let rows = predict::<A>(self.0, &A::usual())?;
+        let number = |k| rows.iter().map(|row| row.levels.as_ref().map_or(f64::NAN, |l| A::number(&l.detail, k))).collect();
+        let numbers = A::COLUMNS.iter().enumerate().map(|(k, name)| (*name, number(k))).collect();
+        let plain = |l: Levels<A::Detail>| Levels { hpl: l.hpl, vpl: l.vpl, detail: () };
+        let rows = rows.into_iter().map(|row| Row { n_sv: row.n_sv, outcome: row.outcome, levels: row.levels.map(plain) });
+        Ok(Listed { rows: rows.collect(), numbers })
+    }
 }
 
 /// The same by anything that makes levels of satellites.

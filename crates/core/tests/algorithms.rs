@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)] // A test may stop at the first surprise, in its helpers too.
 
 use nalgebra::Vector3;
-use navbound_core::bound::{ALGORITHMS, Algorithm, Levels, NoLevels, Protection, Provenance, Sight, Task, with_algorithm};
+use navbound_core::bound::{ALGORITHMS, Algorithm, Levels, NoLevels, Protection, Provenance, Ranges, Sight, Task, with_algorithm};
 use navbound_core::quantity::{Metres, Unavailable};
 use navbound_core::signal::Constellation;
 
@@ -130,6 +130,7 @@ impl Algorithm for Toy {
         assumes: "nothing",
         integrity: false,
     };
+    const RANGES: Ranges = Ranges::Receiver;
     const COLUMNS: &'static [&'static str] = &["n_gps"];
     type Settings = f64;
     type Detail = usize;

@@ -1,6 +1,8 @@
 //! ARAIM protection levels.
 
+use crate::algorithms::levels;
 use crate::error::input_error;
+use crate::fields::fields;
 use crate::gnss::orbit;
 use crate::positions::{Navigation, Observations, satellites};
 use crate::status;
@@ -63,8 +65,7 @@ fn araim_services(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 fn araim_support(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let m = SupportMessage::STUDY;
     let d = PyDict::new(py);
-    d.set_item("id", m.id)?;
-    d.set_item("source", m.source)?;
+    fields!(d, m: id, source);
     d.set_item("provenance", m.provenance.word())?;
     let rows = m.support.map(|s| [s.sigma_ura.m(), s.sigma_ure.m(), s.bias.m(), s.bias_continuity.m(), s.p_sat, s.p_const]);
     d.set_item("support", rows)?;
@@ -376,9 +377,7 @@ fn araim_levels<'py>(
 fn columns<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py, PyDict>> {
     let number = |f: fn(&Levels) -> f64| rows.iter().map(|r| r.levels.as_ref().map_or(f64::NAN, f)).collect::<Vec<_>>().into_pyarray(py);
     let count = |f: fn(&Levels) -> usize| rows.iter().map(|r| r.levels.as_ref().map_or(0, f) as i64).collect::<Vec<_>>().into_pyarray(py);
-    let d = PyDict::new(py);
-    d.set_item("hpl_m", number(|l| l.hpl.m()))?;
-    d.set_item("vpl_m", number(|l| l.vpl_m()))?;
+    let d = levels(py, rows)?;
     d.set_item("hpl_e_m", number(|l| l.detail.axes[0].m()))?;
     d.set_item("hpl_n_m", number(|l| l.detail.axes[1].m()))?;
     d.set_item("emt_m", number(|l| l.detail.emt.m()))?;
@@ -388,9 +387,6 @@ fn columns<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py, PyDict>> {
     d.set_item("p_unmonitored", number(|l| l.detail.p_unmonitored))?;
     d.set_item("n_modes", count(|l| l.detail.n_modes))?;
     d.set_item("n_monitored", count(|l| l.detail.n_monitored))?;
-    d.set_item("n_sv", rows.iter().map(|r| r.n_sv as i64).collect::<Vec<_>>().into_pyarray(py))?;
-    d.set_item("outcome", rows.iter().map(|r| r.outcome as u8).collect::<Vec<_>>().into_pyarray(py))?;
-    d.set_item("words", Outcome::WORDS.to_vec())?;
     Ok(d)
 }
 

@@ -1,6 +1,7 @@
 //! Evaluation of bounds and covariances against truth.
 
 use crate::error::input_error;
+use crate::fields::fields;
 use navbound_assess::evaluation::{self, Errors};
 use navbound_core::quantity::{OutOfDomain, Risk};
 use numpy::PyReadonlyArray1;
@@ -24,18 +25,10 @@ fn evaluate_bound<'py>(
     let (error_m, bound_m, track) = (error_m.as_slice()?, bound_m.as_slice()?, track.as_slice()?);
     let score = py.detach(|| evaluation::bound(error_m, bound_m, risk, track)).map_err(refused)?;
     let d = PyDict::new(py);
-    d.set_item("n", score.n)?;
-    d.set_item("n_without_bound", score.n_without_bound)?;
-    d.set_item("n_outside", score.n_outside)?;
-    d.set_item("n_effective", score.n_effective)?;
-    d.set_item("coverage", score.coverage)?;
-    d.set_item("coverage_low", score.coverage_low)?;
-    d.set_item("coverage_high", score.coverage_high)?;
-    d.set_item("mean_m", score.mean_m)?;
-    d.set_item("median_m", score.median_m)?;
-    d.set_item("max_m", score.max_m)?;
-    d.set_item("winkler_m", score.winkler_m)?;
-    d.set_item("pinball_m", score.pinball_m)?;
+    fields!(
+        d, score:
+        n, n_without_bound, n_outside, n_effective, coverage, coverage_low, coverage_high, mean_m, median_m, max_m, winkler_m, pinball_m
+    );
     Ok(d)
 }
 
@@ -52,13 +45,7 @@ fn evaluate_nees<'py>(
     let errors = Errors { dimension, error_m, covariance_m2, track };
     let consistency = py.detach(|| evaluation::nees(&errors)).map_err(refused)?;
     let d = PyDict::new(py);
-    d.set_item("n", consistency.n)?;
-    d.set_item("n_unusable", consistency.n_unusable)?;
-    d.set_item("n_effective", consistency.n_effective)?;
-    d.set_item("dimension", consistency.dimension)?;
-    d.set_item("nees_mean", consistency.nees_mean)?;
-    d.set_item("nees_low", consistency.nees_low)?;
-    d.set_item("nees_high", consistency.nees_high)?;
+    fields!(d, consistency: n, n_unusable, n_effective, dimension, nees_mean, nees_low, nees_high);
     Ok(d)
 }
 
@@ -76,11 +63,7 @@ fn evaluate_pit<'py>(
     let errors = Errors { dimension, error_m, covariance_m2, track };
     let pit = py.detach(|| evaluation::pit(&errors, n_bins)).map_err(refused)?;
     let d = PyDict::new(py);
-    d.set_item("n", pit.n)?;
-    d.set_item("n_effective", pit.n_effective)?;
-    d.set_item("counts", pit.counts)?;
-    d.set_item("low", pit.low)?;
-    d.set_item("high", pit.high)?;
+    fields!(d, pit: n, n_effective, counts, low, high);
     Ok(d)
 }
 
@@ -122,10 +105,7 @@ fn evaluate_magnitude<'py>(
     let errors = Errors { dimension: 2, error_m, covariance_m2, track };
     let magnitude = py.detach(|| evaluation::magnitude(&errors)).map_err(refused)?;
     let d = PyDict::new(py);
-    d.set_item("n", magnitude.n)?;
-    d.set_item("n_effective", magnitude.n_effective)?;
-    d.set_item("square_mean", magnitude.square_mean)?;
-    d.set_item("p_value", magnitude.p_value)?;
+    fields!(d, magnitude: n, n_effective, square_mean, p_value);
     Ok(d)
 }
 
@@ -135,11 +115,7 @@ fn evaluate_containment(py: Python<'_>, n_outside: usize, n: usize, n_effective:
     let risk = Risk::new(risk).map_err(|e| input_error(e, None))?;
     let containment = evaluation::containment(n_outside, n, n_effective, risk).map_err(refused)?;
     let d = PyDict::new(py);
-    d.set_item("coverage", containment.coverage)?;
-    d.set_item("coverage_low", containment.coverage_low)?;
-    d.set_item("coverage_high", containment.coverage_high)?;
-    d.set_item("p_value", containment.p_value)?;
-    d.set_item("p_value_any", containment.p_value_any)?;
+    fields!(d, containment: coverage, coverage_low, coverage_high, p_value, p_value_any);
     Ok(d)
 }
 

@@ -1,5 +1,6 @@
 //! A landing and the taxi-in.
 
+use crate::fields::fields;
 use crate::simulate::{refused, unreadable};
 use navbound_simulate::{Driven, GroundFlight, Taxi};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
@@ -43,8 +44,7 @@ impl Ground {
         d.set_item("course_rad", places(|p| p.course.rad()))?;
         d.set_item("leg", driven.places.iter().map(|p| p.leg as u64).collect::<Vec<_>>().into_pyarray(py))?;
         d.set_item("phase", driven.phase.iter().map(|&p| p as u64).collect::<Vec<_>>().into_pyarray(py))?;
-        d.set_item("transition_m", driven.transition_m)?;
-        d.set_item("per_radian_m", driven.per_radian_m)?;
+        fields!(d, driven: transition_m, per_radian_m);
         Ok(d)
     }
 

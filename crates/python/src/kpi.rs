@@ -1,6 +1,7 @@
 //! Performance indicators: a campaign under way, its percentiles, its Stanford diagrams.
 
 use crate::error::input_error;
+use crate::fields::fields;
 use navbound_assess::evaluation::INTERVAL_RISK;
 use navbound_assess::kpi::{
     Axis, Bucket, Campaign, Cause, Columns, Continuity, Demand, Event, Grid, Histogram, LevelTally, Moments, Refused, Regions, Selector,
@@ -21,8 +22,7 @@ fn refused((index, e): Refused) -> PyErr {
 fn service_levels(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     let row = |level: &navbound_core::spec::ServiceLevel| {
         let d = PyDict::new(py);
-        d.set_item("id", level.id)?;
-        d.set_item("title", level.title)?;
+        fields!(d, level: id, title);
         d.set_item("hal_m", level.hal.m())?;
         d.set_item("val_m", level.val.map(Metres::m))?;
         d.set_item("accuracy_h_m", level.accuracy_h.m())?;
@@ -123,9 +123,7 @@ impl KpiCampaign {
         d.set_item("events", event_columns(py, &outcome.events, &settings.grid)?)?;
         d.set_item("span_ns", tally.span.map(|(first, last)| (settings.grid.time_ns(first), settings.grid.time_ns(last))))?;
         d.set_item("n_expected", tally.n_expected())?;
-        d.set_item("n_missing", tally.n_missing)?;
-        d.set_item("n_no_solution", tally.n_no_solution)?;
-        d.set_item("n_solution", tally.n_solution)?;
+        fields!(d, tally: n_missing, n_no_solution, n_solution);
         d.set_item("n_repeated", self.0.n_repeated())?;
         d.set_item("n_mi_epochs", tally.n_mi)?;
         d.set_item("axes", axes(py, &tally.axes, &settings.grid)?)?;

@@ -2,6 +2,7 @@
 //!
 //! One file a subject, each with a `register`; every refusal of the Rust side becomes a Python error in `error.rs` and nowhere else.
 
+mod algorithms;
 mod anp;
 mod araim;
 mod arguments;
@@ -10,6 +11,7 @@ mod dme;
 mod ee;
 mod error;
 mod evaluation;
+mod fields;
 mod gbas;
 mod gnss;
 mod ground;
@@ -51,6 +53,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     // What a panic becomes; the Python package turns it into its own class, which says that it is our bug.
     m.add("PanicException", m.py().get_type::<pyo3::panic::PanicException>())?;
     methods::register(m)?;
+    algorithms::register(m)?;
     status::register(m)?;
     tse::register(m)?;
     vertical::register(m)?;

@@ -1,6 +1,7 @@
 //! The list of methods, and any of them over an epoch table.
 
 use crate::error::input_error;
+use crate::fields::fields;
 use navbound_assess::bounds::{self, Columns};
 use navbound_assess::judge;
 use navbound_core::bound;
@@ -17,9 +18,7 @@ fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     bound::methods()
         .map(|m| {
             let d = PyDict::new(py);
-            d.set_item("id", m.id)?;
-            d.set_item("title", m.title)?;
-            d.set_item("source", m.source)?;
+            fields!(d, m: id, title, source);
             d.set_item("provenance", m.provenance.word())?;
             d.set_item("error_column", m.bounds.error_column())?;
             d.set_item("assumes", m.assumes)?;
@@ -28,27 +27,6 @@ fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
             d.set_item("monotone_in_risk", m.promises.monotone_in_risk)?;
             d.set_item("conservative", m.promises.conservative)?;
             d.set_item("may_alert", m.promises.may_alert)?;
-            Ok(d)
-        })
-        .collect()
-}
-
-/// Every algorithm of protection levels: id, title, function, source, provenance, what it covers and assumes, whether integrity may rest on it.
-#[pyfunction]
-fn protection_methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    bound::ALGORITHMS
-        .iter()
-        .map(|entry| {
-            let p = &entry.protection;
-            let d = PyDict::new(py);
-            d.set_item("id", p.id)?;
-            d.set_item("title", p.title)?;
-            d.set_item("function", p.function)?;
-            d.set_item("source", p.source)?;
-            d.set_item("provenance", p.provenance.word())?;
-            d.set_item("covers", p.covers)?;
-            d.set_item("assumes", p.assumes)?;
-            d.set_item("integrity", p.integrity)?;
             Ok(d)
         })
         .collect()
@@ -159,7 +137,6 @@ const ERRORS: [Error; 7] = [
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(methods, m)?)?;
-    m.add_function(wrap_pyfunction!(protection_methods, m)?)?;
     m.add_function(wrap_pyfunction!(checked_risk, m)?)?;
     m.add_function(wrap_pyfunction!(errors_of, m)?)?;
     m.add_function(wrap_pyfunction!(bounds_of, m)?)

@@ -1,6 +1,7 @@
 //! Navigation databases and the paths of their procedures.
 
 use crate::error::{format_error, input_error};
+use crate::fields::fields;
 use navbound_core::frame::LatLon;
 use navbound_core::quantity::{Metres, OutOfDomain, Radians};
 use navbound_formats::arinc424::{self, Contradiction, Database, LegRequirement, PathOfProcedure, Procedure, ProcedureLeg, Route};
@@ -132,8 +133,7 @@ impl NavigationDatabase {
                 d.set_item("sequence", f.sequence)?;
                 d.set_item("kind", f.kind.id())?;
                 d.set_item("remark", f.kind.is_remark())?;
-                d.set_item("published", f.published)?;
-                d.set_item("expected", f.expected)?;
+                fields!(d, f: published, expected);
                 Ok(d)
             })
             .collect()
@@ -156,8 +156,7 @@ fn row(p: &Procedure) -> ProcedureRow {
 
 fn leg_dict<'py>(py: Python<'py>, l: &ProcedureLeg, geometry: &PathLeg, required: &LegRequirement) -> PyResult<Bound<'py, PyDict>> {
     let (d, leg) = (PyDict::new(py), &l.leg);
-    d.set_item("line", leg.line)?;
-    d.set_item("sequence", leg.sequence)?;
+    fields!(d, leg: line, sequence);
     d.set_item("route_type", letter(l.route_type))?;
     d.set_item("transition", l.transition.as_str())?;
     d.set_item("part", l.part.id())?;
@@ -177,8 +176,7 @@ fn leg_dict<'py>(py: Python<'py>, l: &ProcedureLeg, geometry: &PathLeg, required
     d.set_item("rnp_differs", required.differs)?;
     d.set_item("navaid", leg.navaid.ident.as_str())?;
     d.set_item("radius_coded_m", leg.radius_m)?;
-    d.set_item("theta_rad", leg.theta_rad)?;
-    d.set_item("rho_m", leg.rho_m)?;
+    fields!(d, leg: theta_rad, rho_m);
     d.set_item("course_field", leg.course_text.as_str())?;
     d.set_item("distance_field", leg.extent_text.as_str())?;
     d.set_item("altitude_description", letter(leg.altitude_description))?;

@@ -1,5 +1,6 @@
 //! RAIM by the slope method.
 
+use crate::algorithms::levels;
 use crate::araim::{beside, promise, refused, requirement, systems, unmonitored, users, word};
 use crate::error::input_error;
 use crate::gnss::orbit;
@@ -167,9 +168,7 @@ fn columns<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py, PyDict>> {
     let number = |f: fn(&Levels<(Detail, Levels)>) -> f64| {
         rows.iter().map(|r| r.levels.as_ref().map_or(f64::NAN, f)).collect::<Vec<_>>().into_pyarray(py)
     };
-    let d = PyDict::new(py);
-    d.set_item("hpl_m", number(|l| l.hpl.m()))?;
-    d.set_item("vpl_m", number(|l| l.vpl_m()))?;
+    let d = levels(py, rows)?;
     d.set_item("hel_m", number(|l| l.detail.1.hpl.m()))?;
     d.set_item("vel_m", number(|l| l.detail.1.vpl_m()))?;
     d.set_item("hpl_slope_m", number(|l| l.detail.0.hpl_slope.m()))?;
@@ -179,9 +178,6 @@ fn columns<'py>(py: Python<'py>, rows: &[Row]) -> PyResult<Bound<'py, PyDict>> {
     d.set_item("sigma_u_m", number(|l| l.detail.0.sigma[2].m()))?;
     let redundant = |r: &Row| r.levels.as_ref().map_or(0, |l| l.detail.0.redundancy) as i64;
     d.set_item("n_redundant", rows.iter().map(redundant).collect::<Vec<_>>().into_pyarray(py))?;
-    d.set_item("n_sv", rows.iter().map(|r| r.n_sv as i64).collect::<Vec<_>>().into_pyarray(py))?;
-    d.set_item("outcome", rows.iter().map(|r| r.outcome as u8).collect::<Vec<_>>().into_pyarray(py))?;
-    d.set_item("words", Outcome::WORDS.to_vec())?;
     Ok(d)
 }
 

@@ -1,6 +1,7 @@
 //! The formats of files, and the positions that logs of receivers report.
 
 use crate::error::input_error;
+use crate::fields::fields;
 use navbound_core::quantity::{GpsTime, OutOfDomain};
 use navbound_formats::receiver::position::{Kind, Position, log};
 use navbound_formats::registry::{FORMATS, File, recognise};
@@ -28,9 +29,7 @@ fn read_positions<'py>(py: Python<'py>, content: &[u8], kind: &str) -> PyResult<
     d.set_item("cov_m2", covariance.into_pyarray(py).reshape([n, 6])?)?;
     d.set_item("n_rows", log.n_rows)?;
     d.set_item("absent_ns", log.absent.iter().map(|time| time.map(GpsTime::nanoseconds)).collect::<Vec<_>>())?;
-    d.set_item("n_outside", log.n_outside)?;
-    d.set_item("undated", log.undated)?;
-    d.set_item("fields", log.fields)?;
+    fields!(d, log: n_outside, undated, fields);
     d.set_item("notes", log.notes.iter().map(|note| note.id()).collect::<Vec<_>>())?;
     let left_out: Vec<_> = log.left_out.into_iter().map(|l| (l.reason, l.damaged, l.count, l.first, l.example)).collect();
     d.set_item("left_out", left_out)?;

@@ -1,6 +1,7 @@
 //! Navigation specifications, monitor, state classifier.
 
 use crate::error::input_error;
+use crate::fields::fields;
 use navbound_assess::monitor::{self as batch, Columns, Levels};
 use navbound_core::bound::{Alerting, IntegrityComparison};
 use navbound_core::monitor::exposure::HourlyExposure;
@@ -92,18 +93,11 @@ pub(crate) fn event_row(e: &Event) -> EventRow {
 
 pub(crate) fn counters_dict<'py>(py: Python<'py>, c: &Counters) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
-    d.set_item("n_accepted", c.n_accepted)?;
-    d.set_item("n_duplicate", c.n_duplicate)?;
-    d.set_item("n_late", c.n_late)?;
-    d.set_item("n_clock_set_back", c.n_clock_set_back)?;
-    d.set_item("n_gaps", c.n_gaps)?;
-    d.set_item("n_unusable", c.n_unusable)?;
-    d.set_item("n_nan", c.n_nan)?;
-    d.set_item("n_withdrawn", c.n_withdrawn)?;
-    d.set_item("n_cautions", c.n_cautions)?;
-    d.set_item("n_warnings", c.n_warnings)?;
-    d.set_item("n_unavailable", c.n_unavailable)?;
-    d.set_item("watched_s", c.watched_s)?;
+    fields!(
+        d, c:
+        n_accepted, n_duplicate, n_late, n_clock_set_back, n_gaps, n_unusable, n_nan, n_withdrawn, n_cautions, n_warnings, n_unavailable,
+        watched_s
+    );
     d.set_item("alerts_per_hour", c.alerts_per_hour())?;
     Ok(d)
 }

@@ -1,6 +1,7 @@
 //! SBAS: message logs, decoded messages, protection levels.
 
 use crate::error::{format_error, input_error};
+use crate::fields::fields;
 use crate::positions::Navigation;
 use crate::sbas_fields::fields;
 use navbound_assess::sbas::{self, Answer, Feed, FromTerms, Mode, Request, Settings, TermsRefused};
@@ -317,8 +318,7 @@ fn terms_columns<'py>(py: Python<'py>, levels: &FromTerms) -> PyResult<Bound<'py
     d.set_item("cov_nn_m2", v[(1, 1)])?;
     d.set_item("cov_uu_m2", v[(2, 2)])?;
     d.set_item("d_major_m", levels.d_major.m())?;
-    d.set_item("hdop", levels.hdop)?;
-    d.set_item("vdop", levels.vdop)?;
+    fields!(d, levels: hdop, vdop);
     d.set_item("hpl_pa_m", levels.approach.hpl.m())?;
     d.set_item("hpl_npa_m", levels.en_route.hpl.m())?;
     d.set_item("vpl_m", levels.approach.vpl.map_or(f64::NAN, Metres::m))?;

@@ -1,5 +1,6 @@
 //! The fields of a decoded SBAS message as a dictionary; names carry their units.
 
+use crate::fields::fields;
 use navbound_core::signal::sbas::{Fast, GeoAlmanac, LongTerm, LongTermHalf, Message, Region};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -82,9 +83,7 @@ fn one_long_term<'py>(py: Python<'py>, l: &LongTerm) -> PyResult<Bound<'py, PyDi
     let d = dict!(py,
         "position": l.position, "iodp": l.iodp, "iode": l.iode, "position_ecef_m": l.position_ecef_m, "clock_s": l.clock_s);
     if let Some(r) = &l.rates {
-        d.set_item("velocity_ecef_mps", r.velocity_ecef_mps)?;
-        d.set_item("drift", r.drift)?;
-        d.set_item("time_of_day_s", r.time_of_day_s)?;
+        fields!(d, r: velocity_ecef_mps, drift, time_of_day_s);
     }
     Ok(d)
 }

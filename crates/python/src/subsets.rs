@@ -1,6 +1,7 @@
 //! Every subset of an epoch's satellites: the Stanford-ESA diagram.
 
 use crate::error::input_error;
+use crate::fields::fields;
 use crate::kpi::{histogram, regions};
 use navbound_assess::kpi::subsets::{Epoch, Job, Tally, subsets};
 use navbound_core::geometry::Direction;
@@ -120,14 +121,9 @@ fn refused((epoch, why): (usize, Unavailable)) -> PyErr {
 
 fn columns<'py>(py: Python<'py>, tally: &Tally) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
-    d.set_item("n_epochs", tally.n_epochs)?;
-    d.set_item("n_unsolved", tally.n_unsolved)?;
-    d.set_item("n_cut", tally.n_cut)?;
-    d.set_item("n_subsets", tally.n_subsets)?;
-    d.set_item("n_singular", tally.n_singular)?;
+    fields!(d, tally: n_epochs, n_unsolved, n_cut, n_subsets, n_singular);
     d.set_item("n_mi", tally.n_misleading)?;
-    d.set_item("largest_index", tally.largest_index)?;
-    d.set_item("n_listed", tally.n_listed)?;
+    fields!(d, tally: largest_index, n_listed);
     d.set_item("bins", tally.histograms.iter().map(|h| histogram(py, h)).collect::<PyResult<Vec<_>>>()?)?;
     let both = |r: &[navbound_assess::kpi::Regions; 2]| r.iter().map(|one| regions(py, one)).collect::<PyResult<Vec<_>>>();
     d.set_item("regions", tally.regions.iter().map(both).collect::<PyResult<Vec<_>>>()?)?;

@@ -1,5 +1,6 @@
 //! Surface movement: the rebuilt tables with their marks.
 
+use crate::fields::fields;
 use navbound_core::quantity::Risk;
 use navbound_core::spec::gbas::{CARRIER_DUAL, CARRIER_SINGLE, CarrierModel, ERROR_MODELS, INERTIAL, Inertial, MONITOR_CURVES, Mark};
 use navbound_core::spec::surface::{ALLOCATION, ERROR_BUDGET, FAULT_RATES, SUB_PHASES};
@@ -15,9 +16,7 @@ fn marks(marks: &'static [Mark]) -> Marks {
 fn carrier<'py>(py: Python<'py>, m: &CarrierModel) -> PyResult<Bound<'py, PyDict>> {
     let d = PyDict::new(py);
     d.set_item("noise_m", m.noise.m())?;
-    d.set_item("troposphere_gradient", m.troposphere_gradient)?;
-    d.set_item("clock_mps", m.clock_mps)?;
-    d.set_item("ionosphere_gradient", m.ionosphere_gradient)?;
+    fields!(d, m: troposphere_gradient, clock_mps, ionosphere_gradient);
     d.set_item("marks", marks(m.marks))?;
     Ok(d)
 }
@@ -28,9 +27,7 @@ fn inertial<'py>(py: Python<'py>, i: &Inertial) -> PyResult<Bound<'py, PyDict>> 
     d.set_item("gyro_walk_radprts", i.gyro_walk_rad_per_root_s)?;
     d.set_item("accelerometer_bias_mps2", i.accelerometer_bias_mps2)?;
     d.set_item("accelerometer_walk_mpsprts", i.accelerometer_walk_mps_per_root_s)?;
-    d.set_item("clock_h0_s", i.clock_h0_s)?;
-    d.set_item("clock_h_minus_2_per_s", i.clock_h_minus_2_per_s)?;
-    d.set_item("doppler_mps", i.doppler_mps)?;
+    fields!(d, i: clock_h0_s, clock_h_minus_2_per_s, doppler_mps);
     d.set_item("receiver_noise_m", i.receiver_noise.m())?;
     d.set_item("marks", marks(i.marks))?;
     Ok(d)
@@ -42,36 +39,26 @@ fn surface_tables(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let mut phases = Vec::new();
     for p in SUB_PHASES {
         let d = PyDict::new(py);
-        d.set_item("id", p.id)?;
-        d.set_item("title", p.title)?;
+        fields!(d, p: id, title);
         d.set_item("containment_m", p.containment.m())?;
         d.set_item("hal_m", p.hal.m())?;
         d.set_item("integrity_risk", p.integrity.q())?;
         d.set_item("continuity_risk", p.continuity.q())?;
-        d.set_item("speed_mps", p.speed_mps)?;
-        d.set_item("exposure_s", p.exposure_s)?;
+        fields!(d, p: speed_mps, exposure_s);
         d.set_item("marks", marks(p.marks))?;
         phases.push(d);
     }
     let mut rates = Vec::new();
     for r in FAULT_RATES {
         let d = PyDict::new(py);
-        d.set_item("id", r.id)?;
-        d.set_item("gps_per_hour", r.gps_per_hour)?;
-        d.set_item("galileo_per_hour", r.galileo_per_hour)?;
-        d.set_item("gps_wide_per_hour", r.gps_wide_per_hour)?;
-        d.set_item("galileo_wide_per_hour", r.galileo_wide_per_hour)?;
-        d.set_item("decorrelation_s", r.decorrelation_s)?;
-        d.set_item("satellites", r.satellites)?;
+        fields!(d, r: id, gps_per_hour, galileo_per_hour, gps_wide_per_hour, galileo_wide_per_hour, decorrelation_s, satellites);
         d.set_item("marks", marks(r.marks))?;
         rates.push(d);
     }
     let mut curves = Vec::new();
     for c in MONITOR_CURVES {
         let d = PyDict::new(py);
-        d.set_item("id", c.id)?;
-        d.set_item("stretch", c.stretch)?;
-        d.set_item("projection", c.projection)?;
+        fields!(d, c: id, stretch, projection);
         d.set_item("start_m", c.start.m())?;
         d.set_item("end_m", c.end.m())?;
         d.set_item("marks", marks(c.marks))?;
@@ -89,13 +76,7 @@ fn surface_tables(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let lasting: Vec<(&str, [f64; 2])> = ERROR_MODELS.iter().map(|m| (m.id, m.multipath_s)).collect();
     d.set_item("multipath_s", lasting)?;
     let a = PyDict::new(py);
-    a.set_item("no_fault_and_receiver", ALLOCATION.no_fault_and_receiver)?;
-    a.set_item("ground", ALLOCATION.ground)?;
-    a.set_item("coasting_ground", ALLOCATION.coasting_ground)?;
-    a.set_item("coasting_fault", ALLOCATION.coasting_fault)?;
-    a.set_item("unmonitored", ALLOCATION.unmonitored)?;
-    a.set_item("receiver_fault", ALLOCATION.receiver_fault)?;
-    a.set_item("axes", ALLOCATION.axes)?;
+    fields!(a, ALLOCATION: no_fault_and_receiver, ground, coasting_ground, coasting_fault, unmonitored, receiver_fault, axes);
     a.set_item("marks", marks(ALLOCATION.marks))?;
     d.set_item("allocation", a)?;
     let b = PyDict::new(py);

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from navbound.algorithms import Grid as MapOf
-from navbound.algorithms import entries
+from navbound.algorithms import Sent, entries
 from navbound.cli.calls import call
 from navbound.cli.choices import Chosen, Written
 from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, out_console, work_of
@@ -21,14 +21,18 @@ if TYPE_CHECKING:
     from navbound.maps import Map
     from navbound.maps.sources import Times
 
+_OF_ORBITS = f"[dop, {', '.join(entries(MapOf))}]"
+
 
 def map_command(
-    kind: Annotated[str, typer.Argument(help=f"What to map: dop, {', '.join(entries(MapOf))}, sbas, dme."), Chosen(lists="maps")],
+    kind: Annotated[
+        str, typer.Argument(help=f"What to map: dop, {', '.join([*entries(MapOf), *entries(Sent)])}, dme."), Chosen(lists="maps")
+    ],
     step_deg: Annotated[float, typer.Option(help="Side of a cell."), Chosen(first=True)] = 5.0,
     region: Annotated[str | None, typer.Option(help="South,north,west,east in degrees. [default: the world]"), Chosen(first=True)] = None,
     constellation: Annotated[
         list[str] | None,
-        typer.Option(help="gps, galileo, beidou, or a YUMA or SEM almanac or RINEX navigation file; may be repeated. [dop, raim, araim]"),
+        typer.Option(help=f"gps, galileo, beidou, or a YUMA or SEM almanac or RINEX navigation file; may be repeated. {_OF_ORBITS}"),
         Chosen(lists="constellations", files=True),
     ] = None,
     start: Annotated[
@@ -39,12 +43,12 @@ def map_command(
     every_s: Annotated[float | None, typer.Option(help="Step between instants. [default: 300]")] = None,
     mask_deg: Annotated[float | None, typer.Option(help="Lowest elevation used. [default: 5]")] = None,
     height_m: Annotated[float | None, typer.Option(help="Height of the users above the ellipsoid.")] = None,
-    without: Annotated[list[str] | None, typer.Option(help="Satellite out of service, as G05; may be repeated. [dop, raim, araim]")] = None,
+    without: Annotated[list[str] | None, typer.Option(help=f"Satellite out of service, as G05; may be repeated. {_OF_ORBITS}")] = None,
     service: Annotated[
         str | None, typer.Option(help="Service of araim: lpv-200, horizontal."), Chosen(words=("lpv-200", "horizontal"))
     ] = None,
     model: Annotated[
-        str | None, typer.Option(help="Error model of araim and raim: dual-frequency, single-frequency."), Chosen(lists="models")
+        str | None, typer.Option(help="Error model of levels of orbits: dual-frequency, single-frequency."), Chosen(lists="models")
     ] = None,
     messages: Annotated[Path | None, typer.Option(help="Message log of sbas.")] = None,
     navigation: Annotated[list[Path] | None, typer.Option(help="RINEX navigation file of sbas; may be repeated.")] = None,

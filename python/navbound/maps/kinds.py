@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
-from navbound.algorithms import ARAIM_CAUSES, HPL, VPL, Cause, Column, Grid, algorithms
+from navbound.algorithms import ARAIM_CAUSES, Cause, Column, Grid, Sent, entries
 from navbound.maps.ground import Dme
 from navbound.maps.orbital import Dop, options_of
-from navbound.maps.service import Sbas
+from navbound.maps.service import service_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -92,7 +92,6 @@ _SERVED = (
 
 _OWN = (
     Kind("dop", "Dilution of precision", "normal equation of ranges of equal weight", _DOPS, ARAIM_CAUSES[:1], Dop, 0.6e-6),
-    Kind("sbas", "SBAS protection levels", "navbound.sbas.protection_levels", (VPL, HPL), _SERVED, Sbas, 4e-6),
     Kind(
         "dme",
         "DME/DME coverage",
@@ -109,11 +108,11 @@ _OWN = (
 
 
 def kinds() -> dict[str, Kind]:
-    """Every kind by its name: dilution, the algorithms of :mod:`navbound.algorithms` that take orbits, and the services."""
+    """Every kind by its name: dilution, the algorithms of :mod:`navbound.algorithms` that take orbits or messages, and stations."""
     of_orbits = [
-        Kind(one.name, one.title, one.source, one.columns, one.causes, options_of(one), one.user_epoch_s)
-        for algorithm in algorithms().values()
-        for one in algorithm.entries
-        if isinstance(one, Grid)
+        Kind(one.name, one.title, one.source, one.columns, one.causes, options_of(one), one.user_epoch_s) for one in entries(Grid).values()
     ]
-    return {kind.id: kind for kind in (_OWN[0], *of_orbits, *_OWN[1:])}
+    of_messages = [
+        Kind(one.name, one.title, one.source, one.columns, _SERVED, service_of(one), one.user_epoch_s) for one in entries(Sent).values()
+    ]
+    return {kind.id: kind for kind in (_OWN[0], *of_orbits, *of_messages, *_OWN[1:])}

@@ -1,10 +1,11 @@
-"""Maps from what a service in space sends: SBAS."""
+"""Maps from what a service in space sends: the algorithms of protection levels that take its messages."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import dataclass, field, make_dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from navbound.algorithms import Sent
     from navbound.maps.kinds import Levels
 
     Floats = NDArray[np.float64]
@@ -33,7 +35,8 @@ _DO_NOT_USE, _RANGING, _ALMANAC = 0, 9, 17
 
 
 @dataclass(frozen=True)
-class _SbasLevels:
+class _ServiceLevels:
+    entry: Sent
     messages: File
     navigation: tuple[File, ...]
     prn: int | None
@@ -44,7 +47,7 @@ class _SbasLevels:
     sender: gnss.Orbits | None
 
     def __call__(self, lat_rad: Floats, lon_rad: Floats) -> dict[str, NDArray[Any]]:
-        levels = sbas.protection_levels(
+        levels = self.entry(
             sources.messages(self.messages, self.prn),
             [file.path for file in self.navigation],
             self.time_ns[:, None],
@@ -54,11 +57,13 @@ class _SbasLevels:
             mode=self.mode,
             mask_rad=self.mask_rad,
         )
-        columns = {name: np.ascontiguousarray(getattr(levels, name).T, dtype=np.float64) for name in ("hpl_m", "vpl_m", "n_sv")}
+        shown = [column.name for column in self.entry.columns]
+        columns = {name: np.ascontiguousarray(getattr(levels, name).T, dtype=np.float64) for name in (*shown, "n_sv")}
         deaf = ~self._hears(lat_rad, lon_rad)
-        columns["hpl_m"][deaf] = columns["vpl_m"][deaf] = np.nan
+        for name in shown:
+            columns[name][deaf] = np.nan
         columns["n_sv"][deaf] = 0
-        without, deaf = np.isnan(columns["hpl_m"]), deaf[:, None]
+        without, deaf = np.isnan(columns[shown[-1]]), deaf[:, None]
         nothing = columns["n_sv"] == 0
         return columns | {
             "p_no_signal": without & deaf,
@@ -75,8 +80,8 @@ class _SbasLevels:
 
 
 @dataclass(frozen=True)
-class Sbas:
-    """SBAS: protection levels from the messages that a service sent, for users who can hear them.
+class _Service:
+    """Protection levels from the messages that a service sent, for users who can hear them.
 
     Attributes
     ----------
@@ -95,6 +100,8 @@ class Sbas:
         Lowest elevation used, also of the service's own satellite, and height of the users. [rad, m]
     """
 
+    ENTRY: ClassVar[Sent]
+
     messages: str | Path = ""
     navigation: tuple[str | Path, ...] = ()
     prn: int | None = None
@@ -105,7 +112,9 @@ class Sbas:
 
     def _heard(self) -> sbas.Messages:
         if not self.messages:
-            raise ConflictError("kind", needs=("messages",), because="sbas takes the levels of a message log", value="sbas")
+            raise ConflictError(
+                "kind", needs=("messages",), because=f"{self.ENTRY.name} takes the levels of a message log", value=self.ENTRY.name
+            )
         if not self.navigation:
             raise ConflictError("messages", needs=("navigation",), because="the orbits are those of the log's day")
         return sources.messages(File.of(self.messages), self.prn)
@@ -127,7 +136,9 @@ class Sbas:
         """What works out the numbers."""
         heard = self._heard()
         files = tuple(File.of(path) for path in self.navigation)
-        return _SbasLevels(File.of(self.messages), files, self.prn, self.mode, self._instants(), self.mask_rad, self.h_m, _sender(heard))
+        return _ServiceLevels(
+            self.ENTRY, File.of(self.messages), files, self.prn, self.mode, self._instants(), self.mask_rad, self.h_m, _sender(heard)
+        )
 
     def n_epochs(self) -> int:
         """Instants. [1]."""
@@ -156,6 +167,12 @@ class Sbas:
             *([f"{outside} of the instants are outside the log."] if outside else []),
             "What was sent before the log begins is not known: there is no level until the masks and corrections have come again.",
         ]
+
+
+@cache
+def service_of(entry: Sent) -> type[_Service]:
+    """The arguments of a map of one algorithm that takes messages."""
+    return make_dataclass(entry.name, [], bases=(_Service,), namespace={"ENTRY": entry}, frozen=True)
 
 
 def _types(heard: sbas.Messages) -> NDArray[np.uint8]:

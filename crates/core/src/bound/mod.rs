@@ -21,7 +21,7 @@ pub mod tse;
 pub mod vertical;
 
 pub use crate::quantity::Provenance;
-pub use algorithm::{Algorithm, Entry, Task};
+pub use algorithm::{Algorithm, Entry, Ranges, Task};
 pub use bound::{AlertBound, Alerting, Bound, MayNotAlert};
 pub use integrity::IntegrityComparison;
 pub use method::{Bounded, Method, Promises};

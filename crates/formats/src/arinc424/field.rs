@@ -3,10 +3,10 @@
 use core::f64::consts::PI;
 use core::fmt;
 use navbound_core::frame::LatLon;
-use navbound_core::quantity::Radians;
+use navbound_core::quantity::{Metres, Radians};
 
 /// Metres in a nautical mile (standard: International Hydrographic Conference 1929).
-const NAUTICAL_MILE_M: f64 = 1852.0;
+pub(super) const NAUTICAL_MILE_M: f64 = Metres::nautical_miles(1.0).m();
 /// Metres in a foot (standard: 1959 agreement).
 const FOOT_M: f64 = 0.3048;
 

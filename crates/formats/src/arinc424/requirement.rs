@@ -6,10 +6,10 @@
 //! Where a field is blank, the default of the specification counts only if the caller allows it (1.0 NM; 0.3 NM on the final approach;
 //! standard: ICAO Doc 9613).
 
+use super::field::NAUTICAL_MILE_M;
 use super::geometry::{Part, ProcedureLeg};
 use super::record::LevelOfService;
 
-const NAUTICAL_MILE_M: f64 = 1852.0;
 /// Two RNP within this share of each other are one, written with other digits \[1\].
 const ROUNDING: f64 = 0.01;
 

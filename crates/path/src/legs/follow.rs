@@ -13,7 +13,7 @@ use navbound_core::quantity::{Metres, OutOfDomain, Radians};
 
 /// Standard gravity \[m/s²\] (standard: CGPM 1901).
 const GRAVITY_MPS2: f64 = 9.806_65;
-const NAUTICAL_MILE_M: f64 = 1852.0;
+const NAUTICAL_MILE_M: f64 = Metres::nautical_miles(1.0).m();
 /// Track changes below this need no turn \[rad\].
 const STRAIGHT_RAD: f64 = 1e-7;
 

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from navbound.read.source import Source
     from navbound.read.tables.columns import Column
 
 _FIRST_NS = 0
@@ -80,22 +79,6 @@ class TimeFacts:
         # Where a piece is numbers alone its zones were not looked for.
         zoned = any(f.zoned for f in facts if f.n_text) if any(f.n_text for f in facts) else any(f.zoned for f in facts)
         return cls(numbers, sum(f.n_text for f in facts), zoned, all(f.early for f in facts))
-
-
-def gps_time(frame: pl.DataFrame, columns: list[Column], source: Source, notes: list[str]) -> tuple[pl.Series, pl.Series, list[str]]:
-    """Read the time of every row.
-
-    Returns
-    -------
-    ns : Series
-        GPS time, null where there is none. [ns]
-    reason : Series
-        Why a row has none.
-    units : list of str
-        ``column:unit`` of the columns used, as they were understood. Doubts are added to `notes`.
-    """
-    understood = understand(TimeFacts.of(frame, columns), columns, frame.schema[columns[0].name], source.path, notes)
-    return *converted(frame, columns, understood), units(columns, understood)
 
 
 def units(columns: list[Column], understood: str) -> list[str]:

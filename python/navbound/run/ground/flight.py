@@ -41,7 +41,7 @@ class _Ground:
     """What all flights of a scenario share."""
 
     taxi: Taxi
-    asked: dict[str, SubPhase]
+    required: dict[str, SubPhase]
     movement: Movement
     navigator: Navigator
 
@@ -49,10 +49,10 @@ class _Ground:
 @lru_cache(maxsize=1)
 def _ground(taxi: str) -> _Ground:
     """From a scenario as text, worked out once a process."""
-    found, asked = scenarios.Taxi.model_validate_json(taxi), limits()
-    movement = move(found)
-    navigator = Navigator(found, movement, asked)
-    return _Ground(found, asked, movement, navigator)
+    scenario, required = scenarios.Taxi.model_validate_json(taxi), limits()
+    movement = move(scenario)
+    navigator = Navigator(scenario, movement, required)
+    return _Ground(scenario, required, movement, navigator)
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Flights:
         parts, events = [], []
         for track in flights:
             navigated = ground.navigator.fly(self.seed, track)
-            parts.append(_table(ground.taxi, ground.movement, navigated, ground.asked, self.seed, track))
+            parts.append(_table(ground.taxi, ground.movement, navigated, ground.required, self.seed, track))
             events += [event.model_dump(mode="json") for event in _events(ground.taxi, navigated, parts[-1])]
         return pl.concat(parts), events
 
@@ -82,19 +82,19 @@ class Flights:
     def context(self, flights: int, events: list[Any]) -> Context:  # noqa: ARG002 - another kind counts its filters
         """What is said of the epochs."""
         ground = _ground(self.scenario)
-        found = ground.taxi
+        taxi = ground.taxi
         return Context(
             requirement="surface movement: twice RNP is the total system containment of each sub-phase (inferred)",
-            assumptions=_assumptions(found, ground.navigator, ground.asked),
+            assumptions=_assumptions(taxi, ground.navigator, ground.required),
             covariance=CovarianceOrigin(id="simulated"),
-            waypoints=[Waypoint(name=p.name, lat_rad=p.lat_rad, lon_rad=p.lon_rad, kind="waypoint") for p in found.points],
+            waypoints=[Waypoint(name=p.name, lat_rad=p.lat_rad, lon_rad=p.lon_rad, kind="waypoint") for p in taxi.points],
             settings={"length_m": float(ground.movement.along_m[-1]), "transition_s": ground.navigator.fixes},
             events=[EventSummary.model_validate(event) for event in events],
-            limits_held={p.title: _held(p) for p in ground.asked.values()},
+            limits_held={p.title: _provenance(p) for p in ground.required.values()},
         )
 
 
-def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, SubPhase], seed: int, track: int) -> pl.DataFrame:  # noqa: PLR0917 - a scenario, its parts, and which flight
+def _table(taxi: Taxi, movement: Movement, navigated: Navigated, required: dict[str, SubPhase], seed: int, track: int) -> pl.DataFrame:  # noqa: PLR0917 - a scenario, its parts, and which flight
     n = len(movement.along_m)
     east_m, north_m = movement.per_radian_m
     budget = gbas.error_budget()
@@ -102,9 +102,9 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
     # The aircraft steers by its estimate; where it really is lies an nse away.
     est_lat = movement.lat_rad - fte * np.sin(movement.course_rad) / north_m
     est_lon = movement.lon_rad + fte * np.cos(movement.course_rad) / east_m
-    nse = -found.error_enu_m
-    usable = np.isin(found.status.astype(np.str_), USABLE)
-    phases = [asked[name] for name in movement.phase]
+    nse = -navigated.error_enu_m
+    usable = np.isin(navigated.status.astype(np.str_), USABLE)
+    phases = [required[name] for name in movement.phase]
     numbers = {
         "est_lat_rad": np.where(usable, est_lat, np.nan),
         "est_lon_rad": np.where(usable, est_lon, np.nan),
@@ -121,10 +121,10 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
         "fte_m": np.where(usable, fte, np.nan),
         "nse_e_m": nse[:, 0],
         "nse_n_m": nse[:, 1],
-        **{name: found.covariance_m2[:, i, j] for name, (i, j) in zip(HORIZONTAL, ((0, 0), (0, 1), (1, 1)), strict=True)},
-        "hpl_m": found.hpl_m,
-        "hpl_multi_m": found.hpl_multi_m,
-        "accuracy_m": found.accuracy_m,
+        **{name: navigated.covariance_m2[:, i, j] for name, (i, j) in zip(HORIZONTAL, ((0, 0), (0, 1), (1, 1)), strict=True)},
+        "hpl_m": navigated.hpl_m,
+        "hpl_multi_m": navigated.hpl_multi_m,
+        "accuracy_m": navigated.accuracy_m,
     }
     legs = [f"{a.name}-{b.name}" for a, b in zip(taxi.points[:-1], taxi.points[1:], strict=True)]
     return pl.DataFrame(
@@ -132,25 +132,25 @@ def _table(taxi: Taxi, movement: Movement, found: Navigated, asked: dict[str, Su
             "track": [track_name(track)] * n,
             "time_ns": taxi.start_ns + np.arange(n) * 1_000_000_000,
             **numbers,
-            "n_sv": found.n_sv.astype(np.int64),
+            "n_sv": navigated.n_sv.astype(np.int64),
             "leg": [legs[k] for k in movement.leg],
             "phase": [p.title for p in phases],
             "mode": np.where(movement.coasts, "rraim", "gbas"),
-            "status": pl.Series(found.status.tolist(), dtype=pl.String),
-            "reason_id": pl.Series(found.reason_id.tolist(), dtype=pl.String),
-            "reason": pl.Series(found.reason.tolist(), dtype=pl.String),
+            "status": pl.Series(navigated.status.tolist(), dtype=pl.String),
+            "reason_id": pl.Series(navigated.reason_id.tolist(), dtype=pl.String),
+            "reason": pl.Series(navigated.reason.tolist(), dtype=pl.String),
         }
     ).with_columns(pl.col(pl.Float64).fill_nan(None))
 
 
-def _events(taxi: Taxi, found: Navigated, epochs: pl.DataFrame) -> list[EventSummary]:
+def _events(taxi: Taxi, navigated: Navigated, epochs: pl.DataFrame) -> list[EventSummary]:
     """Faults, what the monitors did, and where a protection level was above the alert limit."""
     track = epochs["track"][0]
 
     def at(second: int | None) -> int | None:
         return None if second is None else taxi.start_ns + second * 1_000_000_000
 
-    events = [_point(track, h.kind, at(h.second), at(h.until), h.words) for h in found.happened]
+    events = [_point(track, h.kind, at(h.second), at(h.until), h.words) for h in navigated.happened]
     for column, words in (("hpl_m", "protection level for one fault"), ("hpl_multi_m", "protection level for all faults together")):
         level, limit = epochs[column].to_numpy(), epochs["hal_m"].to_numpy()
         above = np.concatenate([[False], level > limit, [False]])
@@ -178,15 +178,15 @@ def _point(track: str, kind: str, onset_ns: int | None, clear_ns: int | None, wo
     )
 
 
-def _held(phase: SubPhase) -> str:
+def _provenance(phase: SubPhase) -> str:
     return next(m.held for m in phase.marks if m.name == "hal")
 
 
-def _assumptions(taxi: Taxi, navigator: Navigator, asked: dict[str, SubPhase]) -> list[str]:
+def _assumptions(taxi: Taxi, navigator: Navigator, required: dict[str, SubPhase]) -> list[str]:
     """What the report must say beside every number."""
     budget, navigation = gbas.error_budget(), taxi.navigation
-    limit_words = ", ".join(f"{p.title} {p.hal_m:g} m" for p in asked.values())
-    said = [
+    limit_words = ", ".join(f"{p.title} {p.hal_m:g} m" for p in required.values())
+    sentences = [
         f"Alert limits and containments are inferred: {limit_words}; nothing was found for the landing roll, it has the rapid exit's.",
         f"Mode {navigator.mode.id} ({navigator.mode.words}), case {navigation.case}; nominal range biases up to {navigation.bias_m:g} m.",
         f"Flight technical error of {budget.sigma_fte_m:g} m ({_mark(budget.marks, 'fte')}); "
@@ -195,12 +195,12 @@ def _assumptions(taxi: Taxi, navigator: Navigator, asked: dict[str, SubPhase]) -
         *taxi.assumptions,
     ]
     if navigation.covariance == "paper":
-        said.append("The covariance of the fix is the paper's form, which nothing shows to bound.")
+        sentences.append("The covariance of the fix is the paper's form, which nothing shows to bound.")
     for f in taxi.faults:
-        said.append(
+        sentences.append(
             f"A fault is injected: {f.kind} of {f.satellite} from {f.start_s:g} s{', missed by the ground monitors' if f.missed else ''}."
         )
-    return said
+    return sentences
 
 
 def _mark(marks: tuple[gbas.Mark, ...], part: str) -> str:

@@ -1,4 +1,4 @@
-"""The inertial navigator on the way to the stand: simulated samples, the filter that GBAS ranges and then carrier phase aid.
+"""The inertial navigator on taxi-in: simulated samples, the filter that GBAS ranges and then carrier phase aid.
 
 Before the transition point the filter has corrected, smoothed ranges and their rates; behind it only phase differenced over a fifth of a
 second, as range rates. What stays in a range is a state of its own, with the noise of equation 4 in one of its two forms.

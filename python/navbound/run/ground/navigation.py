@@ -123,7 +123,7 @@ class Navigator:
     def fly(self, seed: int, track: int) -> Navigated:
         """Navigate one flight."""
         n = len(self.sky.el_rad)
-        found = Navigated(
+        navigated = Navigated(
             np.full((n, 3), np.nan),
             np.full((n, 3, 3), np.nan),
             np.full(n, np.nan),
@@ -138,19 +138,21 @@ class Navigator:
         for fault in self.taxi.faults:
             end = round(fault.start_s + fault.duration_s)
             words = f"range of {fault.satellite} begins to be wrong ({fault.kind})"
-            found.happened.append(Happened("fault", int(np.ceil(fault.start_s)), end if end < n else None, words))
+            navigated.happened.append(Happened("fault", int(np.ceil(fault.start_s)), end if end < n else None, words))
         draw = (seed, track)
-        withdrawn = self._withdrawn(draw, found)
+        withdrawn = self._withdrawn(draw, navigated)
         flight = None if self.inertial is None else self.inertial.flight(seed, track)
         ranges = self._range_errors(draw, withdrawn)
         phases = self._phase_errors(draw, withdrawn)
         solved = None if flight is None else flight.solve(ranges, phases.error_m, phases.sigma_rate_mps)
-        self._fix(ranges[self.lead :], solved, found)
-        self._coast(ranges, phases, flight, solved, found)
-        found.happened.append(Happened("transition", self.fixes, None, "the last fix is carried on by carrier phase: no code from here"))
-        return found
+        self._fix(ranges[self.lead :], solved, navigated)
+        self._coast(ranges, phases, flight, solved, navigated)
+        navigated.happened.append(
+            Happened("transition", self.fixes, None, "the last fix is carried on by carrier phase: no code from here")
+        )
+        return navigated
 
-    def _withdrawn(self, draw: Draw, found: Navigated) -> NDArray[np.bool_]:
+    def _withdrawn(self, draw: Draw, navigated: Navigated) -> NDArray[np.bool_]:
         """Satellites that the ground monitors take away, from the second in which they see a fault."""
         gone = np.zeros(self.sky.el_rad.shape, dtype=bool)
         # One draw a fault: it is seen once the curve falls below.
@@ -160,7 +162,7 @@ class Navigator:
             if seen.size:
                 gone[seen[0] :, self.faulty[k]] = True
                 words = f"the ground monitors see {fault.satellite}: it is withdrawn"
-                found.happened.append(Happened("withdrawn", int(seen[0]), None, words))
+                navigated.happened.append(Happened("withdrawn", int(seen[0]), None, words))
         return gone
 
     def _range_errors(self, draw: Draw, withdrawn: NDArray[np.bool_]) -> Floats:
@@ -188,7 +190,7 @@ class Navigator:
         error, sigma_rate = self.movement.core.phase_errors(draw, sigma, at_fix.tolist(), noise_and_fix, self.faulty)
         return Phases(at_fix, sigma[STEPS - 1 :: STEPS], error.reshape(-1, wide), sigma_rate.reshape(-1, wide))
 
-    def _fix(self, ranges: Floats, solved: Solved | None, found: Navigated) -> None:
+    def _fix(self, ranges: Floats, solved: Solved | None, navigated: Navigated) -> None:
         """GBAS with an inertial system."""
         sky, last = self.sky, self.fixes
         used = ~np.isnan(ranges)
@@ -209,13 +211,13 @@ class Navigator:
         ok = next(iter(levels.values())).status == "ok"
         if solved is None:
             response = gnss.responses(az[ok], el[ok], gbas.range_sigma(el[ok], self.mode.service).sigma_m, sky.systems)
-            found.error_enu_m[:last][ok] = moved_by(response, ranges[ok])
+            navigated.error_enu_m[:last][ok] = moved_by(response, ranges[ok])
         else:
-            found.error_enu_m[:last][ok] = solved.error_enu_m[:last][ok]
-        self._take(found, slice(0, last), levels)
-        found.hpl_multi_m[:last] = np.nan
+            navigated.error_enu_m[:last][ok] = solved.error_enu_m[:last][ok]
+        self._take(navigated, slice(0, last), levels)
+        navigated.hpl_multi_m[:last] = np.nan
 
-    def _coast(self, ranges: Floats, phases: Phases, flight: InertialFlight | None, solved: Solved | None, found: Navigated) -> None:
+    def _coast(self, ranges: Floats, phases: Phases, flight: InertialFlight | None, solved: Solved | None, navigated: Navigated) -> None:
         """RRAIM: the last fix carried on; a satellite whose absence moves the position too far is left out."""
         sky, first = self.sky, self.fixes
         fix = first - 1
@@ -232,20 +234,20 @@ class Navigator:
             now = seen(sky, here, followed)
             sigma = np.where(followed, phases.sigma_m[begin:], np.nan)
             levels = self._carried_on(then, now, sigma, claimed, phase=self.movement.phase[here], seconds=np.arange(begin + 1.0, n + 1.0))
-            self._take(found, here, levels)
+            self._take(navigated, here, levels)
             carried = next(iter(levels.values()))
             ok = carried.status == "ok"
-            change, moves = self._propagate(found.error_enu_m[fix], then, (now[0][ok], now[1][ok]), sigma[ok], phase[ok])
-            found.error_enu_m[here][ok] = found.error_enu_m[fix] + change if solved is None else solved.error_enu_m[here][ok]
+            change, moves = self._propagate(navigated.error_enu_m[fix], then, (now[0][ok], now[1][ok]), sigma[ok], phase[ok])
+            navigated.error_enu_m[here][ok] = navigated.error_enu_m[fix] + change if solved is None else solved.error_enu_m[here][ok]
             if excluded:
-                self._degrade(found, here, ok, excluded)
+                self._degrade(navigated, here, ok, excluded)
             thresholds = {name: level.subset_threshold_m[ok] for name, level in levels.items()}
             alarm = self._alarm(moves, thresholds, self.movement.phase[here][ok])
             if alarm is None:
                 break
             epoch, number = int(np.flatnonzero(ok)[alarm[0]]), alarm[1]
             words = f"without {sky.names[number]} the position moves {alarm[2]:.2f} m, more than {alarm[3]:.2f} m: it is left out"
-            found.happened.append(Happened("excluded", first + begin + epoch, None, words))
+            navigated.happened.append(Happened("excluded", first + begin + epoch, None, words))
             excluded.add(number)
             # The alarm is of this second; from the next one on serves the position that has not had the satellite since the fix.
             begin += epoch + 1
@@ -316,27 +318,27 @@ class Navigator:
         number = int(np.nanargmax(moves[epoch] / threshold[epoch]))
         return epoch, number, float(moves[epoch, number]), float(threshold[epoch, number])
 
-    def _take(self, found: Navigated, here: slice, levels: dict[str, gbas.Levels] | dict[str, rraim.Levels]) -> None:
+    def _take(self, navigated: Navigated, here: slice, levels: dict[str, gbas.Levels] | dict[str, rraim.Levels]) -> None:
         """Copy each second's levels from those of its sub-phase."""
         phase = self.movement.phase[here]
         for name, level in levels.items():
             of = phase == name
-            found.covariance_m2[here][of] = level.covariance_enu_m2[of]
-            found.hpl_m[here][of] = level.hpl_m[of]
-            found.accuracy_m[here][of] = level.accuracy_m[of]
-            found.n_sv[here][of] = level.n_sv[of]
-            found.status[here][of] = level.status[of]
-            found.reason_id[here][of] = [r or None for r in level.reason_id[of]]
-            found.reason[here][of] = [r or None for r in level.reason[of]]
+            navigated.covariance_m2[here][of] = level.covariance_enu_m2[of]
+            navigated.hpl_m[here][of] = level.hpl_m[of]
+            navigated.accuracy_m[here][of] = level.accuracy_m[of]
+            navigated.n_sv[here][of] = level.n_sv[of]
+            navigated.status[here][of] = level.status[of]
+            navigated.reason_id[here][of] = [r or None for r in level.reason_id[of]]
+            navigated.reason[here][of] = [r or None for r in level.reason[of]]
             if isinstance(level, rraim.Levels):
-                found.hpl_multi_m[here][of] = level.hpl_multi_m[of]
+                navigated.hpl_multi_m[here][of] = level.hpl_multi_m[of]
 
-    def _degrade(self, found: Navigated, here: slice, ok: NDArray[np.bool_], excluded: set[int]) -> None:
+    def _degrade(self, navigated: Navigated, here: slice, ok: NDArray[np.bool_], excluded: set[int]) -> None:
         names = ", ".join(self.sky.names[k] for k in sorted(excluded))
         excluded_by_phase = REASONS["carrier_excluded"]
-        found.status[here][ok] = excluded_by_phase.status
-        found.reason_id[here][ok] = excluded_by_phase.id
-        found.reason[here][ok] = f"{names} {excluded_by_phase.words}"
+        navigated.status[here][ok] = excluded_by_phase.status
+        navigated.reason_id[here][ok] = excluded_by_phase.id
+        navigated.reason[here][ok] = f"{names} {excluded_by_phase.words}"
 
     def _factors(self, limit: SubPhase) -> gbas.Factors:
         shares = self.shares

@@ -1,10 +1,10 @@
 //! Solution separation as entries of the list of algorithms.
 
-use super::modes::{Book, FaultModes, NoModes};
+use super::modes::{Book, EventSets, FaultModes, NoModes};
 use super::service::{Service, SupportMessage};
 use super::single::{self, Requirement};
 use super::{Detail, Levels, Monitor, exclusion};
-use crate::bound::{Algorithm, NoLevels, Protection, Sight};
+use crate::bound::{Algorithm, NoLevels, Protection, Ranges, Sight};
 use crate::quantity::Metres;
 use crate::signal::Constellation;
 
@@ -41,17 +41,20 @@ pub struct Araim {
 #[derive(Debug, Clone)]
 struct Modes {
     p_const: [f64; Constellation::ALL.len()],
-    at_hand: Option<FaultModes>,
+    at_hand: FaultModes,
+    sets: EventSets,
 }
 
 impl Book for Modes {
     fn modes(&mut self, sights: &[Sight], service: &Service) -> Result<&FaultModes, NoModes> {
-        Ok(self.at_hand.insert(service.modes(sights, &self.p_const)?))
+        service.find_modes(sights, &self.p_const, &mut self.at_hand, &mut self.sets)?;
+        Ok(&self.at_hand)
     }
 }
 
 impl Algorithm for Araim {
     const PROTECTION: Protection = super::PROTECTION;
+    const RANGES: Ranges = Ranges::Receiver;
     const COLUMNS: &'static [&'static str] = COLUMNS;
     type Settings = Settings;
     type Detail = Detail;
@@ -61,7 +64,11 @@ impl Algorithm for Araim {
     }
 
     fn new(settings: &Settings) -> Self {
-        Self { monitor: Monitor::default(), settings: *settings, modes: Modes { p_const: settings.p_const, at_hand: None } }
+        Self {
+            monitor: Monitor::default(),
+            settings: *settings,
+            modes: Modes { p_const: settings.p_const, at_hand: FaultModes::NONE, sets: EventSets::NEW },
+        }
     }
 
     #[inline(always)]
@@ -89,6 +96,7 @@ pub struct Separation {
 
 impl Algorithm for Separation {
     const PROTECTION: Protection = single::PROTECTION;
+    const RANGES: Ranges = Ranges::Receiver;
     const COLUMNS: &'static [&'static str] = COLUMNS;
     /// The requirement, and whether the levels hold after an exclusion too.
     type Settings = (Requirement, bool);

@@ -2,7 +2,7 @@
 
 use super::bias::Ordering;
 use super::snapshot::{Form, Snapshot};
-use crate::bound::{Algorithm, NoLevels, Protection, Sight};
+use crate::bound::{Algorithm, NoLevels, Protection, Ranges, Sight};
 use crate::frame::{Covariance, Enu};
 use crate::quantity::{Metres, OutOfDomain, Risk};
 use crate::spec::surface::ErrorBudget;
@@ -122,6 +122,7 @@ pub struct Gbas {
 
 impl Algorithm for Gbas {
     const PROTECTION: Protection = super::PROTECTION;
+    const RANGES: Ranges = Ranges::Service;
     const COLUMNS: &'static [&'static str] = &["hpl_h0_m", "hpl_h1_m", "sigma_m", "bias_hor_m"];
     type Settings = Settings;
     type Detail = Detail;

@@ -8,7 +8,7 @@ pub mod exclusion;
 mod tests;
 
 pub use super::araim::single::Requirement;
-use super::{Algorithm, NoLevels, Protection, Provenance, Sight};
+use super::{Algorithm, NoLevels, Protection, Provenance, Ranges, Sight};
 use crate::quantity::{Metres, Unavailable};
 use crate::solution::wls::{Normal, Row, WeightedSight, weighted_row};
 use crate::special::float::{hypot, sqrt};
@@ -238,6 +238,7 @@ impl Monitor {
 
 impl Algorithm for Monitor {
     const PROTECTION: Protection = PROTECTION;
+    const RANGES: Ranges = Ranges::Receiver;
     const COLUMNS: &'static [&'static str] =
         &["hel_m", "vel_m", "hpl_slope_m", "vpl_slope_m", "sigma_e_m", "sigma_n_m", "sigma_u_m", "n_redundant"];
     type Settings = Requirement;

@@ -10,7 +10,7 @@ pub mod position;
 pub mod service;
 pub mod terms;
 
-use super::{Algorithm, NoLevels, Protection, Provenance, Sight};
+use super::{Algorithm, NoLevels, Protection, Provenance, Ranges, Sight};
 use crate::frame::{Covariance, EcefPosition, Enu, Geodetic, ecef_from_geodetic, enu_from_ecef};
 use crate::geometry::atmosphere::klobuchar_and_latitude;
 use crate::quantity::{Metres, OutOfDomain, Radians, Reason, Unavailable};
@@ -76,6 +76,7 @@ pub struct Sbas {
 
 impl Algorithm for Sbas {
     const PROTECTION: Protection = PROTECTION;
+    const RANGES: Ranges = Ranges::Service;
     const COLUMNS: &'static [&'static str] = &[];
     type Settings = Use;
     type Detail = ();

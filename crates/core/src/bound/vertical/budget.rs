@@ -53,7 +53,7 @@ pub const METRES: Constants = Constants {
     id: "metres",
     source: "ICAO Doc 9905; the text was not read",
     provenance: Provenance::Inferred,
-    nautical_mile: Metres::new(1852.0),
+    nautical_mile: Metres::nautical_miles(1.0),
     body_geometry: Metres::new(7.6),
     waypoint: Metres::new(18.0),
     fte: Metres::new(23.0),

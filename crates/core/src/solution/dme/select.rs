@@ -79,8 +79,13 @@ impl Switching {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selector {
     switching: Switching,
-    current: Option<[usize; 2]>,
+    current: Option<[u32; 2]>,
     better_since: Option<GpsTime>,
+}
+
+/// A list holds far fewer stations than a place can number.
+fn places(best: &Best) -> [u32; 2] {
+    best.stations.map(|place| place as u32)
 }
 
 impl Selector {
@@ -103,10 +108,10 @@ impl Selector {
     /// A pair that is no longer admissible is left at once; a better one waits until it has been better by the share for the time. When the
     /// clock is set back the wait begins anew.
     pub fn step(&mut self, time: GpsTime, best: Option<Best>, look: impl Fn([usize; 2]) -> Option<Best>) -> Option<Best> {
-        let current = self.current.and_then(look);
+        let current = self.current.and_then(|places| look(places.map(|place| place as usize)));
         let (Some(best), Some(current)) = (best, current) else {
             self.better_since = None;
-            self.current = best.map(|b| b.stations);
+            self.current = best.map(|b| places(&b));
             return best;
         };
         if !(best.figure.m() < (1.0 - self.switching.share) * current.figure.m()) {
@@ -119,7 +124,7 @@ impl Selector {
             return Some(current);
         }
         self.better_since = None;
-        self.current = Some(best.stations);
+        self.current = Some(places(&best));
         Some(best)
     }
 }
