@@ -155,9 +155,9 @@ def flown(name: str | None, database: Path | None, stated: Stated) -> Flown | No
         raise ConflictError("procedure", needs=("database",), because="a navigation database (ARINC 424)")
     from navbound.run.procedure import Flown  # noqa: PLC0415
 
-    given = {key: value for key, value in stated._asdict().items() if value is not None and key != "vertical_path"}
+    declared = {key: value for key, value in stated._asdict().items() if value is not None and key != "vertical_path"}
     shape = {} if stated.vertical_path is None else {"shape": stated.vertical_path}
-    return Flown(database, name, **given, **shape)
+    return Flown(database, name, **declared, **shape)
 
 
 def _read(file: Path) -> Database:
@@ -176,11 +176,11 @@ def _heights(database: Database, procedure: Procedure, lowest_c: float | None) -
             raise InputError("lowest_c", lowest_c, "°C", "an approach: the surface lies below its final part")
         return Heights(None, None, ())
     path, words = vertical_path(database, procedure)
-    told = f"{words[0].upper()}{words[1:]}" + ("" if words.endswith(".") else ".")
+    sentence = f"{words[0].upper()}{words[1:]}" + ("" if words.endswith(".") else ".")
     if path is None:
-        return Heights(None, None, (told,))
+        return Heights(None, None, (sentence,))
     surface, more = surface_below(path, procedure, None if lowest_c is None else lowest_c + KELVIN)
-    return Heights(path, surface, (told, more))
+    return Heights(path, surface, (sentence, more))
 
 
 def _say(database: Database) -> None:

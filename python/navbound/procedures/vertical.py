@@ -123,11 +123,11 @@ def vertical_path(database: Database, procedure: Procedure, shape: Shape = "baro
         words=(),
     )
     words = _doubts(path, procedure)
-    told = (
-        f"Vertical path: {shape}, {math.degrees(angle):.2f}° through {crossing / METRES_PER_FT:.0f} ft at {last.fix}, as coded on the leg to "
-        "it (INFERRED), on the final approach alone."
+    sentence = (
+        f"Vertical path: {shape}, {math.degrees(angle):.2f}° through {crossing / METRES_PER_FT:.0f} ft at {last.fix}, as coded on the leg "
+        "to it (INFERRED), on the final approach alone."
     )
-    return VerticalPath(**{**path.__dict__, "words": tuple(words)}), " ".join([told, *words])
+    return VerticalPath(**{**path.__dict__, "words": tuple(words)}), " ".join([sentence, *words])
 
 
 def surface_below(path: VerticalPath, procedure: Procedure, temperature_k: float | None = None) -> tuple[vertical.Surface | None, str]:
@@ -158,7 +158,9 @@ def surface_below(path: VerticalPath, procedure: Procedure, temperature_k: float
     surface = vertical.obstacle_surface(
         rnp_m, path.angle_rad, fix_m, path.threshold_m, crossing_height_m=path.crossing_m - path.threshold_m, temperature_k=temperature_k
     )
-    air = "standard air (no lowest temperature was stated)" if temperature_k is None else f"{temperature_k - 273.15:.0f} °C at the threshold"
+    air = (
+        "standard air (no lowest temperature was stated)" if temperature_k is None else f"{temperature_k - 273.15:.0f} °C at the threshold"
+    )
     return surface, (
         f"Obstacle clearance surface (FAA Order 8260.52; one denominator INFERRED): {surface.slope_ratio:.2f} to 1 from "
         f"{surface.origin_m:.0f} m before the threshold, {surface.roc_fix_m:.0f} m below the path at the final approach fix and "
@@ -199,7 +201,9 @@ def _doubts(path: VerticalPath, procedure: Procedure) -> list[str]:
         along = leg.begin_m + (leg.length_m if leg.has_path else 0.0)
         short = lowest - float(path.altitude_m([along])[0])
         if short > CONSTRAINT_M:
-            words.append(f"It passes {leg.fix} {short / METRES_PER_FT:.0f} ft below its lowest coded altitude, {lowest / METRES_PER_FT:.0f} ft.")
+            words.append(
+                f"It passes {leg.fix} {short / METRES_PER_FT:.0f} ft below its lowest coded altitude, {lowest / METRES_PER_FT:.0f} ft."
+            )
     return words
 
 

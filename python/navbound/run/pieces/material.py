@@ -26,7 +26,19 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-AUXILIARY = ("callsign", "nac_p", "nic", "rc_m", "epu_m", "sigma_e_m", "sigma_n_m", "sigma_u_m", "unread_accuracy_m", "setting_hpa", POSITION_TIME)
+AUXILIARY = (
+    "callsign",
+    "nac_p",
+    "nic",
+    "rc_m",
+    "epu_m",
+    "sigma_e_m",
+    "sigma_n_m",
+    "sigma_u_m",
+    "unread_accuracy_m",
+    "setting_hpa",
+    POSITION_TIME,
+)
 """Columns that no later stage reads."""
 
 

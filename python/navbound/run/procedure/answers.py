@@ -170,18 +170,20 @@ def _height_words(result: HeightResult, level: float) -> str:
     if not result.n_bound:
         return words if result.by == "altimeter" else f"{words} No epoch has a covariance of its height, so its total error has no bound."
     risk = "" if result.risk_below_max is None else f"; largest risk of being below by more: {result.risk_below_max:.2g}"
-    return f"{words} Bound of the vertical total error ({100 * level:.4g} %) inside it at {result.n_bound_inside} of {result.n_bound}{risk}."
+    return (
+        f"{words} Bound of the vertical total error ({100 * level:.4g} %) inside it at {result.n_bound_inside} of {result.n_bound}{risk}."
+    )
 
 
 def _setting_words(test: SettingResult) -> str:
-    found = (
+    outcome = (
         f"ALARM, altimeter setting or GNSS height: {abs(test.intercept_m) / METRES_PER_HPA:.0f} hPa if it is the setting"
         if test.alarm
         else "no alarm"
     )
     return (
         f"Altimeter setting {test.setting_hpa:.1f} hPa ({test.origin}): at the aerodrome geometric less indicated height is "
-        f"{test.intercept_m:+.1f} m by {test.n} positions, slope {test.slope:+.3f} (temperature); {found}. The alarm stands at "
+        f"{test.intercept_m:+.1f} m by {test.n} positions, slope {test.slope:+.3f} (temperature); {outcome}. The alarm stands at "
         f"{test.threshold_m:.0f} m ({test.threshold_m / METRES_PER_HPA:.0f} hPa), {test.detectable_m:.0f} m are found with 90 % (INFERRED: "
         "10 m of deviation, by three approaches of one airliner)."
     )

@@ -94,7 +94,12 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
     return OnProcedure(
         epochs=table,
         left_out=pl.concat([x for x in unknown if x["track"].is_in(list(tracks)).all()]),
-        words=[_path_words(procedure), loaded.words[0].upper() + loaded.words[1:] + ("" if loaded.words.endswith(".") else "."), *procedure.notes, *words],
+        words=[
+            _path_words(procedure),
+            loaded.words[0].upper() + loaded.words[1:] + ("" if loaded.words.endswith(".") else "."),
+            *procedure.notes,
+            *words,
+        ],
         heading=f"Procedure {procedure.name}" + (f", {procedure.line}" if procedure.line else ""),
         waypoints=[Waypoint(name=n, lat_rad=a, lon_rad=o, kind="runway" if n.startswith("RW") else "waypoint") for n, a, o in marks],
         inputs=[flown.source()],

@@ -99,9 +99,9 @@ def heights(group: pl.DataFrame, followed: Followed, loaded: Loaded, flown: Flow
         "baro_off_m": indicated - altitude,
         "limit_v_m": limit,
     }
-    told = _words(path is not None, np.isfinite(above_sea).any(), np.isfinite(indicated).any(), (origin, undulation, n_impossible))
+    compared = _words(path is not None, np.isfinite(above_sea).any(), np.isfinite(indicated).any(), (origin, undulation, n_impossible))
     columns = pl.DataFrame({name: pl.Series(values, nan_to_null=True) for name, values in named.items()})
-    return Heights(columns, indicated, above_sea, setting, origin, told)
+    return Heights(columns, indicated, above_sea, setting, origin, compared)
 
 
 def _numbers(group: pl.DataFrame, name: str) -> Floats:
@@ -154,12 +154,12 @@ def height_results(part: pl.DataFrame, shape: Literal["barometric", "straight"])
     shape : {"barometric", "straight"}
         Of the vertical path.
     """
-    found = []
+    results = []
     for by, name in BY.items():
         values = _numbers(part, name)
         values = values[np.isfinite(values)]
         if values.size:
-            found.append(
+            results.append(
                 HeightResult(
                     by=by,  # type: ignore[arg-type]
                     path=shape,
@@ -173,7 +173,7 @@ def height_results(part: pl.DataFrame, shape: Literal["barometric", "straight"])
                     n_inside=int((np.abs(values) <= LIMIT_M).sum()),
                 )
             )
-    return found
+    return results
 
 
 def setting_result(time_s: Floats, last_s: float, height: Heights, loaded: Loaded) -> SettingResult | None:
@@ -193,7 +193,13 @@ def setting_result(time_s: Floats, last_s: float, height: Heights, loaded: Loade
     if loaded.path is None or not math.isfinite(loaded.path.threshold_m):
         return None
     above = height.indicated_m - loaded.path.threshold_m
-    used = (time_s >= last_s - DESCENT_S) & (time_s <= last_s + LANDING_S) & (above < BELOW_M) & np.isfinite(above) & np.isfinite(height.above_sea_m)
+    used = (
+        (time_s >= last_s - DESCENT_S)
+        & (time_s <= last_s + LANDING_S)
+        & (above < BELOW_M)
+        & np.isfinite(above)
+        & np.isfinite(height.above_sea_m)
+    )
     # One setting at a time: a change on the way would be taken for the temperature.
     if used.any():
         used &= height.setting_hpa == height.setting_hpa[np.flatnonzero(used)[-1]]

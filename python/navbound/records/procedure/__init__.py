@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
 from navbound.records.base import Record
 
 
@@ -97,7 +99,7 @@ class ProcedureFlown(Record):
     most_exceeding: float | None
     """Share outside RNP that no exceedance in so many independent positions leaves open at 95 % confidence; None where there was one."""
     legs: list[LegFlown]
-    heights: list[HeightResult] = []
+    heights: list[HeightResult] = Field(default_factory=list)
     setting: SettingResult | None = None
     answers: list[str]
     """Whether it was inside: recorded positions, bounds of the total error, what the data can decide; then the heights."""
