@@ -21,8 +21,8 @@ BUSY_S = 9.0
 
 def begun(folder: Path, *arguments: str) -> tuple[subprocess.Popen[str], Path]:
     """A command that is in the middle of its work."""
-    told = folder / "progress"
-    environment = os.environ | {"NAVBOUND_PROGRESS": str(told)}
+    reported = folder / "progress"
+    environment = os.environ | {"NAVBOUND_PROGRESS": str(reported)}
     process = subprocess.Popen(
         [sys.executable, "-m", "navbound", *arguments],
         cwd=folder,
@@ -33,11 +33,11 @@ def begun(folder: Path, *arguments: str) -> tuple[subprocess.Popen[str], Path]:
         start_new_session=True,
     )
     until = time.monotonic() + 120.0
-    while not told.exists():
+    while not reported.exists():
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < until
         time.sleep(0.05)
-    return process, told
+    return process, reported
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def begun(folder: Path, *arguments: str) -> tuple[subprocess.Popen[str], Path]:
     ],
 )
 def test_ctrl_c_ends_a_command_at_once_and_says_what_was_kept(options: list[str], words: str, tmp_path: Path) -> None:
-    process, told = begun(tmp_path, "map", "araim", "--step-deg", "2", *options)
+    process, reported = begun(tmp_path, "map", "araim", "--step-deg", "2", *options)
     began = time.monotonic()
     # As a terminal does: to the command and to what it started.
     os.killpg(process.pid, signal.SIGINT)
@@ -59,7 +59,7 @@ def test_ctrl_c_ends_a_command_at_once_and_says_what_was_kept(options: list[str]
     assert "Traceback" not in err
     assert out == ""
     assert took < AT_ONCE_S + BUSY_S
-    assert json.loads(told.read_text())["total"] > 1
+    assert json.loads(reported.read_text())["total"] > 1
     assert not (tmp_path / "out" / "map-araim" / "manifest.json").exists()
     # What another job finds there is no obstacle: the lock has ended with the process.
     assert STOPPED in MEANINGS

@@ -1,4 +1,4 @@
-"""The server of the workbench: what may be asked, which files can be named, what a job leaves, and who may ask."""
+"""The server of the workbench: what may be requested, which files can be named, what a job leaves, and who may ask."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def page(server: Server) -> Browser:
     return Browser(cast("Any", server)).begin()
 
 
-def asked(page: Browser, path: str, **values: Any) -> dict[str, Any]:
+def requested(page: Browser, path: str, **values: Any) -> dict[str, Any]:
     # A program that starts on a machine that does other things takes its time.
     answer = page.raw(page.text("POST", path, json.dumps(values)), 120.0)
     assert answer.status == 200, answer.body
@@ -132,23 +132,25 @@ def test_a_file_outside_the_folder_cannot_be_named(page: Browser, folder: Path, 
     names = {row["name"] for row in json.loads(page.ask("GET", "/files").body)["files"]}
     assert names == {"track.csv"}
     for name in (str(outside), "../secret.csv", "link.csv", "way/secret.csv", "track.csv/../../secret.csv", "/etc/passwd"):
-        refused = asked(page, "/line", command="analyze", values={"files": [name]})
+        refused = requested(page, "/line", command="analyze", values={"files": [name]})
         assert refused["field"] == "files", name
         for field in ("path", "truth"):
-            assert asked(page, "/line", command="analyze", values={"files": ["track.csv"], field: name})["field"] == field, name
+            assert requested(page, "/line", command="analyze", values={"files": ["track.csv"], field: name})["field"] == field, name
     # What no file is, still goes: a runway, a point.
-    line = asked(page, "/line", command="analyze", values={"files": ["track.csv"], "path": "LFPG/08R,LFPG/09L", "truth": "1,2,-3.5"})["line"]
+    line = requested(page, "/line", command="analyze", values={"files": ["track.csv"], "path": "LFPG/08R,LFPG/09L", "truth": "1,2,-3.5"})[
+        "line"
+    ]
     assert shlex.split(line)[:7] == ["navbound", "analyze", "track.csv", "--path", "LFPG/08R,LFPG/09L", "--truth", "1,2,-3.5"]
 
 
 def test_what_is_written_stays_in_the_folder(page: Browser, folder: Path, tmp_path: Path) -> None:
     values = {"files": ["track.csv"]}
     for name in ("../away", "/tmp/away", "a/b", ".hidden", "x\0y"):
-        assert "plain name" in asked(page, "/start", command="analyze", values=values, name=name)["refused"], name
+        assert "plain name" in requested(page, "/start", command="analyze", values=values, name=name)["refused"], name
     away = tmp_path / "away"
     away.mkdir()
     (folder / "out").symlink_to(away)
-    assert "is a link" in asked(page, "/start", command="analyze", values=values)["refused"]
+    assert "is a link" in requested(page, "/start", command="analyze", values=values)["refused"]
     (folder / kept.DROPPED).symlink_to(away)
     assert "is a link" in dropped(page, "a.csv", TRACK)["refused"]
     assert not list(away.iterdir())
@@ -156,10 +158,10 @@ def test_what_is_written_stays_in_the_folder(page: Browser, folder: Path, tmp_pa
 
 def test_the_text_of_a_field_is_never_an_option(page: Browser) -> None:
     values = {"files": ["track.csv"], "spec": "--out=/tmp/x", "systems": "-G", "column": ["--json"]}
-    line = shlex.split(asked(page, "/line", command="analyze", values=values)["line"])
+    line = shlex.split(requested(page, "/line", command="analyze", values=values)["line"])
     assert {"--spec=--out=/tmp/x", "--systems=-G", "--map=--json"} <= set(line)
     for values in ({"files": ["track.csv"], "json": True}, {"files": ["track.csv"], "levels": "x"}):
-        assert "no such argument" in asked(page, "/line", command="analyze", values=values)["refused"]
+        assert "no such argument" in requested(page, "/line", command="analyze", values=values)["refused"]
     assert page.ask("POST", "/line", json.dumps({"command": "live", "values": {}})).status == 400
     assert page.ask("POST", "/line", json.dumps({"command": "analyze", "values": [1]})).status == 400
 
@@ -176,7 +178,7 @@ def test_the_text_of_a_field_is_never_an_option(page: Browser) -> None:
     ],
 )
 def test_what_a_command_does_not_take_is_refused_with_a_sentence(page: Browser, values: dict[str, Any], words: str) -> None:
-    assert words in asked(page, "/line", command="analyze", values=values)["refused"]
+    assert words in requested(page, "/line", command="analyze", values=values)["refused"]
 
 
 def test_every_option_of_the_command_line_is_on_the_page_or_about_the_screen() -> None:
@@ -350,7 +352,7 @@ def test_a_job_is_the_command_line_and_two_pages_see_it(page: Browser, server: S
     (folder / "empty.csv").write_text("", encoding="utf-8")
     server.files.look()
     with page.stream() as one, page.stream() as other:
-        job = asked(page, "/start", command="analyze", values={"files": ["empty.csv"]})["job"]
+        job = requested(page, "/start", command="analyze", values={"files": ["empty.csv"]})["job"]
         assert job["line"] == "navbound analyze empty.csv --out out/analyze-empty"
         for stream in (one, other):
             while not (rows := stream.next("state")["status"]["jobs"]) or rows[0]["state"] == "running":
@@ -365,8 +367,8 @@ LONG = {"kind": "araim", "step_deg": "2", "checkpoint": True}
 
 
 def test_a_stopped_job_leaves_nothing_that_reads_as_whole_and_goes_on(page: Browser, server: Server, folder: Path) -> None:
-    first = asked(page, "/start", command="map", values=LONG)["job"]
-    assert "runs" not in asked(page, "/start", command="map", values=LONG, name=first["out"].split("/")[1])
+    first = requested(page, "/start", command="map", values=LONG)["job"]
+    assert "runs" not in requested(page, "/start", command="map", values=LONG, name=first["out"].split("/")[1])
     parts = folder / "parts" / "map-araim"
     until(lambda: bool(server.jobs.all[1].progress()), "the job says nothing of its progress")
     until(lambda: bool(list(parts.glob("*.npz"))), "no part was finished")
@@ -374,11 +376,11 @@ def test_a_stopped_job_leaves_nothing_that_reads_as_whole_and_goes_on(page: Brow
     until(lambda: not server.jobs.all[1].runs, "the job did not end", jobs.GENTLE_S + 5.0)
     stopped = server.jobs.all[1].row()
     assert stopped["state"] == "stopped"
-    assert stopped["words"] == "navbound: stopped. Finished parts are kept in parts/map-araim: the same command goes on from there."
+    assert stopped["words"] == "stopped. Finished parts are kept in parts/map-araim: the same command goes on from there."
     assert all(run["trouble"] for run in listed(page).values())
     # Again, under the same name: what is finished is not worked out again.
     n_parts = len(list(parts.glob("*.npz")))
-    again = asked(page, "/start", command="map", values=stopped["values"], name="map-araim")["job"]
+    again = requested(page, "/start", command="map", values=stopped["values"], name="map-araim")["job"]
     assert again["line"] == first["line"]
     until(lambda: (server.jobs.all[2].progress() or {"done": 0})["done"] >= n_parts, "it began anew")
     server.jobs.end_all()
@@ -390,27 +392,27 @@ def test_only_so_many_jobs_run_at_a_time(page: Browser, server: Server, monkeypa
     monkeypatch.setattr(jobs, "program", lambda *_: waiting)
     monkeypatch.setattr(jobs, "GENTLE_S", 0.1)
     values = {"files": ["track.csv"]}
-    outs = [asked(page, "/start", command="analyze", values=values)["job"]["out"] for _ in range(jobs.MOST_RUNNING)]
+    outs = [requested(page, "/start", command="analyze", values=values)["job"]["out"] for _ in range(jobs.MOST_RUNNING)]
     assert outs == ["out/analyze-track", "out/analyze-track-2"]
-    assert "wait for one to end" in asked(page, "/start", command="analyze", values=values)["refused"]
+    assert "wait for one to end" in requested(page, "/start", command="analyze", values=values)["refused"]
     server.jobs.end_all()
     assert {job.state for job in server.jobs.all.values()} == {"stopped"}
 
 
-def test_runways_and_procedures_are_found_by_a_part_of_their_name(page: Browser, folder: Path, server: Server) -> None:
-    found = [each["value"] for each in json.loads(page.ask("GET", "/search?list=runways&words=lfpg/0").body)["found"]]
-    assert {"LFPG/08L", "LFPG/08R", "LFPG/09L", "LFPG/09R"} <= set(found)
+def test_runways_and_procedures_are_listed_by_a_part_of_their_name(page: Browser, folder: Path, server: Server) -> None:
+    matches = [each["value"] for each in json.loads(page.ask("GET", "/search?list=runways&words=lfpg/0").body)["matches"]]
+    assert {"LFPG/08L", "LFPG/08R", "LFPG/09L", "LFPG/09R"} <= set(matches)
     database = Path(__file__).parent / "procedures" / "KDEN_H26-Z.txt"
     (folder / "database.txt").write_bytes(database.read_bytes())
     server.files.look()
     answer = json.loads(page.ask("GET", "/search?list=procedures&file=database.txt&words=h26").body)
-    assert "KDEN/H26-Z:FUZZZ" in [each["value"] for each in answer["found"]]
+    assert "KDEN/H26-Z:FUZZZ" in [each["value"] for each in answer["matches"]]
     assert page.ask("GET", "/search?list=procedures&file=../database.txt&words=h26").status == 404
 
 
 def test_the_lines_of_python_do_the_same(page: Browser, folder: Path) -> None:
     values = {"files": ["track.csv"], "sigma_m": "5", "spec": "RNP 1"}
-    lines = asked(page, "/python", command="analyze", values=values)["python"]
+    lines = requested(page, "/python", command="analyze", values=values)["python"]
     done = subprocess.run(
         [sys.executable, "-c", f"{lines}\nprint(result.summary.verdict.requirement)"],
         cwd=folder,
@@ -419,7 +421,7 @@ def test_the_lines_of_python_do_the_same(page: Browser, folder: Path) -> None:
         check=True,
     )
     assert done.stdout.strip() == "RNP 1"
-    command = shlex.split(asked(page, "/line", command="analyze", values=values, name="again")["line"])
+    command = shlex.split(requested(page, "/line", command="analyze", values=values, name="again")["line"])
     subprocess.run([sys.executable, "-m", *command], cwd=folder, capture_output=True, check=False)
     one, other = (json.loads((folder / "out" / name / "summary.json").read_text()) for name in ("analyze-track", "again"))
     assert one == other

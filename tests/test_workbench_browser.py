@@ -160,7 +160,7 @@ def test_the_student_predicts_raim_on_a_telephone(browser: Browser, server: Serv
         assert page.evaluate("() => document.documentElement.scrollWidth") <= 420
 
 
-def test_the_newcomer_drops_a_file_and_is_told_what_is_wrong(browser: Browser, server: Server) -> None:
+def test_the_newcomer_drops_a_file_and_sees_what_is_wrong(browser: Browser, server: Server) -> None:
     with shown(browser, server) as page:
         assert "Not usable: the gzip stream is damaged" in row(page, "damaged.csv.gz")
         assert page.get_by_label("Use damaged.csv.gz").is_disabled()

@@ -10,7 +10,7 @@ import typer
 import navbound
 from navbound.cli import evaluate, procedures
 from navbound.cli.calls import call
-from navbound.cli.choices import RUNWAY, Chosen
+from navbound.cli.choices import RUNWAY, Selectable
 from navbound.cli.fly import DEFAULT, Methods, settings_of
 from navbound.cli.parts import (
     SIGNAL,
@@ -44,7 +44,7 @@ def analyze_command(
     path: Annotated[
         str | None,
         typer.Option(help="Where the aircraft should be: a runway (LFPG/08R), auto (the runway each aircraft lands on), or a route file."),
-        Chosen(words=("auto",), search="runways", files=True, free=RUNWAY),
+        Selectable(words=("auto",), search="runways", files=True, free=RUNWAY),
     ] = None,
     procedure: Annotated[
         str | None,
@@ -52,7 +52,7 @@ def analyze_command(
             help="Instead of --path: AIRPORT/PROCEDURE[:TRANSITION] of --database, such as KDEN/H26-Z:FUZZZ; "
             "each leg has its own RNP, and --spec has no part in it."
         ),
-        Chosen(search="procedures", typed=True),
+        Selectable(search="procedures", typed=True),
     ] = None,
     database: Annotated[Path | None, typer.Option(help="With --procedure: navigation database of ARINC 424.")] = None,
     line: Annotated[str | None, typer.Option(help="With --procedure: line of minima that is flown, such as 'RNP 0.3'.")] = None,
@@ -78,21 +78,21 @@ def analyze_command(
     spec: Annotated[
         str,
         typer.Option(help="Navigation specification, such as 'RNP 0.3', 'RNP AR 0.1' or 'RNP APCH'."),
-        Chosen(lists="specifications", typed=True),
+        Selectable(lists="specifications", typed=True),
     ] = "RNP 0.3",
     operation: Annotated[
         str | None,
         typer.Option(
             help="en-route, approach or ground. Default: approach with runways or an approach procedure as the path, otherwise en-route."
         ),
-        Chosen(words=("en-route", "approach", "ground")),
+        Selectable(words=("en-route", "approach", "ground")),
     ] = None,
     truth: Truth = None,
     truth_tolerance_s: TruthTolerance = None,
     sigma_m: Annotated[
         float | None,
         typer.Option(help="Stated standard deviation of the position per axis, where the file has no covariance."),
-        Chosen(first=True),
+        Selectable(first=True),
     ] = None,
     column: Columns = None,
     methods: Methods = DEFAULT,

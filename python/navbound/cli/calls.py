@@ -86,10 +86,10 @@ def _source(value: Any, imports: set[str]) -> str:
         return f"{kind.__name__}({stated})"
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         imports.add(f"from {kind.__module__} import {kind.__name__}")
-        given = [
+        changed = [
             f"{each.name}={_source(getattr(value, each.name), imports)}"
             for each in dataclasses.fields(value)
             if each.init and (each.default is dataclasses.MISSING or getattr(value, each.name) != each.default)
         ]
-        return f"{kind.__name__}({', '.join(given)})"
+        return f"{kind.__name__}({', '.join(changed)})"
     return repr(value)

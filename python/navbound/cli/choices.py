@@ -1,6 +1,6 @@
 """What stands beside an option for a page that offers it: its list, whether a file may stand there, whether it is a folder that is written.
 
-The declaration of an option carries it: `Annotated[str, typer.Option(...), Chosen(...)]`.
+The declaration of an option carries it: `Annotated[str, typer.Option(...), Selectable(...)]`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ POINT = rf"{NUMBER},{NUMBER}(,{NUMBER})?"
 
 
 @dataclass(frozen=True)
-class Chosen:
+class Selectable:
     """What an option can be chosen from.
 
     Attributes

@@ -11,7 +11,7 @@ import navbound
 from navbound.algorithms import Recorded, entries
 from navbound.cli import interrupt
 from navbound.cli.calls import call
-from navbound.cli.choices import Chosen
+from navbound.cli.choices import Selectable
 from navbound.cli.parts import (
     SIGNAL,
     SIGNALS,
@@ -98,10 +98,10 @@ class Options:
 
 def evaluate_command(
     files: Files,
-    levels: Annotated[str, typer.Option(help=_LEVELS), Chosen(lists="limits", commas=True)],
+    levels: Annotated[str, typer.Option(help=_LEVELS), Selectable(lists="limits", commas=True)],
     truth: Truth = None,
     truth_tolerance_s: TruthTolerance = None,
-    protection: Annotated[str | None, typer.Option(help=_PROTECTION), Chosen(lists="protection")] = None,
+    protection: Annotated[str | None, typer.Option(help=_PROTECTION), Selectable(lists="protection")] = None,
     prn: Annotated[int | None, typer.Option(help=_PRN)] = None,
     period_s: Annotated[float | None, typer.Option(help=_PERIOD)] = None,
     exclude_missing: Annotated[bool, typer.Option("--exclude-missing", help=_MISSING)] = False,

@@ -9,7 +9,7 @@ import typer
 
 import navbound
 from navbound.cli.calls import call
-from navbound.cli.choices import Chosen
+from navbound.cli.choices import Selectable
 from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, Out, command_line, work_of
 from navbound.cli.show import show
 from navbound.run.settings import DEFAULT_METHODS, Settings
@@ -18,7 +18,7 @@ DEFAULT = ",".join(DEFAULT_METHODS)
 Methods = Annotated[
     str,
     typer.Option("--methods", help="Comma-separated method ids; see `navbound methods`."),
-    Chosen(lists="methods", commas=True),
+    Selectable(lists="methods", commas=True),
 ]
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from navbound.cli.choices import LISTS, Chosen, Written
+from navbound.cli.choices import LISTS, Selectable, Written
 from navbound.workbench.forms import Field, Form
 
 if TYPE_CHECKING:
@@ -45,25 +45,25 @@ def _plain(annotation: Any) -> tuple[object, bool]:
 
 def _field(parameter: Any, annotation: Any) -> Field:
     beside = {type(each): each for each in getattr(annotation, "__metadata__", ())}
-    chosen: Chosen = beside.get(Chosen, Chosen())
+    selectable: Selectable = beside.get(Selectable, Selectable())
     written: Written | None = beside.get(Written)
     one, repeated = _plain(annotation)
     kind = "out" if written is not None else "parts" if parameter.name == "checkpoint" else _KINDS.get(one, "text")
-    words = [(value, "") for value in chosen.words] + (LISTS[chosen.lists]() if chosen.lists else [])
+    words = [(value, "") for value in selectable.words] + (LISTS[selectable.lists]() if selectable.lists else [])
     decides = (written.argument, tuple(value for value, _ in LISTS[written.lists]())) if written is not None and written.argument else None
     return Field(
         name=parameter.name,
         flag=parameter.opts[0] if parameter.param_type_name == "option" else "",
         help=(parameter.help or "").strip(),
         kind=kind,
-        several="commas" if chosen.commas else "repeated" if repeated else "",
+        several="commas" if selectable.commas else "repeated" if repeated else "",
         required=bool(parameter.required),
         default="" if kind == "flag" or parameter.default in (None, ()) else str(parameter.default),
         choices=tuple(words),
-        search=chosen.search,
-        free=chosen.free,
-        typed=chosen.typed or not (words or chosen.search),
-        first=chosen.first,
-        files=chosen.files,
+        search=selectable.search,
+        free=selectable.free,
+        typed=selectable.typed or not (words or selectable.search),
+        first=selectable.first,
+        files=selectable.files,
         when=decides,
     )

@@ -13,7 +13,7 @@ import typer
 from navbound.algorithms import Grid as MapOf
 from navbound.algorithms import Sent, entries
 from navbound.cli.calls import call
-from navbound.cli.choices import Chosen, Written
+from navbound.cli.choices import Selectable, Written
 from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, command_line, out_console, work_of
 from navbound.errors import InputError
 
@@ -26,14 +26,16 @@ _OF_ORBITS = f"[dop, {', '.join(entries(MapOf))}]"
 
 def map_command(
     kind: Annotated[
-        str, typer.Argument(help=f"What to map: dop, {', '.join([*entries(MapOf), *entries(Sent)])}, dme."), Chosen(lists="maps")
+        str, typer.Argument(help=f"What to map: dop, {', '.join([*entries(MapOf), *entries(Sent)])}, dme."), Selectable(lists="maps")
     ],
-    step_deg: Annotated[float, typer.Option(help="Side of a cell."), Chosen(first=True)] = 5.0,
-    region: Annotated[str | None, typer.Option(help="South,north,west,east in degrees. [default: the world]"), Chosen(first=True)] = None,
+    step_deg: Annotated[float, typer.Option(help="Side of a cell."), Selectable(first=True)] = 5.0,
+    region: Annotated[
+        str | None, typer.Option(help="South,north,west,east in degrees. [default: the world]"), Selectable(first=True)
+    ] = None,
     constellation: Annotated[
         list[str] | None,
         typer.Option(help=f"gps, galileo, beidou, or a YUMA or SEM almanac or RINEX navigation file; may be repeated. {_OF_ORBITS}"),
-        Chosen(lists="constellations", files=True),
+        Selectable(lists="constellations", files=True),
     ] = None,
     start: Annotated[
         str | None,
@@ -45,21 +47,21 @@ def map_command(
     height_m: Annotated[float | None, typer.Option(help="Height of the users above the ellipsoid.")] = None,
     without: Annotated[list[str] | None, typer.Option(help=f"Satellite out of service, as G05; may be repeated. {_OF_ORBITS}")] = None,
     service: Annotated[
-        str | None, typer.Option(help="Service of araim: lpv-200, horizontal."), Chosen(words=("lpv-200", "horizontal"))
+        str | None, typer.Option(help="Service of araim: lpv-200, horizontal."), Selectable(words=("lpv-200", "horizontal"))
     ] = None,
     model: Annotated[
-        str | None, typer.Option(help="Error model of levels of orbits: dual-frequency, single-frequency."), Chosen(lists="models")
+        str | None, typer.Option(help="Error model of levels of orbits: dual-frequency, single-frequency."), Selectable(lists="models")
     ] = None,
     messages: Annotated[Path | None, typer.Option(help="Message log of sbas.")] = None,
     navigation: Annotated[list[Path] | None, typer.Option(help="RINEX navigation file of sbas; may be repeated.")] = None,
     prn: Annotated[int | None, typer.Option(help="Whose SBAS messages, where a log holds several.")] = None,
-    mode: Annotated[str | None, typer.Option(help="Of sbas: pa, npa, auto."), Chosen(words=("pa", "npa", "auto"))] = None,
+    mode: Annotated[str | None, typer.Option(help="Of sbas: pa, npa, auto."), Selectable(words=("pa", "npa", "auto"))] = None,
     stations: Annotated[Path | None, typer.Option(help="Table of stations of dme. [default: the shipped one]")] = None,
     rnp_nm: Annotated[float | None, typer.Option(help="Lateral accuracy required of dme. [default: 1]")] = None,
     fte_nm: Annotated[float | None, typer.Option(help="Flight technical error of dme, 95 %. [default: 0.5]")] = None,
     limit: Annotated[list[str] | None, typer.Option(help="Limit instead: column=number; may be repeated.")] = None,
     level: Annotated[
-        str | None, typer.Option(help="Limit instead: alert limits of a service level; see `navbound levels`."), Chosen(lists="levels")
+        str | None, typer.Option(help="Limit instead: alert limits of a service level; see `navbound levels`."), Selectable(lists="levels")
     ] = None,
     backend: Backend = None,
     workers: NWorkers = None,

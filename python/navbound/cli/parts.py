@@ -19,7 +19,7 @@ import typer
 from rich.console import Console
 
 from navbound.cli import interrupt
-from navbound.cli.choices import POINT, Chosen, Written
+from navbound.cli.choices import POINT, Selectable, Written
 from navbound.errors import ConflictError, InputError
 from navbound.storage.packed import require_there
 
@@ -34,7 +34,7 @@ PROGRESS = "NAVBOUND_PROGRESS"
 EVERY_S = 0.2
 """Shortest time between two words on how far the work is. [s]"""
 LEAST_WORKERS = 2
-"""Worker processes that any machine may be asked for."""
+"""Worker processes that any machine may be requested for."""
 PAPER_WIDTH = 140
 """Columns of a table that goes to a file or a pipe, where the width of a terminal means nothing; COLUMNS states another one."""
 
@@ -48,7 +48,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON, no
 Backend = Annotated[
     str | None,
     typer.Option(help="Who works: serial (this process, on all cores), processes, dask. [default: serial]"),
-    Chosen(words=("serial", "processes", "dask")),
+    Selectable(words=("serial", "processes", "dask")),
 ]
 NWorkers = Annotated[int | None, typer.Option("--workers", help="Worker processes. [default: one a core]")]
 Cluster = Annotated[str | None, typer.Option(help="Address of a Dask scheduler. [default: one on this machine]")]
@@ -63,7 +63,7 @@ Files = Annotated[
 Truth = Annotated[
     str | None,
     typer.Option(help="A file with true positions, joined by time; or X,Y,Z of a fixed point (Earth-fixed, metres)."),
-    Chosen(files=True, free=POINT),
+    Selectable(files=True, free=POINT),
 ]
 TruthTolerance = Annotated[float | None, typer.Option(help="How far apart in time a truth epoch may be. [default: 0.01]")]
 Columns = Annotated[
@@ -83,13 +83,13 @@ Ionosphere = Annotated[
         help="Model of single signals: broadcast (GPS message), galileo (NTCM-G by Galileo's message), climatology, none, or auto, the "
         "first of these that the navigation files have. [default: auto]"
     ),
-    Chosen(words=("auto", "broadcast", "galileo", "climatology", "none")),
+    Selectable(words=("auto", "broadcast", "galileo", "climatology", "none")),
 ]
 Mask = Annotated[float | None, typer.Option(help="Lowest elevation of satellites to solve from, degrees, 0 to below 90. [default: 5]")]
 SIGNALS = (
     "Measurements to solve: single (L1, E1, B1I), dual (ionosphere-free pairs), or auto, the smaller declared covariance. [default: {}]"
 )
-SIGNAL = Chosen(words=("auto", "single", "dual"))
+SIGNAL = Selectable(words=("auto", "single", "dual"))
 SYSTEMS = "Constellations to solve from: letters of GEC. [default: {}]"
 Checkpoint = Annotated[
     Path | None, typer.Option(help="Folder that keeps finished parts: started again, interrupted work goes on from there.")

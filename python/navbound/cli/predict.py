@@ -13,7 +13,7 @@ from rich.table import Table
 
 from navbound.algorithms import Place, entries, entry
 from navbound.cli.calls import call
-from navbound.cli.choices import Chosen, Written
+from navbound.cli.choices import Selectable, Written
 from navbound.cli.flight_plan import predict_flight_command
 from navbound.cli.parts import command_line, out_console
 from navbound.errors import ConflictError, InputError
@@ -30,32 +30,32 @@ def predict_command(
     kind: Annotated[
         str,
         typer.Argument(help=f"What to predict: {', '.join(entries(Place))}; or flight, the navigation along a plan."),
-        Chosen(lists="predictions"),
+        Selectable(lists="predictions"),
     ],
     constellation: Annotated[
         list[str],
         typer.Argument(
             help="YUMA or SEM almanac, RINEX navigation file, or gps, galileo, beidou (nominal, of no date); of a flight the PLAN.toml."
         ),
-        Chosen(lists="constellations", files=True),
+        Selectable(lists="constellations", files=True),
     ],
     at: Annotated[
         list[str] | None,
         typer.Option("--at", help="LAT,LON[,H] in degrees and metres, or a runway (LFPG/08R); may be repeated."),
-        Chosen(search="runways", typed=True),
+        Selectable(search="runways", typed=True),
     ] = None,
     route: Annotated[list[Path] | None, typer.Option(help="Route file (.toml, .csv): every point of it counts; may be repeated.")] = None,
     date: Annotated[
         str | None,
         typer.Option(help="Start, UTC: 2026-11-22 or 2026-11-22T06:00. [default: the reference instant of the orbits]"),
-        Chosen(first=True),
+        Selectable(first=True),
     ] = None,
     hours: Annotated[float, typer.Option(help="Length.")] = 24.0,
     every_s: Annotated[float, typer.Option(help="Step between instants.")] = 60.0,
     spec: Annotated[
         list[str] | None,
         typer.Option(help="RNP 0.3, RNP 1, ... or a service level (NPA); may be repeated. [default: RNP 0.3, RNP 1]"),
-        Chosen(lists="limits", typed=True),
+        Selectable(lists="limits", typed=True),
     ] = None,
     without: Annotated[list[str] | None, typer.Option(help="Satellite out of service (a NANU), as G05; may be repeated.")] = None,
     systems: Annotated[
@@ -63,7 +63,7 @@ def predict_command(
     ] = None,
     mask_deg: Annotated[float, typer.Option(help="Lowest elevation used.")] = 5.0,
     model: Annotated[
-        str, typer.Option(help="Error of a range: single-frequency, dual-frequency."), Chosen(lists="models")
+        str, typer.Option(help="Error of a range: single-frequency, dual-frequency."), Selectable(lists="models")
     ] = "single-frequency",
     out: Annotated[
         Path | None, typer.Option("--out", help="Of a flight: folder for record, epoch table and page."), Written("kind", "flights")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from navbound.cli.choices import Chosen
+from navbound.cli.choices import Selectable
 from navbound.errors import NotFoundError
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def of(name: str) -> Schema:
 
 
 def schema_command(
-    command: Annotated[str, typer.Argument(help=f"Whose --json: {', '.join(RECORDS)}, live."), Chosen(words=(*RECORDS, "live"))],
+    command: Annotated[str, typer.Argument(help=f"Whose --json: {', '.join(RECORDS)}, live."), Selectable(words=(*RECORDS, "live"))],
 ) -> None:
     """Print the JSON Schema of what --json of a command prints."""
     sys.stdout.write(encoder.dumps(of(command), indent=1) + "\n")

@@ -10,7 +10,7 @@ import typer
 
 import navbound
 from navbound.cli.calls import call
-from navbound.cli.choices import Chosen, Written
+from navbound.cli.choices import Selectable, Written
 from navbound.cli.parts import Backend, Bar, Checkpoint, Cluster, Json, NWorkers, out_console, work_of
 
 
@@ -22,7 +22,7 @@ def study_command(
             "multipath-time-constants, surface-movement, "
             "tse-coverage, ukraine-rnav, vertical-budget"
         ),
-        Chosen(lists="studies"),
+        Selectable(lists="studies"),
     ],
     files: Annotated[list[Path] | None, typer.Argument(help="Recorded data or a configuration, for a study that takes some.")] = None,
     out: Annotated[

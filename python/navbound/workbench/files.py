@@ -77,13 +77,13 @@ class Files:
     def look(self) -> None:
         """See which files there are; links are not followed, and neither runs nor hidden files are shown."""
         self.n_left_out = 0
-        found: dict[str, File] = {}
+        listed: dict[str, File] = {}
         for file in self._walk(self.folder, "", DEPTH):
-            if len(found) < MOST_FILES:
-                found[file.name] = file
+            if len(listed) < MOST_FILES:
+                listed[file.name] = file
             else:
                 self.n_left_out += 1
-        self.known = found
+        self.known = listed
 
     def rows(self) -> list[dict[str, object]]:
         """Every file for a page; what is new is recognised."""

@@ -1,4 +1,4 @@
-"""What can be asked of the command line, and the command line of what was asked."""
+"""What can be requested of the command line, and the command line of what was requested."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Field:
     typed : bool
         Whether something else than the choices may be typed.
     first : bool
-        Whether it is asked first, not under more options.
+        Whether it is requested first, not under more options.
     files : bool
         Whether a file may stand there.
     when : tuple of (name, values) or None
@@ -80,7 +80,7 @@ class Form:
     summary : str
         What it does.
     fields : tuple of Field
-        What can be asked, in the order of the command line.
+        What can be requested, in the order of the command line.
     """
 
     command: str
@@ -96,7 +96,7 @@ class Form:
 
 
 def arguments(form: Form, values: Mapping[str, Any], files: Collection[str], *, out: str, parts: str) -> list[str]:
-    """The command line of what was asked, without the program.
+    """The command line of what was requested, without the program.
 
     Parameters
     ----------
@@ -121,8 +121,8 @@ def arguments(form: Form, values: Mapping[str, Any], files: Collection[str], *, 
     behind: list[str] = []
     for field in form.fields:
         if field.kind in {"out", "parts"}:
-            wanted = form.writes(values) if field.kind == "out" else values.get(field.name) is True
-            line += [field.flag, out if field.kind == "out" else parts] if wanted else []
+            requested = form.writes(values) if field.kind == "out" else values.get(field.name) is True
+            line += [field.flag, out if field.kind == "out" else parts] if requested else []
             continue
         if field.kind == "flag":
             line += [field.flag] if values.get(field.name) is True else []

@@ -23,7 +23,7 @@ MOST_RUNNING = 2
 """Jobs at a time; each takes every core that it can use. [1]"""
 MOST_KEPT = 200
 GENTLE_S = 3.0
-"""Time that a job has to end by itself after it was asked to. [s]"""
+"""Time that a job has to end by itself after it was requested to. [s]"""
 MOST_OUTPUT = 1 << 20
 """What of a job's output a page receives. [B]"""
 PROGRESS = "NAVBOUND_PROGRESS"
@@ -46,7 +46,7 @@ class Job:
     command : str
         Name of the command.
     values : dict
-        What was asked, to ask it again.
+        What was requested, to ask it again.
     arguments : list of str
         Its command line.
     out : str
@@ -66,7 +66,7 @@ class Job:
     ended_s: float | None = None
     state: str = "running"
     words: str = ""
-    asked_s: float | None = None
+    stop_requested_s: float | None = None
 
     @property
     def runs(self) -> bool:
@@ -76,10 +76,10 @@ class Job:
     def progress(self) -> dict[str, Any] | None:
         """How far it is, as it says itself."""
         try:
-            told = json.loads((self.logs / "progress").read_bytes())
+            reported = json.loads((self.logs / "progress").read_bytes())
         except (OSError, ValueError):
             return None
-        return told if isinstance(told, dict) else None
+        return reported if isinstance(reported, dict) else None
 
     def output(self) -> dict[str, str]:
         """What it printed, the end where it is long."""
@@ -152,8 +152,8 @@ class Jobs:
 
     def stop(self, job: Job) -> None:
         """Ask a job to end; one that does not is ended."""
-        if job.runs and job.asked_s is None:
-            job.asked_s = time.monotonic()
+        if job.runs and job.stop_requested_s is None:
+            job.stop_requested_s = time.monotonic()
             job.state = "stopping"
             _signal(job, signal.SIGINT)
 
@@ -167,7 +167,7 @@ class Jobs:
             if status is not None:
                 self._end(job, status)
                 ended = True
-            elif job.asked_s is not None and time.monotonic() - job.asked_s > GENTLE_S:
+            elif job.stop_requested_s is not None and time.monotonic() - job.stop_requested_s > GENTLE_S:
                 _signal(job, getattr(signal, "SIGKILL", signal.SIGTERM))
         return ended
 
@@ -181,16 +181,16 @@ class Jobs:
 
     def _end(self, job: Job, status: int) -> None:
         job.ended_s = time.time()
-        said = job.output()["stderr"].strip()
-        last = said.splitlines()[-1] if said else ""
-        if job.asked_s is not None and status != 0:
+        printed = job.output()["stderr"].strip()
+        last = printed.splitlines()[-1].removeprefix("navbound: ") if printed else ""
+        if job.stop_requested_s is not None and status != 0:
             job.state, job.words = "stopped", last if status == STOPPED and last else "stopped; nothing of it reads as a result"
         elif status == 0:
             job.state, job.words = "done", ""
         elif status == NO_VERDICT:
             job.state, job.words = "no_verdict", MEANINGS[NO_VERDICT]
         else:
-            job.state, job.words = "failed", last.removeprefix("navbound: ") or f"it ended with status {status}"
+            job.state, job.words = "failed", last or f"it ended with status {status}"
 
 
 def _signal(job: Job, number: int) -> None:

@@ -76,15 +76,15 @@ class Runs:
 
     def look(self, busy: set[str]) -> None:
         """See what there is, beside the folders that jobs are writing to."""
-        found: dict[str, Run] = {}
+        listed: dict[str, Run] = {}
         seen: dict[tuple[str, tuple[tuple[str, int, int], ...]], Run] = {}
         for path, name in self._walk(self.folder, "", DEPTH):
-            if name in busy or len(found) >= MOST_RUNS:
+            if name in busy or len(listed) >= MOST_RUNS:
                 continue
             key = (name, _state(path))
             run = self._seen.get(key) or _read(path, name)
-            seen[key] = found[run.id] = run
-        self._seen, self.known = seen, dict(sorted(found.items(), key=lambda item: -item[1].ended_s))
+            seen[key] = listed[run.id] = run
+        self._seen, self.known = seen, dict(sorted(listed.items(), key=lambda item: -item[1].ended_s))
 
     def report(self, id_: str) -> Path | None:
         """The report of a whole run; None where there is none, or it is not whole any more."""
@@ -145,18 +145,18 @@ def _read(path: Path, name: str) -> Run:
         began = _unfinished(path)
         trouble = "the job that wrote here did not finish" if began or not manifest.exists() else e.message
         return Run(id_, name, ended_s, trouble=trouble)
-    said, record = _first(path, RECORDS), _json(path / _RUN)
-    verdict = said.get("verdict")
-    words = verdict.get("words") if isinstance(verdict, dict) else said.get("words")
+    stated, record = _first(path, RECORDS), _json(path / _RUN)
+    verdict = stated.get("verdict")
+    words = verdict.get("words") if isinstance(verdict, dict) else stated.get("words")
     page = next((each for each in PAGES if (path / each).is_file()), "")
     return Run(
         id_,
         name,
         ended_s,
-        title=_text(said.get("title")) or name,
+        title=_text(stated.get("title")) or name,
         words=_text(words[0] if isinstance(words, list) and words else words),
         verdict=_text(verdict.get("id")) if isinstance(verdict, dict) else "",
-        command=_text(record.get("command") or said.get("command")),
+        command=_text(record.get("command") or stated.get("command")),
         page=page,
     )
 

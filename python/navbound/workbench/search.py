@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-    Found = list[dict[str, str]]
+    Matches = list[dict[str, str]]
 
 LISTED = 40
 
@@ -21,11 +21,11 @@ def _runways() -> tuple[str, ...]:
     return tuple(sorted(f"{airport}/{end}" for airport, end in zip(table["airport"], table["end"], strict=True)))
 
 
-def runways(words: str) -> Found:
+def runways(words: str) -> Matches:
     """Runways whose name has the words in it; those that begin with them first."""
-    wanted = words.strip().upper()
-    named = [name for name in _runways() if wanted in name]
-    return [{"value": name, "words": ""} for name in sorted(named, key=lambda name: (not name.startswith(wanted), name))[:LISTED]]
+    requested = words.strip().upper()
+    named = [name for name in _runways() if requested in name]
+    return [{"value": name, "words": ""} for name in sorted(named, key=lambda name: (not name.startswith(requested), name))[:LISTED]]
 
 
 @lru_cache(4)
@@ -33,14 +33,14 @@ def _procedures(path: Path, changed_ns: int) -> tuple[tuple[str, str], ...]:
     del changed_ns
     from navbound import procedures  # noqa: PLC0415 - loads the reader
 
-    found = []
+    matches = []
     for entry in procedures.read(path).entries:
         transitions = list(dict.fromkeys(route.transition for route in entry.routes if route.transition))
-        found += [(f"{entry.airport}/{entry.ident}{f':{each}' if each else ''}", entry.kind) for each in ["", *transitions]]
-    return tuple(found)
+        matches += [(f"{entry.airport}/{entry.ident}{f':{each}' if each else ''}", entry.kind) for each in ["", *transitions]]
+    return tuple(matches)
 
 
-def procedures(path: Path, words: str) -> Found:
+def procedures(path: Path, words: str) -> Matches:
     """Procedures of a navigation database whose name has the words in it.
 
     Raises
@@ -48,6 +48,6 @@ def procedures(path: Path, words: str) -> Found:
     FormatError
         It cannot be read.
     """
-    wanted = words.strip().upper()
+    requested = words.strip().upper()
     every = _procedures(path, path.stat().st_mtime_ns)
-    return [{"value": name, "words": kind} for name, kind in every if wanted in name][:LISTED]
+    return [{"value": name, "words": kind} for name, kind in every if requested in name][:LISTED]

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 STATUS_S = 1.0
 """Longest time between two words to a page. [s]"""
 IDLE_S = 30.0
-"""Time without a byte after which a file that is dropped is given up. [s]"""
+"""Time without a byte after which a file that is dropped is entered up. [s]"""
 PIECE_BYTES = 256 * 1024
 PYTHON_S = 30.0
 """Time that the Python lines of a command line may take. [s]"""
@@ -55,7 +55,7 @@ class Settings:
     folder : Path
         Whose files are used and where runs are written; nothing else of the disk can be named by a page.
     forms : sequence of Form
-        Commands that can be asked.
+        Commands that can be requested.
     """
 
     folder: Path
@@ -63,7 +63,7 @@ class Settings:
 
 
 @dataclass(frozen=True)
-class Asked:
+class Requested:
     """A job as a page asks for it.
 
     Attributes
@@ -73,7 +73,7 @@ class Asked:
     line : list of str
         Its command line, without the program.
     values : dict
-        As they were asked.
+        As they were requested.
     out : str
         Folder that it writes; empty where it writes none.
     """
@@ -106,7 +106,7 @@ class Server(Service):
         self.folder = settings.folder
         self.forms = {form.command: form for form in settings.forms}
         self.files, self.jobs, self.runs = files.Files(self.folder), Jobs(self.folder, logs), Runs(self.folder)
-        self._told_s, self._changes = 0.0, 0
+        self._reported_s, self._changes = 0.0, 0
         self.handlers |= {
             ("GET", "/workbench"): self._workbench,
             ("GET", "/files"): self._list_files,
@@ -123,8 +123,8 @@ class Server(Service):
         """Tell the pages which jobs run, how far they are, and that files or runs have changed."""
         if self.jobs.look():
             self._changes += 1
-        if now_s - self._told_s >= STATUS_S / 2:
-            self._told_s = now_s
+        if now_s - self._reported_s >= STATUS_S / 2:
+            self._reported_s = now_s
             for client in self.hub.clients.values():
                 client.show([], self._state())
         return False
@@ -172,33 +172,38 @@ class Server(Service):
 
     async def _search(self, query: request.Request) -> bytes:
         self.door.session(query)
-        asked = _asked(query)
-        words, file = asked.get("words", "")[:100], asked.get("file", "")
-        if asked.get("list") == "runways":
-            return _json({"found": await asyncio.to_thread(search.runways, words)})
-        if asked.get("list") != "procedures" or file not in self.files.known:
+        requested = _query_of(query)
+        words, file = requested.get("words", "")[:100], requested.get("file", "")
+        if requested.get("list") == "runways":
+            return _json({"matches": await asyncio.to_thread(search.runways, words)})
+        if requested.get("list") != "procedures" or file not in self.files.known:
             raise RefusedError(HTTPStatus.NOT_FOUND)
         try:
-            return _json({"found": await asyncio.to_thread(search.procedures, self.folder / file, words)})
+            return _json({"matches": await asyncio.to_thread(search.procedures, self.folder / file, words)})
         except NavboundError as e:
-            return _json({"found": [], "refused": self._within(str(e))})
+            return _json({"matches": [], "refused": self._within(str(e))})
 
     def _output(self, query: request.Request) -> bytes:
         self.door.session(query)
-        return _json(self._job(_asked(query).get("job")).output())
+        return _json(self._job(_query_of(query).get("job")).output())
 
     def _line(self, query: request.Request) -> bytes:
         self.door.session(query)
-        return self._asking(query, lambda asked: {"line": shlex.join(["navbound", *asked.line])})
+        return self._asking(query, lambda requested: {"line": shlex.join(["navbound", *requested.line])})
 
     async def _python(self, query: request.Request) -> bytes:
         self.door.session(query)
-        asked = list[Asked]()
-        refused = self._asking(query, lambda one: {"asked": asked.append(one)})
-        if not asked:
+        requested = list[Requested]()
+
+        def take(one: Requested) -> dict[str, Any]:
+            requested.append(one)
+            return {}
+
+        refused = self._asking(query, take)
+        if not requested:
             return refused
         done = await asyncio.to_thread(
-            subprocess.run, program("--python", *asked[0].line), cwd=self.folder, capture_output=True, timeout=PYTHON_S, check=False
+            subprocess.run, program("--python", *requested[0].line), cwd=self.folder, capture_output=True, timeout=PYTHON_S, check=False
         )
         if done.returncode:
             return _json({"refused": visible(done.stderr.decode("utf-8", "replace").removeprefix("navbound: ").strip())})
@@ -207,8 +212,10 @@ class Server(Service):
     def _start(self, query: request.Request) -> bytes:
         self.door.session(query)
 
-        def start(asked: Asked) -> dict[str, Any]:
-            return {"job": self.jobs.start(asked.line, command=asked.form.command, values=asked.values, out=asked.out).row()}
+        def start(requested: Requested) -> dict[str, Any]:
+            return {
+                "job": self.jobs.start(requested.line, command=requested.form.command, values=requested.values, out=requested.out).row()
+            }
 
         return self._asking(query, start)
 
@@ -217,32 +224,32 @@ class Server(Service):
         self.jobs.stop(self._job(query.json().get("job")))
         return request.answer(HTTPStatus.NO_CONTENT)
 
-    def _asking(self, query: request.Request, then: Callable[[Asked], dict[str, Any]]) -> bytes:
+    def _asking(self, query: request.Request, then: Callable[[Requested], dict[str, Any]]) -> bytes:
         """Answer a page that asks for a job: with what is done with it, or with the sentence that refuses it."""
-        asked = query.json()
-        form, values = self.forms.get(str(asked.get("command"))), asked.get("values")
+        requested = query.json()
+        form, values = self.forms.get(str(requested.get("command"))), requested.get("values")
         if form is None or not isinstance(values, dict):
             raise RefusedError(HTTPStatus.BAD_REQUEST)
         try:
-            name = self._name_of(form, values, asked.get("name"))
+            name = self._name_of(form, values, requested.get("name"))
             out, parts = (f"{folder}/{name}" for folder in (files.OUT, files.PARTS))
             line = arguments(form, values, self.files.known, out=out, parts=parts)
-            return _json(then(Asked(form, line, values, out if form.writes(values) else "")))
+            return _json(then(Requested(form, line, values, out if form.writes(values) else "")))
         except InputError as e:
             flags = {field.name: field.flag.removeprefix("--").replace("-", " ") or field.name for field in form.fields}
             return _json({"refused": visible(e.words(lambda argument: flags.get(argument, argument))), "field": e.argument})
         except (NavboundError, OSError) as e:
             return _json({"refused": self._within(str(e))})
 
-    def _name_of(self, form: Form, values: dict[str, Any], asked: Any) -> str:
+    def _name_of(self, form: Form, values: dict[str, Any], requested: Any) -> str:
         """Name of the folder of a run: as a page asks, to go on there; otherwise a new one."""
-        if isinstance(asked, str) and asked:
-            name = files.tidy(asked)
-            if name != asked:
-                raise InputError("name", asked, domain=f"a plain name of a folder, as {name}")
+        if isinstance(requested, str) and requested:
+            name = files.tidy(requested)
+            if name != requested:
+                raise InputError("name", requested, domain=f"a plain name of a folder, as {name}")
             return name
-        given = [values.get(field.name) for field in form.fields]
-        first = next((str(value[0] if isinstance(value, list) else value) for value in given if value and value is not True), "")
+        entered = [values.get(field.name) for field in form.fields]
+        first = next((str(value[0] if isinstance(value, list) else value) for value in entered if value and value is not True), "")
         name = files.tidy(f"{form.command}-{first.rpartition('/')[2].split('.')[0].lower()}".rstrip("-"))
         taken = {path.name for path in self._out().iterdir()} if self._out().is_dir() else set()
         taken |= {job.out.rpartition("/")[2] for job in self.jobs.all.values() if job.runs}
@@ -317,7 +324,7 @@ class Server(Service):
             raise RefusedError(HTTPStatus.NOT_FOUND) from e
 
 
-def _asked(query: request.Request) -> dict[str, str]:
+def _query_of(query: request.Request) -> dict[str, str]:
     try:
         return {name: values[0] for name, values in parse_qs(query.query, max_num_fields=8).items()}
     except ValueError as e:

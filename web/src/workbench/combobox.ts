@@ -12,12 +12,12 @@ export function combobox(input: HTMLInputElement, suggest: Suggest): HTMLElement
     const box = el("div", { class: "wb-combobox" }, input, list);
     let items: [string, string][] = [];
     let current = -1;
-    let asked = 0;
+    let requested = 0;
     let timer: ReturnType<typeof setTimeout> | undefined;
     for (const [name, value] of [["role", "combobox"], ["aria-autocomplete", "list"], ["aria-controls", id], ["aria-expanded", "false"], ["autocomplete", "off"]] as const) input.setAttribute(name, value);
 
     const close = (): void => {
-        asked += 1;
+        requested += 1;
         clearTimeout(timer);
         list.hidden = true;
         current = -1;
@@ -38,10 +38,10 @@ export function combobox(input: HTMLInputElement, suggest: Suggest): HTMLElement
         if (to >= 0) input.setAttribute("aria-activedescendant", `${id}-${to}`);
     };
     const open = async (): Promise<void> => {
-        const turn = ++asked;
-        const found = await suggest(input.value.trim()).catch((): [string, string][] => []);
-        if (turn !== asked || document.activeElement !== input) return;
-        items = found;
+        const turn = ++requested;
+        const suggested = await suggest(input.value.trim()).catch((): [string, string][] => []);
+        if (turn !== requested || document.activeElement !== input) return;
+        items = suggested;
         list.replaceChildren(...items.map(([value, words], i) => {
             const item = el("li", { role: "option", id: `${id}-${i}`, "aria-selected": "false" }, el("b", {}, value), words === "" ? null : el("span", {}, ` ${words}`));
             // Before the field loses the focus.

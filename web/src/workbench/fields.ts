@@ -39,7 +39,7 @@ function flag(field: Field): Control {
     return { field, element, value: () => box.checked, set: (value) => { box.checked = value === true; }, files: () => undefined };
 }
 
-/** One value: chosen from a closed list, from the files, or typed with suggestions. */
+/** One value: selected from a closed list, from the files, or typed with suggestions. */
 function one(field: Field, id: string, others: Others): { element: HTMLElement; input: HTMLInputElement | HTMLSelectElement; files: (rows: FileRow[]) => void } {
     const attributes = { id, "aria-describedby": `${id}-help`, "data-input": field.name };
     if (field.kind === "file") {
@@ -58,12 +58,12 @@ function one(field: Field, id: string, others: Others): { element: HTMLElement; 
     if (field.choices.length === 0 && !field.files && field.search === "") return { element: input, input, files: () => undefined };
     let names: [string, string][] = [];
     const suggest = async (words: string): Promise<[string, string][]> => {
-        const wanted = words.toLowerCase();
-        const near = [...field.choices, ...names].filter(([value]) => value.toLowerCase().includes(wanted));
+        const requested = words.toLowerCase();
+        const near = [...field.choices, ...names].filter(([value]) => value.toLowerCase().includes(requested));
         const query = new URLSearchParams({ list: field.search, words, file: others("database") });
         if (field.search === "runways" && words.length < 2) return near.slice(0, MOST_SUGGESTED);
-        const found = field.search === "" || (field.search === "procedures" && others("database") === "") ? [] : (await get<{ found: { value: string; words: string }[] }>(`/search?${query}`)).found;
-        return [...near, ...found.map(({ value, words: more }): [string, string] => [value, more])].slice(0, MOST_SUGGESTED);
+        const matches = field.search === "" || (field.search === "procedures" && others("database") === "") ? [] : (await get<{ matches: { value: string; words: string }[] }>(`/search?${query}`)).matches;
+        return [...near, ...matches.map(({ value, words: more }): [string, string] => [value, more])].slice(0, MOST_SUGGESTED);
     };
     const files = (rows: FileRow[]): void => { names = field.files ? rows.filter((row) => !row.refused).map((row) => [row.name, row.words]) : []; };
     return { element: combobox(input, suggest), input, files };
@@ -131,13 +131,13 @@ function ticks(field: Field): Control {
         return { box, line: el("div", { class: "wb-tick" }, box, el("label", { for: id }, el("b", {}, value), words === "" ? null : ` ${words}`)) };
     });
     const element = el("fieldset", { class: "wb-field wb-ticks", "data-field": field.name }, el("legend", {}, label(field), field.required ? el("span", { class: "wb-required" }, " required") : null), el("div", { class: "wb-tick-list", tabindex: 0, role: "group", "aria-label": label(field) }, ...boxes.map(({ line }) => line)), el("p", { class: "note" }, field.help));
-    const chosen = (): string[] => boxes.filter(({ box }) => box.checked).map(({ box }) => box.value);
+    const selected = (): string[] => boxes.filter(({ box }) => box.checked).map(({ box }) => box.value);
     return {
         field, element, files: () => undefined,
-        value: () => (chosen().join(",") === usual.join(",") ? [] : chosen()),
+        value: () => (selected().join(",") === usual.join(",") ? [] : selected()),
         set: (value) => {
-            const wanted = Array.isArray(value) && value.length > 0 ? value : usual;
-            for (const { box } of boxes) box.checked = wanted.includes(box.value);
+            const requested = Array.isArray(value) && value.length > 0 ? value : usual;
+            for (const { box } of boxes) box.checked = requested.includes(box.value);
         },
     };
 }

@@ -17,7 +17,7 @@ export interface Files {
 
 export function files(bench: Workbench, changed: () => void): Files {
     let rows: FileRow[] = [];
-    const wanted = new Set<string>();
+    const requested = new Set<string>();
     const body = el("tbody");
     const none = el("p", { class: "wb-none", hidden: true }, "There is no file yet: drop one here, or put one into the folder.");
     const more = el("p", { class: "note", hidden: true });
@@ -29,8 +29,8 @@ export function files(bench: Workbench, changed: () => void): Files {
 
     const line = (row: FileRow): HTMLElement => {
         const box = el("input", { type: "checkbox", "aria-label": `Use ${row.name}`, disabled: row.refused });
-        box.checked = wanted.has(row.name);
-        box.addEventListener("change", () => { if (box.checked) wanted.add(row.name); else wanted.delete(row.name); changed(); });
+        box.checked = requested.has(row.name);
+        box.addEventListener("change", () => { if (box.checked) requested.add(row.name); else requested.delete(row.name); changed(); });
         return el("tr", { "data-file": row.name, "data-refused": row.refused ? "true" : undefined }, el("td", {}, box), el("td", { class: "words wb-name" }, row.name), el("td", {}, size(row.n_bytes)), el("td", { class: "words wb-what" }, row.refused ? el("b", {}, "Not usable: ") : null, row.words));
     };
     const show = (): void => {
@@ -45,7 +45,7 @@ export function files(bench: Workbench, changed: () => void): Files {
         const seen = await get<{ files: FileRow[]; n_left_out: number }>("/files");
         rows = seen.files;
         const known = new Set(rows.filter((row) => !row.refused).map((row) => row.name));
-        for (const name of wanted) if (!known.has(name)) wanted.delete(name);
+        for (const name of requested) if (!known.has(name)) requested.delete(name);
         more.hidden = seen.n_left_out === 0;
         more.textContent = `${seen.n_left_out} more files of the folder are not listed.`;
         show();
@@ -60,7 +60,7 @@ export function files(bench: Workbench, changed: () => void): Files {
         coming.append(box);
         const answer = await sent.done;
         if (answer.name !== undefined) {
-            wanted.add(answer.name);
+            requested.add(answer.name);
             box.remove();
             return;
         }
@@ -83,7 +83,7 @@ export function files(bench: Workbench, changed: () => void): Files {
     return {
         element: el("section", { "aria-label": "Files" }, head, zone, picker, coming, table, none, more), look,
         rows: () => rows,
-        ticked: () => rows.filter((row) => wanted.has(row.name)).map((row) => row.name),
-        tick: (names) => { wanted.clear(); for (const name of names) wanted.add(name); show(); changed(); },
+        ticked: () => rows.filter((row) => requested.has(row.name)).map((row) => row.name),
+        tick: (names) => { requested.clear(); for (const name of names) requested.add(name); show(); changed(); },
     };
 }

@@ -88,11 +88,11 @@ export async function ask(path: string, body: object): Promise<Answer> {
     }
 }
 
-/** Send a file as it is; `told` takes the share that has gone. */
-export function drop(file: File, told: (share: number) => void): { done: Promise<Answer>; stop: () => void } {
+/** Send a file as it is; `reported` takes the share that has gone. */
+export function drop(file: File, reported: (share: number) => void): { done: Promise<Answer>; stop: () => void } {
     const request = new XMLHttpRequest();
     const done = new Promise<Answer>((resolve) => {
-        request.upload.addEventListener("progress", (event) => told(event.total === 0 ? 1 : event.loaded / event.total));
+        request.upload.addEventListener("progress", (event) => reported(event.total === 0 ? 1 : event.loaded / event.total));
         request.addEventListener("load", () => resolve(request.status === 200 ? (JSON.parse(request.responseText) as Answer) : { refused: `${file.name}: refused (${request.status})` }));
         request.addEventListener("error", () => resolve({ refused: `${file.name}: the connection was lost; nothing of it was kept` }));
         request.addEventListener("abort", () => resolve({ refused: `${file.name}: given up; nothing of it was kept` }));

@@ -99,7 +99,7 @@ export function helpOf(field: Field, fields: Field[]): string {
     });
 }
 
-/** What is asked first; the rest stands under "More options". */
+/** What is requested first; the rest stands under "More options". */
 export function isMain(field: Field): boolean {
     if (field.kind === "out" || field.kind === "parts") return false;
     if (field.first || field.required || field.search !== "" || field.files || field.kind === "file") return true;
@@ -125,9 +125,9 @@ export function elapsed(seconds: number): string {
 
 /** Seconds that are left, where the work says how far it is and has done enough to tell. */
 export function left(job: Job, now_s: number): number | null {
-    const told = job.progress;
-    if (told === null || told.total < 5 || told.done < 2 || told.done >= told.total) return null;
-    return ((now_s - job.began_s) * (told.total - told.done)) / told.done;
+    const reported = job.progress;
+    if (reported === null || reported.total < 5 || reported.done < 2 || reported.done >= reported.total) return null;
+    return ((now_s - job.began_s) * (reported.total - reported.done)) / reported.done;
 }
 
 const STATES: Record<Job["state"], string> = {

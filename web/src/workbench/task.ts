@@ -10,7 +10,7 @@ const WAIT_MS = 250;
 
 export interface Task {
     element: HTMLElement;
-    /** Show what a job was asked, to ask it again. */
+    /** Show what a job was requested, to ask it again. */
     show: (command: string, values: Values) => void;
     filesChanged: () => void;
 }
@@ -19,7 +19,7 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
     let form = bench.forms[0]!;
     let controls: Control[] = [];
     let timer: ReturnType<typeof setTimeout> | undefined;
-    let asked = 0;
+    let requested = 0;
     let busy = false;
     const place = el("div", { class: "wb-form" });
     const summary = el("p", { class: "wb-summary" });
@@ -41,9 +41,9 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
         for (const each of controls) each.element.toggleAttribute("data-wrong", answer.refused !== undefined && each.field.name === answer.field);
     };
     const preview = async (): Promise<void> => {
-        const turn = ++asked;
+        const turn = ++requested;
         const answer = await ask("/line", { command: form.command, values: values() });
-        if (turn !== asked) return;
+        if (turn !== requested) return;
         line.textContent = answer.line === undefined ? "" : `cd ${quoted(bench.folder)}\n${answer.line}`;
         line.dataset.why = answer.refused ?? "";
         if (answer.refused !== undefined) line.textContent = `not yet: ${answer.refused}`;
@@ -52,7 +52,7 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
     const translate = async (turn: number): Promise<void> => {
         if (python.textContent === "") python.textContent = "...";
         const answer = await ask("/python", { command: form.command, values: values() });
-        if (turn !== asked) return;
+        if (turn !== requested) return;
         python.textContent = answer.python === undefined ? `not yet: ${answer.refused}` : `# in ${bench.folder}\n${answer.python}`;
     };
     const changed = (): void => {
@@ -79,7 +79,7 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
         if (answer.job !== undefined) started(answer.job);
         else if (answer.field !== undefined) place.querySelector<HTMLElement>(`[data-field="${answer.field}"] :is(input, select)`)?.focus();
     };
-    const build = (to: Form, given: Values = {}): void => {
+    const build = (to: Form, filled: Values = {}): void => {
         form = to;
         summary.textContent = form.summary;
         const others = (name: string): string => {
@@ -89,7 +89,7 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
         controls = form.fields.filter((field) => field.kind !== "out" && !isTicked(field)).map((field) => control(field, form.fields, others));
         for (const each of controls) {
             each.files(files.rows());
-            if (each.field.name in given) each.set(given[each.field.name]);
+            if (each.field.name in filled) each.set(filled[each.field.name]);
         }
         const [main, rest] = [controls.filter(({ field }) => isMain(field)), controls.filter(({ field }) => !isMain(field))];
         const more = el("details", { class: "wb-more" }, el("summary", {}, `More options (${rest.length})`), el("div", { class: "wb-fields" }, ...rest.map(({ element }) => element)));
@@ -107,14 +107,14 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
     return {
         element: el("section", { "aria-label": "What to do" }, el("div", { class: "wb-head" }, el("h2", {}, "2. What to do"), buttons), summary, taken, place, refusal, el("p", { class: "wb-act" }, start), lines),
         filesChanged: () => { for (const each of controls) each.files(files.rows()); changed(); },
-        show: (command, given) => {
+        show: (command, filled) => {
             const to = bench.forms.find((each) => each.command === command);
             if (to === undefined) return;
             for (const one of buttons.querySelectorAll("button")) one.setAttribute("aria-pressed", String(one.dataset.choice === command));
             const ticked = to.fields.find(isTicked);
-            const names = ticked === undefined ? undefined : given[ticked.name];
+            const names = ticked === undefined ? undefined : filled[ticked.name];
             if (Array.isArray(names)) files.tick(names);
-            build(to, given);
+            build(to, filled);
             buttons.querySelector<HTMLElement>(`[data-choice="${command}"]`)?.focus();
         },
     };

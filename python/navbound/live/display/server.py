@@ -43,7 +43,7 @@ class Server(Service):
     def __init__(self, watch: Watch, options: Options) -> None:
         super().__init__(options, bundle())
         self.watch = watch
-        self._told_s = 0.0
+        self._reported_s = 0.0
         self.handlers |= {
             ("POST", "/acknowledge"): self._acknowledge,
             ("GET", "/health"): self._health,
@@ -53,8 +53,8 @@ class Server(Service):
     def turn(self, now_s: float) -> bool:
         """Tell the pages what the journals have."""
         news = self.watch.poll()
-        if news or now_s - self._told_s >= STATUS_S:
-            self._told_s = now_s
+        if news or now_s - self._reported_s >= STATUS_S:
+            self._reported_s = now_s
             self._tell(news.rows, news.transitions)
         return bool(self.watch.behind)
 
