@@ -65,7 +65,7 @@ def analyze_command(
         typer.Option(
             help="With --procedure: barometric (default; a constant slope over the curved Earth, baro-VNAV) or straight (ILS, LPV, GLS)."
         ),
-        Chosen(words=("barometric", "straight")),
+        Selectable(words=("barometric", "straight")),
     ] = None,
     setting_hpa: Annotated[
         float | None,
