@@ -8,6 +8,8 @@ import os
 import sys
 import threading
 
+from navbound.exit_status import STOPPED
+
 
 def process() -> None:
     """Run `main` in a process of its own, without work that nobody waits for.
@@ -21,11 +23,15 @@ def process() -> None:
     gc.set_threshold(100_000, 20, 20)
     if "study" not in sys.argv[1:2]:
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    from navbound.cli import interrupt  # noqa: PLC0415 - NumPy reads the setting when it is loaded
-    from navbound.cli.main import main  # noqa: PLC0415
-
     try:
+        from navbound.cli import interrupt  # noqa: PLC0415 - NumPy reads the setting when it is loaded
+        from navbound.cli.main import main  # noqa: PLC0415
+
         main()
+    except KeyboardInterrupt:
+        # While it loads, or while it ends.
+        sys.stderr.write("\rnavbound: stopped.\n")
+        os._exit(STOPPED)
     except SystemExit as end:
         if threading.active_count() - interrupt.threads() > 1 or not isinstance(end.code, int):
             raise

@@ -6,7 +6,6 @@ import asyncio
 import hmac
 import json
 import secrets
-import sys
 import time
 from dataclasses import dataclass, replace
 from http import HTTPStatus
@@ -103,9 +102,11 @@ async def read_head(reader: asyncio.StreamReader) -> Request:
     length = headers.get("content-length", "0")
     if not version.startswith("HTTP/1.") or "transfer-encoding" in headers or not (length.isascii() and length.isdigit()):
         raise RefusedError(HTTPStatus.BAD_REQUEST)
-    path, _, query = target.partition("?")
     # A number of thousands of digits is none that a body could have.
-    return Request(method, path, query, headers, b"", int(length) if len(length) <= MOST_DIGITS else sys.maxsize)
+    if len(length) > MOST_DIGITS:
+        raise RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
+    path, _, query = target.partition("?")
+    return Request(method, path, query, headers, b"", int(length))
 
 
 async def with_body(request: Request, reader: asyncio.StreamReader, most: int = MOST_BODY) -> Request:
