@@ -26,6 +26,7 @@ from navbound.serve.service import Options
 from navbound.storage import folders
 from navbound.workbench import Server, Settings, jobs
 from navbound.workbench import files as kept
+from navbound.workbench import server as workbench_server
 from navbound.workbench.files import tidy
 from navbound.workbench.forms import arguments
 from navbound.workbench.recognise import recognise
@@ -425,3 +426,9 @@ def test_the_lines_of_python_do_the_same(page: Browser, folder: Path) -> None:
     subprocess.run([sys.executable, "-m", *command], cwd=folder, capture_output=True, check=False)
     one, other = (json.loads((folder / "out" / name / "summary.json").read_text()) for name in ("analyze-track", "again"))
     assert one == other
+
+
+def test_lines_of_python_that_take_too_long_are_a_sentence(page: Browser, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workbench_server, "program", lambda *_: [sys.executable, "-c", "import time; time.sleep(60)"])
+    monkeypatch.setattr(workbench_server, "PYTHON_S", 0.1)
+    assert "busy" in requested(page, "/python", command="analyze", values={"files": ["track.csv"]})["refused"]

@@ -35,7 +35,7 @@ STATUS_S = 1.0
 IDLE_S = 30.0
 """Time without a byte after which a file that is dropped is entered up. [s]"""
 PIECE_BYTES = 256 * 1024
-PYTHON_S = 30.0
+PYTHON_S = 100.0
 """Time that the Python lines of a command line may take. [s]"""
 MOST_DIGITS = 9
 WITHOUT_SCRIPTS = "The workbench needs a browser that runs scripts."
@@ -202,9 +202,11 @@ class Server(Service):
         refused = self._asking(query, take)
         if not requested:
             return refused
-        done = await asyncio.to_thread(
-            subprocess.run, program("--python", *requested[0].line), cwd=self.folder, capture_output=True, timeout=PYTHON_S, check=False
-        )
+        line = program("--python", *requested[0].line)
+        try:
+            done = await asyncio.to_thread(subprocess.run, line, cwd=self.folder, capture_output=True, timeout=PYTHON_S, check=False)
+        except subprocess.TimeoutExpired:
+            return _json({"refused": f"the lines were not there after {PYTHON_S:g} s: this machine is busy"})
         if done.returncode:
             return _json({"refused": visible(done.stderr.decode("utf-8", "replace").removeprefix("navbound: ").strip())})
         return _json({"python": done.stdout.decode("utf-8", "replace")})
