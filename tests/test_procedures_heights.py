@@ -54,6 +54,12 @@ def test_the_final_approach_is_off_its_path_as_the_specification_measured(flown:
     assert (altimeter.n, altimeter.n_inside, geometry.n_inside) == (16, 16, 16)
     assert -altimeter.least_m / FT == pytest.approx(72.0, abs=1.0)
     assert altimeter.limit_m == pytest.approx(22.86)
+    # AC 90-101A at RNP 0.3, 3 degrees and the crossing altitude of 5350 ft, in feet as the specification writes it.
+    slope, high = math.tan(math.radians(3.0)), 5350.0
+    terms = 6076.115 * 1.225 * 0.3 * slope, 60 * slope, 75.0, -8.8e-8 * high**2 + 6.5e-3 * high + 50
+    least = math.sqrt(sum(t * t for t in terms)) * FT
+    assert least <= altimeter.required_m < least + 1.0
+    assert altimeter.n_inside_required == 16
     final = flown.epochs.filter(leg="RW26")
     assert final["fte_v_m"].null_count() == 0
     assert flown.epochs.filter(flown.epochs["leg"] != "RW26")["fte_v_m"].null_count() == 16

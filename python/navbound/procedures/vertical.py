@@ -193,24 +193,21 @@ def _doubts(path: VerticalPath, procedure: Procedure) -> list[str]:
     for leg in (procedure.legs[k] for k in path.legs[:-1]):
         if leg.vertical_angle_rad is not None and abs(leg.vertical_angle_rad + path.angle_rad) > 1e-6:
             words.append(f"The leg to {leg.fix} has another angle, {-math.degrees(leg.vertical_angle_rad):.2f}°: it is not used.")
-    for k in (path.legs[0] - 1, *path.legs[:-1]):
-        leg = procedure.legs[k] if k >= 0 else None
+    # The leg before the final approach ends where the path begins.
+    for leg in (procedure.legs[k] for k in (path.legs[0] - 1, *path.legs[:-1]) if k >= 0):
         lowest = _lowest_m(leg)
-        if leg is None or lowest is None:
+        if lowest is None:
             continue
         along = leg.begin_m + (leg.length_m if leg.has_path else 0.0)
         short = lowest - float(path.altitude_m([along])[0])
         if short > CONSTRAINT_M:
-            words.append(
-                f"It passes {leg.fix} {short / METRES_PER_FT:.0f} ft below its lowest coded altitude, {lowest / METRES_PER_FT:.0f} ft."
-            )
+            below, coded = (f"{value / METRES_PER_FT:.0f} ft" for value in (short, lowest))
+            words.append(f"It passes {leg.fix} {below} below its lowest coded altitude, {coded}.")
     return words
 
 
-def _lowest_m(leg: Leg | None) -> float | None:
+def _lowest_m(leg: Leg) -> float | None:
     """Lowest altitude that is coded at the end of a leg. [m]."""
-    if leg is None:
-        return None
     match leg.altitude_description:
         case "+" | "":
             return leg.altitude_m[0]
