@@ -131,12 +131,15 @@ def test_the_vertical_path_is_of_the_coded_crossing_and_angle() -> None:
     assert path.crossing_m == pytest.approx(5350 * FT)
     assert path.angle_rad == pytest.approx(math.radians(3.0))
     assert path.undulation_m == pytest.approx(-18.2, abs=0.16)
-    assert float(path.altitude_m([path.end_m])[0]) == pytest.approx(path.crossing_m)
-    assert math.isnan(path.altitude_m([path.end_m + 1.0])[0])
+    assert float(path.altitude_m([0.0])[0]) == pytest.approx(path.crossing_m)
+    assert math.isnan(path.altitude_m([-1.0])[0])
+    assert path.before_m(np.array([0, 3]), np.array([0.0, 100.0])).tolist() == pytest.approx(
+        [math.nan, 5.18 * NM - 100.0], abs=10.0, nan_ok=True
+    )
     straight, _ = procedures.vertical_path(base, procedure, "straight")
     assert straight is not None
     # s^2 / 2 r: 22 ft at 5 NM (specification, C.3).
-    apart = straight.altitude_m([path.end_m - 5 * NM]) - path.altitude_m([path.end_m - 5 * NM])
+    apart = straight.altitude_m([5 * NM]) - path.altitude_m([5 * NM])
     assert float(apart[0]) / FT == pytest.approx(22.0, abs=0.5)
     with pytest.raises(InputError, match="barometric or straight"):
         procedures.vertical_path(base, procedure, "curved")  # type: ignore[arg-type]
