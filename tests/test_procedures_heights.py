@@ -54,6 +54,12 @@ def test_the_final_approach_is_off_its_path_as_the_specification_measured(flown:
     assert (altimeter.n, altimeter.n_inside, geometry.n_inside) == (16, 16, 16)
     assert -altimeter.least_m / FT == pytest.approx(72.0, abs=1.0)
     assert altimeter.limit_m == pytest.approx(22.86)
+    # AC 90-101A at RNP 0.3, 3 degrees and the crossing altitude of 5350 ft, in feet as the specification writes it.
+    slope, high = math.tan(math.radians(3.0)), 5350.0
+    terms = 6076.115 * 1.225 * 0.3 * slope, 60 * slope, 75.0, -8.8e-8 * high**2 + 6.5e-3 * high + 50
+    least = math.sqrt(sum(t * t for t in terms)) * FT
+    assert least <= altimeter.required_m < least + 1.0
+    assert altimeter.n_inside_required == 16
     final = flown.epochs.filter(leg="RW26")
     assert final["fte_v_m"].null_count() == 0
     assert flown.epochs.filter(flown.epochs["leg"] != "RW26")["fte_v_m"].null_count() == 16
@@ -125,12 +131,15 @@ def test_the_vertical_path_is_of_the_coded_crossing_and_angle() -> None:
     assert path.crossing_m == pytest.approx(5350 * FT)
     assert path.angle_rad == pytest.approx(math.radians(3.0))
     assert path.undulation_m == pytest.approx(-18.2, abs=0.16)
-    assert float(path.altitude_m([path.end_m])[0]) == pytest.approx(path.crossing_m)
-    assert math.isnan(path.altitude_m([path.end_m + 1.0])[0])
+    assert float(path.altitude_m([0.0])[0]) == pytest.approx(path.crossing_m)
+    assert math.isnan(path.altitude_m([-1.0])[0])
+    assert path.before_m(np.array([0, 3]), np.array([0.0, 100.0])).tolist() == pytest.approx(
+        [math.nan, 5.18 * NM - 100.0], abs=10.0, nan_ok=True
+    )
     straight, _ = procedures.vertical_path(base, procedure, "straight")
     assert straight is not None
     # s^2 / 2 r: 22 ft at 5 NM (specification, C.3).
-    apart = straight.altitude_m([path.end_m - 5 * NM]) - path.altitude_m([path.end_m - 5 * NM])
+    apart = straight.altitude_m([5 * NM]) - path.altitude_m([5 * NM])
     assert float(apart[0]) / FT == pytest.approx(22.0, abs=0.5)
     with pytest.raises(InputError, match="barometric or straight"):
         procedures.vertical_path(base, procedure, "curved")  # type: ignore[arg-type]

@@ -329,6 +329,9 @@ export interface HeightResult {
     most_m: number;
     limit_m: number;
     n_inside: number;
+    /** Least of what 99.7 % of the aircraft's vertical errors have to be below (FAA AC 90-101A, standard), over the positions. */
+    required_m: number;
+    n_inside_required: number;
     /** Epochs with a bound of the vertical total error. */
     n_bound: number;
     /** Epochs whose bound is inside the limit. */

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -61,7 +61,7 @@ def analyze_command(
     ] = False,
     missed: Annotated[bool, typer.Option("--missed", help="With --procedure: with the missed approach.")] = False,
     vertical_path: Annotated[
-        str | None,
+        Literal["barometric", "straight"] | None,
         typer.Option(
             help="With --procedure: barometric (default; a constant slope over the curved Earth, baro-VNAV) or straight (ILS, LPV, GLS)."
         ),

@@ -19,6 +19,7 @@ from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
     from navbound.procedures import Database, Procedure
+    from navbound.procedures.vertical import Shape
     from navbound.report.procedure import Heights
     from navbound.run.procedure import Flown
 
@@ -139,7 +140,7 @@ class Stated(NamedTuple):
     line: str | None
     defaults: bool | None
     missed: bool | None
-    vertical_path: str | None
+    vertical_path: Shape | None
     setting_hpa: float | None
     undulation_m: float | None
 
@@ -155,9 +156,16 @@ def flown(name: str | None, database: Path | None, stated: Stated) -> Flown | No
         raise ConflictError("procedure", needs=("database",), because="a navigation database (ARINC 424)")
     from navbound.run.procedure import Flown  # noqa: PLC0415
 
-    declared = {key: value for key, value in stated._asdict().items() if value is not None and key != "vertical_path"}
-    shape = {} if stated.vertical_path is None else {"shape": stated.vertical_path}
-    return Flown(database, name, **declared, **shape)
+    return Flown(
+        database,
+        name,
+        line=stated.line,
+        defaults=bool(stated.defaults),
+        missed=bool(stated.missed),
+        shape=stated.vertical_path or "barometric",
+        setting_hpa=stated.setting_hpa,
+        undulation_m=stated.undulation_m,
+    )
 
 
 def _read(file: Path) -> Database:

@@ -44,10 +44,10 @@ class VerticalPath:
         Altitude above the sea at the threshold, as coded on the leg to the runway. [m]
     angle_rad : float
         Its angle there, positive for a descent. [rad]
-    end_m : float
-        Where along the procedure the threshold is. [m]
     legs : tuple of int
         Indices of the legs of the final approach, on which it is defined.
+    begins_m : tuple of float
+        How far before the threshold each of them begins. [m]
     undulation_m : float
         Ellipsoid below the sea at the runway, by its own two heights; NaN where the file lacks one. [m]
     threshold_m : float
@@ -60,21 +60,35 @@ class VerticalPath:
     shape: Shape
     crossing_m: float
     angle_rad: float
-    end_m: float
     legs: tuple[int, ...]
+    begins_m: tuple[float, ...]
     undulation_m: float
     threshold_m: float
     words: tuple[str, ...]
 
-    def altitude_m(self, along_m: ArrayLike) -> Floats:
+    def before_m(self, leg: NDArray[np.int64], along_leg_m: Floats) -> Floats:
+        """Distance before the threshold; NaN on legs that are not of the final approach.
+
+        Parameters
+        ----------
+        leg, along_leg_m : ndarray, shape (n,)
+            Index of the leg, and the distance along it. [m]
+        """
+        before = np.full(along_leg_m.shape, np.nan)
+        for index, begin in zip(self.legs, self.begins_m, strict=True):
+            on = leg == index
+            before[on] = begin - along_leg_m[on]
+        return before
+
+    def altitude_m(self, before_m: ArrayLike) -> Floats:
         """Altitude of the path above the sea; NaN beyond the threshold.
 
         Parameters
         ----------
-        along_m : array_like, shape (n,)
-            Distances along the procedure. [m]
+        before_m : array_like, shape (n,)
+            Distances before the threshold. [m]
         """
-        before = self.end_m - np.asarray(along_m, dtype=np.float64)
+        before = np.asarray(before_m, dtype=np.float64)
         altitude = np.full(before.shape, np.nan)
         inside = before >= 0.0
         shape = vertical.barometric_altitude if self.shape == "barometric" else vertical.straight_altitude
@@ -105,7 +119,8 @@ def vertical_path(database: Database, procedure: Procedure, shape: Shape = "baro
     if not final:
         return None, "no vertical path: the procedure has no final approach with a path"
     last = procedure.legs[final[-1]]
-    why = _lacks(last)
+    lengths = [procedure.legs[k].length_m for k in final]
+    why = _lacks(last) or (None if math.isfinite(sum(lengths)) else "a leg of the final approach has no defined end")
     if why is not None:
         return None, f"no vertical path: {why}"
     angle, crossing = -(last.vertical_angle_rad or math.nan), last.altitude_m[0] or 0.0
@@ -116,8 +131,8 @@ def vertical_path(database: Database, procedure: Procedure, shape: Shape = "baro
         shape=shape,
         crossing_m=crossing,
         angle_rad=angle,
-        end_m=last.begin_m + last.length_m,
         legs=tuple(final),
+        begins_m=tuple(sum(lengths[k:]) for k in range(len(lengths))),
         undulation_m=ellipsoid - threshold,
         threshold_m=threshold,
         words=(),
@@ -152,7 +167,7 @@ def surface_below(path: VerticalPath, procedure: Procedure, temperature_k: float
     rnp_m = procedure.legs[path.legs[-1]].rnp_m
     if not math.isfinite(rnp_m) or not math.isfinite(path.threshold_m):
         return None, "No obstacle clearance surface: the RNP of the leg to the runway or the threshold's elevation is unknown."
-    fix_m = float(path.altitude_m([procedure.legs[path.legs[0]].begin_m])[0])
+    fix_m = float(path.altitude_m(path.begins_m[:1])[0])
     if not fix_m - path.threshold_m > vertical.LOW_M["feet"]:
         return None, "No obstacle clearance surface: the final approach begins less than 250 ft above the threshold."
     surface = vertical.obstacle_surface(
@@ -177,8 +192,6 @@ def _lacks(leg: Leg) -> str | None:
         return f"{name} has no angle of a descent"
     if leg.altitude_m[0] is None or leg.altitude_description:
         return f"{name} has no coded altitude at which it crosses the threshold"
-    if not math.isfinite(leg.begin_m + leg.length_m):
-        return f"a leg before {name[4:]} has no defined end"
     return None
 
 
@@ -193,24 +206,19 @@ def _doubts(path: VerticalPath, procedure: Procedure) -> list[str]:
     for leg in (procedure.legs[k] for k in path.legs[:-1]):
         if leg.vertical_angle_rad is not None and abs(leg.vertical_angle_rad + path.angle_rad) > 1e-6:
             words.append(f"The leg to {leg.fix} has another angle, {-math.degrees(leg.vertical_angle_rad):.2f}°: it is not used.")
-    for k in (path.legs[0] - 1, *path.legs[:-1]):
-        leg = procedure.legs[k] if k >= 0 else None
-        lowest = _lowest_m(leg)
-        if leg is None or lowest is None:
-            continue
-        along = leg.begin_m + (leg.length_m if leg.has_path else 0.0)
-        short = lowest - float(path.altitude_m([along])[0])
-        if short > CONSTRAINT_M:
-            words.append(
-                f"It passes {leg.fix} {short / METRES_PER_FT:.0f} ft below its lowest coded altitude, {lowest / METRES_PER_FT:.0f} ft."
-            )
+    # Each leg begins where the one before it ends, and the altitude of that fix stands there.
+    for k, before in zip(path.legs, path.begins_m, strict=True):
+        leg = procedure.legs[k - 1]
+        lowest = _lowest_m(leg) if k > 0 else None
+        short = math.nan if lowest is None else lowest - float(path.altitude_m([before])[0])
+        if lowest is not None and short > CONSTRAINT_M:
+            below, coded = (f"{value / METRES_PER_FT:.0f} ft" for value in (short, lowest))
+            words.append(f"It passes {leg.fix} {below} below its lowest coded altitude, {coded}.")
     return words
 
 
-def _lowest_m(leg: Leg | None) -> float | None:
+def _lowest_m(leg: Leg) -> float | None:
     """Lowest altitude that is coded at the end of a leg. [m]."""
-    if leg is None:
-        return None
     match leg.altitude_description:
         case "+" | "":
             return leg.altitude_m[0]

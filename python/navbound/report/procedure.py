@@ -180,13 +180,14 @@ def _below(procedure: Procedure, heights: Heights) -> tuple[list[tuple[float, fl
     path, surface = heights.path, heights.surface
     if path is None:
         return [], []
-    begin = procedure.legs[path.legs[0]].begin_m
-    along = [begin + (path.end_m - begin) * k / STEPS for k in range(STEPS + 1)]
-    of_path = list(zip(along, path.altitude_m(along).tolist(), strict=True))
+    begin, length = procedure.legs[path.legs[0]].begin_m, path.begins_m[0]
+    if not math.isfinite(begin):
+        return [], []
+    before = [length * (1.0 - k / STEPS) for k in range(STEPS + 1)]
+    of_path = [(begin + length - s, altitude) for s, altitude in zip(before, path.altitude_m(before).tolist(), strict=True)]
     if surface is None:
         return of_path, []
-    ends = [begin, path.end_m - surface.origin_m]
-    return of_path, [(s, surface.altitude_m(path.end_m - s)) for s in ends]
+    return of_path, [(begin + length - s, surface.altitude_m(s)) for s in (length, surface.origin_m)]
 
 
 def _labelled(places: list[tuple[float, float, str]]) -> list[dict[str, Any]]:

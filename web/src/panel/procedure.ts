@@ -49,5 +49,6 @@ const HEIGHTS: Column<HeightResult>[] = [
     { head: "Path", key: "path", words: true, of: (row) => row.path, show: (row) => row.path },
     height("Positions", "n", count), height("Mean", "mean_m", signedMetres), height("RMS", "rms_m", metres), height("95 %", "p95_m", metres), height("Lowest", "least_m", signedMetres), height("Highest", "most_m", signedMetres),
     height("Limit (75 ft, standard)", "limit_m", (v) => `±${metres(v)}`), { head: "Inside", key: "n_inside", of: (row) => row.n_inside, show: (row) => `${row.n_inside} of ${row.n}` },
+    height("99.7 % required, least (standard)", "required_m", (v) => `±${metres(v)}`), { head: "Inside it", key: "n_inside_required", of: (row) => row.n_inside_required, show: (row) => `${row.n_inside_required} of ${row.n}` },
     { head: "Bound inside", key: "n_bound_inside", of: (row) => row.n_bound_inside, show: (row) => (row.n_bound === 0 ? NONE : `${row.n_bound_inside} of ${row.n_bound}`) },
 ];

@@ -24,6 +24,9 @@ class HeightResult(Record):
     most_m: float
     limit_m: float
     n_inside: int
+    required_m: float
+    """Least of what 99.7 % of the aircraft's vertical errors have to be below (FAA AC 90-101A, standard), over the positions."""
+    n_inside_required: int
     n_bound: int = 0
     """Epochs with a bound of the vertical total error."""
     n_bound_inside: int = 0

@@ -165,7 +165,8 @@ def _height_words(result: HeightResult, level: float) -> str:
     words = (
         f"{by}: {result.n} positions on the final approach are {result.mean_m:+.1f} m off the {result.path} path in the mean, "
         f"{result.least_m:+.1f} to {result.most_m:+.1f} m, RMS {result.rms_m:.1f} m; inside ±{result.limit_m:.2f} m (75 ft, standard) at "
-        f"{result.n_inside} of {result.n}."
+        f"{result.n_inside} of {result.n}, inside what 99.7 % of vertical errors have to be below (AC 90-101A, standard; from "
+        f"{result.required_m:.1f} m) at {result.n_inside_required} of {result.n}."
     )
     if not result.n_bound:
         return words if result.by == "altimeter" else f"{words} No epoch has a covariance of its height, so its total error has no bound."

@@ -83,7 +83,7 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
                 judged.append(part.filter(pl.Series(known)))
                 tracks[track] = str(group["track"][0])
                 record = flown_record(track, group["time_ns"][0], flight, procedure)
-                of_heights = [] if loaded.path is None else height_results(judged[-1], loaded.path.shape)
+                of_heights = [] if loaded.path is None else height_results(judged[-1], loaded.path, height.altitude_m[inside][known])
                 tested = setting_result(time_s, float(time_s[last]), height, loaded)
                 flights.append(record.model_copy(update={"heights": of_heights, "setting": tested}))
     if not judged:

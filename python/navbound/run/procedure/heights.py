@@ -20,6 +20,7 @@ from navbound.records.procedure import HeightResult, SettingResult
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from navbound.procedures import VerticalPath
     from navbound.procedures.legs import Followed
     from navbound.run.procedure.flown import Flown, Loaded
 
@@ -45,8 +46,8 @@ class Heights:
     ----------
     columns : DataFrame
         ``path_h_m``, ``path_angle_rad``, ``fte_v_m``, ``baro_off_m``, ``limit_v_m``, a row a position; null where there is none.
-    indicated_m, above_sea_m, setting_hpa : ndarray
-        Indicated altitude, geometric height less the undulation, and the setting; NaN where unknown. [m], [m], [hPa]
+    altitude_m, indicated_m, above_sea_m, setting_hpa : ndarray
+        Altitude of the path, indicated altitude, geometric height less the undulation, and the setting; NaN where unknown. [m], [hPa]
     origin : {"given", "broadcast"}
         Of the setting.
     words : str
@@ -54,6 +55,7 @@ class Heights:
     """
 
     columns: pl.DataFrame
+    altitude_m: Floats
     indicated_m: Floats
     above_sea_m: Floats
     setting_hpa: Floats
@@ -88,8 +90,7 @@ def heights(group: pl.DataFrame, followed: Followed, loaded: Loaded, flown: Flow
     above_sea = _numbers(group, "est_h_m") - undulation
     altitude, angle = none.copy(), none.copy()
     if path is not None:
-        on = np.isin(followed.leg, path.legs)
-        altitude[on] = path.altitude_m(followed.along_m[on])
+        altitude = path.altitude_m(path.before_m(followed.leg, followed.along_leg_m))
         angle[np.isfinite(altitude)] = -path.angle_rad
     limit = np.where(np.isfinite(altitude), LIMIT_M, np.nan)
     named = {
@@ -99,9 +100,11 @@ def heights(group: pl.DataFrame, followed: Followed, loaded: Loaded, flown: Flow
         "baro_off_m": indicated - altitude,
         "limit_v_m": limit,
     }
-    compared = _words(path is not None, np.isfinite(above_sea).any(), np.isfinite(indicated).any(), (origin, undulation, n_impossible))
+    compared = _words(
+        path is not None, bool(np.isfinite(above_sea).any()), bool(np.isfinite(indicated).any()), (origin, undulation, n_impossible)
+    )
     columns = pl.DataFrame({name: pl.Series(values, nan_to_null=True) for name, values in named.items()})
-    return Heights(columns, indicated, above_sea, setting, origin, compared)
+    return Heights(columns, altitude, indicated, above_sea, setting, origin, compared)
 
 
 def _numbers(group: pl.DataFrame, name: str) -> Floats:
@@ -144,35 +147,43 @@ def _words(has_path: bool, geometric: bool, indicated: bool, of: tuple[str, floa
     return f"Heights: {geometry}; {altimeter}.{strange}"
 
 
-def height_results(part: pl.DataFrame, shape: Literal["barometric", "straight"]) -> list[HeightResult]:
+def height_results(part: pl.DataFrame, path: VerticalPath, altitude_m: Floats) -> list[HeightResult]:
     """Deviations of the judged epochs of one flight from its vertical path.
 
     Parameters
     ----------
     part : DataFrame
         Its judged epochs, with the columns of :func:`heights`.
-    shape : {"barometric", "straight"}
-        Of the vertical path.
+    path : VerticalPath
+        What they are compared with.
+    altitude_m : ndarray
+        Its altitude at them; NaN where it is not defined. [m]
     """
+    rnp = _numbers(part, "rnp_m")
     results = []
     for by, name in BY.items():
         values = _numbers(part, name)
-        values = values[np.isfinite(values)]
-        if values.size:
-            results.append(
-                HeightResult(
-                    by=by,  # type: ignore[arg-type]
-                    path=shape,
-                    n=values.size,
-                    mean_m=float(values.mean()),
-                    rms_m=float(np.sqrt(np.mean(values**2))),
-                    p95_m=float(np.quantile(np.abs(values), 0.95, method="higher")),
-                    least_m=float(values.min()),
-                    most_m=float(values.max()),
-                    limit_m=LIMIT_M,
-                    n_inside=int((np.abs(values) <= LIMIT_M).sum()),
-                )
+        known = np.isfinite(values) & np.isfinite(rnp)
+        if not known.any():
+            continue
+        values = values[known]
+        required = vertical.requirement(rnp[known], path.angle_rad, altitude_m[known])
+        results.append(
+            HeightResult(
+                by=by,
+                path=path.shape,
+                n=values.size,
+                mean_m=float(values.mean()),
+                rms_m=float(np.sqrt(np.mean(values**2))),
+                p95_m=float(np.quantile(np.abs(values), 0.95, method="higher")),
+                least_m=float(values.min()),
+                most_m=float(values.max()),
+                limit_m=LIMIT_M,
+                n_inside=int((np.abs(values) <= LIMIT_M).sum()),
+                required_m=float(required.min()),
+                n_inside_required=int((np.abs(values) <= required).sum()),
             )
+        )
     return results
 
 
