@@ -55,17 +55,20 @@ def measure() -> list[Row]:
     threads = os.environ["RAYON_NUM_THREADS"]
     rows: list[Row] = []
 
-    def row(name: str, n: int, note: str, call: Callable[[], object], repeats: int = 5) -> None:
-        rows.append(Row(name, seconds(call, repeats) / n, n, note))
+    def row(name: str, n: int, note: str, call: Callable[[], object], repeats: int = 5, goal_s: float | None = None) -> None:
+        rows.append(Row(name, seconds(call, repeats) / n, n, note, goal_s))
 
     where = f"batch from Python, {threads} thread(s)"
     row("anp.sphere, zero mean, risk 0.05", N, where, lambda: anp.sphere(spatial, 0.05))
     row("anp.sphere, zero mean, risk 1e-5", N, where, lambda: anp.sphere(spatial, 1e-5))
     row("anp.circle, zero mean, risk 0.05", N, where, lambda: anp.circle(flat, 0.05))
-    row("anp.sphere, with mean, risk 0.05", some, where, lambda: anp.sphere(spatial[:some], 0.05, mean))
-    row("anp.circle, with mean, risk 0.05", some, where, lambda: anp.circle(flat[:some], 0.05, mean_flat))
-    row("anp.circle, risk 1e-7 (strip)", 200, where, lambda: anp.circle(flat[:200], 1e-7))
-    row("anp.sphere, risk 1e-7 (nested strip)", 20, where, lambda: anp.sphere(spatial[:20], 1e-7), 2)
+    row("anp.sphere, with mean, risk 0.05", some, where, lambda: anp.sphere(spatial[:some], 0.05, mean), goal_s=1e-6)
+    row("anp.circle, with mean, risk 0.05", some, where, lambda: anp.circle(flat[:some], 0.05, mean_flat), goal_s=1e-6)
+    far = "means of some 20 to 60 deviations, saddle point"
+    row("anp.sphere, far mean, risk 0.05", some, far, lambda: anp.sphere(spatial[:some], 0.05, 20.0 * mean), goal_s=1e-6)
+    row("anp.circle, far mean, risk 0.05", some, far, lambda: anp.circle(flat[:some], 0.05, 20.0 * mean_flat), goal_s=1e-6)
+    row("anp.circle, risk 1e-7 (saddle point)", 2_000, where, lambda: anp.circle(flat[:2_000], 1e-7))
+    row("anp.sphere, risk 1e-7 (saddle point)", 2_000, where, lambda: anp.sphere(spatial[:2_000], 1e-7))
     few = 2
     row(
         "SciPy: Imhof integral + brentq, risk 0.05", few, "3-D, default accuracy", lambda: [imhof_radius(v, 0.05) for v in spatial[:few]], 1

@@ -21,6 +21,7 @@ from clock import Row, show
 
 MODULES = (
     "start",
+    "calls",
     "tse",
     "anp",
     "runs",

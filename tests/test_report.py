@@ -82,7 +82,7 @@ def test_infinite_values_are_shown_as_missing_not_as_numbers() -> None:
 
 def test_text_runs_give_back_the_words() -> None:
     words: list[str | None] = ["ok", "ok", None, "bad", "ok"]
-    packed = packing.run_lengths(words)
+    packed = packing.run_lengths(pl.Series(words, dtype=pl.String))
     assert packed == {"words": ["ok", "bad"], "runs": [[0, 2], [-1, 1], [1, 1], [0, 1]]}
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -297,8 +298,7 @@ def _columns(
     """Shape with the satellites, flat columns, constellation of each satellite, priors of constellations."""
     of = systems_of(unit_enu, constellation)
     bias, continuity, prior = (
-        np.asarray(column)[of] if own is None else own
-        for own, column in zip(stated, (SUPPORT.bias_m, SUPPORT.bias_continuity_m, SUPPORT.p_sat), strict=True)
+        column[of] if own is None else own for own, column in zip(stated, _PROMISED, strict=True)
     )
     shape, (unit, *columns) = flatten(
         unit_enu=(unit_enu, (3,)),
@@ -320,8 +320,15 @@ def _columns(
 
 
 def _levels(computed: dict[str, Any], shape: tuple[int, ...]) -> Levels:
-    status = np.array(computed.pop("words"))[computed.pop("outcome")]
+    status = _words(tuple(computed.pop("words")))[computed.pop("outcome")]
     return Levels(status=status.reshape(shape), **{name: values.reshape(shape) for name, values in computed.items()})
+
+
+_PROMISED = tuple(np.asarray(column) for column in (SUPPORT.bias_m, SUPPORT.bias_continuity_m, SUPPORT.p_sat))
+"""Biases and priors of :data:`SUPPORT` by constellation, for whoever states none."""
+
+_words = lru_cache(maxsize=1)(np.array)
+"""The words of the core's outcomes as an array."""
 
 
 def demand(service: str) -> tuple[str, bool, tuple[tuple[str, float, str, str], ...]]:

@@ -152,12 +152,15 @@ ERROR_MODELS: dict[str, ErrorModel] = {
 def rule_numbers(service: str | Service | Requirement) -> list[float]:
     """Numbers that the core takes: seven of a service, three of RAIM."""
     if isinstance(service, str):
-        shipped: dict[str, Service | Requirement] = {**SERVICES, "raim": RAIM}
-        if service not in shipped:
-            raise InputError("service", service, domain=f"one of {', '.join(shipped)}")
-        service = shipped[service]
-    count = 7 if isinstance(service, Service) else 3
-    return [float(getattr(service, f.name)) for f in fields(service)[:count]]
+        known = RAIM if service == "raim" else SERVICES.get(service)
+        if known is None:
+            raise InputError("service", service, domain=f"one of {', '.join([*SERVICES, 'raim'])}")
+        service = known
+    return [float(getattr(service, name)) for name in (_OF_A_SERVICE if isinstance(service, Service) else _OF_RAIM)]
+
+
+_OF_A_SERVICE = tuple(f.name for f in fields(Service)[:7])
+_OF_RAIM = tuple(f.name for f in fields(Requirement)[:3])
 
 
 def requirement_numbers(requirement: Requirement) -> list[float]:
@@ -222,6 +225,8 @@ def systems_of(unit_enu: ArrayLike, constellation: Sequence[int] | NDArray[np.in
         raise InputError("constellation", f"shape {of.shape}", domain=f"shape {lines[-2:-1]}, one for each satellite of unit_enu")
     if of.size == 0:
         raise InputError("unit_enu", f"shape {lines}", domain="shape (..., n, 3) with at least one satellite; NaN for one not used")
+    if of.min() >= 0 and of.max() < len(CONSTELLATIONS):
+        return of
     for k in np.flatnonzero((of < 0) | (of >= len(CONSTELLATIONS)))[:1]:
         raise InputError("constellation", int(of[k]), domain=f"indices of CONSTELLATIONS, 0 to {len(CONSTELLATIONS) - 1}", index=int(k))
     return of

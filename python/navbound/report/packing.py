@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+import polars as pl
 from numpy.typing import NDArray
 
 NULL = np.int64(-(2**31))
@@ -106,17 +107,10 @@ def deflate(columns: list[Packed]) -> str:
     return base64.b64encode(zlib.compress(b"".join(column.planes for column in columns), 6)).decode("ascii")
 
 
-def run_lengths(values: list[str | None]) -> dict[str, object]:
-    """Run lengths of a text column: distinct words, then (word index, count) pairs; -1 is null."""
-    distinct: list[str] = []
-    runs: list[list[int]] = []
-    previous: str | None = None
-    for value in values:
-        if runs and value == previous:
-            runs[-1][1] += 1
-            continue
-        if value is not None and value not in distinct:
-            distinct.append(value)
-        runs.append([-1 if value is None else distinct.index(value), 1])
-        previous = value
-    return {"words": distinct, "runs": runs}
+def run_lengths(values: pl.Series) -> dict[str, object]:
+    """Run lengths of a text column: distinct words in the order of their first, then (word index, count) pairs; -1 is null."""
+    runs = values.rle().struct.unnest()
+    place: dict[str | None, int] = {None: -1}
+    for word in runs["value"]:
+        place.setdefault(word, len(place) - 1)
+    return {"words": list(place)[1:], "runs": [[place[word], n] for n, word in runs.select("len", "value").iter_rows()]}

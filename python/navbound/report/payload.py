@@ -62,8 +62,14 @@ def build(  # noqa: PLR0917 - as render
     Page
         Records as JSON, columns as text blocks.
     """
-    data = _finite(_records(summary, record, epochs, events, waypoints))
-    room = budget_bytes - len(json.dumps(data, separators=(",", ":")))
+    data = _records(summary, record, epochs, events, waypoints)
+    try:
+        text = json.dumps(data, separators=(",", ":"), allow_nan=False)
+    except ValueError:
+        # Only records that hold such a number are walked through, value by value.
+        data = _finite(data)
+        text = json.dumps(data, separators=(",", ":"), allow_nan=False)
+    room = budget_bytes - len(text)
     heads, blocks, words = _worst_tracks(summary, epochs, room)
     data["summary"]["assumptions"] += words
     return Page(data=data | {"tracks": heads}, tracks=blocks)
@@ -161,7 +167,7 @@ def _pack_track(track: str, frame: pl.DataFrame, columns: list[str]) -> tuple[di
         values = frame[name].cast(pl.Float64).fill_null(math.nan).to_numpy()
         if np.isfinite(values).any():
             packed.append(packing.pack(name, values))
-    words = {name: packing.run_lengths(frame[name].cast(pl.String).to_list()) for name in lookup.in_report("text") if name in frame.columns}
+    words = {name: packing.run_lengths(frame[name].cast(pl.String)) for name in lookup.in_report("text") if name in frame.columns}
     head: dict[str, object] = {
         "track": track,
         "n": frame.height,

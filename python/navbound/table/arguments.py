@@ -51,23 +51,36 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
         return list(inspect.signature(function).parameters)
 
     @functools.cache
-    def checks() -> dict[str, Check]:
+    def checks() -> dict[str, tuple[Check, bool]]:
         # Not when the module is loaded: names of classes below the function are not known yet.
         annotations = inspect.get_annotations(function)
-        return {name: c for name in names() if (c := _check(annotations.get(name), function.__globals__)) is not None}
+        found = ((name, _check(annotations.get(name), function.__globals__)) for name in names())
+        return {name: (check, _takes_floats(check)) for name, check in found if check is not None}
 
     @functools.wraps(function)
     def checking(*args: P.args, **kwargs: P.kwargs) -> R:
         by_name = checks()
         for name, value in [*zip(names(), args, strict=False), *kwargs.items()]:
             if name in by_name:
-                by_name[name](name, value)
+                check, takes_floats = by_name[name]
+                # A plain number is what is passed most, and no check of numbers refuses it.
+                if not (takes_floats and type(value) is float):
+                    check(name, value)
         try:
             return function(*args, **kwargs)
         except _core.PanicException as e:
             raise InternalError(f"{function.__module__}.{function.__name__}", e) from e
 
     return checking
+
+
+def _takes_floats(check: Check) -> bool:
+    """Whether a check of kinds lets a number through; it looks at no number's value."""
+    try:
+        check("", 1.0)
+    except InputError:
+        return False
+    return True
 
 
 def checked_fields(cls: type[C]) -> type[C]:

@@ -366,10 +366,12 @@ def log_exceedance_risk(fte_m: ArrayLike, sigma_m: ArrayLike, limit_m: ArrayLike
 
 
 def _is_single(risk: ArrayLike) -> bool:
-    return np.ndim(risk) == 0
+    return type(risk) is float or np.ndim(risk) == 0
 
 
 def _single(risk: ArrayLike) -> float:
+    if type(risk) is float:
+        return risk
     shape, [q] = flatten(risk=(risk, ()))
     if shape != ():
         raise InputError("risk", f"shape {shape}", domain="a single number")

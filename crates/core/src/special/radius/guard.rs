@@ -20,8 +20,8 @@ pub enum Rule {
     Parabola20,
     /// Up to 50: parabola, 24 half nodes.
     Parabola24,
-    /// Beyond, and where one side is small: slices, positive terms only.
-    Strip,
+    /// Beyond, and where one side is small: a contour through the saddle point.
+    Saddle,
 }
 
 impl Rule {
@@ -34,17 +34,17 @@ impl Rule {
         } else if delta_squared <= 50.0 {
             Self::Parabola24
         } else {
-            Self::Strip
+            Self::Saddle
         }
     }
 
-    /// The contour's nodes; the strip has none.
+    /// The nodes of a fixed contour; that through the saddle point depends on the radius.
     pub(super) fn nodes(self) -> Option<&'static [Node]> {
         match self {
             Self::Talbot14 => Some(&TALBOT_14),
             Self::Parabola20 => Some(&PARABOLA_20),
             Self::Parabola24 => Some(&PARABOLA_24),
-            Self::Strip => None,
+            Self::Saddle => None,
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The length of a Gaussian vector of up to three dimensions with any covariance and any mean: probability, density, radius.
 //!
-//! One law for the circle, the sphere and the line: an error of fewer dimensions has dead axes. Two routes judge each other: contour
-//! inversion ([`contour`]) is fast, slices ([`strip`]) are slow and keep their digits in the tails; [`Rule`] says which one runs.
+//! One law for the circle, the sphere and the line: an error of fewer dimensions has dead axes. Contour inversion ([`contour`]) is the
+//! fastest; a contour through the saddle point ([`saddle`]) keeps its digits in the tails and takes any mean; slices ([`strip`]) are slow
+//! and judge both. [`Rule`] says which one runs.
 //! Numbers here carry no unit: what goes in as metres comes out as metres.
 
 mod contour;
@@ -10,6 +11,7 @@ mod lanes;
 #[expect(clippy::approx_constant, reason = "a node of a table that happens to be pi/4")]
 mod nodes;
 mod principal;
+mod saddle;
 mod search;
 pub(crate) mod strip;
 
@@ -26,7 +28,7 @@ use search::Point;
 const DEAD: f64 = 1e-24;
 
 /// The contours know a probability to 1.4e-14; a side below this would have fewer than ten digits of its own.
-const STRIP_BELOW: f64 = 2e-5;
+const SADDLE_BELOW: f64 = 2e-5;
 
 /// The law of |e| at one radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,7 +72,7 @@ impl RadiusLaw {
         law
     }
 
-    /// How moderate probabilities of this law are evaluated; small sides always take the strip.
+    /// How moderate probabilities of this law are evaluated; small sides always take the saddle point.
     pub fn rule(&self) -> Rule {
         self.rule
     }
@@ -82,15 +84,15 @@ impl RadiusLaw {
                 && let Some(nodes) = self.rule.nodes()
             {
                 let Point { at, .. } = self.by_contour(nodes, reach);
-                if at.inside >= STRIP_BELOW && at.outside >= STRIP_BELOW {
+                if at.inside >= SADDLE_BELOW && at.outside >= SADDLE_BELOW {
                     return at;
                 }
             }
-            self.by_strip(reach)
+            self.by_saddle(reach).at
         })
     }
 
-    /// The same by the slow positive sums alone, which judge the contour.
+    /// The same by the slow positive sums alone, which judge the contours.
     pub fn at_by_strip(&self, radius: f64) -> AtRadius {
         self.beyond_dead(radius, |reach| self.by_strip(reach))
     }
@@ -125,16 +127,12 @@ impl RadiusLaw {
         let longest = self.longest(q);
         let start = self.wilson_hilferty(q);
         let contour = if self.live > 1 { self.rule.nodes() } else { None };
-        let Some(nodes) = contour else {
-            return search::radius(q, start, longest, |h| self.strip_point(h));
-        };
-        if (lanes::SMALLEST..=1.0 - lanes::SMALLEST).contains(&q) {
-            return search::radius(q, start, longest, |h| self.by_contour(nodes, h));
+        match contour {
+            Some(nodes) if (lanes::SMALLEST..=1.0 - lanes::SMALLEST).contains(&q) => {
+                search::radius(q, start, longest, |h| self.by_contour(nodes, h))
+            }
+            _ => search::radius(q, start, longest, |h| self.by_saddle(h)),
         }
-        // The contour still knows a tail of 1e-9 to a few digits: a start that saves the strip most of its steps.
-        let near = q.clamp(1e-9, 1.0 - 1e-6);
-        let start = search::radius(near, self.wilson_hilferty(near), self.longest(near), |h| self.by_contour(nodes, h));
-        search::radius(q, start, longest, |h| self.strip_point(h))
     }
 
     /// P(|e| > |mean| + t) is at most P(sigma_1 chi > t), and chi in space is at most 1.5 longer than in the plane.
@@ -147,8 +145,12 @@ impl RadiusLaw {
         wilson_hilferty(&self.variances, &self.means, one_sided_factor(q))
     }
 
-    fn strip_point(&self, reach: f64) -> Point {
-        Point { at: self.by_strip(reach), slope: None }
+    /// By the saddle point; one axis alone has a closed form, and lengths beyond all use are sliced.
+    fn by_saddle(&self, reach: f64) -> Point {
+        let saddle =
+            saddle::Saddle { largest: self.variances[0], variances: &self.variances[..self.live], means: &self.means[..self.live] };
+        let point = if self.live > 1 { saddle.at(reach) } else { None };
+        point.unwrap_or_else(|| Point { at: self.by_strip(reach), slope: None })
     }
 
     fn by_strip(&self, reach: f64) -> AtRadius {
