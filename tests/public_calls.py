@@ -356,6 +356,15 @@ _AIR = {"station_m": 500.0 * TWO, "deviation_k": -20.0 * TWO}
 _SLOPE = {"crossing_m": 100.0 * TWO, "angle_rad": 0.05 * TWO}
 _PLACE = {"rnp_m": 300.0 * TWO, "angle_rad": 0.05 * TWO, "altitude_m": 900.0 * TWO}
 CALLS |= {
+    "vertical.area_setting": Call(
+        vertical.area_setting,
+        {
+            "intercept_m": 25.0,
+            "others_m": np.array([20.0, 24.0, 22.0, 21.0]),
+            "distance_m": np.array([9e3, 8e3, 7e3, 6e3]),
+            "apart_s": np.array([60.0, -60.0, 30.0, 90.0]),
+        },
+    ),
     "vertical.barometric_altitude": Call(vertical.barometric_altitude, {"distance_m": 9000.0 * TWO, **_SLOPE}),
     "vertical.barometric_distance": Call(vertical.barometric_distance, {"altitude_m": 900.0 * TWO, **_SLOPE}),
     "vertical.budget": Call(
@@ -365,6 +374,18 @@ CALLS |= {
     "vertical.cold_correction_doc8168": Call(vertical.cold_correction_doc8168, {"height_m": 300.0 * TWO, **_AIR}),
     "vertical.indicated_height": Call(vertical.indicated_height, {"true_m": 300.0 * TWO, **_AIR}),
     "vertical.isa_deviation": Call(vertical.isa_deviation, {"station_m": 500.0 * TWO, "temperature_k": 240.0 * TWO}),
+    "vertical.obstacle_surface": Call(
+        vertical.obstacle_surface,
+        {
+            "rnp_m": 300.0,
+            "angle_rad": 0.05,
+            "fix_altitude_m": 900.0,
+            "threshold_m": 300.0,
+            "crossing_height_m": 15.0,
+            "temperature_k": 260.0,
+        },
+        {"constants": "feet"},
+    ),
     "vertical.off_path_sigma": Call(
         vertical.off_path_sigma,
         {"sigma_along_m": 20.0 * TWO, "sigma_up_m": 8.0 * TWO, "correlation": 0.2 * TWO, "angle_rad": 0.05 * TWO},

@@ -59,7 +59,8 @@ def area_setting(intercept_m: float, others_m: ArrayLike, distance_m: ArrayLike,
     InputError
         Numbers that are not finite, or lengths that differ.
     """
-    if not np.isfinite(intercept_m):
+    _, (intercept,) = flatten(intercept_m=(intercept_m, ()))
+    if not np.isfinite(intercept[0]):
         raise InputError("intercept_m", intercept_m, "m", "(-inf, inf)")
     _, (others, distance, apart) = flatten(others_m=(others_m, ()), distance_m=(distance_m, ()), apart_s=(apart_s, ()))
     near = (np.abs(distance) <= WITHIN_M) & (np.abs(apart) <= WITHIN_S)
@@ -69,4 +70,4 @@ def area_setting(intercept_m: float, others_m: ArrayLike, distance_m: ArrayLike,
             raise InputError(name, float(values[bad[0]]), unit, "(-inf, inf)", int(bad[0]))
     n = int(near.sum())
     median = float(np.median(others[near])) if n >= LEAST_OTHERS else float("nan")
-    return AreaSetting(n, median, intercept_m - median)
+    return AreaSetting(n, median, float(intercept[0]) - median)
