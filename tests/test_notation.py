@@ -40,7 +40,7 @@ WORDS = {
     "mode_before",
     "mode_onset",
 }
-SUFFIXES = ("_m", "_m2", "_s", "_ns", "_rad", "_mps", "_mps2", "_radps")
+SUFFIXES = ("_m", "_m2", "_s", "_ns", "_rad", "_mps", "_mps2", "_radps", "_hpa")
 UNITLESS = ("p_", "n_")
 DIMENSIONLESS = {"pdop", "hdop", "vdop", "gdop", "innovation_memory", "nac_p", "nic", "over_tta", "flight", "nees"}
 ENDINGS = ("_square", "_lag_one", "_memory_max")
