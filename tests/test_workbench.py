@@ -5,9 +5,12 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import re
 import shlex
+import signal
 import socket
 import stat
+import subprocess
 import sys
 import threading
 import time
@@ -18,6 +21,7 @@ from typing import Any, cast
 
 import pytest
 
+from conftest import Ended
 from display_fixture import Browser
 from navbound.cli import analyze, evaluate, forms, maps, predict, study
 from navbound.cli.forms import form
@@ -421,3 +425,24 @@ def test_lines_of_python_that_take_too_long_are_a_sentence(page: Browser, monkey
     monkeypatch.setattr(workbench_server, "program", lambda *_: [sys.executable, "-c", "import time; time.sleep(60)"])
     monkeypatch.setattr(workbench_server, "PYTHON_S", 0.1)
     assert "busy" in requested(page, "/python", command="analyze", values={"files": ["track.csv"]})["refused"]
+
+
+def test_the_command_prints_the_address_and_ends_in_order(folder: Path, navbound: Callable[..., Ended]) -> None:
+    missing = navbound("open", folder / "nothing", "--no-browser")
+    assert (missing.status, "no such folder" in missing.stderr) == (3, True)
+    line = [sys.executable, "-u", "-m", "navbound", "open", str(folder), "--no-browser"]
+    with subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ | {"COLUMNS": "400"}) as process:
+        assert process.stdout is not None
+        printed = process.stdout.readline()
+        try:
+            port, token = re.search(r"http://127\.0\.0\.1:(\d+)/#([0-9a-f]{32})$", printed.strip()).groups()  # type: ignore[union-attr]
+            body = json.dumps({"token": token})
+            host = f"127.0.0.1:{port}"
+            head = f"POST /session HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nContent-Length: {len(body)}\r\n\r\n"
+            with socket.create_connection(("127.0.0.1", int(port)), 60.0) as way:
+                way.sendall((head + body).encode())
+                assert Browser.read(way).status == 204
+        finally:
+            process.send_signal(signal.SIGINT)
+            _, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
