@@ -5,7 +5,9 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import re
 import shlex
+import signal
 import socket
 import stat
 import subprocess
@@ -19,6 +21,7 @@ from typing import Any, cast
 
 import pytest
 
+from conftest import Ended
 from display_fixture import Browser
 from navbound.cli import analyze, evaluate, forms, maps, predict, study
 from navbound.cli.forms import form
@@ -411,24 +414,35 @@ def test_runways_and_procedures_are_listed_by_a_part_of_their_name(page: Browser
     assert page.ask("GET", "/search?list=procedures&file=../database.txt&words=h26").status == 404
 
 
-def test_the_lines_of_python_do_the_same(page: Browser, folder: Path) -> None:
+def test_the_page_shows_the_lines_of_python_of_a_job(page: Browser) -> None:
+    # That they do the same is tested in test_cli_lists.py.
     values = {"files": ["track.csv"], "sigma_m": "5", "spec": "RNP 1"}
     lines = requested(page, "/python", command="analyze", values=values)["python"]
-    done = subprocess.run(
-        [sys.executable, "-c", f"{lines}\nprint(result.summary.verdict.requirement)"],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout.strip() == "RNP 1"
-    command = shlex.split(requested(page, "/line", command="analyze", values=values, name="again")["line"])
-    subprocess.run([sys.executable, "-m", *command], cwd=folder, capture_output=True, check=False)
-    one, other = (json.loads((folder / "out" / name / "summary.json").read_text()) for name in ("analyze-track", "again"))
-    assert one == other
+    assert all(part in lines for part in ("import navbound", '["track.csv"]', "sigma_m=5.0", 'spec="RNP 1"', 'out="out/analyze-track"'))
 
 
 def test_lines_of_python_that_take_too_long_are_a_sentence(page: Browser, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workbench_server, "program", lambda *_: [sys.executable, "-c", "import time; time.sleep(60)"])
     monkeypatch.setattr(workbench_server, "PYTHON_S", 0.1)
     assert "busy" in requested(page, "/python", command="analyze", values={"files": ["track.csv"]})["refused"]
+
+
+def test_the_command_prints_the_address_and_ends_in_order(folder: Path, navbound: Callable[..., Ended]) -> None:
+    missing = navbound("open", folder / "nothing", "--no-browser")
+    assert (missing.status, "no such folder" in missing.stderr) == (3, True)
+    line = [sys.executable, "-u", "-m", "navbound", "open", str(folder), "--no-browser"]
+    with subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ | {"COLUMNS": "400"}) as process:
+        assert process.stdout is not None
+        printed = process.stdout.readline()
+        try:
+            port, token = re.search(r"http://127\.0\.0\.1:(\d+)/#([0-9a-f]{32})$", printed.strip()).groups()  # type: ignore[union-attr]
+            body = json.dumps({"token": token})
+            host = f"127.0.0.1:{port}"
+            head = f"POST /session HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nContent-Length: {len(body)}\r\n\r\n"
+            with socket.create_connection(("127.0.0.1", int(port)), 60.0) as way:
+                way.sendall((head + body).encode())
+                assert Browser.read(way).status == 204
+        finally:
+            process.send_signal(signal.SIGINT)
+            _, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
