@@ -297,9 +297,7 @@ def _columns(
 ) -> tuple[tuple[int, ...], list[NDArray[np.float64]], list[int], list[float]]:
     """Shape with the satellites, flat columns, constellation of each satellite, priors of constellations."""
     of = systems_of(unit_enu, constellation)
-    bias, continuity, prior = (
-        column[of] if own is None else own for own, column in zip(stated, _PROMISED, strict=True)
-    )
+    bias, continuity, prior = (column[of] if own is None else own for own, column in zip(stated, _PROMISED, strict=True))
     shape, (unit, *columns) = flatten(
         unit_enu=(unit_enu, (3,)),
         sigma_int_m=(sigmas_m[0], ()),
