@@ -55,7 +55,7 @@ def measure() -> list[Row]:
     threads = os.environ["RAYON_NUM_THREADS"]
     rows: list[Row] = []
 
-    def row(name: str, n: int, note: str, call: Callable[[], object], repeats: int = 5, goal_s: float | None = None) -> None:
+    def row(name: str, n: int, note: str, call: Callable[[], object], repeats: int = 5, *, goal_s: float | None = None) -> None:
         rows.append(Row(name, seconds(call, repeats) / n, n, note, goal_s))
 
     where = f"batch from Python, {threads} thread(s)"

@@ -13,7 +13,7 @@
 
 use super::AtRadius;
 use super::search::Point;
-use crate::special::float::{asin, exp, exp_m1, hypot, ln, sin_cos, sqrt};
+use crate::special::float::{asin, exp, exp_m1, hypot, ln, sin_cos, sqrt, within};
 use core::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// Newton steps to the saddle point; three are usual, 23 were the most seen.
@@ -134,7 +134,8 @@ impl Saddle<'_> {
             AtRadius { inside, outside: 1.0 - inside, density: 0.0 }
         };
         let at = AtRadius { density: reach * density / self.largest, ..at };
-        Some(Point { at, slope: Some((density + squared * derivative) / self.largest) })
+        // No number passes for a probability that is none.
+        (at.inside >= 0.0 && at.outside >= 0.0).then_some(Point { at, slope: Some((density + squared * derivative) / self.largest) })
     }
 
     fn slopes(&self, gap: f64, w: f64) -> Slopes {
@@ -167,7 +168,7 @@ impl Saddle<'_> {
                 high = w;
             }
             let step = first / (second * w);
-            let next = w * exp(-step.max(-1.5).min(1.5));
+            let next = w * exp(-within(step, -1.5, 1.5));
             let next = if next > low && next < high {
                 next
             } else if high < f64::INFINITY {
@@ -190,7 +191,7 @@ impl Saddle<'_> {
             if curvature >= 0.99 * LEAST_CURVATURE {
                 break;
             }
-            w *= if curvature > 0.0 { (LEAST_CURVATURE / curvature).max(1.1).min(4.0) } else { 2.0 };
+            w *= if curvature > 0.0 { within(LEAST_CURVATURE / curvature, 1.1, 4.0) } else { 2.0 };
             (curvature, of_means) = curved(w);
         }
         (w, curvature, of_means)
