@@ -138,18 +138,18 @@ impl Desk {
 /// # Errors
 /// [`AtIndex`]: the first epoch with a number outside its domain.
 pub fn levels(sights: &Sights<'_>, rule: &Rule, exclusion: bool) -> Result<Vec<Row>, AtIndex> {
-    let asked = Asked { rule: *rule, p_const: sights.p_const, p_sat: priors(sights) };
+    let request = Requested { rule: *rule, p_const: sights.p_const, p_sat: priors(sights) };
     if sights.len() > 1 {
         return rows(
             sights.len(),
-            || asked.desk(),
+            || request.desk(),
             #[inline(always)]
             |desk, row| desk.row(sights, row, rule, exclusion),
         );
     }
     KEPT.with_borrow_mut(|kept| {
-        let known = kept.take_if(|(before, _)| *before == asked);
-        let (_, desk) = kept.insert(known.unwrap_or_else(|| (asked, asked.desk())));
+        let known = kept.take_if(|(before, _)| *before == request);
+        let (_, desk) = kept.insert(known.unwrap_or_else(|| (request, request.desk())));
         at_desk(
             desk,
             sights.len(),
@@ -161,19 +161,19 @@ pub fn levels(sights: &Sights<'_>, rule: &Rule, exclusion: bool) -> Result<Vec<R
 
 thread_local! {
     /// The desk of this thread's last single epoch: a program that asks for one epoch after another finds the fault modes worked out.
-    static KEPT: RefCell<Option<(Asked, Desk)>> = const { RefCell::new(None) };
+    static KEPT: RefCell<Option<(Requested, Desk)>> = const { RefCell::new(None) };
 }
 
 /// What the fault modes of a desk depend on besides the constellations of the satellites.
 #[derive(Clone, Copy, PartialEq)]
-struct Asked {
+struct Requested {
     rule: Rule,
     p_const: [f64; Constellation::ALL.len()],
     /// Prior of the satellites of each constellation; `None` where they differ, and modes are worked out for every epoch.
     p_sat: Option<[Option<f64>; Constellation::ALL.len()]>,
 }
 
-impl Asked {
+impl Requested {
     fn desk(&self) -> Desk {
         Desk::new(self.p_const, self.p_sat.is_some())
     }

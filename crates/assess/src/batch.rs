@@ -33,7 +33,7 @@ pub fn rows<const M: usize>(n: usize, item: impl Fn(usize) -> Result<[f64; M], O
     })
 }
 
-/// The factors of the risk that was asked for last: items of one batch mostly share theirs.
+/// The factors of the risk that was requested last: items of one batch mostly share theirs.
 #[derive(Debug, Default)]
 pub struct Factors(Option<FoldedQuantile>);
 
@@ -104,9 +104,9 @@ mod tests {
     #[test]
     fn every_item_has_the_factors_of_its_own_risk() {
         let q = [0.05, 0.05, 1e-5, 0.05, 1e-5, 1e-5];
-        let found = at_risks(q.len(), |i, factors| Ok(factors.of(q[i])?.two_sided())).unwrap();
+        let together = at_risks(q.len(), |i, factors| Ok(factors.of(q[i])?.two_sided())).unwrap();
         let alone: Vec<f64> = q.iter().map(|q| FoldedQuantile::new(Risk::new(*q).unwrap()).two_sided()).collect();
-        assert_eq!(found, alone);
+        assert_eq!(together, alone);
         let wrong = [0.05, 0.05, f64::NAN, 2.0];
         let refused = at_risks(wrong.len(), |i, factors| Ok(factors.of(wrong[i])?.risk())).unwrap_err();
         assert_eq!((refused.index, refused.reason.argument), (2, "risk"));
