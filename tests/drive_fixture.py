@@ -50,7 +50,7 @@ class Tuning:
 
 
 WHOLE = Tuning(0.2, 1.5e-3, 0.02, 3e-4, 0.03, 0.2)
-"""Selection on the whole drive: in-sample."""
+"""Chosen on the whole drive: in-sample."""
 
 
 class Drive:

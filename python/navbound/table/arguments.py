@@ -54,8 +54,8 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     def checks() -> dict[str, tuple[Check, bool]]:
         # Not when the module is loaded: names of classes below the function are not known yet.
         annotations = inspect.get_annotations(function)
-        found = ((name, _check(annotations.get(name), function.__globals__)) for name in names())
-        return {name: (check, _takes_floats(check)) for name, check in found if check is not None}
+        pairs = ((name, _check(annotations.get(name), function.__globals__)) for name in names())
+        return {name: (check, _takes_floats(check)) for name, check in pairs if check is not None}
 
     @functools.wraps(function)
     def checking(*args: P.args, **kwargs: P.kwargs) -> R:

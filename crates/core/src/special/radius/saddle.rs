@@ -34,9 +34,9 @@ const NARROW: f64 = 400.0;
 /// Half the step where an axis that is far from its mean and one that is not share the curvature: the worst error was 3e-8 without, 7e-12 with.
 const MIXED_SHARE: f64 = 0.01;
 const MIXED_STEP: f64 = 0.5;
-/// Half the strip of u without a singularity, times two pi; and the digits wanted, as an exponent.
+/// Half the strip of u without a singularity, times two pi; and the digits required, as an exponent.
 const STRIP: f64 = PI * PI / 2.0;
-const WANTED: f64 = 34.0;
+const DIGITS: f64 = 34.0;
 /// Sides below exp(-20) are kept clear of the pole's term, whose size is one.
 const SMALL: f64 = -20.0;
 /// Where a term is less than 1e-18 of the first, the rest is left out; 72 nodes were the most seen.
@@ -112,7 +112,7 @@ impl Saddle<'_> {
         if curvature < NARROW {
             // How far the integrand rises to the right, as far as the strip goes.
             let rise = opening * (slope + far * opening);
-            step = step.min(STRIP / (WANTED + rise.max(0.0)));
+            step = step.min(STRIP / (DIGITS + rise.max(0.0)));
             if of_means > MIXED_SHARE * curvature {
                 step *= MIXED_STEP;
             }
@@ -120,8 +120,8 @@ impl Saddle<'_> {
         let pole = pole_at(vertex);
         let size = height - 0.5 * ln(roots);
         if size < SMALL {
-            // What the rule makes of the pole is exp(-2 pi p/h) of that: less than the digits of the side that is wanted.
-            step = step.min(2.0 * PI * pole.abs() / (WANTED - size));
+            // What the rule makes of the pole is exp(-2 pi p/h) of that: less than the digits of the side that is required.
+            step = step.min(2.0 * PI * pole.abs() / (DIGITS - size));
         }
         let sums = self.sums(shift, slope, opening, step)?;
         let scale = exp(height) * step / PI;
