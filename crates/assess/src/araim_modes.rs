@@ -1,7 +1,7 @@
 //! Fault modes that were worked out once, for the epochs and exclusions that ask for them again.
 
 use navbound_core::bound::Sight;
-use navbound_core::bound::araim::modes::{Book, EventSets, FaultModes, MOST_SATELLITES, NoModes};
+use navbound_core::bound::araim::modes::{Book, FaultModes, MOST_SATELLITES, NoModes};
 use navbound_core::bound::araim::service::Service;
 use navbound_core::signal::Constellation;
 use std::collections::HashMap;
@@ -12,7 +12,6 @@ pub(crate) struct Known {
     uniform: bool,
     places: HashMap<Key, usize>,
     modes: Vec<FaultModes>,
-    sets: Box<EventSets>,
     /// What was requested last: exclusions of one constellation's satellites ask for the same again and again.
     last: Option<(Key, usize)>,
 }
@@ -25,7 +24,7 @@ type Key = [u8; MOST_SATELLITES];
 
 impl Known {
     pub(crate) fn new(p_const: [f64; Constellation::ALL.len()], uniform: bool) -> Self {
-        Self { p_const, uniform, places: HashMap::new(), modes: Vec::new(), sets: Box::new(EventSets::NEW), last: None }
+        Self { p_const, uniform, places: HashMap::new(), modes: Vec::new(), last: None }
     }
 
     fn place(&mut self, key: Key, sights: &[Sight], service: &Service) -> Result<usize, NoModes> {
@@ -37,9 +36,7 @@ impl Known {
             self.modes.clear();
             self.last = None;
         }
-        let mut modes = FaultModes::NONE;
-        service.find_modes(sights, &self.p_const, &mut modes, &mut self.sets)?;
-        self.modes.push(modes);
+        self.modes.push(service.modes(sights, &self.p_const)?);
         self.places.insert(key, self.modes.len() - 1);
         Ok(self.modes.len() - 1)
     }
@@ -48,10 +45,8 @@ impl Known {
 impl Book for Known {
     fn modes(&mut self, sights: &[Sight], service: &Service) -> Result<&FaultModes, NoModes> {
         if !self.uniform {
-            if self.modes.is_empty() {
-                self.modes.push(FaultModes::NONE);
-            }
-            service.find_modes(sights, &self.p_const, &mut self.modes[0], &mut self.sets)?;
+            self.modes.clear();
+            self.modes.push(service.modes(sights, &self.p_const)?);
             return Ok(&self.modes[0]);
         }
         let mut key = [u8::MAX; MOST_SATELLITES];

@@ -2,7 +2,7 @@
 
 use crate::gbas::{Skies, covariance, size_of_bias};
 use navbound_core::bound::Sight;
-use navbound_core::bound::faults::{EventSets, FaultModes, NoModes};
+use navbound_core::bound::faults::NoModes;
 use navbound_core::bound::gbas::snapshot::{Form, Snapshot};
 use navbound_core::bound::level_equation::LevelEquation;
 use navbound_core::bound::rraim::coast::{Coast, Followed};
@@ -71,8 +71,6 @@ pub struct Answer {
 /// What is large and made once for a thread.
 #[derive(Debug, Default)]
 pub struct Room {
-    modes: FaultModes,
-    sets: EventSets,
     multiple: MultipleFaults,
     equation: LevelEquation,
     /// Why the faults of the phase at hand could not be listed.
@@ -85,8 +83,16 @@ impl Room {
     /// # Errors
     /// [`Unavailable`] as [`MultipleFaults::fill`].
     pub fn fill(&mut self, fix: &Fix<'_>, coast: &Coast, priors: &Priors) -> Result<(), Unavailable> {
-        self.refused = priors.find_modes(coast, &mut self.modes, &mut self.sets).err();
-        if self.refused.is_some() { Ok(()) } else { self.multiple.fill(fix, coast, &self.modes) }
+        match priors.modes(coast) {
+            Ok(modes) => {
+                self.refused = None;
+                self.multiple.fill(fix, coast, &modes)
+            }
+            Err(why) => {
+                self.refused = Some(why);
+                Ok(())
+            }
+        }
     }
 
     /// Levels east, north and horizontal of that phase.

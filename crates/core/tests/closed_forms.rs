@@ -207,8 +207,7 @@ fn the_factor_of_a_cylinder_is_that_of_its_probability() {
 #[test]
 fn a_satellite_alone_in_its_constellation_is_the_constellation() {
     let satellites = [(Constellation::Gps, 1e-5), (Constellation::Galileo, 3e-5), (Constellation::Gps, 2e-5)];
-    let mut modes = FaultModes::NONE;
-    modes.find_single(&satellites).unwrap();
+    let modes = FaultModes::single(&satellites).unwrap();
     let listed: Vec<_> = modes.iter().map(|m| (m.satellites, m.constellations, m.p)).collect();
     let galileo = 1 << Constellation::Galileo.index();
     assert_eq!(listed, [(0, 0, 1.0), (1, 0, 1e-5), (2, galileo, 3e-5), (4, 0, 2e-5)]);

@@ -43,12 +43,6 @@ pub struct FaultModes {
     left: f64,
 }
 
-impl Default for FaultModes {
-    fn default() -> Self {
-        Self::NONE
-    }
-}
-
 /// Why there are no fault modes.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoModes {
@@ -112,45 +106,42 @@ pub type Prior = (Constellation, f64);
 const NONE: FaultMode = FaultMode { satellites: 0, constellations: 0, p: 0.0 };
 
 impl FaultModes {
-    /// No modes yet. It is large: made once, where it stays, and filled epoch after epoch.
-    pub const NONE: Self = Self { list: [NONE; MOST_MODES], count: 0, left: 0.0 };
-
     /// The modes of satellites with their priors and those of their constellations in the order of [`Constellation::index`]. An event with the
     /// prior zero does not happen.
     ///
     /// # Errors
     /// [`NoModes`].
-    pub fn find(&mut self, satellites: &[Prior], p_const: &[f64; CLOCKS], watch: &Watch, sets: &mut EventSets) -> Result<(), NoModes> {
+    pub fn of(satellites: &[Prior], p_const: &[f64; CLOCKS], watch: &Watch) -> Result<Self, NoModes> {
         let events = Events::new(satellites, p_const)?;
         let (order, beyond) = events.order(watch);
-        let listed = &mut sets.0;
-        (listed.count, listed.wholes) = (0, 0);
-        events.list(order, listed)?;
+        let mut listed = Listed::default();
+        events.list(order, &mut listed)?;
         listed.consolidate(&events, watch.consolidation);
         match watch.first {
             First::Smallest => listed.by_size(satellites.len()),
             First::Likeliest => listed.by_probability(),
         }
-        (self.count, self.left) = (0, beyond);
-        self.keep(listed, watch, &events)
+        let mut modes = Self { list: [NONE; MOST_MODES], count: 0, left: beyond };
+        modes.keep(&mut listed, watch, &events)?;
+        Ok(modes)
     }
 
     /// No fault, and each satellite alone; nothing else can happen: what receivers without priors assume.
     ///
     /// # Errors
     /// [`NoModes::TooManySatellites`].
-    pub fn find_single(&mut self, satellites: &[Prior]) -> Result<(), NoModes> {
+    pub fn single(satellites: &[Prior]) -> Result<Self, NoModes> {
         if satellites.len() > MOST_SATELLITES {
             return Err(NoModes::TooManySatellites { have: satellites.len() });
         }
-        (self.count, self.left) = (1 + satellites.len(), 0.0);
-        self.list[0] = FaultMode { p: 1.0, ..NONE };
-        for (i, (slot, (constellation, p))) in self.list[1..].iter_mut().zip(satellites).enumerate() {
+        let mut modes = Self { list: [NONE; MOST_MODES], count: 1 + satellites.len(), left: 0.0 };
+        modes.list[0].p = 1.0;
+        for (i, (slot, (constellation, p))) in modes.list[1..].iter_mut().zip(satellites).enumerate() {
             let alone = satellites.iter().filter(|s| s.0 == *constellation).count() == 1;
             let constellations = if alone { 1 << constellation.index() } else { 0 };
             *slot = FaultMode { satellites: 1 << i, constellations, p: *p };
         }
-        Ok(())
+        Ok(modes)
     }
 
     /// The modes.
@@ -173,7 +164,7 @@ impl FaultModes {
         self.count == 0
     }
 
-    fn keep(&mut self, listed: &Listed, watch: &Watch, events: &Events) -> Result<(), NoModes> {
+    fn keep(&mut self, listed: &mut Listed, watch: &Watch, events: &Events) -> Result<(), NoModes> {
         let likely = |s: &Set| s.p > watch.always;
         self.left += listed.sets().filter(|s| !likely(s)).map(|s| s.p).sum::<f64>();
         for k in 0..listed.count {
@@ -285,26 +276,7 @@ struct Set {
     p: f64,
 }
 
-/// Room for the sets of events that are looked at. It is large: made once, where it stays.
-#[derive(Debug, Clone)]
-pub struct EventSets(Listed);
-
-impl EventSets {
-    /// Empty.
-    pub const NEW: Self = {
-        let none = Set { mask: 0, p: 0.0 };
-        Self(Listed { set: [none; MOST_LISTED], count: 0, whole: [0; MOST_LISTED], wholes: 0, sorted: [0; MOST_LISTED] })
-    };
-}
-
-impl Default for EventSets {
-    fn default() -> Self {
-        Self::NEW
-    }
-}
-
 /// Sets in their order.
-#[derive(Debug, Clone)]
 struct Listed {
     set: [Set; MOST_LISTED],
     count: usize,
@@ -313,6 +285,13 @@ struct Listed {
     wholes: usize,
     /// Places in the order by size.
     sorted: [u16; MOST_LISTED],
+}
+
+impl Default for Listed {
+    fn default() -> Self {
+        let none = Set { mask: 0, p: 0.0 };
+        Self { set: [none; MOST_LISTED], count: 0, whole: [0; MOST_LISTED], wholes: 0, sorted: [0; MOST_LISTED] }
+    }
 }
 
 impl Listed {

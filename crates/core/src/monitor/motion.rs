@@ -5,7 +5,6 @@
 
 use crate::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic};
 use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Reason};
-use crate::special::float;
 
 /// What an aircraft can do. Provenance: ours; every figure is a setting.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,7 +90,7 @@ pub struct Gone {
 impl Gone {
     /// The way at the next report. Of a gap longer than the latency nobody knows how long the aircraft moved.
     pub fn step(&mut self, report: &Report, unchanged: bool, limits: &Limits) -> f64 {
-        let passed_s = float::within(self.seen.map_or(0.0, |seen| report.time.seconds_since(seen)), 0.0, limits.latency_s);
+        let passed_s = self.seen.map_or(0.0, |seen| report.time.seconds_since(seen)).clamp(0.0, limits.latency_s);
         let moves = unchanged && report.speed_mps > STANDS_MPS;
         self.way_m = if !unchanged { 0.0 } else { self.way_m + if moves { report.speed_mps * passed_s } else { 0.0 } };
         self.seen = Some(report.time);

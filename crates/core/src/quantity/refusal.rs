@@ -43,7 +43,6 @@ impl fmt::Display for Confidence {
         f.write_str("risk is 1 - confidence; did you mean ")?;
         // Six significant digits: what subtraction from one leaves of a double is noise beyond them.
         let (mut digits, mut exponent, mut place) = (1.0 - self.0, 0_i32, 1e5);
-        // At most 16 steps: a confidence below one differs from it by 1e-16 or more.
         while digits < 1.0 - 5e-7 {
             (digits, exponent) = (digits * 10.0, exponent + 1);
             if exponent <= MOST_DECIMALS {

@@ -126,7 +126,6 @@ impl Constellations {
     fn note(&mut self, time: GpsTime, fix: &Fix) {
         for (c, numbers) in fix.used.iter().enumerate() {
             let mut rest = *numbers & ((1 << 100) - 1);
-            // At most 100 turns: each clears a bit.
             while rest != 0 {
                 self.used[100 * c + rest.trailing_zeros() as usize] = Some(time);
                 rest &= rest - 1;

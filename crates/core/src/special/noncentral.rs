@@ -30,7 +30,6 @@ pub fn noncentral_head(dof: f64, noncentrality: f64, x: f64) -> f64 {
     }
     let ln_step = |j: f64| (half + j) * ln(y) - y - ln_gamma(half + j + 1.0);
     let mut last = if l < 1e-3 { 5.0 } else { whole(l + 12.0 * sqrt(l) + 31.0) };
-    // At most 200 steps: each takes a tenth of at most 6e5.
     while last > 1.0 && ln_step(last) < LEAST_LN {
         last = whole(0.9 * last);
     }
@@ -39,7 +38,6 @@ pub fn noncentral_head(dof: f64, noncentrality: f64, x: f64) -> f64 {
     let mut weight = exp(last * ln(l) - l - ln_gamma(last + 1.0));
     let mut sum = weight * head;
     let mut j = last;
-    // At most 6e5 terms: half the largest non-centrality and twelve deviations of its Poisson law.
     while j > 0.0 {
         step *= (half + j) / y;
         weight *= j / l;

@@ -11,7 +11,6 @@ const EXPANSION_FROM: f64 = 20.0;
 /// Gamma(a + 1/2) / Gamma(a), by its expansion in 1/a, reached upwards by the recurrence where a is small.
 fn gamma_ratio(a: f64) -> f64 {
     let (mut shifted, mut factor) = (a, 1.0);
-    // At most 20 steps: `a` is positive.
     while shifted < EXPANSION_FROM {
         factor *= shifted / (shifted + 0.5);
         shifted += 1.0;

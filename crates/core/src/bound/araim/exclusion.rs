@@ -176,7 +176,6 @@ impl Candidates {
         for k in 0..self.count {
             let (mask, ratio) = (self.mask[k], damage(self.mask[k]));
             let mut place = k;
-            // At most MOST_DECISIONS turns: `place` falls to 0.
             while place > 0 && self.ratio[place - 1] < ratio {
                 (self.mask[place], self.ratio[place]) = (self.mask[place - 1], self.ratio[place - 1]);
                 place -= 1;
@@ -194,7 +193,6 @@ impl Candidates {
             if suspects.count == MOST_TRIED && ratio <= suspects.ratio[place] {
                 return;
             }
-            // At most MOST_DECISIONS turns: `place` falls to 0.
             while place > 0 && suspects.ratio[place - 1] < ratio {
                 (suspects.mask[place], suspects.ratio[place]) = (suspects.mask[place - 1], suspects.ratio[place - 1]);
                 place -= 1;

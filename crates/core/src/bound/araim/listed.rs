@@ -1,6 +1,6 @@
 //! Solution separation as entries of the list of algorithms.
 
-use super::modes::{Book, EventSets, FaultModes, NoModes};
+use super::modes::{Book, FaultModes, NoModes};
 use super::service::{Service, SupportMessage};
 use super::single::{self, Requirement};
 use super::{Detail, Levels, Monitor, exclusion};
@@ -41,14 +41,12 @@ pub struct Araim {
 #[derive(Debug, Clone)]
 struct Modes {
     p_const: [f64; Constellation::ALL.len()],
-    at_hand: FaultModes,
-    sets: EventSets,
+    at_hand: Option<FaultModes>,
 }
 
 impl Book for Modes {
     fn modes(&mut self, sights: &[Sight], service: &Service) -> Result<&FaultModes, NoModes> {
-        service.find_modes(sights, &self.p_const, &mut self.at_hand, &mut self.sets)?;
-        Ok(&self.at_hand)
+        Ok(self.at_hand.insert(service.modes(sights, &self.p_const)?))
     }
 }
 
@@ -64,11 +62,7 @@ impl Algorithm for Araim {
     }
 
     fn new(settings: &Settings) -> Self {
-        Self {
-            monitor: Monitor::default(),
-            settings: *settings,
-            modes: Modes { p_const: settings.p_const, at_hand: FaultModes::NONE, sets: EventSets::NEW },
-        }
+        Self { monitor: Monitor::default(), settings: *settings, modes: Modes { p_const: settings.p_const, at_hand: None } }
     }
 
     #[inline(always)]

@@ -107,8 +107,6 @@ pub struct Monitor {
     rest: Separation,
     ceiling: Ceiling,
     solver: Solver,
-    /// No fault, and each satellite alone, where no priors are known.
-    alone: FaultModes,
 }
 
 /// What the levels of a decision may take, and against what.

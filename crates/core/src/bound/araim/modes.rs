@@ -2,7 +2,6 @@
 
 use super::service::Service;
 use crate::bound::Sight;
-pub use crate::bound::faults::EventSets;
 pub use crate::bound::faults::{FaultMode, FaultModes, MOST_MODES, MOST_SATELLITES, NoModes};
 use crate::bound::faults::{First, Prior, Watch};
 use crate::quantity::OutOfDomain;
@@ -22,14 +21,8 @@ impl Service {
     /// budgets. Every satellite and every constellation in use may fail: a prior of zero is refused.
     ///
     /// # Errors
-    /// [`NoModes`]; `modes` then holds nothing that may be used.
-    pub fn find_modes(
-        &self,
-        sights: &[Sight],
-        p_const: &[f64; Constellation::ALL.len()],
-        modes: &mut FaultModes,
-        sets: &mut EventSets,
-    ) -> Result<(), NoModes> {
+    /// [`NoModes`].
+    pub fn modes(&self, sights: &[Sight], p_const: &[f64; Constellation::ALL.len()]) -> Result<FaultModes, NoModes> {
         for sight in sights {
             let priors = [("p_sat", sight.p_sat), ("p_const", p_const[sight.constellation.index()])];
             if let Some((argument, value)) = priors.into_iter().find(|(_, p)| !(*p > 0.0 && *p < 1.0)) {
@@ -43,17 +36,7 @@ impl Service {
             most_at_once: usize::MAX,
             first: First::Smallest,
         };
-        with_priors(sights, |satellites| modes.find(satellites, p_const, &watch, sets))
-    }
-
-    /// The same as a value.
-    ///
-    /// # Errors
-    /// [`NoModes`].
-    pub fn modes(&self, sights: &[Sight], p_const: &[f64; Constellation::ALL.len()]) -> Result<FaultModes, NoModes> {
-        let (mut modes, mut sets) = (FaultModes::NONE, EventSets::NEW);
-        self.find_modes(sights, p_const, &mut modes, &mut sets)?;
-        Ok(modes)
+        with_priors(sights, |satellites| FaultModes::of(satellites, p_const, &watch))
     }
 }
 
@@ -62,16 +45,16 @@ impl Service {
 /// # Errors
 /// [`NoModes::TooManySatellites`].
 #[inline(always)]
-pub(super) fn find_single(sights: &[Sight], modes: &mut FaultModes) -> Result<(), NoModes> {
-    with_priors(sights, |satellites| modes.find_single(satellites))
+pub(super) fn single(sights: &[Sight]) -> Result<FaultModes, NoModes> {
+    with_priors(sights, FaultModes::single)
 }
 
 #[inline(always)]
-fn with_priors(sights: &[Sight], find: impl FnOnce(&[Prior]) -> Result<(), NoModes>) -> Result<(), NoModes> {
+fn with_priors(sights: &[Sight], make: impl FnOnce(&[Prior]) -> Result<FaultModes, NoModes>) -> Result<FaultModes, NoModes> {
     let mut priors = [(Constellation::Gps, 0.0); MOST_SATELLITES];
     let room = priors.get_mut(..sights.len()).ok_or(NoModes::TooManySatellites { have: sights.len() })?;
     for (slot, sight) in room.iter_mut().zip(sights) {
         *slot = (sight.constellation, sight.p_sat);
     }
-    find(room)
+    make(room)
 }

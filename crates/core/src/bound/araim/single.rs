@@ -65,15 +65,15 @@ impl Monitor {
     /// [`NoLevels`].
     #[inline(always)]
     pub fn single_levels(&mut self, sights: &[Sight], requirement: &Requirement) -> Result<Levels, NoLevels> {
-        modes::find_single(sights, &mut self.alone)?;
+        let modes = modes::single(sights)?;
         checked(sights)?;
-        let (monitored, _) = self.every.separate(sights, &[], &self.alone)?;
+        let (monitored, _) = self.every.separate(sights, &[], &modes)?;
         let faults = sights.len().max(1) as f64;
         let k_ff = one_sided_factor(0.5 * requirement.fault_free.q());
         let k_fa = one_sided_factor(0.5 * requirement.false_alarm.q() / faults);
         let k_md = one_sided_factor(requirement.missed_detection.q());
         let (mut east_north, mut axes, mut up, mut threshold_u) = (0.0_f64, [0.0_f64; 2], 0.0_f64, 0.0_f64);
-        for (k, outcome) in self.every.outcome[..self.alone.len()].iter().enumerate() {
+        for (k, outcome) in self.every.outcome[..modes.len()].iter().enumerate() {
             let Some(sums) = outcome else {
                 (east_north, axes, up) = (f64::INFINITY, [f64::INFINITY; 2], f64::INFINITY);
                 break;
@@ -91,7 +91,7 @@ impl Monitor {
             axes: axes.map(Metres::new),
             emt: Metres::new(threshold_u),
             sigma_accuracy: self.every.sigma_accuracy(),
-            n_modes: self.alone.len(),
+            n_modes: modes.len(),
             n_monitored: monitored,
             p_unmonitored: 0.0,
         };

@@ -29,7 +29,7 @@ pub enum Form {
 /// Length and weight of the window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
-    samples: u16,
+    samples: usize,
     weight: f64,
 }
 
@@ -45,21 +45,21 @@ impl Shape {
         if !(0.0..=1.0).contains(&weight) {
             return Err(OutOfDomain { argument: "weight", value: weight, unit: "1", domain: "[0, 1]" });
         }
-        Ok(Self { samples: samples as u16, weight })
+        Ok(Self { samples, weight })
     }
 
     /// Number of samples M.
     pub const fn samples(&self) -> usize {
-        self.samples as usize
+        self.samples
     }
 
     fn half(&self) -> f64 {
-        f64::from(self.samples) / 2.0
+        self.samples as f64 / 2.0
     }
 
     /// The multiplier of the sum for exponential errors of equal weight: `k = P^(-1/M) - 1`.
     pub fn factor(&self, risk: Risk) -> f64 {
-        exp_m1(-ln(risk.q()) / f64::from(self.samples))
+        exp_m1(-ln(risk.q()) / self.samples as f64)
     }
 
     /// The multiplier that carries the risk with these weights: the root of `prod (1 + k w_i)^-1 = P`.
@@ -68,7 +68,7 @@ impl Shape {
     /// (1 + k w)(1 + k (2 - w)) = P^(-2/M)
     /// ```
     pub fn weighted_factor(&self, risk: Risk) -> f64 {
-        let excess = exp_m1(-2.0 * ln(risk.q()) / f64::from(self.samples));
+        let excess = exp_m1(-2.0 * ln(risk.q()) / self.samples as f64);
         let product = self.weight * (2.0 - self.weight);
         excess / (1.0 + sqrt(1.0 + product * excess))
     }
@@ -93,7 +93,7 @@ impl Shape {
     fn multiplier(&self, form: Form, risk: Risk) -> f64 {
         match form {
             Form::CfarSum => self.factor(risk),
-            Form::AsPrinted => self.factor(risk) / f64::from(self.samples),
+            Form::AsPrinted => self.factor(risk) / self.samples as f64,
         }
     }
 }
@@ -156,8 +156,8 @@ pub struct Meter {
     multipliers: [f64; 2],
     rings: [Ring; 2],
     /// Place of the next sample.
-    next: u16,
-    filled: u16,
+    next: usize,
+    filled: usize,
 }
 
 impl Meter {
@@ -198,7 +198,7 @@ impl Meter {
         let vertical = self.settings.beta * if u.z < 0.0 { -u.z } else { u.z };
         let samples = self.settings.shape.samples;
         for (ring, value) in self.rings.iter_mut().zip([horizontal, vertical]) {
-            ring.values[usize::from(self.next)] = value;
+            ring.values[self.next] = value;
         }
         self.next = (self.next + 1) % samples;
         self.filled = samples.min(self.filled + 1);
@@ -214,11 +214,10 @@ impl Meter {
     /// The window is a ring: the oldest sample stands where the next one will.
     fn sum(&self, axis: usize) -> f64 {
         let Shape { samples, weight } = self.settings.shape;
-        let values = &self.rings[axis].values[..usize::from(samples)];
+        let values = &self.rings[axis].values[..samples];
         let half = samples / 2;
         let newest_begins = (self.next + half) % samples;
         let (low, high) = if self.next < newest_begins { (self.next, newest_begins) } else { (newest_begins, self.next) };
-        let (low, high) = (usize::from(low), usize::from(high));
         let inner: f64 = values[low..high].iter().sum();
         let outer: f64 = values[..low].iter().sum::<f64>() + values[high..].iter().sum::<f64>();
         let (older, newer) = if self.next < newest_begins { (inner, outer) } else { (outer, inner) };

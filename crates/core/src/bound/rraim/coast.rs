@@ -190,7 +190,6 @@ impl Coast {
     fn take_away(&self, group: &Group, out: Set, information: &mut Matrix3<f64>, moved: &mut Matrix3<f64>) {
         let (mut weight, mut mean_before, mut mean_now) = (group.weight, group.before, group.now);
         let mut rest = out;
-        // At most 64 turns: each clears a bit.
         while rest != 0 {
             let i = rest.trailing_zeros() as usize;
             rest &= rest - 1;

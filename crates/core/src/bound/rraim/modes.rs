@@ -1,7 +1,7 @@
 //! The faults that may begin while coasting: those of [`crate::bound::faults`], the front end of equation 17, for at most two events.
 
 use super::coast::Coast;
-use crate::bound::faults::{EventSets, FaultModes, First, MOST_SATELLITES, NoModes, Prior, Watch};
+use crate::bound::faults::{FaultModes, First, MOST_SATELLITES, NoModes, Prior, Watch};
 use crate::quantity::OutOfDomain;
 use crate::signal::Constellation;
 
@@ -46,7 +46,7 @@ impl Priors {
     ///
     /// # Errors
     /// [`NoModes`].
-    pub fn find_modes(&self, coast: &Coast, modes: &mut FaultModes, sets: &mut EventSets) -> Result<(), NoModes> {
+    pub fn modes(&self, coast: &Coast) -> Result<FaultModes, NoModes> {
         let mut priors: [Prior; MOST_SATELLITES] = [(Constellation::Gps, 0.0); MOST_SATELLITES];
         for (slot, c) in priors.iter_mut().zip(coast.constellations()) {
             *slot = (Constellation::ALL[c], self.satellite[c]);
@@ -57,7 +57,7 @@ impl Priors {
         // A mode likelier than what may be left cannot be left out.
         let (always, unmonitored) = (self.threshold, self.threshold);
         let watch = Watch { always, unmonitored, consolidation: CONSOLIDATED, most_at_once: MOST_AT_ONCE, first: First::Likeliest };
-        modes.find(&priors[..coast.len()], &constellation, &watch, sets)
+        FaultModes::of(&priors[..coast.len()], &constellation, &watch)
     }
 }
 
@@ -82,13 +82,6 @@ mod tests {
         Priors { satellite: [p_sat; CLOCKS], constellation: [p_const; CLOCKS], threshold }.check().unwrap()
     }
 
-    impl Priors {
-        fn modes_of(&self, coast: &Coast) -> Result<FaultModes, NoModes> {
-            let (mut modes, mut sets) = (FaultModes::NONE, EventSets::NEW);
-            self.find_modes(coast, &mut modes, &mut sets).map(|()| modes)
-        }
-    }
-
     fn sets(modes: &FaultModes) -> Vec<(u64, f64)> {
         modes.iter().map(|m| (m.satellites, m.p)).collect()
     }
@@ -101,7 +94,7 @@ mod tests {
 
     #[test]
     fn rare_pairs_are_left_out_and_counted() {
-        let modes = priors(1e-6, 1e-4, 1e-10).modes_of(&coast(8, 0)).unwrap();
+        let modes = priors(1e-6, 1e-4, 1e-10).modes(&coast(8, 0)).unwrap();
         assert_eq!(modes.len(), 1 + 8);
         let expected = exactly(2, 8, 1e-6) + exactly(3, 8, 1e-6);
         // Four of eight are 7e-23, and some ten additions of numbers near one leave a few units of the last place of what is summed.
@@ -111,21 +104,21 @@ mod tests {
 
     #[test]
     fn likely_pairs_are_monitored_until_the_rest_is_rare() {
-        let all = priors(1e-4, 0.0, 1e-9).modes_of(&coast(8, 0)).unwrap();
+        let all = priors(1e-4, 0.0, 1e-9).modes(&coast(8, 0)).unwrap();
         assert_eq!(all.len(), 1 + 8 + 28);
-        let some = priors(1e-4, 0.0, 1e-7).modes_of(&coast(8, 0)).unwrap();
+        let some = priors(1e-4, 0.0, 1e-7).modes(&coast(8, 0)).unwrap();
         assert!(some.len() > 1 + 8 && some.len() < 1 + 36);
         assert!(some.left() <= 1e-7 * (1.0 + 1e-12));
         // Never three at a time, whatever the threshold.
-        let none = priors(1e-4, 0.0, 0.0).modes_of(&coast(8, 0)).unwrap();
+        let none = priors(1e-4, 0.0, 0.0).modes(&coast(8, 0)).unwrap();
         assert_eq!(none.len(), 1 + 8 + 28);
         assert!((none.left() / (exactly(3, 8, 1e-4) + exactly(4, 8, 1e-4)) - 1.0).abs() < 1e-6);
     }
 
     #[test]
     fn a_constellation_counts_beside_another_only() {
-        let one = priors(1e-7, 1e-4, 1e-9).modes_of(&coast(8, 0)).unwrap();
-        let two = priors(1e-7, 1e-4, 1e-9).modes_of(&coast(5, 6)).unwrap();
+        let one = priors(1e-7, 1e-4, 1e-9).modes(&coast(8, 0)).unwrap();
+        let two = priors(1e-7, 1e-4, 1e-9).modes(&coast(5, 6)).unwrap();
         assert!(one.iter().all(|m| m.satellites.count_ones() < 8));
         let wide: Vec<_> = sets(&two).into_iter().filter(|m| m.0.count_ones() > 1).map(|m| m.0).collect();
         assert!(wide.contains(&0b11111) && wide.contains(&0b111_1110_0000));
@@ -136,7 +129,7 @@ mod tests {
     fn probabilities_add_up_whatever_is_monitored() {
         for threshold in [0.0, 1e-12, 1e-9, 1e-6, 1e-2] {
             for (p_sat, p_const) in [(1e-5, 1e-4), (1e-4, 1e-8), (3e-6, 1e-6)] {
-                let modes = priors(p_sat, p_const, threshold).modes_of(&coast(7, 9)).unwrap();
+                let modes = priors(p_sat, p_const, threshold).modes(&coast(7, 9)).unwrap();
                 let sum = modes.iter().map(|m| m.p).sum::<f64>() + modes.left();
                 // Some hundred additions near one.
                 assert!((sum - 1.0).abs() <= 1e-13, "{threshold} {p_sat}: {sum}");
@@ -146,7 +139,7 @@ mod tests {
 
     #[test]
     fn a_prior_of_zero_is_no_event() {
-        let modes = Priors { satellite: [0.0, 1e-6, 1e-6, 1e-6, 1e-6], ..priors(1e-6, 0.0, 1e-10) }.modes_of(&coast(4, 6)).unwrap();
+        let modes = Priors { satellite: [0.0, 1e-6, 1e-6, 1e-6, 1e-6], ..priors(1e-6, 0.0, 1e-10) }.modes(&coast(4, 6)).unwrap();
         assert!(modes.iter().all(|m| m.satellites & 0b1111 == 0));
         assert_eq!(modes.len(), 1 + 6);
     }

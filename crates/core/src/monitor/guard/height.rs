@@ -35,7 +35,7 @@ struct Reference {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Height {
     references: [Option<Reference>; REFERENCES],
-    next: u8,
+    next: usize,
 }
 
 impl Default for Height {
@@ -61,11 +61,10 @@ impl Height {
         let changed = known().map(|before| chance(before, &now, m.correlation_time_s) * n as f64).fold(f64::INFINITY, worse);
         let reported = testimony(worse(whole, changed));
         // A difference that is in doubt is no reference for later ones.
-        let next = usize::from(self.next);
-        let last = self.references[(next + REFERENCES - 1) % REFERENCES];
+        let last = self.references[(self.next + REFERENCES - 1) % REFERENCES];
         if reported == Testimony::Agrees && last.is_none_or(|l| now.time.seconds_since(l.time) >= APART_S) {
-            self.references[next] = Some(now);
-            self.next = (self.next + 1) % REFERENCES as u8;
+            self.references[self.next] = Some(now);
+            self.next = (self.next + 1) % REFERENCES;
         }
         reported
     }

@@ -388,7 +388,6 @@ fn block_without(filter: &mut Fusion, time: GpsTime, ranges: &mut Ranges, out: &
     let mut together = filter.together(time, ranges)?;
     let all = together.block()?;
     let (mut block, mut leaving) = (all, *out);
-    // At most EXCLUDED_MOST turns: each takes a place of `leaving`.
     while !passes(&block) {
         let Some(place) = leaving.iter_mut().find(|o| o.is_none()) else { return Some(all) };
         let Some(k) = together.most_at_fault() else { return Some(all) };

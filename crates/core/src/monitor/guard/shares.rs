@@ -29,7 +29,7 @@ const FAMILIES: [&[Kind]; 3] = [&[Kind::Range], &[Kind::RangeRate], &[Kind::FixP
 pub struct Shares {
     counted: [[u64; 2]; FAMILIES.len()],
     window: [[[u64; 2]; FAMILIES.len()]; WINDOW],
-    next: u8,
+    next: usize,
     since: Option<GpsTime>,
     stepped: Option<GpsTime>,
     excess: bool,
@@ -77,11 +77,11 @@ impl Shares {
                 |count: fn(&crate::solution::ins::Innovations) -> u64| family.iter().map(|kind| count(filter.innovations(*kind))).sum();
             let total: [u64; 2] = [of(|i| i.n_used), of(|i| i.n_gated)];
             // A filter that started anew counts from nothing.
-            self.window[usize::from(self.next)][k] =
+            self.window[self.next][k] =
                 [0, 1].map(|j| if total[j] >= self.counted[k][j] { total[j] - self.counted[k][j] } else { total[j] });
             self.counted[k] = total;
         }
-        self.next = (self.next + 1) % WINDOW as u8;
+        self.next = (self.next + 1) % WINDOW;
         self.excess = (0..FAMILIES.len()).any(|k| {
             let [used, gated] = [0, 1].map(|j| self.window.iter().map(|second| second[k][j]).sum::<u64>());
             let (all, gated) = (used + gated, gated as f64);

@@ -40,7 +40,7 @@ pub struct Fast {
     /// Which of messages 2 to 5, from 0.
     pub block: u8,
     /// How many of the arrays count: 13, or 6 in message 24.
-    pub count: u8,
+    pub count: usize,
     /// Range corrections \[m\].
     pub correction_m: [f64; FAST_MOST],
     /// UDRE indicators, 0 to 15.
@@ -54,7 +54,7 @@ impl Fast {
             iodf: block.unsigned(14, 2) as u8,
             iodp: block.unsigned(16, 2) as u8,
             block: index,
-            count: FAST_MOST as u8,
+            count: FAST_MOST,
             correction_m: core::array::from_fn(|i| block.scaled(18 + 12 * i, 12, FAST_M)),
             udrei: core::array::from_fn(|i| block.unsigned(174 + 4 * i, 4) as u8),
         }
@@ -65,7 +65,7 @@ impl Fast {
             iodf: block.unsigned(114, 2) as u8,
             iodp: block.unsigned(110, 2) as u8,
             block: block.unsigned(112, 2) as u8,
-            count: MIXED_FAST as u8,
+            count: MIXED_FAST,
             correction_m: core::array::from_fn(|i| if i < MIXED_FAST { block.scaled(14 + 12 * i, 12, FAST_M) } else { 0.0 }),
             udrei: core::array::from_fn(|i| if i < MIXED_FAST { block.unsigned(86 + 4 * i, 4) as u8 } else { UDREI_NOT_MONITORED }),
         }
@@ -73,7 +73,7 @@ impl Fast {
     /// Position in the mask (from 1), correction and indicator of each satellite.
     pub fn satellites(&self) -> impl Iterator<Item = (usize, f64, u8)> + '_ {
         let first = usize::from(self.block) * FAST_MOST + 1;
-        self.correction_m.iter().zip(&self.udrei).take(usize::from(self.count)).enumerate().map(move |(i, (m, u))| (first + i, *m, *u))
+        self.correction_m.iter().zip(&self.udrei).take(self.count).enumerate().map(move |(i, (m, u))| (first + i, *m, *u))
     }
 }
 

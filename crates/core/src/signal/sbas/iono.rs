@@ -36,7 +36,7 @@ pub struct GridMask {
     pub band: u8,
     /// Issue of the mask.
     pub iodi: u8,
-    count: u8,
+    count: usize,
     points: [u8; BAND_MOST],
 }
 
@@ -58,7 +58,7 @@ impl GridMask {
     }
     /// Numbers of the points in the band, from 1, ascending.
     pub fn points(&self) -> &[u8] {
-        self.points.get(..usize::from(self.count)).unwrap_or(&[])
+        self.points.get(..self.count).unwrap_or(&[])
     }
 }
 

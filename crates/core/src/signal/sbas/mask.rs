@@ -17,7 +17,7 @@ pub const PRN_MOST: usize = 210;
 pub struct PrnMask {
     /// Issue of data, 0 to 3.
     pub iodp: u8,
-    count: u8,
+    count: usize,
     prns: [u8; MASK_MOST],
 }
 
@@ -33,7 +33,7 @@ impl PrnMask {
     }
     /// PRN code numbers, ascending.
     pub fn prns(&self) -> &[u8] {
-        self.prns.get(..usize::from(self.count)).unwrap_or(&[])
+        self.prns.get(..self.count).unwrap_or(&[])
     }
     /// PRN code number at a position from 1, as the messages count.
     pub fn prn(&self, position: usize) -> Option<u8> {

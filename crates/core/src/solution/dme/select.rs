@@ -79,13 +79,8 @@ impl Switching {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selector {
     switching: Switching,
-    current: Option<[u32; 2]>,
+    current: Option<[usize; 2]>,
     better_since: Option<GpsTime>,
-}
-
-/// A list holds far fewer stations than a place can number.
-fn places(best: &Best) -> [u32; 2] {
-    best.stations.map(|place| place as u32)
 }
 
 impl Selector {
@@ -108,10 +103,10 @@ impl Selector {
     /// A pair that is no longer admissible is left at once; a better one waits until it has been better by the share for the time. When the
     /// clock is set back the wait begins anew.
     pub fn step(&mut self, time: GpsTime, best: Option<Best>, look: impl Fn([usize; 2]) -> Option<Best>) -> Option<Best> {
-        let current = self.current.and_then(|places| look(places.map(|place| place as usize)));
+        let current = self.current.and_then(look);
         let (Some(best), Some(current)) = (best, current) else {
             self.better_since = None;
-            self.current = best.map(|b| places(&b));
+            self.current = best.map(|b| b.stations);
             return best;
         };
         if !(best.figure.m() < (1.0 - self.switching.share) * current.figure.m()) {
@@ -124,7 +119,7 @@ impl Selector {
             return Some(current);
         }
         self.better_since = None;
-        self.current = Some(places(&best));
+        self.current = Some(best.stations);
         Some(best)
     }
 }

@@ -76,7 +76,7 @@ pub(super) struct StepNoise {
 pub(super) struct Joint {
     p: [[f64; WIDTH]; WIDTH],
     /// Columns in use, a multiple of eight.
-    used: u8,
+    used: usize,
     /// Motion and bias rows of the transitions since the further states were last brought up to date.
     pending: [[f64; BASE]; NAV],
 }
@@ -87,7 +87,7 @@ impl Joint {
         for (k, variance) in variances.iter().enumerate() {
             p[k][k] = *variance;
         }
-        Self { p, used: BASE as u8, pending: identity() }
+        Self { p, used: BASE, pending: identity() }
     }
 
     pub(super) fn get(&self, i: usize, j: usize) -> f64 {
@@ -95,13 +95,8 @@ impl Joint {
     }
 
     /// Further states in use.
-    #[inline(always)]
-    fn used(&self) -> usize {
-        usize::from(self.used)
-    }
-
     pub(super) fn resize(&mut self, further: usize) {
-        self.used = (BASE + further.div_ceil(8) * 8) as u8;
+        self.used = BASE + further.div_ceil(8) * 8;
     }
 
     pub(super) fn add_variance(&mut self, i: usize, variance: f64) {
@@ -151,7 +146,7 @@ impl Joint {
             }
         }
         self.half_noise(noise);
-        if self.used() > BASE {
+        if self.used > BASE {
             self.remember(t, fade);
         }
     }
@@ -198,10 +193,10 @@ impl Joint {
 
     /// State `i` grows by `dt` times state `rate`, with the noise of both (a clock and its drift).
     pub(super) fn integrate(&mut self, i: usize, rate: usize, dt: f64, noise: [f64; 3]) {
-        for j in 0..self.used() {
+        for j in 0..self.used {
             self.p[i][j] += dt * self.p[rate][j];
         }
-        for j in 0..self.used() {
+        for j in 0..self.used {
             self.p[j][i] += dt * self.p[j][rate];
         }
         self.p[i][i] += noise[0];
@@ -212,11 +207,11 @@ impl Joint {
 
     /// Three further states become a mixture of themselves with noise added; see [`super::slots::Slots::mix`].
     pub(super) fn mix(&mut self, places: [usize; 3], a: &Matrix3<f64>, q: &Matrix3<f64>) {
-        for j in 0..self.used() {
+        for j in 0..self.used {
             let line = a * Vector3::from(places.map(|place| self.p[place][j]));
             places.into_iter().zip(line.iter()).for_each(|(place, x)| self.p[place][j] = *x);
         }
-        for j in 0..self.used() {
+        for j in 0..self.used {
             let line = a * Vector3::from(places.map(|place| self.p[j][place]));
             places.into_iter().zip(line.iter()).for_each(|(place, x)| self.p[j][place] = *x);
         }
@@ -233,7 +228,7 @@ impl Joint {
     pub(super) fn times(&self, h: &Row) -> [f64; WIDTH] {
         let mut u = [0.0; WIDTH];
         for (k, value) in h.entries() {
-            for j in 0..self.used() {
+            for j in 0..self.used {
                 u[j] += value * self.p[k][j];
             }
         }
@@ -251,11 +246,11 @@ impl Joint {
         let s = h.of(&u) + r;
         // What rounding may take from a variance is not left of it: nothing is changed.
         let sound = |k: usize| self.p[k][k] - u[k] * u[k] / s > 8.0 * f64::EPSILON * self.p[k][k];
-        if !(s < f64::INFINITY && innovation.is_finite() && (0..self.used()).all(|k| self.p[k][k] == 0.0 || sound(k))) {
+        if !(s < f64::INFINITY && innovation.is_finite() && (0..self.used).all(|k| self.p[k][k] == 0.0 || sound(k))) {
             return false;
         }
         let left = innovation - h.of(x);
-        let n = self.used();
+        let n = self.used;
         let (mut gain, mut t) = ([0.0; WIDTH], [0.0; WIDTH]);
         for j in 0..n {
             gain[j] = u[j] / s;

@@ -48,7 +48,7 @@ pub(super) struct Delay {
     velocity: Vector2<f64>,
     position: Vector2<f64>,
     path: [[Vector2<f64>; 2]; KEPT],
-    n: u64,
+    n: usize,
     /// Of the newest of the path.
     newest: Option<GpsTime>,
     heard: [Option<Heard>; 3],
@@ -128,12 +128,11 @@ impl Delay {
             self.forget_motion();
             return;
         }
-        // At most KEPT / 2 steps: the sample is no longer than that.
         while time.seconds_since(newest) >= STEP_S {
             newest = newest.plus_seconds(STEP_S);
             let share = (1.0 - time.seconds_since(newest) / dt).clamp(0.0, 1.0);
             let now = [self.position, self.velocity];
-            self.path[(self.n % KEPT as u64) as usize] = core::array::from_fn(|k| before[k] + (now[k] - before[k]) * share);
+            self.path[self.n % KEPT] = core::array::from_fn(|k| before[k] + (now[k] - before[k]) * share);
             self.n += 1;
         }
         self.newest = Some(newest);
@@ -226,14 +225,14 @@ impl Delay {
 
     fn at(&self, time: GpsTime) -> Option<[Vector2<f64>; 2]> {
         let back = self.newest?.seconds_since(time) / STEP_S;
-        let oldest = self.n.min(KEPT as u64) as f64 - 1.0;
+        let oldest = self.n.min(KEPT) as f64 - 1.0;
         if !(back >= 0.0 && back < oldest) {
             return None;
         }
         let whole = libm::floor(back);
         let share = back - whole;
-        let place = |steps: u64| self.path[((self.n - 1 - steps) % KEPT as u64) as usize];
-        let k = whole as u64;
+        let place = |steps: usize| self.path[(self.n - 1 - steps) % KEPT];
+        let k = whole as usize;
         Some(core::array::from_fn(|j| place(k)[j] * (1.0 - share) + place(k + 1)[j] * share))
     }
 }

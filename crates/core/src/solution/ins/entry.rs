@@ -82,7 +82,7 @@ struct Heard {
 #[derive(Debug, Clone)]
 pub(super) struct Entry {
     heard: [Option<Heard>; SOURCES],
-    n: u64,
+    n: usize,
     counts: [u64; Refusal::ALL.len()],
 }
 
@@ -140,7 +140,7 @@ impl Entry {
     fn place(&mut self, source: u64) -> usize {
         let known = self.heard.iter().position(|h| h.is_some_and(|h| h.source == source));
         known.unwrap_or_else(|| {
-            let next = (self.n % SOURCES as u64) as usize;
+            let next = self.n % SOURCES;
             self.n += 1;
             self.heard[next] = None;
             next

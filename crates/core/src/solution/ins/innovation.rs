@@ -149,7 +149,7 @@ impl Innovations {
 /// The last normalised innovation of each source.
 #[derive(Debug, Clone)]
 pub(super) struct Memory {
-    n: u64,
+    n: usize,
     last: [Option<(Kind, Further, f64)>; FURTHER],
 }
 
@@ -162,7 +162,7 @@ impl Memory {
     pub(super) fn replace(&mut self, kind: Kind, source: Further, normalised: f64) -> Option<f64> {
         let same = |e: &Option<(Kind, Further, f64)>| e.is_some_and(|(k, s, _)| k == kind && s == source);
         let place = self.last.iter().position(same).unwrap_or_else(|| {
-            let next = (self.n % FURTHER as u64) as usize;
+            let next = self.n % FURTHER;
             self.n += 1;
             self.last[next] = None;
             next

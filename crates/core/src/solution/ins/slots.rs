@@ -43,7 +43,7 @@ struct Slot {
 /// Up to [`FURTHER`] of them, without holes: the last takes the place of one that goes.
 #[derive(Debug, Clone)]
 pub(super) struct Slots {
-    n: u8,
+    n: usize,
     slot: [Slot; FURTHER],
     settled: GpsTime,
 }
@@ -74,16 +74,16 @@ impl Slots {
     }
 
     pub(super) const fn len(&self) -> usize {
-        self.n as usize
+        self.n
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = (Further, f64)> + '_ {
-        self.slot[..self.len()].iter().map(|s| (s.what, s.value))
+        self.slot[..self.n].iter().map(|s| (s.what, s.value))
     }
 
     /// Place in the joint state.
     pub(super) fn find(&self, what: Further) -> Option<usize> {
-        self.slot[..self.len()].iter().position(|s| s.what == what).map(|k| BASE + k)
+        self.slot[..self.n].iter().position(|s| s.what == what).map(|k| BASE + k)
     }
 
     pub(super) fn value(&self, place: usize) -> f64 {
@@ -91,8 +91,7 @@ impl Slots {
     }
 
     pub(super) fn correct(&mut self, x: &[f64]) {
-        let n = self.len();
-        for (slot, dx) in self.slot[..n].iter_mut().zip(x) {
+        for (slot, dx) in self.slot[..self.n].iter_mut().zip(x) {
             slot.value += dx;
         }
     }
@@ -113,13 +112,13 @@ impl Slots {
             joint.add_variance(place, changed);
             return Some(place);
         }
-        if self.len() == FURTHER && !self.evict(joint) {
+        if self.n == FURTHER && !self.evict(joint) {
             return None;
         }
-        let place = BASE + self.len();
-        self.slot[place - BASE] = Slot { what, value, sigma: process.sigma, tau_s: process.tau_s, seen: self.settled };
+        let place = BASE + self.n;
+        self.slot[self.n] = Slot { what, value, sigma: process.sigma, tau_s: process.tau_s, seen: self.settled };
         self.n += 1;
-        joint.resize(self.len());
+        joint.resize(self.n);
         joint.reset(place, process.first * process.first);
         Some(place)
     }
@@ -150,20 +149,20 @@ impl Slots {
     /// The station or satellite unseen for longest makes room.
     fn evict(&mut self, joint: &mut Joint) -> bool {
         let leaving = |s: &Slot| matches!(s.what, Further::Dme(_) | Further::Vor(_) | Further::Satellite(_));
-        let oldest = (0..self.len()).filter(|k| leaving(&self.slot[*k])).min_by_key(|k| self.slot[*k].seen);
+        let oldest = (0..self.n).filter(|k| leaving(&self.slot[*k])).min_by_key(|k| self.slot[*k].seen);
         oldest.map(|k| self.remove(joint, k)).is_some()
     }
 
     fn remove(&mut self, joint: &mut Joint, k: usize) {
-        let last = self.len() - 1;
+        let last = self.n - 1;
         if k == last {
             joint.reset(BASE + k, 0.0);
         } else {
             self.slot[k] = self.slot[last];
             joint.move_state(BASE + last, BASE + k);
         }
-        self.n = last as u8;
-        joint.resize(self.len());
+        self.n = last;
+        joint.resize(self.n);
     }
 
     /// Bring values and covariance to a time, and forget satellites that have set.
@@ -174,19 +173,18 @@ impl Slots {
             return;
         }
         let mut fades = [Fade { factor: 1.0, variance: 0.0 }; FURTHER];
-        let n = self.len();
-        for (slot, fade) in self.slot[..n].iter_mut().zip(&mut fades) {
+        for (slot, fade) in self.slot[..self.n].iter_mut().zip(&mut fades) {
             *fade = Fade::gauss_markov(slot.sigma, slot.tau_s, dt);
             slot.value *= fade.factor;
         }
-        joint.settle(&fades[..self.len()]);
+        joint.settle(&fades[..self.n]);
         if let Some((clock, drift)) = self.find(Further::Clock).zip(self.find(Further::ClockDrift)) {
             self.slot[clock - BASE].value += dt * self.value(drift);
             let (qf, qw) = (model.frequency_m2ps, model.walk_m2ps3);
             joint.integrate(clock, drift, dt, [qf * dt + qw * dt * dt * dt / 3.0, 0.5 * qw * dt * dt, qw * dt]);
         }
         self.settled = time;
-        for k in (0..self.len()).rev() {
+        for k in (0..self.n).rev() {
             let slot = &self.slot[k];
             if matches!(slot.what, Further::Satellite(_)) && time.seconds_since(slot.seen) > set_after_s {
                 self.remove(joint, k);
@@ -276,7 +274,7 @@ mod tests {
         for k in 0..FURTHER {
             slots.slot[k].what = Further::Baro;
         }
-        slots.n = FURTHER as u8;
+        slots.n = FURTHER;
         assert!(slots.ensure(&mut joint, Further::Dme(1), SLOW, 0.0).is_none());
     }
 

@@ -56,7 +56,7 @@ pub(super) struct Look {
 /// The stations of a flight.
 #[derive(Debug, Clone)]
 pub(super) struct Stations {
-    n: u8,
+    n: usize,
     record: [(Further, Record); FURTHER],
 }
 
@@ -67,22 +67,21 @@ impl Stations {
 
     /// Stations that are left out now.
     pub(super) fn left_out(&self) -> impl Iterator<Item = Further> + '_ {
-        self.record[..usize::from(self.n)].iter().filter(|(_, r)| r.trial.is_some()).map(|(what, _)| *what)
+        self.record[..self.n].iter().filter(|(_, r)| r.trial.is_some()).map(|(what, _)| *what)
     }
 
     /// Whether a station's measurement may be used, the squared gate being `gate`. With all places taken the station first come is
     /// forgotten.
     pub(super) fn judge(&mut self, what: Further, look: &Look, gate: f64) -> Standing {
-        let known = self.record[..usize::from(self.n)].iter().position(|(w, _)| *w == what);
+        let known = self.record[..self.n].iter().position(|(w, _)| *w == what);
         let place = known.unwrap_or_else(|| {
-            let mut n = usize::from(self.n);
-            if n == FURTHER {
+            if self.n == FURTHER {
                 self.record.rotate_left(1);
-                n -= 1;
+                self.n -= 1;
             }
-            self.record[n] = (what, Record::default());
-            self.n = n as u8 + 1;
-            n
+            self.record[self.n] = (what, Record::default());
+            self.n += 1;
+            self.n - 1
         });
         self.record[place].1.judge(look, gate)
     }
