@@ -122,8 +122,9 @@ class Feeder:
                 self._append(lane, _core.live_input("chunk", arrival, lines))
 
     def _all(self, kind: str, arrival: int | None) -> None:
+        # A nanosecond apart: an alert of the source has a key of its own in each lane.
         for lane in range(len(self._logs)):
-            self._append(lane, _core.live_input(kind, arrival, b""))
+            self._append(lane, _core.live_input(kind, None if arrival is None else arrival + lane, b""))
 
     def _append(self, lane: int, frames: bytes) -> None:
         self._logs[lane].append(frames, self._ends[lane])
