@@ -9,7 +9,9 @@ use navbound_core::judge;
 use navbound_core::monitor::rnp::{self, Chain};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
 use navbound_live::journal::{self, Next};
-use navbound_live::{Assigned, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, Settings, Splitter, Table, TrackId, Zone};
+use navbound_live::{
+    Assigned, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, Settings, Splitter, Table, TrackId, Zone,
+};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
