@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from navbound.live.display.hub import Hub
-
 from fleet_fixture import RECORD, fed, made, reported, worked
 from live_fixture import fleet
 from navbound import _core
 from navbound.live import session
 from navbound.live.display import fleet as shown
 from navbound.live.fleet import Worker, connect, create
+from navbound.serve.hub import Hub
 
 
 def column(name: str) -> int:
