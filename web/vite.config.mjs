@@ -5,6 +5,7 @@ import { defineConfig } from "vite";
 const BUNDLES = {
     production: { entry: "src/report.ts", name: "report", license: { fileName: "third-party.md" } },
     live: { entry: "src/live/main.ts", name: "live" },
+    fleet: { entry: "src/fleet/main.ts", name: "fleet" },
     workbench: { entry: "src/workbench/main.ts", name: "workbench" },
     clock: { entry: "src/live/clock.ts", name: "clock" },
 };

@@ -18,6 +18,8 @@ pub enum Refused {
     ShortMessage,
     /// A position without a date or a time.
     Undated,
+    /// A line of an aircraft without a position.
+    NoPosition,
     /// Later than its arrival by more than two seconds.
     FromTheFuture,
     /// Earlier than its arrival by more than the retention.
@@ -28,13 +30,14 @@ pub enum Refused {
 
 impl Refused {
     /// All, in the order of their codes.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::NotAPosition,
         Self::Version,
         Self::TrackName,
         Self::DamagedFrame,
         Self::ShortMessage,
         Self::Undated,
+        Self::NoPosition,
         Self::FromTheFuture,
         Self::TooOld,
         Self::FleetFull,
@@ -54,6 +57,7 @@ impl Refused {
             Self::DamagedFrame => "damaged_frame",
             Self::ShortMessage => "short_message",
             Self::Undated => "undated",
+            Self::NoPosition => "no_position",
             Self::FromTheFuture => "from_the_future",
             Self::TooOld => "too_old",
             Self::FleetFull => "fleet_full",

@@ -15,7 +15,7 @@ use navbound_core::quantity::encoding::crc32c;
 /// Version of the payloads of a journal in.
 pub(crate) const VERSION: u8 = 1;
 /// Version of the payloads of a journal out.
-const VERSION_OUT: u8 = 2;
+const VERSION_OUT: u8 = 3;
 /// Length and checksum before a payload \[B\].
 pub const HEAD: usize = 8;
 /// Longest payload that is believed \[B\]: no memory is taken for a damaged length.

@@ -31,14 +31,16 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     let stated = position.course_rad.map(|course| if course.abs() <= COURSE_MOST_RAD { course } else { f64::NAN });
     let (mut fte_m, mut course) = (position.fte_m, stated.or(position.fte_m.map(|_| 0.0)).map(Radians::new));
     // A deviation is part of the total error. A track that stated one once and states none later is not judged without it.
-    if let Some(method) = settings.of_stated_fte.filter(|_| settings.path.is_none() && position.fte_m.is_some()) {
+    let (id, path) = (position.track, settings.path_of(position.track));
+    let stated_or_assigned = settings.table.path(id).is_some() || (path.is_none() && position.fte_m.is_some());
+    if let Some(method) = settings.of_stated_fte.filter(|_| stated_or_assigned) {
         track.judge.judge_by(method);
     }
     if position.h_m.is_some_and(|h| h < HEIGHT_M.0 || h > HEIGHT_M.1) {
         refuse(Reason::InvalidNumber);
     }
     let mut covariance_m2 = position.covariance_m2;
-    match (&settings.path, point) {
+    match (path, point) {
         (_, Some(Err(_))) => refuse(Reason::InvalidNumber),
         (Some(path), Some(Ok(point))) => match path.project(&point, track.along) {
             Ok(foot) => {
@@ -64,7 +66,8 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     }
     // What a track stated once the settings do not stand in for later: a record without it has no limit.
     track.states_rnp |= position.rnp_m.is_some();
-    let rnp = if track.states_rnp { Metres::new(position.rnp_m.unwrap_or(f64::NAN)) } else { settings.rnp };
+    let in_force = || settings.table.rnp(id, position.lat_rad.zip(position.lon_rad)).unwrap_or(settings.rnp);
+    let rnp = if track.states_rnp { Metres::new(position.rnp_m.unwrap_or(f64::NAN)) } else { in_force() };
     let sample = Sample {
         time: position.time,
         status: reason.filter(|_| position.status.usable()).map_or(position.status, Reason::status),
@@ -180,6 +183,7 @@ fn epoch(settings: &Settings, arrived: &Arrived, seen: &Sample, ended: &Ended) -
     let bound = |bound: &Option<Result<AlertBound, Unavailable>>| bound.and_then(Result::ok).map_or(f64::NAN, |b| b.length().m());
     let none = of.accuracy.and_then(Result::err).map(|why| why.reason());
     let known = |number: Option<f64>| number.unwrap_or(f64::NAN);
+    let category = |stated: Option<u8>| stated.map_or(f64::NAN, f64::from);
     let (position, shown) = (&arrived.position, &arrived.position.shown);
     let [ee, en, nn] = seen.covariance.map_or([f64::NAN; 3], |c| [(0, 0), (0, 1), (1, 1)].map(|at| c.matrix()[at]));
     let [across, circle, upwards] = performance(settings, seen);
@@ -203,7 +207,7 @@ fn epoch(settings: &Settings, arrived: &Arrived, seen: &Sample, ended: &Ended) -
             known(position.lon_rad),
             known(position.h_m),
             // Height above another path says nothing of this one.
-            known(shown.fte_v_m.filter(|_| settings.path.is_none())),
+            known(shown.fte_v_m.filter(|_| settings.path_of(position.track).is_none())),
             known(seen.course.map(Radians::rad)),
             ee,
             en,
@@ -216,6 +220,9 @@ fn epoch(settings: &Settings, arrived: &Arrived, seen: &Sample, ended: &Ended) -
             known(shown.val_m),
             known(shown.n_sv),
             known(*caution_in_s),
+            category(shown.claim.nic),
+            category(shown.claim.nac_p),
+            category(shown.claim.sil),
         ],
         nav_mode: shown.nav_mode,
     }

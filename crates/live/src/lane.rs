@@ -51,7 +51,7 @@ impl Lane {
     pub fn new(settings: Settings) -> Result<Self, OutOfDomain> {
         let fresh = Judge::new(settings.judge)?;
         Ok(Self {
-            decoder: Decoder::new(settings.format, settings.track),
+            decoder: Decoder::new(settings.format, settings.claims, settings.track),
             settings,
             fresh,
             feed: Feed::default(),

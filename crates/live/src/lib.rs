@@ -9,6 +9,7 @@
 //! a track in order, judge them by [`navbound_core::judge::Judge`], find silences by the event time of the lane.
 //! docs/methods/live.md says what an alert means.
 
+mod claims;
 mod codec;
 mod counters;
 mod decode;
@@ -23,8 +24,11 @@ mod output;
 mod position;
 mod settings;
 mod snapshot;
+mod split;
 mod track;
+mod zones;
 
+pub use claims::{CATEGORIES, Claim, Claims};
 pub use codec::Damaged;
 pub use counters::{Counters, Refused};
 pub use decode::Format;
@@ -34,6 +38,8 @@ pub use output::{EpochOut, Kind, NUMBERS, Output, Transition, Turn};
 pub use position::{Position, Shown, TrackId};
 pub use settings::{Course, Settings};
 pub use snapshot::SnapshotRefused;
+pub use split::Splitter;
+pub use zones::{Assigned, Table, Zone};
 
 #[cfg(test)]
 mod tests;

@@ -160,7 +160,7 @@ pub struct EpochOut {
 }
 
 /// Names of [`EpochOut::numbers`].
-pub const NUMBERS: [&str; 23] = [
+pub const NUMBERS: [&str; 26] = [
     "accuracy_bound_m",
     "integrity_bound_m",
     "integrity_compared_m",
@@ -184,6 +184,9 @@ pub const NUMBERS: [&str; 23] = [
     "val_m",
     "n_sv",
     "caution_in_s",
+    "nic",
+    "nac_p",
+    "sil",
 ];
 
 /// One output.

@@ -1,5 +1,6 @@
 //! One position report, whatever format it came in.
 
+use crate::claims::Claim;
 use crate::codec::{Damaged, Reader, Writer};
 use navbound_core::quantity::{GpsTime, Reason, Status};
 
@@ -82,6 +83,8 @@ pub struct Shown {
     pub n_sv: Option<f64>,
     /// What keeps the position, in a word of the alphabet of tracks.
     pub nav_mode: Option<TrackId>,
+    /// Categories that the aircraft claims.
+    pub claim: Claim,
 }
 
 impl Shown {
@@ -90,12 +93,15 @@ impl Shown {
             to.option(number, Writer::f64);
         }
         to.option(self.nav_mode, |to, mode| mode.write(to));
+        [self.claim.nic, self.claim.nac_p, self.claim.sil].into_iter().for_each(|category| to.option(category, Writer::u8));
     }
 
     fn read(from: &mut Reader<'_>) -> Result<Self, Damaged> {
         let mut number = || from.option(Reader::f64);
         let (fte_v_m, vpl_m, hal_m, val_m, n_sv) = (number()?, number()?, number()?, number()?, number()?);
-        Ok(Self { fte_v_m, vpl_m, hal_m, val_m, n_sv, nav_mode: from.option(TrackId::read)? })
+        let nav_mode = from.option(TrackId::read)?;
+        let claim = Claim { nic: from.option(Reader::u8)?, nac_p: from.option(Reader::u8)?, sil: from.option(Reader::u8)? };
+        Ok(Self { fte_v_m, vpl_m, hal_m, val_m, n_sv, nav_mode, claim })
     }
 }
 
@@ -116,7 +122,15 @@ impl Position {
             covariance_m2: None,
             hpl_m: None,
             rnp_m: None,
-            shown: Shown { fte_v_m: None, vpl_m: None, hal_m: None, val_m: None, n_sv: None, nav_mode: None },
+            shown: Shown {
+                fte_v_m: None,
+                vpl_m: None,
+                hal_m: None,
+                val_m: None,
+                n_sv: None,
+                nav_mode: None,
+                claim: Claim { nic: None, nac_p: None, sil: None },
+            },
         }
     }
 

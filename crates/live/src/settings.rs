@@ -1,7 +1,9 @@
 //! How a lane is set.
 
+use crate::claims::Claims;
 use crate::decode::Format;
 use crate::position::TrackId;
+use crate::zones::Table;
 use navbound_core::bound::Alerting;
 use navbound_core::frame::LatLon;
 use navbound_core::judge;
@@ -48,6 +50,10 @@ pub struct Settings {
     pub rnp: Metres,
     /// The path; without one the flight technical error is the record's own.
     pub path: Option<Course>,
+    /// RNP and paths by area and by track.
+    pub table: Table,
+    /// What the categories of ADS-B stand for.
+    pub claims: Claims,
     /// Allowed lateness: how long the order of a track is waited for \[ns\].
     pub lateness_ns: i64,
     /// How much later than its arrival a record may be \[ns\].
@@ -60,4 +66,11 @@ pub struct Settings {
     pub max_tracks: usize,
     /// Digest of what the settings were made from: a snapshot belongs to it.
     pub digest: [u8; 32],
+}
+
+impl Settings {
+    /// Where a track should be: its own path, else that of all.
+    pub(crate) fn path_of(&self, id: TrackId) -> Option<&Course> {
+        self.table.path(id).or(self.path.as_ref())
+    }
 }

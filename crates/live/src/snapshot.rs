@@ -18,7 +18,7 @@ use navbound_core::quantity::GpsTime;
 use navbound_core::quantity::encoding::crc32c;
 
 /// Version of the layout.
-const VERSION: u8 = 7;
+const VERSION: u8 = 8;
 
 /// Why a snapshot is not taken up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,7 +115,7 @@ impl Lane {
         }
         from = Reader(rest);
         let (position, written) = (from.u64()?, from.u64()?);
-        let decoder = Decoder::read(settings.format, settings.track, &mut from)?;
+        let decoder = Decoder::read(settings.format, settings.claims, settings.track, &mut from)?;
         let mut lane = Self::new(settings).map_err(|_| SnapshotRefused::Settings)?;
         lane.decoder = decoder;
         lane.feed = Feed::read(&mut from)?;

@@ -39,6 +39,8 @@ fn settings() -> Settings {
         },
         rnp: Metres::new(555.6),
         path: None,
+        table: crate::Table::default(),
+        claims: crate::claims::tests::CLAIMS,
         lateness_ns: 1_000_000_000,
         ahead_ns: 2_000_000_000,
         retention_ns: 3_600_000_000_000,

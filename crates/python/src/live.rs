@@ -9,13 +9,28 @@ use navbound_core::judge;
 use navbound_core::monitor::rnp::{self, Chain};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
 use navbound_live::journal::{self, Next};
-use navbound_live::{Course, Format, Input, Lane, Output, Settings, TrackId};
+use navbound_live::{
+    Assigned, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, Settings, Splitter, Table, TrackId, Zone,
+};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use std::collections::BTreeMap;
 
 fn refused(e: OutOfDomain) -> PyErr {
     input_error(e, None)
+}
+
+/// RNP \[m\] and corners \[rad\] of an area.
+type ZoneRow = (f64, Vec<(f64, f64)>);
+/// Name of a track, its path and its RNP \[m\].
+type TrackRow<'py> = (String, Option<PyRef<'py, Path>>, Option<f64>);
+
+fn course(path: &Path) -> Course {
+    match &path.0 {
+        Shape::Line(line) => Course::Line(line.clone()),
+        Shape::Route(route) => Course::Route(Box::new(route.clone())),
+    }
 }
 
 /// How a lane is set, as the package checks it.
@@ -25,7 +40,8 @@ struct LiveSettings(Settings);
 #[pymethods]
 impl LiveSettings {
     /// `judging`: format, name of a receiver's track, method, method of a track that states a flight technical error. `risks`: accuracy, integrity. `monitor`: six times of the chain, raise delay,
-    /// clear delay, clear ratio, stale time. `times_ns`: lateness, ahead, retention.
+    /// clear delay, clear ratio, stale time. `table`: areas, and what is assigned to tracks. `claims`: standard deviation by NACp, radius of
+    /// containment by NIC, least SIL. `times_ns`: lateness, ahead, retention.
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -35,6 +51,8 @@ impl LiveSettings {
         rnp_m: f64,
         motion: &Bound<'_, PyDict>,
         path: Option<PyRef<'_, Path>>,
+        table: (Vec<ZoneRow>, Vec<TrackRow<'_>>),
+        claims: ([f64; CATEGORIES], [f64; CATEGORIES], u8),
         times_ns: (i64, i64, i64),
         expiry_ns: Option<i64>,
         max_tracks: usize,
@@ -58,10 +76,14 @@ impl LiveSettings {
             monitor: settings.checked().map_err(refused)?,
             with_levels: false,
         };
-        let path = path.map(|path| match &path.0 {
-            Shape::Line(line) => Course::Line(line.clone()),
-            Shape::Route(route) => Course::Route(Box::new(route.clone())),
-        });
+        let (zones, tracks) = table;
+        let zone = |(rnp_m, corners_rad)| Zone { rnp: Metres::new(rnp_m), corners_rad };
+        let mut of_tracks = BTreeMap::new();
+        for (name, path, rnp_m) in tracks {
+            let id = TrackId::new(&name).ok_or_else(|| PyKeyError::new_err(name))?;
+            of_tracks.insert(id, Assigned { path: path.map(|path| course(&path)), rnp: rnp_m.map(Metres::new) });
+        }
+        let (sigma_m, containment_m, least_sil) = claims;
         Ok(Self(Settings {
             format: Format::of(&format).ok_or_else(|| PyKeyError::new_err(format))?,
             track: TrackId::new(&track).ok_or_else(|| PyKeyError::new_err(track))?,
@@ -69,7 +91,9 @@ impl LiveSettings {
             motion: limits_of(motion)?,
             of_stated_fte: of_stated_fte.map(alerting).transpose()?,
             rnp: Metres::new(rnp_m),
-            path,
+            path: path.map(|path| course(&path)),
+            table: Table { zones: zones.into_iter().map(zone).collect(), tracks: of_tracks },
+            claims: Claims { sigma_m, containment_m, least_sil },
             lateness_ns: times_ns.0,
             ahead_ns: times_ns.1,
             retention_ns: times_ns.2,
@@ -82,7 +106,17 @@ impl LiveSettings {
 
 /// One lane.
 #[pyclass(module = "navbound._core")]
-struct LiveLane(Lane);
+struct LiveLane {
+    lane: Lane,
+    /// The newest epoch of each track since `states` was read, where epochs are not written out.
+    newest: BTreeMap<TrackId, EpochOut>,
+}
+
+impl LiveLane {
+    const fn of(lane: Lane) -> Self {
+        Self { lane, newest: BTreeMap::new() }
+    }
+}
 
 /// Bytes taken, frames for the journal out, transitions, number of epochs, what stands behind the bytes taken.
 type Pushed<'py> = (usize, Bound<'py, PyBytes>, Vec<TransitionRow>, usize, &'static str);
@@ -91,47 +125,65 @@ type Pushed<'py> = (usize, Bound<'py, PyBytes>, Vec<TransitionRow>, usize, &'sta
 impl LiveLane {
     #[new]
     fn new(settings: PyRef<'_, LiveSettings>) -> PyResult<Self> {
-        Lane::new(settings.0.clone()).map(Self).map_err(refused)
+        Lane::new(settings.0.clone()).map(Self::of).map_err(refused)
     }
 
     /// The lane of a snapshot, its position, and how much was written out then; `ValueError` says why it is not taken up.
     #[staticmethod]
     fn restore(settings: PyRef<'_, LiveSettings>, snapshot: &[u8]) -> PyResult<(Self, u64, u64)> {
         let restored = Lane::restore(settings.0.clone(), snapshot).map_err(|why| PyValueError::new_err(why.to_string()))?;
-        Ok((Self(restored.0), restored.1, restored.2))
+        Ok((Self::of(restored.0), restored.1, restored.2))
     }
 
     fn snapshot<'py>(&self, py: Python<'py>, position: u64, written: u64) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &self.0.snapshot(position, written))
+        PyBytes::new(py, &self.lane.snapshot(position, written))
     }
 
-    /// Journal frames that begin at `position` of the journal in.
-    fn push<'py>(&mut self, py: Python<'py>, frames: &[u8], position: u64, emitted_ns: i64) -> PyResult<Pushed<'py>> {
-        let lane = &mut self.0;
-        let (taken, written, transitions, n_epochs, behind) = py.detach(|| run(lane, frames, position, emitted_ns));
+    /// Journal frames that begin at `position` of the journal in. Without `epochs`, transitions alone are written out, and the newest epoch
+    /// of each track is kept for `states`.
+    #[pyo3(signature = (frames, position, emitted_ns, *, epochs = true))]
+    fn push<'py>(&mut self, py: Python<'py>, frames: &[u8], position: u64, emitted_ns: i64, epochs: bool) -> PyResult<Pushed<'py>> {
+        let (lane, newest) = (&mut self.lane, (!epochs).then_some(&mut self.newest));
+        let (taken, written, transitions, n_epochs, behind) = py.detach(|| run(lane, newest, frames, (position, emitted_ns)));
         Ok((taken, PyBytes::new(py, &written), transitions, n_epochs, behind))
+    }
+
+    /// The newest epoch of each track of which one was judged since the last call, as frames of a journal out, so many epochs in each.
+    fn states<'py>(&mut self, py: Python<'py>, emitted_ns: i64, most: usize) -> Vec<Bound<'py, PyBytes>> {
+        let epochs: Vec<_> = std::mem::take(&mut self.newest).into_values().collect();
+        let frame = |part: &[EpochOut]| {
+            let mut bytes = Vec::new();
+            part.iter().for_each(|epoch| Output::Epoch(*epoch).append(&mut bytes));
+            PyBytes::new(py, &journal::frame(&journal::outputs(0, GpsTime::from_nanoseconds(emitted_ns), &bytes)))
+        };
+        epochs.chunks(most.max(1)).map(frame).collect()
     }
 
     #[getter]
     fn event_time_ns(&self) -> Option<i64> {
-        self.0.event_time().map(GpsTime::nanoseconds)
+        self.lane.event_time().map(GpsTime::nanoseconds)
     }
 
     #[getter]
     fn n_tracks(&self) -> usize {
-        self.0.n_tracks()
+        self.lane.n_tracks()
     }
 
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let counts = crate::rnp::counters_dict(py, &self.0.monitor_counters())?;
-        for (name, n) in self.0.counters().named() {
+        let counts = crate::rnp::counters_dict(py, &self.lane.monitor_counters())?;
+        for (name, n) in self.lane.counters().named() {
             counts.set_item(name, n)?;
         }
         Ok(counts)
     }
 }
 
-fn run(lane: &mut Lane, frames: &[u8], position: u64, emitted_ns: i64) -> (usize, Vec<u8>, Vec<TransitionRow>, usize, &'static str) {
+fn run(
+    lane: &mut Lane,
+    mut newest: Option<&mut BTreeMap<TrackId, EpochOut>>,
+    frames: &[u8],
+    (position, emitted_ns): (u64, i64),
+) -> (usize, Vec<u8>, Vec<TransitionRow>, usize, &'static str) {
     let (mut at, mut written, mut transitions, mut n_epochs) = (0, Vec::new(), Vec::new(), 0);
     let (mut outputs, mut bytes) = (Vec::new(), Vec::new());
     let emitted = GpsTime::from_nanoseconds(emitted_ns);
@@ -147,18 +199,42 @@ fn run(lane: &mut Lane, frames: &[u8], position: u64, emitted_ns: i64) -> (usize
         at += length;
         outputs.clear();
         lane.step(&input, &mut outputs);
-        if outputs.is_empty() {
-            continue;
-        }
         bytes.clear();
         for output in &outputs {
-            output.append(&mut bytes);
+            match (output, &mut newest) {
+                (Output::Epoch(epoch), Some(newest)) => {
+                    newest.insert(epoch.track, *epoch);
+                }
+                _ => output.append(&mut bytes),
+            }
             match output {
                 Output::Epoch(_) => n_epochs += 1,
                 Output::Transition(transition) => transitions.push(transition_row(transition, position + at as u64, emitted_ns)),
             }
         }
+        if bytes.is_empty() {
+            continue;
+        }
         written.extend(journal::frame(&journal::outputs(position + at as u64, emitted, &bytes)));
+    }
+}
+
+/// Lines of many aircraft, parted by lane.
+#[pyclass(module = "navbound._core")]
+struct LiveSplitter(Splitter);
+
+#[pymethods]
+impl LiveSplitter {
+    #[new]
+    fn new(format: String, n_lanes: usize) -> PyResult<Self> {
+        let format = Format::of(&format).ok_or_else(|| PyKeyError::new_err(format))?;
+        Ok(Self(Splitter::new(format, n_lanes)))
+    }
+
+    /// Whole lines of the next bytes, by lane.
+    fn push<'py>(&mut self, py: Python<'py>, data: &[u8]) -> Vec<Bound<'py, PyBytes>> {
+        let lanes = py.detach(|| self.0.push(data));
+        lanes.iter().map(|lines| PyBytes::new(py, lines)).collect()
     }
 }
 
@@ -221,5 +297,6 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(live_inputs, m)?)?;
     m.add_function(wrap_pyfunction!(live_frames, m)?)?;
     m.add_class::<LiveSettings>()?;
+    m.add_class::<LiveSplitter>()?;
     m.add_class::<LiveLane>()
 }

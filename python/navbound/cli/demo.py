@@ -47,7 +47,7 @@ def demo_command(
 
 def _live(out: Path) -> None:
     """A flight of two hours in two minutes, with a spoofed approach at its end."""
-    from navbound.cli.live import replay  # noqa: PLC0415 - the other demonstration needs none of it
+    from navbound.cli.live.session import replay  # noqa: PLC0415 - the other demonstration needs none of it
 
     _say("1 of 2: a flight of two hours whose satellites are spoofed on the approach")
     flown = navbound.fly(SPOOFED, out=out / "spoofed-approach", command=command_line())

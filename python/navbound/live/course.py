@@ -10,7 +10,7 @@ import numpy as np
 import polars as pl
 
 from navbound.live.recording import EPOCHS
-from navbound.live.settings import path_of
+from navbound.live.zones import path_of
 
 if TYPE_CHECKING:
     from navbound.live.settings import Settings

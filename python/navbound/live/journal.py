@@ -23,6 +23,9 @@ ACKNOWLEDGED = "acknowledged.jsonl"
 SENT = "sent.json"
 """How far a webhook has taken the transitions: written and read by who sends them."""
 
+LONGEST_FRAME = (8 << 20) + 8
+"""Bytes of the longest frame. [B]"""
+
 
 class Journal:
     """A file of frames that grows.
@@ -89,6 +92,18 @@ def _require_version(path: Path, first: bytes) -> None:
         _core.live_last_position(first)
     except ValueError as e:
         raise FormatError(path, f"{e}; navbound live judge makes a new one of the journal in") from e
+
+
+def behind(frames: bytes, after: int, until: int | None = None) -> bytes:
+    """Frames of a journal out whose inputs end behind one position, and not behind another. Positions only grow."""
+    ends, _ = _core.live_frames(frames)
+    kept, begin = list[bytes](), 0
+    for end in ends:
+        position = _core.live_last_position(frames[begin:end])
+        if after < position and (until is None or position <= until):
+            kept.append(frames[begin:end])
+        begin = end
+    return b"".join(kept)
 
 
 def require_pair(folder: Path, came_in: bytes, went_out: bytes) -> None:

@@ -224,24 +224,25 @@ class Session:
 
     def _recover(self, position: int) -> None:
         """Judge again what came in behind the snapshot; what is out already must be the same and is not written again."""
-        before = _behind(self._out.content(), 0, self._in.length)
-        if before.length != self._out.length:
+        before = journal.behind(self._out.content(), 0, self._in.length)
+        if len(before) != self._out.length:
             self._say("the journal out is ahead of the journal in: it is cut")
-            self._out.cut(before.length)
-        again_shown = [row for row in _core.live_transitions(before.frames) if row[3] > position]
-        self._events.restore(before.frames, ahead=again_shown)
-        committed = before.comparable[-1][0] if before.comparable else 0
-        expected = [output for output in before.comparable if output[0] > position]
+            self._out.cut(len(before))
+        again_shown = [row for row in _core.live_transitions(before) if row[3] > position]
+        self._events.restore(before, ahead=again_shown)
+        comparable = _core.live_comparable(before)
+        committed = comparable[-1][0] if comparable else 0
+        expected = [output for output in comparable if output[0] > position]
         again: list[tuple[int, bytes]] = []
         at = position
         for frames in _slices(self._in.content(position)):
             _, written, _, n_epochs, _ = self._lane.push(frames, at, now_ns())
             at += len(frames)
             self.n_epochs += n_epochs
-            part = _behind(written, committed, at)
+            part = journal.behind(written, committed, at)
             again += [output for output in _core.live_comparable(written) if output[0] <= committed]
-            self._out.append(part.frames)
-            self._show(_core.live_transitions(part.frames))
+            self._out.append(part)
+            self._show(_core.live_transitions(part))
         if again != expected:
             raise FormatError(self._out.path, _OTHERWISE)
         self._show(again_shown, replayed=True)
@@ -318,22 +319,6 @@ class Pace:
         due_s = begun_s + (event_ns - first_ns) / 1e9 / self._speed
         while (left_s := due_s - time.monotonic()) > 0 and not stop():
             time.sleep(min(left_s, _WAIT_S))
-
-
-class _Part:
-    """Frames of a journal out within some positions, and what they hold."""
-
-    def __init__(self, frames: bytes) -> None:
-        self.frames, self.length = frames, len(frames)
-        self.comparable = _core.live_comparable(frames)
-
-
-def _behind(frames: bytes, after: int, until: int) -> _Part:
-    """The frames whose inputs end behind one position and not behind another. Positions only grow."""
-    ends, _ = _core.live_frames(frames)
-    begins = [0, *ends][: len(ends)]
-    kept = [(b, e) for b, e in zip(begins, ends, strict=True) if after < _core.live_last_position(frames[b:e]) <= until]
-    return _Part(frames[kept[0][0] : kept[-1][1]] if kept else b"")
 
 
 def _slices(frames: bytes) -> list[bytes]:

@@ -6,20 +6,22 @@ import hashlib
 import json
 import math
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from navbound import _core
 from navbound.errors import FormatError, InputError
+from navbound.live import zones
+from navbound.live.zones import path_of
 from navbound.read.checks.plausible import Limits
+from navbound.read.covariance import NACP_EPU_M, NIC_RC_M, SIL_RISK, circular_sigma
 from navbound.read.receivers import MESSAGES
-from navbound.read.routes import load_route
-from navbound.read.runways import runway
 
 if TYPE_CHECKING:
-    from navbound.path import Path
+    from pathlib import Path as FilePath
 
-FORMATS = ("json", *MESSAGES)
+LINES = ("json", "readsb")
+"""Lines of many aircraft: ours, and ADS-B states as readsb writes them."""
+FORMATS = (*LINES, *MESSAGES)
 """Lines of JSON, or the messages of a receiver."""
 METHODS = ("tse-exact", "anp-circle")
 COMPUTING_S = 0.2
@@ -59,6 +61,10 @@ class Settings:
         Most tracks that are watched.
     standing : bool
         The receivers are known to stand: a position that repeats is no old one.
+    rnp_table : str, optional
+        File with RNP values by area and by track (:mod:`navbound.live.zones`).
+    rnp_table_digest : str
+        Of that file, since its content decides; filled in where it is not stated.
     """
 
     format: str
@@ -82,6 +88,8 @@ class Settings:
     expiry_s: float | None = None
     max_tracks: int = 50_000
     standing: bool = False
+    rnp_table: str | None = None
+    rnp_table_digest: str = ""
 
     def __post_init__(self) -> None:
         if self.format not in FORMATS:
@@ -93,6 +101,11 @@ class Settings:
         for name in ("lateness_s", "ahead_s", "retention_s", "transport_s", "display_s"):
             if not 0 <= getattr(self, name) < 1e6:
                 raise InputError(name, getattr(self, name), "s", "[0, 1e6)")
+        if self.rnp_table is not None:
+            content = zones.digest(self.rnp_table)
+            if self.rnp_table_digest not in {"", content}:
+                raise InputError("rnp_table", self.rnp_table, domain="the file that the session began with; its content has changed")
+            object.__setattr__(self, "rnp_table_digest", content)
         if self.expiry_s is not None and not 0 < self.expiry_s < 1e9:
             raise InputError("expiry_s", self.expiry_s, "s", "(0, 1e9)")
         if not 0 < self.max_tracks <= 1_000_000:
@@ -135,6 +148,8 @@ class Settings:
                 self.rnp_m,
                 asdict(Limits(moving_mps=math.inf) if self.standing else Limits()),
                 None if path is None else path._core,
+                (zones.Zones() if self.rnp_table is None else zones.load(self.rnp_table)).core(),
+                self._claims(),
                 nanoseconds,
                 None if self.expiry_s is None else _ns(self.expiry_s),
                 self.max_tracks,
@@ -142,6 +157,13 @@ class Settings:
             )
         except KeyError as e:
             raise InputError("track", self.track, domain="1 to 32 printable ASCII characters without blanks and '/'") from e
+
+    def _claims(self) -> tuple[list[float], list[float], int]:
+        """Standard deviation of an axis by NACp and radius of containment by NIC, and the least SIL whose risk is small enough. [m]."""
+        sigma_m = [NACP_EPU_M.get(category, math.nan) * circular_sigma(0.05) for category in range(12)]
+        sure = [level for level, risk in SIL_RISK.items() if risk <= self.risk_integrity]
+        # A level above the highest is none: nothing is believed then.
+        return sigma_m, [NIC_RC_M.get(category, math.nan) for category in range(12)], min(sure, default=max(SIL_RISK) + 1)
 
     def changed(self, **values: Any) -> Settings:
         """The same but for some values."""
@@ -166,10 +188,3 @@ def load(file: FilePath) -> Settings:
 
 def _ns(seconds: float) -> int:
     return round(seconds * 1e9)
-
-
-def path_of(name: str) -> Path:
-    """The path of a runway's name or a route file."""
-    if FilePath(name).suffix.lower() in {".toml", ".csv"}:
-        return load_route(name).path
-    return runway(name).centreline

@@ -49,7 +49,13 @@ NIC_RC_M = {
 Provenance: inferred (RTCA DO-260B / EUROCAE ED-102A, coding of NIC); the document was not read.
 """
 
-RC_RISK = 1e-7
+SIL_RISK = {3: 1e-7, 2: 1e-5, 1: 1e-3}
+"""Source integrity level to the risk, an hour or a sample, that the error exceeds the containment radius; 0 is "unknown".
+
+Provenance: inferred (RTCA DO-260B / EUROCAE ED-102A, coding of SIL; read in the 1090 MHz Riddle); the document was not read.
+"""
+
+RC_RISK = SIL_RISK[3]
 """Risk taken for a containment radius: source integrity level 3. Provenance: inferred."""
 
 HOLD_S = 300.0

@@ -38,6 +38,7 @@ class Client:
         self.closed = False
         self._alerts: deque[bytes] = deque()
         self._rows: deque[list[Any]] = deque()
+        self._states: dict[str, list[Any]] = {}
         self._status: dict[str, Any] | None = None
         self._wake = asyncio.Event()
 
@@ -56,6 +57,12 @@ class Client:
                 self._rows.popleft()
                 self.n_skipped += 1
             self._rows.append(row)
+        self._status = status
+        self._wake.set()
+
+    def merge(self, states: dict[str, list[Any]], status: dict[str, Any]) -> None:
+        """Keep the newest state of each track of a fleet, and the newest status."""
+        self._states |= states
         self._status = status
         self._wake.set()
 
@@ -78,8 +85,10 @@ class Client:
         out = b"".join(self._alerts)
         self._alerts.clear()
         if self._status is not None:
-            out += event("state", {"rows": list(self._rows), "n_skipped": self.n_skipped, "status": self._status})
+            rows = [*self._rows, *self._states.values()]
+            out += event("state", {"rows": rows, "n_skipped": self.n_skipped, "status": self._status})
             self._rows.clear()
+            self._states.clear()
             self._status = None
         return out
 

@@ -1,10 +1,21 @@
 // The connection to the server: token to session, one stream, signs of life, acknowledgements, and a clock of the page's own.
 
 import { begin, post } from "../show/session.ts";
-import { Model, type Snapshot, type State, type Transition } from "./state.ts";
+import type { Transition } from "./state.ts";
 
 const ALIVE_MS = 5000;
 const AGAIN_MS = 1000;
+
+/** What the messages of a stream change. */
+export interface Receiver<Snapshot extends { client: number }, State> {
+    snapshot: Snapshot | null;
+    readonly acknowledged: Set<string>;
+    take: (snapshot: Snapshot, now_s: number) => void;
+    add: (state: State, now_s: number) => void;
+    alert: (transition: Transition, now_s: number) => void;
+    hear: (now_s: number) => void;
+    tick: (now_s: number) => boolean;
+}
 
 export interface Heard {
     /** Something changed. */
@@ -27,14 +38,14 @@ function clockWorker(): Worker {
     return new Worker(policy?.createScriptURL("/clock.js") ?? "/clock.js");
 }
 
-export class Link {
+export class Link<Snapshot extends { client: number }, State> {
     private stream: EventSource | null = null;
     private again: ReturnType<typeof setTimeout> | null = null;
     private requested: string | null = null;
-    private readonly model: Model;
+    private readonly model: Receiver<Snapshot, State>;
     private readonly heard: Heard;
 
-    constructor(model: Model, heard: Heard) {
+    constructor(model: Receiver<Snapshot, State>, heard: Heard) {
         this.model = model;
         this.heard = heard;
         const tick = (): void => {

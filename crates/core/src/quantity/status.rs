@@ -254,6 +254,14 @@ reasons! {
         "two constellations contradict each other, and nothing says which of them is wrong";
     /// Of a recorded position.
     FewSatellites, "few_satellites", Degraded, "the recording counts fewer satellites than determine a position";
+    /// Of an aircraft's own claim.
+    NoAccuracyCategory, "no_accuracy_category", NotAvailable, "the aircraft states no accuracy category (NACp)";
+    /// Of an aircraft's own claim.
+    NoIntegrityClaim, "no_integrity_claim", NotAvailable,
+        "the aircraft states no containment radius (NIC) at the integrity risk (SIL)";
+    /// Of a surveillance report.
+    ForeignPosition, "foreign_position", NotAvailable,
+        "the position is not the aircraft's own: others measured or repeated it, and it carries no claim";
 }
 
 impl Reason {

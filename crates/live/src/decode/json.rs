@@ -1,6 +1,7 @@
 //! One JSON object a line: the contract for other programs that produce positions. Unknown keys are passed over, known ones are strict.
 
 use super::Decoded;
+use crate::claims::Claim;
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
 use navbound_core::quantity::{GpsTime, Reason, Status};
@@ -82,6 +83,17 @@ struct Named<'a> {
     time_ns: i64,
 }
 
+/// The track of a line; `None` where it names none.
+pub(super) fn track(line: &[u8]) -> Option<TrackId> {
+    #[derive(Deserialize)]
+    struct Whose<'a> {
+        #[serde(borrow)]
+        track: Cow<'a, str>,
+    }
+    let of = |line: &[u8]| serde_json::from_slice::<Whose<'_>>(line).ok().and_then(|whose| TrackId::new(&whose.track));
+    of(line).or_else(|| of(&without_nan(line)))
+}
+
 pub(super) fn position(line: &[u8]) -> Decoded {
     if let Ok(line) = serde_json::from_slice(line) {
         return whole(&line);
@@ -156,6 +168,7 @@ fn whole(line: &Line<'_>) -> Decoded {
             val_m: line.val_m,
             n_sv: line.n_sv,
             nav_mode: line.nav_mode.as_deref().and_then(TrackId::new),
+            claim: Claim::default(),
         },
         ..empty(line.v, &line.track, line.time_ns)?
     };

@@ -1,8 +1,10 @@
 //! Bytes of a source to position reports, one at a time.
 
 mod json;
+mod readsb;
 mod receiver;
 
+use crate::claims::Claims;
 use crate::codec::{Damaged, Reader, Writer};
 use crate::counters::Refused;
 use crate::position::{Position, TrackId};
@@ -14,6 +16,8 @@ use navbound_formats::stream::{Damage, Frame, Framer, Protocol};
 pub enum Format {
     /// One JSON object a line: docs/methods/live.md has the fields.
     Json,
+    /// ADS-B states as readsb writes them, one JSON object a position.
+    Readsb,
     /// Messages of a receiver.
     Receiver(Kind),
 }
@@ -23,22 +27,32 @@ impl Format {
     pub fn of(id: &str) -> Option<Self> {
         match id {
             "json" => Some(Self::Json),
+            "readsb" => Some(Self::Readsb),
             _ => Kind::of(id).map(Self::Receiver),
         }
     }
 
     const fn protocol(self) -> Protocol {
         match self {
-            Self::Json => Protocol::Lines,
+            Self::Json | Self::Readsb => Protocol::Lines,
             Self::Receiver(_) => Protocol::Receiver,
         }
     }
 
     fn epochs(self) -> Option<position::Decoder> {
         match self {
-            Self::Json => None,
+            Self::Json | Self::Readsb => None,
             Self::Receiver(kind) => Some(position::Decoder::new(kind, Ends::WithLast)),
         }
+    }
+}
+
+/// Whose a line is; `None` where it names no track, or the format has no lines.
+pub(crate) fn track_of(format: Format, line: &[u8]) -> Option<TrackId> {
+    match format {
+        Format::Json => json::track(line),
+        Format::Readsb => readsb::track(line),
+        Format::Receiver(_) => None,
     }
 }
 
@@ -49,6 +63,9 @@ pub(crate) type Decoded = Result<Position, Refused>;
 #[derive(Debug, Clone)]
 pub(crate) struct Decoder {
     framer: Framer,
+    format: Format,
+    /// What the categories of ADS-B stand for.
+    claims: Claims,
     /// The epoch that a receiver's messages build; lines are epochs of their own.
     epochs: Option<position::Decoder>,
     /// Whose positions a receiver's are.
@@ -56,22 +73,26 @@ pub(crate) struct Decoder {
 }
 
 impl Decoder {
-    pub(crate) fn new(format: Format, track: TrackId) -> Self {
-        Self { framer: Framer::new(format.protocol()), epochs: format.epochs(), track }
+    pub(crate) fn new(format: Format, claims: Claims, track: TrackId) -> Self {
+        Self { framer: Framer::new(format.protocol()), format, claims, epochs: format.epochs(), track }
     }
 
     /// The next bytes; how many frames or lines were whole.
     pub(crate) fn push(&mut self, bytes: &[u8], out: &mut Vec<Decoded>) -> u64 {
-        let (epochs, track, mut n_frames) = (&mut self.epochs, self.track, 0);
-        self.framer.push(bytes, &mut |frame| n_frames += u64::from(take(epochs.as_mut(), track, &frame, out)));
+        let mut n_frames = 0;
+        let Self { framer, format, claims, epochs, track } = self;
+        let mut of = Of { lines: (*format, claims), epochs: epochs.as_mut(), track: *track };
+        framer.push(bytes, &mut |frame| n_frames += u64::from(of.take(&frame, out)));
         n_frames
     }
 
     /// No bytes came for a while, or none will: what waits is all there is.
     pub(crate) fn flush(&mut self, out: &mut Vec<Decoded>) {
-        let (epochs, track) = (&mut self.epochs, self.track);
-        self.framer.flush(&mut |frame| {
-            take(epochs.as_mut(), track, &frame, out);
+        let Self { framer, format, claims, epochs, track } = self;
+        let track = *track;
+        let mut of = Of { lines: (*format, claims), epochs: epochs.as_mut(), track };
+        framer.flush(&mut |frame| {
+            of.take(&frame, out);
         });
         if let Some(epochs) = epochs {
             let mut items = Vec::new();
@@ -89,29 +110,39 @@ impl Decoder {
         }
     }
 
-    pub(crate) fn read(format: Format, track: TrackId, from: &mut Reader<'_>) -> Result<Self, Damaged> {
+    pub(crate) fn read(format: Format, claims: Claims, track: TrackId, from: &mut Reader<'_>) -> Result<Self, Damaged> {
         let (rest, skipping) = (from.bytes()?, from.flag()?);
         let framer = Framer::with_rest(format.protocol(), rest, skipping).map_err(|_| Damaged("more bytes wait than a frame has"))?;
         let epochs = match format {
-            Format::Json => None,
+            Format::Json | Format::Readsb => None,
             Format::Receiver(kind) => Some(receiver::read(kind, from)?),
         };
-        Ok(Self { framer, epochs, track })
+        Ok(Self { framer, format, claims, epochs, track })
     }
 }
 
-/// One frame; whether it was whole.
-fn take(epochs: Option<&mut position::Decoder>, track: TrackId, result: &Result<Frame<'_>, Damage>, out: &mut Vec<Decoded>) -> bool {
-    match (result, epochs) {
-        (Err(_), _) => out.push(Err(Refused::DamagedFrame)),
-        (Ok(Frame::Line(line)), None) => out.push(json::position(line)),
-        (Ok(_), None) => {}
-        // Frames of other protocols between them are passed over.
-        (Ok(frame), Some(epochs)) => {
-            let mut items = Vec::new();
-            epochs.take(frame, 0, &mut items);
-            out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, track)));
+/// What frames are taken by.
+struct Of<'a> {
+    lines: (Format, &'a Claims),
+    epochs: Option<&'a mut position::Decoder>,
+    track: TrackId,
+}
+
+impl Of<'_> {
+    /// One frame; whether it was whole.
+    fn take(&mut self, result: &Result<Frame<'_>, Damage>, out: &mut Vec<Decoded>) -> bool {
+        match (result, &mut self.epochs, self.lines) {
+            (Err(_), ..) => out.push(Err(Refused::DamagedFrame)),
+            (Ok(Frame::Line(line)), None, (Format::Readsb, claims)) => out.push(readsb::position(line, claims)),
+            (Ok(Frame::Line(line)), None, _) => out.push(json::position(line)),
+            (Ok(_), None, _) => {}
+            // Frames of other protocols between them are passed over.
+            (Ok(frame), Some(epochs), _) => {
+                let mut items = Vec::new();
+                epochs.take(frame, 0, &mut items);
+                out.extend(items.into_iter().filter_map(|item| receiver::decoded(item, self.track)));
+            }
         }
+        result.is_ok()
     }
-    result.is_ok()
 }

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from navbound.live.child import Child
+from navbound.live.display.fleet import FleetServer, FleetWatch, beside_fleet
 from navbound.live.display.server import Server, beside, serve
 from navbound.live.display.watch import Watch
 from navbound.serve.service import Options
@@ -16,7 +17,7 @@ from navbound.serve.service import Options
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["Options", "Server", "Watch", "child", "serve"]
+__all__ = ["FleetServer", "FleetWatch", "Options", "Server", "Watch", "beside_fleet", "child", "serve"]
 
 
 def child(folder: Path, options: Options) -> Child:

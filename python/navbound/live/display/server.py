@@ -9,7 +9,6 @@ from http import HTTPStatus
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs
 
-from navbound import __version__
 from navbound.live import journal
 from navbound.live.display.watch import Watch
 from navbound.live.session import now_ns
@@ -84,12 +83,7 @@ class Server(Service):
         return request.answer(HTTPStatus.NO_CONTENT)
 
     def _health(self, _query: request.Request) -> bytes:
-        status = self.watch.status()
-        lost = status["feed"] == "lost"
-        stale = not status["ages_s"] or min(status["ages_s"].values()) > self.watch.stale_s()
-        word = "lost" if lost else "degraded" if stale or self.watch.open else "ok"
-        last = self.watch.events[-1]["key"] if self.watch.events else None
-        record = {"status": word, "age_s": min(status["ages_s"].values(), default=None), "last_alert": last, "version": __version__}
+        lost, record = self.watch.health()
         code = HTTPStatus.SERVICE_UNAVAILABLE if lost else HTTPStatus.OK
         return request.answer(code, json.dumps(record).encode(), "application/json")
 

@@ -6,9 +6,10 @@ import math
 import time
 from collections import deque
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from navbound import _core
+from navbound import __version__, _core
 from navbound.errors import FormatError
 from navbound.live import journal
 from navbound.live.session import now_ns, origin_of
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 GPS_EPOCH_UNIX_S = 315_964_800
 """Unix time of 1980-01-06 00:00:00 UTC. [s]"""
+_HOUR_NS = 3_600_000_000_000
 FEED_LOST_S = 2.5
 """Time without any input of a live source, whose reader says each second that it is alive, after which the reader counts as lost. [s]"""
 HISTORY_S = 600.0
@@ -123,7 +125,6 @@ class Watch:
         self.ended = False
         self.trouble: str | None = None
         self._input_s = clock()
-        self._offset: tuple[int, int] | None = None
 
     def poll(self) -> News:
         """Read on. A journal that cannot be read is trouble that every page shows."""
@@ -167,20 +168,14 @@ class Watch:
                     continue
                 track = self.tracks[name] = Track()
             time_ns = int(columns["time_ns"][i])
-            row = [self._utc_s(time_ns), *(word[i] for word in words), *(_number(x[i]) for x in numbers)]
+            row = [utc_s(time_ns), *(word[i] for word in words), *(number(x[i]) for x in numbers)]
             rows.setdefault(name, []).append(row)
             track.time_ns, track.arrival_ns, track.read_s = time_ns, columns["arrival_ns"][i], now
             track.add(row)
 
-    def _utc_s(self, time_ns: int) -> float:
-        hour = time_ns // 3_600_000_000_000
-        if self._offset is None or self._offset[0] != hour:
-            self._offset = (hour, utc_offset_s(time_ns))
-        return time_ns / 1e9 + GPS_EPOCH_UNIX_S - self._offset[1]
-
     def _transitions(self, frames: bytes) -> list[dict[str, Any]]:
         records = transition.records(frames, time_to_alert_s=self.settings.time_to_alert_s, origin=self.origin)
-        shown = [self._shown(record) for record in records]
+        shown = [shown_transition(record) for record in records]
         for each in shown:
             self.n_transitions += 1
             self.events.append(each)
@@ -190,13 +185,6 @@ class Watch:
                 self.open.pop(each["alert"], None)
                 self.acknowledged.discard(each["alert"])
         return shown
-
-    def _shown(self, record: dict[str, Any]) -> dict[str, Any]:
-        """A transition as a page needs it: times in UTC seconds, and the name that raise and clear share."""
-        times = {f"{name}_utc_s": None if record[f"{name}_ns"] is None else self._utc_s(record[f"{name}_ns"]) for name in _TIMES}
-        lengths = {name: _number(record[name]) for name in ("peak_m", "limit_m", "min_margin_m", "latency_s")}
-        kept = {name: record[name] for name in ("key", "track", "kind", "transition", "within_time_to_alert", "position")}
-        return {**kept, **times, **lengths, "alert": alert_of(record["key"])}
 
     def status(self) -> dict[str, Any]:
         """How old everything is now, by the clock of this host."""
@@ -256,6 +244,15 @@ class Watch:
             "reasons": {name: reason.words for name, reason in REASONS.items()},
         }
 
+    def health(self) -> tuple[bool, dict[str, Any]]:
+        """Whether the session is lost, and what /health says."""
+        status = self.status()
+        lost, ages_s = status["feed"] == "lost", status["ages_s"].values()
+        stale = not ages_s or min(ages_s) > self.stale_s()
+        word = "lost" if lost else "degraded" if stale or self.open else "ok"
+        last = self.events[-1]["key"] if self.events else None
+        return lost, {"status": word, "age_s": min(ages_s, default=None), "last_alert": last, "version": __version__}
+
     def metrics(self, clients: int) -> str:
         """What was counted, for Prometheus."""
         self.taken.poll()
@@ -295,11 +292,29 @@ class Watch:
 _TIMES = ("annunciation", "onset", "clear", "event")
 
 
+def shown_transition(record: dict[str, Any]) -> dict[str, Any]:
+    """A transition as a page needs it: times in UTC seconds, and the name that raise and clear share."""
+    times = {f"{name}_utc_s": None if record[f"{name}_ns"] is None else utc_s(record[f"{name}_ns"]) for name in _TIMES}
+    lengths = {name: number(record[name]) for name in ("peak_m", "limit_m", "min_margin_m", "latency_s")}
+    kept = {name: record[name] for name in ("key", "track", "kind", "transition", "within_time_to_alert", "position")}
+    return {**kept, **times, **lengths, "alert": alert_of(record["key"])}
+
+
+def utc_s(time_ns: int) -> float:
+    """Unix time of a GPS time. [s]."""
+    return time_ns / 1e9 + GPS_EPOCH_UNIX_S - _offset_s(time_ns // _HOUR_NS)
+
+
+@lru_cache(maxsize=48)
+def _offset_s(hour: int) -> int:
+    return utc_offset_s(hour * _HOUR_NS)
+
+
 def alert_of(key: str) -> str:
     """What raise and clear of one alert have in common: the key without its last part."""
     return key.rpartition("/")[0]
 
 
-def _number(value: float | None) -> float | None:
+def number(value: float | None) -> float | None:
     """Twelve digits; what is no number is null."""
     return float(f"{value:.12g}") if value is not None and math.isfinite(value) else None

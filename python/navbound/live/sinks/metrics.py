@@ -70,12 +70,16 @@ class Counts:
 
     def lines(self) -> list[str]:
         """As Prometheus reads it."""
+        by_status = {f'status="{s}"': n for s, n in sorted(self.epochs.items())}
+        return [*family("navbound_epochs_total", "counter", "Epochs by status.", by_status), *self.alert_lines()]
+
+    def alert_lines(self) -> list[str]:
+        """What is counted of alerts."""
         late, cumulated, sums = self.n_late, 0, list[str]()
         for upper, n in zip((*map(str, LATENCIES_S), "+Inf"), self.latencies, strict=True):
             cumulated += n
             sums.append(f'navbound_alert_latency_seconds_bucket{{le="{upper}"}} {cumulated}')
         return [
-            *family("navbound_epochs_total", "counter", "Epochs by status.", {f'status="{s}"': n for s, n in sorted(self.epochs.items())}),
             *family(
                 "navbound_alerts_total",
                 "counter",
@@ -118,20 +122,24 @@ class Taken:
         """As Prometheus reads it."""
         if self.n_tracks is None:
             return []
-        outcomes = {name: self.counters[f"n_{name}"] for name in _OUTCOMES}
-        outcomes |= {name: n for name, n in self.counters.items() if name.startswith("refused_")}
         return [
             *family(
                 "navbound_records_total",
                 "counter",
                 "Records and frames by what became of them, as of the last snapshot.",
-                {f'outcome="{name}"': int(n) for name, n in outcomes.items()},
+                {f'outcome="{name}"': int(n) for name, n in outcomes(self.counters).items()},
             ),
             *family(
                 "navbound_bytes_total", "counter", "Bytes of the source, as of the last snapshot.", {"": int(self.counters["n_bytes"])}
             ),
             *family("navbound_tracks", "gauge", "Tracks that are watched, as of the last snapshot.", {"": self.n_tracks}),
         ]
+
+
+def outcomes(counters: Mapping[str, float]) -> dict[str, float]:
+    """Records and frames by what became of them."""
+    taken = {name: counters.get(f"n_{name}", 0) for name in _OUTCOMES}
+    return taken | {name: n for name, n in counters.items() if name.startswith("refused_")}
 
 
 def family(name: str, kind: str, words: str, values: Mapping[str, float]) -> list[str]:

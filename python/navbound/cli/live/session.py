@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 import webbrowser
 from dataclasses import dataclass
@@ -12,7 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from navbound.cli.parts import err_console, out_console, stop_requested
+from navbound.cli.live import fleet
+from navbound.cli.live.parts import DisplayPort, JsonLines, OpenPage, ShowDisplay, Spec, address, report_to, say
+from navbound.cli.parts import out_console, stop_requested
 from navbound.errors import ConflictError, FormatError, InputError
 from navbound.exit_status import NO_VERDICT, OUR_BUG
 
@@ -34,20 +35,16 @@ class SourceFirst(TyperGroup):
 
 
 app = typer.Typer(cls=SourceFirst, help="Judge data that are still arriving: navbound live SOURCE ...", no_args_is_help=True)
-JsonLines = Annotated[bool, typer.Option("--json", help="Print one JSON object a transition, nothing else.")]
+fleet.register(app)
 SessionOut = Annotated[Path, typer.Option("--out", help="Folder of the session: journal in and out, events, tables.")]
 Journal = Annotated[Path, typer.Argument(help="Folder of a session, or its journal in (in.nvj).")]
-Spec = Annotated[str, typer.Option(help="Navigation specification, such as 'RNP 0.3'.")]
 Course = Annotated[str | None, typer.Option(help="Where the aircraft should be: a runway (LFPG/08R) or a route file.")]
 Form = Annotated[str | None, typer.Option("--format", help="json, ubx, sbf, novatel or nmea. [default: by a file's begin]")]
-Display = Annotated[bool, typer.Option("--display", help="Show it in a browser on this host: the address is printed. Ctrl-C ends both.")]
-OpenPage = Annotated[bool, typer.Option("--open", help="Show it, and open the page in the browser of this machine.")]
 Level = Annotated[str | None, typer.Option(help="Service level whose alert limits the display shows, such as LPV-200.")]
 Hook = Annotated[
     str | None, typer.Option("--webhook", help="Address that each transition is sent to: https://..., or http:// on this host.")
 ]
 SecretFile = Annotated[Path | None, typer.Option("--secret-file", help="File with the key of the signature of what is sent to --webhook.")]
-Port = Annotated[int, typer.Option(help="Port of the display. [default: one that is free]", show_default=False)]
 
 
 @app.command()
@@ -74,8 +71,8 @@ def watch(
     standing: Annotated[bool, typer.Option("--standing", help="The receiver stands: a position that repeats is not held.")] = False,
     speed: Annotated[float, typer.Option(help="Of a file: times its own pace; 0 as fast as it goes.")] = 0.0,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the session in --out.")] = False,
-    display: Display = False,
-    port: Port = 0,
+    display: ShowDisplay = False,
+    port: DisplayPort = 0,
     open_page: OpenPage = False,
     level: Level = None,
     webhook: Hook = None,
@@ -159,7 +156,7 @@ def _run(source: str, settings: Settings, ways: _Ways) -> None:
     stop = stop_requested()
     kind: Any = "live" if opened.live else "replay" if ways.replay else "recording"
     origin = live.Origin(kind, source, None if opened.live else ways.speed, points(settings, source), ways.limits)
-    session = live.Session(ways.out, settings, origin=origin, resume=ways.resume, report=_report(json=ways.json), say=_say)
+    session = live.Session(ways.out, settings, origin=origin, resume=ways.resume, report=report_to(json=ways.json), say=say)
     with ways.screen as screen, _Post(ways.target) as post:
         screen.show(session)
         post.begin(session)
@@ -210,14 +207,14 @@ class _Screen:
         if self._options is None:
             return
         self._child = child(session.folder, self._options)
-        _address(self._child.text, json=self._json)
+        address(self._child.text, json=self._json)
         if self._opened and not webbrowser.open(self._child.text):
-            _say("no browser was found on this machine: open the address in one")
+            say("no browser was found on this machine: open the address in one")
 
     def hold(self, stop: Callable[[], bool]) -> None:
         """Leave it open behind the end of the data, until the command is stopped."""
         if self._child is not None and not stop():
-            _say("the data have ended; the display stays open until Ctrl-C")
+            say("the data have ended; the display stays open until Ctrl-C")
             while not stop():
                 time.sleep(0.1)
 
@@ -257,7 +254,7 @@ class _Post:
     def heard(self) -> bool:
         """Report what it said; never a reason to stop: who sends may fail, the monitor goes on."""
         for sentence in self._child.sentences() if self._child is not None else []:
-            _say(sentence)
+            say(sentence)
         return False
 
     def hold(self, stop: Callable[[], bool]) -> None:
@@ -269,14 +266,7 @@ class _Post:
             time.sleep(0.1)
         self.heard()
         if self._child.works:
-            _say("not every transition was taken; navbound live send goes on with them")
-
-
-def _address(address: str, *, json: bool) -> None:
-    if json:
-        _say(f"display: {address}")
-    else:
-        out_console.print(f"Display: {address}", markup=False, highlight=False, soft_wrap=True)
+            say("not every transition was taken; navbound live send goes on with them")
 
 
 @app.command()
@@ -288,8 +278,8 @@ def replay(
     spec: Annotated[str | None, typer.Option(help="Of a run or a log: as of `navbound live`. [default: RNP 0.3]")] = None,
     path: Course = None,
     form: Form = None,
-    display: Display = False,
-    port: Port = 0,
+    display: ShowDisplay = False,
+    port: DisplayPort = 0,
     open_page: OpenPage = False,
     level: Level = None,
     json: JsonLines = False,
@@ -316,9 +306,9 @@ def replay(
             out,
             speed=speed,
             group=group,
-            report=_report(json=json),
+            report=report_to(json=json),
             stop=stop,
-            say=_say,
+            say=say,
             started=screen.show,
             limits=_limits(level),
         )
@@ -329,12 +319,12 @@ def replay(
 @app.command()
 def display(
     folder: Annotated[Path, typer.Argument(help="Folder of a session that runs, or ran.")],
-    port: Port = 0,
+    port: DisplayPort = 0,
 ) -> None:
     """Show a session in a browser on this host, from its journals alone; Ctrl-C ends the display and not the session."""
     from navbound.live.display import Options, serve  # noqa: PLC0415
 
-    serve(folder, Options(port), ready=lambda server: _address(server.address, json=False), stop=stop_requested())
+    serve(folder, Options(port), ready=lambda server: address(server.address, json=False), stop=stop_requested())
 
 
 @app.command()
@@ -353,7 +343,7 @@ def send(
 
     target = _target(webhook, secret_file)
     if target is not None:
-        sender = Webhook(folder, target, say=_say)
+        sender = Webhook(folder, target, say=say)
         sender.run(stop=stop_requested())
         out_console.print(f"{sender.n_sent} transitions taken by {target.name}, {sender.n_waiting} wait.", highlight=False)
         if sender.n_waiting:
@@ -374,7 +364,7 @@ def judge(journal: Journal, out: SessionOut = Path("out/judged"), json: JsonLine
     from navbound import live  # noqa: PLC0415
     from navbound.live.replay import settings_of  # noqa: PLC0415
 
-    _ended(live.judge(journal, out, say=_say), settings_of(journal), json=json)
+    _ended(live.judge(journal, out, say=say), settings_of(journal), json=json)
 
 
 @app.command()
@@ -393,24 +383,6 @@ def compare(a: Annotated[Path, typer.Argument(help="Folder of a session.")], b: 
         raise typer.Exit(OUR_BUG)
 
 
-def _say(sentence: str) -> None:
-    err_console.print(f"navbound live: {sentence}", markup=False, highlight=False, soft_wrap=True)
-
-
-def _report(*, json: bool) -> Callable[[dict[str, Any]], None]:
-    from navbound.live.sinks import transition  # noqa: PLC0415
-    from navbound.time import utc_text  # noqa: PLC0415
-
-    def report(reported: dict[str, Any]) -> None:
-        if json:
-            sys.stdout.write(transition.line(reported) + "\n")
-            sys.stdout.flush()
-        else:
-            out_console.print(transition.words(reported, utc_text(reported["event_ns"])), markup=False, highlight=False, soft_wrap=True)
-
-    return report
-
-
 def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     from navbound.live.sinks import tables  # noqa: PLC0415
 
@@ -425,7 +397,7 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     if not session.n_epochs:
         sentence += f"; no epoch was judged: nothing of the source is read as {settings.format}; --format names what it sends"
     if json:
-        _say(sentence)
+        say(sentence)
     else:
         out_console.print(sentence, markup=False, highlight=False, soft_wrap=True)
     if not session.n_epochs:

@@ -1,0 +1,131 @@
+//! ADS-B states as readsb writes them, one JSON object a position: whose, where, and what the aircraft itself claims of its accuracy (NACp)
+//! and integrity (NIC, SIL). docs/methods/live.md says what becomes of a claim.
+
+use super::Decoded;
+use crate::claims::{Claim, Claims};
+use crate::counters::Refused;
+use crate::position::{Position, Shown, TrackId};
+use navbound_core::quantity::Reason;
+use navbound_formats::time;
+use serde::Deserialize;
+use std::borrow::Cow;
+
+const METRES_PER_FOOT: f64 = 0.3048;
+const MPS_PER_KNOT: f64 = 1852.0 / 3600.0;
+const NS_PER_S: f64 = 1e9;
+/// Unix times that can be nanoseconds of GPS time \[s\]: 1980-01-06 and the end of 64 bits.
+const UNIX_S: (f64, f64) = (315_964_800.0, 9.0e9);
+
+/// Keys of readsb; the others are passed over.
+#[derive(Deserialize)]
+struct Line<'a> {
+    /// Unix time of the object \[s\].
+    now: f64,
+    #[serde(borrow)]
+    hex: Cow<'a, str>,
+    /// How the position came: `adsb_icao`, `mlat`, `tisb_icao`.
+    #[serde(rename = "type", default, borrow)]
+    kind: Option<Cow<'a, str>>,
+    /// Age of the position \[s\].
+    #[serde(default)]
+    seen_pos: Option<f64>,
+    #[serde(default)]
+    lat: Option<f64>,
+    #[serde(default)]
+    lon: Option<f64>,
+    #[serde(default)]
+    alt_geom: Option<f64>,
+    #[serde(default)]
+    gs: Option<f64>,
+    #[serde(default)]
+    nic: Option<u8>,
+    #[serde(default)]
+    nac_p: Option<u8>,
+    #[serde(default)]
+    sil: Option<u8>,
+}
+
+/// Whose a line is, and nothing else of it.
+#[derive(Deserialize)]
+struct Named<'a> {
+    #[serde(borrow)]
+    hex: Cow<'a, str>,
+}
+
+/// The track of a line; `None` where it names none.
+pub(super) fn track(line: &[u8]) -> Option<TrackId> {
+    let named: Named<'_> = serde_json::from_slice(line).ok()?;
+    address(&named.hex)
+}
+
+/// Six hexadecimal digits in lower case, behind `~` where the address is none of the International Civil Aviation Organization's.
+fn address(hex: &str) -> Option<TrackId> {
+    let digits = hex.strip_prefix('~').unwrap_or(hex);
+    let known = digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit());
+    TrackId::new(&hex.to_ascii_lowercase()).filter(|_| known)
+}
+
+pub(super) fn position(line: &[u8], claims: &Claims) -> Decoded {
+    let line: Line<'_> = serde_json::from_slice(line).map_err(|_| Refused::NotAPosition)?;
+    let track = address(&line.hex).ok_or(Refused::TrackName)?;
+    // A line without a position says something else of the aircraft: its silence is found by its missing positions.
+    let (Some(lat_deg), Some(lon_deg)) = (line.lat, line.lon) else { return Err(Refused::NoPosition) };
+    let unix_s = line.now - line.seen_pos.unwrap_or(0.0);
+    if !(UNIX_S.0..UNIX_S.1).contains(&unix_s) {
+        return Err(Refused::Undated);
+    }
+    let time = time::from_unix((unix_s * 1e3).round() as i64 * (NS_PER_S / 1e3) as i64);
+    let claim = Claim { nic: line.nic, nac_p: line.nac_p, sil: line.sil };
+    let known = Position {
+        lat_rad: Some(lat_deg.to_radians()),
+        lon_rad: Some(lon_deg.to_radians()),
+        h_m: line.alt_geom.map(|feet| feet * METRES_PER_FOOT),
+        ground_speed_mps: line.gs.map(|knots| knots * MPS_PER_KNOT),
+        shown: Shown { claim, ..Shown::default() },
+        ..Position::new(track, time)
+    };
+    // A position that others computed or repeat is none that the aircraft claims anything of.
+    if !line.kind.as_deref().is_some_and(|kind| kind.starts_with("adsb_")) {
+        return Ok(known.without(Reason::ForeignPosition));
+    }
+    Ok(match claims.bounds(claim) {
+        Ok(bounds) => Position { covariance_m2: Some(bounds.covariance_m2()), hpl_m: Some(bounds.containment_m), ..known },
+        Err(reason) => known.without(reason),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::claims::tests::CLAIMS;
+
+    const WHOLE: &str = r#"{"now":1731000000.500,"hex":"4CA123","type":"adsb_icao","flight":"<b>X</b>","seen_pos":0.250,"lat":48.5,"lon":2.25,"alt_geom":10000,"gs":360.0,"nic":8,"nac_p":9,"sil":3,"version":2}"#;
+
+    #[test]
+    fn a_claim_becomes_a_circle_and_a_level() {
+        let position = position(WHOLE.as_bytes(), &CLAIMS).unwrap();
+        assert_eq!((position.track.name(), position.reason, position.hpl_m), ("4ca123", None, Some(185.2)));
+        // 1731000000.25 s of Unix time is 1415035200.25 s behind the begin of GPS time, and 18 leap seconds came since.
+        assert_eq!(position.time.nanoseconds(), 1_415_035_218_250_000_000);
+        let [ee, en, nn, ..] = position.covariance_m2.unwrap();
+        assert!((ee - 144.0).abs() < 1e-12 && en == 0.0 && nn == ee, "the deviation of the table, squared");
+        assert!((position.ground_speed_mps.unwrap() - 185.2).abs() < 1e-12 && (position.h_m.unwrap() - 3048.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_not_claimed_is_not_assumed() {
+        let reason = |from: &str, to: &str| position(WHOLE.replace(from, to).as_bytes(), &CLAIMS).map(|position| position.reason);
+        assert_eq!(reason(r#""nac_p":9,"#, ""), Ok(Some(Reason::NoAccuracyCategory)));
+        assert_eq!(reason(r#""nac_p":9"#, r#""nac_p":0"#), Ok(Some(Reason::NoAccuracyCategory)));
+        assert_eq!(reason(r#""nic":8"#, r#""nic":0"#), Ok(Some(Reason::NoIntegrityClaim)));
+        assert_eq!(reason(r#""sil":3"#, r#""sil":1"#), Ok(Some(Reason::NoIntegrityClaim)));
+        assert_eq!(reason(r#","sil":3"#, ""), Ok(Some(Reason::NoIntegrityClaim)));
+        assert_eq!(reason("adsb_icao", "mlat"), Ok(Some(Reason::ForeignPosition)));
+        assert_eq!(reason(r#""type":"adsb_icao","#, ""), Ok(Some(Reason::ForeignPosition)));
+        assert_eq!(reason(r#""lat":48.5,"#, ""), Err(Refused::NoPosition));
+        assert_eq!(reason("4CA123", "<b>"), Err(Refused::TrackName));
+        assert_eq!(reason("1731000000.500", "17"), Err(Refused::Undated));
+        assert_eq!(reason(r#""nic":8"#, r#""nic":-8"#), Err(Refused::NotAPosition));
+        assert_eq!(reason(r#""nic":8"#, r#""nic":200"#), Ok(Some(Reason::NoIntegrityClaim)));
+    }
+}

@@ -1,0 +1,160 @@
+"""Workers of one host as processes of their own: one that ends, however it does, is started again."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import time
+from typing import TYPE_CHECKING, Any
+
+from navbound.errors import NavboundError
+from navbound.live.fleet.transport import connect
+from navbound.live.fleet.worker import Worker
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from multiprocessing.connection import Connection
+
+_AGAIN_FIRST_S, _AGAIN_MOST_S = 0.5, 30.0
+_END_S = 5.0
+_STEADY_S = 60.0
+
+
+class _Member:
+    """A process and the way it speaks."""
+
+    def __init__(self, name: str, number: int) -> None:
+        self._name, self.number = name, number
+        self.again_s, self.next_s = _AGAIN_FIRST_S, 0.0
+        self.n_ends = 0
+        self.begin()
+
+    def begin(self) -> None:
+        """Start it."""
+        spawned = multiprocessing.get_context("spawn")
+        self.pipe, theirs = spawned.Pipe()
+        self.process = spawned.Process(target=_main, args=(self._name, theirs), daemon=True)
+        self.process.start()
+        theirs.close()
+        self.since_s = time.monotonic()
+
+    def spoken(self) -> list[tuple[str, Any]]:
+        """What it said since the last look."""
+        taken = list[tuple[str, Any]]()
+        try:
+            while self.pipe.poll(0):
+                taken.append(self.pipe.recv())
+        except (EOFError, OSError):
+            pass
+        return taken
+
+
+class Crew:
+    """Workers of a fleet; a context that ends them.
+
+    Parameters
+    ----------
+    name : str
+        Of the transport.
+    n : int
+        How many.
+    report : callable
+        Takes each transition.
+    say : callable
+        Takes sentences.
+    """
+
+    def __init__(self, name: str, n: int, *, report: Callable[[dict[str, Any]], None], say: Callable[[str], None]) -> None:
+        self._report, self._say = report, say
+        self.members = [_Member(name, k) for k in range(1, n + 1)]
+
+    def look(self) -> None:
+        """Pass on what the workers said, and start again those that ended."""
+        for member in self.members:
+            self._hear(member)
+            now = time.monotonic()
+            if member.process.is_alive():
+                if now - member.since_s > _STEADY_S:
+                    member.again_s = _AGAIN_FIRST_S
+                continue
+            if member.next_s == 0.0:
+                self._hear(member)
+                member.n_ends += 1
+                member.next_s = now + member.again_s
+                self._say(f"worker {member.number} ended ({member.process.exitcode}); another begins in {member.again_s:g} s")
+                member.again_s = min(2 * member.again_s, _AGAIN_MOST_S)
+            elif now >= member.next_s:
+                member.next_s = 0.0
+                member.begin()
+
+    def _hear(self, member: _Member) -> None:
+        for kind, what in member.spoken():
+            if kind == "transition":
+                self._report(what)
+            else:
+                self._say(f"worker {member.number}: {what}")
+
+    def finish(self, stop: Callable[[], bool]) -> None:
+        """Let them judge what is left, and end."""
+        for member in self.members:
+            if member.process.is_alive():
+                member.pipe.send("finish")
+        until = None
+        while any(member.process.is_alive() for member in self.members):
+            for member in self.members:
+                self._hear(member)
+            if stop():
+                until = until or time.monotonic() + _END_S
+                if time.monotonic() > until:
+                    break
+            time.sleep(0.02)
+        for member in self.members:
+            self._hear(member)
+
+    def __enter__(self) -> Crew:
+        """Begin."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End all."""
+        for member in self.members:
+            member.pipe.close()
+        for member in self.members:
+            member.process.join(_END_S)
+            if member.process.is_alive():
+                member.process.kill()
+                member.process.join()
+
+
+def _main(name: str, pipe: Connection) -> None:
+    # A key pressed in a terminal goes to all processes: who started this one decides when it ends.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    heard = list[str]()
+
+    def send(kind: str) -> Callable[[Any], None]:
+        def sent(what: Any) -> None:
+            try:
+                pipe.send((kind, what))
+            except OSError:
+                # Nobody listens any more: `stop` says so.
+                return
+
+        return sent
+
+    def stop() -> bool:
+        try:
+            while pipe.poll(0):
+                heard.append(pipe.recv())
+        except (EOFError, OSError):
+            return True
+        return False
+
+    say = send("sentence")
+    try:
+        with connect(name, patience_s=10.0) as transport:
+            worker = Worker(transport, report=send("transition"), say=say)
+            worker.run(stop=stop, finishing=lambda: bool(heard))
+    except NavboundError as e:
+        say(str(e))
+        os._exit(1)
