@@ -9,10 +9,10 @@ import types
 import typing
 from types import ModuleType
 
-from navbound.records import faults, maps, performance, procedure, run, verdict
+from navbound.records import faults, groups, maps, performance, procedure, run, verdict
 from navbound.records.base import Record
 
-MODULES = (verdict, faults, performance, procedure, run, maps)
+MODULES = (verdict, faults, groups, performance, procedure, run, maps)
 """Modules of records that a page receives, in the order of the file."""
 
 

@@ -15,7 +15,7 @@ import pytest
 
 import report_fixture
 from navbound.errors import InputError
-from navbound.report import packing, payload, render
+from navbound.report import coast, packing, payload, render
 from navbound.report.render import script_safe
 
 _NULL, _ZERO = -(2**31), -(2**31) + 1
@@ -116,7 +116,7 @@ def _points(line: list[int]) -> np.ndarray:
 
 
 def test_the_coast_is_cut_to_the_region() -> None:
-    lines = [_points(line) for line in payload.clip_coastline(35.0, 117.0, 39.0, 123.0)]
+    lines = [_points(line) for line in coast.clip_coastline(35.0, 117.0, 39.0, 123.0)]
     points = np.concatenate(lines)
     # The tip of Shandong, 37.4 N 122.7 E, is there; Florida is not. One vertex outside each cut stays, so that lines reach the edge.
     assert np.min(np.hypot(points[:, 0] - 122.7, points[:, 1] - 37.4)) < 0.1
@@ -126,7 +126,7 @@ def test_the_coast_is_cut_to_the_region() -> None:
 
 
 def test_the_coast_continues_over_the_antimeridian() -> None:
-    points = np.concatenate([_points(line) for line in payload.clip_coastline(-20.0, 176.0, -15.0, 184.0)])
+    points = np.concatenate([_points(line) for line in coast.clip_coastline(-20.0, 176.0, -15.0, 184.0)])
     # Fiji lies on both sides of 180 degrees.
     assert points[:, 0].min() < 179
     assert 180 < points[:, 0].max() < 186

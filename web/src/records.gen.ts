@@ -46,6 +46,66 @@ export interface FaultSummary {
     words: string;
 }
 
+/** One satellite over the positions that were solved. */
+export interface SatelliteSummary {
+    track: string;
+    sv: string;
+    /** Epochs at which a measurement of it was received. */
+    n_heard: number;
+    n_used: number;
+    /** Epochs at which it was not used, by the id of what became of it (`navbound.gnss.FATES`), the most frequent first. */
+    n_fate: Record<string, number>;
+    el_max_rad: number | null;
+    residual_rms_m: number | null;
+    /** The residual of the largest size, signed. */
+    residual_most_m: number | null;
+    cn0_mean_dbhz: number | null;
+    cn0_min_dbhz: number | null;
+}
+
+/** Deviation of all approaches of a group. */
+export interface DeviationGroup {
+    by: "runway" | "operator";
+    name: string;
+    n_tracks: number;
+    n_epochs: number;
+    mean_m: number;
+    std_m: number;
+    /** 95 % of the sizes are no larger. */
+    abs95_m: number;
+    /** The deviation of the largest size, signed. */
+    most_m: number;
+    /** Whose it is. */
+    most_track: string;
+    /** Of epochs with status ok. */
+    share_inside: number | null;
+    /** Largest accuracy bound over RNP. */
+    worst_ratio: number | null;
+}
+
+/** Where the approaches to one runway lay, by distance to its threshold. */
+export interface DeviationBand {
+    runway: string;
+    /** What is compared: deviation across or above the path, or the height where no vertical path is known. */
+    column: "fte_m" | "fte_v_m" | "est_h_m";
+    n_tracks: number;
+    /** Middles of the bins, before the threshold. */
+    before_m: number[];
+    /** Epochs in each bin. */
+    n: number[];
+    least_m: (number | null)[];
+    /** 2.5 % lie below; none where fewer than 40 epochs lie in the bin. */
+    low_m: (number | null)[];
+    median_m: (number | null)[];
+    /** 2.5 % lie above. */
+    high_m: (number | null)[];
+    most_m: (number | null)[];
+    /** Of the histogram; empty for heights. */
+    edges_m: number[];
+    /** Epochs between two edges; those beyond the first and the last are in the outer bins. */
+    counts: number[];
+}
+
 export type Axis = "h" | "v";
 
 export type Provenance = "printed" | "re-derived" | "standard" | "ours" | "inferred";
@@ -491,6 +551,8 @@ export interface Verdict {
     inside: boolean | null;
     /** The verdict as sentences: what, how much, worst where and when, what was assumed, whether truth was known. */
     words: string;
+    /** The same without what a page states beside it: the worst margins, the method that judged, the lateral bounds against truth. */
+    lead: string;
     requirement: string;
     /** Id of the method that judged, see `methods`. */
     method: string;
@@ -749,6 +811,12 @@ export interface Summary {
     performance: Performance | null;
     /** Of the sensors of a simulated flight: what they did, and when the monitors spoke. */
     faults: FaultSummary[];
+    /** Approaches by runway and by operator. */
+    groups: DeviationGroup[];
+    /** Approaches by distance to the threshold. */
+    bands: DeviationBand[];
+    /** Where positions were solved: every satellite heard. */
+    satellites: SatelliteSummary[];
 }
 
 /** run.json: what it takes to do it again. */

@@ -5,13 +5,15 @@ import "./show/page.css";
 import { anp } from "./chart/anp.ts";
 import { lateral, vertical } from "./chart/deviation.ts";
 import { honesty } from "./chart/honesty.ts";
-import { modes } from "./chart/modes.ts";
-import { declared } from "./chart/declared.ts";
+import { approaches } from "./approaches/page.ts";
+import { filter } from "./filter/page.ts";
+import { gnss } from "./gnss/page.ts";
 import { alertLimit } from "./chart/alertlimit.ts";
 import { exceedance } from "./chart/risk.ts";
 import { performance } from "./chart/scales.ts";
 import { states } from "./chart/states.ts";
 import { linkByTime, type Cursor } from "./data/link.ts";
+import { heardOf } from "./data/heard.ts";
 import { blockOf, groundTracks, type Ground } from "./data/others.ts";
 import type { Payload } from "./data/records.ts";
 import { eventWindow, indexAt } from "./data/events.ts";
@@ -40,7 +42,6 @@ const PARTS: { component: Component; host: "upper" | "charts"; needs: NumberName
     { component: anp, host: "charts", needs: ["anp_circle_m", "anp_sphere_m"] },
     { component: alertLimit, host: "charts", needs: ["hal_m"] },
     { component: exceedance, host: "charts", needs: ["p_exceed_2rnp"] },
-    { component: modes, host: "charts", needs: ["n_gated"] },
     { component: states, host: "charts", needs: ["p_state_1"], aloft: true },
 ];
 
@@ -69,9 +70,11 @@ class Page {
     async show(root: HTMLElement): Promise<void> {
         const { payload } = this;
         const { summary } = payload;
-        root.replaceChildren(this.header(), this.measured, this.upper, this.charts);
+        const beside = el("div");
+        root.replaceChildren(this.header(), this.measured, beside, this.upper, this.charts);
         verdict(root.querySelector("#verdict-place")!, payload);
         this.series = performanceReport(this.measured, payload, this.theme);
+        approaches(beside, payload, this.theme, (track) => void this.select(track).then(() => this.upper.scrollIntoView({ behavior: "smooth" })));
         honesty(root, summary);
         // A run that judged no track has no tracks and no methods to list.
         const alone = indicatorsOf(payload) !== null;
@@ -96,15 +99,15 @@ class Page {
         const head = payload.tracks.find((t) => t.track === track) ?? payload.tracks[0]!;
         const table = await Table.open(payload, head, blockOf(head));
         this.ends.forEach((end) => end());
-        const now = scene(payload, table, this.theme, this.axis, this.grounds);
+        const now = scene(payload, table, this.theme, this.axis, this.grounds, await heardOf(payload, table));
         this.current = now;
         this.selector.value = head.track;
         // A performance report is not asked for a path; without one its page does not list what a path would give.
         // That a roll has no vertical path and no specification of flight needs no words.
         const rolls = payload.summary.operation === "ground";
-        const explained = (part: (typeof PARTS)[number]): boolean => this.series === null && part.component !== modes && !(rolls && part.aloft);
+        const explained = (part: (typeof PARTS)[number]): boolean => this.series === null && !(rolls && part.aloft);
         const drawn = PARTS.filter((part) => explained(part) || part.needs.some((name) => table.has(name)));
-        this.ends = [...drawn.map(({ component, host }) => component(this[host], now)), declared(this.charts, now), cursorBar(this.bar, now)];
+        this.ends = [...drawn.map(({ component, host }) => component(this[host], now)), filter(this.charts, now), gnss(this.charts, now), cursorBar(this.bar, now)];
         const worst = payload.summary.verdict.worst_accuracy;
         now.cursor.set(worst !== null && worst.track === head.track ? indexAt(worst.time_ns, now) : Math.floor(table.n / 2));
         // What happened is shown first; the whole is one key away.

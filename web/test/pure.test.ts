@@ -61,7 +61,7 @@ test("lengths, risks and times read as people write them", () => {
     assert.equal(risk(9.99e-6), "10⁻⁵");
     assert.equal(risk(2.34e-8), "2.3 × 10⁻⁸");
     assert.equal(risk(0.05), "0.05");
-    assert.equal(risk(0), "< 10⁻³⁰⁷");
+    assert.equal(risk(0), "< 10⁻¹²");
     assert.equal(level(0.05), "95 %");
     assert.equal(level(1e-5), "risk 10⁻⁵");
     assert.equal(clock(86399.9996, true), "00:00:00");

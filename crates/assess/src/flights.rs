@@ -16,7 +16,7 @@ pub struct Flights {
 pub type Column = (&'static str, fn(&FlownEpoch) -> f64);
 
 /// Every column of numbers.
-pub const COLUMNS: [Column; 43] = [
+pub const COLUMNS: [Column; 58] = [
     ("est_lat_rad", |e| e.estimate[0]),
     ("est_lon_rad", |e| e.estimate[1]),
     ("est_h_m", |e| e.estimate[2]),
@@ -47,6 +47,21 @@ pub const COLUMNS: [Column; 43] = [
     ("separation_m", |e| e.separation_m.map_or(f64::NAN, |s| s[0])),
     ("separation_limit_m", |e| e.separation_m.map_or(f64::NAN, |s| s[1])),
     ("innovation_memory", |e| e.memory.unwrap_or(f64::NAN)),
+    ("innovation_range", |e| innovation(e, 0)),
+    ("innovation_station", |e| innovation(e, 1)),
+    ("innovation_baro", |e| innovation(e, 2)),
+    ("bias_gyro_x_radps", |e| bias(e, 0, 0)),
+    ("bias_gyro_y_radps", |e| bias(e, 0, 1)),
+    ("bias_gyro_z_radps", |e| bias(e, 0, 2)),
+    ("bias_accel_x_mps2", |e| bias(e, 1, 0)),
+    ("bias_accel_y_mps2", |e| bias(e, 1, 1)),
+    ("bias_accel_z_mps2", |e| bias(e, 1, 2)),
+    ("sigma_bias_gyro_x_radps", |e| sigma_bias(e, 0, 0)),
+    ("sigma_bias_gyro_y_radps", |e| sigma_bias(e, 0, 1)),
+    ("sigma_bias_gyro_z_radps", |e| sigma_bias(e, 0, 2)),
+    ("sigma_bias_accel_x_mps2", |e| sigma_bias(e, 1, 0)),
+    ("sigma_bias_accel_y_mps2", |e| sigma_bias(e, 1, 1)),
+    ("sigma_bias_accel_z_mps2", |e| sigma_bias(e, 1, 2)),
     ("hpl_m", |e| e.decision.and_then(|d| d.hpl_m).unwrap_or(f64::NAN)),
     ("vpl_m", |e| e.decision.and_then(|d| d.vpl_m).unwrap_or(f64::NAN)),
     // Whole numbers and codes; a double holds them exactly.
@@ -66,6 +81,18 @@ pub const COLUMNS: [Column; 43] = [
     ("leading", |e| e.decision.and_then(|d| d.leading()).map_or(-1.0, |r| f64::from(r as u8))),
     ("available", |e| f64::from(u8::from(e.reason.is_none()))),
 ];
+
+fn innovation(epoch: &FlownEpoch, kind: usize) -> f64 {
+    epoch.inside.and_then(|i| i.innovations[kind]).unwrap_or(f64::NAN)
+}
+
+fn bias(epoch: &FlownEpoch, sensor: usize, axis: usize) -> f64 {
+    epoch.inside.and_then(|i| i.biases).map_or(f64::NAN, |b| b[sensor][axis])
+}
+
+fn sigma_bias(epoch: &FlownEpoch, sensor: usize, axis: usize) -> f64 {
+    epoch.inside.and_then(|i| i.sigma_biases).map_or(f64::NAN, |b| b[sensor][axis])
+}
 
 impl Flights {
     /// Flights `first .. first + count`, each a function of scenario, seed and its number, whatever the threads.

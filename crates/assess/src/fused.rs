@@ -18,7 +18,9 @@ use navbound_core::monitor::separation;
 use navbound_core::quantity::{GpsTime, OutOfDomain, Risk, Unavailable};
 use navbound_core::signal::{Aiding, TimedAiding};
 use navbound_core::solution::ins::{Fusion, Innovations, Kind, Mode, NavState, Samples, Solution};
-use navbound_simulate::{Doubt, ERROR_FREE, FlownEpoch, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by};
+use navbound_simulate::{
+    Doubt, ERROR_FREE, FlownEpoch, Inside, Motion, Navigated, Navigator, SensedFlight, Sensing, Step, Trajectory, fly_by,
+};
 use rayon::prelude::*;
 
 /// Flights, and what their filters say of themselves.
@@ -209,6 +211,7 @@ impl Watch {
             memory: Some(filter.innovations(Kind::Range).memory(time)).filter(|memory| !memory.is_nan()),
             doubt: None,
             decision: None,
+            inside: None,
         };
         let output = match filter.solution(time) {
             // Numbers that cannot be compared are those of no solution: the flight goes on and says so.
@@ -216,6 +219,7 @@ impl Watch {
             None => None,
         };
         navigated.mode = output.map(|s| s.mode);
+        navigated.inside = Some(self.inside(output.as_ref()));
         let stations = output.is_some_and(|s| s.mode != Mode::Gnss) && self.stations.doubts(time);
         let witnesses = Witnesses {
             filters_disagree: Some(navigated.doubt == Some(Doubt::Filters)),
@@ -267,6 +271,16 @@ impl Watch {
             navigated.doubt = Some(Doubt::Filters);
         }
         Ok(if satellites { main } else { beside.solution })
+    }
+
+    /// What the filter says of the measurements of the last second, and of the inertial unit.
+    fn inside(&mut self, output: Option<&Solution>) -> Inside {
+        let mut largest = |kinds: &[Kind]| kinds.iter().filter_map(|k| self.driver.filter.take_largest(*k)).reduce(f64::max);
+        Inside {
+            innovations: [largest(&[Kind::Range]), largest(&[Kind::Dme, Kind::Vor]), largest(&[Kind::Baro])],
+            biases: output.map(|s| s.biases),
+            sigma_biases: output.map(|s| s.sigma_biases),
+        }
     }
 
     /// What the filter says at its end.

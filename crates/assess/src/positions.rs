@@ -1,5 +1,6 @@
 //! Observations and navigation messages to positions, epoch by epoch on all cores.
 
+use crate::receivers::heard::{Heard, Listed};
 use crate::receivers::ranges::{Records, Source, Tally, Unused, plans};
 use crate::receivers::signals::Plan;
 pub use crate::receivers::signals::Signals;
@@ -85,6 +86,8 @@ pub struct Positions {
     pub undescribed: bool,
     /// The ranges of each position, where they are kept; weights and shared errors widened as the covariance is.
     pub ranges: Vec<Vec<(SatelliteId, Used)>>,
+    /// Every satellite that was heard at each epoch, where ranges are kept.
+    pub heard: Vec<Vec<Heard>>,
     /// Satellite-epochs of the requested constellations that were used, and that were not.
     pub tally: Tally,
     /// Signals of each constellation.
@@ -115,10 +118,11 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
     let solver = Solver { source: &source, job };
     let epochs: Vec<usize> = (0..observations.n_epochs()).collect();
     let task = |epochs: &[usize]| {
-        let (mut ranges, mut beyond, mut last, mut tally) = (Vec::new(), Vec::new(), None, Tally::default());
+        let (mut ranges, mut beyond, mut last, mut tally) = (Vec::new(), Vec::new(), None, Tally::listing(job.keep_ranges));
         let solve = |epoch: &usize| {
             source.collect(*epoch, &mut ranges, &mut beyond, &mut tally);
-            let solved = solver.solve(*epoch, &ranges, last.as_ref(), &Offsets::default());
+            let mut solved = solver.solve(*epoch, &ranges, last.as_ref(), &Offsets::default());
+            solved.listed = job.keep_ranges.then(|| Listed { ranges: ranges.clone(), unused: tally.take_listed() });
             let n_low = solved.fix.as_ref().map_or(0, |f| ranges.len().saturating_sub(f.n_used + f.n_excluded));
             tally.leave(Unused::BelowMask, n_low);
             last = solved.fix.as_ref().ok().map(|f: &Fix| ecef_from_geodetic(&f.position)).or(last);
@@ -137,7 +141,7 @@ pub fn positions(observations: &Observations, navigation: &Navigation, precise: 
         solution.tally.add(&tally);
     }
     solution.tally.leave(Unused::ConstellationLeftOut, solver.treat(&mut solved));
-    declare(&observations.time, solved, job.keep_ranges, &mut solution);
+    declare(&observations.time, solved, job, &mut solution);
     solution
 }
 
@@ -149,6 +153,8 @@ struct Solved {
     /// The way to where a constellation that was left out puts the receiver \[m\].
     rival: Option<Rival>,
     kept: Vec<(SatelliteId, Used)>,
+    /// What was heard, where it is kept.
+    listed: Option<Listed>,
 }
 
 impl Solved {
@@ -175,8 +181,8 @@ impl Solver<'_> {
         };
         let solved = point::solve_readings(ranges, self.source.observations.time[epoch], &self.job.settings, near, offsets, keep);
         match solved {
-            Ok((fix, mixture)) => Solved { fix: Ok(fix), mixture: mixture.map(Box::new), rival: None, kept },
-            Err(why) => Solved { fix: Err(why), mixture: None, rival: None, kept },
+            Ok((fix, mixture)) => Solved { fix: Ok(fix), mixture: mixture.map(Box::new), rival: None, kept, listed: None },
+            Err(why) => Solved { fix: Err(why), mixture: None, rival: None, kept, listed: None },
         }
     }
 
@@ -198,7 +204,7 @@ impl Solver<'_> {
         for ((epoch, _), treated) in treatments.iter().zip(treated) {
             if let Some((n, better)) = treated {
                 left_out += n;
-                solved[*epoch] = better;
+                solved[*epoch] = Solved { listed: solved[*epoch].listed.take(), ..better };
             }
         }
         left_out
@@ -236,9 +242,9 @@ impl Solver<'_> {
 const FEW: usize = 3;
 
 /// Statuses and covariances, which the receiver's past has a part in, through the file in its order.
-fn declare(times: &[GpsTime], solved: Vec<Solved>, keep: bool, out: &mut Positions) {
+fn declare(times: &[GpsTime], solved: Vec<Solved>, job: &Job, out: &mut Positions) {
     let mut declarations = Declarations::default();
-    for (time, Solved { fix, mixture, rival, mut kept }) in times.iter().zip(solved) {
+    for (time, Solved { fix, mixture, rival, mut kept, listed }) in times.iter().zip(solved) {
         let own = fix.as_ref().map_or(1.0, |f| f.inflation);
         let (fix, doubt) = match fix {
             Ok(mut fix) => {
@@ -254,8 +260,11 @@ fn declare(times: &[GpsTime], solved: Vec<Solved>, keep: bool, out: &mut Positio
             u.weight /= whole;
             u.shared_m *= (whole / own).sqrt();
         }
-        if keep {
-            out.ranges.push(if fix.is_ok() { kept } else { Vec::new() });
+        if let Some(listed) = listed {
+            let kept = if fix.is_ok() { kept } else { Vec::new() };
+            let used: Vec<SatelliteId> = kept.iter().map(|(satellite, _)| *satellite).collect();
+            out.heard.push(listed.fates(fix.as_ref().ok(), &used, job.settings.mask));
+            out.ranges.push(kept);
         }
         out.fixes.push(fix);
         out.doubts.push(doubt);

@@ -4,6 +4,7 @@ use crate::error::{format_error, input_error, risk};
 use crate::orbits::PreciseOrbits;
 use crate::status;
 use navbound_assess::positions::{Job, Model, Positions, Signals, azimuth_rad, elevation_rad, ground_speed_mps, positions, sigma_m};
+use navbound_assess::receivers::heard::{Fate, Heard};
 use navbound_assess::receivers::ranges::{Tally, Unused};
 use navbound_assess::smoothing::Form;
 use navbound_core::frame::{self, EcefPosition, Geodetic, LatLon};
@@ -317,6 +318,7 @@ fn solve_positions<'py>(
     d.set_item("smoothed_share", solved.smoothed_share)?;
     d.set_item("ionosphere", model_name(&model))?;
     d.set_item("ranges", if keep_ranges { Some(kept_ranges(py, &solved)?) } else { None })?;
+    d.set_item("heard", if keep_ranges { Some(heard(py, &solved)?) } else { None })?;
     Ok(d)
 }
 
@@ -361,6 +363,26 @@ fn kept_ranges<'py>(py: Python<'py>, solved: &Positions) -> PyResult<Bound<'py, 
     d.set_item("shared_3_m", column(|u| u.shared_m.z))?;
     d.set_item("shared_4_m", column(|u| u.shared_m.w))?;
     Ok(d)
+}
+
+/// Every satellite that was heard, one row an epoch: index of the epoch, direction, strength, what became of it.
+fn heard<'py>(py: Python<'py>, solved: &Positions) -> PyResult<Bound<'py, PyDict>> {
+    let rows: Vec<_> = solved.heard.iter().enumerate().flat_map(|(i, each)| each.iter().map(move |h| (i as i64, h))).collect();
+    let d = PyDict::new(py);
+    d.set_item("epoch", rows.iter().map(|(i, _)| *i).collect::<Vec<_>>().into_pyarray(py))?;
+    d.set_item("sv", rows.iter().map(|(_, h)| h.satellite.to_string()).collect::<Vec<_>>())?;
+    let column = |f: fn(&Heard) -> f64| rows.iter().map(|(_, h)| f(h)).collect::<Vec<_>>().into_pyarray(py);
+    d.set_item("az_rad", column(|h| h.direction.map_or(f64::NAN, |d| d.azimuth().rad())))?;
+    d.set_item("el_rad", column(|h| h.direction.map_or(f64::NAN, |d| d.elevation().rad())))?;
+    d.set_item("cn0_dbhz", column(|h| h.cn0_dbhz))?;
+    d.set_item("fate", rows.iter().map(|(_, h)| h.fate.id()).collect::<Vec<_>>())?;
+    Ok(d)
+}
+
+/// What may become of a satellite beside not being used: ids with their words.
+#[pyfunction]
+fn satellite_fates() -> Vec<(&'static str, &'static str)> {
+    Fate::OWN.into_iter().map(|fate| (fate.id(), fate.words())).collect()
 }
 
 const fn weights(precise: Option<&PreciseOrbits>) -> RangeError {
@@ -470,6 +492,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(raw_log, m)?)?;
     m.add_function(wrap_pyfunction!(geodetic_from_ecef, m)?)?;
     m.add_function(wrap_pyfunction!(unused_reasons, m)?)?;
+    m.add_function(wrap_pyfunction!(satellite_fates, m)?)?;
     m.add_function(wrap_pyfunction!(ntcm_delay, m)?)?;
     m.add_function(wrap_pyfunction!(solve_positions, m)?)
 }

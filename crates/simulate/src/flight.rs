@@ -63,6 +63,19 @@ pub struct FlownEpoch {
     pub doubt: Option<Doubt>,
     /// What became of the epoch by the judge of filtered positions; `None` without a filter.
     pub decision: Option<Decision>,
+    /// What a filter says of its measurements and its inertial unit; `None` without one.
+    pub inside: Option<Inside>,
+}
+
+/// What a filter says of its measurements and its inertial unit at a second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inside {
+    /// Largest innovation of the last second over its gate, of the ranges, the stations and the altimeter; `None` where none was examined.
+    pub innovations: [Option<f64>; 3],
+    /// Biases of the gyroscopes \[rad/s\] and the accelerometers \[m/s²\] on the axes of the body; `None` without a solution.
+    pub biases: Option<[Vector3<f64>; 2]>,
+    /// Their standard deviations.
+    pub sigma_biases: Option<[Vector3<f64>; 2]>,
 }
 
 /// A contradiction of which nobody knows which side is right.
@@ -97,6 +110,8 @@ pub struct Navigated {
     pub doubt: Option<Doubt>,
     /// As in [`FlownEpoch`].
     pub decision: Option<Decision>,
+    /// As in [`FlownEpoch`].
+    pub inside: Option<Inside>,
 }
 
 /// A flight of a scenario with position errors drawn from the covariance of the geometry; the number chooses its random streams.
@@ -116,6 +131,7 @@ pub fn fly(outlook: &Outlook, seed: u64, number: u64) -> Result<Vec<FlownEpoch>,
         memory: None,
         doubt: None,
         decision: None,
+        inside: None,
     };
     let navigated: Vec<_> = outlook.instants.iter().zip(&errors).map(drawn).collect();
     fly_by(outlook, seed, number, &navigated, PathFlown::Flown)
@@ -209,6 +225,7 @@ fn epoch(outlook: &Outlook, instant: &Instant, deviation: Deviation, navigated: 
         memory: navigated.memory,
         doubt: navigated.doubt,
         decision: navigated.decision,
+        inside: navigated.inside,
     };
     // An estimate that belongs to no point of the path, or to none of the Earth, is none; the flight goes on.
     if epoch.estimate(outlook, instant, &truth, navigated).is_err() {

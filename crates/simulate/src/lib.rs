@@ -19,7 +19,7 @@ mod sensors;
 mod station;
 mod trajectory;
 
-pub use flight::{Doubt, FlownEpoch, Navigated, fly, fly_by};
+pub use flight::{Doubt, FlownEpoch, Inside, Navigated, fly, fly_by};
 pub use ground::{Driven, GroundFlight, RangeFault, RouteMotion, RoutePoint, Taxi, TaxiNavigation};
 pub use navigator::{BelievedErrors, Coupling, Navigator};
 pub use outlook::Outlook;

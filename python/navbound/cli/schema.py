@@ -49,6 +49,12 @@ def _assessed() -> Any:
     return Assessment
 
 
+def _comparison() -> Any:
+    from navbound.records.comparison import Comparison  # noqa: PLC0415
+
+    return Comparison
+
+
 def _levels() -> Any:
     from navbound.records.performance import Level  # noqa: PLC0415
 
@@ -62,6 +68,7 @@ RECORDS: dict[str, Callable[[], Any]] = {
     "predict-flight": _flight,
     "assess": _assessed,
     "levels": _levels,
+    "compare": _comparison,
 }
 """Commands and the record that their `--json` prints."""
 

@@ -17,7 +17,7 @@ from navbound.gnss.constellations import CONSTELLATIONS, Orbits, constellation, 
 from navbound.gnss.dilution_map import DopMap, dop_map
 from navbound.gnss.files import Navigation, Observations, Refused, read_navigation, read_observations
 from navbound.gnss.precise import PreciseOrbits, read_orbits
-from navbound.gnss.receivers import MASK_RAD, SYSTEMS, UNUSED, Positions, geodetic, solve
+from navbound.gnss.receivers import FATES, MASK_RAD, SYSTEMS, UNUSED, Positions, geodetic, solve
 from navbound.status import availability, reasons_of
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CONSTELLATIONS",
+    "FATES",
     "MASK_RAD",
     "SYSTEMS",
     "UNUSED",

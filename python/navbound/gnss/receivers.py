@@ -19,6 +19,7 @@ from navbound.gnss.precise import PreciseOrbits
 from navbound.gnss.signal_choice import smaller_covariance
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten
+from navbound.table.columns import HEARD
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -29,6 +30,12 @@ SYSTEMS = {"G": "GPS", "E": "Galileo", "C": "BeiDou"}
 
 UNUSED: dict[str, str] = dict(_core.unused_reasons())
 """Why a satellite may not be in a solution: the id of tables, and its words."""
+
+FATES: dict[str, str] = dict(_core.satellite_fates()) | UNUSED
+"""What may become of a satellite that was heard: the id of tables, and its words."""
+
+USED = next(iter(FATES))
+"""The id of a satellite in the position."""
 
 SIGNALS = ("auto", "single", "dual")
 """Which pseudoranges make a range."""
@@ -66,6 +73,8 @@ class Positions:
     used : DataFrame, optional
         Ranges by satellite: ``sv``, ``signals`` (``E1-E5a``), ``message`` whose orbit and clock were used, ``n_ranges``; those below the
         mask and those excluded afterwards are among them.
+    heard : DataFrame, optional
+        What became of every satellite heard at every epoch: the columns `navbound.table.columns.HEARD`. Where ranges were requested.
     """
 
     epochs: pl.DataFrame
@@ -74,6 +83,7 @@ class Positions:
     models: dict[str, str]
     ranges: pl.DataFrame | None = None
     used: pl.DataFrame | None = None
+    heard: pl.DataFrame | None = None
 
 
 def used_satellites(rows: list[tuple[str, str, str, int]]) -> pl.DataFrame:
@@ -159,7 +169,7 @@ def solve(
     track : str, optional
         Name of the track; by default the marker's or the file's.
     keep_ranges : bool, optional
-        Whether ``ranges`` is filled.
+        Whether ``ranges`` and ``heard`` are filled.
 
     Returns
     -------
@@ -227,7 +237,7 @@ def solve(
     except LookupError as e:
         domain = "auto, climatology, none, dual signals, or navigation files with that message within two days of the observations"
         raise InputError("ionosphere", ionosphere, domain=domain) from e
-    kept = positions.pop("ranges")
+    kept, heard = positions.pop("ranges"), positions.pop("heard")
     used = used_satellites(positions.pop("used"))
     unused, codes, weights = positions.pop("unused"), positions.pop("codes"), positions.pop("weights")
     share, model = positions.pop("smoothed_share"), positions.pop("ionosphere")
@@ -249,7 +259,7 @@ def solve(
         "residual test": f"chi-square, false alarm {false_alarm:g} an epoch",
     }
     ranges = None if kept is None else _with_times(kept, observations.time_ns)
-    return Positions(epochs, unused, codes, models, ranges, used)
+    return Positions(epochs, unused, codes, models, ranges, used, _heard(heard, ranges, name, observations.time_ns))
 
 
 def _ionosphere_words(name: str, activity_sfu: float) -> str:
@@ -265,6 +275,22 @@ def _ionosphere_words(name: str, activity_sfu: float) -> str:
 def _with_times(kept: dict[str, Any], time_ns: NDArray[np.int64]) -> pl.DataFrame:
     instants = time_ns[kept.pop("epoch")]
     return pl.DataFrame({"time_ns": instants, **kept})
+
+
+def _heard(heard: dict[str, Any] | None, ranges: pl.DataFrame | None, track: str, time_ns: NDArray[np.int64]) -> pl.DataFrame | None:
+    """Every satellite heard, with the residuals of those that were used.
+
+    The weighted residuals of a constellation sum to nought beside its clock (normal equations of least squares), so the weighted mean of
+    what the ranges keep is the clock.
+    """
+    if heard is None or ranges is None:
+        return None
+    every = _with_times(heard, time_ns).with_columns(pl.lit(track).alias("track"))
+    constellation, weight = pl.col("sv").str.slice(0, 1), pl.col("sigma_m") ** -2
+    clock = ((pl.col("residual_m") * weight).sum() / weight.sum()).over("time_ns", constellation)
+    of_used = ranges.select("time_ns", "sv", pl.col("residual_m") - clock, "sigma_m")
+    joined = every.join(of_used, on=["time_ns", "sv"], how="left", maintain_order="left")
+    return joined.select(column.name for column in HEARD).with_columns(pl.selectors.float().fill_nan(None))
 
 
 def _orbit_words(orbits: PreciseOrbits | None) -> str:

@@ -59,6 +59,8 @@ class Material:
         Why the positions may not be what they are read as (their unit, their motion), so that nothing can be shown.
     truth_doubts : TruthDoubts
         What speaks against the truth.
+    satellites : DataFrame, optional
+        What became of every satellite heard, epoch by epoch (columns `navbound.table.columns.HEARD`), where positions were solved.
     limits_held : dict
         Phase to how its alert limit is held ("inferred", ...), where epochs have ``hpl_m`` and ``hal_m``.
     """
@@ -88,3 +90,4 @@ class Material:
     unread: list[str] = field(default_factory=list)
     position_doubts: list[str] = field(default_factory=list)
     truth_doubts: TruthDoubts = field(default_factory=TruthDoubts)
+    satellites: pl.DataFrame | None = None

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from navbound.records.base import Record
 from navbound.records.faults import FaultSummary
+from navbound.records.groups import DeviationBand, DeviationGroup, SatelliteSummary
 from navbound.records.operation import Operation
 from navbound.records.performance import Performance
 from navbound.records.procedure import ProcedureFlown
@@ -105,6 +106,8 @@ class Verdict(Record):
     """What the id says of the requirement; None: nothing."""
     words: str
     """The verdict as sentences: what, how much, worst where and when, what was assumed, whether truth was known."""
+    lead: str = ""
+    """The same without what a page states beside it: the worst margins, the method that judged, the lateral bounds against truth."""
     requirement: str
     method: str
     """Id of the method that judged, see `methods`."""
@@ -375,6 +378,12 @@ class Summary(Record):
     """The ICAO indicators, where errors and protection levels are known."""
     faults: list[FaultSummary] = Field(default=[])
     """Of the sensors of a simulated flight: what they did, and when the monitors spoke."""
+    groups: list[DeviationGroup] = Field(default=[])
+    """Approaches by runway and by operator."""
+    bands: list[DeviationBand] = Field(default=[])
+    """Approaches by distance to the threshold."""
+    satellites: list[SatelliteSummary] = Field(default=[])
+    """Where positions were solved: every satellite heard."""
 
 
 class RunRecord(Record):

@@ -21,7 +21,23 @@ ZERO = NULL + 1
 _LARGEST = 2**31 - 3
 _WORD = np.int64(2**32)
 
-RESOLUTION = {"_lat_rad": 1e-10, "_lon_rad": 1e-10, "_rad": 1e-7, "_m2": 1e-4, "_m": 1e-3, "_mps": 1e-3, "_s": 1e-4, "dop": 1e-3, "n_": 1.0}
+RESOLUTION = {
+    "_lat_rad": 1e-10,
+    "_lon_rad": 1e-10,
+    "az_rad": 1e-4,
+    "el_rad": 1e-4,
+    "_rad": 1e-7,
+    "_radps": 1e-9,
+    "_m2": 1e-4,
+    "_m": 1e-3,
+    "_mps": 1e-3,
+    "_mps2": 1e-6,
+    "_s": 1e-4,
+    "_dbhz": 0.01,
+    "innovation_": 1e-3,
+    "dop": 1e-3,
+    "n_": 1.0,
+}
 """Finest resolution by name: ending, or beginning for counts; 1e-10 rad of latitude is 0.6 mm."""
 LOG10_RESOLUTION = 1e-4
 """Resolution of log10 of a probability: 0.01 % of the value."""

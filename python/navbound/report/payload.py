@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import polars as pl
 
-from navbound.report import packing
+from navbound.gnss.receivers import FATES
+from navbound.report import packing, sky
+from navbound.report.coast import airports, clip_coastline, clip_land
 from navbound.table import lookup
 from navbound.time import GPS_EPOCH_UNIX_NS, utc_offset_s
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from navbound.read.pieces import Frames
     from navbound.records.run import RunRecord, Summary, TrackSummary, Waypoint, Worst
 
-BUDGET_BYTES = 1_800_000
-"""Records and embedded tracks as text; with the page's own parts (about 0.15 MB) the file stays below 2 MB."""
+BUDGET_BYTES = 1_720_000
+"""Records and embedded tracks as text; with the page's own parts (about 0.25 MB) the file stays below 2 MB."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,8 @@ def build(  # noqa: PLR0917 - as render
     events: pl.DataFrame,
     waypoints: list[Waypoint],
     budget_bytes: int = BUDGET_BYTES,
+    *,
+    satellites: pl.DataFrame | None = None,
 ) -> Page:
     """Select and pack what the page shows.
 
@@ -56,6 +58,8 @@ def build(  # noqa: PLR0917 - as render
         Points named on the map.
     budget_bytes : int
         The worst tracks first get their detail columns embedded until this is used up; the worst track always. [B]
+    satellites : DataFrame, optional
+        What became of every satellite heard.
 
     Returns
     -------
@@ -69,16 +73,20 @@ def build(  # noqa: PLR0917 - as render
         # Only records that hold such a number are walked through, value by value.
         data = _finite(data)
         text = json.dumps(data, separators=(",", ":"), allow_nan=False)
-    room = budget_bytes - len(text)
+    seen = sky.pack(satellites)
+    of_satellites = len(json.dumps(seen.heads, separators=(",", ":"))) + sum(map(len, seen.blocks))
+    room = budget_bytes - len(text) - of_satellites
     heads, blocks, words = _worst_tracks(summary, epochs, room)
-    data["summary"]["assumptions"] += words
-    return Page(data=data | {"tracks": heads}, tracks=blocks)
+    data["summary"]["assumptions"] += words + seen.words
+    heard = [head | {"block": len(blocks) + k} for k, head in enumerate(seen.heads)]
+    return Page(data=data | {"tracks": heads, "heard": heard, "fates": FATES if heard else {}}, tracks=blocks + seen.blocks)
 
 
 def _records(
     summary: Summary, record: RunRecord, epochs: pl.DataFrame | Frames, events: pl.DataFrame, waypoints: list[Waypoint]
 ) -> dict[str, Any]:
     """Everything but the columns of the tracks."""
+    region = _region(epochs, waypoints)
     records = summary.model_dump(mode="json")
     if events.height:
         records["events"] = events.to_dicts()
@@ -90,7 +98,9 @@ def _records(
         "utc_offset_s": utc_offset_s(_first_time_ns(summary, epochs)),
         "gps_epoch_unix_s": GPS_EPOCH_UNIX_NS // 1_000_000_000,
         "charts": lookup.drawn(epochs.columns),
-        "coastline": clip_coastline(*_region(epochs, waypoints)),
+        "coastline": clip_coastline(*region),
+        "land": clip_land(*region),
+        "airports": [w.model_dump(mode="json") for w in airports(_ends(epochs, summary), waypoints)],
     }
 
 
@@ -206,8 +216,22 @@ def _region(epochs: pl.DataFrame | Frames, waypoints: list[Waypoint]) -> tuple[f
     lon_deg -= 180.0
     west, east = float(lon_deg.min()), float(lon_deg.max())
     room = max(2.0, 0.6 * max(north - south, east - west))
-    wide = room / max(0.2, math.cos(math.radians(middle)))
+    # The map is wider than it is high.
+    wide = max(room, north - south) / max(0.2, math.cos(math.radians(middle)))
     return (south - room, west - wide, north + room, east + wide)
+
+
+def _ends(epochs: pl.DataFrame | Frames, summary: Summary) -> NDArray[np.float64]:
+    """Where every track begins and ends: latitude and longitude. [rad]."""
+    if not isinstance(epochs, pl.DataFrame) or not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns) or len(summary.tracks) > MOST_ENDS:
+        return np.empty((0, 2))
+    known = epochs.select("track", "est_lat_rad", "est_lon_rad").drop_nulls().filter(pl.all_horizontal(pl.selectors.float().is_finite()))
+    ends = known.group_by("track", maintain_order=True)
+    return pl.concat([ends.first(), ends.last()]).select("est_lat_rad", "est_lon_rad").to_numpy()
+
+
+MOST_ENDS = 1000
+"""Tracks whose airports are looked for. [1]"""
 
 
 def _places(epochs: pl.DataFrame | Frames, name: str, first: list[float]) -> NDArray[np.float64]:
@@ -217,40 +241,3 @@ def _places(epochs: pl.DataFrame | Frames, name: str, first: list[float]) -> NDA
     if isinstance(epochs, pl.DataFrame):
         return np.concatenate([first, epochs[name].drop_nulls().drop_nans().to_numpy()])
     return np.concatenate([first, epochs.numbers(name)]) if first else epochs.numbers(name)
-
-
-@cache
-def _coastline() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Longitude and latitude in degrees of all points of the prepared file, and whether a segment leads from each to the next.
-
-    The file has one polyline a line, thousandths of a degree, each point as the difference from the one before.
-    """
-    text = files("navbound").joinpath("_web/coastline.txt").read_text(encoding="ascii")
-    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
-    steps = np.fromstring(" ".join(lines), dtype=np.int64, sep=" ").reshape(-1, 2)
-    # A point is two numbers, and a number is followed by one space or the end of its line.
-    ends = np.cumsum([(line.count(" ") + 1) // 2 for line in lines])
-    points = np.cumsum(steps, axis=0)
-    # The sums begin anew with every polyline.
-    before = np.repeat(np.vstack((np.zeros((1, 2), np.int64), points[ends[:-1] - 1])), np.diff(ends, prepend=0), axis=0)
-    lon, lat = ((points - before) / 1000.0).T
-    leads = np.ones(len(lon), dtype=bool)
-    leads[ends - 1] = False
-    return lon, lat, leads
-
-
-def clip_coastline(south: float, west: float, north: float, east: float) -> list[list[int]]:
-    """Coastline inside a region given in degrees: polylines of longitude, latitude in thousandths of a degree, differenced."""
-    middle = (west + east) / 2
-    of_file, lat, leads = _coastline()
-    lon = middle + (of_file - middle + 180.0) % 360.0 - 180.0
-    inside = (lat >= south) & (lat <= north) & (lon >= west) & (lon <= east)
-    # A segment stays when either end is inside; it breaks where the longitude wraps.
-    segment = np.zeros(len(lon) + 1, dtype=np.int8)
-    segment[1:-1] = leads[:-1] & (inside[:-1] | inside[1:]) & (np.abs(np.diff(lon)) < 180.0)
-    edges = np.flatnonzero(np.diff(segment))
-    kept: list[list[int]] = []
-    for first, last in zip(edges[::2], edges[1::2], strict=True):
-        points = np.rint(np.column_stack((lon[first : last + 1], lat[first : last + 1])) * 1000.0).astype(np.int64)
-        kept.append(np.diff(points, axis=0, prepend=np.zeros((1, 2), dtype=np.int64)).ravel().tolist())
-    return kept

@@ -8,7 +8,7 @@ import json
 import re
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from markupsafe import escape
 
@@ -25,7 +25,14 @@ _NEEDED = ("track", "time_ns")
 
 
 def render(  # noqa: PLR0917 - the parts of a run, in the order of its files
-    summary: Summary, record: RunRecord, epochs: pl.DataFrame | Frames, events: pl.DataFrame, waypoints: list[Waypoint], out: Path
+    summary: Summary,
+    record: RunRecord,
+    epochs: pl.DataFrame | Frames,
+    events: pl.DataFrame,
+    waypoints: list[Waypoint],
+    out: Path,
+    *,
+    satellites: pl.DataFrame | None = None,
 ) -> Path:
     """Write the report of one run as a single HTML file that needs no network.
 
@@ -43,6 +50,8 @@ def render(  # noqa: PLR0917 - the parts of a run, in the order of its files
         Points to draw and name on the map.
     out : Path
         File to write, or an existing directory, which receives ``report.html``.
+    satellites : DataFrame, optional
+        What became of every satellite heard, where positions were solved.
 
     Returns
     -------
@@ -57,7 +66,7 @@ def render(  # noqa: PLR0917 - the parts of a run, in the order of its files
     for name in _NEEDED:
         if name not in epochs.columns:
             raise InputError("epochs", f"columns {epochs.columns}", domain=f"tables with a column {name}")
-    page = payload.build(summary, record, epochs, events, waypoints)
+    page = payload.build(summary, record, epochs, events, waypoints, satellites=satellites)
     return write_page(summary.title, summary.verdict.words, page, out / "report.html" if out.is_dir() else out)
 
 
@@ -82,7 +91,7 @@ def _html(title: str, words: str, page: payload.Page) -> str:
     parts = {
         "title": escape(title),
         "words": escape(words),
-        "css": web.joinpath("report.css").read_text(encoding="utf-8"),
+        "css": web.joinpath("report.css").read_text(encoding="utf-8") + _footer(title, page.data),
         "script": script,
         "script_hash": escape(f"sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}"),
         "data": script_safe(page.data),
@@ -90,6 +99,18 @@ def _html(title: str, words: str, page: payload.Page) -> str:
     }
     # What a part holds is not searched for names of parts; a template engine would take longer to load than the page to write.
     return re.sub(r"\{\{ (\w+) \}\}", lambda name: parts[name[1]], template)
+
+
+def _footer(title: str, data: dict[str, Any]) -> str:
+    """What stands at the foot of every printed page, beside its number: what it is of, who made it and when."""
+    record = data.get("record") or data.get("map") or {}
+    made = [
+        f"navbound {record[name]}" if name == "navbound_version" else record[name]
+        for name in ("navbound_version", "created_utc")
+        if record.get(name)
+    ]
+    text = re.sub(r"[^\w .,:;()/+-]", lambda sign: f"\\{ord(sign[0]):x} ", " · ".join([title, *made]))
+    return f'@page {{ @bottom-left {{ content: "{text}"; font: 8px system-ui, sans-serif; color: #454d55; }} }}'
 
 
 def script_safe(data: object) -> str:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound.report import packing
-from navbound.report.payload import Page, clip_coastline
+from navbound.report.coast import clip_coastline
+from navbound.report.payload import Page
 from navbound.report.render import write_page
 
 if TYPE_CHECKING:

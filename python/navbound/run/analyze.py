@@ -30,6 +30,8 @@ from navbound.records.truth import TruthDoubts
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
 from navbound.run.pieces import AUXILIARY, covariance_status, in_pieces, is_large, without_path
+from navbound.table.columns import HEARD
+from navbound.table.declare import schema
 from navbound.units import METRES_PER_NM
 
 if TYPE_CHECKING:
@@ -194,6 +196,7 @@ def material(
         unread=list(dict.fromkeys(each for r in readings for each in r.unread)),
         position_doubts=position_doubts,
         truth_doubts=truth_doubts,
+        satellites=pl.concat([r.satellites for r in readings if r.satellites is not None] or [pl.DataFrame(schema=schema(HEARD))]),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,6 +25,8 @@ SUMMARY = "summary.json"
 EPOCHS = "epochs.parquet"
 EVENTS = "events.parquet"
 REPORT = "report.html"
+SATELLITES = "satellites.parquet"
+"""Only where positions were solved."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -37,6 +39,7 @@ class Run:
     events: pl.DataFrame
     waypoints: list[Waypoint]
     path: Path | None = None
+    satellites: pl.DataFrame | None = None
 
     @property
     def epochs(self) -> pl.DataFrame:
@@ -106,7 +109,7 @@ def own(out: str | Path | None) -> AbstractContextManager[folders.Writer | None]
     FormatError
         The directory cannot be written, holds files that are not a run's, or another job writes in it.
     """
-    return nullcontext() if out is None else folders.own(Path(out), {RECORD, SUMMARY, EPOCHS, EVENTS, REPORT}, "a run's")
+    return nullcontext() if out is None else folders.own(Path(out), {RECORD, SUMMARY, EPOCHS, EVENTS, REPORT, SATELLITES}, "a run's")
 
 
 def write(run: Run, folder: folders.Writer | None) -> Run:
@@ -120,8 +123,11 @@ def write(run: Run, folder: folders.Writer | None) -> Run:
     units = lookup.metadata(run.table.columns, run.record.methods)
     folder.write(EPOCHS, lambda path: run.table.write_parquet(path, compression="zstd", metadata=units))
     folder.write(EVENTS, lambda path: run.events.write_parquet(path, compression="zstd"))
-    folder.write(REPORT, lambda path: render(run.summary, run.record, run.table, run.events, run.waypoints, path))
-    return Run(run.summary, run.record, run.table, run.events, run.waypoints, folder.folder)
+    heard = run.satellites
+    if heard is not None:
+        folder.write(SATELLITES, lambda path: heard.write_parquet(path, compression="zstd"))
+    folder.write(REPORT, lambda path: render(run.summary, run.record, run.table, run.events, run.waypoints, path, satellites=heard))
+    return replace(run, path=folder.folder)
 
 
 def load(path: Path) -> Run:
@@ -142,8 +148,9 @@ def load(path: Path) -> Run:
         summary = Summary.model_validate_json((path / SUMMARY).read_bytes())
         record = RunRecord.model_validate_json((path / RECORD).read_bytes())
         epochs, events = pl.read_parquet(path / EPOCHS), pl.read_parquet(path / EVENTS)
+        satellites = pl.read_parquet(path / SATELLITES) if (path / SATELLITES).is_file() else None
     except OSError as e:
         raise FormatError(path, f"is not a run directory: {e}") from e
     except (ValidationError, pl.exceptions.PolarsError) as e:
         raise FormatError(path, f"holds a damaged record: {e}") from e
-    return Run(summary, record, epochs, events, [], path)
+    return Run(summary, record, epochs, events, [], path, satellites)

@@ -26,8 +26,15 @@ _DRAWN_AT_ONCE = 16
 """Flights of one tile, of some hundredths of a second each."""
 _FUSED_AT_ONCE = 4
 """The same where every flight runs a filter for some seconds: enough for the cores of most machines, and the bar still moves."""
-_WATCHED = ("separation_m", "separation_limit_m", "innovation_memory")
-"""Columns of the monitors across measurements."""
+_BIASES = tuple(f"{sensor}_{axis}_{unit}" for sensor, unit in (("gyro", "radps"), ("accel", "mps2")) for axis in "xyz")
+_WATCHED = (
+    "separation_m",
+    "separation_limit_m",
+    "innovation_memory",
+    *(f"innovation_{kind}" for kind in ("range", "station", "baro")),
+    *(f"{what}_{axis}" for what in ("bias", "sigma_bias") for axis in _BIASES),
+)
+"""Columns of the monitors across measurements, and of the filter's own state."""
 _JUDGED = ("decided", "source", "reasons", "leading")
 """Codes of what the core decided of a filtered position."""
 _CODES = ("nav_mode", "leg", "phase", "available", "doubt", "flight", "reason", "reason_id", *_JUDGED)

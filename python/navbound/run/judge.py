@@ -70,9 +70,9 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
     states = rules.state_names if "state" in epochs.columns else []
     risks = (settings.risk_accuracy, settings.risk_integrity)
     summary = summarise(material, epochs, events, ids=shown, judging=judging, states=states, risks=risks)
-    return Run(
-        summary, _record(material, settings, shown, _counters(material, settings, counters), command), epochs, events, material.waypoints
-    )
+    record = _record(material, settings, shown, _counters(material, settings, counters), command)
+    heard = material.satellites if material.satellites is not None and material.satellites.height else None
+    return Run(summary, record, epochs, events, material.waypoints, satellites=heard)
 
 
 def _judge_pieces(material: Material, pieced: Frames, settings: Settings, command: str) -> Run:

@@ -131,6 +131,27 @@ EPOCHS: tuple[Column, ...] = (
         "solution",
         kind="number",
     ),
+    *row(
+        "innovation_range innovation_station innovation_baro",
+        "largest innovation of the last second over the filter's gate, of ranges to satellites, of measurements of stations, of the "
+        "altimeter; above 1 the measurement was thrown away",
+        "solution",
+        kind="number",
+        shown=True,
+    ),
+    *row(
+        "bias_gyro_x_radps bias_gyro_y_radps bias_gyro_z_radps bias_accel_x_mps2 bias_accel_y_mps2 bias_accel_z_mps2",
+        "biases of the gyroscopes and the accelerometers as the filter estimates them, axes of the body",
+        "solution",
+        shown=True,
+    ),
+    *row(
+        "sigma_bias_gyro_x_radps sigma_bias_gyro_y_radps sigma_bias_gyro_z_radps sigma_bias_accel_x_mps2 sigma_bias_accel_y_mps2 "
+        "sigma_bias_accel_z_mps2",
+        "their standard deviations",
+        "solution",
+        shown=True,
+    ),
     *row("alert", "`normal`, `caution`, `warning`, `unavailable`", "judge", kind="text", shown=True),
     *row("state", "decided navigation specification, e.g. `RNP 0.3`, or `out of RNP`", "judge", kind="text", shown=True),
     *row("p_state_<i>", "probability of the i-th state, from 1", "judge", shown=True),
@@ -222,6 +243,23 @@ RANGES: tuple[Column, ...] = (
         "zenith troposphere",
         "solution",
     ),
+)
+HEARD: tuple[Column, ...] = (
+    *row("track", "whose receiver heard it", "source", kind="text"),
+    *row("time_ns", "its epoch", "source"),
+    *row("sv", "satellite, as `G05`", "source", kind="text"),
+    *row(
+        "fate",
+        "what became of it: `used`, `excluded` by the residual test, or why it was not used: an id of `navbound.gnss.FATES`",
+        "solution",
+        kind="text",
+    ),
+    *row(
+        "az_rad el_rad", "direction from the receiver, azimuth clockwise from true north; null without an orbit or a position", "solution"
+    ),
+    *row("cn0_dbhz", "carrier to noise density, where the receiver states it", "source"),
+    *row("residual_m", "of a range that was used: measured less computed at the position, by the clock of its constellation", "solution"),
+    *row("sigma_m", "its standard deviation in the covariance", "solution"),
 )
 SIGNALS: tuple[Column, ...] = (
     *row("signals", "what its ranges are made of, as `E1-E5a`", "source", kind="text"),
@@ -337,6 +375,7 @@ TABLES = (
     Table("epochs", EPOCHS),
     Table("read", READ),
     Table("ranges", RANGES),
+    Table("heard", HEARD),
     Table("signals", SIGNALS),
     Table("sensors", SENSORS),
     Table("events", EVENTS),

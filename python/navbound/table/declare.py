@@ -23,6 +23,7 @@ UNITS = {
     "mps2": "m/s²",
     "radps": "rad/s",
     "hpa": "hPa",
+    "dbhz": "dB-Hz",
     "1": "1",
     "text": "text",
 }

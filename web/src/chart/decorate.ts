@@ -35,7 +35,8 @@ export function drawHatch(u: uPlot, scene: Scene): void {
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     ctx.fillStyle = hatch(ctx);
-    for (const run of scene.table.unavailable) {
+    const breaks = scene.table.breaks.map((i) => ({ from: i, to: i + 1 }));
+    for (const run of [...scene.table.unavailable, ...breaks]) {
         const left = u.valToPos(u.data[0]![run.from]!, "x", true);
         const right = u.valToPos(u.data[0]![run.to]!, "x", true);
         ctx.fillRect(left, bbox.top, Math.max(right - left, devicePixelRatio), bbox.height);

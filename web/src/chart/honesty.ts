@@ -15,7 +15,8 @@ export function honesty(host: HTMLElement, summary: Summary): void {
     const section = el("section", { class: "honesty", id: "honesty" }, el("h2", {}, "May the covariance be believed?"));
     host.append(section);
     if (summary.honesty === null) {
-        section.append(el("p", {}, "No truth: the honesty of the covariance could not be checked. Every bound on this page assumes that it is right."));
+        const why = summary.verdict.truth_known ? "The epochs whose truth is known have no covariance, or no complete one" : "No truth";
+        section.append(el("p", {}, `${why}: the consistency of the covariance could not be checked. Every bound on this page assumes that it is right.`));
     } else {
         section.append(el("div", { class: "two" }, histogram(summary.honesty), words(summary.honesty)));
     }

@@ -3,7 +3,7 @@
 import { el } from "../show/dom.ts";
 
 export function missing(host: HTMLElement, title: string, why: string): () => void {
-    const note = el("section", { class: "chart missing" }, el("div", { class: "chart-head" }, el("h3", {}, title)), el("p", {}, why));
+    const note = el("p", { class: "constant" }, el("strong", {}, `${title}: `), why);
     host.append(note);
     return () => note.remove();
 }

@@ -7,9 +7,10 @@ import type { WordName } from "../data/table.ts";
 import { choice, el, freshId } from "../show/dom.ts";
 import { clock, date, NONE, plain } from "../show/format.ts";
 import { colour, type Colour } from "../show/theme.ts";
+import { constant, folded } from "./constant.ts";
 import { drawEvents, drawHatch, drawLabels, drawUnits } from "./decorate.ts";
 import { numbers, readout, type Word } from "./readout.ts";
-import { asinhTicks, clockTicks, extent, isolated, type Extent } from "./ticks.ts";
+import { asinhTicks, bare, clockTicks, extent, isolated, type Extent } from "./ticks.ts";
 
 export interface Line {
     /** Column name; also the key of the value shown at the cursor. */
@@ -60,6 +61,14 @@ export interface StripOptions {
     noPaths?: boolean;
     /** Columns of words shown with the values at the cursor. */
     words?: { key: WordName; label: string; text?: (word: string | null) => string }[];
+    /** The axis need not hold zero: no value is near it. */
+    free?: boolean;
+    /** No names at the lines' ends: there are more than fit. */
+    noLabels?: boolean;
+    /** Is drawn also where its lines stay where they are: what it shows is more than they. */
+    varies?: boolean;
+    /** A sentence on the epoch under the cursor. */
+    says?: (i: number) => string;
     /** Heights of the horizontal grid lines; uPlot's choice without it. */
     ySplits?: (min: number, max: number) => number[];
 }
@@ -70,14 +79,17 @@ const LABEL_ROOM_PX = 168;
 const FONT = '11px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
 
 export function strip(host: HTMLElement, scene: Scene, options: StripOptions): () => void {
+    const throughout = constant(scene, options);
+    if (throughout !== null) return folded(host, options, throughout);
     const state = { scale: options.scales[0]!, visible: new Set(options.lines.filter((l) => l.hidden !== true).map((l) => l.key)) };
     const title = freshId("title");
     const plot = el("div", { class: "plot", "aria-hidden": "true" });
     const values = readout(options.lines.filter((l) => l.quiet !== true), state.visible, options.show, () => rebuild(), wordsAt(scene, options.words));
     const scales = options.scales.length > 1 ? choice(`Scale of ${options.title}`, options.scales.map((s) => [s, SCALE_NAMES[s]]), state.scale, (s) => { state.scale = s; rebuild(); }) : null;
     const table = numbers(options.lines, options.show, options.title);
+    const sentence = options.says === undefined ? null : el("p", { class: "note" });
     const figure = el("figure", { class: "chart", id: options.id, role: "group", "aria-labelledby": title },
-        el("div", { class: "chart-head" }, el("h3", { id: title }, options.title), scales), el("figcaption", {}, options.note), values.element, plot, table.element);
+        el("div", { class: "chart-head" }, el("h3", { id: title }, options.title), scales), el("figcaption", {}, options.note), values.element, sentence, plot, table.element);
     host.append(figure);
 
     let u: uPlot | null = null;
@@ -85,6 +97,7 @@ export function strip(host: HTMLElement, scene: Scene, options: StripOptions): (
     const follow = (): void => {
         const i = scene.cursor.get();
         values.update(i);
+        if (sentence !== null) sentence.textContent = options.says!(i);
         table.update(i);
         if (u === null) return;
         quiet = true;
@@ -143,11 +156,11 @@ function drawn(options: StripOptions): Line[] {
     return [...options.lines].sort((a, b) => (a.front ?? 0) - (b.front ?? 0));
 }
 
-function seriesOf(options: StripOptions, visible: Set<string>): uPlot.Series[] {
+function seriesOf(options: StripOptions, visible: Set<string>, breaks: number[]): uPlot.Series[] {
     return drawn(options).flatMap((line) => {
         const one: uPlot.Series = {
             label: line.key, show: visible.has(line.key), stroke: colour(line.colour), width: line.width ?? (line.mirror && !line.limit ? 0.9 : 1.25), dash: line.dash,
-            points: lonely(line.values, colour(line.colour)), spanGaps: false, scale: "y", ...(options.noPaths ? { paths: () => null } : {}),
+            points: lonely(line.values, colour(line.colour)), spanGaps: false, scale: "y", gaps: (u, _s, from, to, gaps) => [...gaps, ...breaks.filter((i) => i >= from && i < to).map((i): [number, number] => [u.valToPos(u.data[0]![i]!, "x", true), u.valToPos(u.data[0]![i + 1]!, "x", true)])].sort((a, b) => a[0] - b[0]), ...(options.noPaths ? { paths: () => null } : {}),
         };
         return line.mirror ? [one, { ...one }] : [one];
     });
@@ -182,11 +195,11 @@ function rangeOf(u: uPlot, scene: Scene, options: StripOptions, state: { scale: 
     const w = scene.window.get();
     const [from, to] = [w?.from ?? 0, w?.to ?? u.data[0]!.length - 1];
     const shown = options.lines.filter((line) => state.visible.has(line.key) && (state.scale !== "data" || line.limit !== true));
-    const [low, high] = extent(shown, from, to, state.scale === "log" ? options.floor ?? 1e-12 : null);
+    const [low, high] = options.free === true ? bare(shown, from, to) : extent(shown, from, to, state.scale === "log" ? options.floor ?? 1e-12 : null);
     // Whole decades, with a free one above and below what is drawn.
     if (state.scale === "log") return [10 ** (Math.floor(Math.log10(low)) - 1), 10 ** (Math.ceil(Math.log10(high)) + 1)];
     const room = 0.06 * (high - low || Math.abs(high) || 1);
-    return [low < 0 ? low - room : low, high + room];
+    return [low < 0 || options.free === true ? low - room : low, high + room];
 }
 
 function build(scene: Scene, options: StripOptions, state: { scale: Scale; visible: Set<string> }, width: number, isQuiet: () => boolean, follow: () => void): uPlot.Options {
@@ -218,7 +231,7 @@ function build(scene: Scene, options: StripOptions, state: { scale: Scale; visib
                 values: (_u, splits) => splits.map((s) => (s == null ? "" : options.yTick ? options.yTick(s) : plain(s, s !== 0 && Math.abs(s) < 1 ? 2 : Math.abs(s) < 10 && s % 1 !== 0 ? 1 : 0))),
             },
         ],
-        series: [{}, ...seriesOf(options, state.visible)],
+        series: [{}, ...seriesOf(options, state.visible, scene.table.breaks)],
         bands: bandsOf(options),
         hooks: {
             drawClear: [(u) => drawHatch(u, scene)],
@@ -226,7 +239,7 @@ function build(scene: Scene, options: StripOptions, state: { scale: Scale; visib
                 (u) => options.draw?.(u, scene),
                 (u) => drawEvents(u, scene),
                 (u) => drawUnits(u, options.unit, along ? "NM" : "UTC", FONT),
-                (u) => { if (wide && !options.noPaths) drawLabels(u, options.lines, state.visible, FONT, options.floor); },
+                (u) => { if (wide && !options.noPaths && !options.noLabels) drawLabels(u, options.lines, state.visible, FONT, options.floor); },
             ],
             setCursor: [
                 (u) => {

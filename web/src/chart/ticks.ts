@@ -22,6 +22,19 @@ export function extent(lines: { values: Float64Array; mirror?: boolean }[], from
     return floor === null ? [Math.min(0, low), Math.max(0, high)] : [low, high];
 }
 
+/** Smallest and largest value, without a zero that no value is near. */
+export function bare(lines: { values: Float64Array }[], from: number, to: number): Extent {
+    let [low, high] = [Infinity, -Infinity];
+    for (const { values } of lines) {
+        for (const v of values.subarray(from, to + 1)) {
+            if (!Number.isFinite(v)) continue;
+            low = Math.min(low, v);
+            high = Math.max(high, v);
+        }
+    }
+    return low > high ? [0, 1] : [low, high];
+}
+
 const CLOCK_STEPS_S = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 10800, 21600, 43200, 86400];
 
 /** Times at round clock values, at least `space` pixels apart. */

@@ -35,5 +35,13 @@ export interface Payload {
     gps_epoch_unix_s: number;
     /** Polylines of longitude, latitude in thousandths of a degree, differenced. */
     coastline: number[][];
+    /** Rings of land and of the lakes in it, likewise. */
+    land: number[][];
+    /** Airports at the ends of tracks. */
+    airports: Waypoint[];
     tracks: PackedTrack[];
+    /** Satellites heard by each receiver, where positions were solved. */
+    heard: PackedTrack[];
+    /** What may become of a satellite: words by id. */
+    fates: Record<string, string>;
 }

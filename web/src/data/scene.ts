@@ -1,5 +1,6 @@
 // What every chart is given: one track, and the stores that link the charts.
 
+import type { Satellite } from "./heard.ts";
 import type { Ground } from "./others.ts";
 import type { Payload } from "./records.ts";
 import { Store } from "./store.ts";
@@ -21,14 +22,16 @@ export interface Scene {
     theme: Store<number>;
     /** Positions of all embedded tracks, as soon as they are read. */
     grounds: Store<Ground[]>;
+    /** Satellites heard on this track. */
+    heard: Satellite[];
 }
 
 /** A component: fills its host, returns what removes its listeners. */
 export type Component = (host: HTMLElement, scene: Scene) => () => void;
 
-export function scene(payload: Payload, table: Table, theme: Store<number>, axis: Store<AxisName>, grounds: Store<Ground[]>): Scene {
+export function scene(payload: Payload, table: Table, theme: Store<number>, axis: Store<AxisName>, grounds: Store<Ground[]>, heard: Satellite[] = []): Scene {
     if (!table.alongIsAxis) axis.set("time");
-    return { payload, table, cursor: new Store(0), window: new Store<Window>(null), axis, theme, grounds };
+    return { payload, table, cursor: new Store(0), window: new Store<Window>(null), axis, theme, grounds, heard };
 }
 
 export const METRES_PER_NM = 1852;

@@ -2,16 +2,26 @@
 
 import type { ColumnName, WordColumn } from "../columns.gen.ts";
 import type { SeriesColumn, SeriesWord } from "./buckets.ts";
+import type { HeardColumn, HeardWord } from "./heard.ts";
 import { inflate, unpack } from "./packing.ts";
 import type { PackedTrack, Payload } from "./records.ts";
 import { expand, runsOf, type Run } from "./runs.ts";
 
 /** What a chart may ask for. A name that the list of columns does not show in a report is an error of type, not an empty chart. */
-export type NumberName = ColumnName | SeriesColumn;
-export type WordName = WordColumn | SeriesWord;
+export type NumberName = ColumnName | SeriesColumn | HeardColumn;
+export type WordName = WordColumn | SeriesWord | HeardWord;
 
 function expanded(head: PackedTrack): Map<string, (string | null)[]> {
     return new Map(Object.entries(head.words).map(([name, packed]) => [name, expand(packed.words, packed.runs)]));
+}
+
+/** Steps of more than three times the usual one. */
+const BREAK = 3;
+
+export function breaksOf(elapsed_s: Float64Array): number[] {
+    const steps = Float64Array.from({ length: Math.max(0, elapsed_s.length - 1) }, (_, i) => elapsed_s[i + 1]! - elapsed_s[i]!);
+    const usual = steps.slice().sort()[Math.floor(steps.length / 2)] ?? Infinity;
+    return [...steps.keys()].filter((i) => steps[i]! > BREAK * usual);
 }
 
 export class Table {
@@ -23,6 +33,8 @@ export class Table {
     readonly start_utc_s: number;
     /** Spans without a usable position or bound, with the reason given. */
     readonly unavailable: Run[];
+    /** Epochs after which so much time passes without one that no line may cross it. */
+    readonly breaks: number[];
     private readonly numbers: Map<string, Float64Array>;
     private readonly words: Map<string, (string | null)[]>;
 
@@ -34,6 +46,7 @@ export class Table {
         this.start_utc_s = start_utc_s;
         this.words = words;
         this.unavailable = this.findUnavailable();
+        this.breaks = breaksOf(this.elapsed_s);
     }
 
     static async open(payload: Payload, head: PackedTrack, base64: string): Promise<Table> {

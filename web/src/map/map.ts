@@ -28,17 +28,15 @@ export function map(host: HTMLElement, scene: Scene): () => void {
     let others: Line[] = [];
 
     const paint = (): void => {
-        const pen = still.getContext("2d");
-        if (pen === null || view.width === 0) return;
-        pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+        const pen = begun(still, view);
+        if (pen === null) return;
         paintStill(pen, view, shapes, others, scene);
         scaleBar(bar, view, shapes);
         move();
     };
     const move = (): void => {
-        const pen = moving.getContext("2d");
-        if (pen === null || view.width === 0) return;
-        pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+        const pen = begun(moving, view);
+        if (pen === null) return;
         words.textContent = sentence(scene, paintCursor(pen, view, shapes, scene));
         surface.dataset.k = String(view.k);
     };
@@ -82,9 +80,9 @@ export function map(host: HTMLElement, scene: Scene): () => void {
         el("p", { class: "sr", id: `${title}-help` }, "Arrow keys move the map, plus and minus zoom, 0 shows the whole route, c goes to the cursor. The position at the cursor is given as text below the map."));
     host.append(figure);
 
-    const resize = (): void => {
+    const resize = (anew = false): void => {
         const [width, height] = [surface.clientWidth, surface.clientHeight];
-        if (width === 0 || (width === view.width && height === view.height)) return;
+        if (width === 0 || (!anew && width === view.width && height === view.height)) return;
         const first = view.width === 0 || view.k === fitted;
         [view.width, view.height] = [width, height];
         for (const canvas of [still, moving]) [canvas.width, canvas.height] = [Math.round(width * devicePixelRatio), Math.round(height * devicePixelRatio)];
@@ -97,15 +95,24 @@ export function map(host: HTMLElement, scene: Scene): () => void {
         otherKey.hidden = others.length === 0;
         if (others.length > 0) paint();
     };
-    const observer = new ResizeObserver(resize);
+    const observer = new ResizeObserver(() => resize());
     observer.observe(surface);
     resize();
-    const ends = [gestures(surface, { zoom, pan, pick, whole, toCursor: toTunnel }), scene.cursor.watch(move), scene.theme.watch(() => { resize(); paint(); }), scene.grounds.watch(showOthers)];
+    const ends = [gestures(surface, { zoom, pan, pick, whole, toCursor: toTunnel }), scene.cursor.watch(move), scene.theme.watch(() => { resize(true); }), scene.grounds.watch(showOthers)];
     return () => {
         ends.forEach((end) => end());
         observer.disconnect();
         figure.remove();
     };
+}
+
+/** An empty canvas. What is cleared while paper is laid out is cleared through to the sheet: there a canvas is drawn once, when it is new. */
+function begun(canvas: HTMLCanvasElement, view: View): CanvasRenderingContext2D | null {
+    const pen = canvas.getContext("2d");
+    if (pen === null || view.width === 0) return null;
+    pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
+    if (!document.documentElement.classList.contains("printing")) pen.clearRect(0, 0, view.width, view.height);
+    return pen;
 }
 
 function errorSize(scene: Scene): number {

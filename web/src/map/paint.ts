@@ -63,7 +63,7 @@ export function stroke(pen: CanvasRenderingContext2D, style: { colour: string; w
 }
 
 export function paintStill(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, others: Line[], scene: Scene): void {
-    pen.clearRect(0, 0, view.width, view.height);
+    fillLand(pen, view, shapes.land);
     stroke(pen, { colour: colour("rule"), width: 1 }, () => shapes.graticule.forEach((line) => trace(pen, view, line)));
     stroke(pen, { colour: colour("coast"), width: 1 }, () => shapes.coast.forEach((line) => trace(pen, view, line)));
     if (shapes.tunnel !== null) {
@@ -76,6 +76,26 @@ export function paintStill(pen: CanvasRenderingContext2D, view: View, shapes: Sh
     paintTrack(pen, view, shapes, scene);
     paintEvents(pen, view, shapes, scene);
     paintNames(pen, view, shapes);
+}
+
+/** Land is a little darker than the sea; points closer than a pixel add nothing. */
+function fillLand(pen: CanvasRenderingContext2D, view: View, land: Line[]): void {
+    pen.save();
+    pen.fillStyle = colour("land");
+    pen.beginPath();
+    for (const ring of land) {
+        let [lastX, lastY] = [NaN, NaN];
+        for (let i = 0; i < ring.length; i += 2) {
+            const [x, y] = toScreen(view, ring[i]!, ring[i + 1]!);
+            if (!Number.isFinite(x) || Math.abs(x - lastX) + Math.abs(y - lastY) < 1) continue;
+            if (Number.isNaN(lastX)) pen.moveTo(x, y);
+            else pen.lineTo(x, y);
+            [lastX, lastY] = [x, y];
+        }
+        pen.closePath();
+    }
+    pen.fill("evenodd");
+    pen.restore();
 }
 
 function paintTrack(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, scene: Scene): void {
@@ -155,7 +175,6 @@ function paintNames(pen: CanvasRenderingContext2D, view: View, shapes: Shapes): 
 
 /** Draws the aircraft and its 95 % error at the cursor; returns how much the error is exaggerated, NaN without one. */
 export function paintCursor(pen: CanvasRenderingContext2D, view: View, shapes: Shapes, scene: Scene): number {
-    pen.clearRect(0, 0, view.width, view.height);
     const i = scene.cursor.get();
     const { table } = scene;
     const [px, py] = [shapes.track[2 * i]!, shapes.track[2 * i + 1]!];

@@ -10,6 +10,8 @@ export type Line = Float64Array;
 export interface Shapes {
     plane: Plane;
     coast: Line[];
+    /** Rings; a point that an odd number of them surround is on land. */
+    land: Line[];
     /** Meridians and parallels. */
     graticule: Line[];
     track: Line;
@@ -51,9 +53,10 @@ export function shapes(scene: Scene): Shapes | null {
         return place(p.lat_rad, p.lon_rad);
     });
     const tunnel: Shapes["tunnel"] = path !== null && course && rnp ? { one: [edge(-1), edge(1)], two: [edge(-2), edge(2)] } : null;
-    const waypoints = payload.waypoints.map((waypoint) => ({ point: place(waypoint.lat_rad, waypoint.lon_rad), waypoint }));
+    const waypoints = [...payload.waypoints, ...payload.airports].map((waypoint) => ({ point: place(waypoint.lat_rad, waypoint.lon_rad), waypoint }));
     const coast = payload.coastline.map((differences) => decode(differences, place));
-    return { plane: on, coast, graticule: graticule(lat, lon, place), track, put, path, tunnel, waypoints, bounds: boundsOf([track, ...(path ? [path] : [])]) };
+    const land = payload.land.map((differences) => decode(differences, place));
+    return { plane: on, coast, land, graticule: graticule(lat, lon, place), track, put, path, tunnel, waypoints, bounds: boundsOf([track, ...(path ? [path] : [])]) };
 }
 
 function centre(lat: Float64Array, lon: Float64Array): { lat: number; lon: number } | null {

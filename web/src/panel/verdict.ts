@@ -36,7 +36,7 @@ export function verdict(host: HTMLElement, payload: Payload): void {
         el("p", { class: "state" }, mark, valueOf("id", v.id, state.word), el("span", { class: "requirement" }, v.requirement), v.experimental ? el("span", { class: "tag" }, "experimental") : null,
             v.n_implausible > 0 ? el("span", { class: "tag" }, valueOf("n_implausible", v.n_implausible, count(v.n_implausible)), ` of ${count(v.n_epochs)} epochs cannot be true`) : null,
             v.n_judged < v.least_share * v.n_epochs ? el("span", { class: "tag" }, `${share((v.n_epochs - v.n_judged) / v.n_epochs)} of the epochs not ok or not judged`) : null),
-        el("p", { class: "words" }, v.words),
+        lead(v),
         contradictions(v.belief),
         story(payload),
         facts(payload, method?.risk),
@@ -56,17 +56,19 @@ export function toneOf(v: Pick<Verdict, "id" | "assumed" | "share_contained" | "
     return v.assumed.some((a) => a !== "no_path") ? "unknown" : "inside";
 }
 
+/** What the numbers beside it do not say; a machine finds the shares in it. */
+function lead(v: Verdict): HTMLElement {
+    const words = valueOf("share_inside", v.share_inside, v.lead || v.words);
+    words.classList.replace("value", "lead");
+    return el("p", { class: "words", "data-key": "share_contained", "data-value": v.share_contained ?? undefined }, words);
+}
+
 function facts(payload: Payload, risk: number | undefined): HTMLElement {
     const v = payload.summary.verdict;
-    const integrity = payload.record.risk_integrity;
-    const fact = (label: string, value: Node | string, more: string | null): HTMLElement => el("div", { class: "fact" }, el("dt", {}, label), el("dd", {}, value), more === null ? null : el("dd", { class: "more" }, more));
-    const rows = [
-        fact(`Bound within RNP${risk === undefined ? "" : `, ${level(risk)}`}`, valueOf("share_inside", v.share_inside, share(v.share_inside)), `of ${count(v.n_judged)} judged epochs`),
-        fact(`Bound within 2 RNP, ${level(integrity)}`, valueOf("share_contained", v.share_contained, share(v.share_contained)), `${count(v.n_degraded)} degraded, ${count(v.n_unjudged)} without a bound, of ${count(v.n_epochs)} epochs`),
-    ];
-    for (const check of v.belief?.bounds.filter((b) => b.risk === risk) ?? []) rows.push(contained(check));
+    const rows: HTMLElement[] = [];
     if (v.worst_accuracy !== null) rows.push(worst("Worst margin to RNP", "worst_accuracy", v.worst_accuracy, payload));
     if (v.worst_integrity !== null) rows.push(worst("Worst margin to 2 RNP", "worst_integrity", v.worst_integrity, payload));
+    for (const check of v.belief?.bounds.filter((b) => b.risk === risk) ?? []) rows.push(contained(check));
     return el("dl", { class: "facts" }, ...rows);
 }
 

@@ -66,8 +66,8 @@ export function powerOfTen(exponent: number): string {
 
 export function risk(value: number | null | undefined): string {
     if (value == null || !Number.isFinite(value)) return NONE;
-    // A double holds nothing smaller: zero says only that.
-    if (value === 0) return `< ${powerOfTen(-307)}`;
+    // Smaller ones say nothing more: no model of errors is known so far.
+    if (value < 1e-12) return `< ${powerOfTen(-12)}`;
     if (value >= 1e-3) return String(Number(value.toPrecision(3)));
     let exponent = Math.floor(Math.log10(value));
     let mantissa = (value / 10 ** exponent).toFixed(1);

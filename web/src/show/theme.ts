@@ -2,7 +2,7 @@
 
 import { Store } from "../data/store.ts";
 
-export type Colour = "ink" | "muted" | "rule" | "ground" | "panel" | "normal" | "caution" | "warning" | "path" | "limit" | "m1" | "m2" | "m3" | "m4" | "m5" | "s1" | "s2" | "s3" | "s4" | "s5" | "coast";
+export type Colour = "ink" | "muted" | "rule" | "ground" | "panel" | "normal" | "caution" | "warning" | "path" | "limit" | "m1" | "m2" | "m3" | "m4" | "m5" | "s1" | "s2" | "s3" | "s4" | "s5" | "coast" | "land";
 
 export function colour(name: Colour): string {
     const value = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();

@@ -1,4 +1,5 @@
 //! A receiver's observations and broadcast messages to ranges: one rule for positions and for the monitors on board.
 
+pub mod heard;
 pub mod ranges;
 pub mod signals;

@@ -103,15 +103,25 @@ impl Unused {
 pub struct Tally {
     unused: [usize; Unused::ALL.len()],
     used: Vec<u32>,
+    /// Satellites without a range since they were last taken, where they are listed.
+    listed: Option<Vec<(SatelliteId, Unused)>>,
 }
 
 impl Default for Tally {
     fn default() -> Self {
-        Self { unused: [0; Unused::ALL.len()], used: vec![0; SYSTEMS * NUMBERS * MESSAGES.len()] }
+        Self { unused: [0; Unused::ALL.len()], used: vec![0; SYSTEMS * NUMBERS * MESSAGES.len()], listed: None }
     }
 }
 
 impl Tally {
+    /// One that lists the satellites without a range.
+    pub(crate) fn listing(list: bool) -> Self {
+        Self { listed: list.then(Vec::new), ..Self::default() }
+    }
+    /// Those listed since this was last called.
+    pub(crate) fn take_listed(&mut self) -> Vec<(SatelliteId, Unused)> {
+        self.listed.as_mut().map(core::mem::take).unwrap_or_default()
+    }
     /// Count satellites that are not used.
     pub fn leave(&mut self, why: Unused, n: usize) {
         self.unused[why as usize] += n;
@@ -383,7 +393,12 @@ impl Source<'_> {
                     beyond.push(more);
                     tally.used[slot(satellite, message)] += 1;
                 }
-                Err(why) => tally.leave(why, 1),
+                Err(why) => {
+                    tally.leave(why, 1);
+                    if let Some(listed) = &mut tally.listed {
+                        listed.push((satellite, why));
+                    }
+                }
             }
         }
     }

@@ -56,6 +56,8 @@ class Reading:
         Why the positions may be elsewhere; a truth decides.
     unread : list of str
         Columns, or words of columns, that speak of integrity by their name and are not understood.
+    satellites : DataFrame, optional
+        What became of every satellite heard, where the positions were solved.
     """
 
     epochs: pl.DataFrame
@@ -68,6 +70,7 @@ class Reading:
     unread: list[str] = field(default_factory=list)
     position_doubts: list[str] = field(default_factory=list)
     place_doubts: list[str] = field(default_factory=list)
+    satellites: pl.DataFrame | None = None
 
 
 def read(path: str | Path, *, columns: Mapping[str, str] | None = None, needs: Sequence[str] = POSITION) -> Reading:

@@ -46,7 +46,7 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
     if observations.n_epochs == 0:
         raise without_epochs(observations)
     require_same_time(observations, navigation)
-    solution = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem)
+    solution = solving.solve(observations, navigation, signals="auto", systems="GEC", track=source.stem, keep_ranges=True)
     without = solution.epochs.filter(pl.col("est_lat_rad").is_null())
     repeats = separate(solution.epochs.filter(pl.col("est_lat_rad").is_not_null()).sort("time_ns", maintain_order=True))
     known = repeats.epochs
@@ -88,4 +88,5 @@ def _reading(source: Source, navigation: gnss.Navigation, solving: Solving) -> R
         left_out=lost,
         position_doubts=doubts,
         place_doubts=header.doubts,
+        satellites=solution.heard,
     )

@@ -27,7 +27,8 @@ REGION_RISK = 0.05
 
 def consistency_of(epochs: pl.DataFrame) -> CovarianceConsistency | None:
     """NEES and PIT in three dimensions where the vertical is known, otherwise in two."""
-    vertical = {"nse_u_m", "cov_uu_m2"} <= set(epochs.columns)
+    # A typed sigma is one of the horizontal axes alone.
+    vertical = all(name in epochs.columns and np.isfinite(column_of(epochs, name)).any() for name in ("nse_u_m", "cov_uu_m2"))
     errors = ("nse_e_m", "nse_n_m", "nse_u_m") if vertical else ("nse_e_m", "nse_n_m")
     if not set(errors) <= set(epochs.columns) or "cov_ee_m2" not in epochs.columns:
         return None

@@ -9,10 +9,12 @@ import polars as pl
 from navbound import evaluation
 from navbound.methods import method
 from navbound.records.run import EventSummary, Summary
+from navbound.run.summary.approaches import deviation_bands, deviation_groups
 from navbound.run.summary.consistency import consistency_of
 from navbound.run.summary.groups import phases, protection_of, tracks
 from navbound.run.summary.margins import by_status, with_margins
 from navbound.run.summary.methods import evaluated
+from navbound.run.summary.satellites import satellites_of
 from navbound.run.summary.verdict import facts_of, verdict_of
 
 if TYPE_CHECKING:
@@ -77,6 +79,9 @@ def summarise(
         procedures=material.procedures,
         rejected=material.rejected,
         n_status=by_status(epochs),
+        groups=deviation_groups(margins, material.labels),
+        bands=deviation_bands(epochs),
+        satellites=satellites_of(material.satellites),
     )
 
 

@@ -140,8 +140,9 @@ def verdict_of(
         n_truth_doubted=material.truth_doubts.n,
         truth_doubts=material.truth_doubts.words,
     )
-    words = verdict_words(verdict, judge, risks, material.covariance)
-    return verdict.model_copy(update={"words": f"{words}{protection_words(protection)}"})
+    words, lead = verdict_words(verdict, judge, risks, material.covariance)
+    of_levels = protection_words(protection)
+    return verdict.model_copy(update={"words": f"{words}{of_levels}", "lead": f"{lead}{of_levels}"})
 
 
 def _assumed(material: Material, judging: str) -> list[Literal["sigma_typed", "sigma_coded", "no_path"]]:

@@ -32,8 +32,8 @@ HEADLINES: dict[VerdictId, str] = {
 """The first words of each verdict."""
 
 
-def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, float], covariance: CovarianceOrigin) -> str:
-    """What a navigator wants to know first, in sentences."""
+def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, float], covariance: CovarianceOrigin) -> tuple[str, str]:
+    """What a navigator wants to know first, in sentences: all of them, and those whose numbers a page does not show beside them."""
     assumed = _assumed(verdict, covariance)
     first = _first(verdict, risks)
     parts = [f"{assumed}: {first[0].lower()}{first[1:]}" if assumed else first]
@@ -41,8 +41,7 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
         parts += _not_shown(verdict)
     if verdict.id != "inside":
         parts += _reasons(verdict)
-    if verdict.worst_accuracy is not None:
-        parts.append(_worst(verdict.worst_accuracy))
+    n_before_worst = len(parts)
     parts += [f"{doubt}." for doubt in verdict.position_doubts]
     if verdict.n_implausible:
         parts.append(
@@ -55,9 +54,11 @@ def verdict_words(verdict: Verdict, judged: MethodResult, risks: tuple[float, fl
             f"the longest {verdict.longest_step_s:.6g} s."
         )
     parts += unread_words(verdict.unread)
-    parts.append(f"Judged by {judged.title} ({judged.id}, {judged.provenance}).")
-    parts += truth_words(verdict)
-    return " ".join(parts)
+    judged_by = f"Judged by {judged.title} ({judged.id}, {judged.provenance})."
+    worst = [] if verdict.worst_accuracy is None else [_worst(verdict.worst_accuracy)]
+    of_truth, of_truth_beside = truth_words(verdict), truth_words(verdict, beside_numbers=True)
+    words = [*parts[:n_before_worst], *worst, *parts[n_before_worst:], judged_by, *of_truth]
+    return " ".join(words), " ".join([*parts, *of_truth_beside])
 
 
 def unread_words(unread: Sequence[str]) -> list[str]:

@@ -58,12 +58,16 @@ def _false(bounds: list[BoundCheck], levels: list[LevelCheck]) -> list[str]:
     return named
 
 
-def truth_words(verdict: Verdict) -> list[str]:
-    """How far truth is known, and how often each bound contained the error, with its interval and what the epochs are worth."""
-    return ([verdict.truth_doubts] if verdict.truth_doubts else []) + _checked(verdict)
+def truth_words(verdict: Verdict, *, beside_numbers: bool = False) -> list[str]:
+    """How far truth is known, and how often each bound contained the error, with its interval and what the epochs are worth.
+
+    Beside the numbers of the lateral bounds the sentences that say the same are left out.
+    """
+    return ([verdict.truth_doubts] if verdict.truth_doubts else []) + _checked(verdict)[1 if beside_numbers else 0 :]
 
 
 def _checked(verdict: Verdict) -> list[str]:
+    """The first sentence says how far truth is known; a page has that beside the verdict."""
     belief = verdict.belief
     if not verdict.truth_known:
         return ["No truth: the covariance could not be checked."]

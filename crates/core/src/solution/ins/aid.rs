@@ -344,8 +344,10 @@ impl Filter {
         if standing == Standing::LeftOut {
             self.slots.set_anew(&mut self.joint, place, 0.0, slow.sigma);
         }
+        let square = look.innovation * look.innovation / (look.white + look.states);
         self.innovations[kind.index()].n_gated += 1;
-        Some(Aided::Gated { square: look.innovation * look.innovation / (look.white + look.states) })
+        self.innovations[kind.index()].examined(crate::special::float::sqrt(square / self.gates[0]));
+        Some(Aided::Gated { square })
     }
 
     /// The measurement holds a further state, added as it is.
@@ -358,6 +360,7 @@ impl Filter {
         let s = self.variance(&scalar.row, scalar.variance);
         let normalised = scalar.innovation / crate::special::float::sqrt(s);
         let square = normalised * normalised;
+        self.innovations[kind.index()].examined(crate::special::float::sqrt(square / self.gates[0]));
         if !(square <= self.gates[0]) {
             self.innovations[kind.index()].n_gated += 1;
             return Aided::Gated { square };
@@ -399,6 +402,7 @@ impl Filter {
         let carried = rows.map(|h| self.joint.times(&h));
         let s = Matrix3::from_fn(|i, j| rows[i].of(&carried[j])) + Matrix3::from_diagonal(&eigen.eigenvalues);
         let square = s.cholesky().map_or(f64::NAN, |c| y.dot(&c.solve(&y)));
+        self.innovations[kind.index()].examined(crate::special::float::sqrt(square / self.gates[1]));
         if !(square <= self.gates[1]) {
             self.innovations[kind.index()].n_gated += 3;
             return Aided::Gated { square };

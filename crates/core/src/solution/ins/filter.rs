@@ -18,6 +18,7 @@ use crate::frame::{Covariance, Enu};
 use crate::quantity::{GpsTime, OutOfDomain};
 use crate::signal::{Constellation, ImuIncrement};
 use crate::special::chi::chi_factor;
+use crate::special::float::sqrt;
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
 /// Largest difference between the time of a state and the time for which a position is requested \[s\]: the rounding of time tags. At 250 m/s
@@ -86,6 +87,8 @@ pub struct Solution {
     pub attitude_rad2: Matrix3<f64>,
     /// Biases of the gyroscopes \[rad/s\] and accelerometers \[m/s²\].
     pub biases: [Vector3<f64>; 2],
+    /// Their standard deviations.
+    pub sigma_biases: [Vector3<f64>; 2],
     /// What keeps the position.
     pub mode: Mode,
 }
@@ -192,6 +195,10 @@ impl Filter {
     pub const fn stopped(&self) -> Option<&Stop> {
         self.stopped.as_ref()
     }
+    /// To take from the sums of the innovations of a kind.
+    pub(super) const fn innovations_mut(&mut self, kind: Kind) -> &mut Innovations {
+        &mut self.innovations[kind.index()]
+    }
     /// Sums of the innovations of a kind.
     pub const fn innovations(&self, kind: Kind) -> &Innovations {
         &self.innovations[kind.index()]
@@ -246,6 +253,7 @@ impl Filter {
             velocity_m2ps2: block(V),
             attitude_rad2: block(PHI),
             biases: self.biases,
+            sigma_biases: [BG, BA].map(|first| Vector3::from_fn(|k, _| sqrt(self.joint.get(first + k, first + k)))),
             mode: if self.is_aligning() { Mode::Aligning } else { self.modes.mode() },
         }
     }

@@ -140,6 +140,15 @@ impl Fusion {
             _ => self.main.innovations(kind),
         }
     }
+    /// The largest innovation of a kind since this was last called, over its gate, of the filter that [`Fusion::innovations`] speaks of.
+    pub fn take_largest(&mut self, kind: Kind) -> Option<f64> {
+        match &mut self.beside {
+            Some(beside) if self.settings.form == Form::Federated && matches!(kind, Kind::Dme | Kind::Vor | Kind::Baro) => {
+                beside.innovations_mut(kind).take_largest()
+            }
+            _ => self.main.innovations_mut(kind).take_largest(),
+        }
+    }
 
     /// The further states and their values, of both filters in the federated form: lengths \[m\], rates \[m/s\], angles \[rad\], and
     /// numbers of variance 1 for what stays in a solved position.

@@ -68,6 +68,8 @@ pub struct Innovations {
     pub n_gated: u64,
     /// Measurements refused before the gate: not finite, too old, without a place for their state.
     pub n_refused: u64,
+    /// Largest since it was last taken, of all that were examined, over the gate.
+    largest: f64,
     sum_square: f64,
     n_pairs: u64,
     sum_product: f64,
@@ -98,6 +100,18 @@ impl Lately {
 }
 
 impl Innovations {
+    /// An innovation has come to the gate: its size over the gate's.
+    pub(super) fn examined(&mut self, over_gate: f64) {
+        // A size that is no number is beyond every gate.
+        self.largest = if over_gate.is_nan() { f64::INFINITY } else { self.largest.max(over_gate) };
+    }
+
+    /// The largest innovation since this was last called, over its gate: above 1 it was thrown away; `None` where none was examined.
+    pub const fn take_largest(&mut self) -> Option<f64> {
+        let largest = core::mem::replace(&mut self.largest, 0.0);
+        if largest > 0.0 { Some(largest) } else { None }
+    }
+
     pub(super) fn used(&mut self, normalised: f64, before: Option<f64>, time: GpsTime) {
         self.n_used += 1;
         self.sum_square += normalised * normalised;
