@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import polars as pl
 import pytest
 
 import navbound
+from navbound import kpi
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -90,3 +92,23 @@ def test_of_two_statements_of_one_error_the_larger_counts(columns: str, bad: str
     assert result.summary.verdict.id == "not_believable"
     assert result.summary.performance is not None
     assert result.summary.performance.levels[0].n_hazard_epochs == 60
+
+
+@pytest.mark.parametrize("word", ["RAIM FAIL", "INVALID", "NO FIX", "V", "0", "degraded", "", "None", "nonsense"])
+def test_an_epoch_whose_status_is_not_ok_has_no_level(word: str, tmp_path: Path) -> None:
+    of = verdict(tmp_path, "status", word)
+    assert (of.id, of.n_judged) == ("nothing_judged", 0)
+    assert verdict(tmp_path, "status", "OK").id == "inside"
+
+
+def test_a_status_that_is_not_understood_is_counted_and_named(tmp_path: Path) -> None:
+    verdict(tmp_path, "status", "RAIM FAIL")
+    notes = navbound.evaluate([tmp_path / "levels.csv"], levels="APV-I").summary.assumptions
+    assert any(f"{N} epochs have a status that is none of" in each and "(RAIM FAIL)" in each for each in notes)
+
+
+@pytest.mark.parametrize("word", ["RAIM FAIL", "OK", "", None])
+def test_the_indicators_refuse_a_status_that_is_none(word: str | None) -> None:
+    table = {"time_ns": list(range(0, 3_000_000_000, 1_000_000_000)), "hpl_m": [15.0] * 3, "status": ["ok", word, "ok"]}
+    with pytest.raises(navbound.InputError, match=r"status\[1\]"):
+        kpi.evaluate(pl.DataFrame(table), "APV-I")

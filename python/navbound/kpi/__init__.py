@@ -20,7 +20,6 @@ from navbound.kpi.slots import Slots
 from navbound.kpi.subsets import RangeTable, StanfordEsa, SubsetOptions, n_bins, stanford_esa, with_subsets
 from navbound.kpi.tables import FLOATS, Table, codes_of, frame_of, period_of
 from navbound.records.performance import Level, Performance, StanfordBins, StanfordCounts
-from navbound.status import UNUSABLE
 from navbound.table.arguments import checked
 from navbound.table.arrays import flatten
 
@@ -49,8 +48,6 @@ WINDOW_S = 15.0
 """Continuity window."""
 MOST_EVENTS = 500
 """Events that a performance record lists; a campaign hands out all of them."""
-
-_NO_SOLUTION = UNUSABLE
 
 
 @dataclass(frozen=True)
@@ -171,8 +168,7 @@ def evaluate(
     ----------
     table : DataFrame or mapping of columns, or a sequence of such tables that follow each other in time
         ``time_ns`` and ``hpl_m``; as far as known ``vpl_m``, errors ``nse_e_m nse_n_m nse_u_m`` (or ``hpe_m vpe_m``), ``status``,
-        ``reason``, ``mode``, ``n_sv``. A row without ``hpl_m``, or with ``status`` ``not_available`` or ``invalid_input``, is an epoch
-        without a solution.
+        ``reason``, ``mode``, ``n_sv``. A row without ``hpl_m``, or with another ``status`` than ``ok``, is an epoch without a solution.
     levels : names or Level
         From :func:`levels`, or of your own; names may be joined by commas.
     period_s : float, optional
@@ -197,7 +193,7 @@ def evaluate(
     Raises
     ------
     InputError
-        A missing column, times that fall, an unknown level, a number outside its domain.
+        A missing column, times that fall, an unknown level, a number outside its domain, a ``status`` that is none of the list.
     """
     tables = [table] if isinstance(table, (pl.DataFrame, Mapping)) else list(table)
     frames = [frame_of(t) for t in tables]
@@ -381,7 +377,7 @@ class Campaign:
         numbers = frame.select(pl.col(name).fill_null(np.nan) for name in FLOATS)
         bad = {name: ~numbers[name].is_nan() & ~((numbers[name] > 0) & numbers[name].is_finite()) for name in ("hpl_m", "vpl_m")}
         columns: dict[str, NDArray[Any]] = {name: np.ascontiguousarray(numbers[name].to_numpy()) for name in FLOATS}
-        solved = ~frame["status"].is_in(_NO_SOLUTION).fill_null(value=False).to_numpy()
+        solved = (frame["status"] == "ok").to_numpy()
         for name in ("hpl_m", "vpl_m"):
             columns[name] = np.where(solved & ~bad[name].to_numpy(), columns[name], np.nan)
         columns["time_ns"] = np.ascontiguousarray(frame["time_ns"].to_numpy())

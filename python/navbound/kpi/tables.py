@@ -9,6 +9,7 @@ import numpy as np
 import polars as pl
 
 from navbound.errors import InputError
+from navbound.status import STATUSES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,11 +58,18 @@ def frame_of(table: Table) -> pl.DataFrame:
         **dict.fromkeys(("status", "mode", "reason"), pl.String),
     }
     try:
-        return frame.select(
-            (pl.col(name) if name in frame.columns else pl.lit(None)).cast(kind).alias(name) for name, kind in columns.items()
+        uniform = frame.select(
+            (pl.col(name) if name in frame.columns else pl.lit("ok" if name == "status" else None)).cast(kind).alias(name)
+            for name, kind in columns.items()
         )
     except pl.exceptions.PolarsError as e:
         raise InputError("table", str(e).splitlines()[0][:120], domain="numbers in the columns that hold numbers") from e
+    # A word that nobody knows is not "ok", and neither is an empty field.
+    unknown = ~uniform["status"].is_in(list(STATUSES)).fill_null(value=False)
+    if unknown.any():
+        row = int(unknown.arg_true()[0])
+        raise InputError("status", repr(uniform["status"][row]), domain=", ".join(STATUSES), index=row)
+    return uniform
 
 
 def with_larger_error(frame: pl.DataFrame, horizontal_m: pl.Expr, vertical_m: pl.Expr) -> pl.DataFrame:

@@ -94,6 +94,7 @@ class Values:
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._n_unknown = 0
+        self._unknown_statuses: dict[str, None] = {}
         self._unknown: dict[str, dict[str, None]] = {}
         self._largest = dict.fromkeys(POSITION, 0.0)
         self._unit = self._unit_dated = ""
@@ -137,9 +138,10 @@ class Values:
                 self._largest[name] = max(self._largest[name], _largest(part[name]))
         self._see_heights(part)
         if tuple(self._required) == POSITION:
-            return self._reported(part, frame)
-        part = stated.worse_than_level(part)
-        return stated.with_statements(part, self._statements(frame))
+            rows = stated.of_satellites(self._listed_statuses(stated.against_itself(part)))
+        else:
+            rows = self._listed_statuses(stated.worse_than_level(part))
+        return stated.with_statements(rows, self._statements(frame))
 
     def _with_accuracy(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
         """The largest number of the columns that nothing reads though they speak of an accuracy; it bounds nothing."""
@@ -210,13 +212,15 @@ class Values:
                     f"{self._n_heights} rows: one of them is in another unit than it is read in; {declare(f'{name}={of.name}:ft')}"
                 )
 
-    def _reported(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
-        """What a recorded track says of its own epochs, in words of the list."""
+    def _listed_statuses(self, part: pl.DataFrame) -> pl.DataFrame:
+        """What a recording says of its own epochs, in words of the list; words that are none of it are counted."""
         if "status" in part.columns:
             known = pl.col("status").str.to_lowercase().is_in(list(status.STATUSES)).fill_null(value=False)
-            self._n_unknown += part.filter(~known).height
-        rows = stated.of_satellites(status.recorded(stated.against_itself(part)))
-        return stated.with_statements(rows, self._statements(frame))
+            unknown = part.filter(~known)["status"]
+            self._n_unknown += unknown.len()
+            words = unknown.fill_null("empty").replace("", "empty").unique(maintain_order=True).head(statements.SHOWN)
+            self._unknown_statuses |= dict.fromkeys(words)
+        return status.recorded(part)
 
     def _statements(self, frame: pl.DataFrame) -> list[tuple[str, Effect, Stated]]:
         """What columns of validity and of alerts state."""
@@ -248,7 +252,8 @@ class Values:
         name = self._path.name
         if self._n_unknown:
             self.notes.append(
-                f"{name}: {self._n_unknown} epochs have a status that is none of {', '.join(status.STATUSES)}; they are not judged"
+                f"{name}: {self._n_unknown} epochs have a status that is none of {', '.join(status.STATUSES)} "
+                f"({', '.join(list(self._unknown_statuses)[: statements.SHOWN])}); they are not judged"
             )
         if tuple(self._required) == POSITION and self._mapping.unused:
             self.notes.append(f"{name}: columns not used: {_few(self._mapping.unused)}")
