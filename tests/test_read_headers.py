@@ -8,6 +8,7 @@ import pytest
 
 from navbound import FormatError
 from navbound.read import read
+from navbound.read.pieces.reading import read_pieces
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -120,3 +121,37 @@ def test_a_solution_of_fewer_satellites_than_determine_one_is_kept_by_something_
     # A file without the field states none.
     path.write_text("\n".join([header, *rows]).replace("  ns", "").replace(f"   5   {n_sv}   ", "   5   ") + "\n", encoding="utf-8")
     assert "status" not in read(path).epochs.columns
+
+
+UNITS_ROW = "UTC,deg,deg,m,{}"
+
+
+def with_units(folder: Path, unit: str, name: str = "epu", above: str = "") -> Path:
+    rows = [f"{1_600_000_000 + k},47.0,8.{k},500,0.9" for k in range(3)]
+    path = folder / "track.csv"
+    path.write_text("\n".join([f"{above}time,lat,lon,h_m,{name}", UNITS_ROW.format(unit), *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(("name", "unit"), [("epu", "NM"), ("hpl", "ft"), ("epu", "furlong"), ("hAcc", "NM"), ("epu", "[NM]")])
+def test_a_row_of_units_that_are_not_those_read_is_refused(tmp_path: Path, name: str, unit: str) -> None:
+    with pytest.raises(FormatError, match=f"states the unit “{unit.strip('[]').lower()}” of “{name}”") as refusal:
+        read(with_units(tmp_path, unit, name))
+    assert refusal.value.line == 2
+
+
+@pytest.mark.parametrize("unit", ["m", "metres", "", "[m]"])
+def test_a_row_of_the_units_that_are_read_is_no_row(tmp_path: Path, unit: str) -> None:
+    reading = read(with_units(tmp_path, unit))
+    assert (reading.epochs.height, reading.rejected) == (3, [])
+    assert any("line 2 holds the units of the columns" in note for note in reading.notes)
+
+
+@pytest.mark.parametrize("remark", ["# units: epu [NM]\n", "# epu (NM), lat (deg)\n", "# unit of EPU: nm\n", "# units: time s, epu = NM\n"])
+def test_a_remark_of_another_unit_refuses_the_file(tmp_path: Path, remark: str) -> None:
+    with pytest.raises(FormatError, match="states the unit “nm” of “epu”") as refusal:
+        read(table(tmp_path, f"{remark}time,lat,lon,epu", "{t},47.0,8.{t},0.9"))
+    assert refusal.value.line == 1
+    with pytest.raises(FormatError, match="states the unit “nm” of “epu”"):
+        read_pieces(tmp_path / "track.csv")
+    assert read(table(tmp_path, "# units: epu [m]\ntime,lat,lon,epu", "{t},47.0,8.{t},0.9")).epochs["epu_m"].to_list() == [0.9] * 3

@@ -16,6 +16,7 @@ from navbound.read.pieces.order import Pieces
 from navbound.read.pieces.parquet import batches, is_parquet
 from navbound.read.source import Source, digested
 from navbound.read.tables.columns import POSITION, assign
+from navbound.read.tables.stated_units import HEAD_BYTES, require_same_in_remarks
 from navbound.read.tables.table import LINE, Layout, layout_of, rows_of
 from navbound.read.tables.values import Late, Values, one_row_a_time, texts
 from navbound.records.frames import LEFT_OUT
@@ -188,6 +189,8 @@ class _OfText(_FirstPass):
         if self._layout is None:
             self._layout = layout_of(self.path, lines)
             self.named([name for name in self._layout.names if name], rows_of(self.path, self._layout, lines[1:]).frame)
+            with self.path.open("rb") as file:
+                require_same_in_remarks(file.read(HEAD_BYTES).decode("utf-8", "replace"), self.mapping, self.path)
             lines = lines[1:]
         rows = rows_of(self.path, self._layout, lines)
         self.n_rows += rows.n_rows

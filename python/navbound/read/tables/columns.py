@@ -186,6 +186,9 @@ STATED_QUANTITIES: tuple[Quantity, ...] = (
 )
 """What a recorded track may state against its own positions. It bounds nothing; the verdict weighs it."""
 
+QUANTITY = {q.name: q for q in STATED_QUANTITIES + QUANTITIES + LEVEL_QUANTITIES}
+"""Every quantity by its name."""
+
 TRANSPONDER = frozenset({"squawk", "spi"})
 """Columns beside which `alert` is the transponder's: a change of its code."""
 
@@ -283,7 +286,7 @@ def _accuracies_by_alias() -> frozenset[str]:
 def _length_in(name: str) -> float | None:
     """The unit of length in brackets or at the end of a name, metres where there is none; None where it is a unit of something else."""
     stem, written = _plain(name)
-    if written is not None and written not in _NO_UNIT:
+    if written is not None and written not in NO_UNIT:
         return UNITS["m"].get(written)
     return UNITS["m"].get(stem.rsplit("_", 1)[-1], 1.0)
 
@@ -446,7 +449,7 @@ def _known(quantity: Quantity, names: list[str], path: Path, *, own: bool) -> Co
     return None
 
 
-_NO_UNIT = frozenset(
+NO_UNIT = frozenset(
     (
         "",
         "1",
@@ -478,7 +481,7 @@ def _written_unit(name: str, quantity: Quantity, path: Path) -> str | None:
         Naming the column and the units that are known.
     """
     written = _plain(name)[1]
-    if written is None or written in _NO_UNIT or quantity.si == "text":
+    if written is None or written in NO_UNIT or quantity.si == "text":
         return None
     if written in UNITS[quantity.si]:
         return written

@@ -16,6 +16,7 @@ from navbound.read.checks.repeats import left_out
 from navbound.read.checks.stated import of_counted_satellites
 from navbound.read.source import Source, load
 from navbound.read.tables.columns import POSITION, Assignment, assign, truth_as_position
+from navbound.read.tables.stated_units import require_same_in_remarks
 from navbound.read.tables.table import LINE, Table, table
 from navbound.read.tables.values import Late, Values, one_row_a_time, texts
 from navbound.records.frames import LEFT_OUT
@@ -123,6 +124,8 @@ def _read(
         # A file of the truth may call its positions so.
         columns = truth_as_position(content.columns) | dict(columns or {})
     mapping = assign(content.columns, columns, source.path, needs=needs, texts=texts(content.frame), where_present=where_present)
+    if source.kind == "csv":
+        require_same_in_remarks(source.text(), mapping, source.path)
     return _epochs(source, content, mapping, [name for name in POSITION if name in needs])
 
 

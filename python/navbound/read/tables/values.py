@@ -13,11 +13,9 @@ from navbound.read.checks import levels, stated, statements
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import Repeats, left_out, separate
 from navbound.read.tables.columns import (
-    LEVEL_QUANTITIES,
     POSITION,
     POSITION_TIME,
-    QUANTITIES,
-    STATED_QUANTITIES,
+    QUANTITY,
     UNITS,
     Assignment,
     Column,
@@ -25,6 +23,7 @@ from navbound.read.tables.columns import (
     is_header,
     position_time,
 )
+from navbound.read.tables.stated_units import is_row_of_units, require_same
 from navbound.read.tables.table import LINE
 from navbound.read.tables.times import TimeFacts, converted, understand, units
 
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
 
     from navbound.read.checks.statements import Effect, Stated
 
-_QUANTITY = {q.name: q for q in STATED_QUANTITIES + QUANTITIES + LEVEL_QUANTITIES}
 _BAD, _EXAMPLE = "__bad", "__example"
 _RAW = "__raw "
 _MISSING = r"(?i)^([+-]?nan(\(\w*\))?)?$"
@@ -69,6 +67,9 @@ def _with_speed(part: pl.DataFrame) -> pl.DataFrame:
     reported = [pl.col("ground_speed_mps")] if "ground_speed_mps" in part.columns else []
     return part.with_columns(pl.coalesce(*reported, of_velocity).alias("ground_speed_mps")).drop("vel_n_mps", "vel_e_mps")
 
+
+_WORDY = r"^[\s#\"(\[]*([A-Za-z°]|1e-7 deg|1?\s*$|-\s*$)"
+"""A name, a unit, or nothing; never a measured value but the number 1."""
 
 _ROWS_OF_WORDS = 100
 """Rows without a number that are looked at for another header. [1]"""
@@ -109,12 +110,12 @@ class Values:
             A column that holds neither numbers nor text.
         """
         self._check_kinds(frame)
-        self._refuse_another_header(frame)
+        frame = self._without_names_and_units(frame)
         out, against = {LINE: frame[LINE]}, list[tuple[str, pl.Series]]()
         bad = pl.repeat(value=False, n=frame.height, eager=True)
         for place, (name, column) in enumerate(self._mapping.columns.items()):
             raw = frame[column.name]
-            if _QUANTITY[name].si == "text":
+            if QUANTITY[name].si == "text":
                 out[name] = raw.cast(pl.String).str.replace_all(UNSEEN, "").str.strip_chars()
                 continue
             out[name], reason = numbers(raw, column)
@@ -152,12 +153,16 @@ class Values:
             return part
         return part.with_columns(pl.DataFrame(values).max_horizontal().alias("unread_accuracy_m"))
 
-    def _refuse_another_header(self, frame: pl.DataFrame) -> None:
-        """Refuse a table in which the names of columns change on the way; the same header again is a row without numbers."""
+    def _without_names_and_units(self, frame: pl.DataFrame) -> pl.DataFrame:
+        """Refuse a table in which the names of columns change on the way; the same header again is a row without numbers.
+
+        A row of units is left out where they are those that the columns are read in, and refused where they are others.
+        """
         texts = [c.name for c in (*self._mapping.columns.values(), *self._mapping.times) if frame.schema[c.name] == pl.String]
         if not texts:
-            return
-        wordy = pl.all_horizontal(pl.col(name).str.contains(r"^[\s#\"]*[A-Za-z]") | pl.col(name).is_null() for name in texts)
+            return frame
+        wordy = pl.all_horizontal(pl.col(name).str.contains(_WORDY) | pl.col(name).is_null() for name in texts)
+        units = list[int]()
         for row in frame.filter(wordy.fill_null(value=False)).head(_ROWS_OF_WORDS).iter_rows(named=True):
             line = row.pop(LINE)
             again = all(str(cell).strip() == name for name, cell in row.items() if cell is not None)
@@ -166,6 +171,11 @@ class Values:
                     "another header in the middle of the table: the columns below it may be others, or in other units; split the file there"
                 )
                 raise FormatError(self._path, why, line)
+            if is_row_of_units(row, self._mapping):
+                require_same(row, self._mapping, self._path, line)
+                self.notes.append(f"{self._path.name}: line {line} holds the units of the columns, which are those that they are read in")
+                units.append(line)
+        return frame.filter(~pl.col(LINE).is_in(units)) if units else frame
 
     def _check_kinds(self, frame: pl.DataFrame) -> None:
         names = [column.name for column in (*self._mapping.columns.values(), *self._mapping.times)]
@@ -421,7 +431,7 @@ def _text(raw: pl.Series, where: pl.Series) -> pl.Series:
 
 def numbers(column: pl.Series, what: Column) -> tuple[pl.Series, pl.Series]:
     """Values in SI, null where there is none; and why, null where nothing is wrong."""
-    q = _QUANTITY[what.quantity]
+    q = QUANTITY[what.quantity]
     factor = UNITS[q.si][what.unit]
     if column.dtype == pl.String:
         text = column.str.strip_chars()

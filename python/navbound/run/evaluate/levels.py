@@ -315,7 +315,8 @@ def uniform(epochs: pl.DataFrame) -> pl.DataFrame:
     """Every column of the schema, absent ones null, in the order of time; sizes of the errors from their components."""
     # A table without statuses says nothing against any of its epochs.
     filled = epochs.select(
-        (pl.col(name) if name in epochs.columns else pl.lit("ok" if name == "status" else None)).cast(kind).alias(name) for name, kind in SCHEMA.items()
+        (pl.col(name) if name in epochs.columns else pl.lit("ok" if name == "status" else None)).cast(kind).alias(name)
+        for name, kind in SCHEMA.items()
     )
     horizontal = (pl.col("nse_e_m") ** 2 + pl.col("nse_n_m") ** 2).sqrt()
     # Of a size and components of one error the larger counts; one component alone is no error of both axes.
