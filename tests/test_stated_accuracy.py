@@ -62,3 +62,32 @@ def test_it_is_compared_with_a_sigma_that_is_typed(tmp_path: Path, sigma_m: floa
     assert (whole.id, whole.n_stated_worse) == ("not_shown", 1)
     declared = navbound.analyze(path, sigma_m=sigma_m, columns={"epu_m": "accuracy:mm"}).summary.verdict
     assert declared.id == "inside"
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "expected"),
+    [
+        ("HIL (m)", 2400.0, "not_shown"),
+        ("HPL_SBAS", 2400.0, "not_shown"),
+        ("gps hpl [NM]", 1.3, "not_shown"),
+        ("gps hpl [NM]", 0.5, "inside"),
+        ("Horizontal Integrity Limit", 2400.0, "not_shown"),
+        ("Horizontal Protection Level RAIM (ft)", 4000.0, "not_shown"),
+        ("HPL_SBAS", 100.0, "inside"),
+        # None of the position across the ground, or no length.
+        ("Vertical Protection Level SBAS", 2400.0, "inside"),
+        ("hpl_flag", 2400.0, "inside"),
+    ],
+)
+def test_a_level_under_a_name_that_nothing_reads_is_compared(tmp_path: Path, name: str, value: float, expected: str) -> None:
+    path = table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={name: np.full(N, value)})
+    verdict = navbound.analyze(path).summary.verdict
+    assert (verdict.id, verdict.n_stated_uncontained) == (expected, N if expected == "not_shown" else 0)
+    assert name in " ".join(verdict.unread)
+    assert navbound.analyze(path, sigma_m=SIGMA_M).summary.verdict.id == expected
+
+
+def test_a_level_under_its_full_name_is_read(tmp_path: Path) -> None:
+    name = "Horizontal Protection Level (m)"
+    verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={name: np.full(N, 2400.0)})).summary.verdict
+    assert (verdict.id, verdict.unread) == ("outside", [])

@@ -146,13 +146,14 @@ def _least_radii(epochs: pl.DataFrame) -> list[pl.Series]:
 
 
 def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
-    """Add `CONTAINMENT`, infinite where the indicator says that there is none, where the table states one."""
+    """Add `CONTAINMENT`, infinite where the indicator says that there is none, where the table states one; so is a level of another name."""
     have = set(epochs.columns)
-    if not have & {"rc_m", "nic"}:
+    if not have & {"rc_m", "nic", "unread_level_m"}:
         return epochs
     coded = _in_force("nic").replace_strict(NIC_RC_M | {0: math.inf}, default=None, return_dtype=pl.Float64) if "nic" in have else None
     stated = ([_in_force("rc_m")] if "rc_m" in have else []) + ([] if coded is None else [coded])
-    return epochs.with_columns(pl.coalesce(stated).alias(CONTAINMENT))
+    radii = ([pl.coalesce(stated)] if stated else []) + ([pl.col("unread_level_m")] if "unread_level_m" in have else [])
+    return epochs.with_columns(pl.max_horizontal(radii).alias(CONTAINMENT))
 
 
 def _of_file(epochs: pl.DataFrame, have: set[str]) -> Claimed:

@@ -201,7 +201,8 @@ def _sigma_m(epochs: pl.DataFrame) -> pl.Expr:
 
 def _truth_sigma_m(truth: pl.DataFrame) -> pl.Expr:
     """The same of a truth, or what it is at least by the accuracy, level and containment radius that its recording states."""
-    bounds = {"epu_m": TWO_DRMS, "unread_accuracy_m": TWO_DRMS, "hpl_m": LEVEL_SIGMAS, CONTAINMENT: LEVEL_SIGMAS}
+    bounds = {"epu_m": TWO_DRMS, "unread_accuracy_m": TWO_DRMS, "hpl_m": LEVEL_SIGMAS, "unread_level_m": LEVEL_SIGMAS}
+    bounds |= {CONTAINMENT: LEVEL_SIGMAS}
     least = [pl.col(name) / factor for name, factor in bounds.items() if name in truth.columns]
     return pl.max_horizontal(_sigma_m(truth), *least)
 

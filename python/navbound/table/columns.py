@@ -218,6 +218,12 @@ READ: tuple[Column, ...] = (
         f"where their names state no unit; {_READ}",
         "source",
     ),
+    *row(
+        "unread_level_m",
+        "the largest number of columns that nothing reads though their names speak of a horizontal protection level, read as metres "
+        f"where their names state no unit; {_READ}",
+        "source",
+    ),
     *row("rc_m", f"horizontal containment radius that a transponder states; {_READ}", "source"),
     *row("setting_hpa", f"altimeter setting that an aircraft broadcasts; {_READ}", "source"),
     *row("nac_p nic", f"accuracy and integrity category that a transponder states; {_READ}", "source", kind="number"),

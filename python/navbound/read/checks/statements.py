@@ -169,7 +169,7 @@ _LONGEST = 200
 _SPEAKS = _words(
     "status "
     "valid invalid validity fix quality raim fde integrity alert alarm warning caution fault failure fail failed health healthy "
-    "flag flags mode nac nacp nacv nucp nic sil sils sda rc hpl hul hil hal vpl vul val xpl protection containment spoofing "
+    "flag flags mode nac nacp nacv nucp nic sil sils sda rc hpl hul hil hal vpl vul val xpl protection containment hil spoofing "
     "spoofed spoof jamming jammed jam interference reliable reliability trust usable error errors uncertainty accuracy acc hacc "
     "vacc pacc sigma std stddev epu anp epe eph epv ehpe cep drms rms fom hfom vfom "
     "nse tse fte err coasting coast extrapolated age nsat nsats sats satellites sat "
@@ -219,6 +219,18 @@ def speaks_of_accuracy(name: str) -> bool:
     if "acc" in parts and parts & {"x", "y", "body", "g"}:
         return False
     return not _ACCURACY.isdisjoint(parts) and _NO_POSITION.isdisjoint(parts)
+
+
+_LEVEL = _words("hpl hil hul hpls hils")
+_LEVEL_IN_WORDS = tuple(map(_words, ("protection level", "integrity level", "integrity limit", "containment radius", "containment limit")))
+"""Parts of names of a horizontal protection level, a length. Provenance: ours."""
+
+
+def speaks_of_level(name: str) -> bool:
+    """Whether the name is one of a horizontal protection level, so that its numbers are lengths."""
+    parts = {*_parts(name), name.lower()}
+    named = not _LEVEL.isdisjoint(parts) or any(words <= parts for words in _LEVEL_IN_WORDS)
+    return named and _NO_POSITION.isdisjoint(parts)
 
 
 @dataclass(frozen=True)

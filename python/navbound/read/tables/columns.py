@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from navbound.errors import FormatError, InputError
-from navbound.read.checks.statements import kind_of, speaks_of_accuracy, speaks_of_integrity
+from navbound.read.checks.statements import kind_of, speaks_of_accuracy, speaks_of_integrity, speaks_of_level
 from navbound.table.columns import COVARIANCE, EPOCHS, READ, VARIANCES
 from navbound.units import METRES_PER_FT, METRES_PER_NM, MPS_PER_KT
 
@@ -150,8 +150,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     _q("n_sv", 0.0, 255.0, **{"1": "ns nsv num_sv n_sats nsats numsat num_sat numsats num_sats satellites n_satellites num_satellites"}),
     _q("track", 0.0, 0.0, text="icao24 icao mmsi track_id flight_id aircraft_id vehicle_id"),
     _q("callsign", 0.0, 0.0, text="callsign flight"),
-    _q("hpl_m", 0.0, 1e9, m="hpl"),
-    _q("vpl_m", 0.0, 1e9, m="vpl"),
+    _q("hpl_m", 0.0, 1e9, m="hpl horizontal_protection_level"),
+    _q("vpl_m", 0.0, 1e9, m="vpl vertical_protection_level"),
     _q("status", 0.0, 0.0),
     _q("reason_id", 0.0, 0.0),
     _q("reason", 0.0, 0.0),
@@ -273,8 +273,17 @@ class Assignment:
     def accuracies(self) -> dict[str, float]:
         """Those of them that are lengths of a horizontal accuracy or error: the factor to metres of the unit in the name, otherwise 1."""
         again = _accuracies_by_alias()
-        lengths = {name: _length_in(name) for name in self.unread if speaks_of_accuracy(name) or _plain(name)[0] in again}
-        return {name: factor for name, factor in lengths.items() if factor is not None}
+        return _lengths(name for name in self.unread if speaks_of_accuracy(name) or _plain(name)[0] in again)
+
+    @property
+    def levels(self) -> dict[str, float]:
+        """Those of them that are horizontal protection levels under a name of their own, in the same way."""
+        return _lengths(name for name in self.unread if speaks_of_level(name))
+
+
+def _lengths(names: Iterable[str]) -> dict[str, float]:
+    factors = {name: _length_in(name) for name in names}
+    return {name: factor for name, factor in factors.items() if factor is not None}
 
 
 @functools.cache

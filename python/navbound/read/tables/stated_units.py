@@ -49,7 +49,7 @@ def require_same(stated: Mapping[str, object], mapping: Assignment, path: Path, 
             known = "" if unit in units else f"which is not known (known: {', '.join(units)}): leave it out, and "
             what = f"states the unit “{unit}” of “{column.name}”, which is read in {column.unit}; {known}{how}"
             raise FormatError(path, what, line, column.name)
-    for name, factor in mapping.accuracies.items():
+    for name, factor in (mapping.accuracies | mapping.levels).items():
         unit = _unit(stated.get(name) or "")
         if unit in UNITS["m"] and UNITS["m"][unit] != factor:
             what = f"states the unit “{unit}” of “{name}”, whose name does not; leave the units out and rename it “{name} [{unit}]”"
@@ -64,7 +64,7 @@ def require_same_in_remarks(text: str, mapping: Assignment, path: Path) -> None:
     FormatError
         Naming the line, the column and both units.
     """
-    names = [column.name for column in mapping.columns.values()] + list(mapping.accuracies)
+    names = [column.name for column in mapping.columns.values()] + [*mapping.accuracies, *mapping.levels]
     for remark in _REMARK.finditer(text):
         stated = dict(_stated(remark[0][:_LONGEST], names))
         if stated:

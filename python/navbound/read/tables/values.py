@@ -132,7 +132,7 @@ class Values:
             self.tally.add(
                 LEVELS + place, f"{heading}: {levels.REASON}", where.height, where[LINE][0], str(where[heading][0]), kind="quiet"
             )
-        part = self._with_accuracy(part, frame)
+        part = self._with_unread(part, frame)
         part = _with_speed(part).with_columns(*_reasons(frame, against), *self._raw(frame))
         for name in POSITION:
             if name in part.columns:
@@ -144,14 +144,14 @@ class Values:
             rows = self._listed_statuses(stated.worse_than_level(part))
         return stated.with_statements(rows, self._statements(frame))
 
-    def _with_accuracy(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
-        """The largest number of the columns that nothing reads though they speak of an accuracy; it bounds nothing."""
-        lengths = self._mapping.accuracies
-        known = {name: frame[name] for name in lengths if not _no_field(frame.schema[name])}
-        values = [(raw.cast(pl.Float64, strict=False).abs().fill_nan(None) * lengths[name]).alias(name) for name, raw in known.items()]
-        if not values:
-            return part
-        return part.with_columns(pl.DataFrame(values).max_horizontal().alias("unread_accuracy_m"))
+    def _with_unread(self, part: pl.DataFrame, frame: pl.DataFrame) -> pl.DataFrame:
+        """The largest number of the columns that nothing reads though they speak of an accuracy, or of a level; it bounds nothing."""
+        for quantity, lengths in (("unread_accuracy_m", self._mapping.accuracies), ("unread_level_m", self._mapping.levels)):
+            known = {name: frame[name] for name in lengths if not _no_field(frame.schema[name])}
+            values = [(raw.cast(pl.Float64, strict=False).abs().fill_nan(None) * lengths[name]).alias(name) for name, raw in known.items()]
+            if values:
+                part = part.with_columns(pl.DataFrame(values).max_horizontal().alias(quantity))
+        return part
 
     def _without_names_and_units(self, frame: pl.DataFrame) -> pl.DataFrame:
         """Refuse a table in which the names of columns change on the way; the same header again is a row without numbers.

@@ -36,6 +36,7 @@ AUXILIARY = (
     "sigma_n_m",
     "sigma_u_m",
     "unread_accuracy_m",
+    "unread_level_m",
     "setting_hpa",
     POSITION_TIME,
 )

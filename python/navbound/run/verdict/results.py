@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from navbound import _core
-from navbound.read.checks.statements import speaks_of_accuracy
+from navbound.read.checks.statements import speaks_of_accuracy, speaks_of_level
 from navbound.read.tables.columns import declare
 from navbound.run.verdict.numbers import length, level, share
 from navbound.run.verdict.rule import FEW_EPOCHS
@@ -158,8 +158,8 @@ def _not_shown(verdict: Verdict) -> list[str]:
         )
     if verdict.n_stated_uncontained:
         why.append(
-            f"The recording itself states a containment radius (Rc, NIC) beyond twice RNP, or none, at "
-            f"{verdict.n_stated_uncontained} epochs."
+            f"The recording itself states a containment radius (Rc, NIC, a protection level) beyond twice RNP, or none, at "
+            f"{verdict.n_stated_uncontained} epochs.{_levels_read_as_metres(verdict.unread)}"
         )
     if verdict.n_apart and verdict.largest_apart_m is not None:
         why.append(
@@ -192,6 +192,13 @@ def _read_as_metres(unread: Sequence[str]) -> str:
         return ""
     which = f"Compared, too, as a length of the unit that its name states, or metres: {', '.join(names)}."
     return f" {which} {declare('epu_m=COLUMN:UNIT')} where it is a 95 % radius in another unit."
+
+
+def _levels_read_as_metres(unread: Sequence[str]) -> str:
+    names = [f"“{name}”" for name in unread if speaks_of_level(name)]
+    if not names:
+        return ""
+    return f" Compared as a length of the unit that its name states, or metres: {', '.join(names)}. {declare('hpl_m=COLUMN:UNIT')}."
 
 
 def _contradicted(verdict: Verdict) -> list[str]:
