@@ -9,6 +9,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
+from navbound.read.checks.age import STALE_AFTER_S
 from navbound.read.tables.columns import POSITION_TIME
 from navbound.table.columns import COVARIANCE
 
@@ -49,7 +50,7 @@ class Limits:
     fix_latency_s: float = 1.0
     noise_m: float = 100.0
     moving_mps: float = 15.0
-    stale_after_s: float = 2.0
+    stale_after_s: float = STALE_AFTER_S
     settle_s: float = 30.0
 
 

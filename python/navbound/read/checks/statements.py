@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal
 import polars as pl
 
 from navbound import _core
+from navbound.read.checks.age import STALE_AFTER_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -79,13 +80,31 @@ KINDS: tuple[Kind, ...] = (
             "valid is_valid validity position_valid pos_valid gps_valid gnss_valid fix_valid data_valid nav_valid solution_valid "
             "location_valid usable reliable trusted healthy gps_ok gnss_ok position_ok pos_ok nav_ok integrity_ok raim_ok "
             "fix_ok gnss_fix_ok used use in_use accepted believed "
+            "good is_good pos_good position_good gps_good ok is_ok "
             "gnssfixok available is_available gps_available gnss_available raim_available integrity_available pl_valid hpl_valid xpl_valid"
         ),
         _NO,
         _YES,
         other_against=True,
     ),
-    Kind("invalid", _words("fix gps gnss gps_fix gnss_fix has_fix fix_status position_fix fixstatus gpsfix"), _NO_FIX, _FIX | {"1"}),
+    Kind(
+        "invalid",
+        _words(
+            "fix gps gnss gps_fix gnss_fix has_fix fix_status position_fix fixstatus gpsfix lock locked is_locked gps_lock gnss_lock "
+            "gps_locked gnss_locked"
+        ),
+        _NO_FIX | _words("unlocked searching"),
+        _FIX | _words("1 locked"),
+    ),
+    # ARINC 429. As numbers the codes of binary and of decimal words differ.
+    Kind(
+        "invalid",
+        _words("ssm sign_status_matrix pos_ssm position_ssm lat_ssm lon_ssm latitude_ssm longitude_ssm ssm_lat ssm_lon"),
+        _words("ncd fw ft no_computed_data failure_warning functional_test"),
+        _words("no normal normal_operation"),
+        other_against=True,
+        numbers_unknown=True,
+    ),
     Kind("invalid", _words("fix_type fixtype gps_fix_type gnss_fix_type fix_mode gps_mode gnss_mode"), _NO_FIX | {"1"}, _FIX),
     Kind(
         "invalid",
@@ -120,11 +139,24 @@ KINDS: tuple[Kind, ...] = (
             "dead_reckoning is_dead_reckoning deadreckoning gps_denied gnss_denied gps_lost gnss_lost no_gps no_gnss no_fix fix_lost "
             "estimated "
             "is_estimated predicted is_predicted extrapolated is_extrapolated interpolated is_interpolated propagated coasted coasting "
-            "is_coasting simulated is_simulated inertial_only ins_only"
+            "is_coasting simulated is_simulated inertial_only ins_only coast dr is_dr suspect suspected is_suspect held is_held imputed "
+            "is_imputed"
         ),
         _YES,
         _NO - _words("v invalid not_valid bad unusable fail failed unhealthy unreliable"),
         other_against=True,
+    ),
+    # The granular tables of flight trackers: P where there is a position.
+    Kind("invalid", _words("no_position no_pos without_position"), _YES | {"n"}, _words("p 0 false no"), other_against=True),
+    Kind(
+        "invalid",
+        _words(
+            "age_s position_age position_age_s pos_age pos_age_s fix_age fix_age_s data_age_s seen_pos seconds_since_update "
+            "seconds_since_last_update seconds_since_fix time_since_update_s time_since_fix_s"
+        ),
+        frozenset(),
+        frozenset(),
+        above=STALE_AFTER_S,
     ),
     # Version 0 transponders: 0 is an unknown integrity.
     Kind("invalid", _words("nuc_p nucp nuc"), _words("0"), frozenset("123456789")),
@@ -283,13 +315,16 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
 
 _ALARM = (
     r"\b(unable|unreliable|invalid|lost|fail|fails|failed|failure|fault|faulty|alarm|alert|warning|misleading|spoof|spoofed|spoofing|jam|jammed|jamming|"
-    r"degraded|unhealthy|unsafe|downgrade|downgraded|unavail|unavailable|disagree|inop|loss|doubtful|dead reckoning)\b"
+    r"degraded|unhealthy|unsafe|downgrade|downgraded|unavail|unavailable|disagree|inop|loss|doubtful|dead reckoning|outage|outages|exceeded|"
+    r"accur low|accuracy low|low accuracy|irs only|irs nav only|ins only|inertial only|disconnected|extrapolated|simulated data|"
+    r"simulated position)\b"
 )
 _STATE_ALARM = _ALARM.replace("(unable", "(simulated|simulation|simulator|mocked|unable")
 """In a column of states a simulation is of the position, in a free text of anything."""
 _NONE = r"\b(no|none|not|without|clear|cleared|off|false|ended|end|over|0)\b"
 _NO_POSITION_WORDS = (
-    r"\b(no (fix|position|solution|navigation|gps|gnss|raim|integrity)|not (valid|available|usable|reliable|for nav|for navigation)|"
+    r"\b(no (fix|position|solution|navigation|gps|gnss|raim|integrity|satellite|satellites|computed data)|not to be used|"
+    r"not (valid|available|usable|reliable|for nav|for navigation)|"
     r"do not use)\b"
 )
 """Words of alarms in a free text, words that take them back, and sentences without either that say the same. Provenance: ours."""

@@ -148,7 +148,8 @@ class Values:
         """The largest number of the columns that nothing reads though they speak of an accuracy, or of a level; it bounds nothing."""
         for quantity, lengths in (("unread_accuracy_m", self._mapping.accuracies), ("unread_level_m", self._mapping.levels)):
             known = {name: frame[name] for name in lengths if not _no_field(frame.schema[name])}
-            values = [(raw.cast(pl.Float64, strict=False).abs().fill_nan(None) * lengths[name]).alias(name) for name, raw in known.items()]
+            numbers_of = {name: raw.cast(pl.Float64, strict=False).abs().fill_nan(None) for name, raw in known.items()}
+            values = [(each * lengths[name]).alias(name) for name, each in numbers_of.items()]
             if values:
                 part = part.with_columns(pl.DataFrame(values).max_horizontal().alias(quantity))
         return part
