@@ -146,7 +146,7 @@ def _least_radii(epochs: pl.DataFrame) -> list[pl.Series]:
 
 
 def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
-    """Add `CONTAINMENT`, infinite where the indicator says that there is none, where the table states one; so is a level of another name."""
+    """Add `CONTAINMENT`, infinite where the indicator says that there is none, where the table states one, or a level that nothing reads."""
     have = set(epochs.columns)
     if not have & {"rc_m", "nic", "unread_level_m"}:
         return epochs

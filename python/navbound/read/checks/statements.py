@@ -315,7 +315,7 @@ def stated(kind: Kind, raw: pl.Series) -> Stated:
 
 _ALARM = (
     r"\b(unable|unreliable|invalid|lost|fail|fails|failed|failure|fault|faulty|alarm|alert|warning|misleading|spoof|spoofed|spoofing|jam|jammed|jamming|"
-    r"degraded|unhealthy|unsafe|downgrade|downgraded|unavail|unavailable|disagree|inop|loss|doubtful|dead reckoning|outage|outages|exceeded|"
+    r"degraded|unhealthy|unsafe|downgrade|downgraded|unavail|unavailable|disagree|inop|loss|doubtful|dead reckoning|outage|exceeded|"
     r"accur low|accuracy low|low accuracy|irs only|irs nav only|ins only|inertial only|disconnected|extrapolated|simulated data|"
     r"simulated position)\b"
 )
