@@ -70,6 +70,8 @@ def test_two_positions_at_one_time_contradict_each_other(tmp_path: Path) -> None
     assert (verdict.inside, verdict.n_judged, verdict.n_epochs, verdict.n_implausible) == (None, 0, N, N // 2)
     assert result.epochs["status"].unique().to_list() == ["invalid_input"]
     assert result.epochs["reason_id"].unique().to_list() == ["position_jump"]
+    words = f"{N // 2} position jumps that cannot be flown ({N // 2} of them another position of the same time"
+    assert any(words in each for each in result.summary.assumptions)
 
 
 def test_identical_repeats_are_left_out_and_do_no_harm(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from pathlib import Path
 
@@ -91,3 +92,28 @@ def test_a_level_under_its_full_name_is_read(tmp_path: Path) -> None:
     name = "Horizontal Protection Level (m)"
     verdict = navbound.analyze(table(tmp_path / "a.csv", N, sigma_m=SIGMA_M, added={name: np.full(N, 2400.0)})).summary.verdict
     assert (verdict.id, verdict.unread) == ("outside", [])
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "states"), [("hAcc", 3.0, True), ("HIL", 30.0, True), ("note", 3.0, False), ("vAcc", 3.0, False)]
+)
+def test_a_file_with_an_accuracy_that_is_not_understood_states_one(tmp_path: Path, name: str, value: float, states: bool) -> None:
+    path = table(tmp_path / "a.csv", N, sigma_m=None, added={name: np.full(N, value)})
+    for summary in (navbound.analyze(path).summary, navbound.analyze(path, piece_rows=100).summary):
+        words = next(each for each in summary.assumptions if each.startswith("Covariance: none."))
+        assert (f"states accuracies that are not understood ({name})" in words) == states
+        assert ("states no accuracy" in words) != states
+
+
+def test_the_sentence_of_a_receiver_about_its_error_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.nmea"
+    lines = [f"GPGGA,1000{k:02d}.00,4700.0000,N,00800.0000,E,1,09,1.0,500.0,M,47.0,M,," for k in range(30)]
+    date = "GPRMC,100000.00,A,4700.0000,N,00800.0000,E,0.0,0.0,060524,,,A"
+
+    def whole(sentence: str) -> str:
+        return f"${sentence}*{functools.reduce(lambda a, b: a ^ ord(b), sentence, 0):02X}\r\n"
+
+    path.write_bytes("".join(map(whole, [date, *lines, "PGRME,15.0,M,45.0,M,25.0,M"])).encode())
+    summary = navbound.analyze(path).summary
+    assert summary.verdict.unread == ["$PGRME (estimated position error)"]
+    assert not any("states no accuracy" in each for each in summary.assumptions)

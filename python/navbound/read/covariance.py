@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import polars as pl
 
 from navbound.errors import InputError
 from navbound.read.checks.stated import CONTAINMENT, WORSE, worse_than_covariance
+from navbound.read.checks.statements import speaks_of_accuracy, speaks_of_level
 from navbound.table.columns import COVARIANCE, HORIZONTAL
 from navbound.units import METRES_PER_NM
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 NACP_EPU_M = {
     11: 3.0,
@@ -146,7 +150,7 @@ def _least_radii(epochs: pl.DataFrame) -> list[pl.Series]:
 
 
 def _with_containment(epochs: pl.DataFrame) -> pl.DataFrame:
-    """Add `CONTAINMENT`, infinite where the indicator says that there is none, where the table states one, or a level that nothing reads."""
+    """Add `CONTAINMENT`, infinite where the indicator says that there is none, and levels that nothing reads."""
     have = set(epochs.columns)
     if not have & {"rc_m", "nic", "unread_level_m"}:
         return epochs
@@ -238,8 +242,18 @@ def _coded(epochs: pl.DataFrame, have: set[str]) -> Claimed:
             f"integrity level 3 {coding}. Rc is an integrity limit, so this sigma is a stand-in."
         )
         return _circle(epochs, radius * k_rc, words, "containment_radius")
-    words = "Covariance: none. The file states no accuracy and none was given (sigma_m), so nothing bounds the navigation error."
-    return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COVARIANCE), words, "none")
+    return Claimed(epochs.with_columns(pl.lit(None, pl.Float64).alias(c) for c in COVARIANCE), _NONE, "none")
+
+
+_NONE = "Covariance: none. The file states no accuracy and none was given (sigma_m), so nothing bounds the navigation error."
+
+
+def words_beside(claimed: Claimed, unread: Sequence[str]) -> str:
+    """The words of a claim, given the names of what speaks of integrity in its files and was not understood."""
+    accuracies = [each for each in unread if speaks_of_accuracy(each) or speaks_of_level(each)]
+    if claimed.origin != "none" or not accuracies:
+        return claimed.words
+    return _NONE.replace("states no accuracy", f"states accuracies that are not understood ({', '.join(accuracies)})")
 
 
 def _in_force(name: str) -> pl.Expr:

@@ -15,7 +15,7 @@ from navbound.read.approaches import Approaches, Gates, find, statistics
 from navbound.read.checks.axes import doubts_of_axes
 from navbound.read.checks.plausible import Limits, check
 from navbound.read.checks.repeats import left_out, separate
-from navbound.read.covariance import Claimed, claim
+from navbound.read.covariance import Claimed, claim, words_beside
 from navbound.read.pieces import PIECE_ROWS
 from navbound.read.routes import Route, follow, load_route
 from navbound.read.runways import runway
@@ -159,7 +159,11 @@ def material(
     # A fixed truth says that the receiver stands: its position may repeat.
     epochs, plausibility = check(claimed.epochs, limits if named.ecef_m is None else replace(limits, moving_mps=math.inf))
     origin = _origin(claimed, sigma_m, solved_alone=bool(sorted_inputs.observations) and not sorted_inputs.tables)
-    of_covariance = "Covariance: solved with the positions, from the measurements." if origin.id == "solved" else claimed.words
+    of_covariance = (
+        "Covariance: solved with the positions, from the measurements."
+        if origin.id == "solved"
+        else words_beside(claimed, _unread(readings))
+    )
     position_doubts, truth_doubts = [*_doubts(readings, decided=truth is not None), *doubts_of_speeds(epochs)], TruthDoubts()
     assumptions = [of_covariance, plausibility.words, *doubts_of_axes(epochs)]
     if truth is not None:
@@ -193,11 +197,15 @@ def material(
         cross_track=route.cross_track,
         procedures=route.flights,
         settings=context.settings_with(readings),
-        unread=list(dict.fromkeys(each for r in readings for each in r.unread)),
+        unread=_unread(readings),
         position_doubts=position_doubts,
         truth_doubts=truth_doubts,
         satellites=pl.concat([r.satellites for r in readings if r.satellites is not None] or [pl.DataFrame(schema=schema(HEARD))]),
     )
+
+
+def _unread(readings: Sequence[Reading]) -> list[str]:
+    return list(dict.fromkeys(each for r in readings for each in r.unread))
 
 
 def _doubts(readings: Sequence[Reading], *, decided: bool) -> list[str]:
@@ -249,7 +257,13 @@ def _in_pieces(recorded: InPieces, context: _Context) -> Material:
         title=f"Recorded tracks: {Path(reading.source.path).name}",
         requirement=context.requirement,
         sample_period_s=recorded.period_s,
-        assumptions=[recorded.claimed.words, recorded.plausibility.words, *recorded.doubts, _NO_PATH, *reading.notes],
+        assumptions=[
+            words_beside(recorded.claimed, reading.unread),
+            recorded.plausibility.words,
+            *recorded.doubts,
+            _NO_PATH,
+            *reading.notes,
+        ],
         covariance=_origin(recorded.claimed, context.sigma_m, solved_alone=False),
         operation=context.operation,
         labels=recorded.labels,

@@ -58,6 +58,7 @@ _UNDATED = -(2**63)
 
 _REASON_ID = [None, "position_held", "position_stale", "position_jump", "position_not_settled", "position_late"]
 """What the core found, by its codes."""
+_JUMP = _REASON_ID.index("position_jump")
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,7 @@ class Checker:
         self._limits = limits
         self._tracks: dict[str, _core.PlausibleTrack] = {}
         self._n = np.zeros(len(_REASON_ID), dtype=np.int64)
-        self._n_steps = self._n_fast = self._n_dated = self._n_rows = self._n_doubted = 0
+        self._n_steps = self._n_fast = self._n_dated = self._n_rows = self._n_doubted = self._n_twice = 0
         self._largest = self._fastest = 0.0
 
     def see(self, epochs: pl.DataFrame) -> None:
@@ -162,6 +163,9 @@ class Checker:
         names = ("finding", "step_m", "too_fast_mps", "speed_doubted")
         code, step, fast, doubted = (np.concatenate([one[name] for one in judged]) for name in names)
         self._n_doubted += int(doubted.sum())
+        if "reason_id" in epochs.columns:
+            jumps = (epochs["reason_id"] == "position_jump").fill_null(value=False).to_numpy()
+            self._n_twice += int((jumps & (code != _JUMP)).sum())
         self._count(code, step, fast, columns)
         return _marked(epochs, code)
 
@@ -183,8 +187,10 @@ class Checker:
     def plausibility(self) -> Plausibility:
         """What was found in all pieces so far."""
         limits, n, n_steps, largest, fastest = self._limits, self._n, self._n_steps, self._largest, self._fastest
+        twice = f"{self._n_twice} of them another position of the same time, " if self._n_twice else ""
         words = (
-            f"Plausibility: {n[3]} position jumps that cannot be flown ({n[4]} more epochs not settled after them), {n[2]} epochs with a "
+            f"Plausibility: {n[_JUMP] + self._n_twice} position jumps that cannot be flown ({twice}{n[4]} more epochs not settled after "
+            f"them), {n[2]} epochs with a "
             f"position held for more than {limits.stale_after_s:g} s, {n[1]} with one held shorter; {n_steps} steps of more than 5 km "
             f"between successive epochs, the largest {largest / 1e3:.1f} km."
         )
@@ -200,7 +206,9 @@ class Checker:
                 f" {self._n_dated} of {self._n_rows} rows say when their position was valid; between those, steps are judged by that time."
             )
         repeated, stale, jump, unsettled, late = (int(k) for k in n[1:])
-        return Plausibility(repeated, stale, jump, unsettled, late, self._n_fast, fastest, self._n_doubted, n_steps, largest, words)
+        return Plausibility(
+            repeated, stale, jump + self._n_twice, unsettled, late, self._n_fast, fastest, self._n_doubted, n_steps, largest, words
+        )
 
 
 def _columns(epochs: pl.DataFrame) -> pl.DataFrame:

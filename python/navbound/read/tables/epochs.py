@@ -190,9 +190,10 @@ def _log(source: Source, log: receivers.Log) -> Reading:
     # The receiver lived and had no position: a row of a table without one counts in the same way.
     absent = pl.DataFrame({"track": [source.stem] * len(log.absent_ns), "time_ns": pl.Series(log.absent_ns, dtype=pl.Int64)})
     lost = _left_out(absent, contradicting)
-    return Reading(
-        out.drop(LINE, *empty), source.record(log.n_rows), rejections.records, notes=log.notes, columns=log.columns, left_out=lost
-    )
+    # Garmin's own sentence of its errors is named: which of the epochs around it is meant, and at which share, it does not say.
+    unread = ["$PGRME (estimated position error)"] if source.format.id == "nmea" and b"$PGRME," in source.content else []
+    of_file = (source.record(log.n_rows), rejections.records)
+    return Reading(out.drop(LINE, *empty), *of_file, notes=log.notes, columns=log.columns, left_out=lost, unread=unread)
 
 
 def _left_out(*rows: pl.DataFrame) -> pl.DataFrame:

@@ -187,7 +187,8 @@ def beside_words(n_epochs: int, unread: Sequence[str]) -> list[str]:
 
 def _read_as_metres(unread: Sequence[str]) -> str:
     """What was compared though nothing says what it is, and how a person says it."""
-    names = [f"“{name}”" for name in unread if speaks_of_accuracy(name)]
+    # A sentence of a receiver is no column: it is named, not compared.
+    names = [f"“{name}”" for name in unread if speaks_of_accuracy(name) and not name.startswith("$")]
     if not names:
         return ""
     which = f"Compared, too, as a length of the unit that its name states, or metres: {', '.join(names)}."
