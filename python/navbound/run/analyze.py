@@ -29,7 +29,7 @@ from navbound.records.run import CovarianceOrigin, Rejection, Waypoint
 from navbound.records.truth import TruthDoubts
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
-from navbound.run.pieces import AUXILIARY, covariance_status, in_pieces, is_large, without_path
+from navbound.run.pieces import AUXILIARY, Flights, covariance_status, in_pieces, is_large, without_path
 from navbound.table.columns import HEARD
 from navbound.table.declare import schema
 from navbound.units import METRES_PER_NM
@@ -151,8 +151,7 @@ def material(
     inputs = [r.source for r in readings] + [
         source.record(None) for source in sorted_inputs.navigation if source not in sorted_inputs.observations
     ]
-    rejected = [x for r in readings for x in r.rejected]
-    notes = sorted_inputs.cut_words() + [note for r in readings for note in r.notes]
+    rejected, notes = [x for r in readings for x in r.rejected], sorted_inputs.cut_words() + [note for r in readings for note in r.notes]
     epochs, lost = _together(readings, rejected)
     labels = _labels(epochs)
     claimed = claim(epochs, sigma_m)
@@ -175,7 +174,9 @@ def material(
         epochs, truth_doubts = with_error(epochs)
         assumptions.append(f"Truth: from the file itself. {truth_doubts.words}".rstrip())
     route = _follow(path, epochs, gates, rejected) if procedure is None else _on_procedure(epochs, procedure)
-    epochs = covariance_status(route.epochs)
+    # A path has ends of its own.
+    flights = Flights(dividing=path is None and procedure is None)
+    epochs = flights.divide(covariance_status(route.epochs))
     if procedure is None:
         epochs = epochs.with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
     else:
@@ -186,14 +187,16 @@ def material(
         title=route.heading if (path or procedure) is not None else f"{route.heading}: {', '.join(Path(str(n)).name for n in names)}",
         requirement=requirement,
         sample_period_s=_period(epochs),
-        assumptions=[*assumptions, *route.words, *notes],
+        assumptions=[*assumptions, *flights.words(), *route.words, *notes],
         covariance=origin,
         operation=operation or route.operation,
-        labels={track: f"{labels[of]} {track.partition(' ')[2]}".strip() for track, of in route.tracks.items()} if route.tracks else labels,
+        labels={track: f"{labels[of]} {track.partition(' ')[2]}".strip() for track, of in route.tracks.items()}
+        if route.tracks
+        else labels | _labels(epochs),
         waypoints=route.waypoints,
         inputs=inputs + route.inputs,
         rejected=rejected,
-        left_out=pl.concat([_on_path(lost, epochs, route.tracks), route.left_out]),
+        left_out=pl.concat([_on_path(flights.divide_left_out(lost), epochs, route.tracks), route.left_out]),
         cross_track=route.cross_track,
         procedures=route.flights,
         settings=context.settings_with(readings),
@@ -269,9 +272,9 @@ def _in_pieces(recorded: InPieces, context: _Context) -> Material:
         labels=recorded.labels,
         inputs=[reading.source],
         rejected=reading.rejected,
-        left_out=reading.left_out,
+        left_out=recorded.left_out,
         settings=context.settings_with([reading]),
-        with_levels=frozenset(reading.with_levels),
+        with_levels=recorded.with_levels,
         unread=reading.unread,
         position_doubts=[*reading.position_doubts, *recorded.position_doubts],
     )

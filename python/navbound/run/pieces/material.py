@@ -20,6 +20,7 @@ from navbound.read.source import LARGE_BYTES, is_text_table
 from navbound.read.speeds import Speeds
 from navbound.read.tables.columns import POSITION_TIME, assign
 from navbound.read.tables.table import layout_of
+from navbound.run.pieces.flights import Flights
 from navbound.table.columns import COVARIANCE, HORIZONTAL
 
 if TYPE_CHECKING:
@@ -98,23 +99,29 @@ class InPieces:
 
     Attributes
     ----------
+    left_out : DataFrame
+        Rows that cannot be judged, as those of the reading, by the flights of their tracks.
     claimed : Claimed
         Where the covariance comes from; its epochs are those of the last piece.
     labels : dict
         Track to the callsign it mostly has, or to its own name.
+    with_levels : frozenset of str
+        Tracks with a protection level anywhere.
     period_s : float
         Usual time between epochs of a track; 1 s where no track has two. [s]
     doubts : list of str
-        That the positions do not move as the recording says.
+        That the positions do not move as the recording says, and how many tracks were divided.
     position_doubts : list of str
         That they do not travel as its speeds say.
     """
 
     reading: PiecedReading
     epochs: Frames
+    left_out: pl.DataFrame
     claimed: Claimed
     plausibility: Plausibility
     labels: dict[str, str]
+    with_levels: frozenset[str]
     period_s: float
     doubts: list[str]
     position_doubts: list[str]
@@ -132,20 +139,24 @@ def in_pieces(
     """
     reading = read_pieces(path, columns=columns, piece_rows=piece_rows)
     checker, claims, epochs = Checker(limits), Claims(sigma_m), Frames()
-    axes, speeds = Axes(), Speeds()
+    axes, speeds, flights = Axes(), Speeds(), Flights()
     steps, labels = _Steps(reading.n_rows), _Labels(reading.names)
     for part in reading.spread():
         checker.see(part)
     for piece, after in _with_the_next(reading.epochs(), _core.SPEEDS_BESIDE):
-        labels.see(piece)
         axes.see(piece)
         claimed = claims.claim(piece)
         speeds.see(claimed.epochs)
         ready = covariance_status(without_path(checker.check(claimed.epochs, after))).with_columns(pl.lit(float(rnp_m)).alias("rnp_m"))
+        ready = flights.divide(ready)
+        labels.see(ready)
         steps.see(ready)
         epochs.put(ready.drop(AUXILIARY, strict=False))
     reading.pieces.close()
-    return InPieces(reading, epochs, claimed, checker.plausibility(), labels.usual(), steps.median_s(), axes.words(), speeds.doubts())
+    of_tracks = (labels.usual(), frozenset(labels.with_levels), steps.median_s())
+    doubts = [*axes.words(), *flights.words()]
+    lost = flights.divide_left_out(reading.left_out)
+    return InPieces(reading, epochs, lost, claimed, checker.plausibility(), *of_tracks, doubts, speeds.doubts())
 
 
 def _with_the_next(pieces: Iterator[pl.DataFrame], n: int) -> Iterator[tuple[pl.DataFrame, pl.DataFrame]]:
@@ -190,8 +201,13 @@ class _Labels:
 
     def __init__(self, names: list[str]) -> None:
         self._counts: dict[str, Counter[str]] = {name: Counter() for name in names}
+        self.with_levels = set[str]()
 
     def see(self, epochs: pl.DataFrame) -> None:
+        for track in epochs["track"].unique():
+            self._counts.setdefault(track, Counter())
+        if "hpl_m" in epochs.columns:
+            self.with_levels |= set(epochs.drop_nulls("hpl_m")["track"].unique())
         if "callsign" in epochs.columns:
             counted = epochs.drop_nulls("callsign").group_by("track", "callsign").len()
             for track, callsign, n in counted.iter_rows():
@@ -199,7 +215,7 @@ class _Labels:
 
     def usual(self) -> dict[str, str]:
         """Of several that are as frequent the first of the alphabet."""
-        return {track: _most(counts) or track for track, counts in self._counts.items()}
+        return {track: _most(counts) or track for track, counts in sorted(self._counts.items())}
 
 
 def _most(counts: Counter[str]) -> str | None:
