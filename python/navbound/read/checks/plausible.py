@@ -9,7 +9,7 @@ import numpy as np
 import polars as pl
 
 from navbound import _core, status
-from navbound.read.checks.age import STALE_AFTER_S
+from navbound.read.checks.statements import STALE_AFTER_S
 from navbound.read.tables.columns import POSITION_TIME
 from navbound.table.columns import COVARIANCE
 

@@ -14,12 +14,14 @@ from typing import TYPE_CHECKING, Literal
 import polars as pl
 
 from navbound import _core
-from navbound.read.checks.age import STALE_AFTER_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
 Effect = Literal["invalid", "alert"]
+
+STALE_AFTER_S = 2.0
+"""Age from which a position is stale, whoever says its age. [s] Provenance: ours."""
 
 
 @dataclass(frozen=True)
