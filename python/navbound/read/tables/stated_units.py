@@ -75,6 +75,6 @@ def _stated(remark: str, names: list[str]) -> Iterator[tuple[str, str]]:
     # Without brackets or the word, what stands behind a name may be anything.
     between = r"\s*(?:[\[(:=]|in\b)\s*" if re.search(r"\bunits?\b", remark, re.IGNORECASE) else r"\s*[\[(]\s*"
     for name in names:
-        found = re.search(rf"(?<![\w]){re.escape(name)}{between}([^\s\]),;]+)", remark, re.IGNORECASE)
-        if found and _unit(found[1]) in _TELLING:
-            yield name, found[1]
+        unit = re.search(rf"(?<![\w]){re.escape(name)}{between}([^\s\]),;]+)", remark, re.IGNORECASE)
+        if unit and _unit(unit[1]) in _TELLING:
+            yield name, unit[1]
