@@ -315,6 +315,18 @@ fn a_repeat_outside_contradicts_and_one_inside_takes_nothing_back() {
 }
 
 #[test]
+fn a_repeat_that_is_not_usable_loses_monitoring_at_its_time_and_a_late_one_does_not() {
+    let unusable = |second| Observation { usable: false, ..at(second, INSIDE, INSIDE) };
+    let mut monitor = Monitor::new(settings()).unwrap();
+    monitor.step(&at(10, INSIDE, INSIDE));
+    assert_eq!(monitor.step(&unusable(9)).alert, Alert::Normal);
+    let step = monitor.step(&unusable(10));
+    assert_eq!((step.acceptance, step.alert, began(&step)), (Acceptance::Duplicate, Alert::Unavailable, vec![Kind::Unavailable]));
+    assert_eq!(monitor.step(&at(10, INSIDE, INSIDE)).alert, Alert::Unavailable);
+    assert_eq!(monitor.step(&at(11, INSIDE, INSIDE)).alert, Alert::Normal);
+}
+
+#[test]
 fn an_exceedance_alerts_within_its_delay_of_records_however_slowly_the_stamps_advance() {
     for step_ns in [1, 1_000_000, 499_999_999] {
         let mut monitor = Monitor::new(settings()).unwrap();

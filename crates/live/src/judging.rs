@@ -104,12 +104,12 @@ fn believed(settings: &Settings, track: &mut Track, position: &Position) -> Posi
     let place = position.lat_rad.zip(position.lon_rad).filter(|_| position.status.usable());
     let Some((lat_rad, lon_rad)) = place else { return *position };
     let speed_mps = position.ground_speed_mps.unwrap_or(f64::NAN);
-    let report = Report { time: position.time, fixed: None, lat_rad, lon_rad, speed_mps };
+    let variance_m2 = position.covariance_m2.map(|[ee, _, nn, ..]| ee.max(nn));
+    let report = Report { time: position.time, fixed: None, lat_rad, lon_rad, speed_mps, variance_m2: variance_m2.unwrap_or(f64::NAN) };
     // A place off the Earth is refused where it is projected, or is no covariance's.
     let finding = track.motion.see(&report, &settings.motion).map_or(Some(Reason::InvalidNumber), Finding::reason);
     let mut restless = || {
-        let variance_m2 = position.covariance_m2.map(|[ee, _, nn, ..]| ee.max(nn))?;
-        let place = Place { time: position.time, lat_rad, lon_rad, variance_m2 };
+        let place = Place { time: position.time, lat_rad, lon_rad, variance_m2: variance_m2? };
         track.neighbours.contradict(place, settings.motion.stale_after_s).then_some(Reason::NeighboursContradict)
     };
     // A position that is merely late may contradict those before it all the same: the graver word counts.
@@ -139,6 +139,9 @@ pub(crate) fn judge(settings: &Settings, id: TrackId, track: &mut Track, arrived
             (unusable, track.judge.step(&unusable))
         }
     };
+    if judged.step.acceptance == Acceptance::Duplicate && !judged.evaluated.status.usable() {
+        track.motion.dispute(position.time);
+    }
     if judged.step.acceptance == Acceptance::ClockSetBack {
         track.incarnation = track.incarnation.saturating_add(1);
         (track.motion, track.neighbours) = (Motion::default(), Neighbours::default());

@@ -614,7 +614,8 @@ fn a_position_that_stays_while_its_aircraft_moves_is_not_believed() {
     assert!(alerts[..13].iter().all(|a| *a == rnp::Alert::Normal) && alerts[14..].iter().all(|a| *a == rnp::Alert::Unavailable));
     // Nobody says that it stands; somebody says it; the receiver is known to stand.
     assert_eq!(doubts(limits, |k| placed(frozen(k), "")).0, ["position_stale"]);
-    assert_eq!(doubts(limits, |k| placed(frozen(k), ",\"ground_speed_mps\":0.0")).0, [""; 0]);
+    let stops = |k: u32| if k < 10 { fast } else { ",\"ground_speed_mps\":0.0" };
+    assert_eq!(doubts(limits, |k| placed(frozen(k), stops(k))).0, [""; 0]);
     assert_eq!(doubts(motion::Limits { moving_mps: f64::INFINITY, ..limits }, |k| placed(frozen(k), "")).0, [""; 0]);
 }
 
@@ -674,5 +675,51 @@ fn data_that_are_not_of_now_are_not_monitored() {
         let turns = all.iter().filter(|output| matches!(output, Output::Transition(t) if t.turn == Turn::Cleared)).count();
         assert_eq!(turns, 0, "{late_s}");
         assert!(late_s > 20.0 || transitions(&all).len() == usize::from(!normal), "{late_s}");
+    }
+}
+
+/// A source that says two things of one instant. 1e-5 rad a second are 64 m/s.
+#[test]
+fn two_statements_of_one_instant_that_contradict_each_other_are_an_alert_and_nothing_is_believed_until_it_settles() {
+    let flies = |k: u32| 0.5 + 1e-5 * f64::from(k);
+    let speed = ",\"ground_speed_mps\":64.0";
+    let second = |more: &str, aside_m: f64| {
+        let base = settings();
+        let judge = judge::Settings { method: Alerting::of("anp-circle").unwrap(), ..base.judge };
+        let mut lane = Lane::new(Settings { judge, ..base }).unwrap();
+        let also = |k: u32| {
+            if k == 10 { line("d", 10.0, &placed(flies(k) + aside_m / 6.371e6, &format!("{speed}{more}"))) } else { String::new() }
+        };
+        let all = flown(&mut lane, 50, |k| line("d", f64::from(k), &placed(flies(k), speed)) + &also(k));
+        epochs_of(&all, "d")
+    };
+    // 10 m of standard deviation each: 2 m of rounding and 6.44 times 14.1 m are explained.
+    for (more, aside_m, contradicts) in
+        [("", 80.0, false), ("", 300.0, true), ("", 5e5, true), (",\"status\":\"not_available\"", 0.0, true)]
+    {
+        let epochs = second(more, aside_m);
+        let settled = |e: &&EpochOut| e.time > at(40.0);
+        assert_eq!(epochs[11].alert == rnp::Alert::Unavailable, contradicts, "{aside_m}");
+        assert_eq!(epochs[12..].iter().any(|e| e.alert != rnp::Alert::Normal), contradicts, "{aside_m}");
+        assert_eq!(epochs[12..41].iter().all(|e| e.status != Status::Ok), contradicts, "{aside_m}");
+        assert!(epochs.iter().filter(settled).count() > 5 && epochs.iter().filter(settled).all(|e| e.alert == rnp::Alert::Normal));
+    }
+}
+
+/// 70 m a record whose time stamps go on by less than a millisecond.
+#[test]
+fn positions_that_are_flown_faster_than_their_time_stamps_go_on_are_not_believed() {
+    for (step_ns, speed) in [(1_000, ",\"ground_speed_mps\":70.0"), (1_000_000, ",\"ground_speed_mps\":70.0"), (1_000_000, "")] {
+        let mut lane = Lane::new(settings()).unwrap();
+        let mut all = Vec::new();
+        for k in 0..90 {
+            let of = placed(0.5 + 70.0 * f64::from(k) / 6.371e6, &format!("{speed},\"fte_m\":0.0"));
+            let text = format!("{{\"v\":1,\"track\":\"d\",\"time_ns\":{}{of}}}\n", T0_NS / 1000 + i64::from(k) * step_ns);
+            lane.step(&Input::Chunk { arrival: None, bytes: text.as_bytes() }, &mut all);
+        }
+        lane.step(&Input::End { arrival: None }, &mut all);
+        let epochs = epochs_of(&all, "d");
+        assert_eq!(epochs.len(), 90);
+        assert!(epochs[18..].iter().all(|e| e.alert == rnp::Alert::Unavailable), "{step_ns}");
     }
 }

@@ -22,7 +22,7 @@ pub(crate) struct Track {
     pub(crate) stepped: bool,
     /// Distance along the path of the last foot.
     pub(crate) along: Option<Metres>,
-    /// Its last different position and its last jump.
+    /// Its last different position, an earlier one, and its last jump.
     pub(crate) motion: Motion,
     /// Its last two positions.
     pub(crate) neighbours: Neighbours,
@@ -72,10 +72,12 @@ impl Track {
         to.option(self.last, |to, time| to.i64(time.nanoseconds()));
         to.flag(self.stepped);
         to.option(self.along, |to, along| to.f64(along.m()));
-        to.option(self.motion.last, |to, last| {
-            to.i64(last.time.nanoseconds());
-            [last.lat_rad, last.lon_rad, last.speed_mps].into_iter().for_each(|number| to.f64(number));
-        });
+        for report in [self.motion.last, self.motion.anchor] {
+            to.option(report, |to, report| {
+                to.i64(report.time.nanoseconds());
+                [report.lat_rad, report.lon_rad, report.speed_mps, report.variance_m2].into_iter().for_each(|number| to.f64(number));
+            });
+        }
         to.option(self.motion.jumped, |to, time| to.i64(time.nanoseconds()));
         to.option(self.motion.gone.seen, |to, time| to.i64(time.nanoseconds()));
         to.f64(self.motion.gone.way_m);
@@ -105,11 +107,13 @@ impl Track {
         let along = from.option(Reader::f64)?.map(Metres::new);
         let report = |from: &mut Reader<'_>| {
             let time = GpsTime::from_nanoseconds(from.i64()?);
-            Ok(Report { time, fixed: None, lat_rad: from.f64()?, lon_rad: from.f64()?, speed_mps: from.f64()? })
+            let [lat_rad, lon_rad, speed_mps, variance_m2] = [from.f64()?, from.f64()?, from.f64()?, from.f64()?];
+            Ok(Report { time, fixed: None, lat_rad, lon_rad, speed_mps, variance_m2 })
         };
-        let (last_different, jumped) = (from.option(report)?, from.option(Reader::i64)?.map(GpsTime::from_nanoseconds));
+        let (last_different, anchor) = (from.option(report)?, from.option(report)?);
+        let jumped = from.option(Reader::i64)?.map(GpsTime::from_nanoseconds);
         let gone = Gone { seen: from.option(Reader::i64)?.map(GpsTime::from_nanoseconds), way_m: from.f64()? };
-        let motion = Motion { last: last_different, jumped, gone };
+        let motion = Motion { last: last_different, anchor, jumped, gone };
         let place = |from: &mut Reader<'_>| {
             let time = GpsTime::from_nanoseconds(from.i64()?);
             Ok(Place { time, lat_rad: from.f64()?, lon_rad: from.f64()?, variance_m2: from.f64()? })

@@ -3,6 +3,7 @@
 //! A position report does not show whether it is true: a decoder or a receiver repeats the last position when none arrives, and a falsified
 //! receiver jumps. Both leave a track that no bound of the navigation error covers.
 
+use super::neighbours::{Place, one_place};
 use crate::frame::{EcefPosition, Geodetic, LatLon, ecef_from_geodetic};
 use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Reason};
 
@@ -42,6 +43,8 @@ pub struct Report {
     pub lon_rad: f64,
     /// Reported speed over the ground \[m/s\].
     pub speed_mps: f64,
+    /// The larger horizontal variance that is stated, NaN where none is \[m²\].
+    pub variance_m2: f64,
 }
 
 /// What was found about one position.
@@ -164,57 +167,90 @@ pub fn sea_level(report: &Report) -> Result<EcefPosition, OutOfDomain> {
     Ok(ecef_from_geodetic(&Geodetic { point, height: Metres::new(0.0) }))
 }
 
-/// The motion of a track whose reports arrive: the last different position, and the last jump.
+/// The motion of a track whose reports arrive: the last different position, an earlier one, and the last jump.
 ///
-/// The same rules as for a recording, as far as one report and the last different one decide them. What needs later reports, or the speeds of
+/// The same rules as for a recording, as far as one report and earlier ones decide them. What needs later reports, or the speeds of
 /// the whole track, is not seen: a jump of a track that reports no speed is judged by the fastest speed of all.
+///
+/// Steps of which each alone is explained by latency are judged together: from a position up to `latency_s` before, no aircraft is further
+/// away than a position that is not yet stale explains. So time stamps that crawl do not make every step a possible one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Motion {
     /// The last different position.
     pub last: Option<Report>,
-    /// When a position jumped last.
+    /// An earlier position, with the fastest speed reported since.
+    pub anchor: Option<Report>,
+    /// When a position jumped last, or a time was disputed.
     pub jumped: Option<GpsTime>,
     /// The way by the reported speeds since the position changed.
     pub gone: Gone,
 }
 
 impl Motion {
-    /// What is found about the next report; one that is no later than the last different position says nothing.
+    /// What is found about the next report; one of the past says nothing.
     ///
     /// # Errors
     /// [`OutOfDomain`] for a position that is no place on the Earth.
     pub fn see(&mut self, report: &Report, limits: &Limits) -> Result<Finding, OutOfDomain> {
         let here = sea_level(report)?;
-        let Some(from) = self.last else {
-            self.last = Some(*report);
+        let Some((from, seen)) = self.last.zip(self.gone.seen) else {
+            (self.last, self.anchor) = (Some(*report), Some(*report));
             self.gone.step(report, false, limits);
             return Ok(Finding::Plausible);
         };
-        if report.time <= from.time {
+        if report.time < seen {
             return Ok(Finding::Plausible);
         }
-        let unchanged = report.lat_rad == from.lat_rad && report.lon_rad == from.lon_rad;
-        let way_m = self.gone.step(report, unchanged, limits);
-        let finding = if unchanged {
-            repeated(report, from.time, way_m, limits)
+        let finding = if report.time == seen {
+            // No vehicle is in two places, and nobody knows which of them is right.
+            if one_place(&place(&from), &place(report)) { Finding::Plausible } else { Finding::Jump }
         } else {
-            let (between, step_m) = (Between::new(&from, report, limits), here.minus(&sea_level(&from)?).vector().norm());
-            self.last = Some(*report);
-            let silent = from.speed_mps.is_nan() && report.speed_mps.is_nan();
-            // Nothing in a track without speeds tells an old position from a wrong one.
-            let latency_s = if silent { limits.stale_after_s } else { between.latency_s };
-            if !(step_m <= between.reach_m(latency_s, limits)) {
-                self.jumped = Some(report.time);
-                Finding::Jump
-            } else if step_m <= between.reach_m(limits.stale_after_s, limits) {
-                Finding::Plausible
-            } else {
-                Finding::Late
-            }
+            let unchanged = report.lat_rad == from.lat_rad && report.lon_rad == from.lon_rad;
+            let way_m = self.gone.step(report, unchanged, limits);
+            if unchanged { repeated(report, from.time, way_m, limits) } else { self.stepped(&from, report, &here, limits)? }
         };
+        if finding == Finding::Jump {
+            self.dispute(report.time);
+        }
         let settling = self.jumped.is_some_and(|jump| within(report.time, jump, limits.settle_s));
         Ok(if settling && !matches!(finding, Finding::Jump | Finding::Stale) { Finding::Unsettled } else { finding })
     }
+
+    /// What the source says of this time contradicts itself: nothing is believed until it has settled.
+    pub const fn dispute(&mut self, time: GpsTime) {
+        self.jumped = Some(time);
+    }
+
+    /// The step to another position, from the last one and from the anchor, after `stood_s` of standing by the reports between.
+    fn stepped(&mut self, from: &Report, report: &Report, here: &EcefPosition, stood_s: f64, limits: &Limits) -> Result<Finding, OutOfDomain> {
+        self.last = Some(*report);
+        let step = reached(from, report, here, stood_s, limits)?;
+        // f64::max prefers a number to a NaN.
+        let anchor = self.anchor.map(|anchor| Report { speed_mps: anchor.speed_mps.max(report.speed_mps), ..anchor });
+        let kept = anchor.filter(|anchor| step == Finding::Plausible && within(report.time, anchor.time, limits.latency_s));
+        let whole = kept.map_or(Ok(step), |anchor| reached(&anchor, report, here, stood_s, limits))?;
+        self.anchor = Some(kept.filter(|_| whole != Finding::Jump).unwrap_or(*report));
+        Ok(whole)
+    }
+}
+
+/// Whether a position can have been flown to from another one.
+fn reached(from: &Report, to: &Report, here: &EcefPosition, stood_s: f64, limits: &Limits) -> Result<Finding, OutOfDomain> {
+    let (between, way_m) = (Between::new(from, to, stood_s, limits), here.minus(&sea_level(from)?).vector().norm());
+    // Nothing in a track without speeds tells an old position from a wrong one.
+    let silent = from.speed_mps.is_nan() && to.speed_mps.is_nan();
+    let latency_s = if silent { limits.stale_after_s } else { between.latency_s };
+    Ok(if !(way_m <= between.reach_m(latency_s, limits)) {
+        Finding::Jump
+    } else if way_m <= between.reach_m(limits.stale_after_s, limits) {
+        Finding::Plausible
+    } else {
+        Finding::Late
+    })
+}
+
+fn place(report: &Report) -> Place {
+    Place { time: report.time, lat_rad: report.lat_rad, lon_rad: report.lon_rad, variance_m2: report.variance_m2 }
 }
 
 #[cfg(test)]
@@ -235,7 +271,7 @@ mod tests {
 
     fn report(seconds: i64, north_m: f64, speed_mps: f64) -> Report {
         let time = GpsTime::from_nanoseconds(seconds * 1_000_000_000);
-        Report { time, fixed: None, lat_rad: 0.8 + north_m / 6.37e6, lon_rad: 0.1, speed_mps }
+        Report { time, fixed: None, lat_rad: 0.8 + north_m / 6.37e6, lon_rad: 0.1, speed_mps, variance_m2: 4.0 }
     }
 
     fn findings(reports: &[Report], limits: &Limits) -> Vec<Finding> {
@@ -281,6 +317,36 @@ mod tests {
         let after = |k| if k == 1 { report(k, 9e3, 100.0) } else { report(k, 9e3 + 100.0 * (k - 1) as f64, 100.0) };
         let all = findings(&[report(0, 0.0, 100.0), after(1), after(2), after(31), after(32)], &LIMITS);
         assert_eq!(all, [Plausible, Jump, Unsettled, Unsettled, Plausible]);
+    }
+
+    #[test]
+    fn two_places_of_one_time_are_a_jump_where_their_covariances_do_not_explain_them() {
+        use Finding::{Jump, Plausible, Unsettled};
+        // 2 m of rounding, and 6.4379 of the standard deviations of 4 + 4 m2: 20.2 m.
+        let again = |north_m| findings(&[report(0, 0.0, 70.0), report(1, 70.0, 70.0), report(1, 70.0 + north_m, 70.0)], &LIMITS)[2];
+        assert_eq!([0.0, 20.0, 20.5, 300.0, 5e5].map(again), [Plausible, Plausible, Jump, Jump, Jump]);
+        // The next ones are not believed, whichever place they go on from.
+        let after = [report(0, 0.0, 70.0), report(0, 300.0, 70.0), report(1, 70.0, 70.0), report(31, 2170.0, 70.0)];
+        assert_eq!(findings(&after, &LIMITS), [Plausible, Jump, Unsettled, Plausible]);
+    }
+
+    #[test]
+    fn a_flight_by_time_stamps_that_crawl_is_a_jump_and_one_with_late_positions_is_none() {
+        // 70 m/s whose stamps go on by a millisecond: (1.25 x 70 + 25) m/s x 10 s + 100 m are 1225 m, 18 steps.
+        let crawls = |k: i64, speed| Report { time: GpsTime::from_nanoseconds(k * 1_000_000), ..report(0, 70.0 * k as f64, speed) };
+        let first = |found: Vec<Finding>, of| found.iter().position(|each| *each == of);
+        let all = findings(&(0..90).map(|k| crawls(k, 70.0)).collect::<Vec<_>>(), &LIMITS);
+        assert_eq!((first(all.clone(), Finding::Late), first(all.clone(), Finding::Jump)), (Some(5), Some(18)));
+        assert!(all[5..].iter().all(|each| *each != Finding::Plausible), "{all:?}");
+        // Without speeds 400 m/s x 2 s + 100 m.
+        let silent = findings(&(0..90).map(|k| crawls(k, f64::NAN)).collect::<Vec<_>>(), &LIMITS);
+        assert!(first(silent.clone(), Finding::Jump) == Some(13) && silent[13..].iter().all(|each| *each != Finding::Plausible));
+        // Positions by turns of now and up to 1.9 s old, of one that brakes at 5 m/s2 as well.
+        let late = |k: i64| report(k, 70.0 * (k as f64 - if k % 3 == 1 { 1.9 } else { 0.0 }), 70.0);
+        assert!(findings(&(0..90).map(late).collect::<Vec<_>>(), &LIMITS).iter().all(|each| *each == Finding::Plausible));
+        let speed = |k: i64| (70.0 - 5.0 * k as f64).max(0.0);
+        let brakes = |k: i64| report(k, (0..k).map(|j| 0.5 * (speed(j) + speed(j + 1))).sum(), speed(k));
+        assert!(findings(&(0..40).map(brakes).collect::<Vec<_>>(), &LIMITS).iter().all(|each| *each == Finding::Plausible));
     }
 
     #[test]

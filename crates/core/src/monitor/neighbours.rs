@@ -93,6 +93,16 @@ impl Apart {
     }
 }
 
+/// Whether two positions of one time are one, by their covariances and their digits.
+pub fn one_place(a: &Place, b: &Place) -> bool {
+    let [east, north] = east_north_m(a, b);
+    let unexplained_m = (hypot(east, north) - ROUNDING_M).max(0.0);
+    // A position without a variance explains nothing more.
+    let sigma_m = sqrt(a.variance_m2 + b.variance_m2);
+    let explained = exp(-0.5 * (unexplained_m / sigma_m) * (unexplained_m / sigma_m)) >= RISK;
+    unexplained_m <= 0.0 || explained
+}
+
 /// The way from one place to another on a sphere; a meridian and the same one a turn further are one.
 fn east_north_m(from: &Place, to: &Place) -> [f64; 2] {
     let east = 2.0 * EARTH_RADIUS_M * cos(from.lat_rad) * sin(0.5 * (to.lon_rad - from.lon_rad));

@@ -10,7 +10,8 @@
 //!
 //! NaN is not within any limit, so it raises; a bound equal to its limit does not. What was not seen never helps an alert to end: an
 //! unusable epoch or a gap restarts the wait to clear and lets the wait to raise run on. Until the first epoch, monitoring is not
-//! available either. A second record of one time, or a late one no older than the stale time, counts where it is outside. Where time stamps crawl, time outside is counted in records.
+//! available either. A second record of one time, or a late one no older than the stale time, counts where it is outside, and a second one that is not usable
+//! loses monitoring. Where time stamps crawl, time outside is counted in records.
 
 pub use super::clock::Acceptance;
 use super::clock::{Arrival, Clock};
@@ -208,9 +209,14 @@ impl Monitor {
     }
 
     /// A repeat of the last time, or a record shortly before it. A bound outside contradicts one inside, and is judged; one inside takes nothing back.
+    /// A repeat that is not usable contradicts one that is: monitoring is lost at that time.
     fn repeated(&mut self, seen: &Observation, acceptance: Acceptance) -> Step {
         let was_normal = self.alert() == Alert::Normal;
-        let dropped = self.dropped(acceptance, seen.time);
+        let mut dropped = self.dropped(acceptance, seen.time);
+        if !seen.usable && acceptance == Acceptance::Duplicate {
+            let lost = self.lose(seen.time, seen.time);
+            dropped = Step { alert: self.alert(), began: [None, None, dropped.began[2].or(lost)], ..dropped };
+        }
         if !seen.usable || self.loss.is_some() {
             return dropped;
         }
