@@ -51,7 +51,7 @@ impl Lane {
     pub fn new(settings: Settings) -> Result<Self, OutOfDomain> {
         let fresh = Judge::new(settings.judge)?;
         Ok(Self {
-            decoder: Decoder::new(settings.format, settings.claims, settings.track),
+            decoder: Decoder::new(settings.format, settings.claims, settings.track, settings.statements.clone()),
             settings,
             fresh,
             feed: Feed::default(),
@@ -302,6 +302,11 @@ impl Lane {
     /// What the lane counted.
     pub fn counters(&self) -> &Counters {
         &self.counters
+    }
+
+    /// Keys of lines that were passed over, by name.
+    pub fn passed_over(&self) -> &BTreeMap<String, u64> {
+        &self.decoder.passed_over.0
     }
 
     /// Counters of all monitors together.

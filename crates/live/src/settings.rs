@@ -1,7 +1,7 @@
 //! How a lane is set.
 
 use crate::claims::Claims;
-use crate::decode::Format;
+use crate::decode::{Format, Statements};
 use crate::position::TrackId;
 use crate::zones::Table;
 use navbound_core::bound::Alerting;
@@ -10,6 +10,7 @@ use navbound_core::judge;
 use navbound_core::monitor::motion;
 use navbound_core::quantity::{Metres, OutOfDomain};
 use navbound_path::{Foot, Line, Route};
+use std::sync::Arc;
 
 /// Where the aircraft should be.
 #[derive(Debug, Clone)]
@@ -40,6 +41,8 @@ pub struct Settings {
     pub format: Format,
     /// Whose positions those of a receiver are.
     pub track: TrackId,
+    /// How lines of JSON speak against their positions under keys that are none of the contract.
+    pub statements: Arc<Statements>,
     /// Method, risks and monitor of every track.
     pub judge: judge::Settings,
     /// The method of a track from its first record on that states a flight technical error; `None`: that of all.

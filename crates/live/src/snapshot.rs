@@ -115,7 +115,8 @@ impl Lane {
         }
         from = Reader(rest);
         let (position, written) = (from.u64()?, from.u64()?);
-        let decoder = Decoder::read(settings.format, settings.claims, settings.track, &mut from)?;
+        let statements = settings.statements.clone();
+        let decoder = Decoder::read(settings.format, settings.claims, settings.track, statements, &mut from)?;
         let mut lane = Self::new(settings).map_err(|_| SnapshotRefused::Settings)?;
         lane.decoder = decoder;
         lane.feed = Feed::read(&mut from)?;

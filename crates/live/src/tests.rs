@@ -8,6 +8,7 @@ use navbound_core::monitor::{
 use navbound_core::quantity::{GpsTime, Metres, Reason, Risk, Status};
 use proptest::prelude::*;
 use std::fmt::Write;
+use std::sync::Arc;
 
 const T0_NS: i64 = 1_447_500_000_000_000_000;
 
@@ -17,6 +18,14 @@ fn settings() -> Settings {
     Settings {
         format: Format::Json,
         track: TrackId::new("receiver").unwrap(),
+        statements: Arc::new(Statements::new(
+            vec![
+                (vec!["valid".into()], vec!["1".into(), "true".into()], None),
+                (vec!["epu_m".into(), "hpl".into()], vec![], None),
+                (vec!["hdop".into()], vec![], Some(30.0)),
+            ],
+            vec!["stopped".into()],
+        )),
         of_stated_fte: None,
         judge: judge::Settings {
             method: Alerting::of("tse-exact").unwrap(),
@@ -722,4 +731,31 @@ fn positions_that_are_flown_faster_than_their_time_stamps_go_on_are_not_believed
         assert_eq!(epochs.len(), 90);
         assert!(epochs[18..].iter().all(|e| e.alert == rnp::Alert::Unavailable), "{step_ns}");
     }
+}
+
+/// What a line says under keys that are none of the contract: heard where it is a statement, otherwise counted by name.
+#[test]
+fn a_statement_under_another_key_is_heard_and_every_other_key_is_counted() {
+    let against = ["\"valid\":false", "\"Valid\":0", "\"valid\":null", "\"valid\":[1]", "\"epu_m\":5.0", "\"HPL\":10.0", "\"hdop\":31"];
+    let fine = ["\"valid\":true", "\"valid\":1.0", "\"hdop\":1.5", "\"comment\":\"x\"", "\"nav_mode\":\"nav\""];
+    for (keys, status) in
+        [(&against[..], Status::InvalidInput), (&fine[..], Status::Ok), (&["\"nav_mode\":\"Stopped\""][..], Status::NotAvailable)]
+    {
+        for key in keys {
+            let mut lane = Lane::new(settings()).unwrap();
+            let mut all = chunk(&mut lane, 0.1, &line("d", 0.0, &format!(",\"fte_m\":20.0,\"sigma_m\":10.0,{key}")));
+            lane.step(&Input::End { arrival: None }, &mut all);
+            let epochs = epochs_of(&all, "d");
+            assert_eq!(epochs[0].status, status, "{key}");
+            assert_eq!(lane.passed_over().get("comment").copied(), key.contains("comment").then_some(1));
+        }
+    }
+    let mut lane = Lane::new(settings()).unwrap();
+    for k in 0..50 {
+        chunk(&mut lane, 0.1, &line("d", 0.0, &format!(",\"key {k}\":1")));
+    }
+    let expected: u64 = lane.passed_over().values().sum();
+    assert_eq!((lane.passed_over().len(), lane.passed_over()["(others)"], expected), (21, 30, 50));
+    let restored = Lane::restore(settings(), &lane.snapshot(0, 0)).unwrap().0;
+    assert_eq!(restored.passed_over(), lane.passed_over());
 }

@@ -1,6 +1,8 @@
-//! One JSON object a line: the contract for other programs that produce positions. Unknown keys are passed over, known ones are strict.
+//! One JSON object a line: the contract for other programs that produce positions. Known keys are strict; a statement of integrity
+//! under another key is heard, and every other one is counted by name.
 
 use super::Decoded;
+use super::statements::{self, PassedOver, Statements};
 use crate::claims::Claim;
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
@@ -64,12 +66,41 @@ struct Line<'a> {
     nav_mode: Option<Cow<'a, str>>,
 }
 
-/// A number, NaN for `null`. A key that is absent does not come here.
+/// The keys of [`Line`].
+const KEYS: [&str; 25] = [
+    "v",
+    "track",
+    "time_ns",
+    "status",
+    "est_lat_rad",
+    "est_lon_rad",
+    "est_h_m",
+    "fte_m",
+    "course_rad",
+    "ground_speed_mps",
+    "sigma_m",
+    "cov_ee_m2",
+    "cov_en_m2",
+    "cov_nn_m2",
+    "cov_eu_m2",
+    "cov_nu_m2",
+    "cov_uu_m2",
+    "hpl_m",
+    "rnp_m",
+    "fte_v_m",
+    "vpl_m",
+    "hal_m",
+    "val_m",
+    "n_sv",
+    "nav_mode",
+];
+
 /// A word; `null` is one that says nothing good.
 fn word<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Cow<'de, str>>, D::Error> {
     Option::<Cow<'de, str>>::deserialize(from).map(|word| Some(word.unwrap_or_default()))
 }
 
+/// A number, NaN for `null`. A key that is absent does not come here.
 fn number<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
     Option::<f64>::deserialize(from).map(|value| Some(value.unwrap_or(f64::NAN)))
 }
@@ -94,19 +125,29 @@ pub(super) fn track(line: &[u8]) -> Option<TrackId> {
     of(line).or_else(|| of(&without_nan(line)))
 }
 
-pub(super) fn position(line: &[u8]) -> Decoded {
-    if let Ok(line) = serde_json::from_slice(line) {
-        return whole(&line);
+pub(super) fn position(line: &[u8], statements: &Statements, passed_over: &mut PassedOver) -> Decoded {
+    if let Ok(parsed) = serde_json::from_slice(line) {
+        return stated(&parsed, line, statements, passed_over);
     }
     // Programs write numbers that are none in ways that JSON has not.
     let plain = without_nan(line);
-    if let Ok(line) = serde_json::from_slice(&plain) {
-        return whole(&line);
+    if let Ok(parsed) = serde_json::from_slice(&plain) {
+        return stated(&parsed, &plain, statements, passed_over);
     }
     // A line that says of whom and of when it is, and no position: that track has none at that time.
     let named: Named<'_> = serde_json::from_slice(&plain).map_err(|_| Refused::NotAPosition)?;
     let (status, reason) = (Status::InvalidInput, Some(Reason::InvalidNumber));
     Ok(Position { status, reason, ..empty(named.v, &named.track, named.time_ns)? })
+}
+
+/// A line, and what it says against itself under other keys.
+fn stated(parsed: &Line<'_>, line: &[u8], statements: &Statements, passed_over: &mut PassedOver) -> Decoded {
+    let position = whole(parsed)?;
+    let against = statements::heard(line, &KEYS, statements, passed_over);
+    let stopped = parsed.nav_mode.as_deref().is_some_and(|mode| statements.stopped(mode));
+    let status = if against { Status::InvalidInput } else { Status::NotAvailable };
+    let refused = (against || stopped) && position.status.usable();
+    Ok(if refused { Position { status, reason: Some(Reason::Reported), ..position } } else { position })
 }
 
 fn empty(version: u32, track: &str, time_ns: i64) -> Decoded {

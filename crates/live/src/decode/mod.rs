@@ -3,6 +3,10 @@
 mod json;
 mod readsb;
 mod receiver;
+mod statements;
+
+pub(crate) use statements::PassedOver;
+pub use statements::Statements;
 
 use crate::claims::Claims;
 use crate::codec::{Damaged, Reader, Writer};
@@ -10,6 +14,7 @@ use crate::counters::Refused;
 use crate::position::{Position, TrackId};
 use navbound_formats::receiver::position::{self, Ends, Kind};
 use navbound_formats::stream::{Damage, Frame, Framer, Protocol};
+use std::sync::Arc;
 
 /// What a source sends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,27 +75,32 @@ pub(crate) struct Decoder {
     epochs: Option<position::Decoder>,
     /// Whose positions a receiver's are.
     track: TrackId,
+    /// What a line says of its position under other keys than those of the contract.
+    statements: Arc<Statements>,
+    /// The keys of lines that were passed over.
+    pub(crate) passed_over: PassedOver,
 }
 
 impl Decoder {
-    pub(crate) fn new(format: Format, claims: Claims, track: TrackId) -> Self {
-        Self { framer: Framer::new(format.protocol()), format, claims, epochs: format.epochs(), track }
+    pub(crate) fn new(format: Format, claims: Claims, track: TrackId, statements: Arc<Statements>) -> Self {
+        let framer = Framer::new(format.protocol());
+        Self { framer, format, claims, epochs: format.epochs(), track, statements, passed_over: PassedOver::default() }
     }
 
     /// The next bytes; how many frames or lines were whole.
     pub(crate) fn push(&mut self, bytes: &[u8], out: &mut Vec<Decoded>) -> u64 {
         let mut n_frames = 0;
-        let Self { framer, format, claims, epochs, track } = self;
-        let mut of = Of { lines: (*format, claims), epochs: epochs.as_mut(), track: *track };
+        let Self { framer, format, claims, epochs, track, statements, passed_over } = self;
+        let mut of = Of { lines: (*format, claims), epochs: epochs.as_mut(), track: *track, heard: (statements, passed_over) };
         framer.push(bytes, &mut |frame| n_frames += u64::from(of.take(&frame, out)));
         n_frames
     }
 
     /// No bytes came for a while, or none will: what waits is all there is.
     pub(crate) fn flush(&mut self, out: &mut Vec<Decoded>) {
-        let Self { framer, format, claims, epochs, track } = self;
+        let Self { framer, format, claims, epochs, track, statements, passed_over } = self;
         let track = *track;
-        let mut of = Of { lines: (*format, claims), epochs: epochs.as_mut(), track };
+        let mut of = Of { lines: (*format, claims), epochs: epochs.as_mut(), track, heard: (statements, passed_over) };
         framer.flush(&mut |frame| {
             of.take(&frame, out);
         });
@@ -105,19 +115,27 @@ impl Decoder {
         let (rest, skipping) = self.framer.rest();
         to.bytes(rest);
         to.flag(skipping);
+        self.passed_over.write(to);
         if let Some(epochs) = &self.epochs {
             receiver::write(epochs, to);
         }
     }
 
-    pub(crate) fn read(format: Format, claims: Claims, track: TrackId, from: &mut Reader<'_>) -> Result<Self, Damaged> {
+    pub(crate) fn read(
+        format: Format,
+        claims: Claims,
+        track: TrackId,
+        statements: Arc<Statements>,
+        from: &mut Reader<'_>,
+    ) -> Result<Self, Damaged> {
         let (rest, skipping) = (from.bytes()?, from.flag()?);
         let framer = Framer::with_rest(format.protocol(), rest, skipping).map_err(|_| Damaged("more bytes wait than a frame has"))?;
+        let passed_over = PassedOver::read(from)?;
         let epochs = match format {
             Format::Json | Format::Readsb => None,
             Format::Receiver(kind) => Some(receiver::read(kind, from)?),
         };
-        Ok(Self { framer, format, claims, epochs, track })
+        Ok(Self { framer, format, claims, epochs, track, statements, passed_over })
     }
 }
 
@@ -126,6 +144,7 @@ struct Of<'a> {
     lines: (Format, &'a Claims),
     epochs: Option<&'a mut position::Decoder>,
     track: TrackId,
+    heard: (&'a Statements, &'a mut PassedOver),
 }
 
 impl Of<'_> {
@@ -134,7 +153,7 @@ impl Of<'_> {
         match (result, &mut self.epochs, self.lines) {
             (Err(_), ..) => out.push(Err(Refused::DamagedFrame)),
             (Ok(Frame::Line(line)), None, (Format::Readsb, claims)) => out.push(readsb::position(line, claims)),
-            (Ok(Frame::Line(line)), None, _) => out.push(json::position(line)),
+            (Ok(Frame::Line(line)), None, _) => out.push(json::position(line, self.heard.0, self.heard.1)),
             (Ok(_), None, _) => {}
             // Frames of other protocols between them are passed over.
             (Ok(frame), Some(epochs), _) => {
