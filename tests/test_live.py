@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import socket
 import subprocess
@@ -372,3 +373,59 @@ def test_another_file_is_not_read_on(tmp_path: Path) -> None:
     with closing(File(other)) as source, pytest.raises(InputError, match="first 7000 bytes"):
         session.run(source)
     session.close()
+
+
+def good_lines(path: Path, n: int, **more: object) -> Path:
+    """Records of a minute north, some keys added; each line about 200 bytes."""
+    record = {"v": 1, "track": "A", "est_lon_rad": 0.03, "ground_speed_mps": 70.0, "sigma_m": 5.0} | more
+    first_ns = 1_317_644_000_000_000_000
+    moving = [record | {"time_ns": first_ns + k * 1_000_000_000, "est_lat_rad": 0.85 + k * 70 / 6_371_000} for k in range(n)]
+    path.write_text("".join(json.dumps(each) + "\n" for each in moving), encoding="utf-8")
+    return path
+
+
+def test_a_recording_that_was_stopped_says_so_wherever_its_journal_is_judged(tmp_path: Path) -> None:
+    log, out = good_lines(tmp_path / "log.jsonl", 200), tmp_path / "out"
+    session = live.Session(out, Settings(format="json", rnp_m=555.6), origin=live.Origin("recording", str(log)))
+    turns = iter([False] * 20)
+    with closing(File(log, 512)) as source:
+        session.run(source, stop=lambda: next(turns, True))
+    expected = f"stopped at byte {20 * 512} of {log.stat().st_size} of the source; the rest was not judged"
+    assert session.unfinished == expected
+    for command in (["live", "judge", str(out), "--out"], ["live", "replay", str(out), "--speed", "0", "--out"]):
+        done = CliRunner().invoke(app, [*command, str(tmp_path / command[1])])
+        assert (done.exit_code, expected in " ".join(done.output.split())) == (4, True), done.output
+    again = CliRunner().invoke(app, ["live", "judge", str(tmp_path / "judge"), "--out", str(tmp_path / "again")])
+    assert again.exit_code == 4, again.output
+    whole = CliRunner().invoke(app, ["live", str(log), "--out", str(tmp_path / "whole")])
+    assert (whole.exit_code, "stopped" in whole.output) == (0, False), whole.output
+    assert CliRunner().invoke(app, ["live", "judge", str(tmp_path / "whole"), "--out", str(tmp_path / "b")]).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"epu_m": 5000.0}, {"rc_m": 5000.0}, {"nic": 0}, {"nac_p": 0}, {"hpl": 5000.0}, {"HPL_M": 5000.0}, {"hpl_nm": 3.0},
+        {"valid": False}, {"alert": "RAIM FAIL"}, {"alarms": "fail"}, {"integrity": "LOST"}, {"fix": "NO FIX"},
+        {"Status": "not_available"}, {"nav_mode": "stopped"}, {"nav_mode": "stale"}, {"hdop": 99.99},
+    ],
+)  # fmt: skip
+def test_what_a_line_says_against_itself_under_another_key_is_heard(tmp_path: Path, more: dict[str, object]) -> None:
+    statuses, alerts = lived_lines(tmp_path, **more)
+    assert statuses <= {"invalid_input", "not_available"}
+    assert alerts == {"unavailable"}
+
+
+def test_other_keys_are_passed_over_and_counted_by_name(tmp_path: Path) -> None:
+    log = good_lines(tmp_path / "log.jsonl", 30, comment="x", squawk=7000, valid=True, fix="3D", alert="none", hdop=0.9)
+    done = CliRunner().invoke(app, ["live", str(log), "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    assert "keys that nothing reads: 30 comment, 30 squawk" in " ".join(done.output.split())
+    assert set(tables.epochs(tmp_path / "out")["status"]) == {"ok"}
+
+
+def test_a_file_that_is_packed_is_refused_by_name(tmp_path: Path) -> None:
+    packed = tmp_path / "log.jsonl.gz"
+    packed.write_bytes(gzip.compress(good_lines(tmp_path / "log.jsonl", 5).read_bytes()))
+    with pytest.raises(FormatError, match="packed"):
+        File(packed)

@@ -123,6 +123,7 @@ class LiveSettings:
         path: Path | None,
         table: tuple[list[tuple[float, list[tuple[float, float]]]], list[tuple[str, Path | None, float | None]]],
         claims: tuple[list[float], list[float], int],
+        statements: tuple[list[tuple[list[str], list[str], float | None]], list[str]],
         times_ns: tuple[int, int, int],
         expiry_ns: int | None,
         max_tracks: int,
@@ -142,6 +143,7 @@ class LiveLane:
     def event_time_ns(self) -> int | None: ...
     @property
     def n_tracks(self) -> int: ...
+    def passed_over(self) -> dict[str, int]: ...
     def counters(self) -> dict[str, Any]: ...
 
 class LiveSplitter:

@@ -759,3 +759,11 @@ fn a_statement_under_another_key_is_heard_and_every_other_key_is_counted() {
     let restored = Lane::restore(settings(), &lane.snapshot(0, 0)).unwrap().0;
     assert_eq!(restored.passed_over(), lane.passed_over());
 }
+
+#[test]
+fn the_mark_before_a_text_in_utf_8_costs_no_record() {
+    let mut lane = Lane::new(settings()).unwrap();
+    let mut all = chunk(&mut lane, 0.1, &format!("\u{feff}{}", good("d", 0.0)));
+    lane.step(&Input::End { arrival: None }, &mut all);
+    assert_eq!(epochs_of(&all, "d").len(), 1);
+}

@@ -10,12 +10,13 @@ use navbound_core::monitor::rnp::{self, Chain};
 use navbound_core::quantity::{GpsTime, Metres, OutOfDomain, Risk};
 use navbound_live::journal::{self, Next};
 use navbound_live::{
-    Assigned, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, Settings, Splitter, Table, TrackId, Zone,
+    Assigned, CATEGORIES, Claims, Course, EpochOut, Format, Input, Lane, Output, Settings, Splitter, Statements, Table, TrackId, Zone,
 };
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 fn refused(e: OutOfDomain) -> PyErr {
     input_error(e, None)
@@ -23,6 +24,8 @@ fn refused(e: OutOfDomain) -> PyErr {
 
 /// RNP \[m\] and corners \[rad\] of an area.
 type ZoneRow = (f64, Vec<(f64, f64)>);
+/// Names of keys, words that say nothing against the position, largest number that says nothing.
+type StatementRow = (Vec<String>, Vec<String>, Option<f64>);
 /// Name of a track, its path and its RNP \[m\].
 type TrackRow<'py> = (String, Option<PyRef<'py, Path>>, Option<f64>);
 
@@ -41,7 +44,7 @@ struct LiveSettings(Settings);
 impl LiveSettings {
     /// `judging`: format, name of a receiver's track, method, method of a track that states a flight technical error. `risks`: accuracy, integrity. `monitor`: six times of the chain, raise delay,
     /// clear delay, clear ratio, stale time. `table`: areas, and what is assigned to tracks. `claims`: standard deviation by NACp, radius of
-    /// containment by NIC, least SIL. `times_ns`: lateness, ahead, retention.
+    /// containment by NIC, least SIL. `statements`: kinds of statements of lines, and words of a mode that is none. `times_ns`: lateness, ahead, retention.
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -53,6 +56,7 @@ impl LiveSettings {
         path: Option<PyRef<'_, Path>>,
         table: (Vec<ZoneRow>, Vec<TrackRow<'_>>),
         claims: ([f64; CATEGORIES], [f64; CATEGORIES], u8),
+        statements: (Vec<StatementRow>, Vec<String>),
         times_ns: (i64, i64, i64),
         expiry_ns: Option<i64>,
         max_tracks: usize,
@@ -94,6 +98,7 @@ impl LiveSettings {
             path: path.map(|path| course(&path)),
             table: Table { zones: zones.into_iter().map(zone).collect(), tracks: of_tracks },
             claims: Claims { sigma_m, containment_m, least_sil },
+            statements: Arc::new(Statements::new(statements.0, statements.1)),
             lateness_ns: times_ns.0,
             ahead_ns: times_ns.1,
             retention_ns: times_ns.2,
@@ -167,6 +172,11 @@ impl LiveLane {
     #[getter]
     fn n_tracks(&self) -> usize {
         self.lane.n_tracks()
+    }
+
+    /// Keys of lines that were passed over, by name.
+    fn passed_over(&self) -> BTreeMap<String, u64> {
+        self.lane.passed_over().clone()
     }
 
     fn counters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

@@ -33,6 +33,7 @@ class Recording:
 
     live = False
     up = True
+    size: int | None = None
 
     def __init__(self, run: Path, chunk: int) -> None:
         require_whole(run, [EPOCHS], "a run's directory")

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from navbound import _core
 from navbound.errors import FormatError
 from navbound.live import journal
 from navbound.live.course import points
-from navbound.live.session import Origin, Pace, Session
+from navbound.live.session import Origin, Pace, Session, origin_of, stopped
 from navbound.live.settings import load
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
     from typing import Any
 
     from navbound.live.settings import Settings
+
+
+_MOST_REPLAYS = 100
+"""Replays of replays that are followed to their recording. [1]"""
 
 
 def _journal(source: Path) -> Path:
@@ -101,9 +105,39 @@ def replay(
         session.take(frames[begin:end])
         begin = end
         pace.wait(session.event_time_ns, stop)
+    session.unfinished = _unfinished(source, frames, begin)
     session.snapshot()
     session.close()
     return session
+
+
+def _unfinished(source: Path, frames: bytes, taken: int) -> str | None:
+    """Why a journal was not judged to the end of its source; of a live source nobody knows an end."""
+    if taken < len(frames):
+        return f"stopped at byte {taken} of {len(frames)} of the journal; the rest was not judged"
+    came_from = _recorded(_journal(source).parent)
+    if came_from is None:
+        return None
+    inputs = _core.live_inputs(frames)
+    if inputs and inputs[-1][0] == "end":
+        return None
+    size = Path(came_from).stat().st_size if Path(came_from).is_file() else None
+    n_bytes = sum(len(content) for kind, _, content in inputs if kind == "chunk")
+    return f"the journal has no end, since its session was stopped or killed: {stopped(n_bytes, size)}"
+
+
+def _recorded(folder: Path) -> str | None:
+    """The file or run that a session read, by whatever number of replays; None of data that arrived, and where nobody says."""
+    for _ in range(_MOST_REPLAYS):
+        if not (folder / journal.SETTINGS).is_file():
+            return None
+        origin = origin_of(folder)
+        name = str(origin["source"])
+        if origin["kind"] == "replay" and name and is_journal(Path(name)):
+            folder = _journal(Path(name)).parent
+            continue
+        return None if origin["kind"] == "live" else name or None
+    return None
 
 
 def judge(source: Path, out: Path, *, say: Callable[[str], None] = lambda _: None) -> Session:

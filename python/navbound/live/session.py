@@ -101,6 +101,11 @@ class Session:
     passed : callable, optional
         Called with the name of each point of a round; a test ends the process there.
 
+    Attributes
+    ----------
+    unfinished : str, optional
+        Why the source was not judged to its end; None where it was, or where it has no end.
+
     Raises
     ------
     FormatError
@@ -125,6 +130,7 @@ class Session:
         self._report, self._say, self._passed = report, say, passed
         self._core = settings.core()
         self.n_epochs = self.n_transitions = 0
+        self.unfinished: str | None = None
         _prepare(out, settings, origin or Origin(), resume=resume)
         self._lock = journal.alone(out)
         self._lock.__enter__()
@@ -159,6 +165,10 @@ class Session:
     def n_tracks(self) -> int:
         """Tracks that are watched."""
         return self._lane.n_tracks
+
+    def passed_over(self) -> dict[str, int]:
+        """Keys of lines of JSON that nothing reads, by name, and how often each came."""
+        return self._lane.passed_over()
 
     def counters(self) -> dict[str, float]:
         """What was counted: records, refusals by reason, and the monitors' counters."""
@@ -295,11 +305,18 @@ class Session:
             if source.live and time.monotonic() - beat >= _HEARTBEAT_S:
                 beat = time.monotonic()
                 self.take(_core.live_input("heartbeat", now_ns(), b""))
+        if not ended:
+            self.unfinished = stopped(self.n_bytes, source.size)
         self.finish(ended=ended)
 
     def _chunks(self) -> Iterator[bytes]:
         """What the journal holds of the source."""
         return (content for kind, _, content in _core.live_inputs(journal.read(self._in.path)) if kind == "chunk")
+
+
+def stopped(n_bytes: int, size: int | None) -> str:
+    """What a recording that was not read to its end has to say."""
+    return f"stopped at byte {n_bytes} of {'an unknown number' if size is None else size} of the source; the rest was not judged"
 
 
 class Pace:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from navbound import _core
 from navbound.errors import FormatError, InputError
-from navbound.live import zones
+from navbound.live import statements, zones
 from navbound.live.zones import path_of
 from navbound.read.checks.plausible import Limits
 from navbound.read.covariance import NACP_EPU_M, NIC_RC_M, SIL_RISK, circular_sigma
@@ -150,6 +150,7 @@ class Settings:
                 None if path is None else path._core,
                 (zones.Zones() if self.rnp_table is None else zones.load(self.rnp_table)).core(),
                 self._claims(),
+                statements.for_core(),
                 nanoseconds,
                 None if self.expiry_s is None else _ns(self.expiry_s),
                 self.max_tracks,

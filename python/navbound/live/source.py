@@ -9,7 +9,7 @@ import socket
 import sys
 import time
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol
 from urllib.parse import urlsplit
 
 from navbound.errors import FormatError, InputError
@@ -39,6 +39,11 @@ class Source(Protocol):
     live: bool
 
     @property
+    def size(self) -> int | None:
+        """Its bytes, where it has an end that is known. [B]."""
+        ...
+
+    @property
     def up(self) -> bool:
         """Whether the connection is there."""
         ...
@@ -65,9 +70,15 @@ class File:
     def __init__(self, path: Path, chunk: int = CHUNK) -> None:
         self._chunk = chunk
         try:
-            self._file: IO[bytes] = path.open("rb")
+            self._file = path.open("rb")
         except OSError as e:
             raise FormatError(path, f"cannot be opened: {e.strerror}; a source is {SOURCES}") from e
+        # Peeking takes nothing from a pipe.
+        packing = formats.of(self._file.peek(64), path.name)
+        if packing.holds == ("packed",):
+            self._file.close()
+            raise FormatError(path, f"is packed ({packing.title}); unpack it first: live reads the bytes of a source as they are")
+        self.size: int | None = path.stat().st_size if path.is_file() else None
 
     def read(self, timeout_s: float) -> bytes | None:
         """Take the next bytes: as :class:`Source` says."""
@@ -93,6 +104,7 @@ class StandardInput:
 
     live = True
     up = True
+    size: int | None = None
 
     def __init__(self) -> None:
         self._descriptor = sys.stdin.fileno()
@@ -114,6 +126,7 @@ class _Line:
     """Something with a descriptor that is opened again for ever once it was there."""
 
     live = True
+    size: int | None = None
 
     def __init__(self) -> None:
         self._wait_s, self._next_s = _RETRY_FIRST_S, 0.0
@@ -243,6 +256,7 @@ class Udp:
 
     live = True
     up = True
+    size: int | None = None
 
     def __init__(self, host: str, port: int, *, lines: bool) -> None:
         self._lines = lines

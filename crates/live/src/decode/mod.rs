@@ -54,11 +54,17 @@ impl Format {
 
 /// Whose a line is; `None` where it names no track, or the format has no lines.
 pub(crate) fn track_of(format: Format, line: &[u8]) -> Option<TrackId> {
+    let line = text(line);
     match format {
         Format::Json => json::track(line),
         Format::Readsb => readsb::track(line),
         Format::Receiver(_) => None,
     }
+}
+
+/// A line without the mark by which some programs begin a text in UTF-8.
+fn text(line: &[u8]) -> &[u8] {
+    line.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(line)
 }
 
 /// A report, or why there is none.
@@ -152,8 +158,8 @@ impl Of<'_> {
     fn take(&mut self, result: &Result<Frame<'_>, Damage>, out: &mut Vec<Decoded>) -> bool {
         match (result, &mut self.epochs, self.lines) {
             (Err(_), ..) => out.push(Err(Refused::DamagedFrame)),
-            (Ok(Frame::Line(line)), None, (Format::Readsb, claims)) => out.push(readsb::position(line, claims)),
-            (Ok(Frame::Line(line)), None, _) => out.push(json::position(line, self.heard.0, self.heard.1)),
+            (Ok(Frame::Line(line)), None, (Format::Readsb, claims)) => out.push(readsb::position(text(line), claims)),
+            (Ok(Frame::Line(line)), None, _) => out.push(json::position(text(line), self.heard.0, self.heard.1)),
             (Ok(_), None, _) => {}
             // Frames of other protocols between them are passed over.
             (Ok(frame), Some(epochs), _) => {

@@ -396,9 +396,13 @@ def _ended(session: Session, settings: Settings, *, json: bool) -> None:
     )
     if not session.n_epochs:
         sentence += f"; no epoch was judged: nothing of the source is read as {settings.format}; --format names what it sends"
+    if keys := session.passed_over():
+        sentence += f"; keys that nothing reads: {', '.join(f'{n} {name}' for name, n in keys.items())}"
+    if session.unfinished:
+        sentence += f"; {session.unfinished}"
     if json:
         say(sentence)
     else:
         out_console.print(sentence, markup=False, highlight=False, soft_wrap=True)
-    if not session.n_epochs:
+    if session.unfinished or not session.n_epochs:
         raise typer.Exit(NO_VERDICT)

@@ -1,0 +1,29 @@
+"""What a line says of its own position under keys that are none of the contract: the names and words of tables, for the core."""
+
+from __future__ import annotations
+
+import math
+
+from navbound.read.checks.statements import KINDS, kind_of
+from navbound.read.tables.columns import QUANTITIES, STATED_QUANTITIES
+from navbound.table.columns import COVARIANCE
+
+_JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", "hpl_m", "status", *COVARIANCE})
+"""Quantities of tables that bound a position or speak for it. Under a name that is none of the contract their value is not understood."""
+_CONTRACT = ("sigma_m", "rnp_m")
+"""Keys of the contract that no table has: written otherwise, they are none of it."""
+_USABLE_MODES = frozenset({"coasting"})
+"""Modes of navbound's own tables in which a position is usable; its status says how well."""
+
+Kinds = list[tuple[list[str], list[str], float | None]]
+
+
+def for_core() -> tuple[Kinds, list[str]]:
+    """Kinds as names, words that say nothing against the position and the largest such number; and words of ``nav_mode`` against it."""
+    judged = [q for q in QUANTITIES if q.name in _JUDGED] + [q for q in STATED_QUANTITIES if q.name != "alert"]
+    kinds: Kinds = [([*_CONTRACT, *(name for q in judged for name in (q.name, *q.aliases))], [], None)]
+    for kind in KINDS:
+        several = [f"{name}s" for name in kind.names] if kind.effect == "alert" else []
+        kinds.append((sorted([*kind.names, *several]), sorted(kind.fine), None if math.isinf(kind.above) else kind.above))
+    mode = kind_of("nav_mode")
+    return kinds, sorted((mode.against if mode is not None else frozenset()) - _USABLE_MODES)
