@@ -87,6 +87,7 @@ class Lines:
     """A recording of lines, some at a time."""
 
     live = False
+    size: int | None = None
     up = True
 
     def __init__(self, sent: tuple[Sent, ...], per_piece: int = 100) -> None:

@@ -53,6 +53,7 @@ class Pretend:
     """Lines of a fleet, one an aircraft and second, as time passes: as :class:`navbound.live.source.Source` says."""
 
     live = True
+    size: int | None = None
     up = True
 
     def __init__(self, source: str) -> None:
