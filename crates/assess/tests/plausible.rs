@@ -28,6 +28,7 @@ fn track(positions_m: &[f64], speed_mps: f64) -> Vec<Report> {
         lat_rad: m * RAD_PER_M,
         lon_rad: 0.3,
         speed_mps,
+        variance_m2: f64::NAN,
     };
     positions_m.iter().enumerate().map(report).collect()
 }
@@ -62,6 +63,7 @@ fn a_flight_in_hardly_any_time_is_a_jump_however_small_its_steps() {
         lat_rad: 70.0 * k as f64 * RAD_PER_M,
         lon_rad: 0.3,
         speed_mps: f64::NAN,
+        variance_m2: f64::NAN,
     };
     let verdicts = findings(&(0..1200).map(crawl).collect::<Vec<_>>());
     // 400 m/s for two seconds of latency and 0.1 km of noise are 0.9 km: thirteen steps.
@@ -293,6 +295,7 @@ fn a_step_is_judged_by_the_time_of_its_position_where_that_is_known() {
         lat_rad: m * RAD_PER_M,
         lon_rad: 0.3,
         speed_mps: 200.0,
+        variance_m2: f64::NAN,
     };
     let wide = Limits { latency_s: 10.0, ..LIMITS };
     let second = |a: Report, b: Report| judge(&[a, b], &wide).unwrap()[1];

@@ -168,6 +168,8 @@ fn reports_of((time_ns, fixed_ns, lat_rad, lon_rad, speed): &Reports<'_>) -> PyR
             lat_rad: *lat,
             lon_rad: *lon,
             speed_mps: *speed,
+            // A recording's accuracy is judged elsewhere.
+            variance_m2: f64::NAN,
         })
         .collect())
 }
