@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from navbound.read.checks.statements import KINDS, kind_of
-from navbound.read.tables.columns import QUANTITIES, STATED_QUANTITIES
+from navbound.read.tables.columns import QUANTITIES, STATED_QUANTITIES, UNITS
 from navbound.table.columns import COVARIANCE
 
 _JUDGED = frozenset({"sigma_e_m", "sigma_n_m", "epu_m", "rc_m", "nac_p", "nic", "hpl_m", "status", *COVARIANCE})
@@ -21,7 +21,9 @@ Kinds = list[tuple[list[str], list[str], float | None]]
 def for_core() -> tuple[Kinds, list[str]]:
     """Kinds as names, words that say nothing against the position and the largest such number; and words of ``nav_mode`` against it."""
     judged = [q for q in QUANTITIES if q.name in _JUDGED] + [q for q in STATED_QUANTITIES if q.name != "alert"]
-    kinds: Kinds = [([*_CONTRACT, *(name for q in judged for name in (q.name, *q.aliases))], [], None)]
+    named = [*_CONTRACT, *(name for q in judged for name in (q.name, *q.aliases))]
+    lengths = {name.removesuffix("_m") for q in judged if q.si == "m" for name in (q.name, *q.aliases)}
+    kinds: Kinds = [([*named, *(f"{name}_{unit}" for name in sorted(lengths) for unit in UNITS["m"])], [], None)]
     for kind in KINDS:
         several = [f"{name}s" for name in kind.names] if kind.effect == "alert" else []
         kinds.append((sorted([*kind.names, *several]), sorted(kind.fine), None if math.isinf(kind.above) else kind.above))
