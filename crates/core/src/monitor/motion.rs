@@ -334,7 +334,7 @@ mod tests {
     fn a_flight_by_time_stamps_that_crawl_is_a_jump_and_one_with_late_positions_is_none() {
         // 70 m/s whose stamps go on by a millisecond: (1.25 x 70 + 25) m/s x 10 s + 100 m are 1225 m, 18 steps.
         let crawls = |k: i64, speed| Report { time: GpsTime::from_nanoseconds(k * 1_000_000), ..report(0, 70.0 * k as f64, speed) };
-        let first = |found: Vec<Finding>, of| found.iter().position(|each| *each == of);
+        let first = |verdicts: Vec<Finding>, of| verdicts.iter().position(|each| *each == of);
         let all = findings(&(0..90).map(|k| crawls(k, 70.0)).collect::<Vec<_>>(), &LIMITS);
         assert_eq!((first(all.clone(), Finding::Late), first(all.clone(), Finding::Jump)), (Some(5), Some(18)));
         assert!(all[5..].iter().all(|each| *each != Finding::Plausible), "{all:?}");
