@@ -43,7 +43,8 @@ pub struct Judged {
 ///
 /// An unchanged position is held, and stale in time, where the aircraft says that it moves. Where it says nothing of its speed, a position
 /// whose bits repeat for longer than the stale time is stale: measurements have noise, and nobody vouches that the aircraft stands. So is one
-/// that comes back to the bits of one of the last two different positions. Where the aircraft says that it moves, a position that makes good
+/// that comes back to the bits of one of the last two different positions. A speed that fell faster than an aircraft brakes is no speed, and
+/// the time in which the aircraft said that it stood is no time to fly in. Where the aircraft says that it moves, a position that makes good
 /// less than half the way by its reported speed, the noise taken off, is stale, too: noise on a held position is no flight.
 ///
 /// Provenance: ours.
@@ -192,12 +193,13 @@ impl Track {
         let unchanged = report.lat_rad == fix.lat_rad && report.lon_rad == fix.lon_rad;
         let step_m = here.minus(&from).vector().norm();
         let mut too_fast_mps = 0.0;
-        let way_m = self.gone.step(report, unchanged, limits);
+        let stood_s = self.gone.stood_s;
+        self.gone.step(report, unchanged, limits);
         let (mut finding, mut age_s) =
-            if unchanged { (repeated(report, fix.time, way_m, limits), elapsed) } else { (Finding::Plausible, 0.0) };
+            if unchanged { (repeated(report, fix.time, &self.gone, limits), elapsed) } else { (Finding::Plausible, 0.0) };
         if !unchanged {
             let flown = self.window.as_mut().is_none_or(|w| w.reaches(report, &here, limits));
-            let between = Between::new(&fix, report, limits);
+            let between = Between::new(&fix, report, stood_s, limits);
             let latency_s = if self.silent && !between.dated { 0.0 } else { between.latency_s };
             if !(step_m <= between.reach_m(latency_s, limits)) || !flown {
                 finding = Finding::Jump;
@@ -205,7 +207,7 @@ impl Track {
             } else if !between.dated && !(step_m <= between.reach_m(limits.stale_after_s, limits)) {
                 finding = Finding::Late;
             }
-            if step_m > between.reach_m(0.0, limits) && between.elapsed_s > 0.0 {
+            if step_m > between.reach_m(between.stood_s, limits) && between.elapsed_s > 0.0 {
                 too_fast_mps = (step_m - limits.noise_m) / between.elapsed_s;
             }
             // What comes after a jump is judged from there.
@@ -214,7 +216,7 @@ impl Track {
             }
             self.last = Some((*report, here));
         }
-        let returned = repeated(report, repeated_since, 0.0, limits) == Finding::Stale && report.speed_mps.is_nan();
+        let returned = repeated(report, repeated_since, &Gone::default(), limits) == Finding::Stale && report.speed_mps.is_nan();
         if finding != Finding::Jump && (behind.is_some() || returned) {
             finding = Finding::Stale;
             age_s = age_s.max(behind.unwrap_or_else(|| report.time.seconds_since(repeated_since)));
@@ -256,7 +258,7 @@ impl Window {
         self.fastest_mps = if self.fastest_mps.is_nan() || to.speed_mps.is_nan() { f64::NAN } else { self.fastest_mps.max(to.speed_mps) };
         let fastest = Report { speed_mps: self.fastest_mps, ..*to };
         let first = Report { speed_mps: self.fastest_mps, ..self.first };
-        let between = Between::new(&first, &fastest, limits);
+        let between = Between::new(&first, &fastest, 0.0, limits);
         here.minus(&self.from).vector().norm() <= between.reach_m(between.latency_s, limits)
     }
 }

@@ -195,6 +195,22 @@ fn where_the_speed_ends_with_the_fix_a_repeat_is_stale_too() {
     assert_eq!(findings(&reports)[5..], [Finding::Stale, Finding::Stale]);
 }
 
+/// A receiver that lost its fix at 70 m/s, in a recording: the last position with a speed of 0 for 5 to 200 s, then on where the flight is by then.
+#[test]
+fn a_hold_that_states_a_speed_of_nothing_is_stale_and_its_end_a_jump() {
+    let wide = Limits { latency_s: 10.0, ..LIMITS };
+    for held_s in [5_usize, 60, 200] {
+        let flown: Vec<f64> = (0..400).map(|k| 70.0 * if (100..100 + held_s).contains(&k) { 100.0 } else { k as f64 }).collect();
+        let mut reports = track(&flown, 70.0);
+        reports[100..100 + held_s].iter_mut().for_each(|r| r.speed_mps = 0.0);
+        let verdicts: Vec<Finding> = judge(&reports, &wide).unwrap().iter().map(|j| j.finding).collect();
+        assert!(verdicts[..=102].iter().all(|f| *f == Finding::Plausible), "{held_s} s");
+        assert!(verdicts[103..100 + held_s].iter().all(|f| *f == Finding::Stale), "{held_s} s");
+        // The step of 5 s is within what the latency explains: (1.25 x 70 + 25) m/s in 1 + 10 s, and 100 m, are 1337.5 m.
+        assert_eq!(verdicts[100 + held_s] == Finding::Jump, held_s > 5, "{held_s} s");
+    }
+}
+
 /// 70 m/s, and one step of 500 m: (1.25 * 70 + 25) m/s * (1 + 2) s + 100 m = 437.5 m. With the 200 m/s of one epoch it would be 925 m.
 #[test]
 fn one_wild_speed_lets_no_step_pass() {

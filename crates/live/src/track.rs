@@ -80,7 +80,9 @@ impl Track {
         }
         to.option(self.motion.jumped, |to, time| to.i64(time.nanoseconds()));
         to.option(self.motion.gone.seen, |to, time| to.i64(time.nanoseconds()));
-        to.f64(self.motion.gone.way_m);
+        let gone = &self.motion.gone;
+        [gone.way_m, gone.stood_s, gone.braked_mps].into_iter().for_each(|number| to.f64(number));
+        to.flag(gone.fell);
         for place in self.neighbours.last {
             to.option(place, |to, place| {
                 to.i64(place.time.nanoseconds());
@@ -112,7 +114,13 @@ impl Track {
         };
         let (last_different, anchor) = (from.option(report)?, from.option(report)?);
         let jumped = from.option(Reader::i64)?.map(GpsTime::from_nanoseconds);
-        let gone = Gone { seen: from.option(Reader::i64)?.map(GpsTime::from_nanoseconds), way_m: from.f64()? };
+        let gone = Gone {
+            seen: from.option(Reader::i64)?.map(GpsTime::from_nanoseconds),
+            way_m: from.f64()?,
+            stood_s: from.f64()?,
+            braked_mps: from.f64()?,
+            fell: from.flag()?,
+        };
         let motion = Motion { last: last_different, anchor, jumped, gone };
         let place = |from: &mut Reader<'_>| {
             let time = GpsTime::from_nanoseconds(from.i64()?);

@@ -81,32 +81,57 @@ impl Finding {
 /// Speed up to which an aircraft may stand: noise of a reported speed. \[m/s\] Provenance: ours.
 const STANDS_MPS: f64 = 2.0;
 
-/// How far an aircraft went by its own speeds while its position stayed the same.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// Fastest braking of an aircraft, on a runway or in the air \[m/s2\]. Provenance: ours.
+const BRAKING_MPS2: f64 = 10.0;
+
+/// What an aircraft says of its own speed, above all while its position stays the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gone {
     /// The last report.
     pub seen: Option<GpsTime>,
     /// The way by the speeds reported since the position changed \[m\].
     pub way_m: f64,
+    /// How long the reports since the position changed say that the aircraft stood \[s\].
+    pub stood_s: f64,
+    /// The least speed that braking leaves of those reported before \[m/s\]; NaN before the first.
+    pub braked_mps: f64,
+    /// The reported speed fell faster than an aircraft brakes, and the position has not changed since: it is no evidence that it stands.
+    pub fell: bool,
+}
+
+impl Default for Gone {
+    fn default() -> Self {
+        Self { seen: None, way_m: 0.0, stood_s: 0.0, braked_mps: f64::NAN, fell: false }
+    }
 }
 
 impl Gone {
-    /// The way at the next report. Of a gap longer than the latency nobody knows how long the aircraft moved.
-    pub fn step(&mut self, report: &Report, unchanged: bool, limits: &Limits) -> f64 {
-        let passed_s = self.seen.map_or(0.0, |seen| report.time.seconds_since(seen)).clamp(0.0, limits.latency_s);
-        let moves = unchanged && report.speed_mps > STANDS_MPS;
-        self.way_m = if !unchanged { 0.0 } else { self.way_m + if moves { report.speed_mps * passed_s } else { 0.0 } };
+    /// See the next report. Of a gap longer than the latency nobody knows how long the aircraft moved, or stood.
+    pub fn step(&mut self, report: &Report, unchanged: bool, limits: &Limits) {
+        let elapsed_s = self.seen.map_or(0.0, |seen| report.time.seconds_since(seen)).max(0.0);
+        let passed_s = elapsed_s.min(limits.latency_s);
+        let speed_mps = report.speed_mps;
+        let (way_m, stood_s) = if unchanged { (self.way_m, self.stood_s) } else { (0.0, 0.0) };
+        self.way_m = way_m + if unchanged && speed_mps > STANDS_MPS { speed_mps * passed_s } else { 0.0 };
+        self.stood_s = stood_s + if unchanged && speed_mps <= STANDS_MPS { passed_s } else { 0.0 };
+        let left_mps = self.braked_mps - BRAKING_MPS2 * elapsed_s;
+        // A position that does not change leaves no way to brake on, however long that took.
+        let braking_m = (self.braked_mps * self.braked_mps - speed_mps * speed_mps) / (2.0 * BRAKING_MPS2);
+        let falls = speed_mps + STANDS_MPS < left_mps || (unchanged && braking_m > limits.noise_m);
+        self.fell = falls || (unchanged && self.fell);
+        // f64::max prefers a number to a NaN.
+        self.braked_mps = speed_mps.max(left_mps);
         self.seen = Some(report.time);
-        self.way_m
     }
 }
 
 /// An unchanged position is held where the aircraft says it moves; a parked one repeats itself rightly. A slow one's rounded position may
-/// repeat, until the aircraft would be elsewhere by its own speeds, `way_m`. Where no speed is reported a repeat may be such a one, until it lasts.
-pub fn repeated(report: &Report, since: GpsTime, way_m: f64, limits: &Limits) -> Finding {
-    let silent = report.speed_mps.is_nan();
+/// repeat, until the aircraft would be elsewhere by its own speeds. Where no speed is reported, or one that fell faster than an aircraft
+/// brakes, a repeat may be such a one, until it lasts.
+pub fn repeated(report: &Report, since: GpsTime, gone: &Gone, limits: &Limits) -> Finding {
+    let silent = report.speed_mps.is_nan() || gone.fell;
     let may_move = if silent { limits.moving_mps.is_finite() } else { report.speed_mps > limits.moving_mps };
-    if limits.moving_mps.is_finite() && way_m > limits.noise_m + limits.latency_s * report.speed_mps.max(0.0) {
+    if limits.moving_mps.is_finite() && gone.way_m > limits.noise_m + limits.latency_s * report.speed_mps.max(0.0) {
         return Finding::Stale;
     }
     match (may_move, within(report.time, since, limits.stale_after_s)) {
@@ -127,6 +152,8 @@ pub fn within(now: GpsTime, earlier: GpsTime, limit_s: f64) -> bool {
 pub struct Between {
     /// Time between the positions \[s\].
     pub elapsed_s: f64,
+    /// How much of it the reports between them say that the aircraft stood \[s\].
+    pub stood_s: f64,
     /// How much longer the aircraft may have flown \[s\].
     pub latency_s: f64,
     /// The recording says when both positions were valid.
@@ -136,8 +163,8 @@ pub struct Between {
 }
 
 impl Between {
-    /// Of two reports of one track.
-    pub fn new(from: &Report, to: &Report, limits: &Limits) -> Self {
+    /// Of two reports of one track, with `stood_s` by those between them; a position that is dated is as old as its date says.
+    pub fn new(from: &Report, to: &Report, stood_s: f64, limits: &Limits) -> Self {
         // f64::max prefers a number to a NaN.
         let reported = from.speed_mps.max(to.speed_mps);
         let speed_mps = if reported.is_nan() {
@@ -147,14 +174,16 @@ impl Between {
         };
         match from.fixed.zip(to.fixed) {
             // An older position may arrive after a newer one.
-            Some((a, b)) => Self { elapsed_s: b.seconds_since(a).abs(), latency_s: limits.fix_latency_s, dated: true, speed_mps },
-            None => Self { elapsed_s: to.time.seconds_since(from.time), latency_s: limits.latency_s, dated: false, speed_mps },
+            Some((a, b)) => {
+                Self { elapsed_s: b.seconds_since(a).abs(), stood_s: 0.0, latency_s: limits.fix_latency_s, dated: true, speed_mps }
+            }
+            None => Self { elapsed_s: to.time.seconds_since(from.time), stood_s, latency_s: limits.latency_s, dated: false, speed_mps },
         }
     }
 
-    /// How far an aircraft may be from its last position \[m\].
+    /// How far an aircraft may be from its last position \[m\]: while it said that it stood it went nowhere.
     pub fn reach_m(&self, latency_s: f64, limits: &Limits) -> f64 {
-        self.speed_mps * (self.elapsed_s + latency_s) + limits.noise_m
+        self.speed_mps * (self.elapsed_s - self.stood_s + latency_s) + limits.noise_m
     }
 }
 
@@ -182,7 +211,7 @@ pub struct Motion {
     pub anchor: Option<Report>,
     /// When a position jumped last, or a time was disputed.
     pub jumped: Option<GpsTime>,
-    /// The way by the reported speeds since the position changed.
+    /// What it said of its own speed since.
     pub gone: Gone,
 }
 
@@ -206,8 +235,9 @@ impl Motion {
             if one_place(&place(&from), &place(report)) { Finding::Plausible } else { Finding::Jump }
         } else {
             let unchanged = report.lat_rad == from.lat_rad && report.lon_rad == from.lon_rad;
-            let way_m = self.gone.step(report, unchanged, limits);
-            if unchanged { repeated(report, from.time, way_m, limits) } else { self.stepped(&from, report, &here, limits)? }
+            let stood_s = self.gone.stood_s;
+            self.gone.step(report, unchanged, limits);
+            if unchanged { repeated(report, from.time, &self.gone, limits) } else { self.stepped(&from, report, &here, stood_s, limits)? }
         };
         if finding == Finding::Jump {
             self.dispute(report.time);
@@ -222,7 +252,14 @@ impl Motion {
     }
 
     /// The step to another position, from the last one and from the anchor, after `stood_s` of standing by the reports between.
-    fn stepped(&mut self, from: &Report, report: &Report, here: &EcefPosition, stood_s: f64, limits: &Limits) -> Result<Finding, OutOfDomain> {
+    fn stepped(
+        &mut self,
+        from: &Report,
+        report: &Report,
+        here: &EcefPosition,
+        stood_s: f64,
+        limits: &Limits,
+    ) -> Result<Finding, OutOfDomain> {
         self.last = Some(*report);
         let step = reached(from, report, here, stood_s, limits)?;
         // f64::max prefers a number to a NaN.
@@ -304,6 +341,56 @@ mod tests {
         assert_eq!(findings(&[report(0, 0.0, 0.0), report(900, 0.0, 14.0), report(901, 14.0, 14.0)], &LIMITS)[1], Finding::Plausible);
         let at_rest = Limits { moving_mps: f64::INFINITY, ..LIMITS };
         assert_eq!(findings(&(0..100).map(|k| report(k, 0.0, 5.0)).collect::<Vec<_>>(), &at_rest), [Finding::Plausible; 100]);
+    }
+
+    /// 70 m/s north, then the position of second 100 with the speeds that `stated` gives for the seconds after it.
+    fn stops(stated: impl Fn(i64) -> f64, every: i64) -> Vec<Report> {
+        let speed = |k: i64| if k < 100 { 70.0 } else { stated(k - 100) };
+        (0..=400).step_by(every as usize).map(|k| report(k, 70.0 * k.min(100) as f64, speed(k))).collect()
+    }
+
+    #[test]
+    fn a_speed_that_falls_faster_than_an_aircraft_brakes_is_no_evidence_that_it_stands() {
+        // The speed is 0 with the last new position, one report later, after three reports without one, and at one report in ten seconds.
+        let ends = [(0, 0.0, 1), (1, 70.0, 1), (4, f64::NAN, 1), (10, 70.0, 10)];
+        for (at, before_mps, every) in ends {
+            let found = findings(&stops(|k| if k < at { before_mps } else { 0.0 }, every), &LIMITS);
+            let (flown, held) = found.split_at(100 / every as usize + 1);
+            assert!(flown.iter().all(|each| *each == Finding::Plausible), "{at} {every}");
+            assert!(held.iter().skip(2).all(|each| *each == Finding::Stale), "{at} {every}: {held:?}");
+        }
+        let at_rest = Limits { moving_mps: f64::INFINITY, ..LIMITS };
+        assert!(findings(&stops(|_| 0.0, 1), &at_rest).iter().all(|each| *each == Finding::Plausible));
+    }
+
+    /// 70 m/s to nothing in 20 s, 25 m/s in 3 s, and minutes of the same bits.
+    #[test]
+    fn an_aircraft_that_braked_may_repeat_its_position() {
+        for (from_mps, braking_mps2) in [(70.0, 3.5), (25.0, 9.0)] {
+            let (mut north_m, mut speed_mps): (f64, f64) = (0.0, from_mps);
+            let reports = (0..300).map(|k| {
+                let next_mps = if k < 100 { from_mps } else { (speed_mps - braking_mps2).max(0.0) };
+                north_m += 0.5 * (speed_mps + next_mps);
+                speed_mps = next_mps;
+                report(k, north_m, speed_mps)
+            });
+            assert!(findings(&reports.collect::<Vec<_>>(), &LIMITS).iter().all(|each| *each == Finding::Plausible), "{from_mps}");
+        }
+        // One speed that drops out while the position goes on says nothing of a stand later.
+        let drop = |k: i64| report(k, 70.0 * k as f64, if k == 50 { 0.0 } else { 70.0 });
+        assert!(findings(&(0..100).map(drop).collect::<Vec<_>>(), &LIMITS).iter().all(|each| *each == Finding::Plausible));
+    }
+
+    #[test]
+    fn the_reach_over_a_hold_counts_no_time_in_which_the_aircraft_said_that_it_stood() {
+        // At 70 m/s again from where the flight is by then: (1.25 x 70 + 25) m/s in 1 + 10 s, and 100 m, are 1337.5 m.
+        let back = |held_s: i64, speed_mps: f64| {
+            let held = (0..held_s).map(|k| report(k, 0.0, speed_mps));
+            let on = [report(held_s, 70.0 * held_s as f64, 70.0)];
+            findings(&held.chain(on).collect::<Vec<_>>(), &LIMITS).pop().unwrap()
+        };
+        assert_eq!([19, 20, 200].map(|held_s| back(held_s, 0.0)), [Finding::Late, Finding::Jump, Finding::Jump]);
+        assert_eq!([19, 20, 200].map(|held_s| back(held_s, 70.0)), [Finding::Plausible; 3]);
     }
 
     #[test]
