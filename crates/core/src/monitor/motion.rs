@@ -354,8 +354,8 @@ mod tests {
         // The speed is 0 with the last new position, one report later, after three reports without one, and at one report in ten seconds.
         let ends = [(0, 0.0, 1), (1, 70.0, 1), (4, f64::NAN, 1), (10, 70.0, 10)];
         for (at, before_mps, every) in ends {
-            let found = findings(&stops(|k| if k < at { before_mps } else { 0.0 }, every), &LIMITS);
-            let (flown, held) = found.split_at(100 / every as usize + 1);
+            let verdicts = findings(&stops(|k| if k < at { before_mps } else { 0.0 }, every), &LIMITS);
+            let (flown, held) = verdicts.split_at(100 / every as usize + 1);
             assert!(flown.iter().all(|each| *each == Finding::Plausible), "{at} {every}");
             assert!(held.iter().skip(2).all(|each| *each == Finding::Stale), "{at} {every}: {held:?}");
         }
