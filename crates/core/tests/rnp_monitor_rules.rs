@@ -90,12 +90,13 @@ impl<'a> Judge<'a> {
         Some(self.records[k].time_s - from)
     }
 
-    /// Whether monitoring is lost after record `k`: no usable epoch there, dropped for longer than permitted, or lost before and only
-    /// dropped since.
+    /// Whether monitoring is lost after record `k`: no usable epoch there, one of the same time that is not usable, dropped for longer than
+    /// permitted, or lost before and only dropped since.
     fn lost_after(&self, k: usize) -> bool {
         let newest = *self.upto(k).last().unwrap();
         let dropped = (k - newest) as i64;
-        !self.records[newest].usable || self.set_back.contains(&newest) || dropped > STALE_S
+        let denied = self.records[newest + 1..=k].iter().any(|r| r.time_s == self.records[newest].time_s && !r.usable);
+        !self.records[newest].usable || self.set_back.contains(&newest) || denied || dropped > STALE_S
     }
 
     /// Whether record `k` is of the time of the counted record before it, or at most `STALE_S` earlier, with a bound outside, while monitoring
