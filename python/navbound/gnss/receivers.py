@@ -274,7 +274,8 @@ def _ionosphere_words(name: str, activity_sfu: float) -> str:
 
 def _with_times(kept: dict[str, Any], time_ns: NDArray[np.int64]) -> pl.DataFrame:
     instants = time_ns[kept.pop("epoch")]
-    return pl.DataFrame({"time_ns": instants, **kept})
+    # A list without a satellite has no type.
+    return pl.DataFrame({"time_ns": instants, **kept}, schema_overrides={name: pl.String for name in ("sv",) if name in kept})
 
 
 def _heard(heard: dict[str, Any] | None, ranges: pl.DataFrame | None, track: str, time_ns: NDArray[np.int64]) -> pl.DataFrame | None:
