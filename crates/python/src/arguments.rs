@@ -36,10 +36,13 @@ fn plain<'py>(value: &Bound<'py, PyAny>) -> Option<Plain<'py>> {
     (fits && array.is_c_contiguous() && array.is_aligned()).then(|| Plain::Array(array.clone()))
 }
 
+/// The leading shape, and every argument as one value an item.
+type Flat<'py> = (Bound<'py, PyTuple>, Vec<Bound<'py, PyAny>>);
+
 /// What `navbound.table.arrays.flatten` gives, where every argument is a plain number or an array of one common leading shape. None for
 /// everything else: what has to be converted, broadcast or refused is the caller's.
 #[pyfunction]
-fn flatten_plain<'py>(py: Python<'py>, arguments: &Bound<'py, PyDict>) -> PyResult<Option<(Bound<'py, PyTuple>, Vec<Bound<'py, PyAny>>)>> {
+fn flatten_plain<'py>(py: Python<'py>, arguments: &Bound<'py, PyDict>) -> PyResult<Option<Flat<'py>>> {
     let mut leading: Option<Vec<usize>> = None;
     let mut seen = Vec::with_capacity(arguments.len());
     for (_, pair) in arguments.iter() {
