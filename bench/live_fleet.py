@@ -147,7 +147,9 @@ def run(how: argparse.Namespace, folder: Path) -> None:
     if how.kill:
         killer.start()
     load_before, begun = os.getloadavg()[0], time.monotonic()
-    before = [(worker.look(), worker.cpu_s)[1] for worker in workers]
+    for worker in workers:
+        worker.look()
+    before = [worker.cpu_s for worker in workers]
     shift_ns = produce(how.aircraft, how.seconds, how.seed, feeder.process.stdin)
     assert feeder.process.stdin is not None
     feeder.process.stdin.close()

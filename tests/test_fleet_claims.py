@@ -56,7 +56,7 @@ def test_accuracy_is_that_of_nacp_and_integrity_the_radius_of_nic(tmp_path: Path
 
 
 def test_what_an_aircraft_does_not_claim_makes_it_unavailable_with_its_reason(tmp_path: Path) -> None:
-    lines = [
+    lines: list[dict[str, Any]] = [
         {"hex": "a00001", "nac_p": None},
         {"hex": "a00002", "sil": 1},
         {"hex": "a00003", "nic": 0},

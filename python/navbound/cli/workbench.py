@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import webbrowser
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from navbound.cli.parts import err_console, out_console, stop_requested
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def open_command(
@@ -21,7 +24,7 @@ def open_command(
     from navbound.cli import analyze, evaluate, forms, maps, predict, study  # noqa: PLC0415
     from navbound.serve.service import Options  # noqa: PLC0415
 
-    commands = {
+    commands: dict[str, Callable[..., None]] = {
         "analyze": analyze.analyze_command,
         "evaluate": evaluate.evaluate_command,
         "map": maps.map_command,

@@ -186,7 +186,8 @@ class LaneRun:
 
     def show(self) -> None:
         """Show the newest states and what was counted."""
-        status = {"lane": self.lane, "position": self.position, "n_tracks": self._core.n_tracks, "event_ns": self._core.event_time_ns}
+        status: dict[str, Any] = {"lane": self.lane, "position": self.position}
+        status |= {"n_tracks": self._core.n_tracks, "event_ns": self._core.event_time_ns}
         status |= {"lag_s": self._lag_s(), "heard_s": round(time.monotonic() - self._heard_s, 2), "counters": self._core.counters()}
         self._transport.show(self.lane, json.dumps(status).encode(), self._core.states(now_ns(), STATES_MOST))
 
