@@ -17,7 +17,7 @@ from navbound.run.judge import judge
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from navbound.records.operation import Operation
+    from navbound.records.material import Operation
 
 N = 200
 

@@ -199,15 +199,15 @@ fn where_the_speed_ends_with_the_fix_a_repeat_is_stale_too() {
 #[test]
 fn a_hold_that_states_a_speed_of_nothing_is_stale_and_its_end_a_jump() {
     let wide = Limits { latency_s: 10.0, ..LIMITS };
-    for held_s in [5_usize, 60, 200] {
-        let flown: Vec<f64> = (0..400).map(|k| 70.0 * if (100..100 + held_s).contains(&k) { 100.0 } else { k as f64 }).collect();
+    for hold_s in [5_usize, 60, 200] {
+        let flown: Vec<f64> = (0..400).map(|k| 70.0 * if (100..100 + hold_s).contains(&k) { 100.0 } else { k as f64 }).collect();
         let mut reports = track(&flown, 70.0);
-        reports[100..100 + held_s].iter_mut().for_each(|r| r.speed_mps = 0.0);
+        reports[100..100 + hold_s].iter_mut().for_each(|r| r.speed_mps = 0.0);
         let verdicts: Vec<Finding> = judge(&reports, &wide).unwrap().iter().map(|j| j.finding).collect();
-        assert!(verdicts[..=102].iter().all(|f| *f == Finding::Plausible), "{held_s} s");
-        assert!(verdicts[103..100 + held_s].iter().all(|f| *f == Finding::Stale), "{held_s} s");
+        assert!(verdicts[..=102].iter().all(|f| *f == Finding::Plausible), "{hold_s} s");
+        assert!(verdicts[103..100 + hold_s].iter().all(|f| *f == Finding::Stale), "{hold_s} s");
         // The step of 5 s is within what the latency explains: (1.25 x 70 + 25) m/s in 1 + 10 s, and 100 m, are 1337.5 m.
-        assert_eq!(verdicts[100 + held_s] == Finding::Jump, held_s > 5, "{held_s} s");
+        assert_eq!(verdicts[100 + hold_s] == Finding::Jump, hold_s > 5, "{hold_s} s");
     }
 }
 

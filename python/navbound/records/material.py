@@ -10,14 +10,19 @@ from typing import TYPE_CHECKING, Literal
 
 import polars as pl
 
-from navbound.records.frames import LEFT_OUT
 from navbound.records.truth import TruthDoubts
 
 if TYPE_CHECKING:
-    from navbound.records.operation import Operation
     from navbound.records.procedure import ProcedureFlown
     from navbound.records.run import CovarianceOrigin, CrossTrack, EventSummary, InputFile, Rejection, Waypoint
     from navbound.storage.frames import Frames
+
+LEFT_OUT = {"track": pl.String, "time_ns": pl.Int64}
+"""Rows of a recording that cannot be judged: which track, and when (null where not even the time is known)."""
+
+Operation = Literal["en-route", "approach", "ground"]
+"""What kind of operation is flown: nobody works it out from the size of a requirement. ``ground``: landing roll and taxiing, where
+requirements are metres and what is about flight says nothing."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from pydantic import Field
 from navbound.records.base import Record
 from navbound.records.faults import FaultSummary
 from navbound.records.groups import DeviationBand, DeviationGroup, SatelliteSummary
-from navbound.records.operation import Operation
+from navbound.records.material import Operation
 from navbound.records.performance import Performance
 from navbound.records.procedure import ProcedureFlown
 from navbound.records.verdict import LEAST_SHARE, BeliefState, VerdictId

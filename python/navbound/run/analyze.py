@@ -22,9 +22,7 @@ from navbound.read.runways import runway
 from navbound.read.speeds import doubts_of_speeds
 from navbound.read.tables.epochs import Reading, read
 from navbound.read.truth import TOLERANCE_S, truth_of, with_error, with_truth
-from navbound.records.frames import LEFT_OUT
-from navbound.records.material import Material
-from navbound.records.operation import Operation
+from navbound.records.material import LEFT_OUT, Material, Operation
 from navbound.records.run import CovarianceOrigin, Rejection, Waypoint
 from navbound.records.truth import TruthDoubts
 from navbound.run.inputs.files import sort_out

@@ -355,9 +355,9 @@ mod tests {
         let ends = [(0, 0.0, 1), (1, 70.0, 1), (4, f64::NAN, 1), (10, 70.0, 10)];
         for (at, before_mps, every) in ends {
             let verdicts = findings(&stops(|k| if k < at { before_mps } else { 0.0 }, every), &LIMITS);
-            let (flown, held) = verdicts.split_at(100 / every as usize + 1);
+            let (flown, repeats) = verdicts.split_at(100 / every as usize + 1);
             assert!(flown.iter().all(|each| *each == Finding::Plausible), "{at} {every}");
-            assert!(held.iter().skip(2).all(|each| *each == Finding::Stale), "{at} {every}: {held:?}");
+            assert!(repeats.iter().skip(2).all(|each| *each == Finding::Stale), "{at} {every}: {repeats:?}");
         }
         let at_rest = Limits { moving_mps: f64::INFINITY, ..LIMITS };
         assert!(findings(&stops(|_| 0.0, 1), &at_rest).iter().all(|each| *each == Finding::Plausible));
@@ -382,15 +382,15 @@ mod tests {
     }
 
     #[test]
-    fn the_reach_over_a_hold_counts_no_time_in_which_the_aircraft_said_that_it_stood() {
+    fn the_reach_over_a_hold_counts_no_time_in_which_the_aircraft_stood_by_its_reports() {
         // At 70 m/s again from where the flight is by then: (1.25 x 70 + 25) m/s in 1 + 10 s, and 100 m, are 1337.5 m.
-        let back = |held_s: i64, speed_mps: f64| {
-            let held = (0..held_s).map(|k| report(k, 0.0, speed_mps));
-            let on = [report(held_s, 70.0 * held_s as f64, 70.0)];
-            findings(&held.chain(on).collect::<Vec<_>>(), &LIMITS).pop().unwrap()
+        let back = |hold_s: i64, speed_mps: f64| {
+            let repeats = (0..hold_s).map(|k| report(k, 0.0, speed_mps));
+            let on = [report(hold_s, 70.0 * hold_s as f64, 70.0)];
+            findings(&repeats.chain(on).collect::<Vec<_>>(), &LIMITS).pop().unwrap()
         };
-        assert_eq!([19, 20, 200].map(|held_s| back(held_s, 0.0)), [Finding::Late, Finding::Jump, Finding::Jump]);
-        assert_eq!([19, 20, 200].map(|held_s| back(held_s, 70.0)), [Finding::Plausible; 3]);
+        assert_eq!([19, 20, 200].map(|hold_s| back(hold_s, 0.0)), [Finding::Late, Finding::Jump, Finding::Jump]);
+        assert_eq!([19, 20, 200].map(|hold_s| back(hold_s, 70.0)), [Finding::Plausible; 3]);
     }
 
     #[test]

@@ -8,7 +8,7 @@ import polars as pl
 
 from navbound import status
 from navbound.read.checks.stated import ALERT
-from navbound.records.frames import LEFT_OUT
+from navbound.records.material import LEFT_OUT
 from navbound.table.columns import COVARIANCE, VARIANCES
 from navbound.units import EARTH_RADIUS_M
 

@@ -19,7 +19,7 @@ from navbound.read.tables.columns import POSITION, assign
 from navbound.read.tables.stated_units import HEAD_BYTES, require_same_in_remarks
 from navbound.read.tables.table import LINE, Layout, layout_of, rows_of
 from navbound.read.tables.values import Late, Values, one_row_a_time, texts
-from navbound.records.frames import LEFT_OUT
+from navbound.records.material import LEFT_OUT
 from navbound.storage.frames import Spool
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from navbound.read.tables.columns import POSITION, Assignment, assign, truth_as_
 from navbound.read.tables.stated_units import require_same_in_remarks
 from navbound.read.tables.table import LINE, Table, table
 from navbound.read.tables.values import Late, Values, one_row_a_time, texts
-from navbound.records.frames import LEFT_OUT
+from navbound.records.material import LEFT_OUT
 from navbound.table.columns import COVARIANCE
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from navbound.table.declare import UNITS, unit_of
 
 KEY = ["track", "time_ns"]
 WORDS: tuple[str, ...] = get_args(ChangedWords.model_fields["column"].annotation)
-"""Columns of words whose changes are told."""
+"""Columns of words whose changes are reported."""
 _OF_B = "_of_b"
 
 

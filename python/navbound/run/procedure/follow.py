@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from navbound.procedures import Flight, Procedure
-    from navbound.records.operation import Operation
+    from navbound.records.material import Operation
     from navbound.records.procedure import ProcedureFlown
     from navbound.records.run import CrossTrack, InputFile
     from navbound.run.procedure.flown import Flown
