@@ -174,7 +174,7 @@ proptest::proptest! {
 /// The procedure with record numbers from `first` in steps of `step`, without the lines `without` of its five.
 fn numbered(first: usize, step: usize, without: &[usize]) -> String {
     let legs = LEGS.iter().enumerate().filter(|(k, _)| !without.contains(k));
-    let legs: String = legs.map(|(k, l)| format!("{l:<123}{:05}2604\n", (first + step * k) % 100_000)).collect();
+    let legs: String = legs.map(|(k, l)| format!("{l:<123}{:05}2604\n", (first - 1 + step * k) % 99_999 + 1)).collect();
     PLACES.iter().map(|l| padded(l)).collect::<String>() + &legs + FIXES
 }
 
