@@ -105,7 +105,7 @@ def test_a_worker_that_is_gone_at_any_point_is_followed_by_another_without_loss_
         fed(transport, fleet(n, seconds, 2), None if "://" not in name else spool)
     monkeypatch.setattr("navbound.live.fleet.files.READ_BYTES", 20_000)
     monkeypatch.setattr("navbound.live.fleet.stream_log.MOST_READ", 20_000)
-    for passes in (2, 5, 4):
+    for passes in (1, 2, 1):
         with connect(name) as transport:
             killed_at(transport, at, passes, monkeypatch)
     with connect(name) as transport:

@@ -177,6 +177,7 @@ def _read(file: Path) -> Database:
 def _heights(database: Database, procedure: Procedure, lowest_c: float | None) -> Heights:
     """Vertical path and obstacle clearance surface of an approach."""
     from navbound.procedures import surface_below, vertical_path  # noqa: PLC0415
+    from navbound.procedures.names import as_sentence  # noqa: PLC0415
     from navbound.report.procedure import Heights  # noqa: PLC0415
 
     if procedure.kind != "approach":
@@ -184,7 +185,7 @@ def _heights(database: Database, procedure: Procedure, lowest_c: float | None) -
             raise InputError("lowest_c", lowest_c, "°C", "an approach: the surface lies below its final part")
         return Heights(None, None, ())
     path, words = vertical_path(database, procedure)
-    sentence = f"{words[0].upper()}{words[1:]}" + ("" if words.endswith(".") else ".")
+    sentence = as_sentence(words)
     if path is None:
         return Heights(None, None, (sentence,))
     surface, more = surface_below(path, procedure, None if lowest_c is None else lowest_c + KELVIN)

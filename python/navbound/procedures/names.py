@@ -20,3 +20,8 @@ def parts(name: str) -> tuple[str, str, str | None]:
         raise InputError("procedure", name, domain="AIRPORT/PROCEDURE or AIRPORT/PROCEDURE:TRANSITION, such as KDEN/H26-Z:FUZZZ")
     airport, ident, transition = match.groups()
     return airport.upper(), ident.upper(), transition.upper() if transition else None
+
+
+def as_sentence(text: str) -> str:
+    """A remark as a sentence: a capital in front, one point behind."""
+    return f"{text[0].upper()}{text[1:].removesuffix('.')}."

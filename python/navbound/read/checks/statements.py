@@ -263,7 +263,7 @@ _LEVEL_IN_WORDS = tuple(map(_words, ("protection level", "integrity level", "int
 def speaks_of_level(name: str) -> bool:
     """Whether the name is one of a horizontal protection level, so that its numbers are lengths."""
     parts = {*_parts(name), name.lower()}
-    named = not _LEVEL.isdisjoint(parts) or any(words <= parts for words in _LEVEL_IN_WORDS)
+    named = not _LEVEL.isdisjoint(parts) or any(together <= parts for together in _LEVEL_IN_WORDS)
     return named and _NO_POSITION.isdisjoint(parts)
 
 

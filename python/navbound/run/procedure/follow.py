@@ -11,6 +11,7 @@ import polars as pl
 from navbound.errors import InputError
 from navbound.procedures.flight import results, rnp_words
 from navbound.procedures.legs import Followed
+from navbound.procedures.names import as_sentence
 from navbound.read.approaches import statistics
 from navbound.read.checks.repeats import left_out
 from navbound.records.run import Waypoint
@@ -96,7 +97,7 @@ def on_procedure(epochs: pl.DataFrame, flown: Flown) -> OnProcedure:
         left_out=pl.concat([x for x in unknown if x["track"].is_in(list(tracks)).all()]),
         words=[
             _path_words(procedure),
-            loaded.words[0].upper() + loaded.words[1:] + ("" if loaded.words.endswith(".") else "."),
+            as_sentence(loaded.words),
             *procedure.notes,
             *words,
         ],
