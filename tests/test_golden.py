@@ -15,15 +15,20 @@ import golden
 
 RELATIVE = 1e-9
 """Ten digits are kept, so nine must agree."""
+RELATIVE_OF_ARRAYS = 1e-6
+"""Of the taxi scenarios: their navigation is linear algebra of arrays in Python, whose last bits are the processor's. One without AVX-512
+gives numbers that are up to 3.8e-7 of themselves away from those under review."""
 
 
-def same(kept: Any, actual: Any) -> bool:
+def same(kept: Any, actual: Any, relative: float) -> bool:
     if isinstance(kept, dict):
-        return isinstance(actual, dict) and kept.keys() == actual.keys() and all(same(kept[k], actual[k]) for k in kept)
+        return isinstance(actual, dict) and kept.keys() == actual.keys() and all(same(kept[k], actual[k], relative) for k in kept)
     if isinstance(kept, list):
-        return isinstance(actual, list) and len(kept) == len(actual) and all(same(k, f) for k, f in zip(kept, actual, strict=True))
+        return (
+            isinstance(actual, list) and len(kept) == len(actual) and all(same(k, f, relative) for k, f in zip(kept, actual, strict=True))
+        )
     if isinstance(kept, float):
-        return isinstance(actual, float) and abs(actual - kept) <= RELATIVE * abs(kept)
+        return isinstance(actual, float) and abs(actual - kept) <= relative * abs(kept)
     return bool(kept == actual)
 
 
@@ -31,5 +36,6 @@ def same(kept: Any, actual: Any) -> bool:
 def test_the_numbers_of_a_shipped_scenario_are_those_under_review(name: str) -> None:
     kept = json.loads((golden.FOLDER / f"{name}.json").read_text(encoding="utf-8"))
     data = json.loads(json.dumps(golden.kept(name)))
-    moved = [key for key in kept if not same(kept[key], data.get(key))]
+    relative = RELATIVE_OF_ARRAYS if "taxi" in name else RELATIVE
+    moved = [key for key in kept if not same(kept[key], data.get(key), relative)]
     assert not moved, f"{moved} moved: if it was meant, run ./dev golden and say so in CHANGELOG.md under Numbers changed"
