@@ -305,3 +305,23 @@ def test_the_comparison_says_of_every_published_number_what_became_of_it(monkeyp
     # The ellipsoid's support is 2.79548 deviations of each axis.
     assert ratio["ellipsoid", "altitude"] / case.axes[2].sigma_m == pytest.approx(2.79548, abs=1e-5)
     assert case.nees_low_over_3 < case.nees_over_3 < case.nees_high_over_3
+
+
+def test_an_innovation_beyond_its_gate_is_a_measurement_that_was_rejected(real: Material) -> None:
+    kinds = [f"innovation_{of}" for of in ("range", "station", "baro")]
+    largest = real.epochs.select(pl.max_horizontal(kinds)).to_series()
+    assert real.epochs["innovation_range"].is_not_null().mean() > 0.9
+    assert (largest.drop_nulls() >= 0.0).all()
+    # Range rates and bearings are rejected as well, and have no column.
+    beyond = largest > 1.0
+    assert beyond.any()
+    assert (real.epochs["n_gated"].filter(beyond) > 0).all()
+
+
+def test_biases_of_the_unit_become_better_known(real: Material) -> None:
+    for of in ("gyro_x_radps", "gyro_y_radps", "gyro_z_radps", "accel_x_mps2", "accel_y_mps2", "accel_z_mps2"):
+        bias, sigma = (real.epochs[f"{kind}_{of}"] for kind in ("bias", "sigma_bias"))
+        assert bias.is_finite().all(), of
+        assert (sigma > 0.0).all(), of
+        # Two hours of satellites say more of a bias than the grade of the unit.
+        assert sigma[-1] < sigma[0], of
