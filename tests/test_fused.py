@@ -310,7 +310,7 @@ def test_the_comparison_says_of_every_published_number_what_became_of_it(monkeyp
 def test_an_innovation_beyond_its_gate_is_a_measurement_that_was_rejected(real: Material) -> None:
     kinds = [f"innovation_{of}" for of in ("range", "station", "baro")]
     largest = real.epochs.select(pl.max_horizontal(kinds)).to_series()
-    assert real.epochs["innovation_range"].is_not_null().mean() > 0.9
+    assert real.epochs["innovation_range"].null_count() < 0.1 * real.epochs.height
     assert (largest.drop_nulls() >= 0.0).all()
     # Range rates and bearings are rejected as well, and have no column.
     beyond = largest > 1.0
