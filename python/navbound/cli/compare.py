@@ -36,10 +36,12 @@ def compare_command(
     if json:
         sys.stdout.write(record.model_dump_json(indent=1) + "\n")
         return
+    from navbound.report.comparison import number  # noqa: PLC0415
+
     for sentence in record.words:
         out_console.print(sentence, markup=False, highlight=False)
     for one in record.numbers[:LISTED]:
-        out_console.print(f"  {one.group}, {one.name}: {one.a} to {one.b}", markup=False, highlight=False)
+        out_console.print(f"  {one.group}, {one.name}: {number(one.a)} to {number(one.b)}", markup=False, highlight=False)
     if len(record.numbers) > LISTED:
         out_console.print(f"  ... and {len(record.numbers) - LISTED} more on the page.", markup=False, highlight=False)
     if folder is not None:
