@@ -33,14 +33,14 @@ def fleet(n: int, seconds: int, seed: int = 1) -> tuple[Sent, ...]:
 
 @cache
 def truth(n: int, seconds: int, seed: int = 1) -> tuple[frozenset[str], frozenset[str]]:
-    """Keys of alerts raised and cleared by the batch monitor over the same fleet."""
+    """Keys of alerts raised and cleared by the batch monitor over the same fleet; a clear with its time."""
     fleet(n, seconds, seed)
     sys.path.insert(0, str(SHARED))
     try:
         raised, cleared, _, _ = runpy.run_path(str(SHARED / "reference.py"))["reference"](n, seconds, seed)
     finally:
         sys.path.remove(str(SHARED))
-    return frozenset(raised), frozenset(cleared)
+    return frozenset(raised), frozenset(f"{key}/{event['clear_ns']}" for key, event in cleared.items())
 
 
 def frames(sent: Iterable[Sent], per_chunk: int = 50, *, heartbeats: bool = False) -> bytes:

@@ -41,7 +41,7 @@ def require_truth(name: str, n: int, seconds: int, seed: int) -> None:
     raised, cleared = truth(n, seconds, seed)
     assert min(len(raised), len(cleared)) > 5
     assert {f"{t['track']}/{t['kind']}/{t['annunciation_ns']}/raise" for t in entry if t["transition"] == "raised"} == raised
-    assert {f"{t['track']}/{t['kind']}/{t['onset_ns']}/clear" for t in entry if t["transition"] == "cleared"} == cleared
+    assert {f"{t['track']}/{t['kind']}/{t['onset_ns']}/clear/{t['clear_ns']}" for t in entry if t["transition"] == "cleared"} == cleared
     assert len(entry) == len(raised) + len(cleared)
 
 

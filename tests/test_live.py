@@ -29,7 +29,7 @@ def reported_keys(folder: Path) -> tuple[list[str], list[str]]:
     """Raised and cleared alerts of tracks in the form of the reference."""
     reported = [t for t in transitions(folder) if t["track"]]
     raised = [f"{t['track']}/{t['kind']}/{t['annunciation_ns']}/raise" for t in reported if t["transition"] == "raised"]
-    cleared = [f"{t['track']}/{t['kind']}/{t['onset_ns']}/clear" for t in reported if t["transition"] == "cleared"]
+    cleared = [f"{t['track']}/{t['kind']}/{t['onset_ns']}/clear/{t['clear_ns']}" for t in reported if t["transition"] == "cleared"]
     return raised, cleared
 
 

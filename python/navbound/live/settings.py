@@ -8,7 +8,7 @@ import math
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from navbound import _core
+from navbound import _core, delays, rnp
 from navbound.errors import FormatError, InputError
 from navbound.live import statements, zones
 from navbound.live.zones import path_of
@@ -75,10 +75,10 @@ class Settings:
     risk_accuracy: float = 0.05
     risk_integrity: float = 1e-5
     sample_period_s: float = 1.0
-    time_to_alert_s: float = 10.0
-    raise_delay_s: float = 3.0
-    clear_delay_s: float = 5.0
-    clear_ratio: float = 0.9
+    time_to_alert_s: float = delays.TIME_TO_ALERT_S
+    raise_delay_s: float = delays.RAISE_DELAY_S
+    clear_delay_s: float = delays.CLEAR_DELAY_S
+    clear_ratio: float = delays.CLEAR_RATIO
     stale_after_s: float | None = None
     transport_s: float = 0.5
     display_s: float = 0.3
@@ -120,7 +120,9 @@ class Settings:
     @property
     def stale_s(self) -> float:
         """Silence after which monitoring is lost [s]."""
-        return max(2.0, 2.0 * self.sample_period_s) if self.stale_after_s is None else self.stale_after_s
+        if self.stale_after_s is not None:
+            return self.stale_after_s
+        return rnp.Monitor(sample_period_s=self.sample_period_s, time_to_alert_s=math.inf).stale_after_s
 
     def text(self) -> str:
         """The record as JSON, one form for one content."""

@@ -12,6 +12,7 @@ import polars as pl
 
 from navbound import _core
 from navbound import status as status_list
+from navbound.delays import CLEAR_DELAY_S, CLEAR_RATIO, RAISE_DELAY_S, TIME_TO_ALERT_S
 from navbound.errors import InputError
 from navbound.methods import EXTRACTION_LABEL, method
 from navbound.risks import checked_risk
@@ -183,10 +184,10 @@ class Monitor:
         self,
         *,
         sample_period_s: float = 1.0,
-        time_to_alert_s: float = 10.0,
-        raise_delay_s: float = 3.0,
-        clear_delay_s: float = 10.0,
-        clear_ratio: float = 0.95,
+        time_to_alert_s: float = TIME_TO_ALERT_S,
+        raise_delay_s: float = RAISE_DELAY_S,
+        clear_delay_s: float = CLEAR_DELAY_S,
+        clear_ratio: float = CLEAR_RATIO,
         stale_after_s: float | None = None,
         sensor_latency_s: float = 0.0,
         filter_s: float = 0.0,

@@ -5,13 +5,13 @@ use super::Decoded;
 use crate::claims::{Claim, Claims};
 use crate::counters::Refused;
 use crate::position::{Position, Shown, TrackId};
-use navbound_core::quantity::Reason;
+use navbound_core::quantity::{Metres, Reason};
 use navbound_formats::time;
 use serde::Deserialize;
 use std::borrow::Cow;
 
 const METRES_PER_FOOT: f64 = 0.3048;
-const MPS_PER_KNOT: f64 = 1852.0 / 3600.0;
+const MPS_PER_KNOT: f64 = Metres::nautical_miles(1.0).m() / 3600.0;
 const NS_PER_S: f64 = 1e9;
 /// Unix times that can be nanoseconds of GPS time \[s\]: 1980-01-06 and the end of 64 bits.
 const UNIX_S: (f64, f64) = (315_964_800.0, 9.0e9);

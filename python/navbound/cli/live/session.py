@@ -14,6 +14,7 @@ from typer.core import TyperGroup
 from navbound.cli.live import fleet
 from navbound.cli.live.parts import DisplayPort, JsonLines, OpenPage, ShowDisplay, Spec, address, report_to, say
 from navbound.cli.parts import out_console, stop_requested
+from navbound.delays import RAISE_DELAY_S, TIME_TO_ALERT_S
 from navbound.errors import ConflictError, FormatError, InputError
 from navbound.exit_status import NO_VERDICT, OUR_BUG
 
@@ -64,8 +65,8 @@ def watch(
     ] = "",
     track: Annotated[str, typer.Option(help="Name of a receiver's track.")] = "receiver",
     period_s: Annotated[float, typer.Option(help="Sample period of a track.")] = 1.0,
-    time_to_alert_s: Annotated[float, typer.Option(help="Time to alert; a chain of times that is longer is refused.")] = 10.0,
-    raise_delay_s: Annotated[float, typer.Option(help="How long the accuracy bound is outside before the caution.")] = 3.0,
+    time_to_alert_s: Annotated[float, typer.Option(help="Time to alert; a chain of times that is longer is refused.")] = TIME_TO_ALERT_S,
+    raise_delay_s: Annotated[float, typer.Option(help="How long the accuracy bound is outside before the caution.")] = RAISE_DELAY_S,
     lateness_s: Annotated[float, typer.Option(help="How long the order of a track is waited for; 1 for a fleet.")] = 0.0,
     expiry_s: Annotated[float | None, typer.Option(help="Silence after which a track is forgotten. [default: never]")] = None,
     standing: Annotated[bool, typer.Option("--standing", help="The receiver stands: a position that repeats is not held.")] = False,

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from navbound.errors import InputError
+from navbound.units import MPS_PER_KT
 
 NAME = "simulated"
 MOST_AIRCRAFT = 50_000
@@ -101,7 +102,7 @@ class Pretend:
             "lat": round(self._lat_deg[a] + north_deg, 6),
             "lon": round(self._lon_deg[a] + east_deg, 6),
             "alt_geom": int(self._height_ft[a]),
-            "gs": round(self._speed_mps[a] * 3600.0 / 1852.0, 1),
+            "gs": round(self._speed_mps[a] / MPS_PER_KT, 1),
             "track": round(self._track_deg[a], 2),
             "seen_pos": 0.0,
             "nic": 8,
