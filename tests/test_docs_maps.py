@@ -30,7 +30,7 @@ def test_the_program_of_the_page_prints_what_it_says(tmp_path: Path) -> None:
 def commands(page: str) -> list[list[str]]:
     """Every command of a page."""
     lines = (DOCS / page).read_text(encoding="utf-8").splitlines()
-    return [shlex.split(line)[1:] for line in lines if line.startswith("    navbound map ")]
+    return [shlex.split(line, comments=True)[1:] for line in lines if line.startswith("    navbound map ")]
 
 
 @pytest.mark.parametrize("page", ["methods/maps.md", "scale-out.md"])

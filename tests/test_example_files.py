@@ -14,8 +14,12 @@ import numpy as np
 import polars as pl
 import pytest
 
-from navbound import InputError, examples, gnss, raim, write
+from navbound import InputError, examples, gnss, procedures, raim, scenario, write
+from navbound.algorithms import Place, entries
+from navbound.cli.main import app
 from navbound.examples.files import STATION
+from navbound.maps.kinds import kinds
+from navbound.studies.registry import STUDIES
 
 ROOT = Path(__file__).parents[1]
 DATA = ROOT / "examples" / "data"
@@ -138,6 +142,32 @@ def test_a_log_keeps_what_it_can_and_counts_what_it_cannot(tmp_path: Path) -> No
     assert back.column("E", "C5Q")["value"].equals(station.column("E", "C5Q")["value"])
 
 
+def test_the_database_has_the_one_contradiction_that_its_page_states() -> None:
+    database = procedures.read(DATA / "procedure.txt")
+    assert database.refused == []
+    # The coded radius is 3.3 NM, the fixes lie on a circle of 3 NM: 0.3 NM apart.
+    (found,) = database.contradictions()
+    assert (found.kind, found.line) == ("radius", 17)
+    assert "coded radius 3.300 NM, the fixes give 3.000 NM: 555." in found.words
+    north = database.procedure("XNAV", "H27", "NORTH", line="RNP 0.3")
+    assert [leg.terminator for leg in north.legs] == ["IF", "TF", "RF", "TF", "TF"]
+    # 5 + 3 pi / 2 + 1 + 5.18 NM; places are written to 0.3 m, which five legs have ten of.
+    assert north.length_m == pytest.approx((11.18 + 1.5 * math.pi) * 1852.0, abs=3.0)
+
+
+def test_the_almanac_has_the_slots_of_the_performance_standard() -> None:
+    read = gnss.constellation(DATA / "almanac.al3", near_ns=STATION.begin_ns)
+    # Sunday 2026-03-01 00:00:00 of GPS time.
+    assert read.reference_ns == 2408 * 604_800 * NS
+    assert np.degrees(read.inclination_rad).round(9).tolist() == [55.0] * 27
+    # Fourteen digits are written: of a root of 5154 m^0.5 to 5e-10, of the axis to 5e-6 m; angles come back but for whole turns.
+    nominal = gnss.constellation("gps-expanded")
+    assert read.satellite == nominal.satellite
+    assert np.abs(read.semi_major_m - nominal.semi_major_m).max() < 1e-3
+    apart = (read.elements() - nominal.elements())[:, 2:6]
+    assert np.abs(np.sin(0.5 * apart)).max() < 1e-12
+
+
 def test_an_example_that_is_none_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="one of rinex, ubx") as refusal:
         examples.make(["sbas"], tmp_path)
@@ -145,14 +175,62 @@ def test_an_example_that_is_none_is_refused(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+OWN = "your own"
+"""What the remark of a command says whose files a reader brings."""
+COMMANDS = {*(command.name for command in app.registered_commands), *(group.name for group in app.registered_groups)}
+
+
+def lines(pages: list[Path]) -> list[tuple[str, str]]:
+    """Commands of the documents, each with its remark."""
+    whole = [line for page in pages for line in page.read_text(encoding="utf-8").splitlines()]
+    return [
+        (command.strip(), remark)
+        for command, _, remark in (line.partition("#") for line in whole)
+        if command.split()[:1] == ["navbound"] and command.split()[1] in COMMANDS
+    ]
+
+
 def commands() -> list[str]:
-    """Commands of the documents that name the example files."""
-    lines = [line.split("#")[0].strip() for page in PAGES for line in page.read_text(encoding="utf-8").splitlines()]
-    return sorted({line for line in lines if re.match(r"navbound .*examples/data", line)})
+    """Commands of the documents that name the example files, and nothing that a reader brings."""
+    return sorted({command for command, remark in lines(PAGES) if "examples/data" in command and OWN not in remark})
 
 
 def test_there_are_commands() -> None:
-    assert len(commands()) >= 6
+    assert len(commands()) >= 10
+
+
+FILE = re.compile(r"\.(csv|gz|json|al3|alm|toml|rnx|nav|ubx|ems|txt|pos|parquet)$|^FAACIFP18$")
+MADE = ("examples/data/", "tests/procedures/", "out/")
+"""Folders of the repository, and what an earlier command has made."""
+
+
+@pytest.mark.parametrize(("command", "remark"), lines(PAGES))
+def test_a_file_of_a_command_is_there_or_is_marked_as_your_own(command: str, remark: str) -> None:
+    words = shlex.split(command)
+    written = {words.index(option) + 1 for option in ("--out",) if option in words}
+    absent = [word for k, word in enumerate(words) if k not in written and FILE.search(word) and not word.startswith(MADE)]
+    assert not absent or OWN in remark, absent
+    assert all((ROOT / word).is_file() for word in words if word.startswith(MADE[:2]))
+
+
+def known() -> set[str]:
+    """Words that commands of the README take which are no files: their names, and those of what ships with navbound."""
+    registered = [scenario.shipped(), STUDIES, kinds(), entries(Place)]
+    return {name for names in registered for name in names} | {"flight", "replay", "fleet", "check", "simulated:5000"}
+
+
+def test_what_a_command_of_the_readme_takes_is_a_file_that_is_there_or_a_name_that_ships() -> None:
+    sh = re.search(r"## In your hands\n\n```sh\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.S)
+    assert sh
+    taken = []
+    for line in sh.group(1).splitlines():
+        command, _, remark = line.partition("#")
+        words = shlex.split(command)[2:]
+        first = next((k for k, word in enumerate(words) if word.startswith("--")), len(words))
+        taken += [word for word in words[:first] if OWN not in remark]
+    strange = [word for word in taken if not word.startswith(MADE) and word not in known() | {"flight.kml"}]
+    assert not strange
+    assert len(taken) > 20
 
 
 @pytest.mark.parametrize("command", commands())
@@ -161,6 +239,6 @@ def test_a_command_that_names_the_examples_runs(command: str, tmp_path: Path) ->
     if words[0] == "example":
         words = [str(tmp_path) if word == "examples/data" else word for word in words]
     else:
-        words = [str(ROOT / word) if word.startswith("examples/data") else word for word in words] + ["--out", str(tmp_path / "run")]
+        words = [str(ROOT / word) if word.startswith(MADE[:2]) else word for word in words]
     done = subprocess.run([sys.executable, "-m", "navbound", *words], capture_output=True, text=True, cwd=tmp_path, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -11,7 +11,9 @@ from navbound.cli.parts import out_console
 
 
 def example_command(
-    names: Annotated[list[str] | None, typer.Argument(help="rinex, ubx, tracks, levels, imu. [default: all]", show_default=False)] = None,
+    names: Annotated[
+        list[str] | None, typer.Argument(help="rinex, ubx, tracks, levels, imu, procedure, plan. [default: all]", show_default=False)
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder of the files.")] = Path("out/examples"),
 ) -> None:
     """Make files to try navbound on: simulated, with truth, the same bytes every time."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from navbound import write
 from navbound.errors import InputError
-from navbound.examples import inertial, tracks
+from navbound.examples import inertial, planning, procedure, tracks
 from navbound.examples.levels import levels
 from navbound.examples.station import Station, measure
 
@@ -41,6 +41,8 @@ TRAFFIC = tracks.Day(begin=datetime(2026, 3, 1, 5), apart_s=2500.0, n_flights=24
 """Twelve approaches to each runway."""
 PIECE = inertial.Piece("beijing-shanghai", from_s=6040, until_s=6280, silent_s=(6160, 6220), seed=65)
 """Four minutes of a descent with a turn, one of them without a position of the receiver."""
+APPROACH_BEGIN, APPROACH_SEED = datetime(2026, 3, 1, 10), 66
+"""GPS time at which the flight begins that ends with the approach of the navigation database."""
 PLACE_ECEF_M = (4189135.1896, 188029.6189, 4789919.6247)
 """The antenna of all, Earth-fixed: truth. [m]"""
 
@@ -93,6 +95,16 @@ def _imu(folder: Path) -> None:
     log.truth.write_csv(folder / "motion.csv")
 
 
+def _procedure(folder: Path) -> None:
+    (folder / procedure.DATABASE).write_text(procedure.database(), encoding="ascii", newline="\n")
+    procedure.track(folder, APPROACH_BEGIN, APPROACH_SEED).write_csv(folder / "procedure-track.csv")
+
+
+def _plan(folder: Path) -> None:
+    (folder / planning.ALMANAC).write_text(planning.almanac(), encoding="ascii", newline="\n")
+    (folder / "plan.toml").write_text(planning.PLAN, encoding="ascii", newline="\n")
+
+
 EXAMPLES: dict[str, Example] = {
     "rinex": Example(("station.rnx", "broadcast.rnx"), "two hours of a station, an outage, a faulty satellite", _rinex),
     "ubx": Example(("receiver.ubx", "receiver-broadcast.rnx"), "three minutes of a u-blox receiver's raw measurements", _ubx),
@@ -101,6 +113,12 @@ EXAMPLES: dict[str, Example] = {
     "imu": Example(
         ("imu.csv", "fixes.csv", "motion.csv"), "four minutes of an inertial unit, a receiver's positions, the true motion", _imu
     ),
+    "procedure": Example(
+        (procedure.DATABASE, "procedure-track.csv"),
+        "a navigation database with one contradiction, and a flight along its approach",
+        _procedure,
+    ),
+    "plan": Example((planning.ALMANAC, "plan.toml"), "an almanac of GPS, and the plan of a flight that uses it", _plan),
 }
 """Examples by name."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
+from datetime import datetime, timedelta
 
 import numpy as np
 import polars as pl
@@ -92,25 +92,30 @@ def record(day: Day) -> tuple[pl.DataFrame, pl.DataFrame]:
     for k in range(day.n_flights):
         flown = approach(to[k % len(to)], OFFSETS_NM[k % len(OFFSETS_NM)], day.begin + timedelta(seconds=k * day.apart_s))
         epochs, _ = flight.Flights(flown.model_dump_json(), day.seed)(range(k, k + 1))
-        parts.append(_last_miles(epochs, day.step_s).with_columns(icao24=pl.lit(f"f0{k:04x}"), callsign=pl.lit(f"NVB{k + 1:03d}")))
+        parts.append(last_miles(epochs, day.step_s, LAST_NM).with_columns(icao24=pl.lit(f"f0{k:04x}"), callsign=pl.lit(f"NVB{k + 1:03d}")))
     every = pl.concat(parts)
-    instants = [datetime.strptime(time.utc_text(t), "%Y-%m-%d %H:%M:%S").replace(tzinfo=UTC) for t in every["time_ns"].to_list()]
-    every = every.with_columns(time=pl.Series([f"{t:%Y-%m-%dT%H:%M:%SZ}" for t in instants])).sort("time_ns", "icao24")
+    every = every.with_columns(utc()).sort("time_ns", "icao24")
     who = ("time", "icao24", "callsign")
-    return every.select(*who, *_place("est"), "ground_speed_kt", "vertical_rate_fpm"), every.select(*who, *_place("truth"))
+    return every.select(*who, *place("est"), "ground_speed_kt", "vertical_rate_fpm"), every.select(*who, *place("truth"))
 
 
-def _last_miles(epochs: pl.DataFrame, step_s: int) -> pl.DataFrame:
+def utc() -> pl.Expr:
+    """`time`, as a network of receivers writes it."""
+    return pl.col("time_ns").map_elements(lambda t: time.utc_text(t).replace(" ", "T") + "Z", return_dtype=pl.String).alias("time")
+
+
+def last_miles(epochs: pl.DataFrame, step_s: int, last_nm: float) -> pl.DataFrame:
     """Every so many seconds of the end of a flight; the vertical rate is that of the second before, to the 64 ft/min of a transponder."""
     feet_per_minute = 60.0 / METRES_PER_FT / 64.0 * pl.col("truth_h_m").diff()
     rows = epochs.with_columns(
         vertical_rate_fpm=(64 * feet_per_minute.round(0)).cast(pl.Int64, strict=False),
         ground_speed_kt=(pl.col("ground_speed_mps") / MPS_PER_KT).round(0).cast(pl.Int64),
     )
-    near = pl.col("along_m").max() - pl.col("along_m") <= LAST_NM * METRES_PER_NM
+    near = pl.col("along_m").max() - pl.col("along_m") <= last_nm * METRES_PER_NM
     return rows.filter(near & (pl.col("time_ns") // 1_000_000_000 % step_s == 0))
 
 
-def _place(whose: str) -> list[pl.Expr]:
+def place(whose: str) -> list[pl.Expr]:
+    """Degrees to seven decimals, height above the ellipsoid to the centimetre."""
     degrees = [pl.col(f"{whose}_{axis}_rad").degrees().round(7).alias(f"{axis}_deg") for axis in ("lat", "lon")]
     return [*degrees, pl.col(f"{whose}_h_m").round(2).alias("height_m")]
