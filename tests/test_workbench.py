@@ -23,7 +23,7 @@ import pytest
 
 from conftest import Ended
 from display_fixture import Browser
-from navbound.cli import analyze, evaluate, forms, maps, predict, study
+from navbound.cli import analyze, compare, evaluate, forms, maps, predict, study
 from navbound.cli.forms import form
 from navbound.serve.service import Options
 from navbound.storage import folders
@@ -40,6 +40,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "map": maps.map_command,
     "predict": predict.predict_command,
     "study": study.study_command,
+    "compare": compare.compare_command,
 }
 FORMS = [form(name, command) for name, command in COMMANDS.items()]
 TRACK = "time,lat_deg,lon_deg,height_m\n" + "".join(f"{1400000000 + k},49.0,2.5,{300 - k}\n" for k in range(5))
@@ -302,12 +303,14 @@ def test_a_pipe_is_neither_listed_nor_read(page: Browser, folder: Path) -> None:
     assert {row["name"] for row in json.loads(page.ask("GET", "/files").body)["files"]} == {"track.csv"}
 
 
-def whole(place: Path, report: str = "<p>report</p>") -> None:
-    """A run as a job leaves it."""
+def whole(place: Path, report: str = "<p>report</p>", *, epochs: bool = False) -> None:
+    """A run as a job leaves it; of its epochs the file alone."""
     record = {"command": "navbound analyze track.csv"}
     summary = {"title": "A <b>run</b>", "verdict": {"id": "inside", "words": "Inside."}}
-    names = {"run.json", "summary.json", "report.html"}
+    names = {"run.json", "summary.json", "report.html", *(["epochs.parquet"] if epochs else [])}
     with folders.own(place, names, "a run's") as writer:
+        if epochs:
+            writer.text("epochs.parquet", "")
         writer.text("run.json", json.dumps(record))
         writer.text("summary.json", json.dumps(summary))
         writer.text("report.html", report)
@@ -315,6 +318,21 @@ def whole(place: Path, report: str = "<p>report</p>") -> None:
 
 def listed(page: Browser) -> dict[str, dict[str, Any]]:
     return {run["name"]: run for run in json.loads(page.ask("GET", "/runs").body)["runs"]}
+
+
+def test_two_runs_of_the_folder_are_compared_and_nothing_else(page: Browser, folder: Path, tmp_path: Path) -> None:
+    for place in (folder / "out" / "one", folder / "out" / "two", tmp_path / "secret"):
+        whole(place, epochs=True)
+    whole(folder / "out" / "without")
+    (folder / "out" / "way").symlink_to(tmp_path / "secret")
+    assert {name for name, run in listed(page).items() if run["comparable"]} == {"out/one", "out/two"}
+    line = requested(page, "/line", command="compare", values={"a": "out/one", "b": "out/two"})["line"]
+    assert line == "navbound compare out/one out/two --out out/compare-one"
+    for name in ("out/without", "out/way", "../secret", str(tmp_path / "secret"), "out/one/../two", "track.csv"):
+        refused = requested(page, "/line", command="compare", values={"a": "out/one", "b": name})
+        assert (refused["field"], "a finished run of the list" in refused["refused"]) == ("b", True), name
+    lacking = requested(page, "/line", command="compare", values={"a": "out/one"})
+    assert lacking["refused"] == "b is needed: a finished run of the list"
 
 
 def test_earlier_runs_are_listed_and_broken_ones_named_as_such(page: Browser, folder: Path, tmp_path: Path) -> None:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+import navbound
 from navbound.workbench import Server
-from test_workbench import opened, whole
+from test_workbench import TRACK, opened, whole
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -52,6 +53,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     whole(place / "out" / "before")
     whole(place / "out" / "broken")
     (place / "out" / "broken" / "report.html").write_text("changed")
+    (place / "track.csv").write_text(TRACK, encoding="utf-8")
+    for name, sigma_m in (("first", 5.0), ("second", 300.0)):
+        navbound.analyze(place / "track.csv", spec="RNP 0.3", sigma_m=sigma_m, out=place / "out" / name)
     return place
 
 
@@ -190,6 +194,29 @@ def test_earlier_runs_stand_on_the_page_and_broken_ones_are_no_results(browser: 
         broken = page.locator('tr[data-run="out/broken"]')
         assert "Not whole" in broken.inner_text()
         assert broken.locator("button").count() == 0
+
+
+def test_two_runs_are_compared_with_the_keyboard_alone(browser: Browser, server: Server, folder: Path) -> None:
+    with shown(browser, server, width=420, scheme="dark") as page:
+        page.get_by_role("button", name="Compare out/first with another run").focus()
+        page.keyboard.press("Enter")
+        # The first of the two is chosen, and the other is asked for.
+        assert page.locator('[data-input="a"]').input_value() == "out/first"
+        assert page.evaluate("() => document.activeElement.dataset.input") == "b"
+        assert page.evaluate("() => document.documentElement.scrollWidth") <= 420
+        options = page.locator('[data-input="b"] option').all_inner_texts()
+        assert not any(name in option for name in ("out/broken", "out/before") for option in options)
+        page.keyboard.type("out/second")
+        assert page.locator('[data-input="b"]').input_value() == "out/second"
+        page.locator(".wb-start").focus()
+        page.keyboard.press("Enter")
+        words = report(page)
+        # Five epochs of one second each; a sigma of 300 m leaves none inside RNP 0.3.
+        assert "5 epochs of both runs are compared" in words
+        assert "Back" in page.evaluate("() => document.activeElement.textContent")
+        page.keyboard.press("Enter")
+        page.get_by_role("button", name="out/first compared with out/second").wait_for()
+    assert (folder / "out" / "compare-first" / "comparison.json").is_file()
 
 
 def test_a_job_is_stopped_and_goes_on(browser: Browser, server: Server, folder: Path) -> None:

@@ -13,7 +13,7 @@ import typer
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-COMMANDS = ("fly", "analyze", "evaluate", "map", "predict", "study")
+COMMANDS = ("fly", "analyze", "evaluate", "map", "predict", "study", "compare")
 """Commands that make one call."""
 P = ParamSpec("P")
 R = TypeVar("R")

@@ -42,6 +42,8 @@ class Selectable:
         A file may stand there.
     free : str
         Pattern of what else may be typed where a file may stand.
+    runs : bool
+        A finished run of tracks or levels stands there.
     """
 
     words: tuple[str, ...] = ()
@@ -52,6 +54,7 @@ class Selectable:
     commas: bool = False
     files: bool = False
     free: str = ""
+    runs: bool = False
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from navbound.cli.calls import call
+from navbound.cli.choices import Selectable, Written
 from navbound.cli.parts import Json, out_console
 
 if TYPE_CHECKING:
@@ -19,17 +21,19 @@ LISTED = 12
 
 
 def compare_command(
-    a: Annotated[Path, typer.Argument(help="A run directory: before.")],
-    b: Annotated[Path, typer.Argument(help="Another one: after.")],
+    a: Annotated[Path, typer.Argument(help="A run directory: before."), Selectable(runs=True)],
+    b: Annotated[Path, typer.Argument(help="Another one: after."), Selectable(runs=True)],
     out: Annotated[
-        Path | None, typer.Option("--out", help="Folder for the page and the record. [default: out/compare-<a>-<b>; none with --json]")
+        Path | None,
+        typer.Option("--out", help="Folder for the page and the record. [default: out/compare-<a>-<b>; none with --json]"),
+        Written(),
     ] = None,
     json: Json = False,
 ) -> None:
     """Compare two finished runs: which numbers moved, and which epochs changed their alert."""
     from navbound.run.comparison.compare import compare  # noqa: PLC0415
 
-    record = compare(a, b)
+    record = call("compare", compare, a, b)
     folder = out or (None if json else Path("out") / f"compare-{a.resolve().name}-{b.resolve().name}")
     if folder is not None:
         _write(record, folder)

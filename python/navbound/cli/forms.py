@@ -48,7 +48,15 @@ def _field(parameter: Any, annotation: Any) -> Field:
     selectable: Selectable = beside.get(Selectable, Selectable())
     written: Written | None = beside.get(Written)
     one, repeated = _plain(annotation)
-    kind = "out" if written is not None else "parts" if parameter.name == "checkpoint" else _KINDS.get(one, "text")
+    kind = (
+        "out"
+        if written is not None
+        else "run"
+        if selectable.runs
+        else "parts"
+        if parameter.name == "checkpoint"
+        else _KINDS.get(one, "text")
+    )
     words = [(value, "") for value in selectable.words] + (LISTS[selectable.lists]() if selectable.lists else [])
     decides = (written.argument, tuple(value for value, _ in LISTS[written.lists]())) if written is not None and written.argument else None
     return Field(

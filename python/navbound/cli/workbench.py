@@ -21,7 +21,7 @@ def open_command(
 ) -> None:
     """Open the workbench: a page of this machine on which files are dropped, jobs chosen and started, and reports read. Ctrl-C ends it."""
     from navbound import workbench  # noqa: PLC0415 - loads what no other command needs
-    from navbound.cli import analyze, evaluate, forms, maps, predict, study  # noqa: PLC0415
+    from navbound.cli import analyze, compare, evaluate, forms, maps, predict, study  # noqa: PLC0415
     from navbound.serve.service import Options  # noqa: PLC0415
 
     commands: dict[str, Callable[..., None]] = {
@@ -30,6 +30,7 @@ def open_command(
         "map": maps.map_command,
         "predict": predict.predict_command,
         "study": study.study_command,
+        "compare": compare.compare_command,
     }
     settings = workbench.Settings(folder.resolve(), [forms.form(name, command) for name, command in commands.items()])
 

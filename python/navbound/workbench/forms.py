@@ -29,8 +29,8 @@ class Field:
     help : str
         What it means.
     kind : str
-        ``text``, ``integer``, ``number``, ``flag`` or ``file``; ``out`` for the folder that is written, ``parts`` for that of finished
-        parts.
+        ``text``, ``integer``, ``number``, ``flag``, ``file`` or ``run`` (a finished one); ``out`` for the folder that is written, ``parts``
+        for that of finished parts.
     several : str
         Empty for one value; ``repeated``, or ``commas`` where several stand in one.
     required : bool
@@ -95,7 +95,9 @@ class Form:
         return out.when is None or str(values.get(out.when[0], "")) in out.when[1]
 
 
-def arguments(form: Form, values: Mapping[str, Any], files: Collection[str], *, out: str, parts: str) -> list[str]:
+def arguments(
+    form: Form, values: Mapping[str, Any], files: Collection[str], *, runs: Collection[str] = (), out: str, parts: str
+) -> list[str]:
     """The command line of what was requested, without the program.
 
     Parameters
@@ -106,13 +108,15 @@ def arguments(form: Form, values: Mapping[str, Any], files: Collection[str], *, 
         Field to text, number, flag or list of these; what is empty is left out.
     files : collection of str
         Names of files that may be named.
+    runs : collection of str
+        Names of finished runs that may be named.
     out, parts : str
         Folders that the command writes and keeps finished parts in, where it does.
 
     Raises
     ------
     InputError
-        A field that the command does not have, a value of another kind, or a file that is none of these.
+        A field that the command does not have, a value of another kind, or a file or run that is none of these.
     """
     unknown = set(values) - {field.name for field in form.fields}
     if unknown:
@@ -127,7 +131,7 @@ def arguments(form: Form, values: Mapping[str, Any], files: Collection[str], *, 
         if field.kind == "flag":
             line += [field.flag] if values.get(field.name) is True else []
             continue
-        texts = [_checked(field, text, files) for text in _texts(field, values.get(field.name))]
+        texts = [_checked(field, text, runs if field.kind == "run" else files) for text in _texts(field, values.get(field.name))]
         if field.required and not texts:
             raise LackingError(field.name, _expected(field))
         if field.several == "commas" and texts:
@@ -167,7 +171,9 @@ def _option(flag: str, text: str) -> list[str]:
 
 
 def _expected(field: Field) -> str:
-    return "a file: tick one of the list, or drop one" if field.kind == "file" else field.help[:1].lower() + field.help[1:]
+    return {"file": "a file: tick one of the list, or drop one", "run": "a finished run of the list"}.get(field.kind) or field.help[
+        :1
+    ].lower() + field.help[1:]
 
 
 def _texts(field: Field, value: Any) -> list[str]:
@@ -179,7 +185,7 @@ def _texts(field: Field, value: Any) -> list[str]:
     return [text for each in several if (text := str(each).strip())]
 
 
-def _checked(field: Field, text: str, files: Collection[str]) -> str:
+def _checked(field: Field, text: str, listed: Collection[str]) -> str:
     if len(text) > MOST_CHARACTERS or _CONTROL.search(text):
         raise InputError(field.name, text[:60], domain=f"at most {MOST_CHARACTERS} characters that can be seen")
     if field.kind in {"integer", "number"}:
@@ -188,10 +194,11 @@ def _checked(field: Field, text: str, files: Collection[str]) -> str:
         except ValueError as e:
             raise InputError(field.name, text, domain="a whole number" if field.kind == "integer" else "a number") from e
         return text
-    if field.kind != "file" and not field.files:
+    if field.kind not in {"file", "run"} and not field.files:
         return text
-    known = text in files or text in {value for value, _ in field.choices}
+    known = text in listed or text in {value for value, _ in field.choices}
     if known or (field.free and re.fullmatch(field.free, text)):
         return text
     # What the command would take for the name of a file is one of the list: nothing else of the disk can be named.
-    raise InputError(field.name, text, domain="a file of the list" + (f", or {_expected(field)}" if field.kind != "file" else ""))
+    domain = "a finished run of the list" if field.kind == "run" else "a file of the list"
+    raise InputError(field.name, text, domain=domain if field.kind in {"file", "run"} else f"{domain}, or {_expected(field)}")

@@ -17,8 +17,10 @@ if TYPE_CHECKING:
 
 DEPTH = 4
 MOST_RUNS = 500
-PAGES = ("report.html", "page.html", "table.md")
-RECORDS = ("summary.json", "prediction.json", "study.json")
+PAGES = ("report.html", "page.html", "comparison.html", "table.md")
+RECORDS = ("summary.json", "prediction.json", "study.json", "comparison.json")
+_COMPARED = ("summary.json", "epochs.parquet")
+"""Files of a run that can be compared with another."""
 _RUN = "run.json"
 _MOST_RECORD = 16 << 20
 
@@ -43,6 +45,8 @@ class Run:
         Why it is not whole; empty where it is.
     page : str
         Name of its report; empty where it has none.
+    comparable : bool
+        Whether it has epochs that can be compared with those of another run.
     """
 
     id: str
@@ -54,6 +58,7 @@ class Run:
     command: str = ""
     trouble: str = ""
     page: str = ""
+    comparable: bool = False
 
     def row(self) -> dict[str, Any]:
         """For a page."""
@@ -85,6 +90,10 @@ class Runs:
             run = self._seen.get(key) or _read(path, name)
             seen[key] = listed[run.id] = run
         self._seen, self.known = seen, dict(sorted(listed.items(), key=lambda item: -item[1].ended_s))
+
+    def comparable(self) -> list[str]:
+        """Names of the whole runs that can be compared."""
+        return [run.name for run in self.known.values() if run.comparable]
 
     def report(self, id_: str) -> Path | None:
         """The report of a whole run; None where there is none, or it is not whole any more."""
@@ -148,17 +157,27 @@ def _read(path: Path, name: str) -> Run:
     stated, record = _first(path, RECORDS), _json(path / _RUN)
     verdict = stated.get("verdict")
     words = verdict.get("words") if isinstance(verdict, dict) else stated.get("words")
+    if isinstance(words, list):
+        # Of a comparison all sentences are short, and the last says what moved.
+        words = " ".join(map(str, words)) if (path / "comparison.json").is_file() else next(iter(words), "")
     page = next((each for each in PAGES if (path / each).is_file()), "")
     return Run(
         id_,
         name,
         ended_s,
-        title=_text(stated.get("title")) or name,
-        words=_text(words[0] if isinstance(words, list) and words else words),
+        title=_title(stated) or name,
+        words=_text(words),
         verdict=_text(verdict.get("id")) if isinstance(verdict, dict) else "",
         command=_text(record.get("command") or stated.get("command")),
         page=page,
+        comparable=all((path / each).is_file() for each in _COMPARED),
     )
+
+
+def _title(stated: dict[str, Any]) -> str:
+    """What a record says that it is; of a comparison, which runs."""
+    both = [_text(stated[side].get("path")) for side in ("a", "b") if isinstance(stated.get(side), dict)]
+    return f"{both[0]} compared with {both[1]}" if len(both) == 2 else _text(stated.get("title"))
 
 
 def _text(value: Any) -> str:

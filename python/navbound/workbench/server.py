@@ -235,7 +235,7 @@ class Server(Service):
         try:
             name = self._name_of(form, values, requested.get("name"))
             out, parts = (f"{folder}/{name}" for folder in (files.OUT, files.PARTS))
-            line = arguments(form, values, self.files.known, out=out, parts=parts)
+            line = arguments(form, values, self.files.known, runs=self.runs.comparable(), out=out, parts=parts)
             return _json(then(Requested(form, line, values, out if form.writes(values) else "")))
         except InputError as e:
             flags = {field.name: field.flag.removeprefix("--").replace("-", " ") or field.name for field in form.fields}

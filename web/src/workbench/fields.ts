@@ -3,7 +3,7 @@
 import { button, el, freshId } from "../show/dom.ts";
 import { combobox } from "./combobox.ts";
 import { get } from "./link.ts";
-import { type Field, type FileRow, helpOf, label, type Value } from "./model.ts";
+import { type Field, type FileRow, helpOf, label, moment, type Run, type Value } from "./model.ts";
 
 export interface Control {
     field: Field;
@@ -12,6 +12,8 @@ export interface Control {
     set: (value: Value | undefined) => void;
     /** The list of files has changed. */
     files: (rows: FileRow[]) => void;
+    /** The list of finished runs that can be compared has changed. */
+    runs?: (rows: Run[]) => void;
 }
 
 /** What other fields say: the database in which procedures are searched. */
@@ -22,6 +24,7 @@ const MOST_SUGGESTED = 60;
 export function control(declared: Field, fields: Field[], others: Others): Control {
     const field = { ...declared, help: helpOf(declared, fields) };
     if (field.kind === "flag" || field.kind === "parts") return flag(field);
+    if (field.kind === "run") return run(field);
     if (field.several === "commas") return ticks(field);
     return field.several === "repeated" ? repeated(field, others) : single(field, others);
 }
@@ -73,6 +76,15 @@ function fill(select: HTMLSelectElement, options: [string, string][]): void {
     const before = select.value;
     select.replaceChildren(...options.map(([value, words]) => el("option", { value }, words)));
     select.value = options.some(([value]) => value === before) ? before : "";
+}
+
+/** A finished run, the newest first. */
+function run(field: Field): Control {
+    const id = freshId("field");
+    const select = el("select", { id, "aria-describedby": `${id}-help`, "data-input": field.name });
+    const runs = (rows: Run[]): void => fill(select, [["", rows.length === 0 ? "no run in this folder can be compared yet" : "choose a run"], ...rows.map((row): [string, string] => [row.name, `${row.name}: ${row.title}, ${moment(row.ended_s)}`])]);
+    runs([]);
+    return { field, element: frame(field, id, select), value: () => select.value, set: (value) => { select.value = typeof value === "string" ? value : ""; }, files: () => undefined, runs };
 }
 
 function single(field: Field, others: Others): Control {

@@ -74,6 +74,7 @@ async function main(): Promise<void> {
             else spoken.textContent = answer.refused ?? "";
         }),
         output: (job) => void openOutput(job),
+        compare: (run) => { task?.element.scrollIntoView(); task?.compare(run); },
     });
     task = taskPart(bench, files, started);
     let changes = -1;
@@ -87,6 +88,7 @@ async function main(): Promise<void> {
         changes = state.changes;
         void Promise.all([files.look(), runs.look()]).then(() => {
             show();
+            task?.runsChanged(runs.comparable());
             for (const job of ended) {
                 mine.delete(job.id);
                 spoken.textContent = `Job ${job.id} has ended: ${job.words === "" ? job.state : job.words}.`;

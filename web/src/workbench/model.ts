@@ -4,7 +4,7 @@ export interface Field {
     name: string;
     flag: string;
     help: string;
-    kind: "text" | "integer" | "number" | "flag" | "file" | "out" | "parts";
+    kind: "text" | "integer" | "number" | "flag" | "file" | "run" | "out" | "parts";
     several: "" | "repeated" | "commas";
     required: boolean;
     default: string;
@@ -48,6 +48,7 @@ export interface Run {
     command: string;
     trouble: string;
     page: string;
+    comparable: boolean;
 }
 
 export type Value = string | boolean | string[];

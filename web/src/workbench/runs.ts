@@ -9,6 +9,7 @@ export interface Runs {
     jobs: (jobs: Job[], now_s: number) => void;
     look: () => Promise<void>;
     byName: (name: string) => Run | undefined;
+    comparable: () => Run[];
 }
 
 export interface Wishes {
@@ -17,6 +18,7 @@ export interface Wishes {
     again: (job: Job) => void;
     resume: (job: Job) => void;
     output: (job: Job) => void;
+    compare: (run: Run) => void;
 }
 
 interface Card {
@@ -75,12 +77,13 @@ export function runs(wishes: Wishes): Runs {
         const [words, tone] = VERDICTS[run.verdict] ?? [run.verdict.replaceAll("_", " "), ""];
         const name = run.page === "" ? el("span", {}, run.title) : button(run.title, { class: "row" }, () => wishes.open(run));
         const what = run.trouble === "" ? [words === "" ? null : el("b", { "data-tone": tone }, words.charAt(0).toUpperCase() + words.slice(1)), words === "" ? null : ". ", run.words] : [el("b", {}, "Not whole: "), run.trouble];
-        return el("tr", { "data-run": run.name, "data-broken": run.trouble === "" ? undefined : "true" }, el("td", { class: "words" }, run.trouble === "" ? name : run.name, el("br"), el("span", { class: "note" }, `${run.name}, ${moment(run.ended_s)}`)), el("td", { class: "words wb-what" }, el("div", { class: "wb-clamp" }, ...what)));
+        return el("tr", { "data-run": run.name, "data-broken": run.trouble === "" ? undefined : "true" }, el("td", { class: "words" }, run.trouble === "" ? name : run.name, el("br"), el("span", { class: "note" }, `${run.name}, ${moment(run.ended_s)}`), run.comparable && known.filter((each) => each.comparable).length > 1 ? el("p", { class: "wb-job-tools" }, button("Compare with another", { "aria-label": `Compare ${run.name} with another run` }, () => wishes.compare(run))) : null), el("td", { class: "words wb-what" }, el("div", { class: "wb-clamp" }, ...what)));
     };
     const table = el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Runs in this folder" }, el("table", { class: "wb-runs" }, el("caption", { class: "sr" }, "Runs in this folder, the newest first"), el("thead", {}, el("tr", {}, el("th", { scope: "col", class: "words" }, "run"), el("th", { scope: "col", class: "words" }, "what it says"))), body));
     const byName = (name: string): Run | undefined => known.find((run) => run.name === name && run.trouble === "");
     return {
         element: el("section", { "aria-label": "Runs" }, el("h2", {}, "3. Jobs and reports"), list, table, none), byName,
+        comparable: () => known.filter((run) => run.comparable),
         jobs: (jobs, now_s) => {
             for (const job of jobs) {
                 if (!cards.has(job.id)) {

@@ -4,7 +4,7 @@ import { button, choice, el } from "../show/dom.ts";
 import { type Control, control } from "./fields.ts";
 import type { Files } from "./files.ts";
 import { ask } from "./link.ts";
-import { type Answer, type Form, isMain, type Job, type Values, type Workbench } from "./model.ts";
+import { type Answer, type Form, isMain, type Job, type Run, type Values, type Workbench } from "./model.ts";
 
 const WAIT_MS = 250;
 
@@ -13,6 +13,10 @@ export interface Task {
     /** Show what a job was requested, to ask it again. */
     show: (command: string, values: Values) => void;
     filesChanged: () => void;
+    /** The finished runs that can be compared have changed. */
+    runsChanged: (rows: Run[]) => void;
+    /** Choose a run as the first of two, and ask for the other. */
+    compare: (run: Run) => void;
 }
 
 export function task(bench: Workbench, files: Files, started: (job: Job) => void): Task {
@@ -20,6 +24,7 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
     let controls: Control[] = [];
     let timer: ReturnType<typeof setTimeout> | undefined;
     let requested = 0;
+    let comparable: Run[] = [];
     let busy = false;
     const place = el("div", { class: "wb-form" });
     const summary = el("p", { class: "wb-summary" });
@@ -89,10 +94,11 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
         controls = form.fields.filter((field) => field.kind !== "out" && !isTicked(field)).map((field) => control(field, form.fields, others));
         for (const each of controls) {
             each.files(files.rows());
+            each.runs?.(comparable);
             if (each.field.name in filled) each.set(filled[each.field.name]);
         }
         const [main, rest] = [controls.filter(({ field }) => isMain(field)), controls.filter(({ field }) => !isMain(field))];
-        const more = el("details", { class: "wb-more" }, el("summary", {}, `More options (${rest.length})`), el("div", { class: "wb-fields" }, ...rest.map(({ element }) => element)));
+        const more = el("details", { class: "wb-more", hidden: rest.length === 0 }, el("summary", {}, `More options (${rest.length})`), el("div", { class: "wb-fields" }, ...rest.map(({ element }) => element)));
         place.replaceChildren(el("div", { class: "wb-fields" }, ...main.map(({ element }) => element)), more);
         changed();
     };
@@ -104,18 +110,27 @@ export function task(bench: Workbench, files: Files, started: (job: Job) => void
         el("div", { class: "wb-copy" }, el("h3", {}, "Python"), copy(python, "Copy the lines of Python")), python);
     lines.addEventListener("toggle", () => { if (lines.open) void preview(); });
     build(form);
+    const show = (command: string, filled: Values): void => {
+        const to = bench.forms.find((each) => each.command === command);
+        if (to === undefined) return;
+        for (const one of buttons.querySelectorAll("button")) one.setAttribute("aria-pressed", String(one.dataset.choice === command));
+        const ticked = to.fields.find(isTicked);
+        const names = ticked === undefined ? undefined : filled[ticked.name];
+        if (Array.isArray(names)) files.tick(names);
+        build(to, filled);
+        buttons.querySelector<HTMLElement>(`[data-choice="${command}"]`)?.focus();
+    };
     return {
         element: el("section", { "aria-label": "What to do" }, el("div", { class: "wb-head" }, el("h2", {}, "2. What to do"), buttons), summary, taken, place, refusal, el("p", { class: "wb-act" }, start), lines),
         filesChanged: () => { for (const each of controls) each.files(files.rows()); changed(); },
-        show: (command, filled) => {
-            const to = bench.forms.find((each) => each.command === command);
-            if (to === undefined) return;
-            for (const one of buttons.querySelectorAll("button")) one.setAttribute("aria-pressed", String(one.dataset.choice === command));
-            const ticked = to.fields.find(isTicked);
-            const names = ticked === undefined ? undefined : filled[ticked.name];
-            if (Array.isArray(names)) files.tick(names);
-            build(to, filled);
-            buttons.querySelector<HTMLElement>(`[data-choice="${command}"]`)?.focus();
+        runsChanged: (rows) => {
+            comparable = rows;
+            for (const each of controls) each.runs?.(rows);
+        },
+        show,
+        compare: (run) => {
+            show("compare", { a: run.name });
+            place.querySelector<HTMLElement>('[data-input="b"]')?.focus();
         },
     };
 }
