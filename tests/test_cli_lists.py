@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import os
 import re
 from collections.abc import Callable
@@ -16,7 +17,8 @@ from rich.console import Console
 
 from conftest import Ended
 from navbound import scenario
-from navbound.cli import calls, lists, parts, schema, verify
+from navbound.cli import calls, lists, parts, printed, schema, verify
+from navbound.studies import registry
 
 Command = Callable[..., Ended]
 TRACK = "time,lat_deg,lon_deg,height_m\n" + "".join(f"{1400000000 + k},49.0,2.5,{300 - k}\n" for k in range(5))
@@ -53,11 +55,20 @@ def test_the_shipped_scenarios_are_listed(navbound: Command) -> None:
     assert "beijing-shanghai-jammed" in navbound("scenarios").stdout
 
 
+PROCEDURES = Path(__file__).parent / "procedures" / "KDEN_H26-Z.txt"
+"""Its missed approach has legs whose length is no number."""
 CALLS = {
     "analyze": ["analyze", "track.csv", "--sigma-m", "5"],
     "map": ["map", "dop", "--step-deg", "45", "--hours", "1"],
     "predict": ["predict", "raim", "gps", "--at", "40,116", "--hours", "1"],
     "levels": ["levels"],
+    "methods": ["methods"],
+    "scenarios": ["scenarios"],
+    "verify": ["verify"],
+    "study": ["study", "vertical-budget"],
+    "procedures-list": ["procedures", "list", str(PROCEDURES)],
+    "procedures-show": ["procedures", "show", str(PROCEDURES), "KDEN/H26-Z:CAPTJ", "--missed"],
+    "procedures-check": ["procedures", "check", str(PROCEDURES)],
 }
 
 
@@ -66,10 +77,37 @@ def test_what_is_printed_as_json_is_what_the_schema_says(name: str, navbound: Co
     published = json.loads(navbound("schema", name).stdout)
     validator = jsonschema.Draft202012Validator(published)
     validator.check_schema(published)
-    printed = json.loads(navbound(*CALLS[name], "--json").stdout)
+    # What JSON does not have, as NaN and Infinity, is no JSON.
+    printed = json.loads(navbound(*CALLS[name], "--json").stdout, parse_constant=pytest.fail)
     assert list(validator.iter_errors(printed)) == []
     # A schema that takes anything says nothing.
     assert not validator.is_valid({"verdict": "fine"})
+    assert not validator.is_valid([{"verdict": "fine"}])
+
+
+def test_a_field_that_is_missing_or_of_another_kind_is_no_list_of_methods() -> None:
+    validator = jsonschema.Draft202012Validator(schema.of("scenarios"))
+    row = {"name": "a", "kind": "flight", "title": "A"}
+    assert validator.is_valid([row])
+    for wrong in ({**row, "title": 3}, {**row, "more": "b"}, {"name": "a", "kind": "flight"}):
+        assert not validator.is_valid([wrong]), wrong
+
+
+def test_every_study_has_a_record_with_a_schema() -> None:
+    assert set(registry.RECORDS) == set(registry.STUDIES)
+    published = schema.of("study")
+    # A record of one study is no record of another: fields that are not declared are refused.
+    assert len(published["anyOf"]) == len(registry.STUDIES)
+    named = [published["$defs"][one["$ref"].rpartition("/")[2]] for one in published["anyOf"]]
+    assert all(one["additionalProperties"] is False for one in named)
+
+
+def test_a_difference_that_is_no_number_is_null(capsys: pytest.CaptureFixture[str]) -> None:
+    row = printed.Verified("a", "navbound.a", "here", "ours", 1, math.nan, math.inf, ["a: no number"])
+    printed.write([row])
+    read = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+    assert read[0]["worst_share_of_tolerance"] is None
+    assert jsonschema.Draft202012Validator(schema.of("verify")).is_valid(read)
 
 
 def test_every_schema_is_one_and_another_command_has_none(navbound: Command) -> None:

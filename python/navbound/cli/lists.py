@@ -19,8 +19,9 @@ def methods_command(json: Json = False) -> None:
 
     entries, levels = list(all_methods().values()), [algorithm.declared for algorithm in algorithms().values()]
     if json:
-        both = {"methods": [m.__dict__ for m in entries], "protection_levels": [p.__dict__ for p in levels]}
-        sys.stdout.write(encoder.dumps(both, indent=1) + "\n")
+        from navbound.cli.printed import Methods, write  # noqa: PLC0415
+
+        write(Methods(entries, levels))
         return
     print_list(
         "Methods",
@@ -57,11 +58,12 @@ def scenarios_command(json: Json = False) -> None:
     from navbound import scenario  # noqa: PLC0415
 
     shipped = {name: scenario.read(name) for name in scenario.shipped()}
-    rows = [{"name": name, "kind": each.kind, "title": each.title} for name, each in shipped.items()]
     if json:
-        sys.stdout.write(encoder.dumps(rows, indent=1) + "\n")
+        from navbound.cli.printed import ListedScenario, write  # noqa: PLC0415
+
+        write([ListedScenario(name, each.kind, each.title) for name, each in shipped.items()])
         return
-    print_list("Scenarios", ("name", "kind", "title"), [tuple(row.values()) for row in rows], wide=NARROW)
+    print_list("Scenarios", ("name", "kind", "title"), [(name, each.kind, each.title) for name, each in shipped.items()], wide=NARROW)
 
 
 NARROW, WIDE = 80, 110

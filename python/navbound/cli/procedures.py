@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json as encoder
 import math
-import sys
 from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 from rich.table import Table
@@ -44,9 +42,11 @@ def list_command(
     if not shown:
         raise InputError("airport", str(airport), domain=f"airports with procedures in {file}")
     if json:
-        _print_json({"file": str(file), "header": database.header, "counts": database.counts, "procedures": [asdict(e) for e in shown]})
+        from navbound.cli.printed import ProcedureList, write  # noqa: PLC0415
+
+        write(ProcedureList(str(file), database.header, database.counts, shown))
         return
-    table = Table(title=f"{file.name}: {len(shown)} procedures")
+    table = Table(title=f"{file.name}: {len(shown)} procedure{'s' if len(shown) != 1 else ''}")
     for heading in ("airport", "kind", "procedure", "transitions", "legs", "lines of minima", "line"):
         table.add_column(heading, overflow="fold")
     for e in shown:
@@ -84,12 +84,22 @@ def show_command(
     if out is not None:
         _write(out, drawn.page(procedure, findings, heights))
     if json:
-        below = {
-            "vertical_path": None if heights.path is None else asdict(heights.path),
-            "obstacle_surface": None if heights.surface is None else heights.surface._asdict(),
-            "vertical_words": list(heights.words),
-        }
-        _print_json(_plain(procedure) | below | {"findings": [asdict(f) for f in findings]})
+        from navbound.cli import printed  # noqa: PLC0415
+
+        record = printed.ShownProcedure(
+            name=procedure.name,
+            file=procedure.file,
+            line=procedure.line,
+            length_m=procedure.length_m,
+            legs=list(procedure.legs),
+            levels=list(procedure.levels),
+            notes=list(procedure.notes),
+            vertical_path=heights.path,
+            obstacle_surface=None if heights.surface is None else printed.ObstacleSurface(*heights.surface),
+            vertical_words=list(heights.words),
+            findings=findings,
+        )
+        printed.write(record)
         return
     table = Table(
         title=f"{procedure.name}, {procedure.length_m / METRES_PER_NM:.2f} NM" if math.isfinite(procedure.length_m) else procedure.name
@@ -118,11 +128,12 @@ def check_command(
     contradictions = [f for f in findings if not f.remark]
     others = Counter(f.kind for f in findings if f.remark)
     if json:
-        refused = [asdict(r) for r in database.refused]
-        rows = [asdict(f) | {"where": f.where} for f in findings]
-        _print_json({"file": str(file), "counts": database.counts, "n_refused": database.n_refused, "refused": refused, "findings": rows})
+        from navbound.cli.printed import CheckedProcedures, Found, write  # noqa: PLC0415
+
+        rows = [Found(**asdict(f), where=f.where) for f in findings]
+        write(CheckedProcedures(str(file), database.counts, database.n_refused, database.refused, rows))
         return
-    table = Table(title=f"{file.name}: {len(contradictions)} contradictions")
+    table = Table(title=f"{file.name}: {len(contradictions)} contradiction{'s' if len(contradictions) != 1 else ''}")
     for heading in ("line", "where", "what"):
         table.add_column(heading, overflow="fold")
     for f in findings if remarks else contradictions:
@@ -195,24 +206,6 @@ def _heights(database: Database, procedure: Procedure, lowest_c: float | None) -
 def _say(database: Database) -> None:
     for words in database.notes:
         err_console.print(words, markup=False, highlight=False)
-
-
-def _plain(procedure: Procedure) -> dict[str, Any]:
-    named = {"name": procedure.name, "file": procedure.file, "line": procedure.line, "length_m": procedure.length_m}
-    return named | {"legs": [asdict(x) for x in procedure.legs], "levels": [asdict(x) for x in procedure.levels], "notes": procedure.notes}
-
-
-def _print_json(value: object) -> None:
-    sys.stdout.write(encoder.dumps(_finite(value), indent=1) + "\n")
-
-
-def _finite(value: Any) -> Any:
-    """A number that does not exist is null: JSON has no NaN."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {k: _finite(v) for k, v in value.items()}
-    return [_finite(v) for v in value] if isinstance(value, list | tuple) else value
 
 
 def _write(out: Path, page: str) -> None:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json as encoder
 import sys
+from functools import reduce
+from operator import or_
+from types import GenericAlias
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -61,6 +64,31 @@ def _levels() -> Any:
     return list[Level]
 
 
+def _studies() -> Any:
+    from navbound.studies.registry import RECORDS as OF_STUDIES  # noqa: PLC0415
+
+    # One of them, by the study; a record has no field that is not declared, so that no other fits.
+    return reduce(or_, OF_STUDIES.values())
+
+
+def _printed(name: str, *, several: bool = False) -> Callable[[], Any]:
+    def record() -> Any:
+        from navbound.cli import printed  # noqa: PLC0415
+
+        one = getattr(printed, name)
+        return GenericAlias(list, (one,)) if several else one
+
+    return record
+
+
+_PRINTED: dict[str, Callable[[], Any]] = {
+    "methods": _printed("Methods"),
+    "scenarios": _printed("ListedScenario", several=True),
+    "verify": _printed("Verified", several=True),
+    "procedures-list": _printed("ProcedureList"),
+    "procedures-show": _printed("ShownProcedure"),
+    "procedures-check": _printed("CheckedProcedures"),
+}
 RECORDS: dict[str, Callable[[], Any]] = {
     **dict.fromkeys(("analyze", "evaluate", "fly", "show"), _summary),
     "map": _map,
@@ -69,6 +97,8 @@ RECORDS: dict[str, Callable[[], Any]] = {
     "assess": _assessed,
     "levels": _levels,
     "compare": _comparison,
+    "study": _studies,
+    **_PRINTED,
 }
 """Commands and the record that their `--json` prints."""
 
@@ -91,7 +121,21 @@ def of(name: str) -> Schema:
     from pydantic import TypeAdapter  # noqa: PLC0415
 
     made: Schema = TypeAdapter(RECORDS[name]()).json_schema(mode="serialization")
-    return {"$schema": DIALECT} | made
+    return {"$schema": DIALECT} | (_whole(made) if name in _PRINTED else made)
+
+
+def _whole(made: Any) -> Any:
+    """What is printed of plain classes: every field, no other one, and null for a number that does not exist."""
+    if isinstance(made, list):
+        return [_whole(each) for each in made]
+    if not isinstance(made, dict) or {"type": "null"} in made.get("anyOf", []):
+        return made
+    if made.get("type") == "number":
+        return {"anyOf": [made, {"type": "null"}]}
+    inside = {key: _whole(each) for key, each in made.items()}
+    if "additionalProperties" not in made and isinstance(made.get("properties"), dict):
+        inside |= {"additionalProperties": False, "required": list(made["properties"])}
+    return inside
 
 
 def schema_command(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json as encoder
-import sys
 from typing import TYPE_CHECKING
 
 import typer
@@ -30,20 +28,23 @@ def verify_command(json: Json = False) -> None:
     outcomes = [vectors.run(file) for file in files]
     failures = [f"{o.file.id}: {text}" for o in outcomes for text in o.failures]
     if json:
-        rows = [
-            {
-                "id": o.file.id,
-                "function": f"navbound.{o.file.call}",
-                "source": o.file.source,
-                "provenance": o.file.provenance,
-                "n_cases": o.checked,
-                "worst_relative": o.worst_relative,
-                "worst_share_of_tolerance": o.worst_share,
-                "failures": o.failures,
-            }
-            for o in outcomes
-        ]
-        sys.stdout.write(encoder.dumps(rows, indent=1) + "\n")
+        from navbound.cli.printed import Verified, write  # noqa: PLC0415
+
+        write(
+            [
+                Verified(
+                    id=o.file.id,
+                    function=f"navbound.{o.file.call}",
+                    source=o.file.source,
+                    provenance=o.file.provenance,
+                    n_cases=o.checked,
+                    worst_relative=o.worst_relative,
+                    worst_share_of_tolerance=o.worst_share,
+                    failures=o.failures,
+                )
+                for o in outcomes
+            ]
+        )
     else:
         out_console.print(_verified(outcomes))
         out_console.print(f"{sum(o.checked for o in outcomes)} cases of {len(outcomes)} files, {len(failures)} failures.")

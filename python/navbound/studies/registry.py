@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING, Protocol
 from navbound.errors import ConflictError, InputError
 from navbound.studies.anp_comparison import study as anp_comparison
 from navbound.studies.decorrelation_time import study as decorrelation_time
+from navbound.studies.error_extraction import records as error_extraction_records
 from navbound.studies.error_extraction import study as error_extraction
 from navbound.studies.fault_campaign import healthy as healthy_flights
+from navbound.studies.fault_campaign import records as fault_campaign_records
 from navbound.studies.fault_campaign import study as fault_campaign
 from navbound.studies.multipath_time_constants import study as multipath_time_constants
+from navbound.studies.surface_movement import records as surface_movement_records
 from navbound.studies.surface_movement import study as surface_movement
 from navbound.studies.tse_coverage import study as tse_coverage
 from navbound.studies.ukraine_rnav import study as ukraine_rnav
@@ -116,6 +119,20 @@ STUDIES: dict[str, _Run] = {
     "vertical-budget": _in_one_piece(_vertical_budget),
 }
 """Every study by its command-line name."""
+
+RECORDS: dict[str, type[Study]] = {
+    "anp-comparison": anp_comparison.Study,
+    "decorrelation-time": decorrelation_time.Study,
+    "error-extraction": error_extraction_records.Study,
+    "fault-campaign": fault_campaign_records.Study,
+    "healthy-flights": fault_campaign_records.HealthyStudy,
+    "multipath-time-constants": multipath_time_constants.Study,
+    "surface-movement": surface_movement_records.Study,
+    "tse-coverage": tse_coverage.Study,
+    "ukraine-rnav": ukraine_rnav.Study,
+    "vertical-budget": vertical_budget.Study,
+}
+"""What each of them gives."""
 
 REPORTS: dict[str, Callable[[], Run]] = {"ukraine-rnav": ukraine_rnav.fly}
 """Studies of a flight: that flight as a judged run, for a run directory with its report."""

@@ -1,0 +1,129 @@
+"""What `--json` of lists and checks prints: the records, and the one way they are written."""
+
+from __future__ import annotations
+
+import json as encoder
+import math
+import sys
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from navbound.methods import Method, ProtectionMethod
+from navbound.procedures.database import Entry, Refused
+from navbound.procedures.findings import Finding
+from navbound.procedures.legs import Leg, LevelOfService
+from navbound.procedures.vertical import VerticalPath
+
+
+@dataclass(frozen=True)
+class Methods:
+    """Of `navbound methods`."""
+
+    methods: list[Method]
+    protection_levels: list[ProtectionMethod]
+
+
+@dataclass(frozen=True)
+class ListedScenario:
+    """A row of `navbound scenarios`."""
+
+    name: str
+    kind: str
+    title: str
+
+
+@dataclass(frozen=True)
+class Verified:
+    """A row of `navbound verify`: a file of vectors. Shares are of the tolerance, 1 is the limit; null: the difference is no number."""
+
+    id: str
+    function: str
+    source: str
+    provenance: str
+    n_cases: int
+    worst_relative: float
+    worst_share_of_tolerance: float
+    failures: list[str]
+
+
+@dataclass(frozen=True)
+class ProcedureList:
+    """Of `navbound procedures list`."""
+
+    file: str
+    header: list[str]
+    counts: dict[str, int]
+    procedures: list[Entry]
+
+
+@dataclass(frozen=True)
+class ObstacleSurface:
+    """As :class:`navbound.vertical.Surface`."""
+
+    slope_ratio: float
+    origin_m: float
+    low_m: float
+    roc_low_m: float
+    roc_fix_m: float
+    threshold_m: float
+
+
+@dataclass(frozen=True)
+class ShownProcedure:
+    """Of `navbound procedures show`."""
+
+    name: str
+    file: str
+    line: str | None
+    length_m: float
+    legs: list[Leg]
+    levels: list[LevelOfService]
+    notes: list[str]
+    vertical_path: VerticalPath | None
+    obstacle_surface: ObstacleSurface | None
+    vertical_words: list[str]
+    findings: list[Finding]
+
+
+@dataclass(frozen=True)
+class Found:
+    """A finding of :mod:`navbound.procedures`, and which leg it is about in one word."""
+
+    line: int
+    airport: str
+    procedure: str
+    transition: str
+    sequence: int | None
+    kind: str
+    remark: bool
+    published: float
+    expected: float
+    unit: str
+    words: str
+    where: str
+
+
+@dataclass(frozen=True)
+class CheckedProcedures:
+    """Of `navbound procedures check`; of the refused lines the first ten thousand."""
+
+    file: str
+    counts: dict[str, int]
+    n_refused: int
+    refused: list[Refused]
+    findings: list[Found]
+
+
+def write(record: Any) -> None:
+    """Print a record of this file, or a list of them."""
+    plain = [asdict(each) for each in record] if isinstance(record, list) else asdict(record)
+    sys.stdout.write(encoder.dumps(_finite(plain), indent=1) + "\n")
+
+
+def _finite(value: Any) -> Any:
+    """A number that does not exist is null: JSON has no NaN."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {k: _finite(v) for k, v in value.items()}
+    return [_finite(v) for v in value] if isinstance(value, list | tuple) else value
