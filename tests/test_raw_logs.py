@@ -18,6 +18,7 @@ from navbound.cli.main import app
 from navbound.methods import bounds
 from navbound.read import read
 
+EXAMPLES = Path(__file__).parents[1] / "examples" / "data"
 NS = 1_000_000_000
 WEEK_NS = 604_800 * NS
 MM = 0.501e-3
@@ -193,6 +194,21 @@ def test_a_log_without_orbits_says_what_is_lacking(shared_data: Path, tmp_path: 
         gnss.read_observations(shared_data / "rxlogs" / "gpsd" / "ublox-x20p.log")
     shown = CliRunner().invoke(app, ["analyze", str(log), "--solve", "--out", str(tmp_path / "run")])
     assert isinstance(shown.exception, InputError)
+
+
+def test_a_log_of_raw_measurements_alone_says_what_is_lacking(tmp_path: Path) -> None:
+    log, orbits = EXAMPLES / "receiver.ubx", EXAMPLES / "receiver-broadcast.rnx"
+    # The log has an epoch a second for three minutes, and no subframes.
+    with pytest.raises(FormatError, match=r"raw measurements of 180 epochs: with --solve \(and a RINEX navigation file"):
+        navbound.analyze(log)
+    with pytest.raises(InputError, match="--solve takes the raw measurements"):
+        navbound.analyze([log, orbits])
+    empty = tmp_path / "empty.ubx"
+    # An acknowledgement of a receiver: neither positions nor measurements (class 5, id 1, two bytes; Fletcher sum by hand).
+    empty.write_bytes(bytes([0xB5, 0x62, 0x05, 0x01, 0x02, 0x00, 0x06, 0x01, 0x0F, 0x38]))
+    with pytest.raises(FormatError) as refused:
+        navbound.analyze(empty)
+    assert "--solve" not in str(refused.value)
 
 
 def test_rinex_observations_are_judged_as_a_track(shared_data: Path, tmp_path: Path) -> None:

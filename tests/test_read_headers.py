@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import pytest
@@ -51,6 +52,26 @@ def test_every_vessel_is_a_track_of_its_own(tmp_path: Path) -> None:
 def test_two_writings_of_one_name_are_refused(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match="are one name in another writing"):
         read(table(tmp_path, "time,latDeg,lon,lat_deg", "{t},47.0,8.{t},48.0"))
+
+
+ROW = "2026/03/01 09:00:0{t}.000 48.99 2.57 120.0 5 12 0.01 0.01 0.02 0.0 0.0 0.0 0.0 0.0"
+
+
+def test_a_solution_without_a_header_is_read_with_the_line_that_its_refusal_names(tmp_path: Path) -> None:
+    path = tmp_path / "track.pos"
+    rows = "".join(ROW.format(t=t) + "\n" for t in range(3))
+    path.write_text(rows, encoding="utf-8")
+    with pytest.raises(FormatError, match="The rows have no header") as refused:
+        read(path)
+    line = re.search("“(%.*?)”", str(refused.value))
+    assert line
+    path.write_text(f"{line.group(1)}\n{rows}", encoding="utf-8")
+    reading = read(path)
+    assert reading.epochs["est_h_m"].to_list() == [120.0] * 3
+    # 1 cm to the north: 1e-4 m2.
+    assert reading.epochs["cov_nn_m2"].to_list() == pytest.approx([1e-4] * 3)
+    with pytest.raises(FormatError, match="add a line of names, with commas"):
+        read(table(tmp_path, "0 48.99 2.57", "{t} 48.99 2.57"))
 
 
 def test_fields_between_blanks_are_named_as_such(tmp_path: Path) -> None:

@@ -91,7 +91,8 @@ def read(source: Source, name: str) -> Log:
         n_damaged = sum(count for reason_id, _, count, *_ in log["left_out"] if reason_id in _DAMAGED)
         raise FormatError(source.path, _undated(log["n_rows"], n_damaged), log["undated"], "date")
     if log["n_rows"] == 0:
-        raise FormatError(source.path, f"a log of kind {name} without a message that holds a position ({MESSAGES[name]})")
+        what = f"a log of kind {name} without a message that holds a position ({MESSAGES[name]})"
+        raise FormatError(source.path, what + _solvable(source))
     return Log(_epochs(log), log["n_rows"], left_out, log["absent_ns"], log["fields"], _notes(source, log))
 
 
@@ -107,6 +108,15 @@ def _notes(source: Source, fields: dict[str, Any]) -> list[str]:
         passed_over = f"{fields['n_outside']} of {len(source.content)} bytes"
         notes.append(f"{passed_over} belong to no message that is read (text, other protocols, or damage)")
     return [f"{source.path.name}: {note}" for note in notes]
+
+
+def _solvable(source: Source) -> str:
+    """What a log without positions may still be used for."""
+    n_epochs, n_records, _ = _core.raw_log(source.content, str(source.path)) or (0, 0, 0)
+    if not n_epochs:
+        return ""
+    orbits = "" if n_records else " (and a RINEX navigation file of its time, as the log holds no orbits)"
+    return f"; it holds raw measurements of {n_epochs} epochs: with --solve{orbits} positions are solved from them"
 
 
 def _undated(n_positions: int, n_damaged: int) -> str:

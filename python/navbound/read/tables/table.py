@@ -152,8 +152,32 @@ def layout_of(path: Path, lines: pl.DataFrame) -> Layout:
     header = str(lines["text"][0])
     separator = max(_SEPARATORS, key=header.count)
     if separator not in header and len(header.split()) > 2:
-        raise FormatError(path, f"no {_SEPARATOR_WORDS} in “{header[:60]}”: blanks separate no fields", int(lines[LINE][0]), "header")
+        what = f"no {_SEPARATOR_WORDS} in “{header[:60]}”: blanks separate no fields"
+        raise FormatError(path, what + _lacking(header), int(lines[LINE][0]), "header")
     return Layout(header, separator, _names(path, header, separator))
+
+
+SOLUTION_HEADER = (
+    "%  GPST  latitude(deg)  longitude(deg)  height(m)  Q  ns  sdn(m)  sde(m)  sdu(m)  sdne(m)  sdeu(m)  sdun(m)  age(s)  ratio"
+)
+"""Columns of an RTKLIB solution file with angles in degrees, as RTKLIB names them."""
+_SOLUTION_WORDS = (14, 15)
+"""Words of such a row: the instant is one or two, the ratio is not always there."""
+
+
+def _lacking(header: str) -> str:
+    """What is to be added above rows of blanks; numbers alone name no columns, and nothing is guessed from them."""
+    words = header.split()
+    if not all(_is_number(word.replace("/", "")) for word in words):
+        return "; write commas between the names and between the fields"
+    named = ". The rows have no header: add a line of names, with commas between all fields"
+    if len(words) not in _SOLUTION_WORDS:
+        return named
+    return (
+        f". The rows have no header. Of an RTKLIB solution in degrees and GPS time add as the first line “{SOLUTION_HEADER}” "
+        "(out-outhead=on writes it; UTC in place of GPST where the times are UTC); of another table a line of names, with commas "
+        "between all fields"
+    )
 
 
 def rows_of(path: Path, layout: Layout, lines: pl.DataFrame) -> Rows:

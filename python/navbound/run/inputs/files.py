@@ -48,7 +48,10 @@ class Files:
 
     def _taken_for_tables(self) -> str:
         names = ", ".join(str(source.path) for source in self.tables)
-        return f" (taken for tables of positions: {names})" if names else ""
+        if not names:
+            return ""
+        raw = any(_raw(source) for source in map(load, (source.path for source in self.tables)))
+        return f" (taken for tables of positions: {names})" + ("; --solve takes the raw measurements of a receiver's log" if raw else "")
 
     def cut_words(self) -> list[str]:
         """Text files of records that end within a line, as files do that were cut."""
