@@ -94,6 +94,7 @@ def test_other_wrong_arguments_are_named() -> None:
         (lambda: anp.along(TILTED, [0.0, 0.0, 0.0], 0.05), "direction"),
         (lambda: anp.circle_law(FLAT, -1.0), "radius_m"),
         (lambda: anp.track(TILTED, math.nan, 0.05), "course_rad"),
+        (lambda: anp.track(TILTED, 270.0, 0.05), "course_rad"),
         (lambda: anp.chi_factor(4, 0.05), "dimension"),
         (lambda: anp.rectangle(FLAT, 0.0, 1.0), "half_cross_m"),
         (lambda: anp.rectangle([[1.0, 2.0], [2.0, 1.0]], 1.0, 1.0), "covariance_cu_m2"),

@@ -32,6 +32,21 @@ def settings(method: str = "tse-exact", *, raise_delay_s: float = 3.0, beside: S
     return Settings(monitor, method=method, beside=beside, states=rnp.StateClassifier((0.05, 0.3, 1.0, 2.0)))
 
 
+@pytest.mark.parametrize("course_rad", [270.0, -6.3, math.inf])
+def test_a_course_beyond_one_turn_is_refused(course_rad: float) -> None:
+    epoch = {"time_ns": 10**18, "fte_m": 20.0, "rnp_m": 555.6, "cov_ee_m2": 1.0, "cov_en_m2": 0.0, "cov_nn_m2": 5e5}
+    with pytest.raises(InputError, match=r"course_rad.*2 pi.*degrees\?"):
+        Judge(settings()).step({**epoch, "course_rad": course_rad})
+    assert Judge(settings()).step({**epoch, "course_rad": math.tau}).status == "ok"
+
+
+def test_a_covariance_of_zero_is_degraded_and_says_why() -> None:
+    epoch = {"time_ns": 10**18, "fte_m": 20.0, "course_rad": 0.0, "rnp_m": 555.6, "cov_ee_m2": 0.0, "cov_en_m2": 0.0, "cov_nn_m2": 0.0}
+    judged = Judge(settings()).step(epoch)
+    assert (judged.status, judged.reason_id) == ("degraded", "zero_covariance")
+    assert Judge(settings()).step({**epoch, "status": "not_available"}).reason_id is None
+
+
 def damaged(seed: int, n: int = 3000) -> pl.DataFrame:
     """Three tracks mixed in time, whose errors and deviations come and go over minutes; lost values, variances below zero, repeats, steps
     back and gaps, levels in two of the tracks."""
@@ -49,7 +64,7 @@ def damaged(seed: int, n: int = 3000) -> pl.DataFrame:
         "track": np.array(["b", "a", "c"])[track],
         "time_ns": (1e18 + np.cumsum(step_s) * 1e9).astype(np.int64),
         "status": np.where(seldom(0.01), generator.choice(list(STATUSES), n), "ok"),
-        "course_rad": generator.uniform(-4.0, 7.0, n),
+        "course_rad": generator.uniform(-4.0, 6.2, n),
         "path_angle_rad": generator.uniform(-0.1, 0.1, n),
         "fte_m": generator.normal(0.0, 10.0, n) + 400.0 * np.sin(k / 210.0) ** 5,
         "fte_v_m": generator.normal(0.0, 5.0, n) + 400.0 * np.sin(k / 310.0) ** 5,

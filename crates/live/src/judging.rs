@@ -28,7 +28,7 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     let mut reason = position.reason;
     let mut refuse = |why: Reason| reason = reason.or(Some(why));
     // A direction of several turns is none.
-    let stated = position.course_rad.map(|course| if course.abs() <= COURSE_MOST_RAD { course } else { f64::NAN });
+    let stated = position.course_rad.map(|course| Radians::new(course).course().map_or(f64::NAN, Radians::rad));
     let (mut fte_m, mut course) = (position.fte_m, stated.or(position.fte_m.map(|_| 0.0)).map(Radians::new));
     // A deviation is part of the total error. A track that stated one once and states none later is not judged without it.
     let (id, path) = (position.track, settings.path_of(position.track));
@@ -83,9 +83,6 @@ fn sample(settings: &Settings, track: &mut Track, position: &Position) -> (Sampl
     };
     (sample, reason)
 }
-
-/// Largest course that is one: headings are written from minus half a turn to a whole one \[rad\].
-const COURSE_MOST_RAD: f64 = core::f64::consts::TAU;
 
 /// The covariance with the largest horizontal variance of any direction in each; one that has the same in all stays as it is, to the bit.
 fn in_every_direction([ee, en, nn, eu, nu, uu]: [f64; 6]) -> [f64; 6] {

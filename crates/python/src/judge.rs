@@ -101,13 +101,16 @@ impl EpochJudge {
         if states_level {
             sample.hpl = sample.hpl.or(Some(Metres::new(f64::NAN)));
         }
+        if let Some(course) = sample.course {
+            course.course().map_err(refused)?;
+        }
         let judged = self.judge.step(&sample);
         let rows = |events: &[Option<Event>]| events.iter().flatten().map(event_row).collect();
         let evaluated = &judged.evaluated;
         Ok((
             self.plan.row(&sample, &judged),
             evaluated.status as u8,
-            evaluated.unjudged().map(|why| (why.reason().id(), why.to_string())),
+            evaluated.reason().map(|why| (why.id(), evaluated.unjudged().map_or_else(|| why.words().to_owned(), ToString::to_string))),
             evaluated.tightest_level.unwrap_or(NONE),
             judged.step.alert as u8,
             acceptance_word(judged.step.acceptance),

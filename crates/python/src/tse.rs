@@ -61,6 +61,16 @@ fn tse_project<'py>(py: Python<'py>, offset_en: Vectors<'py>, covariance: Matric
     })
 }
 
+/// Unit vectors along a course and to its right, east and north.
+#[pyfunction]
+fn tse_course_axes<'py>(py: Python<'py>, course: Numbers<'py>) -> Table<'py> {
+    let chi = course.as_slice()?;
+    table(py, chi.len(), |i| {
+        let (t, n) = tse::axes(Radians::new(chi[i]))?;
+        Ok([t.x, t.y, n.x, n.y])
+    })
+}
+
 #[pyfunction]
 fn tse_exact<'py>(py: Python<'py>, fte: Numbers<'py>, sigma: Numbers<'py>, risk: Numbers<'py>) -> Column<'py> {
     let (f, s, q) = (fte.as_slice()?, sigma.as_slice()?, risk.as_slice()?);
@@ -319,6 +329,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     for function in [
         wrap_pyfunction!(tse_factors, module)?,
         wrap_pyfunction!(tse_project, module)?,
+        wrap_pyfunction!(tse_course_axes, module)?,
         wrap_pyfunction!(tse_exact, module)?,
         wrap_pyfunction!(tse_ltem, module)?,
         wrap_pyfunction!(tse_ltem_at, module)?,

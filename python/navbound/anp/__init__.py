@@ -469,17 +469,14 @@ def track(covariance_enu_m2: ArrayLike, course_rad: ArrayLike, risk: ArrayLike) 
     Raises
     ------
     InputError
-        Not a covariance, a course that is not finite, or a risk outside [1e-300, 0.5].
+        Not a covariance, a course beyond one turn, or a risk outside [1e-300, 0.5].
     """
-    _, (course,) = flatten(course_rad=(course_rad, ()))
-    if not np.isfinite(course).all():
-        index = int(np.flatnonzero(~np.isfinite(course))[0])
-        raise InputError("course_rad", float(course[index]), "rad", "(-inf, inf)", index)
-    chi = np.asarray(course_rad, dtype=np.float64)
-    sin, cos, zero = np.sin(chi), np.cos(chi), np.zeros_like(chi)
+    shape, (course,) = flatten(course_rad=(course_rad, ()))
+    axes = _core.tse_course_axes(course).reshape((*shape, 4))
+    zero = np.zeros(shape)
     return TrackExtents(
-        along_m=support(covariance_enu_m2, np.stack([sin, cos, zero], axis=-1), risk),
-        cross_m=support(covariance_enu_m2, np.stack([cos, -sin, zero], axis=-1), risk),
+        along_m=support(covariance_enu_m2, np.stack([axes[..., 0], axes[..., 1], zero], axis=-1), risk),
+        cross_m=support(covariance_enu_m2, np.stack([axes[..., 2], axes[..., 3], zero], axis=-1), risk),
         up_m=support(covariance_enu_m2, np.stack([zero, zero, zero + 1.0], axis=-1), risk),
     )
 

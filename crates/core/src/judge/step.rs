@@ -9,14 +9,13 @@
 //! `evaluate` keeps nothing, so a table may evaluate its rows in any order; `follow` takes them in the order in which they came.
 
 use super::{Errors, Known};
-use crate::bound::tse::{Deviation, exceedance_risk};
+use crate::bound::tse::{Deviation, axes, exceedance_risk};
 use crate::bound::{AlertBound, Alerting, Bound, IntegrityComparison, Method};
 use crate::frame::{Covariance, Displacement, Enu};
 use crate::monitor::rnp;
 use crate::monitor::state::{PerState, StateTable};
 use crate::quantity::{GpsTime, Metres, OutOfDomain, Radians, Reason, Risk, Status, Unavailable};
 use crate::solution::Epoch;
-use crate::special::float::sin_cos;
 
 /// How epochs are judged.
 #[derive(Debug, Clone, Copy)]
@@ -65,9 +64,8 @@ pub struct Sample {
 impl Sample {
     /// The epoch that methods bound. The expected point is the foot of the perpendicular, so the offset has no part along the path.
     pub fn epoch(&self) -> Epoch {
-        let offset = self.fte_m.zip(self.course).map(|(fte, course)| {
-            let (sine, cosine) = sin_cos(course.rad());
-            Displacement::<Enu>::new(Metres::new(fte * cosine), Metres::new(-fte * sine), Metres::new(self.fte_v_m.unwrap_or(0.0)))
+        let offset = self.fte_m.zip(self.course.and_then(|course| axes(course).ok())).map(|(fte, (_, n))| {
+            Displacement::<Enu>::new(Metres::new(fte * n.x), Metres::new(fte * n.y), Metres::new(self.fte_v_m.unwrap_or(0.0)))
         });
         Epoch {
             time: Some(self.time),
@@ -78,6 +76,11 @@ impl Sample {
             mean: None,
             rnp: self.rnp,
         }
+    }
+
+    /// Whether its covariance is zero along an axis: a position without an error is none, so that it bounds nothing.
+    pub fn has_zero_covariance(&self) -> bool {
+        self.covariance.is_some_and(|covariance| (0..3).any(|axis| covariance.matrix()[(axis, axis)] == 0.0))
     }
 
     /// Its errors along the axes of the path.
@@ -105,6 +108,8 @@ pub struct Evaluated {
     pub integrity: Option<Result<AlertBound, Unavailable>>,
     /// Whether the epoch can be judged: its own status, or that of the reason why there is no bound at the accuracy risk.
     pub status: Status,
+    /// Its source calls it `ok` with a covariance that is zero along an axis.
+    pub zero_covariance: bool,
     /// Risk that the total system error is beyond RNP, and beyond twice RNP \[1\].
     pub exceedance: Option<[f64; 2]>,
     /// Probability of each state \[1\].
@@ -139,7 +144,9 @@ impl Settings {
         let epoch = sample.epoch();
         let bound = |risk| sample.status.usable().then(|| self.method.bound(&epoch, risk));
         let accuracy = bound(self.accuracy);
-        let status = unjudged(accuracy.as_ref()).map_or(sample.status, |why| why.reason().status());
+        let zero_covariance = sample.status == Status::Ok && sample.has_zero_covariance();
+        let stated = if zero_covariance { Reason::ZeroCovariance.status() } else { sample.status };
+        let status = unjudged(accuracy.as_ref()).map_or(stated, |why| why.reason().status());
         let deviation = sample.fte_m.zip(errors.sigma_cross_m).filter(|_| status.usable());
         let deviation = deviation.and_then(|(fte, sigma)| Deviation::new(Metres::new(fte), Metres::new(sigma)).ok());
         let probability = deviation.and_then(|d| self.states.as_ref()?.of_error(d.fte(), d.sigma()).ok());
@@ -148,6 +155,7 @@ impl Settings {
             accuracy,
             integrity: bound(self.integrity),
             status,
+            zero_covariance,
             exceedance: deviation.zip(sample.rnp).and_then(|(d, rnp)| beyond(d, rnp)),
             state_probability: probability,
             tightest_level: probability.zip(self.states).map(|(p, states)| states.tightest(&p, self.accuracy)),
@@ -170,7 +178,7 @@ impl Evaluated {
 
     /// The same as an entry of the list of reasons.
     pub fn reason(&self) -> Option<Reason> {
-        self.unjudged().map(Unavailable::reason)
+        self.unjudged().map(Unavailable::reason).or(self.zero_covariance.then_some(Reason::ZeroCovariance))
     }
 }
 

@@ -41,6 +41,17 @@ impl Radians {
     pub const fn rad(self) -> f64 {
         self.0
     }
+    /// A course. Headings are written from minus half a turn to a whole one; a number beyond is mostly one of degrees.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] beyond one turn, or not a number.
+    pub fn course(self) -> Result<Self, OutOfDomain> {
+        if self.0.abs() <= core::f64::consts::TAU {
+            Ok(self)
+        } else {
+            Err(OutOfDomain { argument: "course_rad", value: self.0, unit: "rad", domain: "[-2 pi, 2 pi]; degrees?" })
+        }
+    }
 }
 
 /// An allowed risk q = 1 - P, at most one half: a bound that more errors leave than keep bounds nothing, and a number near one is a

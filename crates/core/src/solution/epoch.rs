@@ -40,8 +40,8 @@ impl Epoch {
     /// The course, or that `method` lacks it.
     ///
     /// # Errors
-    /// [`Unavailable::Missing`].
+    /// [`Unavailable::Missing`]; [`Unavailable::Invalid`] as [`Radians::course`].
     pub fn course_for(&self, method: &'static str) -> Result<Radians, Unavailable> {
-        self.course.ok_or(Unavailable::Missing { method, field: "course" })
+        Ok(self.course.ok_or(Unavailable::Missing { method, field: "course" })?.course()?)
     }
 }

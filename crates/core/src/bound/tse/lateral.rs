@@ -90,11 +90,11 @@ pub(super) fn root_of_variance(variance: f64) -> Metres {
 }
 
 /// Unit vectors along the course and across it to the right.
-pub(crate) fn axes(course: Radians) -> Result<(Vector3<f64>, Vector3<f64>), OutOfDomain> {
-    if !course.rad().is_finite() {
-        return Err(OutOfDomain { argument: "course_rad", value: course.rad(), unit: "rad", domain: "(-inf, inf)" });
-    }
-    let (s, c) = sin_cos(course.rad());
+///
+/// # Errors
+/// As [`Radians::course`].
+pub fn axes(course: Radians) -> Result<(Vector3<f64>, Vector3<f64>), OutOfDomain> {
+    let (s, c) = sin_cos(course.course()?.rad());
     Ok((Vector3::new(s, c, 0.0), Vector3::new(c, -s, 0.0)))
 }
 

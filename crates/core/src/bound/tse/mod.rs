@@ -12,9 +12,8 @@ mod vertical;
 
 pub use ellipse::{Horizontal, ctem, ctem_at, ctem_foot, ctem_foot_at, farthest, sqsm, sqsm_at};
 pub use extended::{Component, MAX_DEGREES_OF_FREEDOM, RandomFte, mixture, paired_overbound, rf_fte, rssm, student_t};
-pub(crate) use lateral::axes;
 pub use lateral::{
-    Deviation, Gradient, Lateral, exact, exact_at, exact_prepared, exceedance_risk, fte_budget, gradient, ln_exceedance_risk, ltem,
+    Deviation, Gradient, Lateral, axes, exact, exact_at, exact_prepared, exceedance_risk, fte_budget, gradient, ln_exceedance_risk, ltem,
     ltem_at, project, sigma_budget,
 };
 pub use printed::{RotatedFrame, factor_as_printed, ltem_as_printed, slope, slope_as_printed};
