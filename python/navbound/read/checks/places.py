@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import polars as pl
 
 from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
-    import polars as pl
     from numpy.typing import NDArray
 
     from navbound import gnss
@@ -31,6 +31,37 @@ def east_north_m(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArra
     east = 2.0 * EARTH_RADIUS_M * np.cos(start[:, 0]) * np.sin(0.5 * (end[:, 1] - start[:, 1]))
     north = EARTH_RADIUS_M * (end[:, 0] - start[:, 0])
     return np.column_stack(np.broadcast_arrays(east, north))
+
+
+_BESIDE_NOTHING_RAD = 0.02
+"""Latitudes and longitudes up to this are beside 0 N 0 E. Provenance: ours; a degree, half an hour of a slow aircraft. [rad]"""
+
+
+class Nowhere:
+    """Rows at latitude 0, longitude 0 to the last bit of a track that is elsewhere: what a receiver writes that has no position."""
+
+    def __init__(self) -> None:
+        self._beside, self._elsewhere = set[str | None](), set[str | None]()
+
+    def see(self, rows: pl.DataFrame) -> None:
+        """The next rows, with their positions."""
+        lat, lon = rows["est_lat_rad"], rows["est_lon_rad"]
+        track = rows["track"] if "track" in rows.columns else pl.repeat(None, rows.height, dtype=pl.String, eager=True)
+        beside = (lat.abs() <= _BESIDE_NOTHING_RAD) & (lon.abs() <= _BESIDE_NOTHING_RAD)
+        nothing = (lat == 0.0) & (lon == 0.0)
+        self._beside |= set(track.filter(beside & ~nothing))
+        self._elsewhere |= set(track.filter(~beside))
+
+    def at(self, rows: pl.DataFrame) -> pl.Series:
+        """Which rows hold no position, once every row was seen."""
+        refused = self._elsewhere - self._beside
+        track = rows["track"] if "track" in rows.columns else pl.repeat(None, rows.height, dtype=pl.String, eager=True)
+        of = track.is_in([name for name in refused if name is not None]).fill_null(value=False) | (track.is_null() & (None in refused))
+        return ((rows["est_lat_rad"] == 0.0) & (rows["est_lon_rad"] == 0.0)).fill_null(value=False) & of
+
+
+NO_PLACE = "latitude 0, longitude 0: no position of a track that is elsewhere"
+"""The reason against such a row."""
 
 
 _AWAY_M = 1000.0

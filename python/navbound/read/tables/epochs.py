@@ -11,6 +11,7 @@ import polars as pl
 from navbound import _core
 from navbound.errors import FormatError
 from navbound.read.checks import levels
+from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Rejections, Tally
 from navbound.read.checks.repeats import left_out
 from navbound.read.checks.stated import of_counted_satellites
@@ -162,6 +163,11 @@ def _rtklib(source: Source) -> Reading:
     if unmeasured.height:
         example = f"quality {d['quality'][measured.arg_min()]}"
         rejections.add("Q: not a measured position", unmeasured.height, unmeasured[LINE][0], example, malformed=False)
+    nowhere = Nowhere()
+    nowhere.see(out)
+    without_place, out = out.filter(nowhere.at(out)), out.filter(~nowhere.at(out))
+    if without_place.height:
+        rejections.add(NO_PLACE, without_place.height, without_place[LINE][0], "0, 0", malformed=False)
     # Without the field the reader has 0.
     out = of_counted_satellites(out)[0] if _STATES_SATELLITES.search(text) else out.drop("n_sv")
     out, contradicting = _in_order(out, rejections, notes)
@@ -170,7 +176,7 @@ def _rtklib(source: Source) -> Reading:
     empty = [c for c in out.columns if out[c].is_null().all()]
     # A selection of constants alone has one row of them even where no row was refused.
     without = refused.with_columns(track=pl.lit(source.stem), time_ns=pl.lit(None, pl.Int64)).select("track", "time_ns")
-    lost = _left_out(without, unmeasured, contradicting)
+    lost = _left_out(without, unmeasured, without_place, contradicting)
     return Reading(out.drop(LINE, *empty), source.record(d["n_rows"]), rejections.records, notes=notes, left_out=lost)
 
 

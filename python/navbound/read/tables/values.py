@@ -10,6 +10,7 @@ import polars as pl
 from navbound import status
 from navbound.errors import UNSEEN, FormatError
 from navbound.read.checks import levels, stated, statements
+from navbound.read.checks.places import NO_PLACE, Nowhere
 from navbound.read.checks.rejections import Kind, Tally
 from navbound.read.checks.repeats import Repeats, left_out, separate
 from navbound.read.tables.columns import (
@@ -92,6 +93,7 @@ class Values:
         self.tally, self.notes, self.position_doubts = Tally(), list[str](), list[str]()
         self._path, self._stem, self._mapping, self._required = path, stem, mapping, required
         self._dated = position_time(mapping.unused)
+        self._nowhere = Nowhere()
         self._facts, self._facts_dated = list[TimeFacts](), list[TimeFacts]()
         self._dtypes: dict[str, pl.DataType] = {}
         self._n_unknown = 0
@@ -138,6 +140,8 @@ class Values:
             if name in part.columns:
                 self._largest[name] = max(self._largest[name], _largest(part[name]))
         self._see_heights(part)
+        if set(POSITION) <= set(self._required):
+            self._nowhere.see(part)
         if tuple(self._required) == POSITION:
             rows = stated.of_satellites(self._listed_statuses(stated.against_itself(part)))
         else:
@@ -301,6 +305,7 @@ class Values:
         raw = _written(part)
         time, reason = converted(raw, self._mapping.times, self._unit)
         name = self._mapping.times[0].name
+        part = self._without_nowhere(part)
         timeless = raw.select(pl.when(reason.is_not_null()).then(pl.concat_str(pl.lit(f"{name}: "), reason))).to_series()
         out = part.with_columns(
             time.alias("time_ns"),
@@ -311,9 +316,19 @@ class Values:
         out = out.with_columns(self._track(out))
         without = out.filter(pl.col(_BAD).is_not_null())
         for (reason_text,), group in without.group_by(_BAD, maintain_order=True):
-            kind: Kind = "quiet" if str(reason_text).endswith(": empty") else "row"
+            kind: Kind = "quiet" if str(reason_text).endswith(": empty") or reason_text == NO_PLACE else "row"
             self.tally.add(REQUIRED, str(reason_text), group.height, group[LINE][0], str(group[_EXAMPLE][0]), kind=kind)
         return out.filter(pl.col(_BAD).is_null()).drop(_BAD, _EXAMPLE), left_out(without)
+
+    def _without_nowhere(self, part: pl.DataFrame) -> pl.DataFrame:
+        """A place that a receiver writes that has none speaks against its row; a receiver without a position is no damage of the file."""
+        if not set(POSITION) <= set(self._required):
+            return part
+        nowhere = self._nowhere.at(part) & part[_BAD].is_null()
+        return part.with_columns(
+            pl.when(nowhere).then(pl.lit(NO_PLACE)).otherwise(pl.col(_BAD)).alias(_BAD),
+            pl.when(nowhere).then(pl.lit("0, 0")).otherwise(pl.col(_EXAMPLE)).alias(_EXAMPLE),
+        )
 
     def _positions_dated(self, out: pl.DataFrame, raw: pl.DataFrame) -> pl.DataFrame:
         """When each position was valid, where a column says so; a time that is none, or later than its row, is counted and not used."""
