@@ -15,6 +15,9 @@ from navbound.units import EARTH_RADIUS_M
 SAME_PLACE_M = 1.0
 """Distance up to which two positions of one time are one, written with other digits. [m] Provenance: ours; five decimals of a degree."""
 
+SAME_ALTITUDE_M = 50.0
+"""The same of two barometric altitudes. [m] Provenance: ours; steps of 100 ft, and a little more."""
+
 
 SAME_BOUND = 0.01
 """Relative difference up to which two numbers of an accuracy or a bound are one, written with other digits. [1] Provenance: ours."""
@@ -130,7 +133,7 @@ def _differs(name: str, key: list[str]) -> pl.Expr:
 
 
 def _other_place(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
-    """Further than `SAME_PLACE_M` from the first position of the time, in the plane or, where both have one, in height."""
+    """Further than `SAME_PLACE_M` from the first position of the time, in the plane or in height; `SAME_ALTITUDE_M` in altitude."""
     if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
         return pl.lit(value=False)
     lat, lon = pl.col("est_lat_rad"), pl.col("est_lon_rad")
@@ -139,10 +142,9 @@ def _other_place(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
     east = EARTH_RADIUS_M * lat.cos() * ((lon - lon.first().over(key)) / 2).sin() * 2
     # A NaN is no small distance.
     here = (north**2 + east**2 <= SAME_PLACE_M**2).fill_null(value=False)
-    if "est_h_m" not in epochs.columns:
-        return ~here
-    apart = (pl.col("est_h_m") - pl.col("est_h_m").drop_nulls().first().over(key)).abs() > SAME_PLACE_M
-    return ~here | apart.fill_null(value=False)
+    heights = {name: most for name, most in (("est_h_m", SAME_PLACE_M), ("altitude_m", SAME_ALTITUDE_M)) if name in epochs.columns}
+    apart = [(pl.col(name) - pl.col(name).drop_nulls().first().over(key)).abs() > most for name, most in heights.items()]
+    return pl.any_horizontal(~here, *(each.fill_null(value=False) for each in apart))
 
 
 def _other_bound(epochs: pl.DataFrame, key: list[str]) -> pl.Expr:
