@@ -240,10 +240,34 @@ def _parts(name: str) -> list[str]:
     return re.split(r"[^a-z0-9]+", re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name[:_LONGEST]).lower())
 
 
+_APART = _words("dist distance offset offs diff difference delta separation gap discrepancy deviation displacement residual misclosure")
+_REFERENCE, _POSITION = _words("ref reference"), _words("true actual surveyed known")
+_OF_POSITION = _words("position pos point place location")
+_NO_TRUTH = _words("station base receiver frame system datum ellipsoid waypoint wpt runway thr threshold line path")
+"""Parts of names of a distance from the true position, and from something else that is called a reference. Provenance: ours."""
+
+
+def _speaks_of_truth(name: str) -> bool:
+    """Whether the name is one of a true place that nothing reads, or of the distance from it: an error under another name."""
+    parts = set(_parts(name))
+    if not _NO_POSITION.isdisjoint(parts):
+        return False
+    return "truth" in name[:_LONGEST].lower() or _speaks_of_distance_from_truth(name)
+
+
+def _speaks_of_distance_from_truth(name: str) -> bool:
+    parts, together = set(_parts(name)), name[:_LONGEST].lower()
+    words = ("dist", "offset", "diff", "delta")
+    apart = not _APART.isdisjoint(parts) or ("truth" in together and any(each in together for each in words))
+    of_truth = "truth" in together or (not _POSITION.isdisjoint(parts) and not _OF_POSITION.isdisjoint(parts))
+    of_reference = not _REFERENCE.isdisjoint(parts) and _NO_TRUTH.isdisjoint(parts)
+    return apart and (of_truth or of_reference)
+
+
 def speaks_of_integrity(name: str) -> bool:
-    """Whether the name of a column that nothing reads, as the file writes it, is one of a statement of integrity."""
+    """Whether the name of a column that nothing reads, as the file writes it, is one of a statement of integrity, or of a truth."""
     parts = [*_parts(name), name.lower()]
-    return not _SPEAKS.isdisjoint([*parts, *(part.removesuffix("s") for part in parts)])
+    return not _SPEAKS.isdisjoint([*parts, *(part.removesuffix("s") for part in parts)]) or _speaks_of_truth(name)
 
 
 def speaks_of_accuracy(name: str) -> bool:
@@ -252,7 +276,7 @@ def speaks_of_accuracy(name: str) -> bool:
     # `acc_x` is an acceleration.
     if "acc" in parts and parts & {"x", "y", "body", "g"}:
         return False
-    return not _ACCURACY.isdisjoint(parts) and _NO_POSITION.isdisjoint(parts)
+    return (not _ACCURACY.isdisjoint(parts) or _speaks_of_distance_from_truth(name)) and _NO_POSITION.isdisjoint(parts)
 
 
 _LEVEL = _words("hpl hil hul hpls hils")
