@@ -341,6 +341,47 @@ export interface DayResult {
     n_available: Record<string, number>;
 }
 
+/** Messages of one type. */
+export interface MessageCount {
+    type: number;
+    what: string;
+    n: number;
+    /** Between two of them; None where there is one. */
+    longest_gap_s: number | null;
+    /** How long its data may be used on a precision approach; None where no time-out is declared. */
+    time_out_s: number | null;
+    /** Gaps between two of them that are longer. */
+    n_time_outs: number;
+}
+
+/** The UDRE indicators of a satellite. */
+export interface UdreHistory {
+    sv: string;
+    /** The largest of each bin: 14 is not monitored, 15 is not to be used; None where none was sent. */
+    worst: (number | null)[];
+}
+
+/** The messages of one geostationary satellite over the epochs of a run. */
+export interface ServiceLog {
+    prn: number;
+    first_ns: number;
+    last_ns: number;
+    n_messages: number;
+    /** Whole seconds between the first and the last message in which none ended: one a second is sent. */
+    n_missing: number;
+    longest_silence_s: number;
+    types: MessageCount[];
+    /** Width of the bins, which begin at `first_ns`. */
+    bin_ns: number;
+    /** Of satellites of the mask that were monitored at some time. */
+    udre: UdreHistory[];
+    /** Of each bin how many points of the grid mask had each GIVE indicator, 0 to 15, at its end; those that were too old count as none. */
+    give: number[][];
+    /** Points of the grid masks at the end. */
+    n_points: number;
+    words: string[];
+}
+
 /** What the ICAO indicators of one receiver's series are. */
 export interface Performance {
     title: string;
@@ -373,6 +414,8 @@ export interface Performance {
     /** Words that must stand beside every number of an experimental level; empty for integrity levels. */
     experimental: string;
     notes: string[];
+    /** Where SBAS messages corrected the positions: what they were. */
+    service: ServiceLog | null;
 }
 
 /** Deviations of one kind of height from the vertical path of the final approach. */

@@ -258,6 +258,50 @@ class DayResult(Record):
     """By level id."""
 
 
+class MessageCount(Record):
+    """Messages of one type."""
+
+    type: int
+    what: str
+    n: int
+    longest_gap_s: float | None
+    """Between two of them; None where there is one."""
+    time_out_s: int | None
+    """How long its data may be used on a precision approach; None where no time-out is declared."""
+    n_time_outs: int
+    """Gaps between two of them that are longer."""
+
+
+class UdreHistory(Record):
+    """The UDRE indicators of a satellite."""
+
+    sv: str
+    worst: list[int | None]
+    """The largest of each bin: 14 is not monitored, 15 is not to be used; None where none was sent."""
+
+
+class ServiceLog(Record):
+    """The messages of one geostationary satellite over the epochs of a run."""
+
+    prn: int
+    first_ns: int
+    last_ns: int
+    n_messages: int
+    n_missing: int
+    """Whole seconds between the first and the last message in which none ended: one a second is sent."""
+    longest_silence_s: float
+    types: list[MessageCount]
+    bin_ns: int
+    """Width of the bins, which begin at `first_ns`."""
+    udre: list[UdreHistory]
+    """Of satellites of the mask that were monitored at some time."""
+    give: list[list[int]]
+    """Of each bin how many points of the grid mask had each GIVE indicator, 0 to 15, at its end; those that were too old count as none."""
+    n_points: int
+    """Points of the grid masks at the end."""
+    words: list[str]
+
+
 class Performance(Record):
     """What the ICAO indicators of one receiver's series are."""
 
@@ -291,3 +335,5 @@ class Performance(Record):
     experimental: str
     """Words that must stand beside every number of an experimental level; empty for integrity levels."""
     notes: list[str]
+    service: ServiceLog | None = None
+    """Where SBAS messages corrected the positions: what they were."""

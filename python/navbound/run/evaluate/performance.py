@@ -23,6 +23,7 @@ from navbound.run import directory
 from navbound.run.directory import Run
 from navbound.run.evaluate.monitored import CONTRADICTED, DECLARED_LEVELS, monitor_of, monitored
 from navbound.run.evaluate.parts import Stored, finished_parts, ranges_of_parts, tables_of
+from navbound.run.evaluate.service import service_of_files
 from navbound.run.evaluate.words import levels_verdict, performance_words
 from navbound.run.inputs.files import sort_out
 from navbound.run.inputs.solving import Solving
@@ -38,7 +39,7 @@ from navbound.write.field_csv import write_csv
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from navbound.records.performance import LevelResult, Performance
+    from navbound.records.performance import LevelResult, Performance, ServiceLog
     from navbound.run.inputs.files import Files
 
 PARTS = "parts"
@@ -168,11 +169,20 @@ def evaluate_files(
         if options.stanford_esa is not None:
             ranges = kpi.stanford_esa(lambda: ranges_of_parts(parts), campaign.levels, options.stanford_esa)
             result = kpi.with_subsets(result, ranges)
-        result = result.model_copy(update={"notes": [*result.notes, *sources.cut_words()]})
+        log = _service(sources, options, result)
+        words = sources.cut_words() + ([] if log is None else log.words)
+        result = result.model_copy(update={"notes": [*result.notes, *words], "service": log})
         run = _run(result, parts, events, inputs=_inputs(sources, truth, parts), options=options, command=command)
         if writer is None:
             return Run(run.summary, run.record, pl.concat(tables_of(parts)), run.events, [])
         return _write(run, parts, writer)
+
+
+def _service(sources: Files, options: Options, result: Performance) -> ServiceLog | None:
+    """What the messages were that corrected the positions; none where a monitor on board made the levels."""
+    if not sources.messages or not sources.observations or monitor_of(options.protection) is not None:
+        return None
+    return service_of_files([source.path for source in sources.messages], options.prn, result.first_ns, result.last_ns)
 
 
 def _experimental(parts: list[Stored], options: Options) -> str:
