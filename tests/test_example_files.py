@@ -146,9 +146,9 @@ def test_the_database_has_the_one_contradiction_that_its_page_states() -> None:
     database = procedures.read(DATA / "procedure.txt")
     assert database.refused == []
     # The coded radius is 3.3 NM, the fixes lie on a circle of 3 NM: 0.3 NM apart.
-    (found,) = database.contradictions()
-    assert (found.kind, found.line) == ("radius", 17)
-    assert "coded radius 3.300 NM, the fixes give 3.000 NM: 555." in found.words
+    (finding,) = database.contradictions()
+    assert (finding.kind, finding.line) == ("radius", 17)
+    assert "coded radius 3.300 NM, the fixes give 3.000 NM: 555." in finding.words
     north = database.procedure("XNAV", "H27", "NORTH", line="RNP 0.3")
     assert [leg.terminator for leg in north.legs] == ["IF", "TF", "RF", "TF", "TF"]
     # 5 + 3 pi / 2 + 1 + 5.18 NM; places are written to 0.3 m, which five legs have ten of.

@@ -200,7 +200,7 @@ def test_two_runs_are_compared_with_the_keyboard_alone(browser: Browser, server:
     with shown(browser, server, width=420, scheme="dark") as page:
         page.get_by_role("button", name="Compare out/first with another run").focus()
         page.keyboard.press("Enter")
-        # The first of the two is chosen, and the other is asked for.
+        # The first of the two is chosen, and the other is requested.
         assert page.locator('[data-input="a"]').input_value() == "out/first"
         assert page.evaluate("() => document.activeElement.dataset.input") == "b"
         assert page.evaluate("() => document.documentElement.scrollWidth") <= 420

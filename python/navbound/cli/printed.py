@@ -86,7 +86,7 @@ class ShownProcedure:
 
 
 @dataclass(frozen=True)
-class Found:
+class LocatedFinding:
     """A finding of :mod:`navbound.procedures`, and which leg it is about in one word."""
 
     line: int
@@ -111,7 +111,7 @@ class CheckedProcedures:
     counts: dict[str, int]
     n_refused: int
     refused: list[Refused]
-    findings: list[Found]
+    findings: list[LocatedFinding]
 
 
 def write(record: Any) -> None:

@@ -128,9 +128,9 @@ def check_command(
     contradictions = [f for f in findings if not f.remark]
     others = Counter(f.kind for f in findings if f.remark)
     if json:
-        from navbound.cli.printed import CheckedProcedures, Found, write  # noqa: PLC0415
+        from navbound.cli.printed import CheckedProcedures, LocatedFinding, write  # noqa: PLC0415
 
-        rows = [Found(**asdict(f), where=f.where) for f in findings]
+        rows = [LocatedFinding(**asdict(f), where=f.where) for f in findings]
         write(CheckedProcedures(str(file), database.counts, database.n_refused, database.refused, rows))
         return
     table = Table(title=f"{file.name}: {len(contradictions)} contradiction{'s' if len(contradictions) != 1 else ''}")
