@@ -6,9 +6,10 @@
 mod bootstrap;
 mod consistency;
 mod correlation;
+pub mod pieces;
 mod refutation;
 
-pub use bootstrap::coverage_interval;
+pub use bootstrap::{coverage_interval, coverage_interval_of_counts};
 pub use consistency::{Consistency, Errors, Pit, nees, pit};
 pub use correlation::{effective_size, effective_size_about_zero};
 pub use refutation::{Containment, Magnitude, containment, magnitude};
@@ -131,9 +132,7 @@ impl BoundSums {
 pub fn bound(error_m: &[f64], bound_m: &[f64], risk: Risk, track: &[u32]) -> Result<BoundScore, (Option<usize>, OutOfDomain)> {
     same_length("bound_m", bound_m.len(), error_m.len())?;
     track_length(track, error_m.len())?;
-    if let Some(row) = bound_m.iter().position(|b| *b < 0.0 || b.is_infinite()) {
-        return Err((Some(row), OutOfDomain { argument: "bound_m", value: bound_m[row], unit: "m", domain: "[0, inf), NaN for none" }));
-    }
+    require_bounds(bound_m)?;
     let mut sums = BoundSums::default();
     error_m.iter().zip(bound_m).for_each(|(e, b)| sums.add(*e, *b));
     let judged = |row: usize| !error_m[row].is_nan() && !bound_m[row].is_nan();
@@ -150,6 +149,15 @@ pub fn effective_size_of(values: &[f64], track: &[u32], about_zero: bool) -> Res
     track_length(track, values.len())?;
     let series = correlation::by_track(track, values.len(), |row| !values[row].is_nan(), |row| values[row]);
     Ok(if about_zero { effective_size_about_zero(series) } else { effective_size(&series) })
+}
+
+fn require_bounds(bound_m: &[f64]) -> Result<(), (Option<usize>, OutOfDomain)> {
+    match bound_m.iter().position(|b| *b < 0.0 || b.is_infinite()) {
+        Some(row) => {
+            Err((Some(row), OutOfDomain { argument: "bound_m", value: bound_m[row], unit: "m", domain: "[0, inf), NaN for none" }))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The middle value, or the mean of the two; NaN of none.

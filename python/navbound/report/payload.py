@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,14 +14,15 @@ import polars as pl
 from navbound.gnss.receivers import FATES
 from navbound.report import packing, sky
 from navbound.report.coast import airports, clip_coastline, clip_land
+from navbound.storage.tables import pieces
 from navbound.table import lookup
 from navbound.time import GPS_EPOCH_UNIX_NS, utc_offset_s
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from navbound.read.pieces import Frames
     from navbound.records.run import RunRecord, Summary, TrackSummary, Waypoint, Worst
+    from navbound.storage.tables import Table
 
 BUDGET_BYTES = 1_720_000
 """Records and embedded tracks as text; with the page's own parts (about 0.25 MB) the file stays below 2 MB."""
@@ -37,7 +39,7 @@ class Page:
 def build(  # noqa: PLR0917 - as render
     summary: Summary,
     record: RunRecord,
-    epochs: pl.DataFrame | Frames,
+    epochs: Table,
     events: pl.DataFrame,
     waypoints: list[Waypoint],
     budget_bytes: int = BUDGET_BYTES,
@@ -67,24 +69,55 @@ def build(  # noqa: PLR0917 - as render
         Records as JSON, columns as text blocks.
     """
     data = _records(summary, record, epochs, events, waypoints)
+    listed = _shortened(data["summary"])
     try:
         text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     except ValueError:
         # Only records that hold such a number are walked through, value by value.
-        data = _finite(data)
+        data, listed = _finite(data), _finite(listed)
         text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     seen = sky.pack(satellites)
     of_satellites = len(json.dumps(seen.heads, separators=(",", ":"))) + sum(map(len, seen.blocks))
     room = budget_bytes - len(text) - of_satellites
-    heads, blocks, words = _worst_tracks(summary, epochs, room)
+    heads, blocks, words = _worst_tracks(summary, epochs, room, _beyond(listed))
+    words += _list_all_of({str(head["track"]) for head in heads}, data["summary"], listed)
     data["summary"]["assumptions"] += words + seen.words
     heard = [head | {"block": len(blocks) + k} for k, head in enumerate(seen.heads)]
     return Page(data=data | {"tracks": heads, "heard": heard, "fates": FATES if heard else {}}, tracks=blocks + seen.blocks)
 
 
-def _records(
-    summary: Summary, record: RunRecord, epochs: pl.DataFrame | Frames, events: pl.DataFrame, waypoints: list[Waypoint]
-) -> dict[str, Any]:
+MOST_LISTED = {"events": 500, "faults": 200}
+"""Rows of a list of the page; those of tracks whose columns are embedded are all there. [1] Provenance: ours."""
+
+
+def _shortened(records: dict[str, Any]) -> dict[str, list[dict[str, Any]]]:
+    """Cut the lists that grow with the number of tracks; each that was cut, whole."""
+    whole = {name: records[name] for name, most in MOST_LISTED.items() if len(records[name]) > most}
+    for name in whole:
+        records[name] = records[name][: MOST_LISTED[name]]
+    return whole
+
+
+def _beyond(listed: dict[str, list[dict[str, Any]]]) -> dict[str, int]:
+    """Bytes that a track adds to the lists that were cut. [B]."""
+    added: Counter[str] = Counter()
+    for name, rows in listed.items():
+        for row in rows[MOST_LISTED[name] :]:
+            added[row["track"]] += len(json.dumps(row, separators=(",", ":"))) + 1
+    return added
+
+
+def _list_all_of(embedded: set[str], records: dict[str, Any], listed: dict[str, list[dict[str, Any]]]) -> list[str]:
+    """Put the rows of the embedded tracks into the lists that were cut; words on what is not listed."""
+    words = []
+    for name, rows in listed.items():
+        records[name] = [row for k, row in enumerate(rows) if k < MOST_LISTED[name] or row["track"] in embedded]
+        where = "summary.json" if name == "faults" else "events.parquet"
+        words.append(f"The page lists {len(records[name])} of {len(rows)} {name}; all of them are in {where}.")
+    return words
+
+
+def _records(summary: Summary, record: RunRecord, epochs: Table, events: pl.DataFrame, waypoints: list[Waypoint]) -> dict[str, Any]:
     """Everything but the columns of the tracks."""
     region = _region(epochs, waypoints)
     records = summary.model_dump(mode="json")
@@ -108,7 +141,9 @@ MOST_ROWS = 200_000
 """Epochs of one track that are embedded: two days at one a second. [1]"""
 
 
-def _worst_tracks(summary: Summary, epochs: pl.DataFrame | Frames, room_bytes: int) -> tuple[list[dict[str, object]], list[str], list[str]]:
+def _worst_tracks(
+    summary: Summary, epochs: Table, room_bytes: int, listed_bytes: dict[str, int]
+) -> tuple[list[dict[str, object]], list[str], list[str]]:
     """Heads and blocks of the worst track and of those after it that fit, and words on what they do not show."""
     heads: list[dict[str, object]] = []
     blocks: list[str] = []
@@ -120,7 +155,7 @@ def _worst_tracks(summary: Summary, epochs: pl.DataFrame | Frames, room_bytes: i
         if frame.height == 0:
             continue
         head, block = _pack_track(track.track, frame, columns)
-        room_bytes -= len(block) + len(json.dumps(head, separators=(",", ":")))
+        room_bytes -= len(block) + len(json.dumps(head, separators=(",", ":"))) + listed_bytes.get(track.track, 0)
         if blocks and room_bytes < 0:
             break
         heads.append(head | {"block": len(blocks)})
@@ -129,7 +164,7 @@ def _worst_tracks(summary: Summary, epochs: pl.DataFrame | Frames, room_bytes: i
     return heads, blocks, words
 
 
-def _track(epochs: pl.DataFrame | Frames, track: TrackSummary, worst: Worst | None, columns: list[str]) -> tuple[pl.DataFrame, list[str]]:
+def _track(epochs: Table, track: TrackSummary, worst: Worst | None, columns: list[str]) -> tuple[pl.DataFrame, list[str]]:
     """The epochs of one track, of one that is too long those around the worst; and words on that."""
     # One track at a time: the table of a campaign is not copied whole.
     parts = [epochs.filter(pl.col("track") == track.track)] if isinstance(epochs, pl.DataFrame) else epochs.track(track.track, columns)
@@ -161,7 +196,7 @@ def _worst_first(tracks: list[TrackSummary]) -> list[TrackSummary]:
     return sorted(tracks, key=lambda t: (-t.n_warnings, -t.n_cautions, -(t.worst_ratio if t.worst_ratio is not None else -math.inf)))
 
 
-def _columns(summary: Summary, epochs: pl.DataFrame | Frames) -> list[str]:
+def _columns(summary: Summary, epochs: Table) -> list[str]:
     """Numeric columns to embed: those that the list of columns shows, each method's bound, each state's probability."""
     methods = dict.fromkeys(m.id for m in (*summary.accuracy, *summary.integrity))
     return [name for name in lookup.in_report("number", methods, len(summary.states)) if name in epochs.columns]
@@ -189,13 +224,13 @@ def _pack_track(track: str, frame: pl.DataFrame, columns: list[str]) -> tuple[di
     return head, packing.deflate(packed)
 
 
-def _first_time_ns(summary: Summary, epochs: pl.DataFrame | Frames) -> int:
+def _first_time_ns(summary: Summary, epochs: Table) -> int:
     if epochs.height:
         return int(epochs["time_ns"][0] if isinstance(epochs, pl.DataFrame) else epochs.first("time_ns"))
     return summary.tracks[0].start_ns if summary.tracks else 0
 
 
-def _region(epochs: pl.DataFrame | Frames, waypoints: list[Waypoint]) -> tuple[float, float, float, float]:
+def _region(epochs: Table, waypoints: list[Waypoint]) -> tuple[float, float, float, float]:
     """South, west, north, east of everything drawn with room around it, in degrees; longitudes around the first point."""
     # In place: a column of a large table is there once.
     lat_deg = _places(epochs, "est_lat_rad", [w.lat_rad for w in waypoints])
@@ -221,20 +256,24 @@ def _region(epochs: pl.DataFrame | Frames, waypoints: list[Waypoint]) -> tuple[f
     return (south - room, west - wide, north + room, east + wide)
 
 
-def _ends(epochs: pl.DataFrame | Frames, summary: Summary) -> NDArray[np.float64]:
+def _ends(epochs: Table, summary: Summary) -> NDArray[np.float64]:
     """Where every track begins and ends: latitude and longitude. [rad]."""
-    if not isinstance(epochs, pl.DataFrame) or not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns) or len(summary.tracks) > MOST_ENDS:
+    if not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns) or len(summary.tracks) > MOST_ENDS:
         return np.empty((0, 2))
-    known = epochs.select("track", "est_lat_rad", "est_lon_rad").drop_nulls().filter(pl.all_horizontal(pl.selectors.float().is_finite()))
-    ends = known.group_by("track", maintain_order=True)
-    return pl.concat([ends.first(), ends.last()]).select("est_lat_rad", "est_lon_rad").to_numpy()
+    first, last = dict[str, tuple[float, ...]](), dict[str, tuple[float, ...]]()
+    for piece in pieces(epochs, ["track", "est_lat_rad", "est_lon_rad"]):
+        known = piece.drop_nulls().filter(pl.all_horizontal(pl.selectors.float().is_finite()))
+        ends = known.group_by("track", maintain_order=True)
+        last |= {track: place for track, *place in ends.last().iter_rows()}
+        first = {track: place for track, *place in ends.first().iter_rows()} | first
+    return np.array([*first.values(), *last.values()]).reshape(-1, 2)
 
 
 MOST_ENDS = 1000
 """Tracks whose airports are looked for. [1]"""
 
 
-def _places(epochs: pl.DataFrame | Frames, name: str, first: list[float]) -> NDArray[np.float64]:
+def _places(epochs: Table, name: str, first: list[float]) -> NDArray[np.float64]:
     """One coordinate of everything drawn, in an array of its own. [rad]."""
     if not epochs.height or not {"est_lat_rad", "est_lon_rad"} <= set(epochs.columns):
         return np.array(first, dtype=np.float64)

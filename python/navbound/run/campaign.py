@@ -12,11 +12,13 @@ import numpy as np
 import polars as pl
 
 from navbound.errors import InputError
+from navbound.judge import with_levels
 from navbound.records.run import InputFile
-from navbound.scale import map_tiles
+from navbound.scale import in_order
+from navbound.storage.frames import Frames
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
     from typing import Unpack
 
@@ -28,7 +30,9 @@ if TYPE_CHECKING:
     Fly = Callable[[range], tuple[pl.DataFrame, list[Any]]]
 
 MAX_FLIGHTS = 1000
-"""One process holds all epochs of a run; a thousand two-hour flights are 7 million rows (about 3 GB)."""
+"""Flights of one run. [1]"""
+PIECE_ROWS = 1 << 14
+"""Rows from which flights are put away. [1] Provenance: ours; it decides memory and time, and no bit of the results."""
 
 
 @dataclass(frozen=True)
@@ -100,15 +104,15 @@ class _Packed:
         epochs, reported = self.fly(flights)
         table = io.BytesIO()
         epochs.write_ipc(table)
-        return {"epochs": _bytes(table.getvalue()), "told": _bytes(json.dumps(reported).encode())}
+        return {"epochs": _bytes(table.getbuffer()), "told": _bytes(json.dumps(reported).encode())}
 
 
-def _bytes(content: bytes) -> NDArray[np.uint8]:
+def _bytes(content: memoryview | bytes) -> NDArray[np.uint8]:
     return np.frombuffer(content, dtype=np.uint8)
 
 
-def fly_all(fly: Fly, flights: int, at_once: int, **work: Unpack[Work]) -> tuple[pl.DataFrame, list[Any]]:
-    """Fly a campaign.
+def fly_all(fly: Fly, flights: int, at_once: int, **work: Unpack[Work]) -> Iterator[tuple[pl.DataFrame, list[Any]]]:
+    """Fly a campaign, tile by tile.
 
     Parameters
     ----------
@@ -122,10 +126,10 @@ def fly_all(fly: Fly, flights: int, at_once: int, **work: Unpack[Work]) -> tuple
     **work
         As in :func:`navbound.scale.map_tiles`; progress counts flights.
 
-    Returns
-    -------
+    Yields
+    ------
     epochs : DataFrame
-        Of all flights, in order; the same bits whoever flew them.
+        Of the flights of the next tile, in order; the same bits whoever flew them.
     reported : list
         What was reported besides, in order.
     """
@@ -133,8 +137,32 @@ def fly_all(fly: Fly, flights: int, at_once: int, **work: Unpack[Work]) -> tuple
     tell = work.get("progress")
     if tell is not None:
         work["progress"] = lambda done, _tiles: tell(min(done * at_once, flights), flights)
-    parts = map_tiles(_Packed(fly), tiles, **work)
-    reported = [item for part in parts for item in json.loads(part["told"].tobytes())]
-    # Each part is given up as soon as it is read: only one copy of a long campaign stays.
-    tables = [pl.read_ipc(parts.pop(0)["epochs"].tobytes()) for _ in range(len(parts))]
-    return pl.concat(tables), reported
+    for part in in_order(_Packed(fly), tiles, **work):
+        # Packed epochs are given up as soon as they are read.
+        yield pl.read_ipc(part.pop("epochs").tobytes()), json.loads(part.pop("told").tobytes())
+
+
+@dataclass
+class Flown:
+    """Epochs of a campaign in pieces on the disk, and what was learnt on the way.
+
+    Attributes
+    ----------
+    with_levels : set of str
+        Tracks with a protection level anywhere.
+    """
+
+    epochs: Frames = field(default_factory=Frames)
+    reported: list[Any] = field(default_factory=list)
+    with_levels: set[str] = field(default_factory=set)
+
+    def see(self, epochs: pl.DataFrame, reported: list[Any]) -> None:
+        """The flights of the next tile, which are put away in pieces of whole flights."""
+        self.reported += reported
+        self.with_levels |= {track for track, has in with_levels(epochs).items() if has}
+        first = end = 0
+        for n in epochs["track"].rle().struct.field("len"):
+            end += n
+            if end - first >= PIECE_ROWS or end == epochs.height:
+                self.epochs.put(epochs[first:end])
+                first = end

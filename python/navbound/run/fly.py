@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import polars as pl
+
 from navbound.records.material import Material
 from navbound.run import flight
-from navbound.run.campaign import fly_all, scenario_file, seed_in_force, track_name
+from navbound.run.campaign import Flown, fly_all, scenario_file, seed_in_force, track_name
 from navbound.run.ground import flight as ground
 from navbound.scenario import Scenario, Taxi, find, read
 
@@ -29,6 +31,7 @@ def material(
     *,
     flights: int = 1,
     seed: int | None = None,
+    pieces: bool = False,
     **work: Unpack[Work],
 ) -> Material:
     """Fly a scenario.
@@ -41,6 +44,8 @@ def material(
         How many flights; each has random streams of its own, chosen by its number.
     seed : int, optional
         In place of the scenario's.
+    pieces : bool, optional
+        Epochs go to the disk flight by flight, so that the memory does not grow with their number; see :class:`Material`.
     **work
         Who flies, what is kept, who follows the progress: as in :func:`navbound.scale.map_tiles`; progress counts flights.
 
@@ -61,10 +66,18 @@ def material(
     loaded = scenario if isinstance(scenario, (Scenario, Taxi)) else read(scenario)
     seed_used = seed_in_force(flights, seed, loaded.seed)
     campaign = SIMULATORS[loaded.kind](loaded.model_dump_json(), seed_used)
-    epochs, reported = fly_all(campaign, flights, campaign.at_once, **work)
-    context = campaign.context(flights, reported)
+    flown, tables = Flown(), list[pl.DataFrame]()
+    for epochs, reported in fly_all(campaign, flights, campaign.at_once, **work):
+        if pieces:
+            flown.see(epochs, reported)
+        else:
+            flown.reported += reported
+            tables.append(epochs)
+    context = campaign.context(flights, flown.reported)
     return Material(
-        epochs=epochs,
+        epochs=pl.DataFrame(schema=flown.epochs.schema) if pieces else pl.concat(tables),
+        frames=flown.epochs if pieces else None,
+        with_levels=frozenset(flown.with_levels),
         kind="fly",
         title=loaded.title,
         operation=loaded.operation,

@@ -9,25 +9,24 @@ from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-import numpy as np
 import polars as pl
 
 from navbound import __version__, rnp
 from navbound.errors import InputError
 from navbound.judge import Judges, with_levels
 from navbound.judge import Settings as Rules
-from navbound.methods import column_of
 from navbound.records.run import RunRecord
 from navbound.rnp.exposure import LONGEST_STEP_S
-from navbound.run import pieces
 from navbound.run.directory import Run
 from navbound.run.settings import Settings
 from navbound.run.summary.summarise import summarise
 from navbound.storage.frames import Frames
+from navbound.storage.tables import has_values
 
 if TYPE_CHECKING:
     from navbound.records.material import Material
     from navbound.records.run import EventSummary
+    from navbound.storage.tables import Table
 
 STATE_LEVELS_NM = (0.3, 1.0, 2.0, 5.0)
 """The levels of the state classifier's authors (Ostroumov and Kuzmenko 2018)."""
@@ -56,40 +55,46 @@ def judge(material: Material, settings: Settings | None = None, command: str = "
         An unknown method, no epochs, or a judging method that may not feed an alert.
     """
     settings = settings or Settings()
-    if material.frames is not None:
-        return _judge_pieces(material, material.frames, settings, command)
-    if material.epochs.height == 0:
+    table: Table = material.epochs if material.frames is None else material.frames
+    if table.height == 0:
         raise InputError("epochs", 0, "1", "at least one epoch")
-    judging = WITH_PATH if _has_values(material.epochs, "fte_m") else WITHOUT_PATH
+    judging = WITH_PATH if has_values(table, "fte_m") else WITHOUT_PATH
     rules = _rules(material, settings, judging, states=_classifier(material) if judging == WITH_PATH else None)
-    judges = Judges(rules, with_levels(material.epochs))
-    epochs = judges.judge(material.epochs)
+    levels = _with_levels(material)
+    judges = Judges(rules, levels)
+    epochs = _judged(judges, table)
     events, counters, _ = judges.decided()
     events = _with_points(_in_words(events), material.events)
-    shown = [m.id for m in (rules.method, *rules.beside) if m.id == judging or _has_values(epochs, m.column)]
-    states = rules.state_names if "state" in epochs.columns else []
-    risks = (settings.risk_accuracy, settings.risk_integrity)
-    summary = summarise(material, epochs, events, ids=shown, judging=judging, states=states, risks=risks)
+    shown = [m.id for m in (rules.method, *rules.beside) if m.id == judging or has_values(epochs, m.column)]
+    summary = summarise(
+        material,
+        epochs,
+        events,
+        with_levels=frozenset(track for track, has in levels.items() if has),
+        ids=shown,
+        judging=judging,
+        states=rules.state_names if "state" in epochs.columns else [],
+        risks=(settings.risk_accuracy, settings.risk_integrity),
+    )
     record = _record(material, settings, shown, _counters(material, settings, counters), command)
     heard = material.satellites if material.satellites is not None and material.satellites.height else None
     return Run(summary, record, epochs, events, material.waypoints, satellites=heard)
 
 
-def _judge_pieces(material: Material, pieced: Frames, settings: Settings, command: str) -> Run:
-    """The same of a table in pieces on the disk, which has neither path nor truth."""
-    rules = _rules(material, settings, WITHOUT_PATH)
-    judges = Judges(rules, {track: track in material.with_levels for track in material.labels})
+def _with_levels(material: Material) -> dict[str, bool]:
+    """Every track in the order of the table, and whether it has a protection level anywhere."""
+    if material.frames is None:
+        return with_levels(material.epochs)
+    return {track: track in material.with_levels for track in material.labels}
+
+
+def _judged(judges: Judges, table: Table) -> Table:
+    if isinstance(table, pl.DataFrame):
+        return judges.judge(table)
     epochs = Frames()
-    for piece in pieced:
+    for piece in table:
         epochs.put(judges.judge(piece))
-    events, counters, _ = judges.decided()
-    events = _in_words(events)
-    ids = [m.id for m in (rules.method, *rules.beside)]
-    summary = pieces.summary(material, epochs, events, ids, (settings.risk_accuracy, settings.risk_integrity))
-    shown = [result.id for result in summary.accuracy]
-    return Run(
-        summary, _record(material, settings, shown, _counters(material, settings, counters), command), epochs, events, material.waypoints
-    )
+    return epochs
 
 
 def _rules(material: Material, settings: Settings, judging: str, states: rnp.StateClassifier | None = None) -> Rules:
@@ -117,10 +122,6 @@ def _record(material: Material, settings: Settings, shown: list[str], counters: 
         settings=material.settings | {"monitor": counters},
         platform=f"Python {platform.python_version()}, {sys.platform} {platform.machine()}",
     )
-
-
-def _has_values(epochs: pl.DataFrame, name: str) -> bool:
-    return name in epochs.columns and bool(np.isfinite(column_of(epochs, name)).any())
 
 
 def _monitor(material: Material, settings: Settings) -> rnp.Monitor:

@@ -7,6 +7,6 @@ Finished tiles can be kept in a folder; a job that was killed goes on from there
 from __future__ import annotations
 
 from navbound.scale.backends import BACKENDS, Workers
-from navbound.scale.tiles import Work, cut, map_tiles
+from navbound.scale.tiles import Work, cut, in_order, map_tiles
 
-__all__ = ["BACKENDS", "Work", "Workers", "cut", "map_tiles"]
+__all__ = ["BACKENDS", "Work", "Workers", "cut", "in_order", "map_tiles"]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import multiprocessing
 import os
 import threading
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections import deque
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -13,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 from navbound.errors import ConflictError, InputError, NavboundError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Generator, Sequence
+    from concurrent.futures import Future
     from multiprocessing.process import BaseProcess
 
     Function = Callable[[Any], Any]
@@ -23,6 +25,8 @@ LOOK_S = 5.0
 """How often a cluster is looked at whether it has workers. [s]"""
 ALONE_S = 60.0
 """A cluster that has had no worker for this long is not waited for. [s]"""
+AHEAD = 4
+"""Tiles for each worker that may be worked off before the first one that is not finished: so many results wait in memory. [1]"""
 MOST_LOSSES = 3
 """Losses of a worker in a row, without one tile finished in between, after which it is the tile's fault. [1]"""
 
@@ -66,13 +70,13 @@ def _end_with(parent: BaseProcess) -> None:
     os._exit(1)
 
 
-def serial(function: Function, pending: Pending, _workers: Workers) -> Iterator[tuple[int, Any]]:
+def serial(function: Function, pending: Pending, _workers: Workers) -> Generator[tuple[int, Any], None, None]:
     """One tile after the other; a tile may use every core."""
     for index, tile in pending:
         yield index, function(tile)
 
 
-def processes(function: Function, pending: Pending, workers: Workers) -> Iterator[tuple[int, Any]]:
+def processes(function: Function, pending: Pending, workers: Workers) -> Generator[tuple[int, Any], None, None]:
     """Processes of this machine. When one is lost the others are given up as well, and what is unfinished starts again."""
     left = dict(pending)
     losses = 0
@@ -91,19 +95,24 @@ def processes(function: Function, pending: Pending, workers: Workers) -> Iterato
                 raise NavboundError(f"{words}; {advice}") from e
 
 
-def _pool(function: Function, left: dict[int, Any], count: int) -> Iterator[tuple[int, Any]]:
+def _pool(function: Function, left: dict[int, Any], count: int) -> Generator[tuple[int, Any], None, None]:
     # A forked child would inherit the locks of the threads of this process; a fresh interpreter has none.
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(min(count, len(left)), mp_context=context, initializer=begin_worker) as pool:
-        futures = {pool.submit(function, tile): index for index, tile in left.items()}
+        waiting, running = deque(sorted(left)), dict[Future[Any], int]()
         try:
-            for future in as_completed(futures):
-                yield futures[future], future.result()
+            while waiting or running:
+                # A result waits here until those before it are taken: no worker is far ahead of the slowest.
+                while waiting and waiting[0] < min(running.values(), default=waiting[0]) + AHEAD * count:
+                    index = waiting.popleft()
+                    running[pool.submit(function, left[index])] = index
+                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                    yield running.pop(future), future.result()
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def dask(function: Function, pending: Pending, workers: Workers) -> Iterator[tuple[int, Any]]:
+def dask(function: Function, pending: Pending, workers: Workers) -> Generator[tuple[int, Any], None, None]:
     """Processes of a Dask cluster. What a lost worker had is done again by another."""
     distributed = _distributed()
     if isinstance(workers.cluster, distributed.Client):
@@ -129,7 +138,7 @@ def _client(distributed: Any, address: str) -> Any:
         raise InputError("cluster", address, domain=f"the address of a Dask scheduler that answers: {e}") from e
 
 
-def _gather(distributed: Any, client: Any, function: Function, pending: Pending) -> Iterator[tuple[int, Any]]:
+def _gather(distributed: Any, client: Any, function: Function, pending: Pending) -> Generator[tuple[int, Any], None, None]:
     futures = {client.submit(function, tile, pure=False): index for index, tile in pending}
     alone_s = 0.0
     try:
@@ -156,7 +165,7 @@ def _distributed() -> Any:
     return distributed
 
 
-BACKENDS: dict[str, Callable[[Function, Pending, Workers], Iterator[tuple[int, Any]]]] = {
+BACKENDS: dict[str, Callable[[Function, Pending, Workers], Generator[tuple[int, Any], None, None]]] = {
     "serial": serial,
     "processes": processes,
     "dask": dask,

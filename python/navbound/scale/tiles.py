@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from itertools import pairwise
 from typing import TYPE_CHECKING, TypedDict, TypeVar
 
@@ -12,7 +13,7 @@ from navbound.scale.backends import BACKENDS, Workers
 from navbound.scale.checkpoint import Folder, Nothing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -75,6 +76,44 @@ def cut(n: int, seconds_each: float, bytes_each: float = 0.0, *, most_bytes: flo
     return [slice(a, b) for a, b in pairwise(edges)]
 
 
+def in_order(
+    function: Callable[[Tile], dict[str, NDArray[np.generic]]],
+    tiles: Sequence[Tile],
+    *,
+    backend: str = "serial",
+    checkpoint: str | Path | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    workers: Workers | None = None,
+) -> Iterator[dict[str, NDArray[np.generic]]]:
+    """Results of :func:`map_tiles` one after the other, in the order of the tiles: those that were taken are not kept in memory.
+
+    Arguments and errors are those of :func:`map_tiles`. Processes are a few tiles ahead of the one that is due, not more.
+    """
+    if backend not in BACKENDS:
+        raise NotFoundError("backend", backend, "back end", BACKENDS)
+    kept = Nothing() if checkpoint is None else Folder(checkpoint, function)
+    stored = {index for index, tile in enumerate(tiles) if kept.load(index, tile) is not None}
+    tell = progress or (lambda _done, _all: None)
+    n_done = len(stored)
+    tell(n_done, len(tiles))
+    pending = [(index, tile) for index, tile in enumerate(tiles) if index not in stored]
+    early: dict[int, dict[str, NDArray[np.generic]]] = {}
+    with closing(BACKENDS[backend](function, pending, workers or Workers())) as worked:
+        for due, tile in enumerate(tiles):
+            if due in stored:
+                # What was there a moment ago and is not any more is worked off again.
+                yield kept.load(due, tile) or _checked(due, function(tile))
+                continue
+            while due not in early:
+                index, result = next(worked)
+                early[index] = _checked(index, result)
+                del result
+                kept.store(index, tiles[index], early[index])
+                n_done += 1
+                tell(n_done, len(tiles))
+            yield early.pop(due)
+
+
 def map_tiles(
     function: Callable[[Tile], dict[str, NDArray[np.generic]]],
     tiles: Sequence[Tile],
@@ -117,19 +156,7 @@ def map_tiles(
     Exception
         What ``function`` raised, of the first tile that failed; finished tiles are kept.
     """
-    if backend not in BACKENDS:
-        raise NotFoundError("backend", backend, "back end", BACKENDS)
-    kept = Nothing() if checkpoint is None else Folder(checkpoint, function)
-    results = {index: result for index, tile in enumerate(tiles) if (result := kept.load(index, tile)) is not None}
-    tell = progress or (lambda _done, _all: None)
-    tell(len(results), len(tiles))
-    pending = [(index, tile) for index, tile in enumerate(tiles) if index not in results]
-    for index, result in BACKENDS[backend](function, pending, workers or Workers()):
-        checked = _checked(index, result)
-        kept.store(index, tiles[index], checked)
-        results[index] = checked
-        tell(len(results), len(tiles))
-    return [results[index] for index in range(len(tiles))]
+    return list(in_order(function, tiles, backend=backend, checkpoint=checkpoint, progress=progress, workers=workers))
 
 
 def _checked(index: int, result: object) -> dict[str, NDArray[np.generic]]:

@@ -94,6 +94,11 @@ class Frames:
         for places in self._places:
             yield pl.concat([self._spool.get(places[name]) for name in names], how="horizontal")
 
+    def piece(self, index: int) -> pl.DataFrame:
+        """One piece by its place."""
+        places = self._places[index]
+        return pl.concat([self._spool.get(places[name]) for name in self.columns], how="horizontal")
+
     def track(self, name: str, columns: Sequence[str]) -> Iterator[pl.DataFrame]:
         """Some columns of the rows of one track, of a table in the order of tracks."""
         for places, (first, last) in zip(self._places, self._tracks, strict=True):

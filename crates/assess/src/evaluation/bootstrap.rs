@@ -18,11 +18,23 @@ pub fn coverage_interval(
 ) -> Result<(f64, f64), (Option<usize>, OutOfDomain)> {
     same_length("bound_m", bound_m.len(), error_m.len())?;
     same_length("track", track.len(), error_m.len())?;
+    coverage_interval_of_counts(counts(error_m, bound_m, track), n_replicates, seed)
+}
+
+/// The same of judged epochs and those within, track by track.
+///
+/// # Errors
+/// As [`coverage_interval`].
+pub fn coverage_interval_of_counts(
+    mut tracks: Vec<(u64, u64)>,
+    n_replicates: usize,
+    seed: u64,
+) -> Result<(f64, f64), (Option<usize>, OutOfDomain)> {
     if !(100..=100_000).contains(&n_replicates) {
         let refusal = OutOfDomain { argument: "n_replicates", value: n_replicates as f64, unit: "1", domain: "[100, 100000]" };
         return Err((None, refusal));
     }
-    let tracks = counts(error_m, bound_m, track);
+    tracks.retain(|(n, _)| *n > 0);
     if tracks.len() < 2 {
         return Err((None, OutOfDomain { argument: "track", value: tracks.len() as f64, unit: "tracks", domain: "[2, inf)" }));
     }
@@ -32,7 +44,7 @@ pub fn coverage_interval(
     Ok((at(0.5 * INTERVAL_RISK), at(1.0 - 0.5 * INTERVAL_RISK)))
 }
 
-/// Judged epochs and those within, track by track; tracks without any left out.
+/// Judged epochs and those within, track by track.
 fn counts(error_m: &[f64], bound_m: &[f64], track: &[u32]) -> Vec<(u64, u64)> {
     let n_tracks = track.iter().max().map_or(0, |t| *t as usize + 1);
     let mut tracks = vec![(0, 0); n_tracks];
@@ -43,7 +55,6 @@ fn counts(error_m: &[f64], bound_m: &[f64], track: &[u32]) -> Vec<(u64, u64)> {
             *within += u64::from(e.abs() <= *b);
         }
     }
-    tracks.retain(|(n, _)| *n > 0);
     tracks
 }
 

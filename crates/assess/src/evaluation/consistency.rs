@@ -1,6 +1,6 @@
 //! May the covariance be believed? Errors in units of their covariance, epoch by epoch.
 
-use super::correlation::{by_track, effective_size};
+use super::correlation::{by_track, effective_size_of_series};
 use super::{INTERVAL_RISK, track_length};
 use navbound_core::frame::{Covariance, Displacement, Enu};
 use navbound_core::monitor::consistency::{integral_transform, normalised_square, normalised_square_horizontal};
@@ -74,6 +74,19 @@ impl Errors<'_> {
         track_length(self.track, self.len())
     }
 
+    pub(super) fn check_horizontal(&self) -> Result<(), Refused> {
+        self.check()?;
+        if self.dimension != 2 {
+            return Err((None, OutOfDomain { argument: "dimension", value: self.dimension as f64, unit: "1", domain: "{2}" }));
+        }
+        Ok(())
+    }
+
+    /// The error of one axis in units of its standard deviation, of two components an epoch.
+    pub(super) fn component(&self, row: usize, axis: usize) -> f64 {
+        self.error_m[2 * row + axis] / self.covariance_m2[4 * row + 3 * axis].sqrt()
+    }
+
     fn square(&self, row: usize) -> Option<f64> {
         let d = self.dimension;
         let e = &self.error_m[row * d..][..d];
@@ -103,18 +116,26 @@ pub fn nees(errors: &Errors<'_>) -> Result<Consistency, Refused> {
     errors.check()?;
     let squares = errors.squares();
     let series = by_track(errors.track, squares.len(), |row| !squares[row].is_nan(), |row| squares[row]);
-    let n: usize = series.iter().map(Vec::len).sum();
-    let n_effective = effective_size(&series);
-    let dof = n_effective * errors.dimension as f64;
-    Ok(Consistency {
+    let n_unusable = squares.len() - series.iter().map(Vec::len).sum::<usize>();
+    drop(squares);
+    Ok(nees_of(series, n_unusable, errors.dimension))
+}
+
+/// The mean of squares, track by track, with its limits.
+pub(super) fn nees_of(squares: Vec<Vec<f64>>, n_unusable: usize, dimension: usize) -> Consistency {
+    let n: usize = squares.iter().map(Vec::len).sum();
+    let nees_mean = squares.iter().flatten().sum::<f64>() / n as f64;
+    let n_effective = effective_size_of_series(squares);
+    let dof = n_effective * dimension as f64;
+    Consistency {
         n,
-        n_unusable: squares.len() - n,
+        n_unusable,
         n_effective,
-        dimension: errors.dimension,
-        nees_mean: series.iter().flatten().sum::<f64>() / n as f64,
+        dimension,
+        nees_mean,
         nees_low: chi_square_factor(dof, 1.0 - 0.5 * INTERVAL_RISK) / n_effective,
         nees_high: chi_square_factor(dof, 0.5 * INTERVAL_RISK) / n_effective,
-    })
+    }
 }
 
 /// Histogram of the probability integral transform of e' V^-1 e in `n_bins` equal bins.
@@ -126,18 +147,29 @@ pub fn nees(errors: &Errors<'_>) -> Result<Consistency, Refused> {
 /// As [`nees`], and [`OutOfDomain`] unless there are 2 to 1000 bins.
 pub fn pit(errors: &Errors<'_>, n_bins: usize) -> Result<Pit, Refused> {
     errors.check()?;
+    let squares = errors.squares();
+    let series = by_track(errors.track, squares.len(), |row| !squares[row].is_nan(), |row| squares[row]);
+    drop(squares);
+    pit_of(series, errors.dimension, n_bins)
+}
+
+/// The histogram of squares, track by track, with its band.
+pub(super) fn pit_of(mut squares: Vec<Vec<f64>>, dimension: usize, n_bins: usize) -> Result<Pit, Refused> {
     if !(2..=1000).contains(&n_bins) {
         return Err((None, OutOfDomain { argument: "n_bins", value: n_bins as f64, unit: "1", domain: "[2, 1000]" }));
     }
-    let dimension = errors.dimension;
-    let transform: Vec<f64> = errors.squares().par_iter().map(|s| integral_transform(*s, dimension)).collect();
+    squares.par_iter_mut().for_each(|track| {
+        track.par_iter_mut().with_min_len(EPOCHS_PER_TASK).for_each(|s| *s = integral_transform(*s, dimension));
+    });
+    // A transform that does not exist is no epoch.
+    squares.iter_mut().for_each(|track| track.retain(|u| !u.is_nan()));
+    squares.retain(|track| !track.is_empty());
     let mut counts = vec![0_u64; n_bins];
-    for u in transform.iter().filter(|u| !u.is_nan()) {
+    for u in squares.iter().flatten() {
         counts[((u * n_bins as f64) as usize).min(n_bins - 1)] += 1;
     }
-    let series = by_track(errors.track, transform.len(), |row| !transform[row].is_nan(), |row| transform[row]);
-    let n: usize = series.iter().map(Vec::len).sum();
-    let n_effective = effective_size(&series);
+    let n: usize = squares.iter().map(Vec::len).sum();
+    let n_effective = effective_size_of_series(squares);
     let (share, weight) = (1.0 / n_bins as f64, (n_effective - 1.0).max(f64::MIN_POSITIVE));
     let limit = |p: f64| n as f64 * beta_quantile(weight * share, weight * (1.0 - share), p);
     Ok(Pit { n, n_effective, counts, low: limit(0.5 * INTERVAL_RISK), high: limit(1.0 - 0.5 * INTERVAL_RISK) })

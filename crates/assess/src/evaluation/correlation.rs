@@ -28,9 +28,15 @@ pub(super) fn by_track(track: &[u32], n: usize, keep: impl Fn(usize) -> bool, va
 /// Of the error itself, not of its exceedances: for a Gaussian error no function of an epoch is more correlated than the epoch
 /// (Gebelein 1941), so the size is never too large for a coverage, and it does not depend on how few exceedances there were.
 pub fn effective_size(series: &[Vec<f64>]) -> f64 {
+    effective_size_of_series(series.to_vec())
+}
+
+/// The same of series that are given away: nothing is copied.
+pub(super) fn effective_size_of_series(mut series: Vec<Vec<f64>>) -> f64 {
     let n: usize = series.iter().map(Vec::len).sum();
     let mean = series.iter().flatten().sum::<f64>() / n as f64;
-    size_of(series.iter().map(|s| s.iter().map(|x| x - mean).collect()).collect())
+    series.iter_mut().flatten().for_each(|x| *x -= mean);
+    size_of(series)
 }
 
 /// The same for series whose mean is known to be zero, as that of an error against a covariance that claims no bias.

@@ -13,7 +13,7 @@ use navbound_core::special::beta::{beta_head, share_limits};
 
 /// Largest normalised square of an epoch that counts: what a consistent covariance exceeds once in 100 000, 2 ln 1e5. A single epoch whose
 /// truth is wrong by kilometres then weighs no more than another.
-const MOST_SQUARE: f64 = 23.025_850_929_940_457;
+pub(super) const MOST_SQUARE: f64 = 23.025_850_929_940_457;
 
 /// How large the horizontal error is in units of its covariance, and how many independent epochs it is worth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,20 +52,17 @@ pub struct Containment {
 /// # Errors
 /// [`OutOfDomain`] for another dimension than 2 and columns of unequal length.
 pub fn magnitude(errors: &Errors<'_>) -> Result<Magnitude, Refused> {
-    errors.check()?;
-    if errors.dimension != 2 {
-        return Err((None, OutOfDomain { argument: "dimension", value: errors.dimension as f64, unit: "1", domain: "{2}" }));
-    }
+    errors.check_horizontal()?;
     let squares = errors.squares();
     let known = |row: usize| !squares[row].is_nan();
-    let axis = |k: usize| {
-        let component = |row: usize| errors.error_m[2 * row + k] / errors.covariance_m2[4 * row + 3 * k].sqrt();
-        effective_size_about_zero(by_track(errors.track, errors.len(), known, component))
-    };
+    let axis = |k: usize| effective_size_about_zero(by_track(errors.track, errors.len(), known, |row| errors.component(row, k)));
     let counted: Vec<f64> = squares.iter().filter(|s| !s.is_nan()).map(|s| s.min(MOST_SQUARE)).collect();
-    let square_mean = counted.iter().sum::<f64>() / counted.len() as f64;
-    let p_value = (1.0 - 0.5 * square_mean).exp().min(1.0);
-    Ok(Magnitude { n: counted.len(), n_effective: axis(0).min(axis(1)), square_mean, p_value })
+    Ok(magnitude_of(counted.len(), counted.iter().sum(), axis(0).min(axis(1))))
+}
+
+pub(super) fn magnitude_of(n: usize, sum: f64, n_effective: f64) -> Magnitude {
+    let square_mean = sum / n as f64;
+    Magnitude { n, n_effective, square_mean, p_value: (1.0 - 0.5 * square_mean).exp().min(1.0) }
 }
 
 /// How often a bound contained the error, `n_outside` of `n` epochs that are worth `n_effective`.

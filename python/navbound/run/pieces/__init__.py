@@ -2,6 +2,5 @@
 
 from navbound.run.pieces.flights import Flights
 from navbound.run.pieces.material import AUXILIARY, InPieces, covariance_status, in_pieces, is_large, without_path
-from navbound.run.pieces.summary import summary
 
-__all__ = ["AUXILIARY", "Flights", "InPieces", "covariance_status", "in_pieces", "is_large", "summary", "without_path"]
+__all__ = ["AUXILIARY", "Flights", "InPieces", "covariance_status", "in_pieces", "is_large", "without_path"]

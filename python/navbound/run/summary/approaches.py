@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import math
 import re
+from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
 
 from navbound.records.groups import DeviationBand, DeviationGroup
+from navbound.run.summary.margins import with_margins
+from navbound.storage.tables import pieces
 from navbound.units import METRES_PER_NM
+
+if TYPE_CHECKING:
+    from navbound.methods import Method
+    from navbound.storage.tables import Table
 
 BIN_M = 0.5 * METRES_PER_NM
 """Width of a bin of the distance to the threshold. Provenance: ours."""
@@ -19,6 +26,13 @@ HISTOGRAM_BINS = 41
 """Odd, so that the middle bin lies about zero."""
 _OPERATOR = re.compile(r"^([A-Z]{3})[0-9]")
 """An ICAO flight identification: the operator's three letters, then a number."""
+
+
+def approaches_of(epochs: Table, judged: Method) -> pl.DataFrame:
+    """Epochs before a threshold with their margins, in memory; no rows where nothing is an approach to a runway."""
+    names = ["track", "leg", "along_m", "fte_m", "fte_v_m", "est_h_m", "status", "rnp_m", "integrity_compared_m"]
+    parts = [_approaches(with_margins(piece, judged)) for piece in pieces(epochs, [*names, judged.column, judged.integrity_column])]
+    return pl.concat(parts, rechunk=True) if parts else pl.DataFrame()
 
 
 def deviation_groups(margins: pl.DataFrame, labels: dict[str, str]) -> list[DeviationGroup]:

@@ -5,15 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import polars as pl
 
-from navbound import evaluation
+from navbound.evaluation.pieces import Bounds
 from navbound.methods import column_of, method
 from navbound.records.run import MethodResult
-from navbound.run.summary.consistency import codes
+from navbound.storage.tables import Places, numbers, pieces
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from navbound.storage.tables import Table
 
 
 _SCORES = ("coverage", "coverage_low", "coverage_high", "n_effective", "winkler_m", "pinball_m")
@@ -38,23 +39,21 @@ def method_result(method_id: str, risk: float, known: NDArray[np.float64], score
     return MethodResult.model_validate(described | (scored or dict.fromkeys(_SCORES)))
 
 
-def evaluated(epochs: pl.DataFrame, method_id: str, risk: float, coverage_kind: str, *, integrity: bool) -> MethodResult:
+def evaluated(epochs: Table, method_id: str, risk: float, *, integrity: bool) -> MethodResult:
     """How one method did at one risk, over epochs that carry its bound."""
     m = method(method_id)
-    bound = column_of(epochs, m.integrity_column if integrity else m.column)
-    known = np.isfinite(bound)
+    bound = m.integrity_column if integrity else m.column
     scored: dict[str, float | None] = dict.fromkeys(_SCORES)
     if m.error_column in epochs.columns:
-        error = np.abs(column_of(epochs, m.error_column))
-        both = known & np.isfinite(error)
-        if both.any():
-            score = evaluation.bound(error[both], bound[both], risk, track=codes(epochs)[both], coverage_kind=coverage_kind)
-            scored = {
-                "coverage": score.coverage,
-                "coverage_low": score.coverage_low,
-                "coverage_high": score.coverage_high,
-                "n_effective": score.n_effective,
-                "winkler_m": score.winkler_m,
-                "pinball_m": score.pinball_m,
-            }
-    return method_result(method_id, risk, bound[known], scored)
+        bounds, places = Bounds(), Places()
+        for piece in pieces(epochs, ["track", m.error_column, bound]):
+            track = places.of(piece["track"])
+            limit, error = column_of(piece, bound), np.abs(column_of(piece, m.error_column))
+            both = np.isfinite(limit) & np.isfinite(error)
+            bounds.see(error[both], limit[both], track[both])
+        if bounds.n:
+            score = bounds.score(risk)
+            scored = {name: score[name] for name in _SCORES}
+        # The series of the errors is given back before the column of the bounds is read.
+        del bounds
+    return method_result(method_id, risk, numbers(epochs, bound), scored)

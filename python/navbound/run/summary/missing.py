@@ -44,10 +44,3 @@ class Gaps:
             self._count(self._rest)
             self._rest = self._rest.clear()
         return self._n_left_out + self._n
-
-
-def n_missing(epochs: pl.DataFrame, left_out: pl.DataFrame, period_s: float) -> int:
-    """Epochs that should have been there: in gaps, and as rows of the recording that cannot be judged."""
-    gaps = Gaps(left_out, period_s)
-    gaps.see(epochs)
-    return gaps.n_missing()

@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import polars as pl
-
 from navbound import evaluation
 from navbound.methods import method
 from navbound.records.run import EventSummary, Summary
-from navbound.run.summary.approaches import deviation_bands, deviation_groups
+from navbound.run.summary.approaches import approaches_of, deviation_bands, deviation_groups
 from navbound.run.summary.consistency import consistency_of
 from navbound.run.summary.groups import phases, protection_of, tracks
-from navbound.run.summary.margins import by_status, with_margins
 from navbound.run.summary.methods import evaluated
 from navbound.run.summary.satellites import satellites_of
+from navbound.run.summary.sums import Sums
 from navbound.run.summary.verdict import facts_of, verdict_of
 
 if TYPE_CHECKING:
+    import polars as pl
+
     from navbound.records.material import Material
+    from navbound.storage.tables import Table
 
 
 LISTED_EVENTS = 500
@@ -27,9 +28,10 @@ LISTED_EVENTS = 500
 
 def summarise(
     material: Material,
-    epochs: pl.DataFrame,
+    epochs: Table,
     events: pl.DataFrame,
     *,
+    with_levels: frozenset[str],
     ids: list[str],
     judging: str,
     states: list[str],
@@ -41,8 +43,12 @@ def summarise(
     ----------
     material : Material
         Where the epochs came from.
-    epochs, events : DataFrame
-        After judging.
+    epochs : DataFrame or Frames
+        After judging; in pieces the results are those of the whole.
+    events : DataFrame
+        Of the monitors.
+    with_levels : set of str
+        Tracks with a protection level anywhere.
     ids : list of str
         Methods evaluated, the judging one first.
     judging : str
@@ -53,34 +59,34 @@ def summarise(
         Of accuracy and of integrity. [1]
     """
     risk_accuracy, risk_integrity = risks
-    judged = method(judging)
-    margins = with_margins(epochs, judged)
-    coverage_kind = evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED
-    accuracy = [evaluated(epochs, i, risk_accuracy, coverage_kind, integrity=False) for i in ids]
+    sums = Sums(material, judging, events, with_levels)
+    sums.see_all(epochs)
+    accuracy = [evaluated(epochs, i, risk_accuracy, integrity=False) for i in ids]
     protection = protection_of(epochs, material.limits_held)
-    verdict = verdict_of(material, facts_of(material, margins, accuracy, risks), accuracy, risks, protection)
+    approaches = approaches_of(epochs, method(judging))
+    facts = facts_of(sums, epochs, accuracy, risks)
     return Summary(
         kind=material.kind,
         operation=material.operation,
         title=material.title,
-        verdict=verdict,
-        coverage_kind=coverage_kind,
+        verdict=verdict_of(material, facts, accuracy, risks, protection),
+        coverage_kind=evaluation.CLOSED_LOOP if material.kind == "fly" else evaluation.REPEATED,
         assumptions=material.assumptions,
         covariance=material.covariance,
-        phases=phases(margins, judged.column, material.sample_period_s, events),
+        phases=phases(sums, material.sample_period_s),
         protection=protection,
-        tracks=tracks(margins, material.labels, events),
+        tracks=tracks(sums, material.labels, events),
         accuracy=accuracy,
-        integrity=[evaluated(epochs, i, risk_integrity, coverage_kind, integrity=True) for i in ids],
+        integrity=[evaluated(epochs, i, risk_integrity, integrity=True) for i in ids],
         honesty=consistency_of(epochs),
         states=states,
         events=listed(events),
         cross_track=material.cross_track,
         procedures=material.procedures,
         rejected=material.rejected,
-        n_status=by_status(epochs),
-        groups=deviation_groups(margins, material.labels),
-        bands=deviation_bands(epochs),
+        n_status=facts.n_status,
+        groups=deviation_groups(approaches, material.labels),
+        bands=deviation_bands(approaches),
         satellites=satellites_of(material.satellites),
     )
 

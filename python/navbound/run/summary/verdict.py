@@ -5,21 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-import polars as pl
-
-from navbound.judge import with_levels
-from navbound.methods import column_of, method
+from navbound.methods import method
 from navbound.records.run import Belief, MethodResult, ProtectionSummary, Verdict, Worst
-from navbound.run.inputs.doubts import Doubts
-from navbound.run.summary.margins import KNOWN_BEYOND, OUTSIDE, by_reason, by_status, judged_margins, worst_of
-from navbound.run.summary.missing import n_missing
 from navbound.run.verdict import rule
 from navbound.run.verdict.belief import of_epochs
 from navbound.run.verdict.results import protection_words, verdict_words
 
 if TYPE_CHECKING:
     from navbound.records.material import Material
+    from navbound.run.inputs.doubts import Doubts
+    from navbound.run.summary.sums import Sums
+    from navbound.storage.tables import Table
 
 
 @dataclass(frozen=True)
@@ -57,27 +53,22 @@ class VerdictFacts:
     n_truth: int = 0
 
 
-def facts_of(material: Material, margins: pl.DataFrame, stated: list[MethodResult], risks: tuple[float, float]) -> VerdictFacts:
-    """What the verdict says and rests on, of epochs in memory. The first of the stated methods judges."""
-    judge = stated[0]
-    judged = judged_margins(margins)
-    truth = "nse_h_m" in margins.columns
-    doubts = Doubts({track for track, has in with_levels(margins).items() if has}, recorded=material.kind == "analyze")
-    doubts.see(margins)
+def facts_of(sums: Sums, epochs: Table, stated: list[MethodResult], risks: tuple[float, float]) -> VerdictFacts:
+    """What the verdict says and rests on. The first of the stated methods judges."""
     return VerdictFacts(
-        n_recorded=margins.height,
-        n_missing=n_missing(margins, material.left_out, material.sample_period_s),
-        n_judged=judged.height,
-        n_inside=int((judged["_margin"] >= 0).sum()),
-        n_contained=int((judged["_margin_integrity"] >= 0).sum()),
-        n_outside=margins.select(OUTSIDE.sum()).item(),
-        n_status=by_status(margins),
-        n_reason=by_reason(margins),
-        worst=worst_of(margins, judge.id),
-        doubts=doubts,
-        belief=of_epochs(margins, judge.id, risks, [each.id for each in stated]),
-        n_known_beyond=margins.select(KNOWN_BEYOND.sum()).item() if truth else 0,
-        n_truth=int(np.isfinite(column_of(margins, "nse_h_m")).sum()) if truth else 0,
+        n_recorded=sums.n,
+        n_missing=sums.gaps.n_missing(),
+        n_judged=sums.n_judged,
+        n_inside=sums.n_inside,
+        n_contained=sums.n_contained,
+        n_outside=sums.n_outside,
+        n_status=dict(sorted(sums.n_status.items())),
+        n_reason=dict(sorted(sums.n_reason.items(), key=lambda each: (-each[1], each[0]))),
+        worst=(sums.worst[0], sums.worst[1]),
+        doubts=sums.doubts,
+        belief=of_epochs(epochs, stated[0].id, risks, [each.id for each in stated]),
+        n_known_beyond=sums.n_known_beyond,
+        n_truth=sums.n_truth,
     )
 
 

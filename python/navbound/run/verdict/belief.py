@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import polars as pl
 
 from navbound import evaluation
+from navbound.evaluation.pieces import Series, Sizes
 from navbound.methods import column_of, method
 from navbound.read.checks.stated import LEVEL_SIGMAS
 from navbound.records.run import Belief, BoundCheck, LevelCheck
 from navbound.run.verdict import rule
 from navbound.status import USABLE
+from navbound.storage.tables import Places, pieces, tracks
 from navbound.table.columns import HORIZONTAL
 from navbound.units import EARTH_RADIUS_M
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
+    from navbound.evaluation import Magnitude
     from navbound.methods import Method
     from navbound.records.performance import LevelResult
+    from navbound.storage.tables import Table
 
 CIRCLE = "anp-circle"
 """The covariance itself as a bound: every lateral bound rests on it."""
@@ -58,7 +63,40 @@ class _Tested:
     p_values: list[float]
 
 
-def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float], stated: Sequence[str] = ()) -> Belief | None:
+@dataclass(frozen=True)
+class _Usable:
+    """The epochs over which bounds are checked, of a table at once or in pieces."""
+
+    table: Table
+    statuses: tuple[str, ...]
+    height: int
+
+    @property
+    def columns(self) -> set[str]:
+        return set(self.table.columns)
+
+    def pieces(self, *names: str) -> Iterator[pl.DataFrame]:
+        """Some columns, piece by piece."""
+        return (self._of(piece) for piece in pieces(self.table, [*names, "status"]))
+
+    def tracks(self, *names: str) -> Iterator[pl.DataFrame]:
+        """The same in pieces of whole tracks."""
+        return (self._of(piece) for piece in tracks(self.table, ["track", *names, "status"]))
+
+    def _of(self, piece: pl.DataFrame) -> pl.DataFrame:
+        return piece.filter(pl.col("status").is_in(self.statuses))
+
+
+def _usable(epochs: Table) -> _Usable:
+    """Epochs with status ok; where there is none, those that are degraded."""
+    counts: Counter[str] = Counter()
+    for piece in pieces(epochs, ["status"]):
+        counts.update(dict(piece["status"].value_counts().iter_rows()))
+    statuses = ("ok",) if counts["ok"] else tuple(USABLE)
+    return _Usable(epochs, statuses, sum(counts[each] for each in statuses))
+
+
+def of_epochs(epochs: Table, judging: str, risks: tuple[float, float], stated: Sequence[str] = ()) -> Belief | None:
     """Check every bound and protection level that the run states against truth; None where no truth is known.
 
     The lateral verdict rests on the judging method and on the circle; the other stated methods stand beside them. Over epochs with status
@@ -66,7 +104,7 @@ def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float], st
 
     Parameters
     ----------
-    epochs : DataFrame
+    epochs : DataFrame or Frames
         After judging.
     judging : str
         Id of the method that judges.
@@ -75,8 +113,7 @@ def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float], st
     stated : sequence of str
         Ids of all methods whose bounds the run states. Exhibits of a misprint claim nothing and are left out.
     """
-    vouched = epochs.filter(pl.col("status") == "ok")
-    usable = vouched if vouched.height else epochs.filter(pl.col("status").is_in(USABLE))
+    usable = _usable(epochs)
     levels = [check for check in (_level(epochs, *names) for names in LEVELS) if check is not None]
     size = _magnitude(usable)
     carrying = list(dict.fromkeys((judging, CIRCLE)))
@@ -89,7 +126,7 @@ def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float], st
     p_values += [p for tested in bounds for p in tested.p_values]
     p_beside = [p for tested in beside for p in tested.p_values]
     checks = [tested.check for tested in bounds]
-    n_truth = int(np.isfinite(column_of(usable, "nse_h_m")).sum()) if "nse_h_m" in usable.columns else 0
+    n_truth = sum(int(np.isfinite(column_of(piece, "nse_h_m")).sum()) for piece in usable.pieces("nse_h_m") if "nse_h_m" in piece.columns)
     facts = rule.BeliefFacts(
         n_effective=min((check.n_effective for check in checks), default=1.0),
         p_values=p_values,
@@ -114,7 +151,7 @@ def of_epochs(epochs: pl.DataFrame, judging: str, risks: tuple[float, float], st
     )
 
 
-def _tested(epochs: pl.DataFrame, ids: Sequence[str], risks: tuple[float, float], independent: Callable[[str], float]) -> list[_Tested]:
+def _tested(epochs: _Usable, ids: Sequence[str], risks: tuple[float, float], independent: Callable[[str], float]) -> list[_Tested]:
     """Every method at both risks that has a bound and a true error somewhere; ``independent``: share of its epochs that is independent."""
     tested = []
     for id_ in ids:
@@ -150,38 +187,46 @@ def _marked(tested: Sequence[_Tested], n_tests: int) -> list[BoundCheck]:
     return [c.model_copy(update={"refuted": c.method in false and c.coverage < 1.0 - c.risk}) for c in checks]
 
 
-def _independent(epochs: pl.DataFrame, of: Method) -> float:
+def _independent(epochs: _Usable, of: Method) -> float:
     """Share of the epochs that is independent: the least of the error's components in units of the bound, about zero."""
-    bound = column_of(epochs, of.column)
-    track = epochs.get_column("track").rle_id().cast(pl.Int64).to_numpy()
     shares = []
     for name in COMPONENTS.get(of.error_column, (of.error_column,)):
-        scaled = column_of(epochs, name) / np.where(bound > 0.0, bound, np.nan)
-        known = np.isfinite(scaled)
-        if known.any():
-            shares.append(evaluation.effective_size(scaled[known], track[known], about_zero=True) / known.sum())
+        series, places = Series(), Places()
+        for piece in epochs.pieces("track", of.column, name):
+            track = places.of(piece["track"])
+            bound = column_of(piece, of.column)
+            scaled = column_of(piece, name) / np.where(bound > 0.0, bound, np.nan)
+            known = np.isfinite(scaled)
+            series.see(scaled[known], track[known])
+        if series.n:
+            shares.append(series.effective_size(about_zero=True) / series.n)
     return min(shares, default=0.0)
 
 
-def _level(epochs: pl.DataFrame, level: Literal["hpl_m", "vpl_m"], error: str) -> LevelCheck | None:
+def _level(epochs: Table, level: Literal["hpl_m", "vpl_m"], error: str) -> LevelCheck | None:
     """A protection level against truth; None where no epoch has both."""
     if not {level, error} <= set(epochs.columns):
         return None
-    both = epochs.filter(pl.col("status").is_in(USABLE)).select(level=pl.col(level), size=pl.col(error).abs()).drop_nulls().drop_nans()
-    if both.is_empty():
-        return None
-    ratio = both.select(pl.when(pl.col("size") == 0.0).then(0.0).otherwise(pl.col("size") / pl.col("level")).max()).item()
-    n_above = int(both.select((pl.col("size") > pl.col("level")).sum()).item())
-    return LevelCheck(level=level, n=both.height, n_above=n_above, largest_ratio=float(min(ratio, MOST_RATIO)))
+    n, n_above, largest = 0, 0, 0.0
+    for piece in pieces(epochs, [level, error, "status"]):
+        both = piece.filter(pl.col("status").is_in(USABLE)).select(level=pl.col(level), size=pl.col(error).abs()).drop_nulls().drop_nans()
+        if both.is_empty():
+            continue
+        ratio = both.select(pl.when(pl.col("size") == 0.0).then(0.0).otherwise(pl.col("size") / pl.col("level")).max()).item()
+        n, largest = n + both.height, max(largest, float(ratio))
+        n_above += int(both.select((pl.col("size") > pl.col("level")).sum()).item())
+    return LevelCheck(level=level, n=n, n_above=n_above, largest_ratio=min(largest, MOST_RATIO)) if n else None
 
 
-def _outside(epochs: pl.DataFrame, bound: str, error: str) -> tuple[int, int]:
+def _outside(epochs: _Usable, bound: str, error: str) -> tuple[int, int]:
     """Epochs beyond the bound, and epochs with both."""
-    if not {bound, error} <= set(epochs.columns):
-        return 0, 0
-    limit, size = column_of(epochs, bound), np.abs(column_of(epochs, error))
-    known = np.isfinite(limit) & ~np.isnan(size)
-    return int((size[known] > limit[known]).sum()), int(known.sum())
+    n_outside = n = 0
+    if {bound, error} <= epochs.columns:
+        for piece in epochs.pieces(bound, error):
+            limit, size = column_of(piece, bound), np.abs(column_of(piece, error))
+            known = np.isfinite(limit) & ~np.isnan(size)
+            n_outside, n = n_outside + int((size[known] > limit[known]).sum()), n + int(known.sum())
+    return n_outside, n
 
 
 def copied(epochs: pl.DataFrame) -> tuple[int, int]:
@@ -194,23 +239,27 @@ def copied(epochs: pl.DataFrame) -> tuple[int, int]:
     return int(same[known].sum()), int(known.sum())
 
 
-def _copied_share(epochs: pl.DataFrame) -> float:
+def _copied_share(epochs: _Usable) -> float:
     """Share of the epochs with truth where it is the estimate itself: no error at all, or one that no true covariance leaves so small."""
-    if not {"nse_e_m", "nse_n_m"} <= set(epochs.columns):
+    if not {"nse_e_m", "nse_n_m"} <= epochs.columns:
         return 0.0
-    east, north = column_of(epochs, "nse_e_m"), column_of(epochs, "nse_n_m")
-    size = np.hypot(east, north)
-    known = np.isfinite(size)
-    if not known.any():
-        return 0.0
-    same = (size == 0.0) | _rounded_copies(epochs) | _shifted_copies(epochs)
-    if {"cov_ee_m2", "cov_nn_m2"} <= set(epochs.columns):
-        # P(e' V^-1 e <= x) = 1 - exp(-x / 2); the smaller variance of both axes makes x largest, which is the careful side.
-        variance = np.fmin(column_of(epochs, "cov_ee_m2"), column_of(epochs, "cov_nn_m2"))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            improbable = -np.expm1(-0.5 * size**2 / variance) <= SAME_AT
-        same |= (size <= SAME_M) & improbable
-    return float(same[known].mean())
+    decimals = _decimals_of_copies(epochs)
+    n = n_same = 0
+    for piece in epochs.tracks("nse_e_m", "nse_n_m", "cov_ee_m2", "cov_nn_m2", *_DEGREES):
+        east, north = column_of(piece, "nse_e_m"), column_of(piece, "nse_n_m")
+        size = np.hypot(east, north)
+        known = np.isfinite(size)
+        same = (size == 0.0) | _shifted_copies(piece)
+        if decimals is not None:
+            same |= _rounded_copies(piece, decimals)
+        if {"cov_ee_m2", "cov_nn_m2"} <= set(piece.columns):
+            # P(e' V^-1 e <= x) = 1 - exp(-x / 2); the smaller variance of both axes makes x largest, which is the careful side.
+            variance = np.fmin(column_of(piece, "cov_ee_m2"), column_of(piece, "cov_nn_m2"))
+            with np.errstate(divide="ignore", invalid="ignore"):
+                improbable = -np.expm1(-0.5 * size**2 / variance) <= SAME_AT
+            same |= (size <= SAME_M) & improbable
+        n, n_same = n + int(known.sum()), n_same + int(same[known].sum())
+    return n_same / n if n else 0.0
 
 
 _TRAVELS_M = 100.0
@@ -241,38 +290,61 @@ _LEAST_COPIES, _LEAST_PLACES = 0.95, 10
 Provenance: ours."""
 
 
-def _rounded_copies(epochs: pl.DataFrame) -> NDArray[np.bool_]:
-    """Epochs whose truth is the estimate rounded to some decimals of a degree: to the resolution of such a truth there is no error."""
-    names = ("est_lat_rad", "truth_lat_rad", "est_lon_rad", "truth_lon_rad")
-    if not set(names) <= set(epochs.columns):
-        return np.zeros(epochs.height, dtype=np.bool_)
-    degrees = np.degrees([column_of(epochs, name) for name in names]).reshape(2, 2, -1)
-    known = np.isfinite(degrees).all(axis=(0, 1))
-    if np.unique(degrees[:, 1, known], axis=1).shape[1] < _LEAST_PLACES:
-        return np.zeros(epochs.height, dtype=np.bool_)
-    for decimals in _DECIMALS:
-        apart = np.abs(np.round(degrees[:, 0], decimals) - degrees[:, 1])
-        # A thousandth of the resolution: radians in between and back.
-        same: NDArray[np.bool_] = np.all(apart <= 10.0 ** -(decimals + 3), axis=0) & known
-        if same.sum() >= _LEAST_COPIES * known.sum():
-            return same
-    return np.zeros(epochs.height, dtype=np.bool_)
+_DEGREES = ("est_lat_rad", "truth_lat_rad", "est_lon_rad", "truth_lon_rad")
 
 
-def _magnitude(epochs: pl.DataFrame) -> evaluation.Magnitude | None:
+def _decimals_of_copies(epochs: _Usable) -> int | None:
+    """Decimals of a degree to which the truth is the rounded estimate: to the resolution of such a truth there is no error."""
+    if not set(_DEGREES) <= epochs.columns:
+        return None
+    places, n = np.empty((2, 0)), 0
+    n_same = dict.fromkeys(_DECIMALS, 0)
+    for piece in epochs.pieces(*_DEGREES):
+        degrees, known = _in_degrees(piece)
+        n += int(known.sum())
+        if places.shape[1] < _LEAST_PLACES:
+            places = np.unique(np.hstack([places, degrees[:, 1, known]]), axis=1)[:, :_LEAST_PLACES]
+        for decimals in _DECIMALS:
+            n_same[decimals] += int(_rounded_copies(piece, decimals).sum())
+    if places.shape[1] < _LEAST_PLACES:
+        return None
+    return next((decimals for decimals in _DECIMALS if n_same[decimals] >= _LEAST_COPIES * n), None)
+
+
+def _in_degrees(epochs: pl.DataFrame) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Latitude and longitude of estimate and truth, shape (2, 2, n), and where all are known."""
+    degrees = np.degrees([column_of(epochs, name) for name in _DEGREES]).reshape(2, 2, -1)
+    return degrees, np.isfinite(degrees).all(axis=(0, 1))
+
+
+def _rounded_copies(epochs: pl.DataFrame, decimals: int) -> NDArray[np.bool_]:
+    """Epochs whose truth is the estimate rounded so."""
+    degrees, known = _in_degrees(epochs)
+    apart = np.abs(np.round(degrees[:, 0], decimals) - degrees[:, 1])
+    # A thousandth of the resolution: radians in between and back.
+    same: NDArray[np.bool_] = np.all(apart <= 10.0 ** -(decimals + 3), axis=0) & known
+    return same
+
+
+def _magnitude(epochs: _Usable) -> Magnitude | None:
     """The horizontal error in units of its covariance; None where no epoch has both."""
     names = ("nse_e_m", "nse_n_m", *HORIZONTAL)
-    if not set(names) <= set(epochs.columns):
+    if not set(names) <= epochs.columns:
         return None
-    east, north, ee, en, nn = (column_of(epochs, name) for name in names)
-    covariance = np.moveaxis(np.array([[ee, en], [en, nn]]), 2, 0)
-    known = np.isfinite(covariance).all(axis=(1, 2)) & np.isfinite(east) & np.isfinite(north)
-    if not known.any():
-        return None
-    track: NDArray[np.int64] = epochs.get_column("track").rle_id().cast(pl.Int64).to_numpy()
-    error = np.column_stack([east, north])
-    magnitude = evaluation.magnitude(error[known], covariance[known], track[known])
-    return magnitude if magnitude.n > 0 else None
+    axes = [_of_axis(epochs, names, axis) for axis in (0, 1)]
+    return replace(axes[0], n_effective=min(each.n_effective for each in axes)) if axes[0].n > 0 else None
+
+
+def _of_axis(epochs: _Usable, names: Sequence[str], axis: int) -> Magnitude:
+    """The same with the effective size of one axis: one series at a time."""
+    sizes, places = Sizes(axis), Places()
+    for piece in epochs.pieces("track", *names):
+        track = places.of(piece["track"])
+        east, north, ee, en, nn = (column_of(piece, name) for name in names)
+        covariance = np.moveaxis(np.array([[ee, en], [en, nn]]), 2, 0)
+        known = np.isfinite(covariance).all(axis=(1, 2)) & np.isfinite(east) & np.isfinite(north)
+        sizes.see(np.column_stack([east, north])[known], covariance[known], track[known])
+    return sizes.magnitude()
 
 
 def of_level(result: LevelResult, period_s: float) -> float | None:

@@ -12,9 +12,12 @@ from navbound import anp, rnp
 from navbound.methods import column_of
 from navbound.records.faults import FaultSummary, Moment, Outcome
 from navbound.scenario import Scenario, Taxi
+from navbound.storage.tables import tracks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from navbound.storage.tables import Table
 
 
 PERSISTENT_S = 3
@@ -22,21 +25,38 @@ PERSISTENT_S = 3
 second at 1e-4 each, once in a hundred flights of two hours."""
 
 
+_READ = (
+    "track",
+    "time_ns",
+    "n_gated",
+    "nav_mode",
+    "tse_m",
+    "rnp_m",
+    "innovation_memory",
+    "separation_m",
+    "separation_limit_m",
+    "nse_h_m",
+    "nse_u_m",
+)
+"""Columns that speak of a fault."""
+
 _AFTER_S = 600.0
 """What happens so long after a fault is over is still put down to it, unless another fault has begun. Provenance: ours."""
 _SECOND_NS = 1_000_000_000
 _NEVER = 2**63 - 1
 
 
-def fault_summaries(scenario: Scenario | Taxi, epochs: pl.DataFrame, events: pl.DataFrame) -> list[FaultSummary]:
+def fault_summaries(scenario: Scenario | Taxi, epochs: Table, events: pl.DataFrame) -> list[FaultSummary]:
     """Every declared fault of the sensors, flight by flight.
 
     Parameters
     ----------
     scenario : Scenario or Taxi
         Whose ``sensors.faults`` were flown; one that simulates no sensors has none.
-    epochs, events : DataFrame
+    epochs : DataFrame or Frames
         After judging.
+    events : DataFrame
+        Of the monitors.
 
     Notes
     -----
@@ -46,7 +66,8 @@ def fault_summaries(scenario: Scenario | Taxi, epochs: pl.DataFrame, events: pl.
         return []
     time_to_alert_s = min(cell.time_to_alert_s for cell in rnp.specifications() if cell.containment_m is not None)
     summaries = []
-    for key, frame in epochs.group_by("track", maintain_order=True):
+    flights = (flight for part in tracks(epochs, _READ) for flight in part.group_by("track", maintain_order=True))
+    for key, frame in flights:
         alerts = events.filter(pl.col("track") == key[0]).sort("onset_ns").select("onset_ns", "kind").rows()
         for window in _windows(scenario):
             summaries.append(_summary(window, frame, alerts, (time_to_alert_s, scenario.filter.separation_risk)))
